@@ -163,7 +163,7 @@ lint: $(VENV)/tests-installed
 	$(BIN)/python -m ruff check .
 	$(BIN)/python -m ruff format --check .
 	$(BIN)/python -m snakefmt --check Snakefile workflow/rules
-	$(BIN)/python tests/support/annotations.py src/fractalcontact
+	$(BIN)/python tests/support/annotations.py src
 	$(BIN)/python -m mypy
 
 format: $(VENV)/tests-installed

@@ -13,11 +13,11 @@ from pathlib import Path
 import numpy as np
 
 from fractalcontact.accuracy.refinement import FACTORS, curve_errors
-from fractalcontact.elastic.halfspace import HalfSpace
 from fractalcontact.mechanics.state_scalars import state_errors
 from fractalcontact.mechanics.subgrid import QUANTITIES, state_quantities, subgrid_states, summit
 from fractalcontact.roughness.dimension import slope_statistics
 from fractalcontact.surface.synthesis import self_affine
+from roughcontact.elastic.halfspace import HalfSpace
 
 SPACING, MODULUS, RMS = 0.1, 1e4, 0.1  # mm, MPa, mm
 #: Nominal pressures in E* h'_rms. At the last, far beyond joints of rock, some windows without a

@@ -146,8 +146,8 @@ def _ours(what):
     from solvers import forget
 
     from fractalcontact import solve_contact
-    from fractalcontact.contact.state import CandidateState
-    from fractalcontact.elastic.block_influence import forget_matrices
+    from roughcontact.contact.state import CandidateState
+    from roughcontact.elastic.block_influence import forget_matrices
 
     heights = _heights(what)
     kept = _space(heights)

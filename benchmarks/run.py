@@ -128,8 +128,8 @@ def _write(folder, rows, remarks, scaling, huge):
 
 
 def _versions():
-    from fractalcontact.core.threads import count
     from fractalcontact.methods.registry import PEERS
+    from roughcontact.threads import count
 
     packages = ["fractalcontact", "numpy", "scipy", "numba"]
     packages += dict.fromkeys(package for peer in PEERS.values() for package in peer.packages)

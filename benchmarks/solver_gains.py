@@ -30,7 +30,8 @@ from unittest import mock
 import numpy as np
 
 from fractalcontact import ContactState, HalfSpace, NotConverged, solve_contact
-from fractalcontact.contact import (
+from fractalcontact.surface.synthesis import self_affine
+from roughcontact.contact import (
     active_set,
     coarse_correction,
     full_approximation,
@@ -40,7 +41,6 @@ from fractalcontact.contact import (
     safeguards,
     solve,
 )
-from fractalcontact.surface.synthesis import self_affine
 
 WHOLE = "whole solver"
 #: Iterations after which a solver without one of its parts is given up.

@@ -18,11 +18,11 @@ import numpy as np
 
 from fractalcontact import HalfSpace, NotConverged, solve_contact
 from fractalcontact.accuracy.speed import load_of
-from fractalcontact.contact import operator
-from fractalcontact.contact.preconditioner import forget_preconditioner
-from fractalcontact.contact.state import CandidateState
 from fractalcontact.methods.peers import Failed as PeerFailed
 from fractalcontact.methods.registry import METHODS, installed_peers
+from roughcontact.contact import operator
+from roughcontact.contact.preconditioner import forget_preconditioner
+from roughcontact.contact.state import CandidateState
 
 
 class Failed(RuntimeError):

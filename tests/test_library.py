@@ -17,9 +17,9 @@ from places import ROOT
 
 import fractalcontact
 from fractalcontact import HalfSpace, InputError, box_dimension, solve_contact
-from fractalcontact.core import kernel_cache
 from fractalcontact.scan import formats
 from fractalcontact.scan.options import ScanOptions
+from roughcontact import kernel_cache
 
 PACKAGE = Path(fractalcontact.__file__).parent
 
@@ -62,11 +62,11 @@ def test_the_solver_asks_for_nothing_that_only_a_study_needs():
 
 def test_the_stub_names_what_the_package_exports():
     stub = (PACKAGE / "__init__.pyi").read_text()
-    pairs = re.findall(r"^from \.([\w.]+) import (\w+) as \2$", stub, re.MULTILINE)
+    pairs = re.findall(r"^from ([\w.]+) import (\w+) as \2$", stub, re.MULTILINE)
     exported = {name: home for home, name in pairs}
     assert sorted(exported) == fractalcontact.__all__
     for name, home in exported.items():
-        module = importlib.import_module(f"fractalcontact.{home}")
+        module = importlib.import_module(home, "fractalcontact")
         assert getattr(module, name) is getattr(fractalcontact, name)
     assert (PACKAGE / "py.typed").is_file()
     data = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["setuptools"]
@@ -164,16 +164,15 @@ def test_compiling_is_told_once(tmp_path, caplog, monkeypatch):
     made.write_text("def twice(x):\n    return 2 * x\n\n\ndef thrice(x):\n    return 3 * x\n")
     monkeypatch.syspath_prepend(tmp_path)
     module = importlib.import_module("made")
-    monkeypatch.setattr(kernel_cache, "_folder_name", lambda file: f"made-{tmp_path.name}")
     monkeypatch.setattr(kernel_cache, "_folders", lambda: (tmp_path, [tmp_path]))
-    with caplog.at_level(logging.INFO, "fractalcontact"):
+    with caplog.at_level(logging.INFO, "roughcontact"):
         for function in (module.twice, module.thrice):
             kernel = kernel_cache.njit(function, cache=True)
             kernel(2.0)
         told = [record for record in caplog.records if record.levelno == logging.WARNING]
         assert len(told) == 1
         assert "up to a minute" in told[0].getMessage()
-        assert [r.name for r in caplog.records] == ["fractalcontact"] * 3
+        assert [r.name for r in caplog.records] == ["roughcontact"] * 3
         caplog.clear()
         again = kernel_cache.njit(module.twice, cache=True)
         assert again(2.0) == 4.0

@@ -104,8 +104,8 @@ def main():
 
 def load():
     """Import what jobs import, and load the kernels that were compiled."""
-    from fractalcontact.core.kernel_cache import load_kept
     from fractalcontact.study.figure_list import all_figures
+    from roughcontact.kernel_cache import load_kept
 
     for name in MODULES:
         importlib.import_module(name)

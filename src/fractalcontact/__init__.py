@@ -14,11 +14,11 @@ __version__ = "0.1.0"
 #: Module of each name.
 _HOMES = {
     "BoxDimension": ".domain.box_dimension",
-    "ContactState": ".contact.state",
-    "HalfSpace": ".elastic.halfspace",
+    "ContactState": "roughcontact.contact.state",
+    "HalfSpace": "roughcontact.elastic.halfspace",
     "Hyperbola": ".mechanics.closure_laws",
     "InputError": ".core.errors",
-    "NotConverged": ".core.errors",
+    "NotConverged": "roughcontact.errors",
     "bulk_settlement": ".mechanics.closure",
     "best_dimension": ".roughness.recommended",
     "box_dimension": ".domain.box_dimension",
@@ -29,7 +29,7 @@ _HOMES = {
     "read_faces": ".scan.read",
     "read_scan": ".scan.read",
     "self_affine": ".surface.synthesis",
-    "solve_contact": ".contact.solve",
+    "solve_contact": "roughcontact.contact.solve",
     "surface_dimension": ".roughness.dimension",
 }
 __all__ = sorted(_HOMES)

@@ -1,12 +1,13 @@
 """What type checkers and editors see of the package, whose names are imported when asked for."""
 
-from .contact.solve import solve_contact as solve_contact
-from .contact.state import ContactState as ContactState
+from roughcontact.contact.solve import solve_contact as solve_contact
+from roughcontact.contact.state import ContactState as ContactState
+from roughcontact.elastic.halfspace import HalfSpace as HalfSpace
+from roughcontact.errors import NotConverged as NotConverged
+
 from .core.errors import InputError as InputError
-from .core.errors import NotConverged as NotConverged
 from .domain.box_dimension import BoxDimension as BoxDimension
 from .domain.box_dimension import box_dimension as box_dimension
-from .elastic.halfspace import HalfSpace as HalfSpace
 from .mechanics.closure import bulk_settlement as bulk_settlement
 from .mechanics.closure import interface_closure as interface_closure
 from .mechanics.closure_laws import Hyperbola as Hyperbola

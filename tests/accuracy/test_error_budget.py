@@ -15,9 +15,7 @@ from fractalcontact.accuracy.other_windows import (
     window_places,
     window_spread,
 )
-from fractalcontact.contact.solve import solve_contact
 from fractalcontact.domain.analysis import analyse_domains
-from fractalcontact.elastic.halfspace import HalfSpace
 from fractalcontact.mechanics.closure import closure_curves, elastic_dilatancy
 from fractalcontact.mechanics.joint import composite_topography, describe_joint
 from fractalcontact.mechanics.loading import JointLoading
@@ -28,6 +26,8 @@ from fractalcontact.mechanics.sweep import joint_states
 from fractalcontact.study.configuration import resolve_settings, solver_settings, window_arguments
 from fractalcontact.surface.specimen import make_specimen
 from fractalcontact.surface.synthesis import self_affine
+from roughcontact.contact.solve import solve_contact
+from roughcontact.elastic.halfspace import HalfSpace
 
 SPACING = 0.1  # mm
 STUDY = {

@@ -12,7 +12,7 @@ from random_problems import KINDS, LOADINGS, random_problem
 
 from fractalcontact import HalfSpace, NotConverged, solve_contact
 from fractalcontact.accuracy.violation import violation
-from fractalcontact.contact import active_set
+from roughcontact.contact import active_set
 
 #: Every kind is met under every loading.
 SEEDS = range(ensemble("random problems"))
@@ -88,7 +88,7 @@ def test_forces_found_by_way_of_closures_are_the_same_states(monkeypatch, patien
         problem = random_problem(seed, largest=80)
         expected = solve_contact(problem.height, problem.space, rtol=1e-8, **problem.load)
         with monkeypatch.context() as patched:
-            patched.setattr("fractalcontact.contact.safeguards.PATIENCE", patience)
+            patched.setattr("roughcontact.contact.safeguards.PATIENCE", patience)
             state = solve_contact(problem.height, problem.space, rtol=1e-8, **problem.load)
         assert state.closure == pytest.approx(expected.closure, rel=1e-6), problem.name
         assert state.force == pytest.approx(expected.force, rel=1e-8), problem.name
@@ -102,7 +102,7 @@ def test_the_patient_way_alone_finds_the_same_states(monkeypatch):
             continue
         expected = solve_contact(problem.height, problem.space, rtol=1e-8, **problem.load)
         with monkeypatch.context() as patched:
-            patched.setattr("fractalcontact.contact.safeguards.PATIENCE", -1)
+            patched.setattr("roughcontact.contact.safeguards.PATIENCE", -1)
             state = solve_contact(problem.height, problem.space, rtol=1e-8, **problem.load)
         assert state.force == pytest.approx(expected.force, rel=1e-6), problem.name
 
@@ -133,7 +133,7 @@ def test_a_force_that_rises_steeply_is_found_by_way_of_closures(monkeypatch, see
     closure = 1.03 * (height.max() - np.quantile(height, 0.98))
     expected = solve_contact(height, space, closure=closure, rtol=1e-8)
     assert expected.stiffness * expected.closure / expected.force > 20
-    monkeypatch.setattr("fractalcontact.contact.safeguards.PATIENCE", 0)
+    monkeypatch.setattr("roughcontact.contact.safeguards.PATIENCE", 0)
     state = solve_contact(height, space, force=expected.force)
     assert state.closure == pytest.approx(expected.closure, rel=1e-6)
     assert (state.in_contact == expected.in_contact).mean() > 0.999
@@ -143,8 +143,8 @@ def test_a_set_that_is_far_off_when_patience_ends_is_sought_by_closures(monkeypa
     """Far off at the end of patience, though not when hopelessness was looked for: both count."""
     called = []
     newton = active_set.newton_on_closure
-    monkeypatch.setattr("fractalcontact.contact.safeguards.PATIENCE", 0)
-    monkeypatch.setattr("fractalcontact.contact.safeguards.STALL", -1)
+    monkeypatch.setattr("roughcontact.contact.safeguards.PATIENCE", 0)
+    monkeypatch.setattr("roughcontact.contact.safeguards.STALL", -1)
     monkeypatch.setattr(active_set, "newton_on_closure", lambda *a: called.append(1) or newton(*a))
     problems = [random_problem(seed, largest=60) for seed in range(12)]
     problems = [problem for problem in problems if "force" in problem.load]

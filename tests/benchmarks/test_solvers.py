@@ -7,8 +7,8 @@ import pytest
 from places import BENCHMARKS
 
 from fractalcontact import HalfSpace
-from fractalcontact.contact import candidates, operator
 from fractalcontact.surface.synthesis import self_affine
+from roughcontact.contact import candidates, operator
 
 sys.path.insert(0, str(BENCHMARKS))
 from solvers import Ours

@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 from ensembles import ensemble
 
-from fractalcontact.contact.solve import solve_contact
 from fractalcontact.core.intervals import mean_interval
 from fractalcontact.domain.box_dimension import dimension_of_domain
-from fractalcontact.elastic.halfspace import HalfSpace
 from fractalcontact.experiments.delta_sigma import dimension_test, synthetic_surface
 from fractalcontact.experiments.units import SIDE
+from roughcontact.contact.solve import solve_contact
+from roughcontact.elastic.halfspace import HalfSpace
 
 RECIPE = {
     "dimensions": [2.2, 2.5],

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from fractalcontact.elastic.halfspace import HalfSpace
 from fractalcontact.mechanics.area import corrected_area
 from fractalcontact.mechanics.numerical_error import (
     UNCERTAIN,
@@ -18,6 +17,7 @@ from fractalcontact.mechanics.subgrid import (
     summit,
 )
 from fractalcontact.surface.synthesis import self_affine
+from roughcontact.elastic.halfspace import HalfSpace
 
 SPACING, MODULUS = 0.1, 1e4
 

@@ -7,10 +7,8 @@ import pytest
 import xarray as xr
 from made_settings import made_settings
 
-from fractalcontact.contact.solve import solve_contact
 from fractalcontact.core.settings import Solver
 from fractalcontact.core.window import window_sides
-from fractalcontact.elastic.halfspace import HalfSpace
 from fractalcontact.mechanics.area import contact_perimeter, corrected_area
 from fractalcontact.mechanics.closure import closure_curves, elastic_dilatancy
 from fractalcontact.mechanics.joint import (
@@ -25,6 +23,8 @@ from fractalcontact.mechanics.states import MAP_PRESSURE, OFFSETS, combine, doma
 from fractalcontact.mechanics.sweep import contact_states, joint_states, load_steps
 from fractalcontact.surface.specimen import make_specimen
 from fractalcontact.surface.synthesis import self_affine
+from roughcontact.contact.solve import solve_contact
+from roughcontact.elastic.halfspace import HalfSpace
 
 SPACING_Y, SPACING_X = 0.12, 0.1
 OFFSETS_ASKED = [0.44, 0.7]  # 4 and 7 cells along x, 4 and 6 along y: 0.48 and 0.72 mm

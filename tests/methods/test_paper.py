@@ -5,10 +5,10 @@ import pytest
 from ensembles import ensemble
 
 from fractalcontact import HalfSpace, NotConverged, solve_contact
-from fractalcontact.elastic.halfspace import RIGID_PLATE_SELF_TERMS
 from fractalcontact.methods import paper
 from fractalcontact.methods.registry import METHODS
 from fractalcontact.surface.synthesis import self_affine
+from roughcontact.elastic.halfspace import RIGID_PLATE_SELF_TERMS
 
 DROPPING, ELIMINATION = METHODS["paper"], METHODS["dense"]
 KERNELS = ["love", *RIGID_PLATE_SELF_TERMS]

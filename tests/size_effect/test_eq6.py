@@ -8,11 +8,9 @@ import xarray as xr
 from ensembles import ensemble
 from places import SCANS
 
-from fractalcontact.contact.solve import solve_contact
 from fractalcontact.core.estimate import Estimate
 from fractalcontact.core.settings import Solver
 from fractalcontact.domain.renormalisation import hausdorff_measure
-from fractalcontact.elastic.halfspace import HalfSpace
 from fractalcontact.mechanics.joint import composite_topography
 from fractalcontact.mechanics.loading import JointLoading
 from fractalcontact.scan.read import read_faces
@@ -31,6 +29,8 @@ from fractalcontact.size_effect.windows import window_states
 from fractalcontact.study.configuration import resolve_settings
 from fractalcontact.surface.specimen import make_specimen
 from fractalcontact.surface.synthesis import self_affine
+from roughcontact.contact.solve import solve_contact
+from roughcontact.elastic.halfspace import HalfSpace
 
 SOLVER = Solver(1e-6, "love", None)
 

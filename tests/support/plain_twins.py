@@ -8,8 +8,8 @@ with the square of the nodes, or faster.
 import numpy as np
 from scipy import fft
 
-from fractalcontact.contact.inverse_cholesky import block_shifts
-from fractalcontact.elastic.halfspace import HalfSpace
+from roughcontact.contact.inverse_cholesky import block_shifts
+from roughcontact.elastic.halfspace import HalfSpace
 
 
 def convolution(kernel: np.ndarray, field: np.ndarray) -> np.ndarray:

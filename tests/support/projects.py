@@ -23,7 +23,7 @@ def copy_project(folder):
         else:
             shutil.copy(source, folder / name)
     (folder / "scans").mkdir()
-    kernels = Path("src/fractalcontact/__pycache__/kernels")
+    kernels = Path("src/roughcontact/__pycache__/kernels")
     (folder / kernels).parent.mkdir(exist_ok=True)
     (folder / kernels).symlink_to(ROOT / kernels)
     return folder

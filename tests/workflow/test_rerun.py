@@ -230,9 +230,9 @@ def test_the_script_of_all_stages_follows_from_the_function_that_it_calls():
         files = _files_behind(stage.module)
         assert f"src/fractalcontact/{stage.module}.py" in files
     windows = _files_behind(STAGES["window_states"].module)
-    assert {"src/fractalcontact/size_effect/eq6.py", "src/fractalcontact/contact/solve.py"} <= (
+    assert {"src/fractalcontact/size_effect/eq6.py", "src/roughcontact/contact/solve.py"} <= (
         windows - alone
     )
     assert "src/fractalcontact/study/stages.py" not in windows
     # What follows from states takes no solver.
-    assert "src/fractalcontact/contact/solve.py" not in _files_behind(STAGES["windows"].module)
+    assert "src/roughcontact/contact/solve.py" not in _files_behind(STAGES["windows"].module)

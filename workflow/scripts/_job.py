@@ -11,9 +11,10 @@ from pathlib import Path
 import _running
 import _warm
 
-from fractalcontact.contact.effort import SOLVING
 from fractalcontact.core import checksums
-from fractalcontact.core.errors import InputError, NotConverged, OutputError
+from fractalcontact.core.errors import InputError, OutputError
+from roughcontact.contact.effort import SOLVING
+from roughcontact.errors import NotConverged
 
 _warm.hand_over()  # before the script imports what takes long
 

@@ -10,10 +10,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..contact.preconditioner import forget_preconditioner
-from ..contact.solve import checked_hardness, checked_problem, solve_contact
-from ..core.arguments import whole_number
-from ..elastic.halfspace import HalfSpace, rectangle_mean_displacement
+from roughcontact.arguments import whole_number
+from roughcontact.contact.preconditioner import forget_preconditioner
+from roughcontact.contact.solve import checked_hardness, checked_problem, solve_contact
+from roughcontact.elastic.halfspace import HalfSpace, rectangle_mean_displacement
 
 #: Tolerance of the coarse solves: far below what the coarse grid itself is off by.
 COARSE_RTOL = 1e-4

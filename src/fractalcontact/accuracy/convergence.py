@@ -5,11 +5,12 @@ from collections.abc import Sequence
 import numpy as np
 import xarray as xr
 
-from ..contact.solve import solve_contact
+from roughcontact.contact.solve import solve_contact
+from roughcontact.elastic.halfspace import HalfSpace
+
 from ..core.datasets import labelled_dataset
 from ..core.fitting import fit_line
 from ..core.labels import cf_attrs
-from ..elastic.halfspace import HalfSpace
 from .richardson import richardson
 
 # The window is this many times the contact across: what lies outside never touches.

@@ -13,10 +13,11 @@ Complementarity Problem (1992), sect. 4.7.
 import numpy as np
 import xarray as xr
 
+from roughcontact.elastic.halfspace import RIGID_PLATE_SELF_TERMS, HalfSpace
+from roughcontact.errors import NotConverged
+
 from ..core.datasets import labelled_dataset
-from ..core.errors import NotConverged
 from ..core.labels import cf_attrs
-from ..elastic.halfspace import RIGID_PLATE_SELF_TERMS, HalfSpace
 from ..methods.common import influence_matrix
 from ..methods.registry import METHODS
 from .hard_surfaces import closure_reaching, rough_heights

@@ -12,8 +12,9 @@ from collections.abc import Callable
 
 import numpy as np
 
-from ..contact.solve import solve_contact
-from ..contact.state import ContactState
+from roughcontact.contact.solve import solve_contact
+from roughcontact.contact.state import ContactState
+
 from .hard_surfaces import (
     SURFACES,
     HardProblem,

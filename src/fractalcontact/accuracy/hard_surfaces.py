@@ -9,8 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from ..contact.solve import solve_contact
-from ..elastic.halfspace import HalfSpace
+from roughcontact.contact.solve import solve_contact
+from roughcontact.elastic.halfspace import HalfSpace
+
 from ..surface.synthesis import self_affine
 
 #: Cells along a side, smallest and largest: direct elimination stays below a second.

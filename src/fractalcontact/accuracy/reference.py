@@ -13,10 +13,11 @@ from typing import Any
 
 import numpy as np
 
-from ..contact.solve import solve_contact
-from ..contact.state import ContactState
-from ..core.errors import NotConverged
-from ..elastic.halfspace import HalfSpace
+from roughcontact.contact.solve import solve_contact
+from roughcontact.contact.state import ContactState
+from roughcontact.elastic.halfspace import HalfSpace
+from roughcontact.errors import NotConverged
+
 from ..methods.registry import METHODS
 from ..surface.synthesis import self_affine
 from .cheap_models import CheapState

@@ -10,10 +10,11 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
-from ..contact.state import ContactState
+from roughcontact.contact.state import ContactState
+from roughcontact.elastic.halfspace import HalfSpace
+
 from ..core.settings import ContactSettings, Load
 from ..domain.box_dimension import dimension_of_domain
-from ..elastic.halfspace import HalfSpace
 from ..mechanics.loading import JointLoading
 from ..mechanics.numerical_error import NumericalError, closure_error, numerical_error
 from ..mechanics.states import forces_of

@@ -14,16 +14,17 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from ..contact.preconditioner import forget_preconditioner
-from ..contact.solve import solve_contact
-from ..contact.state import ContactState
-from ..core import threads
+from roughcontact import threads
+from roughcontact.contact.preconditioner import forget_preconditioner
+from roughcontact.contact.solve import solve_contact
+from roughcontact.contact.state import ContactState
+from roughcontact.elastic.halfspace import HalfSpace
+from roughcontact.errors import NotConverged
+
 from ..core.child_process import ChildFailed, in_child
 from ..core.datasets import labelled_dataset
-from ..core.errors import NotConverged
 from ..core.labels import cf_attrs
 from ..domain.box_dimension import dimension_of_domain
-from ..elastic.halfspace import HalfSpace
 from ..methods.peers import PATIENCE, Load, PublicCode, clearance_of, state_of
 from ..methods.registry import METHODS, Method, installed_peers
 from .cheap_models import CheapState, bearing_area, coarse_grid, winkler

@@ -6,10 +6,11 @@ from typing import Any, NamedTuple
 import numpy as np
 import xarray as xr
 
-from ..contact.solve import solve_contact
-from ..contact.state import ContactState
+from roughcontact.contact.solve import solve_contact
+from roughcontact.contact.state import ContactState
+from roughcontact.errors import NotConverged
+
 from ..core.datasets import labelled_dataset
-from ..core.errors import NotConverged
 from ..methods.common import NotOffered
 from ..methods.registry import METHODS, installed_peers
 from .hard_problems import KINDS, hard_problem

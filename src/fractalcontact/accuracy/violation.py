@@ -3,8 +3,8 @@
 import numpy as np
 from scipy.signal import fftconvolve
 
-from ..contact.state import ContactState
-from ..elastic.influence import love_displacement
+from roughcontact.contact.state import ContactState
+from roughcontact.elastic.influence import love_displacement
 
 
 def violation(state: ContactState, height: np.ndarray) -> tuple[float, float]:

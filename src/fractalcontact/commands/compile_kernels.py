@@ -5,13 +5,14 @@ python -m fractalcontact.commands.compile_kernels
 
 import numpy as np
 
-from ..contact.full_approximation import LEAST_FINE_SIDE
-from ..contact.solve import solve_contact
-from ..contact.state import ContactState
+from roughcontact.contact.full_approximation import LEAST_FINE_SIDE
+from roughcontact.contact.solve import solve_contact
+from roughcontact.contact.state import ContactState
+from roughcontact.elastic.halfspace import HalfSpace
+from roughcontact.elastic.split_convolution import LEAST_SPLIT_SIDE
+
 from ..domain.correlation import pair_counts
 from ..domain.measures import measures_of_states
-from ..elastic.halfspace import HalfSpace
-from ..elastic.split_convolution import LEAST_SPLIT_SIDE
 from ..mechanics.rigid_slide import slide
 from ..roughness.dimension import surface_dimension
 from ..surface.synthesis import self_affine

@@ -1,7 +1,6 @@
 """Fixed limits behind verdicts, each once: rules apply them, figures and pages quote them."""
 
-#: Contact of fewer nodes is not resolved, and not fitted: one node more or less is 10 % of it.
-RESOLVED_NODES = 10
+from roughcontact.limits import RESOLVED_NODES as RESOLVED_NODES
 
 #: The area of fewer nodes is not corrected for their edges: at 14 nodes the corrected one was a
 #: third too large beside finer grids, from 30 on within some per cent.

@@ -26,7 +26,7 @@ _LAZY = re.compile(rb'"(\w+)": "\.([\w.]+)"')
 #: Call that imports every module of a package, see :func:`core.modules.modules_of`.
 _ALL_OF = re.compile(rb"\bmodules_of\((\w+)\)")
 
-_OWN = __name__.partition(".")[0]
+_OWN = ("roughcontact", "fractalcontact")
 #: Distributions that are not called what one imports.
 _DISTRIBUTIONS = {"mpl_toolkits": "matplotlib", "yaml": "PyYAML"}
 #: Libraries that come with another, and make its numbers.
@@ -80,7 +80,7 @@ def libraries(paths: Iterable[Path | str]) -> list[str]:
             name = module.partition(".")[0]
             if name and not _is_beside(path, name, tree):
                 found.add(name)
-    return sorted(found - sys.stdlib_module_names - {_OWN})
+    return sorted(found - sys.stdlib_module_names - set(_OWN))
 
 
 def digest(
@@ -198,7 +198,7 @@ def _followed(path, package, tree):
             folder = os.path.dirname(path)
             for _ in range(level - 1):
                 folder = os.path.dirname(folder)
-        elif parts[0] == os.path.basename(package):
+        elif tree.is_package(os.path.join(os.path.dirname(package), parts[0])):
             folder = os.path.dirname(package)
         elif _is_beside(path, parts[0], tree):
             folder = os.path.dirname(path)

@@ -8,7 +8,8 @@ from typing import Any
 
 import pint
 
-from .arguments import LEAST_INPUT, MOST_INPUT
+from roughcontact.arguments import LEAST_INPUT, MOST_INPUT
+
 from .errors import InputError
 
 #: The program's unit for each kind of quantity.

@@ -4,9 +4,9 @@ from fractions import Fraction
 
 import numpy as np
 
-from ..core import arguments
-from ..core.arguments import whole_number, whole_numbers
-from ..core.kernel_cache import njit
+from roughcontact import arguments
+from roughcontact.arguments import whole_number, whole_numbers
+from roughcontact.kernel_cache import njit
 
 #: Box sizes in each doubling.
 SIZES_PER_OCTAVE = 4

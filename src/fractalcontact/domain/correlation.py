@@ -3,9 +3,10 @@
 import numpy as np
 from scipy import fft
 
+from roughcontact.kernel_cache import njit
+
 from ..core.estimate import Estimate
 from ..core.fitting import fit_line
-from ..core.kernel_cache import njit
 from ..core.slope_of_sums import BLOCKS, FEWEST_SCALES, slope_of_sums
 from .box_counts import geometric_sizes
 

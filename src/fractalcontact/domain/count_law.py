@@ -28,8 +28,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..core.arguments import real_array
-from ..core.kernel_cache import njit
+from roughcontact.arguments import real_array
+from roughcontact.kernel_cache import njit
 
 #: Values of D that are tried first, and then about the best of them.
 _COARSE = np.linspace(0, 2, 101)

@@ -9,10 +9,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..core.arguments import real_array, refuse_masked, whole_numbers
+from roughcontact.arguments import real_array, refuse_masked, whole_numbers
+from roughcontact.kernel_cache import njit
+
 from ..core.estimate import Estimate
 from ..core.intervals import jackknife_error
-from ..core.kernel_cache import njit
 from ..core.slope_of_sums import BLOCKS, slope_of_sums
 from .box_counts import whole_sizes
 

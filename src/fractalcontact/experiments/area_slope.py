@@ -11,9 +11,10 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from roughcontact.elastic.halfspace import HalfSpace
+
 from ..core.intervals import mean_interval
 from ..core.labels import cf_attrs
-from ..elastic.halfspace import HalfSpace
 from ..mechanics import theory
 from ..mechanics.area import AREA_SLOPE, CORRECTED_AREA_SLOPE, corrected_area
 from ..mechanics.sweep import load_steps

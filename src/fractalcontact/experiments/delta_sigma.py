@@ -13,6 +13,8 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from roughcontact.elastic.halfspace import HalfSpace
+
 from ..core.datasets import labelled, labelled_dataset
 from ..core.estimate import NO_ESTIMATE, Estimate, rows_of
 from ..core.fitting import fit_line
@@ -22,7 +24,6 @@ from ..domain.box_counts import box_count
 from ..domain.box_dimension import dimension_of_domain
 from ..domain.correlation import correlation_dimension
 from ..domain.renormalisation import renormalisation
-from ..elastic.halfspace import HalfSpace
 from ..mechanics.joint import prefractal
 from ..mechanics.sweep import load_steps
 from ..roughness.dimension import slope_statistics

@@ -11,14 +11,15 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from ..contact.state import ContactState
+from roughcontact.contact.state import ContactState
+from roughcontact.elastic.halfspace import HalfSpace
+
 from ..core.datasets import labelled_dataset
 from ..core.labels import cf_attrs
 from ..core.mean_plane import without_mean_plane
 from ..domain.box_dimension import dimension_of_domain
 from ..domain.correlation import correlation_dimension
 from ..domain.null_models import bearing_area_cut
-from ..elastic.halfspace import HalfSpace
 from ..mechanics.area import corrected_area
 from ..mechanics.closure import bulk_settlement
 from ..mechanics.sweep import load_steps

@@ -12,11 +12,12 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from ..contact.state import ContactState
+from roughcontact.contact.state import ContactState
+from roughcontact.elastic.halfspace import HalfSpace
+
 from ..core.datasets import labelled_dataset
 from ..core.errors import InputError
 from ..core.labels import cf_attrs
-from ..elastic.halfspace import HalfSpace
 from ..mechanics.area import corrected_area
 from ..mechanics.sweep import load_steps
 from .mated_faces import (

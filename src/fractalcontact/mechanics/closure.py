@@ -6,10 +6,11 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
+from roughcontact.elastic.halfspace import rectangle_mean_displacement
+
 from ..core.estimate import Estimate, names_of
 from ..core.labels import cf_attrs
 from ..core.limits import CORRECTED_NODES, RESOLVED_NODES
-from ..elastic.halfspace import rectangle_mean_displacement
 from .closure_laws import add_closure_laws, at_twice
 from .conductance import add_conductance
 from .load_curve import left_out_misses

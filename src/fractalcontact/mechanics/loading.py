@@ -12,9 +12,10 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
+from roughcontact.elastic.halfspace import HalfSpace
+
 from ..core.settings import JointSettings, Load, Solver
 from ..core.window import nominal_area
-from ..elastic.halfspace import HalfSpace
 from .joint import composite_topography, direction_spacing, offsets_of
 from .overlap import suspect_nodes
 from .states import chosen_offset, forces_of, hardness_of

@@ -11,7 +11,8 @@ from typing import NamedTuple
 import numpy as np
 import scipy.fft
 
-from ..core.kernel_cache import njit
+from roughcontact.kernel_cache import njit
+
 from ..core.mean_plane import without_mean_plane
 
 #: Values of a block of rows that is transformed at once.

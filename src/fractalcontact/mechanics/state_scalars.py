@@ -4,7 +4,8 @@ from typing import Any
 
 import numpy as np
 
-from ..contact.state import STIFFNESS_ERROR, ContactState
+from roughcontact.contact.state import STIFFNESS_ERROR, ContactState
+
 from .area import EDGE_EXCESS, contact_perimeter, corrected_area
 from .overlap import suspect_load_share
 from .states import SCALARS

@@ -6,8 +6,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..contact.state import ContactState
-from ..elastic.halfspace import HalfSpace
+from roughcontact.contact.state import ContactState
+from roughcontact.elastic.halfspace import HalfSpace
+
 from .area import corrected_area
 from .closure import bulk_settlement, interface_closure
 from .sweep import load_steps

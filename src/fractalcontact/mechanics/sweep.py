@@ -7,13 +7,14 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from ..contact.solve import solve_contact
-from ..contact.state import ContactState
+from roughcontact.contact.solve import solve_contact
+from roughcontact.contact.state import ContactState
+from roughcontact.elastic.halfspace import HalfSpace
+from roughcontact.errors import NotConverged
+
 from ..core.datasets import labelled_dataset
-from ..core.errors import NotConverged
 from ..core.labels import cf_attrs
 from ..core.settings import ContactSettings, Solver
-from ..elastic.halfspace import HalfSpace
 from .closure import bulk_settlement, interface_closure
 from .joint import prefractal, rigid_dilatancy
 from .loading import JointLoading

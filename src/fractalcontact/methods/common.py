@@ -6,10 +6,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..contact.solve import checked_hardness, checked_problem
-from ..contact.state import ContactState, unloaded_state
-from ..core.errors import NotConverged
-from ..elastic.halfspace import HalfSpace
+from roughcontact.contact.solve import checked_hardness, checked_problem
+from roughcontact.contact.state import ContactState, unloaded_state
+from roughcontact.elastic.halfspace import HalfSpace
+from roughcontact.errors import NotConverged
 
 # Up to this many products (10 ms) the final check sums directly, which shares nothing with the FFT.
 # The FFT is always the faster way: 400 loads on 512 x 512 take 0.5 s against 0.015 s.

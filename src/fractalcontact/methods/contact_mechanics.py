@@ -10,7 +10,8 @@ thread; its parallelism is MPI's.
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..elastic.halfspace import HalfSpace
+from roughcontact.elastic.halfspace import HalfSpace
+
 from .common import in_stress
 from .peers import Failed, Load, PublicCode
 from .registry import Method

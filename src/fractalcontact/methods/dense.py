@@ -10,7 +10,8 @@ import itertools
 import numpy as np
 from scipy import linalg
 
-from ..contact.state import ContactState
+from roughcontact.contact.state import ContactState
+
 from .common import ContactProblem, influence_matrix
 from .registry import Method
 

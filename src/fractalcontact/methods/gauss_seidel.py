@@ -6,8 +6,9 @@ the number of interpenetrating points. A pressure capped at a hardness is projec
 
 import numpy as np
 
-from ..contact.state import ContactState
-from ..core.kernel_cache import njit
+from roughcontact.contact.state import ContactState
+from roughcontact.kernel_cache import njit
+
 from .common import ContactProblem, in_stress
 from .registry import Method
 

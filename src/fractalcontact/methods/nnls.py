@@ -10,7 +10,8 @@ takes as many factorisations as there are points in contact; the warm start of B
 import numpy as np
 from scipy import linalg
 
-from ..contact.state import ContactState
+from roughcontact.contact.state import ContactState
+
 from .common import ContactProblem, influence_matrix
 from .registry import Method
 

@@ -9,8 +9,9 @@ With ``HalfSpace(..., kernel=...)`` the influence terms are Love's or a rigid pl
 
 import numpy as np
 
-from ..contact.state import ContactState
-from ..core.kernel_cache import njit
+from roughcontact.contact.state import ContactState
+from roughcontact.kernel_cache import njit
+
 from .common import ContactProblem
 from .gauss_seidel import relieve
 from .registry import Method

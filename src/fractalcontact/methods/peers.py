@@ -12,10 +12,11 @@ from functools import partial
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..contact.state import ContactState
+from roughcontact.contact.state import ContactState
+from roughcontact.elastic.halfspace import HalfSpace
+from roughcontact.errors import NotConverged
+
 from ..core.child_process import in_child
-from ..core.errors import NotConverged
-from ..elastic.halfspace import HalfSpace
 from .common import measured_state
 
 #: Limit of iterations where a code is set up for large grids.

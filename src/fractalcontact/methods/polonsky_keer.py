@@ -13,7 +13,8 @@ error; here the iteration ends when the contact conditions hold.
 
 import numpy as np
 
-from ..contact.state import ContactState
+from roughcontact.contact.state import ContactState
+
 from .common import ContactProblem, in_stress
 from .registry import Method
 

@@ -24,8 +24,9 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from ..contact.state import ContactState
-    from ..elastic.halfspace import HalfSpace
+    from roughcontact.contact.state import ContactState
+    from roughcontact.elastic.halfspace import HalfSpace
+
     from .peers import PublicCode
 
 #: Nodes along the smallest window of methods that know dyadic ones only.

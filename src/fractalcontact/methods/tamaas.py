@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..elastic.halfspace import HalfSpace
+from roughcontact.elastic.halfspace import HalfSpace
+
 from .peers import Failed, Load, PublicCode
 from .registry import Method
 

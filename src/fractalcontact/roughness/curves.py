@@ -11,8 +11,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..core.arguments import field, whole_numbers
-from ..core.kernel_cache import njit
+from roughcontact.arguments import field, whole_numbers
+from roughcontact.kernel_cache import njit
 
 #: Lengths measured in each doubling.
 LENGTHS_PER_OCTAVE = 4

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from ..core.kernel_cache import njit
+from roughcontact.kernel_cache import njit
 
 #: A node on an edge belongs to both triangles, whatever rounding says. As a share of the triangle.
 _SLACK = 1e-9

@@ -5,7 +5,8 @@ from collections.abc import Callable, Iterator, Sequence
 import numpy as np
 import xarray as xr
 
-from ..contact.state import ContactState
+from roughcontact.contact.state import ContactState
+
 from ..core.datasets import labelled_dataset
 from ..core.labels import cf_attrs
 from ..core.limits import RESOLVED_NODES

@@ -9,11 +9,12 @@ from collections.abc import Sequence
 import numpy as np
 import xarray as xr
 
+from roughcontact.elastic.halfspace import HalfSpace
+
 from ..core.datasets import labelled_dataset
 from ..core.labels import cf_attrs
 from ..core.mean_plane import without_mean_planes
 from ..core.settings import JointSettings
-from ..elastic.halfspace import HalfSpace
 from ..mechanics.area import corrected_area
 from ..mechanics.closure import bulk_settlement, interface_closure
 from ..mechanics.joint import sliding_axis

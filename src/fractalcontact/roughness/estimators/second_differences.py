@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from ...core.kernel_cache import njit
+from roughcontact.kernel_cache import njit
+
 from ..curves import BLOCKS, Curve, along_axes, lengths_in_cells, pairs_in_block
 from ..estimator import Estimator
 from ..known_bias import HURST_GRID, Fit, hurst_of_mean_square, short_wave_fraction

@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from ...core.kernel_cache import njit
+from roughcontact.kernel_cache import njit
+
 from ..curves import BLOCKS, Curve, in_blocks, lengths_in_cells
 from ..estimator import Estimator
 from ..known_bias import (

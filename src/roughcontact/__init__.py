@@ -1,0 +1,32 @@
+"""Frictionless contact of rough surfaces on an elastic half-space, solved or refused.
+
+    from roughcontact import HalfSpace, solve_contact
+    space = HalfSpace(heights.shape, spacing, modulus)
+    state = solve_contact(heights, space, force=100.0)
+
+Lengths are in mm, forces in N, pressures in MPa, or in any other units that agree. A state
+satisfies the contact conditions to ``rtol``, or `NotConverged` is raised. Names are imported when
+first asked for: numba takes half a second.
+"""
+
+from importlib import import_module
+from typing import Any
+
+#: Module of each name.
+_HOMES = {
+    "ContactState": ".contact.state",
+    "HalfSpace": ".elastic.halfspace",
+    "NotConverged": ".errors",
+    "solve_contact": ".contact.solve",
+}
+__all__ = sorted(_HOMES)
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOMES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(import_module(_HOMES[name], __name__), name)
+
+
+def __dir__() -> list[str]:
+    return __all__

@@ -1,0 +1,8 @@
+"""What type checkers and editors see of the package, whose names are imported when asked for."""
+
+from .contact.solve import solve_contact as solve_contact
+from .contact.state import ContactState as ContactState
+from .elastic.halfspace import HalfSpace as HalfSpace
+from .errors import NotConverged as NotConverged
+
+__all__: list[str]

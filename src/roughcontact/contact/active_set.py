@@ -1,0 +1,343 @@
+"""Active-set iteration for the contact problem: pressures between bounds, an unknown closure.
+
+The active contact set of an iterate are the nodes between the bounds and those at a bound that the
+gap pulls off it (`kkt`): the nodes in contact whose bounds are inactive. On it the gap is made to
+vanish: first by the whole step of the sparse inverse-Cholesky preconditioner, clipped at the
+bounds, so that nodes leave the set in the same application of K that moves the others; then by
+conjugate gradients on those that stay. In the first iterations of a load step the set is predicted:
+the nodes that a step would take to a bound are left out, and the step is made anew on the others,
+before K is applied at all. Directions and their images are in single precision; what is returned
+was judged on a displacement in double precision. (Primal-dual active sets, a semismooth Newton
+method: M. Hintermueller, K. Ito and K. Kunisch, SIAM J. Optim. 13 (2002) 865. docs/solver.md has
+the whole solver on one page.)
+"""
+
+from dataclasses import dataclass
+from enum import Enum, auto
+
+import numpy as np
+
+from ..kernel_cache import njit
+from .feasible import first_iterate, verified
+from .kkt import Iterate, KKTResidual, Problem, Solution, kkt_residual
+from .node_sets import symmetric_difference
+from .operator import Operator
+from .projected_cg import ProjectedCG, add
+from .projected_step import closure_of_step
+from .safeguards import (
+    SAFETY,
+    many_iterations,
+    many_iterations_under_force,
+    newton_on_closure,
+    without_entering,
+)
+
+# Iterations before the solver gives up: trials needed at most some twenty.
+MAX_ITERATIONS = 200
+# An inexact linear solve stops at a fraction of the scale of its numbers, as the set will change:
+# this many times the fraction of the set that changed last, within these limits. The scale is the
+# largest of the gaps on the set, of the changes of nodes put at a bound, and of the force that is
+# lacking, per node. A solve against cycling goes on nearly to the end.
+REDUCTION, LEAST_REDUCTION, MOST_REDUCTION = 3.0, 0.03, 0.3
+EXACT_REDUCTION = 1e-3
+# Iterations with set prediction (in all of them sets might cycle). Only on the way from another
+# state, in windows that are not small: after nested iteration it saves applications but no time.
+# No more than this fraction of the set is left out: where most nodes yield, the few others would
+# have to carry whatever a given force lacks.
+SET_PREDICTIONS, MOST_LEFT_OUT = 2, 0.5
+# Once, where the violation is no larger than this many tolerances, the preconditioned step is made
+# alone and verified in double precision at once: it is expected to be the last. Not so between
+# candidates, where double precision takes as long as several steps.
+SINGLE_STEP_BELOW = 2.0
+# Where violations are no more than this fraction of the closure, single precision leaves a step
+# little to gain.
+SINGLE_PRECISION_FLOOR = 1e-5
+# Clearance, in the closures or lengths that a problem is stated in, beyond which single precision
+# cannot judge even a start: what it rounds off may then be more than the closure.
+SINGLE_PRECISION_CLEARANCE = 1e6
+_FLOAT64 = np.dtype(np.float64)
+
+
+class LinearSolve(Enum):
+    """How far the linear equations on an active set are solved."""
+
+    #: As far as the set is known: the usual case.
+    INEXACT = auto()
+    #: The preconditioned step alone, verified at once, where it should be the last one.
+    SINGLE_STEP = auto()
+    #: Nearly to the end, and without clipping, after many iterations under a given closure.
+    EXACT = auto()
+
+
+@dataclass(frozen=True)
+class WorkingSet:
+    """What becomes of each node that moves in one iteration.
+
+    Attributes
+    ----------
+    active : (n,) int32 ndarray
+        Nodes on which the gap is to vanish.
+    fixed : (m,) int32 ndarray
+        Nodes put at a bound.
+    bound : (m,) ndarray
+        At which.
+    """
+
+    active: np.ndarray
+    fixed: np.ndarray
+    bound: np.ndarray
+
+    def without(self, left_out: np.ndarray, bound: np.ndarray) -> "WorkingSet":
+        """The same with some of the active nodes, (n,) bool, put at a bound each."""
+        return WorkingSet(
+            self.active[~left_out],
+            np.concatenate([self.fixed, self.active[left_out]]),
+            np.concatenate([self.bound, bound]),
+        )
+
+
+class ActiveSetMethod:
+    """The iteration, from any start to a verified solution.
+
+    Parameters
+    ----------
+    problem : Problem
+    rtol : float
+        Largest violation allowed, as a fraction of the closure.
+    operator : Operator, optional
+        To count the applications of several solves together.
+    dtype : type
+        Precision in which a solution is judged: float32 where it is but a start on a finer grid.
+
+    Raises
+    ------
+    ValueError
+        If the clearance is not one of the grid.
+    """
+
+    def __init__(
+        self,
+        problem: Problem,
+        rtol: float,
+        operator: Operator | None = None,
+        dtype: type = np.float64,
+    ):
+        if operator is None:
+            operator = Operator(problem.space, problem.nodes)
+        _check_on_nodes(problem.clearance, "clearance", operator)
+        self.problem, self.rtol, self.operator = problem, rtol, operator
+        wide = problem.clearance.max(initial=0.0) > SINGLE_PRECISION_CLEARANCE
+        self._dtype = np.float64 if wide else dtype
+
+    def solve(
+        self, pressure: np.ndarray, displacement: np.ndarray | None = None, *, at_least: int = 0
+    ) -> Solution:
+        """Iterate until a state is verified, or MAX_ITERATIONS; the caller checks the residual.
+
+        Parameters
+        ----------
+        pressure : (n,) ndarray
+            Where to start; may violate the bounds. Overwritten, and so is the displacement.
+        displacement : (n,) ndarray, optional
+            K of it, where known.
+        at_least : int
+            Fewest iterations, even of a start within tolerance; fewer only where violations are
+            no larger than SINGLE_PRECISION_FLOOR.
+
+        Returns
+        -------
+        Solution
+
+        Raises
+        ------
+        ValueError
+            If the start is not one of the grid.
+        """
+        problem, operator, rtol = self.problem, self.operator, self.rtol
+        _check_on_nodes(pressure, "pressure", operator)
+        if displacement is not None:
+            _check_on_nodes(displacement, "displacement", operator)
+        # A displacement comes with states of this half-space at other loads. A start without one is
+        # prolonged from a coarser grid, and its set nearly right, or from another half-space.
+        predictions = 0 if displacement is None or operator.inverse.small else SET_PREDICTIONS
+        iterate = first_iterate(problem, operator, pressure, displacement)
+        previous_active, violation = np.empty(0, np.int32), 0.0
+        single_step_left = problem.nodes is None
+        for iteration in range(MAX_ITERATIONS):
+            # Safeguards. Force: Newton's method, which solves for closures. Closure: exact solves.
+            newton = many_iterations_under_force(iteration, violation, iterate.closure)
+            exact = many_iterations(iteration)
+            if problem.by_force and newton:
+                start = verified(problem, operator, iterate)
+                return newton_on_closure(problem, rtol, operator, start, self._solve_closure)
+            kkt = self._kkt_residual(iterate)
+            may_end = iteration >= at_least or kkt.holds_to(SINGLE_PRECISION_FLOOR, iterate.closure)
+            if may_end and kkt.holds_to(rtol, iterate.closure):
+                iterate = solution = verified(problem, operator, iterate, self._dtype)
+                if solution.residual <= rtol:
+                    return solution
+                kkt = self._kkt_residual(iterate)
+            violation = kkt.largest
+            if exact:
+                kkt = without_entering(kkt, iterate.pressure, problem.cap)
+            single_step = may_end and single_step_left
+            linear_solve = self._linear_solve(kkt, iterate.closure, exact, single_step)
+            operator.precondition(kkt.active, fresh=iteration == 0)
+            reduction = _reduction(linear_solve, previous_active, kkt.active)
+            self._step(iterate, kkt, linear_solve, reduction, predict=iteration < predictions)
+            previous_active = kkt.active
+            if linear_solve is LinearSolve.SINGLE_STEP:
+                # Once only: where one step gains too little, conjugate gradients must follow.
+                single_step_left = False
+                iterate = solution = verified(problem, operator, iterate, self._dtype)
+                if solution.residual <= rtol:
+                    return solution
+        return verified(problem, operator, iterate, self._dtype)
+
+    def _linear_solve(self, kkt, closure, exact, single_step):
+        """How far to solve: ``exact`` as a safeguard, or, where one is left, a ``single_step``."""
+        if exact:
+            return LinearSolve.EXACT
+        if single_step and kkt.holds_to(SINGLE_STEP_BELOW * self.rtol, closure):
+            return LinearSolve.SINGLE_STEP
+        return LinearSolve.INEXACT
+
+    def _solve_closure(self, problem, rtol, start):
+        """The solution of the same problem under a given closure."""
+        method = ActiveSetMethod(problem, rtol, self.operator)
+        return method.solve(start.pressure, start.displacement)
+
+    def _kkt_residual(self, iterate):
+        """KKT residual of an iterate, whose closure becomes that of a step where nodes yield."""
+        problem = self.problem
+        iterate.closure = closure_of_step(problem, iterate)
+        return kkt_residual(
+            iterate.pressure,
+            iterate.displacement,
+            problem.clearance,
+            iterate.closure,
+            problem.cap,
+        )
+
+    def _step(
+        self,
+        iterate: Iterate,
+        kkt: KKTResidual,
+        linear_solve: LinearSolve,
+        reduction: float,
+        *,
+        predict: bool,
+    ) -> None:
+        """Make one step on the active set, in place.
+
+        ``reduction`` is the fraction of the equations' scale at which the linear solve stops. After
+        a single step the displacement is left for a verification. If ``predict``, nodes that the
+        first step takes to a bound are left out of the set.
+
+        Conjugate gradients, and unclipped steps, may take pressures beyond their bounds. Such nodes
+        are ``infeasible`` in the next iteration, which puts them at the bound.
+        """
+        cap, clipped = self.problem.cap, linear_solve is not LinearSolve.EXACT
+        bound = np.where(iterate.pressure[kkt.infeasible] < 0, 0.0, cap)
+        working = WorkingSet(kkt.active, kkt.infeasible, bound)
+        equations, change, scale = self._preconditioned_step(iterate, working, clipped)
+        leaving = equations.at_zero | equations.at_cap
+        if predict and 0 < np.count_nonzero(leaving) <= MOST_LEFT_OUT * leaving.size:
+            working = working.without(leaving, np.where(equations.at_zero[leaving], 0.0, cap))
+            self.operator.precondition(working.active, fresh=False)
+            equations, change, scale = self._preconditioned_step(iterate, working, clipped)
+        if linear_solve is not LinearSolve.SINGLE_STEP:
+            equations.apply_step(working.fixed, change)
+            wanted = SAFETY * self.rtol * abs(iterate.closure) / scale
+            equations.iterate(max(reduction, wanted), by_force=self.problem.by_force)
+            add(iterate.displacement, scale, equations.image)
+        iterate.pressure[working.fixed] = working.bound
+        _add_step(
+            *(iterate.pressure, working.active, scale, equations.solution),
+            *(equations.at_zero, equations.at_cap, cap),
+        )
+        iterate.closure += scale * equations.multiplier
+
+    def _preconditioned_step(self, iterate, working, clipped):
+        """The equations on a set after their first step; and what goes with them.
+
+        That is by how much the pressures of the nodes put at a bound change, and the scale of all
+        numbers in the equations, of these too.
+        """
+        problem = self.problem
+        gap = iterate.displacement[working.active] + problem.clearance[working.active]
+        gap -= iterate.closure
+        scale, right_side, start, change, carried = _scaled(
+            *(iterate.pressure, gap, working.active, working.fixed, working.bound),
+            problem.load if problem.by_force else np.nan,
+        )
+        equations = ProjectedCG(self.operator, working.active, right_side)
+        bounds = (0.0, problem.cap / scale) if clipped else (-np.inf, np.inf)
+        equations.clipped_step(start, bounds, carried if problem.by_force else None)
+        return equations, change, scale
+
+
+def _reduction(linear_solve, previous_active, active):
+    """Fraction of its scale at which the linear solve on an active set stops."""
+    if linear_solve is LinearSolve.EXACT:
+        return EXACT_REDUCTION
+    changed = symmetric_difference(previous_active, active).size / max(active.size, 1)
+    return min(max(REDUCTION * changed, LEAST_REDUCTION), MOST_REDUCTION)
+
+
+def _check_on_nodes(values, name, operator):
+    """Refuse what are not as many numbers as there are nodes."""
+    nodes = (operator.size,)
+    if values.shape != nodes or values.dtype != _FLOAT64:
+        raise ValueError(f"{name} {values.shape} of {values.dtype}: expected {nodes} of float64")
+
+
+@njit(cache=True)
+def _scaled(pressure, gap, active, fixed, bound, load):
+    """Numbers near one for the equations on a set: a scale, and what they are made of, over it.
+
+    Returns
+    -------
+    scale : float
+    right_side : (n,) float32 ndarray
+        What is to close the gaps.
+    start : (n,) ndarray
+        Pressure of the set.
+    change : (m,) float32 ndarray
+        By how much the pressures of the ``fixed`` nodes change, which go to their ``bound``.
+    carried : float
+        What the set is to carry of the load; NaN where none is given.
+    """
+    change = np.empty(fixed.size)
+    scale, lacking = np.finfo(np.float64).tiny, load
+    for value in pressure:
+        lacking -= value
+    for i in range(fixed.size):
+        change[i] = bound[i] - pressure[fixed[i]]
+        lacking -= change[i]
+        scale = max(scale, abs(change[i]))
+    for value in gap:
+        scale = max(scale, abs(value))
+    if np.isfinite(lacking):
+        scale = max(scale, abs(lacking) / max(active.size, 1))
+    right_side, start = np.empty(active.size, np.float32), np.empty(active.size)
+    carried = 0.0
+    for i in range(active.size):
+        right_side[i], start[i] = -gap[i] / scale, pressure[active[i]] / scale
+        carried += start[i]
+    return scale, right_side, start, (change / scale).astype(np.float32), carried + lacking / scale
+
+
+@njit(cache=True)
+def _add_step(pressure, active, scale, step, at_zero, at_cap, cap):
+    """Add a step to the pressure of the active nodes.
+
+    Those that it takes to a bound are put exactly there, where rounding leaves them next to it.
+    """
+    for i in range(active.size):
+        if at_zero[i]:
+            pressure[active[i]] = 0.0
+        elif at_cap[i]:
+            pressure[active[i]] = cap
+        else:
+            pressure[active[i]] += scale * step[i]

@@ -1,0 +1,121 @@
+"""Full approximation scheme (FAS): what a new load changes in a known state, on coarser grids.
+
+A coarse grid resolves how contact spreads over distances for which iterations on the fine one take
+several applications of K. What it does not resolve is the state itself. So its problem is such that
+the restricted pressure of the known state leaves the restricted gaps of it, and only the change is
+taken from the solution (A. Brandt, Multi-level adaptive solutions to boundary-value problems, Math.
+Comput. 31 (1977) 333). If the known state already were that of the new load, nothing would change.
+"""
+
+import numpy as np
+
+from ..elastic.halfspace import HalfSpace
+from ..kernel_cache import njit
+from .active_set import ActiveSetMethod
+from .kkt import Problem, kkt_residual, mean_closure
+from .nested_iteration import (
+    COARSE_ITERATIONS,
+    KEPT_CELLS,
+    redistribute_padded,
+    restrict_minimum,
+    restrict_sum,
+)
+from .preconditioner import forget_preconditioner
+
+# Least nodes along the shorter side: on smaller windows the coarse solves cost as much as the
+# applications they save.
+LEAST_FINE_SIDE = 768
+# No coarser grid has fewer.
+LEAST_COARSE_SIDE = 96
+# Starts that violate the conditions by no more, as a fraction of the closure, are left as they are:
+# coarse solutions are hardly nearer.
+WORTHWHILE = 1e-2
+# A change is found to this on coarser grids, nearer than a cold start. What is left of it takes
+# applications on the fine grid.
+CHANGE_RTOL = 1e-2
+# Extrapolated from two states, a pressure at the cap in both may miss it by rounding.
+CAP_ROUNDING = 1e-9
+
+
+def full_approximation_start(
+    problem: Problem, pressure: np.ndarray, displacement: np.ndarray
+) -> np.ndarray | None:
+    """Where to start from a known state: its pressure, changed for the load on coarser grids.
+
+    Parameters
+    ----------
+    problem : Problem
+    pressure, displacement : (n,) ndarray
+        Of the known state, perhaps extrapolated; K of the first is the second.
+
+    Returns
+    -------
+    (n,) ndarray or None
+        Within its bounds; None if the grid is too small, or the change, for this to be worth while,
+        and where nodes yield: those of one cell then differ in gap, which restriction cannot keep.
+    """
+    if min(problem.space.shape) < LEAST_FINE_SIDE:
+        return None
+    clearance, cap = problem.clearance, problem.cap
+    mean = mean_closure(pressure, displacement, clearance, cap)
+    yields = pressure.max() >= (1 - CAP_ROUNDING) * cap
+    if yields or not np.isfinite(mean):
+        return None
+    closure = mean if problem.by_force else problem.load
+    kkt = kkt_residual(pressure, displacement, clearance, closure, cap)
+    if kkt.largest <= WORTHWHILE * closure:
+        return None
+    return _changed_pressure(problem, pressure, displacement + clearance - closure, closure)
+
+
+def _changed_pressure(problem, pressure, gap, closure):
+    """The same for a state whose ``gap`` at a ``closure`` is known."""
+    shape, space = problem.space.shape, problem.space.coarser(2)
+    before, gap = np.clip(pressure, 0.0, problem.cap).reshape(shape), gap.reshape(shape)
+    # Twice the mean of four is what a pressure is there: `coarser_load`.
+    coarse_before, coarse_gap = restrict_sum(before) / 2, restrict_minimum(gap)
+    displacement = _displacement(space, coarse_before)
+    clearance = (coarse_gap + closure).ravel() - displacement
+    coarse = problem.coarser(clearance)
+    start = coarse_before.ravel().copy()
+    if min(space.shape) >= 2 * LEAST_COARSE_SIDE:
+        start = _changed_pressure(coarse, start, coarse_gap, closure)
+        displacement = _displacement(space, start)
+    method = ActiveSetMethod(coarse, CHANGE_RTOL, dtype=np.float32)
+    solution = method.solve(start, displacement, at_least=COARSE_ITERATIONS)
+    if solution.pressure.size > KEPT_CELLS:
+        forget_preconditioner(space)
+    ny, nx = shape
+    padded = np.zeros((2 * ((ny + 1) // 2) + 4, 2 * ((nx + 1) // 2) + 4))
+    _in_proportion(before, coarse_before, solution.pressure.reshape(space.shape), padded)
+    redistribute_padded(before, padded, gap, problem.space.near_influence(4))
+    before += padded[2 : ny + 2, 2 : nx + 2]
+    return np.minimum(before, problem.cap, out=before).ravel()
+
+
+def _displacement(space: HalfSpace, pressure: np.ndarray) -> np.ndarray:
+    """K of a pressure, (n,), in single precision: enough for a coarse clearance and for a start."""
+    pressure = pressure.reshape(space.shape).astype(np.float32)
+    return space.convolve(pressure).astype(float).ravel()
+
+
+@njit(cache=True)
+def _in_proportion(before, old, new, padded):
+    """Change of a fine pressure in proportion to that of its cells; even where there was none.
+
+    It is put into an array of zeros with two nodes more on each side. What stays zero is not
+    written: of an array as large as this that takes as long as all the rest.
+    """
+    ny, nx = before.shape
+    for i in range(old.shape[0]):
+        for j in range(old.shape[1]):
+            if old[i, j] == 0 and new[i, j] == 0:
+                continue
+            last_y, last_x = min(2 * i + 2, ny), min(2 * j + 2, nx)
+            nodes = (last_y - 2 * i) * (last_x - 2 * j)
+            for y in range(2 * i, last_y):
+                for x in range(2 * j, last_x):
+                    if old[i, j] > 0:
+                        padded[y + 2, x + 2] = before[y, x] * (new[i, j] / old[i, j] - 1)
+                    else:
+                        padded[y + 2, x + 2] = 2 * new[i, j] / nodes

@@ -1,0 +1,266 @@
+"""Nested iteration: a cold solve starts from the solution on the grid twice as coarse.
+
+(Full multigrid: A. Brandt, Multi-level adaptive solutions to boundary-value problems, Math. Comput.
+31 (1977) 333; for contact, A. A. Lubrecht and E. Ioannides, ASME J. Tribol. 113 (1991) 128.)
+Restriction gives a coarse cell the height of the highest of its four nodes, which need not all
+touch. Prolongation keeps the sum of its pressure, and local redistribution shares it among the four
+so that those which touch have even gaps. The nodes of the eight cells around act on them as they
+are, from further away the four are displaced alike.
+"""
+
+import numpy as np
+
+from ..kernel_cache import njit
+from .active_set import ActiveSetMethod
+from .dense import inverted
+from .kkt import Problem
+from .preconditioner import forget_preconditioner
+
+# A grid of fewer nodes along its shorter side starts from a uniform pressure, all others from the
+# next coarser grid.
+COARSEST_SIDE = 24
+# The preconditioner on coarse grids of more cells is not kept: it takes memory, and there is
+# little to gain. Of small ones, as parts of a window have them, many are solved on one grid.
+KEPT_CELLS = 10_000
+# The coarse solution is only a start. But on grids so fine that the next coarser one's already
+# meets this, an iteration is made all the same: else errors add up from grid to grid.
+COARSE_RTOL, COARSE_ITERATIONS = 2e-2, 1
+
+
+def nested_iteration_start(problem: Problem) -> np.ndarray:
+    """Pressure to start from: the solution on the grid twice as coarse, prolonged.
+
+    Parameters
+    ----------
+    problem : Problem
+
+    Returns
+    -------
+    (n,) ndarray
+        Within its bounds; on grids too small for a coarser one it is uniform.
+    """
+    space = problem.space
+    ny, nx = space.shape
+    if min(ny, nx) < COARSEST_SIDE:
+        return np.full(ny * nx, min(1.0, problem.cap))
+    coarse = problem.coarser(restrict_minimum(problem.clearance.reshape(ny, nx)).ravel())
+    method = ActiveSetMethod(coarse, COARSE_RTOL, dtype=np.float32)
+    solution = method.solve(nested_iteration_start(coarse), at_least=COARSE_ITERATIONS)
+    if coarse.clearance.size > KEPT_CELLS:
+        forget_preconditioner(coarse.space)
+    pressure = solution.pressure.reshape(coarse.space.shape) / 2
+    pressure = prolong(pressure, problem.clearance.reshape(ny, nx), space.near_influence(4))
+    return np.minimum(pressure, problem.cap).ravel()
+
+
+# Compiled: numpy takes twenty times as long for axes of two.
+
+
+@njit(cache=True)
+def restrict_minimum(values: np.ndarray) -> np.ndarray:
+    """The smallest of each 2 x 2 nodes, an odd last row or column standing alone."""
+    ny, nx = values.shape
+    coarse_values = np.full(((ny + 1) // 2, (nx + 1) // 2), np.inf)
+    for y in range(ny):
+        for x in range(nx):
+            coarse_values[y // 2, x // 2] = min(coarse_values[y // 2, x // 2], values[y, x])
+    return coarse_values
+
+
+@njit(cache=True)
+def restrict_sum(values: np.ndarray) -> np.ndarray:
+    """The sum of each 2 x 2 nodes, an odd last row or column standing alone."""
+    ny, nx = values.shape
+    coarse_values = np.zeros(((ny + 1) // 2, (nx + 1) // 2))
+    for y in range(ny):
+        for x in range(nx):
+            coarse_values[y // 2, x // 2] += values[y, x]
+    return coarse_values
+
+
+@njit(cache=True)
+def prolong_constant(cells: np.ndarray, shape: tuple[int, int]) -> np.ndarray:
+    """Values (my, mx) of coarse cells, on each of their nodes, (ny, nx)."""
+    ny, nx = shape
+    if cells.shape[0] != (ny + 1) // 2 or cells.shape[1] != (nx + 1) // 2:
+        raise ValueError("expected a cell for each 2 x 2 nodes")
+    values = np.empty(shape)
+    for y in range(ny):
+        for x in range(nx):
+            values[y, x] = cells[y // 2, x // 2]
+    return values
+
+
+def prolong(pressure: np.ndarray, clearance: np.ndarray, influence: np.ndarray) -> np.ndarray:
+    """Pressure of fine nodes, of which each coarse cell holds two by two.
+
+    Parameters
+    ----------
+    pressure : (my, mx) ndarray
+        On the coarse grid, no less than zero; m = (n + 1) // 2.
+    clearance : (ny, nx) ndarray
+        Opening at first touch on the fine grid.
+    influence : (4, 4) or larger ndarray
+        Displacement of nodes so far from one of unit pressure, in the unit of the clearance.
+
+    Returns
+    -------
+    (ny, nx) ndarray
+        Never negative. Of each cell it has the mean of the coarse one, or on an odd edge, where the
+        cell reaches beyond the grid, that on the nodes there are.
+
+    Raises
+    ------
+    ValueError
+        If these are not on two such grids of at least four nodes each way.
+    """
+    change = prolong_constant(pressure, clearance.shape)
+    return redistribute(np.zeros(clearance.shape), change, clearance, influence)
+
+
+def redistribute(
+    before: np.ndarray, change: np.ndarray, gap: np.ndarray, influence: np.ndarray
+) -> np.ndarray:
+    """Pressure, (ny, nx), of which each 2 x 2 nodes have a given sum, and even gaps where it is.
+
+    Parameters
+    ----------
+    before, change : (ny, nx) ndarray
+        A pressure, and a first guess of its change, which gives the sums: positive or zero.
+    gap : (ny, nx) ndarray
+        What the pressure before leaves open.
+    influence : (ny, nx) ndarray
+        As for :func:`prolong`.
+
+    Raises
+    ------
+    ValueError
+        If these are not on one grid of at least four nodes each way.
+    """
+    one = before.shape == change.shape == gap.shape
+    if not one or min(gap.shape) < 4 or min(influence.shape) < 4:
+        shapes = ", ".join(str(values.shape) for values in (before, change, gap, influence))
+        raise ValueError(f"shapes {shapes}: expected one grid of 4 x 4 nodes or more")
+    # A cell's nodes and those of the eight around it lie in six rows and columns.
+    my, mx = ((n + 1) // 2 for n in gap.shape)
+    padded = np.zeros((2 * my + 4, 2 * mx + 4))
+    inside = padded[2 : gap.shape[0] + 2, 2 : gap.shape[1] + 2]
+    inside[:] = change
+    redistribute_padded(before, padded, gap, influence)
+    return before + inside
+
+
+def redistribute_padded(
+    before: np.ndarray, change: np.ndarray, gap: np.ndarray, influence: np.ndarray
+) -> None:
+    """The same in place, of a change that has zeros around: two nodes more on each side.
+
+    Parameters
+    ----------
+    before, gap, influence
+        As of :func:`redistribute`.
+    change : (2 my + 4, 2 mx + 4) ndarray
+        Of (my, mx) cells.
+    """
+    _redistribute(before, change, gap, influence[:4, :4].astype(float))
+
+
+@njit(cache=True)
+def _redistribute(before, change, gap, influence):
+    """Redistribute a change, with two nodes more on each side, within the cells, one by one.
+
+    A cell sees what others have become.
+    """
+    ny, nx = gap.shape
+    own, around = influence_on(influence)
+    maps = redistributions(own)
+    known, opening, pressure = np.zeros(4), np.zeros(4), np.zeros(4)
+    for top in range(0, ny, 2):
+        for side in range(0, nx, 2):
+            total, mask = 0.0, 0
+            for y in range(top, min(top + 2, ny)):
+                for x in range(side, min(side + 2, nx)):
+                    total += before[y, x] + change[y + 2, x + 2]
+            if not total > 0:
+                continue
+            for a in range(4):
+                y, x = top + a // 2, side + a % 2
+                known[a] = opening[a] = 0.0
+                if y < ny and x < nx:
+                    known[a], opening[a] = before[y, x], gap[y, x]
+                    mask |= 1 << a
+            for i in range(6):
+                for j in range(6):
+                    value = change[top + i, side + j]
+                    for a in range(4):
+                        opening[a] += around[i, j, a] * value
+            for a in range(4):
+                for b in range(4):
+                    opening[a] -= own[a, b] * known[b]
+            equalise_gaps(maps, opening, total, mask, pressure)
+            for a in range(4):
+                if mask & (1 << a):
+                    change[top + a // 2 + 2, side + a % 2 + 2] = pressure[a] - known[a]
+
+
+@njit(cache=True)
+def influence_on(influence: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Of the four nodes of a cell on each other, and on each of those six by six about it.
+
+    The second leaves out what they have on each other.
+    """
+    own, around = np.empty((4, 4)), np.empty((6, 6, 4))
+    for a in range(4):
+        for b in range(4):
+            own[a, b] = influence[abs(a // 2 - b // 2), abs(a % 2 - b % 2)]
+        for i in range(6):
+            for j in range(6):
+                within = 2 <= i < 4 and 2 <= j < 4
+                away = abs(i - 2 - a // 2), abs(j - 2 - a % 2)
+                around[i, j, a] = 0.0 if within else influence[away]
+    return own, around
+
+
+@njit(cache=True)
+def redistributions(own: np.ndarray) -> np.ndarray:
+    """For each set of a cell's nodes, given by its bits, how a sum is distributed: (16, 4, 5).
+
+    Of gaps g and a sum S pressures p = -M g + c S leave even gaps: own p + g is the same for all,
+    which gives M = W - W 1 1' W / (1' W 1) and c = W 1 / (1' W 1), with W the inverse of own.
+    """
+    maps = np.zeros((16, 4, 5))
+    for mask in range(1, 16):
+        nodes = np.array([a for a in range(4) if mask & (1 << a)])
+        inverse = inverted(own[nodes][:, nodes])
+        ones = inverse.sum(axis=1)
+        for i, a in enumerate(nodes):
+            maps[mask, a, 4] = ones[i] / ones.sum()
+            for j, b in enumerate(nodes):
+                maps[mask, a, b] = ones[i] * ones[j] / ones.sum() - inverse[i, j]
+    return maps
+
+
+@njit(cache=True)
+def equalise_gaps(
+    maps: np.ndarray, gap: np.ndarray, total: float, mask: int, pressure: np.ndarray
+) -> None:
+    """Pressures of a given sum on the nodes of a ``mask`` that leave even gaps where positive.
+
+    Those in tension are dropped, the strongest first, until there is none. Only by how much gaps
+    differ counts: what they share may be huge, and would leave the sum to rounding.
+    """
+    while True:
+        nearest = np.inf
+        for a in range(4):
+            if mask & (1 << a):
+                nearest = min(nearest, gap[a])
+        worst, least = 0, 0.0
+        for a in range(4):
+            pressure[a] = maps[mask, a, 4] * total
+            for b in range(4):
+                pressure[a] += maps[mask, a, b] * (gap[b] - nearest)
+            if pressure[a] < least:
+                worst, least = a, pressure[a]
+        if not least < 0:
+            break
+        mask &= ~(1 << worst)

@@ -1,0 +1,343 @@
+"""Frictionless elastic contact of a composite topography with a rigid plane.
+
+A state of contact has pressures p >= 0 and gaps g = u + (max h - h) - w >= 0 with p g = 0, u = K p;
+where the force is given its sum of p is fixed and w is free. With a hardness H the pressure stops
+at H, and points there may be pressed in. How such a state is found is described in
+`active_set` and docs/solver.md; here loads become dimensionless, starts are chosen, and nothing
+returns unverified.
+"""
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ..arguments import LEAST_INPUT, LEAST_RESULT, MOST_INPUT, MOST_RESULT, field, number, quoted
+from ..elastic.halfspace import HalfSpace
+from ..errors import NotConverged
+from .active_set import ActiveSetMethod
+from .candidates import (
+    FROM_LOAD,
+    MARGIN,
+    STEP_GAIN,
+    LoadCase,
+    may_restrict,
+    solve_nested,
+    solve_restricted,
+)
+from .effort import SOLVING
+from .full_approximation import full_approximation_start
+from .nested_iteration import nested_iteration_start
+from .state import Candidates, CandidateState, ContactState, unloaded_state
+from .topography import Topography
+
+# Earlier states are extrapolated by no more than this many of their own steps.
+FURTHEST = 2.0
+
+
+def solve_contact(
+    composite: ArrayLike,
+    space: HalfSpace,
+    *,
+    closure: float | None = None,
+    force: float | None = None,
+    start: ContactState | None = None,
+    rtol: float = 1e-6,
+    hardness: float | None = None,
+) -> ContactState:
+    """The state of contact of a composite topography with a rigid plane.
+
+    Parameters
+    ----------
+    composite : (ny, nx) array_like
+        Composite topography h, mm; the largest h touches first.
+    space : HalfSpace
+        The elastic operator on the same grid.
+    closure : float, optional
+        w, mm, from first touch: the rigid-body approach. Either this or ``force`` is given.
+    force : float, optional
+        F, N.
+    start : ContactState, optional
+        A state of the same grid to start from, such as the previous load step.
+    rtol : float
+        Largest violation allowed of gap and pressure conditions, as a fraction of the closure;
+        or, of a given force, as a fraction of it.
+    hardness : float, optional
+        H, MPa: the pressure at which the surface yields (elastic, then perfectly plastic).
+
+    Returns
+    -------
+    ContactState
+
+    Raises
+    ------
+    ValueError
+        If the topography has missing or masked cells or another shape, the start is none of this
+        grid, the load makes no sense or double precision ends before its state, or the force is
+        more than the hardness lets the whole window carry.
+    NotConverged
+        If the conditions are not met to ``rtol``.
+    """
+    load, topography = _checked(composite, space, closure, force, start, rtol)
+    if load == 0:
+        return unloaded_state(space, topography.clearance())
+    units = _Units(space, load, force is not None)
+    case = units.case(topography, checked_hardness(hardness, space, force))
+    with SOLVING.counted(1):
+        problem, solution = _solve(case, units, load, start, rtol)
+    state = units.state(solution, topography, problem, start)
+    if not state.residual <= rtol:
+        what = "are still violated" if math.isfinite(state.residual) else "have no finite state"
+        reason = f"contact conditions {what} after {state.iterations} applications of the operator"
+        raise NotConverged(reason, state, state.residual)
+    return state
+
+
+def _solve(case, units, load, start, rtol):
+    """The problem as it was solved, and the solution: the caller checks its residual."""
+    restrict = may_restrict(case.space, rtol)
+    if start is None or not start.in_contact.any():
+        if restrict:
+            return solve_nested(case, rtol)
+        problem = case.problem()
+        return problem, ActiveSetMethod(problem, rtol).solve(nested_iteration_start(problem))
+    if restrict:
+        known = units.candidates(case, start, load)
+        if known is not None:
+            return solve_restricted(case, *known, rtol)
+    problem = case.problem()
+    pressure, displacement = units.extrapolated(start, load)
+    if displacement is not None:
+        changed = full_approximation_start(problem, pressure, displacement)
+        if changed is not None:
+            pressure, displacement = changed, None
+    return problem, ActiveSetMethod(problem, rtol).solve(pressure, displacement)
+
+
+def checked_hardness(hardness: float | None, space: HalfSpace, force: float | None) -> float:
+    """The hardness as a number, MPa, infinite if there is none.
+
+    Raises
+    ------
+    ValueError
+        If it is none, or such that the window could not carry the force, N.
+    """
+    if hardness is None:
+        return np.inf
+    hardness = number(hardness, "hardness", "MPa")
+    if not hardness >= LEAST_INPUT:
+        raise ValueError(f"hardness {hardness}: expected > 0 MPa, and at least {LEAST_INPUT:g}")
+    ny, nx = space.shape
+    most = hardness * space.cell_area * ny * nx
+    if force is not None and not force < most:
+        raise ValueError(
+            f"force {force:g} N: at hardness {hardness:g} MPa the window carries {most:g}"
+        )
+    return hardness
+
+
+def checked_problem(
+    composite: ArrayLike,
+    space: HalfSpace,
+    closure: float | None,
+    force: float | None,
+    start: ContactState | None,
+    rtol: float,
+) -> tuple[float, np.ndarray]:
+    """Load and clearance of a problem as `solve_contact` and the comparison methods are given it.
+
+    Parameters
+    ----------
+    composite, space, closure, force, start, rtol
+        As `solve_contact` takes them.
+
+    Returns
+    -------
+    load : float
+        The closure or the force.
+    clearance : (ny, nx) ndarray
+        Opening at first touch, mm.
+
+    Raises
+    ------
+    ValueError
+        As `solve_contact`.
+    """
+    load, topography = _checked(composite, space, closure, force, start, rtol)
+    return load, topography.clearance()
+
+
+def _checked(composite, space, closure, force, start, rtol):
+    """Load and topography, as `checked_problem`."""
+    if not isinstance(space, HalfSpace):
+        raise ValueError(f"space {quoted(space)}: expected a HalfSpace of the topography's shape")
+    topography = Topography(composite, space.shape)
+    if (closure is None) == (force is None):
+        raise ValueError("give either closure= or force=")
+    name, unit = ("closure", "mm") if force is None else ("force", "N")
+    load = number(closure if force is None else force, name, unit)
+    if not math.isfinite(load) or load < 0:
+        raise ValueError(f"{name} {load}: expected a finite number >= 0, in {unit}")
+    if start is not None:
+        _check_start(start, space)
+    if not 0 < number(rtol, "rtol", "fractions of the closure") < 1:
+        raise ValueError(f"rtol {rtol}: expected between 0 and 1")
+    depth = topography.highest - topography.lowest
+    if not depth <= MOST_INPUT:
+        raise ValueError(f"composite topography {depth:g} mm deep: expected {MOST_INPUT:g} at most")
+    if load > 0 and not _within_double_precision(space, load, force is not None, depth):
+        raise ValueError(
+            f"{name} {load:g} {unit}: too {'small' if load < 1 else 'large'} for double precision; "
+            "expected such that closures, pressures and forces on this grid are of "
+            f"{LEAST_RESULT:g} to {MOST_RESULT:g} mm, MPa and N"
+        )
+    return load, topography
+
+
+def _check_start(start, space):
+    """Refuse what is no state of this grid."""
+    if not isinstance(start, ContactState):
+        raise ValueError(f"start {quoted(start)}: expected a ContactState, as solve_contact gives")
+    # A state of candidates was made by this solver, and its displacement need not be computed.
+    if isinstance(start, CandidateState) and start.space.shape == space.shape:
+        return
+    for name in ("pressure", "displacement"):
+        values = field(getattr(start, name), f"{name} of the start", space.shape)
+        if not np.isfinite(values).all():
+            raise ValueError(f"{name} of the start: expected finite numbers")
+    for name in ("closure", "force"):
+        if not math.isfinite(number(getattr(start, name), f"{name} of the start", "mm or N")):
+            raise ValueError(f"{name} of the start: expected a finite number")
+
+
+def _within_double_precision(space, load, by_force, depth):
+    """Whether the state of a load has numbers that keep all their digits."""
+    length, pressure = _load_units(space, load, by_force)
+    sizes = length, pressure, pressure * space.cell_area
+    if not LEAST_RESULT <= min(sizes) <= max(sizes) <= MOST_RESULT:
+        return False
+    return depth / length <= MOST_RESULT
+
+
+def _load_units(space, load, by_force):
+    """Units of length, mm, and of pressure, MPa, in which closure or mean pressure is one."""
+    stress_per_length = space.modulus / space.cell
+    if not by_force:
+        return load, load * stress_per_length
+    ny, nx = space.shape
+    pressure = load / (space.cell_area * ny * nx)
+    return pressure / stress_per_length, pressure
+
+
+class _Units:
+    """Units in which the closure, or under a force the mean pressure, is one: no mm, no MPa."""
+
+    def __init__(self, space, load, by_force):
+        self.space, self.by_force = space, by_force
+        self.length, self.pressure = _load_units(space, load, by_force)
+        self.load = float(space.shape[0] * space.shape[1]) if by_force else 1.0
+
+    def case(self, topography, hardness):
+        cap = hardness / self.pressure
+        if cap < LEAST_RESULT:
+            raise ValueError(
+                f"hardness {hardness:g}: too low for pressures of {self.pressure:g} MPa"
+            )
+        return LoadCase(self.space, topography, self.length, self.load, self.by_force, cap)
+
+    def candidates(self, case, start, load):
+        """The candidates at a load, a pressure on them, and its displacement; None if too many.
+
+        As `extrapolated`; the bound on the closure goes with the force.
+        """
+        bound = MARGIN * self.load
+        if self.by_force:
+            factor = max(self._proportion(start, load), 1.0)
+            bound = FROM_LOAD * start.closure / self.length * factor
+        restricted = case.restricted(bound, None, STEP_GAIN)
+        if restricted is None:
+            return None
+        nodes = restricted.nodes
+        pressure = self._extrapolated(
+            lambda state: state.pressure.ravel()[nodes].astype(float), start, load
+        )
+        pressure /= self.pressure
+        if not pressure.any():
+            return None
+        known = start.space == self.space
+        return restricted, pressure, restricted.operator(pressure) if known else None
+
+    def extrapolated(self, start, load):
+        """Pressure at a load, and its displacement where that is one of this half-space."""
+        pressure = self._extrapolated(lambda state: state.pressure, start, load)
+        pressure = np.asarray(pressure, float).ravel() / self.pressure
+        if start.space != self.space:
+            return pressure, None
+        displacement = self._extrapolated(lambda state: state.displacement, start, load)
+        return pressure, np.asarray(displacement, float).ravel() / self.length
+
+    def _extrapolated(self, field_of, start, load):
+        """A field at a load, along the line through two earlier states.
+
+        With one state only, in proportion to the load. So too from another half-space: the line
+        through two states of that one belongs to its stiffness, and may lead far from any state of
+        this one, and to pressures below zero, which a proportion does not.
+        """
+        before = start._before if start.space == self.space else None
+        at = self._load_of(start)
+        step = at - self._load_of(before) if before else 0.0
+        if not step:
+            return self._proportion(start, load) * field_of(start)
+        along = np.clip((load - at) / step, -1.0, FURTHEST)
+        return (1 + along) * field_of(start) - along * field_of(before)
+
+    def _proportion(self, start, load):
+        """How many times that of a state a load is, to no more than FURTHEST."""
+        at = self._load_of(start)
+        return min(load / at, FURTHEST) if at > 0 else 1.0
+
+    def _load_of(self, state):
+        """What is given of the load: the force or the closure of a state."""
+        return state.force if self.by_force else state.closure
+
+    def state(self, solution, topography, problem, start):
+        """The solution in mm, N and MPa."""
+        space = self.space
+        closure = solution.closure * self.length if self.by_force else self.length
+        # Of the states before, one is enough, and it need not hold on to its own.
+        before = None if start is None or start.space != space else start.without_before()
+        on_nodes = solution.pressure * self.pressure
+        force = float(on_nodes.sum()) * space.cell_area
+        common: dict[str, Any] = {
+            "closure": closure,
+            "force": force,
+            # What is no number violates no condition, and must not pass for a state.
+            "residual": solution.residual if math.isfinite(force) else math.nan,
+            "iterations": solution.applications,
+            "space": space,
+            "hardness": problem.cap * self.pressure,
+        }
+        if problem.nodes is not None:
+            pressure = np.zeros(space.shape)
+            pressure.ravel()[problem.nodes] = on_nodes
+            return CandidateState(
+                pressure,
+                **common,
+                before=before,
+                candidates=Candidates(
+                    problem.nodes,
+                    on_nodes,
+                    solution.displacement * self.length,
+                    topography.clearance_at(problem.nodes),
+                    topography,
+                ),
+            )
+        displacement = solution.displacement.reshape(space.shape) * self.length
+        return ContactState(
+            pressure=on_nodes.reshape(space.shape),
+            displacement=displacement,
+            gap=displacement + topography.clearance() - closure,
+            **common,
+            _before=before,
+        )

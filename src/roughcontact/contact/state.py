@@ -1,0 +1,274 @@
+"""A state of contact: pressures, displacements, gaps, and what follows from them."""
+
+import copy
+import dataclasses
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..elastic.halfspace import HalfSpace
+from ..errors import NotConverged
+from ..limits import RESOLVED_NODES
+from ..threads import computed_once
+from .effort import SOLVING
+from .kkt import frank_wolfe_gap, nodes_between_bounds
+from .operator import Operator
+from .projected_cg import stiffness
+from .topography import Topography
+
+# Largest relative error of the stiffness.
+STIFFNESS_ERROR = 1e-6
+
+
+@dataclass(frozen=True)
+class ContactState:
+    """A state of contact that satisfies the conditions to ``residual``.
+
+    Attributes
+    ----------
+    pressure : (ny, nx) ndarray
+        p, MPa, zero outside the contact domain.
+    displacement : (ny, nx) ndarray
+        Elastic displacement u = K p of the composite surface, mm.
+    gap : (ny, nx) ndarray
+        Remaining opening, mm; within ``residual`` times the closure of zero in contact, where
+        the pressure is not at the cap.
+    closure : float
+        w from first touch, mm: the rigid-body approach (indentation) of contact mechanics.
+    force : float
+        F, N.
+    residual : float
+        Largest violation of the contact conditions, as a fraction of the closure; or, of a given
+        force, as a fraction of it.
+    iterations : int
+        Applications of the elastic operator, whatever their precision. Those on coarser
+        grids, for a start, are not counted.
+    space : HalfSpace
+        The operator it was solved with.
+    hardness : float
+        Largest pressure, MPa; infinity for an elastic surface.
+    """
+
+    pressure: np.ndarray
+    displacement: np.ndarray
+    gap: np.ndarray
+    closure: float
+    force: float
+    residual: float
+    iterations: int
+    space: HalfSpace = dataclasses.field(repr=False)
+    hardness: float = np.inf
+    _before: "ContactState | None" = dataclasses.field(default=None, repr=False, compare=False)
+
+    def __repr__(self):
+        cap = "" if self.hardness == np.inf else f", hardness={self.hardness:.6g} MPa"
+        nodes = np.count_nonzero(self.in_contact)
+        return (
+            f"<ContactState {self.pressure.shape[0]} x {self.pressure.shape[1]}: "
+            f"force={self.force:.6g} N, closure={self.closure:.6g} mm, area={self.area:.6g} mm2, "
+            f"{nodes} nodes in contact, residual={self.residual:.1g}{cap}>"
+        )
+
+    @property
+    def in_contact(self) -> np.ndarray:
+        """Contact domain, (ny, nx) bool: the nodes that carry pressure."""
+        return self.pressure > 0
+
+    @property
+    def area(self) -> float:
+        """A_r = N s^2, mm2."""
+        return float(np.count_nonzero(self.in_contact)) * self.space.cell_area
+
+    @property
+    def ambiguous(self) -> int:
+        """Number of nodes that may or may not touch, as the conditions hold to ``residual`` only.
+
+        Their gap is within the gap tolerance, ``residual`` times the closure, or their pressure is
+        no larger than that which closes such a gap on one cell.
+        """
+        tolerance = self.residual * self.closure
+        weakest = tolerance * self.space.modulus / self.space.cell
+        pressure, _, gap = self._on_nodes()
+        touching = pressure > 0
+        weak, near = touching & (pressure <= weakest), ~touching & (gap <= tolerance)
+        return int(np.count_nonzero(weak | near))
+
+    @computed_once
+    def energy_error(self) -> float:
+        """Bound on the energy above its minimum at the same force, as a fraction of the energy.
+
+        The energy E = sum (u / 2 + c) p s^2, elastic and of closing the clearance c, is least for
+        the exact state among all pressures of its force within the bounds, whether the force or the
+        closure was given. The bound is the Frank-Wolfe gap (`kkt.frank_wolfe_gap`); the elastic
+        energy of the error of the pressure is no more than that either. 0 without a force.
+        """
+        pressure, displacement, gap = (values.ravel() for values in self._on_nodes())
+        # What it would be to undo the displacement and close the gap from there: c = g - u + w.
+        energy = float(pressure @ (gap - displacement / 2)) + self.closure * float(pressure.sum())
+        bound = frank_wolfe_gap(pressure, gap, self.hardness)
+        return bound / energy if energy > 0 else 0.0
+
+    def _on_nodes(self):
+        """Pressure, displacement and gap of all nodes that may carry pressure.
+
+        Any others are further from contact than the tolerance.
+        """
+        return self.pressure, self.displacement, self.gap
+
+    @computed_once
+    def stiffness(self) -> float:
+        """Normal stiffness dF/dw, N/mm: 0 without contact, NaN of single cells beside yielded ones.
+
+        Raises
+        ------
+        NotConverged
+            If it is not known to :data:`STIFFNESS_ERROR`.
+
+        Notes
+        -----
+        From K q = 1 on the nodes strictly between the bounds: the elastic response of these alone,
+        as yielded nodes keep their pressure, the hardness. Where nearly all of the contact yields
+        they are the cell or two that the force happens to leave below the hardness, while the
+        force rises by nodes that come into contact and yield: the number is one of the grid. So
+        where nodes yield it is missing with fewer than `RESOLVED_NODES` others in contact.
+        """
+        operator, active = self._operator_on_active()
+        if active.size < RESOLVED_NODES and (self.pressure >= self.hardness).any():
+            return np.nan
+        with SOLVING.counted(0):
+            value, error = stiffness(operator, active)
+        if not error <= STIFFNESS_ERROR:
+            raise NotConverged("the stiffness equations on the contact set", self, error)
+        return value * self.space.modulus * self.space.cell
+
+    def _operator_on_active(self):
+        """An operator, and the nodes strictly between the bounds."""
+        return Operator(self.space), nodes_between_bounds(self.pressure.ravel(), self.hardness)
+
+    def without_before(self) -> "ContactState":
+        """The same state without those that it was extrapolated from.
+
+        Returns
+        -------
+        ContactState
+        """
+        state = copy.copy(self)
+        vars(state)["_before"] = None
+        return state
+
+
+@dataclass(frozen=True)
+class Candidates:
+    """The nodes of a state that could touch: all others have a gap, whatever the pressures.
+
+    Attributes
+    ----------
+    nodes : (n,) int32 ndarray
+        Numbers of their cells, ascending.
+    pressure, displacement, clearance : (n,) ndarray
+        MPa and mm; the clearance is that of first touch.
+    topography : Topography
+        That it is a state of.
+    """
+
+    nodes: np.ndarray
+    pressure: np.ndarray
+    displacement: np.ndarray
+    clearance: np.ndarray
+    topography: Topography
+
+
+class CandidateState(ContactState):
+    """A state that was solved and verified on candidates for contact alone (`candidates`).
+
+    Displacement and gap of the whole window are computed when they are asked for.
+
+    Parameters
+    ----------
+    pressure : (ny, nx) ndarray
+        MPa.
+    closure, force, residual, iterations, space, hardness
+        As `ContactState` has them.
+    before : ContactState or None
+        The state it was solved from.
+    candidates : Candidates
+    """
+
+    _candidates: Candidates
+
+    def __init__(
+        self,
+        pressure: np.ndarray,
+        *,
+        closure: float,
+        force: float,
+        residual: float,
+        iterations: int,
+        space: HalfSpace,
+        hardness: float,
+        before: ContactState | None,
+        candidates: Candidates,
+    ):
+        vars(self).update(
+            pressure=pressure,
+            closure=closure,
+            force=force,
+            residual=residual,
+            iterations=iterations,
+            space=space,
+            hardness=hardness,
+            _before=before,
+            _candidates=candidates,
+        )
+
+    @computed_once
+    def displacement(self) -> np.ndarray:  # type: ignore[override]
+        """Elastic displacement u = K p of the composite surface, mm, (ny, nx)."""
+        return self.space.displacement(self.pressure)
+
+    @computed_once
+    def gap(self) -> np.ndarray:  # type: ignore[override]
+        """Remaining opening, mm, (ny, nx).
+
+        Raises
+        ------
+        ValueError
+            If the topography that was solved has been changed since.
+        """
+        known = self._candidates
+        if not np.array_equal(known.topography.clearance_at(known.nodes), known.clearance):
+            raise ValueError("the composite topography of this state has been changed since")
+        return self.displacement + known.topography.clearance() - self.closure
+
+    @property
+    def candidates(self) -> int:
+        """How many nodes could touch."""
+        return self._candidates.nodes.size
+
+    @property
+    def area(self) -> float:
+        """A_r = N s^2, mm2."""
+        return float(np.count_nonzero(self._candidates.pressure)) * self.space.cell_area
+
+    def _on_nodes(self):
+        known = self._candidates
+        gap = known.displacement + known.clearance - self.closure
+        return known.pressure, known.displacement, gap
+
+    def _operator_on_active(self):
+        between = nodes_between_bounds(self._candidates.pressure, self.hardness)
+        nodes = self._candidates.nodes[between]
+        return Operator(self.space, nodes), np.arange(nodes.size, dtype=np.int32)
+
+
+def unloaded_state(space: HalfSpace, clearance: np.ndarray) -> ContactState:
+    """The state of first touch: no pressure, no closure.
+
+    Parameters
+    ----------
+    space : HalfSpace
+    clearance : (ny, nx) ndarray
+        Opening at first touch, mm.
+    """
+    zero = np.zeros(space.shape)
+    return ContactState(zero, zero.copy(), clearance, 0.0, 0.0, 0.0, 0, space)

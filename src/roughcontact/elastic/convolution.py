@@ -1,0 +1,407 @@
+"""Zero-padded convolution of a real field with an even kernel, by Fourier transforms of its own.
+
+Sixteen transforms go on side by side, one in each lane of the processor's SIMD vectors (`simd`),
+which libraries built for every processor do not use in full. What is known is left out: columns
+beyond the window are not transformed along y, and as the kernel's spectrum is put in the order in
+which the forward transform leaves its result and the inverse takes it, nothing is sorted.
+`tests/support/plain_twins.py` has the same with scipy.fft.
+
+The transform along y comes first, of two real columns as one complex. Their spectra, for half the
+wave numbers, stand in blocks of sixteen wave numbers and are transformed along x, multiplied, and
+transformed back. (Forward by decimation in frequency: Gentleman and Sande, AFIPS Proc. 29
+(1966) 563; back by decimation in time: Cooley and Tukey, Math. Comp. 19 (1965) 297.)
+"""
+
+import numpy as np
+from scipy import fft
+
+from .. import threads
+from ..kernel_cache import njit
+from .simd import WIDTH, load, store, transpose
+
+#: Numbers in a row of a buffer: real, then imaginary parts of one index of all the transforms.
+ROW = 2 * WIDTH
+#: On fewer cells than this a second thread costs more than it brings.
+THREADED_CELLS = 150_000
+#: Lines of a block that `cosine_transform` transforms at once: all would take their memory twice.
+LINES = 64
+
+
+def cosine_transform(half: np.ndarray, axis: int) -> np.ndarray:
+    """Transform of what is even along an axis, from its first half, in its place (DCT-I).
+
+    By threads of our own: scipy's are shut down while the process forks, and whoever transforms
+    then gets an error.
+
+    Parameters
+    ----------
+    half : (ny, nx) float64 ndarray
+        Overwritten.
+    axis : int
+        0 or 1.
+
+    Returns
+    -------
+    (ny, nx) ndarray
+        The same array.
+    """
+    lines = half if axis == 1 else half.T
+
+    def transform(start: int, stop: int) -> None:
+        for first in range(start, stop, LINES):
+            block = slice(first, min(first + LINES, stop))
+            lines[block] = fft.dct(lines[block], 1, axis=1, workers=1)
+
+    threads.in_parts(transform, len(lines), smallest=LINES)
+    return half
+
+
+def fast_length(least: int) -> int:
+    """The shortest length >= ``least`` and >= 2 without prime factors over 5."""
+    length = max(least, 2)
+    while _radices(length) is None:
+        length += 1
+    return length
+
+
+def _radices(n):
+    """Factors 4, 2, 3 and 5 of a length, or None if there are others."""
+    factors = []
+    for radix in (4, 2, 3, 5):
+        while n % radix == 0:
+            factors.append(radix)
+            n //= radix
+    return factors if n == 1 else None
+
+
+class Convolution:
+    """Convolution with one kernel in one precision.
+
+    Parameters
+    ----------
+    spectrum : (padded y // 2 + 1, padded x // 2 + 1) ndarray
+        Transform of the kernel in its circulant: real, as the kernel is even both ways.
+    shape : (int, int)
+        Of the fields, (ny, nx).
+    padded : (int, int)
+        Lengths of the transforms, each a :func:`fast_length`.
+    dtype : type
+        float32 or float64.
+    wrapped : bool
+        Whether the lengths may be less than twice those of the fields: the kernel is then that of
+        the circle, and it is the caller's to see that it ends before it comes round.
+
+    Raises
+    ------
+    ValueError
+        If these do not go together.
+    """
+
+    def __init__(
+        self,
+        spectrum: np.ndarray,
+        shape: tuple[int, int],
+        padded: tuple[int, int],
+        dtype: type,
+        *,
+        wrapped: bool = False,
+    ):
+        if dtype not in (np.float32, np.float64):
+            raise ValueError(f"dtype {dtype}: expected float32 or float64")
+        for n, length in zip(shape, padded, strict=True):
+            least = n if wrapped else 2 * n - 1
+            if n < 1 or length < least or length != fast_length(length):
+                raise ValueError(
+                    f"padded {padded}: expected fast lengths, of {n} cells {least} or more"
+                )
+        half = padded[0] // 2 + 1, padded[1] // 2 + 1
+        if np.shape(spectrum) != half:
+            raise ValueError(f"spectrum {np.shape(spectrum)}: expected {half}")
+        self._shape, self._dtype = tuple(shape), np.dtype(dtype)
+        (radices_y, twiddles_y, frequency_y) = _plan(padded[0], dtype)
+        (radices_x, twiddles_x, frequency_x) = _plan(padded[1], dtype)
+        waves = padded[0] // 2 + 1
+        self._blocks, self._waves = -(-shape[1] // ROW), -(-waves // WIDTH)
+        factors = np.zeros((self._waves * WIDTH, spectrum.shape[1]), dtype)
+        factors[:waves] = spectrum
+        factors[:waves] /= padded[0] * padded[1]
+        blocks = factors.reshape(self._waves, WIDTH, -1).transpose(0, 2, 1)
+        mirrored = np.minimum(frequency_x, padded[1] - frequency_x)
+        self._along_y = radices_y, twiddles_y, np.argsort(frequency_y)
+        self._along_x = np.ascontiguousarray(blocks), mirrored, radices_x, twiddles_x
+
+    def __call__(self, field: np.ndarray) -> np.ndarray:
+        """The convolution of a field, (ny, nx), of this precision.
+
+        Raises
+        ------
+        ValueError
+            If it has another shape or type.
+        """
+        field = np.ascontiguousarray(field)
+        # Compiled code writes to memory whatever it is given.
+        if field.shape != self._shape or field.dtype != self._dtype:
+            raise ValueError(
+                f"field {field.shape} of {field.dtype}: expected {self._shape} of {self._dtype}"
+            )
+        result = np.empty_like(field)
+        spectra = np.empty((self._waves, self._blocks * ROW * ROW), self._dtype)
+        nx = self._shape[1]
+        _in_parts(
+            lambda *part: _forward_along_y(*part, field, spectra, *self._along_y),
+            self._blocks,
+            field.size,
+        )
+        _in_parts(
+            lambda *part: _multiply_along_x(*part, nx, spectra, *self._along_x),
+            self._waves,
+            field.size,
+        )
+        _in_parts(
+            lambda *part: _back_along_y(*part, spectra, result, *self._along_y),
+            self._blocks,
+            field.size,
+        )
+        return result
+
+
+def _in_parts(function, n, cells):
+    threads.in_parts(function, n, smallest=1 if cells >= THREADED_CELLS else n)
+
+
+def _plan(n, dtype):
+    """Radices, twiddle factors (cos, -sin), frequencies in the order the transform leaves them."""
+    radices = np.array(_radices(n), np.int64)
+    frequency = np.zeros(1, np.int64)
+    for radix in radices[::-1]:
+        frequency = (np.arange(radix)[:, None] + radix * frequency).ravel()
+    angle = 2 * np.pi * np.arange(n) / n
+    return radices, np.stack([np.cos(angle), -np.sin(angle)], axis=1).astype(dtype), frequency
+
+
+@njit(cache=True)
+def _twiddled(re, im, twiddles, k):
+    """(re + i im) times twiddle factor k."""
+    if k == 0:
+        return re, im
+    c, s = twiddles[k, 0], twiddles[k, 1]
+    return c * re - s * im, c * im + s * re
+
+
+@njit(cache=True)
+def _take(x, row, real, imag, twiddles, k):
+    """Real and imaginary parts of a row, times twiddle factor k."""
+    return _twiddled(load(x, row * ROW + real), load(x, row * ROW + imag), twiddles, k)
+
+
+@njit(cache=True)
+def _put(x, row, real, imag, value):
+    store(x, row * ROW + real, value[0])
+    store(x, row * ROW + imag, value[1])
+
+
+# Butterflies of one radix on radix * m rows from ``first`` on. Twiddle factors are multiples of
+# ``before`` or ``after`` times the place of a row (one of the two is 0); all rows are read before
+# any is put.
+
+
+@njit(cache=True)
+def _pass2(x, first, m, before, after, twiddles, real, imag):
+    for p in range(m):
+        row, k, q = first + p, before * p, after * p
+        ar, ai = _take(x, row, real, imag, twiddles, 0)
+        br, bi = _take(x, row + m, real, imag, twiddles, k)
+        second = _twiddled(ar - br, ai - bi, twiddles, q)
+        _put(x, row, real, imag, (ar + br, ai + bi))
+        _put(x, row + m, real, imag, second)
+
+
+@njit(cache=True)
+def _pass3(x, first, m, before, after, twiddles, real, imag):
+    half, height = x.dtype.type(0.5), x.dtype.type(np.sqrt(0.75))
+    for p in range(m):
+        row, k, q = first + p, before * p, after * p
+        ar, ai = _take(x, row, real, imag, twiddles, 0)
+        br, bi = _take(x, row + m, real, imag, twiddles, k)
+        cr, ci = _take(x, row + 2 * m, real, imag, twiddles, 2 * k)
+        sr, si = br + cr, bi + ci
+        dr, di = height * (br - cr), height * (bi - ci)
+        er, ei = ar - half * sr, ai - half * si
+        second = _twiddled(er + di, ei - dr, twiddles, q)
+        third = _twiddled(er - di, ei + dr, twiddles, 2 * q)
+        _put(x, row, real, imag, (ar + sr, ai + si))
+        _put(x, row + m, real, imag, second)
+        _put(x, row + 2 * m, real, imag, third)
+
+
+@njit(cache=True)
+def _pass4(x, first, m, before, after, twiddles, real, imag):
+    for p in range(m):
+        row, k, q = first + p, before * p, after * p
+        ar, ai = _take(x, row, real, imag, twiddles, 0)
+        br, bi = _take(x, row + m, real, imag, twiddles, k)
+        cr, ci = _take(x, row + 2 * m, real, imag, twiddles, 2 * k)
+        dr, di = _take(x, row + 3 * m, real, imag, twiddles, 3 * k)
+        er, ei, fr, fi = ar + cr, ai + ci, br + dr, bi + di
+        gr, gi, hr, hi = ar - cr, ai - ci, br - dr, bi - di
+        second = _twiddled(gr + hi, gi - hr, twiddles, q)
+        third = _twiddled(er - fr, ei - fi, twiddles, 2 * q)
+        fourth = _twiddled(gr - hi, gi + hr, twiddles, 3 * q)
+        _put(x, row, real, imag, (er + fr, ei + fi))
+        _put(x, row + m, real, imag, second)
+        _put(x, row + 2 * m, real, imag, third)
+        _put(x, row + 3 * m, real, imag, fourth)
+
+
+@njit(cache=True)
+def _pass5(x, first, m, before, after, twiddles, real, imag):
+    c1, s1 = x.dtype.type(np.cos(0.4 * np.pi)), x.dtype.type(np.sin(0.4 * np.pi))
+    c2, s2 = x.dtype.type(np.cos(0.8 * np.pi)), x.dtype.type(np.sin(0.8 * np.pi))
+    for p in range(m):
+        row, k, q = first + p, before * p, after * p
+        ar, ai = _take(x, row, real, imag, twiddles, 0)
+        br, bi = _take(x, row + m, real, imag, twiddles, k)
+        cr, ci = _take(x, row + 2 * m, real, imag, twiddles, 2 * k)
+        dr, di = _take(x, row + 3 * m, real, imag, twiddles, 3 * k)
+        er, ei = _take(x, row + 4 * m, real, imag, twiddles, 4 * k)
+        fr, fi, gr, gi = br + er, bi + ei, cr + dr, ci + di
+        br, bi, cr, ci = br - er, bi - ei, cr - dr, ci - di
+        hr, hi = ar + c1 * fr + c2 * gr, ai + c1 * fi + c2 * gi
+        er, ei = ar + c2 * fr + c1 * gr, ai + c2 * fi + c1 * gi
+        ur, ui = s1 * br + s2 * cr, s1 * bi + s2 * ci
+        vr, vi = s2 * br - s1 * cr, s2 * bi - s1 * ci
+        second = _twiddled(hr + ui, hi - ur, twiddles, q)
+        third = _twiddled(er + vi, ei - vr, twiddles, 2 * q)
+        fourth = _twiddled(er - vi, ei + vr, twiddles, 3 * q)
+        fifth = _twiddled(hr - ui, hi + ur, twiddles, 4 * q)
+        _put(x, row, real, imag, (ar + fr + gr, ai + fi + gi))
+        _put(x, row + m, real, imag, second)
+        _put(x, row + 2 * m, real, imag, third)
+        _put(x, row + 3 * m, real, imag, fourth)
+        _put(x, row + 4 * m, real, imag, fifth)
+
+
+@njit(cache=True)
+def _transform(x, radices, twiddles, back):
+    """Transform the rows of x in place, leaving frequencies in the order of the plan; or ``back``.
+
+    Back, times n, is forward with real and imaginary parts exchanged, and the passes in reverse.
+    """
+    n = twiddles.shape[0]
+    real, imag = (WIDTH, 0) if back else (0, WIDTH)
+    size = 1 if back else n
+    for number in range(radices.size):
+        radix = radices[radices.size - 1 - number] if back else radices[number]
+        m = size if back else size // radix
+        stride = n // (m * radix)
+        before, after = (stride, 0) if back else (0, stride)
+        for first in range(0, n, m * radix):
+            if radix == 4:
+                _pass4(x, first, m, before, after, twiddles, real, imag)
+            elif radix == 2:
+                _pass2(x, first, m, before, after, twiddles, real, imag)
+            elif radix == 3:
+                _pass3(x, first, m, before, after, twiddles, real, imag)
+            else:
+                _pass5(x, first, m, before, after, twiddles, real, imag)
+        size = m * radix if back else m
+
+
+@njit(cache=True, nogil=True)
+def _forward_along_y(start, stop, field, spectra, radices, twiddles, place):
+    """Spectra along y of some blocks of columns.
+
+    The left half of a block are the real, the right half the imaginary parts of what is
+    transformed: the spectra a, b of the halves are the Hermitian and (over i) the anti-Hermitian
+    part of the result.
+    """
+    ny, nx = field.shape
+    n = twiddles.shape[0]
+    numbers = field.reshape(-1)
+    x = np.empty(n * ROW, field.dtype)
+    tile = np.empty(2 * WIDTH * ROW, field.dtype)
+    half = field.dtype.type(0.5)
+    for block in range(start, stop):
+        left = block * ROW
+        if left + ROW <= nx:
+            for y in range(ny):
+                store(x, y * ROW, load(numbers, y * nx + left))
+                store(x, y * ROW + WIDTH, load(numbers, y * nx + left + WIDTH))
+        else:
+            for y in range(ny):
+                for lane in range(ROW):
+                    x[y * ROW + lane] = field[y, left + lane] if left + lane < nx else 0
+        x[ny * ROW :] = 0
+        _transform(x, radices, twiddles, False)
+        for waves in range(spectra.shape[0]):
+            for lane in range(WIDTH):
+                # Lanes past the last wave number hold it again.
+                k = min(waves * WIDTH + lane, n // 2)
+                here, there = place[k] * ROW, place[(n - k) % n] * ROW
+                zr, zi = half * load(x, here), half * load(x, here + WIDTH)
+                wr, wi = half * load(x, there), half * load(x, there + WIDTH)
+                store(tile, lane * ROW, zr + wr)
+                store(tile, lane * ROW + WIDTH, zi + wi)
+                store(tile, (WIDTH + lane) * ROW, zi - wi)
+                store(tile, (WIDTH + lane) * ROW + WIDTH, wr - zr)
+            # From wave numbers in rows to wave numbers in lanes.
+            for part in (0, 1):
+                for side in (0, WIDTH):
+                    corner = part * WIDTH * ROW + side
+                    at = (left + side) * ROW + part * WIDTH
+                    transpose(tile, corner, ROW, spectra[waves], at, ROW)
+
+
+@njit(cache=True, nogil=True)
+def _multiply_along_x(start, stop, nx, spectra, kernel, mirrored, radices, twiddles):
+    """Convolve along x, for some blocks of wave numbers along y, in place."""
+    n = twiddles.shape[0]
+    x = np.empty(n * ROW, spectra.dtype)
+    for waves in range(start, stop):
+        x[: nx * ROW] = spectra[waves, : nx * ROW]
+        x[nx * ROW :] = 0
+        _transform(x, radices, twiddles, False)
+        factors = kernel[waves].reshape(-1)
+        for k in range(n):
+            factor = load(factors, mirrored[k] * WIDTH)
+            store(x, k * ROW, factor * load(x, k * ROW))
+            store(x, k * ROW + WIDTH, factor * load(x, k * ROW + WIDTH))
+        _transform(x, radices, twiddles, True)
+        spectra[waves, : nx * ROW] = x[: nx * ROW]
+
+
+@njit(cache=True, nogil=True)
+def _back_along_y(start, stop, spectra, field, radices, twiddles, place):
+    """From spectra along y to some blocks of columns."""
+    ny, nx = field.shape
+    n = twiddles.shape[0]
+    numbers = field.reshape(-1)
+    x = np.empty(n * ROW, field.dtype)
+    tile = np.empty(2 * WIDTH * ROW, field.dtype)
+    for block in range(start, stop):
+        left = block * ROW
+        for waves in range(spectra.shape[0]):
+            for part in (0, 1):
+                for side in (0, WIDTH):
+                    corner = part * WIDTH * ROW + side
+                    at = (left + side) * ROW + part * WIDTH
+                    transpose(spectra[waves], at, ROW, tile, corner, ROW)
+            for lane in range(min(WIDTH, n // 2 + 1 - waves * WIDTH)):
+                k = waves * WIDTH + lane
+                here, there = place[k] * ROW, place[(n - k) % n] * ROW
+                ar, br = load(tile, lane * ROW), load(tile, lane * ROW + WIDTH)
+                ai = load(tile, (WIDTH + lane) * ROW)
+                bi = load(tile, (WIDTH + lane) * ROW + WIDTH)
+                store(x, there, ar + bi)
+                store(x, there + WIDTH, br - ai)
+                store(x, here, ar - bi)
+                store(x, here + WIDTH, ai + br)
+        _transform(x, radices, twiddles, True)
+        if left + ROW <= nx:
+            for y in range(ny):
+                store(numbers, y * nx + left, load(x, y * ROW))
+                store(numbers, y * nx + left + WIDTH, load(x, y * ROW + WIDTH))
+        else:
+            for y in range(ny):
+                for lane in range(nx - left):
+                    field[y, left + lane] = x[y * ROW + lane]

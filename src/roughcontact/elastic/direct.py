@@ -1,0 +1,86 @@
+"""The elastic operator between few nodes, pair by pair: next to nothing is set up.
+
+Where pairs of a loaded and a displaced node are few, to sum them takes less time than to make the
+matrices of the multipole operator. Near by Love's influence is looked up; further away it is
+evaluated anew for each pair, which takes no longer than to read it from a large table would.
+"""
+
+import numpy as np
+
+from ..kernel_cache import njit
+from .halfspace import HalfSpace
+from .influence import FAR, expansion
+
+#: By precision that is asked for: pairs up to which this takes less time than the multipole
+#: operator, with the set-up of that.
+MOST_PAIRS = {np.dtype(np.float32): 150_000, np.dtype(np.float64): 1_000_000}
+
+
+class DirectOperator:
+    """K between the nodes of a set, always computed in double precision.
+
+    Parameters
+    ----------
+    space : HalfSpace
+    nodes : (n,) int32 ndarray
+        Nodes as numbers of cells, ascending; nothing checks them.
+    """
+
+    def __init__(self, space: HalfSpace, nodes: np.ndarray):
+        dy, dx = space.spacing[0] / space.cell, space.spacing[1] / space.cell
+        near = int(np.ceil(FAR * max(dy, dx) / dy)), int(np.ceil(FAR * max(dy, dx) / dx))
+        self._rows, self._columns = np.divmod(nodes, np.int32(space.shape[1]))
+        self._places = self._rows * dy, self._columns * dx
+        self._table = space.influence_within(near)
+        self._spread = space.spread
+
+    def __call__(self, positions: np.ndarray, values: np.ndarray) -> np.ndarray:
+        """Displacement of all nodes of the set under pressures on some of them.
+
+        Parameters
+        ----------
+        positions : (m,) int ndarray
+            Which ones, as positions in the set.
+        values : (m,) ndarray
+
+        Returns
+        -------
+        (n,) ndarray
+            Of the precision of the values.
+        """
+        image = np.zeros(self._rows.size)
+        cells = self._rows, self._columns
+        _sum(
+            positions,
+            values.astype(float),
+            *cells,
+            *self._places,
+            self._table,
+            *self._spread,
+            image,
+        )
+        return image.astype(values.dtype, copy=False)
+
+
+@njit(cache=True)
+def _sum(positions, values, rows, columns, y, x, table, dy, dx, area, image):
+    """Add the displacement under one node after the other to that of all."""
+    for k in range(positions.size):
+        at = positions[k]
+        # Nodes in near rows follow each other.
+        first = np.searchsorted(rows, rows[at] - table.shape[0] + 1)
+        last = np.searchsorted(rows, rows[at] + table.shape[0])
+        _add_far(values[k], y[at], x[at], y[:first], x[:first], dy, dx, area, image[:first])
+        _add_far(values[k], y[at], x[at], y[last:], x[last:], dy, dx, area, image[last:])
+        for i in range(first, last):
+            away = abs(columns[i] - columns[at])
+            if away < table.shape[1]:
+                image[i] += values[k] * table[abs(rows[i] - rows[at]), away]
+            else:
+                image[i] += values[k] * expansion(y[i] - y[at], x[i] - x[at], dy, dx, area)
+
+
+@njit(cache=True)
+def _add_far(value, at_y, at_x, y, x, dy, dx, area, image):
+    for i in range(image.size):
+        image[i] += value * expansion(y[i] - at_y, x[i] - at_x, dy, dx, area)

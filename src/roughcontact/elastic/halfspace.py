@@ -1,0 +1,393 @@
+"""The elastic half-space: normal displacement of a free surface under a pressure, by FFT.
+
+Free space: the window stands alone on an infinite half-space, so the convolution is zero padded and
+there are no periodic images.
+"""
+
+import warnings
+from functools import partial
+from numbers import Real
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy import fft
+
+from ..arguments import (
+    LEAST_INPUT,
+    MOST_INPUT,
+    MOST_RESULT,
+    field,
+    number,
+    pair,
+    quoted,
+    real_array,
+    refuse_masked,
+    whole_number,
+)
+from ..threads import computed_once
+from .convolution import Convolution, cosine_transform, fast_length
+from .influence import influence_table, spread
+from .split_convolution import LEAST_SPLIT_SIDE, SplitConvolution
+
+#: Self-displacement of one node, E* s u / f, under the force f of a small contact patch, for the
+#: paper's "rigid plate" (its eq. 3 leaves the patch open). Square cells only.
+RIGID_PLATE_SELF_TERMS = {
+    "rigid square": 1 / 1.1523,
+    "equal-area disc": np.sqrt(np.pi) / 2,
+    "inscribed disc": 1.0,
+}
+#: Compiled code counts cells in four bytes.
+MOST_CELLS = 2**31 - 1
+#: Cells more stretched than this are convolved as a whole in single precision, too: the coarse grid
+#: of the split convolution has too few nodes along their longer side. Under random pressures
+#: it errs by 1.5e-6 of the largest displacement on square cells, by 3e-6 at 1.5, by 1e-5 at 2.5.
+MOST_STRETCHED = 1.5
+
+
+def rectangle_mean_displacement(a: float, b: float) -> float:
+    """Mean of E* u / p over a uniformly loaded rectangle a x b, in the unit of a and b.
+
+    Notes
+    -----
+    Love's displacement integrated over the rectangle itself. For a square of side b it is
+    b [4 ln(1 + sqrt 2) - (4/3)(sqrt 2 - 1)] / pi = 0.946402 b.
+    """
+    diagonal = np.hypot(a, b)
+    return (
+        2 * a**2 * b * np.arcsinh(b / a)
+        + 2 * a * b**2 * np.arcsinh(a / b)
+        + 2 / 3 * (a**3 + b**3 - diagonal**3)
+    ) / (np.pi * a * b)
+
+
+_E_STAR = "e_star of a HalfSpace is its modulus: write modulus, as e_star will go"
+
+
+def _one_modulus(modulus, e_star):
+    """The modulus of a call that may name it by either word."""
+    if (modulus is None) == (e_star is None):
+        raise TypeError("HalfSpace: expected one modulus=E*, in MPa (10 GPa are 10e3)")
+    if e_star is None:
+        return modulus
+    warnings.warn(_E_STAR, DeprecationWarning, stacklevel=3)
+    return e_star
+
+
+class HalfSpace:
+    """The elastic operator on a grid of rectangular cells.
+
+    It cannot be changed, and several threads may use one.
+
+    Parameters
+    ----------
+    shape : (int, int)
+        Cells (ny, nx).
+    spacing : (float, float) or float
+        Cell sides (dy, dx), mm; one number of square cells.
+    modulus : float
+        E*, MPa: 1/E* = sum over both bodies of (1 - nu^2)/E.
+    kernel : str
+        ``"love"`` (default): uniform pressure on each cell, displacement at its centre. Or one of
+        the readings of the paper's rigid plate, ``"rigid square"``, ``"equal-area disc"``,
+        ``"inscribed disc"``: that self-term, and a point load on every other cell.
+    e_star : float, optional
+        Another word for ``modulus``, deprecated.
+
+    Raises
+    ------
+    ValueError
+        If the shape, spacing, modulus or kernel makes no sense.
+    TypeError
+        If there is not one modulus.
+    """
+
+    _FIXED = ("shape", "spacing", "modulus", "kernel", "cell", "_padded")
+
+    shape: tuple[int, int]
+    spacing: tuple[float, float]
+    modulus: float
+    kernel: str
+    cell: float
+    _is_coarse = False
+
+    def __init__(
+        self,
+        shape: tuple[int, int],
+        spacing: tuple[float, float] | float,
+        modulus: float | None = None,
+        *,
+        kernel: str = "love",
+        e_star: float | None = None,
+    ):
+        modulus = _one_modulus(modulus, e_star)
+        ny, nx = pair(shape, "shape", partial(whole_number, name="shape", least=1, most=MOST_CELLS))
+        if ny * nx > MOST_CELLS:
+            raise ValueError(f"shape {(ny, nx)}: expected no more than {MOST_CELLS} cells")
+        sides = (spacing, spacing) if isinstance(spacing, float | Real) else spacing
+        dy, dx = pair(sides, "spacing", partial(_size, name="spacing", unit="mm"))
+        modulus = _size(modulus, "modulus", "MPa (10 GPa are 10e3)")
+        names = ["love", *RIGID_PLATE_SELF_TERMS]
+        if not isinstance(kernel, str) or kernel not in names:
+            raise ValueError(f"kernel {quoted(kernel)}: expected one of {', '.join(names)}")
+        if kernel != "love" and not np.isclose(dx, dy, rtol=1e-9, atol=0):
+            raise ValueError("the rigid-plate kernels are known for square cells only")
+        # Side of the square as large as a cell: the solver's unit of length in the plane.
+        cell = float(np.sqrt(dy * dx))
+        padded = fast_length(2 * ny - 1), fast_length(2 * nx - 1)
+        vars(self).update(shape=(ny, nx), spacing=(dy, dx), modulus=modulus, kernel=kernel)
+        vars(self).update(cell=cell, _padded=padded)
+
+    def __setattr__(self, name, value):
+        # What is kept of the old grid would be used, out of bounds, on the new one.
+        if name in self._FIXED:
+            raise AttributeError(f"{name} of a HalfSpace cannot be changed; make another HalfSpace")
+        super().__setattr__(name, value)
+
+    def __eq__(self, other):
+        if not isinstance(other, HalfSpace):
+            return NotImplemented
+        return self._key == other._key
+
+    def __hash__(self):
+        return hash(self._key)
+
+    @property
+    def _key(self):
+        return self.shape, self.spacing, self.modulus, self.kernel
+
+    def __getstate__(self):
+        return {name: vars(self)[name] for name in self._FIXED}
+
+    def __repr__(self):
+        kernel = "" if self.kernel == "love" else f", kernel={self.kernel!r}"
+        return (
+            f"HalfSpace(shape={self.shape}, spacing={self.spacing}, modulus={self.modulus}{kernel})"
+        )
+
+    @property
+    def e_star(self) -> float:
+        """E*, MPa: another word for ``modulus``, deprecated."""
+        warnings.warn(_E_STAR, DeprecationWarning, stacklevel=2)
+        return self.modulus
+
+    @property
+    def cell_area(self) -> float:
+        """Area of one cell, mm2."""
+        return self.spacing[0] * self.spacing[1]
+
+    def displacement(self, pressure: ArrayLike) -> np.ndarray:
+        """Normal displacement of the surface under a pressure.
+
+        Parameters
+        ----------
+        pressure : (ny, nx) array_like
+            MPa.
+
+        Returns
+        -------
+        (ny, nx) ndarray
+            mm.
+
+        Raises
+        ------
+        ValueError
+            If the pressure is on another grid, or is not finite and real.
+        """
+        values = field(pressure, "pressure", self.shape)
+        # Not so of a NaN either, which would be everywhere at once.
+        if not np.abs(values).max() <= MOST_RESULT:
+            raise ValueError(f"pressure: expected finite numbers, none over {MOST_RESULT:g} MPa")
+        return self.convolve(values) * (self.cell / self.modulus)
+
+    def influence(self) -> np.ndarray:
+        """Dimensionless influence E* u / (p cell) at every cell distance, (ny, nx), read only."""
+        return self._influence
+
+    @computed_once
+    def _influence(self):
+        influence = self.influence_within(self.shape)
+        influence.flags.writeable = False
+        return influence
+
+    def near_influence(self, side: int) -> np.ndarray:
+        """The same up to a distance of ``side`` cells each way, or as far as the window reaches.
+
+        Made once and kept; read only.
+
+        Parameters
+        ----------
+        side : int
+
+        Returns
+        -------
+        (my, mx) ndarray
+        """
+        if side not in self._near:
+            near = self.influence_within((min(side, self.shape[0]), min(side, self.shape[1])))
+            near.flags.writeable = False
+            self._near.setdefault(side, near)
+        return self._near[side]
+
+    @computed_once
+    def _near(self):
+        return {}
+
+    def influence_within(self, shape: tuple[int, int]) -> np.ndarray:
+        """The same at some cell distances, whether in the window or not; made anew each time.
+
+        Parameters
+        ----------
+        shape : (int, int)
+            Distances wanted along y and x, from zero on.
+
+        Returns
+        -------
+        (my, mx) ndarray
+        """
+        return influence_table(shape, self._sides, self._self_term)
+
+    @property
+    def spread(self) -> tuple[float, float, float]:
+        """Sides of what a load is spread over, in units of `cell`, and area: of `expansion`."""
+        return spread(self._sides, self._self_term)
+
+    @property
+    def _self_term(self):
+        """None for Love's kernel."""
+        return RIGID_PLATE_SELF_TERMS.get(self.kernel)
+
+    @computed_once
+    def _sides(self):
+        """Sides of a cell (y, x), in units of `cell`."""
+        return tuple(d / self.cell for d in self.spacing)
+
+    def coarser(self, factor: int) -> "HalfSpace":
+        """The same half-space on cells ``factor`` times as long and as wide, covering the window.
+
+        Distances counted in cells are the same, and so is the influence. Made once and kept.
+
+        Parameters
+        ----------
+        factor : int
+            From 1.
+
+        Returns
+        -------
+        HalfSpace
+
+        Raises
+        ------
+        ValueError
+            If the factor is no such number.
+        """
+        factor = whole_number(factor, "factor", least=1, most=MOST_CELLS)
+        if factor in self._coarser:
+            return self._coarser[factor]
+        shape = -(-self.shape[0] // factor), -(-self.shape[1] // factor)
+        sides = factor * self.spacing[0], factor * self.spacing[1]
+        coarse = HalfSpace(shape, sides, self.modulus, kernel=self.kernel)
+        # To the last bit the same influence.
+        vars(coarse).update(_sides=self._sides, _is_coarse=True)
+        return self._coarser.setdefault(factor, coarse)
+
+    @computed_once
+    def _coarser(self):
+        return {}
+
+    def convolve(self, values: np.ndarray) -> np.ndarray:
+        """The dimensionless operator K.
+
+        Parameters
+        ----------
+        values : (..., ny, nx) float32 or float64 ndarray
+            One field or several; NaN and infinities spread.
+
+        Returns
+        -------
+        ndarray
+            Of the same shape and precision.
+
+        Raises
+        ------
+        ValueError
+            If the fields are on another grid or of another type.
+        """
+        if type(values) is not np.ndarray:
+            refuse_masked(values, "values")
+            values = real_array(values, "values")
+        convolution = self._single if values.dtype.type is np.float32 else self._double
+        if values.ndim == 2:
+            return convolution(values)
+        if values.shape[-2:] != self.shape:
+            raise ValueError(f"values {values.shape}: expected (..., ny, nx) of {self.shape}")
+        images = np.empty(values.shape, values.dtype)
+        for index in np.ndindex(values.shape[:-2]):
+            images[index] = convolution(values[index])
+        return images
+
+    @property
+    def _double(self):
+        return self._convolutions[0] if self._split is None else self._double_alone
+
+    @property
+    def _single(self):
+        if self._split is not None:
+            return self._split
+        if self._is_coarse and "_convolutions" not in vars(self):
+            return self._single_alone
+        return self._convolutions[1]
+
+    @computed_once
+    def _convolutions(self):
+        """In double and in single precision, from one spectrum, which is not kept."""
+        spectrum = self._spectrum()
+        return tuple(
+            Convolution(spectrum, self.shape, self._padded, dtype)
+            for dtype in (np.float64, np.float32)
+        )
+
+    @computed_once
+    def _single_alone(self):
+        """On coarser grids double precision is hardly ever asked for."""
+        return Convolution(self._spectrum(), self.shape, self._padded, np.float32)
+
+    @computed_once
+    def _double_alone(self):
+        return Convolution(self._spectrum(), self.shape, self._padded, np.float64)
+
+    @computed_once
+    def _split(self):
+        """The convolution in single precision on large windows of nearly square cells, or None."""
+        stretched = max(self._sides) > MOST_STRETCHED * min(self._sides)
+        if min(self.shape) < LEAST_SPLIT_SIDE or stretched:
+            return None
+        return SplitConvolution(self.shape, self._sides, self._self_term)
+
+    def _spectrum(self):
+        """Transform of the influence in its circulant: even both ways, and so real and even.
+
+        Of even length it is a cosine transform (DCT-I) of half the circulant.
+        """
+        spectrum = self.influence_within(self.shape)
+        for axis in (1, 0):
+            n, padded = self.shape[axis], self._padded[axis]
+            half = padded // 2 + 1
+            if padded % 2 == 0:
+                place = np.minimum(np.arange(half), n - 1)
+                spectrum = np.take(spectrum, place, axis=axis) if half != n else spectrum
+                spectrum = cosine_transform(spectrum, axis)
+            else:
+                distance = np.minimum(np.arange(padded), padded - np.arange(padded))
+                circulant = np.take(spectrum, np.minimum(distance, n - 1), axis=axis)
+                spectrum = fft.rfft(circulant, axis=axis).real
+        return spectrum
+
+
+def _size(value, name, unit):
+    """A size that is neither zero nor such that the product or ratio of two would be."""
+    size = number(value, name, unit)
+    if not LEAST_INPUT <= size <= MOST_INPUT:
+        raise ValueError(
+            f"{name} {size:g}: expected between {LEAST_INPUT:g} and {MOST_INPUT:g} {unit}"
+        )
+    return size

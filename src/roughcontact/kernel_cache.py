@@ -1,0 +1,288 @@
+"""Compiled kernels on disk, under a digest of all that they are compiled from.
+
+numba knows a kernel on disk by the file of that kernel alone: where a kernel it calls or a constant
+it uses changes in another module, the old machine code goes on, with wrong numbers or a crash. Here
+a kernel's file is named after its own instructions and those of every kernel it calls, near or far,
+the constants they use, the options they are compiled with, and the versions of what compiles them.
+They are taken from the process, not from files: an edit while it runs spoils nothing, and one that
+no kernel follows from compiles nothing anew.
+
+Each kernel gets a cache of its own in place of numba's. To point ``numba.config.CACHE_DIR`` at
+a folder would be shorter, but it holds for the kernels of other packages too, and leaves numba to
+unpickle whatever lies there: here a file that is not as it was written counts as missing, and so
+does one that somebody else may have written.
+"""
+
+import contextlib
+import hashlib
+import logging
+import os
+import pickle
+import stat
+import sys
+import tempfile
+import uuid
+import warnings
+from collections.abc import Callable, Iterator
+from functools import cache, cached_property
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import llvmlite
+import numba
+import numpy as np
+from numba.core.caching import CompileResultCacheImpl, FunctionCache
+from numba.core.registry import cpu_target
+from numba.core.serialize import dumps
+
+from .kernel_digest import kernel_digest
+
+PACKAGE = Path(__file__).absolute().parent
+#: Kernels that come with the package; who can write there can write its code.
+OWN = PACKAGE / "__pycache__" / "kernels"
+LOG = logging.getLogger("roughcontact")
+#: Files of a kernel that are kept, for versions of it and types it is called with: to change
+#: between branches compiles nothing.
+FILES_KEPT = 12
+#: Bytes of a file's SHA-256, with which it begins.
+_CHECKSUM = hashlib.sha256().digest_size
+
+#: Of what compiles them. Kernels compiled to find an error are others, too.
+_VERSIONS = (
+    f"{sys.implementation.cache_tag}{sys.abiflags}",
+    *(library.__version__ for library in (numba, llvmlite, np)),
+    *(str(getattr(numba.config, name)) for name in ("BOUNDSCHECK", "DEBUGINFO_DEFAULT", "OPT")),
+)
+
+
+def njit(function: Callable | None = None, /, *, cache: bool = False, **options: Any) -> Any:
+    """``numba.njit`` for the modules of this package, with a cache that no change outdates.
+
+    Parameters
+    ----------
+    function : callable, optional
+        The kernel. A signature cannot be given: it is compiled for what it is called with.
+    cache : bool, optional
+        Whether it is kept on disk.
+    **options
+        Of ``numba.njit``.
+    """
+    if function is None:
+        return lambda function: njit(function, cache=cache, **options)
+    kernel: Any = numba.njit(function, **options)
+    # With NUMBA_DISABLE_JIT numba returns the function as it is.
+    if cache and kernel is not function:
+        kernel._cache = KernelCache(kernel)
+        _KEPT.append(kernel)
+    return kernel
+
+
+#: Kernels that are kept on disk.
+_KEPT: list[Any] = []
+
+
+def load_kept() -> int:
+    """Load from disk what the kernels of all imported modules were compiled to.
+
+    A process that forks does so beforehand: each of its forks would else load them again.
+
+    Returns
+    -------
+    int
+        How many were loaded; nothing is compiled.
+    """
+    loaded = 0
+    for kernel in _KEPT:
+        known = set(kernel.signatures)
+        for signature in kernel._cache.kept():
+            if signature not in known:
+                kernel.compile(signature)
+                known.add(signature)
+                loaded += 1
+    return loaded
+
+
+class KernelCache(FunctionCache):
+    """What one kernel was compiled to, a checked file for each set of types it is called with.
+
+    Parameters
+    ----------
+    kernel : Dispatcher
+    """
+
+    _warned = False
+    _announced = False
+
+    def __init__(self, kernel: Any):
+        function = kernel.py_func
+        qualified = function.__qualname__.replace("<", "").replace(">", "")
+        self._stem = f"{function.__module__}.{qualified}"
+        self._kernel = kernel
+        self._py_func = function
+        self._impl = _Serialised(function)
+        self._cache_path, self._paths = _folders()
+        self.enable()
+
+    def flush(self) -> None:
+        """Forget what this kernel was compiled to."""
+        if self._cache_path is not None:
+            for path in self._cache_path.glob(f"{self._stem}-*"):
+                path.unlink(missing_ok=True)
+
+    def kept(self) -> Iterator[tuple]:
+        """Signatures for which this kernel is on disk, compiled for this processor."""
+        codegen = cpu_target.target_context.codegen()
+        names = {path.name: path for path in self._files(f"{self._digest[:16]}-*.nbc")}
+        for name, path in sorted(names.items()):
+            content = _intact(path)
+            if content is not None:
+                (_, signature, *_), _ = saved = pickle.loads(content)
+                if saved[0] == self._key(signature, codegen) and self._file_name(saved[0]) == name:
+                    yield signature
+
+    def _files(self, pattern):
+        return (path for folder in self._paths for path in folder.glob(f"{self._stem}-{pattern}"))
+
+    def _load_overload(self, sig, target_context):
+        if not self._enabled:
+            return None
+        key = self._key(sig, target_context.codegen())
+        name = self._file_name(key)
+        for path in self._paths:
+            content = _intact(path / name)
+            if content is not None:
+                saved, compiled = pickle.loads(content)
+                # The name is only a digest of how the types are written.
+                if saved == key:
+                    return self._impl.rebuild(target_context, compiled)
+        self._announce()
+        return None
+
+    def _announce(self):
+        """Say why nothing seems to happen: compiling all of them takes up to a minute.
+
+        Not of a kernel for other types, or one that was damaged, where the rest is on disk.
+        """
+        if not KernelCache._announced and not any(self._files(f"{self._digest[:16]}-*.nbc")):
+            KernelCache._announced = True
+            LOG.warning("compiling kernels for this processor, which are kept: up to a minute")
+        LOG.info("compiling %s", self._stem)
+
+    def _save_overload(self, sig, data):
+        if not self._enabled or not self._impl.check_cachable(data):
+            return
+        if self._cache_path is None:
+            places = " nor ".join(map(str, _places()))
+            self._warn(f"neither {places} is a folder that this user alone can write to")
+            return
+        key = self._key(sig, data.codegen)
+        content = dumps((key, self._impl.reduce(data)))
+        try:
+            _write(self._cache_path / self._file_name(key), content)
+            self._remove_old()
+        except OSError as error:
+            self._warn(f"{self._cache_path}: {error.strerror or error}")
+
+    def _key(self, sig, codegen):
+        """What distinguishes a compiled kernel from all others, processors included."""
+        return self._stem, sig, codegen.magic_tuple(), self._digest, *_VERSIONS
+
+    @cached_property
+    def _digest(self):
+        """Taken when it is first called: what it uses may be defined below it."""
+        return kernel_digest(self._kernel)
+
+    def _remove_old(self):
+        """Keep the newest of this kernel's files."""
+        with contextlib.suppress(FileNotFoundError):  # removed by another process meanwhile
+            files = list(self._cache_path.glob(f"{self._stem}-*.nbc"))
+            files.sort(key=lambda path: path.stat().st_mtime, reverse=True)
+            for path in files[FILES_KEPT:]:
+                path.unlink()
+
+    def _file_name(self, key):
+        types = hashlib.sha256(repr(key).encode()).hexdigest()
+        return f"{self._stem}-{self._digest[:16]}-{types[:16]}.nbc"
+
+    @staticmethod
+    def _warn(why):
+        if not KernelCache._warned:
+            KernelCache._warned = True
+            warnings.warn(
+                f"compiled kernels cannot be kept ({why}), so every process compiles them again; "
+                "set NUMBA_CACHE_DIR to a folder of your own that has room",
+                stacklevel=2,
+            )
+
+
+class _Serialised(CompileResultCacheImpl):
+    """numba's own way to take a compiled kernel to pieces, without its choice of a folder."""
+
+    def __init__(self, function):
+        code = function.__code__
+        # Named where it warns that a kernel is none that can be kept.
+        self._lineno = code.co_firstlineno
+        self._locator = SimpleNamespace(_py_file=code.co_filename)
+
+
+@cache
+def _folders():
+    """Where kernels are written, or None, and where they are looked for."""
+    writable = next(filter(_is_safe, _places()), None)
+    wanted = next(_places())
+    if numba.config.CACHE_DIR and writable not in (wanted, None):
+        warnings.warn(
+            f"{wanted}: not a folder that this user alone can use, so compiled kernels go to "
+            f"{writable}; set NUMBA_CACHE_DIR to another one, or remove this",
+            stacklevel=2,
+        )
+    # What was compiled with the installation serves those who may only read it.
+    readable = (writable,) if numba.config.CACHE_DIR else (writable, OWN)
+    return writable, [folder for folder in dict.fromkeys(readable) if folder is not None]
+
+
+def _places():
+    if numba.config.CACHE_DIR:
+        yield Path(numba.config.CACHE_DIR).absolute() / "roughcontact-kernels"
+    yield OWN
+    users = Path(os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache"))
+    if users.is_absolute():
+        yield users / "roughcontact"
+    with contextlib.suppress(FileNotFoundError):  # of a machine without any such folder
+        yield Path(tempfile.gettempdir()) / f"roughcontact-{os.geteuid()}"
+
+
+def _is_safe(folder):
+    """Whether kernels can be kept in a folder, and nobody else can put any there."""
+    try:
+        os.makedirs(folder, mode=0o777 if folder == OWN else 0o700, exist_ok=True)
+    except OSError:
+        return False
+    if not os.access(folder, os.W_OK | os.X_OK):
+        return False
+    found = os.lstat(folder)
+    mine = stat.S_ISDIR(found.st_mode) and found.st_uid == os.geteuid()
+    return folder == OWN or (mine and not found.st_mode & (stat.S_IRWXG | stat.S_IRWXO))
+
+
+def _intact(path):
+    """Content of a file as it was written, or None of one that is missing or damaged."""
+    try:
+        content = path.read_bytes()
+    except OSError:  # what cannot be read is compiled anew
+        return None
+    checksum, content = content[:_CHECKSUM], content[_CHECKSUM:]
+    return content if hashlib.sha256(content).digest() == checksum else None
+
+
+def _write(path, content):
+    """Write a file that appears whole or not at all."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    temporary = path.with_name(f"{path.name}.{uuid.uuid4().hex}")
+    try:
+        with open(temporary, "xb") as file:
+            file.write(hashlib.sha256(content).digest() + content)
+        os.replace(temporary, path)
+    finally:
+        temporary.unlink(missing_ok=True)

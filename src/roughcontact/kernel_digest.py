@@ -1,0 +1,117 @@
+"""What a kernel is compiled from, as one digest: its instructions and all that they lead to."""
+
+import hashlib
+import sys
+from collections.abc import Iterator
+from types import CodeType, FunctionType, ModuleType
+from typing import Any
+
+import numpy as np
+from numba.core.dispatcher import Dispatcher
+from numba.extending import _Intrinsic
+
+_OWN = __name__.partition(".")[0]
+
+
+def kernel_digest(kernel: Dispatcher) -> str:
+    """Hexadecimal digits that change with whatever would change the machine code of a kernel.
+
+    Parameters
+    ----------
+    kernel : Dispatcher
+        As ``numba.njit`` makes it.
+
+    Returns
+    -------
+    str
+        The same in every process, wherever the package lies. They are taken from the instructions
+        of Python's own compiler: comments and names of files do not count.
+
+    Raises
+    ------
+    TypeError
+        If the kernel uses an object of which only the address in memory is known.
+    """
+    total = hashlib.sha256()
+    for part in _parts(kernel, set()):
+        total.update(f"{part}\n".encode())
+    return total.hexdigest()
+
+
+def _parts(value: Any, seen: set[int]) -> Iterator[str]:
+    """Everything that a value is made of, in words."""
+    if isinstance(value, Dispatcher):
+        yield "kernel"
+        yield from _parts(sorted(value.targetoptions.items()), seen)
+        yield from _of_function(value.py_func, seen)
+    elif isinstance(value, _Intrinsic):
+        # What it generates may be reached by no name, as the overload of an operator.
+        yield from _of_functions(sys.modules[value._defn.__module__], seen)
+    elif isinstance(value, FunctionType):
+        yield from _of_function(value, seen)
+    elif isinstance(value, CodeType):
+        yield from _of_code(value, seen)
+    elif isinstance(value, tuple | list):
+        yield f"{len(value)} of"
+        for item in value:
+            yield from _parts(item, seen)
+    elif isinstance(value, set | frozenset):
+        yield from _parts(sorted(value, key=repr), seen)
+    elif isinstance(value, np.ndarray):
+        yield f"{value.dtype} {value.shape} {hashlib.sha256(value.tobytes()).hexdigest()}"
+    elif isinstance(value, ModuleType):
+        yield value.__name__
+    elif isinstance(value, type) or callable(value):
+        yield f"{getattr(value, '__module__', '')} {getattr(value, '__qualname__', repr(value))}"
+    else:
+        yield _written(value)
+
+
+def _written(value: Any) -> str:
+    text = repr(value)
+    if " at 0x" in text:
+        raise TypeError(f"a kernel uses {text}, of which nothing but its address is known")
+    return text
+
+
+def _of_function(function: FunctionType, seen: set[int]) -> Iterator[str]:
+    if id(function) in seen:
+        yield f"again {function.__qualname__}"
+        return
+    seen.add(id(function))
+    yield from _of_code(function.__code__, seen)
+    yield from _parts(function.__defaults__ or (), seen)
+    for cell in function.__closure__ or ():
+        yield from _parts(cell.cell_contents, seen)
+    packages = {_OWN, function.__module__.partition(".")[0]}
+    names = sorted(_names(function.__code__))
+    for name in names:
+        if name in function.__globals__:
+            value = function.__globals__[name]
+            yield name
+            yield from _parts(value, seen)
+            if isinstance(value, ModuleType) and value.__name__.partition(".")[0] in packages:
+                for attribute in names:
+                    if hasattr(value, attribute):
+                        yield attribute
+                        yield from _parts(getattr(value, attribute), seen)
+
+
+def _of_functions(module: ModuleType, seen: set[int]) -> Iterator[str]:
+    """Every function and intrinsic of a module."""
+    for name, value in sorted(vars(module).items()):
+        definition = value._defn if isinstance(value, _Intrinsic) else value
+        if isinstance(definition, FunctionType) and definition.__module__ == module.__name__:
+            yield name
+            yield from _of_function(definition, seen)
+
+
+def _of_code(code: CodeType, seen: set[int]) -> Iterator[str]:
+    yield f"{code.co_code.hex()} {code.co_varnames} {code.co_names} {code.co_freevars}"
+    yield from _parts(code.co_consts, seen)
+
+
+def _names(code: CodeType) -> set[str]:
+    """Names that code looks up, that of functions within it too."""
+    inner = (_names(const) for const in code.co_consts if isinstance(const, CodeType))
+    return set(code.co_names).union(*inner)

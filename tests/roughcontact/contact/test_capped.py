@@ -1,0 +1,195 @@
+"""Contact whose pressure stops at a hardness: against a dense programme, and where most yields."""
+
+import numpy as np
+import pytest
+from ensembles import ensemble
+from random_problems import random_problem
+
+from fractalcontact import HalfSpace, solve_contact
+from fractalcontact.accuracy.violation import violation
+from fractalcontact.core.limits import RESOLVED_NODES
+from fractalcontact.surface.synthesis import self_affine
+from roughcontact.contact.active_set import ActiveSetMethod
+from roughcontact.contact.candidates import LEAST_WINDOW, LoadCase
+from roughcontact.contact.kkt import Problem
+from roughcontact.contact.topography import Topography
+from roughcontact.elastic.influence import love_displacement
+
+E_STAR = 1e4
+
+
+def rough(n, seed):
+    """A face of sandstone-like statistics: rms 0.3 mm, cells of 0.05 mm, roll-off 2.5 mm."""
+    space = HalfSpace((n, n), (0.05, 0.05), E_STAR)
+    return self_affine((n, n), 0.05, 0.8, rms=0.3, seed=seed, roll_off=2.5), space
+
+
+def carried(space, hardness):
+    """The force, N, under which the whole window yields."""
+    return hardness * space.cell_area * space.shape[0] * space.shape[1]
+
+
+def dense_operator(space):
+    """Displacement of every node per pressure on every node, mm/MPa."""
+    (ny, nx), (dy, dx) = space.shape, space.spacing
+    y, x = (axis.ravel() for axis in np.mgrid[:ny, :nx])
+    apart = (x[:, None] - x) * dx, (y[:, None] - y) * dy
+    return love_displacement(*apart, dx, dy) / space.modulus
+
+
+def dense_pressure(matrix, clearance, closure, cap):
+    """Least p.K p / 2 + p.(c - w) over 0 <= p <= H, by principal pivoting.
+
+    Each node is at zero, between the bounds or at the cap, and all that are wrong change at once;
+    where that makes no progress, only the last of them does, which cannot cycle (J. J. Judice and
+    F. M. Pires, Comput. Oper. Res. 21 (1994) 587; K. G. Murty, Opsearch 11 (1974) 9).
+    """
+    matrix, aim = matrix * (cap / matrix[0, 0]), (closure - clearance) / matrix[0, 0]
+    least = matrix.diagonal().max()
+    at_cap, free = np.zeros((2, aim.size), bool)
+    fewest, patience = aim.size + 1, 3
+    while True:
+        p = at_cap.astype(float)
+        right_side = aim[free] - matrix[np.ix_(free, at_cap)].sum(axis=1)
+        p[free] = np.linalg.solve(matrix[np.ix_(free, free)], right_side)
+        gap = matrix @ p - aim
+        rounding = 1e-13 * max(np.abs(aim).max(), least)
+        leaves_down, leaves_up = free & (p < 0), free & (p > 1)
+        enters = np.where(at_cap, gap > rounding, gap < -rounding) & ~free
+        wrong = leaves_down | leaves_up | enters
+        if not wrong.any():
+            return cap * p
+        if np.count_nonzero(wrong) < fewest:
+            fewest, patience = np.count_nonzero(wrong), 3
+        elif patience:
+            patience -= 1
+        else:
+            wrong &= np.arange(wrong.size) == np.flatnonzero(wrong)[-1]
+        at_cap = (at_cap & ~wrong) | (leaves_up & wrong)
+        free ^= wrong
+
+
+@pytest.mark.parametrize("seed", range(ensemble("capped programmes")))
+def test_state_is_that_of_a_dense_programme_between_bounds(seed):
+    """Hardness of 1e-4 to 1 of the modulus, force up to nearly all that it lets be carried."""
+    problem = random_problem(seed, largest=37)
+    ny, nx = min(problem.space.shape[0], 20), min(problem.space.shape[1], 17)
+    height = problem.height[:ny, :nx]
+    space = HalfSpace((ny, nx), problem.space.spacing, problem.space.modulus)
+    generator = np.random.default_rng([35, seed])
+    hardness = space.modulus * 10 ** generator.uniform(-4, 0)
+    force = 0.999 * 10 ** generator.uniform(-3, 0) * carried(space, hardness)
+    state = solve_contact(height, space, force=force, hardness=hardness, rtol=1e-9)
+    assert state.force == pytest.approx(force, rel=1e-9)
+    matrix, clearance = dense_operator(space), (height.max() - height).ravel()
+    low, exact, high = (
+        dense_pressure(matrix, clearance, closure, hardness)
+        for closure in state.closure * np.array([1 - 1e-8, 1, 1 + 1e-8])
+    )
+    assert low.sum() * space.cell_area <= force * (1 + 1e-8)
+    assert high.sum() * space.cell_area >= force * (1 - 1e-8)
+    # As far as the closure determines them.
+    apart = max(1e-6 * hardness, 2 * np.abs(high - low).max())
+    np.testing.assert_allclose(state.pressure.ravel(), exact, rtol=0, atol=apart)
+
+
+@pytest.mark.parametrize("control", ["force", "closure"])
+@pytest.mark.parametrize("hardness", [30.0, 1000.0])
+@pytest.mark.parametrize("share", [0.002, 0.2, 0.9, 0.9999])
+def test_yielding_makes_a_problem_no_harder(hardness, share, control):
+    """Applications are at most twice those of the elastic problem of the same closure."""
+    height, space = rough(128, seed=3)
+    force = share * carried(space, hardness)
+    state = solve_contact(height, space, force=force, hardness=hardness)
+    if control == "closure":
+        state = solve_contact(height, space, closure=state.closure, hardness=hardness)
+    elastic = solve_contact(height, space, closure=state.closure)
+    assert state.iterations <= 2 * elastic.iterations
+    assert violation(state, height)[0] <= 1.01e-6
+
+
+# Seeds of 25, under forces and hardnesses that were given up, as candidates could not carry them.
+@pytest.mark.parametrize(("seed", "hardness", "share"), [(0, 30, 0.002), (2, 30, 0.02)])
+def test_candidates_can_carry_the_force(seed, hardness, share):
+    height, space = rough(LEAST_WINDOW, seed)
+    force = share * carried(space, hardness)
+    state = solve_contact(height, space, force=force, hardness=hardness)
+    assert state.force == pytest.approx(force, rel=1e-6)
+    wrong, rounding = violation(state, height)
+    assert wrong <= 1.01e-6 + rounding
+
+
+@pytest.mark.parametrize("level", [0, 1, 2])
+def test_restricted_problem_holds_nodes_enough_for_its_force(level):
+    """However low the bound on the closure that it is made for."""
+    height, space = rough(64, seed=5)
+    mean = 0.05 * 300.0
+    length = mean * space.cell / space.modulus
+    case = LoadCase(space, Topography(height, space.shape), length, 64.0 * 64.0, True, 300 / mean)
+    for _ in range(level):
+        case = case.coarser()
+    restricted = case.restricted(1e-6, None)
+    assert restricted is not None
+    assert restricted.nodes.size * case.cap >= case.load
+    assert restricted.bound >= case.least_closure
+
+
+def test_least_closure_is_below_that_of_every_state():
+    height, space = rough(48, seed=6)
+    topography = Topography(height, space.shape)
+    for share in (0.01, 0.3, 0.9):
+        force = share * carried(space, 200.0)
+        state = solve_contact(height, space, force=force, hardness=200.0)
+        mean = share * 200.0
+        length = mean * space.cell / space.modulus
+        case = LoadCase(space, topography, length, 48.0 * 48.0, True, 200 / mean)
+        assert 0 < case.least_closure * length <= state.closure
+
+
+@pytest.mark.parametrize("share", [0.01, 0.5, 0.99])
+def test_any_start_leads_to_the_state(share):
+    """None, too: the nodes that touch first cannot carry a force that many must share."""
+    height, space = rough(32, seed=7)
+    clearance = (height.max() - height).ravel() / 0.01
+    problem = Problem(space, clearance, share * 50.0 * height.size, True, 50.0)
+    generator = np.random.default_rng(8)
+    starts = np.zeros(height.size), 50 * generator.random(height.size), np.full(height.size, 1e-9)
+    solutions = [ActiveSetMethod(problem, 1e-8).solve(start) for start in starts]
+    for solution in solutions:
+        assert solution.residual <= 1e-8
+        assert solution.pressure.sum() == pytest.approx(problem.load, rel=1e-8)
+        np.testing.assert_allclose(solution.pressure, solutions[0].pressure, atol=1e-5)
+
+
+@pytest.mark.parametrize("control", ["force", "closure"])
+def test_stiffness_of_single_cells_beside_yielded_ones_is_missing(control):
+    """Whole nodes carry the hardness, and the force leaves a part of it to one more."""
+    height, space = rough(64, seed=9)
+    few, many = 0, 0
+    for hardness in (20.0, 200.0, 2000.0):
+        for nodes in (0.5, 3.5, 40.5, 400.5):
+            force = nodes * hardness * space.cell_area
+            state = solve_contact(height, space, force=force, hardness=hardness)
+            if control == "closure":
+                state = solve_contact(height, space, closure=state.closure, hardness=hardness)
+            elastic = np.count_nonzero((state.pressure > 0) & (state.pressure < state.hardness))
+            yields = (state.pressure == state.hardness).any()
+            assert np.isnan(state.stiffness) == (yields and elastic < RESOLVED_NODES)
+            few += np.isnan(state.stiffness)
+            many += yields and elastic >= RESOLVED_NODES
+    assert few
+    assert many
+
+
+def test_stiffness_beside_yielded_nodes_is_the_elastic_response_of_the_others():
+    """These are many: the slope of the force over the closure is that of a fixed set."""
+    height, space = rough(64, seed=10)
+    force = 0.2 * carried(space, 2000.0)
+    state = solve_contact(height, space, force=force, hardness=2000.0, rtol=1e-10)
+    assert (state.pressure == state.hardness).any()
+    step = 1e-7 * state.closure
+    forces = [
+        solve_contact(height, space, closure=closure, hardness=2000.0, rtol=1e-10).force
+        for closure in (state.closure - step, state.closure + step)
+    ]
+    assert state.stiffness == pytest.approx((forces[1] - forces[0]) / (2 * step), rel=1e-3)
