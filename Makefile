@@ -70,7 +70,7 @@ verify: $(VENV)/installed
 size-effect-small: override STUDY = config/size_effect_small.yaml
 size-effect-small: $(VENV)/installed
 	@$(RUN) $(OPTIONS) $(TARGET)
-	@$(BIN)/python -m fractalcontact.commands.size_effect_page \
+	@$(BIN)/python -m contactlab.commands.size_effect_page \
 	  results/size_effect_small/atlas.nc results/size_effect_small/size_effect.md
 
 # SCANS=folder for another one than the study's.
@@ -148,7 +148,7 @@ extremes: $(VENV)/tests-installed
 
 PROBLEMS ?= 3000
 problems: $(VENV)/tests-installed
-	PROBLEMS=$(PROBLEMS) $(BIN)/python -m pytest -q tests/accuracy/test_random_problems.py -k every_state
+	PROBLEMS=$(PROBLEMS) $(BIN)/python -m pytest -q tests/contactlab/accuracy/test_random_problems.py -k every_state
 
 # What failed is kept in results/fuzzing; FUZZ='--only 1234' judges one file again.
 FILES ?= 5000

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
-from fractalcontact.accuracy.refinement import FACTORS, curve_errors
+from fractalcontact.error_budget.refinement import FACTORS, curve_errors
 from fractalcontact.mechanics.state_scalars import state_errors
 from fractalcontact.mechanics.subgrid import QUANTITIES, state_quantities, subgrid_states, summit
 from fractalcontact.roughness.dimension import slope_statistics

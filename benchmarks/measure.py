@@ -12,8 +12,8 @@ from pathlib import Path
 import numpy as np
 from solvers import Failed, counted_convolutions, forget
 
+from contactlab.accuracy.reference import LOADS, RoughProblem, closure_at_fraction
 from fractalcontact import HalfSpace, solve_contact
-from fractalcontact.accuracy.reference import LOADS, RoughProblem, closure_at_fraction
 
 # Force error every solver has to reach.
 ERROR = 1e-6

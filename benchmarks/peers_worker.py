@@ -169,8 +169,8 @@ def _ours(what):
 
 def _peer(what):
     """A mode of a public code, set up and solved anew each time."""
-    from fractalcontact.methods.peers import Load
-    from fractalcontact.methods.registry import installed_peers
+    from contactlab.methods.peers import Load
+    from contactlab.methods.registry import installed_peers
 
     heights = _heights(what)
     peers = installed_peers()

@@ -38,7 +38,7 @@ def main():
     os.environ["OPENBLAS_NUM_THREADS"] = "1"
     from measure import measure_huge, measure_scaling
 
-    from fractalcontact.accuracy.reference import RoughProblem
+    from contactlab.accuracy.reference import RoughProblem
 
     rows, remarks, scaling, huge = [], [], [], []
     for size in options.sizes:
@@ -128,7 +128,7 @@ def _write(folder, rows, remarks, scaling, huge):
 
 
 def _versions():
-    from fractalcontact.methods.registry import PEERS
+    from contactlab.methods.registry import PEERS
     from roughcontact.threads import count
 
     packages = ["fractalcontact", "numpy", "scipy", "numba"]
@@ -157,7 +157,7 @@ def _cell(value):
 
 def _verdict(rows):
     """For every problem and loading: the fastest public code against ours, both given the same."""
-    from fractalcontact.methods.registry import PEERS
+    from contactlab.methods.registry import PEERS
 
     lines = []
     problems = dict.fromkeys((r["size"], r["hurst"], r["contact"], r["loading"]) for r in rows)

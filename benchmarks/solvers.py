@@ -6,7 +6,7 @@ or None for a cold start), and returns an `Answer`. ``applications()`` is the nu
 convolutions of the last call; where counting costs time it is switched on by ``counting``.
 ``likely`` is a tolerance near the one that reaches the benchmark's error at 512 x 512: the search
 for the best begins there, and ends at ``loosest``. Which methods and public codes there are, and
-what they offer, they declare themselves (`fractalcontact.methods.registry`).
+what they offer, they declare themselves (`contactlab.methods.registry`).
 """
 
 from collections import Counter
@@ -16,10 +16,10 @@ from unittest import mock
 
 import numpy as np
 
+from contactlab.accuracy.speed import load_of
+from contactlab.methods.peers import Failed as PeerFailed
+from contactlab.methods.registry import METHODS, installed_peers
 from fractalcontact import HalfSpace, NotConverged, solve_contact
-from fractalcontact.accuracy.speed import load_of
-from fractalcontact.methods.peers import Failed as PeerFailed
-from fractalcontact.methods.registry import METHODS, installed_peers
 from roughcontact.contact import operator
 from roughcontact.contact.preconditioner import forget_preconditioner
 from roughcontact.contact.state import CandidateState

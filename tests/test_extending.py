@@ -8,12 +8,13 @@ import pytest
 import xarray as xr
 from code_blocks import code, run_code
 
+from contactlab.methods.common import posed_problem
+from contactlab.methods.registry import METHODS, declared
 from fractalcontact import HalfSpace
 from fractalcontact.core.fitting import fit_line
-from fractalcontact.methods.common import posed_problem
-from fractalcontact.methods.registry import METHODS, declared
+from fractalcontact.core.stage import SPECIMEN, Stage
 from fractalcontact.scan.options import ScanOptions
-from fractalcontact.study.stages import SPECIMEN, STAGES, Stage
+from fractalcontact.study.stages import STAGES
 from fractalcontact.surface.synthesis import self_affine
 
 
@@ -32,7 +33,7 @@ def test_the_solver_agrees_with_elimination(tmp_path):
     (tmp_path / "lawson_hanson.py").write_text(code("docs/extending.md", "A solver method"))
     (method,) = declared(tmp_path / "lawson_hanson.py")
     assert method.name not in METHODS
-    module = run_code("docs/extending.md", "A solver method", package="fractalcontact.methods")
+    module = run_code("docs/extending.md", "A solver method", package="contactlab.methods")
     heights = self_affine((16, 20), 0.5, 0.7, rms=0.1, seed=1)
     space = HalfSpace(heights.shape, 0.5, 30e3)
     load = {"closure": 0.1, "force": None, "start": None, "hardness": None}

@@ -30,7 +30,7 @@ sys.path.insert(0, str(ROOT / "src"))
 #: What the scripts of a study import, and what their functions import when they are called.
 MODULES = (
     "fractalcontact.core.netcdf",
-    "fractalcontact.experiments.size_states",
+    "contactlab.experiments.size_states",
     "fractalcontact.figures.draw",
     "fractalcontact.mechanics.sweep",
     "fractalcontact.pages.explorer",
@@ -110,7 +110,7 @@ def load():
     for name in MODULES:
         importlib.import_module(name)
     for figure in all_figures().values():
-        importlib.import_module(f"fractalcontact.{figure.module.replace('/', '.')}")
+        importlib.import_module(figure.module.replace("/", "."))
     load_kept()
 
 

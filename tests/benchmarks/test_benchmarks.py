@@ -6,7 +6,7 @@ import sys
 
 from places import BENCHMARKS
 
-from fractalcontact.methods.registry import METHODS
+from contactlab.methods.registry import METHODS
 
 
 def test_every_method_reaches_the_error_and_is_timed(tmp_path):

@@ -7,18 +7,19 @@ import pytest
 from made_stages import scan, stages_of
 from materials import ROCK
 
-from fractalcontact.experiments.area_slope import area_slope
-from fractalcontact.experiments.delta_g import estimator_bias
-from fractalcontact.experiments.delta_sigma import dimension_test
-from fractalcontact.experiments.roll_off import roll_off_effect
-from fractalcontact.experiments.size_effect_test import size_effect_test
-from fractalcontact.experiments.size_states import solve_task
-from fractalcontact.experiments.size_strength import size_strength
+from contactlab.experiments.area_slope import area_slope
+from contactlab.experiments.delta_g import estimator_bias
+from contactlab.experiments.delta_sigma import dimension_test
+from contactlab.experiments.roll_off import roll_off_effect
+from contactlab.experiments.size_effect_test import size_effect_test
+from contactlab.experiments.size_states import solve_task
+from contactlab.experiments.size_strength import size_strength
+from contactlab.experiments.size_tasks import size_tasks
+from fractalcontact.core.stage import EXPERIMENT
 from fractalcontact.stages.atlas import join_stages
 from fractalcontact.study.atlas import read_atlas
 from fractalcontact.study.configuration import resolve_settings, solver_settings
-from fractalcontact.study.size_tasks import size_tasks
-from fractalcontact.study.stages import EXPERIMENT, STAGES
+from fractalcontact.study.stages import STAGES
 from fractalcontact.surface.synthesis import self_affine
 
 SPACING = 0.1  # mm

@@ -7,16 +7,12 @@ import pytest
 from ensembles import ensemble
 from print_size import faults
 
-from fractalcontact.accuracy.convergence import (
-    hertz_convergence,
-    punch_convergence,
-    richardson_trials,
-)
-from fractalcontact.accuracy.elimination import elimination
-from fractalcontact.accuracy.growth import growth
-from fractalcontact.accuracy.reference import problems_of
-from fractalcontact.accuracy.speed import OURS, error_against_time
-from fractalcontact.accuracy.stability import HONEST, SILENT, stability
+from contactlab.accuracy.convergence import hertz_convergence, punch_convergence, richardson_trials
+from contactlab.accuracy.elimination import elimination
+from contactlab.accuracy.growth import growth
+from contactlab.accuracy.reference import problems_of
+from contactlab.accuracy.speed import OURS, error_against_time
+from contactlab.accuracy.stability import HONEST, SILENT, stability
 from fractalcontact.figures.draw import draw_figure, draw_study_figures, drawer_of
 from fractalcontact.figures.kit.drawing import print_style
 from fractalcontact.study.atlas import read_atlas, write_atlas

@@ -8,9 +8,9 @@ import pytest
 import xarray as xr
 from cases import representative
 
+from contactlab.experiments.area_slope import area_slope
+from contactlab.figures.experiments import area_slope as slope_figure
 from fractalcontact.core.subject import Subject
-from fractalcontact.experiments.area_slope import area_slope
-from fractalcontact.figures.experiments import area_slope as slope_figure
 from fractalcontact.figures.joint import area_theories
 from fractalcontact.figures.kit.drawing import print_style, save
 from fractalcontact.mechanics.area import (

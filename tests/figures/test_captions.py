@@ -8,12 +8,13 @@ import xarray as xr
 from cases import representative
 from markup import MARKUP
 
+from fractalcontact.core.stage import EXPERIMENT
 from fractalcontact.figures.draw import drawer_of
 from fractalcontact.figures.kit.drawing import print_style
 from fractalcontact.figures.kit.verdicts import CIRCULAR, claim
 from fractalcontact.study.atlas import STAGES
 from fractalcontact.study.figure_list import all_figures, figures_of, study_figures_of
-from fractalcontact.study.stages import EXPERIMENT, paths_of
+from fractalcontact.study.stages import paths_of
 
 #: A caption has fewer words than this; signs such as = and % are none.
 MOST_WORDS = 70

@@ -5,6 +5,7 @@ import sys
 
 import pytest
 
+from fractalcontact.core.stage import EXPERIMENT
 from fractalcontact.figures.draw import drawer_of
 from fractalcontact.study import figure_list
 from fractalcontact.study.atlas import STAGES
@@ -15,7 +16,7 @@ from fractalcontact.study.figure_list import (
     read_figure,
     study_figures_of,
 )
-from fractalcontact.study.stages import EXPERIMENT, paths_of
+from fractalcontact.study.stages import paths_of
 
 STATED = """
 TITLE = (
@@ -30,8 +31,8 @@ ORDER = 1.5
 
 
 def module_of(tmp_path, text):
-    path = tmp_path / "joint/example.py"
-    path.parent.mkdir()
+    path = tmp_path / "rocks/figures/joint/example.py"
+    path.parent.mkdir(parents=True)
     path.write_text(text)
     return path
 
@@ -39,7 +40,7 @@ def module_of(tmp_path, text):
 def test_constants_are_read_as_they_stand(tmp_path):
     figure = read_figure(module_of(tmp_path, STATED))
     assert figure.name == "example"
-    assert figure.module == "figures/joint/example"
+    assert figure.module == "rocks/figures/joint/example"
     assert figure.title == "A title that takes two lines"
     assert (figure.subject, figure.needs) == ("study", ("closure",))
     assert (figure.key, figure.order) == ("speed", 1.5)
@@ -90,6 +91,6 @@ def test_two_figures_of_one_name_are_refused(tmp_path, monkeypatch):
     for group in ("joint", "paper"):
         (tmp_path / group).mkdir()
         (tmp_path / group / "twice.py").write_text(STATED)
-    monkeypatch.setattr(figure_list, "FOLDER", tmp_path)
+    monkeypatch.setattr(figure_list, "FOLDERS", [tmp_path])
     with pytest.raises(ValueError, match=r"joint/twice\.py and .*paper/twice\.py: two figures"):
         all_figures.__wrapped__()

@@ -11,12 +11,12 @@ from cases import representative
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 
+from contactlab.figures.experiments import plateau
+from contactlab.figures.experiments.plateau import Slide
 from fractalcontact.core.fitting import fit_line
 from fractalcontact.core.verdicts import ABOVE, BELOW, WITHIN
 from fractalcontact.domain.clusters import cluster_sizes, cluster_statistics
 from fractalcontact.figures.draw import drawer_of
-from fractalcontact.figures.experiments import plateau
-from fractalcontact.figures.experiments.plateau import Slide
 from fractalcontact.figures.joint import compliance
 from fractalcontact.figures.kit.drawing import offset_axis, print_style, save
 from fractalcontact.mechanics.conductance import add_conductance

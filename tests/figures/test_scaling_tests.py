@@ -7,8 +7,8 @@ import pytest
 import xarray as xr
 from cases import representative
 
+from contactlab.figures.experiments import dimension_difference, dimension_test
 from fractalcontact.core.subject import Subject
-from fractalcontact.figures.experiments import dimension_difference, dimension_test
 from fractalcontact.figures.joint import _size_test, size_prediction, size_slopes, size_test
 from fractalcontact.figures.kit.drawing import print_style, save
 from fractalcontact.figures.paper import fig11_slope_angle

@@ -4,14 +4,14 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from fractalcontact.commands import size_effect_page
-from fractalcontact.core.errors import InputError
-from fractalcontact.figures.experiments import (
+from contactlab.commands import size_effect_page
+from contactlab.figures.experiments import (
     contact_geometry,
     resolution_law,
     size_effect,
     size_strength,
 )
+from fractalcontact.core.errors import InputError
 from fractalcontact.figures.kit.drawing import print_style
 
 

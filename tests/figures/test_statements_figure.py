@@ -6,11 +6,12 @@ import pytest
 from cases import representative
 from PIL import Image
 
+from fractalcontact.core.stage import EXPERIMENT
 from fractalcontact.figures.draw import draw_study_figures
 from fractalcontact.figures.joint import statements
 from fractalcontact.figures.kit.drawing import print_style
 from fractalcontact.study.figure_list import study_figures_of
-from fractalcontact.study.stages import EXPERIMENT, paths_of
+from fractalcontact.study.stages import paths_of
 
 
 @pytest.mark.parametrize("name", representative(["sliding", "pair", "flat"]))

@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from contactlab.accuracy.cheap_models import bearing_area, coarse_grid, winkler
+from contactlab.methods.common import measured_state
+from contactlab.methods.registry import METHODS
 from fractalcontact import HalfSpace, NotConverged, solve_contact
-from fractalcontact.accuracy.cheap_models import bearing_area, coarse_grid, winkler
 from fractalcontact.domain.box_counts import box_count, mean_count
 from fractalcontact.domain.count_law import Law, best_law, law_dimension
 from fractalcontact.domain.multifractal import generalised_dimensions, gliding_moments, lacunarity
-from fractalcontact.methods.common import measured_state
-from fractalcontact.methods.registry import METHODS
 from fractalcontact.roughness.estimators.cube_counting import cube_counting_curves
 from fractalcontact.roughness.estimators.roughness_length import roughness_length_curves
 from fractalcontact.roughness.estimators.triangular_prism import triangular_prism_curves

@@ -21,7 +21,7 @@ JOBS = (SPECIMEN, CONTACT, STATES, WINDOWS, STRENGTH)
 def taken_by(function):
     """Parameters of a function that are settings, as Python itself has them."""
     module, _, name = function.partition(":")
-    made = getattr(importlib.import_module(f"fractalcontact.{module}"), name)
+    made = getattr(importlib.import_module(module), name)
     return {key: of for key, of in get_type_hints(made).items() if of in vars(settings).values()}
 
 

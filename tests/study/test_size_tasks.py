@@ -2,8 +2,8 @@
 
 import pytest
 
-from fractalcontact.study import size_tasks
-from fractalcontact.study.size_tasks import size_tasks as tasks_of
+from contactlab.experiments import size_tasks
+from contactlab.experiments.size_tasks import size_tasks as tasks_of
 
 RECIPE = {"hurst": [0.5, 0.8], "cut_off": 4, "roll_off": 16, "roll_off_fraction": 0.25}
 

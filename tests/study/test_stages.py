@@ -10,22 +10,13 @@ import pytest
 import yaml
 from places import ROOT
 
-from fractalcontact.study.stages import (
-    EXPERIMENT,
-    GRAINS,
-    JOINT,
-    MAP,
-    SPECIMEN,
-    STAGES,
-    made_together,
-    needed_by,
-    paths_of,
-)
+from fractalcontact.core.stage import EXPERIMENT, GRAINS, JOINT, MAP, SPECIMEN
+from fractalcontact.study.stages import STAGES, made_together, needed_by, paths_of
 
 
 def function_of(stage):
     module, _, name = stage.function.partition(":")
-    return getattr(importlib.import_module(f"fractalcontact.{module}"), name)
+    return getattr(importlib.import_module(module), name)
 
 
 @pytest.mark.parametrize("stage", STAGES.values(), ids=STAGES)
@@ -33,7 +24,7 @@ def test_a_stage_names_a_function_that_takes_what_the_stage_needs(stage):
     taken = inspect.signature(function_of(stage)).parameters
     if stage.grain in (SPECIMEN, JOINT, MAP, EXPERIMENT):
         assert set(stage.needs) <= set(taken)
-    assert (ROOT / f"src/fractalcontact/{stage.module}.py").is_file()
+    assert (ROOT / f"src/{stage.module}.py").is_file()
     assert stage.grain in GRAINS
     assert stage.title
 

@@ -11,7 +11,8 @@ import pytest
 import yaml
 from places import ROOT
 
-from fractalcontact.study.stages import EXPERIMENT, paths_of
+from fractalcontact.core.stage import EXPERIMENT
+from fractalcontact.study.stages import paths_of
 
 
 def copy_project(folder):

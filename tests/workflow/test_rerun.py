@@ -217,7 +217,10 @@ def test_a_job_that_failed_with_a_new_scan_leaves_nothing_that_counts_as_made_of
 
 
 def _files_behind(*modules):
-    paths = [ROOT / "workflow/scripts/stage.py", *(PACKAGE / f"{name}.py" for name in modules)]
+    paths = [
+        ROOT / "workflow/scripts/stage.py",
+        *(PACKAGE.parent / f"{name}.py" for name in modules),
+    ]
     files = sources.source_files(paths, package=PACKAGE)
     return {path.relative_to(ROOT).as_posix() for path in files}
 
@@ -228,7 +231,7 @@ def test_the_script_of_all_stages_follows_from_the_function_that_it_calls():
     assert not {path for path in alone if Path(path).parts[2:3] in (("stages",), ("study",))}
     for stage in STAGES.values():
         files = _files_behind(stage.module)
-        assert f"src/fractalcontact/{stage.module}.py" in files
+        assert f"src/{stage.module}.py" in files
     windows = _files_behind(STAGES["window_states"].module)
     assert {"src/fractalcontact/size_effect/eq6.py", "src/roughcontact/contact/solve.py"} <= (
         windows - alone

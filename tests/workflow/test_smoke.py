@@ -14,10 +14,11 @@ import yaml
 from print_size import faults_of_study
 from projects import ROOT, command, project, run, small_study, write_scan
 
+from fractalcontact.core.stage import EXPERIMENT
 from fractalcontact.study.atlas import read_atlas
 from fractalcontact.study.figure_list import accuracy_figures_of, figures_of, study_figures_of
 from fractalcontact.study.scan_files import list_scans
-from fractalcontact.study.stages import EXPERIMENT, paths_of
+from fractalcontact.study.stages import paths_of
 
 __all__ = ["project"]  # a fixture
 SCANS = ROOT.parent / "shared" / "scans"

@@ -1,12 +1,12 @@
 # How fast and how exact the solver, other solvers and cheaper models are: `snakemake accuracy`, a
 # study of its own (config/accuracy.yaml), no part of `all`.
-from fractalcontact.methods import registry
+from contactlab.methods import registry
 from fractalcontact.study.figure_list import accuracy_figures_of
 
 TIMED = []
 if "speed" in config:
     # Imported here, because no other study needs the solver to know its jobs.
-    from fractalcontact.accuracy.reference import problems_of
+    from contactlab.accuracy.reference import problems_of
 
     TIMED = list(problems_of(config["speed"]))
 
@@ -19,7 +19,7 @@ PEERS = list(registry.installed_peers())
 KINDS_A_JOB = 14
 KINDS = []
 if "stability" in config:
-    from fractalcontact.accuracy.hard_problems import KINDS
+    from contactlab.accuracy.hard_problems import KINDS
 PARTS = list(range(0, len(KINDS), KINDS_A_JOB))
 ACCURACY_FIGURES = accuracy_figures_of(config)
 ACCURACY_FILES = {}

@@ -12,7 +12,8 @@ from snakemake.exceptions import WorkflowError
 from snakemake.logging import logger
 
 # The code of this checkout, wherever its environment was installed from: it may have been moved.
-PACKAGE = Path(workflow.basedir) / "src/fractalcontact"
+SOURCES = Path(workflow.basedir) / "src"
+PACKAGE = SOURCES / "fractalcontact"
 SCRIPTS = Path(workflow.basedir) / "workflow/scripts"
 sys.path.insert(0, str(PACKAGE.parent))
 sys.path.append(str(SCRIPTS))
@@ -30,13 +31,14 @@ from fractalcontact.core import checksums, sources
 from fractalcontact.core.directions import AUTOMATIC_OFFSETS
 from fractalcontact.core.errors import InputError
 from fractalcontact.core.patterns import one_of
+from fractalcontact.core.stage import EXPERIMENT, GRAINS, JOINT, MAP, SPECIMEN
 from fractalcontact.study import campaign, crate, guards, plan, resources, stages
 from fractalcontact.study.checks import resolve_study
 from fractalcontact.study.configuration import resolve_embedded, resolve_roll_off
 from fractalcontact.study.figure_list import all_figures, study_figures_of
 from fractalcontact.study.scan_groups import grouped_notes
 from fractalcontact.study.sidecar import sidecar_of_matrix
-from fractalcontact.study.size_tasks import size_jobs
+from contactlab.experiments.size_tasks import size_jobs
 
 SCHEMA = yaml.safe_load((Path(workflow.basedir) / "config/schema/study.schema.yaml").read_text())
 SOURCE = str(workflow.configfiles[-1]) if workflow.configfiles else "config/paper.yaml"
@@ -236,7 +238,7 @@ def inputs_of(stage):
     return files_of(stages.needed_by(stage))
 
 
-def outputs_of(stage, grains=stages.GRAINS):
+def outputs_of(stage, grains=GRAINS):
     """Files that the job of a stage makes: also of the other stages of its function."""
     return files_of(stages.made_together(stage, grains))
 
@@ -249,18 +251,18 @@ def calling(stage):
 
 
 #: Files of the stages that every specimen has, and of those that only joints that slide have.
-STAGE_FILES = files_of(stages.paths_of(stages.SPECIMEN))
-SLIDING_FILES = files_of(stages.paths_of(stages.JOINT))
+STAGE_FILES = files_of(stages.paths_of(SPECIMEN))
+SLIDING_FILES = files_of(stages.paths_of(JOINT))
 # Measured contact maps stand in every atlas, beside the domains computed there.
 MAP_FILES = (
-    {stage: expand(path, map=MAPS) for stage, path in files_of(stages.paths_of(stages.MAP)).items()}
+    {stage: expand(path, map=MAPS) for stage, path in files_of(stages.paths_of(MAP)).items()}
     if MAPS
     else {}
 )
 # What the study has once.
 STUDY_FILES = {
     stage: path
-    for stage, path in files_of(stages.paths_of(stages.EXPERIMENT)).items()
+    for stage, path in files_of(stages.paths_of(EXPERIMENT)).items()
     if stage in config
 }
 
@@ -289,7 +291,7 @@ def code(script, *modules):
         Of the package, which are imported by names that only exist when it runs.
     """
     if (script, *modules) not in CODE:
-        paths = [SCRIPTS / f"{script}.py", *(PACKAGE / f"{module}.py" for module in modules)]
+        paths = [SCRIPTS / f"{script}.py", *(SOURCES / f"{module}.py" for module in modules)]
         files = sources.source_files(paths, package=PACKAGE)
         versions = sources.versions_of(sources.libraries(files))
         CODE[script, *modules] = sources.digest(files, root=workflow.basedir, versions=versions)

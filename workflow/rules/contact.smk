@@ -106,7 +106,7 @@ rule strength:
 # Strength needs sliding.
 use rule strength as size_laws_against_plane with:
     output:
-        **outputs_of("windows", [stages.SPECIMEN]),
+        **outputs_of("windows", [SPECIMEN]),
     log:
         f"{RESULTS}/logs/strength/{{specimen}}.log",
     benchmark:

@@ -2,8 +2,8 @@
 
 from _job import job
 
+from contactlab.accuracy.stage import convergence
 from fractalcontact.core import netcdf
-from fractalcontact.stages.accuracy import convergence
 
 with job(snakemake) as log:
     result = convergence(snakemake.wildcards.problem, snakemake.params.recipe)

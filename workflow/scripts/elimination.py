@@ -2,7 +2,7 @@
 
 from _job import job
 
-from fractalcontact.accuracy.elimination import elimination
+from contactlab.accuracy.elimination import elimination
 from fractalcontact.core import netcdf
 
 with job(snakemake) as log:

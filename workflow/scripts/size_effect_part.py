@@ -3,9 +3,9 @@
 from _job import job
 from xarray import concat
 
+from contactlab.experiments.size_states import solve_task
+from contactlab.experiments.size_tasks import SizeTask
 from fractalcontact.core import netcdf
-from fractalcontact.experiments.size_states import solve_task
-from fractalcontact.study.size_tasks import SizeTask
 
 with job(snakemake) as log:
     params = snakemake.params

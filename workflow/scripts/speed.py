@@ -8,8 +8,8 @@ os.environ["OPENBLAS_NUM_THREADS"] = "1"
 
 from _job import job
 
-from fractalcontact.accuracy.reference import problems_of
-from fractalcontact.accuracy.speed import error_against_time
+from contactlab.accuracy.reference import problems_of
+from contactlab.accuracy.speed import error_against_time
 from fractalcontact.core import netcdf
 
 with job(snakemake) as log:

@@ -2,7 +2,7 @@
 
 from _job import job
 
-from fractalcontact.accuracy.growth import growth
+from contactlab.accuracy.growth import growth
 from fractalcontact.core import netcdf
 
 with job(snakemake) as log:

@@ -2,7 +2,7 @@
 
 from _job import job
 
-from fractalcontact.accuracy.stability import join
+from contactlab.accuracy.stability import join
 from fractalcontact.core import netcdf
 
 with job(snakemake) as log:

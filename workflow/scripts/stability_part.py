@@ -2,7 +2,7 @@
 
 from _job import job
 
-from fractalcontact.accuracy.stability import stability
+from contactlab.accuracy.stability import stability
 from fractalcontact.core import netcdf
 
 with job(snakemake) as log:

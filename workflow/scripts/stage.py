@@ -13,7 +13,7 @@ from fractalcontact.core import netcdf, settings
 arguments = dict(snakemake.params.items())
 # Not from the table of stages: then a new one would make all others again.
 module, _, name = arguments.pop("function").partition(":")
-function = getattr(import_module(f"fractalcontact.{module}"), name)
+function = getattr(import_module(module), name)
 del arguments["code"]
 arguments |= settings.arguments(function, arguments.pop("settings", {}))
 

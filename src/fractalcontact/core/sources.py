@@ -26,7 +26,7 @@ _LAZY = re.compile(rb'"(\w+)": "\.([\w.]+)"')
 #: Call that imports every module of a package, see :func:`core.modules.modules_of`.
 _ALL_OF = re.compile(rb"\bmodules_of\((\w+)\)")
 
-_OWN = ("roughcontact", "fractalcontact")
+_OWN = ("roughcontact", "fractalcontact", "contactlab")
 #: Distributions that are not called what one imports.
 _DISTRIBUTIONS = {"mpl_toolkits": "matplotlib", "yaml": "PyYAML"}
 #: Libraries that come with another, and make its numbers.

@@ -71,8 +71,7 @@ def drawer_of(name: str) -> Callable[..., Drawing]:
         If no figure has this name.
     """
     figure = all_figures()[name]
-    _, group, module = figure.module.split("/")
-    draw = importlib.import_module(f".{group}.{module}", __package__).draw
+    draw = importlib.import_module(figure.module.replace("/", ".")).draw
 
     def entitled(atlas: DataTree, subject: str | list[str]) -> Drawing:
         drawing = draw(atlas, subject)

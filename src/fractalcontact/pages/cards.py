@@ -8,8 +8,9 @@ from urllib.parse import quote
 
 from markupsafe import Markup
 
+from ..core.stage import JOINT, SPECIMEN
 from ..study.figure_list import Figure, all_figures
-from ..study.stages import JOINT, SPECIMEN, STAGES
+from ..study.stages import STAGES
 from .captions import symbols, take_apart
 
 #: Sections of a specimen's page, in order, by name and title.

@@ -23,11 +23,12 @@ from ..core.atomic import atomic_write
 from ..core.estimate import Estimate
 from ..core.labels import printable
 from ..core.measured_maps import measured_maps
+from ..core.stage import JOINT, SPECIMEN
 from ..core.subject import Subject, configuration_of, specimens_of
 from ..core.tables import write_table
 from ..study.atlas import group_names, read_atlas
 from ..study.figure_list import STUDY, all_figures
-from ..study.stages import JOINT, SPECIMEN, STAGES
+from ..study.stages import STAGES
 from .budget import bars_of
 from .captions import symbols
 from .cards import SECTIONS, cards_of, section_of

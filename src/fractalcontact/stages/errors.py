@@ -2,10 +2,10 @@
 
 import xarray as xr
 
-from ..accuracy.error_budget import error_budget
 from ..core.labels import cf_attrs
 from ..core.settings import Solver, StateSettings
 from ..core.units import share
+from ..error_budget.error_budget import error_budget
 from ..mechanics.loading import JointLoading
 from ..mechanics.plan import solve_plan
 from ..mechanics.registration_spread import registration_spread

@@ -3,8 +3,9 @@
 from collections.abc import Collection, Mapping
 from typing import Any
 
+from ..core.stage import JOINT, SPECIMEN, STUDY
 from .figure_list import all_figures, figures_of
-from .stages import JOINT, SPECIMEN, STAGES, STUDY
+from .stages import STAGES
 
 #: Specimens up to which an atlas is one file unless the study says otherwise. A file of many takes
 #: memory for all of them to write, and time for all of them to open.

@@ -1,7 +1,7 @@
 """Register of the figures: what the workflow must know of them before anything is drawn.
 
-A figure registers itself: its module ``figures/GROUP/NAME.py`` states, each in a line that begins
-with the constant's name and holds literals alone,
+A figure registers itself: its module ``PACKAGE/figures/GROUP/NAME.py`` states, each in a line that
+begins with the constant's name and holds literals alone,
 
 ``TITLE``
     What it shows, for the report.
@@ -28,8 +28,10 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
-#: Folder of the figures, one folder a group; what they share is in :mod:`figures.kit`.
-FOLDER = Path(__file__).parents[1] / "figures"
+from ..core.packages import SOURCES, installed
+
+#: Folders of the figures, one folder a group; what they share is in :mod:`figures.kit`.
+FOLDERS = [SOURCES / name / "figures" for name in installed()]
 _SHARED = "kit"
 
 SPECIMEN, JOINT, STUDY, ACCURACY = "specimen", "joint", "study", "accuracy"
@@ -51,7 +53,8 @@ class Figure:
     name : str
         Of its module, and of its files.
     module : str
-        Path of its module within the package, without ending: "figures/joint/strength".
+        Path of its module below the folder of the packages, without ending:
+        "fractalcontact/figures/joint/strength".
     title : str
     subject : str
         "specimen", "joint", "study" or "accuracy".
@@ -102,7 +105,7 @@ def read_figure(path: Path | str) -> Figure:
         raise ValueError(f"{path}: a figure states {', '.join(missing)}")
     if stated["subject"] not in (SPECIMEN, JOINT, *_ASKED_FOR):
         raise ValueError(f"{path}: SUBJECT {stated['subject']!r} is none of those known")
-    module = f"{FOLDER.name}/{path.parent.name}/{path.stem}"
+    module = "/".join((*path.parts[-4:-1], path.stem))
     return Figure(path.stem, module, **stated)
 
 
@@ -115,7 +118,12 @@ def all_figures() -> dict[str, Figure]:
     ValueError
         If two have one name, or as :func:`read_figure`.
     """
-    paths = [path for path in FOLDER.glob("*/[!_]*.py") if path.parent.name != _SHARED]
+    paths = [
+        path
+        for folder in FOLDERS
+        for path in folder.glob("*/[!_]*.py")
+        if path.parent.name != _SHARED
+    ]
     figures = sorted(map(read_figure, paths), key=lambda figure: (figure.order, figure.name))
     named = {figure.name: figure for figure in figures}
     for figure in figures:

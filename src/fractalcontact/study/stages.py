@@ -12,67 +12,20 @@ signature names, and no others: a change of one that it does not read makes noth
 import ast
 import functools
 from collections.abc import Collection
-from dataclasses import asdict, dataclass, is_dataclass
-from pathlib import Path
+from dataclasses import asdict, is_dataclass
+from importlib import import_module
 from typing import Any
 
 from ..core import settings
+from ..core.packages import CHAIN, SOURCES, installed
+from ..core.stage import GRAINS, JOINT, MAP, SPECIMEN, STUDY, Stage
 
-#: How often a stage is made: for every specimen, for those that slide, for every measured contact
-#: map; once, of all specimens together; once, on synthetic surfaces, where the study has the
-#: stage's key; and of studies of accuracy for every test problem, or once.
-SPECIMEN, JOINT, MAP, STUDY = "specimen", "joint", "map", "study"
-EXPERIMENT, PROBLEM, ACCURACY = "experiment", "problem", "accuracy"
-GRAINS = (SPECIMEN, JOINT, MAP, STUDY, EXPERIMENT, PROBLEM, ACCURACY)
-
-
-@dataclass(frozen=True)
-class Stage:
-    """One stage of a study: a group of the atlas, and a folder of the results.
-
-    Attributes
-    ----------
-    name : str
-        Of the group, the folder and, for an experiment, the key of the configuration.
-    title : str
-        What it holds: the description of its group.
-    grain : str
-        One of :data:`GRAINS`.
-    function : str
-        "room.module:function" that makes it. Stages of one function are made by one job.
-    needs : tuple of str
-        Stages whose datasets the function takes, as arguments of their names.
-    member : str
-        Wildcard or name that its files have, and its groups within the stage's.
-    filed : bool
-        Whether it has files; if not, it is made while the atlas is put together.
-    """
-
-    name: str
-    title: str
-    grain: str
-    function: str
-    needs: tuple[str, ...] = ()
-    member: str = "{specimen}"
-    filed: bool = True
-
-    @property
-    def path(self) -> str:
-        """Its file, or the pattern of its files, below the folder of the results."""
-        return f"{self.name}/{self.member}.nc"
-
-    @property
-    def module(self) -> str:
-        """Path of the function's module within the package, without ending."""
-        return self.function.partition(":")[0].replace(".", "/")
-
-
-_SPECIMEN_STAGES = "stages.specimen:specimen_stages"
-_STATE_STAGES = "stages.states:state_stages"
-_WINDOW_STAGES = "stages.windows:window_stages"
+_SPECIMEN_STAGES = "fractalcontact.stages.specimen:specimen_stages"
+_STATE_STAGES = "fractalcontact.stages.states:state_stages"
+_WINDOW_STAGES = "fractalcontact.stages.windows:window_stages"
 #: Solves the contact of a specimen, the costly part: several jobs, and no stage of its own.
-CONTACT = "mechanics.sweep:joint_states"
-_STRENGTH_STAGES = "stages.strength:strength_stages"
+CONTACT = "fractalcontact.mechanics.sweep:joint_states"
+_STRENGTH_STAGES = "fractalcontact.stages.strength:strength_stages"
 #: What is known of a joint before contact is solved.
 _OF_JOINT = ("specimens", "surface_dimension", "joints")
 #: And those of its sub-windows: nothing is solved for a friction angle.
@@ -81,10 +34,6 @@ _OF_STRENGTH = (*_OF_JOINT, "window_states", "size_test", "dilatancy")
 
 def _of_states(name, title):
     return Stage(name, title, SPECIMEN, _STATE_STAGES, _OF_JOINT)
-
-
-def _experiment(name, title, function):
-    return Stage(name, title, EXPERIMENT, function, member="surfaces")
 
 
 _TABLE = (
@@ -151,44 +100,14 @@ _TABLE = (
         "contact_maps",
         "measured contact maps, one group per map",
         MAP,
-        "domain.measured_map:read_contact_map",
+        "fractalcontact.domain.measured_map:read_contact_map",
         member="{map}",
-    ),
-    _experiment(
-        "roll_off",
-        "rigid dilatancy of synthetic joints with and without a roll-off",
-        "experiments.roll_off:roll_off_effect",
-    ),
-    _experiment(
-        "area_slope",
-        "real contact area at light load, on surfaces with and without a roll-off",
-        "experiments.area_slope:area_slope",
-    ),
-    _experiment(
-        "dimension_test",
-        "both estimates of Delta_sigma on synthetic surfaces",
-        "experiments.delta_sigma:dimension_test",
-    ),
-    _experiment(
-        "estimator_bias",
-        "estimators of Delta_g on surfaces of known dimension",
-        "experiments.delta_g:estimator_bias",
-    ),
-    _experiment(
-        "size_effect",
-        "which exponent carries the size effect: resolution, size and geometry one by one",
-        "experiments.size_effect_test:size_effect_test",
-    ),
-    _experiment(
-        "size_strength",
-        "strength of sliding mated joints over their side, at equal v and at equal v/b",
-        "experiments.size_strength:size_strength",
     ),
     Stage(
         "elastic_model",
         "verdict on the elastic model: real mean pressure against strength, slope of the faces",
         SPECIMEN,
-        "mechanics.model_validity:model_validity",
+        "fractalcontact.mechanics.model_validity:model_validity",
         ("area", "scaling"),
         filed=False,
     ),
@@ -196,14 +115,14 @@ _TABLE = (
         "statements",
         "what the paper says, and whether it holds here",
         SPECIMEN,
-        "statements.judge:judge",
+        "fractalcontact.statements.judge:judge",
         filed=False,
     ),
     Stage(
         "study_statements",
         "what the paper says of several joints together, and whether it holds here",
         STUDY,
-        "statements.study:judge_study",
+        "fractalcontact.statements.study:judge_study",
         member="study",
         filed=False,
     ),
@@ -211,56 +130,27 @@ _TABLE = (
         "comparison",
         "what of a specimen is compared with others, with its errors",
         SPECIMEN,
-        "statements.comparison:specimen_row",
+        "fractalcontact.statements.comparison:specimen_row",
         filed=False,
     ),
     Stage(
         "study_comparison",
         "specimens side by side, and how groups of them spread",
         STUDY,
-        "statements.comparison:compare_specimens",
+        "fractalcontact.statements.comparison:compare_specimens",
         member="study",
         filed=False,
     ),
-    Stage(
-        "speed",
-        "error against time of solvers and cheaper models, one group per test problem",
-        PROBLEM,
-        "accuracy.speed:error_against_time",
-        member="{scene}",
-    ),
-    Stage(
-        "speed_growth",
-        "time and memory of the solvers over sizes",
-        ACCURACY,
-        "accuracy.growth:growth",
-        ("speed",),
-        member="surfaces",
-    ),
-    Stage(
-        "convergence",
-        "error against spacing where the solution is known, and Richardson's extrapolation",
-        PROBLEM,
-        "stages.accuracy:convergence",
-        member="{problem}",
-    ),
-    Stage(
-        "stability",
-        "verdicts on the solvers by kind of test problem",
-        ACCURACY,
-        "accuracy.stability:join",
-        member="scenes",
-    ),
-    Stage(
-        "elimination",
-        "whether dropping points alone reaches the right contact set",
-        ACCURACY,
-        "accuracy.elimination:elimination",
-        member="scenes",
-    ),
 )
-#: Every stage by name, in the order of the atlas.
-STAGES = {stage.name: stage for stage in _TABLE}
+#: Every stage by name, in the order of the atlas: those of the chain, then those of the laboratory.
+STAGES = {
+    stage.name: stage
+    for table in (
+        _TABLE,
+        *(import_module(f"{name}.stages").STAGES for name in installed() if name != CHAIN),
+    )
+    for stage in table
+}
 
 
 @functools.cache
@@ -275,7 +165,7 @@ def sections_of(function: str) -> dict[str, type]:
         Of a stage, or :data:`CONTACT`.
     """
     module, _, name = function.partition(":")
-    path = Path(settings.__file__).parents[1] / f"{module.replace('.', '/')}.py"
+    path = SOURCES / f"{module.replace('.', '/')}.py"
     body = ast.parse(path.read_text(encoding="utf-8")).body
     (made,) = (node for node in body if isinstance(node, ast.FunctionDef) and node.name == name)
     named = {one.arg: ast.unparse(one.annotation) for one in made.args.args if one.annotation}

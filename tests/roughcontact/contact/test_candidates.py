@@ -5,8 +5,8 @@ import pytest
 from ensembles import ensemble
 from random_problems import random_problem
 
+from contactlab.accuracy.violation import violation
 from fractalcontact import HalfSpace, solve_contact
-from fractalcontact.accuracy.violation import violation
 from fractalcontact.surface.synthesis import self_affine
 from roughcontact.contact import candidates, operator
 from roughcontact.contact.state import CandidateState

@@ -1,6 +1,6 @@
 """Captions: sentences of ``captions.yaml``, filled in with the numbers that a figure hands over.
 
-An entry of ``figures/GROUP/captions.yaml`` has the name of a figure and up to three parts:
+An entry of ``PACKAGE/figures/GROUP/captions.yaml`` has the name of a figure and up to three parts:
 
 ``shows``
     What is drawn.
@@ -13,6 +13,7 @@ An entry of ``figures/GROUP/captions.yaml`` has the name of a figure and up to t
 They are Jinja templates: names stand for values, and filters put numbers into words.
 """
 
+import sys
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -21,8 +22,6 @@ import yaml
 from jinja2 import Environment, StrictUndefined
 
 from .words import PAPER, force_label, number, percent, pressure_label, short
-
-_GROUPS = Path(__file__).parents[1]
 
 
 class Caption(str):
@@ -69,8 +68,8 @@ def caption(module: str, **values: Any) -> Caption:
     jinja2.UndefinedError
         If a template uses a name that is not handed over.
     """
-    group, name = module.split(".")[-2:]
-    entry = _templates(group)[name]
+    file = Path(sys.modules[module].__file__ or "")
+    entry = _templates(file.with_name("captions.yaml"))[file.stem]
 
     def filled(template: str) -> str:
         return " ".join(_environment().from_string(template).render(values).split())
@@ -81,8 +80,8 @@ def caption(module: str, **values: Any) -> Caption:
 
 
 @cache
-def _templates(group: str) -> dict[str, dict[str, Any]]:
-    return yaml.safe_load((_GROUPS / group / "captions.yaml").read_text(encoding="utf-8"))
+def _templates(path: Path) -> dict[str, dict[str, Any]]:
+    return yaml.safe_load(path.read_text(encoding="utf-8"))
 
 
 @cache

@@ -1,0 +1,167 @@
+"""Bias, scatter and coverage of the estimators of Delta_g, on synthetic surfaces of known H.
+
+Each surface is measured as a scan would be: over the default range, with the interval every scan
+gets, and with a roll-off that has to be seen where there is one. An interval is honest if it holds
+the exponent of the synthesis in most cases.
+"""
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from fractalcontact.core.datasets import labelled_dataset
+from fractalcontact.core.estimate import Estimate
+from fractalcontact.core.intervals import mean_interval
+from fractalcontact.core.labels import cf_attrs
+from fractalcontact.roughness.curves import ratio
+from fractalcontact.roughness.dimension import measured_exponents
+from fractalcontact.roughness.fit_range import FIRST_CELLS, LAST_PART
+from fractalcontact.roughness.recommended import RECOMMENDED
+from fractalcontact.roughness.registry import ESTIMATORS
+from fractalcontact.surface.synthesis import self_affine
+
+from .units import SPACING
+
+#: H does not depend on the unit of height.
+RMS = 1.0  # mm
+
+#: Verdicts are about surfaces at least this smooth, as those of natural joints are.
+FROM_HURST = 0.5
+
+
+def estimator_bias(recipe: Mapping[str, Any]) -> xr.Dataset:
+    """Bias, scatter and coverage of every estimator on synthetic surfaces.
+
+    Parameters
+    ----------
+    recipe : mapping
+        ``hurst`` (values of H), ``sizes`` (nodes per side), ``seeds`` and, if any, ``roll_offs``:
+        wavelengths of the roll-off as fractions of the side, None for a surface without.
+
+    Returns
+    -------
+    xr.Dataset
+        ``found``, ``found_low`` and ``found_high``: H and its 95 % interval over (estimator, hurst,
+        size, roll_off, seed), with the coordinate ``roll_off`` infinite where there is none. Over
+        the same without the seed: ``bias`` (mean of H found less H) with ``_low`` and ``_high``
+        (95 %, Student's t over the seeds), ``slope_bias`` of the slopes before known bias is taken
+        off, ``scatter`` (standard deviation between surfaces), ``rms_error``, ``half_width`` (mean
+        of the intervals' halves), ``coverage`` (fraction of the intervals that hold H) and
+        ``fitted`` (fraction of surfaces with one: a short roll-off leaves too few lags). Over
+        (hurst, size, roll_off): ``roll_off_seen`` and ``roll_off_coverage``, fractions of surfaces.
+        Over estimator, for H >= 0.5: ``worst_bias``, ``overall_error`` (rms), ``mean_coverage`` and
+        ``least_coverage``. Attributes ``first_cells`` and ``last_part``: default range;
+        ``recommended``: estimator.
+    """
+    exponents, sizes, seeds = (np.unique(recipe[key]) for key in ("hurst", "sizes", "seeds"))
+    stated = [np.inf if part is None else float(part) for part in recipe.get("roll_offs", [None])]
+    roll_offs = np.unique(stated)[::-1]
+    names = list(ESTIMATORS)
+    shape = len(exponents), len(sizes), len(roll_offs), len(seeds)
+    estimates, seen = np.full((4, len(names), *shape), np.nan), np.full((3, *shape), np.nan)
+    for (i, hurst), (j, nodes), (m, part), (k, seed) in _numbered(
+        exponents, sizes, roll_offs, seeds
+    ):
+        roll_off = part * nodes * SPACING if np.isfinite(part) else None
+        surface = self_affine(
+            (nodes, nodes), SPACING, hurst, rms=RMS, seed=int(seed), roll_off=roll_off
+        )
+        found, fit_range = measured_exponents(surface, SPACING)
+        seen[:, i, j, m, k] = np.array(fit_range.roll_off.ends) / (nodes * SPACING)
+        for n, estimate in enumerate(found.values()):
+            estimates[:, n, i, j, m, k] = *estimate.hurst["both"].ends, estimate.slope_hurst
+    coords = {
+        "estimator": names,
+        "hurst": ("hurst", exponents, cf_attrs("1", "Hurst exponent of the surfaces")),
+        "size": ("size", sizes, cf_attrs("1", "nodes per side")),
+        "roll_off": (
+            "roll_off",
+            roll_offs,
+            cf_attrs("1", "wavelength of the roll-off over the side, infinite without one"),
+        ),
+        "seed": ("seed", seeds, cf_attrs("1", "seed of the surface")),
+    }
+    return _with_verdicts(_judged(estimates, seen, coords))
+
+
+def _numbered(*values: np.ndarray) -> Iterator[list[tuple[int, Any]]]:
+    """Every combination of the values, each value with its place."""
+    grids = np.meshgrid(*(np.arange(len(v)) for v in values), indexing="ij")
+    for places in zip(*(grid.ravel() for grid in grids), strict=True):
+        yield [(place, v[place]) for place, v in zip(places, values, strict=True)]
+
+
+def _judged(estimates: np.ndarray, seen: np.ndarray, coords: Mapping[str, Any]) -> xr.Dataset:
+    """The dataset from H, the ends of its interval and the slopes' H, and from roll-offs seen."""
+    dims = tuple(coords)
+    *ends, slope = estimates
+    value, low, high = ends
+    truth = coords["hurst"][1][:, np.newaxis, np.newaxis, np.newaxis]
+    bias = mean_interval(value - truth, axis=-1)
+    covered = (low <= truth) & (truth <= high)
+    roll_off = coords["roll_off"][1][:, np.newaxis]
+    holds = (seen[1] <= roll_off) & (roll_off <= seen[2])
+    over, words = dims[:-1], "fraction of intervals that hold"
+    n = np.isfinite(value).sum(axis=-1)
+    n = np.where(n > 1, n, np.nan)
+    table = {
+        "slope_bias": (over, "1", "mean bias of H before known bias is taken off"),
+        "scatter": (over, "1", "standard deviation of H between surfaces"),
+        "rms_error": (over, "1", "root mean square error of H"),
+        "half_width": (over, "1", "half of the 95 % interval, mean"),
+        "coverage": (over, "1", f"{words} H"),
+        "fitted": (over, "1", "fraction of surfaces with enough lags for a fit"),
+        "roll_off_seen": (over[1:], "1", "fraction of surfaces on which a roll-off is seen"),
+        "roll_off_coverage": (over[1:], "1", f"{words} the roll-off"),
+    }
+    values = {
+        "slope_bias": mean_interval(slope - truth, axis=-1).value,
+        "scatter": np.sqrt(_mean((value - _mean(value)[..., np.newaxis]) ** 2) * n / (n - 1)),
+        "rms_error": np.sqrt(_mean((value - truth) ** 2)),
+        "half_width": _mean(high - low) / 2,
+        "coverage": _mean(np.where(np.isfinite(value), covered, np.nan)),
+        "fitted": np.isfinite(value).mean(axis=-1),
+        "roll_off_seen": np.isfinite(seen[0]).mean(axis=-1),
+        "roll_off_coverage": holds.mean(axis=-1),
+    }
+    result = labelled_dataset(table, values, coords=coords)
+    found = Estimate(value, low, high)
+    result.update(found.variables("found", dims, "1", "Hurst exponent by the estimator"))
+    result.update(bias.variables("bias", over, "1", "mean bias of H"))
+    return result
+
+
+def _mean(values: np.ndarray) -> np.ndarray:
+    """Means over the seeds that gave a value; NaN where none did."""
+    known = np.isfinite(values)
+    return ratio(np.where(known, values, 0.0).sum(axis=-1), known.sum(axis=-1))
+
+
+def _with_verdicts(result: xr.Dataset) -> xr.Dataset:
+    """The table with numbers over all natural surfaces, (estimator)."""
+    natural = result.where(result["hurst"] >= FROM_HURST)
+    every = ["hurst", "size", "roll_off"]
+    of = f"H from {FROM_HURST:g}"
+    table = {
+        "worst_bias": f"largest mean bias, {of}",
+        "overall_error": f"root mean square error of H, {of}",
+        "mean_coverage": f"fraction of intervals that hold H, {of}",
+        "least_coverage": f"smallest coverage of any H, size and roll-off, {of}",
+    }
+    values: dict[str, Any] = {
+        "worst_bias": abs(natural["bias"]).max(every),
+        "overall_error": np.sqrt((natural["rms_error"] ** 2).mean(every)),
+        "mean_coverage": natural["coverage"].mean(every),
+        "least_coverage": natural["coverage"].min(every),
+    }
+    for name, words in table.items():
+        result[name] = values[name].assign_attrs(cf_attrs("1", words))
+    result.attrs = {
+        "first_cells": FIRST_CELLS,
+        "last_part": LAST_PART,
+        "from_hurst": FROM_HURST,
+        "recommended": RECOMMENDED,
+    }
+    return result

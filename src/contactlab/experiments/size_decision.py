@@ -1,0 +1,228 @@
+"""Which exponent, if any, carries the size effect: the rule of decision, and nothing else.
+
+Eq. 6 wants the nominal pressure at one sigma*, and so the part of the nominal area that touches at
+one nominal pressure, to go with the side as b^-(2 - Delta_sigma), whichever way Delta_sigma is
+measured. Here the exponent alpha of A_r/A_0 over b is compared with that, class by class. Intervals
+are over surfaces, not over a regression.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+from scipy import special
+
+from fractalcontact.core.estimate import Estimate, rows_of
+
+#: Probability covered by the intervals of this experiment.
+PROBABILITY = 0.99
+
+#: An exponent whose whole interval is smaller than this is no size effect.
+NO_EFFECT = 0.02
+
+#: A prediction whose interval is wider than this, end to end, decides nothing.
+WIDEST_PREDICTION = 0.4
+
+#: Loads at which a class must follow eq. 6 before it is supported.
+SUPPORTING_LOADS = 3
+
+#: Sides from this number of roll-offs on hold enough hills to be compared.
+FEWEST_ROLL_OFFS = 4
+
+REFUTED, SUPPORTED, OPEN = "eq. 6 refuted", "eq. 6 agrees", "undetermined"
+#: What enough loads that agree are called together.
+UPHELD = "eq. 6 supported"
+
+
+@dataclass(frozen=True)
+class Exponent(Estimate):
+    """An exponent with its interval over surfaces, of :data:`PROBABILITY`, and standard error."""
+
+    error: Any = np.nan
+
+    @classmethod
+    def about(cls, value: float, error: float, half: float) -> "Exponent":
+        """From half the width of the interval."""
+        return cls(value, value - half, value + half, error=error)
+
+    def columns(self, name: str, unit: str = "") -> dict[str, Any]:
+        """As those of an estimate, and ``NAME_error``."""
+        return {f"{name}_error": self.error} | super().columns(name, unit)
+
+
+UNKNOWN = Exponent()
+
+
+def columns_of(
+    name: str, found: Sequence[Exponent], shape: Sequence[int] = (-1,)
+) -> dict[str, np.ndarray]:
+    """Variables of exponents, in C order over ``shape``."""
+    columns = [one.columns(name) for one in found]
+    return {of: np.reshape([one[of] for one in columns], shape) for of in UNKNOWN.columns(name)}
+
+
+def exponent_rows(name: str, words: str) -> dict[str, tuple[str, str]]:
+    """Unit and long name of the variables of an exponent, by their names."""
+    level = f"{100 * PROBABILITY:g} %"
+    error = {f"{name}_error": ("1", f"{words}, standard error")}
+    return error | rows_of(name, "1", words, level)
+
+
+def quantile(freedom: float) -> float:
+    """Half the width of an interval of :data:`PROBABILITY` in standard errors, Student's t."""
+    return float(special.stdtrit(max(freedom, 1.0), (1 + PROBABILITY) / 2))
+
+
+def mean_exponent(values: np.ndarray) -> Exponent:
+    """Mean of exponents that were found on single surfaces, and its interval over them.
+
+    Parameters
+    ----------
+    values : (n,) array_like
+        NaN where missing.
+    """
+    values = np.asarray(values, float)
+    values = values[np.isfinite(values)]
+    if values.size < 2:
+        return UNKNOWN
+    error = float(np.std(values, ddof=1) / np.sqrt(values.size))
+    half = quantile(values.size - 1) * error
+    mean = float(values.mean())
+    return Exponent.about(mean, error, half)
+
+
+def size_exponent(sides: np.ndarray, values: np.ndarray) -> Exponent:
+    """Exponent of a positive quantity over the side, from independent surfaces of each side.
+
+    Parameters
+    ----------
+    sides, values : (n,) array_like
+        One of each surface; NaN where missing.
+
+    Returns
+    -------
+    Exponent
+        Of the line through the mean logarithms of every side, weighted with their variances; its
+        error follows from the scatter between surfaces of one side and from nothing else. Unknown
+        with fewer than two sides of two surfaces each.
+
+    Notes
+    -----
+    Freedom by Welch and Satterthwaite: squares of the contributions of all sides to the variance.
+    """
+    sides, values = np.asarray(sides, float), np.asarray(values, float)
+    usable = np.isfinite(values) & (values > 0)
+    groups = [np.log(values[usable & (sides == side)]) for side in np.unique(sides)]
+    known = [group.size > 1 for group in groups]
+    x = np.log(np.unique(sides))[known]
+    groups = [group for group in groups if group.size > 1]
+    if len(groups) < 2:
+        return UNKNOWN
+    mean = np.array([group.mean() for group in groups])
+    # A side whose surfaces are all alike would have all the weight.
+    variance = np.array([np.var(group, ddof=1) / group.size for group in groups])
+    variance = np.maximum(variance, 1e-12)
+    weight = 1 / variance
+    lever = x - np.sum(weight * x) / weight.sum()
+    parts = weight * lever / np.sum(weight * lever**2)
+    value = float(np.sum(parts * mean))
+    of_sides = parts**2 * variance
+    error = float(np.sqrt(of_sides.sum()))
+    freedom = of_sides.sum() ** 2 / np.sum(of_sides**2 / [group.size - 1 for group in groups])
+    half = quantile(float(freedom)) * error
+    return Exponent.about(value, error, half)
+
+
+def paired_exponent(sides: np.ndarray, values: np.ndarray, surfaces: np.ndarray) -> Exponent:
+    """Exponent of a positive quantity over the side, from windows of the same surfaces.
+
+    Parameters
+    ----------
+    sides, values, surfaces : (n,) array_like
+        Side, mean over the windows of that side, and the number of the surface they are cut from.
+
+    Returns
+    -------
+    Exponent
+        Mean over the surfaces of the slopes that each has; its interval is over surfaces.
+    """
+    sides, values, surfaces = (np.asarray(one) for one in (sides, values, surfaces))
+    usable = np.isfinite(values) & (values > 0)
+    slopes = []
+    for surface in np.unique(surfaces):
+        here = usable & (surfaces == surface)
+        x = np.log(sides[here])
+        lever = x - x.mean() if x.size else x
+        if np.any(lever):
+            slopes.append(float(lever @ np.log(values[here]) / (lever @ lever)))
+    return mean_exponent(np.array(slopes))
+
+
+class Decision(NamedTuple):
+    """What one class of surfaces, at one load, says of eq. 6."""
+
+    verdict: str
+    no_size_effect: bool
+    reason: str
+
+
+def decide(alpha: Exponent, by_area: Exponent, by_boxes: Exponent) -> Decision:
+    """The rule: alpha beside -(2 - Delta_sigma) of both estimators.
+
+    Parameters
+    ----------
+    alpha : Exponent
+        Of A_r/A_0 over the side.
+    by_area, by_boxes : Exponent
+        Predictions -(2 - Delta_sigma), from A_r(s) and from box counts.
+
+    Returns
+    -------
+    Decision
+        Refuted where alpha differs from both predictions beyond their joint interval; agreeing
+        where it does not differ from one that is narrow enough to decide; else undetermined.
+        ``no_size_effect`` where the whole interval of alpha lies within :data:`NO_EFFECT` of zero.
+    """
+    flat = max(abs(alpha.low), abs(alpha.high)) < NO_EFFECT
+    if not np.isfinite(alpha.error):
+        return Decision(OPEN, False, "fewer than two sizes with two surfaces each")
+    predictions = [p for p in (by_area, by_boxes) if np.isfinite(p.error)]
+    if not predictions:
+        return Decision(OPEN, flat, "no prediction: Delta_sigma is unknown")
+    narrow = [p for p in predictions if p.high - p.low <= WIDEST_PREDICTION]
+    agreeing = [p for p in narrow if not differ(alpha, p)]
+    if agreeing:
+        # That which predicts hardly an effect agrees with none at all, and supports nothing.
+        if all(abs(p.value) < NO_EFFECT for p in agreeing):
+            return Decision(OPEN, flat, "the prediction itself is next to no size effect")
+        return Decision(SUPPORTED, flat, "within the joint interval of a prediction")
+    if len(predictions) < 2:
+        return Decision(OPEN, flat, "only one estimator of Delta_sigma is known")
+    if all(differ(alpha, p) for p in predictions):
+        return Decision(REFUTED, flat, "outside the joint intervals of both predictions")
+    return Decision(OPEN, flat, "a prediction is too wide to decide")
+
+
+def differ(first: Exponent, second: Exponent) -> bool:
+    """Whether two exponents differ by more than their joint interval."""
+    half = np.hypot(first.high - first.value, second.high - second.value)
+    return bool(abs(first.value - second.value) > half)
+
+
+def overall(decisions: list[Decision], *, follows: bool) -> str:
+    """Verdict on a class over all its loads.
+
+    Parameters
+    ----------
+    decisions : list of Decision
+        One a load.
+    follows : bool
+        Whether alpha follows the predicted change where H changes; without that nothing supports
+        eq. 6, for a number may be met by chance.
+    """
+    refuted = sum(decision.verdict == REFUTED for decision in decisions)
+    agreeing = sum(decision.verdict == SUPPORTED for decision in decisions)
+    if agreeing >= SUPPORTING_LOADS and follows:
+        return UPHELD
+    return REFUTED if refuted and not agreeing else OPEN

@@ -1,0 +1,440 @@
+"""The decisive experiment on eq. 6: resolution, size and geometry of the contact varied one by one.
+
+Arm R varies the short cut-off at one size, S1, S2 and S3 vary the size at one short cut-off, with a
+fixed roll-off, one in proportion to the size, and none; W those of windows cut from one surface. G
+has surfaces of other constructions. What the classical theory (Persson's) says of each stands
+beside it, from the spectrum that the surfaces of a class have in the mean.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from fractalcontact.core.datasets import labelled, labelled_dataset
+from fractalcontact.core.estimate import Estimate, rows_of
+from fractalcontact.core.labels import cf_attrs
+from fractalcontact.core.limits import WIDEST
+from fractalcontact.mechanics.theory import (
+    PERIODIC_AREAS,
+    PERIODIC_SCATTER,
+    PERIODIC_SLOPE,
+    fudged_persson_area,
+    persson_area,
+)
+
+from .size_decision import (
+    FEWEST_ROLL_OFFS,
+    PROBABILITY,
+    UNKNOWN,
+    Decision,
+    Exponent,
+    columns_of,
+    decide,
+    differ,
+    exponent_rows,
+    mean_exponent,
+    overall,
+    paired_exponent,
+    size_exponent,
+)
+
+#: Arms that vary the size.
+SIZE_ARMS = ("S1", "S2", "S3", "W")
+
+#: Exponents over the side that every arm of sizes has: long name.
+OVER_SIDE = {
+    "alpha": "exponent of A_r/A_0 over the side b, corrected area",
+    "central_alpha": "the same of the central half, over Persson's area at its own pressure",
+    "theory_alpha": "the same of Persson's area, from h'_rms of the surfaces alone",
+    "compliance_exponent": "exponent of the compliance of the interface over the side b",
+    "separation_exponent": "exponent of the mean gap over the side b",
+}
+#: What arm R gives, and the largest surfaces of S1, in place of a dimension.
+DIMENSIONS = {
+    "area_delta": "Delta_sigma by A_r(s), from the short cut-off",
+    "theory_delta": "the same from h'_rms of the surfaces alone, by Persson",
+    "box_delta": "Delta_sigma by box counts, largest surfaces of arm S1",
+    "band_delta": "correlation dimension between cut-off and roll-off, finest surfaces of arm R",
+    "cut_delta": "the same of the bearing-area cut",
+}
+#: What arm G gives.
+GEOMETRY = {
+    "geometry_delta": "correlation dimension of the contact domain, other constructions",
+    "geometry_cut": "the same of the bearing-area cut",
+}
+
+
+def size_effect_test(parts: Sequence[xr.Dataset], recipe: Mapping[str, Any]) -> xr.Dataset:
+    """Exponents of every class of surfaces, and what they say of eq. 6.
+
+    Parameters
+    ----------
+    parts : sequence of xr.Dataset
+        From :func:`experiments.size_states.solve_task`.
+    recipe : mapping
+        Of the study, key ``size_effect``.
+
+    Returns
+    -------
+    xr.Dataset
+        The states of all surfaces; :data:`OVER_SIDE` over (arm, hurst, reduced_pressure) and
+        :data:`DIMENSIONS` over (hurst, reduced_pressure), each with ``_error``, ``_low`` and
+        ``_high`` over surfaces (99 %), as are :data:`GEOMETRY` over (construction, hurst,
+        reduced_pressure) where there is an arm G; ``verdict``, ``reason`` and ``no_size_effect``
+        over (arm, hurst, reduced_pressure); ``overall`` over (arm, hurst). Attribute ``summary``.
+    """
+    samples = xr.concat(parts, "surface")
+    order = ["of_arm", "of_construction", "of_hurst", "of_size", "of_cut_off", "number"]
+    samples = samples.sortby(order)
+    samples["persson_share"] = _persson(samples)
+    hursts, loads = np.unique(samples["of_hurst"]), samples["reduced_pressure"].values
+    arms = [arm for arm in SIZE_ARMS if (samples["of_arm"] == arm).any()]
+    smallest = FEWEST_ROLL_OFFS * recipe["roll_off"]
+    values: dict[str, np.ndarray] = {}
+    shape = len(hursts), len(loads)
+    for name, found in _dimensions(samples, hursts).items():
+        values |= columns_of(name, found, shape)
+    by_class = _over_side(samples, arms, hursts, smallest)
+    for name, found in by_class.items():
+        values |= columns_of(name, found, (len(arms), *shape))
+    constructions = np.unique(samples["of_construction"].values[samples["of_arm"] == "G"])
+    for name, found in _geometry(samples, constructions, hursts).items():
+        values |= columns_of(name, found, (len(constructions), *shape))
+    decisions = _decisions(by_class["alpha"], values, (len(arms), *shape))
+    values |= {
+        "verdict": _texts(decisions, lambda one: one.verdict, (len(arms), *shape)),
+        "reason": _texts(decisions, lambda one: one.reason, (len(arms), *shape)),
+        "no_size_effect": np.reshape([one.no_size_effect for one in decisions], (-1, *shape)),
+        "overall": _overall(decisions, values, (len(arms), *shape)),
+        "published_pressure": np.array(list(PERIODIC_AREAS)) / PERIODIC_SLOPE,
+        "published_share": np.array(list(PERIODIC_AREAS.values())),
+    }
+    coords = {
+        "arm": arms,
+        "construction": constructions,
+        "hurst": ("hurst", hursts, cf_attrs("1", "Hurst exponent H")),
+        "reduced_pressure": samples["reduced_pressure"],
+    }
+    result = samples.merge(labelled_dataset(_table(), values, coords), join="exact")
+    result.attrs = {
+        "smallest_side": int(smallest),
+        "published_scatter": PERIODIC_SCATTER,
+        "cut_off": int(recipe["cut_off"]),
+        "roll_off": float(recipe["roll_off"]),
+    }
+    result = with_comparisons(with_resolution_law(result))
+    return result.assign_attrs(summary=summary(result))
+
+
+def with_comparisons(result: xr.Dataset) -> xr.Dataset:
+    """Exponents that eq. 6 wants, and where contact domains differ from the bearing-area cut.
+
+    Parameters
+    ----------
+    result : xr.Dataset
+        Of :func:`size_effect_test`, without them.
+
+    Returns
+    -------
+    xr.Dataset
+        With ``eq6_exponent`` (hurst, reduced_pressure, delta_estimator) and its interval, and
+        ``domain_determined`` and ``domain_beyond_cut`` (hurst, reduced_pressure): whether both
+        dimensions have intervals narrow enough to be compared, and whether these are disjoint.
+    """
+    dims = ("hurst", "reduced_pressure")
+    found = result.transpose(*dims, ...)
+    each = [Estimate.read(found, f"{name}_delta").mapped(lambda d: d - 2) for name in _ESTIMATORS]
+    value, low, high = (
+        np.stack(ends, axis=-1) for ends in zip(*(one.ends for one in each), strict=True)
+    )
+    wanted = Estimate(value, low, high)
+    words = "exponent of A_r/A_0 over the side b by eq. 6"
+    level = f"{100 * PROBABILITY:g} %"
+    rows = rows_of("eq6_exponent", "1", words, level)
+    table: dict[str, tuple] = {
+        name: ((*dims, "delta_estimator"), *row) for name, row in rows.items()
+    }
+    values: dict[str, np.ndarray] = wanted.columns("eq6_exponent")
+    domain, cut = (Estimate.read(result, name) for name in ("band_delta", "cut_delta"))
+    determined = (domain.width <= WIDEST) & (cut.width <= WIDEST)
+    beyond = determined & ((domain.low > cut.high) | (domain.high < cut.low))
+    table |= {
+        "domain_determined": (dims, "1", "dimensions of domain and cut are narrow enough"),
+        "domain_beyond_cut": (dims, "1", "dimension of the domain differs from its cut's"),
+    }
+    values |= {"domain_determined": determined, "domain_beyond_cut": beyond}
+    result = result.assign(labelled(table, values))
+    attrs = cf_attrs("1", "what gives Delta_sigma: the areas A_r(s), or box counts")
+    return result.assign_coords(delta_estimator=("delta_estimator", list(_ESTIMATORS), attrs))
+
+
+#: Estimators of Delta_sigma that eq. 6 is tried with: by the areas A_r(s), and by box counts.
+_ESTIMATORS = ("area", "box")
+
+
+def with_resolution_law(result: xr.Dataset) -> xr.Dataset:
+    """Area slopes of arm R over p / (E* h'_rms(s)), and the lines of Persson's theory beside.
+
+    Parameters
+    ----------
+    result : xr.Dataset
+        Of :func:`size_effect_test`, without them.
+
+    Returns
+    -------
+    xr.Dataset
+        With ``resolved_pressure`` and ``resolved_kappa`` (surface, reduced_pressure), NaN outside
+        arm R; ``theory_pressure``, ``theory_kappa`` and ``weakened_kappa_low`` and ``_high``
+        (theory,).
+    """
+    steepest, slope = _slope_of_loads(result), result["rms_slope"]
+    pressure = (result["reduced_pressure"] * steepest / slope).where(result["of_arm"] == "R")
+    pressure = pressure.transpose("surface", "reduced_pressure")
+    kappa = result["corrected_share"] / pressure
+    known = pressure.values[np.isfinite(pressure.values)]
+    p = np.geomspace(known.min(), known.max(), _CURVE_POINTS) if known.size else np.empty(0)
+    low, high = (fudged_persson_area(p, 1.0, 1.0, g) / p for g in _WEAKENED)
+    values = {
+        "resolved_pressure": pressure.values,
+        "resolved_kappa": kappa.transpose("surface", "reduced_pressure").values,
+        "theory_pressure": p,
+        "theory_kappa": persson_area(p, 1.0, 1.0) / p,
+        "weakened_kappa_low": low,
+        "weakened_kappa_high": high,
+    }
+    return result.assign(labelled(_RESOLUTION, values))
+
+
+#: Parts g of the elastic energy that computations without adhesion want, and points of a curve.
+_WEAKENED, _CURVE_POINTS = (0.45, 0.42), 60
+_OF_STATES = ("surface", "reduced_pressure")
+_WEAKENED_WORDS = "A_r/A_0 over pressure by Persson's theory with its elastic energy times g"
+_RESOLUTION = {
+    "resolved_pressure": (_OF_STATES, "1", "p / (E* h'_rms(s)) of the surface's own cut-off s"),
+    "resolved_kappa": (_OF_STATES, "1", "area slope kappa, corrected area, over that pressure"),
+    "theory_pressure": ("theory", "1", "p / (E* h'_rms) of the theories' curves"),
+    "theory_kappa": ("theory", "1", "A_r/A_0 over pressure by Persson's theory"),
+    "weakened_kappa_low": ("theory", "1", f"{_WEAKENED_WORDS} = {_WEAKENED[0]:g}"),
+    "weakened_kappa_high": ("theory", "1", f"{_WEAKENED_WORDS} = {_WEAKENED[1]:g}"),
+}
+
+
+def _table() -> dict[str, tuple]:
+    of_class, of_surface = ("arm", "hurst", "reduced_pressure"), ("hurst", "reduced_pressure")
+    table: dict[str, tuple] = {}
+    of_geometry = ("construction", *of_surface)
+    for words, dims in (
+        (OVER_SIDE, of_class),
+        (DIMENSIONS, of_surface),
+        (GEOMETRY, of_geometry),
+    ):
+        for name, long_name in words.items():
+            table |= {of: (dims, *row) for of, row in exponent_rows(name, long_name).items()}
+    return table | {
+        "verdict": (of_class, "1", "what alpha says of eq. 6"),
+        "reason": (of_class, "1", "why"),
+        "no_size_effect": (of_class, "1", "the interval of alpha lies within 0.02 of zero"),
+        "overall": (of_class[:2], "1", "what all loads together say of eq. 6"),
+        "published_pressure": ("published", "1", "p / (E* h'_rms) of published periodic areas"),
+        "published_share": ("published", "1", "published A_r / A_0 of periodic surfaces, H = 0.8"),
+    }
+
+
+def _persson(samples: xr.Dataset) -> xr.DataArray:
+    """Area by Persson's theory at every state, from the h'_rms of its surface."""
+    pressure = samples["reduced_pressure"] * _slope_of_loads(samples)
+    values = fudged_persson_area(pressure, 1.0, samples["rms_slope"].broadcast_like(pressure))
+    attrs = cf_attrs("1", "A_r / A_0 by Persson's theory with g = 0.435")
+    area = xr.DataArray(values, dims=pressure.dims, attrs=attrs)
+    # Other constructions have no spectrum between cut-offs, and loads of their own.
+    area = area.where(samples["of_construction"] == "")
+    return area.transpose("surface", "reduced_pressure")
+
+
+def _slope_of_loads(samples: xr.Dataset) -> xr.DataArray:
+    """h'_rms in which the loads of every surface are given: that of the shortest cut-off."""
+    slopes = samples["rms_slope"].values
+    keys = list(zip(*(samples[f"of_{k}"].values for k in ("arm", "hurst", "size")), strict=True))
+    steepest: dict[tuple, float] = {}
+    for key, slope in zip(keys, slopes, strict=True):
+        steepest[key] = max(steepest.get(key, 0.0), float(slope))
+    return xr.DataArray([steepest[key] for key in keys], dims="surface")
+
+
+def _of(samples: xr.Dataset, **chosen: Any) -> xr.Dataset:
+    """The surfaces of a class."""
+    keep = np.ones(samples.sizes["surface"], bool)
+    for name, value in chosen.items():
+        keep &= samples[f"of_{name}"].values == value
+    return samples.isel(surface=keep)
+
+
+def _over_side(samples, arms, hursts, smallest) -> dict[str, list[Exponent]]:
+    """:data:`OVER_SIDE` of every class, in the order (arm, hurst, load)."""
+    found: dict[str, list[Exponent]] = {name: [] for name in OVER_SIDE}
+    for arm in arms:
+        for hurst in hursts:
+            one = _of(samples, arm=arm, hurst=hurst)
+            one = one.isel(surface=one["of_size"].values >= smallest)
+            sides = one["of_size"].values
+            central = one["central_share"] / fudged_persson_area(
+                one["central_pressure"].values * _slope_of_loads(one).values[:, np.newaxis],
+                1.0,
+                one["rms_slope"].values[:, np.newaxis],
+            )
+            height = one["rms_height"]
+            columns = {
+                "alpha": one["corrected_share"],
+                "central_alpha": central,
+                "theory_alpha": one["persson_share"],
+                "compliance_exponent": one["compliance"] * height,
+                "separation_exponent": one["separation"] * height,
+            }
+            for name, column in columns.items():
+                rows = column.transpose("reduced_pressure", "surface").values
+                if arm == "W":  # windows of one surface are no independent surfaces
+                    numbers = one["number"].values
+                    found[name] += [paired_exponent(sides, row, numbers) for row in rows]
+                else:
+                    found[name] += [size_exponent(sides, row) for row in rows]
+    return found
+
+
+def _geometry(samples, constructions, hursts) -> dict[str, list[Exponent]]:
+    """:data:`GEOMETRY` of every construction, Hurst exponent and load."""
+    found: dict[str, list[Exponent]] = {name: [] for name in GEOMETRY}
+    for construction in constructions:
+        for hurst in hursts:
+            one = _of(samples, arm="G", construction=construction, hurst=hurst)
+            for name, column in zip(GEOMETRY, ("band_dimension", "cut_dimension"), strict=True):
+                rows = one[column].transpose("reduced_pressure", "surface").values
+                found[name] += [mean_exponent(row) for row in rows]
+    return found
+
+
+def _dimensions(samples, hursts) -> dict[str, list[Exponent]]:
+    """:data:`DIMENSIONS` of every Hurst exponent and load."""
+    found: dict[str, list[Exponent]] = {name: [] for name in DIMENSIONS}
+    for hurst in hursts:
+        fine = _of(samples, arm="R", hurst=hurst)
+        slopes = _cut_off_slopes(fine, "corrected_share"), _cut_off_slopes(fine, "persson_share")
+        for name, of_surfaces in zip(("area_delta", "theory_delta"), slopes, strict=True):
+            found[name] += [mean_exponent(2 - row) for row in of_surfaces]
+        finest = fine.isel(surface=fine["of_cut_off"].values == fine["of_cut_off"].values.min())
+        largest = _of(samples, arm="S1", hurst=hurst)
+        largest = largest.isel(surface=largest["of_size"].values == largest["of_size"].values.max())
+        for name, one, column in (
+            ("box_delta", largest, "box_dimension"),
+            ("band_delta", finest, "band_dimension"),
+            ("cut_delta", finest, "cut_dimension"),
+        ):
+            rows = one[column].transpose("reduced_pressure", "surface").values
+            found[name] += [mean_exponent(row) for row in rows]
+    return found
+
+
+def _cut_off_slopes(fine: xr.Dataset, name: str) -> np.ndarray:
+    """Slope of log area over log cut-off of every surface, (load, surface)."""
+    cut_offs = np.unique(fine["of_cut_off"])
+    largest = fine["of_size"].values.max()
+    fine = fine.isel(surface=fine["of_size"].values == largest)
+    x = np.log(cut_offs) - np.log(cut_offs).mean()
+    logs = np.array(
+        [
+            np.log(_of(fine, cut_off=k).sortby("number")[name].transpose("reduced_pressure", ...))
+            for k in cut_offs
+        ]
+    )
+    return np.tensordot(x, logs, axes=(0, 0)) / np.sum(x**2)
+
+
+def _texts(
+    decisions: list[Decision], text: Callable[[Decision], str], shape: tuple[int, ...]
+) -> np.ndarray:
+    return np.reshape([text(one) for one in decisions], shape)
+
+
+def _prediction(values: Mapping[str, np.ndarray], name: str, at: tuple[int, int]) -> Exponent:
+    """-(2 - Delta_sigma) of an estimator, at (hurst, load)."""
+    delta = _read(values, name, at)
+    return delta.mapped(lambda value: value - 2) if delta.known else UNKNOWN
+
+
+def _read(values: Mapping[str, np.ndarray], name: str, at: tuple[int, ...]) -> Exponent:
+    """An exponent of the table."""
+    here = {of: float(values[of][at]) for of in UNKNOWN.columns(name)}
+    found = Exponent.read(here, name)
+    return replace(found, error=here[f"{name}_error"])
+
+
+def _decisions(alphas: list[Exponent], values: Mapping[str, np.ndarray], shape) -> list[Decision]:
+    predictions = [
+        [_prediction(values, name, at[1:]) for name in ("area_delta", "box_delta")]
+        for at in np.ndindex(shape)
+    ]
+    return [decide(alpha, *of) for alpha, of in zip(alphas, predictions, strict=True)]
+
+
+def _overall(decisions: list[Decision], values: Mapping[str, np.ndarray], shape) -> np.ndarray:
+    """Verdict on every (arm, hurst), and whether alpha follows what eq. 6 has change with H."""
+    table = np.empty(shape[:2], object)
+    rows = np.reshape(np.arange(len(decisions)), shape)
+    for i in range(shape[0]):
+        follows = _follows(values, i, shape)
+        for j in range(shape[1]):
+            table[i, j] = overall([decisions[k] for k in rows[i, j]], follows=follows)
+    return table.astype(str)
+
+
+def _follows(values: Mapping[str, np.ndarray], arm: int, shape) -> bool:
+    """Whether alpha changes with H as -(2 - Delta_sigma) by A_r(s) does, at every load."""
+    if shape[1] < 2:
+        return False
+    for load in range(shape[2]):
+        ends = [_read(values, "alpha", (arm, j, load)) for j in (0, -1)]
+        wanted = [_prediction(values, "area_delta", (j, load)) for j in (0, -1)]
+        if not all(np.isfinite(one.error) for one in (*ends, *wanted)):
+            return False
+        if not differ(*wanted) or differ(_change(*ends), _change(*wanted)):
+            return False
+    return True
+
+
+def _change(first: Exponent, second: Exponent) -> Exponent:
+    """Difference of two exponents with its joint interval."""
+    value = second.value - first.value
+    half = float(np.hypot(first.high - first.value, second.high - second.value))
+    return Exponent.about(value, float(np.hypot(first.error, second.error)), half)
+
+
+def summary(result: xr.Dataset) -> str:
+    """In words, by arm and Hurst exponent: alpha, what eq. 6 wants, and the verdict.
+
+    Parameters
+    ----------
+    result : xr.Dataset
+        From :func:`size_effect_test`.
+    """
+    rows = []
+    for arm in result["arm"].values:
+        for hurst in result["hurst"].values:
+            one = result.sel(arm=arm, hurst=hurst)
+            alpha, error = one["alpha"].values, one["alpha_error"].values
+            if not np.isfinite(error).any():
+                continue
+            wanted = [2 - one[name].values for name in ("area_delta", "box_delta")]
+            text = ", ".join(
+                f"{a:+.3f} +- {e:.3f}" for a, e in zip(alpha, error, strict=True) if np.isfinite(e)
+            )
+            eq6 = "; ".join(
+                f"{-np.nanmax(w):.2f} to {-np.nanmin(w):.2f} by {name}"
+                for name, w in zip(("A_r(s)", "boxes"), wanted, strict=True)
+                if np.isfinite(w).any()
+            )
+            rows.append(
+                f"{arm}, H = {hurst:g}: alpha {text} (eq. 6: {eq6}): {one['overall'].item()}"
+            )
+    return "\n".join(rows)

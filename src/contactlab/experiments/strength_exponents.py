@@ -1,0 +1,375 @@
+"""Exponents of strength, contact area and separation over the side, at equal v and at equal v/b."""
+
+from collections.abc import Callable, Mapping
+from fractions import Fraction
+from itertools import pairwise, product
+from typing import Any, NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from fractalcontact.core.datasets import labelled_dataset
+from fractalcontact.core.labels import cf_attrs
+from fractalcontact.core.limits import LARGEST_FRICTION_ANGLE
+
+from .size_decision import (
+    FEWEST_ROLL_OFFS,
+    NO_EFFECT,
+    UNKNOWN,
+    Exponent,
+    columns_of,
+    exponent_rows,
+    paired_exponent,
+    size_exponent,
+)
+from .strength_decision import (
+    beyond,
+    equal_exponent,
+    friction_ratio,
+    joint_verdict,
+    linear_strengths,
+    mean_strength,
+    size_verdict,
+    strength_exponent,
+)
+from .units import SPACING
+
+_CLASS = ("hurst", "law")
+_AT_V = (*_CLASS, "interval", "reduced_pressure")
+_AT_FRACTION = (*_CLASS, "fraction", "reduced_pressure")
+_OF_SIZE = (*_CLASS, "side", "interval", "reduced_pressure")
+
+#: Exponents over the side, and the strength itself: dimensions and long name.
+EXPONENTS: dict[str, tuple[tuple[str, ...], str]] = {
+    "strength": (_OF_SIZE, "tau/sigma_0 = tan(phi_b + i) of the mean rate, not truncated"),
+    "strength_exponent": (_AT_V, "exponent of tau/sigma_0 over the side b at equal v"),
+    "area_exponent": (_AT_V, "exponent of the corrected A_r/A_0 over b at the interval's end"),
+    "separation_exponent": (_AT_V, "exponent of the separation over b at the interval's end"),
+    "pooled_exponent": (
+        (*_CLASS, "reduced_pressure"),
+        "exponent over b of the geometric mean of tau/sigma_0 over all intervals of v",
+    ),
+    "scaled_strength_exponent": (_AT_FRACTION, "exponent of tau/sigma_0 over b at equal v/b"),
+    "scaled_area_exponent": (_AT_FRACTION, "exponent of the corrected A_r/A_0 over b, equal v/b"),
+    "scaled_separation_exponent": (_AT_FRACTION, "exponent of the separation over b, equal v/b"),
+    "predicted_exponent": (_AT_FRACTION, "that of tau/sigma_0 by v alone, from the largest joints"),
+    "beyond_exponent": (_AT_FRACTION, "exponent of tau/sigma_0 at equal v/b less that by v alone"),
+}
+#: Verdicts by the exponent they are of, and their long names.
+VERDICTS = {
+    "strength_exponent": "verdict on the strength at equal v",
+    "area_exponent": "verdict on the contact area at equal v",
+    "separation_exponent": "verdict on the separation at equal v",
+    "pooled_exponent": "verdict on the strength at equal v, all intervals together",
+    "scaled_strength_exponent": "verdict on the strength at equal v/b",
+    "scaled_area_exponent": "verdict on the contact area at equal v/b",
+    "scaled_separation_exponent": "verdict on the separation at equal v/b",
+    "beyond_exponent": "verdict on the strength at equal v/b beyond what v alone makes of it",
+}
+#: What decides a class, at equal v and at equal v/b.
+_DECIDING = ("pooled_exponent", "scaled_strength_exponent", "predicted_exponent")
+
+
+class _Sample(NamedTuple):
+    """Joints of one Hurst exponent under one law and load."""
+
+    sides: np.ndarray
+    rates: np.ndarray  # (surface, interval)
+    shares: np.ndarray  # (surface, offset), corrected
+    separations: np.ndarray
+    numbers: np.ndarray
+
+
+def dilatancy_rates(states: xr.Dataset) -> np.ndarray:
+    """Rates d delta/dv between successive displacements, from mated faces on.
+
+    Parameters
+    ----------
+    states : xr.Dataset
+        From :func:`experiments.size_strength.sliding_states`.
+
+    Returns
+    -------
+    (surface, law, interval, reduced_pressure) ndarray
+
+    Notes
+    -----
+    Secants, as :func:`mechanics.strength.dilatancy_angle` takes them: of one joint, whose scatter
+    cancels, and every state serves two of them.
+    """
+    delta = states["separation"].transpose("surface", "law", "offset", "reduced_pressure").values
+    delta = np.concatenate([np.zeros_like(delta[:, :, :1]), delta], axis=2)
+    step = np.diff(np.r_[0.0, states["offset"].values])
+    return np.diff(delta, axis=2) / step[:, np.newaxis]
+
+
+def strength_exponents(states: xr.Dataset, recipe: Mapping[str, Any]) -> xr.Dataset:
+    """What states of sliding joints say of a size effect.
+
+    Parameters
+    ----------
+    states : xr.Dataset
+        From :func:`experiments.size_strength.sliding_states`.
+    recipe : mapping
+        As of :func:`experiments.size_strength.size_strength`.
+
+    Returns
+    -------
+    xr.Dataset
+        The states; :data:`EXPONENTS` with ``_error``, ``_low`` and ``_high`` (99 % over surfaces),
+        :data:`VERDICTS` after ``_verdict``; ``theory_strength`` and ``theory_exponent`` from S(v);
+        ``truncated_share``. Sides from :data:`FEWEST_ROLL_OFFS` roll-offs on enter exponents.
+    """
+    offsets = np.r_[0.0, states["offset"].values]
+    sides = np.unique(states["of_size"].values)
+    smallest = FEWEST_ROLL_OFFS * recipe["roll_off"]
+    classes = equal_fractions(sides[sides >= smallest] * SPACING, offsets)
+    sizes = dict(states.sizes) | {
+        "side": len(sides),
+        "interval": len(offsets) - 1,
+        "fraction": len(classes),
+    }
+    values = _empty(sizes)
+    basic = float(recipe["basic_friction_angle"])
+    found: dict[tuple[int, int], dict[str, list[Exponent]]] = {}
+    for (i, j, k), sample in _samples(states).items():
+        difference = states["height_difference"].values[i]
+        one_class = _one_class(sample, sides, smallest, classes, basic)
+        _fill(values, (i, j), k, one_class)
+        _fill(values, (i, j), k, _by_theory(sample, difference, offsets, classes, basic))
+        for name in _DECIDING:
+            found.setdefault((i, j), {}).setdefault(name, []).extend(one_class[name])
+    for at, exponents in found.items():
+        at_v, at_fraction, predicted = (exponents[name] for name in _DECIDING)
+        values["overall"][at] = joint_verdict(at_v, at_fraction, predicted)
+    result = states.merge(
+        labelled_dataset(_table(), values, _coords(offsets, sides, classes)), join="exact"
+    )
+    result.attrs = {
+        "smallest_side": int(smallest),
+        "bound": NO_EFFECT,
+        "cut_off": float(recipe["cut_off"]),
+        "roll_off": float(recipe["roll_off"]),
+        "rms_slope": float(recipe["rms_slope"]),
+        "basic_friction_angle": basic,
+        "largest_friction_angle": LARGEST_FRICTION_ANGLE,
+        **({"hardness": float(recipe["hardness"])} if "hardness" in recipe else {}),
+    }
+    return result
+
+
+def _samples(states: xr.Dataset) -> dict[tuple[int, int, int], _Sample]:
+    """Joints by the numbers of their Hurst exponent, law and load."""
+    rates, hursts = dilatancy_rates(states), states["hurst"].values
+    shape = (states.sizes[dim] for dim in (*_CLASS, "reduced_pressure"))
+    found = {}
+    for i, j, k in product(*map(range, shape)):
+        here = states["of_hurst"].values == hursts[i]
+        one = states.isel(surface=here, law=j, reduced_pressure=k)
+        found[i, j, k] = _Sample(
+            one["of_size"].values,
+            rates[here][:, j, :, k],
+            one["corrected_share"].transpose("surface", "offset").values,
+            one["separation"].transpose("surface", "offset").values,
+            one["number"].values,
+        )
+    return found
+
+
+def equal_fractions(
+    sides: np.ndarray, offsets: np.ndarray
+) -> dict[tuple[float, float], dict[float, int]]:
+    """Intervals of v that are one fraction of the side, for two sides or more.
+
+    Parameters
+    ----------
+    sides, offsets : array_like
+        mm; the offsets with zero, ascending.
+
+    Returns
+    -------
+    dict
+        By the ends (v/b) of the interval: its number by side.
+    """
+    found: dict[tuple[Fraction, Fraction], dict[float, int]] = {}
+    for side in sides:
+        for k, ends in enumerate(pairwise(offsets)):
+            low, high = (Fraction(float(v)) / Fraction(float(side)) for v in ends)
+            found.setdefault((low, high), {})[float(side)] = k
+    return {
+        (float(low), float(high)): found[low, high]
+        for low, high in sorted(found)
+        if len(found[low, high]) > 1
+    }
+
+
+def _table() -> dict[str, tuple]:
+    table: dict[str, tuple] = {
+        of: (dims, *row)
+        for name, (dims, words) in EXPONENTS.items()
+        for of, row in exponent_rows(name, words).items()
+    }
+    table |= {
+        f"{name}_verdict": (EXPONENTS[name][0], "1", words) for name, words in VERDICTS.items()
+    }
+    return table | {
+        "truncated_share": (
+            _OF_SIZE,
+            "1",
+            f"fraction of joints whose phi_b + i passes {LARGEST_FRICTION_ANGLE:g} degrees or is "
+            "negative",
+        ),
+        "overall": (_CLASS, "1", "whether the strength has a size effect, and of what"),
+        "theory_strength": (_AT_V, "1", "tau/sigma_0 from S(v), the separation in its square root"),
+        "theory_exponent": (_AT_FRACTION, "1", "exponent of theory_strength over b at equal v/b"),
+    }
+
+
+def _coords(
+    offsets: np.ndarray, sides: np.ndarray, classes: Mapping[tuple[float, float], Any]
+) -> dict[str, Any]:
+    ends = np.array(list(classes), float).reshape(-1, 2)
+    long = "of v/b, {} of the interval"
+    return {
+        "side": ("side", sides * SPACING, cf_attrs("mm", "side b")),
+        "interval": (
+            "interval",
+            (offsets[1:] + offsets[:-1]) / 2,
+            cf_attrs("mm", "middle of an interval of v"),
+        ),
+        "interval_low": ("interval", offsets[:-1], cf_attrs("mm", "start of an interval of v")),
+        "interval_high": ("interval", offsets[1:], cf_attrs("mm", "end of an interval of v")),
+        "fraction": ("fraction", ends.mean(axis=1), cf_attrs("1", long.format("middle"))),
+        "fraction_low": ("fraction", ends[:, 0], cf_attrs("1", long.format("start"))),
+        "fraction_high": ("fraction", ends[:, 1], cf_attrs("1", long.format("end"))),
+    }
+
+
+def _empty(sizes: Mapping[Any, int]) -> dict[str, np.ndarray]:
+    values = {}
+    for name, (dims, _, _) in _table().items():
+        shape = [sizes[dim] for dim in dims]
+        text = name.endswith("_verdict") or name == "overall"
+        values[name] = np.full(shape, "", object) if text else np.full(shape, np.nan)
+    return values
+
+
+def _fill(
+    values: dict[str, np.ndarray], at: tuple[int, int], load: int, found: Mapping[str, Any]
+) -> None:
+    """Put what one class has at one load where it belongs."""
+    for name, one in found.items():
+        where = (*at, ..., load)
+        if name not in EXPONENTS:
+            values[name][where] = one
+            continue
+        shape = values[name][where].shape
+        for of, column in columns_of(name, one, shape).items():
+            values[of][where] = column
+        if name in VERDICTS:
+            verdicts = np.array([size_verdict(e) for e in one], object)
+            values[f"{name}_verdict"][where] = verdicts.reshape(shape)
+
+
+def _one_class(
+    sample: _Sample,
+    sides: np.ndarray,
+    smallest: float,
+    classes: Mapping[tuple[float, float], Mapping[float, int]],
+    basic: float,
+) -> dict[str, Any]:
+    """:data:`EXPONENTS` of one class at one load."""
+    intervals = range(sample.rates.shape[1])
+    of_side = {side: sample.rates[sample.sides == side] for side in sides}
+    angles = basic + np.degrees(np.arctan(sample.rates))
+    out = (angles > LARGEST_FRICTION_ANGLE) | (angles < 0)
+    entering = sample.sides >= smallest
+    one = _Sample(*(column[entering] for column in sample))
+    linear = np.array([linear_strengths(one.sides, rate, basic) for rate in one.rates.T])
+    with np.errstate(invalid="ignore", divide="ignore"):
+        pooled = np.exp(np.log(linear).mean(axis=0))
+    return {
+        "strength": [mean_strength(of_side[s][:, k], basic) for s in sides for k in intervals],
+        "truncated_share": [out[sample.sides == side].mean(axis=0) for side in sides],
+        "strength_exponent": [strength_exponent(one.sides, r, basic) for r in one.rates.T],
+        "area_exponent": [size_exponent(one.sides, share) for share in one.shares.T],
+        "separation_exponent": [size_exponent(one.sides, gap) for gap in one.separations.T],
+        "pooled_exponent": [size_exponent(one.sides, pooled)],
+    } | _scaled(one, linear, classes, basic)
+
+
+def _scaled(
+    one: _Sample,
+    linear: np.ndarray,
+    classes: Mapping[tuple[float, float], Mapping[float, int]],
+    basic: float,
+) -> dict[str, list[Exponent]]:
+    """Exponents at equal v/b, and what v alone makes of the strength of the largest joints."""
+    found: dict[str, list[Exponent]] = {
+        name: [] for name, (dims, _) in EXPONENTS.items() if dims == _AT_FRACTION
+    }
+    largest = one.sides == one.sides.max(initial=0)
+    for intervals in classes.values():
+        exponents = {
+            "scaled_strength_exponent": _over_sides(one, intervals, lambda k: linear[k]),
+            "scaled_area_exponent": _over_sides(one, intervals, lambda k: one.shares[:, k]),
+            "scaled_separation_exponent": _over_sides(
+                one, intervals, lambda k: one.separations[:, k]
+            ),
+            "predicted_exponent": _by_largest(
+                one.rates[largest], one.numbers[largest], intervals, basic
+            ),
+        }
+        exponents["beyond_exponent"] = beyond(
+            exponents["scaled_strength_exponent"], exponents["predicted_exponent"]
+        )
+        for name, exponent in exponents.items():
+            found[name].append(exponent)
+    return found
+
+
+def _over_sides(
+    one: _Sample, intervals: Mapping[float, int], column: Callable[[int], np.ndarray]
+) -> Exponent:
+    """Exponent over sides of a column, that of each side at its own interval."""
+    here = {side: one.sides * SPACING == side for side in intervals}
+    sides = np.concatenate([np.full(np.count_nonzero(at), side) for side, at in here.items()])
+    return equal_exponent(
+        sides, np.concatenate([column(intervals[side])[at] for side, at in here.items()])
+    )
+
+
+def _by_largest(
+    rates: np.ndarray, numbers: np.ndarray, intervals: Mapping[float, int], basic: float
+) -> Exponent:
+    """The same line through the strengths that the largest joints have at these intervals."""
+    if len(rates) < 2:
+        return UNKNOWN
+    columns = [linear_strengths(numbers * 0, rates[:, k], basic) for k in intervals.values()]
+    sides = np.repeat(list(intervals), len(numbers))
+    return paired_exponent(sides, np.concatenate(columns), np.tile(numbers, len(intervals)))
+
+
+def _by_theory(
+    sample: _Sample,
+    difference: np.ndarray,
+    offsets: np.ndarray,
+    classes: Mapping[tuple[float, float], Mapping[float, int]],
+    basic: float,
+) -> dict[str, Any]:
+    """Strength if the separation is in proportion to sqrt(S(v)), the factor of the largest joints.
+
+    A composite that is Gaussian, of one h'_rms and under one pressure, opens in proportion to its
+    rms height but for what the shape of its spectrum changes.
+    """
+    root = np.sqrt(difference)
+    largest = sample.sides == sample.sides.max()
+    factor = float(np.mean(sample.separations[largest] / root))
+    rates = np.diff(factor * np.r_[0.0, root]) / np.diff(offsets)
+    strength = friction_ratio(rates, basic)
+    exponents = []
+    for intervals in classes.values():
+        lever = np.log(list(intervals)) - np.mean(np.log(list(intervals)))
+        logs = np.log(strength[list(intervals.values())])
+        exponents.append(float(lever @ logs / (lever @ lever)))
+    return {"theory_strength": strength, "theory_exponent": exponents}

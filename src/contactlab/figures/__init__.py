@@ -1,0 +1,1 @@
+"""Figures of the laboratory: accuracy and speed, and experiments on synthetic surfaces."""

@@ -1,0 +1,123 @@
+"""What the figures of accuracy and speed share: test problems, styles of methods, axes."""
+
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import FigureBase
+from xarray import DataTree
+
+from fractalcontact.figures.kit.drawing import COLOURS, LINES, MARKERS, colour_of, entries
+
+from ...accuracy.speed import ERRORS, FRONTS, MODEL, OURS, PEER, SOLVER
+
+#: Errors of zero are drawn here, and nothing below.
+SMALLEST = 1e-14
+#: How each quantity stands at an axis.
+AXES = {
+    "force_error": "error of $F$ (1)",
+    "area_error": "error of $A_r$ (1)",
+    "delta_error": r"error of $\Delta_\sigma$ (1)",
+    "pressure_error": "error of $p$, rms (1)",
+}
+_COLOURS = tuple(colour_of(i) for i in range(1, len(COLOURS) - 1))
+#: Solvers have filled marks, public codes hollow ones on a line, models hollow ones alone.
+_OF_KIND: dict[str, dict[str, Any]] = {
+    SOLVER: {"ls": LINES[1], "lw": 0.8},
+    PEER: {"mfc": "white", "ls": LINES[2], "lw": 0.8},
+    MODEL: {"mfc": "none", "ls": "none"},
+}
+OURS_STYLE = {"color": COLOURS[0], "marker": MARKERS[0], "ls": "-", "lw": 1.6, "zorder": 3}
+
+
+def scenes_of(atlas: DataTree) -> dict[str, xr.Dataset]:
+    """Datasets of the test problems measured, by name, in order of size, H and contact."""
+    found = {name: node.to_dataset().load() for name, node in atlas["speed"].children.items()}
+    return dict(sorted(found.items(), key=lambda item: _place(item[1].attrs)))
+
+
+def _place(attrs):
+    size, *smooth = (attrs[key] for key in ("size", "hurst", "contact"))
+    return size, *np.nan_to_num(smooth, nan=np.inf), attrs["scene"]
+
+
+def rough(scenes: dict[str, xr.Dataset]) -> dict[str, xr.Dataset]:
+    """Those on self-affine surfaces."""
+    return {name: scene for name, scene in scenes.items() if np.isfinite(scene.attrs["hurst"])}
+
+
+def values_of(scenes: dict[str, xr.Dataset], key: str) -> list:
+    """The different values of an attribute, ascending."""
+    return sorted({scene.attrs[key] for scene in scenes.values()})
+
+
+def middle_contact(scenes: dict[str, xr.Dataset]) -> float:
+    """The share in contact that stands for all where there is room for one."""
+    shares = values_of(scenes, "contact")
+    return shares[len(shares) // 2]
+
+
+def pick(scenes: dict[str, xr.Dataset], **wanted: object) -> xr.Dataset:
+    """The test problem whose attributes are these."""
+    for scene in scenes.values():
+        if all(scene.attrs[key] == value for key, value in wanted.items()):
+            return scene
+    raise KeyError(f"no test problem with {wanted}")
+
+
+def styles(scenes: dict[str, xr.Dataset]) -> dict[str, dict]:
+    """Colour, marker and line of every method, in every figure alike; ours alone is black."""
+    kinds: dict[str, str] = {}
+    for scene in scenes.values():
+        kinds |= dict(zip(scene["method"].values, scene["kind"].values, strict=True))
+    found = {OURS: OURS_STYLE}
+    for i, (method, kind) in enumerate((m, k) for m, k in kinds.items() if m != OURS):
+        style: dict[str, Any] = {
+            "color": _COLOURS[i % len(_COLOURS)],
+            "marker": MARKERS[(i + 1) % len(MARKERS)],
+        }
+        found[method] = style | _OF_KIND[kind]
+    return found
+
+
+def draw_points(axes: Axes, scene: xr.Dataset, quantity: str, looks: dict[str, dict]) -> None:
+    """Every method's error against its seconds, the front, and the reference's own error."""
+    for method, look in looks.items():
+        own = scene.isel(point=np.flatnonzero(scene["method"] == method))
+        known = np.isfinite(own[quantity].values) & np.isfinite(own["seconds"].values)
+        error = np.maximum(own[quantity].values[known], SMALLEST)
+        if known.any():
+            axes.plot(own["seconds"].values[known], error, **look, label=method, ms=3)
+    for name in (name for name, error in FRONTS.items() if error == quantity):
+        front = scene.isel(point=np.flatnonzero(scene[name])).sortby("seconds")
+        error = np.maximum(front[quantity].values, SMALLEST)
+        look = {"color": "0.75", "lw": 4, "zorder": 0}
+        axes.step(front["seconds"], error, where="post", label="Pareto front", **look)
+    if quantity == "force_error":
+        known_to = max(scene.attrs["reference_error"], SMALLEST)
+        axes.axhspan(SMALLEST / 10, known_to, color="0.92", lw=0, label="error of the reference")
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    axes.set_ylim(SMALLEST / 3, 30)
+
+
+def legend_of(figure: FigureBase, panels: Iterable[Axes], ncols: int = 4) -> None:
+    """One legend below a figure with what stands in any of its panels."""
+    handles = {handle.get_label(): handle for axes in panels for handle in entries(axes)}
+    figure.legend(handles=list(handles.values()), loc="outside lower center", ncols=ncols)
+
+
+def table_of(scenes: dict[str, xr.Dataset]) -> pd.DataFrame:
+    """One row a point drawn, every test problem below the other."""
+    columns = ["method", "kind", "tolerance", *ERRORS, "seconds", "seconds_low", "seconds_high"]
+    columns += ["runs", "memory", "on_front", "on_pressure_front", "said"]
+    frames = []
+    for name, scene in scenes.items():
+        frame = scene[columns].to_dataframe().reset_index(drop=True)
+        frame.insert(0, "test_problem", name)
+        frames.append(frame)
+    table = pd.concat(frames, ignore_index=True)
+    return table.rename(columns={"seconds": "seconds_s", "memory": "memory_B"})

@@ -1,0 +1,128 @@
+"""Error against spacing for Hertz and the flat punch, and trials of Richardson's extrapolation."""
+
+from collections.abc import Sequence
+
+import numpy as np
+import pandas as pd
+from matplotlib.figure import Figure
+from xarray import DataTree
+
+from fractalcontact.core.estimate import EXPONENT, Estimate
+from fractalcontact.figures.kit.caption import caption
+from fractalcontact.figures.kit.drawing import (
+    MARKERS,
+    WIDTH,
+    Drawing,
+    colour_of,
+    group,
+    label_short_span,
+    letter,
+)
+
+from ...accuracy.convergence import QUANTITIES
+
+TITLE = "Discretisation error where the solution is known, and Richardson extrapolation"
+SUBJECT = "accuracy"
+NEEDS = ("convergence",)
+KEY = "convergence"
+ORDER = 90
+
+_TITLES = {"hertz": "paraboloid (Hertz)", "punch": "flat circular punch"}
+
+
+def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
+    """Errors over s with their orders, and errors of Richardson's extrapolation over their bars."""
+    figure = Figure(figsize=(WIDTH, 3.6))
+    panels = figure.subplots(1, 3)
+    panels[1].sharey(panels[0])
+    found = {problem: group(atlas, "convergence", problem) for problem in QUANTITIES}
+    for axes, which, (problem, result) in zip(panels, "ab", found.items(), strict=False):
+        _draw_errors(axes, result, QUANTITIES[problem])
+        letter(axes, which, _TITLES[problem])
+    panels[0].set_ylabel("relative error, rms over positions (1)")
+    trials = group(atlas, "convergence", "richardson")
+    _draw_trials(panels[2], trials)
+    letter(panels[2], "c", "Richardson's extrapolation")
+    for axes in panels:
+        label_short_span(axes.xaxis, within=10)
+        axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.2))
+    return Drawing(figure, _table(found, trials), caption(__name__, **_numbers(found, trials)))
+
+
+def _draw_errors(axes, result, quantities):
+    spacing = 1 / result["cells_per_radius"].values
+    for i, name in enumerate(quantities):
+        order = Estimate.read(result, f"{name}_order").ends
+        label = f"{name.replace('_', ' ')}: order {Estimate(*order, scale=EXPONENT).text()}"
+        style = {"color": colour_of(i), "marker": MARKERS[i]}
+        axes.plot(spacing, result[f"{name}_error"], ls="none", label=label, **style)
+        if np.isfinite(order[0]):
+            logs = np.log(spacing), np.log(result[f"{name}_error"].values)
+            middle = [np.mean(values) for values in logs]
+            line = np.exp(middle[1] + order[0] * (logs[0] - middle[0]))
+            axes.plot(spacing, line, color=colour_of(i), lw=0.8)
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    axes.set_xlabel("spacing over contact radius $s/a$ (1)")
+
+
+def _draw_trials(axes, trials):
+    cases = trials.sizes["case"]
+    for i, name in enumerate(trials["quantity"].values):
+        one = trials.sel(quantity=name)
+        label = f"{name}: {int(one['within'])} of {cases}"
+        axes.plot(
+            one["bar"],
+            one["error"],
+            ls="none",
+            marker=MARKERS[i],
+            ms=2,
+            color=colour_of(i),
+            label=label,
+        )
+    ends = [float(trials["bar"].min()), float(trials["bar"].max())]
+    axes.plot(ends, ends, color="0.5", lw=0.8)
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    axes.set_ylim(bottom=1e-3 * ends[0])
+    axes.set_xlabel("its own error bar (1)")
+    axes.set_ylabel("error of the extrapolated value (1)")
+
+
+def _table(found, trials):
+    """One row a problem, quantity and spacing; then one a quantity and trial."""
+    rows = [
+        {
+            "problem": problem,
+            "quantity": name,
+            "cells_per_radius": float(cells),
+            "error": float(result[f"{name}_error"].sel(cells_per_radius=cells)),
+            **Estimate.read(result, f"{name}_order").columns("order"),
+        }
+        for problem, result in found.items()
+        for name in QUANTITIES[problem]
+        for cells in result["cells_per_radius"].values
+    ]
+    tried = trials[["error", "bar", "finest"]].to_dataframe().reset_index()
+    tried = tried.rename(columns={"cells": "cells_per_radius", "finest": "error_at_finest"})
+    tried.insert(0, "problem", "richardson")
+    return pd.concat([pd.DataFrame(rows), tried], ignore_index=True)
+
+
+def _numbers(found, trials):
+    """Orders of the force, and how often Richardson's error bar holds the error."""
+    orders = [
+        f"{problem} {Estimate.read(result, 'force_order', scale=EXPONENT).text()}"
+        for problem, result in found.items()
+        if "force" in QUANTITIES[problem]
+    ]
+    cases = trials.sizes["case"]
+    within = {
+        str(name): int(trials["within"].sel(quantity=name)) for name in trials["quantity"].values
+    }
+    return {
+        "orders": orders,
+        "cases": cases,
+        "within": [f"{name} {count}" for name, count in within.items()],
+        "short_of": [name for name, count in within.items() if count < 0.9 * cases],
+    }

@@ -1,0 +1,168 @@
+"""The two estimates of Delta_sigma compared: over the size, box by box, and as material yields."""
+
+from collections.abc import Sequence
+
+import numpy as np
+import pandas as pd
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from xarray import DataTree
+
+from fractalcontact.core.estimate import Estimate
+from fractalcontact.figures.kit.caption import caption
+from fractalcontact.figures.kit.drawing import (
+    LINES,
+    MARKERS,
+    WIDTH,
+    Drawing,
+    colour_of,
+    heading,
+    headline,
+    legends_below,
+    letter,
+)
+from fractalcontact.figures.kit.panel import rows
+from fractalcontact.figures.kit.words import number
+
+TITLE = "Do A_r(s) and box counting give one Delta_sigma: their difference on synthetic surfaces"
+SUBJECT = "study"
+NEEDS = ("dimension_test",)
+KEY = "dimension_test"
+ORDER = 31
+
+#: Ends of the axis of differences: intervals of two surfaces would go far beyond.
+_DIFFERENCES = (-0.35, 0.85)
+
+
+def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
+    """Difference over size, boxes per node over resolution, and both where the material yields."""
+    test = atlas["dimension_test/surfaces"].to_dataset()
+    capped = "capped_pressure" in test.dims
+    figure = Figure(figsize=(WIDTH, 3.7))
+    panels = figure.subplots(1, 2 + capped)
+    _draw_difference(panels[0], test, "a")
+    _draw_boxes(panels[1], test, "b")
+    if capped:
+        _draw_capped(panels[2], test, "c")
+    legends_below(figure, *_legends(test))
+    headline(figure, f"means of {test.sizes['seed']} surfaces")
+    return Drawing(figure, _table(test), caption(__name__, **_words(test)))
+
+
+def _shown(test):
+    """Indices of the loads drawn."""
+    return sorted({0, test.sizes["reduced_pressure"] - 1})
+
+
+def _draw_difference(axes, test, which):
+    """Difference of the two over the size; a line style a load, a colour a dimension."""
+    size = test["size"].values
+    for i in range(test.sizes["dimension"]):
+        for n, j in enumerate(_shown(test)):
+            one = test.isel(dimension=i, reduced_pressure=j)
+            mean, low, high = Estimate.read(one, "mean_difference").ends
+            beside = size * 1.03 ** (n + 2 * i - 2)
+            colour = colour_of(i)
+            axes.plot(beside, mean, color=colour, ls=LINES[n % len(LINES)], marker=MARKERS[i])
+            axes.vlines(beside, low, high, color=colour, lw=0.5)
+    axes.axhline(0, color="0.5", lw=0.8, ls=LINES[2])
+    axes.set_xscale("log", base=2)
+    axes.set_xticks(size, [f"{n:g}" for n in size])
+    axes.minorticks_off()
+    axes.set_ylim(*_DIFFERENCES)
+    axes.set_xlabel("nodes per side (1)")
+    axes.set_ylabel(r"$\Delta_\sigma$: $A_r(s)$ less box counting (1)")
+    letter(axes, which, "difference, 95 % intervals")
+
+
+def _draw_boxes(axes, test, which):
+    """Occupied boxes of the finest domain over nodes in contact, at the largest size."""
+    largest = test.isel(size=-1)
+    k = test["resolution"].values
+    for i in range(test.sizes["dimension"]):
+        for n, j in enumerate(_shown(test)):
+            ratio = largest["mean_boxes_per_node"].isel(dimension=i, reduced_pressure=j)
+            style = {"color": colour_of(i), "ls": LINES[n % len(LINES)], "marker": MARKERS[i]}
+            axes.plot(k, ratio, **style)
+    axes.axhline(1, color="0.5", lw=0.8, ls=LINES[2])
+    axes.set_xscale("log", base=2)
+    axes.set_xticks(k, [f"{n:g}" for n in k])
+    axes.minorticks_off()
+    axes.set_xlabel("resolution: every $k$-th node (1)")
+    axes.set_ylabel("occupied boxes of $k$ nodes\nover nodes in contact at $k$ (1)")
+    letter(axes, which, "boxes per node of contact")
+
+
+def _draw_capped(axes, test, which):
+    """Both estimators with a hardness, up to where the whole window yields."""
+    part = test["capped_pressure"].values
+    for i in range(test.sizes["dimension"]):
+        one = test.isel(dimension=i)
+        for name, face, line in (
+            ("delta_sigma_area", colour_of(i), "-"),
+            ("delta_sigma_box", "white", "--"),
+        ):
+            style = {"color": colour_of(i), "marker": MARKERS[i], "mfc": face, "lw": 0.8}
+            axes.plot(part, one[f"capped_mean_{name}"].values, ls=line, **style)
+    axes.set_ylim(0.8, 2.1)
+    axes.set_xlabel("load over that of full yield\n$F/(H A_0)$ (1)")
+    axes.set_ylabel(r"$\Delta_\sigma$ (1)")
+    letter(axes, which, rf"yielding at $H$ = {test.attrs['hardness']:g} $E^* h'_\mathrm{{rms}}$")
+
+
+def _legends(test):
+    dimensions = [
+        Line2D([], [], color=colour_of(i), marker=MARKERS[i], label=rf"$\Delta_g$ = {g:g}")
+        for i, g in enumerate(test["dimension"].values)
+    ]
+    loads = test["reduced_pressure"].values
+    lines = [
+        Line2D(
+            [],
+            [],
+            color="0.3",
+            ls=LINES[n % len(LINES)],
+            label=rf"(a), (b) $p/(E^* h'_\mathrm{{rms}})$ = {loads[j]:g}",
+        )
+        for n, j in enumerate(_shown(test))
+    ]
+    one_law = "(a), (b) if one law governed both"
+    lines.append(Line2D([], [], color="0.5", lw=0.8, ls=LINES[2], label=one_law))
+    if "capped_pressure" not in test.dims:
+        return dimensions, lines
+    faces = (("0.3", "-", "(c) by $A_r(s)$"), ("white", "--", "(c) by box counting"))
+    capped = [
+        Line2D([], [], color="0.3", lw=0.8, marker="o", mfc=face, ls=line, label=words)
+        for face, line, words in faces
+    ]
+    return dimensions, lines, [*capped, heading("(b), (c) no intervals drawn")]
+
+
+def _table(test):
+    tables = [
+        rows(test, "mean_difference", "mean_difference_n", branch="elastic"),
+        rows(test, "mean_boxes_per_node", branch="boxes and pre-fractals"),
+    ]
+    if "capped_pressure" in test.dims:
+        names = [f"capped_mean_{name}" for name in ("delta_sigma_area", "delta_sigma_box")]
+        counts = [f"{name}_n" for name in names]
+        tables.append(rows(test, *names, *counts, branch="with hardness"))
+    return pd.concat(tables, ignore_index=True)
+
+
+def _words(test):
+    """Range of the difference, in how many intervals zero lies, where box counting tends."""
+    difference = Estimate.read(test, "mean_difference")
+    known = np.isfinite(difference.low)
+    agree = (difference.low <= 0) & (difference.high >= 0) & known
+    yielded = np.array([])
+    if "capped_pressure" in test.dims:
+        last = Estimate.read(test.isel(capped_pressure=-1), "capped_mean_delta_sigma_box")
+        yielded = last.value[np.isfinite(last.low)]
+    return {
+        "difference": difference.value[known].tolist(),
+        "agree": int(agree.sum()),
+        "yielded": dict.fromkeys(number(end) for end in (min(yielded), max(yielded)))
+        if yielded.size
+        else {},
+    }

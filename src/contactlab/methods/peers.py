@@ -1,0 +1,232 @@
+"""What public contact codes share behind the call of the comparison methods.
+
+Each is set up in a file of its own, on the same free-space problem and with heights from the
+highest one down. What they return is not checked against the contact conditions: whether their own
+word can be trusted is for others to judge. ``pip install -e '.[peers]'`` installs them.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from fractalcontact.core.child_process import in_child
+from roughcontact.contact.state import ContactState
+from roughcontact.elastic.halfspace import HalfSpace
+from roughcontact.errors import NotConverged
+
+from .common import measured_state
+
+#: Limit of iterations where a code is set up for large grids.
+MAX_ITERATIONS = 500
+#: Behind the call of the comparison methods patience is greater, in iterations and in seconds.
+PATIENT_ITERATIONS, PATIENCE = 2000, 60.0
+
+
+class Failed(RuntimeError):
+    """The code itself says that it did not converge; ``pressure`` is what it left, in MPa."""
+
+    def __init__(self, message: str, pressure: np.ndarray):
+        super().__init__(message)
+        self.pressure = pressure
+
+
+@dataclass(frozen=True)
+class Load:
+    """What a public code is given besides the topography.
+
+    Attributes
+    ----------
+    closure, force : float or None
+        w, mm, or F, N.
+    hardness : float or None
+        Largest pressure, MPa.
+    start : (ny, nx) ndarray or None
+        Pressure to start from, MPa.
+    pixel_force : float or None
+        Mean force of a pixel in contact, N, for codes whose tolerance is on forces.
+    """
+
+    closure: float | None = None
+    force: float | None = None
+    hardness: float | None = None
+    start: np.ndarray | None = None
+    pixel_force: float | None = None
+
+
+class PublicCode:
+    """A public code set up for one topography; each code has a subclass in a file of its own.
+
+    Parameters
+    ----------
+    height : (ny, nx) array_like
+        mm.
+    space : HalfSpace
+
+    Attributes
+    ----------
+    height : (ny, nx) ndarray
+        From the highest one down, mm: an offset counted from it is a closure.
+    sides : (float, float)
+        Of the window along y and x, mm.
+    max_iterations : int
+        After this many it gives up.
+    """
+
+    def __init__(self, height: ArrayLike, space: HalfSpace):
+        self.space, self.max_iterations = space, MAX_ITERATIONS
+        self.height = -clearance_of(height)
+        ny, nx = space.shape
+        self.sides = (ny * space.spacing[0], nx * space.spacing[1])
+
+    def solve(self, load: Load, rtol: float) -> np.ndarray:
+        """Pressure under a load of the kinds that the code offers.
+
+        Parameters
+        ----------
+        load : Load
+        rtol : float
+            Tolerance on the code's own measure of its error.
+
+        Returns
+        -------
+        (ny, nx) ndarray
+            Pressure, MPa.
+
+        Raises
+        ------
+        Failed
+            If the code says that it did not converge.
+        """
+        raise NotImplementedError
+
+    def closure(self, pressure: np.ndarray) -> float:
+        """The closure that a pressure belongs to, mm, of a code that is given a force."""
+        raise NotImplementedError
+
+    def count(self, on: bool) -> None:
+        """Begin to count applications of the operator, from zero, or end it: it takes time."""
+
+    @property
+    def applications(self) -> int | None:
+        """Applications of the operator counted since then; None of a code that cannot count."""
+        return None
+
+    @property
+    def path(self) -> str:
+        """Which way the last call went, where the code has several: its operator and counters."""
+        return ""
+
+
+def solve_in_child(
+    set_up: Callable[[ArrayLike, HalfSpace], PublicCode],
+    composite: ArrayLike,
+    space: HalfSpace,
+    *,
+    closure: float | None,
+    force: float | None,
+    hardness: float | None,
+    start: ContactState | None,
+    rtol: float,
+) -> ContactState:
+    """State that a public code gives, run where it may crash or never end without harm.
+
+    A load is passed on as it is: that it makes no sense is for the code to say.
+
+    Parameters
+    ----------
+    set_up : callable
+        Makes the code ready for a topography.
+    composite : (ny, nx) array_like
+        mm.
+    space : HalfSpace
+    closure, force, hardness : float or None
+        mm, N and MPa.
+    start : ContactState or None
+    rtol : float
+        Tolerance on the code's own measure of its error.
+
+    Returns
+    -------
+    ContactState
+        Of `state_of`.
+
+    Raises
+    ------
+    NotConverged
+        If the code says so itself.
+    ChildFailed
+        If it raises an error, crashes or takes longer than `PATIENCE` seconds.
+    """
+    load = Load(closure, force, hardness, start=None if start is None else start.pressure)
+    press = partial(_pressed, set_up, composite, space, load, rtol)
+    pressure, said = in_child(press, seconds=PATIENCE)
+    clearance = clearance_of(composite)
+    state = state_of(space, pressure, clearance, closure=closure, force=force, hardness=hardness)
+    if said:
+        raise NotConverged(said, state, state.residual)
+    return state
+
+
+def _pressed(set_up, composite, space, load, rtol):
+    """Pressure, and what a code says if it did not converge."""
+    code = set_up(composite, space)
+    code.max_iterations = PATIENT_ITERATIONS
+    try:
+        return code.solve(load, rtol), ""
+    except Failed as failure:
+        return failure.pressure, str(failure)
+
+
+def clearance_of(height: ArrayLike) -> np.ndarray:
+    """Opening at first touch, mm; cells without a height keep their NaN or infinity.
+
+    Parameters
+    ----------
+    height : (ny, nx) array_like
+        mm.
+
+    Returns
+    -------
+    (ny, nx) ndarray
+    """
+    height = np.asarray(height, float)
+    return height[np.isfinite(height)].max() - height
+
+
+def state_of(
+    space: HalfSpace,
+    pressure: np.ndarray,
+    clearance: np.ndarray,
+    *,
+    closure: float | None = None,
+    force: float | None = None,
+    hardness: float | None = None,
+) -> ContactState:
+    """The state of a code's pressure, whether or not it satisfies the contact conditions.
+
+    Parameters
+    ----------
+    space : HalfSpace
+    pressure : (ny, nx) ndarray
+        MPa.
+    clearance : (ny, nx) ndarray
+        Opening at first touch, mm.
+    closure : float, optional
+        mm; if it is not known it is evaluated as the mean over the contact that is no overlap.
+    force, hardness : float, optional
+        N and MPa, where they were given.
+
+    Returns
+    -------
+    ContactState
+        Its ``residual`` is measured with our operator; its ``iterations`` are not known: 0.
+    """
+    cap = np.inf if hardness is None else hardness
+    if closure is None:
+        between = (pressure > 0) & (pressure < cap)
+        reached = space.displacement(pressure) + clearance
+        closure = float(reached[between].mean()) if between.any() else 0.0
+    return measured_state(space, clearance, pressure, closure, force=force, hardness=cap)

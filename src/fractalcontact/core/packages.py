@@ -1,0 +1,12 @@
+"""Packages whose stages and figures a study may ask for: the chain, and the laboratory."""
+
+from pathlib import Path
+
+#: Folder of the packages.
+SOURCES = Path(__file__).absolute().parents[2]
+CHAIN, LABORATORY = "fractalcontact", "contactlab"
+
+
+def installed() -> list[str]:
+    """Names of those that there are: the chain goes without the laboratory."""
+    return [name for name in (CHAIN, LABORATORY) if (SOURCES / name).is_dir()]

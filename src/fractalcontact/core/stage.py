@@ -1,0 +1,51 @@
+"""A stage of a study: a group of the atlas, and the function that makes it."""
+
+from dataclasses import dataclass
+
+#: How often a stage is made: for every specimen, for those that slide, for every measured contact
+#: map; once, of all specimens together; once, on synthetic surfaces, where the study has the
+#: stage's key; and of studies of accuracy for every test problem, or once.
+SPECIMEN, JOINT, MAP, STUDY = "specimen", "joint", "map", "study"
+EXPERIMENT, PROBLEM, ACCURACY = "experiment", "problem", "accuracy"
+GRAINS = (SPECIMEN, JOINT, MAP, STUDY, EXPERIMENT, PROBLEM, ACCURACY)
+
+
+@dataclass(frozen=True)
+class Stage:
+    """One stage of a study: a group of the atlas, and a folder of the results.
+
+    Attributes
+    ----------
+    name : str
+        Of the group, the folder and, for an experiment, the key of the configuration.
+    title : str
+        What it holds: the description of its group.
+    grain : str
+        One of :data:`GRAINS`.
+    function : str
+        "package.room.module:function" that makes it. Stages of one function are made by one job.
+    needs : tuple of str
+        Stages whose datasets the function takes, as arguments of their names.
+    member : str
+        Wildcard or name that its files have, and its groups within the stage's.
+    filed : bool
+        Whether it has files; if not, it is made while the atlas is put together.
+    """
+
+    name: str
+    title: str
+    grain: str
+    function: str
+    needs: tuple[str, ...] = ()
+    member: str = "{specimen}"
+    filed: bool = True
+
+    @property
+    def path(self) -> str:
+        """Its file, or the pattern of its files, below the folder of the results."""
+        return f"{self.name}/{self.member}.nc"
+
+    @property
+    def module(self) -> str:
+        """Path of the function's module below the folder of the packages, without ending."""
+        return self.function.partition(":")[0].replace(".", "/")

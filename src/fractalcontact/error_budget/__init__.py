@@ -1,0 +1,1 @@
+"""Errors of the published quantities, split by their source."""
