@@ -11,7 +11,7 @@ if "speed" in config:
     TIMED = list(problems_of(config["speed"]))
 
 # Imported by name when they are called, and so not seen by `code` on its own.
-METHOD_MODULES = [f"methods/{module}" for module in registry.MODULES]
+METHOD_MODULES = [f"contactlab/methods/{module}" for module in registry.MODULES]
 PROBLEMS = ["hertz", "punch", "richardson"] if "convergence" in config else []
 # Installed later, they are measured later.
 PEERS = list(registry.installed_peers())
