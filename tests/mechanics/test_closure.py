@@ -144,8 +144,11 @@ def test_seated_closure_begins_at_ten_nodes_or_where_the_study_says():
     np.testing.assert_allclose(
         curve["seated_closure_error"][first + 1 :], errors[first + 1 :] + errors[first]
     )
-    stated = closure_curves(states_of(curves), (6.4, 6.4), 2e4, seating_force=1e3).squeeze()
-    assert stated["seating_pressure"].item() == pytest.approx(1e3 / 6.4**2)
+    # The first load from the study's own pressure on: that itself, or the next.
+    for pressure in (1e3 / 6.4**2, 400 / 6.4**2):
+        stated = closure_curves(states_of(curves), (6.4, 6.4), 2e4, seating_pressure=pressure)
+        stated = stated.squeeze()
+        assert stated["seating_pressure"].item() == pytest.approx(1e3 / 6.4**2)
     np.testing.assert_allclose(stated["seated_closure"][3:], w[3:] - w[3])
     assert np.isnan(stated["seated_closure"][:3]).all()
 

@@ -2,6 +2,7 @@
 
 import copy
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -19,6 +20,7 @@ from fractalcontact.study.configuration import (
     window_arguments,
 )
 from fractalcontact.study.documents import read_study
+from fractalcontact.study.scan_files import ScanFiles
 
 SCHEMA = yaml.safe_load((ROOT / "config/schema/study.schema.yaml").read_text())
 PAPER = yaml.safe_load((ROOT / "config/paper.yaml").read_text())
@@ -270,17 +272,74 @@ def test_numbers_and_dates_that_are_none_are_refused_on_reading(tmp_path, value)
         read_study(path)
 
 
-def test_the_seating_load_is_one_of_the_loads_or_left_to_the_states():
-    study = {
-        "materials": {"rock": {"modulus": "20 GPa", "poisson": 0.2}},
-        "defaults": {"material": "rock", "loads": ["1 MPa", "10 kN"], "resolutions": [1]},
-    }
-    assert resolve_settings(study, None, {}, "x").seating_load is None
-    stated = study | {"defaults": study["defaults"] | {"seating_load": "10 kN"}}
-    assert resolve_settings(stated, None, {}, "x").seating_load == (10e3, "force")
-    stated["defaults"]["seating_load"] = "2 MPa"
-    with pytest.raises(InputError, match="seating_load: '2 MPa' is not among the loads"):
-        resolve_settings(stated, None, {}, "x")
+ROCK = {
+    "materials": {
+        "rock": {"modulus": "20 GPa", "poisson": 0.2, "joint_wall_strength": "80 MPa"},
+        "elastic": {
+            **{"modulus": "20 GPa", "poisson": 0.2, "joint_wall_strength": "80 MPa"},
+            "hardness": "none",
+        },
+        "hard": {
+            **{"modulus": "20 GPa", "poisson": 0.2, "joint_wall_strength": "80 MPa"},
+            "hardness": "240 MPa",
+        },
+        "unknown": {"modulus": "20 GPa", "poisson": 0.2},
+    },
+    "defaults": {
+        **{"material": "rock", "resolutions": [1], "loads": ["1 MPa", "50 MPa", "78 MPa", "10 kN"]},
+        **{"map_load": "78 MPa", "dilatancy_loads": ["1 MPa", "78 MPa"]},
+    },
+}
+SCANNED = ScanFiles("one", Path("one.x3p"), None, None)
+PAIR = ScanFiles("one", Path("one.lower.x3p"), Path("one.upper.x3p"), None)
+
+
+def test_the_seating_pressure_is_a_small_stress_that_a_study_may_change():
+    assert resolve_settings(ROCK, None, {}, "x").seating_pressure == 0.25
+    stated = ROCK | {"defaults": ROCK["defaults"] | {"seating_pressure": "10 kPa"}}
+    assert resolve_settings(stated, None, {}, "x").seating_pressure == pytest.approx(0.01)
+    for text, words in (("10 N", "pressure"), ("-1 MPa", "must be positive")):
+        stated["defaults"]["seating_pressure"] = text
+        with pytest.raises(InputError, match=rf"seating_pressure.*{words}"):
+            resolve_settings(stated, None, {}, "x")
+
+
+@pytest.mark.parametrize(
+    ("material", "scan", "hardness"),
+    [
+        ("rock", SCANNED, 80.0),
+        ("rock", None, math.inf),
+        ("elastic", SCANNED, math.inf),
+        ("hard", SCANNED, 240.0),
+        ("hard", None, 240.0),
+        ("unknown", SCANNED, math.inf),
+    ],
+)
+def test_contacts_of_a_scanned_rock_crush_at_its_wall_strength(material, scan, hardness):
+    found = resolve_settings(ROCK, "one", {"material": material}, "x", scan)
+    assert found.material.hardness == hardness
+
+
+def test_loads_of_the_defaults_that_a_hardness_cannot_carry_are_left_out():
+    """78 MPa are nearly all that 80 MPa carry; what a sidecar states itself stays."""
+    crushed = resolve_settings(ROCK, "one", {}, "x", SCANNED)
+    assert crushed.loads == [(1.0, "pressure"), (50.0, "pressure"), (1e4, "force")]
+    assert crushed.map_load == (1e4, "force")
+    assert crushed.dilatancy_loads == [(1.0, "pressure")]
+    elastic = resolve_settings(ROCK, "one", {"material": "elastic"}, "x", SCANNED)
+    assert elastic.map_load == (78.0, "pressure")
+    own = {"loads": ["78 MPa"], "map_load": "78 MPa", "dilatancy_loads": ["78 MPa"]}
+    assert resolve_settings(ROCK, "one", own, "x", SCANNED).loads == [(78.0, "pressure")]
+
+
+def test_two_faces_are_reported_as_they_were_scanned():
+    """One face that slides on its perfect match, at the offset that the study or the third says."""
+    assert resolve_settings(ROCK, "one", {}, "x", PAIR).map_offset == 0.0
+    assert resolve_settings(ROCK, "one", {}, "x", SCANNED).map_offset is None
+    told = {"map_offset": "0.3 mm"}
+    assert resolve_settings(ROCK, "one", told, "x", PAIR).map_offset == pytest.approx(0.3)
+    slid = {"offsets": ["0.2 mm", "0.4 mm"]}
+    assert resolve_settings(ROCK, "one", slid, "x", PAIR).map_offset is None
 
 
 def test_a_plane_is_opposite_to_no_pair_of_scanned_faces(study, tmp_path):

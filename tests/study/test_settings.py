@@ -61,7 +61,7 @@ def _material(**stated):
         (_material(hardness=900.0), (CONTACT, STATES, WINDOWS)),
         (_material(name="another", modulus=1.0, poisson=0.3), ()),
         ({"box_range": (0.2, 1.0)}, (STATES, WINDOWS)),
-        ({"seating_load": (1.0, "pressure")}, (STATES,)),
+        ({"seating_pressure": 1.0}, (STATES,)),
         ({"map_load": (5.0, "pressure")}, (CONTACT, STATES)),
         ({"surface_range": (0.2, 1.0)}, (SPECIMEN, STRENGTH)),
         ({"outliers": "mask"}, (SPECIMEN,)),

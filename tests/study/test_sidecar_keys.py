@@ -68,11 +68,11 @@ def test_keys_that_change_something_are_not(study, tmp_path, names, text):
     assert list(resolve_study(study, SCHEMA, "here").scans) == ["rock"]
 
 
-@pytest.mark.parametrize("key", ["map_load", "dilatancy_loads", "seating_load"])
+@pytest.mark.parametrize("key", ["map_load", "dilatancy_loads"])
 def test_loads_of_a_sidecar_do_not_blame_the_study(study, tmp_path, key):
     load = study["defaults"]["loads"][-1]
     study["defaults"][key] = [load] if key == "dilatancy_loads" else load
-    keys = {"map_load", "dilatancy_loads", "seating_load"} - {key}
+    keys = {"map_load", "dilatancy_loads"} - {key}
     for other in keys:
         study["defaults"].pop(other, None)
     scans(tmp_path, "loads: [1 kN, 2 kN]", *ONE)

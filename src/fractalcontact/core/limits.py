@@ -51,6 +51,16 @@ LEVEL_CHANGE = 0.1
 #: Rms misfit up to which a curve is said to follow a law, as a fraction of its largest closure.
 GOOD_FIT = 0.02
 
+#: Rms misfit up to which the constants of a law that is fitted to a seated closure curve are
+#: stated, as a fraction of the largest closure: laboratories state them of curves that bend so.
+LARGEST_MISFIT = 0.05
+
+#: Largest over smallest pressure of a law of closure that is counted from a seat.
+SEATED_SPAN = 100.0
+
+#: Nominal pressures at which stiffnesses are stated, MPa.
+REFERENCE_PRESSURES = (1.0, 5.0, 10.0)
+
 #: Probability covered by every interval the package states.
 CONFIDENCE = 0.95
 

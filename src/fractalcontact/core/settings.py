@@ -96,7 +96,7 @@ class StateSettings(ContactSettings):
     box_range: Range
     scaling_range: Range
     hyperbola_range: list[Load] | None
-    seating_load: Load | None
+    seating_pressure: float
 
 
 @dataclass(frozen=True)

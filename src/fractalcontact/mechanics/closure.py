@@ -14,6 +14,7 @@ from ..core.limits import CORRECTED_NODES, RESOLVED_NODES
 from .closure_laws import add_closure_laws, at_twice
 from .conductance import add_conductance
 from .load_curve import left_out_misses
+from .seated_laws import add_seated_laws
 from .separation import add_seated_closure, add_separation
 from .states import OF_STATES, OFFSETS, error_attrs
 from .theory import Numbers
@@ -119,7 +120,7 @@ def closure_curves(
     fit_range: tuple[float, float] | None = None,
     *,
     openings: xr.DataArray | None = None,
-    seating_force: float | None = None,
+    seating_pressure: float = 0.0,
 ) -> xr.Dataset:
     """Closure curves of the interface, and the laws that they follow.
 
@@ -135,7 +136,7 @@ def closure_curves(
         Smallest and largest force of the fits, N; all by default.
     openings : xr.DataArray, optional
         From :func:`mechanics.separation.prefractal_openings`.
-    seating_force : float, optional
+    seating_pressure : float, optional
         As of :func:`mechanics.separation.add_seated_closure`.
 
     Returns
@@ -148,8 +149,9 @@ def closure_curves(
         ``interface_stiffness_reason``, ``interface_stiffness_change``, ``resolved``,
         ``area_corrected_resolved``, ``closure_spacing_error`` and the numbers of the states over
         (direction, offset, resolution, load); ``seating_pressure``, ``prefractal_opening`` and the
-        fits of :func:`mechanics.closure_laws.add_closure_laws` over (direction, offset,
-        resolution); ``common_seating_pressure`` and why there is none over
+        fits of :func:`mechanics.closure_laws.add_closure_laws` and
+        :func:`mechanics.seated_laws.add_seated_laws` over (direction, offset, resolution);
+        ``common_seating_pressure`` and why there is none over
         (direction, resolution); what :data:`mechanics.states.OFFSETS` names over (direction,
         offset).
     """
@@ -159,8 +161,9 @@ def closure_curves(
     add_conductance(result, e_star)
     _add_errors(result, area, e_star)
     add_separation(result, openings)
-    add_seated_closure(result, seating_force)
+    add_seated_closure(result, seating_pressure)
     add_closure_laws(result, fit_range)
+    add_seated_laws(result)
     return result
 
 

@@ -23,6 +23,9 @@ from ..core.verdicts import HYPERBOLA, NEITHER, SEMI_LOGARITHMIC, UNDECIDED
 FEWEST_CLOSURE_POINTS = 4
 
 
+#: Logarithms of the parameters beyond which nothing is sought.
+FARTHEST = 200.0
+
 #: Misfits this near to each other, as a fraction of the larger one, separate no laws.
 EQUAL_MISFIT = 0.1
 
@@ -84,7 +87,8 @@ def fit_hyperbola(pressure: ArrayLike, closure: ArrayLike) -> Hyperbola:
         return Hyperbola(n=sigma.size, reason=_too_few(sigma.size))
 
     def law(sigma, log_k, log_wm):
-        k, w_m = np.exp([log_k, log_wm])
+        # A search along a straight curve, which has no asymptote, runs far.
+        k, w_m = np.exp(np.clip([log_k, log_wm], -FARTHEST, FARTHEST))
         return sigma * w_m / (k * w_m + sigma)
 
     guess = np.log([2 * sigma[0] / w[0], 1.2 * w.max()])

@@ -54,6 +54,9 @@ def prefractal_openings(
     )
 
 
+#: Relative difference between two pressures that are one.
+ROUNDING = 1e-9
+
 #: Separation and seated closures: unit and long name.
 _WORDS = {
     "separation": ("mm", "separation of the mean planes delta_r - w; 0 where faces are mated"),
@@ -114,17 +117,17 @@ def add_separation(curves: xr.Dataset, openings: xr.DataArray | None) -> None:
     )
 
 
-def add_seated_closure(curves: xr.Dataset, seating_force: float | None) -> None:
-    """Add the closures from a seating load, of each offset and of all, to a closure stage.
+def add_seated_closure(curves: xr.Dataset, seating_pressure: float) -> None:
+    """Add the closures from a seating pressure, of each offset and of all, to a closure stage.
 
     Parameters
     ----------
     curves : xr.Dataset
         With ``interface_closure``, ``closure_error`` and ``resolved`` over (direction, offset,
         resolution, load); what is found is added to it.
-    seating_force : float or None
-        Of the study, N, one of the loads; None takes at each offset and resolution the smallest
-        load whose state is resolved.
+    seating_pressure : float
+        Of the study, MPa: at each offset and resolution the first load from there on whose state is
+        resolved seats the joint.
 
     Notes
     -----
@@ -136,18 +139,15 @@ def add_seated_closure(curves: xr.Dataset, seating_force: float | None) -> None:
     """
     force = curves["normal_force"]
     solved = np.isfinite(curves["interface_closure"])
-    if seating_force is None:
-        seats = force.where(curves["resolved"] & solved).min("normal_force")
-    else:
-        seat = float(force.sel(normal_force=seating_force, method="nearest"))
-        seats = force.where(solved & (force == seat)).min("normal_force")
+    heavy = curves["nominal_pressure"] >= seating_pressure * (1 - ROUNDING)
+    seats = force.where(curves["resolved"] & solved & heavy).min("normal_force")
     common = seats.max("offset")
     _add_closure_from(curves, seats, "seated_closure")
     _add_closure_from(curves, common, "closure_from_common_seat")
     area = float((force / curves["nominal_pressure"])[0])
     none = f"no state of any offset has {RESOLVED_NODES} nodes in contact"
-    if seating_force is not None:
-        none = "the state under the seating load was solved at no offset"
+    if seating_pressure > 0:
+        none += f" at {seating_pressure:g} MPa or more"
     found = {
         "seating_pressure": seats / area,
         "common_seating_pressure": common / area,

@@ -132,7 +132,8 @@ def hardness_of(settings: JointSettings, specimen: xr.Dataset) -> float:
     if largest >= hardness * area:
         raise InputError(
             f"specimen {specimen.attrs['name']}: load {largest:g} N is more than the window of "
-            f"{area:.4g} mm2 carries at a hardness of {hardness:g} MPa; write loads below "
+            f"{area:.4g} mm2 carries at a hardness of {hardness:g} MPa (of a scan the joint wall "
+            f"strength, unless its material says 'hardness: none'); write loads below "
             f"{hardness * area:.4g} N"
         )
     return hardness

@@ -66,7 +66,7 @@ def state_stages(
         openings=prefractal_openings(
             specimens, joints, [int(k) for k in states["resolution"].values]
         ),
-        seating_force=_seating_force(settings, area),
+        seating_pressure=settings.seating_pressure,
     )
     reported = _reported(curves, settings, area)
     warnings = (load_warning(curves, reported), full_contact_warning(curves))
@@ -117,9 +117,3 @@ def _reported(curves: xr.Dataset, settings: StateSettings, area: float) -> Repor
         loads=forces_of(settings.dilatancy_loads, area),
         reference=float(forces_of([settings.map_load], area)[0]),
     )
-
-
-def _seating_force(settings: StateSettings, area: float) -> float | None:
-    """Force from which closure is seated, N; None where the study leaves it to the states."""
-    seating = settings.seating_load
-    return None if seating is None else float(forces_of([seating], area)[0])

@@ -20,7 +20,10 @@ SPECIMEN = {
     "outliers": "keep",
     "fill_holes": 0,
     "directions": ["E", "N", "W", "S"],
+    "seating_pressure": "0.25 MPa",
 }
+#: Of its hardness, up to which a specimen carries the loads that the study's defaults name.
+LARGEST_SHARE = 0.95
 SOLVER = {"kernel": "love"}
 ACCURACY = {"closure": "1 %", "delta_sigma": 0.02}
 #: Tolerance of a study that asks for everything.
@@ -54,8 +57,9 @@ def resolve_settings(
     opposite = "match" if scan and scan.upper else stated["opposite"]
     flat = opposite == "flat"
     directions = ["none"] if flat else stated["directions"]
-    loads = stated.loads("loads")
-    seating = stated.chosen_loads("seating_load", loads) if "seating_load" in stated else [None]
+    where = stated.where("material")
+    material = _material(config, stated["material"], where, source, scanned=scan is not None)
+    loads = stated.solved_loads(material.hardness)
     recipe = config.get("embedded", {}).get(name, {})
     settings = Settings(
         label=stated.get("label", recipe.get("label", name)),
@@ -63,7 +67,7 @@ def resolve_settings(
         known_dimension=float(recipe.get("dimension", math.nan)),
         chosen_for=dict(recipe.get("chosen_for", {})),
         capped_variant=is_capped_variant(config, name),
-        material=_material(config, stated["material"], stated.where("material"), source),
+        material=material,
         opposite=opposite,
         outliers=stated["outliers"],
         fill_holes=stated["fill_holes"],
@@ -76,9 +80,9 @@ def resolve_settings(
         resolutions=sorted(stated["resolutions"]),
         dilatancy_loads=stated.chosen_loads("dilatancy_loads", loads),
         map_load=stated.chosen_loads("map_load", loads)[-1],
-        map_offset=None if flat else stated.lengths("map_offset"),
+        map_offset=None if flat else stated.reported_offset(),
         hyperbola_range=stated.loads("hyperbola_range"),
-        seating_load=seating[0],
+        seating_pressure=stated.positive("seating_pressure", "pressure"),
         surface_range=stated.range("surface_range"),
         box_range=stated.range("box_range"),
         scaling_range=stated.range("scaling_range"),
@@ -120,6 +124,13 @@ class _Stated(dict):
         """None for "auto", or two lengths, mm."""
         return None if self.get(key, "auto") == "auto" else tuple(self.lengths(key))
 
+    def positive(self, key, kind):
+        """A quantity above 0, MPa or mm."""
+        value = quantity(self[key], kind, self.where(key))
+        if value <= 0:
+            raise InputError(f"{self.where(key)}: {self[key]!r} must be positive")
+        return value
+
     def loads(self, key):
         """None for "auto", or a list of loads."""
         return self._each(key, lambda text: load(text, self.where(key)))
@@ -130,16 +141,33 @@ class _Stated(dict):
             return None
         return [*map(resolved, value)] if isinstance(value, list) else resolved(value)
 
+    def solved_loads(self, hardness):
+        """Loads that are solved; of the study's defaults those that the hardness can carry."""
+        loads = self.loads("loads")
+        if "loads" in self._own or "loads" in self._study:
+            return loads
+        most = LARGEST_SHARE * hardness
+        return [one for one in loads if one[1] == "force" or one[0] <= most] or loads
+
+    def reported_offset(self):
+        """Offset that is reported: of two faces as they were scanned, unless something is said."""
+        offsets = self.lengths("offsets")
+        as_scanned = self._scan and self._scan.upper and (offsets is None or 0.0 in offsets)
+        return 0.0 if as_scanned and "map_offset" not in self else self.lengths("map_offset")
+
     def chosen_loads(self, key, loads):
-        """Loads picked for a figure: those named, which must be solved, or the largest three."""
+        """Loads picked for a figure: those named, which must be solved, or the largest three.
+
+        Of those that the study's defaults name, the ones that the hardness of a specimen can carry.
+        """
         if key not in self:
             return loads[-3:]
         named = self[key] if isinstance(self[key], list) else [self[key]]
         chosen = [load(text, self.where(key)) for text in named]
         for pair, text in zip(chosen, named, strict=True):
-            if pair not in loads:
+            if pair not in self.loads("loads"):
                 raise self._not_solved(key, text)
-        return chosen
+        return [pair for pair in chosen if pair in loads] or loads[-len(chosen) :]
 
     def _not_solved(self, key, text):
         """What is wrong where a load is to be drawn that is not solved: the later file of both."""
@@ -272,8 +300,11 @@ def solver_settings(config: Mapping, source: str) -> Solver:
     return Solver(**{"rtol": rtol, **SOLVER, **config.get("solver", {})}, accuracy=accuracy)
 
 
-def _material(config, material, where, source) -> Material:
-    """A material with E* of two like bodies, and what may be stated."""
+def _material(config, material, where, source, *, scanned: bool) -> Material:
+    """A material with E* of two like bodies, and what may be stated.
+
+    The contacts of a scanned rock crush at the joint wall strength, unless its hardness is stated.
+    """
     if isinstance(material, Mapping):
         label, definition = "own", material
     else:
@@ -287,14 +318,20 @@ def _material(config, material, where, source) -> Material:
     if modulus <= 0:
         raise InputError(f"{where}.modulus: {definition['modulus']!r} must be positive")
     poisson = float(definition["poisson"])
+    strength = _if_stated(definition, "joint_wall_strength", "pressure", where)
+    if definition.get("hardness") == "none":
+        hardness = math.inf
+    else:
+        unsaid = strength if scanned and math.isfinite(strength) else math.inf
+        hardness = _if_stated(definition, "hardness", "pressure", where, unsaid)
     return Material(
         name=label,
         modulus=modulus,
         poisson=poisson,
         e_star=modulus / (2 * (1 - poisson**2)),
         basic_friction_angle=_if_stated(definition, "basic_friction_angle", "angle", where),
-        joint_wall_strength=_if_stated(definition, "joint_wall_strength", "pressure", where),
-        hardness=_if_stated(definition, "hardness", "pressure", where, math.inf),
+        joint_wall_strength=strength,
+        hardness=hardness,
     )
 
 

@@ -1,0 +1,139 @@
+"""Laws of the closure from a seat, as laboratories fit them, and the stiffness at set pressures.
+
+A laboratory measures no closure from zero load: the joint is put together under a small seating
+stress, and closure counts from there (Bandis, Lumsden & Barton, Int. J. Rock Mech. Min. Sci. 20
+(1983) 249). Both laws are fitted by least squares in the closure to the same states.
+"""
+
+import numpy as np
+import xarray as xr
+
+from ..core.datasets import labelled
+from ..core.estimate import Estimate
+from ..core.labels import percent
+from ..core.limits import LARGEST_MISFIT, REFERENCE_PRESSURES, SEATED_SPAN
+from .closure_laws import FEWEST_CLOSURE_POINTS, at_twice, fit_hyperbola, fit_semi_logarithmic
+
+_DIMS = ("direction", "offset", "resolution")
+_RANGE = "from the seating pressure on, over at most two decades"
+#: Parameters of the laws: unit, long name.
+_PARAMETERS = {
+    "seated_k_ni": ("MPa/mm", f"initial normal stiffness k_ni of the hyperbola {_RANGE}"),
+    "seated_v_m": ("mm", f"largest closure v_m of the hyperbola {_RANGE}"),
+    "seated_chi": (
+        "mm",
+        f"chi of d = d_0 + chi ln sigma, closure per e-fold, {_RANGE}",
+    ),
+}
+#: What else is kept of the fits: unit, long name.
+_OF_FITS = {
+    "seated_hyperbola_misfit": ("1", "rms misfit of the seated hyperbola over the largest closure"),
+    "seated_logarithm_misfit": ("1", "rms misfit of the seated logarithm over the largest closure"),
+    "seated_fit_points": ("1", "states fitted, above the seating pressure"),
+    "seated_fit_max": ("MPa", "largest nominal pressure fitted"),
+    "seated_k_ni_determined": ("1", "whether the seated hyperbola determines k_ni"),
+    "seated_k_ni_reason": ("1", "why it does not, and what would help"),
+    "seated_k_ni_change": ("1", "seated k_ni at twice the spacing over that at this one, less one"),
+}
+
+
+def add_seated_laws(curves: xr.Dataset) -> None:
+    """Add both laws of the seated closure, and tangent stiffnesses, to a closure stage.
+
+    Parameters
+    ----------
+    curves : xr.Dataset
+        With ``seated_closure``, ``seating_pressure``, ``resolved``, ``interface_stiffness`` and its
+        error over (direction, offset, resolution, load); what is found is added to it.
+
+    Notes
+    -----
+    The hyperbola is sigma = k_ni d / (1 - d/v_m), the other law d = d_0 + chi ln(sigma / 1 MPa).
+    The stiffness at a reference pressure is read between the states beside it, straight in
+    logarithms: stiffnesses of rough contact are nearly powers of the pressure.
+    """
+    order = (*_DIMS, "normal_force")
+    pressure = curves["nominal_pressure"].values
+    closure = curves["seated_closure"].where(curves["resolved"]).transpose(*order).values
+    seats = curves["seating_pressure"].transpose(*_DIMS).values
+    fits = np.empty(seats.shape, object)
+    for place in np.ndindex(seats.shape):
+        fits[place] = _Fit(pressure, closure[place], float(seats[place]))
+    for name, words in _PARAMETERS.items():
+        each = Estimate.stack((getattr(fit, name) for fit in fits.flat), seats.shape)
+        curves.update(each.variables(name, _DIMS, *words))
+    values = {
+        name: np.array([getattr(fit, name) for fit in fits.flat]).reshape(seats.shape)
+        for name in _OF_FITS
+        if name != "seated_k_ni_change"
+    }
+    values["seated_k_ni_change"] = at_twice(curves["seated_k_ni"]).transpose(*_DIMS).values
+    curves.update(labelled({name: (_DIMS, *words) for name, words in _OF_FITS.items()}, values))
+    _add_reference_stiffness(curves)
+
+
+class _Fit:
+    """Both laws of one curve, under the names of the atlas."""
+
+    def __init__(self, pressure: np.ndarray, closure: np.ndarray, seat: float):
+        fitted = np.isfinite(closure) & (closure > 0) & (pressure <= SEATED_SPAN * seat * 1.001)
+        hyperbola = fit_hyperbola(pressure[fitted], closure[fitted])
+        logarithm = fit_semi_logarithmic(pressure[fitted], closure[fitted])
+        self.seated_k_ni, self.seated_v_m = hyperbola.k_ni, hyperbola.w_m
+        self.seated_chi = logarithm.b
+        self.seated_hyperbola_misfit = hyperbola.misfit
+        self.seated_logarithm_misfit = logarithm.misfit
+        self.seated_fit_points = int(fitted.sum())
+        self.seated_fit_max = float(pressure[fitted].max()) if fitted.any() else np.nan
+        self.seated_k_ni_reason = self._reason(seat)
+        self.seated_k_ni_determined = not self.seated_k_ni_reason
+
+    def _reason(self, seat: float) -> str:
+        if np.isnan(seat):
+            return "no state is resolved from the seating pressure on: a finer scan would help"
+        if self.seated_fit_points < FEWEST_CLOSURE_POINTS:
+            return (
+                f"{self.seated_fit_points} states above the seating pressure, "
+                f"{FEWEST_CLOSURE_POINTS} needed: more loads up to {SEATED_SPAN * seat:.3g} MPa "
+                "would help"
+            )
+        if not self.seated_k_ni.known:
+            return "the closure does not bend enough to show an asymptote: heavier loads would help"
+        if self.seated_hyperbola_misfit > LARGEST_MISFIT:
+            missed = percent(self.seated_hyperbola_misfit)
+            return f"the hyperbola misses the curve by {missed} rms of the largest closure"
+        if not self.seated_k_ni.determined:
+            return "its 95 % interval leaves nearly everything open: more loads would help"
+        return ""
+
+
+def _add_reference_stiffness(curves: xr.Dataset) -> None:
+    """Tangent stiffness of the interface at set nominal pressures, into ``curves``."""
+    resolved = curves["resolved"]
+    stiffness = curves["interface_stiffness"].where(resolved)
+    error = curves["interface_stiffness_error"].where(resolved)
+    dims = (*_DIMS, "reference_pressure")
+    shape = tuple(curves.sizes[dim] for dim in _DIMS)
+    found = np.full((*shape, len(REFERENCE_PRESSURES), 2), np.nan)
+    values = (one.transpose(*_DIMS, "normal_force").values for one in (stiffness, error))
+    pressure = np.log(curves["nominal_pressure"].values)
+    each, each_error = values
+    for place in np.ndindex(shape):
+        known = np.isfinite(each[place]) & (each[place] > 0)
+        if known.sum() < 2:
+            continue
+        x, k = pressure[known], np.log(each[place][known])
+        share = each_error[place][known] / each[place][known]
+        wanted = np.log(REFERENCE_PRESSURES)
+        at = np.exp(np.interp(wanted, x, k, left=np.nan, right=np.nan))
+        found[place] = np.column_stack((at, at * np.interp(wanted, x, share)))
+    table = {
+        "reference_stiffness": (dims, "MPa/mm", "tangent stiffness of the interface at a pressure"),
+        "reference_stiffness_error": (dims, "MPa/mm", "bound of the solver's error of it"),
+    }
+    curves.coords["reference_pressure"] = (
+        "reference_pressure",
+        np.array(REFERENCE_PRESSURES),
+        {"units": "MPa", "long_name": "nominal pressure at which the stiffness is stated"},
+    )
+    curves.update(labelled(table, dict(zip(table, np.moveaxis(found, -1, 0), strict=True))))
