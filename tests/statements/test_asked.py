@@ -50,7 +50,7 @@ def test_how_a_specimen_was_chosen_makes_no_other_surface(paper):
 
 def test_the_capped_twin_repeats_the_other(paper):
     variants = [name for name in paper["embedded"] if is_capped_variant(paper, name)]
-    assert variants == ["sandstone_capped"]
+    assert variants == ["sandstone_capped", "concrete_capped"]
     assert not is_capped_variant(paper, "a scan")
 
 

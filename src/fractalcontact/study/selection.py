@@ -26,4 +26,4 @@ def _has_hardness(study, name):
     stated = {**study["defaults"], **study.get("specimens", {}).get(name, {})}["material"]
     # An unknown material is refused where it is resolved.
     definition = stated if isinstance(stated, Mapping) else study["materials"].get(stated, {})
-    return "hardness" in definition
+    return definition.get("hardness", "none") != "none"
