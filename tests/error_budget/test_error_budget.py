@@ -32,7 +32,10 @@ from roughcontact.elastic.halfspace import HalfSpace
 SPACING = 0.1  # mm
 STUDY = {
     "study": "budget",
-    "materials": {"rock": {"modulus": "20 GPa", "poisson": 0.2}},
+    "materials": {
+        "rock": {"modulus": "20 GPa", "poisson": 0.2},
+        "weak": {"modulus": "20 GPa", "poisson": 0.2, "hardness": "80 MPa"},
+    },
     "defaults": {
         "material": "rock",
         "contact_directions": ["E"],
@@ -49,6 +52,7 @@ STUDY = {
         "small": {"window": "7.2 mm", "resolutions": [1]},
         "two": {"window": "7.2 mm", "resolutions": [1]},
         "flat": {"opposite": "flat", "window": "3.2 mm"},
+        "crushing": {"material": "weak"},
     },
 }
 
@@ -186,6 +190,27 @@ def test_resolution_is_the_change_from_twice_the_spacing_and_in_no_total(one):
     np.testing.assert_allclose(found.sel(quantity="separation"), abs(coarse - fine + lowered))
     changed = abs(here["area_corrected"].diff("resolution").squeeze())
     np.testing.assert_allclose(found.sel(quantity="area_corrected"), changed)
+
+
+def test_the_model_is_what_three_times_the_hardness_changes(one):
+    """And in no total; where nothing yields there is none, and the budget says so."""
+    loading, curves, budget, _ = budget_of("crushing")
+    composite = loading.composite(int(loading.cells[0]))
+    space, forces = loading.half_space(composite.shape), curves["normal_force"].values
+    closure = budget["error"].sel(source="model", quantity="closure")
+    for place in (1, 4):
+        both = [
+            solve_contact(composite, space, force=forces[place], hardness=hardness).closure
+            for hardness in (80.0, 240.0)
+        ]
+        assert closure[place] == pytest.approx(abs(both[1] - both[0]), rel=1e-3)
+    assert (closure > 0).all()
+    assert reason_of(budget, "model") == ""
+    squares = sum(budget["error"].sel(source=source) ** 2 for source in OF_SURFACE)
+    np.testing.assert_allclose(budget["total"], np.sqrt(squares))
+    _, _, elastic, _ = one
+    assert np.isnan(elastic["error"].sel(source="model")).all()
+    assert "nothing yields" in reason_of(elastic, "model")
 
 
 def test_solved_and_interpolated_loads_are_told(one):

@@ -28,12 +28,16 @@ from .refinement import (
 )
 
 #: Sources of error: those of the number as a property of this surface, those of the population the
-#: window is a sample of, and the change of the surface with its resolution, which is in no total.
+#: window is a sample of; and, in no total, the change of the surface with its resolution and what a
+#: harder material would change.
 OF_SURFACE = ("solver", "numerical", "estimator")
 OF_POPULATION = ("counting", "window", "registration")
 #: Of these only the larger is in a total: a spread over windows holds that of counting.
 _OF_WINDOW = ("counting", "window")
-SOURCES = (*OF_SURFACE, *OF_POPULATION, "resolution")
+SOURCES = (*OF_SURFACE, *OF_POPULATION, "resolution", "model")
+
+#: Hardness of rough contacts over the joint wall strength: between 1 and this (Tabor's 3).
+HARDEST = 3.0
 
 #: Numerical errors of states that are not refined, in errors interpolated between those that are:
 #: chance differs from state to state. Then 95 to 100 % of 100 other joints were covered, else
@@ -155,6 +159,7 @@ def error_budget(
         "window": over_loads(curve.forces, windows, _scale(curve)),
         "registration": _registration(registration_spread, len(curve.forces)),
         "resolution": _resolution(loading, curves, domains, curve),
+        "model": _model(curve),
     }
     reasons = _reasons(curve, errors, found, effective, registration_spread is not None)
     return _budget(curve, values, errors, found, reasons, (n_windows, effective))
@@ -367,6 +372,22 @@ def _resolution(loading, curves, domains, curve: LoadCurve) -> np.ndarray:
     return np.abs(coarser.values() - curve.values())
 
 
+def _model(curve: LoadCurve) -> np.ndarray:
+    """Change from the hardness to the largest that contacts may have; none where none yields."""
+    changes = np.full((len(BUDGET_QUANTITIES), len(curve.forces)), np.nan)
+    solving = curve.loading.solving
+    if not np.isfinite(solving["hardness"]):
+        return changes
+    harder = {**solving, "hardness": HARDEST * solving["hardness"]}
+    where, highest = f"{curve.where}, hardness x {HARDEST:g}", float(curve.composite.max())
+    states = load_steps(curve.composite, curve.space, curve.forces, harder, where)
+    for place, state in enumerate(states):
+        numbers = state_quantities(state, highest, curve.reference)
+        dimension = domain_dimension(state, curve.loading.settings.box_range)
+        changes[:, place] = [*numbers.values(), dimension]
+    return np.abs(changes - curve.values())
+
+
 def _reasons(curve, errors, found: Refinement, effective, registered: bool) -> np.ndarray:
     """Why sources have no value, or are none, (quantity, source)."""
     scanned = curve.loading.specimen.attrs["opposite"] == "scanned"
@@ -384,6 +405,7 @@ def _reasons(curve, errors, found: Refinement, effective, registered: bool) -> n
         if scanned
         else "one face was scanned: there is nothing to register",
         "resolution": "twice the spacing is not solved",
+        "model": "no hardness is stated: nothing yields",
     }
     if scanned and registered:
         missing["registration"] = "not known of this quantity"

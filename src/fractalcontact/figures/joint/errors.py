@@ -44,6 +44,7 @@ SOURCES = {
     "window": "other windows of the scan",
     "registration": "registration of the faces",
     "resolution": "every second node: another surface, in no total",
+    "model": "three times the hardness: another model, in no total",
 }
 TOTALS = {
     "total": ("total for this very surface\n(solver, numerical, estimator)", "-"),
@@ -145,9 +146,10 @@ def _draw_errors(axes, errors, size):
                 axes.plot(force[shown], clipped[shown], **style | hollow)
 
     for i, (source, words) in enumerate(SOURCES.items()):
-        in_totals = source != "resolution"
+        in_totals = source not in ("resolution", "model")
         style = {"color": colour_of(i + 1) if in_totals else "0.55", "ms": 3.5, "lw": 0.9}
-        style |= {"marker": MARKERS[i + 1], "ls": LINES[i % 3] if in_totals else ":"}
+        style |= {"marker": MARKERS[(i + 1) % len(MARKERS)]}
+        style |= {"ls": LINES[i % 3] if in_totals else ":"}
         line(source, words, **style)
     for source, (words, dashes) in TOTALS.items():
         line(source, words, color="black", lw=2.2, ls=dashes, zorder=1)
