@@ -38,6 +38,19 @@ def test_the_worse_of_pressure_and_slope_counts(material, pressure, slope, verdi
     assert elastic_model_validity(pressure, slope, material).verdict == verdict
 
 
+@pytest.mark.parametrize(
+    ("nominal", "verdict"), [(1.0, GOOD), (500.0, GOOD), (501.0, IN_PART), (871.0, POOR)]
+)
+def test_contacts_that_crush_are_judged_by_what_the_window_can_carry(nominal, verdict):
+    found = elastic_model_validity(1000.0, 0.1, HARDNESS, nominal)
+    assert found.verdict == verdict
+    assert found.sentence.endswith(f"model {'good in part' if verdict == IN_PART else verdict}.")
+    assert "elastic" not in found.sentence
+    # Slopes count as of elastic contact, and a load nothing there.
+    assert elastic_model_validity(1000.0, 0.8, HARDNESS, nominal).verdict == POOR
+    assert elastic_model_validity(80.0, 0.1, STRENGTH, nominal).verdict == GOOD
+
+
 def test_no_larger_pressure_or_slope_makes_it_better():
     order = (GOOD, IN_PART, POOR).index
     for material in (NOTHING, STRENGTH, HARDNESS):
@@ -81,13 +94,16 @@ def test_the_stage_holds_the_verdict_of_every_state_at_the_finest_resolution(mat
     sigma_n = rng.uniform(10, 500, shape)
     sigma_n[0, 0, :, 0] = np.nan  # too few nodes touch
     coords = {"offset": [0.1, 0.2, 0.4], "direction": ["N", "W"], "normal_force": forces}
+    coords["nominal_pressure"] = ("normal_force", forces / 100)
     scaling = xr.Dataset({"sigma_n": (dims, sigma_n)}, coords | {"resolution": [2, 1]})
     slopes = rng.uniform(0, 1, (2, 3))
     area = xr.Dataset({"rms_slope": (("direction", "offset"), slopes)}, coords)
     found = model_validity(area, scaling, material)
     assert found["verdict"].dims == ("direction", "offset", "normal_force")
     for i, j, k in np.ndindex(found["verdict"].shape):
-        wanted = elastic_model_validity(sigma_n[j, i, 1, k], slopes[i, j], material)
+        wanted = elastic_model_validity(
+            sigma_n[j, i, 1, k], slopes[i, j], material, forces[k] / 100
+        )
         state = found.isel(direction=i, offset=j, normal_force=k)
         np.testing.assert_equal(Validity.of(state), wanted)
     assert found["verdict"].values[0, 0, 0] == NOT_ASKED

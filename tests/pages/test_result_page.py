@@ -273,6 +273,18 @@ def test_every_statement_leads_to_a_figure_that_its_specimen_has(atlas):
         assert len(set(shown.values())) > 3
 
 
+def test_a_light_that_is_not_good_says_what_would_help(atlas):
+    lights = [one for name in NAMES for one in lights_of(Subject.of(atlas, name))]
+    assert all(bool(one.help) == (one.word in ("in part", "poor")) for one in lights)
+    assert {one.key for one in lights if one.help} >= {"model"}
+    # Few nodes ask for a load that the force scales to.
+    few = with_told(atlas, f"closure/{NAMES[0]}", nodes=15)
+    subject = Subject.of(few, NAMES[0])
+    (nodes,) = [one for one in lights_of(subject) if one.key == "nodes"]
+    force = with_unit(2 * float(subject.reported.force), "N")
+    assert nodes.help == f"a finer scan, or heavier loads (about {force})"
+
+
 def test_lights_follow_what_the_stages_say(atlas):
     """A pair whose faces overlap, few nodes, a grid too coarse; and the same without them."""
     words = {

@@ -36,7 +36,7 @@ class Limits(NamedTuple):
 
 
 class Validity(NamedTuple):
-    """A verdict on the elastic model, and what decides it.
+    """A verdict on the model, elastic or of contacts that crush, and what decides it.
 
     Attributes
     ----------
@@ -75,7 +75,8 @@ class Validity(NamedTuple):
     def sentence(self) -> str:
         """Reason and verdict, for a caption."""
         verdict = "good in part" if self.verdict == IN_PART else self.verdict
-        return f"{self.reason}: elastic model {verdict}."
+        model = "model" if self.capped else "elastic model"
+        return f"{self.reason}: {model} {verdict}."
 
 
 def pressure_words(pressure: float) -> str:

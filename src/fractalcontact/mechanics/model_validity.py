@@ -11,6 +11,7 @@ import numpy as np
 import xarray as xr
 
 from ..core.datasets import labelled_dataset
+from ..core.labels import percent
 from ..core.settings import Material
 from ..core.validity import Limits, Validity, pressure_words
 from ..core.verdicts import GOOD, HARDNESS, IN_PART, NO_PRESSURE, NOT_ASKED, POOR, STRENGTH, USUAL
@@ -29,8 +30,15 @@ CONFINED = 3.0
 LEAST_RATIO, LARGEST_RATIO = 200.0, 1000.0
 
 
+#: Fractions F / (H A_0) of what a window can carry: up to the first its contacts are apart enough
+#: to crush one by one; beyond the second no domain is left whose dimension could be asked for.
+APART, FULL = 0.5, 0.87
+
 #: The real mean pressure of a fully yielded contact is its hardness, to rounding.
 _ROUNDING = 1e-6
+
+#: From the best to the worst.
+_GRADES = (GOOD, IN_PART, POOR)
 
 #: Verdicts of the states, over (direction, offset, load): unit and long name.
 _OF_STATES = {
@@ -70,7 +78,8 @@ def model_validity(area: xr.Dataset, scaling: xr.Dataset, material: Material) ->
     judged = np.empty(pressures.shape, object)
     for place in np.ndindex(judged.shape):
         pressure, slope = float(pressures.values[place]), float(of_offsets[place[:2]])
-        judged[place] = elastic_model_validity(pressure, slope, material)
+        nominal = float(pressures["nominal_pressure"][place[2]])
+        judged[place] = elastic_model_validity(pressure, slope, material, nominal)
     values: dict[str, Any] = {
         name: np.array([getattr(one, name) for one in judged.flat]).reshape(judged.shape)
         for name in _OF_STATES
@@ -83,13 +92,16 @@ def model_validity(area: xr.Dataset, scaling: xr.Dataset, material: Material) ->
     return labelled_dataset(table, values | limits._asdict(), coords=dict(pressures.coords))
 
 
-def elastic_model_validity(pressure: float, rms_slope: float, material: Material) -> Validity:
+def elastic_model_validity(
+    pressure: float, rms_slope: float, material: Material, nominal_pressure: float = 0.0
+) -> Validity:
     """Judge the elastic model under one load: the worse of pressure and slope counts.
 
-    Good up to the hardness, which caps the pressure, or to the joint wall strength; in part up to
-    three times that strength; poor beyond. Where neither is stated the strength lies between E/1000
-    and E/200: good up to the first, poor from three times the second. Slopes are good up to 0.3, in
-    part up to 0.75.
+    Of contacts that crush at a hardness the pressure is no test: they are judged by the fraction of
+    what the window can carry, good up to half of it, poor beyond 87 %. Else good up to the joint
+    wall strength, in part up to three times that strength, poor beyond. Where neither is stated the
+    strength lies between E/1000 and E/200: good up to the first, poor from three times the second.
+    Slopes are good up to 0.3, in part up to 0.75.
 
     Parameters
     ----------
@@ -98,6 +110,8 @@ def elastic_model_validity(pressure: float, rms_slope: float, material: Material
     rms_slope : float
         Of the composite topography; NaN counts nothing.
     material : Material
+    nominal_pressure : float, optional
+        F / A_0, MPa.
     """
     limits = material_limits(material)
     if not np.isfinite(pressure):
@@ -107,11 +121,14 @@ def elastic_model_validity(pressure: float, rms_slope: float, material: Material
     by_slope = GOOD
     if np.isfinite(rms_slope):
         by_slope = _graded(rms_slope, SMALL_SLOPE, MODERATE_SLOPE)
-    verdict = max(by_pressure, by_slope, key=(GOOD, IN_PART, POOR).index)
+    verdict = max(by_pressure, by_slope, key=_GRADES.index)
     place = _place(pressure, by_pressure, limits)
     reason = f"sigma_n = {pressure_words(pressure)}, {place} the {limits.words}"
     if limits.criterion == HARDNESS:
-        reason += ", which caps it: not a test of the model"
+        share = nominal_pressure / limits.good_to
+        by_pressure = max(by_pressure, _graded(share, APART, FULL), key=_GRADES.index)
+        verdict = max(by_pressure, by_slope, key=_GRADES.index)
+        reason += f", at which contacts crush; {percent(share)} of what the window can carry"
     if np.isfinite(rms_slope):
         size = "small" if by_slope == GOOD else "not small"
         reason += f"; rms slope {rms_slope:.3g}, {size}"

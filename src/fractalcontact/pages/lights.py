@@ -9,7 +9,15 @@ from dataclasses import dataclass
 from ..core.limits import CORRECTED_NODES, NEARLY, RESOLVED_NODES
 from ..core.subject import Subject
 from ..core.validity import Validity
-from ..core.verdicts import GOOD, IN_PART, NOT_ASKED, POOR
+from ..core.verdicts import GOOD, HARDNESS, IN_PART, NOT_ASKED, POOR, STRENGTH, USUAL
+from .words import with_unit
+
+#: What would make lights better.
+FINER_SCAN = "heights as measured, without the instrument's filter, or a scan finer than its noise"
+REGISTER = "faces scanned with common marks, or 'registration: rigid'"
+LIGHTER = "lighter loads; steep slopes belong to the surface, and no setting makes them small"
+CRUSH = "contacts that crush: 'hardness' in the material, such as the joint wall strength"
+STATE = "'joint_wall_strength' of the rock in its material, at which contacts then crush"
 
 #: A sign for each, so that no colour is needed.
 SIGNS = {GOOD: "●", IN_PART: "◐", POOR: "○", NOT_ASKED: "–"}
@@ -27,12 +35,15 @@ class Light:
         :data:`GOOD`, :data:`IN_PART`, :data:`POOR` or :data:`NOT_ASKED`.
     reason : str
         What decided it.
+    help : str
+        What would make it better; empty where it is good or not asked.
     """
 
     key: str
     title: str
     word: str
     reason: str
+    help: str = ""
 
     @property
     def sign(self) -> str:
@@ -63,10 +74,11 @@ def _scan(subject):
     if not found:
         reason = "all resolutions lie within the fractal range, suspicious cells carry little load"
         return Light("scan", "Scan", GOOD, reason)
+    helps = "'outliers: mask' leaves suspicious cells out" if load else FINER_SCAN
     # The noise or the filter of the instrument decides at all resolutions, or at the finer ones.
     below = subject["quality"]["below_range"].values
     word = POOR if below.all() or (load and not _is_pair(subject)) else IN_PART
-    return Light("scan", "Scan", word, "; ".join(found))
+    return Light("scan", "Scan", word, "; ".join(found), helps)
 
 
 def _faces(subject):
@@ -76,9 +88,9 @@ def _faces(subject):
     overlap = str(subject["quality"].attrs["overlap"])
     load = str(subject["closure"].attrs.get("warning", ""))
     if load:
-        return Light(key, title, POOR, f"{load}; {overlap}")
+        return Light(key, title, POOR, f"{load}; {overlap}", REGISTER)
     touching = subject["quality"].sel(region="window")["overlap_cells"].item()
-    return Light(key, title, IN_PART if touching else GOOD, overlap)
+    return Light(key, title, *((IN_PART, overlap, REGISTER) if touching else (GOOD, overlap)))
 
 
 def _nodes(subject):
@@ -89,7 +101,13 @@ def _nodes(subject):
         f"{nodes:.0f} nodes in contact under the load of the maps; from {RESOLVED_NODES} on a "
         f"state is fitted, from {CORRECTED_NODES} on its area is corrected"
     )
-    return Light("nodes", "Enough nodes", word, reason)
+    helps = ""
+    if word != GOOD:
+        helps = "a finer scan, or heavier loads"
+        if nodes > 0:
+            enough = float(subject.reported.force) * CORRECTED_NODES / nodes
+            helps += f" (about {with_unit(enough, 'N')})"
+    return Light("nodes", "Enough nodes", word, reason, helps)
 
 
 def _grid(subject):
@@ -106,10 +124,22 @@ def _grid(subject):
         f"numerical error of the closure {100 * error:.2g} % under the load of the maps, asked "
         f"{100 * asked:.2g} %, of use up to {100 * NEARLY:.0f} %"
     )
-    return Light(key, title, word, reason)
+    helps = "" if word == GOOD else _finer(subject, error / asked, float(here["observed_order"]))
+    return Light(key, title, word, reason, helps)
+
+
+def _finer(subject, excess, order):
+    """Spacing at which the numerical error would be what the study asks for, by its own order."""
+    if not order > 0:
+        return "a finer scan"
+    spacing = float(subject["specimens"].attrs["spacing_x"]) / excess ** (1 / order)
+    return f"a spacing of {with_unit(spacing, 'mm')} or finer"
 
 
 def _model(subject):
     found = validity_at(subject, subject.reported.reference)
     reason = f"{found.reason}, under the load of the maps"
-    return Light("model", "Validity of the elastic model", found.verdict, reason)
+    helps = ""
+    if found.verdict in (IN_PART, POOR):
+        helps = {HARDNESS: LIGHTER, STRENGTH: CRUSH, USUAL: STATE}[found.limits.criterion]
+    return Light("model", "Validity of the model", found.verdict, reason, helps)

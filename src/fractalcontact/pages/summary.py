@@ -380,7 +380,8 @@ def _of_specimen(one):
         "dilatancy_level_mm": one.dilatancy.level,
         "dilatancy_slope": one.dilatancy.slope,
     }
-    return row | {f"light_{light.key}": light.word for light in one.lights}
+    lights = {f"light_{light.key}": light.word for light in one.lights}
+    return row | lights | {f"help_{light.key}": light.help for light in one.lights}
 
 
 def _of_load(load):
