@@ -20,6 +20,7 @@ from fractalcontact.roughness.estimators.triangular_prism import triangular_pris
 from fractalcontact.roughness.estimators.variogram import variogram_curves
 from fractalcontact.surface.synthesis import self_affine
 from roughcontact import arguments
+from roughcontact.contact.bounds import Bounds
 from roughcontact.contact.dense import inverted, times
 from roughcontact.contact.kkt import kkt_residual, mean_closure
 from roughcontact.contact.nested_iteration import prolong, prolong_constant
@@ -162,8 +163,8 @@ def kernel_calls():
     yield "cells for other nodes", lambda: prolong_constant(np.ones((2, 2)), (24, 30))
     yield "pressures on another grid", lambda: prolong(np.ones((9, 9)), GRID, GRID)
     yield "influence on another grid", lambda: prolong(np.ones((12, 15)), GRID, np.ones((2, 2)))
-    yield "clearance of another grid", lambda: kkt_residual(n10, n10, n9, 1.0, np.inf)
-    yield "displacement of another grid", lambda: mean_closure(n10, n9, n10, np.inf)
+    yield "clearance of another grid", lambda: kkt_residual(n10, n10, n9, 1.0, Bounds())
+    yield "displacement of another grid", lambda: mean_closure(n10, n9, n10, Bounds())
     yield "too few changes", lambda: add(n10, 1.0, n9)
     yield "too many values", lambda: times(np.ones((3, 3), np.float32), ones)
     yield "no square matrix", lambda: inverted(np.ones((3, 2)))

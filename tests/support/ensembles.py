@@ -21,6 +21,7 @@ ENSEMBLES: dict[str, tuple] = {
     "candidate problems": (20, 1000),
     "random energies": (10, 60),
     "capped programmes": (20, 200),
+    "hardness of each node": (3, 40),
     "candidate problem side": (80, 200),
     # accuracy
     "random problems": (50, 300),

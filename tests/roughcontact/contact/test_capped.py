@@ -10,6 +10,7 @@ from fractalcontact.accuracy.violation import violation
 from fractalcontact.core.limits import RESOLVED_NODES
 from fractalcontact.surface.synthesis import self_affine
 from roughcontact.contact.active_set import ActiveSetMethod
+from roughcontact.contact.bounds import Bounds
 from roughcontact.contact.candidates import LEAST_WINDOW, LoadCase
 from roughcontact.contact.kkt import Problem
 from roughcontact.contact.topography import Topography
@@ -38,13 +39,14 @@ def dense_operator(space):
 
 
 def dense_pressure(matrix, clearance, closure, cap):
-    """Least p.K p / 2 + p.(c - w) over 0 <= p <= H, by principal pivoting.
+    """Least p.K p / 2 + p.(c - w) over 0 <= p <= H, H one or each node's, by principal pivoting.
 
     Each node is at zero, between the bounds or at the cap, and all that are wrong change at once;
     where that makes no progress, only the last of them does, which cannot cycle (J. J. Judice and
     F. M. Pires, Comput. Oper. Res. 21 (1994) 587; K. G. Murty, Opsearch 11 (1974) 9).
     """
-    matrix, aim = matrix * (cap / matrix[0, 0]), (closure - clearance) / matrix[0, 0]
+    aim = (closure - clearance) / matrix[0, 0]
+    matrix = matrix * (np.broadcast_to(cap, aim.shape) / matrix[0, 0])
     least = matrix.diagonal().max()
     at_cap, free = np.zeros((2, aim.size), bool)
     fewest, patience = aim.size + 1, 3
@@ -94,6 +96,52 @@ def test_state_is_that_of_a_dense_programme_between_bounds(seed):
 
 
 @pytest.mark.parametrize("control", ["force", "closure"])
+@pytest.mark.parametrize("seed", range(ensemble("hardness of each node")))
+def test_hardness_of_each_node_is_a_bound_of_its_own(seed, control):
+    """Minerals: a third of the nodes does not yield at all."""
+    generator = np.random.default_rng([36, seed])
+    height, space = rough(18, seed)
+    hardness = E_STAR * 10 ** generator.uniform(-3, -1, height.shape)
+    hardness[generator.random(height.shape) < 1 / 3] = np.inf
+    yielding = hardness[np.isfinite(hardness)].sum() * space.cell_area
+    force = yielding * 10 ** generator.uniform(-0.7, -0.2)
+    state = solve_contact(height, space, force=force, hardness=hardness, rtol=1e-9)
+    if control == "closure":
+        state = solve_contact(
+            height, space, closure=state.closure, hardness=hardness, start=state, rtol=1e-9
+        )
+    assert state.force == pytest.approx(force, rel=1e-6)
+    yields = state.pressure == state.hardness
+    assert yields.any()
+    assert (state.pressure <= hardness * (1 + 1e-15)).all()
+    exact = dense_pressure(
+        *(dense_operator(space), (height.max() - height).ravel()),
+        *(state.closure, np.where(np.isinf(hardness), 1e3 * E_STAR, hardness).ravel()),
+    )
+    np.testing.assert_allclose(state.pressure.ravel(), exact, rtol=0, atol=1e-6 * exact.max())
+    assert 0 <= state.energy_error < 1e-6
+
+
+@pytest.mark.parametrize("lower", [-3.0, 0.0, 2.0])
+def test_lower_bound_is_one_like_the_upper(lower):
+    """Pressures from another lower bound on are those of a problem shifted by it."""
+    height, space = rough(24, seed=4)
+    clearance = (height.max() - height).ravel()
+    shift = np.full(space.shape, lower)
+    moved = clearance + space.convolve(shift).ravel()
+    load = 0.2 * clearance.max()
+    own = Problem(space, moved, load, False, Bounds(0.0, 40.0))
+    other = Problem(space, clearance, load, False, Bounds(lower, 40.0 + lower))
+    pressures = []
+    for problem in (own, other):
+        solution = ActiveSetMethod(problem, 1e-8).solve(np.full(height.size, 1.0))
+        assert solution.residual <= 1e-8
+        assert problem.bounds.violation(solution.pressure) == 0
+        pressures.append(solution.pressure)
+    np.testing.assert_allclose(pressures[1], pressures[0] + lower, atol=1e-5)
+
+
+@pytest.mark.parametrize("control", ["force", "closure"])
 @pytest.mark.parametrize("hardness", [30.0, 1000.0])
 @pytest.mark.parametrize("share", [0.002, 0.2, 0.9, 0.9999])
 def test_yielding_makes_a_problem_no_harder(hardness, share, control):
@@ -125,12 +173,15 @@ def test_restricted_problem_holds_nodes_enough_for_its_force(level):
     height, space = rough(64, seed=5)
     mean = 0.05 * 300.0
     length = mean * space.cell / space.modulus
-    case = LoadCase(space, Topography(height, space.shape), length, 64.0 * 64.0, True, 300 / mean)
+    case = LoadCase(
+        *(space, Topography(height, space.shape), length, 64.0 * 64.0, True),
+        Bounds(0.0, 300 / mean),
+    )
     for _ in range(level):
         case = case.coarser()
     restricted = case.restricted(1e-6, None)
     assert restricted is not None
-    assert restricted.nodes.size * case.cap >= case.load
+    assert restricted.nodes.size * case.bounds.upper >= case.load
     assert restricted.bound >= case.least_closure
 
 
@@ -142,7 +193,7 @@ def test_least_closure_is_below_that_of_every_state():
         state = solve_contact(height, space, force=force, hardness=200.0)
         mean = share * 200.0
         length = mean * space.cell / space.modulus
-        case = LoadCase(space, topography, length, 48.0 * 48.0, True, 200 / mean)
+        case = LoadCase(space, topography, length, 48.0 * 48.0, True, Bounds(0.0, 200 / mean))
         assert 0 < case.least_closure * length <= state.closure
 
 
@@ -151,7 +202,7 @@ def test_any_start_leads_to_the_state(share):
     """None, too: the nodes that touch first cannot carry a force that many must share."""
     height, space = rough(32, seed=7)
     clearance = (height.max() - height).ravel() / 0.01
-    problem = Problem(space, clearance, share * 50.0 * height.size, True, 50.0)
+    problem = Problem(space, clearance, share * 50.0 * height.size, True, Bounds(0.0, 50.0))
     generator = np.random.default_rng(8)
     starts = np.zeros(height.size), 50 * generator.random(height.size), np.full(height.size, 1e-9)
     solutions = [ActiveSetMethod(problem, 1e-8).solve(start) for start in starts]
