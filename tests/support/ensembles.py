@@ -22,6 +22,10 @@ ENSEMBLES: dict[str, tuple] = {
     "random energies": (10, 60),
     "capped programmes": (20, 200),
     "hardness of each node": (3, 40),
+    "paths between bounds": (4, 100),
+    "side of a path between bounds": (18, 48),
+    "cycles of random surfaces": (8, 200),
+    "nodes across a sphere": (128, 512),
     "candidate problem side": (80, 200),
     # accuracy
     "random problems": (50, 300),
