@@ -8,13 +8,13 @@ import numpy as np
 
 from ..elastic.halfspace import HalfSpace
 from ..errors import NotConverged
-from ..limits import RESOLVED_NODES
 from ..threads import computed_once
 from .bounds import Bounds
 from .effort import SOLVING
 from .kkt import frank_wolfe_gap
 from .operator import Operator
 from .projected_cg import stiffness
+from .slope import Slope, secant_slope
 from .topography import Topography
 
 # Largest relative error of the stiffness.
@@ -117,31 +117,42 @@ class ContactState:
         """
         return self.pressure, self.displacement, self.gap
 
-    @computed_once
+    @property
+    def composite(self) -> np.ndarray:
+        """Composite topography that was solved, mm, (ny, nx), from any datum."""
+        return self.displacement - self.gap
+
+    @property
     def stiffness(self) -> float:
-        """Normal stiffness dF/dw, N/mm: 0 without contact, NaN of single cells beside yielded ones.
+        """Normal stiffness dF/dw, N/mm: the value of `slope`. 0 without contact."""
+        return self.slope.value
+
+    @computed_once
+    def slope(self) -> Slope:
+        """Slope dF/dw of the branch, with its error and, where it has no value, the reason.
 
         Raises
         ------
         NotConverged
-            If it is not known to :data:`STIFFNESS_ERROR`.
+            If it is not known to :data:`STIFFNESS_ERROR`, or as `solve_contact`.
 
         Notes
         -----
-        From K q = 1 on the nodes strictly between the bounds: the elastic response of these alone,
-        as yielded nodes keep their pressure, the hardness. Where nearly all of the contact yields
-        they are the cell or two that the force happens to leave below the hardness, while the
-        force rises by nodes that come into contact and yield: the number is one of the grid. So
-        where nodes yield it is missing with fewer than `RESOLVED_NODES` others in contact.
+        Of an elastic state the exact one, from K q = 1 on the contact domain. Where nodes yield the
+        secant of the loading branch (`slope.secant_slope`), from two more solves.
         """
-        operator, active = self._operator_on_active()
-        if active.size < RESOLVED_NODES and (self.pressure >= self.hardness).any():
-            return np.nan
+        if self._yields():
+            return secant_slope(self)
         with SOLVING.counted(0):
-            value, error = stiffness(operator, active)
+            value, error = stiffness(*self._operator_on_active())
         if not error <= STIFFNESS_ERROR:
             raise NotConverged("the stiffness equations on the contact set", self, error)
-        return value * self.space.modulus * self.space.cell
+        value *= self.space.modulus * self.space.cell
+        return Slope(value, STIFFNESS_ERROR * value)
+
+    def _yields(self):
+        """Whether a node is at its hardness."""
+        return bool((self.pressure >= self.hardness).any())
 
     def _operator_on_active(self):
         """An operator, and the nodes strictly between the bounds."""
@@ -242,6 +253,11 @@ class CandidateState(ContactState):
         if not np.array_equal(known.topography.clearance_at(known.nodes), known.clearance):
             raise ValueError("the composite topography of this state has been changed since")
         return self.displacement + known.topography.clearance() - self.closure
+
+    @property
+    def composite(self) -> np.ndarray:
+        """Composite topography that was solved, mm, (ny, nx)."""
+        return self._candidates.topography.height()
 
     @property
     def candidates(self) -> int:

@@ -8,7 +8,6 @@ from random_problems import random_problem
 
 from fractalcontact import HalfSpace, solve_contact
 from fractalcontact.accuracy.violation import violation
-from fractalcontact.core.limits import RESOLVED_NODES
 from fractalcontact.surface.synthesis import self_affine
 from roughcontact.contact.active_set import ActiveSetMethod
 from roughcontact.contact.bounds import Bounds
@@ -170,37 +169,3 @@ def test_any_start_leads_to_the_state(share):
         assert solution.residual <= 1e-8
         assert solution.pressure.sum() == pytest.approx(problem.load, rel=1e-8)
         np.testing.assert_allclose(solution.pressure, solutions[0].pressure, atol=1e-5)
-
-
-@pytest.mark.parametrize("control", ["force", "closure"])
-def test_stiffness_of_single_cells_beside_yielded_ones_is_missing(control):
-    """Whole nodes carry the hardness, and the force leaves a part of it to one more."""
-    height, space = rough(64, seed=9)
-    few, many = 0, 0
-    for hardness in (20.0, 200.0, 2000.0):
-        for nodes in (0.5, 3.5, 40.5, 400.5):
-            force = nodes * hardness * space.cell_area
-            state = solve_contact(height, space, force=force, hardness=hardness)
-            if control == "closure":
-                state = solve_contact(height, space, closure=state.closure, hardness=hardness)
-            elastic = np.count_nonzero((state.pressure > 0) & (state.pressure < state.hardness))
-            yields = (state.pressure == state.hardness).any()
-            assert np.isnan(state.stiffness) == (yields and elastic < RESOLVED_NODES)
-            few += np.isnan(state.stiffness)
-            many += yields and elastic >= RESOLVED_NODES
-    assert few
-    assert many
-
-
-def test_stiffness_beside_yielded_nodes_is_the_elastic_response_of_the_others():
-    """These are many: the slope of the force over the closure is that of a fixed set."""
-    height, space = rough(64, seed=10)
-    force = 0.2 * carried(space, 2000.0)
-    state = solve_contact(height, space, force=force, hardness=2000.0, rtol=1e-10)
-    assert (state.pressure == state.hardness).any()
-    step = 1e-7 * state.closure
-    forces = [
-        solve_contact(height, space, closure=closure, hardness=2000.0, rtol=1e-10).force
-        for closure in (state.closure - step, state.closure + step)
-    ]
-    assert state.stiffness == pytest.approx((forces[1] - forces[0]) / (2 * step), rel=1e-3)
