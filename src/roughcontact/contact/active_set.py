@@ -161,8 +161,10 @@ class ActiveSetMethod:
         if displacement is not None:
             _check_on_nodes(displacement, "displacement", operator)
         # A displacement comes with states of this half-space at other loads. A start without one is
-        # prolonged from a coarser grid, and its set nearly right, or from another half-space.
-        predictions = 0 if displacement is None or operator.inverse.small else SET_PREDICTIONS
+        # prolonged from a coarser grid, and its set nearly right, or from another half-space. On
+        # grids that only a start is made of (``at_least``) prediction gains nothing.
+        known = displacement is not None and not at_least
+        predictions = SET_PREDICTIONS if known and not operator.inverse.small else 0
         iterate = first_iterate(problem, operator, pressure, displacement)
         previous_active, violation = np.empty(0, np.int32), 0.0
         single_step_left = problem.nodes is None
