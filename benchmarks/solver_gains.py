@@ -71,14 +71,14 @@ class Identity:
 
 
 def _uniform(problem):
-    return np.full(problem.clearance.size, min(1.0, problem.cap))
+    return problem.bounds.clip(np.ones(problem.clearance.size))
 
 
 _CLIPPED_STEP = projected_cg.ProjectedCG.clipped_step
 
 
 def _unclipped_step(equations, start, bounds, total):
-    _CLIPPED_STEP(equations, start, (-np.inf, np.inf), total)
+    _CLIPPED_STEP(equations, start, active_set.UNBOUNDED, total)
 
 
 def _factor_alone(correction, residual, inverse):

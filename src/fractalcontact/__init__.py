@@ -24,6 +24,7 @@ _HOMES = {
     "box_dimension": ".domain.box_dimension",
     "fit_hyperbola": ".mechanics.closure_laws",
     "interface_closure": ".mechanics.closure",
+    "load_path": "roughcontact.contact.path",
     "open_atlas": ".study.atlas_parts",
     "read_atlas": ".study.atlas",
     "read_faces": ".scan.read",

@@ -1,5 +1,6 @@
 """What type checkers and editors see of the package, whose names are imported when asked for."""
 
+from roughcontact.contact.path import load_path as load_path
 from roughcontact.contact.solve import solve_contact as solve_contact
 from roughcontact.contact.state import ContactState as ContactState
 from roughcontact.elastic.halfspace import HalfSpace as HalfSpace

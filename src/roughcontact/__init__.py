@@ -14,9 +14,11 @@ from typing import Any
 
 #: Module of each name.
 _HOMES = {
+    "BranchState": ".contact.path",
     "ContactState": ".contact.state",
     "HalfSpace": ".elastic.halfspace",
     "NotConverged": ".errors",
+    "load_path": ".contact.path",
     "solve_contact": ".contact.solve",
 }
 __all__ = sorted(_HOMES)

@@ -1,5 +1,7 @@
 """What type checkers and editors see of the package, whose names are imported when asked for."""
 
+from .contact.path import BranchState as BranchState
+from .contact.path import load_path as load_path
 from .contact.solve import solve_contact as solve_contact
 from .contact.state import ContactState as ContactState
 from .elastic.halfspace import HalfSpace as HalfSpace

@@ -21,6 +21,11 @@ ENSEMBLES: dict[str, tuple] = {
     "candidate problems": (20, 1000),
     "random energies": (10, 60),
     "capped programmes": (20, 200),
+    "hardness of each node": (3, 40),
+    "paths between bounds": (4, 100),
+    "side of a path between bounds": (18, 48),
+    "cycles of random surfaces": (8, 200),
+    "nodes across a sphere": (128, 512),
     "candidate problem side": (80, 200),
     # accuracy
     "random problems": (50, 300),

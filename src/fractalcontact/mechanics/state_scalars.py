@@ -87,5 +87,5 @@ def state_errors(state: ContactState) -> dict[str, float]:
         "nodes_error": ambiguous,
         "perimeter_error": ambiguous * 2 * (dy + dx),
         "area_corrected_error": ambiguous * (1 + 4 * EDGE_EXCESS) * space.cell_area,
-        "stiffness_error": fraction * state.stiffness,
+        "stiffness_error": max(fraction * state.stiffness, state.slope.error),
     }

@@ -369,7 +369,7 @@ def whole_areas(loading: JointLoading[JointSettings], states: xr.Dataset) -> xr.
 def _corrected(state: ContactState) -> float:
     """Corrected area, mm2: no less than what carries the force at the largest pressure."""
     area = float(corrected_area(state.in_contact, state.space.spacing))
-    return max(area, state.force / state.hardness)
+    return max(area, float(state.force / state.hardness))
 
 
 def _ladder(pressures: np.ndarray, hardness: float) -> np.ndarray:

@@ -18,6 +18,7 @@ from enum import Enum, auto
 import numpy as np
 
 from ..kernel_cache import njit
+from .bounds import Bounds
 from .feasible import first_iterate, verified
 from .kkt import Iterate, KKTResidual, Problem, Solution, kkt_residual
 from .node_sets import symmetric_difference
@@ -55,6 +56,8 @@ SINGLE_PRECISION_FLOOR = 1e-5
 # Clearance, in the closures or lengths that a problem is stated in, beyond which single precision
 # cannot judge even a start: what it rounds off may then be more than the closure.
 SINGLE_PRECISION_CLEARANCE = 1e6
+# Of a step that is not clipped.
+UNBOUNDED = Bounds(-np.inf, np.inf)
 _FLOAT64 = np.dtype(np.float64)
 
 
@@ -158,8 +161,10 @@ class ActiveSetMethod:
         if displacement is not None:
             _check_on_nodes(displacement, "displacement", operator)
         # A displacement comes with states of this half-space at other loads. A start without one is
-        # prolonged from a coarser grid, and its set nearly right, or from another half-space.
-        predictions = 0 if displacement is None or operator.inverse.small else SET_PREDICTIONS
+        # prolonged from a coarser grid, and its set nearly right, or from another half-space. On
+        # grids that only a start is made of (``at_least``) prediction gains nothing.
+        known = displacement is not None and not at_least
+        predictions = SET_PREDICTIONS if known and not operator.inverse.small else 0
         iterate = first_iterate(problem, operator, pressure, displacement)
         previous_active, violation = np.empty(0, np.int32), 0.0
         single_step_left = problem.nodes is None
@@ -179,7 +184,7 @@ class ActiveSetMethod:
                 kkt = self._kkt_residual(iterate)
             violation = kkt.largest
             if exact:
-                kkt = without_entering(kkt, iterate.pressure, problem.cap)
+                kkt = without_entering(kkt, iterate.pressure, problem.bounds)
             single_step = may_end and single_step_left
             linear_solve = self._linear_solve(kkt, iterate.closure, exact, single_step)
             operator.precondition(kkt.active, fresh=iteration == 0)
@@ -216,7 +221,7 @@ class ActiveSetMethod:
             iterate.displacement,
             problem.clearance,
             iterate.closure,
-            problem.cap,
+            problem.bounds,
         )
 
     def _step(
@@ -237,13 +242,15 @@ class ActiveSetMethod:
         Conjugate gradients, and unclipped steps, may take pressures beyond their bounds. Such nodes
         are ``infeasible`` in the next iteration, which puts them at the bound.
         """
-        cap, clipped = self.problem.cap, linear_solve is not LinearSolve.EXACT
-        bound = np.where(iterate.pressure[kkt.infeasible] < 0, 0.0, cap)
+        clipped = linear_solve is not LinearSolve.EXACT
+        bound = self.problem.bounds.at(kkt.infeasible).clip(iterate.pressure[kkt.infeasible])
         working = WorkingSet(kkt.active, kkt.infeasible, bound)
         equations, change, scale = self._preconditioned_step(iterate, working, clipped)
-        leaving = equations.at_zero | equations.at_cap
+        leaving = equations.at_lower | equations.at_upper
         if predict and 0 < np.count_nonzero(leaving) <= MOST_LEFT_OUT * leaving.size:
-            working = working.without(leaving, np.where(equations.at_zero[leaving], 0.0, cap))
+            left = self.problem.bounds.at(working.active[leaving])
+            bound = np.where(equations.at_lower[leaving], left.lower, left.upper)
+            working = working.without(leaving, bound)
             self.operator.precondition(working.active, fresh=False)
             equations, change, scale = self._preconditioned_step(iterate, working, clipped)
         if linear_solve is not LinearSolve.SINGLE_STEP:
@@ -254,7 +261,8 @@ class ActiveSetMethod:
         iterate.pressure[working.fixed] = working.bound
         _add_step(
             *(iterate.pressure, working.active, scale, equations.solution),
-            *(equations.at_zero, equations.at_cap, cap),
+            *(equations.at_lower, equations.at_upper),
+            *self.problem.bounds.on(iterate.pressure.size),
         )
         iterate.closure += scale * equations.multiplier
 
@@ -272,7 +280,7 @@ class ActiveSetMethod:
             problem.load if problem.by_force else np.nan,
         )
         equations = ProjectedCG(self.operator, working.active, right_side)
-        bounds = (0.0, problem.cap / scale) if clipped else (-np.inf, np.inf)
+        bounds = problem.bounds.at(working.active).over(scale) if clipped else UNBOUNDED
         equations.clipped_step(start, bounds, carried if problem.by_force else None)
         return equations, change, scale
 
@@ -329,15 +337,15 @@ def _scaled(pressure, gap, active, fixed, bound, load):
 
 
 @njit(cache=True)
-def _add_step(pressure, active, scale, step, at_zero, at_cap, cap):
+def _add_step(pressure, active, scale, step, at_lower, at_upper, lower, upper):
     """Add a step to the pressure of the active nodes.
 
     Those that it takes to a bound are put exactly there, where rounding leaves them next to it.
     """
     for i in range(active.size):
-        if at_zero[i]:
-            pressure[active[i]] = 0.0
-        elif at_cap[i]:
-            pressure[active[i]] = cap
+        if at_lower[i]:
+            pressure[active[i]] = lower[active[i]]
+        elif at_upper[i]:
+            pressure[active[i]] = upper[active[i]]
         else:
             pressure[active[i]] += scale * step[i]

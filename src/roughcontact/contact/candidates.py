@@ -21,6 +21,7 @@ from ..elastic.halfspace import HalfSpace
 from ..elastic.multipole import multipole_suits
 from ..kernel_cache import njit
 from .active_set import ActiveSetMethod
+from .bounds import Bounds
 from .kkt import Problem, Solution, coarser_load
 from .nested_iteration import (
     COARSE_ITERATIONS,
@@ -79,8 +80,8 @@ class LoadCase:
         The closure, or the sum of the pressures, in units as in `Problem`.
     by_force : bool
         Which of the two.
-    cap : float
-        Largest pressure, or infinity.
+    bounds : Bounds
+        Of the pressure, the same on all nodes wherever candidates are chosen.
     level : int
         How many times coarser than that of the topography the grid is, as a power of two.
     """
@@ -90,7 +91,7 @@ class LoadCase:
     length: float
     load: float
     by_force: bool
-    cap: float
+    bounds: Bounds
     level: int = 0
 
     def coarser(self) -> "LoadCase":
@@ -100,8 +101,13 @@ class LoadCase:
         -------
         LoadCase
         """
-        load, cap = coarser_load(self.load, self.by_force, self.cap)
-        return replace(self, space=self.space.coarser(2), load=load, cap=cap, level=self.level + 1)
+        return replace(
+            self,
+            space=self.space.coarser(2),
+            load=coarser_load(self.load, self.by_force),
+            bounds=self.bounds.coarser(self.space.shape),
+            level=self.level + 1,
+        )
 
     def problem(self) -> Problem:
         """The problem on the whole window.
@@ -111,19 +117,19 @@ class LoadCase:
         Problem
         """
         clearance = self.topography.clearance(self.level).ravel() / self.length
-        return Problem(self.space, clearance, self.load, self.by_force, self.cap)
+        return Problem(self.space, clearance, self.load, self.by_force, self.bounds)
 
     @cached_property
     def least_closure(self) -> float:
         """Lower bound on the closure of a given force: that of the bearing area that can carry it.
 
-        No node carries more than the cap, and what touches has no more clearance than the closure,
-        as displacements are nowhere negative. 0 without a cap.
+        No node carries more than its bound, and what touches has no more clearance than the
+        closure, as displacements are nowhere negative. 0 without an upper bound.
         """
-        if not self.by_force or np.isinf(self.cap):
+        if not self.by_force or self.bounds.elastic:
             return 0.0
         total = self.space.shape[0] * self.space.shape[1]
-        touching = min(max(math.ceil(self.load / self.cap), 1), total)
+        touching = min(max(math.ceil(self.load / self.bounds.upper), 1), total)
         return self.topography.bearing_clearance(touching, self.level) / self.length
 
     def restricted(
@@ -144,7 +150,7 @@ class LoadCase:
         Restricted or None
         """
         total = self.space.shape[0] * self.space.shape[1]
-        if self.load > MOST_CANDIDATES * total * self.cap and self.by_force:
+        if self.load > MOST_CANDIDATES * total * self.bounds.upper and self.by_force:
             return None
         if bound < MARGIN * self.least_closure:
             bound, cells = MARGIN * self.least_closure, None
@@ -157,7 +163,7 @@ class LoadCase:
             if gain * levels.work * BATCH > total * np.log2(total):
                 return None
         clearance = self.topography.clearance_at(nodes, self.level) / self.length
-        problem = Problem(self.space, clearance, self.load, self.by_force, self.cap, nodes)
+        problem = Problem(self.space, clearance, self.load, self.by_force, self.bounds, nodes)
         return Restricted(problem, bound, Operator(self.space, nodes, levels))
 
 
@@ -294,7 +300,7 @@ def _start(case):
     if coarse_case.space.shape[0] * coarse_case.space.shape[1] > KEPT_CELLS:
         forget_preconditioner(coarse_case.space)
     bound = _bound(case, solution.closure, coarse.coarse_closure)
-    if solution.pressure.max() >= coarse_case.cap:
+    if coarse_case.bounds.reached_by(solution.pressure):
         growth = case.least_closure - coarse_case.least_closure
         bound = max(bound, MARGIN * (solution.closure + growth))
     # Whatever is a candidate here lies in a cell that is one of the same bound there.
@@ -317,7 +323,7 @@ def _start(case):
     pressure = pressure.reshape(coarse_case.space.shape)
     clearance = problem.clearance.reshape(case.space.shape)
     pressure = prolong(pressure, clearance, case.space.near_influence(4))
-    return _Start(problem, None, np.minimum(pressure, case.cap).ravel(), solution.closure)
+    return _Start(problem, None, case.bounds.clip(pressure.ravel()), solution.closure)
 
 
 def _bound(case, closure, coarser_closure):
@@ -341,7 +347,7 @@ def _prolonged(case, cells, pressure, nodes):
         *(cells, pressure, padded, height, case.topography.highest, case.length),
         case.space.near_influence(4),
     )
-    return np.minimum(padded[nodes // nx + 2, nodes % nx + 2], case.cap)
+    return case.bounds.clip(padded[nodes // nx + 2, nodes % nx + 2])
 
 
 @njit(cache=True)

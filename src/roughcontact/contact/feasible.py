@@ -42,15 +42,15 @@ def verified(
     """The iterate projected on its bounds, with a displacement in double precision.
 
     Or of another ``dtype``: float32 is enough for what is but a start on a finer grid. Under a
-    given force it is also scaled to that, as far as the cap allows. Whoever asks for it reads from
-    the ``residual`` whether it is a state of contact.
+    given force it is also scaled to that, as far as the bounds allow. Whoever asks for it reads
+    from the ``residual`` whether it is a state of contact.
     """
     closure, lacking = iterate.closure, 0.0
-    pressure = np.clip(iterate.pressure, 0.0, problem.cap)
+    pressure = problem.bounds.clip(iterate.pressure)
     if problem.by_force:
         if not pressure.any():
             pressure = problem.first_touch()
-        _scale_to(problem.load, pressure, problem.cap)
+        _scale_to(problem.load, pressure, *problem.bounds.on(pressure.size))
         lacking = abs(1 - pressure.sum() / problem.load)
     if dtype is np.float64:
         displacement = operator(pressure)
@@ -59,7 +59,7 @@ def verified(
         displacement = unit * operator((pressure / unit).astype(dtype)).astype(float)
     if problem.by_force:
         closure = problem.closure_at_force(pressure, displacement)
-    kkt = kkt_residual(pressure, displacement, problem.clearance, closure, problem.cap)
+    kkt = kkt_residual(pressure, displacement, problem.clearance, closure, problem.bounds)
     residual = max(kkt.largest / abs(closure), lacking)
     return Solution(pressure, displacement, closure, residual, operator.applications)
 
@@ -69,11 +69,11 @@ def _scaled_to_force(problem, operator, pressure, displacement):
     total = np.maximum(pressure, 0.0).sum()
     if not total > 0:
         return problem.first_touch(), None
-    factor = problem.load / total
-    if pressure.max() * factor > problem.cap:
+    factor, bounds = problem.load / total, problem.bounds
+    if (pressure * factor > bounds.upper).any():
         # What the loaded nodes cannot carry, the first step gives to the next ones to touch.
-        pressure = np.clip(pressure, 0.0, problem.cap)
-        _scale_to(problem.load, pressure, problem.cap)
+        pressure = bounds.clip(pressure)
+        _scale_to(problem.load, pressure, *bounds.on(pressure.size))
         return pressure, None
     return pressure * factor, None if displacement is None else displacement * factor
 
@@ -87,27 +87,29 @@ def _energy_factor(problem, pressure, displacement):
     if problem.by_force or not work > 0:
         return 1.0
     factor = pressure @ (problem.load - problem.clearance) / work
-    return min(factor, problem.cap / pressure.max()) if factor > 0 else 1.0
+    loaded = np.flatnonzero(pressure > 0)
+    most = np.min(problem.bounds.at(loaded).upper / pressure[loaded])
+    return min(factor, float(most)) if factor > 0 else 1.0
 
 
 @njit(cache=True)
-def _scale_to(total, pressure, cap):
-    """Scale a pressure to a total in place, none above the cap.
+def _scale_to(total, pressure, lower, upper):
+    """Scale a pressure, as far as it is above its lower bounds, to a total in place.
 
-    Less than the total is left only where all that was positive is at the cap.
+    Less than the total is left only where all that was above them is at the upper ones.
     """
     passes, reached = 0, True
     while reached or passes < CLIPPING_PASSES:
-        lacking, below_cap = total, 0.0
-        for value in pressure:
-            lacking -= value
-            if value < cap:
-                below_cap += value
-        if abs(lacking) <= FORCE_ROUNDING * total or below_cap == 0:
-            break
-        factor, reached = 1 + lacking / below_cap, False
+        lacking, between = total, 0.0
         for i in range(pressure.size):
-            if 0 < pressure[i] < cap:
-                pressure[i] = min(pressure[i] * factor, cap)
-                reached = reached or pressure[i] == cap
+            lacking -= pressure[i]
+            if pressure[i] < upper[i]:
+                between += pressure[i] - lower[i]
+        if abs(lacking) <= FORCE_ROUNDING * total or between == 0:
+            break
+        factor, reached = 1 + lacking / between, False
+        for i in range(pressure.size):
+            if lower[i] < pressure[i] < upper[i]:
+                pressure[i] = min(lower[i] + (pressure[i] - lower[i]) * factor, upper[i])
+                reached = reached or pressure[i] == upper[i]
         passes += 1

@@ -17,10 +17,9 @@ from .nested_iteration import (
     COARSE_ITERATIONS,
     KEPT_CELLS,
     redistribute_padded,
-    restrict_minimum,
-    restrict_sum,
 )
 from .preconditioner import forget_preconditioner
+from .restriction import restrict_minimum, restrict_sum
 
 # Least nodes along the shorter side: on smaller windows the coarse solves cost as much as the
 # applications they save.
@@ -33,7 +32,7 @@ WORTHWHILE = 1e-2
 # A change is found to this on coarser grids, nearer than a cold start. What is left of it takes
 # applications on the fine grid.
 CHANGE_RTOL = 1e-2
-# Extrapolated from two states, a pressure at the cap in both may miss it by rounding.
+# Extrapolated from two states, a pressure at its bound in both may miss it by rounding.
 CAP_ROUNDING = 1e-9
 
 
@@ -56,13 +55,12 @@ def full_approximation_start(
     """
     if min(problem.space.shape) < LEAST_FINE_SIDE:
         return None
-    clearance, cap = problem.clearance, problem.cap
-    mean = mean_closure(pressure, displacement, clearance, cap)
-    yields = pressure.max() >= (1 - CAP_ROUNDING) * cap
-    if yields or not np.isfinite(mean):
+    clearance, bounds = problem.clearance, problem.bounds
+    mean = mean_closure(pressure, displacement, clearance, bounds)
+    if bounds.reached_by(pressure, CAP_ROUNDING) or not np.isfinite(mean):
         return None
     closure = mean if problem.by_force else problem.load
-    kkt = kkt_residual(pressure, displacement, clearance, closure, cap)
+    kkt = kkt_residual(pressure, displacement, clearance, closure, bounds)
     if kkt.largest <= WORTHWHILE * closure:
         return None
     return _changed_pressure(problem, pressure, displacement + clearance - closure, closure)
@@ -71,7 +69,7 @@ def full_approximation_start(
 def _changed_pressure(problem, pressure, gap, closure):
     """The same for a state whose ``gap`` at a ``closure`` is known."""
     shape, space = problem.space.shape, problem.space.coarser(2)
-    before, gap = np.clip(pressure, 0.0, problem.cap).reshape(shape), gap.reshape(shape)
+    before, gap = problem.bounds.clip(pressure).reshape(shape), gap.reshape(shape)
     # Twice the mean of four is what a pressure is there: `coarser_load`.
     coarse_before, coarse_gap = restrict_sum(before) / 2, restrict_minimum(gap)
     displacement = _displacement(space, coarse_before)
@@ -90,7 +88,7 @@ def _changed_pressure(problem, pressure, gap, closure):
     _in_proportion(before, coarse_before, solution.pressure.reshape(space.shape), padded)
     redistribute_padded(before, padded, gap, problem.space.near_influence(4))
     before += padded[2 : ny + 2, 2 : nx + 2]
-    return np.minimum(before, problem.cap, out=before).ravel()
+    return problem.bounds.clip(before.ravel())
 
 
 def _displacement(space: HalfSpace, pressure: np.ndarray) -> np.ndarray:

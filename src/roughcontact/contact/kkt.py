@@ -1,10 +1,10 @@
 """The contact problem and its complementarity (KKT) conditions: how far a pressure is from them.
 
-With the gap g = K p + c - w at the nodes (c the clearance at first touch, w the closure, H a cap on
-the pressure) a state of contact has 0 <= p <= H, and g = 0 where p lies between, g >= 0 where it is
-0, g <= 0 where it is H. These are the Karush-Kuhn-Tucker conditions of a strictly convex quadratic
-programme between bounds: minimise p.K p / 2 + p.(c - w) over 0 <= p <= H. Where the force is given,
-w is the Lagrange multiplier of the sum of p.
+With the gap g = K p + c - w at the nodes (c the clearance at first touch, w the closure, H a bound
+on the pressure) a state of contact has 0 <= p <= H, and g = 0 where p lies between, g >= 0 where
+it is 0, g <= 0 where it is H. These are the Karush-Kuhn-Tucker conditions of a strictly convex
+quadratic programme between bounds: minimise p.K p / 2 + p.(c - w) over 0 <= p <= H. Where the force
+is given, w is the Lagrange multiplier of the sum of p.
 """
 
 from dataclasses import dataclass
@@ -13,9 +13,12 @@ import numpy as np
 
 from ..elastic.halfspace import HalfSpace
 from ..kernel_cache import njit
+from .bounds import Bounds
 
 # A total this close to F is F.
 FORCE_ROUNDING = 1e-12
+# No pressure is below 0, none too high.
+ELASTIC = Bounds()
 
 
 @dataclass
@@ -31,8 +34,8 @@ class Problem:
         The closure, or the sum of the pressures.
     by_force : bool
         Which of the two.
-    cap : float
-        Largest pressure, or infinity.
+    bounds : Bounds
+        Of the pressure.
     nodes : (n,) int32 ndarray or None
         Numbers of the cells that may touch, ascending, where the problem is restricted to these:
         whatever is on nodes is then on them alone. None where it is on the whole window.
@@ -42,7 +45,7 @@ class Problem:
     clearance: np.ndarray
     load: float
     by_force: bool
-    cap: float = np.inf
+    bounds: Bounds = ELASTIC
     nodes: np.ndarray | None = None
 
     def coarser(self, clearance: np.ndarray) -> "Problem":
@@ -53,51 +56,52 @@ class Problem:
         clearance : (m,) ndarray
             c at every node of that grid.
         """
-        load, cap = coarser_load(self.load, self.by_force, self.cap)
-        return Problem(self.space.coarser(2), clearance, load, self.by_force, cap)
+        load = coarser_load(self.load, self.by_force)
+        bounds = self.bounds.coarser(self.space.shape)
+        return Problem(self.space.coarser(2), clearance, load, self.by_force, bounds)
 
     def first_touch(self) -> np.ndarray:
-        """The given force on the nodes that touch first, as far as the cap lets them carry it.
+        """The given force on the nodes that touch first, as far as bounds let them carry it.
 
         Where nothing better is known: forces so small that the depths of all other nodes drown
         theirs leave no other start.
         """
         touching = self.clearance == 0
-        return touching * min(self.load / np.count_nonzero(touching), self.cap)
+        return self.bounds.clip(touching * (self.load / np.count_nonzero(touching)))
 
     def closure_at_force(self, pressure: np.ndarray, displacement: np.ndarray) -> float:
         """The closure at which a given force acts: it makes the mean gap in contact vanish.
 
-        Where all that touches is at the cap, the conditions hold for any closure that overlaps all
-        of it and nothing else. It is the least of these; where there is none, the mean still leads
-        on.
+        Where all that touches is at its upper bound, the conditions hold for any closure that
+        overlaps all of it and nothing else. It is the least of these; where there is none, the mean
+        still leads on.
         """
-        mean = mean_closure(pressure, displacement, self.clearance, self.cap)
+        mean = mean_closure(pressure, displacement, self.clearance, self.bounds)
         if np.isfinite(mean):
             return mean
-        reached, capped = displacement + self.clearance, pressure > 0
+        reached, capped = displacement + self.clearance, pressure > self.bounds.lower
         least = reached[capped].max()
         if least <= reached[~capped].min(initial=np.inf):
             return least
         return reached[capped].mean()
 
 
-def coarser_load(load: float, by_force: bool, cap: float) -> tuple[float, float]:
-    """Load and cap of a problem, on the grid twice as coarse.
+def coarser_load(load: float, by_force: bool) -> float:
+    """Load of a problem, on the grid twice as coarse.
 
-    In units of the fine grid the same pressure displaces cells twice as wide twice as much: its
-    number is doubled there. The sum of the pressures is over a fourth of the cells, and so halved.
+    The number of a pressure is doubled there (`Bounds.coarser`), and the sum is over a fourth of
+    the cells: it is halved.
 
     Parameters
     ----------
-    load, by_force, cap
+    load, by_force
         As of `Problem`.
 
     Returns
     -------
-    load, cap : float
+    float
     """
-    return load / 2 if by_force else load, 2 * cap
+    return load / 2 if by_force else load
 
 
 @dataclass
@@ -165,7 +169,7 @@ def kkt_residual(
     displacement: np.ndarray,
     clearance: np.ndarray,
     closure: float,
-    cap: float,
+    bounds: Bounds,
 ) -> KKTResidual:
     """Residual of the contact conditions.
 
@@ -174,8 +178,7 @@ def kkt_residual(
     pressure, displacement, clearance : (n,) ndarray
         p, K p and c at every node.
     closure : float
-    cap : float
-        Largest pressure, or infinity.
+    bounds : Bounds
 
     Returns
     -------
@@ -188,10 +191,11 @@ def kkt_residual(
     """
     if not pressure.shape == displacement.shape == clearance.shape:
         raise ValueError("expected pressure, displacement and clearance of one size")
-    return KKTResidual(*_kkt_residual(pressure, displacement, clearance, closure, cap))
+    on_nodes = bounds.on(pressure.size)
+    return KKTResidual(*_kkt_residual(pressure, displacement, clearance, closure, *on_nodes))
 
 
-def frank_wolfe_gap(pressure: np.ndarray, gap: np.ndarray, cap: float) -> float:
+def frank_wolfe_gap(pressure: np.ndarray, gap: np.ndarray, upper: float | np.ndarray) -> float:
     """Bound on how far the energy of a pressure is above the least of the same force.
 
     Parameters
@@ -199,8 +203,8 @@ def frank_wolfe_gap(pressure: np.ndarray, gap: np.ndarray, cap: float) -> float:
     pressure, gap : (n,) ndarray
         Between the bounds; and K p + c, less any constant. Nodes that are further apart than all
         that carry pressure may be left out.
-    cap : float
-        Largest pressure, or infinity.
+    upper : float or (n,) ndarray
+        Largest pressure, or infinity; the least is 0.
 
     Returns
     -------
@@ -213,65 +217,62 @@ def frank_wolfe_gap(pressure: np.ndarray, gap: np.ndarray, cap: float) -> float:
     energy among those of the same sum F and the same bounds, E(p) - E(p*) <= v.(p - p*) <= G,
     the largest v.(p - q) over all such q: the Frank-Wolfe gap (M. Frank and P. Wolfe, Naval
     Res. Logist. Quart. 3 (1956) 95; M. Jaggi, Proc. 30th Int. Conf. Mach. Learn. (2013) 427).
-    Without a cap the best q puts F on the node of least v, and G = sum p_i (v_i - min v); with
-    a cap H it puts H on each of the F / H nodes of least v. A constant in v, such as the
-    closure, changes nothing.
+    The best q loads the nodes in the order of v, each as far as its bound H lets it: without one,
+    that of least v alone, and G = sum p_i (v_i - min v). A constant in v, such as the closure,
+    changes nothing.
     """
     loaded = pressure > 0
     if not loaded.any():
         return 0.0
-    within = gap[gap <= gap[loaded].max()]
-    excess = within - within.min()
-    total = pressure[loaded] @ (gap[loaded] - within.min())
-    if np.isfinite(cap):
-        whole, rest = divmod(pressure[loaded].sum() / cap, 1.0)
-        most = min(int(whole), excess.size - 1)
-        excess = np.partition(excess, most)
-        total -= cap * (excess[:most].sum() + rest * excess[most])
-    return max(float(total), 0.0)
+    within = gap <= gap[loaded].max()
+    excess, total = gap[within] - gap[within].min(), pressure[loaded].sum()
+    order = np.argsort(excess)
+    most = np.minimum(np.broadcast_to(upper, gap.shape)[within][order], total)
+    best = np.clip(total - (np.cumsum(most) - most), 0.0, most)
+    return max(float(pressure[within] @ excess - best @ excess[order]), 0.0)
 
 
-def nodes_between_bounds(pressure: np.ndarray, cap: float) -> np.ndarray:
-    """Nodes at which neither bound is active, (n,) int32: those whose gap stays 0."""
-    return np.flatnonzero((pressure > 0) & (pressure < cap)).astype(np.int32)
+def mean_closure(
+    pressure: np.ndarray, displacement: np.ndarray, clearance: np.ndarray, bounds: Bounds
+) -> float:
+    """Closure at which the mean gap of the nodes between the bounds vanishes; NaN without any."""
+    if not pressure.shape == displacement.shape == clearance.shape:
+        raise ValueError("expected pressure, displacement and clearance of one size")
+    return _mean_closure(pressure, displacement, clearance, *bounds.on(pressure.size))
 
 
 @njit(cache=True)
-def mean_closure(
-    pressure: np.ndarray, displacement: np.ndarray, clearance: np.ndarray, cap: float
-) -> float:
-    """Closure at which the mean gap of the nodes between the bounds vanishes; NaN without any."""
-    if pressure.size != displacement.size or pressure.size != clearance.size:
-        raise ValueError("expected pressure, displacement and clearance of one size")
+def _mean_closure(pressure, displacement, clearance, lower, upper):
+    """The same, of bounds on each node."""
     total, n = 0.0, 0
     for i in range(pressure.size):
-        if 0 < pressure[i] < cap:
+        if lower[i] < pressure[i] < upper[i]:
             total += displacement[i] + clearance[i]
             n += 1
     return total / n if n else np.nan
 
 
 @njit(cache=True)
-def _kkt_residual(pressure, displacement, clearance, closure, cap):
+def _kkt_residual(pressure, displacement, clearance, closure, lower, upper):
     """The parts of :class:`KKTResidual`."""
     active = np.empty(pressure.size, np.int32)
     infeasible = np.empty(pressure.size, np.int32)
     n, m, largest = 0, 0, 0.0
     for i in range(pressure.size):
-        p = pressure[i]
-        if p < 0 or p > cap:
+        p, low, high = pressure[i], lower[i], upper[i]
+        if p < low or p > high:
             infeasible[m] = i
             m += 1
-            largest = max(largest, -p if p < 0 else p - cap)
+            largest = max(largest, low - p if p < low else p - high)
             continue
         gap = displacement[i] + clearance[i] - closure
-        if p == 0:
+        if p == low:
             violation = -gap
-        elif p == cap:
+        elif p == high:
             violation = gap
         else:
             violation = abs(gap)
-        if violation > 0 or (p > 0 and p < cap):
+        if violation > 0 or (p > low and p < high):
             active[n] = i
             n += 1
             largest = max(largest, violation)

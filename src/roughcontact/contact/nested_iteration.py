@@ -15,6 +15,7 @@ from .active_set import ActiveSetMethod
 from .dense import inverted
 from .kkt import Problem
 from .preconditioner import forget_preconditioner
+from .restriction import restrict_minimum
 
 # A grid of fewer nodes along its shorter side starts from a uniform pressure, all others from the
 # next coarser grid.
@@ -42,7 +43,7 @@ def nested_iteration_start(problem: Problem) -> np.ndarray:
     space = problem.space
     ny, nx = space.shape
     if min(ny, nx) < COARSEST_SIDE:
-        return np.full(ny * nx, min(1.0, problem.cap))
+        return problem.bounds.clip(np.ones(ny * nx))
     coarse = problem.coarser(restrict_minimum(problem.clearance.reshape(ny, nx)).ravel())
     method = ActiveSetMethod(coarse, COARSE_RTOL, dtype=np.float32)
     solution = method.solve(nested_iteration_start(coarse), at_least=COARSE_ITERATIONS)
@@ -50,32 +51,7 @@ def nested_iteration_start(problem: Problem) -> np.ndarray:
         forget_preconditioner(coarse.space)
     pressure = solution.pressure.reshape(coarse.space.shape) / 2
     pressure = prolong(pressure, problem.clearance.reshape(ny, nx), space.near_influence(4))
-    return np.minimum(pressure, problem.cap).ravel()
-
-
-# Compiled: numpy takes twenty times as long for axes of two.
-
-
-@njit(cache=True)
-def restrict_minimum(values: np.ndarray) -> np.ndarray:
-    """The smallest of each 2 x 2 nodes, an odd last row or column standing alone."""
-    ny, nx = values.shape
-    coarse_values = np.full(((ny + 1) // 2, (nx + 1) // 2), np.inf)
-    for y in range(ny):
-        for x in range(nx):
-            coarse_values[y // 2, x // 2] = min(coarse_values[y // 2, x // 2], values[y, x])
-    return coarse_values
-
-
-@njit(cache=True)
-def restrict_sum(values: np.ndarray) -> np.ndarray:
-    """The sum of each 2 x 2 nodes, an odd last row or column standing alone."""
-    ny, nx = values.shape
-    coarse_values = np.zeros(((ny + 1) // 2, (nx + 1) // 2))
-    for y in range(ny):
-        for x in range(nx):
-            coarse_values[y // 2, x // 2] += values[y, x]
-    return coarse_values
+    return problem.bounds.clip(pressure.ravel())
 
 
 @njit(cache=True)

@@ -11,6 +11,7 @@ single precision.
 import numpy as np
 
 from ..kernel_cache import njit
+from .bounds import Bounds
 from .operator import Operator
 
 # Applications in one solve: on an exact set about ten reach 1e-6.
@@ -47,7 +48,7 @@ class ProjectedCG:
         Lagrange multiplier of the sum.
     unclipped : (n,) float32 ndarray
         0 at nodes that keep the x they have, whatever their equation says; else 1.
-    at_zero, at_cap : (n,) bool ndarray
+    at_lower, at_upper : (n,) bool ndarray
         Those that a clipped step took to a bound.
 
     Raises
@@ -64,13 +65,11 @@ class ProjectedCG:
         self.solution = np.zeros(active.size, np.float32)
         self.image = np.zeros(operator.size, np.float32)
         self.unclipped = np.ones(active.size, np.float32)
-        self.at_zero = self.at_cap = np.zeros(active.size, bool)
+        self.at_lower = self.at_upper = np.zeros(active.size, bool)
         self.multiplier = 0.0
         self._response: np.ndarray | None = None
 
-    def clipped_step(
-        self, start: np.ndarray, bounds: tuple[float, float], total: float | None
-    ) -> None:
+    def clipped_step(self, start: np.ndarray, bounds: Bounds, total: float | None) -> None:
         """The preconditioner's whole step, clipped so that start + x keeps within bounds.
 
         With a ``total``, start + x has that sum. What the step does is left to `apply_step`.
@@ -82,13 +81,14 @@ class ProjectedCG:
         """
         if start.shape != self.active.shape:
             raise ValueError(f"start {start.shape}: expected {self.active.shape}")
-        aim = start + self.inverse(self.residual)
+        aim, (low, high) = start + self.inverse(self.residual), bounds.on(start.size)
         if total is not None and self.active.size:  # it is empty where all that touches yields
             self._response = self.inverse(np.ones(self.active.size, np.float32))
-            multiplier = _multiplier_of_total(aim, self._response, *bounds, total)
+            multiplier = _multiplier_of_total(aim, self._response, low, high, total)
             self.residual += np.float32(multiplier)
             self.multiplier += multiplier
-        self.at_zero, self.at_cap = _clip(aim, start, *bounds, self.solution, self.unclipped)
+        clipped = _clip(aim, start, low, high, self.solution, self.unclipped)
+        self.at_lower, self.at_upper = clipped
 
     def apply_step(self, fixed: np.ndarray, change: np.ndarray) -> None:
         """Apply K to the step, and to the ``change`` of ``fixed`` nodes that goes with it."""
@@ -265,13 +265,15 @@ def _multiplier_of_total(aim, response, low, high, total):
     # Where the approximation is not positive, as K^-1 1 is, more closure still means more.
     response = np.maximum(response.astype(np.float64), LEAST_RESPONSE * response.mean())
     multiplier, least, most = 0.0, -np.inf, np.inf
-    passes, bounded = 0, np.isfinite(high - low)
+    passes, bounded = 0, True
+    for i in range(n):
+        bounded = bounded and np.isfinite(high[i] - low[i])
     while passes < CLIPPING_PASSES or bounded:
         missing, slope = total, 0.0
         for i in range(n):
             end = aim[i] + multiplier * response[i]
-            missing -= min(max(end, low), high)
-            if low < end < high:
+            missing -= min(max(end, low[i]), high[i])
+            if low[i] < end < high[i]:
                 slope += response[i]
         if abs(missing) <= 1e-7 * abs(total):
             break
@@ -299,9 +301,9 @@ def _clip(aim, start, low, high, step, unclipped):
     """The step to an aim between bounds; nodes that it takes to the lower and to the upper one."""
     at_low, at_high = np.empty(aim.size, np.bool_), np.empty(aim.size, np.bool_)
     for i in range(aim.size):
-        end = min(max(aim[i], low), high)
+        end = min(max(aim[i], low[i]), high[i])
         step[i] = end - start[i]
-        at_low[i], at_high[i] = end <= low, end >= high
+        at_low[i], at_high[i] = end <= low[i], end >= high[i]
         if at_low[i] or at_high[i]:
             unclipped[i] = 0
     return at_low, at_high

@@ -1,7 +1,7 @@
 """Closure of an iterate under a given force where nodes yield: that of a projected gradient step.
 
 The active contact set follows from the closure, and the force must come from that set, as every
-other node carries 0 or the cap H. Where nearly all that touches yields, few nodes lie between the
+other node is at a bound, 0 or H. Where nearly all that touches yields, few nodes lie between the
 bounds, and the closure of the last linear solve is theirs alone. All others that it makes enter or
 leave the set do so at once, in one direction, and the next solve sends them back: sets cycle. Where
 no node lies between the bounds there is no equation for the closure at all: no condition is
@@ -33,35 +33,45 @@ def closure_of_step(problem: Problem, iterate: Iterate) -> float:
     Returns
     -------
     float
-        That of the projected step under a given force where a node is at the cap, or none is
-        loaded; else the iterate's own.
+        That of the projected step under a given force where a node is at its upper bound, or all
+        are at the lower one; else the iterate's own.
     """
-    if not problem.by_force or np.isinf(problem.cap) or 0 < iterate.pressure.max() < problem.cap:
+    pressure, bounds = iterate.pressure, problem.bounds
+    if not problem.by_force or bounds.elastic:
         return iterate.closure
-    reached = np.clip(iterate.pressure, 0.0, problem.cap)
+    if (pressure > bounds.lower).any() and not bounds.reached_by(pressure):
+        return iterate.closure
+    reached = bounds.clip(pressure)
     np.subtract(iterate.displacement, reached, out=reached)
     reached += problem.clearance
-    return _closure_of_force(reached, iterate.closure, problem.cap, problem.load)
+    return _closure_of_force(reached, iterate.closure, *bounds.on(pressure.size), problem.load)
 
 
 @njit(cache=True)
-def _closure_of_force(reached, closure, cap, force):
-    """Closure w at which the sum of min(max(w - reached, 0), cap) is a force.
+def _closure_of_force(reached, closure, lower, upper, force):
+    """Closure w at which the sum of min(max(w - reached, lower), upper) is a force.
 
-    By Newton's method from a first guess, safeguarded by bisection: the sum rises with w, from 0 to
-    the cap on every node.
+    By Newton's method from a first guess, safeguarded by bisection: the sum rises with w, between
+    those of the bounds.
     """
-    low, high = np.min(reached), np.max(reached) + cap
+    low, high = np.inf, -np.inf
+    for i in range(reached.size):
+        low = min(low, reached[i] + lower[i])
+        # A node without an upper bound carries all of the force at most.
+        high = max(high, reached[i] + (upper[i] if upper[i] < np.inf else force))
     if not low < closure < high:
         closure = (low + high) / 2
     while low < closure < high:
         total, between = 0.0, 0
-        for end in reached:
-            if closure - end >= cap:
-                total += cap
-            elif closure > end:
-                total += closure - end
+        for i in range(reached.size):
+            push = closure - reached[i]
+            if push >= upper[i]:
+                total += upper[i]
+            elif push > lower[i]:
+                total += push
                 between += 1
+            else:
+                total += lower[i]
         if abs(total - force) <= FORCE_ROUNDING * force:
             break
         low, high = (closure, high) if total < force else (low, closure)

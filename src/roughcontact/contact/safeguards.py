@@ -14,8 +14,9 @@ from dataclasses import replace
 
 import numpy as np
 
+from .bounds import Bounds
 from .feasible import verified
-from .kkt import KKTResidual, Problem, Solution, nodes_between_bounds
+from .kkt import KKTResidual, Problem, Solution
 from .operator import Operator
 from .projected_cg import stiffness
 
@@ -54,11 +55,11 @@ def many_iterations_under_force(iterations: int, violation: float, closure: floa
     return iterations > (STALL if stalled else PATIENCE)
 
 
-def without_entering(kkt: KKTResidual, pressure: np.ndarray, cap: float) -> KKTResidual:
+def without_entering(kkt: KKTResidual, pressure: np.ndarray, bounds: Bounds) -> KKTResidual:
     """The same residual with an active set that no node enters while others leave."""
     if not kkt.infeasible.size:
         return kkt
-    inside = (pressure[kkt.active] > 0) & (pressure[kkt.active] < cap)
+    inside = bounds.at(kkt.active).between(pressure[kkt.active])
     return replace(kkt, active=kkt.active[inside])
 
 
@@ -98,7 +99,7 @@ def newton_on_closure(
             if state.residual <= rtol:
                 return state
         low, high = (closure, high) if total < problem.load else (low, closure)
-        slope, _ = stiffness(operator, nodes_between_bounds(solution.pressure, problem.cap))
+        slope, _ = stiffness(operator, problem.bounds.between(solution.pressure))
         if slope > 0:
             # Steep F(w): a closure within its tolerance must still give the force within its.
             steepness = max(1.0, slope * abs(closure) / problem.load)

@@ -17,6 +17,7 @@ from ..arguments import LEAST_INPUT, LEAST_RESULT, MOST_INPUT, MOST_RESULT, fiel
 from ..elastic.halfspace import HalfSpace
 from ..errors import NotConverged
 from .active_set import ActiveSetMethod
+from .bounds import Bounds
 from .candidates import (
     FROM_LOAD,
     MARGIN,
@@ -44,7 +45,7 @@ def solve_contact(
     force: float | None = None,
     start: ContactState | None = None,
     rtol: float = 1e-6,
-    hardness: float | None = None,
+    hardness: float | ArrayLike | None = None,
 ) -> ContactState:
     """The state of contact of a composite topography with a rigid plane.
 
@@ -63,8 +64,9 @@ def solve_contact(
     rtol : float
         Largest violation allowed of gap and pressure conditions, as a fraction of the closure;
         or, of a given force, as a fraction of it.
-    hardness : float, optional
-        H, MPa: the pressure at which the surface yields (elastic, then perfectly plastic).
+    hardness : float or (ny, nx) array_like, optional
+        H, MPa, of the surface or of each node: the pressure at which it yields (elastic, then
+        perfectly plastic). Infinite where a node does not.
 
     Returns
     -------
@@ -83,7 +85,7 @@ def solve_contact(
     if load == 0:
         return unloaded_state(space, topography.clearance())
     units = _Units(space, load, force is not None)
-    case = units.case(topography, checked_hardness(hardness, space, force))
+    case = units.case(topography, _hardness_of_nodes(hardness, space, force))
     with SOLVING.counted(1):
         problem, solution = _solve(case, units, load, start, rtol)
     state = units.state(solution, topography, problem, start)
@@ -96,7 +98,7 @@ def solve_contact(
 
 def _solve(case, units, load, start, rtol):
     """The problem as it was solved, and the solution: the caller checks its residual."""
-    restrict = may_restrict(case.space, rtol)
+    restrict = may_restrict(case.space, rtol) and case.bounds.uniform
     if start is None or not start.in_contact.any():
         if restrict:
             return solve_nested(case, rtol)
@@ -135,6 +137,19 @@ def checked_hardness(hardness: float | None, space: HalfSpace, force: float | No
             f"force {force:g} N: at hardness {hardness:g} MPa the window carries {most:g}"
         )
     return hardness
+
+
+def _hardness_of_nodes(hardness, space, force):
+    """The same of a surface, or of each node, (n,): then infinite where a node does not yield."""
+    if np.ndim(hardness) == 0:
+        return checked_hardness(hardness, space, force)
+    values = field(hardness, "hardness", space.shape)
+    if not (values >= LEAST_INPUT).all():
+        raise ValueError(f"hardness: expected > 0 MPa on each node, and at least {LEAST_INPUT:g}")
+    most = float(values.sum()) * space.cell_area
+    if force is not None and not force < most:
+        raise ValueError(f"force {force:g} N: at this hardness the window carries {most:g}")
+    return values.ravel()
 
 
 def checked_problem(
@@ -230,6 +245,11 @@ def _load_units(space, load, by_force):
     return pressure / stress_per_length, pressure
 
 
+def _on_grid(values, shape):
+    """Values of nodes, (n,), on their grid; one for all of them stays one."""
+    return values if np.ndim(values) == 0 else values.reshape(shape)
+
+
 class _Units:
     """Units in which the closure, or under a force the mean pressure, is one: no mm, no MPa."""
 
@@ -239,12 +259,12 @@ class _Units:
         self.load = float(space.shape[0] * space.shape[1]) if by_force else 1.0
 
     def case(self, topography, hardness):
-        cap = hardness / self.pressure
-        if cap < LEAST_RESULT:
+        bounds = Bounds(0.0, hardness).over(self.pressure)
+        if np.min(bounds.upper) < LEAST_RESULT:
             raise ValueError(
-                f"hardness {hardness:g}: too low for pressures of {self.pressure:g} MPa"
+                f"hardness {np.min(hardness):g}: too low for pressures of {self.pressure:g} MPa"
             )
-        return LoadCase(self.space, topography, self.length, self.load, self.by_force, cap)
+        return LoadCase(self.space, topography, self.length, self.load, self.by_force, bounds)
 
     def candidates(self, case, start, load):
         """The candidates at a load, a pressure on them, and its displacement; None if too many.
@@ -316,7 +336,7 @@ class _Units:
             "residual": solution.residual if math.isfinite(force) else math.nan,
             "iterations": solution.applications,
             "space": space,
-            "hardness": problem.cap * self.pressure,
+            "hardness": _on_grid(problem.bounds.upper, space.shape) * self.pressure,
         }
         if problem.nodes is not None:
             pressure = np.zeros(space.shape)

@@ -8,12 +8,13 @@ import numpy as np
 
 from ..elastic.halfspace import HalfSpace
 from ..errors import NotConverged
-from ..limits import RESOLVED_NODES
 from ..threads import computed_once
+from .bounds import Bounds
 from .effort import SOLVING
-from .kkt import frank_wolfe_gap, nodes_between_bounds
+from .kkt import frank_wolfe_gap
 from .operator import Operator
 from .projected_cg import stiffness
+from .slope import Slope, secant_slope
 from .topography import Topography
 
 # Largest relative error of the stiffness.
@@ -32,7 +33,7 @@ class ContactState:
         Elastic displacement u = K p of the composite surface, mm.
     gap : (ny, nx) ndarray
         Remaining opening, mm; within ``residual`` times the closure of zero in contact, where
-        the pressure is not at the cap.
+        the pressure is not at the hardness.
     closure : float
         w from first touch, mm: the rigid-body approach (indentation) of contact mechanics.
     force : float
@@ -45,8 +46,8 @@ class ContactState:
         grids, for a start, are not counted.
     space : HalfSpace
         The operator it was solved with.
-    hardness : float
-        Largest pressure, MPa; infinity for an elastic surface.
+    hardness : float or (ny, nx) ndarray
+        Largest pressure, MPa, of all nodes or of each; infinity for an elastic surface.
     """
 
     pressure: np.ndarray
@@ -57,11 +58,12 @@ class ContactState:
     residual: float
     iterations: int
     space: HalfSpace = dataclasses.field(repr=False)
-    hardness: float = np.inf
+    hardness: float | np.ndarray = np.inf
     _before: "ContactState | None" = dataclasses.field(default=None, repr=False, compare=False)
 
     def __repr__(self):
-        cap = "" if self.hardness == np.inf else f", hardness={self.hardness:.6g} MPa"
+        least = np.min(self.hardness)
+        cap = "" if least == np.inf else f", hardness={least:.6g} MPa"
         nodes = np.count_nonzero(self.in_contact)
         return (
             f"<ContactState {self.pressure.shape[0]} x {self.pressure.shape[1]}: "
@@ -105,7 +107,7 @@ class ContactState:
         pressure, displacement, gap = (values.ravel() for values in self._on_nodes())
         # What it would be to undo the displacement and close the gap from there: c = g - u + w.
         energy = float(pressure @ (gap - displacement / 2)) + self.closure * float(pressure.sum())
-        bound = frank_wolfe_gap(pressure, gap, self.hardness)
+        bound = frank_wolfe_gap(pressure, gap, np.ravel(self.hardness))
         return bound / energy if energy > 0 else 0.0
 
     def _on_nodes(self):
@@ -115,35 +117,47 @@ class ContactState:
         """
         return self.pressure, self.displacement, self.gap
 
-    @computed_once
+    @property
+    def composite(self) -> np.ndarray:
+        """Composite topography that was solved, mm, (ny, nx), from any datum."""
+        return self.displacement - self.gap
+
+    @property
     def stiffness(self) -> float:
-        """Normal stiffness dF/dw, N/mm: 0 without contact, NaN of single cells beside yielded ones.
+        """Normal stiffness dF/dw, N/mm: the value of `slope`. 0 without contact."""
+        return self.slope.value
+
+    @computed_once
+    def slope(self) -> Slope:
+        """Slope dF/dw of the branch, with its error and, where it has no value, the reason.
 
         Raises
         ------
         NotConverged
-            If it is not known to :data:`STIFFNESS_ERROR`.
+            If it is not known to :data:`STIFFNESS_ERROR`, or as `solve_contact`.
 
         Notes
         -----
-        From K q = 1 on the nodes strictly between the bounds: the elastic response of these alone,
-        as yielded nodes keep their pressure, the hardness. Where nearly all of the contact yields
-        they are the cell or two that the force happens to leave below the hardness, while the
-        force rises by nodes that come into contact and yield: the number is one of the grid. So
-        where nodes yield it is missing with fewer than `RESOLVED_NODES` others in contact.
+        Of an elastic state the exact one, from K q = 1 on the contact domain. Where nodes yield the
+        secant of the loading branch (`slope.secant_slope`), from two more solves.
         """
-        operator, active = self._operator_on_active()
-        if active.size < RESOLVED_NODES and (self.pressure >= self.hardness).any():
-            return np.nan
+        if self._yields():
+            return secant_slope(self)
         with SOLVING.counted(0):
-            value, error = stiffness(operator, active)
+            value, error = stiffness(*self._operator_on_active())
         if not error <= STIFFNESS_ERROR:
             raise NotConverged("the stiffness equations on the contact set", self, error)
-        return value * self.space.modulus * self.space.cell
+        value *= self.space.modulus * self.space.cell
+        return Slope(value, STIFFNESS_ERROR * value)
+
+    def _yields(self):
+        """Whether a node is at its hardness."""
+        return bool((self.pressure >= self.hardness).any())
 
     def _operator_on_active(self):
         """An operator, and the nodes strictly between the bounds."""
-        return Operator(self.space), nodes_between_bounds(self.pressure.ravel(), self.hardness)
+        between = Bounds(0.0, np.ravel(self.hardness)).between(self.pressure.ravel())
+        return Operator(self.space), between
 
     def without_before(self) -> "ContactState":
         """The same state without those that it was extrapolated from.
@@ -241,6 +255,11 @@ class CandidateState(ContactState):
         return self.displacement + known.topography.clearance() - self.closure
 
     @property
+    def composite(self) -> np.ndarray:
+        """Composite topography that was solved, mm, (ny, nx)."""
+        return self._candidates.topography.height()
+
+    @property
     def candidates(self) -> int:
         """How many nodes could touch."""
         return self._candidates.nodes.size
@@ -256,7 +275,7 @@ class CandidateState(ContactState):
         return known.pressure, known.displacement, gap
 
     def _operator_on_active(self):
-        between = nodes_between_bounds(self._candidates.pressure, self.hardness)
+        between = Bounds(0.0, self.hardness).between(self._candidates.pressure)
         nodes = self._candidates.nodes[between]
         return Operator(self.space, nodes), np.arange(nodes.size, dtype=np.int32)
 

@@ -2,18 +2,18 @@
 
 import numpy as np
 import pytest
+from dense_programmes import dense_operator, dense_pressure
 from ensembles import ensemble
 from random_problems import random_problem
 
 from contactlab.accuracy.violation import violation
 from fractalcontact import HalfSpace, solve_contact
-from fractalcontact.core.limits import RESOLVED_NODES
 from fractalcontact.surface.synthesis import self_affine
 from roughcontact.contact.active_set import ActiveSetMethod
+from roughcontact.contact.bounds import Bounds
 from roughcontact.contact.candidates import LEAST_WINDOW, LoadCase
 from roughcontact.contact.kkt import Problem
 from roughcontact.contact.topography import Topography
-from roughcontact.elastic.influence import love_displacement
 
 E_STAR = 1e4
 
@@ -27,46 +27,6 @@ def rough(n, seed):
 def carried(space, hardness):
     """The force, N, under which the whole window yields."""
     return hardness * space.cell_area * space.shape[0] * space.shape[1]
-
-
-def dense_operator(space):
-    """Displacement of every node per pressure on every node, mm/MPa."""
-    (ny, nx), (dy, dx) = space.shape, space.spacing
-    y, x = (axis.ravel() for axis in np.mgrid[:ny, :nx])
-    apart = (x[:, None] - x) * dx, (y[:, None] - y) * dy
-    return love_displacement(*apart, dx, dy) / space.modulus
-
-
-def dense_pressure(matrix, clearance, closure, cap):
-    """Least p.K p / 2 + p.(c - w) over 0 <= p <= H, by principal pivoting.
-
-    Each node is at zero, between the bounds or at the cap, and all that are wrong change at once;
-    where that makes no progress, only the last of them does, which cannot cycle (J. J. Judice and
-    F. M. Pires, Comput. Oper. Res. 21 (1994) 587; K. G. Murty, Opsearch 11 (1974) 9).
-    """
-    matrix, aim = matrix * (cap / matrix[0, 0]), (closure - clearance) / matrix[0, 0]
-    least = matrix.diagonal().max()
-    at_cap, free = np.zeros((2, aim.size), bool)
-    fewest, patience = aim.size + 1, 3
-    while True:
-        p = at_cap.astype(float)
-        right_side = aim[free] - matrix[np.ix_(free, at_cap)].sum(axis=1)
-        p[free] = np.linalg.solve(matrix[np.ix_(free, free)], right_side)
-        gap = matrix @ p - aim
-        rounding = 1e-13 * max(np.abs(aim).max(), least)
-        leaves_down, leaves_up = free & (p < 0), free & (p > 1)
-        enters = np.where(at_cap, gap > rounding, gap < -rounding) & ~free
-        wrong = leaves_down | leaves_up | enters
-        if not wrong.any():
-            return cap * p
-        if np.count_nonzero(wrong) < fewest:
-            fewest, patience = np.count_nonzero(wrong), 3
-        elif patience:
-            patience -= 1
-        else:
-            wrong &= np.arange(wrong.size) == np.flatnonzero(wrong)[-1]
-        at_cap = (at_cap & ~wrong) | (leaves_up & wrong)
-        free ^= wrong
 
 
 @pytest.mark.parametrize("seed", range(ensemble("capped programmes")))
@@ -91,6 +51,53 @@ def test_state_is_that_of_a_dense_programme_between_bounds(seed):
     # As far as the closure determines them.
     apart = max(1e-6 * hardness, 2 * np.abs(high - low).max())
     np.testing.assert_allclose(state.pressure.ravel(), exact, rtol=0, atol=apart)
+
+
+@pytest.mark.parametrize("control", ["force", "closure"])
+@pytest.mark.parametrize("seed", range(ensemble("hardness of each node")))
+def test_hardness_of_each_node_is_a_bound_of_its_own(seed, control):
+    """Minerals: a third of the nodes does not yield at all."""
+    generator = np.random.default_rng([36, seed])
+    height, space = rough(18, seed)
+    hardness = E_STAR * 10 ** generator.uniform(-3, -1, height.shape)
+    hardness[generator.random(height.shape) < 1 / 3] = np.inf
+    hardness.flat[height.argmax()] = 1e-3 * E_STAR
+    yielding = hardness[np.isfinite(hardness)].sum() * space.cell_area
+    force = yielding * 10 ** generator.uniform(-0.7, -0.2)
+    state = solve_contact(height, space, force=force, hardness=hardness, rtol=1e-9)
+    if control == "closure":
+        state = solve_contact(
+            height, space, closure=state.closure, hardness=hardness, start=state, rtol=1e-9
+        )
+    assert state.force == pytest.approx(force, rel=1e-6)
+    yields = state.pressure == state.hardness
+    assert yields.any()
+    assert (state.pressure <= hardness * (1 + 1e-15)).all()
+    exact = dense_pressure(
+        *(dense_operator(space), (height.max() - height).ravel()),
+        *(state.closure, np.where(np.isinf(hardness), 1e3 * E_STAR, hardness).ravel()),
+    )
+    np.testing.assert_allclose(state.pressure.ravel(), exact, rtol=0, atol=1e-6 * exact.max())
+    assert 0 <= state.energy_error < 1e-6
+
+
+@pytest.mark.parametrize("lower", [-3.0, 0.0, 2.0])
+def test_lower_bound_is_one_like_the_upper(lower):
+    """Pressures from another lower bound on are those of a problem shifted by it."""
+    height, space = rough(24, seed=4)
+    clearance = (height.max() - height).ravel()
+    shift = np.full(space.shape, lower)
+    moved = clearance + space.convolve(shift).ravel()
+    load = 0.2 * clearance.max()
+    own = Problem(space, moved, load, False, Bounds(0.0, 40.0))
+    other = Problem(space, clearance, load, False, Bounds(lower, 40.0 + lower))
+    pressures = []
+    for problem in (own, other):
+        solution = ActiveSetMethod(problem, 1e-8).solve(np.full(height.size, 1.0))
+        assert solution.residual <= 1e-8
+        assert problem.bounds.violation(solution.pressure) == 0
+        pressures.append(solution.pressure)
+    np.testing.assert_allclose(pressures[1], pressures[0] + lower, atol=1e-5)
 
 
 @pytest.mark.parametrize("control", ["force", "closure"])
@@ -125,12 +132,15 @@ def test_restricted_problem_holds_nodes_enough_for_its_force(level):
     height, space = rough(64, seed=5)
     mean = 0.05 * 300.0
     length = mean * space.cell / space.modulus
-    case = LoadCase(space, Topography(height, space.shape), length, 64.0 * 64.0, True, 300 / mean)
+    case = LoadCase(
+        *(space, Topography(height, space.shape), length, 64.0 * 64.0, True),
+        Bounds(0.0, 300 / mean),
+    )
     for _ in range(level):
         case = case.coarser()
     restricted = case.restricted(1e-6, None)
     assert restricted is not None
-    assert restricted.nodes.size * case.cap >= case.load
+    assert restricted.nodes.size * case.bounds.upper >= case.load
     assert restricted.bound >= case.least_closure
 
 
@@ -142,7 +152,7 @@ def test_least_closure_is_below_that_of_every_state():
         state = solve_contact(height, space, force=force, hardness=200.0)
         mean = share * 200.0
         length = mean * space.cell / space.modulus
-        case = LoadCase(space, topography, length, 48.0 * 48.0, True, 200 / mean)
+        case = LoadCase(space, topography, length, 48.0 * 48.0, True, Bounds(0.0, 200 / mean))
         assert 0 < case.least_closure * length <= state.closure
 
 
@@ -151,7 +161,7 @@ def test_any_start_leads_to_the_state(share):
     """None, too: the nodes that touch first cannot carry a force that many must share."""
     height, space = rough(32, seed=7)
     clearance = (height.max() - height).ravel() / 0.01
-    problem = Problem(space, clearance, share * 50.0 * height.size, True, 50.0)
+    problem = Problem(space, clearance, share * 50.0 * height.size, True, Bounds(0.0, 50.0))
     generator = np.random.default_rng(8)
     starts = np.zeros(height.size), 50 * generator.random(height.size), np.full(height.size, 1e-9)
     solutions = [ActiveSetMethod(problem, 1e-8).solve(start) for start in starts]
@@ -159,37 +169,3 @@ def test_any_start_leads_to_the_state(share):
         assert solution.residual <= 1e-8
         assert solution.pressure.sum() == pytest.approx(problem.load, rel=1e-8)
         np.testing.assert_allclose(solution.pressure, solutions[0].pressure, atol=1e-5)
-
-
-@pytest.mark.parametrize("control", ["force", "closure"])
-def test_stiffness_of_single_cells_beside_yielded_ones_is_missing(control):
-    """Whole nodes carry the hardness, and the force leaves a part of it to one more."""
-    height, space = rough(64, seed=9)
-    few, many = 0, 0
-    for hardness in (20.0, 200.0, 2000.0):
-        for nodes in (0.5, 3.5, 40.5, 400.5):
-            force = nodes * hardness * space.cell_area
-            state = solve_contact(height, space, force=force, hardness=hardness)
-            if control == "closure":
-                state = solve_contact(height, space, closure=state.closure, hardness=hardness)
-            elastic = np.count_nonzero((state.pressure > 0) & (state.pressure < state.hardness))
-            yields = (state.pressure == state.hardness).any()
-            assert np.isnan(state.stiffness) == (yields and elastic < RESOLVED_NODES)
-            few += np.isnan(state.stiffness)
-            many += yields and elastic >= RESOLVED_NODES
-    assert few
-    assert many
-
-
-def test_stiffness_beside_yielded_nodes_is_the_elastic_response_of_the_others():
-    """These are many: the slope of the force over the closure is that of a fixed set."""
-    height, space = rough(64, seed=10)
-    force = 0.2 * carried(space, 2000.0)
-    state = solve_contact(height, space, force=force, hardness=2000.0, rtol=1e-10)
-    assert (state.pressure == state.hardness).any()
-    step = 1e-7 * state.closure
-    forces = [
-        solve_contact(height, space, closure=closure, hardness=2000.0, rtol=1e-10).force
-        for closure in (state.closure - step, state.closure + step)
-    ]
-    assert state.stiffness == pytest.approx((forces[1] - forces[0]) / (2 * step), rel=1e-3)

@@ -7,7 +7,8 @@ from fractalcontact import HalfSpace, solve_contact
 from fractalcontact.surface.synthesis import self_affine
 from roughcontact.contact import candidates, full_approximation
 from roughcontact.contact.kkt import Problem
-from roughcontact.contact.nested_iteration import prolong_constant, redistribute, restrict_sum
+from roughcontact.contact.nested_iteration import prolong_constant, redistribute
+from roughcontact.contact.restriction import restrict_sum
 
 CONTROLS = ["closure", "force"]
 
@@ -32,7 +33,7 @@ def test_a_state_of_the_load_is_not_changed(on_small_grids, shape, control):
     by_force = control == "force"
     load = state.pressure.sum() if by_force else 3.0
     clearance = (height.max() - height).ravel()
-    problem = Problem(space, clearance, load, by_force, state.hardness)
+    problem = Problem(space, clearance, load, by_force)
     pressure, displacement = state.pressure.ravel(), state.displacement.ravel()
     assert full_approximation.full_approximation_start(problem, pressure, displacement) is None
     found = full_approximation._changed_pressure(problem, pressure, state.gap, 3.0)

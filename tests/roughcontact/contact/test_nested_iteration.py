@@ -4,8 +4,10 @@ import numpy as np
 import pytest
 
 from fractalcontact import HalfSpace, solve_contact
+from roughcontact.contact.bounds import Bounds
 from roughcontact.contact.kkt import Problem
-from roughcontact.contact.nested_iteration import prolong, restrict_minimum, restrict_sum
+from roughcontact.contact.nested_iteration import prolong
+from roughcontact.contact.restriction import restrict_minimum, restrict_sum
 
 
 def half_space(ny, nx, spacing=(0.1, 0.1)):
@@ -26,18 +28,20 @@ def test_cells_of_two_by_two_nodes(shape, restrict, numpy_restrict):
 
 @pytest.mark.parametrize("by_force", [False, True])
 def test_the_coarse_problem_is_that_of_the_same_pressures(by_force):
-    """Twice their number displaces as much there; load and cap are those of such pressures."""
+    """Twice their number displaces as much there; load and bounds are those of such pressures."""
     space = half_space(64, 80)
     y, x = np.indices(space.shape) / 80
     pressure = 1 + np.sin(3 * x) * np.cos(4 * y)
     load = pressure.sum() if by_force else 1.0
-    fine = Problem(space, np.zeros(pressure.size), load, by_force, cap=pressure.max())
+    fine = Problem(space, np.zeros(pressure.size), load, by_force, Bounds(0.0, pressure.max()))
     coarse = fine.coarser(np.zeros(pressure.size // 4))
     there = restrict_sum(pressure) / 2
     assert coarse.space.shape == there.shape == (32, 40)
     assert coarse.load == pytest.approx(there.sum() if by_force else 1.0)
-    assert coarse.cap == 2 * fine.cap
-    assert there.max() == pytest.approx(coarse.cap, rel=1e-2)
+    assert coarse.bounds.upper == 2 * fine.bounds.upper
+    assert there.max() == pytest.approx(coarse.bounds.upper, rel=1e-2)
+    of_nodes = Bounds(0.0, pressure.ravel()).coarser(space.shape)
+    np.testing.assert_allclose(of_nodes.upper, there.ravel())
     mean = restrict_sum(space.convolve(pressure)) / 4
     np.testing.assert_allclose(coarse.space.convolve(there), mean, rtol=1e-2)
 

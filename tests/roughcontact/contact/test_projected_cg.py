@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from fractalcontact import HalfSpace
+from roughcontact.contact.bounds import Bounds
 from roughcontact.contact.operator import Operator
 from roughcontact.contact.projected_cg import ProjectedCG
 
@@ -24,7 +25,7 @@ def clipped_equations(share, by_force, seed=1):
     start = np.quantile(np.abs(operator.inverse(right.astype(np.float32))), 1 - share)
     start = np.full(active.size, start if share else 10 * start)
     given = start.sum() if by_force else None
-    equations.clipped_step(start, (0.0, np.inf), given)
+    equations.clipped_step(start, Bounds(), given)
     nothing = np.empty(0, np.int32), np.empty(0, np.float32)
     equations.apply_step(*nothing)
     return operator, equations, right, start

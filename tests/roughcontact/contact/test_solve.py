@@ -13,7 +13,6 @@ from ensembles import ensemble
 from plain_twins import operator_on
 
 from fractalcontact import HalfSpace, NotConverged, solve_contact
-from fractalcontact.core.fitting import fit_line
 from fractalcontact.surface.synthesis import self_affine
 from roughcontact.contact import active_set, projected_cg
 
@@ -61,7 +60,7 @@ def order_of(cells, errors):
     One position alone is noisy: the contact domain is a staircase whose area jumps.
     """
     rms = np.sqrt(np.mean(np.square(errors), axis=1))
-    return fit_line(-np.log(cells), np.log(rms)).slope.value
+    return float(np.polyfit(-np.log(cells), np.log(rms), 1)[0])
 
 
 HERTZ_RADIUS = 8.0  # of curvature, mm; the contact radius is 1 mm at w = 1/R

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from roughcontact.contact.nested_iteration import restrict_minimum
+from roughcontact.contact.restriction import restrict_minimum
 from roughcontact.contact.topography import Topography
 
 

@@ -1,0 +1,76 @@
+"""Bounds of the pressure: on all nodes the same, or on each its own."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .restriction import restrict_sum
+
+
+@dataclass(frozen=True)
+class Bounds:
+    """Least and largest pressure: 0 and, where the surface yields, its hardness.
+
+    Attributes
+    ----------
+    lower, upper : float or (n,) ndarray
+        On all nodes, or on each of them; the upper one may be infinite.
+    """
+
+    lower: float | np.ndarray = 0.0
+    upper: float | np.ndarray = np.inf
+
+    @property
+    def uniform(self) -> bool:
+        """Whether they are the same on all nodes."""
+        return np.ndim(self.lower) == np.ndim(self.upper) == 0
+
+    @property
+    def elastic(self) -> bool:
+        """Whether no node has an upper bound."""
+        return bool(np.isinf(self.upper).all())
+
+    def clip(self, pressure: np.ndarray) -> np.ndarray:
+        """The pressure, (n,), put at a bound wherever it is beyond it."""
+        return np.clip(pressure, self.lower, self.upper)
+
+    def violation(self, pressure: np.ndarray) -> float:
+        """By how much a pressure, (n,), is beyond its bounds where it is most."""
+        return float(np.abs(self.clip(pressure) - pressure).max(initial=0.0))
+
+    def between(self, pressure: np.ndarray) -> np.ndarray:
+        """Nodes at which neither bound is active, (k,) int32: those whose gap stays 0."""
+        inside = (pressure > self.lower) & (pressure < self.upper)
+        return np.flatnonzero(inside).astype(np.int32)
+
+    def reached_by(self, pressure: np.ndarray, rounding: float = 0.0) -> bool:
+        """Whether a pressure, (n,), comes to the upper bound anywhere, but for rounding."""
+        return bool((pressure >= (1 - rounding) * self.upper).any())
+
+    def over(self, unit: float) -> "Bounds":
+        """The same in another unit of pressure."""
+        return Bounds(self.lower / unit, self.upper / unit)
+
+    def at(self, nodes: np.ndarray) -> "Bounds":
+        """Those of some nodes, given by their numbers."""
+        if self.uniform:
+            return self
+        lower, upper = np.broadcast_arrays(self.lower, self.upper)
+        return Bounds(lower[nodes], upper[nodes])
+
+    def on(self, n: int) -> tuple[np.ndarray, np.ndarray]:
+        """Both on each of n nodes, as compiled code reads them; one number takes no memory."""
+        return np.broadcast_to(self.lower, (n,)), np.broadcast_to(self.upper, (n,))
+
+    def coarser(self, shape: tuple[int, int]) -> "Bounds":
+        """Those on the grid twice as coarse as one of a shape.
+
+        In units of the fine grid the same pressure displaces cells twice as wide twice as much:
+        its number is doubled there. A cell carries what its nodes do together.
+        """
+        if self.uniform:
+            return Bounds(2 * self.lower, 2 * self.upper)
+        on_nodes = (
+            np.ascontiguousarray(each).reshape(shape) for each in self.on(shape[0] * shape[1])
+        )
+        return Bounds(*(restrict_sum(each).ravel() / 2 for each in on_nodes))

@@ -1,0 +1,213 @@
+"""Loading, unloading and reloading of contacts that crush: the permanent set of a load path.
+
+While the load exceeds all earlier ones the pressure stops at the hardness H, and nodes at H are
+pressed in: loading, on heights h. Where the load turns back, what was pressed in stays,
+
+    h <- h + min(g, 0)    where p = H,
+
+and until the load exceeds its maximum again the contact is elastic on these heights: unloading, and
+reloading on the same curve. There the state of the maximum is the elastic one, as no gap of it is
+negative any more; a bound at H, which its nodes touch without being pressed in, would leave them
+doubly degenerate. Loading does not depend on its steps, so the set is held at turning points alone.
+
+Perfect plasticity: a second cycle to the same load changes nothing, and what is pressed in is gone
+(rock is crushed, its volume is not conserved).
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ..arguments import field, real_array
+from ..elastic.halfspace import HalfSpace
+from ..threads import computed_once
+from .solve import solve_contact
+from .state import ContactState
+
+LOAD, UNLOAD, RELOAD = "load", "unload", "reload"
+#: Branches of a load path.
+BRANCHES = (LOAD, UNLOAD, RELOAD)
+
+
+@dataclass(frozen=True)
+class BranchState:
+    """A state on a load path.
+
+    Attributes
+    ----------
+    branch : str
+        ``load`` under a load above all earlier ones; below, ``unload`` where it has fallen and
+        ``reload`` where it has risen since.
+    closure : float
+        w from first touch of the heights that the path began with, mm.
+    permanent_set : (ny, nx) ndarray
+        How far each node has been pressed in for good, mm.
+    yielded : (ny, nx) bool ndarray
+        Nodes that have carried the hardness.
+    contact : ContactState
+        On the heights as they were pressed in before the last branch began; its own closure is from
+        first touch of these.
+    hardness : float or (ny, nx) ndarray
+        MPa.
+    """
+
+    branch: str
+    closure: float
+    permanent_set: np.ndarray
+    yielded: np.ndarray
+    contact: ContactState
+    hardness: float | np.ndarray
+
+    def __repr__(self):
+        return (
+            f"<BranchState {self.branch}: force={self.force:.6g} N, closure={self.closure:.6g} mm, "
+            f"set of {np.count_nonzero(self.permanent_set)} nodes, "
+            f"dissipated={self.dissipated_energy:.3g} N mm>"
+        )
+
+    @property
+    def force(self) -> float:
+        """F, N."""
+        return self.contact.force
+
+    @property
+    def pressure(self) -> np.ndarray:
+        """p, MPa, (ny, nx)."""
+        return self.contact.pressure
+
+    @property
+    def gap(self) -> np.ndarray:
+        """Opening above the nodes as they have been pressed in, mm, (ny, nx); nowhere negative."""
+        return np.maximum(self.contact.gap, 0.0)
+
+    @property
+    def set_volume(self) -> float:
+        """Volume pressed in for good, mm3."""
+        return float(self.permanent_set.sum()) * self.contact.space.cell_area
+
+    @property
+    def plastic_load_fraction(self) -> float:
+        """Fraction of the force that nodes at the hardness carry; 0 without a force."""
+        at_limit = self.contact.pressure >= self.contact.hardness
+        total = float(self.pressure.sum())
+        return float(self.pressure[at_limit].sum()) / total if total > 0 else 0.0
+
+    @computed_once
+    def elastic_energy(self) -> float:
+        """Energy that unloading gives back, sum p u s^2 / 2, N mm."""
+        work = float((self.pressure * self.contact.displacement).sum())
+        return work * self.contact.space.cell_area / 2
+
+    @computed_once
+    def dissipated_energy(self) -> float:
+        """Energy spent since the path began, sum of H s^2 times the permanent set, N mm.
+
+        A node is pressed in under the pressure H alone. With the elastic energy this is the work
+        of the force, the integral of F dw: over a cycle, the area between its branches.
+        """
+        pressed = self.permanent_set > 0
+        spent = np.broadcast_to(self.hardness, pressed.shape)[pressed] * self.permanent_set[pressed]
+        return float(spent.sum()) * self.contact.space.cell_area
+
+
+def load_path(
+    composite: ArrayLike,
+    space: HalfSpace,
+    *,
+    forces: Sequence[float] | None = None,
+    closures: Sequence[float] | None = None,
+    hardness: float | ArrayLike | None,
+    rtol: float = 1e-6,
+) -> list[BranchState]:
+    """States of contact under loads that follow one another: up, down and up again.
+
+    Parameters
+    ----------
+    composite : (ny, nx) array_like
+        Composite topography h before any load, mm; the largest h touches first.
+    space : HalfSpace
+    forces : (k,) sequence of float, optional
+        F, N. Either these or ``closures`` are given.
+    closures : (k,) sequence of float, optional
+        w, mm, all from first touch of ``composite``. Where contact is lost the force is 0.
+    hardness : float or (ny, nx) array_like
+        H, MPa, as of `solve_contact`; None for an elastic surface.
+    rtol : float
+        As of `solve_contact`.
+
+    Returns
+    -------
+    list of BranchState
+        One for each load, in their order.
+
+    Raises
+    ------
+    ValueError, NotConverged
+        As `solve_contact`.
+    """
+    given, name = (forces, "forces") if closures is None else (closures, "closures")
+    if given is None or (given is closures and forces is not None):
+        raise ValueError("give either forces= or closures=")
+    loads = real_array(given, name)
+    if loads.ndim != 1 or not (np.isfinite(loads) & (loads >= 0)).all():
+        raise ValueError(f"{name}: expected a list of finite numbers >= 0")
+    height = field(composite, "composite topography", space.shape)
+    limit = np.inf if hardness is None else hardness
+    path = _Path(height, space, limit, rtol)
+    return [path.next(float(load), by_force=forces is not None) for load in loads]
+
+
+class _Path:
+    """The heights as they are pressed in, and the states so far."""
+
+    def __init__(self, height, space, hardness, rtol):
+        self.height, self.space, self.hardness, self.rtol = height, space, hardness, rtol
+        self.held, self.yielded = np.zeros(space.shape), np.zeros(space.shape, bool)
+        self.pressed, self.sunk = height, 0.0
+        self.branch, self.load, self.largest = LOAD, -np.inf, -np.inf
+        self.state: BranchState | None = None
+
+    def next(self, load, *, by_force):
+        """The state of the next load."""
+        beyond = load > self.largest
+        if not beyond and self.branch == LOAD and load < self.load:
+            self._turn()
+        if beyond:
+            self.branch = LOAD
+        elif load != self.load:
+            self.branch = UNLOAD if load < self.load else RELOAD
+        self.load, self.largest = load, max(load, self.largest)
+        self.state = self._pressed(self._contact(load, by_force))
+        return self.state
+
+    def _turn(self):
+        """Hold the set of the last state: its heights are those of what follows."""
+        self.held, self.yielded = self.state.permanent_set, self.state.yielded
+        self.pressed = self.height - self.held
+        self.sunk = float(self.height.max() - self.pressed.max())
+
+    def _contact(self, load, by_force):
+        """The state of a load on the heights as they are, bounded on loading alone."""
+        start = None if self.state is None else self.state.contact.without_before()
+        solving = {"start": start, "rtol": self.rtol}
+        if self.branch == LOAD:
+            solving["hardness"] = self.hardness
+        if by_force:
+            return solve_contact(self.pressed, self.space, force=load, **solving)
+        reach = load - self.sunk
+        contact = solve_contact(self.pressed, self.space, closure=max(reach, 0.0), **solving)
+        return replace(contact, gap=contact.gap - reach, closure=reach) if reach < 0 else contact
+
+    def _pressed(self, contact):
+        """A state with what it presses in."""
+        at_limit = contact.pressure >= contact.hardness
+        return BranchState(
+            branch=self.branch,
+            closure=contact.closure + self.sunk,
+            permanent_set=self.held + np.where(at_limit, np.maximum(-contact.gap, 0.0), 0.0),
+            yielded=self.yielded | at_limit,
+            contact=contact,
+            hardness=self.hardness,
+        )

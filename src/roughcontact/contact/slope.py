@@ -1,0 +1,85 @@
+"""Slope of the force over the closure: the normal stiffness of a contact, yielding or not."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ..limits import RESOLVED_NODES
+
+#: Half the span of a secant: a fraction of the closure, or as many times that over which one node
+#: comes from first touch to its hardness, where that is more; no more than a part of the closure.
+SPAN, NODE_SPANS, LARGEST_SPAN = 0.02, 4.0, 0.25
+#: Tolerance of the two states at its ends.
+SECANT_RTOL = 1e-5
+
+
+@dataclass(frozen=True)
+class Slope:
+    """dF/dw of a branch of the closure curve.
+
+    Attributes
+    ----------
+    value, error : float
+        N/mm; NaN where it is not determined. Of a yielding contact the error is that of counting
+        the ``cells``; of an elastic one, of solving its equations.
+    cells : float
+        Number of equal cells that would carry the change of the force with as much scatter: one
+        where a single cell carries it. Infinite on an elastic branch, whose slope is exact.
+    reason : str
+        Why there is no value; empty where there is one.
+    """
+
+    value: float
+    error: float
+    cells: float = np.inf
+    reason: str = ""
+
+
+def secant_slope(state: Any) -> Slope:
+    """Slope of the loading branch at a state in which nodes yield.
+
+    Parameters
+    ----------
+    state : ContactState
+
+    Returns
+    -------
+    Slope
+
+    Raises
+    ------
+    NotConverged
+        As `solve_contact`.
+
+    Notes
+    -----
+    At one closure the force changes on the few nodes alone that are between first touch and the
+    hardness, while over a span of closures it rises by all those that come to yield: the first is
+    a number of the grid, the second one of the joint. It is the secant between two closures about
+    that of the state. The error is the scatter of a sum over independent cells, relative to it
+    sqrt(sum dp^2) / sum dp.
+    """
+    from .solve import solve_contact  # which imports this
+
+    space, hardness = state.space, state.hardness
+    own = float(space.influence()[0, 0]) * space.cell / space.modulus
+    node_span = float(np.min(hardness)) * own
+    span = min(max(SPAN * state.closure, NODE_SPANS * node_span), LARGEST_SPAN * state.closure)
+    low, high = (
+        solve_contact(
+            *(state.composite, space),
+            **{"closure": closure, "hardness": hardness, "start": state, "rtol": SECANT_RTOL},
+        )
+        for closure in (state.closure - span, state.closure + span)
+    )
+    change = (high.pressure - low.pressure) * space.cell_area
+    total, scatter = float(change.sum()), float(np.sqrt((change**2).sum()))
+    if not total > 0:
+        return Slope(np.nan, np.nan, 0.0, "the whole window carries its hardness")
+    cells = (total / scatter) ** 2
+    if cells < RESOLVED_NODES:
+        reason = f"the force changes on {cells:.1f} cells, fewer than {RESOLVED_NODES}"
+        return Slope(np.nan, np.nan, cells, reason)
+    value = total / (2 * span)
+    return Slope(value, value * scatter / total, cells)
