@@ -23,6 +23,8 @@ SETTINGS = {
     "map_offset": 0.4,
     "material": ROCK,
     "opposite": "match",
+    "chosen_for": {},
+    "capped_variant": False,
 }
 #: Faces that are uncorrelated at the first offset beyond the correlation length.
 WITHIN = {"length": 1.3, "uncorrelated": 1.4}
@@ -508,8 +510,8 @@ def test_a_variable_that_is_missing_is_an_error():
 # Who is asked
 
 
-def names_of(settings, **options):
-    return set(statements_for(settings, **options))
+def names_of(settings, **others):
+    return set(statements_for(settings | others))
 
 
 def test_what_is_said_of_one_material_is_asked_of_that_one():
@@ -539,7 +541,7 @@ def test_a_capped_variant_is_asked_only_what_a_hardness_changes():
 
 
 def test_a_statement_the_specimen_was_chosen_for_is_marked():
-    found = judge(stages(), SETTINGS, circular={"dilatancy_flattens": "its seed"})
+    found = judge(stages(), SETTINGS | {"chosen_for": {"dilatancy_flattens": "its seed"}})
     marked = found["circular"].values
     assert found["statement"].values[marked].tolist() == ["dilatancy_flattens"]
     assert found["circular_reason"].values[marked].tolist() == ["its seed"]

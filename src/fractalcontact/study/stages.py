@@ -19,8 +19,8 @@ from typing import Any
 from ..core import settings
 
 #: How often a stage is made: for every specimen, for those that slide, for every measured contact
-#: map; once, of all specimens together; once, on synthetic surfaces, where the study has the
-#: stage's key; and of studies of accuracy for every test problem, or once.
+#: map; once, of all specimens together (in the atlas, without a file); once, on synthetic surfaces,
+#: where the study has the stage's key; and of studies of accuracy for every test problem, or once.
 SPECIMEN, JOINT, MAP, STUDY = "specimen", "joint", "map", "study"
 EXPERIMENT, PROBLEM, ACCURACY = "experiment", "problem", "accuracy"
 GRAINS = (SPECIMEN, JOINT, MAP, STUDY, EXPERIMENT, PROBLEM, ACCURACY)
@@ -44,8 +44,6 @@ class Stage:
         Stages whose datasets the function takes, as arguments of their names.
     member : str
         Wildcard or name that its files have, and its groups within the stage's.
-    filed : bool
-        Whether it has files; if not, it is made while the atlas is put together.
     """
 
     name: str
@@ -54,7 +52,6 @@ class Stage:
     function: str
     needs: tuple[str, ...] = ()
     member: str = "{specimen}"
-    filed: bool = True
 
     @property
     def path(self) -> str:
@@ -72,15 +69,23 @@ _STATE_STAGES = "stages.states:state_stages"
 _WINDOW_STAGES = "stages.windows:window_stages"
 #: Solves the contact of a specimen, the costly part: several jobs, and no stage of its own.
 CONTACT = "mechanics.sweep:joint_states"
-_STRENGTH_STAGES = "stages.strength:strength_stages"
+_REPORT_STAGES = "stages.report:report_stages"
 #: What is known of a joint before contact is solved.
 _OF_JOINT = ("specimens", "surface_dimension", "joints")
-#: And those of its sub-windows: nothing is solved for a friction angle.
-_OF_STRENGTH = (*_OF_JOINT, "window_states", "size_test", "dilatancy")
+#: And what is reported of it: nothing is solved for a friction angle, a rule or a label.
+_OF_REPORT = (
+    *_OF_JOINT,
+    *("window_states", "size_test", "closure", "dilatancy", "area", "domains", "scaling"),
+    *("domain_measures", "error_budget"),
+)
 
 
 def _of_states(name, title):
     return Stage(name, title, SPECIMEN, _STATE_STAGES, _OF_JOINT)
+
+
+def _of_report(name, title, grain=SPECIMEN):
+    return Stage(name, title, grain, _REPORT_STAGES, _OF_REPORT)
 
 
 def _experiment(name, title, function):
@@ -133,20 +138,8 @@ _TABLE = (
     ),
     _of_states("choices", "what was solved and how exactly, why, and the errors that makes"),
     _of_states("error_budget", "error of the published quantities, split by source"),
-    Stage(
-        "windows",
-        "closure, roughness and strength of sub-windows against their size",
-        SPECIMEN,
-        _STRENGTH_STAGES,
-        _OF_STRENGTH,
-    ),
-    Stage(
-        "strength",
-        "dilatancy and friction angles, shear strength",
-        JOINT,
-        _STRENGTH_STAGES,
-        _OF_STRENGTH,
-    ),
+    _of_report("windows", "closure, roughness and strength of sub-windows against their size"),
+    _of_report("strength", "dilatancy and friction angles, shear strength", JOINT),
     Stage(
         "contact_maps",
         "measured contact maps, one group per map",
@@ -184,43 +177,25 @@ _TABLE = (
         "strength of sliding mated joints over their side, at equal v and at equal v/b",
         "experiments.size_strength:size_strength",
     ),
-    Stage(
+    _of_report(
         "elastic_model",
         "verdict on the elastic model: real mean pressure against strength, slope of the faces",
-        SPECIMEN,
-        "mechanics.model_validity:model_validity",
-        ("area", "scaling"),
-        filed=False,
     ),
-    Stage(
-        "statements",
-        "what the paper says, and whether it holds here",
-        SPECIMEN,
-        "statements.judge:judge",
-        filed=False,
-    ),
+    _of_report("statements", "what the paper says, and whether it holds here"),
     Stage(
         "study_statements",
         "what the paper says of several joints together, and whether it holds here",
         STUDY,
         "statements.study:judge_study",
         member="study",
-        filed=False,
     ),
-    Stage(
-        "comparison",
-        "what of a specimen is compared with others, with its errors",
-        SPECIMEN,
-        "statements.comparison:specimen_row",
-        filed=False,
-    ),
+    _of_report("comparison", "what of a specimen is compared with others, with its errors"),
     Stage(
         "study_comparison",
         "specimens side by side, and how groups of them spread",
         STUDY,
         "statements.comparison:compare_specimens",
         member="study",
-        filed=False,
     ),
     Stage(
         "speed",
@@ -311,9 +286,7 @@ def paths_of(*grains: str) -> dict[str, str]:
     dict of str to str
         By stage, below the folder of the results; wildcards stand in braces.
     """
-    return {
-        name: stage.path for name, stage in STAGES.items() if stage.grain in grains and stage.filed
-    }
+    return {name: stage.path for name, stage in STAGES.items() if stage.grain in grains}
 
 
 def made_together(name: str, grains: Collection[str] = GRAINS) -> dict[str, str]:
