@@ -11,7 +11,8 @@ from matplotlib.figure import FigureBase
 from xarray import DataTree
 
 from ...accuracy.speed import ERRORS, FRONTS, MODEL, OURS, PEER, SOLVER
-from ..kit.drawing import COLOURS, LINES, MARKERS, colour_of, entries
+from ..kit.drawing import COLOURS, LINES, MARKERS, colour_of
+from ..kit.legends import entries
 
 #: Errors of zero are drawn here, and nothing below.
 SMALLEST = 1e-14

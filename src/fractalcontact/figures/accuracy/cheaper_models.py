@@ -7,8 +7,10 @@ from matplotlib.figure import Figure
 from xarray import DataTree
 
 from ...accuracy.speed import DEFAULT_RTOL, ERRORS, MODEL, MODELS, OURS
+from ..kit.axes import label_short_span
 from ..kit.caption import caption
-from ..kit.drawing import WIDTH, Drawing, label_short_span, letter
+from ..kit.drawing import WIDTH, Drawing
+from ..kit.titles import letter
 from ._speed import AXES, OURS_STYLE, legend_of, scenes_of, styles, table_of, values_of
 
 TITLE = "Errors and wall time of models cheaper than elastic contact"

@@ -9,8 +9,10 @@ from xarray import DataTree
 
 from ...accuracy.convergence import QUANTITIES
 from ...core.estimate import EXPONENT, Estimate
+from ..kit.axes import label_short_span
 from ..kit.caption import caption
-from ..kit.drawing import MARKERS, WIDTH, Drawing, colour_of, group, label_short_span, letter
+from ..kit.drawing import MARKERS, WIDTH, Drawing, colour_of, group
+from ..kit.titles import letter
 
 TITLE = "Discretisation error where the solution is known, and Richardson extrapolation"
 SUBJECT = "accuracy"

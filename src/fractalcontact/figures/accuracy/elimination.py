@@ -7,7 +7,9 @@ from matplotlib.figure import Figure
 from xarray import DataTree
 
 from ..kit.caption import caption
-from ..kit.drawing import COLOURS, LINES, MARKERS, WIDTH, Drawing, entries, group, letter
+from ..kit.drawing import COLOURS, LINES, MARKERS, WIDTH, Drawing, group
+from ..kit.legends import entries
+from ..kit.titles import letter
 
 TITLE = "Whether dropping points in tension, as the paper does, reaches the contact set"
 SUBJECT = "accuracy"

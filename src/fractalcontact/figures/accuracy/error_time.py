@@ -9,7 +9,8 @@ from xarray import DataTree
 
 from ...accuracy.speed import LEADS_BELOW, MODEL, OURS, ahead_of_ours
 from ..kit.caption import caption
-from ..kit.drawing import WIDTH, Drawing, letter
+from ..kit.drawing import WIDTH, Drawing
+from ..kit.titles import letter
 from ._speed import (
     AXES,
     draw_points,

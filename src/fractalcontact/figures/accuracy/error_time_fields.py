@@ -6,7 +6,8 @@ from matplotlib.figure import Figure
 from xarray import DataTree
 
 from ..kit.caption import caption
-from ..kit.drawing import WIDTH, Drawing, letter
+from ..kit.drawing import WIDTH, Drawing
+from ..kit.titles import letter
 from ._speed import (
     AXES,
     draw_points,

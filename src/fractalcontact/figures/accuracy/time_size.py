@@ -9,8 +9,10 @@ from xarray import DataTree
 
 from ...accuracy.speed import OURS
 from ...core.estimate import EXPONENT, Estimate
+from ..kit.axes import label_short_span
 from ..kit.caption import caption
-from ..kit.drawing import WIDTH, Drawing, colour_of, group, label_short_span, letter
+from ..kit.drawing import WIDTH, Drawing, colour_of, group
+from ..kit.titles import letter
 from ._speed import legend_of, middle_contact, rough, scenes_of, styles
 
 TITLE = "Wall time and memory against the size of the grid"

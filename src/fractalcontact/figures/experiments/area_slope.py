@@ -6,20 +6,12 @@ import numpy as np
 from matplotlib.figure import Figure
 from xarray import DataTree
 
+from ..kit.axes import label_short_span
 from ..kit.caption import caption
-from ..kit.drawing import (
-    MARKERS,
-    WIDTH,
-    Drawing,
-    colour_of,
-    entries,
-    group,
-    heading,
-    label_short_span,
-    legends_below,
-    letter,
-)
+from ..kit.drawing import MARKERS, WIDTH, Drawing, colour_of, group
 from ..kit.kappa import kappa_lines
+from ..kit.legends import entries, heading, legends_below
+from ..kit.titles import letter
 from ..kit.words import number
 
 TITLE = "Real contact area of synthetic surfaces at light load, with and without a roll-off"

@@ -13,17 +13,11 @@ from ...core.estimate import Estimate
 from ...core.limits import WIDEST
 from ...experiments.size_decision import PROBABILITY
 from ..kit.caption import caption
-from ..kit.drawing import (
-    WIDTH,
-    Drawing,
-    colour_of,
-    entries,
-    heading,
-    legends_below,
-    letter,
-)
+from ..kit.drawing import WIDTH, Drawing, colour_of
+from ..kit.legends import entries, heading, legends_below, mark
 from ..kit.panel import rows
 from ..kit.points import reach
+from ..kit.titles import letter
 from ..kit.words import number
 from ._reduced_pressure import load_axis
 
@@ -65,7 +59,7 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
         )
         letter(axes, next(letters), f"$H$ = {hurst:g}")
     panels[0].set_ylabel("correlation dimension $D_2$ (1)")
-    undetermined = Line2D([], [], color="0.4", marker="o", ls="none", mfc="white")
+    undetermined = mark(color="0.4", marker="o", ls="none", mfc="white")
     undetermined.set_label(f"hollow: undetermined (interval wider than {WIDEST:g}, not drawn)")
     handles = [*entries(panels[0]), undetermined]
     if constructions.size:

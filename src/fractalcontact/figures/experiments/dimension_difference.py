@@ -5,23 +5,14 @@ from collections.abc import Sequence
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 from xarray import DataTree
 
 from ...core.estimate import Estimate
 from ..kit.caption import caption
-from ..kit.drawing import (
-    LINES,
-    MARKERS,
-    WIDTH,
-    Drawing,
-    colour_of,
-    heading,
-    headline,
-    legends_below,
-    letter,
-)
+from ..kit.drawing import LINES, MARKERS, WIDTH, Drawing, colour_of
+from ..kit.legends import heading, legends_below, mark
 from ..kit.panel import rows
+from ..kit.titles import headline, letter
 from ..kit.words import number
 
 TITLE = "Do A_r(s) and box counting give one Delta_sigma: their difference on synthetic surfaces"
@@ -112,14 +103,12 @@ def _draw_capped(axes, test, which):
 
 def _legends(test):
     dimensions = [
-        Line2D([], [], color=colour_of(i), marker=MARKERS[i], label=rf"$\Delta_g$ = {g:g}")
+        mark(color=colour_of(i), marker=MARKERS[i], label=rf"$\Delta_g$ = {g:g}")
         for i, g in enumerate(test["dimension"].values)
     ]
     loads = test["reduced_pressure"].values
     lines = [
-        Line2D(
-            [],
-            [],
+        mark(
             color="0.3",
             ls=LINES[n % len(LINES)],
             label=rf"(a), (b) $p/(E^* h'_\mathrm{{rms}})$ = {loads[j]:g}",
@@ -127,12 +116,12 @@ def _legends(test):
         for n, j in enumerate(_shown(test))
     ]
     one_law = "(a), (b) if one law governed both"
-    lines.append(Line2D([], [], color="0.5", lw=0.8, ls=LINES[2], label=one_law))
+    lines.append(mark(color="0.5", lw=0.8, ls=LINES[2], label=one_law))
     if "capped_pressure" not in test.dims:
         return dimensions, lines
     faces = (("0.3", "-", "(c) by $A_r(s)$"), ("white", "--", "(c) by box counting"))
     capped = [
-        Line2D([], [], color="0.3", lw=0.8, marker="o", mfc=face, ls=line, label=words)
+        mark(color="0.3", lw=0.8, marker="o", mfc=face, ls=line, label=words)
         for face, line, words in faces
     ]
     return dimensions, lines, [*capped, heading("(b), (c) no intervals drawn")]

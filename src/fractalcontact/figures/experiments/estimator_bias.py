@@ -9,18 +9,10 @@ from matplotlib.patches import Patch
 from xarray import DataTree
 
 from ..kit.caption import caption
-from ..kit.drawing import (
-    LINES,
-    MARKERS,
-    WIDTH,
-    Drawing,
-    colour_of,
-    entries,
-    heading,
-    legends_below,
-    letter,
-)
+from ..kit.drawing import LINES, MARKERS, WIDTH, Drawing, colour_of
+from ..kit.legends import entries, heading, legends_below, mark
 from ..kit.panel import rows
+from ..kit.titles import letter
 
 TITLE = "Bias, scatter and coverage of the estimators of the surface dimension"
 SUBJECT = "study"
@@ -78,7 +70,7 @@ def _legends(of_bias, of_coverage, start):
     """Estimators with their errors, in two columns, and what else is drawn."""
     estimators = [one for one in entries(of_bias) if not isinstance(one, Patch | Line2D)]
     half = -(-len(estimators) // 2)
-    hollow = Line2D([], [], color="0.3", marker="o", mfc="none", ls="none")
+    hollow = mark(color="0.3", marker="o", mfc="none", ls="none")
     hollow.set_label("hollow: before known bias is taken off")
     others = [one for one in entries(of_bias) if isinstance(one, Patch | Line2D)]
     head = heading(f"rms error of $H$, from $H$ = {start:g} on")

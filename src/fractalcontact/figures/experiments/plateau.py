@@ -7,7 +7,6 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 from xarray import DataTree
 
 from ...core.estimate import EXPONENT, Estimate
@@ -15,20 +14,11 @@ from ...core.labels import printable
 from ...core.subject import Subject, configuration_of
 from ...core.units import quantity
 from ..kit.caption import caption
-from ..kit.drawing import (
-    LINE,
-    LINES,
-    WIDTH,
-    Drawing,
-    colour_of,
-    entries,
-    heading,
-    label_in_lines,
-    legends_below,
-    letter,
-)
+from ..kit.drawing import LINES, WIDTH, Drawing, colour_of
+from ..kit.legends import entries, heading, legends_below, mark
 from ..kit.panel import rows
 from ..kit.sizes import plain_decades
+from ..kit.titles import LINE, label_in_lines, letter
 from ..kit.verdicts import CIRCULAR_SHORT, row_of
 from ..kit.words import short
 
@@ -246,12 +236,12 @@ def _marks():
         heading(
             "lines: means; bands: from least to most of\nthe joints or directions, no intervals"
         ),
-        Line2D([], [], color="0.3", label="(a) half over which the slope is taken", **_SECOND_HALF),
+        mark(color="0.3", label="(a) half over which the slope is taken", **_SECOND_HALF),
         *(
-            Line2D([], [], ls="none", marker=marker, color="0.3", label=words, **_MARK)
+            mark(ls="none", marker=marker, color="0.3", label=words, **_MARK)
             for marker, words in marks
         ),
-        Line2D([], [], color="0.4", lw=0.8, ls=(0, (1, 2)), label="(b) least and largest mean"),
+        mark(color="0.4", lw=0.8, ls=(0, (1, 2)), label="(b) least and largest mean"),
     ]
 
 

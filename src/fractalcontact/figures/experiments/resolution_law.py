@@ -9,25 +9,17 @@ import pandas as pd
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 from xarray import DataTree
 
 from ...core.estimate import Estimate
 from ...core.limits import LIGHT_LOAD
 from ...experiments.size_decision import PROBABILITY
 from ..kit.caption import caption
-from ..kit.drawing import (
-    MARKERS,
-    WIDTH,
-    Drawing,
-    colour_of,
-    entries,
-    heading,
-    legends_below,
-    letter,
-)
+from ..kit.drawing import MARKERS, WIDTH, Drawing, colour_of
+from ..kit.legends import entries, heading, legends_below, mark
 from ..kit.panel import rows
 from ..kit.points import reach
+from ..kit.titles import letter
 from ..kit.words import number
 from ._reduced_pressure import load_axis
 
@@ -152,10 +144,10 @@ def _draw_exponents(axes: Axes, test: xr.Dataset, departure: float) -> None:
     axes.set_xmargin(0.12)
     letter(axes, "b", r"$\Delta_\sigma$ of the contact area")
     grey: dict[str, Any] = {"color": "0.3"}
-    axes.add_line(Line2D([], [], marker="o", ls="none", label="from the areas $A_r(s)$", **grey))
+    axes.add_line(mark(marker="o", ls="none", label="from the areas $A_r(s)$", **grey))
     words = "from the slopes $h'_\\mathrm{rms}(s)$ alone"
-    axes.add_line(Line2D([], [], marker="_", ms=14, mew=1.5, ls="none", label=words, **grey))
-    axes.add_line(Line2D([], [], lw=0.8, ls="--", label="$1+H$", **grey))
+    axes.add_line(mark(marker="_", ms=14, mew=1.5, ls="none", label=words, **grey))
+    axes.add_line(mark(lw=0.8, ls="--", label="$1+H$", **grey))
     axes.text(
         0.97,
         0.03,

@@ -9,24 +9,17 @@ import pandas as pd
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from xarray import DataTree
 
 from ...core.estimate import Estimate
 from ...experiments.size_decision import PROBABILITY
 from ..kit.caption import caption
-from ..kit.drawing import (
-    MARKERS,
-    WIDTH,
-    Drawing,
-    colour_of,
-    heading,
-    legends_below,
-    letter,
-)
+from ..kit.drawing import MARKERS, WIDTH, Drawing, colour_of
+from ..kit.legends import heading, legends_below, mark
 from ..kit.panel import rows
 from ..kit.points import reach
+from ..kit.titles import letter
 from ..kit.words import number
 
 TITLE = "Size effect of the strength at equal displacement and at equal displacement over size"
@@ -151,12 +144,12 @@ def _marker(load: float, test: xr.Dataset) -> str:
 
 def _side_entries(test: xr.Dataset) -> list:
     marks = [
-        Line2D([], [], color=colour_of(i + 1), marker=MARKERS[i], ls="none", label=f"{side:g}")
+        mark(color=colour_of(i + 1), marker=MARKERS[i], ls="none", label=f"{side:g}")
         for i, side in enumerate(test["side"].values)
     ]
     filled = [
-        Line2D([], [], color="0.3", marker="o", ls="none", label="filled: elastic"),
-        Line2D([], [], color="0.3", marker="o", mfc="white", ls="none", label="hollow: capped"),
+        mark(color="0.3", marker="o", ls="none", label="filled: elastic"),
+        mark(color="0.3", marker="o", mfc="white", ls="none", label="hollow: capped"),
     ]
     return [heading("strength: side $b$ (nodes)"), *marks, *filled]
 
@@ -165,15 +158,15 @@ def _law_entries(test: xr.Dataset) -> list:
     entries: list = [heading("exponent: $p/(E^* h'_\\mathrm{rms})$")]
     for law, load in _groups(test):
         style = {**_points(law, _OF_EXPONENTS), "marker": _marker(load, test), "ls": "none"}
-        entries.append(Line2D([], [], label=f"{law}, {load:g}", **style))
+        entries.append(mark(label=f"{law}, {load:g}", **style))
     return entries
 
 
 def _line_entries(test: xr.Dataset) -> list:
     return [
-        Line2D([], [], color="0.3", marker="_", ms=12, ls="none", label="as $v$ alone makes it"),
-        Line2D([], [], color="0.6", marker="x", ls="-", label="theory: height differences at $v$"),
-        Line2D([], [], color="0.6", ls=":", label=r"basic friction $\tan\varphi_b$"),
+        mark(color="0.3", marker="_", ms=12, ls="none", label="as $v$ alone makes it"),
+        mark(color="0.6", marker="x", ls="-", label="theory: height differences at $v$"),
+        mark(color="0.6", ls=":", label=r"basic friction $\tan\varphi_b$"),
         Patch(color="0.9", label=f"no size effect: within {test.attrs['bound']:g}"),
         heading(f"side by side; bars: {100 * PROBABILITY:.0f} % intervals"),
     ]

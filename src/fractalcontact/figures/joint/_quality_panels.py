@@ -8,13 +8,14 @@ import xarray as xr
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.colors import to_rgb
-from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from ...core.labels import length_words
 from ...core.window import window_slices
-from ..kit.drawing import COLOURS, label_short_span
+from ..kit.axes import label_short_span
+from ..kit.drawing import COLOURS
 from ..kit.empty import say_empty
+from ..kit.legends import mark
 from ..kit.maps import MISSING, draw_map, missing_patch, scan_extent, window_outline
 from ..kit.words import length_unit
 
@@ -65,7 +66,7 @@ def draw_mask(
     for axis, start in zip("yx", _middle(specimen), strict=True):
         at = (start + 0.5) * specimen.attrs[f"spacing_{axis}"] / size
         (axes.axhline if axis == "y" else axes.axvline)(at, **_PROFILES)
-    marks.append(Line2D([], [], label="where profiles run", **_PROFILES))
+    marks.append(mark(label="where profiles run", **_PROFILES))
     marks.append(Patch(facecolor=_WINDOW, label="profiles: the window"))
     return marks
 
@@ -198,12 +199,10 @@ def draw_radial(axes: Axes, quality: xr.Dataset, faces: Sequence[str]) -> None:
 def spectrum_entries(quality: xr.Dataset, faces: Sequence[str]) -> list[Artist]:
     """Entries of the legend for what stands in the lower panels."""
     entries: list[Artist] = [
-        Line2D([], [], color=FACE_COLOURS[face], lw=1, label=f"{face} face") for face in faces
+        mark(color=FACE_COLOURS[face], lw=1, label=f"{face} face") for face in faces
     ]
     entries += [
-        Line2D(
-            [],
-            [],
+        mark(
             color=AXIS_COLOURS[axis],
             marker="os"[i],
             ms=3,
@@ -213,14 +212,14 @@ def spectrum_entries(quality: xr.Dataset, faces: Sequence[str]) -> list[Artist]:
         )
         for i, axis in enumerate(AXIS_COLOURS)
     ]
-    entries.append(Line2D([], [], color="0.3", ls=":", lw=0.8, label="self-affine line"))
+    entries.append(mark(color="0.3", ls=":", lw=0.8, label="self-affine line"))
     if quality["noise_rms"].notnull().any():
-        entries.append(Line2D([], [], color="0.3", ls="--", lw=0.8, label="noise floor"))
-    entries.append(Line2D([], [], color=GAUSSIAN, lw=0.8, label="Gaussian of the same rms"))
+        entries.append(mark(color="0.3", ls="--", lw=0.8, label="noise floor"))
+    entries.append(mark(color=GAUSSIAN, lw=0.8, label="Gaussian of the same rms"))
     entries.append(Patch(color=RANGE, alpha=0.13, lw=0, label="fractal range"))
     below = quality["below_range"].values
     for which, label in ((False, "2 $s$ of a resolution"), (True, "2 $s$, below the range")):
         if (below == which).any():
             style: dict[str, Any] = {"color": RANGE, "mfc": "white" if which else RANGE}
-            entries.append(Line2D([], [], ls="none", marker="v", label=label, **style))
+            entries.append(mark(ls="none", marker="v", label=label, **style))
     return entries

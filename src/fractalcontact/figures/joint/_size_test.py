@@ -13,7 +13,9 @@ from matplotlib.axes import Axes
 from ...core.determined import is_determined
 from ...core.estimate import Estimate
 from ...core.verdicts import AGREES, FLATTER, NOT_TESTED, STEEPER
-from ..kit.drawing import COLOURS, entries, label_short_span
+from ..kit.axes import label_short_span
+from ..kit.drawing import COLOURS
+from ..kit.legends import entries
 from ..kit.panel import rows
 from ..kit.words import place, pressure_label
 

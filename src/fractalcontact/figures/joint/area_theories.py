@@ -2,28 +2,20 @@
 
 import numpy as np
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 from xarray import DataTree
 
 from ...core.estimate import EXPONENT, Estimate
 from ...core.limits import LIGHT_LOAD
 from ...core.subject import Subject
+from ..kit.axes import label_short_span
 from ..kit.caption import caption
-from ..kit.drawing import (
-    COLOURS,
-    WIDTH,
-    Drawing,
-    entries,
-    heading,
-    headline,
-    label_short_span,
-    legends_below,
-    letter,
-)
+from ..kit.drawing import COLOURS, WIDTH, Drawing
 from ..kit.empty import say_empty
 from ..kit.kappa import kappa_lines
+from ..kit.legends import entries, heading, legends_below, mark
 from ..kit.panel import rows
 from ..kit.points import reach
+from ..kit.titles import headline, letter
 from ..kit.verdicts import claim
 from ..kit.words import NOMINAL_PRESSURE, place, short
 
@@ -167,7 +159,7 @@ def _touching(law, prefix):
 def _kappa_words(law):
     """Entries of the legend that state the mean kappas."""
     words = [
-        Line2D([], [], ls="none", marker="s", color=COLOURS[0], mfc=face, label=label)
+        mark(ls="none", marker="s", color=COLOURS[0], mfc=face, label=label)
         for prefix, words, face, _ in _MEANS
         if (label := f"mean at light load, {words}: {_mean(law, prefix)}")
         and not str(law[f"no_{prefix}mean_kappa"].values)

@@ -6,22 +6,13 @@ from xarray import DataTree
 from ...core.estimate import EXPONENT, Estimate
 from ...core.limits import LARGEST_DISTANCE, RESOLVED_NODES
 from ...core.subject import Subject
+from ..kit.axes import label_short_span, offset_axis
 from ..kit.caption import caption
-from ..kit.drawing import (
-    COLOURS,
-    WIDTH,
-    Drawing,
-    colour_of,
-    entries,
-    heading,
-    headline,
-    label_short_span,
-    legends_below,
-    offset_axis,
-    spread,
-)
+from ..kit.drawing import COLOURS, WIDTH, Drawing, colour_of, spread
+from ..kit.legends import entries, heading, legends_below
 from ..kit.panel import Panel, table_of
 from ..kit.points import hollow_entry
+from ..kit.titles import headline
 from ..kit.verdicts import claim
 from ..kit.words import force_label, place, short
 

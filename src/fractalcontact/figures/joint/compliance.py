@@ -9,20 +9,15 @@ from xarray import DataTree
 from ...core.limits import LOOSELY, NEARLY, RESOLVED_NODES
 from ...core.subject import Subject
 from ...core.verdicts import UNDETERMINED
+from ..kit.axes import offset_axis
 from ..kit.caption import caption
-from ..kit.drawing import (
-    WIDTH,
-    Drawing,
-    entries,
-    heading,
-    headline,
-    legends_below,
-    offset_axis,
-)
+from ..kit.drawing import WIDTH, Drawing
 from ..kit.empty import TOO_FULL, different_reasons, missing_lines, say_empty
+from ..kit.legends import entries, heading, legends_below
 from ..kit.panel import Panel, table_of
 from ..kit.points import hollow_entry
 from ..kit.sizes import plain_decades
+from ..kit.titles import headline
 from ..kit.verdicts import row_of, verdict_words
 from ..kit.words import TOWARDS, force_label, percent, place, pressure_label, short
 

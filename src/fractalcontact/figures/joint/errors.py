@@ -6,21 +6,13 @@ from matplotlib.figure import Figure
 from xarray import DataTree
 
 from ...core.subject import Subject
+from ..kit.axes import force_axis, label_short_span
 from ..kit.caption import caption
-from ..kit.drawing import (
-    LINES,
-    MARKERS,
-    WIDTH,
-    Drawing,
-    colour_of,
-    entries,
-    force_axis,
-    headline,
-    label_short_span,
-    letter,
-)
+from ..kit.drawing import LINES, MARKERS, WIDTH, Drawing, colour_of
+from ..kit.legends import entries
 from ..kit.panel import rows
 from ..kit.sizes import plain_decades
+from ..kit.titles import headline, letter
 from ..kit.words import force_label, length_unit, percent, place, short
 
 TITLE = "Error of each quantity by source"

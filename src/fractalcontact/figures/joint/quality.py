@@ -11,10 +11,11 @@ from xarray import DataTree
 
 from ...core.subject import Subject
 from ..kit.caption import caption
-from ..kit.drawing import WIDTH, Drawing, headline, letter
+from ..kit.drawing import WIDTH, Drawing
 from ..kit.maps import scan_extent
 from ..kit.panel import Panel, rows
 from ..kit.relief import draw_faces
+from ..kit.titles import headline, letter
 from ._history import history
 from ._quality_pair import draw_gap, draw_gap_heights, draw_load_share, pair_entries
 from ._quality_panels import (

@@ -6,20 +6,13 @@ from matplotlib.figure import Figure
 from xarray import DataTree
 
 from ...core.subject import Subject
+from ..kit.axes import label_short_span
 from ..kit.caption import caption
-from ..kit.drawing import (
-    MARKERS,
-    WIDTH,
-    Drawing,
-    colour_of,
-    entries,
-    headline,
-    label_short_span,
-    legends_below,
-    letter,
-)
+from ..kit.drawing import MARKERS, WIDTH, Drawing, colour_of
 from ..kit.empty import say_empty
+from ..kit.legends import entries, legends_below
 from ..kit.sizes import plain_decades
+from ..kit.titles import headline, letter
 from ..kit.words import short
 from ._size_test import grey_beyond, place_of, rows_of_loads
 

@@ -3,24 +3,17 @@
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 from xarray import DataTree
 
 from ...core.estimate import DIMENSION, Estimate
 from ...core.subject import Subject
 from ..kit.caption import caption
-from ..kit.drawing import (
-    WIDTH,
-    Drawing,
-    heading,
-    headline,
-    legends_below,
-    letter,
-    spread,
-)
+from ..kit.drawing import WIDTH, Drawing, spread
 from ..kit.empty import say_empty
+from ..kit.legends import heading, legends_below, mark
 from ..kit.points import hollow_entry
 from ..kit.sizes import plain_decades, size_axis
+from ..kit.titles import headline, letter
 from ..kit.verdicts import claim
 from ._size_test import (
     ESTIMATORS,
@@ -75,7 +68,7 @@ def _draw_equal(axes, test, loads):
         draw_laws(axes, test, i, b, pressure[0])
         found = Estimate.read(test, "slope", scale=DIMENSION)[i].text()
         label = f"at {pressure_words(test, i)}: {found}"
-        handles.append(Line2D([], [], ls="none", **style, label=label))
+        handles.append(mark(ls="none", **style, label=label))
     size_axis(axes, b, "parts")
     axes.set_ylabel(r"nominal pressure $\sigma_0$ (MPa)")
     letter(axes, "a", r"pressure at equal fractal mean pressure $\sigma^*$")

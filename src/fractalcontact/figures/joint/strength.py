@@ -7,12 +7,15 @@ from xarray import DataTree
 from ...core.estimate import ANGLE, Estimate
 from ...core.limits import LARGEST_FRICTION_ANGLE
 from ...core.subject import Subject
+from ..kit.axes import offset_axis
 from ..kit.caption import caption
-from ..kit.drawing import COLOURS, WIDTH, Drawing, entries, heading, headline, offset_axis
+from ..kit.drawing import COLOURS, WIDTH, Drawing
 from ..kit.empty import say_empty
+from ..kit.legends import entries, heading
 from ..kit.panel import Panel, table_of
 from ..kit.points import draw_points, hollow_entry
 from ..kit.sizes import draw_bars, logarithmic, plain_decades, roughness_words
+from ..kit.titles import headline
 from ..kit.words import place, short
 
 TITLE = "Dilatancy angle, friction angle and shear strength, with Barton's criterion"

@@ -2,14 +2,14 @@
 
 import numpy as np
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 from xarray import DataTree
 
 from ...core.estimate import EXPONENT, Estimate
 from ...core.subject import Subject
 from ..kit.caption import caption
-from ..kit.drawing import WEAK, WIDTH, Drawing, entries, heading, headline
+from ..kit.drawing import WEAK, WIDTH, Drawing
 from ..kit.empty import say_empty
+from ..kit.legends import entries, heading, mark
 from ..kit.panel import Panel, table_of
 from ..kit.points import draw_points
 from ..kit.sizes import (
@@ -21,6 +21,7 @@ from ..kit.sizes import (
     series,
     size_axis,
 )
+from ..kit.titles import headline
 from ..kit.verdicts import claim
 from ..kit.words import place, pressure_label
 
@@ -72,10 +73,10 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     handles = [
         entry for panel in panels for entry in (heading(_HEADS[panel.which]), *entries(panel.axes))
     ]
-    handles.append(Line2D([], [], ls="none", marker="o", color="0.4", mfc="white", label=_HOLLOW))
+    handles.append(mark(ls="none", marker="o", color="0.4", mfc="white", label=_HOLLOW))
     if any(np.isfinite(shown[exponent]).any() for _, exponent, _ in _CONTACT.values()):
         label = "line: fit (thin: undetermined)"
-        handles.append(Line2D([], [], label=label, color="0.4", lw=0.8))
+        handles.append(mark(label=label, color="0.4", lw=0.8))
     handles.append(heading(BARS))
     legends.legend(handles=handles, loc="center left", labelspacing=0.4)
     headline(figure, subject.label)

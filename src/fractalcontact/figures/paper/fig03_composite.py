@@ -9,9 +9,11 @@ from ...core.directions import axis_and_sign
 from ...core.subject import Subject
 from ...core.window import faces, window_sides, window_slices
 from ..kit.caption import caption
-from ..kit.drawing import COLOURS, WIDTH, Drawing, entries, headline, letter
+from ..kit.drawing import COLOURS, WIDTH, Drawing
+from ..kit.legends import entries
 from ..kit.maps import HALO, draw_map, missing_patch, scan_extent, window_outline
 from ..kit.panel import rows
+from ..kit.titles import headline, letter
 from ..kit.verdicts import claim
 from ..kit.words import length_unit, place
 

@@ -6,30 +6,19 @@ from typing import Any
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 from xarray import DataTree
 
 from ...core.estimate import EXPONENT, Estimate
 from ...core.limits import CORRECTED_NODES, GOOD_FIT, RESOLVED_NODES
 from ...core.subject import Subject
+from ..kit.axes import force_axis, label_short_span
 from ..kit.caption import caption
-from ..kit.drawing import (
-    MARKERS,
-    WIDTH,
-    Drawing,
-    colour_of,
-    entries,
-    force_axis,
-    heading,
-    headline,
-    label_short_span,
-    legends_below,
-    letter,
-    spread,
-)
+from ..kit.drawing import MARKERS, WIDTH, Drawing, colour_of, spread
 from ..kit.empty import TOO_FULL, say_empty
+from ..kit.legends import entries, heading, legends_below, mark
 from ..kit.panel import Panel, rows, table_of
 from ..kit.points import draw_points
+from ..kit.titles import headline, letter
 from ..kit.verdicts import claim
 from ..kit.words import NOMINAL_PRESSURE, percent, place, short
 from ._stiffness import draw_stiffness, over_spacing
@@ -248,7 +237,7 @@ def _keyed(head, axes, drawn, *lines):
     """Entries of axes with a heading, and what their lines are; where none is fitted, no more."""
     known = [_LINES[line] for line in lines if _known(drawn, _LINES[line][2])]
     style = {"color": "0.3", "lw": 0.9}
-    named = [Line2D([], [], ls=line, label=words, **style) for line, words, _ in known]
+    named = [mark(ls=line, label=words, **style) for line, words, _ in known]
     return [heading(head), *entries(axes), *named] if named else entries(axes)
 
 
@@ -258,4 +247,4 @@ def _hollow(drawn, stiffness):
     if all(flag.all() for flag in flags):
         return []
     words = f"hollow: under {RESOLVED_NODES} nodes, in (c) {CORRECTED_NODES} (area raw)"
-    return [Line2D([], [], color="0.3", ls="none", marker="o", label=words, **_OPEN)]
+    return [mark(color="0.3", ls="none", marker="o", label=words, **_OPEN)]

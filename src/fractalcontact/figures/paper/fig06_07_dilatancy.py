@@ -2,7 +2,6 @@
 
 import numpy as np
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 from xarray import DataTree
 
 from ...core.estimate import Estimate
@@ -10,23 +9,14 @@ from ...core.limits import LEVEL_CHANGE, RESOLVED_NODES
 from ...core.subject import Subject
 from ...core.verdicts import FALLING, LEVEL, RISING
 from ...core.window import window_sides
+from ..kit.axes import label_short_span, offset_axis
 from ..kit.caption import caption
-from ..kit.drawing import (
-    LINES,
-    WIDTH,
-    Drawing,
-    colour_of,
-    entries,
-    heading,
-    headline,
-    label_short_span,
-    legends_below,
-    offset_axis,
-    spread,
-)
+from ..kit.drawing import LINES, WIDTH, Drawing, colour_of, spread
+from ..kit.legends import entries, heading, legends_below, mark
 from ..kit.maps import HALO, draw_domain
 from ..kit.panel import Panel, table_of
 from ..kit.points import hollow_entry
+from ..kit.titles import headline
 from ..kit.verdicts import claim
 from ..kit.words import TOWARDS, area_label, force_label, percent, place, short
 
@@ -105,7 +95,7 @@ def _draw_rigid(panel, dilatancy, plateaus):
     half = short(float(dilatancy["rigid_offset"][-1]) / 2)
     change = rf"change of fitted $\delta_r$ [95 %] in % of its mean, $v \geq$ {half} mm"
     level = f"fitted lines; level: change within {percent(LEVEL_CHANGE)}"
-    fitted = Line2D([], [], color="0.4", label=level, **_FITTED)
+    fitted = mark(color="0.4", label=level, **_FITTED)
     return [heading(change), *entries(panel.axes), fitted]
 
 

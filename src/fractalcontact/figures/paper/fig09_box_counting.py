@@ -11,12 +11,15 @@ from xarray import DataTree
 from ...core.estimate import DIMENSION, Estimate
 from ...core.subject import Subject
 from ...core.window import window_sides
+from ..kit.axes import label_short_span
 from ..kit.caption import caption
 from ..kit.domains import contact_domain
-from ..kit.drawing import COLOURS, WEAK, WIDTH, Drawing, heading, headline, label_short_span, letter
+from ..kit.drawing import COLOURS, WEAK, WIDTH, Drawing
+from ..kit.legends import heading
 from ..kit.maps import draw_domain
 from ..kit.panel import Panel, table_of
 from ..kit.points import reach
+from ..kit.titles import headline, letter
 from ..kit.verdicts import claim
 from ..kit.words import force_label, place, short
 

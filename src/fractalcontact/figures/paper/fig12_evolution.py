@@ -11,13 +11,15 @@ from ...core.subject import Subject
 from ...core.window import window_sides
 from ..kit.caption import caption
 from ..kit.domains import contact_domain, departures, estimates_of, rise_words, spread_loads
-from ..kit.drawing import COLOURS, WIDTH, Drawing, entries, headline, letter
+from ..kit.drawing import COLOURS, WIDTH, Drawing
 from ..kit.empty import say_empty
+from ..kit.legends import entries
 from ..kit.maps import draw_domain, ring_entry
 from ..kit.measured import draw_series, measured_series, threshold_words
 from ..kit.measured import table_of as table_of_maps
 from ..kit.panel import Panel, table_of
 from ..kit.points import reach
+from ..kit.titles import headline, letter
 from ..kit.words import area_label, force_label, place, wrapped
 
 TITLE = "Fig. 12: contact domains and their dimension under growing load"
