@@ -16,7 +16,7 @@ from fractalcontact.core.verdicts import ABOVE, BELOW, WITHIN
 from fractalcontact.domain.clusters import cluster_sizes, cluster_statistics
 from fractalcontact.figures.draw import drawer_of
 from fractalcontact.figures.experiments import plateau
-from fractalcontact.figures.experiments.plateau import Slide
+from fractalcontact.figures.experiments._slides import Slide
 from fractalcontact.figures.joint import compliance
 from fractalcontact.figures.kit.axes import offset_axis
 from fractalcontact.figures.kit.drawing import print_style, save

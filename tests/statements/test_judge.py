@@ -6,7 +6,15 @@ import xarray as xr
 
 from fractalcontact.core.estimate import Estimate
 from fractalcontact.core.reported import Reported
-from fractalcontact.core.verdicts import FAILS, HOLDS, ILL_POSED, PARTLY, UNDETERMINED, VERDICTS
+from fractalcontact.core.verdicts import (
+    DECIDED,
+    FAILS,
+    HOLDS,
+    ILL_POSED,
+    PARTLY,
+    UNDETERMINED,
+    VERDICTS,
+)
 from fractalcontact.domain.cluster_laws import localisation
 from fractalcontact.mechanics.plateau import rigid_plateaus
 from fractalcontact.statements import closure, nulls, scaling
@@ -242,6 +250,10 @@ def stages(**changes):
             {
                 "verdict": (("estimator", "normal_force"), values["size_verdict"]),
                 "slope_verdict": (("estimator", "normal_force"), values["size_verdict"]),
+                "decides": (
+                    ("estimator", "normal_force"),
+                    np.isin(values["size_verdict"], DECIDED) & ~np.asarray(values["beyond"]),
+                ),
                 "reason": (("estimator", "normal_force"), np.full((2, 2), "too wide")),
                 "predicted_slope": (("estimator", "normal_force"), np.full((2, 2), -0.5)),
                 "area_exponent": ("normal_force", [-0.6, -0.4]),

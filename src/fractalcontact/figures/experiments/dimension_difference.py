@@ -143,14 +143,13 @@ def _words(test):
     """Range of the difference, in how many intervals zero lies, where box counting tends."""
     difference = Estimate.read(test, "mean_difference")
     known = np.isfinite(difference.low)
-    agree = (difference.low <= 0) & (difference.high >= 0) & known
     yielded = np.array([])
     if "capped_pressure" in test.dims:
         last = Estimate.read(test.isel(capped_pressure=-1), "capped_mean_delta_sigma_box")
         yielded = last.value[np.isfinite(last.low)]
     return {
         "difference": difference.value[known].tolist(),
-        "agree": int(agree.sum()),
+        "agree": int(test["difference_agrees"].sum()),
         "yielded": dict.fromkeys(number(end) for end in (min(yielded), max(yielded)))
         if yielded.size
         else {},

@@ -20,11 +20,6 @@ NEEDS = ("estimator_bias",)
 KEY = "estimator_bias"
 ORDER = 40
 
-#: Bias that three estimators at least are to keep to where H is 0.5 or more.
-TOLERATED = 0.03
-#: Fraction of the intervals that are to hold H there.
-PROMISED = 0.9
-
 
 def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
     """Bias with scatter, and coverage, by H, size, roll-off and estimator."""
@@ -102,7 +97,8 @@ def _label(bias, name):
 
 
 def _draw_bias(axes, bias):
-    axes.axhspan(-TOLERATED, TOLERATED, color="0.9", lw=0, label=rf"aim: bias within {TOLERATED:g}")
+    aim = bias.attrs["tolerated_bias"]
+    axes.axhspan(-aim, aim, color="0.9", lw=0, label=rf"aim: bias within {aim:g}")
     for n, name in enumerate(bias["estimator"].values):
         one, x = bias.sel(estimator=name), _beside(bias, n)
         style = {"color": colour_of(n), "marker": MARKERS[n % len(MARKERS)], "ls": "none"}
@@ -114,8 +110,9 @@ def _draw_bias(axes, bias):
 
 
 def _draw_coverage(axes, bias):
-    words = f"aim: {100 * PROMISED:.0f} % of the surfaces"
-    axes.axhline(100 * PROMISED, color="0.4", lw=0.8, ls=LINES[1], label=words)
+    aim = 100 * bias.attrs["promised_coverage"]
+    words = f"aim: {aim:.0f} % of the surfaces"
+    axes.axhline(aim, color="0.4", lw=0.8, ls=LINES[1], label=words)
     for n, name in enumerate(bias["estimator"].values):
         axes.plot(
             _beside(bias, n),
@@ -140,19 +137,15 @@ def _words(bias):
     names = [_name(name) for name in known["estimator"].values]
     errors = dict(zip(names, known["overall_error"].values.tolist(), strict=True))
     least = dict(zip(names, known["least_coverage"].values.tolist(), strict=True))
-    rough = bias["coverage"].where(bias["hurst"] < start).min(["hurst", "size", "roll_off"])
-    rough = rough.values[rough.notnull().values]
+    rough = bias["rough_coverage"]
     return {
         "seeds": bias.sizes["seed"],
         "start": start,
         "name": _name(bias.attrs["recommended"]),
         "errors": errors,
-        "best": min(errors, key=errors.__getitem__, default=""),
         "least": least,
-        "worst": min(least.values(), default=np.nan),
-        "promised": PROMISED,
-        "rough": rough.tolist(),
-        "failing": int((rough < PROMISED).sum()),
+        "promised": bias.attrs["promised_coverage"],
+        "rough": rough.values[rough.notnull()].tolist(),
     }
 
 

@@ -44,7 +44,8 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     test = subject["size_test"]
     figure = Figure(figsize=(WIDTH, 3.7))
     panels = figure.subplots(1, 2)
-    load = _load_said(test)
+    quoted = np.flatnonzero(test["quoted_load"].values)
+    load = int(quoted[0]) if quoted.size else None
     for axes, which, quantity in zip(panels, "ab", ("closure", "area"), strict=True):
         _draw_errors(axes, test, quantity, which, load)
     handles = entries(panels[0])
@@ -122,17 +123,6 @@ def _table(test, laws):
         columns = ("predicted_strength", "direct_strength")
         tables.append(rows_of_loads(strength, *columns, quantity="strength"))
     return pd.concat(tables, ignore_index=True)
-
-
-def _load_said(test):
-    """Index of the load that the caption speaks of; None where no load has every prediction."""
-    errors = test[["closure_error", "area_error"]].sel(predictor=list(PREDICTORS))
-    known = np.isfinite(errors.to_dataarray()).all(("variable", "predictor")).values
-    of_study = known & ~test["beyond_study"].values.astype(bool)
-    if not known.any():
-        return None
-    # The heaviest load of the study says most: more nodes touch. One beyond it matters to nobody.
-    return int(np.flatnonzero(of_study if of_study.any() else known)[-1])
 
 
 def _words(test, load):

@@ -16,7 +16,6 @@ from ..kit.sizes import (
     BARS,
     draw_bars,
     draw_over_size,
-    draw_power_law,
     logarithmic,
     series,
     size_axis,
@@ -102,7 +101,7 @@ def _draw_roughness(panel, laws, slides):
     face = laws["face_sigma_z"].values
     if expected.known and fitted.any():
         style = {"color": "k", "ls": "--", "label": rf"eq. 2: $H = 3-\Delta_g$ = {expected.text()}"}
-        draw_power_law(axes, b[fitted], face[fitted], expected.value, **style)
+        axes.plot(b[fitted], laws["face_sigma_z_expected"].values[fitted], **style)
     size_axis(axes, b, "sub-windows")
     if (face > 0).any():
         logarithmic(axes, np.concatenate([laws[name].values for name in shown]))
@@ -121,8 +120,7 @@ def _draw_contact(panel, laws):
         if exponent.known:
             line = {"color": series(j)["color"], "linewidth": 0.8}
             line |= {} if exponent.determined else WEAK
-            values = laws[name].isel(normal_force=j).values[inside]
-            draw_power_law(axes, b[inside], values, exponent.value, **line)
+            axes.plot(b[inside], laws[f"{name}_law"].isel(normal_force=j)[inside], **line)
         words = f"{pressure_label(pressure)}: $x$ = {exponent.text()}"
         axes.plot([], [], **series(j) | _face(inside), ls="none", label=words)
     size_axis(axes, b, "sub-windows")
