@@ -57,13 +57,18 @@ def _draw_difference(axes, test, which):
             axes.plot(beside, mean, color=colour, ls=LINES[n % len(LINES)], marker=MARKERS[i])
             axes.vlines(beside, low, high, color=colour, lw=0.5)
     axes.axhline(0, color="0.5", lw=0.8, ls=LINES[2])
-    axes.set_xscale("log", base=2)
-    axes.set_xticks(size, [f"{n:g}" for n in size])
-    axes.minorticks_off()
+    _in_doublings(axes, size)
     axes.set_ylim(*_DIFFERENCES)
     axes.set_xlabel("nodes per side (1)")
     axes.set_ylabel(r"$\Delta_\sigma$: $A_r(s)$ less box counting (1)")
     letter(axes, which, "difference, 95 % intervals")
+
+
+def _in_doublings(axes, places):
+    """Axis along x in powers of two, with a number at each place."""
+    axes.set_xscale("log", base=2)
+    axes.set_xticks(places, [f"{n:g}" for n in places])
+    axes.minorticks_off()
 
 
 def _draw_boxes(axes, test, which):
@@ -76,9 +81,7 @@ def _draw_boxes(axes, test, which):
             style = {"color": colour_of(i), "ls": LINES[n % len(LINES)], "marker": MARKERS[i]}
             axes.plot(k, ratio, **style)
     axes.axhline(1, color="0.5", lw=0.8, ls=LINES[2])
-    axes.set_xscale("log", base=2)
-    axes.set_xticks(k, [f"{n:g}" for n in k])
-    axes.minorticks_off()
+    _in_doublings(axes, k)
     axes.set_xlabel("resolution: every $k$-th node (1)")
     axes.set_ylabel("occupied boxes of $k$ nodes\nover nodes in contact at $k$ (1)")
     letter(axes, which, "boxes per node of contact")
@@ -107,12 +110,9 @@ def _legends(test):
         for i, g in enumerate(test["dimension"].values)
     ]
     loads = test["reduced_pressure"].values
+    of_load = r"(a), (b) $p/(E^* h'_\mathrm{rms})$"
     lines = [
-        mark(
-            color="0.3",
-            ls=LINES[n % len(LINES)],
-            label=rf"(a), (b) $p/(E^* h'_\mathrm{{rms}})$ = {loads[j]:g}",
-        )
+        mark(color="0.3", ls=LINES[n % len(LINES)], label=f"{of_load} = {loads[j]:g}")
         for n, j in enumerate(_shown(test))
     ]
     one_law = "(a), (b) if one law governed both"

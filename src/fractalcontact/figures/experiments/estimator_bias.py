@@ -49,6 +49,7 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
         panels[2 * row + 1, 0].set_ylabel("surfaces (%)")
     places = np.arange(bias.sizes["hurst"])
     for panel in panels[-1]:
+        panel.set_xlim(-0.5, bias.sizes["hurst"] - 0.5)
         panel.set_xticks(places, [f"{hurst:g}" for hurst in bias["hurst"].values])
         panel.set_xlabel("Hurst exponent $H$ of the surfaces (1)")
     legends_below(figure, *_legends(panels[0, 0], panels[1, 0], bias.attrs["from_hurst"]))
@@ -106,7 +107,6 @@ def _draw_bias(axes, bias):
         axes.errorbar(x, one["bias"], one["scatter"], capsize=2, lw=0.8, label=label, **style)
         moved = np.abs(one["slope_bias"] - one["bias"]) > 1e-9
         axes.plot(x[moved], one["slope_bias"][moved], mfc="none", mew=0.7, alpha=0.8, **style)
-    _set_ends(axes, bias)
 
 
 def _draw_coverage(axes, bias):
@@ -122,12 +122,6 @@ def _draw_coverage(axes, bias):
             ls="none",
         )
     axes.set_ylim(min(45, 90 * float(bias["coverage"].min())), 105)
-    _set_ends(axes, bias)
-
-
-def _set_ends(axes, bias):
-    """Ends of the axis of H, half a place beyond the first and the last."""
-    axes.set_xlim(-0.5, bias.sizes["hurst"] - 0.5)
 
 
 def _words(bias):

@@ -16,7 +16,8 @@ from ..kit.points import hollow_entry
 from ..kit.sizes import plain_decades
 from ..kit.titles import headline
 from ..kit.verdicts import row_of
-from ..kit.words import TOWARDS, force_label, percent, place, pressure_label, short
+from ..kit.words import force_label, percent, place, pressure_label
+from ._face_correlation import draw_correlation
 from ._sliding_stages import number_stages, stage_column, stages_of_sliding
 
 TITLE = "Figs. 4 and 5: correlation of the faces, closure and compliance against the offset"
@@ -39,7 +40,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     axes = figure.subplots(3, 1, sharex=True, height_ratios=[1.1, 1, 1.2])
     titles = ("correlation of the faces", _seat(curves), _bars(curves))
     a, b, c = (Panel(*one) for one in zip(axes, "abc", titles, strict=True))
-    _draw_correlation(a, joint, subject.direction, ends)
+    draw_correlation(a, joint, subject.direction, ends)
     _draw_closures(b, c, curves)
     for at, style in zip(ends, ("--", ":"), strict=True):
         for panel in (b, c):
@@ -66,36 +67,6 @@ def draw(atlas: DataTree, name: str) -> Drawing:
         "stages": [text for text, *_ in stages],
     }
     return Drawing(figure, table_of(a, b, c), caption(__name__, force=force, **words))
-
-
-def _draw_correlation(panel, joint, solved, ends):
-    """The direction solved in black, all others in grey."""
-    axes = panel.axes
-    others = [d for d in joint["direction"].values if d != solved]
-    names = ", ".join(TOWARDS.get(d, d) for d in others)
-    kept = ("correlation_length", "uncorrelated_offset")
-    grey = {"color": "0.7", "lw": 0.9, "ls": "-", "keep": kept}
-    for n, direction in enumerate(others):
-        label = {} if n else {"label": f"towards {names}"}
-        one = joint.sel(direction=direction)
-        panel.curve(one, "rigid_offset", "face_correlation", **grey, **label)
-    black = {"color": "k", "ls": "-", "label": f"towards {TOWARDS[solved]}, as in (b), (c)"}
-    one = joint.sel(direction=solved)
-    panel.curve(one, "rigid_offset", "face_correlation", keep=kept, **black)
-    limit = float(joint["correlation_limit"])
-    if np.isfinite(limit):
-        axes.axhspan(-limit, limit, color="0.9", zorder=0, lw=0, label="by chance alone, 95 %")
-    # The level and the offsets found from it are lines of one style, here and below.
-    axes.axhline(np.exp(-1), color="0.4", lw=0.8, ls="--")
-    for at, style, words in zip(ends, ("--", ":"), ("1/e", "lost"), strict=True):
-        if np.isfinite(at):
-            label = f"correlation {words}: $v$ = {short(at)} mm"
-            axes.axvline(at, color="0.4", lw=0.8, ls=style, label=label)
-    if not np.isfinite(ends[0]):
-        axes.plot([], [], color="0.4", lw=0.8, ls="--", label="correlation 1/e: not reached")
-    axes.set_ylim(top=1.05)
-    axes.set_ylabel("correlation of the faces (1)")
-    axes.set_xlabel("")
 
 
 def _seated(curves):
