@@ -38,7 +38,7 @@ MODULES = (
     "fractalcontact.stages.atlas",
     "fractalcontact.stages.specimen",
     "fractalcontact.stages.states",
-    "fractalcontact.stages.strength",
+    "fractalcontact.stages.report",
     "fractalcontact.stages.windows",
     "fractalcontact.study.embedded",
     "fractalcontact.study.preparation",

@@ -3,7 +3,7 @@
 import numpy as np
 import xarray as xr
 
-from fractalcontact.core.quantities import Shown, shown_quantities
+from fractalcontact.core.quantities import Shown, shown_in, shown_quantities
 from fractalcontact.core.subject import Subject
 
 
@@ -50,3 +50,12 @@ def test_each_stands_once_and_names_what_it_is_shown_as():
     columns = [one.summary for one in shown_quantities() if one.summary]
     assert len(columns) == len(set(columns)) > 0
     assert [one.page for one in shown_quantities() if one.page]
+
+
+def test_a_place_lists_what_it_shows_in_the_order_of_the_register():
+    order = [one.key for one in shown_quantities()]
+    for place in ("summary", "page", "index"):
+        keys = [one.key for one in shown_in(place)]
+        assert keys == sorted(keys, key=order.index)
+        assert keys
+    assert set(shown_in("page", "index")) == {*shown_in("page"), *shown_in("index")}

@@ -18,7 +18,8 @@ from fractalcontact.core.verdicts import ABOVE, BELOW, WITHIN
 from fractalcontact.domain.clusters import cluster_sizes, cluster_statistics
 from fractalcontact.figures.draw import drawer_of
 from fractalcontact.figures.joint import compliance
-from fractalcontact.figures.kit.drawing import offset_axis, print_style, save
+from fractalcontact.figures.kit.axes import offset_axis
+from fractalcontact.figures.kit.drawing import print_style, save
 from fractalcontact.mechanics.conductance import add_conductance
 
 SLIDING = ("sliding", "pair")

@@ -13,7 +13,8 @@ from PIL import Image
 
 from contactlab.figures.experiments import plateau
 from fractalcontact.figures.draw import drawer_of
-from fractalcontact.figures.kit.drawing import WIDTH, Drawing, headline, letter, print_style, save
+from fractalcontact.figures.kit.drawing import WIDTH, Drawing, print_style, save
+from fractalcontact.figures.kit.titles import headline, letter
 from fractalcontact.figures.kit.words import percent
 from fractalcontact.study.figure_list import figures_of
 

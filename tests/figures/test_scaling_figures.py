@@ -22,6 +22,7 @@ from fractalcontact.figures import draw as figures
 from fractalcontact.figures.draw import drawer_of
 from fractalcontact.figures.kit import drawing as common
 from fractalcontact.figures.kit import words as _words
+from fractalcontact.figures.kit.axes import label_short_span
 from fractalcontact.figures.kit.domains import contact_domain, spread_loads
 from fractalcontact.mechanics.model_validity import model_validity
 from fractalcontact.mechanics.states import with_pressure
@@ -270,7 +271,7 @@ def test_box_sides_have_labels_that_stand_apart(largest):
         axes = shown.subplots(1, 3)[1]
         sides = pd.Series(np.geomspace(0.2, 0.2 * largest, 9))
         axes.loglog(sides, 1 / sides)
-        common.label_short_span(axes.xaxis)
+        label_short_span(axes.xaxis)
         shown.draw_without_rendering()
     low, high = axes.get_xlim()
     labels = [

@@ -12,6 +12,7 @@ from fractalcontact.core.subject import Subject
 from fractalcontact.figures.joint import _size_test, size_prediction, size_slopes, size_test
 from fractalcontact.figures.kit.drawing import print_style, save
 from fractalcontact.figures.paper import fig11_slope_angle
+from fractalcontact.size_effect.eq6 import add_decisions
 from fractalcontact.size_effect.strength_laws import slope_angle
 
 SPECIMENS = ("sliding", "flat", "pair")
@@ -106,6 +107,7 @@ def test_prediction_is_headed_by_the_heaviest_load_of_the_study(atlas):
             error = test[f"{quantity}_error"]
             test[f"{quantity}_error"] = xr.full_like(error, 0.25)
         test["beyond_study"] = test["beyond_study"].copy(data=beyond)
+        add_decisions(test)
         return test
 
     pressure = atlas["size_test/sliding"]["nominal_pressure"].values
@@ -127,6 +129,7 @@ def judged_as(atlas, verdict, reason):
         test["beyond_study"] = xr.zeros_like(test["beyond_study"], dtype=bool)
         for name, value in (("verdict", verdict), ("reason", reason)):
             test[name] = test[name].copy(data=np.full(test[name].shape, value, object))
+        add_decisions(test)
         return test
 
     return changed(atlas, "size_test/sliding", set_all)
@@ -146,9 +149,8 @@ def test_a_verdict_on_eq_6_carries_its_reason(atlas, verdict, reason, said):
     test = tree["size_test/sliding"].to_dataset()
     n = test["normal_force"].size
     assert said.format(n=n) in drawing.caption
-    assert _size_test.deciding(test.sel(estimator=list(_size_test.ESTIMATORS))).sum() == (
-        0 if verdict == "undecided" else n * len(_size_test.ESTIMATORS)
-    )
+    decides = test["decides"].sel(estimator=list(_size_test.ESTIMATORS))
+    assert decides.sum() == (0 if verdict == "undecided" else decides.size)
     labels = [line.get_label() for line in drawing.figure.axes[1].lines]
     assert any("decides, by" in str(label) for label in labels) == (verdict != "undecided")
 

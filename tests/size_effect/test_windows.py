@@ -25,6 +25,7 @@ from fractalcontact.size_effect.division import FEWEST_CELLS, PARTS, split, spre
 from fractalcontact.size_effect.laws import size_laws
 from fractalcontact.size_effect.local_roughness import local_roughness, tilt_fraction
 from fractalcontact.size_effect.strength_laws import OFFSET_FRACTIONS
+from fractalcontact.size_effect.window_means import power_through
 from fractalcontact.size_effect.windows import window_states
 from fractalcontact.study.configuration import resolve_settings
 from fractalcontact.surface.specimen import make_specimen
@@ -209,6 +210,31 @@ def test_exact_powers_are_found_again(states):
         np.testing.assert_allclose(found[f"face_hurst{end}"], 0.6, atol=1e-9)
     np.testing.assert_allclose(found["closure_exponent_b_min"], states["side"].min())
     np.testing.assert_allclose(found["closure_exponent_b_max"], 12.8)
+
+
+@pytest.mark.parametrize("exponent", [-0.4, 0.3])
+def test_lines_of_laws_lie_on_exact_powers_and_end_where_these_are_fitted(states, exponent):
+    found = size_laws(powers_of_side(states, exponent), ROCK, 12.0, DIMENSION)
+    fitted, line = found["interface_closure_fitted"], found["interface_closure_law"]
+    assert fitted.any()
+    np.testing.assert_array_equal(line.notnull(), fitted)
+    np.testing.assert_allclose(line, found["interface_closure"].where(fitted), rtol=1e-9)
+    np.testing.assert_array_equal(
+        found["face_sigma_z_expected"].notnull(), found["face_sigma_z_fitted"]
+    )
+
+
+@pytest.mark.parametrize("exponent", [-0.8, 0.5])
+def test_a_power_through_scattered_values_leaves_their_mean_logarithm(exponent):
+    side = xr.DataArray([1.0, 2.0, 4.0, 8.0], dims="part")
+    values = xr.DataArray([1.0, 3.0, -1.0, 5.0], dims="part", attrs={"units": "mm"})
+    line = power_through(values, side, xr.DataArray(exponent), "a line")
+    assert np.isnan(line[2])
+    left = np.log(values.where(values > 0) / line)
+    assert abs(float(left.mean())) < 1e-12
+    slopes = np.diff(np.log(line.values[:2])) / np.diff(np.log(side.values[:2]))
+    np.testing.assert_allclose(slopes, exponent)
+    assert line.attrs == {"units": "mm", "long_name": "a line"}
 
 
 def test_a_self_similar_climb_has_one_strength_at_one_share_of_the_side(states):

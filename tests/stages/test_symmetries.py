@@ -12,6 +12,7 @@ from materials import ROCK
 from symmetries import LENGTH, STRESS, differences, exchanged, grown, with_axes_exchanged
 
 from fractalcontact.mechanics.states import SOLVER_ERROR
+from fractalcontact.stages.report import OF_STRENGTH
 from fractalcontact.stages.strength import strength_stages
 from fractalcontact.study.configuration import resolve_settings, solver_settings
 from fractalcontact.study.stages import STAGES
@@ -20,9 +21,7 @@ from fractalcontact.surface.synthesis import self_affine
 SPACING, WINDOW = (0.15, 0.1), (6.0, 4.8)  # (y, x), mm
 OFFSETS, LOADS = (0.0, 0.3, 0.9), (2.0, 10.0, 30.0, 90.0)  # mm, MPa
 SOLVER = replace(solver_settings({}, "tiny"), rtol=1e-8)
-MADE_OF_SPECIMEN = [
-    name for name, stage in STAGES.items() if stage.grain in ("specimen", "joint") and stage.filed
-]
+MADE_OF_SPECIMEN = [name for name, stage in STAGES.items() if stage.grain in ("specimen", "joint")]
 
 #: What is stated at an absolute length or force: Tse and Cruden's JRC takes its steps in mm, and
 #: Barton's strength follows it; a spectrum at a wave of 1 mm; an area at 1 N; a conductance at
@@ -33,6 +32,11 @@ ABSOLUTE = {
     *("barton_slope_angle", "peak_over_barton"),
     *("unit_area", "unit_area_low", "unit_area_high", "value"),
     *("unit_conductance", "unit_conductance_low", "unit_conductance_high"),
+}
+#: Sentences with numbers and letters in them, by stage: their verdicts are compared.
+SENTENCES = {
+    "elastic_model": {"reason"},
+    "statements": {"claim", "short", "rule", "numbers", "note"},
 }
 #: What depends on the order in which nodes are gone through: random nodes are drawn row by row.
 OF_ORDER = re.compile(r"residual|energy_error|iterations|.*_random.*|.*_departure")
@@ -89,14 +93,15 @@ def stages(length=1.0, stress=1.0, turned=False):
 def test_results_are_in_the_units_that_they_state(stage):
     first, other = stages()[stage], stages(LENGTH, STRESS)[stage]
     found = differences(other, grown(first), rtol=1e-4, atol=1e-6)
-    assert not {name: found[name] for name in found.keys() - ABSOLUTE}
+    assert not {name: found[name] for name in found.keys() - ABSOLUTE - SENTENCES.get(stage, set())}
 
 
 @pytest.mark.parametrize("stage", MADE_OF_SPECIMEN)
 def test_results_do_not_depend_on_which_axis_is_called_x(stage):
     first, other = stages()[stage], with_axes_exchanged(stages(turned=True)[stage])
     found = differences(other, first, rtol=1e-3, atol=1e-6, unordered="window")
-    exact = [name for name in found if SOLVER_ERROR not in first[name].attrs.get("long_name", "")]
+    stated = found.keys() - SENTENCES.get(stage, set())
+    exact = [name for name in stated if SOLVER_ERROR not in first[name].attrs.get("long_name", "")]
     assert not {name: found[name] for name in exact if not OF_ORDER.fullmatch(name)}
 
 
@@ -107,7 +112,7 @@ def test_size_laws_below_a_roll_off_are_in_the_units_that_they_state():
         made["surface_dimension"] = made["surface_dimension"].assign(
             roll_off=2.0 * length, range_max=1.0 * length
         )
-        given = {need: made[need] for need in STAGES["windows"].needs}
+        given = {need: made[need] for need in OF_STRENGTH}
         settings = rock_joint(length, stress)[1]
         found.append(strength_stages(**given, settings=settings)["windows"])
     first, other = found

@@ -6,7 +6,15 @@ import xarray as xr
 
 from fractalcontact.core.estimate import Estimate
 from fractalcontact.core.reported import Reported
-from fractalcontact.core.verdicts import FAILS, HOLDS, ILL_POSED, PARTLY, UNDETERMINED, VERDICTS
+from fractalcontact.core.verdicts import (
+    DECIDED,
+    FAILS,
+    HOLDS,
+    ILL_POSED,
+    PARTLY,
+    UNDETERMINED,
+    VERDICTS,
+)
 from fractalcontact.domain.cluster_laws import localisation
 from fractalcontact.mechanics.plateau import rigid_plateaus
 from fractalcontact.statements import closure, nulls, scaling
@@ -23,6 +31,8 @@ SETTINGS = {
     "map_offset": 0.4,
     "material": ROCK,
     "opposite": "match",
+    "chosen_for": {},
+    "capped_variant": False,
 }
 #: Faces that are uncorrelated at the first offset beyond the correlation length.
 WITHIN = {"length": 1.3, "uncorrelated": 1.4}
@@ -240,6 +250,10 @@ def stages(**changes):
             {
                 "verdict": (("estimator", "normal_force"), values["size_verdict"]),
                 "slope_verdict": (("estimator", "normal_force"), values["size_verdict"]),
+                "decides": (
+                    ("estimator", "normal_force"),
+                    np.isin(values["size_verdict"], DECIDED) & ~np.asarray(values["beyond"]),
+                ),
                 "reason": (("estimator", "normal_force"), np.full((2, 2), "too wide")),
                 "predicted_slope": (("estimator", "normal_force"), np.full((2, 2), -0.5)),
                 "area_exponent": ("normal_force", [-0.6, -0.4]),
@@ -508,8 +522,8 @@ def test_a_variable_that_is_missing_is_an_error():
 # Who is asked
 
 
-def names_of(settings, **options):
-    return set(statements_for(settings, **options))
+def names_of(settings, **others):
+    return set(statements_for(settings | others))
 
 
 def test_what_is_said_of_one_material_is_asked_of_that_one():
@@ -539,7 +553,7 @@ def test_a_capped_variant_is_asked_only_what_a_hardness_changes():
 
 
 def test_a_statement_the_specimen_was_chosen_for_is_marked():
-    found = judge(stages(), SETTINGS, circular={"dilatancy_flattens": "its seed"})
+    found = judge(stages(), SETTINGS | {"chosen_for": {"dilatancy_flattens": "its seed"}})
     marked = found["circular"].values
     assert found["statement"].values[marked].tolist() == ["dilatancy_flattens"]
     assert found["circular_reason"].values[marked].tolist() == ["its seed"]

@@ -8,14 +8,15 @@ import pytest
 from made_settings import made_settings
 
 from fractalcontact.core import settings
+from fractalcontact.core.stage import STUDY
 from fractalcontact.study.configuration import solver_settings
 from fractalcontact.study.stages import CONTACT, STAGES, read_by, sections_of
 
 SOLVER = solver_settings({}, "study")
-SPECIMEN, STATES, WINDOWS, STRENGTH = (
+SPECIMEN, STATES, WINDOWS, REPORT = (
     STAGES[name].function for name in ("joints", "closure", "size_test", "strength")
 )
-JOBS = (SPECIMEN, CONTACT, STATES, WINDOWS, STRENGTH)
+JOBS = (SPECIMEN, CONTACT, STATES, WINDOWS, REPORT)
 
 
 def taken_by(function):
@@ -26,7 +27,7 @@ def taken_by(function):
 
 
 @pytest.mark.parametrize(
-    "function", sorted({CONTACT, *(s.function for s in STAGES.values() if s.filed)})
+    "function", sorted({CONTACT, *(s.function for s in STAGES.values() if s.grain != STUDY)})
 )
 def test_what_a_function_takes_is_known_without_importing_it(function):
     taken = {
@@ -55,15 +56,15 @@ def _material(**stated):
 @pytest.mark.parametrize(
     ("change", "again"),
     [
-        ({"label": "another"}, ()),
-        (_material(basic_friction_angle=35.0), (STRENGTH,)),
-        (_material(joint_wall_strength=60.0), (STRENGTH,)),
-        (_material(hardness=900.0), (CONTACT, STATES, WINDOWS)),
-        (_material(name="another", modulus=1.0, poisson=0.3), ()),
+        ({"label": "another"}, (REPORT,)),
+        (_material(basic_friction_angle=35.0), (REPORT,)),
+        (_material(joint_wall_strength=60.0), (REPORT,)),
+        (_material(hardness=900.0), (CONTACT, STATES, WINDOWS, REPORT)),
+        (_material(name="another", modulus=1.0, poisson=0.3), (REPORT,)),
         ({"box_range": (0.2, 1.0)}, (STATES, WINDOWS)),
         ({"seating_pressure": 1.0}, (STATES,)),
         ({"map_load": (5.0, "pressure")}, (CONTACT, STATES)),
-        ({"surface_range": (0.2, 1.0)}, (SPECIMEN, STRENGTH)),
+        ({"surface_range": (0.2, 1.0)}, (SPECIMEN, REPORT)),
         ({"outliers": "mask"}, (SPECIMEN,)),
     ],
     ids=str,

@@ -5,9 +5,9 @@ import xarray as xr
 
 from fractalcontact.core.settings import arguments
 from fractalcontact.mechanics.sweep import joint_states
+from fractalcontact.stages.report import report_stages
 from fractalcontact.stages.specimen import specimen_stages
 from fractalcontact.stages.states import state_stages
-from fractalcontact.stages.strength import strength_stages
 from fractalcontact.stages.windows import window_stages
 from fractalcontact.study.configuration import window_arguments
 from fractalcontact.study.stages import CONTACT, STAGES, read_by
@@ -22,7 +22,7 @@ def scan(heights, spacing):
 
 
 #: Functions that make the stages after those of the specimen itself, by their first stage.
-LATER = {"window_states": window_stages, "closure": state_stages, "windows": strength_stages}
+LATER = {"window_states": window_stages, "closure": state_stages, "windows": report_stages}
 
 
 def stages_of(name, faces, settings, solver, later=tuple(LATER)):

@@ -1,7 +1,7 @@
 # All stages of the study: in one file, or in one a specimen and one of what they have together.
 SPECIMEN_ATLAS = f"{RESULTS}/atlas/{{specimen}}.nc"
 # What of a specimen is compared with others, beside its atlas, which takes long to open.
-SPECIMEN_ROW = f"{RESULTS}/comparison/{{specimen}}.nc"
+SPECIMEN_ROW = f"{RESULTS}/rows/{{specimen}}.nc"
 
 
 def stages_of(wildcards):

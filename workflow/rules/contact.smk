@@ -80,7 +80,8 @@ rule analysis:
         "../scripts/stage.py"
 
 
-# Strength and size laws: the only ones that read friction angles, and so alone in their job.
+# The report: strength, size laws, and what the paper says compared with what was found. They alone
+# read friction angles, wall strengths and labels, and solve nothing.
 rule strength:
     input:
         **inputs_of("windows"),
@@ -98,7 +99,7 @@ rule strength:
     params:
         **calling("windows"),
     message:
-        "{wildcards.specimen}: strength and size laws"
+        "{wildcards.specimen}: strength, size laws and the paper's statements"
     script:
         "../scripts/stage.py"
 
@@ -114,7 +115,7 @@ use rule strength as size_laws_against_plane with:
     wildcard_constraints:
         specimen=kind_of(FLAT, SLIDING),
     message:
-        "{wildcards.specimen}: size laws"
+        "{wildcards.specimen}: size laws and the paper's statements"
 
 
 # A measured map of contact goes straight to the analysis of domains.

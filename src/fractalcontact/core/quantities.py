@@ -31,6 +31,10 @@ class Shown:
         Its column in ``summary.csv``, without the unit; empty where it has none.
     page : str
         What the page of a specimen calls it; empty where it has no row of its own.
+    index : str
+        Heading of its column in the table of specimens; empty where it has none.
+    extra : bool
+        Whether that column is shown on demand alone.
     """
 
     key: str
@@ -39,6 +43,8 @@ class Shown:
     dimension: bool = False
     summary: str = ""
     page: str = ""
+    index: str = ""
+    extra: bool = False
 
     @property
     def stage(self) -> str:
@@ -74,6 +80,11 @@ class Value(NamedTuple):
         """Columns of a table, which end in the unit."""
         columns = self.estimate.columns(name, self.unit)
         return columns if self.has_interval else dict([next(iter(columns.items()))])
+
+
+def shown_in(*places: str) -> tuple[Shown, ...]:
+    """Those that are shown in any of some places: "summary", "page" or "index"."""
+    return tuple(one for one in shown_quantities() if any(getattr(one, place) for place in places))
 
 
 @cache

@@ -108,14 +108,22 @@ class StrengthSettings:
 
 
 @dataclass(frozen=True)
-class Settings(SpecimenSettings, StateSettings, WindowSettings, StrengthSettings):
-    """All settings of a specimen, as the atlas keeps them."""
+class ReportSettings(StrengthSettings):
+    """Settings of the report: strength, size laws, and what is judged of a specimen."""
 
     material: Material
+    opposite: str
     label: str
     group: str
     chosen_for: dict[str, str]
     capped_variant: bool
+
+
+@dataclass(frozen=True)
+class Settings(SpecimenSettings, StateSettings, WindowSettings, ReportSettings):
+    """All settings of a specimen, as the atlas keeps them."""
+
+    material: Material
 
 
 @dataclass(frozen=True)

@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 
 #: How often a stage is made: for every specimen, for those that slide, for every measured contact
-#: map; once, of all specimens together; once, on synthetic surfaces, where the study has the
-#: stage's key; and of studies of accuracy for every test problem, or once.
+#: map; once, of all specimens together (in the atlas, without a file); once, on synthetic surfaces,
+#: where the study has the stage's key; and of studies of accuracy for every test problem, or once.
 SPECIMEN, JOINT, MAP, STUDY = "specimen", "joint", "map", "study"
 EXPERIMENT, PROBLEM, ACCURACY = "experiment", "problem", "accuracy"
 GRAINS = (SPECIMEN, JOINT, MAP, STUDY, EXPERIMENT, PROBLEM, ACCURACY)
@@ -28,8 +28,6 @@ class Stage:
         Stages whose datasets the function takes, as arguments of their names.
     member : str
         Wildcard or name that its files have, and its groups within the stage's.
-    filed : bool
-        Whether it has files; if not, it is made while the atlas is put together.
     """
 
     name: str
@@ -38,7 +36,6 @@ class Stage:
     function: str
     needs: tuple[str, ...] = ()
     member: str = "{specimen}"
-    filed: bool = True
 
     @property
     def path(self) -> str:

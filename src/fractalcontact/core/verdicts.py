@@ -34,6 +34,7 @@ LIKE_CUT = "different from random nodes, not separated from the bearing-area cut
 #: On eq. 6 by one estimator of Delta_sigma under one load; or :data:`UNDECIDED`.
 AGREES, FLATTER, STEEPER = "agrees", "measured flatter", "measured steeper"
 AMBIGUOUS, NOT_TESTED = "ambiguous", "not tested"
+DECIDED = (AGREES, STEEPER, FLATTER)
 
 #: Why there is no real mean pressure: the areas of fewer nodes are not corrected for their edge.
 NO_PRESSURE = f"fewer than {CORRECTED_NODES} nodes in contact, too few for a real mean pressure"

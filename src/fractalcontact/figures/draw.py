@@ -17,16 +17,10 @@ from ..core.errors import InputError, OutputError
 from ..study.atlas import read_atlas
 from ..study.figure_list import all_figures
 from ..study.stages import STAGES
-from .kit.drawing import (
-    Drawing,
-    entitle,
-    garbage_collection_paused,
-    keep_style,
-    print_style,
-    save,
-)
+from .kit.drawing import Drawing, garbage_collection_paused, keep_style, print_style, save
 from .kit.layout import lay_out
 from .kit.remembered import layouts_remembered
+from .kit.titles import entitle
 from .kit.undrawn import undrawn
 
 #: A full disk, no memory, or an atlas that cannot be read fails every figure.

@@ -23,6 +23,7 @@ from ..core.atomic import atomic_write
 from ..core.estimate import Estimate
 from ..core.labels import printable
 from ..core.measured_maps import measured_maps
+from ..core.quantities import Shown, shown_in
 from ..core.stage import JOINT, SPECIMEN
 from ..core.subject import Subject, configuration_of, specimens_of
 from ..core.tables import write_table
@@ -185,17 +186,17 @@ def _estimate(found):
     return measured(found.value) + ends
 
 
-def _quoted(state, name):
-    """A quantity, an estimate or a number that is quoted under a load."""
-    return state.quantities[name] if name in state.quantities else getattr(state, name)
+def _quoted(state: AtLoad, of: Shown | str) -> Quantity | Estimate | float:
+    """A quantity of the register, or a number of this name that is quoted under a load."""
+    return getattr(state, of) if isinstance(of, str) else state.quoted(of)
 
 
-def _sort_value(state: AtLoad | None, name: str) -> float | str:
+def _sort_value(state: AtLoad | None, of: Shown | str) -> float | str:
     """What a column is sorted by: a number, empty where it is missing or undetermined."""
     if state is None:
         return ""
-    found = _quoted(state, name)
-    if isinstance(found, Estimate) and not found.determined:
+    found = _quoted(state, of)
+    if isinstance(of, Shown) and of.dimension and not found.determined:
         return ""
     if isinstance(found, Quantity) and state.decided_by_scan:
         return ""
@@ -207,10 +208,19 @@ def _shown(value: float) -> float | str:
     return value if np.isfinite(value) else ""
 
 
-def _note_of(state: AtLoad | None, name: str) -> str:
-    """Why an estimate is missing, or what to know of it."""
-    found = None if state is None else _quoted(state, name)
-    return why(found) if isinstance(found, Estimate) else ""
+def _note_of(state: AtLoad | None, of: Shown | str) -> str:
+    """Why a dimension is missing, or what to know of it."""
+    dimension = state is not None and isinstance(of, Shown) and of.dimension
+    return why(_quoted(state, of)) if dimension else ""
+
+
+def _columns() -> dict[str, list[Shown]]:
+    """Columns of the table of specimens that follow from the register, by what their cells say."""
+    columns: dict[str, list[Shown]] = {"dimension": [], "budget": [], "number": []}
+    for one in shown_in("index"):
+        kind = "dimension" if one.dimension else "budget" if one.budget else "number"
+        columns[kind].append(one)
+    return columns
 
 
 def _in_paper(figures):
@@ -248,6 +258,7 @@ def _index_values(
     together = of_study(atlas)
     return {
         "specimens": specimens,
+        "columns": _columns(),
         "longest": _LONGEST,
         "matrix": rows,
         "verdicts": counted([*rows, *together]),

@@ -11,7 +11,7 @@ import xarray as xr
 from ..core.determined import decided_by_scan
 from ..core.estimate import DIMENSION, Estimate
 from ..core.measured_maps import map_table
-from ..core.quantities import Value, shown_quantities
+from ..core.quantities import Shown, Value, shown_in
 from ..core.subject import Subject
 from ..core.validity import Validity
 from ..core.verdicts import NO_PRESSURE, TOO_FEW_RESOLUTIONS
@@ -118,8 +118,7 @@ class AtLoad:
     contact_share: float
     model: Validity
     quantities: dict[str, Quantity]
-    delta_sigma_boxes: Estimate
-    delta_sigma_areas: Estimate
+    dimensions: dict[str, Estimate]
 
     @property
     def real_pressure(self) -> float:
@@ -132,9 +131,20 @@ class AtLoad:
         return "" if math.isfinite(self.real_pressure) else NO_PRESSURE
 
     @property
-    def contact_nodes(self) -> float:
-        """Nodes in contact."""
-        return self.shown["closure/nodes"].estimate.value
+    def delta_sigma_boxes(self) -> Estimate:
+        """Delta_sigma by box counting."""
+        return self.dimensions["domains/delta_sigma"]
+
+    @property
+    def delta_sigma_areas(self) -> Estimate:
+        """Delta_sigma by the area over resolutions."""
+        return self.dimensions["scaling/delta_sigma_area"]
+
+    def quoted(self, one: Shown) -> Quantity | Estimate:
+        """A quantity of ``core/quantities.yaml`` with all that a cell of a table says of it."""
+        if one.dimension:
+            return self.dimensions[one.key]
+        return self.quantities[one.budget] if one.budget else self.shown[one.key].estimate
 
     @property
     def suspect_share(self) -> float:
@@ -145,15 +155,14 @@ class AtLoad:
     def columns(self) -> dict[str, float]:
         """Columns of the summary, with the ends of intervals."""
         found: dict[str, float] = {}
-        for one in shown_quantities():
-            if one.summary:
-                found |= self.shown[one.key].columns(one.summary)
+        for one in shown_in("summary"):
+            found |= self.shown[one.key].columns(one.summary)
         return found
 
     @property
     def rows(self) -> list[tuple[str, Value]]:
         """Rows of the specimen's page: what they are called, and value."""
-        return [(one.page, self.shown[one.key]) for one in shown_quantities() if one.page]
+        return [(one.page, self.shown[one.key]) for one in shown_in("page")]
 
     @property
     def decided_by_scan(self) -> bool:
@@ -265,16 +274,14 @@ def _at_load(subject, curve, number):
         normal_force=float(subject.forces[number]),
         nominal_pressure=float(curve["nominal_pressure"][number]),
         of_maps=number == subject.reported.reference,
-        shown={
-            one.key: one.at(subject, number)
-            for one in shown_quantities()
-            if one.summary or one.page
-        },
+        shown={one.key: one.at(subject, number) for one in shown_in("summary", "page", "index")},
         contact_share=float(curve["area_corrected_share"].isel(state)),
         model=validity_at(subject, number),
         quantities=quantities_at(subject, number),
-        delta_sigma_boxes=_dimension(subject, "domains", state),
-        delta_sigma_areas=_dimension(subject, "scaling", state),
+        dimensions={
+            "domains/delta_sigma": _dimension(subject, "domains", state),
+            "scaling/delta_sigma_area": _dimension(subject, "scaling", state),
+        },
     )
 
 

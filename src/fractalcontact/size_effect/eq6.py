@@ -20,6 +20,7 @@ m e of A_r/A_0 at equal sigma_0: both forms want the same number only where m is
 of one contact set, and 1/m is the condition number of the own form.
 """
 
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -30,10 +31,11 @@ from scipy import special
 from ..core.datasets import labelled_dataset
 from ..core.estimate import Estimate
 from ..core.fitting import fit_line
+from ..core.labels import cf_attrs
 from ..core.limits import CONFIDENCE, CORRECTED_NODES
 from ..core.ranges import within
 from ..core.settings import WindowSettings
-from ..core.verdicts import NOT_TESTED
+from ..core.verdicts import AGREES, DECIDED, NOT_TESTED
 from ..core.window import cell_side
 from ..domain.box_dimension import dimension_of_domain
 from ..domain.renormalisation import FEWEST_NODES, renormalisation
@@ -53,6 +55,9 @@ DELTA_SIGMA_ESTIMATORS = {
     "box": "box counting",
     "box_sizes": "occupied windows",
 }
+
+#: Of them those that captions quote.
+_QUOTED = {name: DELTA_SIGMA_ESTIMATORS[name] for name in ("area", "box")}
 
 
 def size_test(loading: JointLoading[WindowSettings], parts: Sequence[int] = PARTS) -> xr.Dataset:
@@ -77,8 +82,9 @@ def size_test(loading: JointLoading[WindowSettings], parts: Sequence[int] = PART
         ``_b_min``, ``_b_max``; ``share_exponent`` and ``sensitivity``, which explain it. Over
         (normal_force, part): ``equal_pressure``, ``window_pressure`` (each with an ``_error``, the
         solver's, which is infinite where the value may not be reached at all), ``windows_below``,
-        ``windows_above``, ``windows_unknown``, ``crossings``; and what is predicted for the whole
-        window, see :func:`size_effect.prediction.predict_whole`. Loads ``beyond_study`` are those
+        ``windows_above``, ``windows_unknown``, ``crossings``; what is predicted for the whole
+        window, see :func:`size_effect.prediction.predict_whole`; what :func:`add_decisions` adds.
+        Loads ``beyond_study`` are those
         of :data:`size_effect.load_ladder.TESTED_DOUBLINGS`.
 
     Notes
@@ -114,6 +120,7 @@ def size_test(loading: JointLoading[WindowSettings], parts: Sequence[int] = PART
     result = result.merge(slopes_at_equal_star(states, result.sizes["normal_force"]))
     result = result.merge(size_verdicts(result))
     result = result.merge(predict_whole(states, result["delta_sigma"], FEWEST_NODES))
+    add_decisions(result)
     opposite = loading.specimen.attrs["opposite"]
     return result.assign_attrs(opposite=opposite, summary=summary(result))
 
@@ -201,6 +208,54 @@ def _slope_of_occupied(domain: np.ndarray, parts: Sequence[int]) -> Estimate:
 
 
 # -- in words --------------------------------------------------------------------------------------
+
+
+def add_decisions(result: xr.Dataset) -> None:
+    """Loads that decide about eq. 6, the load whose predictions are quoted, and the reason.
+
+    Parameters
+    ----------
+    result : xr.Dataset
+        Of :func:`size_test`: gets ``decides`` (estimator, normal_force), ``deciding_loads`` and
+        ``agreeing_loads`` (estimator), ``quoted_load`` (normal_force), the heaviest of the study
+        (else beyond it) with a prediction of closure and area by every predictor, and the
+        attribute ``verdict_reason``, why eq. 6 is judged as it is.
+    """
+    of_study = ~result["beyond_study"].astype(bool)
+    attrs = cf_attrs("1", "whether a load of the study decides about eq. 6")
+    result["decides"] = (result["verdict"].isin(DECIDED) & of_study).assign_attrs(attrs)
+    errors = result[["closure_error", "area_error"]].to_dataarray()
+    known = np.isfinite(errors).all(("variable", "predictor"))
+    known = known & of_study if (known & of_study).any() else known
+    agrees = result["decides"] & (result["verdict"] == AGREES)
+    for name, counted, words in (
+        ("deciding_loads", result["decides"], "loads that decide about eq. 6"),
+        ("agreeing_loads", agrees, "of them, loads at which eq. 6 agrees"),
+    ):
+        result[name] = counted.sum("normal_force").assign_attrs(cf_attrs("1", words))
+    # The heaviest says most: more nodes touch. One beyond the study matters to nobody.
+    heaviest = result["normal_force"] == result["normal_force"].where(known).max()
+    attrs = cf_attrs("1", "load whose predictions for the whole window are quoted")
+    result["quoted_load"] = heaviest.assign_attrs(attrs)
+    result.attrs["verdict_reason"] = _verdict_reason(result)
+
+
+def _verdict_reason(result):
+    """Loads that decide about eq. 6, or what keeps them from it; empty without any."""
+    of_study = result.isel(normal_force=~result["beyond_study"].values.astype(bool))
+    of_study = of_study.sel(estimator=list(_QUOTED))
+    if of_study["decides"].any():
+        return ", ".join(
+            f"agrees at {int(of_study['agreeing_loads'][i])} of {int(count)} deciding loads by {by}"
+            if (count := of_study["deciding_loads"][i])
+            else f"no load decides by {by}"
+            for i, by in enumerate(_QUOTED.values())
+        )
+    tested = of_study["reason"].values[of_study["verdict"].values != NOT_TESTED].astype(str)
+    if tested.size:
+        return f"no load decides about eq. 6, mostly as {Counter(tested).most_common(1)[0][0]}"
+    beyond = result["area_exponent"].notnull().any()
+    return "what is drawn lies beyond the study's loads" if beyond else ""
 
 
 def summary(result: xr.Dataset) -> str:

@@ -13,8 +13,8 @@ from ..core.settings import Friction
 from ..mechanics.jrc import profile_roughness
 from .division import spread_windows
 from .size_exponents import add_size_exponents, usable_sizes
-from .strength_laws import strength_by_size
-from .window_means import add_law, add_mean
+from .strength_laws import add_slope_trends, strength_by_size
+from .window_means import add_law, add_mean, power_through
 
 #: Eq. 2 is fitted from this many cells to this fraction of the window's side unless a range is
 #: given: the range of the roughness-length estimator of :mod:`roughness.dimension`.
@@ -123,6 +123,7 @@ def size_laws(
         add_mean(result, name, states[name])
     if states["direction"].item() != "none":
         result = result.merge(strength_by_size(states, material, roughness))
+        add_slope_trends(result)
     return result.assign_attrs(states.attrs)
 
 
@@ -148,6 +149,7 @@ def _add_exponents(result: xr.Dataset, states: xr.Dataset) -> None:
         values = values.where(xr.DataArray(usable, dims=("part", *dims[2:])))
         add_size_exponents(result, exponent, values, places, words)
     add_fitted(result)
+    add_lines(result)
 
 
 def add_fitted(result: xr.Dataset) -> None:
@@ -168,6 +170,26 @@ def add_fitted(result: xr.Dataset) -> None:
     fitted &= result["face_hurst"].notnull()
     attrs = cf_attrs("1", "size that H of the lower face is fitted to")
     result["face_sigma_z_fitted"] = fitted.assign_attrs(attrs)
+
+
+def add_lines(result: xr.Dataset) -> None:
+    """Lines of the power laws over the sizes that they are fitted to, into ``result``.
+
+    Parameters
+    ----------
+    result : xr.Dataset
+        As :func:`add_fitted` leaves it, with ``expected_hurst``: gets ``interface_closure_law``,
+        ``interface_compliance_law`` and ``face_sigma_z_expected``, eq. 2.
+    """
+    for name in _OF_INTERFACE:
+        fitted, exponent = result[name].where(result[f"{name}_fitted"]), _OVER_LOADS[name][0]
+        words = f"power law of {name} over b with {exponent}"
+        result[f"{name}_law"] = power_through(fitted, result["side"], result[exponent], words)
+    face = result["face_sigma_z"].where(result["face_sigma_z_fitted"])
+    words = "sigma_z of the lower face over b as eq. 2 expects it from Delta_g"
+    result["face_sigma_z_expected"] = power_through(
+        face, result["scale_side"], result["expected_hurst"], words
+    )
 
 
 def _add_hurst(

@@ -8,10 +8,12 @@ from numpy.typing import ArrayLike
 
 from ..core.datasets import labelled
 from ..core.estimate import Estimate
+from ..core.fitting import FEWEST_POINTS
 from ..core.intervals import mean_interval
 from ..core.labels import cf_attrs
 from ..core.limits import JRC_RANGE, LARGEST_FRICTION_ANGLE, MOSTLY_HELD
 from ..core.settings import Friction
+from ..core.verdicts import FALLING, RISING
 from ..mechanics.strength import (
     FIELDS,
     angles_with_errors,
@@ -22,7 +24,7 @@ from ..mechanics.strength import (
     strength_with_error,
 )
 from ..mechanics.theory import barton_strength, scaled_joint
-from .window_means import add_law, add_mean
+from .window_means import add_law, add_mean, power_through
 
 #: Offsets, as fractions of the side b, at which sizes are compared. Barton and Bandis put the peak
 #: of a laboratory joint at 1 to 3 % of its length (L/500 (JRC/L)^0.33, in m).
@@ -150,6 +152,30 @@ def with_slope_angles(laws: xr.Dataset, pressure: np.ndarray) -> xr.Dataset:
         angle.variables("limit_slope_angle", dims, "degree", "limit slope angle atan(tau/sigma_0)")
         | relative.variables("relative_strength", dims, "1", words)
         | labelled(_ANGLES, {"barton_slope_angle": by_barton, "similar_strength_valid": valid})
+    )
+
+
+def add_slope_trends(laws: xr.Dataset) -> None:
+    """How the slope of the dilatancy goes with b at one v/b, and as a self-affine face has it.
+
+    Parameters
+    ----------
+    laws : xr.Dataset
+        Of :func:`size_effect.laws.size_laws`: gets ``similar_slope_trend`` (share, normal_force)
+        and ``similar_slope_expected`` (share, part), b^(H - 1) through the mean over the loads of
+        the sizes whose slopes are all positive, if three are.
+    """
+    exponent = Estimate.read(laws, "similar_slope_exponent")
+    trend = np.where(exponent.high < 0, FALLING, np.where(exponent.low > 0, RISING, ""))
+    attrs = cf_attrs("1", f"{RISING}, {FALLING}, or empty where the exponent leaves it open")
+    laws["similar_slope_trend"] = laws["similar_slope_exponent"].copy(data=trend)
+    laws["similar_slope_trend"].attrs = attrs
+    slope = laws["similar_slope"]
+    middle = np.exp(np.log(slope.where((slope > 0).all("normal_force"))).mean("normal_force"))
+    middle = middle.where(middle.count("part") >= FEWEST_POINTS).assign_attrs(slope.attrs)
+    words = "slope d delta/dv at one v/b as a self-affine face has it, b^(H - 1)"
+    laws["similar_slope_expected"] = power_through(
+        middle, laws["side"], laws["expected_hurst"] - 1, words
     )
 
 

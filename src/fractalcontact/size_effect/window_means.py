@@ -59,3 +59,29 @@ def add_law(
         for index in np.ndindex(rows.shape[:-1])
     ]
     add_exponents(result, name, [line.slope for line in lines], dims, words, "sizes fitted")
+
+
+def power_through(
+    values: xr.DataArray, side: xr.DataArray, exponent: xr.DataArray, words: str
+) -> xr.DataArray:
+    """Power of b with a known exponent through the middle of values on logarithmic axes.
+
+    Parameters
+    ----------
+    values : xr.DataArray (..., size, ...)
+        Those that are not positive, or missing, are left out.
+    side : xr.DataArray (size,)
+        b, mm.
+    exponent : xr.DataArray
+    words : str
+        What the line is.
+
+    Returns
+    -------
+    xr.DataArray
+        As ``values``, missing where these are left out or the exponent is unknown.
+    """
+    logs, (size,) = np.log(values.where(values > 0)), side.dims
+    powers = exponent * np.log(side)
+    line = np.exp(powers + (logs - powers).mean(size)).where(logs.notnull())
+    return line.transpose(*values.dims).assign_attrs(cf_attrs(values.attrs["units"], words))

@@ -1,4 +1,4 @@
-"""The atlas of a study from its stages, with model and statements of the paper judged."""
+"""The atlas of a study from its stages, with what is judged of its specimens together."""
 
 import json
 from collections.abc import Mapping
@@ -8,11 +8,8 @@ import numpy as np
 import xarray as xr
 
 from ..core.netcdf import versions
-from ..core.settings import Material, read
 from ..domain.map_series import with_series
-from ..mechanics.model_validity import model_validity
-from ..statements.comparison import UNGROUPED, compare_specimens, specimen_row
-from ..statements.judge import judge
+from ..statements.comparison import UNGROUPED, compare_specimens
 from ..statements.study import judge_study
 from ..study.atlas import words_of, write_atlas
 from ..study.atlas_parts import read_group
@@ -27,7 +24,7 @@ def join_stages(
     configuration: Mapping,
     made_with: Mapping[str, Mapping[str, dict]] | None = None,
 ) -> dict[str, list[str]]:
-    """Write stages into one atlas, and with them what is judged of every specimen.
+    """Write stages into one atlas, and with them what is judged of several specimens together.
 
     Parameters
     ----------
@@ -50,15 +47,7 @@ def join_stages(
         settings = configuration["settings"][name]
         dataset.attrs["label"] = settings["label"]
         dataset.attrs["group"] = settings.get("group") or UNGROUPED
-    # Measured contact maps, the study's, stand under names of their own.
-    of_joints = {
-        name: {stage: parts[name] for stage, parts in stages.items() if name in parts}
-        for name in configuration["settings"]
-    }
-    compared = _compared(of_joints, configuration["settings"])
-    models = _models(of_joints, configuration["settings"])
-    judged = _judged(of_joints, configuration)
-    everything = {**stages, **_maps(stages), **models, **judged, **compared}
+    everything = {**stages, **_maps(stages), **_together(stages, configuration["settings"])}
     study = configuration["study"]["study"]
     return write_atlas(
         _without_remade_fields(everything),
@@ -157,47 +146,17 @@ def _maps(stages):
     return {"contact_maps": with_series(maps)} if maps else {}
 
 
-def _models(of_joints, settings):
-    """The verdict on the elastic model of every specimen.
-
-    Not of a job before, which would then solve again for another joint wall strength.
-    """
-    if not of_joints:
+def _together(stages, settings):
+    """What is judged and compared of several specimens; nothing of one, as its own atlas has it."""
+    if len(stages.get("comparison", {})) < 2:
         return {}
-    judged = {
-        name: model_validity(
-            stages["area"], stages["scaling"], read(Material, settings[name]["material"])
-        )
-        for name, stages in of_joints.items()
+    together = {"study_comparison": {WHOLE: compare_specimens(stages["comparison"])}}
+    own = {
+        # Measured contact maps, the study's, stand under names of their own.
+        name: {stage: parts[name] for stage, parts in stages.items() if name in parts}
+        for name, stated in settings.items()
+        if not stated["capped_variant"]
     }
-    return {"elastic_model": judged}
-
-
-def _compared(of_joints, settings):
-    """The row of every specimen and, where there are several, all of them side by side."""
-    if not of_joints:
-        return {}
-    rows = {name: specimen_row(stages, settings[name]) for name, stages in of_joints.items()}
-    several = {"study_comparison": {WHOLE: compare_specimens(rows)}} if len(rows) > 1 else {}
-    return {"comparison": rows, **several}
-
-
-def _judged(of_joints, configuration):
-    """Statements of every specimen and, where there are several, of the study."""
-    if not of_joints:
-        return {}
-    settings = configuration["settings"]
-    variants = {name for name in of_joints if settings[name]["capped_variant"]}
-    judged = {
-        name: judge(
-            stages,
-            settings[name],
-            circular=settings[name]["chosen_for"],
-            capped_variant=name in variants,
-        )
-        for name, stages in of_joints.items()
-    }
-    own = {name: stages for name, stages in of_joints.items() if name not in variants}
-    # The atlas of one specimen, which its figures are drawn from, has no study to judge.
-    several = {"study_statements": {WHOLE: judge_study(own, settings)}} if len(own) > 1 else {}
-    return {"statements": judged, **several}
+    if len(own) > 1:
+        together["study_statements"] = {WHOLE: judge_study(own, settings)}
+    return together

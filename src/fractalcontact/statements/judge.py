@@ -42,17 +42,15 @@ def material_of(settings: Mapping) -> str:
     return next((MATERIALS[word] for word in words if word in MATERIALS), "")
 
 
-def statements_for(settings: Mapping, *, capped_variant: bool = False) -> tuple[str, ...]:
+def statements_for(settings: Mapping) -> tuple[str, ...]:
     """Names of the statements that are asked of a specimen.
 
     Parameters
     ----------
     settings : mapping
-        From :func:`study.configuration.resolve_settings`: its ``opposite`` and ``material``. What
-        the paper says of one of its materials is asked of that one.
-    capped_variant : bool, optional
-        Whether the specimen stands in its study once more without a hardness: what a hardness
-        cannot change is then answered there.
+        Of :class:`core.settings.ReportSettings`: its ``opposite``, its ``material`` (what the paper
+        says of one of its materials is asked of that one) and ``capped_variant``, whether it stands
+        in its study once more without a hardness: what a hardness cannot change is answered there.
     """
     material = material_of(settings)
     slides = settings["opposite"] != "flat"
@@ -61,17 +59,11 @@ def statements_for(settings: Mapping, *, capped_variant: bool = False) -> tuple[
         for name, claim in claims_of("one").items()
         if claim.material in ("", material)
         and (slides or not claim.slides)
-        and (claim.plastic or not capped_variant)
+        and (claim.plastic or not settings["capped_variant"])
     )
 
 
-def judge(
-    stages: Mapping[str, xr.Dataset],
-    settings: Mapping,
-    *,
-    circular: Mapping[str, str] | None = None,
-    capped_variant: bool = False,
-) -> xr.Dataset:
+def judge(stages: Mapping[str, xr.Dataset], settings: Mapping) -> xr.Dataset:
     """Judge every statement of :func:`statements_for` a joint.
 
     Parameters
@@ -79,11 +71,8 @@ def judge(
     stages : mapping of str to xr.Dataset
         As :class:`findings.Joint` has them.
     settings : mapping
-        From :func:`study.configuration.resolve_settings`.
-    circular : mapping of str to str, optional
-        Statements that the specimen was chosen for, and how.
-    capped_variant : bool, optional
-        As for :func:`statements_for`.
+        As :func:`statements_for` takes it, with ``chosen_for``: statements that the specimen was
+        chosen for, and how.
 
     Returns
     -------
@@ -91,9 +80,8 @@ def judge(
         As :func:`table_of` makes it; attributes ``direction`` and ``force``, N.
     """
     joint = Joint(dict(stages), dict(settings))
-    asked = statements_for(settings, capped_variant=capped_variant)
-    rules = {name: rule_of(name) for name in asked}
-    return table_of(rules, joint, circular or {}).assign_attrs(
+    rules = {name: rule_of(name) for name in statements_for(settings)}
+    return table_of(rules, joint, settings["chosen_for"]).assign_attrs(
         direction=joint.direction, force=joint.force
     )
 

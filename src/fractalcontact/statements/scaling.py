@@ -7,7 +7,7 @@ import numpy as np
 from ..core.estimate import Estimate
 from ..core.fitting import FEWEST_POINTS
 from ..core.limits import WIDEST
-from ..core.verdicts import FAILS, HOLDS, PARTLY, UNDETERMINED
+from ..core.verdicts import AGREES, DECIDED, FAILS, HOLDS, PARTLY, UNDETERMINED
 from ..domain.pressure_trend import pressure_trend
 from .findings import Finding, Joint, by_sign, of_the_area, share
 from .local_slopes import one_slope
@@ -15,13 +15,8 @@ from .local_slopes import one_slope
 #: Delta_sigma up to here is near 0, and from here on near 2, the ends of the paper's Fig. 12.
 NEAR_POINTS, NEAR_FULL = 0.25, 1.75
 
-#: Verdicts of the size test that decide something; the first is in favour of eq. 6.
-DECIDED = ("agrees", "measured steeper", "measured flatter")
-
 #: An exponent over the side b whose whole interval is smaller is no size effect.
 NO_EFFECT = 0.02
-
-#: An interval of the difference of the two estimates, or of one, that is wider decides nothing.
 
 #: The two estimates of Delta_sigma, as their variables and in words.
 ESTIMATES = {"area": "by A_r(s)", "box": "by boxes"}
@@ -153,10 +148,10 @@ def size_effect_follows(joint: Joint) -> Finding:
         f"{float(best['nominal_pressure']):.3g} MPa, eq. 6 has "
         + ", ".join(f"{slope:.2f} {by}" for by, slope in wanted if np.isfinite(slope))
     )
-    decided = test["verdict"].isin(DECIDED).values
+    decided = test["decides"].values
     if not decided.any():
         return Finding(UNDETERMINED, numbers, _why_open(test["reason"].values[:, known].ravel()))
-    agree = (test["verdict"] == DECIDED[0]).values
+    agree = (test["verdict"] == AGREES).values
     words = ", ".join(
         f"{agree[i].sum()} of {decided[i].sum()} loads {by}"
         if decided[i].any()
@@ -165,7 +160,7 @@ def size_effect_follows(joint: Joint) -> Finding:
     )
     alone = test["slope_verdict"]
     own = (
-        f"that form alone agrees in {int((alone == DECIDED[0]).sum())} of "
+        f"that form alone agrees in {int((alone == AGREES).sum())} of "
         f"{int(alone.isin(DECIDED).sum())} cases"
     )
     return Finding(

@@ -25,15 +25,23 @@ _STATE_STAGES = "fractalcontact.stages.states:state_stages"
 _WINDOW_STAGES = "fractalcontact.stages.windows:window_stages"
 #: Solves the contact of a specimen, the costly part: several jobs, and no stage of its own.
 CONTACT = "fractalcontact.mechanics.sweep:joint_states"
-_STRENGTH_STAGES = "fractalcontact.stages.strength:strength_stages"
+_REPORT_STAGES = "fractalcontact.stages.report:report_stages"
 #: What is known of a joint before contact is solved.
 _OF_JOINT = ("specimens", "surface_dimension", "joints")
-#: And those of its sub-windows: nothing is solved for a friction angle.
-_OF_STRENGTH = (*_OF_JOINT, "window_states", "size_test", "dilatancy")
+#: And what is reported of it: nothing is solved for a friction angle, a rule or a label.
+_OF_REPORT = (
+    *_OF_JOINT,
+    *("window_states", "size_test", "closure", "dilatancy", "area", "domains", "scaling"),
+    *("domain_measures", "error_budget"),
+)
 
 
 def _of_states(name, title):
     return Stage(name, title, SPECIMEN, _STATE_STAGES, _OF_JOINT)
+
+
+def _of_report(name, title, grain=SPECIMEN):
+    return Stage(name, title, grain, _REPORT_STAGES, _OF_REPORT)
 
 
 _TABLE = (
@@ -82,20 +90,8 @@ _TABLE = (
     ),
     _of_states("choices", "what was solved and how exactly, why, and the errors that makes"),
     _of_states("error_budget", "error of the published quantities, split by source"),
-    Stage(
-        "windows",
-        "closure, roughness and strength of sub-windows against their size",
-        SPECIMEN,
-        _STRENGTH_STAGES,
-        _OF_STRENGTH,
-    ),
-    Stage(
-        "strength",
-        "dilatancy and friction angles, shear strength",
-        JOINT,
-        _STRENGTH_STAGES,
-        _OF_STRENGTH,
-    ),
+    _of_report("windows", "closure, roughness and strength of sub-windows against their size"),
+    _of_report("strength", "dilatancy and friction angles, shear strength", JOINT),
     Stage(
         "contact_maps",
         "measured contact maps, one group per map",
@@ -103,43 +99,25 @@ _TABLE = (
         "fractalcontact.domain.measured_map:read_contact_map",
         member="{map}",
     ),
-    Stage(
+    _of_report(
         "elastic_model",
         "verdict on the elastic model: real mean pressure against strength, slope of the faces",
-        SPECIMEN,
-        "fractalcontact.mechanics.model_validity:model_validity",
-        ("area", "scaling"),
-        filed=False,
     ),
-    Stage(
-        "statements",
-        "what the paper says, and whether it holds here",
-        SPECIMEN,
-        "fractalcontact.statements.judge:judge",
-        filed=False,
-    ),
+    _of_report("statements", "what the paper says, and whether it holds here"),
     Stage(
         "study_statements",
         "what the paper says of several joints together, and whether it holds here",
         STUDY,
         "fractalcontact.statements.study:judge_study",
         member="study",
-        filed=False,
     ),
-    Stage(
-        "comparison",
-        "what of a specimen is compared with others, with its errors",
-        SPECIMEN,
-        "fractalcontact.statements.comparison:specimen_row",
-        filed=False,
-    ),
+    _of_report("comparison", "what of a specimen is compared with others, with its errors"),
     Stage(
         "study_comparison",
         "specimens side by side, and how groups of them spread",
         STUDY,
         "fractalcontact.statements.comparison:compare_specimens",
         member="study",
-        filed=False,
     ),
 )
 #: Every stage by name, in the order of the atlas: those of the chain, then those of the laboratory.
@@ -201,9 +179,7 @@ def paths_of(*grains: str) -> dict[str, str]:
     dict of str to str
         By stage, below the folder of the results; wildcards stand in braces.
     """
-    return {
-        name: stage.path for name, stage in STAGES.items() if stage.grain in grains and stage.filed
-    }
+    return {name: stage.path for name, stage in STAGES.items() if stage.grain in grains}
 
 
 def made_together(name: str, grains: Collection[str] = GRAINS) -> dict[str, str]:

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from refused import BEYOND, NAN, NO_LOADS, NO_NUMBERS, SHAPE, masked
 
+from contactlab.accuracy.cheap_models import bearing_area, coarse_grid, winkler
+from contactlab.methods.common import measured_state
+from contactlab.methods.registry import METHODS
 from fractalcontact import HalfSpace, NotConverged, solve_contact
-from fractalcontact.accuracy.cheap_models import bearing_area, coarse_grid, winkler
-from fractalcontact.methods.common import measured_state
-from fractalcontact.methods.registry import METHODS
 from fractalcontact.surface.synthesis import self_affine
 
 

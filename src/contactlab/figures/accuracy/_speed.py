@@ -10,7 +10,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import FigureBase
 from xarray import DataTree
 
-from fractalcontact.figures.kit.drawing import COLOURS, LINES, MARKERS, colour_of, entries
+from fractalcontact.figures.kit.drawing import COLOURS, LINES, MARKERS, colour_of
+from fractalcontact.figures.kit.legends import entries
 
 from ...accuracy.speed import ERRORS, FRONTS, MODEL, OURS, PEER, SOLVER
 

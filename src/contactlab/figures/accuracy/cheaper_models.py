@@ -7,7 +7,8 @@ from matplotlib.figure import Figure
 from xarray import DataTree
 
 from fractalcontact.figures.kit.caption import caption
-from fractalcontact.figures.kit.drawing import WIDTH, Drawing, label_short_span, letter
+from fractalcontact.figures.kit.drawing import WIDTH, Drawing, label_short_span
+from fractalcontact.figures.kit.titles import letter
 
 from ...accuracy.speed import DEFAULT_RTOL, ERRORS, MODEL, MODELS, OURS
 from ._speed import AXES, OURS_STYLE, legend_of, scenes_of, styles, table_of, values_of

@@ -16,8 +16,8 @@ from fractalcontact.figures.kit.drawing import (
     colour_of,
     group,
     label_short_span,
-    letter,
 )
+from fractalcontact.figures.kit.titles import letter
 
 from ...accuracy.convergence import QUANTITIES
 

@@ -7,16 +7,9 @@ from matplotlib.figure import Figure
 from xarray import DataTree
 
 from fractalcontact.figures.kit.caption import caption
-from fractalcontact.figures.kit.drawing import (
-    COLOURS,
-    LINES,
-    MARKERS,
-    WIDTH,
-    Drawing,
-    entries,
-    group,
-    letter,
-)
+from fractalcontact.figures.kit.drawing import COLOURS, LINES, MARKERS, WIDTH, Drawing, group
+from fractalcontact.figures.kit.legends import entries
+from fractalcontact.figures.kit.titles import letter
 
 TITLE = "Whether dropping points in tension, as the paper does, reaches the contact set"
 SUBJECT = "accuracy"

@@ -8,7 +8,8 @@ from matplotlib.figure import Figure
 from xarray import DataTree
 
 from fractalcontact.figures.kit.caption import caption
-from fractalcontact.figures.kit.drawing import WIDTH, Drawing, letter
+from fractalcontact.figures.kit.drawing import WIDTH, Drawing
+from fractalcontact.figures.kit.titles import letter
 
 from ...accuracy.speed import LEADS_BELOW, MODEL, OURS, ahead_of_ours
 from ._speed import (

@@ -6,7 +6,8 @@ from matplotlib.figure import Figure
 from xarray import DataTree
 
 from fractalcontact.figures.kit.caption import caption
-from fractalcontact.figures.kit.drawing import WIDTH, Drawing, letter
+from fractalcontact.figures.kit.drawing import WIDTH, Drawing
+from fractalcontact.figures.kit.titles import letter
 
 from ._speed import (
     AXES,

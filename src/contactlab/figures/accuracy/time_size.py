@@ -9,14 +9,8 @@ from xarray import DataTree
 
 from fractalcontact.core.estimate import EXPONENT, Estimate
 from fractalcontact.figures.kit.caption import caption
-from fractalcontact.figures.kit.drawing import (
-    WIDTH,
-    Drawing,
-    colour_of,
-    group,
-    label_short_span,
-    letter,
-)
+from fractalcontact.figures.kit.drawing import WIDTH, Drawing, colour_of, group, label_short_span
+from fractalcontact.figures.kit.titles import letter
 
 from ...accuracy.speed import OURS
 from ._speed import legend_of, middle_contact, rough, scenes_of, styles

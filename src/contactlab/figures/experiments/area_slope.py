@@ -6,20 +6,12 @@ import numpy as np
 from matplotlib.figure import Figure
 from xarray import DataTree
 
+from fractalcontact.figures.kit.axes import label_short_span
 from fractalcontact.figures.kit.caption import caption
-from fractalcontact.figures.kit.drawing import (
-    MARKERS,
-    WIDTH,
-    Drawing,
-    colour_of,
-    entries,
-    group,
-    heading,
-    label_short_span,
-    legends_below,
-    letter,
-)
+from fractalcontact.figures.kit.drawing import MARKERS, WIDTH, Drawing, colour_of, group
 from fractalcontact.figures.kit.kappa import kappa_lines
+from fractalcontact.figures.kit.legends import entries, heading, legends_below
+from fractalcontact.figures.kit.titles import letter
 from fractalcontact.figures.kit.words import number
 
 TITLE = "Real contact area of synthetic surfaces at light load, with and without a roll-off"

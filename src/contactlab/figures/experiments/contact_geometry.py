@@ -12,17 +12,11 @@ from xarray import DataTree
 from fractalcontact.core.estimate import Estimate
 from fractalcontact.core.limits import WIDEST
 from fractalcontact.figures.kit.caption import caption
-from fractalcontact.figures.kit.drawing import (
-    WIDTH,
-    Drawing,
-    colour_of,
-    entries,
-    heading,
-    legends_below,
-    letter,
-)
+from fractalcontact.figures.kit.drawing import WIDTH, Drawing, colour_of
+from fractalcontact.figures.kit.legends import entries, heading, legends_below, mark
 from fractalcontact.figures.kit.panel import rows
 from fractalcontact.figures.kit.points import reach
+from fractalcontact.figures.kit.titles import letter
 from fractalcontact.figures.kit.words import number
 
 from ...experiments.size_decision import PROBABILITY
@@ -66,7 +60,7 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
         )
         letter(axes, next(letters), f"$H$ = {hurst:g}")
     panels[0].set_ylabel("correlation dimension $D_2$ (1)")
-    undetermined = Line2D([], [], color="0.4", marker="o", ls="none", mfc="white")
+    undetermined = mark(color="0.4", marker="o", ls="none", mfc="white")
     undetermined.set_label(f"hollow: undetermined (interval wider than {WIDEST:g}, not drawn)")
     handles = [*entries(panels[0]), undetermined]
     if constructions.size:

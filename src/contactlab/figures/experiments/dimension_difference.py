@@ -5,23 +5,14 @@ from collections.abc import Sequence
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 from xarray import DataTree
 
 from fractalcontact.core.estimate import Estimate
 from fractalcontact.figures.kit.caption import caption
-from fractalcontact.figures.kit.drawing import (
-    LINES,
-    MARKERS,
-    WIDTH,
-    Drawing,
-    colour_of,
-    heading,
-    headline,
-    legends_below,
-    letter,
-)
+from fractalcontact.figures.kit.drawing import LINES, MARKERS, WIDTH, Drawing, colour_of
+from fractalcontact.figures.kit.legends import heading, legends_below, mark
 from fractalcontact.figures.kit.panel import rows
+from fractalcontact.figures.kit.titles import headline, letter
 from fractalcontact.figures.kit.words import number
 
 TITLE = "Do A_r(s) and box counting give one Delta_sigma: their difference on synthetic surfaces"
@@ -66,13 +57,18 @@ def _draw_difference(axes, test, which):
             axes.plot(beside, mean, color=colour, ls=LINES[n % len(LINES)], marker=MARKERS[i])
             axes.vlines(beside, low, high, color=colour, lw=0.5)
     axes.axhline(0, color="0.5", lw=0.8, ls=LINES[2])
-    axes.set_xscale("log", base=2)
-    axes.set_xticks(size, [f"{n:g}" for n in size])
-    axes.minorticks_off()
+    _in_doublings(axes, size)
     axes.set_ylim(*_DIFFERENCES)
     axes.set_xlabel("nodes per side (1)")
     axes.set_ylabel(r"$\Delta_\sigma$: $A_r(s)$ less box counting (1)")
     letter(axes, which, "difference, 95 % intervals")
+
+
+def _in_doublings(axes, places):
+    """Axis along x in powers of two, with a number at each place."""
+    axes.set_xscale("log", base=2)
+    axes.set_xticks(places, [f"{n:g}" for n in places])
+    axes.minorticks_off()
 
 
 def _draw_boxes(axes, test, which):
@@ -85,9 +81,7 @@ def _draw_boxes(axes, test, which):
             style = {"color": colour_of(i), "ls": LINES[n % len(LINES)], "marker": MARKERS[i]}
             axes.plot(k, ratio, **style)
     axes.axhline(1, color="0.5", lw=0.8, ls=LINES[2])
-    axes.set_xscale("log", base=2)
-    axes.set_xticks(k, [f"{n:g}" for n in k])
-    axes.minorticks_off()
+    _in_doublings(axes, k)
     axes.set_xlabel("resolution: every $k$-th node (1)")
     axes.set_ylabel("occupied boxes of $k$ nodes\nover nodes in contact at $k$ (1)")
     letter(axes, which, "boxes per node of contact")
@@ -112,27 +106,22 @@ def _draw_capped(axes, test, which):
 
 def _legends(test):
     dimensions = [
-        Line2D([], [], color=colour_of(i), marker=MARKERS[i], label=rf"$\Delta_g$ = {g:g}")
+        mark(color=colour_of(i), marker=MARKERS[i], label=rf"$\Delta_g$ = {g:g}")
         for i, g in enumerate(test["dimension"].values)
     ]
     loads = test["reduced_pressure"].values
+    of_load = r"(a), (b) $p/(E^* h'_\mathrm{rms})$"
     lines = [
-        Line2D(
-            [],
-            [],
-            color="0.3",
-            ls=LINES[n % len(LINES)],
-            label=rf"(a), (b) $p/(E^* h'_\mathrm{{rms}})$ = {loads[j]:g}",
-        )
+        mark(color="0.3", ls=LINES[n % len(LINES)], label=f"{of_load} = {loads[j]:g}")
         for n, j in enumerate(_shown(test))
     ]
     one_law = "(a), (b) if one law governed both"
-    lines.append(Line2D([], [], color="0.5", lw=0.8, ls=LINES[2], label=one_law))
+    lines.append(mark(color="0.5", lw=0.8, ls=LINES[2], label=one_law))
     if "capped_pressure" not in test.dims:
         return dimensions, lines
     faces = (("0.3", "-", "(c) by $A_r(s)$"), ("white", "--", "(c) by box counting"))
     capped = [
-        Line2D([], [], color="0.3", lw=0.8, marker="o", mfc=face, ls=line, label=words)
+        mark(color="0.3", lw=0.8, marker="o", mfc=face, ls=line, label=words)
         for face, line, words in faces
     ]
     return dimensions, lines, [*capped, heading("(b), (c) no intervals drawn")]
@@ -154,14 +143,13 @@ def _words(test):
     """Range of the difference, in how many intervals zero lies, where box counting tends."""
     difference = Estimate.read(test, "mean_difference")
     known = np.isfinite(difference.low)
-    agree = (difference.low <= 0) & (difference.high >= 0) & known
     yielded = np.array([])
     if "capped_pressure" in test.dims:
         last = Estimate.read(test.isel(capped_pressure=-1), "capped_mean_delta_sigma_box")
         yielded = last.value[np.isfinite(last.low)]
     return {
         "difference": difference.value[known].tolist(),
-        "agree": int(agree.sum()),
+        "agree": int(test["difference_agrees"].sum()),
         "yielded": dict.fromkeys(number(end) for end in (min(yielded), max(yielded)))
         if yielded.size
         else {},

@@ -4,23 +4,15 @@ from collections.abc import Sequence
 
 import numpy as np
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 from xarray import DataTree
 
 from fractalcontact.core.estimate import Estimate
+from fractalcontact.figures.kit.axes import label_short_span
 from fractalcontact.figures.kit.caption import caption
-from fractalcontact.figures.kit.drawing import (
-    COLOURS,
-    MARKERS,
-    WIDTH,
-    Drawing,
-    heading,
-    headline,
-    label_short_span,
-    legends_below,
-    letter,
-)
+from fractalcontact.figures.kit.drawing import COLOURS, MARKERS, WIDTH, Drawing
+from fractalcontact.figures.kit.legends import heading, legends_below, mark
 from fractalcontact.figures.kit.panel import rows
+from fractalcontact.figures.kit.titles import headline, letter
 
 TITLE = "Delta_sigma of synthetic surfaces over the load, by both estimators"
 SUBJECT = "study"
@@ -85,17 +77,17 @@ def _draw_loads(axes, test, dimension, which):
 
 def _legends(test):
     lines = [
-        Line2D([], [], color=colour, ls=line, marker=MARKERS[n], label=words)
+        mark(color=colour, ls=line, marker=MARKERS[n], label=words)
         for n, (colour, line, words) in enumerate(_ESTIMATORS.values())
     ]
     words = r"theory at light load: $1+H=4-\Delta_g$"
     theory = [
         heading("side by side; bars: 95 % intervals"),
-        Line2D([], [], color="0.3", lw=0.8, ls="-.", label=words),
+        mark(color="0.3", lw=0.8, ls="-.", label=words),
     ]
     if np.isclose(test["dimension"].values, test.attrs["paper_dimension"]).any():
         words = f"the paper's {test.attrs['paper_delta_sigma']:g} at $\\Delta_g$ = 2.1"
-        theory.append(Line2D([], [], color=COLOURS[4], lw=1.2, label=words))
+        theory.append(mark(color=COLOURS[4], lw=1.2, label=words))
     return lines, theory
 
 

@@ -9,29 +9,16 @@ from matplotlib.patches import Patch
 from xarray import DataTree
 
 from fractalcontact.figures.kit.caption import caption
-from fractalcontact.figures.kit.drawing import (
-    LINES,
-    MARKERS,
-    WIDTH,
-    Drawing,
-    colour_of,
-    entries,
-    heading,
-    legends_below,
-    letter,
-)
+from fractalcontact.figures.kit.drawing import LINES, MARKERS, WIDTH, Drawing, colour_of
+from fractalcontact.figures.kit.legends import entries, heading, legends_below, mark
 from fractalcontact.figures.kit.panel import rows
+from fractalcontact.figures.kit.titles import letter
 
 TITLE = "Bias, scatter and coverage of the estimators of the surface dimension"
 SUBJECT = "study"
 NEEDS = ("estimator_bias",)
 KEY = "estimator_bias"
 ORDER = 40
-
-#: Bias that three estimators at least are to keep to where H is 0.5 or more.
-TOLERATED = 0.03
-#: Fraction of the intervals that are to hold H there.
-PROMISED = 0.9
 
 
 def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
@@ -62,6 +49,7 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
         panels[2 * row + 1, 0].set_ylabel("surfaces (%)")
     places = np.arange(bias.sizes["hurst"])
     for panel in panels[-1]:
+        panel.set_xlim(-0.5, bias.sizes["hurst"] - 0.5)
         panel.set_xticks(places, [f"{hurst:g}" for hurst in bias["hurst"].values])
         panel.set_xlabel("Hurst exponent $H$ of the surfaces (1)")
     legends_below(figure, *_legends(panels[0, 0], panels[1, 0], bias.attrs["from_hurst"]))
@@ -78,7 +66,7 @@ def _legends(of_bias, of_coverage, start):
     """Estimators with their errors, in two columns, and what else is drawn."""
     estimators = [one for one in entries(of_bias) if not isinstance(one, Patch | Line2D)]
     half = -(-len(estimators) // 2)
-    hollow = Line2D([], [], color="0.3", marker="o", mfc="none", ls="none")
+    hollow = mark(color="0.3", marker="o", mfc="none", ls="none")
     hollow.set_label("hollow: before known bias is taken off")
     others = [one for one in entries(of_bias) if isinstance(one, Patch | Line2D)]
     head = heading(f"rms error of $H$, from $H$ = {start:g} on")
@@ -110,7 +98,8 @@ def _label(bias, name):
 
 
 def _draw_bias(axes, bias):
-    axes.axhspan(-TOLERATED, TOLERATED, color="0.9", lw=0, label=rf"aim: bias within {TOLERATED:g}")
+    aim = bias.attrs["tolerated_bias"]
+    axes.axhspan(-aim, aim, color="0.9", lw=0, label=rf"aim: bias within {aim:g}")
     for n, name in enumerate(bias["estimator"].values):
         one, x = bias.sel(estimator=name), _beside(bias, n)
         style = {"color": colour_of(n), "marker": MARKERS[n % len(MARKERS)], "ls": "none"}
@@ -118,12 +107,12 @@ def _draw_bias(axes, bias):
         axes.errorbar(x, one["bias"], one["scatter"], capsize=2, lw=0.8, label=label, **style)
         moved = np.abs(one["slope_bias"] - one["bias"]) > 1e-9
         axes.plot(x[moved], one["slope_bias"][moved], mfc="none", mew=0.7, alpha=0.8, **style)
-    _set_ends(axes, bias)
 
 
 def _draw_coverage(axes, bias):
-    words = f"aim: {100 * PROMISED:.0f} % of the surfaces"
-    axes.axhline(100 * PROMISED, color="0.4", lw=0.8, ls=LINES[1], label=words)
+    aim = 100 * bias.attrs["promised_coverage"]
+    words = f"aim: {aim:.0f} % of the surfaces"
+    axes.axhline(aim, color="0.4", lw=0.8, ls=LINES[1], label=words)
     for n, name in enumerate(bias["estimator"].values):
         axes.plot(
             _beside(bias, n),
@@ -133,12 +122,6 @@ def _draw_coverage(axes, bias):
             ls="none",
         )
     axes.set_ylim(min(45, 90 * float(bias["coverage"].min())), 105)
-    _set_ends(axes, bias)
-
-
-def _set_ends(axes, bias):
-    """Ends of the axis of H, half a place beyond the first and the last."""
-    axes.set_xlim(-0.5, bias.sizes["hurst"] - 0.5)
 
 
 def _words(bias):
@@ -148,19 +131,15 @@ def _words(bias):
     names = [_name(name) for name in known["estimator"].values]
     errors = dict(zip(names, known["overall_error"].values.tolist(), strict=True))
     least = dict(zip(names, known["least_coverage"].values.tolist(), strict=True))
-    rough = bias["coverage"].where(bias["hurst"] < start).min(["hurst", "size", "roll_off"])
-    rough = rough.values[rough.notnull().values]
+    rough = bias["rough_coverage"]
     return {
         "seeds": bias.sizes["seed"],
         "start": start,
         "name": _name(bias.attrs["recommended"]),
         "errors": errors,
-        "best": min(errors, key=errors.__getitem__, default=""),
         "least": least,
-        "worst": min(least.values(), default=np.nan),
-        "promised": PROMISED,
-        "rough": rough.tolist(),
-        "failing": int((rough < PROMISED).sum()),
+        "promised": bias.attrs["promised_coverage"],
+        "rough": rough.values[rough.notnull()].tolist(),
     }
 
 

@@ -9,24 +9,16 @@ import pandas as pd
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 from xarray import DataTree
 
 from fractalcontact.core.estimate import Estimate
 from fractalcontact.core.limits import LIGHT_LOAD
 from fractalcontact.figures.kit.caption import caption
-from fractalcontact.figures.kit.drawing import (
-    MARKERS,
-    WIDTH,
-    Drawing,
-    colour_of,
-    entries,
-    heading,
-    legends_below,
-    letter,
-)
+from fractalcontact.figures.kit.drawing import MARKERS, WIDTH, Drawing, colour_of
+from fractalcontact.figures.kit.legends import entries, heading, legends_below, mark
 from fractalcontact.figures.kit.panel import rows
 from fractalcontact.figures.kit.points import reach
+from fractalcontact.figures.kit.titles import letter
 from fractalcontact.figures.kit.words import number
 
 from ...experiments.size_decision import PROBABILITY
@@ -87,18 +79,11 @@ def _draw_slopes(axes: Axes, table: pd.DataFrame, light: tuple[float, float]) ->
         chosen = (table["of_hurst"] == hurst) & (table["of_cut_off"] == cut_off)
         one = table[chosen].groupby("resolved_pressure")["resolved_kappa"]
         one = one.agg(["mean", "min", "max"])
-        drawn.append(
-            axes.errorbar(
-                one.index * _BESIDE ** (i - (len(hursts) - 1) / 2),
-                one["mean"],
-                yerr=reach(one["mean"], one["min"], one["max"]),
-                marker=MARKERS[j % len(MARKERS)],
-                ms=3.5,
-                color=_colour(i),
-                lw=0.6,
-                label=f"$H$ = {hurst:g}, $s$ = {cut_off:g} nodes",
-            )
-        )
+        beside = one.index * _BESIDE ** (i - (len(hursts) - 1) / 2)
+        style = {"marker": MARKERS[j % len(MARKERS)], "ms": 3.5, "color": _colour(i), "lw": 0.6}
+        style["label"] = f"$H$ = {hurst:g}, $s$ = {cut_off:g} nodes"
+        bars = reach(one["mean"], one["min"], one["max"])
+        drawn.append(axes.errorbar(beside, one["mean"], bars, **style))
     if np.isfinite(light[0]):
         axes.axvline(LIGHT_LOAD, color="0.5", lw=0.8, ls=":")
         between = " to ".join(map(number, light))
@@ -120,18 +105,11 @@ def _draw_theories(axes: Axes, test: xr.Dataset) -> list:
     low, high = (test[f"weakened_kappa_{end}"] for end in ("low", "high"))
     axes.fill_between(p, low, high, color="0.85", lw=0, label=label)
     published, share = test["published_pressure"].values, test["published_share"].values
-    scatter = test.attrs["published_scatter"]
-    axes.errorbar(
-        published,
-        share / published * (1 - scatter / 2),
-        yerr=share / published * scatter / 2,
-        fmt="D",
-        ms=3.5,
-        mfc="white",
-        color=_PUBLISHED,
-        lw=0.8,
-        label="published: periodic, $H$ = 0.8,\nwith its scatter",
-    )
+    kappa, scatter = share / published, test.attrs["published_scatter"]
+    label = "published: periodic, $H$ = 0.8,\nwith its scatter"
+    style = {"fmt": "D", "ms": 3.5, "mfc": "white", "color": _PUBLISHED, "lw": 0.8}
+    bars = kappa * scatter / 2
+    axes.errorbar(published, kappa * (1 - scatter / 2), bars, label=label, **style)
     return entries(axes)
 
 
@@ -153,14 +131,9 @@ def _draw_exponents(axes: Axes, test: xr.Dataset, departure: float) -> None:
     axes.set_xmargin(0.12)
     letter(axes, "b", r"$\Delta_\sigma$ of the contact area")
     grey: dict[str, Any] = {"color": "0.3"}
-    axes.add_line(Line2D([], [], marker="o", ls="none", label="from the areas $A_r(s)$", **grey))
+    axes.add_line(mark(marker="o", ls="none", label="from the areas $A_r(s)$", **grey))
     words = "from the slopes $h'_\\mathrm{rms}(s)$ alone"
-    axes.add_line(Line2D([], [], marker="_", ms=14, mew=1.5, ls="none", label=words, **grey))
-    axes.add_line(Line2D([], [], lw=0.8, ls="--", label="$1+H$", **grey))
-    axes.text(
-        0.97,
-        0.03,
-        f"largest difference {number(departure)}",
-        transform=axes.transAxes,
-        ha="right",
-    )
+    axes.add_line(mark(marker="_", ms=14, mew=1.5, ls="none", label=words, **grey))
+    axes.add_line(mark(lw=0.8, ls="--", label="$1+H$", **grey))
+    words = f"largest difference {number(departure)}"
+    axes.text(0.97, 0.03, words, transform=axes.transAxes, ha="right")

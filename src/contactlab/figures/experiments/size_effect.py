@@ -8,23 +8,16 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from xarray import DataTree
 
 from fractalcontact.core.estimate import Estimate
 from fractalcontact.figures.kit.caption import caption
-from fractalcontact.figures.kit.drawing import (
-    MARKERS,
-    WIDTH,
-    Drawing,
-    colour_of,
-    heading,
-    legends_below,
-    letter,
-)
+from fractalcontact.figures.kit.drawing import MARKERS, WIDTH, Drawing, colour_of
+from fractalcontact.figures.kit.legends import heading, legends_below, mark
 from fractalcontact.figures.kit.panel import rows
 from fractalcontact.figures.kit.points import reach
+from fractalcontact.figures.kit.titles import letter
 
 from ...experiments.size_decision import NO_EFFECT, PROBABILITY, REFUTED, UPHELD
 
@@ -107,7 +100,7 @@ def _draw_arm(axes: Axes, test: xr.Dataset) -> None:
 
 def _classes(test: xr.Dataset) -> list:
     return [
-        Line2D([], [], color=colour_of(i), marker="o", ls="none", label=_class_words(test, hurst))
+        mark(color=colour_of(i), marker="o", ls="none", label=_class_words(test, hurst))
         for i, hurst in enumerate(test["hurst"].values)
     ]
 
@@ -121,21 +114,19 @@ def _class_words(test: xr.Dataset, hurst: float) -> str:
 
 def _loads(test: xr.Dataset) -> list:
     return [heading(r"pressure $p/(E^*h'_\mathrm{rms})$")] + [
-        Line2D([], [], color="0.3", marker=MARKERS[i], ls="none", label=f"{load:g}")
+        mark(color="0.3", marker=MARKERS[i], ls="none", label=f"{load:g}")
         for i, load in enumerate(test["reduced_pressure"].values)
     ]
 
 
 def _lines() -> list:
     marks = [
-        Line2D(
-            [], [], color="0.3", marker="o", ls="none", mfc=fill, label=r"$\Delta_\sigma$ by " + of
-        )
+        mark(color="0.3", marker="o", ls="none", mfc=fill, label=r"$\Delta_\sigma$ by " + of)
         for (_, of, filled) in _ESTIMATORS
         for fill in ["0.3" if filled else "white"]
     ]
     return [
         *marks,
-        Line2D([], [], color="k", lw=1.2, ls="--", label="eq. 6 would lie here"),
+        mark(color="k", lw=1.2, ls="--", label="eq. 6 would lie here"),
         Patch(color="0.88", label=rf"no size effect: $|\alpha|$ < {NO_EFFECT:g}"),
     ]

@@ -9,26 +9,20 @@ import pandas as pd
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from xarray import DataTree
 
 from fractalcontact.core.estimate import Estimate
 from fractalcontact.figures.kit.caption import caption
-from fractalcontact.figures.kit.drawing import (
-    MARKERS,
-    WIDTH,
-    Drawing,
-    colour_of,
-    heading,
-    legends_below,
-    letter,
-)
+from fractalcontact.figures.kit.drawing import MARKERS, WIDTH, Drawing, colour_of
+from fractalcontact.figures.kit.legends import heading, legends_below, mark
 from fractalcontact.figures.kit.panel import rows
 from fractalcontact.figures.kit.points import reach
+from fractalcontact.figures.kit.titles import letter
 from fractalcontact.figures.kit.words import number
 
 from ...experiments.size_decision import PROBABILITY
+from ._strength_exponents import ELASTIC, draw_exponents, faces_of, law_entries
 
 TITLE = "Size effect of the strength at equal displacement and at equal displacement over size"
 SUBJECT = "study"
@@ -38,10 +32,6 @@ ORDER = 8
 
 #: Labels of ticks stand at least this fraction of the axis apart.
 _CLEAR = 0.15
-#: Colour of exponents: those of the sides stand for sides alone.
-_OF_EXPONENTS = "k"
-#: Law of contact whose points are filled.
-_ELASTIC = "elastic"
 
 
 def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
@@ -55,12 +45,12 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
         _draw_strength(upper, test.sel(hurst=hurst))
         letter(upper, "abcdefgh"[i], rf"$H$ = {hurst:g}: strength")
         upper.set_xlabel("shear displacement $v$, middle of its interval (nodes)")
-        _draw_exponents(lower, test.sel(hurst=hurst))
+        draw_exponents(lower, test.sel(hurst=hurst))
         letter(lower, "abcdefgh"[i + len(hursts)], rf"$H$ = {hurst:g}: its exponent over the side")
         lower.set_xlabel("at equal $v$ (nodes)  |  at equal $v/b$ (1)")
     panels[0, 0].set_ylabel(r"strength $\tau/\sigma_0$ (1)")
     panels[1, 0].set_ylabel(r"$\mathrm{d}\ln(\tau/\sigma_0)/\mathrm{d}\ln b$ (1)")
-    legends_below(figure, _side_entries(test), _law_entries(test), _line_entries(test))
+    legends_below(figure, _side_entries(test), law_entries(test), _line_entries(test))
     return Drawing(figure, _table(test), caption(__name__, **_words(test)))
 
 
@@ -85,11 +75,11 @@ def _draw_strength(axes: Axes, test: xr.Dataset) -> None:
     sides = test.sizes["side"]
     for law, i in product(test["law"].values, range(sides)):
         one = Estimate.read(test.sel(law=law).isel(side=i), "strength")
-        shift = 1.06 ** (i - (sides - 1) / 2) * (1.0 if law == _ELASTIC else 1.03)
+        shift = 1.06 ** (i - (sides - 1) / 2) * (1.0 if law == ELASTIC else 1.03)
         bars: dict[str, Any] = {"yerr": reach(*one.ends), "elinewidth": 0.7}
         colour = colour_of(i + 1)
-        axes.errorbar(middles * shift, one.value, fmt=MARKERS[i], **_points(law, colour), **bars)
-    of_theory = test["theory_strength"].sel(law=_ELASTIC)
+        axes.errorbar(middles * shift, one.value, fmt=MARKERS[i], **faces_of(law, colour), **bars)
+    of_theory = test["theory_strength"].sel(law=ELASTIC)
     axes.plot(middles, of_theory, "-", color="0.6", lw=1, zorder=0)
     friction = np.tan(np.radians(test.attrs["basic_friction_angle"]))
     axes.axhline(friction, color="0.6", ls=":", lw=1, zorder=0)
@@ -97,11 +87,6 @@ def _draw_strength(axes: Axes, test: xr.Dataset) -> None:
     ticks = _apart(high)
     axes.set_xticks(ticks, [f"{v:g}" for v in ticks])
     axes.minorticks_off()
-
-
-def _points(law: str, colour: str) -> dict[str, Any]:
-    """Filled where the contact is elastic, hollow where its pressure is capped."""
-    return {"color": colour, "mfc": colour if law == _ELASTIC else "white"}
 
 
 def _apart(ticks: np.ndarray) -> list[float]:
@@ -114,67 +99,23 @@ def _apart(ticks: np.ndarray) -> list[float]:
     return chosen
 
 
-def _draw_exponents(axes: Axes, test: xr.Dataset) -> None:
-    """Exponents with their intervals, those at equal v to the left, at equal v/b to the right."""
-    intervals, fractions = test.sizes["interval"], test.sizes["fraction"]
-    places = np.arange(1 + intervals + fractions)
-    axes.axhspan(-test.attrs["bound"], test.attrs["bound"], color="0.9", lw=0, zorder=0)
-    axes.axhline(0, color="0.6", lw=0.8, zorder=0)
-    groups = _groups(test)
-    for n, (law, load) in enumerate(groups):
-        one = test.sel(law=law, reduced_pressure=load)
-        x = places + 0.7 * ((n + 0.5) / len(groups) - 0.5)
-        names = ("pooled_exponent", "strength_exponent", "scaled_strength_exponent")
-        parts = [Estimate.read(one, name).ends for name in names]
-        ends = [np.r_[tuple(np.atleast_1d(end) for end in of)] for of in zip(*parts, strict=True)]
-        style = {**_points(law, _OF_EXPONENTS), "yerr": reach(*ends), "elinewidth": 0.7}
-        axes.errorbar(x, ends[0], fmt=_marker(load, test), **style)
-        scaled = x[1 + intervals :]
-        axes.plot(scaled, one["predicted_exponent"], "_", color=_OF_EXPONENTS, ms=12, zorder=0)
-        axes.plot(scaled, one["theory_exponent"], "x", color="0.6", ms=5, zorder=0)
-    if fractions:
-        axes.axvline(intervals + 0.5, color="0.6", lw=0.8)
-    of_v = zip(test["interval_low"].values, test["interval_high"].values, strict=True)
-    of_b = zip(test["fraction_low"].values, test["fraction_high"].values, strict=True)
-    labels = [f"{low:g} to {high:g}" for low, high in of_v]
-    labels += [f"1/{1 / low:.4g} to 1/{1 / high:.4g}" for low, high in of_b]
-    axes.set_xticks(places, ["all together", *labels], fontsize=7)
-    axes.tick_params(axis="x", rotation=90)
-
-
-def _groups(test: xr.Dataset) -> list[tuple[str, float]]:
-    return [(law, load) for load in test["reduced_pressure"].values for law in test["law"].values]
-
-
-def _marker(load: float, test: xr.Dataset) -> str:
-    return MARKERS[list(test["reduced_pressure"].values).index(load)]
-
-
 def _side_entries(test: xr.Dataset) -> list:
     marks = [
-        Line2D([], [], color=colour_of(i + 1), marker=MARKERS[i], ls="none", label=f"{side:g}")
+        mark(color=colour_of(i + 1), marker=MARKERS[i], ls="none", label=f"{side:g}")
         for i, side in enumerate(test["side"].values)
     ]
     filled = [
-        Line2D([], [], color="0.3", marker="o", ls="none", label="filled: elastic"),
-        Line2D([], [], color="0.3", marker="o", mfc="white", ls="none", label="hollow: capped"),
+        mark(color="0.3", marker="o", ls="none", label="filled: elastic"),
+        mark(color="0.3", marker="o", mfc="white", ls="none", label="hollow: capped"),
     ]
     return [heading("strength: side $b$ (nodes)"), *marks, *filled]
 
 
-def _law_entries(test: xr.Dataset) -> list:
-    entries: list = [heading("exponent: $p/(E^* h'_\\mathrm{rms})$")]
-    for law, load in _groups(test):
-        style = {**_points(law, _OF_EXPONENTS), "marker": _marker(load, test), "ls": "none"}
-        entries.append(Line2D([], [], label=f"{law}, {load:g}", **style))
-    return entries
-
-
 def _line_entries(test: xr.Dataset) -> list:
     return [
-        Line2D([], [], color="0.3", marker="_", ms=12, ls="none", label="as $v$ alone makes it"),
-        Line2D([], [], color="0.6", marker="x", ls="-", label="theory: height differences at $v$"),
-        Line2D([], [], color="0.6", ls=":", label=r"basic friction $\tan\varphi_b$"),
+        mark(color="0.3", marker="_", ms=12, ls="none", label="as $v$ alone makes it"),
+        mark(color="0.6", marker="x", ls="-", label="theory: height differences at $v$"),
+        mark(color="0.6", ls=":", label=r"basic friction $\tan\varphi_b$"),
         Patch(color="0.9", label=f"no size effect: within {test.attrs['bound']:g}"),
         heading(f"side by side; bars: {100 * PROBABILITY:.0f} % intervals"),
     ]

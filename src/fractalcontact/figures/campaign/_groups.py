@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 
 from ...core.estimate import DIMENSION, SIZE, Estimate, names_of
 from ...core.labels import printable
-from ..kit.drawing import label_short_span
+from ..kit.axes import label_short_span
 from ..kit.empty import say_empty
 from ..kit.words import short
 

@@ -8,9 +8,10 @@ from xarray import DataTree
 
 from ...core.estimate import Estimate
 from ..kit.caption import caption
-from ..kit.drawing import TITLE_SIZE, WIDTH, Drawing, colour_of, letter
+from ..kit.drawing import WIDTH, Drawing, colour_of
 from ..kit.panel import rows
 from ..kit.points import reach
+from ..kit.titles import TITLE_SIZE, letter
 from ..kit.words import pressure_label
 from ._groups import (
     AXES,

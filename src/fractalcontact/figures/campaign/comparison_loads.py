@@ -4,24 +4,16 @@ from collections.abc import Sequence
 
 import numpy as np
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from xarray import DataTree
 
 from ...core.estimate import Estimate
 from ..kit.caption import caption
-from ..kit.drawing import (
-    LINES,
-    MARKERS,
-    WIDTH,
-    Drawing,
-    colour_of,
-    entries,
-    heading,
-    letter,
-)
+from ..kit.drawing import LINES, MARKERS, WIDTH, Drawing, colour_of
+from ..kit.legends import entries, heading, mark
 from ..kit.panel import rows
 from ..kit.points import reach
+from ..kit.titles import letter
 from ..kit.words import NOMINAL_PRESSURE, pressure_label
 from ._groups import (
     AXES,
@@ -109,7 +101,7 @@ def _draw_no_effect(axes, name, *, drawn):
 
 def _marks(comparison, *, by_specimen):
     """What else is drawn, for the legend."""
-    no_effect = Line2D([], [], color="0.4", lw=0.8, ls=(0, (1, 2)), label="(d) no size effect: 0")
+    no_effect = mark(color="0.4", lw=0.8, ls=(0, (1, 2)), label="(d) no size effect: 0")
     if by_specimen:
         return [heading("bars: 95 % intervals"), no_effect]
     marks = [
@@ -118,7 +110,7 @@ def _marks(comparison, *, by_specimen):
         no_effect,
     ]
     if comparison.sizes["specimen"] <= MOST_LINES:
-        marks.append(Line2D([], [], color="0.5", lw=0.4, label="thin: one specimen"))
+        marks.append(mark(color="0.5", lw=0.4, label="thin: one specimen"))
     return marks
 
 

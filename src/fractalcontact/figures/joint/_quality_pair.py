@@ -8,10 +8,10 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.colors import Normalize
 from matplotlib.figure import FigureBase
-from matplotlib.lines import Line2D
 
 from ...core.limits import DECISIVE
 from ..kit.drawing import COLOURS, spread
+from ..kit.legends import mark
 from ..kit.maps import draw_map, node_position, window_outline
 from ..kit.panel import Panel
 from ..kit.words import length_unit
@@ -87,4 +87,4 @@ def draw_load_share(panel: Panel, curves: xr.Dataset) -> None:
 
 def pair_entries() -> list[Artist]:
     """Entries of the legend for the lower row."""
-    return [Line2D([], [], color="0.4", ls="-.", lw=0.7, label="half of the load")]
+    return [mark(color="0.4", ls="-.", lw=0.7, label="half of the load")]

@@ -7,8 +7,9 @@ from xarray import DataTree
 
 from ...core.subject import Subject
 from ..kit.caption import caption
-from ..kit.drawing import WIDTH, Drawing, headline
+from ..kit.drawing import WIDTH, Drawing
 from ..kit.tables import LINE_HEIGHT, draw_rows, wrap_rows
+from ..kit.titles import headline
 from ..kit.words import percent, place
 
 TITLE = "Solve plan: which states were solved, how exactly, and why"

@@ -6,24 +6,16 @@ from xarray import DataTree
 from ...core.estimate import EXPONENT, Estimate
 from ...core.limits import LARGEST_DISTANCE, RESOLVED_NODES
 from ...core.subject import Subject
+from ..kit.axes import offset_axis
 from ..kit.caption import caption
-from ..kit.drawing import (
-    COLOURS,
-    WIDTH,
-    Drawing,
-    colour_of,
-    entries,
-    heading,
-    headline,
-    label_short_span,
-    legends_below,
-    offset_axis,
-    spread,
-)
+from ..kit.drawing import WIDTH, Drawing, colour_of, spread
+from ..kit.legends import entries, heading, legends_below
 from ..kit.panel import Panel, table_of
 from ..kit.points import hollow_entry
+from ..kit.titles import headline
 from ..kit.verdicts import claim
-from ..kit.words import force_label, place, short
+from ..kit.words import force_label, place
+from ._cluster_sizes import draw_sizes, size_laws
 
 TITLE = "Figs. 6 and 7: clusters of the contact domains, and their localisation with the offset"
 SUBJECT = "joint"
@@ -32,9 +24,6 @@ ORDER = 120
 
 #: Offsets whose size distribution is drawn: the first, the middle and the last.
 DISTRIBUTIONS = 3
-#: Colours and markers of these; the loads have the others.
-_OFFSET_COLOURS = (COLOURS[3], COLOURS[4], COLOURS[5])
-_OFFSET_MARKERS = ("D", "v", "P")
 #: Opacity of the bands of random nodes.
 _FAINT = 0.15
 #: Null models that are drawn where they are known, at the reported offset: marker, words.
@@ -49,8 +38,6 @@ _DRAWN = {
         *("morisita_exponent", "morisita_scatter", "half_share", "half_share_random"),
     ),
 }
-_SIZES = ("cluster_area", "clusters_at_least", "cluster_law_count", "cluster_law_followed")
-_FIT = ("cluster_exponent", *(f"cluster_fit_{key}" for key in ("min", "max", "n", "distance")))
 
 
 def draw(atlas: DataTree, name: str) -> Drawing:
@@ -69,7 +56,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     for panel, quantity in zip(panels, _DRAWN, strict=False):
         _draw_states(panel, states, quantity)
     _finish(axes[:3], states)
-    _draw_sizes(panels[3], sizes)
+    draw_sizes(panels[3], sizes)
     by_load = [heading(r"(a) to (c): Morisita's index $I \sim v^x$ [95 %]"), *entries(axes[0])]
     force = force_label(reported.force)
     by_offset = [heading(rf"(d) at $F$ = {force}: number $\sim a^{{-\beta}}$ [95 %]")]
@@ -81,7 +68,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
         clustered=claim(atlas, name, "domains_cluster", why=why),
         verdict=claim(atlas, name, "domains_cluster", numbers=False),
         limit=LARGEST_DISTANCE,
-        **_laws(sizes),
+        **size_laws(sizes),
     )
     return Drawing(figure, table_of(*panels), text)
 
@@ -130,38 +117,3 @@ def _finish(panels, states):
     localised.set(yscale="log", ylabel="Morisita's index $I$ (1)")
     index = states["morisita"]
     localised.set_ylim(bottom=min(0.7, 0.8 * float(index.where(index > 0).min())))
-
-
-def _draw_sizes(panel, sizes):
-    """Clusters of some area or more, with the laws fitted to them."""
-    axes = panel.axes
-    for n, offset in enumerate(sizes["offset"].values):
-        domain = sizes.isel(offset=n)
-        domain = domain.isel(octave=(domain["clusters_at_least"] > 0).values)
-        panel.keep(domain, *_SIZES, *_FIT)
-        exponent = Estimate.read(domain, "cluster_exponent", scale=EXPONENT)
-        words = rf"$\beta$ = {exponent.text()}" if exponent.known else "too few for a law"
-        if exponent.known and not bool(domain["cluster_law_followed"]):
-            words += ", not followed"
-        style = {"color": _OFFSET_COLOURS[n], "marker": _OFFSET_MARKERS[n], "ls": "none"}
-        area, label = domain["cluster_area"], f"$v$ = {short(offset)} mm: {words}"
-        axes.plot(area, domain["clusters_at_least"], label=label, **style)
-        axes.plot(area, domain["cluster_law_count"], color=style["color"], lw=0.8)
-    axes.set(xscale="log", yscale="log", xlabel="cluster area $a$ (mm$^2$)")
-    axes.set_ylim(bottom=0.7)
-    axes.set_ylabel(r"number of clusters of area $\geq a$ (1)")
-    label_short_span(axes.xaxis)
-    if sizes["cluster_exponent"].notnull().any():
-        axes.plot([], [], color="0.4", lw=0.8, label="lines: laws over the areas fitted")
-
-
-def _laws(sizes):
-    """Exponents of the sizes of clusters in words, and the offsets where sizes follow no law."""
-    fitted = sizes.isel(offset=sizes["cluster_exponent"].notnull().values)
-    exponents = Estimate.read(fitted, "cluster_exponent", scale=EXPONENT)
-    if exponents.value.size < 2:
-        words = exponents[0].text() if exponents.value.size else ""
-    else:
-        words = f"{short(exponents.value.min())} to {short(exponents.value.max())}"
-    broken = fitted["offset"].values[~fitted["cluster_law_followed"].values]
-    return {"exponents": words, "broken": [short(v) for v in broken]}

@@ -1,44 +1,29 @@
 """Correlation of the faces, and closure and compliance of the interface, against the offset."""
 
-import textwrap
-
 import numpy as np
 from matplotlib.figure import Figure
 from xarray import DataTree
 
-from ...core.limits import LOOSELY, NEARLY, RESOLVED_NODES
+from ...core.limits import RESOLVED_NODES
 from ...core.subject import Subject
-from ...core.verdicts import UNDETERMINED
+from ..kit.axes import offset_axis
 from ..kit.caption import caption
-from ..kit.drawing import (
-    WIDTH,
-    Drawing,
-    entries,
-    heading,
-    headline,
-    legends_below,
-    offset_axis,
-)
+from ..kit.drawing import WIDTH, Drawing
 from ..kit.empty import TOO_FULL, different_reasons, missing_lines, say_empty
+from ..kit.legends import entries, heading, legends_below
 from ..kit.panel import Panel, table_of
 from ..kit.points import hollow_entry
 from ..kit.sizes import plain_decades
-from ..kit.verdicts import row_of, verdict_words
-from ..kit.words import TOWARDS, force_label, percent, place, pressure_label, short
+from ..kit.titles import headline
+from ..kit.verdicts import row_of
+from ..kit.words import force_label, percent, place, pressure_label
+from ._face_correlation import draw_correlation
+from ._sliding_stages import number_stages, stage_column, stages_of_sliding
 
 TITLE = "Figs. 4 and 5: correlation of the faces, closure and compliance against the offset"
 SUBJECT = "joint"
 NEEDS = ("specimens", "joints", "closure", "statements")
 ORDER = 70
-
-#: The paper's stages of sliding: what each is said to do, and what decides about it.
-STAGES = {
-    "compliance_rises_at_first": ("rising as v^x", ""),
-    "curves_overlap": ("the same", f"limit {percent(NEARLY)}, in part {percent(LOOSELY)}"),
-    "compliance_rises_again": ("rising again on average", f"limit {percent(NEARLY, '+')}"),
-}
-#: Letters of a line of the stages in the legend.
-_LINE = 50
 
 
 def draw(atlas: DataTree, name: str) -> Drawing:
@@ -49,13 +34,13 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     solved = joint.sel(direction=subject.direction)
     ends = float(solved["correlation_length"]), float(solved["uncorrelated_offset"])
     force = subject["statements"].attrs["force"]
-    stages = _stages(atlas, name, ends)
+    stages = stages_of_sliding(atlas, name, ends)
 
     figure = Figure(figsize=(WIDTH, 7.3))
     axes = figure.subplots(3, 1, sharex=True, height_ratios=[1.1, 1, 1.2])
     titles = ("correlation of the faces", _seat(curves), _bars(curves))
     a, b, c = (Panel(*one) for one in zip(axes, "abc", titles, strict=True))
-    _draw_correlation(a, joint, subject.direction, ends)
+    draw_correlation(a, joint, subject.direction, ends)
     _draw_closures(b, c, curves)
     for at, style in zip(ends, ("--", ":"), strict=True):
         for panel in (b, c):
@@ -65,9 +50,9 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     offset_axis(c.axes, curves["offset"].values)
     if c.axes.get_xscale() == "log":
         plain_decades(c.axes.xaxis)
-    columns = [entries(a.axes), entries(c.axes), *_judged(stages, force)]
+    columns = [entries(a.axes), entries(c.axes), *stage_column(stages, force)]
     if np.isfinite(curves["interface_compliance"]).any():
-        _number_stages(c.axes, stages)
+        number_stages(c.axes, stages)
         why = missing_lines(curves["interface_stiffness_reason"], "c")
         columns[-1] = columns[-1] + [heading(line) for line in why]
     legends_below(figure, *columns, columnspacing=1.5)
@@ -82,36 +67,6 @@ def draw(atlas: DataTree, name: str) -> Drawing:
         "stages": [text for text, *_ in stages],
     }
     return Drawing(figure, table_of(a, b, c), caption(__name__, force=force, **words))
-
-
-def _draw_correlation(panel, joint, solved, ends):
-    """The direction solved in black, all others in grey."""
-    axes = panel.axes
-    others = [d for d in joint["direction"].values if d != solved]
-    names = ", ".join(TOWARDS.get(d, d) for d in others)
-    kept = ("correlation_length", "uncorrelated_offset")
-    grey = {"color": "0.7", "lw": 0.9, "ls": "-", "keep": kept}
-    for n, direction in enumerate(others):
-        label = {} if n else {"label": f"towards {names}"}
-        one = joint.sel(direction=direction)
-        panel.curve(one, "rigid_offset", "face_correlation", **grey, **label)
-    black = {"color": "k", "ls": "-", "label": f"towards {TOWARDS[solved]}, as in (b), (c)"}
-    one = joint.sel(direction=solved)
-    panel.curve(one, "rigid_offset", "face_correlation", keep=kept, **black)
-    limit = float(joint["correlation_limit"])
-    if np.isfinite(limit):
-        axes.axhspan(-limit, limit, color="0.9", zorder=0, lw=0, label="by chance alone, 95 %")
-    # The level and the offsets found from it are lines of one style, here and below.
-    axes.axhline(np.exp(-1), color="0.4", lw=0.8, ls="--")
-    for at, style, words in zip(ends, ("--", ":"), ("1/e", "lost"), strict=True):
-        if np.isfinite(at):
-            label = f"correlation {words}: $v$ = {short(at)} mm"
-            axes.axvline(at, color="0.4", lw=0.8, ls=style, label=label)
-    if not np.isfinite(ends[0]):
-        axes.plot([], [], color="0.4", lw=0.8, ls="--", label="correlation 1/e: not reached")
-    axes.set_ylim(top=1.05)
-    axes.set_ylabel("correlation of the faces (1)")
-    axes.set_xlabel("")
 
 
 def _seated(curves):
@@ -171,46 +126,3 @@ def _bars(curves):
     )
     bars = f" (bars: error of the solver alone, {words})" if most > 0.001 else ""
     return f"compliance of the interface{bars}"
-
-
-# -- the paper's stages of sliding -----------------------------------------------------------------
-
-
-def _stages(atlas, name, ends):
-    """What the paper says of each stage with its verdict, the limits, and between which offsets."""
-    bounds = ((-np.inf, ends[0]), ends, (ends[1], np.inf))
-    found = []
-    for (statement, (words, limits)), between in zip(STAGES.items(), bounds, strict=True):
-        row = row_of(atlas, "statements", name, statement)
-        if row is not None:
-            why = "" if str(row["verdict"].item()) == UNDETERMINED else limits
-            said = f"{words}: {verdict_words(atlas, name, statement)}"
-            found.append((said, why, *between))
-    return found
-
-
-def _judged(stages, force):
-    """Column of a legend with the stages, in lines that fit; none without stages."""
-    if not stages:
-        return []
-    words = [f"(c): the paper's stages, 1 judged at $F$ = {force_label(force)}"]
-    for n, (text, why, *_) in enumerate(stages, 1):
-        said = f"{n}: {text}; {why}" if why else f"{n}: {text}"
-        lines = textwrap.wrap(said.replace(" %", "\u00a0%"), _LINE, subsequent_indent="    ")
-        words += [line.replace("v^x", "$v^x$") for line in lines]
-    return [[heading(line) for line in words]]
-
-
-def _number_stages(axes, stages):
-    """Numbers of the stages at the upper edge, between the offsets that bound them."""
-    low, high = axes.get_ylim()
-    axes.set_ylim(top=high * (high / low) ** 0.12)
-    log = axes.get_xscale() != "linear"
-    left, right = axes.dataLim.intervalx if log else axes.get_xlim()
-    style = {"ha": "center", "va": "top", "fontweight": "bold"}
-    for n, (*_, first, last) in enumerate(stages, 1):
-        # One that ends nowhere in the window goes on to its edge.
-        first, last = (left if np.isneginf(first) else first), np.fmin(last, right)
-        if np.isfinite(first) and 0 <= first < last:
-            middle = np.sqrt(first * last) if log and first > 0 else (first + last) / 2
-            axes.text(middle, 0.97, f"{n}", transform=axes.get_xaxis_transform(), **style)

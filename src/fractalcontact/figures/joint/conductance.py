@@ -8,18 +8,11 @@ from ...core.estimate import EXPONENT, Estimate
 from ...core.limits import CONDUCTANCE_EXPONENTS, RESOLVED_NODES
 from ...core.subject import Subject
 from ..kit.caption import caption
-from ..kit.drawing import (
-    WIDTH,
-    Drawing,
-    colour_of,
-    entries,
-    heading,
-    headline,
-    legends_below,
-    spread,
-)
+from ..kit.drawing import WIDTH, Drawing, colour_of, spread
 from ..kit.empty import TOO_FULL, different_reasons, missing_lines, say_empty
+from ..kit.legends import entries, heading, legends_below
 from ..kit.panel import Panel, table_of
+from ..kit.titles import headline
 from ..kit.words import NOMINAL_PRESSURE, place, short
 
 TITLE = "Thermal or electrical conductance of the interface against pressure"

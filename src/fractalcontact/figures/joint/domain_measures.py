@@ -4,26 +4,18 @@ from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from xarray import DataTree
 
 from ...core.estimate import DIMENSION, Estimate
 from ...core.subject import Subject
+from ..kit.axes import label_short_span
 from ..kit.caption import caption
 from ..kit.domains import spread_loads
-from ..kit.drawing import (
-    LINES,
-    MARKERS,
-    WIDTH,
-    Drawing,
-    colour_of,
-    entries,
-    headline,
-    label_short_span,
-    legends_below,
-)
+from ..kit.drawing import LINES, MARKERS, WIDTH, Drawing, colour_of
+from ..kit.legends import entries, legends_below, mark
 from ..kit.panel import Panel, table_of
+from ..kit.titles import headline
 from ..kit.words import force_label, place
 
 TITLE = "Is the contact domain fractal: local slopes, lacunarity, dimensions of the pressure"
@@ -118,7 +110,7 @@ def _greys():
         (_PLANE, "(a), (c) 2: as of a filled plane"),
         (_EVEN, "(b) 1: evenly filled"),
     )
-    return [Line2D([], [], label=label, **style) for style, label in words]
+    return [mark(label=label, **style) for style, label in words]
 
 
 def _band_entry(shown, force):

@@ -6,59 +6,25 @@ from matplotlib.figure import Figure
 from xarray import DataTree
 
 from ...core.subject import Subject
+from ..kit.axes import force_axis, label_short_span
 from ..kit.caption import caption
-from ..kit.drawing import (
-    LINES,
-    MARKERS,
-    WIDTH,
-    Drawing,
-    colour_of,
-    entries,
-    force_axis,
-    headline,
-    label_short_span,
-    letter,
-)
+from ..kit.drawing import LINES, MARKERS, WIDTH, Drawing, colour_of
+from ..kit.legends import entries
 from ..kit.panel import rows
 from ..kit.sizes import plain_decades
-from ..kit.words import force_label, length_unit, percent, place, short
+from ..kit.titles import headline, letter
+from ..kit.words import force_label, length_unit, place
+from ._error_words import QUANTITIES, SOURCES, TOTALS, caption_values, totals_words
 
 TITLE = "Error of each quantity by source"
 SUBJECT = "specimen"
 NEEDS = ("error_budget", "closure")
 ORDER = 225
 
-#: Quantities: title of the panel, and its word in the caption.
-QUANTITIES = {
-    "closure": ("interface closure", "closure"),
-    "separation": ("separation", "separation"),
-    "area_corrected": ("real contact area, corrected", "area"),
-    "stiffness": ("tangent stiffness", "stiffness"),
-    "delta_sigma": ("$\\Delta_\\sigma$ by box counting", "Δσ"),
-}
-SOURCES = {
-    "solver": "solver",
-    "numerical": "numerical (same surface, finer grid)",
-    "estimator": "choice of estimator",
-    "counting": "counting of contacts",
-    "window": "other windows of the scan",
-    "registration": "registration of the faces",
-    "resolution": "every second node: another surface, in no total",
-    "model": "three times the hardness: another model, in no total",
-}
-TOTALS = {
-    "total": ("total for this very surface\n(solver, numerical, estimator)", "-"),
-    "total_of_population": (
-        "total for any surface of its kind\n(also counting or windows, registration)",
-        "--",
-    ),
-}
 INTERPOLATED = "numerical, interpolated between loads"
 #: What is smaller is drawn here: as a fraction of the value, and where errors are in the unit of
 #: the quantity as one of the largest error drawn.
 LEAST = 1e-4
-#: Totals less than this factor apart lie on each other.
-_APART = 1.05
 #: Unit of errors that are fractions.
 _FRACTION = "% of the value"
 
@@ -80,7 +46,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
         label = f"load of the totals above the panels\n(of this surface, of its kind): {force}"
         axes.axvline(float(here["normal_force"]) / size, label=label, **at_maps)
         cut |= _draw_errors(axes, errors.sel(quantity=quantity), size)
-        letter(axes, which, f"{title}: {_totals_words(here.sel(quantity=quantity))}")
+        letter(axes, which, f"{title}: {totals_words(here.sel(quantity=quantity))}")
         axes.set(xscale="log", yscale="log")
         if which in "abc":
             axes.set_xlabel("")
@@ -93,7 +59,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     figure.align_ylabels(panels)
     _draw_legend(legend, panels, cut=cut)
     headline(figure, subject.label, place(subject.direction, subject.offset))
-    return Drawing(figure, _table(errors), caption(__name__, **_words_of(here)))
+    return Drawing(figure, _table(errors), caption(__name__, **caption_values(here)))
 
 
 def _with_totals(budget):
@@ -176,54 +142,3 @@ def _draw_legend(axes, panels, *, cut):
         title_fontsize=7,
         handlelength=3.5,
     )
-
-
-# -- words -----------------------------------------------------------------------------------------
-
-
-def _error_words(errors, error):
-    """An error of a quantity in words: a fraction of the value, or in the unit."""
-    value = float(errors["published"])
-    if value and not errors["absolute"]:
-        return percent(error / abs(value))
-    if str(errors["unit"].values) != "mm":
-        return short(error, 2)
-    unit, size = length_unit(error)
-    return f"{short(error / size, 2)} {unit}"
-
-
-def _totals_words(errors):
-    """Both totals at the reference load, for the title of a panel."""
-    own, kind = (float(errors[key]) for key in TOTALS)
-    if not np.isfinite(own):
-        return "total not known"
-    words = [_error_words(errors, error) for error in (own, kind)]
-    if not np.isfinite(kind):
-        return f"total {words[0]}"
-    if not _apart(own, kind):
-        return f"both totals {' to '.join(dict.fromkeys(words))}"
-    return f"totals {', '.join(words)}"
-
-
-def _apart(own, kind):
-    """True if both totals are known and their lines are apart."""
-    return bool(np.isfinite([own, kind]).all() and kind >= _APART * own)
-
-
-def _words_of(here):
-    """Values of the caption: both totals, and the panels in which they are apart."""
-    totals, letters, added = [], [], []
-    for which, (quantity, (_, words)) in zip("abcde", QUANTITIES.items(), strict=True):
-        errors = here.sel(quantity=quantity)
-        own, kind = (float(errors[key]) for key in TOTALS)
-        if np.isfinite(own):
-            source = str(errors["largest_source"].values)
-            totals.append((words, _error_words(errors, own), source))
-        source = str(errors["largest_source_of_population"].values)
-        if source and _apart(own, kind):
-            letters.append(which)
-            added.append(SOURCES[source])
-    run = len(letters) > 2 and "".join(letters) in "abcde"
-    larger = f"({letters[0]}) to ({letters[-1]})" if run else ", ".join(f"({x})" for x in letters)
-    words = {"totals": totals, "larger": larger, "added": list(dict.fromkeys(added))}
-    return words | {"force": float(here["normal_force"])}

@@ -11,21 +11,15 @@ from xarray import DataTree
 
 from ...core.subject import Subject
 from ..kit.caption import caption
-from ..kit.drawing import WIDTH, Drawing, headline, letter
+from ..kit.drawing import WIDTH, Drawing
 from ..kit.maps import scan_extent
 from ..kit.panel import Panel, rows
 from ..kit.relief import draw_faces
+from ..kit.titles import headline, letter
 from ._history import history
 from ._quality_pair import draw_gap, draw_gap_heights, draw_load_share, pair_entries
-from ._quality_panels import (
-    draw_histogram,
-    draw_mask,
-    draw_profile,
-    draw_radial,
-    draw_spectrum,
-    profile,
-    spectrum_entries,
-)
+from ._quality_panels import draw_histogram, draw_mask, draw_profile, profile
+from ._quality_spectra import draw_radial, draw_spectrum, spectrum_entries
 
 TITLE = "Quality of the scan: relief, missing cells, spectra, noise and fractal range"
 SUBJECT = "specimen"

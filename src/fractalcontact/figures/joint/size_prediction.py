@@ -6,21 +6,15 @@ from matplotlib.figure import Figure
 from xarray import DataTree
 
 from ...core.subject import Subject
+from ..kit.axes import label_short_span
 from ..kit.caption import caption
-from ..kit.drawing import (
-    MARKERS,
-    WIDTH,
-    Drawing,
-    colour_of,
-    entries,
-    headline,
-    label_short_span,
-    legends_below,
-    letter,
-)
+from ..kit.drawing import MARKERS, WIDTH, Drawing, colour_of
 from ..kit.empty import say_empty
+from ..kit.legends import entries, legends_below
 from ..kit.sizes import plain_decades
+from ..kit.titles import headline, letter
 from ..kit.words import short
+from ._prediction_words import PREDICTORS, caption_values, ends_words
 from ._size_test import grey_beyond, place_of, rows_of_loads
 
 TITLE = "Closure and contact area of the whole window, predicted from its parts"
@@ -28,13 +22,6 @@ SUBJECT = "specimen"
 NEEDS = ("size_test", "windows")
 ORDER = 172
 
-PREDICTORS = {
-    "power_law": "power law of small parts",
-    "eq6_area": "eq. 6, $A_r(s)$",
-    "eq6_box": "eq. 6, box counting",
-    "eq6_box_sizes": "eq. 6, occupied windows",
-    "no_size_effect": "no size effect",
-}
 _QUANTITIES = {"closure": r"closure $w_\mathrm{int}$", "area": "contact area $A_r/A_0$"}
 
 #: What the bars at the load of the caption are, and how far they stand apart.
@@ -51,7 +38,8 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     test = subject["size_test"]
     figure = Figure(figsize=(WIDTH, 3.7))
     panels = figure.subplots(1, 2)
-    load = _load_said(test)
+    quoted = np.flatnonzero(test["quoted_load"].values)
+    load = int(quoted[0]) if quoted.size else None
     for axes, which, quantity in zip(panels, "ab", ("closure", "area"), strict=True):
         _draw_errors(axes, test, quantity, which, load)
     handles = entries(panels[0])
@@ -60,7 +48,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     legends_below(figure, *columns, columnspacing=3)
     headline(figure, subject.label, place_of(test))
     table = _table(test, subject["windows"])
-    return Drawing(figure, table, caption(__name__, **_words(test, load)))
+    return Drawing(figure, table, caption(__name__, **caption_values(test, load)))
 
 
 def _draw_errors(axes, test, quantity, which, load):
@@ -96,7 +84,7 @@ def _draw_errors(axes, test, quantity, which, load):
     grey_beyond(axes, test)
     axes.set_xlabel(r"nominal pressure $\sigma_0$ of the whole window (MPa)")
     axes.set_ylabel(f"{words}: predicted / solved (1)")
-    at = "" if load is None else _ends_words(test, quantity, load)
+    at = "" if load is None else ends_words(test, quantity, load)
     letter(axes, which, f"{words} (1: as solved){at}")
     if not drawn:
         # Without data a logarithmic axis has no limits.
@@ -129,53 +117,3 @@ def _table(test, laws):
         columns = ("predicted_strength", "direct_strength")
         tables.append(rows_of_loads(strength, *columns, quantity="strength"))
     return pd.concat(tables, ignore_index=True)
-
-
-def _load_said(test):
-    """Index of the load that the caption speaks of; None where no load has every prediction."""
-    errors = test[["closure_error", "area_error"]].sel(predictor=list(PREDICTORS))
-    known = np.isfinite(errors.to_dataarray()).all(("variable", "predictor")).values
-    of_study = known & ~test["beyond_study"].values.astype(bool)
-    if not known.any():
-        return None
-    # The heaviest load of the study says most: more nodes touch. One beyond it matters to nobody.
-    return int(np.flatnonzero(of_study if of_study.any() else known)[-1])
-
-
-def _words(test, load):
-    """Best and worst prediction at the load that the caption speaks of, else ranges of all."""
-    errors = {"closure": "closure_error", "contact area": "area_error"}
-    if load is not None:
-        here = test.isel(normal_force=load).sel(predictor=list(PREDICTORS))
-        found = {words: _best_and_worst(1 + here[error]) for words, error in errors.items()}
-        pressure = float(here["nominal_pressure"])
-        return {"pressure": pressure, "beyond": bool(here["beyond_study"]), "found": found}
-    # Within the study's loads, else beyond them.
-    of_study = test.where(~test["beyond_study"].astype(bool))
-    inside = any(np.isfinite(of_study[error]).any() for error in errors.values())
-    drawn = (of_study if inside else test).sel(predictor=list(PREDICTORS))
-    ratios = {words: 1 + drawn[error].values for words, error in errors.items()}
-    known = {words: ratio[np.isfinite(ratio)].tolist() for words, ratio in ratios.items()}
-    found = {words: values for words, values in known.items() if values}
-    return {"pressure": np.nan, "beyond": not inside, "found": found}
-
-
-def _best_and_worst(ratios):
-    """Best and worst ratio of predicted and solved, each with all its predictors."""
-    away = abs(np.log(ratios.values))
-    names = [PREDICTORS[key].replace("$", "") for key in ratios["predictor"].values]
-    return {
-        float(ratios[i]): [
-            name for name, one in zip(names, away, strict=True) if np.isclose(one, away[i])
-        ]
-        for i in (int(away.argmin()), int(away.argmax()))
-    }
-
-
-def _ends_words(test, quantity, load):
-    """Best and worst ratio under the load of the caption, for a panel's title."""
-    ratios = 1 + test[f"{quantity}_error"].sel(predictor=list(PREDICTORS))[..., load].values
-    away = abs(np.log(ratios))
-    best, worst = (short(float(ratios[end])) for end in (away.argmin(), away.argmax()))
-    pressure = short(float(test["nominal_pressure"][load]))
-    return f"\nat {pressure} MPa: {best} (best) to {worst} (worst)"

@@ -3,40 +3,27 @@
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 from xarray import DataTree
 
 from ...core.estimate import DIMENSION, Estimate
 from ...core.subject import Subject
 from ..kit.caption import caption
-from ..kit.drawing import (
-    WIDTH,
-    Drawing,
-    heading,
-    headline,
-    legends_below,
-    letter,
-    spread,
-)
+from ..kit.drawing import WIDTH, Drawing
 from ..kit.empty import say_empty
+from ..kit.legends import heading, legends_below
 from ..kit.points import hollow_entry
-from ..kit.sizes import plain_decades, size_axis
+from ..kit.sizes import plain_decades
+from ..kit.titles import headline, letter
 from ..kit.verdicts import claim
+from ._size_exponents import draw_measured, draw_predictions, load_axis, size_legends
 from ._size_test import (
     ESTIMATORS,
-    MOST_LOADS,
-    deciding,
-    draw_laws,
-    draw_measured,
-    draw_predictions,
+    draw_over_side,
     first_loads,
-    load_axis,
-    load_marker,
     place_of,
-    pressure_words,
     rows_of_loads,
     rows_predicted,
-    size_legends,
+    shown_loads,
 )
 
 TITLE = "Eq. 6 in its own form: pressure that gives parts of the window the sigma* of the whole"
@@ -49,8 +36,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     """sigma_0 at equal sigma* over b under some loads, and its slope over the load."""
     subject = Subject.of(atlas, name)
     test = subject["size_test"]
-    fitted = first_loads(test, "slope")
-    loads = fitted[spread(len(fitted), MOST_LOADS)]
+    loads = shown_loads(test, "slope")
     figure = Figure(figsize=(WIDTH, 4.1))
     equal, slopes = figure.subplots(1, 2)
     measured = _draw_equal(equal, test, loads)
@@ -59,24 +45,14 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     legends_below(figure, measured + others, laws)
     headline(figure, subject.label, place_of(test))
     judged = "by the size test, at equal sigma_0"
-    why = judged if deciding(test).any() else "no load decides by A_r/A_0 at equal sigma_0"
+    why = judged if test["decides"].any() else "no load decides by A_r/A_0 at equal sigma_0"
     said = claim(atlas, name, "size_effect_follows", numbers=False, why=why)
     return Drawing(figure, _table(test), caption(__name__, claim=said, **_words(test)))
 
 
 def _draw_equal(axes, test, loads):
     """sigma_0 over b at the sigma* of the whole, with the slopes predicted; legend entries."""
-    b = test["side"].values
-    handles = [heading("(a) measured (no intervals), slope [95 % interval]")]
-    for n, i in enumerate(loads):
-        style = {"color": "k", "marker": load_marker(n)}
-        pressure = test["equal_pressure"].values[i]
-        axes.plot(b, pressure, ls="none", **style)
-        draw_laws(axes, test, i, b, pressure[0])
-        found = Estimate.read(test, "slope", scale=DIMENSION)[i].text()
-        label = f"at {pressure_words(test, i)}: {found}"
-        handles.append(Line2D([], [], ls="none", **style, label=label))
-    size_axis(axes, b, "parts")
+    handles = draw_over_side(axes, test, "equal_pressure", "slope", loads)
     axes.set_ylabel(r"nominal pressure $\sigma_0$ (MPa)")
     letter(axes, "a", r"pressure at equal fractal mean pressure $\sigma^*$")
     if not len(loads):
@@ -86,7 +62,7 @@ def _draw_equal(axes, test, loads):
     drawn = test["equal_pressure"].values[loads]
     axes.set_ylim(np.nanmin(drawn) / 2, np.nanmax(drawn) * 3)
     plain_decades(axes.yaxis)
-    return handles
+    return [heading("(a) measured (no intervals), slope [95 % interval]"), *handles]
 
 
 def _draw_slopes(axes, test, loads):

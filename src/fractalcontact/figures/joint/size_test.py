@@ -3,39 +3,18 @@
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 from xarray import DataTree
 
-from ...core.estimate import DIMENSION, Estimate
 from ...core.subject import Subject
 from ..kit.caption import caption
-from ..kit.drawing import (
-    WIDTH,
-    Drawing,
-    heading,
-    headline,
-    legends_below,
-    letter,
-    spread,
-)
+from ..kit.drawing import WIDTH, Drawing
 from ..kit.empty import say_empty
-from ..kit.sizes import draw_bars, plain_decades, size_axis
+from ..kit.legends import heading, legends_below
+from ..kit.sizes import plain_decades
+from ..kit.titles import headline, letter
 from ..kit.verdicts import claim
-from ._size_test import (
-    MOST_LOADS,
-    draw_laws,
-    draw_measured,
-    draw_predictions,
-    first_loads,
-    load_axis,
-    load_marker,
-    place_of,
-    pressure_words,
-    rows_of_loads,
-    rows_predicted,
-    size_legends,
-    verdict_reason,
-)
+from ._size_exponents import draw_measured, draw_predictions, load_axis, size_legends
+from ._size_test import draw_over_side, place_of, rows_of_loads, rows_predicted, shown_loads
 
 TITLE = "Size test: real contact area of parts of the window at equal pressure, beside eq. 6"
 SUBJECT = "specimen"
@@ -53,8 +32,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     """
     subject = Subject.of(atlas, name)
     test = subject["size_test"]
-    fitted = first_loads(test, "area_exponent_low")
-    loads = fitted[spread(len(fitted), MOST_LOADS)]
+    loads = shown_loads(test, "area_exponent_low")
     figure = Figure(figsize=(WIDTH, 3.9))
     area, exponents = figure.subplots(1, 2)
     measured = _draw_area(area, test, loads)
@@ -64,7 +42,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     headline(figure, subject.label, place_of(test))
     words = caption(
         __name__,
-        claim=claim(atlas, name, "size_effect_follows", why=verdict_reason(test)),
+        claim=claim(atlas, name, "size_effect_follows", why=test.attrs["verdict_reason"]),
         measured=bool(np.isfinite(test["area_exponent_low"]).any()),
         effect=bool(test["size_effect"].any()),
     )
@@ -73,27 +51,17 @@ def draw(atlas: DataTree, name: str) -> Drawing:
 
 def _draw_area(axes, test, loads):
     """A_r/A_0 over b at some sigma_0 with intervals, and what eq. 6 wants; legend entries."""
-    b = test["side"].values
-    fraction, low, high = Estimate.read(test, "area_fraction").ends
-    handles = [heading("measured, exponent of $b$ [95 % interval]")]
-    for n, i in enumerate(loads):
-        style = {"color": "k", "marker": load_marker(n)}
-        axes.plot(b, fraction[i], ls="none", **style)
-        draw_bars(axes, b, fraction[i], low[i], high[i], "k")
-        draw_laws(axes, test, i, b[np.isfinite(fraction[i])], fraction[i, 0])
-        found = Estimate.read(test, "area_exponent", scale=DIMENSION)[i].text()
-        label = f"at {pressure_words(test, i)}: {found}"
-        handles.append(Line2D([], [], ls="none", **style, label=label))
-    size_axis(axes, b, "parts")
+    handles = draw_over_side(axes, test, "area_fraction", "area_exponent", loads)
     axes.set_ylabel(r"real contact area $A_r/A_0$ (1)")
     letter(axes, "a", "contact area at equal pressure")
     if not len(loads):
         say_empty(axes, "no load at which two sizes\nhold enough nodes", ticks=False)
         return []
     axes.set_yscale("log")
-    axes.set_ylim(np.nanmin(fraction[loads]) / 2.5, np.nanmax(fraction[loads]) * 8)
+    drawn = test["area_fraction"].values[loads]
+    axes.set_ylim(np.nanmin(drawn) / 2.5, np.nanmax(drawn) * 8)
     plain_decades(axes.yaxis)
-    return handles
+    return [heading("measured, exponent of $b$ [95 % interval]"), *handles]
 
 
 def _draw_exponents(axes, test, loads):

@@ -5,20 +5,12 @@ from matplotlib.figure import Figure
 from xarray import DataTree
 
 from ...core.subject import Subject
+from ..kit.axes import force_axis
 from ..kit.caption import caption
-from ..kit.drawing import (
-    COLOURS,
-    LINES,
-    MARKERS,
-    WIDTH,
-    Drawing,
-    entries,
-    force_axis,
-    heading,
-    headline,
-    legends_below,
-)
+from ..kit.drawing import COLOURS, LINES, MARKERS, WIDTH, Drawing
+from ..kit.legends import entries, heading, legends_below
 from ..kit.panel import rows
+from ..kit.titles import headline
 from ..kit.words import formulas, percent, place
 
 TITLE = "Largest errors of all offsets: by the solver, and by the spacing"

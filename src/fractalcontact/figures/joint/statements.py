@@ -9,9 +9,10 @@ from xarray import DataTree
 from ...core.subject import Subject
 from ...core.verdicts import FAILS, HOLDS, ILL_POSED, PARTLY, UNDETERMINED
 from ..kit.caption import caption
-from ..kit.drawing import COLOURS, TITLE_SIZE, WIDTH, Drawing, label_in_lines
+from ..kit.drawing import COLOURS, WIDTH, Drawing
 from ..kit.panel import rows
 from ..kit.tables import LINE_HEIGHT, draw_rows, wrap_rows
+from ..kit.titles import TITLE_SIZE, label_in_lines
 from ..kit.verdicts import CIRCULAR_SHORT
 from ..kit.words import force_label
 

@@ -7,13 +7,17 @@ from xarray import DataTree
 from ...core.estimate import ANGLE, Estimate
 from ...core.limits import LARGEST_FRICTION_ANGLE
 from ...core.subject import Subject
+from ..kit.axes import offset_axis
 from ..kit.caption import caption
-from ..kit.drawing import COLOURS, WIDTH, Drawing, entries, heading, headline, offset_axis
+from ..kit.drawing import WIDTH, Drawing
 from ..kit.empty import say_empty
+from ..kit.legends import entries, heading
 from ..kit.panel import Panel, table_of
-from ..kit.points import draw_points, hollow_entry
-from ..kit.sizes import draw_bars, logarithmic, plain_decades, roughness_words
+from ..kit.points import hollow_entry
+from ..kit.sizes import logarithmic, plain_decades, roughness_words
+from ..kit.titles import headline
 from ..kit.words import place, short
+from ._peak_strength import draw_summary, scan_entries, why_none
 
 TITLE = "Dilatancy angle, friction angle and shear strength, with Barton's criterion"
 SUBJECT = "joint"
@@ -31,25 +35,6 @@ _CURVES = {
     "hollow": {"zorder": 3},
     "ls": "-",
 }
-#: What (c) shows: variable, words and style.
-_SUMMARY = {
-    "peak_strength": (
-        "peak over the offsets",
-        {"ls": "none", "marker": "o", "ms": 6, "color": "k"},
-    ),
-    "residual_strength": (
-        "residual; bar: 95 % interval, if known",
-        {"ls": "none", "marker": "D", "ms": 3.5, "color": COLOURS[4]},
-    ),
-    "barton_strength": (
-        f"peak by Barton, at most {LARGEST_FRICTION_ANGLE:g}°, JRC of the scan",
-        {"ls": "--", "color": "k"},
-    ),
-    "barton_scaled_strength": (
-        "peak by Barton and Bandis, for this length",
-        {"ls": "-.", "color": "k"},
-    ),
-}
 
 
 def draw(atlas: DataTree, name: str) -> Drawing:
@@ -65,12 +50,12 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     c = Panel(summary, "c", "peak and residual shear strength")
     _draw_angles(a, shown)
     _draw_strength(b, shown)
-    _draw_summary(c, strength)
+    draw_summary(c, strength)
     legends.axis("off")
     style = {"labelspacing": 0.25}  # between the lines, in letters
     shared = [*entries(angles), *entries(curves), *_residual_note(shown)]
     legends.add_artist(legends.legend(handles=shared, loc="upper left", title="(a), (b)", **style))
-    if of_peaks := [*entries(summary), *_scan_words(strength)]:
+    if of_peaks := [*entries(summary), *scan_entries(strength)]:
         legends.legend(handles=of_peaks, loc="lower left", title="(c)", **style)
     headline(figure, subject.label, place(subject.direction))
     return Drawing(figure, table_of(a, b, c), caption(__name__, **_words(strength, shown)))
@@ -103,37 +88,12 @@ def _draw_strength(panel, strength):
     axes.set_xlabel(_OFFSET)
     panel.curves(strength, "midpoint", "shear_strength", **_CURVES)
     if not np.isfinite(strength["shear_strength"]).any():
-        say_empty(axes, _why_none(strength), ticks=False)
+        say_empty(axes, why_none(strength), ticks=False)
         return
     if not strength["shear_strength_valid"].all():
         hollow_entry(axes, _NO_RESULT)
     _offset_axis(axes, strength)
     logarithmic(axes, strength["shear_strength"].values)
-
-
-def _draw_summary(panel, strength):
-    axes = panel.axes
-    axes.set_xlabel(r"nominal pressure $\sigma_0$ (MPa)")
-    axes.set_ylabel(r"shear strength $\tau$ (MPa)")
-    keep = ("peak_offset", "peak_strength_valid", *_SUMMARY)
-    panel.keep(strength, *keep, "peak_over_barton")
-    known = {name: strength[name].values for name in _SUMMARY if np.isfinite(strength[name]).any()}
-    if not known:
-        say_empty(axes, _why_none(strength), ticks=False)
-        return
-    sigma = strength["nominal_pressure"].values
-    valid = strength["peak_strength_valid"].values
-    for name, (words, style) in _SUMMARY.items():
-        if name in known:
-            held = ~valid if name == "peak_strength" else np.zeros_like(valid)
-            label = None if held.all() else words
-            draw_points(axes, sigma, known[name], ~held, label=label, **style)
-            if held.any():
-                hollow_entry(axes, f"{words}: held, no result", **style)
-    bars = Estimate.read(strength, "residual_strength").ends
-    draw_bars(axes, sigma, *bars, _SUMMARY["residual_strength"][1]["color"])
-    axes.set(xscale="log")
-    logarithmic(axes, np.array(list(known.values())))
 
 
 def _offset_axis(axes, strength):
@@ -142,14 +102,6 @@ def _offset_axis(axes, strength):
     if axes.get_xscale() == "log":
         plain_decades(axes.xaxis)
     axes.set_xlabel(_OFFSET)
-
-
-def _why_none(strength):
-    """Why there is no strength at all."""
-    if not np.isfinite(float(strength["basic_friction_angle"])):
-        return "no strength: the study states\nno basic friction angle"
-    one = not strength.sizes["interval"]
-    return "no strength: one offset alone" if one else "no strength: no angle is known"
 
 
 def _residual_note(strength):
@@ -162,13 +114,6 @@ def _residual_note(strength):
     words = f"{angle.text('degrees')}, {count} intervals"
     words = words if count > 1 else f"{short(angle.value)} degrees (one interval)"
     return [heading(rf"residual $i$ at {short(one['nominal_pressure'])} MPa:" + f"\n{words}")]
-
-
-def _scan_words(strength):
-    """Entry of a legend: the JRC of the scan, if known."""
-    if not np.isfinite(strength["jrc_used"]):
-        return []
-    return [heading(roughness_words(strength).replace(", scaled", ",\nscaled"))]
 
 
 def _words(strength, shown):

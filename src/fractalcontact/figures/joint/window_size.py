@@ -2,25 +2,25 @@
 
 import numpy as np
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 from xarray import DataTree
 
 from ...core.estimate import EXPONENT, Estimate
 from ...core.subject import Subject
 from ..kit.caption import caption
-from ..kit.drawing import WEAK, WIDTH, Drawing, entries, heading, headline
+from ..kit.drawing import WEAK, WIDTH, Drawing
 from ..kit.empty import say_empty
+from ..kit.legends import entries, heading, mark
 from ..kit.panel import Panel, table_of
 from ..kit.points import draw_points
 from ..kit.sizes import (
     BARS,
     draw_bars,
     draw_over_size,
-    draw_power_law,
     logarithmic,
     series,
     size_axis,
 )
+from ..kit.titles import headline
 from ..kit.verdicts import claim
 from ..kit.words import place, pressure_label
 
@@ -72,10 +72,10 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     handles = [
         entry for panel in panels for entry in (heading(_HEADS[panel.which]), *entries(panel.axes))
     ]
-    handles.append(Line2D([], [], ls="none", marker="o", color="0.4", mfc="white", label=_HOLLOW))
+    handles.append(mark(ls="none", marker="o", color="0.4", mfc="white", label=_HOLLOW))
     if any(np.isfinite(shown[exponent]).any() for _, exponent, _ in _CONTACT.values()):
         label = "line: fit (thin: undetermined)"
-        handles.append(Line2D([], [], label=label, color="0.4", lw=0.8))
+        handles.append(mark(label=label, color="0.4", lw=0.8))
     handles.append(heading(BARS))
     legends.legend(handles=handles, loc="center left", labelspacing=0.4)
     headline(figure, subject.label)
@@ -101,7 +101,7 @@ def _draw_roughness(panel, laws, slides):
     face = laws["face_sigma_z"].values
     if expected.known and fitted.any():
         style = {"color": "k", "ls": "--", "label": rf"eq. 2: $H = 3-\Delta_g$ = {expected.text()}"}
-        draw_power_law(axes, b[fitted], face[fitted], expected.value, **style)
+        axes.plot(b[fitted], laws["face_sigma_z_expected"].values[fitted], **style)
     size_axis(axes, b, "sub-windows")
     if (face > 0).any():
         logarithmic(axes, np.concatenate([laws[name].values for name in shown]))
@@ -120,8 +120,7 @@ def _draw_contact(panel, laws):
         if exponent.known:
             line = {"color": series(j)["color"], "linewidth": 0.8}
             line |= {} if exponent.determined else WEAK
-            values = laws[name].isel(normal_force=j).values[inside]
-            draw_power_law(axes, b[inside], values, exponent.value, **line)
+            axes.plot(b[inside], laws[f"{name}_law"].isel(normal_force=j)[inside], **line)
         words = f"{pressure_label(pressure)}: $x$ = {exponent.text()}"
         axes.plot([], [], **series(j) | _face(inside), ls="none", label=words)
     size_axis(axes, b, "sub-windows")

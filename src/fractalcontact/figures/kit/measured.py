@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -17,6 +18,8 @@ from .words import short
 
 #: Letters of a label that a legend takes.
 _LONGEST = 34
+#: Points between a panel's title and its upper edge, where an axis of pressure stands.
+_ABOVE = 30
 
 
 @dataclass(frozen=True)
@@ -138,3 +141,33 @@ def table_of(series: Sequence[Series]) -> pd.DataFrame:
     return map_table(
         {name: one for each in series for name, one in zip(each.names, each.maps, strict=True)}
     )
+
+
+def draw_over_force(axes: Axes, series: Sequence[Series], nominal: float) -> None:
+    """Measured domains at their nominal pressure: F is of this window, their area is another."""
+    for each in series:
+        pressure = each.pressure
+        without = np.flatnonzero(~np.isfinite(pressure))
+        label = f"measured: {each.legend}"
+        if len(without) < len(pressure):
+            draw_series(axes, each, pressure * nominal, label)
+        for one in without:  # without a load it has no place along F
+            value = float(each.maps[one]["delta_sigma"])
+            name = f"{label}, no load" if one == without[0] else None
+            axes.axhline(value, color=each.style["color"], ls="-.", lw=0.9, label=name)
+    if series:
+        axes.autoscale(axis="x")
+    # Above the force stands the pressure of measured maps, whose area is another.
+    functions = (lambda force: force / nominal, lambda pressure: pressure * nominal)
+    pressures = axes.secondary_xaxis("top", functions=functions)
+    pressures.set_xlabel(r"nominal pressure $\sigma_0 = F/A_0$ (MPa)")
+    axes.set_title(axes.get_title(loc="left"), loc="left", pad=_ABOVE)
+
+
+def measured_range(series: Sequence[Series]) -> dict[str, Any]:
+    """Number of measured maps, their thresholds and the range of their Delta_sigma."""
+    values = np.array([value for each in series for value in each.values("delta_sigma")], float)
+    known = values[np.isfinite(values)]
+    ends = [f"{end:.2f}" for end in (known.min(), known.max())] if known.size else []
+    words = threshold_words(series) if series else ""
+    return {"maps": values.size, "measured": list(dict.fromkeys(ends)), "thresholds": words}

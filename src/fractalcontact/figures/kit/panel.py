@@ -9,8 +9,9 @@ import xarray as xr
 from matplotlib.axes import Axes
 
 from ...core.estimate import Estimate, names_of
-from .drawing import MARKERS, colour_of, letter
+from .drawing import MARKERS, colour_of
 from .points import draw_points, reach
+from .titles import letter
 
 #: A bar without an upper end is this many times as high as its value.
 _FAR = 1e4

@@ -114,14 +114,6 @@ def name_exponents(axes: Axes, laws: xr.Dataset, name: str, of: str) -> None:
         axes.plot([], [], ls="none", label=label, **series(j))
 
 
-def draw_power_law(
-    axes: Axes, b: np.ndarray, values: np.ndarray, exponent: float, **style: Any
-) -> None:
-    """A power of b with a known exponent through the middle of some values on logarithmic axes."""
-    level = np.exp(np.mean(np.log(values) - exponent * np.log(b)))
-    axes.plot(b, level * b**exponent, **style)
-
-
 def draw_bars(
     axes: Axes, b: np.ndarray, mean: np.ndarray, low: np.ndarray, high: np.ndarray, colour: str
 ) -> None:

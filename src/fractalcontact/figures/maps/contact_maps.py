@@ -8,9 +8,10 @@ from xarray import DataTree
 from ...core.estimate import DIMENSION, Estimate
 from ...core.verdicts import BEYOND_RANDOM
 from ..kit.caption import caption
-from ..kit.drawing import WIDTH, Drawing, headline, spread
+from ..kit.drawing import WIDTH, Drawing, spread
 from ..kit.maps import draw_map, missing_patch
 from ..kit.measured import measured_series, table_of, threshold_words
+from ..kit.titles import headline
 from ..kit.words import percent, short
 
 TITLE = "Measured contact maps"

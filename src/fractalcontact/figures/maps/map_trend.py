@@ -2,15 +2,17 @@
 
 import numpy as np
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from xarray import DataTree
 
 from ...core.estimate import DIMENSION, Estimate
+from ..kit.axes import label_short_span
 from ..kit.caption import caption
-from ..kit.drawing import WIDTH, Drawing, entries, headline, label_short_span, legends_below, letter
+from ..kit.drawing import WIDTH, Drawing
 from ..kit.empty import say_empty
+from ..kit.legends import entries, legends_below, mark
 from ..kit.measured import draw_series, measured_series, table_of, threshold_words
+from ..kit.titles import headline, letter
 
 TITLE = "Dimension of measured contact maps against pressure"
 SUBJECT = "study"
@@ -54,7 +56,7 @@ def draw(atlas: DataTree, specimens: list[str]) -> Drawing:
 
 def _marks(series):
     marks = [
-        Line2D([], [], color="0.3", ls=":", lw=0.8, label="as many random cells"),
+        mark(color="0.3", ls=":", lw=0.8, label="as many random cells"),
         Patch(facecolor="none", edgecolor="0.3", hatch="....", lw=0, label="95 % of their draws"),
     ]
     if any(np.isfinite(each.values("delta_sigma_least")).any() for each in series):

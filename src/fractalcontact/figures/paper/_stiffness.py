@@ -9,7 +9,8 @@ from matplotlib.ticker import NullLocator
 from ...core.subject import Subject
 from ...core.verdicts import UNDETERMINED
 from ...core.window import cell_side
-from ..kit.drawing import MARKERS, label_short_span
+from ..kit.axes import label_short_span
+from ..kit.drawing import MARKERS
 from ..kit.empty import TOO_FULL, different_reasons, missing_lines, say_empty
 from ..kit.panel import Panel
 from ..kit.words import force_label, percent, short

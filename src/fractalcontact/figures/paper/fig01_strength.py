@@ -5,11 +5,11 @@ import pandas as pd
 from matplotlib.figure import Figure
 from xarray import DataTree
 
-from ...core.estimate import Estimate
 from ...core.subject import Subject
 from ..kit.caption import caption
-from ..kit.drawing import WIDTH, Drawing, entries, headline, legends_below, letter
+from ..kit.drawing import WIDTH, Drawing
 from ..kit.empty import say_empty
+from ..kit.legends import entries, legends_below
 from ..kit.panel import rows
 from ..kit.points import hollow_entry
 from ..kit.sizes import (
@@ -18,12 +18,12 @@ from ..kit.sizes import (
     NO_STRENGTH,
     SHIFTED,
     draw_over_size,
-    draw_power_law,
     logarithmic,
     name_exponents,
     series,
     size_axis,
 )
+from ..kit.titles import headline, letter
 from ..kit.verdicts import claim
 from ..kit.words import percent, place, short
 
@@ -31,9 +31,6 @@ TITLE = "Fig. 1b: shear strength against the size of the joint, at equal offset 
 SUBJECT = "joint"
 NEEDS = ("windows", "statements")
 ORDER = 10
-
-#: Sizes a comparison needs.
-_FEWEST_SIZES = 3
 
 
 def draw(atlas: DataTree, name: str) -> Drawing:
@@ -53,13 +50,11 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     _draw_slope(slope, drawn)
     legends_below(figure, entries(strength), entries(slope))
     headline(figure, subject.label, place(str(laws["direction"].values)))
-    exponents = Estimate.read(drawn, "similar_slope_exponent")
+    known = drawn["similar_slope_exponent"].notnull()
     words = caption(
         __name__,
         share=float(drawn["share"]),
-        slopes=int(exponents.known.sum()),
-        falls=int((exponents.high < 0).sum()),
-        rises=int((exponents.low > 0).sum()),
+        trends=drawn["similar_slope_trend"].values[known].tolist(),
         lost=int((drawn["similar_slope"] <= 0).sum()),
         claim=claim(atlas, name, "strength_falls_with_size"),
     )
@@ -91,13 +86,10 @@ def _draw_slope(axes, laws):
     slopes = laws["similar_slope"].transpose("part", "normal_force").values
     draw_over_size(axes, laws, "similar_slope")
     name_exponents(axes, laws, "similar_slope_exponent", r"d\delta/dv")
-    expected = float(laws["expected_hurst"]) - 1
-    everywhere = (slopes > 0).all(axis=1)
-    if np.isfinite(expected) and everywhere.sum() >= _FEWEST_SIZES:
+    expected, line = float(laws["expected_hurst"]) - 1, laws["similar_slope_expected"].values
+    if (known := np.isfinite(line)).any():
         label = rf"self-affine, Hurst exponent $H$: $x = H - 1$ = {short(expected)}"
-        middle = np.exp(np.log(slopes[everywhere]).mean(axis=1))
-        style = {"color": "0.5", "ls": ":", "label": label}
-        draw_power_law(axes, b[everywhere], middle, expected, **style)
+        axes.plot(b[known], line[known], color="0.5", ls=":", label=label)
     for words in (BARS, SHIFTED):
         axes.plot([], [], " ", label=words)
     size_axis(axes, b, "joint")

@@ -10,12 +10,14 @@ from ...core.estimate import DIMENSION, Estimate
 from ...core.subject import Subject
 from ...core.window import spacing_of
 from ..kit.caption import caption
-from ..kit.drawing import COLOURS, WIDTH, Drawing, heading, headline, letter
+from ..kit.drawing import COLOURS, WIDTH, Drawing
 from ..kit.empty import say_empty
+from ..kit.legends import heading
 from ..kit.maps import missing_patch, scan_extent
 from ..kit.panel import rows
 from ..kit.points import reach
 from ..kit.relief import draw_faces
+from ..kit.titles import headline, letter
 from ..kit.words import length_unit
 
 TITLE = "Fig. 2: shaded relief of the levelled faces, and the surface dimension"

@@ -1,34 +1,23 @@
 """Rigid and elastic dilatancy, and the contact domains along the way (Figs. 6 and 7)."""
 
-import numpy as np
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 from xarray import DataTree
 
-from ...core.estimate import Estimate
 from ...core.limits import LEVEL_CHANGE, RESOLVED_NODES
 from ...core.subject import Subject
 from ...core.verdicts import FALLING, LEVEL, RISING
 from ...core.window import window_sides
+from ..kit.axes import label_short_span, offset_axis
 from ..kit.caption import caption
-from ..kit.drawing import (
-    LINES,
-    WIDTH,
-    Drawing,
-    colour_of,
-    entries,
-    heading,
-    headline,
-    label_short_span,
-    legends_below,
-    offset_axis,
-    spread,
-)
+from ..kit.drawing import WIDTH, Drawing, spread
+from ..kit.legends import entries, legends_below
 from ..kit.maps import HALO, draw_domain
 from ..kit.panel import Panel, table_of
 from ..kit.points import hollow_entry
+from ..kit.titles import headline
 from ..kit.verdicts import claim
 from ..kit.words import TOWARDS, area_label, force_label, percent, place, short
+from ._rigid_dilatancy import direction_style, draw_rigid
 
 TITLE = "Figs. 6 and 7: rigid and elastic dilatancy, and contact domains along the curve"
 SUBJECT = "joint"
@@ -42,8 +31,6 @@ _OF_STATES = (
     *("separation", "bulk_settlement", "nodes"),
     *("area_share", "area_corrected_share", "area_corrected_resolved"),
 )
-#: The fitted lines.
-_FITTED = {"lw": 2.2, "alpha": 0.7}
 #: What the paper says of rock and of concrete, and the statements that judge it.
 _PLATEAUS = ("dilatancy_flattens", "dilatancy_flattens_in_two")
 
@@ -64,7 +51,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     left, right = top.subplots(1, 2)
     a = Panel(left, "a", "rigid dilatancy")
     b = Panel(right, "b", f"elastic dilatancy, {place(subject.direction)}")
-    key = _draw_rigid(a, subject["dilatancy"], plateaus)
+    key = draw_rigid(a, subject["dilatancy"], plateaus)
     _draw_elastic(b, subject, curves, points)
     legends_below(top, key, entries(b.axes))
     larger = _draw_domains(bottom, subject, curves, points)
@@ -88,46 +75,11 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     return Drawing(figure, table_of(a, b), caption(__name__, **words))
 
 
-def _draw_rigid(panel, dilatancy, plateaus):
-    """Rigid dilatancy of every direction with the line fitted to its end; the legend."""
-    for n, direction in enumerate(dilatancy["direction"].values):
-        plateau, style = plateaus.sel(direction=direction), _direction_style(n)
-        label = f"{TOWARDS[direction]}: {_change_words(plateau)}"
-        one = dilatancy[["rigid_dilatancy"]].sel(direction=direction)
-        panel.curve(one, "rigid_offset", "rigid_dilatancy", label=label, **style)
-        ends = np.array([float(plateau[f"plateau_offset_{end}"]) for end in ("min", "max")])
-        line = float(plateau["plateau_intercept"]) + float(plateau["plateau_slope"]) * ends
-        panel.axes.plot(ends, line, color=style["color"], **_FITTED)
-    lowest = float(dilatancy["rigid_dilatancy"].min())
-    panel.axes.set(xlabel="offset $v$ (mm)", ylabel=r"rigid dilatancy $\delta_r$ (mm)")
-    panel.axes.set_ylim(bottom=min(0, lowest))
-    panel.axes.set_xlim(left=0)
-    half = short(float(dilatancy["rigid_offset"][-1]) / 2)
-    change = rf"change of fitted $\delta_r$ [95 %] in % of its mean, $v \geq$ {half} mm"
-    level = f"fitted lines; level: change within {percent(LEVEL_CHANGE)}"
-    fitted = Line2D([], [], color="0.4", label=level, **_FITTED)
-    return [heading(change), *entries(panel.axes), fitted]
-
-
-def _direction_style(n):
-    """Line of the n-th direction, in both panels."""
-    return {"color": colour_of(n), "ls": LINES[n % 4], "lw": 0.9}
-
-
-def _change_words(plateau):
-    """Change of the fitted line in per cent of the mean, and what it is called."""
-    change = Estimate.read(plateau, "plateau_change").mapped(lambda fraction: 100 * fraction)
-    if not change.known:
-        return "no fit"
-    value, low, high = change.ends
-    return f"{value:+z.0f} % [{low:+z.0f}, {high:+z.0f}], {plateau['plateau_trend'].item()}"
-
-
 def _draw_elastic(panel, subject, curves, points):
     """Elastic dilatancy under the reported loads, below the rigid one; letters of the domains."""
     axes, rigid = panel.axes, subject.along("dilatancy")
     number = list(subject["dilatancy"]["direction"].values).index(subject.direction)
-    style = _direction_style(number) | {"label": "rigid, $F$ = 0, as in (a)"}
+    style = direction_style(number) | {"label": "rigid, $F$ = 0, as in (a)"}
     axes.plot(rigid["rigid_offset"], rigid["rigid_dilatancy"], **style)
     shown = curves.isel(normal_force=subject.reported.quoted)
     labels = [f"$F$ = {force_label(force)}" for force in shown["normal_force"].values]

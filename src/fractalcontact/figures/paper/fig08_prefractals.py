@@ -8,11 +8,13 @@ from xarray import DataTree
 from ...core.subject import Subject
 from ...core.verdicts import USUAL
 from ...core.window import window_sides
+from ..kit.axes import label_short_span
 from ..kit.caption import caption
 from ..kit.domains import contact_domain, estimates_of, prefractals
-from ..kit.drawing import COLOURS, WIDTH, Drawing, headline, label_short_span, letter
+from ..kit.drawing import COLOURS, WIDTH, Drawing
 from ..kit.maps import LEAST_DOT, draw_domain
 from ..kit.panel import Panel, table_of
+from ..kit.titles import headline, letter
 from ..kit.verdicts import claim
 from ..kit.words import REAL_PRESSURE, area_label, force_label, place, short
 

@@ -3,7 +3,6 @@
 from typing import Any
 
 import numpy as np
-from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 from xarray import DataTree
@@ -11,14 +10,17 @@ from xarray import DataTree
 from ...core.estimate import DIMENSION, Estimate
 from ...core.subject import Subject
 from ...core.window import window_sides
+from ..kit.axes import label_short_span
 from ..kit.caption import caption
 from ..kit.domains import contact_domain
-from ..kit.drawing import COLOURS, WEAK, WIDTH, Drawing, heading, headline, label_short_span, letter
+from ..kit.drawing import WEAK, WIDTH, Drawing
+from ..kit.legends import heading
 from ..kit.maps import draw_domain
 from ..kit.panel import Panel, table_of
-from ..kit.points import reach
+from ..kit.titles import headline, letter
 from ..kit.verdicts import claim
 from ..kit.words import force_label, place, short
+from ._local_slopes import CUT, LAW, ORDINARY, RANDOM, band_of, draw_slopes
 
 TITLE = "Fig. 9: box counting of a contact domain"
 SUBJECT = "specimen"
@@ -32,14 +34,7 @@ _COUNTS = {
     "null_scale": ("null_side", "null_count_random", "null_count_cut"),
     "null_mean_scale": ("null_mean_side", "null_mean_count"),
 }
-_SIDES = ("local_slope_side", "local_slope_side_min", "local_slope_side_max")
-_SLOPES = ("local_slope", "local_slope_random", "local_slope_cut")
-#: Grey of random nodes; the cut; lines over markers, which would hide them.
-_RANDOM = "0.7"
-_CUT: dict[str, Any] = {"ls": "-.", "color": COLOURS[4]}
 _SEEN: dict[str, Any] = {"zorder": 4, "linewidth": 1.4}
-#: Colours of the count law and of the ordinary slope.
-_LAW, _ORDINARY = COLOURS[2], COLOURS[0]
 
 
 def draw(atlas: DataTree, name: str) -> Drawing:
@@ -57,12 +52,12 @@ def draw(atlas: DataTree, name: str) -> Drawing:
         axes[0].set_title("nodes enlarged", loc="right", fontsize=7)
     b, c = Panel(axes[1], "b", "box counts"), Panel(axes[2], "c")
     _draw_counts(b, counts, rf"count law: $\Delta_\sigma$ {law.text()}", ordinary)
-    _draw_slopes(c, counts)
+    draw_slopes(c, counts)
     handles, _ = axes[1].get_legend_handles_labels()
     if np.isfinite(counts["law_count"]).any():
         handles.append(heading(_law_form(counts)))
-    handles.append(Patch(**_band(_LAW), label="(c) 95 % of the count law"))
-    handles.append(Patch(**_band(_ORDINARY), label="(c) 95 % of the ordinary slope"))
+    handles.append(Patch(**band_of(LAW), label="(c) 95 % of the count law"))
+    handles.append(Patch(**band_of(ORDINARY), label="(c) 95 % of the ordinary slope"))
     narrow = {"columnspacing": 1.2, "handlelength": 1.8}
     figure.legend(handles=handles, loc="outside lower center", ncols=3, **narrow)
     where = place(subject.direction, subject.offset)
@@ -84,65 +79,29 @@ def _draw_counts(panel, counts, law, ordinary):
         panel.keep(counts, *names)
     random, low, high = Estimate.read(counts, "null_count_random").ends
     sides, shown = counts["null_side"].values, np.isfinite(random)
-    band = {"color": _RANDOM, "lw": 1.5, "label": "random nodes: 95 %", "zorder": 0}
+    band = {"color": RANDOM, "lw": 1.5, "label": "random nodes: 95 %", "zorder": 0}
     axes.fill_between(sides[shown], low[shown].clip(min=0.5), high[shown], **band)
     cut = counts["null_count_cut"].values
-    axes.loglog(sides[shown], cut[shown], **_CUT, label="bearing-area cut: highest nodes")
+    axes.loglog(sides[shown], cut[shown], **CUT, label="bearing-area cut: highest nodes")
     r, used = counts["box_side"].values, counts["ordinary_used"].values
-    for some, face, words in ((used, _ORDINARY, "fitted"), (~used, "white", "not fitted")):
-        style = {"ms": 4, "mfc": face, "mec": _ORDINARY, "label": f"boxes, fewest, {words}"}
+    for some, face, words in ((used, ORDINARY, "fitted"), (~used, "white", "not fitted")):
+        style = {"ms": 4, "mfc": face, "mec": ORDINARY, "label": f"boxes, fewest, {words}"}
         axes.loglog(r[some], counts["box_count"].values[some], "o", **style)
     if np.isfinite(counts["ordinary_count"]).any():
         style = _SEEN | ({} if bool(counts["ordinary_determined"]) else WEAK)
         label = f"ordinary slope: {ordinary}"
-        axes.loglog(r, counts["ordinary_count"], "--", color=_ORDINARY, label=label, **style)
+        axes.loglog(r, counts["ordinary_count"], "--", color=ORDINARY, label=label, **style)
     # Markers that hide no line.
     crosses = {"ms": 3.5, "mew": 0.7, "alpha": 0.7, "label": "boxes, mean of origins"}
-    axes.loglog(counts["mean_side"], counts["mean_count"], "x", color=_LAW, **crosses)
+    axes.loglog(counts["mean_side"], counts["mean_count"], "x", color=LAW, **crosses)
     slopes = {"fmt": "D", "ms": 4, "lw": 0.8, "label": "(c) mean of origins, 95 %"}
-    axes.errorbar([], [], yerr=[], color=_LAW, **slopes)
+    axes.errorbar([], [], yerr=[], color=LAW, **slopes)
     if np.isfinite(counts["law_count"]).any():
         style = _SEEN | ({} if bool(counts["determined"]) else WEAK)
-        axes.loglog(counts["mean_side"], counts["law_count"], color=_LAW, label=law, **style)
+        axes.loglog(counts["mean_side"], counts["law_count"], color=LAW, label=law, **style)
     axes.set_ylim(0.7, float(counts["box_count"].max()) ** 1.1 * 2)
     axes.set(xlabel="box side $r$ (mm)", ylabel="occupied boxes $N(r)$ (1)")
     label_short_span(axes.xaxis)
-
-
-def _draw_slopes(panel, counts):
-    axes = panel.axes
-    panel.keep(counts, *_SIDES, *_SLOPES)
-    slopes = counts.isel(null_octave=np.isfinite(counts["local_slope"]).values)
-    middle, slope = slopes["local_slope_side"].values, Estimate.read(slopes, "local_slope")
-    random, low, high = Estimate.read(slopes, "local_slope_random").ends
-    axes.fill_between(middle, low, high, color=_RANDOM, lw=1.5, zorder=0)
-    axes.plot(middle, random, color=_RANDOM, lw=1)
-    axes.plot(middle, slopes["local_slope_cut"], **_CUT, lw=1)
-    bars = {"yerr": reach(*slope.ends), "fmt": "D", "ms": 4, "lw": 0.8}
-    axes.errorbar(middle, slope.value, color=_LAW, **bars)
-    axes.set_xscale("log")
-    for name, fit, sure, colour, ls in (
-        ("delta_sigma", "fit", "determined", _LAW, "-"),
-        ("delta_sigma_ordinary", "ordinary_fit", "ordinary_determined", _ORDINARY, "--"),
-    ):
-        ends, level = [float(counts[f"{fit}_{end}"]) for end in ("min", "max")], counts[name]
-        if np.isfinite(level):
-            weak = {} if bool(counts[sure]) else WEAK
-            axes.plot(ends, [float(level)] * 2, color=colour, ls=ls, **weak)
-            axes.fill_between(ends, *Estimate.read(counts, name).ends[1:], **_band(colour))
-    axes.set_ylim(-0.1, 2.3)
-    axes.set(xlabel="box side $r$ (mm)", ylabel=r"local slope $-$d log $N$ / d log $r$ (1)")
-    label_short_span(axes.xaxis)
-    ends = (slope.value.min(), slope.value.max()) if middle.size else ()
-    ends = dict.fromkeys(f"{end:.2f}" for end in ends)
-    panel.title(f"local slopes: {' to '.join(ends)}" if ends else "no local slopes")
-
-
-def _band(colour):
-    """How the interval of a fit is drawn in (c): that of the black one hides nothing grey."""
-    if colour == _ORDINARY:
-        return {"fc": "none", "ec": colour, "ls": ":", "lw": 0.8}
-    return {"fc": to_rgba(colour, 0.15), "ec": "none"}
 
 
 def _law_form(counts):

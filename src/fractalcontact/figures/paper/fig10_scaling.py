@@ -9,8 +9,10 @@ from xarray import DataTree
 from ...core.subject import Subject
 from ..kit.caption import caption
 from ..kit.domains import estimates_of, prefractals, size_axes, spread_loads
-from ..kit.drawing import COLOURS, MARKERS, WEAK, WIDTH, Drawing, entries, headline, legends_below
+from ..kit.drawing import COLOURS, MARKERS, WEAK, WIDTH, Drawing
+from ..kit.legends import entries, legends_below
 from ..kit.panel import Panel, table_of
+from ..kit.titles import headline
 from ..kit.verdicts import claim
 from ..kit.words import force_label, place, short
 

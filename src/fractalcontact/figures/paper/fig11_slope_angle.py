@@ -8,8 +8,9 @@ from xarray import DataTree
 
 from ...core.subject import Subject
 from ..kit.caption import caption
-from ..kit.drawing import WIDTH, Drawing, entries, headline, legends_below, letter
+from ..kit.drawing import WIDTH, Drawing
 from ..kit.empty import say_empty
+from ..kit.legends import entries, legends_below
 from ..kit.panel import rows
 from ..kit.points import hollow_entry
 from ..kit.sizes import (
@@ -24,6 +25,7 @@ from ..kit.sizes import (
     series,
     size_axis,
 )
+from ..kit.titles import headline, letter
 from ..kit.verdicts import claim
 from ..kit.words import percent, place
 

@@ -1,6 +1,5 @@
 """Fig. 12: the contact domain and its dimension as the joint closes."""
 
-import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 from xarray import DataTree
@@ -11,13 +10,15 @@ from ...core.subject import Subject
 from ...core.window import window_sides
 from ..kit.caption import caption
 from ..kit.domains import contact_domain, departures, estimates_of, rise_words, spread_loads
-from ..kit.drawing import COLOURS, WIDTH, Drawing, entries, headline, letter
+from ..kit.drawing import COLOURS, WIDTH, Drawing
 from ..kit.empty import say_empty
+from ..kit.legends import entries
 from ..kit.maps import draw_domain, ring_entry
-from ..kit.measured import draw_series, measured_series, threshold_words
+from ..kit.measured import draw_over_force, measured_range, measured_series
 from ..kit.measured import table_of as table_of_maps
 from ..kit.panel import Panel, table_of
 from ..kit.points import reach
+from ..kit.titles import headline, letter
 from ..kit.words import area_label, force_label, place, wrapped
 
 TITLE = "Fig. 12: contact domains and their dimension under growing load"
@@ -32,8 +33,6 @@ _LETTERS = "abcdefg"
 _RAW = "; raw: not corrected for the perimeter"
 #: Points of the letters above the maps.
 _ABOVE_MAPS = 8
-#: Points between the panel's title and its upper edge, where an axis stands.
-_ABOVE = 30
 #: The two estimates stand this factor of F apart, so that neither hides the other.
 _APART = {"area": 1 / 1.04, "box": 1.04}
 
@@ -55,7 +54,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     panel = Panel(bottom.subplots(), _LETTERS[len(shown)], words)
     _draw_nulls(panel, counts)
     _draw_dimensions(panel, subject)
-    _draw_measured(panel.axes, series, subject.area)
+    draw_over_force(panel.axes, series, subject.area)
     handles = entries(panel.axes)
     ringed = [which for which, axes in zip(_LETTERS, maps, strict=False) if axes.lines]
     if ringed:
@@ -75,7 +74,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
         least=MIN_NODES,
         larger=larger,
         **departures(counts),
-        **_measured_range(series),
+        **measured_range(series),
     )
     return Drawing(figure, table, text)
 
@@ -128,33 +127,3 @@ def _draw_dimensions(panel, subject):
     axes.set_ylim(-0.05, 2.05)
     axes.set_xlabel("normal force $F$ (N)")
     axes.set_ylabel(r"dimension $\Delta_\sigma$ (1)")
-
-
-def _draw_measured(axes, series, nominal):
-    """Measured domains at their nominal pressure: F is of this window, their area is another."""
-    for each in series:
-        pressure = each.pressure
-        without = np.flatnonzero(~np.isfinite(pressure))
-        label = f"measured: {each.legend}"
-        if len(without) < len(pressure):
-            draw_series(axes, each, pressure * nominal, label)
-        for one in without:  # without a load it has no place along F
-            value = float(each.maps[one]["delta_sigma"])
-            name = f"{label}, no load" if one == without[0] else None
-            axes.axhline(value, color=each.style["color"], ls="-.", lw=0.9, label=name)
-    if series:
-        axes.autoscale(axis="x")
-    # Above the force stands the pressure of measured maps, whose area is another.
-    functions = (lambda force: force / nominal, lambda pressure: pressure * nominal)
-    pressures = axes.secondary_xaxis("top", functions=functions)
-    pressures.set_xlabel(r"nominal pressure $\sigma_0 = F/A_0$ (MPa)")
-    axes.set_title(axes.get_title(loc="left"), loc="left", pad=_ABOVE)
-
-
-def _measured_range(series):
-    """Number of measured maps, their thresholds and the range of their Delta_sigma."""
-    values = np.array([value for each in series for value in each.values("delta_sigma")], float)
-    known = values[np.isfinite(values)]
-    ends = [f"{end:.2f}" for end in (known.min(), known.max())] if known.size else []
-    words = threshold_words(series) if series else ""
-    return {"maps": values.size, "measured": list(dict.fromkeys(ends)), "thresholds": words}

@@ -4,16 +4,17 @@ from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 from xarray import DataTree
 
 from ...core.subject import Subject
 from ..kit.caption import caption
 from ..kit.domains import RISES, estimates_of, rise_words, size_axes, spread_loads
-from ..kit.drawing import COLOURS, MARKERS, WEAK, WIDTH, Drawing, heading, headline, legends_below
+from ..kit.drawing import COLOURS, MARKERS, WEAK, WIDTH, Drawing
 from ..kit.empty import say_empty
+from ..kit.legends import heading, legends_below, mark
 from ..kit.panel import Panel, table_of
 from ..kit.sizes import plain_decades
+from ..kit.titles import headline
 from ..kit.verdicts import verdict_words
 from ..kit.words import force_label, place
 
@@ -77,7 +78,7 @@ def _draw_lines(panel, states, one, shown, side):
         axes.plot(side, float(line["nominal_pressure"]), zorder=3, **point)
         slope = one[i].mapped(lambda delta: delta - 2).text()
         label = f"$F$ = {force_label(float(line['normal_force']))}: {slope}"
-        handles.append(Line2D([], [], marker=MARKERS[n], label=label, **style | faint))
+        handles.append(mark(marker=MARKERS[n], label=label, **style | faint))
     if len(handles) == 1:
         say_empty(axes, "no $\\Delta_\\sigma$ at the loads drawn", ticks=False)
         handles = []

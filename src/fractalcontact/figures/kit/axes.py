@@ -1,0 +1,71 @@
+"""Axes of forces and offsets, and labels of logarithmic ones that are short."""
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.axis import Axis
+from matplotlib.ticker import LogLocator, NullFormatter, NullLocator, StrMethodFormatter
+from numpy.typing import ArrayLike
+
+from .words import force_unit
+
+
+def force_axis(axis: Axis, forces: ArrayLike) -> float:
+    """Label an axis of normal forces, in the unit that suits the loads of the study.
+
+    Parameters
+    ----------
+    axis : matplotlib.axis.Axis
+    forces : (n,) array_like
+        All loads of the study, N, so that every figure of a specimen has the same unit.
+
+    Returns
+    -------
+    float
+        How many N the unit is: forces are drawn divided by it.
+    """
+    unit, size = force_unit(float(np.max(forces)))
+    axis.set_label_text(f"normal force $F$ ({unit})")
+    return size
+
+
+def offset_axis(axes: Axes, offsets: np.ndarray) -> None:
+    """Offsets v along x: in decades where they span one, with v = 0 at their left if it is there.
+
+    Parameters
+    ----------
+    axes : matplotlib.axes.Axes
+    offsets : (n,) ndarray
+        mm, those drawn.
+    """
+    slid = offsets[offsets > 0]
+    if slid.size > 1 and slid.max() > 10 * slid.min():
+        decades = np.arange(np.floor(np.log10(slid.min())), np.log10(slid.max()) + 1)
+        # Powers of ten would be one or two on an axis shorter than two decades.
+        parts = (1, 2, 5) if slid.max() < 100 * slid.min() else (1,)
+        places = np.outer(10**decades, parts).ravel()
+        within = (places >= slid.min() * (1 - 1e-9)) & (places <= slid.max() * (1 + 1e-9))
+        ticks = list(places[within])
+        if slid.size < len(offsets):
+            axes.set_xscale("symlog", linthresh=slid.min(), linscale=0.3)
+            axes.set_xlim(-0.15 * slid.min(), 1.2 * slid.max())
+            axes.xaxis.set_minor_locator(NullLocator())
+            ticks.insert(0, 0.0)
+        else:
+            axes.set_xscale("log", nonpositive="mask")
+            axes.xaxis.set_minor_formatter(NullFormatter())
+        axes.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
+    axes.set_xlabel("offset $v$ (mm)")
+
+
+def label_short_span(axis: Axis, within: float = 100) -> None:
+    """Plain labels at 1, 2 and 5 on a logarithmic axis whose ends are less than ``within`` apart.
+
+    Powers of ten would be one there, or none. Labels between those lie over each other on any axis
+    and are left out; on a short one so do these over more than a decade.
+    To be called once everything is drawn.
+    """
+    low, high = axis.get_view_interval()
+    axis.set_minor_formatter(NullFormatter())
+    if high < within * low:
+        axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+        axis.set_major_formatter(StrMethodFormatter("{x:g}"))

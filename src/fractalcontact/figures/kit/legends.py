@@ -1,0 +1,48 @@
+"""Legends below a figure, and what stands in them."""
+
+from typing import Any
+
+from matplotlib.artist import Artist
+from matplotlib.axes import Axes
+from matplotlib.figure import FigureBase
+from matplotlib.lines import Line2D
+
+
+def entries(axes: Axes) -> list[Artist]:
+    """What stands in a legend of the axes."""
+    return axes.get_legend_handles_labels()[0]
+
+
+def legends_below(figure: FigureBase, *columns: list[Artist], columnspacing: float = 6) -> None:
+    """Legends side by side under a figure, where they hide nothing.
+
+    Parameters
+    ----------
+    figure : matplotlib.figure.FigureBase
+    *columns : list of matplotlib.artist.Artist
+        Entries of each legend.
+    columnspacing : float, optional
+        Between the columns, in letters.
+    """
+    rows = max(len(column) for column in columns)
+    # One legend fills its columns one by one: the shorter ones need filling up.
+    handles = [
+        handle for column in columns for handle in column + [heading(" ")] * (rows - len(column))
+    ]
+    figure.legend(
+        handles=handles,
+        loc="outside lower center",
+        ncols=len(columns),
+        columnspacing=columnspacing,
+        handlelength=3,
+    )
+
+
+def heading(text: str) -> Line2D:
+    """Entry of a legend that is words alone."""
+    return Line2D([], [], linestyle="none", label=text)
+
+
+def mark(**style: Any) -> Line2D:
+    """Entry of a legend that stands for lines or points of a style, its ``label`` among it."""
+    return Line2D([], [], **style)

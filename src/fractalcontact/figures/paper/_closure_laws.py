@@ -1,0 +1,132 @@
+"""Closure curves with their laws: the upper panels of the closure figure."""
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+
+from ...core.estimate import EXPONENT, Estimate
+from ...core.subject import Subject
+from ..kit.axes import force_axis, label_short_span
+from ..kit.drawing import MARKERS, colour_of
+from ..kit.empty import TOO_FULL, say_empty
+from ..kit.points import draw_points
+from ..kit.words import NOMINAL_PRESSURE, percent, short
+
+#: One line for each law, whatever its curve and panel: style, words, what it is drawn from.
+LINES: dict[str, tuple[Any, str, str]] = {
+    "semi_logarithmic": ("-", "logarithmic law", "semi_logarithmic_misfit"),
+    "hyperbola": ((0, (4, 2)), "hyperbola", "hyperbola_misfit"),
+    "beyond": (":", "(b): hyperbola below the loads fitted, slope $k_{ni}$", "hyperbola_k_ni"),
+    "area": ("-.", "power law", "corrected_exponent"),
+}
+#: Marker of states of too few nodes: open, and smaller than the others.
+OPEN = {"mfc": "none", "ms": 3, "mew": 0.6}
+
+
+def each_curve(drawn: xr.Dataset) -> Iterator[tuple[xr.Dataset, dict[str, Any]]]:
+    """Every curve that is drawn, with its colour and marker."""
+    for n in range(drawn.sizes["offset"]):
+        yield drawn.isel(offset=n), {"color": colour_of(n), "marker": MARKERS[n]}
+
+
+def is_known(data: xr.Dataset, name: str) -> bool:
+    """Whether any value of a variable is known."""
+    return bool(np.isfinite(data[name]).any())
+
+
+def draw_closure(axes: Axes, drawn: xr.Dataset, subject: Subject) -> None:
+    """Closure curves with both laws over the loads that they were fitted to."""
+    size = force_axis(axes.yaxis, drawn["normal_force"])
+    for curve, style in each_curve(drawn):
+        label = f"{offset_words(subject, curve['offset'])}: {_law_words(curve)}"
+        points = curve["interface_closure"], curve["normal_force"] / size, curve["resolved"]
+        draw_points(axes, *points, OPEN, label=label, **style)
+        _draw_laws(
+            axes, curve, ("hyperbola", "semi_logarithmic"), subject.area, subject.area / size
+        )
+    if is_known(drawn, "interface_closure"):
+        # Flush faces have closures of 0 alone.
+        limit = float(drawn["interface_closure"].max())
+        axes.set_xlim(0, 1.05 * limit if limit > 0 else None)
+        if 0 < limit < 1e-3:  # long numbers would stand one over the other
+            axes.ticklabel_format(axis="x", scilimits=(0, 0))
+    else:
+        say_empty(axes, TOO_FULL)
+    axes.set_ylim(0, 1.05 * float(drawn["normal_force"][-1]) / size)
+    axes.set_xlabel(r"interface closure $w_\mathrm{int}$ (mm)")
+    second_axis(axes, size / subject.area).set_ylabel(f"{NOMINAL_PRESSURE} (MPa)")
+
+
+def draw_light_loads(axes: Axes, drawn: xr.Dataset, subject: Subject) -> None:
+    """The closure curves on logarithmic axes with their hyperbolas, down to k_ni at light load."""
+    pressure = drawn["nominal_pressure"].values
+    for curve, style in each_curve(drawn):
+        draw_points(axes, curve["interface_closure"], pressure, curve["resolved"], OPEN, **style)
+        _draw_laws(axes, curve, ("hyperbola", "beyond"), subject.area)
+    axes.set(xscale="log", yscale="log")
+    drawable = drawn["interface_closure"].where(drawn["interface_closure"] > 0)
+    if np.isfinite(drawable).any():
+        axes.set_xlim(float(drawable.min()) / 1.5, float(drawable.max()) * 1.5)
+        axes.set_ylim(pressure[0] / 1.5, pressure[-1] * 1.5)
+    else:
+        say_empty(axes, TOO_FULL)
+    axes.set_xlabel(r"interface closure $w_\mathrm{int}$ (mm)")
+    axes.set_ylabel(f"{NOMINAL_PRESSURE} (MPa)")
+    label_short_span(axes.xaxis)
+
+
+def _draw_laws(axes, curve, lines, area, unit=1.0):
+    """Fitted laws of the curve drawn last; its pressures times ``unit``.
+
+    They go over the loads fitted; below these the hyperbola is all k_ni, and an extrapolation.
+    """
+    first, last = (float(curve[f"closure_fit_{end}"]) / area for end in ("min", "max"))
+    lightest, colour = float(curve["nominal_pressure"][0]), axes.lines[-1].get_color()
+    for line in lines:
+        style, _, needed = LINES[line]
+        if is_known(curve, needed):
+            ends = (lightest / 2, first) if line == "beyond" else (first, last)
+            pressure = np.geomspace(*ends, 100)
+            closure = _closure_by(line, curve, pressure)
+            axes.plot(closure, unit * pressure, ls=style, lw=0.8, color=colour)
+
+
+def _closure_by(law, curve, pressure):
+    """Closure w_int in mm by a fitted law.
+
+    The hyperbola is sigma_0 = k_ni w / (1 - w / w_m), the other w = a + b ln(sigma_0 / 1 MPa).
+    """
+    if law != "semi_logarithmic":
+        k_ni, w_m = (float(curve[f"hyperbola_{name}"]) for name in ("k_ni", "w_m"))
+        return pressure * w_m / (k_ni * w_m + pressure)
+    a, b = (float(curve[f"semi_logarithmic_{name}"]) for name in "ab")
+    return a + b * np.log(pressure)
+
+
+def _law_words(curve):
+    """Misfits of both laws, and k_ni with its interval, as the legend's heading says."""
+    misfits = [float(curve[f"{law}_misfit"]) for law in ("semi_logarithmic", "hyperbola")]
+    if not np.isfinite(misfits).any():
+        return f"no fit: {no_law(curve)}"
+    known = (percent(misfit) if np.isfinite(misfit) else "no fit" for misfit in misfits)
+    k_ni = Estimate.read(curve, "hyperbola_k_ni", scale=EXPONENT)
+    determined = bool(curve["hyperbola_k_ni_determined"]) or not k_ni.known
+    return f"{', '.join(known)}; {k_ni.text() if determined else k_ni.undetermined()}"
+
+
+def no_law(curve: xr.Dataset) -> str:
+    """Why no law could be fitted to a curve, without what would help."""
+    return str(curve["closure_law_reason"].values).split(":")[0]
+
+
+def offset_words(subject: Subject, offset: float | xr.DataArray) -> str:
+    """One of the states of a legend."""
+    return "against a plane" if subject.direction == "none" else f"$v$ = {short(offset)} mm"
+
+
+def second_axis(axes: Axes, factor: float) -> Axes:
+    """The left axis times a factor, at the right."""
+    return axes.secondary_yaxis("right", functions=(lambda y: y * factor, lambda y: y / factor))

@@ -1,0 +1,52 @@
+"""Rigid dilatancy of every direction with the line fitted to its end: a panel of Figs. 6, 7."""
+
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.artist import Artist
+
+from ...core.estimate import Estimate
+from ...core.limits import LEVEL_CHANGE
+from ..kit.drawing import LINES, colour_of
+from ..kit.legends import entries, heading, mark
+from ..kit.panel import Panel
+from ..kit.words import TOWARDS, percent, short
+
+#: The fitted lines.
+_FITTED = {"lw": 2.2, "alpha": 0.7}
+
+
+def draw_rigid(panel: Panel, dilatancy: xr.Dataset, plateaus: xr.Dataset) -> list[Artist]:
+    """Rigid dilatancy of every direction with the line fitted to its end; the legend."""
+    for n, direction in enumerate(dilatancy["direction"].values):
+        plateau, style = plateaus.sel(direction=direction), direction_style(n)
+        label = f"{TOWARDS[direction]}: {_change_words(plateau)}"
+        one = dilatancy[["rigid_dilatancy"]].sel(direction=direction)
+        panel.curve(one, "rigid_offset", "rigid_dilatancy", label=label, **style)
+        ends = np.array([float(plateau[f"plateau_offset_{end}"]) for end in ("min", "max")])
+        line = float(plateau["plateau_intercept"]) + float(plateau["plateau_slope"]) * ends
+        panel.axes.plot(ends, line, color=style["color"], **_FITTED)
+    lowest = float(dilatancy["rigid_dilatancy"].min())
+    panel.axes.set(xlabel="offset $v$ (mm)", ylabel=r"rigid dilatancy $\delta_r$ (mm)")
+    panel.axes.set_ylim(bottom=min(0, lowest))
+    panel.axes.set_xlim(left=0)
+    half = short(float(dilatancy["rigid_offset"][-1]) / 2)
+    change = rf"change of fitted $\delta_r$ [95 %] in % of its mean, $v \geq$ {half} mm"
+    level = f"fitted lines; level: change within {percent(LEVEL_CHANGE)}"
+    fitted = mark(color="0.4", label=level, **_FITTED)
+    return [heading(change), *entries(panel.axes), fitted]
+
+
+def direction_style(n: int) -> dict[str, Any]:
+    """Line of the n-th direction, in both panels."""
+    return {"color": colour_of(n), "ls": LINES[n % 4], "lw": 0.9}
+
+
+def _change_words(plateau):
+    """Change of the fitted line in per cent of the mean, and what it is called."""
+    change = Estimate.read(plateau, "plateau_change").mapped(lambda fraction: 100 * fraction)
+    if not change.known:
+        return "no fit"
+    value, low, high = change.ends
+    return f"{value:+z.0f} % [{low:+z.0f}, {high:+z.0f}], {plateau['plateau_trend'].item()}"

@@ -1,0 +1,46 @@
+"""Report of a specimen: strength, size laws, and what is judged of it; nothing is solved here."""
+
+from dataclasses import asdict
+
+import xarray as xr
+
+from ..core.settings import ReportSettings
+from ..mechanics.model_validity import model_validity
+from ..statements.comparison import specimen_row
+from ..statements.judge import judge
+from .strength import strength_stages
+
+#: Stages that strength and size laws are made of.
+OF_STRENGTH = (
+    "specimens",
+    "surface_dimension",
+    "joints",
+    "window_states",
+    "size_test",
+    "dilatancy",
+)
+
+
+def report_stages(settings: ReportSettings, **stages: xr.Dataset) -> dict[str, xr.Dataset]:
+    """Stages that solve nothing: a friction angle, wall strength or label makes these alone again.
+
+    Parameters
+    ----------
+    settings : ReportSettings
+    **stages : xr.Dataset
+        Of one specimen by name, those that :class:`study.stages.Stage` ``needs``.
+
+    Returns
+    -------
+    dict of str to xr.Dataset
+        By stage: those of :func:`stages.strength.strength_stages`, and elastic_model, statements
+        and comparison.
+    """
+    strength = strength_stages(**{name: stages[name] for name in OF_STRENGTH}, settings=settings)
+    stated, known = asdict(settings), stages | strength
+    return {
+        **strength,
+        "elastic_model": model_validity(known["area"], known["scaling"], settings.material),
+        "statements": judge(known, stated),
+        "comparison": specimen_row(known, stated),
+    }
