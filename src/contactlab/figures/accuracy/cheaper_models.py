@@ -6,8 +6,9 @@ import numpy as np
 from matplotlib.figure import Figure
 from xarray import DataTree
 
+from fractalcontact.figures.kit.axes import label_short_span
 from fractalcontact.figures.kit.caption import caption
-from fractalcontact.figures.kit.drawing import WIDTH, Drawing, label_short_span
+from fractalcontact.figures.kit.drawing import WIDTH, Drawing
 from fractalcontact.figures.kit.titles import letter
 
 from ...accuracy.speed import DEFAULT_RTOL, ERRORS, MODEL, MODELS, OURS

@@ -8,15 +8,9 @@ from matplotlib.figure import Figure
 from xarray import DataTree
 
 from fractalcontact.core.estimate import EXPONENT, Estimate
+from fractalcontact.figures.kit.axes import label_short_span
 from fractalcontact.figures.kit.caption import caption
-from fractalcontact.figures.kit.drawing import (
-    MARKERS,
-    WIDTH,
-    Drawing,
-    colour_of,
-    group,
-    label_short_span,
-)
+from fractalcontact.figures.kit.drawing import MARKERS, WIDTH, Drawing, colour_of, group
 from fractalcontact.figures.kit.titles import letter
 
 from ...accuracy.convergence import QUANTITIES

@@ -8,8 +8,9 @@ from matplotlib.lines import Line2D
 from xarray import DataTree
 
 from fractalcontact.core.estimate import EXPONENT, Estimate
+from fractalcontact.figures.kit.axes import label_short_span
 from fractalcontact.figures.kit.caption import caption
-from fractalcontact.figures.kit.drawing import WIDTH, Drawing, colour_of, group, label_short_span
+from fractalcontact.figures.kit.drawing import WIDTH, Drawing, colour_of, group
 from fractalcontact.figures.kit.titles import letter
 
 from ...accuracy.speed import OURS
