@@ -7,7 +7,7 @@ import pytest
 
 from fractalcontact.core.errors import InputError
 from fractalcontact.core.units import length_factor
-from fractalcontact.scan.read import read_scan
+from stated import read_scan
 
 NY, NX = 12, 10
 DX, DY = 0.5, 0.25

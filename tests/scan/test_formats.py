@@ -14,7 +14,7 @@ from fractalcontact.core.errors import InputError
 from fractalcontact.scan import formats, raw
 from fractalcontact.scan.format import Format
 from fractalcontact.scan.options import ScanOptions
-from fractalcontact.scan.read import read_scan
+from stated import read_scan
 from fractalcontact.scan.readers import instruments
 
 DX, DY = 0.1, 0.25

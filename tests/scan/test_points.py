@@ -15,7 +15,7 @@ from scipy.spatial import Delaunay
 from fractalcontact.core.errors import InputError
 from fractalcontact.scan import density, levelling, overhangs, points
 from fractalcontact.scan import triangles as tri
-from fractalcontact.scan.read import read_faces, read_scan
+from stated import read_faces, read_scan
 from fractalcontact.scan.readers import text
 
 SIDE = 20.0  # mm

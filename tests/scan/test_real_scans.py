@@ -8,7 +8,7 @@ import pytest
 from places import SCANS
 
 from fractalcontact.core.errors import InputError
-from fractalcontact.scan.read import read_scan
+from stated import read_scan
 
 INSTRUMENTS = SCANS / "instruments" / "surfacetopography"
 pytestmark = [

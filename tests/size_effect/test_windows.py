@@ -20,7 +20,7 @@ from fractalcontact.mechanics.strength import joint_strength
 from fractalcontact.mechanics.sweep import contact_states
 from fractalcontact.mechanics.theory import scaled_joint
 from fractalcontact.roughness.estimators.roughness_length import roughness_length_curves
-from fractalcontact.scan.read import read_faces
+from stated import read_faces
 from fractalcontact.size_effect.division import FEWEST_CELLS, PARTS, split, spread_windows
 from fractalcontact.size_effect.laws import size_laws
 from fractalcontact.size_effect.local_roughness import local_roughness, tilt_fraction

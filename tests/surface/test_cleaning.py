@@ -11,7 +11,7 @@ from places import SCANS
 from samples import scan_of
 
 from fractalcontact.core.errors import InputError
-from fractalcontact.scan.read import read_scan
+from stated import read_scan
 from fractalcontact.surface.cleaning import fill_holes, find_outliers
 from fractalcontact.surface.specimen import make_specimen
 from fractalcontact.surface.synthesis import self_affine

@@ -33,11 +33,10 @@ class RawScan:
         dx, dy the file states, in ``unit_xy``.
     first_row : {"bottom", "top"} or None
         Where the first row of a matrix lies; None where the file does not say.
+    heights : {"up", "down"} or None
+        Which way the numbers grow; None where the file does not say.
     missing : float or None
         Number the file states for a missing cell.
-    factor : float or None
-        Number that the file says its heights are to be multiplied by, not yet done; None or 1 if
-        they stand as they are.
     unread : tuple of str
         What the file says of its units or size that could not be used, in its own words.
     notes : tuple of str
@@ -53,11 +52,26 @@ class RawScan:
     unit_z: str | None = None
     spacing: tuple[float, float] | None = None
     first_row: str | None = None
+    heights: str | None = None
     missing: float | None = None
-    factor: float | None = None
     unread: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
     triangles: np.ndarray | None = None
+
+
+class IncompleteSidecar(InputError):
+    """A file that is read only as its sidecar says, and the sidecar does not say all.
+
+    Attributes
+    ----------
+    draft : str
+        Lines of a sidecar for it, indented, as the file seems to mean; a value that it does not
+        tell is empty.
+    """
+
+    def __init__(self, message: str, draft: str):
+        super().__init__(f"{message}\n{draft}")
+        self.message, self.draft = message, draft
 
 
 def refuse_larger(n_bytes: int, path: Path | str) -> None:

@@ -18,7 +18,8 @@ from .tables import choose_array, is_table
 
 MASK = "mask"
 _ATTRIBUTES = (
-    *("units", "unit", "axis", "scale_factor", "add_offset"),
+    *("units", "unit", "axis", "standard_name", "positive", "scale_factor", "add_offset"),
+    *("_Unsigned", "spacing"),
     *("_FillValue", "missing_value", "valid_min", "valid_max", "valid_range"),
 )
 #: What netCDF-4 writes into HDF5 for a dimension without coordinates.
@@ -65,16 +66,20 @@ def choose_variable(variables: dict, wanted: str | None, path: Path) -> str:
     InputError
         If it is absent, ambiguous or too large.
     """
-    tables = [
+    name = choose_array(table_names(variables), wanted, path)
+    refuse_larger(math.prod(variables[name].shape) * 8, path)
+    return name
+
+
+def table_names(variables: dict) -> list[str]:
+    """Names of the 2-D numeric variables."""
+    return [
         name
         for name, variable in variables.items()
         if is_table(variable.shape, variable.dtype)
         and min(variable.shape) > 1
         and name.rpartition("/")[2] != MASK
     ]
-    name = choose_array(tables, wanted, path)
-    refuse_larger(math.prod(variables[name].shape) * 8, path)
-    return name
 
 
 @contextmanager
