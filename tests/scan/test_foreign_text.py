@@ -4,10 +4,10 @@ from dataclasses import dataclass, field
 
 import numpy as np
 import pytest
+from stated import read_scan
 
 from fractalcontact.core.errors import InputError
 from fractalcontact.core.units import length_factor
-from stated import read_scan
 
 NY, NX = 12, 10
 DX, DY = 0.5, 0.25

@@ -7,6 +7,7 @@ import pytest
 import xarray as xr
 from ensembles import ensemble
 from places import SCANS
+from stated import read_faces
 
 from fractalcontact.contact.solve import solve_contact
 from fractalcontact.core.estimate import Estimate
@@ -15,7 +16,6 @@ from fractalcontact.domain.renormalisation import hausdorff_measure
 from fractalcontact.elastic.halfspace import HalfSpace
 from fractalcontact.mechanics.joint import composite_topography
 from fractalcontact.mechanics.loading import JointLoading
-from stated import read_faces
 from fractalcontact.size_effect.division import split
 from fractalcontact.size_effect.eq6 import DELTA_SIGMA_ESTIMATORS, size_test
 from fractalcontact.size_effect.laws import joint_by_size

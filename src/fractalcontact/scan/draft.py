@@ -173,7 +173,7 @@ def draft_lines(
     for key in _TO_FILL:
         value = getattr(options, key)
         if value is not None:
-            lines.append(_line(key, value, "as stated"))
+            lines.append(draft_line(key, value, "as stated"))
             continue
         value = getattr(drafted, key)
         if key not in required and (value is None or not key.startswith("unit_")):
@@ -187,19 +187,19 @@ def _drafted_line(key: str, value: Any, hints: Hints, arrays: Sequence[str]) -> 
     suggestion = hints.keys.get(key)
     if key == "missing" and suggestion is None:
         value, source = _marks(hints.heights)
-        return [_line(key, value, source)]
+        return [draft_line(key, value, source)]
     if key == "heights" and suggestion is None:
-        return [_line(key, "up", "nothing in the file says that they are depths")]
+        return [draft_line(key, "up", "nothing in the file says that they are depths")]
     if key == "kind" and suggestion is None:
-        return [_line(key, "face", "a file of heights")]
+        return [draft_line(key, "face", "a file of heights")]
     if value is None:
         names = f": {listed(arrays)}" if key == "variable" else ""
         lengths = hints.keys.get("length")
         other = lengths and key in ("unit", "unit_xy", "spacing")
         said = f"; it says {written(lengths.value)}, {lengths.source}" if lengths and other else ""
-        return [_line(key, None, f"FILL IN: {_TO_FILL[key]}{names}{said}")]
+        return [draft_line(key, None, f"FILL IN: {_TO_FILL[key]}{names}{said}")]
     assert suggestion is not None  # it has given the value
-    lines = [_line(key, value, suggestion.source)]
+    lines = [draft_line(key, value, suggestion.source)]
     return lines + [f"#   {key}: {other}" for other in suggestion.others]
 
 
@@ -215,7 +215,9 @@ def _marks(heights: np.ndarray | None) -> tuple[Any, str]:
     return values if len(values) > 1 else values[0], where
 
 
-def _line(key: str, value: Any, comment: str) -> str:
+def draft_line(key: str, value: Any, comment: str = "") -> str:
+    """One line of a draft; without a value it is to be filled in."""
+    comment = comment or f"FILL IN: {_TO_FILL[key]}"
     text = f"{key}: {written(value)}" if value is not None else f"{key}:"
     return f"{text:<{_COMMENT_AT - 1}} # {printable(comment)}"
 

@@ -35,10 +35,6 @@ class RawScan:
         Where the first row of a matrix lies; None where the file does not say.
     heights : {"up", "down"} or None
         Which way the numbers grow; None where the file does not say.
-    missing : float or None
-        Number the file states for a missing cell.
-    unread : tuple of str
-        What the file says of its units or size that could not be used, in its own words.
     notes : tuple of str
         What a user should know about the reading.
     triangles : (m, 3) int ndarray or None
@@ -53,8 +49,6 @@ class RawScan:
     spacing: tuple[float, float] | None = None
     first_row: str | None = None
     heights: str | None = None
-    missing: float | None = None
-    unread: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
     triangles: np.ndarray | None = None
 
@@ -107,17 +101,3 @@ def stated_unit(text: object) -> str | None:
     """Take the unit of length a file states; None if it states none, or of something else."""
     text = str(text or "").strip()
     return text if length_unit(text) else None
-
-
-def foreign_units(**stated: object) -> tuple[str, ...]:
-    """What a file calls its units where they are no lengths: words for `RawScan.unread`.
-
-    Parameters
-    ----------
-    **stated
-        What the file says by what it says it of, "z" for example.
-    """
-    words = {key: str(text or "").strip()[:20] for key, text in stated.items()}
-    return tuple(
-        f"{key} in {word!r}" for key, word in words.items() if word and not stated_unit(word)
-    )

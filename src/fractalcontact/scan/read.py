@@ -12,6 +12,7 @@ from ..core.errors import InputError
 from ..core.file_names import split_file_name
 from ..core.units import length_factor
 from .confined import read_confined
+from .draft import draft_line
 from .faces import grid_one, grid_pair
 from .files import is_unchanged, regular_file, sha256
 from .measured import NOTE, Measured, warnings_of
@@ -29,10 +30,10 @@ from .options import (
 )
 from .plausible import check_spacing
 from .points import single_precision_note
-from .raw import RawScan
+from .raw import IncompleteSidecar, RawScan
 from .undeclared import refuse_or_warn
 
-__all__ = ["read_faces", "read_matrix", "read_scan"]
+__all__ = ["measure", "read_faces", "read_matrix", "read_scan"]
 
 #: Relief that is confirmed is written with four digits.
 SAME_RELIEF = 2e-3
@@ -62,7 +63,7 @@ def read_scan(path: Path | str, options: Mapping | None = None) -> xr.DataArray:
         If the file is damaged, does not describe itself and the options do not say all
         (:class:`scan.raw.IncompleteSidecar`), or cannot be the scan of a rough surface.
     """
-    return grid_one(_measure(Path(path), options))
+    return grid_one(measure(Path(path), options))
 
 
 def read_faces(
@@ -138,7 +139,7 @@ def read_matrix(
     InputError
         As `read_scan`, but for numbers that cannot be heights; also if the file holds points.
     """
-    measured = _measure(Path(path), options, are_heights=False)
+    measured = measure(Path(path), options, are_heights=False)
     if measured.layout != "matrix":
         raise InputError(f"{path}: holds points, a matrix is needed; 'layout: matrix' if it is one")
     assert measured.spacing is not None  # a matrix has one
@@ -153,8 +154,22 @@ class _File(NamedTuple):
     checksum: str
 
 
-def _measure(path: Path, options: Mapping | None, *, are_heights: bool = True) -> Measured:
-    """Read a file and convert it to mm, with what the sidecar says."""
+def measure(path: Path, options: Mapping | None, *, are_heights: bool = True) -> Measured:
+    """Numbers of a file in mm, before they are on a grid, as its sidecar says.
+
+    Parameters
+    ----------
+    path : Path
+    options : mapping or None
+        As for `read_scan`.
+    are_heights : bool, optional
+        False of a contact map, whose numbers may be anything.
+
+    Raises
+    ------
+    InputError
+        As `read_scan`, but for a surface that is none.
+    """
     given = parse_options(options, str(path))
     return _in_mm(_read(path, given), given, are_heights=are_heights)
 
@@ -198,7 +213,8 @@ def _in_mm(file: _File, options: ScanOptions, *, are_heights: bool = True) -> Me
     missing = options.missing
     is_matrix = raw.layout == "matrix"
     heights = _without_missing(raw.values if is_matrix else raw.values[:, 2], options.marks)
-    _refuse_unconfirmed(heights, raw, options, path)
+    size = size_and_relief(heights, raw.layout)
+    _refuse_unconfirmed(size, raw, options, path)
     if are_heights and missing != NO_MARK and (doubt := refuse_or_warn(heights, path)):
         notes.append(f"{NOTE}{doubt}")
     sign = -1 if _choose("heights", raw.heights, options, overrides) == "down" else 1
@@ -231,7 +247,7 @@ def _in_mm(file: _File, options: ScanOptions, *, are_heights: bool = True) -> Me
         "warnings": warnings_of(notes),
         "overrides": "; ".join(overrides),
     }
-    return Measured(path, raw.layout, values, spacing, grid, provenance, raw.triangles)
+    return Measured(path, raw.layout, values, spacing, grid, provenance, raw.triangles, size)
 
 
 def _own(values: np.ndarray) -> np.ndarray:
@@ -327,28 +343,22 @@ def _require_units(raw: RawScan, options: ScanOptions, unit_xy, unit_z, path: Pa
     what = " and ".join(filter(None, (*lacking[:1], "spacing" if lacks_spacing else "")))
     lines = list(lacking[1:])
     if lacks_spacing:
-        lines.append("    spacing: 0.1 mm   # between neighbouring cells")
+        lines.append(draft_line("spacing", None))
     name, _ = split_file_name(path.name)
-    raise InputError(
-        f"{path}: the file states no {what}{_said(raw)}. Write into "
-        f"{path.with_name(name + '.yaml')}, "
-        "with your own values:\n" + "\n".join(lines)
+    raise IncompleteSidecar(
+        f"{path}: the file states no {what}. Write into {path.with_name(name + '.yaml')}, with "
+        "your own values:",
+        "\n".join(f"    {line}" for line in lines),
     )
 
 
 def _lacking_unit(unit_xy, unit_z, needs_unit_xy: bool) -> tuple[str, str]:
     """What unit is missing, and the line of a sidecar that states it."""
     if unit_z is None and unit_xy is not None:
-        return "unit of heights", "    unit_z: um        # of its heights"
+        return "unit of heights", draft_line("unit_z", None)
     if unit_z is not None and needs_unit_xy:
-        return "unit of x and y", "    unit_xy: mm       # of x and y"
-    return "unit", "    unit: mm          # of its lengths; unit_xy and unit_z where they differ"
-
-
-def _said(raw: RawScan) -> str:
-    """What the file says all the same, in brackets: it could not be used, or was found out."""
-    said = "; ".join((*(f"it says {line!r}" for line in raw.unread), *raw.notes))
-    return f" ({said})" if said else ""
+        return "unit of x and y", draft_line("unit_xy", None)
+    return "unit", draft_line("unit", None)
 
 
 def _has_units_of_its_own(spacing) -> bool:
@@ -386,13 +396,10 @@ def _without_missing(values: np.ndarray, marks: tuple[float, ...]) -> np.ndarray
     return np.where(absent, np.nan, values)
 
 
-def _refuse_unconfirmed(
-    heights: np.ndarray, raw: RawScan, options: ScanOptions, path: Path
-) -> None:
+def _refuse_unconfirmed(found: dict, raw: RawScan, options: ScanOptions, path: Path) -> None:
     """Refuse a file of another size or relief than its owner has looked at and confirmed."""
     if options.confirmed is None:
         return
-    found = size_and_relief(heights, raw.layout)
     for key, value in options.confirmed.items():
         if key not in found:
             raise InputError(

@@ -13,6 +13,7 @@ from ..core.file_names import split_file_name
 from .draft import Hints, draft_lines, drafted_options
 from .options import CONTACT_MAP, ScanOptions
 from .raw import IncompleteSidecar
+from .tables import choose_array
 
 _NO_FACE = {
     "aperture": "the opening between two faces and no face; scan or export the faces themselves",
@@ -64,6 +65,8 @@ def require_stated(
     """
     if options.kind in _NO_FACE:
         raise InputError(f"{path}: its sidecar says that it holds {_NO_FACE[options.kind]}")
+    if needs.table and not needs.text and (options.variable is not None or not needs.arrays):
+        choose_array(list(needs.arrays), options.variable, path)
     if not (lacks := lacking(options, needs)):
         return
     found = hints()

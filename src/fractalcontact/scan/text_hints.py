@@ -1,7 +1,7 @@
 """First lines of a text file: columns that name themselves, and what the rest seems to say."""
 
 import re
-from itertools import islice
+from itertools import islice, pairwise
 from pathlib import Path
 from typing import Any
 
@@ -25,6 +25,8 @@ _WORDS_OF = {
     "y": ("y", "north"),
     "z": ("z", "height", "elev", "topo", "h"),
 }
+#: The width or height of a field, as programs write it in a line of its own.
+_FIELD = re.compile(r"#?\s*[^:=]+:\s*([-+]?\d+(?:[.,]\d+)?(?:[eE][-+]?\d+)?)\s*([^\W\d]+)")
 _NO_NUMBER = re.compile(r"[A-Za-z#*?-][\w#/.*? -]*")
 
 
@@ -94,7 +96,7 @@ def text_hints(path: Path) -> Hints:
     lines, hints = first_lines(path), Hints()
     start = _table_start(lines)
     above, data = lines[:start], [line for line in lines[start:] if line.strip()]
-    data = [line for line in data if not line.startswith(COMMENT_MARKS)]
+    data = [line for line in data if not line.startswith(COMMENT_MARKS) and line not in above]
     name, decimal = _style(data)
     delimiter = DELIMITERS[name]
     hints.add("delimiter", name, f"between the numbers of line {start + 1}")
@@ -110,6 +112,8 @@ def text_hints(path: Path) -> Hints:
     table = _numbers(rows, width, form)
     if hints.keys["layout"].value == "matrix":
         add_axes(hints, table)
+        if len(lines) < _MOST_LINES:
+            _add_field(hints, above, table.shape)
     if table.size:
         columns = hints.keys["columns"].value if "columns" in hints.keys else None
         hints.heights = table[:, columns[2]] if columns else table
@@ -193,6 +197,20 @@ def add_axes(hints: Hints, table: np.ndarray) -> None:
         hints.add("axes", "none", "its first row and column do not run in equal steps")
     else:
         hints.add("axes", name, "equal steps, as of coordinates or counts", ["none"])
+
+
+def _add_field(hints: Hints, above: list[str], shape: tuple[int, ...]) -> None:
+    """Suggest the spacing of a field whose width and height two lines state, as Gwyddion does."""
+    lengths = [_FIELD.fullmatch(line.strip()) for line in above]
+    for n, (across, along) in enumerate(pairwise(lengths), 1):
+        if across and along and length_unit(across[2]) and length_unit(along[2]):
+            steps = [
+                f"{float(match[1].replace(',', '.')) / count:.9g} {match[2]}"
+                for match, count in ((across, shape[1]), (along, shape[0]))
+            ]
+            source = f"lines {n} and {n + 1}, divided by {shape[1]} and {shape[0]} cells"
+            hints.add("spacing", steps, source)
+            hints.add("first_row", "top", "as programs that state width and height write it")
 
 
 def _is_even(numbers: np.ndarray) -> bool:

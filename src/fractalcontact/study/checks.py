@@ -311,6 +311,9 @@ def _split(document: dict, schema: Mapping, source: str) -> tuple[dict, dict]:
         "properties": properties,
     }
     validate(document, sidecar_schema, source)
+    for key, value in document.items():
+        if value is None and key in scan_keys:
+            raise InputError(f"{source}: key '{key}' is empty; fill it in")
     document = {**document, **_OLD_KINDS.get(str(document.get("kind")), {})}
     scan = {key: value for key, value in document.items() if key in scan_keys}
     settings = {key: value for key, value in document.items() if key not in scan_keys}

@@ -15,6 +15,8 @@ _IGNORED = ("README", "LICENSE")
 #: Files that systems and editors leave in a folder, by name, ending or beginning, in lower case.
 _LEFT_BY_SYSTEMS = ("thumbs.db", "desktop.ini", "icon\r", "ehthumbs.db")
 _LEFT_BEHIND = ("~", ".bak", ".orig", ".tmp", ".swp", ".part", ".crdownload")
+#: Endings of what `make describe` writes: drafts of sidecars and pictures, which nothing reads.
+DRAFTS = (".draft.yaml", ".draft.png", ".draft.html")
 _LOCKS = ("~$", "._", ".~lock.")
 #: How others name the faces of a joint: what stands before, the mark, the face, the ending.
 _OTHER_FACE = {"lower": "upper", "bottom": "top"}
@@ -177,7 +179,7 @@ def folder_notes(folder: Path | str) -> list[str]:
 def is_passed_over(name: str) -> bool:
     """Whether a file or folder of this name is looked at: hidden ones and README* are not."""
     hidden = name.startswith(".") or name.upper().startswith(_IGNORED)
-    return hidden or _is_left_behind(name)
+    return hidden or _is_left_behind(name) or name.lower().endswith(DRAFTS)
 
 
 def _is_left_behind(name: str) -> bool:
