@@ -35,3 +35,44 @@ def read_scan(path, options=None):
 def read_faces(lower, upper=None, options=None):
     """Two faces by the sidecar drafted for the lower one."""
     return read.read_faces(lower, upper, drafted(lower, options))
+
+
+#: What the sidecar of an array of heights states, but for its unit and spacing.
+ARRAY = {
+    "kind": "face",
+    "layout": "matrix",
+    "axes": "none",
+    "first_row": "bottom",
+    "heights": "up",
+    "missing": "none",
+}
+#: The same of an array of contact.
+MAP = {"kind": "contact-map", "axes": "none", "first_row": "bottom", "missing": "none"}
+#: How numbers between commas are written, without a header.
+COMMAS = {"delimiter": "comma", "decimal": ".", "header": 0}
+#: Three columns x, y and z in mm.
+POINTS = {
+    **COMMAS,
+    "kind": "face",
+    "layout": "points",
+    "columns": [0, 1, 2],
+    "unit": "mm",
+    "heights": "up",
+    "missing": "none",
+}
+#: Sidecars of real scans, by folder and file.
+GRANITE = {**POINTS, "header": 2, "upper": {"header": 0}}
+CORONA = {**ARRAY, "variable": "Z_grid", "unit": "m", "spacing": 0.005685771715431078}
+NANOVEA = {**POINTS, "unit": None, "unit_xy": "mm", "unit_z": "um"}
+NANOVEA.pop("unit")
+SURFDIFF = {**POINTS, "header": 1, "columns": ["x", "y", "z"]}
+
+
+def sidecar(stated, **keys):
+    """Text of a sidecar."""
+    return yaml.safe_dump({**stated, **keys}, sort_keys=False)
+
+
+def array_sidecar(spacing, **keys):
+    """Text of the sidecar of an array of heights in mm."""
+    return sidecar(ARRAY, unit="mm", spacing=spacing, **keys)

@@ -166,25 +166,28 @@ def _read_as_drafted(path: Path, stated: Mapping, face: str, draft: Mapping[str,
         return shown
     if warnings := shown.measured.provenance["warnings"]:
         shown.notes += warnings.split("\n")
-    if marks := _marks(shown):
-        shown.notes.append(f"is {' and '.join(map(number, marks))} the mark of missing cells?")
-        if "missing" in draft and draft["missing"] == NO_MARK:
-            options["missing"] = marks if len(marks) > 1 else marks[0]
-            shown.measured = measure(path, options, are_heights=False)
+    every = _marks(shown)
+    marks = [mark for mark, is_outside in every.items() if is_outside]
+    if every:
+        shown.notes.append(f"is {' and '.join(map(number, every))} the mark of missing cells?")
+    if marks and draft.get("missing") == NO_MARK:
+        options["missing"] = marks if len(marks) > 1 else marks[0]
+        shown.measured = measure(path, options, are_heights=False)
     return shown
 
 
-def _marks(face: Face) -> list[float]:
-    """Numbers of the file that are likely to mark missing cells."""
+def _marks(face: Face) -> dict[float, bool]:
+    """Numbers of the file that may mark missing cells, and whether each lies far outside others."""
     assert face.measured is not None
     options, values = face.options, face.measured.values
     if is_contact_map(options):
-        return []
+        return {}
     heights = values if face.measured.layout == "matrix" else values[:, 2]
     unit = options.get("unit_z") or options.get("unit") or "mm"
     sign = -1 if options.get("heights") == "down" else 1
     factor = sign * length_factor(str(unit), str(face.path))
-    return [float(f"{mark.value / factor:.7g}") for mark in find_marks(heights) if mark.outside]
+    marks = find_marks(heights)
+    return {float(f"{mark.value / factor:.7g}"): mark.outside for mark in marks}
 
 
 def _draft_text(scan: ScanFiles, lines: list[str], drafts: Mapping, shown: Mapping) -> str:
