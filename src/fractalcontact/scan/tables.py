@@ -142,6 +142,8 @@ def _matrix(
                 "holds no coordinates; write another 'axes' into the sidecar, and tables under one "
                 "another into files of their own"
             )
+        if numbers is not None:
+            _step(numbers, name, where)
     if axes == "both" and options.spacing is None:
         assert above is not None  # it was taken off
         assert beside is not None
@@ -157,8 +159,8 @@ def _step(numbers: np.ndarray, name: str, where: str) -> float:
     even = np.linspace(numbers[0], numbers[-1], len(numbers))
     if len(numbers) < 2 or not np.abs(numbers - even).max() <= EVEN * abs(step):
         raise InputError(
-            f"{where}: the coordinates in its first {name} are not in equal steps; export x, y and "
-            "z as three columns, or write the 'spacing' of the cells if they are only counts"
+            f"{where}: the coordinates or counts in its first {name} are not in equal steps; export "
+            "x, y and z as three columns, or write another 'axes' if they are heights"
         )
     return float(f"{step:.10g}")
 

@@ -20,7 +20,7 @@ _BLOCK = 2**24  # bytes
 #: What programs call the sides of a matrix in its header.
 _SIDES = re.compile(
     r"[#%!/\s\"']*(?:(?P<x>nx|ncols|n_cols|columns)|(?P<y>ny|nrows|n_rows|rows))[\s:=,;\t]+"
-    r"(?P<n>\d{1,9})[\s\"']*",
+    r"(?P<n>\d{1,12})[\s\"']*",
     re.IGNORECASE,
 )
 
