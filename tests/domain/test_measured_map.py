@@ -90,8 +90,8 @@ def test_a_map_without_a_spacing_is_refused(carpet):
 def test_points_are_no_map(tmp_path):
     path = tmp_path / "cloud.xyz"
     path.write_text("".join(f"{x} {y} 1\n" for x in range(9) for y in range(9)))
+    keys = {**MAP, **COMMAS, "delimiter": "blank", "layout": "points", "unit": "mm"}
     with pytest.raises(InputError, match="lacks spacing"):
-        keys = {**MAP, **COMMAS, "delimiter": "blank", "layout": "points", "unit": "mm"}
         read_contact_map(path, keys, label="x")
 
 

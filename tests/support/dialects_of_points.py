@@ -174,7 +174,7 @@ def _points_with_normals_and_colours(pen: Pen) -> Sheet:
         for _ in range(pen.heights.size)
     ]
     rows = [[*row, *more] for row, more in zip(_rows(pen, pen.points()), company, strict=True)]
-    return points_sheet(rows)
+    return points_sheet(rows, surface=pen.surface)
 
 
 @dialect

@@ -33,8 +33,8 @@ x axis: to the north; y axis: upward; z axis: out of the face; mirror; rotation;
 delimiter: semicolon; decimal: comma; header: 12; axes: both; kind: aperture; layout: points
 """
 WORDS = [word.strip() for line in _WORDS.strip().splitlines() for word in line.split(";")]
-_VALUES = ["20 mm", "5", "0.8 mm", "2 deg", "12 months", "0", "0.25 um", "-9999", "3 kN", "1 of 4",
-           "0.1 x 0.1 mm", "50x", "top", "12.5 um/px", "1e-3 m", "(mm)", "[um]", "down"]  # fmt: skip
+_VALUES = ["20 mm", "5", "0.8 mm", "2 deg", "12 months", "0", "0.25 um", "-9999", "3 kN", "50x",
+           "0.1 x 0.1 mm", "1 of 4", "top", "12.5 um/px", "1e-3 m", "(mm)", "down"]  # fmt: skip
 
 
 def foreign_lines(rng: np.random.Generator, count: int) -> list[str]:

@@ -68,9 +68,7 @@ def _draw_relief(figure, axes, face):
 def _colours():
     from matplotlib import colormaps
 
-    colours = colormaps["viridis"].copy()
-    colours.set_bad("red")
-    return colours
+    return colormaps["viridis"].with_extremes(bad="red")
 
 
 def _draw_histogram(axes, z):

@@ -162,9 +162,15 @@ def _check_text_keys(options: dict, where: str) -> None:
     taken = {"decimal mark": decimal, "delimiter": DELIMITERS.get(str(options.get("delimiter")))}
     for name, mark in taken.items():
         if mark is not None and mark == options.get("thousands"):
-            raise InputError(f"{where}: {mark!r} is both the {name} and the thousands mark")
+            raise InputError(
+                f"{where}: {mark!r} is both the {name} and the thousands mark; write 'thousands' "
+                "only where digits are grouped"
+            )
     if decimal == "," and options.get("delimiter") == "comma":
-        raise InputError(f"{where}: a comma is both the decimal mark and the delimiter")
+        raise InputError(
+            f"{where}: a comma is both the decimal mark and the delimiter; export it with decimal "
+            "points, or with semicolons between the numbers"
+        )
 
 
 def coordinate_files(path: Path, options: Mapping[str, Any]) -> dict[str, Path]:

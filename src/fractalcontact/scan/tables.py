@@ -159,8 +159,8 @@ def _step(numbers: np.ndarray, name: str, where: str) -> float:
     even = np.linspace(numbers[0], numbers[-1], len(numbers))
     if len(numbers) < 2 or not np.abs(numbers - even).max() <= EVEN * abs(step):
         raise InputError(
-            f"{where}: the coordinates or counts in its first {name} are not in equal steps; export "
-            "x, y and z as three columns, or write another 'axes' if they are heights"
+            f"{where}: the coordinates or counts in its first {name} are not in equal steps; "
+            "export x, y and z as three columns, or write another 'axes' if they are heights"
         )
     return float(f"{step:.10g}")
 

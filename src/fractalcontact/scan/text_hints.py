@@ -116,7 +116,8 @@ def text_hints(path: Path) -> Hints:
             _add_field(hints, above, table.shape)
     if table.size:
         columns = hints.keys["columns"].value if "columns" in hints.keys else None
-        hints.heights = table[:, columns[2]] if columns else table
+        is_there = columns and columns[2] < table.shape[1]
+        hints.heights = table[:, columns[2]] if is_there else table
     return hints
 
 
@@ -165,8 +166,7 @@ def _layout(hints: Hints, names: list[str], rows: list[list[str]], width: int, s
         hints.add("columns", columns, f"its columns {', '.join(names[c] for c in columns)[:40]}")
     elif width < 8:
         hints.add("layout", "points", source)
-        columns = [0, 1, 2] if width != 2 else None
-        hints.add("columns", columns, "in the order in which they stand; it may be another")
+        hints.add("columns", [0, 1, 2], "in the order in which they stand; it may be another")
     else:
         hints.add("layout", "matrix", source)
 

@@ -9,6 +9,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -138,7 +139,11 @@ def _read_hdf5(dataset, path: Path) -> np.ndarray:
 def _attributes(stored) -> dict:
     """Those we know, texts as str."""
     known = {name: stored[name] for name in _ATTRIBUTES if name in stored}
-    return {
-        name: value.decode(errors="replace") if isinstance(value, bytes) else value
-        for name, value in known.items()
-    }
+    return {name: _plain(value) for name, value in known.items()}
+
+
+def _plain(value: Any) -> Any:
+    """One value out of an array of one, text as str."""
+    if isinstance(value, np.ndarray) and value.size == 1:
+        value = value.ravel()[0]
+    return value.decode(errors="replace") if isinstance(value, bytes) else value

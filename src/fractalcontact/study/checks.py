@@ -310,10 +310,10 @@ def _split(document: dict, schema: Mapping, source: str) -> tuple[dict, dict]:
         "additionalProperties": False,
         "properties": properties,
     }
-    validate(document, sidecar_schema, source)
     for key, value in document.items():
         if value is None and key in scan_keys:
             raise InputError(f"{source}: key '{key}' is empty; fill it in")
+    validate(document, sidecar_schema, source)
     document = {**document, **_OLD_KINDS.get(str(document.get("kind")), {})}
     scan = {key: value for key, value in document.items() if key in scan_keys}
     settings = {key: value for key, value in document.items() if key not in scan_keys}
