@@ -424,3 +424,43 @@ def test_scans_of_a_table_are_read_with_what_their_row_says(folder, check_groups
     assert "line 3: file: no file" in out
     assert "unlisted" not in out
     assert "1 refused" in out
+
+
+# --- checks that see what a file means ---------------------------------------------------------
+
+
+def write_pair(folder, name, lower, upper, **keys):
+    folder.mkdir(exist_ok=True)
+    for face, heights in (("lower", lower), ("upper", upper)):
+        np.save(folder / f"{name}.{face}.npy", heights)
+    (folder / f"{name}.yaml").write_text(array_sidecar(0.2, **keys))
+
+
+def test_one_file_given_as_both_faces_is_warned_of(folder, check):
+    write_pair(folder, "twice", surface(), surface())
+    write_pair(folder, "joint", surface(), surface() + 0.3)
+    _, out = check()
+    joint, twice = (" ".join(part.split()) for part in out.split("twice.lower.npy"))
+    assert "both faces are one file, byte for byte" in twice
+    assert "both faces are one file" not in joint
+
+
+def test_a_name_that_speaks_of_no_face_is_warned_of(folder, check):
+    for name in ("granite_aperture", "gap-3", "stopgap"):
+        write_scan(folder / f"{name}.npy", surface(), 0.2, sidecar={})
+    _, out = check()
+    assert " ".join(out.split()).count("its name says that it holds the opening") == 2
+    assert "1 ok, 2 with warnings" in out
+
+
+def test_a_pair_in_one_frame_that_registration_moves_is_warned_of(folder, check):
+    whole = self_affine((96, 96), 0.2, 0.8, rms=0.3, seed=4, roll_off=8.0)
+    moved, still = whole[3:83, 3:83], whole[2:82, 2:82]
+    noise = 1e-4 * np.random.default_rng(0).normal(size=moved.shape)
+    write_pair(folder, "moved", still, moved + 0.5 + noise)
+    write_pair(folder, "still", still, still + 0.5 + noise)
+    _, out = check()
+    moved, still = (" ".join(part.split()) for part in out.split("still.lower.npy"))
+    assert "registration moves the upper one by" in moved
+    assert "write 'registration: none' if the files share one frame" in moved
+    assert "registration moves the upper one by" not in still

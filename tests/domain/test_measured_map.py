@@ -295,3 +295,21 @@ def test_coordinates_of_the_cells_are_their_centres(carpet):
     found = read_contact_map(carpet, OPTIONS, label="a carpet")
     np.testing.assert_allclose(found["x"], 0.5 * (np.arange(81) + 0.5))
     assert found["y"].attrs["units"] == "mm"
+
+
+def test_an_outline_that_cuts_off_contact_is_warned_of(tmp_path):
+    """The largest disc sits in the middle of the map, the film in a corner."""
+    values = np.zeros((40, 60))
+    y, x = np.indices(values.shape)
+    film = np.hypot(x - 15, y - 20) < 14
+    values[film] = 2.0
+    np.save(tmp_path / "film.npy", values)
+    keys = OPTIONS | {"threshold": 1}
+    cut = read_contact_map(tmp_path / "film.npy", keys | {"outline": "disc"}, label="film")
+    lost = 1 - float(cut["in_contact"].sum()) / film.sum()
+    assert lost > 0.1
+    assert f"{100 * lost:.0f} % of the contact lies outside the outline" in cut.attrs["warning"]
+    disc = {"disc": {"centre": ["7.75 mm", "10.25 mm"], "diameter": "15 mm"}}
+    whole = read_contact_map(tmp_path / "film.npy", keys | {"outline": disc}, label="film")
+    assert whole.attrs["warning"] == ""
+    assert whole.attrs["integral"] == pytest.approx(2.0 * film.sum() * 0.25)

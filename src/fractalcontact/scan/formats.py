@@ -21,8 +21,8 @@ _SPREADSHEET = "a spreadsheet, which is not read; save the sheet of the heights 
 _ARCHIVE = "an archive, which is not unpacked; put the scan file itself here"
 #: Endings of files that are often met and not read, and what to do.
 _NOT_READ = {
-    **dict.fromkeys((".xlsx", ".xls", ".xlsm", ".ods"), _SPREADSHEET),
-    **dict.fromkeys((".zip", ".gz", ".7z", ".rar", ".tar"), _ARCHIVE),
+    **dict.fromkeys((".xls", ".xlsm", ".ods"), _SPREADSHEET),
+    **dict.fromkeys((".gz", ".7z", ".rar", ".tar"), _ARCHIVE),
     **dict.fromkeys((".jpg", ".jpeg", ".bmp"), "a picture, no heights; export the heights"),
 }
 #: Keys of a sidecar that say how some formats are laid out: idle for the others.

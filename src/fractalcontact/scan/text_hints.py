@@ -164,6 +164,9 @@ def _layout(hints: Hints, names: list[str], rows: list[list[str]], width: int, s
         columns = [found[axis][0] for axis in "xyz"]
         hints.add("layout", "points", f'line {start}: "{", ".join(names)[:40]}"')
         hints.add("columns", columns, f"its columns {', '.join(names[c] for c in columns)[:40]}")
+    elif width == 2:
+        hints.add("kind", "profile", f"{source}, distance and height")
+        hints.add("layout", "points", source)
     elif width < 8:
         hints.add("layout", "points", source)
         hints.add("columns", [0, 1, 2], "in the order in which they stand; it may be another")

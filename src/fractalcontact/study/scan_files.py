@@ -19,8 +19,8 @@ _LEFT_BEHIND = ("~", ".bak", ".orig", ".tmp", ".swp", ".part", ".crdownload")
 DRAFTS = (".draft.yaml", ".draft.png", ".draft.html")
 _LOCKS = ("~$", "._", ".~lock.")
 #: How others name the faces of a joint: what stands before, the mark, the face, the ending.
-_OTHER_FACE = {"lower": "upper", "bottom": "top"}
-_FACE = re.compile(r"(.+)([_ -]|(?<=[a-z0-9])(?=[A-Z]))(?i:(lower|bottom))(\.[^.]+)")
+_OTHER_FACE = {"lower": "upper", "bottom": "top", "sidea": "sideb", "side1": "side2"}
+_FACE = re.compile(r"(?:[_ -]|(?<=[a-z0-9])(?=[A-Z]))(?i:lower|bottom|side[a1])(?![a-zA-Z0-9])")
 #: Results are files and folders of this name and a few letters more; 255 bytes is what discs take.
 LONGEST_NAME = 220
 #: Control characters, invisible and direction marks, undecodable bytes, line separators.
@@ -194,14 +194,19 @@ def _likely_pairs(names: list[str]) -> Iterator[tuple[str, str, str, str]]:
     """
     known = {name.lower(): name for name in names}
     for name in names:
-        match = _FACE.fullmatch(name)
-        if match is None or Path(name).suffix.lower() in SIDECAR_SUFFIXES:
+        stem, ending = Path(name).stem, Path(name).suffix
+        if not _FACE.search(stem) or ending.lower() in SIDECAR_SUFFIXES:
             continue
-        before, mark, face, ending = match.groups()
-        other_face = _OTHER_FACE.get(face.lower())
-        other = known.get(f"{before}{mark}{other_face}{ending}".lower())
-        if other_face and other:
-            yield name, other, f"{before}.lower{ending}", f"{before}.upper{ending}"
+        other = known.get(f"{_FACE.sub(_turned, stem)}{ending}".lower())
+        common = _FACE.sub("", stem)
+        if other and common and other != name:
+            yield name, other, f"{common}.lower{ending}", f"{common}.upper{ending}"
+
+
+def _turned(face: re.Match) -> str:
+    """The word for the other face, with what parts it from the name."""
+    word = face[0].lstrip("_ -")
+    return face[0].removesuffix(word) + _OTHER_FACE[word.lower()]
 
 
 def _is_named_like_a_scan(folder: Path) -> bool:
