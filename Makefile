@@ -7,6 +7,8 @@
 # make verify   every result against its checksum
 # make faults   kills, damage, full disks and more, replayed; FAULTS=--quick for a few of each, FAULTS=--slurm on a SLURM
 # make check-scans   reads everything in scans/ and says what it holds, solving nothing
+# make describe   drafts a sidecar for each scan that needs one, with a picture of what would be read;
+#   SCANS=folder, FILE=one of them, LIKE=sidecar that is to hold for all files of one instrument
 # make test   what the tests need, then the tests; make test-all takes larger ensembles
 # make test-slurm   the smoke study on a real SLURM of one node, started for it: root on Debian alone
 # make test-slurm-accounting   the same on one that keeps accounts, which says what jobs asked for and used
@@ -34,13 +36,13 @@ BIN    := $(VENV)/bin
 PIP    := $(BIN)/python -m pip --disable-pip-version-check --quiet --require-virtualenv
 
 # Read from the environment, so that a shell never sees what stands in them.
-export STUDY SCANS
+export STUDY SCANS FILE LIKE
 # Looks at the study and the results first, then runs Snakemake, and ends it when told to end.
 RUN = exec $(BIN)/python workflow/run.py "$$STUDY" $(if $(filter yes y true 1,$(DROP)),--drop) \
   $(if $(filter yes y true 1,$(VERBOSE)),--verbose)
 OPTIONS = -- --cores $(CORES)
 
-.PHONY: all study campaign report smoke size-effect-small keep-going slurm dry-run verify faults check-scans check-accuracy keep same cost accuracy test test-all test-browser test-slurm test-slurm-accounting docs bench problems extremes fuzz fuzz-dialects lint format lock clean
+.PHONY: describe all study campaign report smoke size-effect-small keep-going slurm dry-run verify faults check-scans check-accuracy keep same cost accuracy test test-all test-browser test-slurm test-slurm-accounting docs bench problems extremes fuzz fuzz-dialects lint format lock clean
 # Two runs in one checkout would refuse each other.
 .NOTPARALLEL:
 all: study
@@ -76,6 +78,10 @@ size-effect-small: $(VENV)/installed
 # SCANS=folder for another one than the study's.
 check-scans: $(VENV)/installed
 	@$(BIN)/python -m fractalcontact.commands.check_scans $${SCANS:+"$$SCANS"} --study "$$STUDY"
+
+describe: $(VENV)/installed
+	@$(BIN)/python -m fractalcontact.commands.describe $${SCANS:+"$$SCANS"} $${FILE:+--file "$$FILE"} \
+	  $${LIKE:+--like "$$LIKE"} --study "$$STUDY"
 
 # Times are compared: let nothing else run meanwhile.
 accuracy: STUDY := $(if $(filter file,$(origin STUDY)),config/accuracy.yaml,$(STUDY))

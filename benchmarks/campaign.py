@@ -29,6 +29,7 @@ import yaml
 
 from fractalcontact.core import checksums
 from fractalcontact.core.atomic import atomic_write
+from fractalcontact.study.sidecar import sidecar_of_matrix
 from fractalcontact.surface.synthesis import self_affine
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -88,7 +89,7 @@ def write_campaign(folder: Path, n: int, figures: str = "none") -> list[str]:
         path = folder / f"scans/{group}"
         path.mkdir(parents=True, exist_ok=True)
         label = f"synthetic twin of no rock, surface dimension {dimension}"
-        sidecar = {"unit": "mm", "spacing": f"{SPACING} mm", "label": label}
+        sidecar = {**sidecar_of_matrix(SPACING), "label": label}
         _write(folder / f"scans/{group}.yaml", yaml.safe_dump(sidecar, sort_keys=False))
         for number in range(list(GROUPS).index(group), n, len(GROUPS)):
             name = f"twin_{number:05d}"

@@ -63,6 +63,17 @@ class ReaderPeak(logging.Handler):
         self.gigabytes = kilobytes * 1024 / 1e9
 
 
+#: What the sidecar of a cloud in three columns states.
+STATED = {
+    "kind": "face",
+    "layout": "points",
+    "columns": [0, 1, 2],
+    "unit": "mm",
+    "heights": "up",
+    "missing": "none",
+}
+
+
 def read_cloud(path, grid):
     """Read the file as a study would and print what it took; meant for a process of its own."""
     from fractalcontact.scan.read import read_scan
@@ -71,7 +82,9 @@ def read_cloud(path, grid):
     log = logging.getLogger("fractalcontact.scan.confined")
     log.setLevel(logging.DEBUG)
     log.addHandler(reader)
-    options = {"unit": "mm"} | ({"grid": f"{grid} mm"} if grid else {})
+    options = STATED | ({"grid": f"{grid} mm"} if grid else {})
+    if str(path).endswith(".xyz"):
+        options |= {"delimiter": "blank", "decimal": ".", "header": 0}
     start = time.perf_counter()
     heights = read_scan(path, options)
     seconds = time.perf_counter() - start

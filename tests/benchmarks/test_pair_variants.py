@@ -6,6 +6,7 @@ import sys
 
 import pytest
 from places import BENCHMARKS, SCANS
+from stated import GRANITE, sidecar
 
 STUDY = """
 study: variants
@@ -32,7 +33,7 @@ def test_the_granite_pair_is_within_its_errors_or_undetermined(tmp_path, offset)
     for face, name in (("lower", "A_bottom"), ("upper", "B_top")):
         file = SCANS / "cnl_granite_pair" / f"Extracted_M_CNL_Side{name}.txt"
         shutil.copyfile(file, folder / f"granite.{face}.txt")
-    (folder / "granite.yaml").write_text("unit: mm\n")
+    (folder / "granite.yaml").write_text(sidecar(GRANITE))
     study = tmp_path / "study.yaml"
     study.write_text(STUDY.format(folder=folder))
     command = [sys.executable, BENCHMARKS / "pair_variants.py", study, "granite"]

@@ -14,6 +14,7 @@ import pytest
 import yaml
 from places import ROOT
 from projects import copy_project, made, small_study
+from stated import ARRAY
 
 from fractalcontact.study.atlas import read_atlas
 from fractalcontact.surface.synthesis import self_affine
@@ -51,6 +52,7 @@ def _write_pair(folder):
     for face, heights in (("lower", lower), ("upper", upper)):
         np.save(folder / f"faces.{face}.npy", heights)
     sidecar = {
+        **ARRAY,
         "unit": "mm",
         "spacing": 0.1,
         "registration": "none",

@@ -3,13 +3,14 @@
 import numpy as np
 import pytest
 import yaml
+from stated import COMMAS, MAP
 
 from fractalcontact.core.errors import InputError
 from fractalcontact.domain.map_outline import outline_words
 from fractalcontact.domain.measured_map import CELLS, read_contact_map
 from fractalcontact.study.sidecar import is_contact_map
 
-OPTIONS = {"kind": "contact-map", "unit": "mm", "spacing": 0.5}
+OPTIONS = {**MAP, "unit": "mm", "spacing": 0.5}
 
 
 @pytest.fixture
@@ -37,12 +38,12 @@ def test_stresses_above_the_threshold_are_in_contact(carpet, tmp_path):
     stresses = tmp_path / "film.csv"
     np.savetxt(stresses, 12.0 * np.load(carpet) + 1, delimiter=",")
     same = read_contact_map(carpet, OPTIONS, label="film")
-    found = read_contact_map(stresses, OPTIONS | {"threshold": 5}, label="film")
+    found = read_contact_map(stresses, OPTIONS | COMMAS | {"threshold": 5}, label="film")
     np.testing.assert_array_equal(found["in_contact"], same["in_contact"])
     with pytest.raises(InputError, match=r"film.csv: .*'threshold: 5', in its sidecar"):
-        read_contact_map(stresses, OPTIONS, label="film")
+        read_contact_map(stresses, OPTIONS | COMMAS, label="film")
     with pytest.raises(InputError, match="no cell lies above the threshold of 50"):
-        read_contact_map(stresses, OPTIONS | {"threshold": 50}, label="film")
+        read_contact_map(stresses, OPTIONS | COMMAS | {"threshold": 50}, label="film")
 
 
 def test_what_a_cell_stands_for_may_be_said(tmp_path):
@@ -89,8 +90,9 @@ def test_a_map_without_a_spacing_is_refused(carpet):
 def test_points_are_no_map(tmp_path):
     path = tmp_path / "cloud.xyz"
     path.write_text("".join(f"{x} {y} 1\n" for x in range(9) for y in range(9)))
-    with pytest.raises(InputError, match="holds points, a matrix is needed"):
-        read_contact_map(path, {"unit": "mm"}, label="x")
+    keys = {**MAP, **COMMAS, "delimiter": "blank", "layout": "points", "unit": "mm"}
+    with pytest.raises(InputError, match="lacks spacing"):
+        read_contact_map(path, keys, label="x")
 
 
 def test_the_sidecar_says_what_is_a_map():
@@ -231,7 +233,13 @@ def test_thresholds_give_a_band(tmp_path):
 def three_files(tmp_path, x, y, values):
     for key, numbers in (("x", x), ("y", y), ("z", values)):
         np.savetxt(tmp_path / f"film_{key}.csv", np.atleast_2d(numbers), delimiter=",")
-    return tmp_path / "film_z.csv", {"unit": "mm", "x": "film_x.csv", "y": "film_y.csv"}
+    return tmp_path / "film_z.csv", {
+        **COMMAS,
+        **{key: value for key, value in MAP.items() if key != "first_row"},
+        "unit": "mm",
+        "x": "film_x.csv",
+        "y": "film_y.csv",
+    }
 
 
 @pytest.mark.parametrize("form", ["lines", "matrices", "downwards"])
@@ -287,3 +295,21 @@ def test_coordinates_of_the_cells_are_their_centres(carpet):
     found = read_contact_map(carpet, OPTIONS, label="a carpet")
     np.testing.assert_allclose(found["x"], 0.5 * (np.arange(81) + 0.5))
     assert found["y"].attrs["units"] == "mm"
+
+
+def test_an_outline_that_cuts_off_contact_is_warned_of(tmp_path):
+    """The largest disc sits in the middle of the map, the film in a corner."""
+    values = np.zeros((40, 60))
+    y, x = np.indices(values.shape)
+    film = np.hypot(x - 15, y - 20) < 14
+    values[film] = 2.0
+    np.save(tmp_path / "film.npy", values)
+    keys = OPTIONS | {"threshold": 1}
+    cut = read_contact_map(tmp_path / "film.npy", keys | {"outline": "disc"}, label="film")
+    lost = 1 - float(cut["in_contact"].sum()) / film.sum()
+    assert lost > 0.1
+    assert f"{100 * lost:.0f} % of the contact lies outside the outline" in cut.attrs["warning"]
+    disc = {"disc": {"centre": ["7.75 mm", "10.25 mm"], "diameter": "15 mm"}}
+    whole = read_contact_map(tmp_path / "film.npy", keys | {"outline": disc}, label="film")
+    assert whole.attrs["warning"] == ""
+    assert whole.attrs["integral"] == pytest.approx(2.0 * film.sum() * 0.25)

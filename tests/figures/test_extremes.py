@@ -6,6 +6,7 @@ import pytest
 from chain import atlas_of_scan, draw_scan
 from extremes import EXTREMES, write_extreme
 from places import SCANS
+from stated import ARRAY, CORONA, GRANITE, NANOVEA, SURFDIFF
 
 from fractalcontact.core.errors import InputError
 from fractalcontact.figures import draw
@@ -108,19 +109,19 @@ REAL = {
     "granite": (
         "cnl_granite_pair/Extracted_M_CNL_SideA_bottom.txt",
         "cnl_granite_pair/Extracted_M_CNL_SideB_top.txt",
-        {"unit": "mm", "grid": "1 mm"},
+        GRANITE | {"grid": "1 mm"},
         {},
     ),
     "corona": (
         "corona_fault/coronaA_grids.npz",
         None,
-        {"unit": "m", "variable": "Z_grid", "spacing": 0.005685771715431078},
+        CORONA,
         {"window": "200 mm"},
     ),
     "grasselli": ("grasselli_joint/example_surface.stl", None, {"unit": "mm"}, {"window": "6 mm"}),
-    "nanovea_1": ("nanovea/test1.txt", None, {"unit_xy": "mm", "unit_z": "um"}, {}),
-    "nanovea_4": ("nanovea/test4.txt", None, {"unit_xy": "mm", "unit_z": "um"}, {}),
-    "surfdiff": ("surfdiff_rock/BottomBlue.csv", "surfdiff_rock/TopRed.csv", {"unit": "mm"}, {}),
+    "nanovea_1": ("nanovea/test1.txt", None, NANOVEA, {}),
+    "nanovea_4": ("nanovea/test4.txt", None, NANOVEA, {}),
+    "surfdiff": ("surfdiff_rock/BottomBlue.csv", "surfdiff_rock/TopRed.csv", SURFDIFF, {}),
 }
 _INSTRUMENTS = {
     "surfacetopography/al3d-1.al3d": "14 um",
@@ -142,6 +143,14 @@ REAL |= {
     name.replace("/", " "): (f"instruments/{name}", None, {}, {"window": window})
     for name, window in _INSTRUMENTS.items()
 }
+REAL["surfacetopography matrix-3.txt"] = (
+    "instruments/surfacetopography/matrix-3.txt",
+    None,
+    ARRAY
+    | {"delimiter": "tab", "decimal": ".", "header": 4, "first_row": "top"}
+    | {"unit_z": "m", "spacing": "0.0390625 um"},
+    {"window": "1.2 um"},
+)
 REAL["test.gwy"] = (
     "instruments/gwyfile/test.gwy",
     None,

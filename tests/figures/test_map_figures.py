@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from print_size import faults
+from stated import MAP
 
 from fractalcontact.domain.map_series import with_series
 from fractalcontact.domain.measured_map import read_contact_map
@@ -14,7 +15,7 @@ from fractalcontact.figures.kit.measured import measured_series, threshold_words
 from fractalcontact.study.figure_list import all_figures, study_figures_of
 
 FIGURES = ("contact_maps", "map_trend")
-OF_MAPS = {"kind": "contact-map", "unit": "mm", "spacing": 0.5}
+OF_MAPS = {**MAP, "unit": "mm", "spacing": 0.5}
 
 
 @pytest.fixture(scope="module")

@@ -5,6 +5,7 @@ import re
 import numpy as np
 import pandas as pd
 import pytest
+from stated import MAP
 
 from fractalcontact.domain.measured_map import read_contact_map
 from fractalcontact.pages.result_page import Place, write_result_page
@@ -23,7 +24,7 @@ def folder(tmp_path_factory):
 
     def add(name, threshold, **keys):
         np.save(folder / f"{name}.npy", film)
-        options = {"kind": "contact-map", "unit": "mm", "spacing": 0.5, "threshold": threshold}
+        options = {**MAP, "unit": "mm", "spacing": 0.5, "threshold": threshold}
         label = f"=film, {name.replace('_', ' ')}"
         maps[name] = read_contact_map(folder / f"{name}.npy", options | keys, label=label)
 

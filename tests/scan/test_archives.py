@@ -7,11 +7,11 @@ import zipfile
 
 import numpy as np
 import pytest
+from stated import read_scan
 
 from fractalcontact.core.errors import InputError
 from fractalcontact.scan import archives
 from fractalcontact.scan.archives import check_archive
-from fractalcontact.scan.read import read_scan
 
 
 def pack(path, members, method=zipfile.ZIP_DEFLATED):

@@ -18,7 +18,17 @@ from fractalcontact.scan.format import Format
 from fractalcontact.scan.options import ScanOptions, parse_options
 from fractalcontact.scan.raw import RawScan
 
-OPTIONS = ScanOptions()
+STATED = {
+    "kind": "face",
+    "layout": "matrix",
+    "axes": "none",
+    "unit": "mm",
+    "spacing": 100,
+    "first_row": "bottom",
+    "heights": "up",
+    "missing": "none",
+}
+OPTIONS = parse_options(STATED, "rock")
 
 
 @pytest.fixture
@@ -48,16 +58,24 @@ def rock(tmp_path):
 def test_a_scan_comes_through_the_pipe_bit_by_bit(tmp_path):
     values = np.random.default_rng(0).normal(size=(30, 3))
     values[3, 2], values[4, 2] = np.nan, -0.0
-    raw = RawScan(values[::2], "points", "r", "mm", None, (0.1, 0.2), "top", np.float32(-1), ("é",))
+    raw = RawScan(values[::2], "points", "r", "mm", None, (0.1, 0.2), "top", "up", ("é",))
     path = tmp_path / "sent"
     with open(path, "wb") as stream:
         transfer.send_scan(raw, stream)
     with open(path, "rb") as stream:
         back = transfer.receive_scan(transfer.from_text(stream.readline()), stream, 10**6)
     assert back.values.tobytes() == values[::2].tobytes()
-    for field in ("layout", "reader", "unit_xy", "unit_z", "spacing", "first_row", "notes"):
+    for field in (
+        "layout",
+        "reader",
+        "unit_xy",
+        "unit_z",
+        "spacing",
+        "first_row",
+        "heights",
+        "notes",
+    ):
         assert getattr(back, field) == getattr(raw, field)
-    assert back.missing == -1.0
 
 
 def test_what_breaks_off_or_promises_too_much_is_no_scan(tmp_path):
@@ -76,7 +94,9 @@ def test_options_reach_the_reader(tmp_path):
     sent = transfer.from_text(transfer.to_text({"options": asdict(given)}))
     assert ScanOptions(**sent["options"]) == given
     np.savez(tmp_path / "rock.npz", a=np.zeros((9, 9)), b=np.arange(30.0).reshape(10, 3))
-    options = parse_options({"variable": "b", "columns": [1, 2, 0]}, "rock.npz")
+    keys = {"variable": "b", "layout": "points", "columns": [1, 2, 0], "kind": "face"}
+    keys |= {"unit": "mm", "heights": "up", "missing": "none"}
+    options = parse_options(keys, "rock.npz")
     raw = read_confined(tmp_path / "rock.npz", options)
     np.testing.assert_array_equal(raw.values, np.arange(30.0).reshape(10, 3)[:, [1, 2, 0]])
 
@@ -218,7 +238,7 @@ def _read_shape(path):
 def test_the_reader_process_ends_with_its_parent(rock):
     script = (
         "import os, pathlib, sys; from fractalcontact.scan import confined, options; "
-        "confined.read_confined(pathlib.Path(sys.argv[1]), options.ScanOptions()); "
+        f"confined.read_confined(pathlib.Path(sys.argv[1]), options.parse_options({STATED}, '')); "
         "print(confined._server.process.pid, flush=True); os.kill(os.getpid(), 9)"
     )
     done = subprocess.run(
@@ -246,7 +266,7 @@ def test_a_script_without_a_main_guard_runs_once(rock, tmp_path):
     script = tmp_path / "script.py"
     script.write_text(
         "import sys\nfrom fractalcontact.scan.read import read_scan\n"
-        "print(read_scan(sys.argv[1], {'unit': 'mm', 'spacing': 100}).shape)\n"
+        f"print(read_scan(sys.argv[1], {STATED}).shape)\n"
     )
     done = subprocess.run(
         [sys.executable, str(script), str(rock)], capture_output=True, text=True, timeout=60

@@ -5,11 +5,11 @@ import struct
 import numpy as np
 import pytest
 from scan_writers import nodes
+from stated import read_faces, read_scan
 
 from fractalcontact.core.errors import InputError
 from fractalcontact.core.labels import listed, on_one_line, percent, plain
 from fractalcontact.core.units import length_factor
-from fractalcontact.scan.read import read_faces, read_scan
 from fractalcontact.scan.undeclared import find_marks
 from fractalcontact.surface.synthesis import self_affine
 

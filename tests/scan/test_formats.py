@@ -9,13 +9,15 @@ from collections import Counter
 import numpy as np
 import pytest
 from scan_writers import write
+from stated import read_scan
 
 from fractalcontact.core.errors import InputError
-from fractalcontact.scan import formats, raw
+from fractalcontact.scan import formats, raw, read
 from fractalcontact.scan.format import Format
 from fractalcontact.scan.options import ScanOptions
-from fractalcontact.scan.read import read_scan
+from fractalcontact.scan.raw import IncompleteSidecar
 from fractalcontact.scan.readers import instruments
+from fractalcontact.study.sidecar import sidecar_of_matrix
 
 DX, DY = 0.1, 0.25
 MATRIX = {"unit": "mm", "spacing": [DX, DY]}
@@ -233,11 +235,11 @@ def test_each_netcdf_axis_has_its_own_unit(tmp_path):
 @pytest.mark.parametrize("units", [(None, None), ("degrees_east", "degrees_north")])
 def test_netcdf_coordinates_that_are_no_lengths_need_the_sidecar(tmp_path, units):
     path = netcdf(tmp_path / "rock.nc", surface(), *coordinates(), units=units, z_units=None)
-    with pytest.raises(InputError, match="states no unit"):
-        read_scan(path)
-    read = read_scan(path, MATRIX)
-    np.testing.assert_array_equal(read, surface())
-    assert read.attrs["spacing_y"] == DY
+    with pytest.raises(IncompleteSidecar, match="has no sidecar"):
+        read.read_scan(path)
+    heights = read_scan(path, MATRIX)
+    np.testing.assert_array_equal(heights, surface())
+    assert heights.attrs["spacing_y"] == DY
 
 
 def test_an_irregular_netcdf_coordinate_is_refused(tmp_path):
@@ -272,20 +274,14 @@ def hdf5(path, **datasets):
     return path
 
 
-def test_an_hdf5_dataset_gives_its_unit_or_is_named(tmp_path):
-    import h5py
-
-    path = hdf5(tmp_path / "rock.h5", z=surface() * 1e3, time=np.arange(9), label="rock")
-    with h5py.File(path, "a") as file:
-        file["z"].attrs["units"] = "um"
-    heights = read_scan(path, {"spacing": "0.1 mm"})
-    np.testing.assert_allclose(heights, surface(), rtol=1e-12)
-    overridden = read_scan(path, {"unit": "nm", "spacing": "0.1 mm"})
-    np.testing.assert_allclose(overridden, surface() * 1e-3, rtol=1e-12)
-    assert overridden.attrs["overrides"] == "unit_z nm from the sidecar, the file says um"
-    hdf5(path, z=surface(), raw=surface())
-    with pytest.raises(InputError, match="it has raw, z"):
-        read_scan(path, MATRIX)
+def test_of_several_hdf5_datasets_one_is_named(tmp_path):
+    path = hdf5(tmp_path / "rock.h5", z=surface(), raw=surface() + 1)
+    keys = write(tmp_path / "other.npy", surface(), DX, DY)
+    with pytest.raises(IncompleteSidecar, match="lacks variable") as error:
+        read.read_scan(path, keys)
+    assert "variable: z" in error.value.draft
+    assert "raw of 9 x 14" in error.value.draft
+    np.testing.assert_array_equal(read.read_scan(path, keys | {"variable": "raw"}), surface() + 1)
 
 
 def test_hdf5_data_in_other_files_is_never_opened(tmp_path):
@@ -320,7 +316,7 @@ def test_a_header_that_promises_too_much_is_refused_unread(tmp_path, extension):
         file.create_dataset("z", (10**6, 10**6), "f8", chunks=(100, 100), compression="gzip")
     assert path.stat().st_size < 10_000
     with pytest.raises(InputError, match="GiB to read"):
-        read_scan(path, MATRIX)
+        read_scan(path, write(tmp_path / "other.npy", surface(), DX, DY))
 
 
 def test_only_plain_matrices_of_mat_files_are_opened(tmp_path):
@@ -375,7 +371,6 @@ def test_sixteen_bits_and_the_number_for_missing_cells(tmp_path):
     tiff(path, steps.astype(np.int16), extratags=[(42113, "s", 0, "-999", True)])
     heights = read_scan(path, {"unit_z": "0.1 um", "spacing": "0.1 mm", "first_row": "bottom"})
     np.testing.assert_allclose(heights, np.round(surface(), 4), atol=1e-12)
-    assert "first_row bottom" in heights.attrs["overrides"]
 
 
 def test_pictures_are_no_heights(tmp_path):
@@ -387,7 +382,7 @@ def test_pictures_are_no_heights(tmp_path):
     tiff(path, grey)
     with pytest.raises(InputError, match=r"8 bits.*'unit_z: um'"):
         read_scan(path, MATRIX)
-    heights = read_scan(path, {"unit_z": "um", "spacing": "0.1 mm"})
+    heights = read_scan(path, {"unit_z": "um", "spacing": "0.1 mm", "first_row": "top"})
     np.testing.assert_allclose(heights, grey[::-1] * 1e-3)
     assert "256 steps" in heights.attrs["notes"]
 
@@ -395,8 +390,8 @@ def test_pictures_are_no_heights(tmp_path):
 def test_a_page_of_a_tiff_is_named(tmp_path):
     pages = np.stack([surface(), surface() + 1]).astype(np.float32)
     path = tiff(tmp_path / "rock.tif", pages, photometric="minisblack")
-    with pytest.raises(InputError, match="it has page 1, page 2"):
-        read_scan(path, MATRIX)
+    with pytest.raises(IncompleteSidecar, match="lacks variable"):
+        read.read_scan(path, write(tmp_path / "other.tif", surface(), DX, DY))
     heights = read_scan(path, MATRIX | {"variable": "page 2", "first_row": "bottom"})
     np.testing.assert_allclose(heights, surface() + 1, atol=1e-7)
 
@@ -535,7 +530,7 @@ def test_nothing_but_the_reader_process_imports_the_readers(tmp_path):
         "from fractalcontact.study.scan_files import list_scans\n"
         "numpy.save('rock.npy', numpy.arange(99.0).reshape(9, 11))\n"
         "assert list(list_scans('.')[0]) == ['rock']\n"
-        "read_matrix('rock.npy', {'unit': 'mm', 'spacing': 1})\n"
+        f"read_matrix('rock.npy', {sidecar_of_matrix(1.0)})\n"
         "print([name for name in sys.modules if 'scan.readers' in name or 'scan.formats' in name])"
     )
     done = subprocess.run(

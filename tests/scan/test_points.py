@@ -11,11 +11,12 @@ from ensembles import ensemble
 from places import BENCHMARKS
 from scipy.interpolate import LinearNDInterpolator
 from scipy.spatial import Delaunay
+from stated import drafted, read_faces, read_scan
 
 from fractalcontact.core.errors import InputError
 from fractalcontact.scan import density, levelling, overhangs, points
 from fractalcontact.scan import triangles as tri
-from fractalcontact.scan.read import read_faces, read_scan
+from fractalcontact.scan.options import parse_options
 from fractalcontact.scan.readers import text
 
 SIDE = 20.0  # mm
@@ -479,7 +480,8 @@ BLOCK_FILES = {
 def test_blocks_of_text_read_like_the_whole(tmp_path, monkeypatch, lines, end):
     path = tmp_path / "rock.xyz"
     path.write_text("\n".join(lines) + end)
-    options = text.ScanOptions(layout="points", columns=(0, 1, 2))
+    keys = drafted(path, {"unit": "mm", "layout": "points", "columns": [0, 1, 2]})
+    options = parse_options(keys, "rock")
     whole = text.read_text(path, options)
     for block in (1, 30, 170):
         monkeypatch.setattr(text, "_BLOCK", block)
@@ -491,9 +493,9 @@ def test_blocks_of_text_read_like_the_whole(tmp_path, monkeypatch, lines, end):
 @pytest.mark.parametrize(
     ("line", "message"),
     [
-        ("1 2 3 4", "line 30 has 4 values, the others have 3"),
-        ("1 2", "line 30 has 2 values, the others have 3"),
-        ("1 2 broken", "line 30 is not numbers"),
+        ("1 2 3 4", "line 30 has 4 values, those before have 3"),
+        ("1 2", "line 30 has 2 values, those before have 3"),
+        ("1 2 broken", "line 30 holds 'broken', no number"),
     ],
 )
 def test_a_bad_line_in_a_later_block_is_named(tmp_path, monkeypatch, line, message):
@@ -501,7 +503,9 @@ def test_a_bad_line_in_a_later_block_is_named(tmp_path, monkeypatch, line, messa
     path = tmp_path / "rock.xyz"
     path.write_text("1 2 3\n" * 29 + line + "\n" + "1 2 3\n" * 29)
     with pytest.raises(InputError, match=rf"rock\.xyz: {message}"):
-        text.read_text(path, text.ScanOptions())
+        text.read_text(
+            path, parse_options({**drafted(path, {"unit": "mm"}), "missing": "none"}, "")
+        )
 
 
 @pytest.mark.parametrize("share", [0.3, 3.0])

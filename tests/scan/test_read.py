@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 from places import SCANS
 from scipy.interpolate import griddata
+from stated import read_faces, read_scan
 
 from fractalcontact.core.errors import InputError
 from fractalcontact.scan.confined import read_confined
-from fractalcontact.scan.read import read_faces, read_scan
 
 scans = pytest.mark.scans
 needs_scans = pytest.mark.skipif(not SCANS.is_dir(), reason="the folder of real scans is absent")

@@ -6,9 +6,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 from places import SCANS
+from stated import read_scan
 
 from fractalcontact.core.errors import InputError
-from fractalcontact.scan.read import read_scan
 
 INSTRUMENTS = SCANS / "instruments" / "surfacetopography"
 pytestmark = [

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from places import SCANS
 from scanned_pairs import SPACING, joint, labelled, motion
+from stated import read_faces
 
 from fractalcontact.core.errors import InputError
 from fractalcontact.core.mean_plane import without_mean_plane
 from fractalcontact.scan.pairs import register
-from fractalcontact.scan.read import read_faces
 from fractalcontact.scan.registration import biweight_limit, biweight_spread, find_motion
 from fractalcontact.scan.surface_motion import Motion, Surface, grid_nodes
 from fractalcontact.surface.specimen import make_specimen

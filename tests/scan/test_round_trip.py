@@ -5,8 +5,7 @@ import json
 import numpy as np
 import pytest
 from scan_writers import WRITERS, write
-
-from fractalcontact.scan.read import read_scan
+from stated import read_scan
 
 #: Largest error in mm: what each format can hold of heights within 0.5 mm.
 PRECISION = {

@@ -7,13 +7,13 @@ import pytest
 import xarray as xr
 from ensembles import ensemble
 from places import SCANS
+from stated import read_faces
 
 from fractalcontact.core.estimate import Estimate
 from fractalcontact.core.settings import Solver
 from fractalcontact.domain.renormalisation import hausdorff_measure
 from fractalcontact.mechanics.joint import composite_topography
 from fractalcontact.mechanics.loading import JointLoading
-from fractalcontact.scan.read import read_faces
 from fractalcontact.size_effect.division import split
 from fractalcontact.size_effect.eq6 import DELTA_SIGMA_ESTIMATORS, size_test
 from fractalcontact.size_effect.laws import joint_by_size

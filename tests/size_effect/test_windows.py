@@ -7,6 +7,7 @@ import pytest
 import xarray as xr
 from ensembles import ensemble
 from places import SCANS
+from stated import read_faces
 from symmetries import LENGTH, STRESS, differences, grown, with_axes_exchanged
 
 from fractalcontact.core.estimate import Estimate
@@ -20,7 +21,6 @@ from fractalcontact.mechanics.strength import joint_strength
 from fractalcontact.mechanics.sweep import contact_states
 from fractalcontact.mechanics.theory import scaled_joint
 from fractalcontact.roughness.estimators.roughness_length import roughness_length_curves
-from fractalcontact.scan.read import read_faces
 from fractalcontact.size_effect.division import FEWEST_CELLS, PARTS, split, spread_windows
 from fractalcontact.size_effect.laws import size_laws
 from fractalcontact.size_effect.local_roughness import local_roughness, tilt_fraction

@@ -262,3 +262,19 @@ def test_a_sidecar_of_one_face_is_told_its_name(tmp_path, face):
     assert list(scans) == ["own"]
     (error,) = refused.values()
     assert str(error).endswith("one sidecar serves both faces of a joint; rename it own.yaml")
+
+
+@pytest.mark.parametrize(
+    ("lower", "upper", "common"),
+    [
+        ("rock_bottom.x3p", "rock_top.x3p", "rock"),
+        ("M_CNL_SideA_bottom.txt", "M_CNL_SideB_top.txt", "M_CNL"),
+        ("SampleSideA.csv", "SampleSideB.csv", "Sample"),
+    ],
+)
+def test_how_others_name_the_faces_of_a_joint_is_seen(tmp_path, lower, upper, common):
+    for name in (lower, upper):
+        (tmp_path / name).write_text("1")
+    (note,) = folder_notes(tmp_path)
+    ending = lower.rpartition(".")[2]
+    assert f"rename them {common}.lower.{ending} and {common}.upper.{ending}" in note

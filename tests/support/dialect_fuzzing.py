@@ -1,4 +1,4 @@
-"""A known surface in foreign-looking text files: each is read right or refused with advice.
+"""A known surface in foreign-looking files: read as its true sidecar says, or refused with a draft.
 
     python tests/support/dialect_fuzzing.py --files 5000 --seed 1
     python tests/support/dialect_fuzzing.py --seed 1 --only 1234  # one of them again
@@ -10,14 +10,16 @@ import re
 import tempfile
 import traceback
 import warnings
-from collections import defaultdict
+from collections import Counter, defaultdict
 from dataclasses import dataclass
 from pathlib import Path
 from unittest import mock
 
 import dialects_of_matrices  # noqa: F401  # enter their dialects
+import dialects_of_meaning  # noqa: F401
 import dialects_of_points  # noqa: F401
 import numpy as np
+import yaml
 from dialects import Written, make
 from fuzzing import judge_from_command_line
 from places import ROOT
@@ -25,24 +27,45 @@ from places import ROOT
 from fractalcontact.core.errors import InputError
 from fractalcontact.scan import read
 from fractalcontact.scan.formats import read_raw
+from fractalcontact.scan.raw import IncompleteSidecar
 
 #: Words of a sentence that says what to do.
 _ADVICE = re.compile(r"\b(export|write|save|say|remove|mend|set|name)\b|'[a-z_]+: ", re.IGNORECASE)
-LONGEST_MESSAGE = 1000
+LONGEST_MESSAGE = 1200
+
+
+#: Keys that only the owner of a file can know: a draft may leave them empty.
+FILLED = ("unit", "unit_xy", "unit_z", "spacing", "first_row")
 
 
 @dataclass(frozen=True)
 class Judgement:
-    """What became of one file: ``outcome`` is "right", "refused" or "wrong"; why it is a fault."""
+    """What became of one file.
+
+    Attributes
+    ----------
+    written : Written
+    outcome : str
+        "right", "refused" or "wrong", by its true sidecar.
+    message : str
+    fault : str
+        What must not have happened; "" if all is well.
+    drafted : str
+        The outcome by its draft, confirmed unread; "" where there is none.
+    mistaken : tuple of str
+        Keys in which the draft differs from the truth, where it was read wrong.
+    """
 
     written: Written
     outcome: str
     message: str
     fault: str
+    drafted: str = ""
+    mistaken: tuple[str, ...] = ()
 
 
 def judge(written: Written, folder: Path) -> Judgement:
-    """Read one file with its sidecar, and without, and compare what was read with the truth.
+    """Read one file without a sidecar, with its true one, and as its draft says.
 
     It is read in this process: what the reader's own process does is `fuzzing`'s matter, and it
     takes ten times as long.
@@ -50,38 +73,47 @@ def judge(written: Written, folder: Path) -> Judgement:
     path = folder / f"rock{written.ending}"
     path.write_bytes(written.content)
     with mock.patch.object(read, "read_confined", read_raw):
-        return _judge(written, path)
+        try:
+            return _judge(written, path)
+        finally:
+            path.unlink()
 
 
 def _judge(written: Written, path: Path) -> Judgement:
-    try:
-        fault = _fault_without_sidecar(written, path) if written.sidecar else ""
-        outcome, message = _read(path, written, written.sidecar)
-    finally:
-        path.unlink()
+    fault, draft = _without_sidecar(written, path)
+    outcome, message = _read(path, written, written.sidecar)
     if outcome == "wrong":
         fault = fault or f"read wrong: {message}"
     elif outcome == "refused":
         fault = fault or _fault_of_message(message, path)
         if written.expected == "read":
-            fault = fault or f"refused, but says all: {message}"
+            fault = fault or f"refused, but its sidecar says all: {message}"
     elif written.expected == "refused":
         outcome, fault = "wrong", fault or "read, but holds no surface or contradicts itself"
-    return Judgement(written, "wrong" if fault.startswith("read") else outcome, message, fault)
+    if not draft:
+        return Judgement(written, outcome, message, fault)
+    truth = written.sidecar
+    filled = {key: truth[key] for key in FILLED if draft.get(key) is None and key in truth}
+    drafted = {key: value for key, value in draft.items() if value is not None} | filled
+    by_draft, _ = _read(path, written, drafted)
+    mistaken = tuple(
+        key for key in sorted(drafted.keys() | truth.keys()) if drafted.get(key) != truth.get(key)
+    )
+    return Judgement(written, outcome, message, fault, by_draft, mistaken)
 
 
-def _fault_without_sidecar(written: Written, path: Path) -> str:
-    """Without its sidecar a file is read right or refused; and what it states is not denied."""
+def _without_sidecar(written: Written, path: Path) -> tuple[str, dict]:
+    """The fault of reading a file alone, and the draft that its refusal prints."""
+    try:
+        read.read_scan(path)
+    except IncompleteSidecar as error:
+        return _fault_of_message(error.message, path), yaml.safe_load(error.draft)
+    except InputError as error:
+        return _fault_of_message(str(error), path), {}
     outcome, message = _read(path, written, {})
-    if outcome == "wrong" and "missing" in written.sidecar:
-        return ""  # a number that nobody has said to mean a missing cell
-    if outcome == "wrong" or (outcome == "right" and written.expected == "refused"):
-        return f"read wrong without a sidecar: {message}"
-    if outcome == "refused":
-        if written.states_units and "states no unit" in message:
-            return f"it states its units, but: {message}"
-        return _fault_of_message(message, path)
-    return ""
+    if not written.describes_itself:
+        return f"read without a sidecar, {outcome}", {}
+    return (f"read wrong without a sidecar: {message}" if outcome == "wrong" else ""), {}
 
 
 def _read(path: Path, written: Written, sidecar: dict) -> tuple[str, str]:
@@ -136,18 +168,21 @@ def run(numbers, seed: int, kept: Path | None = None) -> list[Judgement]:
 
 
 def table(judgements: list[Judgement]) -> str:
-    """Files, read right, refused, read wrong, and faults of any kind, by dialect."""
+    """By dialect: files, outcomes by the true sidecar and by the unread draft, and faults."""
     groups = defaultdict(list)
     for judgement in judgements:
         groups[judgement.written.dialect].append(judgement)
     groups["all"] = judgements
-    lines = [f"{'dialect':42}{'files':>7}{'right':>7}{'refused':>9}{'wrong':>7}{'faults':>8}"]
+    outcomes = ("right", "refused", "wrong")
+    head = "".join(f"{outcome:>8}" for outcome in outcomes)
+    lines = [f"{'dialect':40}{'files':>6} by sidecar:{head} unread draft:{head}  faults"]
     for name, group in groups.items():
-        counts = [
-            sum(j.outcome == outcome for j in group) for outcome in ("right", "refused", "wrong")
-        ]
+        true = "".join(f"{sum(j.outcome == o for j in group):8}" for o in outcomes)
+        draft = "".join(f"{sum(j.drafted == o for j in group):8}" for o in outcomes)
         faults = sum(bool(j.fault) for j in group)
-        lines.append(f"{name:42}{len(group):7}{counts[0]:7}{counts[1]:9}{counts[2]:7}{faults:8}")
+        keys = Counter(key for j in group if j.drafted == "wrong" for key in j.mistaken)
+        why = ", ".join(f"{key} {count}" for key, count in keys.most_common(4))
+        lines.append(f"{name:40}{len(group):6}{'':12}{true}{'':14}{draft}{faults:8}  {why}")
     return "\n".join(lines)
 
 

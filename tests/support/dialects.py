@@ -49,14 +49,14 @@ class Style:
 
 @dataclass(frozen=True)
 class Written:
-    """A file, the sidecar that completes it, and what must become of it.
+    """A file, its true sidecar, and what must become of it.
 
     Attributes
     ----------
     expected : {"read", "either", "refused"}
         Whether it must be read, may be refused, or must be refused; never is it read wrong.
-    states_units : bool
-        Whether the file itself says the units of x, y and z.
+    describes_itself : bool
+        Whether it needs no sidecar.
     """
 
     dialect: str
@@ -65,7 +65,7 @@ class Written:
     sidecar: dict
     surface: Surface
     expected: str
-    states_units: bool
+    describes_itself: bool
 
 
 @dataclass
@@ -74,10 +74,14 @@ class Sheet:
 
     rows: list[list[str]]
     front: list[str] = field(default_factory=list)
+    #: Of the true sidecar what the pen does not know.
     sidecar: dict = field(default_factory=dict)
     between: dict[int, str] = field(default_factory=dict)  # lines before rows
     expected: str = "read"
-    states_units: bool = False
+    describes_itself: bool = False
+    words: int = 0  # of the rows, the first that hold names and units
+    is_points: bool = False
+    content: bytes | None = None  # of a binary file, whose sidecar is whole
     ending: str | None = None
     surface: Surface | None = None  # where another than the one given
 
@@ -215,8 +219,11 @@ def make(seed: int, number: int, name: str | None = None) -> Written:
     pen = Pen(surface, draw_style(rng, surface), rng)
     sheet = DIALECTS[name](pen)
     style = pen.style
-    if style.mark == "-9999" and np.isnan(pen.heights).any() and "missing" not in sheet.sidecar:
-        sheet.sidecar = sheet.sidecar | {"missing": -9999}
+    if sheet.content is not None:
+        assert sheet.ending is not None
+        truth = sheet.surface or surface
+        outcome = sheet.expected, sheet.describes_itself
+        return Written(name, sheet.ending, sheet.content, sheet.sidecar, truth, *outcome)
     lines = list(sheet.front)
     tail = style.delimiter.strip(" ") if style.trailing else ""
     for number_of_row, cells in enumerate(sheet.rows):
@@ -227,17 +234,43 @@ def make(seed: int, number: int, name: str | None = None) -> Written:
     encoding = style.encoding
     if encoding == "latin-1" and "\u2212" in text:
         encoding = "utf-8"
-    sidecar = {key: value for key, value in sheet.sidecar.items() if value is not None}
     ending = sheet.ending or str(rng.choice([".txt", ".csv", ".dat", ".tsv"]))
     return Written(
         name,
         ending,
         text.encode(encoding),
-        sidecar,
+        true_sidecar(pen, sheet),
         sheet.surface or surface,
         sheet.expected,
-        sheet.states_units,
+        sheet.describes_itself,
     )
+
+
+def true_sidecar(pen: Pen, sheet: Sheet) -> dict:
+    """What the owner of a text knows of it."""
+    style, own = pen.style, dict(sheet.sidecar)
+    stated = {"kind": "face", "delimiter": delimiter_name(style.delimiter)}
+    stated |= {"decimal": style.decimal, "header": len(sheet.front) + sheet.words}
+    if sheet.is_points:
+        stated |= {"layout": "points", "columns": [0, 1, 2], **pen.unit_sidecar()}
+    else:
+        stated |= {"layout": "matrix", "axes": "none", **pen.matrix_sidecar()}
+        stated |= {"first_row": "bottom"}
+        if own.get("axes") == "both" and "spacing" not in own:
+            del stated["spacing"], stated["first_row"]
+    is_marked = np.isnan(pen.heights).any() and style.mark not in ("", "nan", "NaN", "-nan")
+    mark = -9999 if style.mark == "-9999" else style.mark
+    stated |= {"heights": "up", "missing": mark if is_marked else "none"} | own
+    return {key: value for key, value in stated.items() if value is not None}
+
+
+#: A file that no sidecar can describe: what it states is never complete.
+UNSTATABLE = {"layout": None}
+
+
+def delimiter_name(delimiter: str) -> str:
+    """A delimiter as a sidecar has it."""
+    return {",": "comma", ";": "semicolon", "\t": "tab"}.get(delimiter.strip(" "), "blank")
 
 
 def restyle(pen: Pen, **changes) -> None:

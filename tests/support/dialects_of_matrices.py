@@ -3,17 +3,17 @@
 from dataclasses import replace
 
 import numpy as np
-from dialects import FACTORS, NOISE, Pen, Sheet, dialect, plain_unit, restyle, whole
+from dialects import FACTORS, NOISE, UNSTATABLE, Pen, Sheet, dialect, plain_unit, restyle, whole
 
 
 @dialect
 def _plain_matrix(pen: Pen) -> Sheet:
-    return Sheet(pen.matrix(), sidecar=pen.matrix_sidecar())
+    return Sheet(pen.matrix())
 
 
 @dialect
 def _matrix_from_the_top(pen: Pen) -> Sheet:
-    return Sheet(pen.matrix()[::-1], sidecar={**pen.matrix_sidecar(), "first_row": "top"})
+    return Sheet(pen.matrix()[::-1], sidecar={"first_row": "top"})
 
 
 def _framed(pen: Pen, corner: str | None, above: list[str], beside: list[str]) -> list[list[str]]:
@@ -30,39 +30,42 @@ def _places(pen: Pen, values, offset: float = 0.0) -> list[str]:
     return [pen.place(value + offset) for value in values]
 
 
+def _frame_of_counts(pen: Pen) -> dict:
+    """A frame that counts rows and columns: the spacing is not in it."""
+    return {"axes": "both", "spacing": pen.steps()}
+
+
 @dialect
 def _frame_with_indices(pen: Pen) -> Sheet:
     corner = "" if pen.style.delimiter.strip(" ") else "0"
-    return Sheet(_framed(pen, corner, _counts(pen.x), _counts(pen.y)), sidecar=pen.matrix_sidecar())
+    rows = _framed(pen, corner, _counts(pen.x), _counts(pen.y))
+    return Sheet(rows, sidecar=_frame_of_counts(pen))
 
 
 @dialect
 def _frame_with_indices_from_1(pen: Pen) -> Sheet:
     corner = "" if pen.style.delimiter.strip(" ") else "0"
-    return Sheet(
-        _framed(pen, corner, _counts(pen.x, 1), _counts(pen.y, 1)), sidecar=pen.matrix_sidecar()
-    )
+    rows = _framed(pen, corner, _counts(pen.x, 1), _counts(pen.y, 1))
+    return Sheet(rows, sidecar=_frame_of_counts(pen))
 
 
 @dialect
 def _index_of_rows_alone(pen: Pen) -> Sheet:
     rows = [[str(n), *row] for n, row in enumerate(pen.matrix())]
-    return Sheet(rows, sidecar=pen.matrix_sidecar())
+    return Sheet(rows, sidecar={"axes": "column"})
 
 
 @dialect
 def _index_of_columns_alone(pen: Pen) -> Sheet:
-    return Sheet([_counts(pen.x), *pen.matrix()], sidecar=pen.matrix_sidecar())
+    return Sheet([_counts(pen.x), *pen.matrix()], sidecar={"axes": "row"})
 
 
 def _coordinates(pen: Pen, corner: str | None, **more) -> Sheet:
-    """Coordinates on both sides; only units are left to the sidecar."""
+    """Coordinates on both sides, which say the spacing."""
     restyle(pen, trailing=False)
     offsets = pen.rng.choice([0.0, 10.0, -3.5], 2)
     rows = _framed(pen, corner, _places(pen, pen.x, offsets[0]), _places(pen, pen.y, offsets[1]))
-    counted = any(step / pen.xy == 1 for step in (pen.surface.dx, pen.surface.dy))
-    sidecar = pen.matrix_sidecar() if counted else pen.unit_sidecar()
-    return Sheet(rows, sidecar=sidecar, **more)
+    return Sheet(rows, sidecar={"axes": "both"}, **more)
 
 
 @dialect
@@ -88,9 +91,7 @@ def _coordinates_with_words_in_the_corner(pen: Pen) -> Sheet:
 @dialect
 def _coordinates_with_unit_in_the_corner(pen: Pen) -> Sheet:
     unit = pen.style.unit_xy
-    sheet = _coordinates(pen, f"y/x[{unit}]")
-    sheet.sidecar.pop("unit_xy")
-    return sheet
+    return _coordinates(pen, f"y/x[{unit}]")
 
 
 @dialect
@@ -99,7 +100,7 @@ def _coordinates_with_units(pen: Pen) -> Sheet:
         restyle(pen, delimiter=";")
     sheet = _coordinates(pen, "y")
     sheet.rows[0][1:] = [f"{cell} {pen.style.unit_xy}" for cell in sheet.rows[0][1:]]
-    return sheet
+    return replace(sheet, expected="refused")
 
 
 @dialect
@@ -119,7 +120,7 @@ def _coordinates_from_the_right(pen: Pen) -> Sheet:
 @dialect
 def _coordinates_whose_corner_names_x(pen: Pen) -> Sheet:
     corner = str(pen.rng.choice(["x", "x\\y", "X/Y"]))
-    return replace(_coordinates(pen, corner), expected="refused")
+    return _coordinates(pen, corner)
 
 
 @dialect
@@ -135,24 +136,24 @@ def _coordinates_and_a_pixel_size(pen: Pen) -> Sheet:
 def _coordinates_behind(pen: Pen) -> Sheet:
     rows = [[*row, side] for row, side in zip(pen.matrix(), _places(pen, pen.y), strict=True)]
     restyle(pen, trailing=False)
-    return Sheet(rows, sidecar=pen.matrix_sidecar(), expected="refused")
+    return Sheet(rows, sidecar=UNSTATABLE, expected="refused")
 
 
 @dialect
 def _coordinates_of_x_alone(pen: Pen) -> Sheet:
-    return Sheet([_places(pen, pen.x), *pen.matrix()], sidecar=pen.matrix_sidecar())
+    return Sheet([_places(pen, pen.x), *pen.matrix()], sidecar={"axes": "row"})
 
 
 @dialect
 def _coordinates_of_y_alone(pen: Pen) -> Sheet:
     beside = _places(pen, pen.y, 5.0)
     rows = [[side, *row] for side, row in zip(beside, pen.matrix(), strict=True)]
-    return Sheet(rows, sidecar=pen.matrix_sidecar())
+    return Sheet(rows, sidecar={"axes": "column"})
 
 
 @dialect
 def _coordinates_in_a_comment(pen: Pen) -> Sheet:
-    return Sheet(pen.matrix(), [pen.remark(pen.join(_places(pen, pen.x)))], pen.matrix_sidecar())
+    return Sheet(pen.matrix(), [pen.remark(pen.join(_places(pen, pen.x)))])
 
 
 @dialect
@@ -161,13 +162,13 @@ def _uneven_coordinates(pen: Pen) -> Sheet:
     x[4:] += 3.3 * x[1]
     y[6:] += 7.7 * y[1]
     rows = _framed(pen, "0", _places(pen, x, 100.0), _places(pen, y, 100.0))
-    return Sheet(rows, sidecar=pen.matrix_sidecar(), expected="refused")
+    return Sheet(rows, sidecar={"axes": "both"}, expected="refused")
 
 
 @dialect
 def _rows_numbered_with_gaps(pen: Pen) -> Sheet:
     rows = [[str(n + (n > 3) + 2 * (n > 7)), *row] for n, row in enumerate(pen.matrix())]
-    return Sheet(rows, sidecar=pen.matrix_sidecar(), expected="refused")
+    return Sheet(rows, sidecar={"axes": "column"}, expected="refused")
 
 
 @dialect
@@ -176,7 +177,7 @@ def _numbered_names(pen: Pen) -> Sheet:
     if not pen.style.delimiter.strip(" "):
         stem = stem.strip()
     names = [f"{stem}{n + 1}" for n in range(pen.x.size)]
-    return Sheet([names, *pen.matrix()], sidecar=pen.matrix_sidecar())
+    return Sheet([names, *pen.matrix()], words=1)
 
 
 @dialect
@@ -184,50 +185,49 @@ def _statisticians_table(pen: Pen) -> Sheet:
     restyle(pen, delimiter=",", decimal=".", mark="NA", trailing=False)
     names = ['""', *(f'"V{n + 1}"' for n in range(pen.x.size))]
     rows = [[f'"{n + 1}"', *row] for n, row in enumerate(pen.matrix())]
-    return Sheet([names, *rows], sidecar=pen.matrix_sidecar())
+    return Sheet([names, *rows], sidecar={"axes": "column"}, words=1)
 
 
 @dialect
 def _spreadsheet_letters(pen: Pen) -> Sheet:
     names = [chr(ord("A") + n) for n in range(pen.x.size)]
-    return Sheet([names, *pen.matrix()], sidecar=pen.matrix_sidecar())
+    return Sheet([names, *pen.matrix()], words=1)
 
 
 @dialect
 def _quoted_numbers(pen: Pen) -> Sheet:
     restyle(pen, delimiter=";" if pen.style.decimal == "," else ",", mark="NaN", trailing=False)
     rows = [[f'"{cell}"' for cell in row] for row in pen.matrix()]
-    return Sheet(rows, sidecar=pen.matrix_sidecar())
+    return Sheet(rows)
 
 
 @dialect
 def _title(pen: Pen) -> Sheet:
-    return Sheet(pen.matrix(), ["Surface of a granite crack", ""], pen.matrix_sidecar())
+    return Sheet(pen.matrix(), ["Surface of a granite crack", ""])
 
 
 @dialect
 def _comments_of_no_meaning(pen: Pen) -> Sheet:
     lines = pen.rng.permutation(NOISE)[:5]
-    return Sheet(pen.matrix(), [pen.remark(line) for line in lines], pen.matrix_sidecar())
+    return Sheet(pen.matrix(), [pen.remark(line) for line in lines])
 
 
 @dialect
 def _comments_between_rows(pen: Pen) -> Sheet:
     between = {n: pen.remark(f"row {n}") for n in range(1, pen.y.size, 2)}
-    return Sheet(pen.matrix(), sidecar=pen.matrix_sidecar(), between=between)
+    return Sheet(pen.matrix(), between=between)
 
 
 @dialect
 def _double_spaced(pen: Pen) -> Sheet:
     between = dict.fromkeys(range(1, pen.y.size), "")
-    return Sheet(pen.matrix(), sidecar=pen.matrix_sidecar(), between=between)
+    return Sheet(pen.matrix(), between=between)
 
 
-def _stated(pen: Pen, lines: list[str], left: tuple[str, ...] = (), **more) -> Sheet:
-    """A matrix under lines that state all but what is ``left`` to the sidecar."""
+def _stated(pen: Pen, lines: list[str], sidecar: dict | None = None) -> Sheet:
+    """A matrix under lines that state something."""
     lines = [pen.remark(line.replace(".", pen.style.decimal)) for line in lines]
-    sidecar = {key: value for key, value in pen.matrix_sidecar().items() if key in left}
-    return Sheet(pen.matrix(), lines, sidecar, states_units=not left, **more)
+    return Sheet(pen.matrix(), lines, sidecar or {})
 
 
 def _square(pen: Pen) -> None:
@@ -239,19 +239,19 @@ def _pixel_size(pen: Pen) -> Sheet:
     _square(pen)
     key = pen.rng.choice(["pixel size", "Pixelsize", "spacing", "Step size", "pitch", "cell size"])
     line = f"{key}{pen.rng.choice([': ', ' = ', ' '])}{pen.steps()[0]} {pen.style.unit_xy}"
-    return replace(_stated(pen, [line], ("unit_z",)), surface=pen.surface)
+    return replace(_stated(pen, [line]), surface=pen.surface)
 
 
 @dialect
 def _pixel_size_of_two(pen: Pen) -> Sheet:
     dx, dy = pen.steps()
-    return _stated(pen, [f"Pixel size: {dx} x {dy} {pen.style.unit_xy}"], ("unit_z",))
+    return _stated(pen, [f"Pixel size: {dx} x {dy} {pen.style.unit_xy}"])
 
 
 @dialect
 def _steps_in_one_line(pen: Pen) -> Sheet:
     (dx, dy), unit = pen.steps(), pen.style.unit_xy
-    return _stated(pen, [f"dx = {dx} {unit}; dy = {dy} {unit}"], ("unit_z",))
+    return _stated(pen, [f"dx = {dx} {unit}; dy = {dy} {unit}"])
 
 
 @dialect
@@ -275,24 +275,20 @@ def _keys_of_a_program(pen: Pen) -> Sheet:
 @dialect
 def _steps_without_unit(pen: Pen) -> Sheet:
     dx, dy = pen.steps()
-    return _stated(pen, [f"dx: {dx}", f"dy: {dy}"], ("unit_xy", "unit_z"))
+    return _stated(pen, [f"dx: {dx}", f"dy: {dy}"])
 
 
 @dialect
 def _unit_line(pen: Pen) -> Sheet:
     restyle(pen, unit_z=pen.style.unit_xy)
-    return _stated(
-        pen,
-        [f"unit: {pen.style.unit_xy}"],
-        ("spacing",),
-    )
+    return _stated(pen, [f"unit: {pen.style.unit_xy}"])
 
 
 @dialect
 def _units_in_a_sentence(pen: Pen) -> Sheet:
     style = pen.style
     line = f"x, y in {style.unit_xy}, heights in {style.unit_z}"
-    return _stated(pen, ["export of the profilometer", line], ("spacing",))
+    return _stated(pen, ["export of the profilometer", line])
 
 
 @dialect
@@ -300,16 +296,15 @@ def _factor_with_unit(pen: Pen) -> Sheet:
     (dx, dy), factor = pen.steps(), float(pen.rng.choice([0.001, 0.5, 2.0]))
     lines = [f"dx: {dx} {pen.style.unit_xy}", f"dy: {dy} {pen.style.unit_xy}"]
     lines.append(f"{pen.rng.choice(['z scale', 'height factor'])}: {factor} {pen.style.unit_z}")
-    sheet = _stated(pen, lines)
+    sheet = _stated(pen, lines, {"unit_z": f"{factor} {plain_unit(pen.style.unit_z)}"})
     sheet.rows = pen.matrix(pen.heights / factor)
     return sheet
 
 
 @dialect
 def _factor_without_unit(pen: Pen) -> Sheet:
-    sheet = _stated(
-        pen, ["scale factor: 0.01"], ("unit_xy", "unit_z", "spacing"), expected="either"
-    )
+    sidecar = {"unit_z": f"0.01 {plain_unit(pen.style.unit_z)}"}
+    sheet = _stated(pen, ["scale factor: 0.01"], sidecar)
     sheet.rows = pen.matrix(pen.heights / 0.01)
     return sheet
 
@@ -318,14 +313,12 @@ def _factor_without_unit(pen: Pen) -> Sheet:
 def _missing_stated(pen: Pen) -> Sheet:
     restyle(pen, mark="-9999")
     key = pen.rng.choice(["NoData: ", "missing value = ", "no data value: ", "fill value "])
-    sheet = _stated(pen, [f"{key}-9999"], ("unit_xy", "unit_z", "spacing"))
-    sheet.sidecar["missing"] = None
-    return sheet
+    return _stated(pen, [f"{key}-9999"])
 
 
 @dialect
 def _first_row_stated(pen: Pen) -> Sheet:
-    sheet = _stated(pen, ["first row: top"], ("unit_xy", "unit_z", "spacing"))
+    sheet = _stated(pen, ["first row: top"], {"first_row": "top"})
     sheet.rows = sheet.rows[::-1]
     return sheet
 
@@ -333,7 +326,7 @@ def _first_row_stated(pen: Pen) -> Sheet:
 @dialect
 def _unit_that_is_none(pen: Pen) -> Sheet:
     unit = pen.rng.choice(["px", "point", "pica", "V", "a.u.", "counts"])
-    return _stated(pen, [f"unit: {unit}"], ("unit_xy", "unit_z", "spacing"))
+    return _stated(pen, [f"unit: {unit}"])
 
 
 def _gwyddion(pen: Pen, words: tuple[str, str, str, str]) -> Sheet:
@@ -345,7 +338,7 @@ def _gwyddion(pen: Pen, words: tuple[str, str, str, str]) -> Sheet:
     lines = [f"# {words[0]}: a 1", f"# {words[1]}: {width:.9f} {unit}".replace(".", decimal)]
     lines += [f"# {words[2]}: {height:.9f} {unit}".replace(".", decimal)]
     lines += [f"# {words[3]}: {pen.style.unit_z}"]
-    return Sheet(pen.matrix()[::-1], lines, states_units=True)
+    return Sheet(pen.matrix()[::-1], lines, {"first_row": "top"})
 
 
 @dialect
@@ -368,7 +361,7 @@ def _esri(pen: Pen, rows: int, columns: int, cells: list[str], **more) -> Sheet:
     restyle(pen, delimiter=" ", mark=mark, exponent="", decimal=".", trailing=False)
     front = [f"ncols {columns}", f"nrows {rows}", "xllcorner 0.0", "yllcorner 0.0", *cells]
     front.append(f"NODATA_value {mark}")
-    sidecar = {**pen.unit_sidecar(), "missing": None}
+    sidecar = {"first_row": "top", "missing": -9999}
     return Sheet(pen.matrix()[::-1], front, sidecar, ending=".asc", **more)
 
 
@@ -400,20 +393,21 @@ def _surfer_grid(pen: Pen) -> Sheet:
     front += [f"{pen.y[0]:.9g} {pen.y[-1]:.9g}", "-1 1"]
     ending = str(pen.rng.choice([".grd", ".txt", ".asc"]))
     restyle(pen, encoding="latin-1")
-    return Sheet(pen.matrix(), front, pen.unit_sidecar(), ending=ending)
+    of_format = ("delimiter", "decimal", "header", "layout", "axes", "spacing", "first_row")
+    return Sheet(pen.matrix(), front, dict.fromkeys((*of_format, "missing")), ending=ending)
 
 
 @dialect
 def _counts_in_front(pen: Pen) -> Sheet:
     counts = [f"{pen.y.size} {pen.x.size}", f"{pen.x.size} {pen.y.size}", str(pen.y.size)]
     counts.append(pen.join([str(pen.y.size), str(pen.x.size)]))
-    return Sheet(pen.matrix(), [counts[pen.rng.integers(4)]], pen.matrix_sidecar())
+    return Sheet(pen.matrix(), [counts[pen.rng.integers(4)]])
 
 
 @dialect
 def _counts_that_contradict(pen: Pen) -> Sheet:
     counts = f"{pen.y.size + 3} {pen.x.size + 5}"
-    return Sheet(pen.matrix(), [counts], pen.matrix_sidecar(), expected="refused")
+    return Sheet(pen.matrix(), [counts], expected="refused")
 
 
 @dialect
@@ -425,14 +419,14 @@ def _stray_tab(pen: Pen) -> Sheet:
     rows[place][4] = f"\t{rows[place][4]}" if delimiter != " " else rows[place][4]
     if delimiter == " ":
         rows[place][4:6] = [f"{rows[place][4]}\t{rows[place][5]}"]
-    return Sheet(rows, sidecar=pen.matrix_sidecar())
+    return Sheet(rows)
 
 
 @dialect
 def _typographers_minus(pen: Pen) -> Sheet:
     restyle(pen, mark="nan")
     rows = [[cell.replace("-", "\u2212") for cell in row] for row in pen.matrix()]
-    return Sheet(rows, sidecar=pen.matrix_sidecar())
+    return Sheet(rows)
 
 
 @dialect
@@ -441,7 +435,7 @@ def _whole_numbers(pen: Pen) -> Sheet:
     levels = np.round(pen.surface.heights / quantum)
     pen.__init__(replace(pen.surface, heights=levels * quantum), pen.style, pen.rng)  # type: ignore[misc]
     rows = [[pen.style.mark if np.isnan(n) else f"{n:.0f}" for n in row] for row in levels]
-    sidecar = {**pen.matrix_sidecar(), "unit_z": f"{quantum:.9g} mm"}
+    sidecar = {"unit_z": f"{quantum:.9g} mm"}
     return replace(Sheet(rows, sidecar=sidecar), surface=pen.surface)
 
 
@@ -450,7 +444,7 @@ def _row_without_any_height(pen: Pen) -> Sheet:
     heights = pen.surface.heights.copy()
     heights[5] = np.nan
     pen.__init__(replace(pen.surface, heights=heights), pen.style, pen.rng)  # type: ignore[misc]
-    return replace(Sheet(pen.matrix(), sidecar=pen.matrix_sidecar()), surface=pen.surface)
+    return replace(Sheet(pen.matrix()), surface=pen.surface)
 
 
 @dialect
@@ -459,7 +453,7 @@ def _commas_for_everything(pen: Pen) -> Sheet:
     restyle(pen, delimiter=",", decimal=".", exponent="", trailing=False)
     rows = [[f"{cell / np.nanmax(np.abs(pen.heights)):.6f}" for cell in row] for row in pen.heights]
     rows = [[cell.replace(".", ",") for cell in row] for row in rows]
-    return Sheet(rows, sidecar=pen.matrix_sidecar(), expected="refused")
+    return Sheet(rows, sidecar={"decimal": ","}, expected="refused")
 
 
 @dialect
@@ -467,7 +461,7 @@ def _two_matrices_with_a_gap(pen: Pen) -> Sheet:
     rows = pen.matrix()
     line = str(pen.rng.choice(["", pen.remark("upper face")]))
     between = {len(rows): line}
-    return Sheet(rows * 2, sidecar=pen.matrix_sidecar(), between=between, expected="refused")
+    return Sheet(rows * 2, between=between, expected="refused")
 
 
 @dialect
@@ -475,7 +469,7 @@ def _two_frames_under_one_another(pen: Pen) -> Sheet:
     restyle(pen, trailing=False)
     corner = "" if pen.style.delimiter.strip(" ") else "0"
     rows = _framed(pen, corner, _counts(pen.x), _counts(pen.y))
-    return Sheet(rows * 2, sidecar=pen.matrix_sidecar(), expected="refused")
+    return Sheet(rows * 2, sidecar=_frame_of_counts(pen), expected="refused")
 
 
 @dialect
@@ -487,7 +481,7 @@ def _profile(pen: Pen) -> Sheet:
         [pen.numbers(heights)],
     ][pen.rng.integers(3)]
     restyle(pen, mark="nan")
-    return Sheet(rows, sidecar={**pen.unit_sidecar()}, expected="refused")
+    return Sheet(rows, sidecar={"kind": "profile"}, expected="refused")
 
 
 @dialect
@@ -497,7 +491,7 @@ def _keyence_header(pen: Pen) -> Sheet:
     unit = pen.style.unit_xy
     front = ['"Measured data"', f'"XY Calibration","{pen.steps()[0]}","{unit}/pixel"']
     front += [f'"Z Unit","{plain_unit(pen.style.unit_z)}"', '"Height"']
-    sheet = Sheet(pen.matrix(), front, states_units=True)
+    sheet = Sheet(pen.matrix(), front)
     return replace(sheet, surface=pen.surface)
 
 
@@ -505,4 +499,4 @@ def _keyence_header(pen: Pen) -> Sheet:
 def _wide_record(pen: Pen) -> Sheet:
     words = ["time", "load", "displacement", "strain", "temperature", "cycle"]
     names = [words[n] if n < len(words) else f"gauge{chr(97 + n)}" for n in range(pen.x.size)]
-    return Sheet([names, *pen.matrix()], sidecar=pen.matrix_sidecar(), expected="refused")
+    return Sheet([names, *pen.matrix()], sidecar={"kind": "profile"}, words=1, expected="refused")

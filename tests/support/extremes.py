@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 from materials import ROCK
+from stated import ARRAY
 
 from fractalcontact.surface.synthesis import self_affine
 
@@ -457,5 +458,6 @@ def write_extreme(folder, case: Extreme, name: str):
     if case.upper is not None:
         upper = folder / f"{name}.upper.npy"
         np.save(upper, case.upper)
-    options = {"unit_xy": "mm", "unit_z": case.unit, "spacing": case.spacing, **case.options}
+    units = {"unit_xy": "mm", "unit_z": case.unit, "spacing": case.spacing}
+    options = {**ARRAY, **units, **case.options}
     return lower, upper, options, case.settings

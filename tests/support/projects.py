@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 import yaml
 from places import ROOT
+from stated import array_sidecar
 
 from fractalcontact.core.stage import EXPERIMENT
 from fractalcontact.study.stages import paths_of
@@ -91,5 +92,5 @@ def write_scan(project, name, heights=None):
     """A scan with its sidecar in the project's folder."""
     heights = rough_heights() if heights is None else heights
     np.save(project / f"scans/{name}.npy", heights)
-    (project / f"scans/{name}.yaml").write_text("unit: mm\nspacing: 0.1\n")
+    (project / f"scans/{name}.yaml").write_text(array_sidecar(0.1))
     return heights

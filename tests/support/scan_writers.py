@@ -31,8 +31,17 @@ def _ending(path: Path) -> str:
     return max((end for end in WRITERS if path.name.endswith(end)), key=len)
 
 
+#: How the texts that are written here have their numbers.
+_TEXT = {"delimiter": "blank", "decimal": ".", "header": 0}
+_FACE = {"kind": "face", "unit": "mm", "heights": "up", "missing": "none"}
+
+
+def _image_sidecar(dx, dy, **more):
+    return {**_FACE, "spacing": [dx, dy], "first_row": "bottom", **more}
+
+
 def _matrix_sidecar(dx, dy, **more):
-    return {"unit": "mm", "spacing": [dx, dy], **more}
+    return _image_sidecar(dx, dy, layout="matrix", axes="none", **more)
 
 
 def nodes(heights, dx, dy):
@@ -54,12 +63,12 @@ def _write_npz(path, heights, dx, dy):
 
 def _write_csv(path, heights, dx, dy):
     np.savetxt(path, heights, delimiter=",", fmt="%.9g")
-    return _matrix_sidecar(dx, dy)
+    return _matrix_sidecar(dx, dy, **_TEXT | {"delimiter": "comma"})
 
 
 def _write_xyz(path, heights, dx, dy):
     np.savetxt(path, nodes(heights, dx, dy), fmt="%.9g")
-    return {"unit": "mm"}
+    return {**_FACE, **_TEXT, "layout": "points", "columns": [0, 1, 2]}
 
 
 def _write_gwyddion_text(path, heights, dx, dy):
@@ -67,7 +76,8 @@ def _write_gwyddion_text(path, heights, dx, dy):
     ny, nx = heights.shape
     header = f"Channel: heights\nWidth: {nx * dx:.9g} mm\nHeight: {ny * dy:.9g} mm\nValue units: m"
     np.savetxt(path, heights[::-1] * 1e-3, delimiter="\t", fmt="%.9g", header=header)
-    return {}
+    stated = _matrix_sidecar(f"{dx} mm", f"{dy} mm", delimiter="tab", decimal=".", header=4)
+    return stated | {"unit": "m", "first_row": "top"}
 
 
 def _write_x3p(path, heights, dx, dy, storage="BINARY"):
@@ -95,7 +105,7 @@ def _write_surfer(path, heights, dx, dy):
     ranges = f"0 {dx * (nx - 1):.17g}\n0 {dy * (ny - 1):.17g}\n0 1"
     values = np.where(np.isfinite(heights), heights, 1.70141e38)
     np.savetxt(path, values, fmt="%.17g", header=f"DSAA\n{nx} {ny}\n{ranges}", comments="")
-    return {"unit": "mm"}
+    return {"kind": "face", "unit": "mm", "heights": "up"}
 
 
 def _write_mesh(path, heights, dx, dy):
@@ -172,7 +182,7 @@ def _write_tiff(path, heights, dx, dy):
     import tifffile
 
     tifffile.imwrite(path, heights[::-1].astype(np.float32), compression="zlib")
-    return _matrix_sidecar(dx, dy, first_row="top")
+    return _image_sidecar(dx, dy, first_row="top")
 
 
 def _topography(heights, dx, dy):

@@ -9,9 +9,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from places import SCANS
 from samples import scan_of
+from stated import read_scan
 
 from fractalcontact.core.errors import InputError
-from fractalcontact.scan.read import read_scan
 from fractalcontact.surface.cleaning import fill_holes, find_outliers
 from fractalcontact.surface.specimen import make_specimen
 from fractalcontact.surface.synthesis import self_affine

@@ -7,6 +7,7 @@ from ensembles import ensemble
 
 from fractalcontact.roughness.estimators.roughness_length import roughness_length_curves
 from fractalcontact.study.embedded import write_scan
+from fractalcontact.study.sidecar import sidecar_of_matrix
 from fractalcontact.surface.synthesis import (
     band_slope,
     disc_outline,
@@ -144,8 +145,7 @@ def test_scan_is_written_whole_with_its_sidecar(tmp_path):
     write_scan(path, heights, SPACING, sidecar={"title": "a twin, again"})
     np.testing.assert_array_equal(np.load(path, allow_pickle=False), heights)
     assert yaml.safe_load(path.with_suffix(".yaml").read_text()) == {
-        "unit": "mm",
-        "spacing": "0.08 mm",
+        **sidecar_of_matrix(0.08),
         "title": "a twin, again",
     }
     assert sorted(p.name for p in path.parent.iterdir()) == ["twin.npy", "twin.yaml"]

@@ -5,6 +5,7 @@ import json
 import numpy as np
 import pytest
 from projects import jobs_of, project, rough_heights, run, small_study
+from stated import array_sidecar
 
 from fractalcontact import open_atlas
 
@@ -19,7 +20,7 @@ def write_groups(project, names):
         path = project / f"scans/{name}.npy"
         path.parent.mkdir(exist_ok=True)
         np.save(path, rough_heights(number))
-        (path.parent.with_suffix(".yaml")).write_text("unit: mm\nspacing: 0.1\n")
+        (path.parent.with_suffix(".yaml")).write_text(array_sidecar(0.1))
 
 
 def test_jobs_go_with_the_specimens_and_few_files_of_each_are_asked_for(project):

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from projects import made, project, rough_heights, small_study
+from stated import array_sidecar
 
 __all__ = ["project"]  # a fixture
 pytestmark = [pytest.mark.workflow, pytest.mark.full]
@@ -13,7 +14,7 @@ def test_what_is_wrong_with_one_scan_stops_only_that_where_the_user_asks_so(proj
     study = small_study(project, scans=str(folder.relative_to(project)))
     folder.mkdir(parents=True)
     np.save(folder / "good slab.npy", rough_heights())
-    (folder / "good slab.yaml").write_text("unit: mm\nspacing: 0.1\n")
+    (folder / "good slab.yaml").write_text(array_sidecar(0.1))
     (folder / "half.lower.xyz").write_text("1 2 3\n")
     (folder / "Thumbs.db").write_text("")
     stopped = made(project, study)

@@ -5,6 +5,7 @@ import pandas as pd
 import pytest
 import yaml
 from projects import copy_project, jobs_of, made, run
+from stated import COMMAS, MAP
 
 from fractalcontact.study.atlas import read_atlas
 
@@ -18,12 +19,12 @@ def project(tmp_path):
     folder = copy_project(tmp_path)
     (folder / STUDY).write_text(yaml.safe_dump({"study": "maps", "scans": "scans"}))
     film = np.random.default_rng(0).random((24, 24))
-    keys = {"kind": "contact-map", "unit": "mm", "series": "films", "threshold": [0.8, 0.9]}
+    keys = {**MAP, **COMMAS, "unit": "mm", "series": "films", "threshold": [0.8, 0.9]}
     for n in range(4):
         np.savetxt(folder / f"scans/film_{n}.csv", film * (1 + 0.05 * n), delimiter=",")
         sidecar = keys | {"load": f"{10**n} N", "spacing": "0.5 mm"}
         if n == 3:
-            del sidecar["spacing"]
+            del sidecar["spacing"], sidecar["first_row"]
             sidecar |= {"x": "film_x.csv", "y": "film_y.csv"}
         (folder / f"scans/film_{n}.yaml").write_text(yaml.safe_dump(sidecar))
     for axis in "xy":

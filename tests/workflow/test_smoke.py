@@ -13,6 +13,7 @@ import pytest
 import yaml
 from print_size import faults_of_study
 from projects import ROOT, command, project, run, small_study, write_scan
+from stated import GRANITE, array_sidecar, sidecar
 
 from fractalcontact.core.stage import EXPERIMENT
 from fractalcontact.study.atlas import read_atlas
@@ -69,7 +70,7 @@ def test_one_bad_scan_is_one_clear_error_and_the_good_one_finishes(project):
     (project / "scans/empty.xyz").write_text("")
     (project / "scans/empty.yaml").write_text("unit: mm\n")
     np.save(project / "scans/far.npy", rough)
-    (project / "scans/far.yaml").write_text("unit: mm\nspacing: 0.1\noffsets: [50 mm]\n")
+    (project / "scans/far.yaml").write_text(array_sidecar(0.1, offsets=["50 mm"]))
     done = run(project, study, "--keep-going")
     assert done.returncode != 0
     errors = [line for line in done.stderr.splitlines() if line.startswith("error: ")]
@@ -183,7 +184,7 @@ def test_a_real_pair_dropped_in_gives_figures(project):
     folder = SCANS / "cnl_granite_pair"
     shutil.copy(folder / "Extracted_M_CNL_SideA_bottom.txt", project / "scans/granite.lower.txt")
     shutil.copy(folder / "Extracted_M_CNL_SideB_top.txt", project / "scans/granite.upper.txt")
-    (project / "scans/granite.yaml").write_text("unit: mm\n")
+    (project / "scans/granite.yaml").write_text(sidecar(GRANITE))
     done = run(project, study)
     assert done.returncode == 0, done.stderr
     drawn = {path.stem for path in (project / "results/test/figures/granite").glob("*.png")}

@@ -11,6 +11,7 @@ import pytest
 import yaml
 from projects import command, copy_project, jobs_of, made, rough_heights, run, small_study
 from projects import write_scan as write_scan_in
+from stated import array_sidecar
 
 from fractalcontact.core.atomic import UNFINISHED
 from fractalcontact.core.checksums import sha256
@@ -100,9 +101,9 @@ def test_a_scan_replaced_by_an_older_file_is_read_and_so_is_the_first_when_it_co
 
 def test_a_sidecar_replaced_by_an_older_file_is_read(project):
     sidecar = project / "scans/rock.yaml"
-    replace_by_an_older_one(sidecar, b"unit: mm\nspacing: 0.2\n")
+    replace_by_an_older_one(sidecar, array_sidecar(0.2).encode())
     assert planned(project)["specimen"] == 1
-    replace_by_an_older_one(sidecar, b"unit: mm   # of x, y and z\nspacing: 0.1\n")
+    replace_by_an_older_one(sidecar, b"# of x, y and z\n" + array_sidecar(0.1).encode())
     assert planned(project) == {}
 
 

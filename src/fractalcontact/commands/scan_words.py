@@ -1,6 +1,7 @@
 """Sentences on a specimen that was read: its gap, and what its user should look at."""
 
 import json
+import re
 
 import numpy as np
 import xarray as xr
@@ -11,6 +12,11 @@ from ..roughness.quality_words import overlap_words
 
 #: Outliers this many reliefs away are hardly spikes of an instrument.
 FAR_OUT = 3.0
+#: From this correlation on two faces lie as they did in the rock.
+REGISTERED = 0.9
+#: Registration may move such faces by this many of its standard errors.
+MAX_ERRORS = 3.0
+_NO_FACE = re.compile(r"aperture|opening|(?<![a-z])(gap|depth)(?![a-z])", re.IGNORECASE)
 
 
 def warnings_of_specimen(specimen: xr.Dataset, quality: xr.Dataset) -> list[str]:
@@ -21,6 +27,12 @@ def warnings_of_specimen(specimen: xr.Dataset, quality: xr.Dataset) -> list[str]
         warnings.append(_outlier_words(specimen))
     if attrs["tilt_degrees"] > STEEP_TILT:
         warnings.append(f"tilted by {attrs['tilt_degrees']:.1f} degrees; heights stay vertical")
+    warnings += filter(None, (_same_file_words(specimen), _moved_words(specimen)))
+    if _NO_FACE.search(str(attrs.get("specimen", attrs.get("name", "")))):
+        warnings.append(
+            "its name says that it holds the opening of a joint or depths: if it does, write "
+            "'kind: aperture', or 'heights: down', into the sidecar"
+        )
     if "overlap_cells" in quality and quality["overlap_cells"].sel(region="window"):
         filled = attrs["outliers"] == "fill"
         remedy = "" if filled else "; 'outliers: fill' in the sidecar fills lone and deep ones"
@@ -29,6 +41,35 @@ def warnings_of_specimen(specimen: xr.Dataset, quality: xr.Dataset) -> list[str]
             f"scans{remedy}"
         )
     return warnings
+
+
+def _same_file_words(specimen):
+    """Warning of one file given as both faces."""
+    files = [specimen.attrs.get(f"{face}_scan") for face in ("lower", "upper")]
+    if None in files or len({json.loads(file)["sha256"] for file in files}) > 1:
+        return ""
+    return (
+        "both faces are one file, byte for byte: the gap is the same everywhere; if one face was "
+        "scanned, keep one file, and the other is taken as its match"
+    )
+
+
+def _moved_words(specimen):
+    """Warning of faces in one frame that registration moves by more than its own error."""
+    if "registration" not in specimen.attrs or "registration_shift_x" not in specimen:
+        return ""
+    motion = json.loads(specimen.attrs["registration"])
+    if not motion["applied"] or (motion["correlation_before"] or 0) < REGISTERED:
+        return ""
+    shift = np.hypot(motion["shift_x_mm"], motion["shift_y_mm"])
+    error = np.hypot(*(float(specimen[f"registration_shift_{axis}"].std()) for axis in "xy"))
+    if shift <= MAX_ERRORS * error:
+        return ""
+    return (
+        f"the faces fit as scanned (correlation {motion['correlation_before']:.3f}), and "
+        f"registration moves the upper one by {length_words(shift)}, its error is "
+        f"{length_words(error)}: write 'registration: none' if the files share one frame"
+    )
 
 
 def _outlier_words(specimen):

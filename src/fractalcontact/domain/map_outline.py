@@ -11,6 +11,7 @@ import numpy as np
 from scipy.spatial import ConvexHull, QhullError
 
 from ..core.errors import InputError
+from ..core.labels import percent
 from ..core.units import quantity
 
 #: A map whose rim is empty is suspicious where the convex hull of its contact takes less of the
@@ -19,6 +20,10 @@ HULL_SHARE = 0.8
 #: Fewer cells in contact leave so much of a rectangle empty by chance: their hull takes
 #: 1 - (8/3) ln N / N of a square on the average (Renyi and Sulanke, 1963), 0.88 for 100 cells.
 FEWEST_CELLS = 100
+
+
+#: A disc without a stated centre may leave this fraction of the contact outside.
+MAX_OUTSIDE = 0.01
 
 
 def outline_mask(
@@ -131,8 +136,10 @@ def _length(value: Any, where: str) -> float:
     return quantity(value, "length", where) if isinstance(value, str) else float(value)
 
 
-def outline_warning(values: np.ndarray, touching: np.ndarray, outline: object) -> str:
-    """Whether zeros around the measured part seem to be taken for nominal area; else empty.
+def outline_warning(
+    values: np.ndarray, touching: np.ndarray, outline: object, threshold: float = np.inf
+) -> str:
+    """Warning of an outline that leaves contact outside, or of zeros taken for nominal area.
 
     Parameters
     ----------
@@ -141,10 +148,19 @@ def outline_warning(values: np.ndarray, touching: np.ndarray, outline: object) -
     touching : (ny, nx) bool ndarray
         Cells in contact.
     outline : object
-        What the sidecar says; anything but None silences the warning.
+        What the sidecar says; anything but None silences the warning of zeros.
+    threshold : float, optional
+        Above what a cell is in contact, outside the outline too.
+
+    Returns
+    -------
+    str
+        Empty if there is nothing to warn of.
     """
     absent = np.isnan(values)
     empty = ~(touching | absent)
+    if outside := _outside_words(values, touching, outline, threshold):
+        return outside
     rim = np.concatenate([empty[0], empty[-1], empty[:, 0], empty[:, -1]])
     if outline is not None or not rim.all() or touching.sum() < FEWEST_CELLS:
         return ""
@@ -155,6 +171,24 @@ def outline_warning(values: np.ndarray, touching: np.ndarray, outline: object) -
         f"no contact all round, which spans {100 * share:.0f} % of the rectangle: if the film "
         "is smaller than its file, A_0 is too large; write 'outline: disc' (or a polygon, or a "
         "mask) in the sidecar, or 'outline: rectangle' if it is not"
+    )
+
+
+def _outside_words(
+    values: np.ndarray, touching: np.ndarray, outline: object, threshold: float
+) -> str:
+    """Warning where a disc cuts off contact: without a centre it sits in the middle of the map."""
+    with np.errstate(invalid="ignore"):
+        every = int((values > threshold).sum())
+    lost = every - int(touching.sum())
+    disc = outline.get("disc") if isinstance(outline, Mapping) else None
+    is_placed = disc is None or "centre" in disc
+    if (outline != "disc" and is_placed) or lost <= MAX_OUTSIDE * every:
+        return ""
+    return (
+        f"{percent(lost / every)} of the contact lies outside the outline, {outline_words(outline)}"  # type: ignore[arg-type]
+        ": write where it lies in the sidecar, 'outline: {disc: {centre: [x, y], diameter: d}}', "
+        "or 'outline: rectangle'"
     )
 
 

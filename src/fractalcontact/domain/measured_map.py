@@ -19,7 +19,7 @@ from ..core.estimate import names_of, rows_of
 from ..core.labels import cf_attrs
 from ..core.units import load as read_load
 from ..scan.coordinates import read_coordinates
-from ..scan.options import coordinate_files
+from ..scan.options import CONTACT_MAP, WRITING_KEYS, coordinate_files, parse_options
 from ..scan.read import read_matrix
 from .analysis import DOMAIN_FIELDS, analyse_domains
 from .map_outline import outline_mask, outline_warning
@@ -27,6 +27,15 @@ from .null_models import null_models
 
 #: Keys of a sidecar that only maps have.
 MAP_KEYS = ("kind", "threshold", "load", "cells", "outline", "series", "x", "y")
+#: How a file of coordinates is read, but for how its numbers are written.
+COORDINATES_ALONE = {
+    "kind": CONTACT_MAP,
+    "axes": "none",
+    "unit": "mm",
+    "spacing": "1 mm",
+    "first_row": "bottom",
+    "missing": "none",
+}
 #: What a cell in contact stands for, and whether it is one of those that hold any contact at all.
 CELLS = {"any contact": True, "contact at the centre": False}
 
@@ -126,7 +135,8 @@ def read_contact_map(path: Path | str, options: Mapping[str, Any], *, label: str
         "threshold": float(thresholds[main]),
         "binary": int(_is_binary(values[measured])),
         "outline": json.dumps(outline or "rectangle"),
-        "warning": outline_warning(values, touching[main], outline),
+        "warning": outline_warning(values, touching[main], outline, thresholds[main]),
+        "integral": float(np.nansum(np.where(measured, values, 0.0)) * dx * dy),
         "spacing_y": dy,
         "spacing_x": dx,
         **({"cells": stands_for} if stands_for else {}),
@@ -141,12 +151,17 @@ def _read(
     """Values (ny, nx) of a map as they stand, its coordinates y and x in mm, and its source."""
     reading = {key: value for key, value in options.items() if key not in MAP_KEYS}
     files = coordinate_files(path, options)
-    axes = read_coordinates(files, options.get("unit_xy", options.get("unit")))
+    written = {key: reading[key] for key in WRITING_KEYS if key in reading}
+    alone = parse_options({**COORDINATES_ALONE, **written}, str(path))
+    axes = read_coordinates(files, options.get("unit_xy", options.get("unit")), alone)
     if axes:
+        reading |= {"first_row": "bottom"}
         steps = [float(abs(np.diff(axes[key]).mean())) for key in "xy"]
         reading |= {"spacing": [f"{step:.12g} mm" for step in steps]}
     # What the cells hold is no length: in mm it is taken over as it stands.
-    values, (dx, dy), provenance = read_matrix(path, reading | {"unit_z": "mm"})
+    values, (dx, dy), provenance = read_matrix(
+        path, reading | {"unit_z": "mm", "kind": CONTACT_MAP}
+    )
     ny, nx = values.shape
     if not axes:
         return values, dy * (np.arange(ny) + 0.5), dx * (np.arange(nx) + 0.5), provenance

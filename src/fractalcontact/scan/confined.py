@@ -19,7 +19,7 @@ from pathlib import Path
 from ..core.errors import InputError
 from . import reader_process
 from .options import ScanOptions
-from .raw import RawScan
+from .raw import IncompleteSidecar, RawScan
 from .transfer import from_text, receive_scan, to_text
 
 #: The reader process finds the same packages as this one, wherever they come from.
@@ -53,7 +53,8 @@ def read_confined(path: Path, options: ScanOptions) -> RawScan:
     Raises
     ------
     InputError
-        What the reader found wrong with the file; also if it crashed or went beyond its limits.
+        What the reader found wrong with the file or lacking in its sidecar; also if it crashed or
+        went beyond its limits.
     ReaderBug
         For any other exception of the reader.
     """
@@ -63,6 +64,8 @@ def read_confined(path: Path, options: ScanOptions) -> RawScan:
     last = lines[-1] if lines else {"outcome": "limits"}
     if raw is not None and status == 0:
         return raw
+    if last["outcome"] == "incomplete":
+        raise IncompleteSidecar(last["message"], last["draft"])
     if last["outcome"] == "refused":
         raise InputError(last["message"])
     if last["outcome"] == "bug":

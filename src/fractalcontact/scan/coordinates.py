@@ -17,7 +17,9 @@ _AXES = {"x": 1, "y": 0}
 UNEVEN = 0.01
 
 
-def read_coordinates(files: Mapping[str, Path], unit: str | None) -> dict[str, np.ndarray]:
+def read_coordinates(
+    files: Mapping[str, Path], unit: str | None, options: ScanOptions
+) -> dict[str, np.ndarray]:
     """Coordinates of the columns (x) and rows (y) of a matrix.
 
     Parameters
@@ -27,6 +29,8 @@ def read_coordinates(files: Mapping[str, Path], unit: str | None) -> dict[str, n
         matrix, in which x changes along the rows and y from row to row.
     unit : str or None
         Their unit.
+    options : ScanOptions
+        How they are written.
 
     Returns
     -------
@@ -43,7 +47,7 @@ def read_coordinates(files: Mapping[str, Path], unit: str | None) -> dict[str, n
         if unit is None:
             raise InputError(f"{path}: of unknown unit; write 'unit_xy: mm' into the sidecar")
         regular_file(path)
-        values = read_confined(path, ScanOptions(layout="matrix", axes="none")).values
+        values = read_confined(path, options).values
         line = _one_line(values, _AXES[key])
         if line is None or len(line) < 2 or not np.isfinite(line).all():
             raise InputError(

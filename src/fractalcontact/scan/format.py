@@ -24,6 +24,8 @@ class Format:
         From the path of a file and `ScanOptions` to a `RawScan`; only called in the reader process.
     endings : tuple of str
         Of file names, with their dot, in lower case.
+    keys : tuple of str
+        Keys of a sidecar that have a meaning for these files and not for all others.
     takes : callable or None
         Whether a file is of this format, by its content, where others share an ending; None if
         every file with these endings is.
@@ -41,6 +43,7 @@ class Format:
 
     read: Callable[[Path, ScanOptions], RawScan]
     endings: tuple[str, ...] = ()
+    keys: tuple[str, ...] = ()
     takes: Callable[[Path], bool] | None = None
     refusal: str = ""
     more_endings: Callable[[], Iterable[str]] | None = None

@@ -17,6 +17,16 @@ from .raw import RawScan
 FORMATS: dict[str, Format] = {name: module.FORMAT for name, module in modules_of(readers).items()}
 
 
+_SPREADSHEET = "a spreadsheet, which is not read; save the sheet of the heights as CSV"
+_ARCHIVE = "an archive, which is not unpacked; put the scan file itself here"
+#: Endings of files that are often met and not read, and what to do.
+_NOT_READ = {
+    **dict.fromkeys((".xls", ".xlsm", ".ods"), _SPREADSHEET),
+    **dict.fromkeys((".gz", ".7z", ".rar", ".tar"), _ARCHIVE),
+    **dict.fromkeys((".jpg", ".jpeg", ".bmp"), "a picture, no heights; export the heights"),
+}
+#: Keys of a sidecar that say how some formats are laid out: idle for the others.
+_LAYOUT_KEYS = frozenset(key for form in FORMATS.values() for key in form.keys)
 #: Those that learn further endings from a library.
 _OPEN_ENDED = [form for form in FORMATS.values() if form.more_endings is not None]
 
@@ -62,15 +72,27 @@ def read_raw(path: Path, options: ScanOptions) -> RawScan:
         ) from None
 
 
+def _read(form: Format, path: Path, options: ScanOptions) -> RawScan:
+    """Read a file, unless its sidecar has keys that would change nothing."""
+    for key in sorted(_LAYOUT_KEYS.difference(form.keys)):
+        if getattr(options, key) is not None:
+            raise InputError(
+                f"{path}: key '{key}' has no meaning for a {path.suffix.lower()} file; remove it"
+            )
+    return form.read(path, options)
+
+
 def _read_by_format(path: Path, options: ScanOptions) -> RawScan:
     check_archive(path)
     extension = path.suffix.lower()
     for form in _declared(extension):
         if form.takes is None or form.takes(path):
-            return form.read(path, options)
+            return _read(form, path, options)
     for form in _OPEN_ENDED:
         if extension in form.learned_endings():
-            return form.read(path, options)
+            return _read(form, path, options)
+    if advice := _NOT_READ.get(extension):
+        raise InputError(f"{path}: {advice}")
     for form in _declared(extension):
         if form.refusal:
             raise InputError(f"{path}: {form.refusal}")

@@ -1,7 +1,7 @@
 """A scan measured in mm, before it is on a grid."""
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
@@ -33,6 +33,8 @@ class Measured:
         Attributes for the result.
     triangles : (m, 3) int ndarray or None
         Of a mesh, between the points.
+    size : dict
+        Rows and columns or points, and relief in the numbers of the file: what an owner confirms.
     """
 
     path: Path
@@ -42,3 +44,4 @@ class Measured:
     grid: float | None
     provenance: dict
     triangles: np.ndarray | None = None
+    size: dict = field(default_factory=dict)

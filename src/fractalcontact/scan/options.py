@@ -12,34 +12,75 @@ from ..core.units import length_factor, quantity
 
 @dataclass(frozen=True)
 class ScanOptions:
-    """What the user says about a scan file; None where the file or its content decides."""
+    """What the owner states about a scan file; None where not stated.
 
+    A file that describes itself needs none of them, any other is read only as they say: see
+    :mod:`scan.stated`.
+    """
+
+    kind: str | None = None
+    delimiter: str | None = None
+    decimal: str | None = None
+    thousands: str | None = None
+    header: int | None = None
+    layout: str | None = None
+    variable: str | None = None
+    columns: tuple | None = None
+    axes: str | None = None
     unit: str | None = None
     unit_xy: str | None = None
     unit_z: str | None = None
     spacing: float | str | tuple | None = None
-    layout: str | None = None
     first_row: str | None = None
-    variable: str | None = None
-    columns: tuple | None = None
-    axes: str | None = None
+    heights: str | None = None
     missing: float | tuple | str | None = None
     grid: float | str | None = None
     registration: str | None = None
     mirror_upper: str | None = None
+    confirmed: dict | None = None
+
+    @property
+    def marks(self) -> tuple[float, ...]:
+        """Numbers stated to mark missing cells."""
+        return tuple(mark for mark in self._missing if not isinstance(mark, str))
+
+    @property
+    def missing_words(self) -> tuple[str, ...]:
+        """Words stated to mark missing cells of a text."""
+        words = (mark for mark in self._missing if isinstance(mark, str))
+        return tuple(word for word in words if word != NO_MARK)
+
+    @property
+    def _missing(self) -> tuple:
+        if self.missing is None:
+            return ()
+        return self.missing if isinstance(self.missing, tuple) else (self.missing,)
 
 
+#: What a file holds, by the key `kind`; the last three hold no face of a joint.
+CONTACT_MAP = "contact-map"
+KINDS = ("face", CONTACT_MAP, "aperture", "profile")
+#: Keys that say how the numbers of a text are written.
+WRITING_KEYS = ("delimiter", "decimal", "thousands", "header")
+#: What parts the numbers of a line, by the key `delimiter`; a blank is white space of any length.
+DELIMITERS = {"comma": ",", "semicolon": ";", "tab": "\t", "blank": " "}
+#: Which of the first row and column of a matrix hold coordinates or counts instead of heights.
+AXES = ("none", "both", "row", "column")
 #: What the key `missing` says where every number is a height, however it looks.
 NO_MARK = "none"
 #: How the upper face of a pair may be brought to the lower one.
 REGISTRATIONS = ("rigid", "translation", "none")
 #: Keys that say how two faces lie to each other.
 PAIR_KEYS = ("registration", "mirror_upper")
+#: Keys that hold what is stated of one face alone.
+FACES = ("lower", "upper")
 #: Keys that name the files of the coordinates, where x, y and z are three files.
 COORDINATE_KEYS = ("x", "y")
 #: Keys that mean nothing for the other layout, and what is meant by them.
 MATRIX_KEYS = ("spacing", "first_row", "axes")
 POINT_KEYS = ("columns", "grid")
+#: Most lines of words in front of the numbers of a text.
+MOST_HEADER = 10_000
 
 
 def parse_options(options: Mapping | None, where: str) -> ScanOptions:
@@ -65,9 +106,15 @@ def parse_options(options: Mapping | None, where: str) -> ScanOptions:
         if (unit := options.get(key)) is not None:
             _require(isinstance(unit, str), where, key, unit, "a unit of length, such as 'mm'")
             length_factor(unit, f"{where}: {key}")
+    _one_of(options, "kind", KINDS, where)
+    _one_of(options, "delimiter", tuple(DELIMITERS), where)
+    _one_of(options, "decimal", (".", ","), where)
+    _one_of(options, "thousands", (".", ",", "'"), where)
     _one_of(options, "layout", ("matrix", "points"), where)
-    _one_of(options, "axes", ("none",), where)
+    _one_of(options, "axes", AXES, where)
     _one_of(options, "first_row", ("bottom", "top"), where)
+    _one_of(options, "heights", ("up", "down"), where)
+    _check_text_keys(options, where)
     _one_of(options, "registration", REGISTRATIONS, where)
     _one_of(options, "mirror_upper", ("x", "y"), where)
     if (variable := options.get("variable")) is not None:
@@ -77,17 +124,53 @@ def parse_options(options: Mapping | None, where: str) -> ScanOptions:
             options["missing"] = missing = tuple(missing)
         each = missing if isinstance(missing, tuple) else (missing,)
         _require(
-            missing == NO_MARK or (len(each) > 0 and all(_is_number(mark) for mark in each)),
+            len(each) > 0 and all(_is_number(mark) or isinstance(mark, str) for mark in each),
             where,
             "missing",
             missing,
-            "a number, such as -9999, a list of numbers, or 'none'",
+            "a number, such as -9999, a word such as BAD, a list of them, or 'none'",
         )
     if (columns := options.get("columns")) is not None:
         options["columns"] = _columns(columns, where)
     if isinstance(options.get("spacing"), list):
         options["spacing"] = tuple(options["spacing"])
     return ScanOptions(**options)
+
+
+def of_face(options: Mapping | None, face: str) -> dict[str, Any]:
+    """Keys of one face of a pair: those of both, then those under ``lower`` or ``upper``.
+
+    Parameters
+    ----------
+    options : mapping or None
+        Scan keys of a sidecar.
+    face : {"lower", "upper"}
+    """
+    common = {key: value for key, value in (options or {}).items() if key not in FACES}
+    return {**common, **((options or {}).get(face) or {})}
+
+
+def _check_text_keys(options: dict, where: str) -> None:
+    header, decimal = options.get("header"), options.get("decimal")
+    _require(
+        header is None or (_is_index(header) and header <= MOST_HEADER),
+        where,
+        "header",
+        header,
+        f"the number of lines above the numbers, 0 to {MOST_HEADER}",
+    )
+    taken = {"decimal mark": decimal, "delimiter": DELIMITERS.get(str(options.get("delimiter")))}
+    for name, mark in taken.items():
+        if mark is not None and mark == options.get("thousands"):
+            raise InputError(
+                f"{where}: {mark!r} is both the {name} and the thousands mark; write 'thousands' "
+                "only where digits are grouped"
+            )
+    if decimal == "," and options.get("delimiter") == "comma":
+        raise InputError(
+            f"{where}: a comma is both the decimal mark and the delimiter; export it with decimal "
+            "points, or with semicolons between the numbers"
+        )
 
 
 def coordinate_files(path: Path, options: Mapping[str, Any]) -> dict[str, Path]:

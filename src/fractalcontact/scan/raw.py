@@ -33,13 +33,8 @@ class RawScan:
         dx, dy the file states, in ``unit_xy``.
     first_row : {"bottom", "top"} or None
         Where the first row of a matrix lies; None where the file does not say.
-    missing : float or None
-        Number the file states for a missing cell.
-    factor : float or None
-        Number that the file says its heights are to be multiplied by, not yet done; None or 1 if
-        they stand as they are.
-    unread : tuple of str
-        What the file says of its units or size that could not be used, in its own words.
+    heights : {"up", "down"} or None
+        Which way the numbers grow; None where the file does not say.
     notes : tuple of str
         What a user should know about the reading.
     triangles : (m, 3) int ndarray or None
@@ -53,11 +48,24 @@ class RawScan:
     unit_z: str | None = None
     spacing: tuple[float, float] | None = None
     first_row: str | None = None
-    missing: float | None = None
-    factor: float | None = None
-    unread: tuple[str, ...] = ()
+    heights: str | None = None
     notes: tuple[str, ...] = ()
     triangles: np.ndarray | None = None
+
+
+class IncompleteSidecar(InputError):
+    """A file that is read only as its sidecar says, and the sidecar does not say all.
+
+    Attributes
+    ----------
+    draft : str
+        Lines of a sidecar for it, indented, as the file seems to mean; a value that it does not
+        tell is empty.
+    """
+
+    def __init__(self, message: str, draft: str):
+        super().__init__(f"{message}\n{draft}")
+        self.message, self.draft = message, draft
 
 
 def refuse_larger(n_bytes: int, path: Path | str) -> None:
@@ -93,17 +101,3 @@ def stated_unit(text: object) -> str | None:
     """Take the unit of length a file states; None if it states none, or of something else."""
     text = str(text or "").strip()
     return text if length_unit(text) else None
-
-
-def foreign_units(**stated: object) -> tuple[str, ...]:
-    """What a file calls its units where they are no lengths: words for `RawScan.unread`.
-
-    Parameters
-    ----------
-    **stated
-        What the file says by what it says it of, "z" for example.
-    """
-    words = {key: str(text or "").strip()[:20] for key, text in stated.items()}
-    return tuple(
-        f"{key} in {word!r}" for key, word in words.items() if word and not stated_unit(word)
-    )

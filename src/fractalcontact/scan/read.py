@@ -12,26 +12,31 @@ from ..core.errors import InputError
 from ..core.file_names import split_file_name
 from ..core.units import length_factor
 from .confined import read_confined
+from .draft import draft_line
 from .faces import grid_one, grid_pair
 from .files import is_unchanged, regular_file, sha256
 from .measured import NOTE, Measured, warnings_of
 from .options import (
+    FACES,
     MATRIX_KEYS,
     NO_MARK,
     PAIR_KEYS,
     POINT_KEYS,
     ScanOptions,
     length_mm,
+    of_face,
     parse_options,
     spacing_mm,
 )
 from .plausible import check_spacing
 from .points import single_precision_note
-from .raw import RawScan
+from .raw import IncompleteSidecar, RawScan
 from .undeclared import refuse_or_warn
 
-__all__ = ["read_faces", "read_matrix", "read_scan"]
+__all__ = ["measure", "read_faces", "read_matrix", "read_scan"]
 
+#: Relief that is confirmed is written with four digits.
+SAME_RELIEF = 2e-3
 LARGEST_NUMBER = 1e12  # mm; coordinates of a country's grid reach 1e10
 
 
@@ -43,8 +48,8 @@ def read_scan(path: Path | str, options: Mapping | None = None) -> xr.DataArray:
     path : path-like
         A matrix, a point cloud, a mesh or an instrument's file; its extension says which.
     options : mapping, optional
-        Keys of the sidecar: ``unit``, ``unit_xy``, ``unit_z``, ``spacing``, ``layout``,
-        ``first_row``, ``variable``, ``columns``, ``missing``, ``grid``. They win over the file.
+        Keys of the sidecar, see :class:`scan.options.ScanOptions`. A file that does not describe
+        itself is read only as they say; of any other they win over the file.
 
     Returns
     -------
@@ -55,9 +60,10 @@ def read_scan(path: Path | str, options: Mapping | None = None) -> xr.DataArray:
     Raises
     ------
     InputError
-        If the file is damaged, lacks a unit or spacing, or cannot be the scan of a rough surface.
+        If the file is damaged, does not describe itself and the options do not say all
+        (:class:`scan.raw.IncompleteSidecar`), or cannot be the scan of a rough surface.
     """
-    return grid_one(_measure(Path(path), options))
+    return grid_one(measure(Path(path), options))
 
 
 def read_faces(
@@ -77,8 +83,8 @@ def read_faces(
     upper_path : path-like or None
         None if one face was scanned.
     options : mapping, optional
-        As for `read_scan`, for both faces; and ``registration`` (rigid, translation or none) and
-        ``mirror_upper`` (x or y).
+        As for `read_scan`, for both faces, and under ``lower`` and ``upper`` for one of them; and
+        ``registration`` (rigid, translation or none) and ``mirror_upper`` (x or y).
 
     Returns
     -------
@@ -92,17 +98,20 @@ def read_faces(
         As `read_scan`; also if the two grids differ, a mirror image of the upper face matches
         instead of the face, or the faces share no area.
     """
-    given = parse_options(options, str(lower_path))
     if upper_path is None:
+        given = parse_options(options, str(lower_path))
         for key in PAIR_KEYS:
             if getattr(given, key) is not None:
                 raise InputError(
                     f"{lower_path}: key '{key}' needs two faces, here is one; remove it"
                 )
         return read_scan(lower_path, options), None
-    files = [_read(Path(path), given) for path in (lower_path, upper_path)]
-    _require_one_layout(*files)
-    lower, upper = (_in_mm(file, given) for file in files)
+    paths = dict(zip(FACES, (Path(lower_path), Path(upper_path)), strict=True))
+    stated = {f: parse_options(of_face(options, f), str(path)) for f, path in paths.items()}
+    files = {face: _read(path, stated[face]) for face, path in paths.items()}
+    _require_one_layout(files["lower"], files["upper"])
+    lower, upper = (_in_mm(files[face], stated[face]) for face in FACES)
+    given = stated["lower"]
     return grid_pair(lower, upper, given.registration or "rigid", given.mirror_upper)
 
 
@@ -130,7 +139,7 @@ def read_matrix(
     InputError
         As `read_scan`, but for numbers that cannot be heights; also if the file holds points.
     """
-    measured = _measure(Path(path), options, are_heights=False)
+    measured = measure(Path(path), options, are_heights=False)
     if measured.layout != "matrix":
         raise InputError(f"{path}: holds points, a matrix is needed; 'layout: matrix' if it is one")
     assert measured.spacing is not None  # a matrix has one
@@ -145,8 +154,22 @@ class _File(NamedTuple):
     checksum: str
 
 
-def _measure(path: Path, options: Mapping | None, *, are_heights: bool = True) -> Measured:
-    """Read a file and convert it to mm, with what the sidecar says."""
+def measure(path: Path, options: Mapping | None, *, are_heights: bool = True) -> Measured:
+    """Numbers of a file in mm, before they are on a grid, as its sidecar says.
+
+    Parameters
+    ----------
+    path : Path
+    options : mapping or None
+        As for `read_scan`.
+    are_heights : bool, optional
+        False of a contact map, whose numbers may be anything.
+
+    Raises
+    ------
+    InputError
+        As `read_scan`, but for a surface that is none.
+    """
     given = parse_options(options, str(path))
     return _in_mm(_read(path, given), given, are_heights=are_heights)
 
@@ -179,24 +202,23 @@ def _in_mm(file: _File, options: ScanOptions, *, are_heights: bool = True) -> Me
     """What a file holds converted to mm, with what the sidecar says."""
     path, raw = file.path, file.raw
     _refuse_idle_keys(raw, options, path)
+    _refuse_known_rows(raw, options, path)
     overrides: list[str] = []
     notes = list(raw.notes)
-    if raw.unread:
-        notes.append(f"not used of its header: {'; '.join(raw.unread)}")
-    if raw.factor not in (None, 1) and not _has_number(options.unit_z):
-        notes.append(f"heights multiplied by {raw.factor:g}, as the file says")
     _refuse_one_unit_for_two(raw, options, path)
     unit_xy = _choose_unit("unit_xy", raw.unit_xy, options, overrides)
     unit_z = _choose_unit("unit_z", raw.unit_z, options, overrides)
     _require_units(raw, options, unit_xy, unit_z, path)
     assert unit_z is not None
-    unit_z = _with_factor(unit_z, raw, options, path)
-    missing = _choose("missing", raw.missing, options, overrides)
+    missing = options.missing
     is_matrix = raw.layout == "matrix"
-    heights = _without_missing(raw.values if is_matrix else raw.values[:, 2], missing)
+    heights = _without_missing(raw.values if is_matrix else raw.values[:, 2], options.marks)
+    size = size_and_relief(heights, raw.layout)
+    _refuse_unconfirmed(size, raw, options, path)
     if are_heights and missing != NO_MARK and (doubt := refuse_or_warn(heights, path)):
         notes.append(f"{NOTE}{doubt}")
-    heights *= length_factor(unit_z, f"{path}: unit_z")
+    sign = -1 if _choose("heights", raw.heights, options, overrides) == "down" else 1
+    heights *= sign * length_factor(unit_z, f"{path}: unit_z")
     if is_matrix:
         values = heights
         if _choose("first_row", raw.first_row, options, overrides) == "top":
@@ -211,6 +233,7 @@ def _in_mm(file: _File, options: ScanOptions, *, are_heights: bool = True) -> Me
         values[:, :2] *= length_factor(unit_xy, f"{path}: unit_xy")
         spacing = None
     _refuse_enormous(values, path)
+    notes += [f"{NOTE}{override}" for override in overrides]
     grid = options.grid
     if grid is not None:
         grid = length_mm(grid, unit_xy, f"{path}: key 'grid'")
@@ -224,7 +247,7 @@ def _in_mm(file: _File, options: ScanOptions, *, are_heights: bool = True) -> Me
         "warnings": warnings_of(notes),
         "overrides": "; ".join(overrides),
     }
-    return Measured(path, raw.layout, values, spacing, grid, provenance, raw.triangles)
+    return Measured(path, raw.layout, values, spacing, grid, provenance, raw.triangles, size)
 
 
 def _own(values: np.ndarray) -> np.ndarray:
@@ -249,12 +272,22 @@ def _refuse_idle_keys(raw: RawScan, options: ScanOptions, path: Path) -> None:
     """A key that would change nothing was meant to change something."""
     idle = POINT_KEYS if raw.layout == "matrix" else MATRIX_KEYS
     for key in idle:
-        if getattr(options, key) is not None:
+        is_by_cell = key == "columns" and options.layout == "points"
+        if getattr(options, key) is not None and not is_by_cell:
             hint = "'grid'" if key == "spacing" else "'spacing'" if key == "grid" else "'layout'"
             raise InputError(
                 f"{path}: key '{key}' has no meaning for a scan read as {raw.layout}; "
                 f"remove it (did you mean {hint}?)"
             )
+
+
+def _refuse_known_rows(raw: RawScan, options: ScanOptions, path: Path) -> None:
+    """Refuse ``first_row`` where coordinates beside a matrix say it."""
+    if options.axes == "both" and options.spacing is None and options.first_row is not None:
+        raise InputError(
+            f"{path}: the coordinates beside its rows say where the first row lies ({raw.first_row}"
+            "); remove 'first_row'"
+        )
 
 
 def _choose(key: str, stated, options: ScanOptions, overrides: list):
@@ -296,31 +329,6 @@ def _refuse_one_unit_for_two(raw: RawScan, options: ScanOptions, path: Path) -> 
         )
 
 
-def _with_factor(unit_z: str, raw: RawScan, options: ScanOptions, path: Path) -> str:
-    """The unit of heights with the number that the file says they are to be multiplied by.
-
-    Raises
-    ------
-    InputError
-        If the sidecar has a unit: it may mean the numbers before or after.
-    """
-    given = options.unit_z or options.unit
-    if raw.factor in (None, 1) or _has_number(given):
-        return unit_z
-    if given is not None and given != raw.unit_z:
-        raise InputError(
-            f"{path}: its header says that heights are to be multiplied by {raw.factor:g}; write "
-            f"that with their unit into the sidecar, 'unit_z: {raw.factor:g} {given}', or "
-            f"'unit_z: 1 {given}' if it is done already"
-        )
-    return f"{raw.factor:.15g} {unit_z}"
-
-
-def _has_number(unit: str | None) -> bool:
-    """Whether a unit is one of counts, "0.1 um"."""
-    return unit is not None and unit[:1] in "0123456789.+-"
-
-
 def _require_units(raw: RawScan, options: ScanOptions, unit_xy, unit_z, path: Path) -> None:
     """Ask for everything the file lacks in one message, ready to be copied."""
     stated_spacing = options.spacing if options.spacing is not None else raw.spacing
@@ -335,29 +343,22 @@ def _require_units(raw: RawScan, options: ScanOptions, unit_xy, unit_z, path: Pa
     what = " and ".join(filter(None, (*lacking[:1], "spacing" if lacks_spacing else "")))
     lines = list(lacking[1:])
     if lacks_spacing:
-        lines.append("    spacing: 0.1 mm   # between neighbouring cells")
+        lines.append(draft_line("spacing", None))
     name, _ = split_file_name(path.name)
-    raise InputError(
-        f"{path}: the file states no {what}{_said(raw)}. Write into "
-        f"{path.with_name(name + '.yaml')}, "
-        "with your own values:\n" + "\n".join(lines)
+    raise IncompleteSidecar(
+        f"{path}: the file states no {what}. Write into {path.with_name(name + '.yaml')}, with "
+        "your own values:",
+        "\n".join(f"    {line}" for line in lines),
     )
 
 
 def _lacking_unit(unit_xy, unit_z, needs_unit_xy: bool) -> tuple[str, str]:
     """What unit is missing, and the line of a sidecar that states it."""
     if unit_z is None and unit_xy is not None:
-        return "unit of heights", "    unit_z: um        # of its heights"
+        return "unit of heights", draft_line("unit_z", None)
     if unit_z is not None and needs_unit_xy:
-        return "unit of x and y", "    unit_xy: mm       # of x and y"
-    return "unit", "    unit: mm          # of its lengths; unit_xy and unit_z where they differ"
-
-
-def _said(raw: RawScan) -> str:
-    """What the file says all the same, in brackets: it could not be used, or was found out."""
-    said = "; ".join((*(f"it says {line!r}" for line in raw.unread), *raw.notes))
-    usable = " that can be used" if raw.unread else ""
-    return f"{usable} ({said})" if said else ""
+        return "unit of x and y", draft_line("unit_xy", None)
+    return "unit", draft_line("unit", None)
 
 
 def _has_units_of_its_own(spacing) -> bool:
@@ -386,11 +387,53 @@ def _choose_spacing(raw, options, unit_xy, path: Path, overrides: list) -> tuple
     return stated
 
 
-def _without_missing(values: np.ndarray, missing: float | tuple | str | None) -> np.ndarray:
+def _without_missing(values: np.ndarray, marks: tuple[float, ...]) -> np.ndarray:
     """A copy, in file units, with the missing numbers and infinities as NaN."""
     absent = ~np.isfinite(values)
-    if missing is not None and not isinstance(missing, str):
-        for mark in missing if isinstance(missing, tuple) else (missing,):
-            # Markers such as 3.4e38 come back from text and float32 not quite the same.
-            absent |= np.isclose(values, mark, rtol=1e-6, atol=0)
+    for mark in marks:
+        # Markers such as 3.4e38 come back from text and float32 not quite the same.
+        absent |= np.isclose(values, mark, rtol=1e-6, atol=0)
     return np.where(absent, np.nan, values)
+
+
+def _refuse_unconfirmed(found: dict, raw: RawScan, options: ScanOptions, path: Path) -> None:
+    """Refuse a file of another size or relief than its owner has looked at and confirmed."""
+    if options.confirmed is None:
+        return
+    for key, value in options.confirmed.items():
+        if key not in found:
+            raise InputError(
+                f"{path}: its sidecar confirms {key!r}, but it is read as {raw.layout} with "
+                f"{', '.join(found)}; run 'make describe FILE={path}' and confirm that"
+            )
+        if not np.allclose(value, found[key], rtol=SAME_RELIEF, atol=0):
+            raise InputError(
+                f"{path}: its sidecar confirms {key} {_plain(value)}, the file holds "
+                f"{_plain(found[key])}: it is another file, or is read otherwise than when it was "
+                f"looked at; 'make describe FILE={path}' draws it, then write '{key}: "
+                f"{_plain(found[key])}' under 'confirmed'"
+            )
+
+
+def size_and_relief(heights: np.ndarray, layout: str) -> dict:
+    """What is confirmed of a file: its rows and columns or points, and its relief.
+
+    Parameters
+    ----------
+    heights : ndarray
+        Numbers of the file, NaN where missing.
+    layout : {"matrix", "points", "mesh"}
+
+    Returns
+    -------
+    dict
+        ``shape`` or ``points``; ``relief``, the highest less the lowest number of the file.
+    """
+    size = {"shape": heights.shape} if layout == "matrix" else {"points": len(heights)}
+    if not np.isfinite(heights).any():
+        return size
+    return size | {"relief": float(f"{np.nanmax(heights) - np.nanmin(heights):.4g}")}
+
+
+def _plain(value) -> str:
+    return f"[{', '.join(map(str, value))}]" if isinstance(value, tuple | list) else f"{value:g}"

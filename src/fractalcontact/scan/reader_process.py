@@ -25,7 +25,7 @@ from ..core.labels import printable
 from .files import inflated_size, regular_file
 from .format import Format
 from .options import ScanOptions
-from .raw import RawScan
+from .raw import IncompleteSidecar, RawScan
 from .transfer import from_text, send_scan, to_text
 
 #: Bytes beyond what the process has at the start, for a file of any size.
@@ -37,6 +37,7 @@ PATIENCE = 4
 _MOST_FILES = 64
 #: Characters; sentences of this program are far shorter, whatever they quote.
 _LONGEST_MESSAGE = 1600
+_LONGEST_DRAFT = 6000
 
 REQUEST_LENGTH = struct.Struct("!I")
 #: How the fork ended, as `os.wait4` gives it; the most memory it had (kB, on macOS bytes); its
@@ -147,6 +148,10 @@ def _read(request: dict, stream) -> None:
         raise
     except MemoryError:
         stream.write(to_text({"outcome": "memory"}))
+    except IncompleteSidecar as error:
+        draft = "\n".join(f"    {line}" for line in error.draft.split("\n"))
+        report = {"outcome": "incomplete", "message": _readable(error.message)}
+        stream.write(to_text(report | {"draft": _readable(draft, _LONGEST_DRAFT)}))
     except InputError as error:
         # Readers that meet any error of a library halfway call it a damaged file.
         outcome = "memory" if _is_from_memory(error) else "refused"
@@ -160,10 +165,10 @@ def _read(request: dict, stream) -> None:
         stream.write(to_text(report))
 
 
-def _readable(message: str) -> str:
+def _readable(message: str, longest: int = _LONGEST_MESSAGE) -> str:
     """A message without the pages, or the terminal's commands, that a library quotes of a file."""
-    if len(message) > _LONGEST_MESSAGE:
-        half = _LONGEST_MESSAGE // 2
+    if len(message) > longest:
+        half = longest // 2
         message = f"{message[:half]} ... {message[-half:]}"
     return "\n".join(map(printable, message.split("\n")))
 

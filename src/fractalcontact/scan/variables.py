@@ -9,6 +9,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -18,7 +19,8 @@ from .tables import choose_array, is_table
 
 MASK = "mask"
 _ATTRIBUTES = (
-    *("units", "unit", "axis", "scale_factor", "add_offset"),
+    *("units", "unit", "axis", "standard_name", "positive", "scale_factor", "add_offset"),
+    *("_Unsigned", "spacing"),
     *("_FillValue", "missing_value", "valid_min", "valid_max", "valid_range"),
 )
 #: What netCDF-4 writes into HDF5 for a dimension without coordinates.
@@ -65,16 +67,20 @@ def choose_variable(variables: dict, wanted: str | None, path: Path) -> str:
     InputError
         If it is absent, ambiguous or too large.
     """
-    tables = [
+    name = choose_array(table_names(variables), wanted, path)
+    refuse_larger(math.prod(variables[name].shape) * 8, path)
+    return name
+
+
+def table_names(variables: dict) -> list[str]:
+    """Names of the 2-D numeric variables."""
+    return [
         name
         for name, variable in variables.items()
         if is_table(variable.shape, variable.dtype)
         and min(variable.shape) > 1
         and name.rpartition("/")[2] != MASK
     ]
-    name = choose_array(tables, wanted, path)
-    refuse_larger(math.prod(variables[name].shape) * 8, path)
-    return name
 
 
 @contextmanager
@@ -133,7 +139,11 @@ def _read_hdf5(dataset, path: Path) -> np.ndarray:
 def _attributes(stored) -> dict:
     """Those we know, texts as str."""
     known = {name: stored[name] for name in _ATTRIBUTES if name in stored}
-    return {
-        name: value.decode(errors="replace") if isinstance(value, bytes) else value
-        for name, value in known.items()
-    }
+    return {name: _plain(value) for name, value in known.items()}
+
+
+def _plain(value: Any) -> Any:
+    """One value out of an array of one, text as str."""
+    if isinstance(value, np.ndarray) and value.size == 1:
+        value = value.ravel()[0]
+    return value.decode(errors="replace") if isinstance(value, bytes) else value

@@ -9,7 +9,7 @@ from ..core.claims import claims_of
 from ..core.errors import InputError
 from ..core.file_names import specimen_name
 from ..core.settings import Settings, Solver
-from ..scan.options import coordinate_files
+from ..scan.options import CONTACT_MAP, coordinate_files
 from .configuration import resolve_embedded, resolve_roll_off, resolve_settings, solver_settings
 from .figure_list import figures_of
 from .idle_keys import refuse_idle_keys
@@ -17,6 +17,9 @@ from .scan_files import ScanFiles
 from .scan_groups import list_grouped
 from .schema import nearest, shortened, validate
 from .sidecar import is_contact_map, read_yaml
+
+#: Other words for the kinds of a file.
+_OLD_KINDS = {"surface": {"kind": "face"}, "contact_map": {"kind": CONTACT_MAP}}
 
 
 @dataclass(frozen=True)
@@ -307,9 +310,11 @@ def _split(document: dict, schema: Mapping, source: str) -> tuple[dict, dict]:
         "additionalProperties": False,
         "properties": properties,
     }
+    for key, value in document.items():
+        if value is None and key in scan_keys:
+            raise InputError(f"{source}: key '{key}' is empty; fill it in")
     validate(document, sidecar_schema, source)
-    if document.get("kind") == "surface":  # what it is without
-        del document["kind"]
+    document = {**document, **_OLD_KINDS.get(str(document.get("kind")), {})}
     scan = {key: value for key, value in document.items() if key in scan_keys}
     settings = {key: value for key, value in document.items() if key not in scan_keys}
     return scan, settings

@@ -39,7 +39,7 @@ def _idle(scan: ScanFiles, keys: Mapping, settings: Mapping) -> Iterator[tuple[S
     """Keys that have no meaning for what the files are, and why."""
     if is_contact_map(keys):
         solved = [key for key in settings if key != "label"]
-        how_faces_lie = ["registration", "mirror_upper", "grid", "columns", "unit_z"]
+        how_faces_lie = ["registration", "mirror_upper", "grid", "columns", "unit_z", "heights"]
         yield [*how_faces_lie, *solved], "for a contact map, of which nothing is solved"
         return
     yield ["load"], "but for a contact map (did you mean 'loads'?)"
@@ -48,7 +48,8 @@ def _idle(scan: ScanFiles, keys: Mapping, settings: Mapping) -> Iterator[tuple[S
     if scan.upper is not None:
         yield ["opposite"], "where both faces were scanned"
     else:
-        yield ["registration", "mirror_upper"], "for one face, without an upper one"
+        of_pairs = ["registration", "mirror_upper", "lower", "upper"]
+        yield of_pairs, "for one face, without an upper one"
     if settings.get("opposite") == "flat":
         sliding = ["directions", "contact_directions", "offsets", "map_offset"]
         yield sliding, "against a rigid plane, on which nothing slides"

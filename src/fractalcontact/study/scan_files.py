@@ -15,10 +15,12 @@ _IGNORED = ("README", "LICENSE")
 #: Files that systems and editors leave in a folder, by name, ending or beginning, in lower case.
 _LEFT_BY_SYSTEMS = ("thumbs.db", "desktop.ini", "icon\r", "ehthumbs.db")
 _LEFT_BEHIND = ("~", ".bak", ".orig", ".tmp", ".swp", ".part", ".crdownload")
+#: Endings of what `make describe` writes: drafts of sidecars and pictures, which nothing reads.
+DRAFTS = (".draft.yaml", ".draft.png", ".draft.html")
 _LOCKS = ("~$", "._", ".~lock.")
 #: How others name the faces of a joint: what stands before, the mark, the face, the ending.
-_OTHER_FACE = {"lower": "upper", "bottom": "top"}
-_FACE = re.compile(r"(.+)([_ -]|(?<=[a-z0-9])(?=[A-Z]))(?i:(lower|bottom))(\.[^.]+)")
+_OTHER_FACE = {"lower": "upper", "bottom": "top", "sidea": "sideb", "side1": "side2"}
+_FACE = re.compile(r"(?:[_ -]|(?<=[a-z0-9])(?=[A-Z]))(?i:lower|bottom|side[a1])(?![a-zA-Z0-9])")
 #: Results are files and folders of this name and a few letters more; 255 bytes is what discs take.
 LONGEST_NAME = 220
 #: Control characters, invisible and direction marks, undecodable bytes, line separators.
@@ -177,7 +179,7 @@ def folder_notes(folder: Path | str) -> list[str]:
 def is_passed_over(name: str) -> bool:
     """Whether a file or folder of this name is looked at: hidden ones and README* are not."""
     hidden = name.startswith(".") or name.upper().startswith(_IGNORED)
-    return hidden or _is_left_behind(name)
+    return hidden or _is_left_behind(name) or name.lower().endswith(DRAFTS)
 
 
 def _is_left_behind(name: str) -> bool:
@@ -192,14 +194,19 @@ def _likely_pairs(names: list[str]) -> Iterator[tuple[str, str, str, str]]:
     """
     known = {name.lower(): name for name in names}
     for name in names:
-        match = _FACE.fullmatch(name)
-        if match is None or Path(name).suffix.lower() in SIDECAR_SUFFIXES:
+        stem, ending = Path(name).stem, Path(name).suffix
+        if not _FACE.search(stem) or ending.lower() in SIDECAR_SUFFIXES:
             continue
-        before, mark, face, ending = match.groups()
-        other_face = _OTHER_FACE.get(face.lower())
-        other = known.get(f"{before}{mark}{other_face}{ending}".lower())
-        if other_face and other:
-            yield name, other, f"{before}.lower{ending}", f"{before}.upper{ending}"
+        other = known.get(f"{_FACE.sub(_turned, stem)}{ending}".lower())
+        common = _FACE.sub("", stem)
+        if other and common and other != name:
+            yield name, other, f"{common}.lower{ending}", f"{common}.upper{ending}"
+
+
+def _turned(face: re.Match) -> str:
+    """The word for the other face, with what parts it from the name."""
+    word = face[0].lstrip("_ -")
+    return face[0].removesuffix(word) + _OTHER_FACE[word.lower()]
 
 
 def _is_named_like_a_scan(folder: Path) -> bool:

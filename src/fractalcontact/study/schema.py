@@ -70,6 +70,11 @@ def _explain(error):
         full = f"{key}.{missing}" if key else missing
         expected = error.schema["properties"].get(missing, {})
         return f"missing key '{full}'{_expected(expected)}"
+    if error.validator == "anyOf" and isinstance(error.instance, dict):
+        # What is wrong within a mapping says more than that it is none of the forms.
+        inner = max(error.context, key=lambda found: len(found.absolute_path))
+        if len(inner.absolute_path) > len(error.absolute_path):
+            return _explain(inner)
     return f"{key}: {shortened(repr(error.instance))} is not right{_expected(error.schema)}"
 
 

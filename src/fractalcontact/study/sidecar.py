@@ -13,6 +13,7 @@ from typing import Any, ClassVar
 import yaml
 
 from ..core.errors import InputError
+from ..scan.options import CONTACT_MAP
 
 LARGEST_SIDECAR = 64 * 1024  # bytes
 DEEPEST_SIDECAR = 10  # lists within mappings within ...
@@ -30,18 +31,27 @@ _WORDS = (
 
 def is_contact_map(scan_options: Mapping) -> bool:
     """Whether a sidecar says that its file is a map of contact, not of heights."""
-    return scan_options.get("kind") == "contact-map"
+    return scan_options.get("kind") == CONTACT_MAP
 
 
 def sidecar_of_matrix(spacing: float) -> dict[str, str]:
-    """Scan keys of a matrix in mm.
+    """Scan keys of an array of heights in mm, its rows ascending in y: all that must be stated.
 
     Parameters
     ----------
     spacing : float
         Distance of two cells, mm.
     """
-    return {"unit": "mm", "spacing": f"{spacing:.12g} mm"}
+    return {
+        "kind": "face",
+        "layout": "matrix",
+        "axes": "none",
+        "unit": "mm",
+        "spacing": f"{spacing:.12g} mm",
+        "first_row": "bottom",
+        "heights": "up",
+        "missing": "none",
+    }
 
 
 def read_yaml(path: Path | str) -> dict:

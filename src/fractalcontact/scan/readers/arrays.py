@@ -1,21 +1,28 @@
 """Matrices and point lists saved by numpy. Nothing pickled is ever opened."""
 
+import contextlib
 import math
 import zipfile
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 
 from ...core.errors import InputError
+from ..array_hints import array_hints
+from ..draft import Hints
 from ..format import Format
 from ..options import ScanOptions
 from ..raw import RawScan, reading, refuse_larger
+from ..stated import Needs, require_stated
 from ..tables import choose_array, is_table, table_to_raw
 
 _HEADER_READERS = {
     (1, 0): np.lib.format.read_array_header_1_0,
     (2, 0): np.lib.format.read_array_header_2_0,
 }
+
+_SMALL = 1000  # bytes of an array of one number
 
 
 def read_npy(path: Path, options: ScanOptions) -> RawScan:
@@ -35,7 +42,8 @@ def read_npy(path: Path, options: ScanOptions) -> RawScan:
             f"{path}: expected a 2-D array of numbers, found {values.dtype} of shape {values.shape}"
         )
     refuse_larger(values.size * 8, path)
-    return table_to_raw(_as_float(values), None, options, str(path), reader=_reader("npy"))
+    _require(path, options, {"": values.shape}, lambda name: values)
+    return table_to_raw(_as_float(values), options, str(path), reader=_reader("npy"))
 
 
 def read_npz(path: Path, options: ScanOptions) -> RawScan:
@@ -49,14 +57,47 @@ def read_npz(path: Path, options: ScanOptions) -> RawScan:
     with reading(path, ".npz archive"):
         with zipfile.ZipFile(path) as archive:
             tables = _tables_of(archive)
+        _require(path, options, tables, lambda name: _array_of(path, name))
         variable = choose_array(list(tables), options.variable, path)
         refuse_larger(math.prod(tables[variable]) * 8, path)
-        with np.load(path, allow_pickle=False) as archive:
-            values = archive[variable]
+        values = _array_of(path, variable)
     notes = (f"array {variable!r} of the archive",)
-    return table_to_raw(
-        _as_float(values), None, options, str(path), reader=_reader("npz"), notes=notes
-    )
+    return table_to_raw(_as_float(values), options, str(path), reader=_reader("npz"), notes=notes)
+
+
+def _require(
+    path: Path,
+    options: ScanOptions,
+    tables: dict[str, tuple],
+    read: Callable[[str], np.ndarray],
+) -> None:
+    """Refuse arrays of which the sidecar does not say all."""
+    needs = Needs(table=True, arrays=list(tables))
+
+    def hints() -> Hints:
+        small = _single_numbers(path) if path.suffix.lower() == ".npz" else {}
+        return array_hints(tables, options.variable, small, read)
+
+    require_stated(path, options, needs, hints)
+
+
+def _array_of(path: Path, name: str) -> np.ndarray:
+    with np.load(path, allow_pickle=False) as archive:
+        return archive[name]
+
+
+def _single_numbers(path: Path) -> dict[str, float]:
+    """Single numbers of an archive by name: a spacing may be among them."""
+    with zipfile.ZipFile(path) as archive:
+        small = [m.filename for m in archive.infolist() if m.file_size < _SMALL]
+    found = {}
+    for member in small:
+        name = member.removesuffix(".npy")
+        with contextlib.suppress(ValueError, KeyError):  # pickled, or no array
+            values = _array_of(path, name)
+            if values.size == 1 and values.dtype.kind in "fiu":
+                found[name] = float(values.ravel()[0])
+    return found
 
 
 def _refuse_pickled(path: Path) -> None:
@@ -96,4 +137,4 @@ def _read(path: Path, options: ScanOptions) -> RawScan:
     return (read_npy if path.suffix.lower() == ".npy" else read_npz)(path, options)
 
 
-FORMAT = Format(_read, endings=(".npy", ".npz"))
+FORMAT = Format(_read, endings=(".npy", ".npz"), keys=("layout", "axes", "columns"))

@@ -18,6 +18,11 @@ _OWN_FORMATS = {"xyz", "asc", "npy", "npz", "x3p", "mat", "h5", "nc", "gwy"}
 #: Extensions in use that SurfaceTopography does not list.
 _MORE_EXTENSIONS = {"di": "di"}
 
+#: Endings that an instrument shares with other programs, and what to do with the files of those.
+_ALSO_OTHERS = {
+    ".xlsx": "a spreadsheet, but none of a Mitutoyo instrument; save the heights as CSV",
+    ".zip": "an archive, but none of an SIOS instrument; put the scan file itself here",
+}
 #: Formats whose lateral size SurfaceTopography misreads: factor, and why it is known.
 LATERAL_FAULTS = {
     "nms": (
@@ -64,6 +69,8 @@ def read_instrument(path: Path, options: ScanOptions) -> RawScan:
             raise
         except Exception as error:  # a damaged file makes these readers raise anything
             reasons.append(f"as {format_name}: {type(error).__name__}: {on_one_line(error)}")
+    if advice := _ALSO_OTHERS.get(path.suffix.lower()):
+        raise InputError(f"{path}: {advice}")
     raise InputError(
         f"{path}: damaged, or not what its extension says ({'; '.join(reasons)}); export it again, "
         "or export x, y, z as text"

@@ -1,17 +1,24 @@
-"""Height maps in netCDF and HDF5 files, with units and coordinates as is usual there."""
+"""Height maps in netCDF and HDF5 files: by the CF conventions, or as their sidecar says."""
 
+import warnings
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from ...core.errors import InputError
+from ...core.labels import percent
 from ...core.units import length_factor
+from ..array_hints import array_hints
+from ..draft import Hints
 from ..format import Format
+from ..measured import NOTE
 from ..options import ScanOptions
-from ..raw import RawScan, foreign_units, reading, stated_unit
+from ..raw import RawScan, reading, stated_unit
+from ..stated import Needs, require_stated
 from ..tables import table_to_raw
-from ..variables import MASK, Variable, choose_variable, open_variables
+from ..variables import MASK, Variable, choose_variable, open_variables, table_names
 
 #: Coordinates may stray this fraction of a cell from equal steps: float32 leaves as much.
 REGULAR = 0.01
@@ -22,103 +29,157 @@ _UNWRITTEN = {
     "i2": -32767,
     "i4": -(2**31) + 1,
 }
+_LETTERS = {"projection_x_coordinate": "x", "projection_y_coordinate": "y"}
 
 
 @dataclass(frozen=True)
 class Axis:
-    """One axis of a matrix: "x", "y" or "", signed step and unit of its coordinates, if any."""
+    """Axis of a matrix: "x" or "y", signed step and unit of its coordinates."""
 
     letter: str
-    step: float | None = None
-    unit: str | None = None
+    step: float
+    unit: str
 
 
 def read_labelled(path: Path, options: ScanOptions) -> RawScan:
     """Read one 2-D variable of a netCDF or HDF5 file.
 
-    Fill values, ``scale_factor`` and ``add_offset`` are applied (CF conventions); where a variable
-    ``mask`` is not zero, cells are missing (SurfaceTopography's convention). Dimensions called x
-    and y, or with the attribute ``axis``, distinguish the axes; else rows are y. Coordinates give
-    spacing and direction, attributes ``units`` (or ``unit``) the units.
+    A variable whose attribute ``units``, and those of the coordinates x and y of its dimensions,
+    are units of length describes itself; ``positive: down`` of it is honoured. Any other is read
+    as its sidecar says. Packing, fill values and valid ranges are decoded (CF conventions); where a
+    variable ``mask`` is not zero, cells are missing (SurfaceTopography's convention).
 
     Raises
     ------
     InputError
-        If the file is damaged, the wanted variable absent or ambiguous, a coordinate irregular, or
-        the data lie in another file.
+        If the file is damaged, the wanted variable absent or ambiguous, a coordinate irregular, the
+        data lie in another file, or the sidecar does not state all that is needed.
     """
     with reading(path, "netCDF or HDF5 file"), open_variables(path) as variables:
+        names = table_names(variables)
+        wanted = options.variable or (names[0] if len(names) == 1 else None)
+        laid_out = options.layout or options.axes or options.columns
+        axes = None if laid_out else _coordinates(variables.get(wanted or ""), variables, path)
+        if axes is None and not (len(names) > 1 and wanted is None and _any_conforms(variables)):
+            needs = Needs(table=True, arrays=names)
+            require_stated(path, options, needs, lambda: _hints(variables, names, options))
         name = choose_variable(variables, options.variable, path)
-        values = _values(name, variables)
-        axes = [_axis(dimension, variables, path) for dimension in variables[name].dimensions]
-        unit = _unit(variables[name])
-    if axes[0].letter == "x" or axes[1].letter == "y":
+        values, notes = _values(name, variables)
+    notes = (f"variable {name!r}", *notes)
+    if axes is None:
+        return table_to_raw(values, options, str(path), reader=_reader(path), notes=notes)
+    attributes = variables[name].attributes
+    if axes[0].letter == "x":
         values, axes = values.T, axes[::-1]
     for number, axis in enumerate(axes):
-        if axis.step is not None and axis.step < 0:
+        if axis.step < 0:
             values = np.flip(values, number)
     rows, columns = axes
-    stated = {
-        "reader": _reader(path),
-        "unit_z": stated_unit(unit),
-        "unread": foreign_units(z=unit, x=columns.unit, y=rows.unit),
-        "notes": (f"variable {name!r}",),
+    dy = abs(rows.step) * length_factor(rows.unit, "y") / length_factor(columns.unit, "x")
+    return RawScan(
+        np.ascontiguousarray(values),
+        "matrix",
+        reader=_reader(path),
+        unit_xy=columns.unit,
+        unit_z=_unit(variables[name]),
+        spacing=(abs(columns.step), dy),
         # The coordinates say where the rows lie, and they ascend by now.
-        "first_row": None if rows.step is None else "bottom",
-        **_spacing(columns, rows),
-    }
-    values = np.ascontiguousarray(values)
-    if "spacing" in stated:
-        return RawScan(values, "matrix", **stated)
-    return table_to_raw(values, None, options, str(path), **stated)
+        first_row="bottom",
+        heights="down" if str(attributes.get("positive", "up")).lower() == "down" else "up",
+        notes=notes,
+    )
 
 
-def _values(name: str, variables: dict) -> np.ndarray:
-    """Numbers in the file's unit, NaN where missing."""
+def _any_conforms(variables: dict) -> bool:
+    """Whether the unit of a variable says that the file is labelled: only its choice is open."""
+    return any(_unit(v) for v in variables.values() if len(v.shape) == 2)
+
+
+def _values(name: str, variables: dict) -> tuple[np.ndarray, tuple[str, ...]]:
+    """Numbers in the file's unit, NaN where missing, and notes."""
     variable = variables[name]
-    stored = variable.read()
-    values = stored.astype(np.float64)
-    absent = ~_is_valid(stored, variable.attributes)
+    values, outside = decoded(variable)
     group, slash, _ = name.rpartition("/")
     mask = variables.get(group + slash + MASK)
     if mask is not None and mask.shape == values.shape:
-        absent |= mask.read() != 0
-    values = values * _number(variable, "scale_factor", 1) + _number(variable, "add_offset", 0)
-    values[absent] = np.nan
-    return values
+        values[mask.read() != 0] = np.nan
+    if not outside:
+        return values, ()
+    share = percent(outside / values.size)
+    note = f"{NOTE}{share} of the cells lie outside the valid range that the file states: missing"
+    return values, (note,)
 
 
-def _is_valid(stored: np.ndarray, attributes: dict) -> np.ndarray:
-    """Neither a fill value nor outside the valid range; all three count before scaling (CF 2.5)."""
-    valid = np.ones(stored.shape, dtype=bool)
-    fills = [attributes.get("_FillValue", _UNWRITTEN.get(stored.dtype.str[1:]))]
-    for fill in (*fills, attributes.get("missing_value")):
-        if fill is not None:
-            valid &= ~np.isin(stored, np.asarray(fill, dtype=stored.dtype))
-    low, high = attributes.get("valid_range", (None, None))
-    if (low := attributes.get("valid_min", low)) is not None:
-        valid &= stored >= low
-    if (high := attributes.get("valid_max", high)) is not None:
-        valid &= stored <= high
-    return valid
+def decoded(variable: Variable) -> tuple[np.ndarray, int]:
+    """Numbers of a variable by the CF conventions, and how many lie outside its valid range.
+
+    The range counts before unpacking, but for one of floating point beside packed integers.
+    """
+    import xarray as xr
+
+    stored, attributes = variable.read(), dict(variable.attributes)
+    fill = _UNWRITTEN.get(stored.dtype.str[1:])
+    if fill is not None and "_FillValue" not in attributes and "missing_value" not in attributes:
+        attributes["_FillValue"] = stored.dtype.type(fill)
+    limits = _limits(attributes)
+    for key in ("scale_factor", "add_offset"):
+        if key in attributes:
+            attributes[key] = np.float64(np.asarray(attributes[key]).item())
+    dims = [f"axis_{n}" for n in range(stored.ndim)]
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", xr.SerializationWarning)  # of two marks for missing
+        coded = xr.Variable(dims, stored, attributes)
+        values = xr.conventions.decode_cf_variable("z", coded, decode_times=False).values
+    values = np.array(values, dtype=np.float64)
+    is_packed = "scale_factor" in attributes or "add_offset" in attributes
+    unsigned = str(attributes.get("_Unsigned", "")).lower() == "true" and stored.dtype.kind == "i"
+    outside = np.zeros(values.shape, dtype=bool)
+    for limit, beyond in zip(limits, (np.less, np.greater), strict=True):
+        if limit is None:
+            continue
+        compared = values if is_packed and limit.dtype.kind == "f" else stored
+        if unsigned and compared is stored:
+            wide = f"u{stored.dtype.itemsize}"
+            compared, limit = stored.view(wide), limit.astype(stored.dtype).view(wide)
+        outside |= beyond(compared, limit) & np.isfinite(values)
+    values[outside] = np.nan
+    return values, int(outside.sum())
 
 
-def _number(variable: Variable, attribute: str, default: float) -> float:
-    return np.asarray(variable.attributes.get(attribute, default), dtype=np.float64).item()
+def _limits(attributes: dict) -> tuple[np.ndarray | None, np.ndarray | None]:
+    """The least and the largest valid number, each None where not stated."""
+    both = np.ravel(attributes.pop("valid_range", ()))
+    low = attributes.pop("valid_min", both[0] if both.size == 2 else None)
+    high = attributes.pop("valid_max", both[1] if both.size == 2 else None)
+    return tuple(None if limit is None else np.asarray(limit) for limit in (low, high))  # type: ignore[return-value]
 
 
-def _unit(variable: Variable):
-    return variable.attributes.get("units", variable.attributes.get("unit"))
+def _unit(variable: Variable) -> str | None:
+    """Unit of length of a variable; SurfaceTopography calls the attribute ``unit``."""
+    return stated_unit(variable.attributes.get("units", variable.attributes.get("unit")))
 
 
-def _axis(dimension: str, variables: dict, path: Path) -> Axis:
-    """Which axis a dimension is, and the step and unit of its coordinates."""
+def _coordinates(variable: Variable | None, variables: dict, path: Path) -> list[Axis] | None:
+    """Axes of a variable in units of length, as are its numbers; None if they do not say all."""
+    if variable is None or _unit(variable) is None:
+        return None
+    axes = [_axis(dimension, variables, path) for dimension in variable.dimensions]
+    found = [axis for axis in axes if axis is not None]
+    return found if sorted(axis.letter for axis in found) == ["x", "y"] else None
+
+
+def _axis(dimension: str, variables: dict, path: Path) -> Axis | None:
+    """Which axis a dimension is, the step and unit of its coordinates; None if it does not say."""
     name = dimension.rpartition("/")[2]
     coordinate = variables.get(dimension)
     if coordinate is None or len(coordinate.shape) != 1 or coordinate.dtype.kind not in "fiu":
-        return Axis(_letter(name))
-    letter = _letter(str(coordinate.attributes.get("axis") or name))
-    places = coordinate.read().astype(np.float64)
+        return None
+    attributes, unit = coordinate.attributes, _unit(coordinate)
+    called = str(attributes.get("axis") or name)[:1].lower()
+    letter = _LETTERS.get(str(attributes.get("standard_name")), called)
+    if unit is None or letter not in ("x", "y") or coordinate.shape[0] < 2:
+        return None
+    places, _ = decoded(coordinate)
     step = (places[-1] - places[0]) / (len(places) - 1)
     strays = np.abs(np.diff(places) - step).max()
     if not strays <= REGULAR * abs(step):  # also where one is NaN
@@ -126,26 +187,26 @@ def _axis(dimension: str, variables: dict, path: Path) -> Axis:
             f"{path}: coordinate {name!r} is not equidistant; resample the heights on a regular "
             "grid, or export x, y, z as text"
         )
-    return Axis(letter, float(step), _unit(coordinate))
+    return Axis(letter, float(step), unit)
 
 
-def _letter(name: str) -> str:
-    first = name[:1].lower()
-    return first if first in ("x", "y") else ""
-
-
-def _spacing(columns: Axis, rows: Axis) -> dict:
-    """Spacing and its unit, where both axes have coordinates in one kind of unit."""
-    if columns.step is None or rows.step is None:
-        return {}
-    dx, dy = abs(columns.step), abs(rows.step)
-    unit_x, unit_y = stated_unit(columns.unit), stated_unit(rows.unit)
-    if unit_x and unit_y:
-        dy *= length_factor(unit_y, "y") / length_factor(unit_x, "x")
-        return {"spacing": (dx, dy), "unit_xy": unit_x}
-    if columns.unit or rows.unit:  # degrees, pixels: no length, so no spacing
-        return {}
-    return {"spacing": (dx, dy)}
+def _hints(variables: dict, names: list[str], options: ScanOptions) -> Hints:
+    """What names, single numbers and attributes seem to say."""
+    tables = {name: variables[name].shape for name in names}
+    small: dict[str, Any] = {
+        name: variable.read().ravel()[0]
+        for name, variable in variables.items()
+        if np.prod(variable.shape) == 1 and variable.dtype.kind in "fiu"
+    }
+    words = [
+        (f"attribute {key} of {name}", f"{key} {value}")
+        for name, variable in variables.items()
+        for key, value in variable.attributes.items()
+        if key in ("units", "unit", "positive", "spacing")
+    ]
+    return array_hints(
+        tables, options.variable, small, lambda name: decoded(variables[name])[0], words
+    )
 
 
 def _reader(path: Path) -> str:
@@ -157,4 +218,9 @@ def _reader(path: Path) -> str:
     return f"scipy {scipy.__version__} / netCDF classic"
 
 
-FORMAT = Format(read_labelled, endings=(".h5", ".hdf5", ".nc"), libraries=("h5py", "scipy.io"))
+FORMAT = Format(
+    read_labelled,
+    endings=(".h5", ".hdf5", ".nc"),
+    keys=("layout", "axes", "columns"),
+    libraries=("h5py", "scipy.io", "xarray"),
+)

@@ -23,6 +23,8 @@ def read_mesh(path: Path, options: ScanOptions) -> RawScan:
     import trimesh
 
     file_type = path.suffix.lstrip(".").lower()
+    if file_type == "stl":
+        _refuse_wrong_count(path)
     with reading(path, "mesh"), open(path, "rb") as stream:
         # From a stream, without a resolver: no other file it may name is opened.
         loaded = trimesh.load(stream, file_type=file_type, process=False, resolver=None)
@@ -40,6 +42,20 @@ def read_mesh(path: Path, options: ScanOptions) -> RawScan:
         reader=f"trimesh {trimesh.__version__}",
         triangles=triangles if len(triangles) else None,
     )
+
+
+def _refuse_wrong_count(path: Path) -> None:
+    """Refuse a binary STL file that holds more or fewer triangles than it says."""
+    with open(path, "rb") as stream:
+        head = stream.read(84)
+    held, rest = divmod(path.stat().st_size - 84, 50)
+    if head.lstrip().startswith(b"solid") or len(head) < 84 or rest:
+        return
+    stated = int.from_bytes(head[80:], "little")
+    if stated != held:
+        raise InputError(
+            f"{path}: its header states {stated} triangles, the file holds {held}; export it again"
+        )
 
 
 def _concatenate(parts) -> tuple[np.ndarray, np.ndarray]:

@@ -5,9 +5,11 @@ from pathlib import Path
 import numpy as np
 
 from ...core.errors import InputError
+from ..draft import Hints
 from ..format import Format
 from ..options import ScanOptions
 from ..raw import RawScan, reading, refuse_larger
+from ..stated import Needs, require_stated
 
 _MARK = b"DSAA"
 _BLANK = 1.70141e38  # of a cell without height; versions differ in the last digits
@@ -33,6 +35,7 @@ def read_surfer(path: Path, options: ScanOptions) -> RawScan:
             f"{path}: its header promises {ny} rows of {nx} heights, it holds {values.size} "
             "heights; export it again"
         )
+    require_stated(path, options, Needs(grid=True), Hints)
     values[values >= _BLANK * (1 - 1e-4)] = np.nan
     spacing = (x_high - x_low) / (nx - 1), (y_high - y_low) / (ny - 1)
     return RawScan(

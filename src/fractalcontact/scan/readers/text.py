@@ -1,7 +1,7 @@
-"""Matrices and point clouds as people export them to text."""
+"""Matrices and points in text files, read as their sidecar says they are written."""
 
-import codecs
 import io
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -10,25 +10,25 @@ import numpy as np
 from ...core.errors import InputError
 from ...core.strips import stacked
 from ..format import Format
-from ..headings import read_statements
-from ..options import ScanOptions
-from ..raw import SMALLEST_SIDE, RawScan
-from ..tables import TextLayout, table_to_raw
-from ..text_headers import esri_header, gwyddion_header, refuse_known_programs
-from ..text_style import (
+from ..options import DELIMITERS, ScanOptions
+from ..raw import RawScan
+from ..stated import Needs, require_stated
+from ..tables import TextParts, table_to_raw
+from ..text_hints import named_columns, text_hints
+from ..text_lines import (
     COMMENT_MARKS,
-    Style,
-    column_names,
-    counts_agree,
-    find_style,
-    numbers_above,
-    numbers_of,
-    split_cells,
+    cells_of,
+    cleaned,
+    is_cut_off,
+    is_number,
+    open_text,
+    refuse_other_counts,
+    wide_encoding,
 )
 
-_EXTRA_MISSING = ["BAD", "bad", "none", "NONE", "---", "--", "-", "*", "?"]
-#: Numbers in front of a table: of rows, of columns, of points.
-_MOST_COUNTS = 3
+_NAN = ("", "nan", "NaN", "NAN", "-nan", "-NaN", "+nan")
+#: Keys that say how a text is laid out; a table that describes itself needs none of them.
+LAYOUT_KEYS = ("delimiter", "decimal", "thousands", "header", "layout", "axes", "columns")
 _BLOCK = 2**24  # characters read at once
 _PLAIN = b"0123456789+-.,;eE \t\n"
 
@@ -36,265 +36,245 @@ _PLAIN = b"0123456789+-.,;eE \t\n"
 def read_text(path: Path, options: ScanOptions) -> RawScan:
     """Read a text file of heights or of points, block by block: only the numbers are kept.
 
-    Delimiter and decimal mark are found from the content. Lines of words in front are the header;
-    comments and repeats of a header line are passed over wherever they stand; a line cut short at
-    the very end of the file is dropped with a note. Headers of Gwyddion text exports and of ESRI
-    ASCII grids give size and unit.
+    Delimiter, decimal mark, header and what the columns hold are those of the sidecar; of a table
+    whose columns are named x, y and z, each with a unit of length, those of that line. No other
+    word of the file counts. Lines that begin with ``#``, ``%``, ``!`` or ``//``, and repeats of a
+    header line, are passed over behind the header. A point cut short at the very end of the file is
+    left out with a note.
 
     Raises
     ------
     InputError
-        If a line in between cannot be read, or there are no numbers at all.
+        If the sidecar does not state all that is needed, a line is not as it says, or the numbers
+        of rows, columns or points disagree with those that the header states.
     """
-    reading = _Reading(path)
-    with open(path, encoding=_encoding(path), errors="replace") as stream:
+    units = {}
+    if all(getattr(options, key) is None for key in LAYOUT_KEYS) and (found := named_columns(path)):
+        keys, units = found
+        options = replace(options, **keys)
+    else:
+        needs = Needs(text=True, table=True)
+        require_stated(path, options, needs, lambda: text_hints(path))
+    reading = _Reading(path, options)
+    with open_text(path) as stream:
+        reading.header = [stream.readline().rstrip("\n") for _ in range(options.header or 0)]
         while block := stream.read(_BLOCK) + stream.readline():
             reading.add(block)
-    table, style, notes = reading.finish()
-    header, where = reading.header, str(path)
-    refuse_known_programs(header, where)
-    stated = gwyddion_header(header, table.shape, where) or esri_header(header, table.shape, where)
-    if stated:
-        return RawScan(table, "matrix", reader=_reader(), notes=notes, **stated)
-    above, header = numbers_above(header, style, where)
-    names, sure, number = column_names(header, style)
-    if sure and number is not None:
-        header = header[:number] + header[number + 1 :]
-    layout = TextLayout(sure, above, reading.breaks)
-    said = read_statements(header, style.decimal)
-    return table_to_raw(table, names, options, where, layout, reader=_reader(), notes=notes, **said)
+    table, parts, notes = reading.finish()
+    refuse_other_counts(reading.header, table.shape, options, str(path))
+    return table_to_raw(table, options, str(path), parts, reader=_reader(), notes=notes, **units)
 
 
 def is_text(path: Path) -> bool:
     """Tell a text file from a binary one by its first bytes."""
     with open(path, "rb") as stream:
         head = stream.read(4096)
-    return (
-        head.startswith((b"\xff\xfe", b"\xfe\xff")) or b"\0" not in head or _wide(head) is not None
-    )
-
-
-def _wide(head: bytes) -> str | None:
-    """UTF-16 without its mark: every other byte of plain text is zero."""
-    if len(head) < 8 or head.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
-        return None
-    even, odd = head[0::2], head[1::2]
-    for zeros, others, name in ((odd, even, "utf-16-le"), (even, odd, "utf-16-be")):
-        if zeros.count(0) > 0.8 * len(zeros) and b"\0" not in others:  # signs beyond Latin-1
-            return name
-    return None
-
-
-def _encoding(path: Path) -> str:
-    """UTF-16 by its mark; else UTF-8 if all of the file is, else Latin-1."""
-    with open(path, "rb") as stream:
-        head = stream.read(64)
-        if head.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
-            return "utf-16"
-        if wide := _wide(head[:64]):
-            return wide
-        stream.seek(0)
-        decoder = codecs.getincrementaldecoder("utf-8")()
-        try:
-            while content := stream.read(_BLOCK):
-                decoder.decode(content)
-            decoder.decode(b"", final=True)
-        except UnicodeDecodeError:  # instruments in Europe still write this one
-            return "latin-1"
-    return "utf-8-sig"
+    is_marked = head.startswith((b"\xff\xfe", b"\xfe\xff"))
+    return is_marked or b"\0" not in head or wide_encoding(head) is not None
 
 
 class _Reading:
     """The numbers of a text file, taken up block by block; a block holds whole lines."""
 
-    def __init__(self, path: Path):
-        self.path = path
+    def __init__(self, path: Path, options: ScanOptions):
+        self.path, self.options = path, options
+        self.delimiter = DELIMITERS[options.delimiter or "blank"]
         self.header: list[str] = []
-        self.style: Style | None = None  # that of the first block with numbers
-        self.breaks: list[int] = []  # rows before which something else than numbers stands
+        self._width = 0  # numbers in a line
+        self._trailing = False  # lines end with a delimiter that parts nothing
+        self._breaks: list[int] = []  # rows before which something else than numbers stands
         self._parts: list[np.ndarray] = []
         self._rows = 0  # taken up so far
-        self._counts: list[int] = []  # whole numbers in short lines in front
-        self._lines = 0  # before the next block
-        self._short: tuple[int, int] | None = None  # number and width of a line that ends too soon
+        self._lines = options.header or 0  # before the next block
+        self._short: tuple[int, str, str] | None = None  # number, text and fault of a cut line
+        self._above: list[str] | None = None  # cells of a first row of coordinates
+        self._has_frame = options.layout != "points" and options.axes in ("both", "row")
 
     def add(self, block: str) -> None:
         """Take up the next block."""
         # The quick way passes no line it has not understood; what it refuses is read line by line.
-        style = self.style
-        plain = None if style is None or self._short else _parse_plain(block, style)
-        if style is None or plain is None:
-            self._add_lines(block.split("\n"))
+        plain = None
+        if self._width and not self._short:
+            plain = _plain_block(block, self.delimiter, self._width, self._trailing)
+        if plain is None:
+            self._add_lines(block)
         else:
-            self._take(_parse(plain, style, self.path))
+            self._take(self._parse(plain, self._width + self._trailing))
         self._lines += block.count("\n")
 
-    def finish(self) -> tuple[np.ndarray, Style, tuple[str, ...]]:
-        """The table (rows, columns), how it is written, and the notes."""
-        if self.style is None:
-            raise InputError(
-                f"{self.path}: the file holds no line of numbers; export the heights as numbers "
-                "alone, without units or words in their lines"
-            )
+    def finish(self) -> tuple[np.ndarray, TextParts, tuple[str, ...]]:
+        """The table (rows, columns), what stands around it, and the notes."""
         notes: tuple[str, ...] = ()
         if self._short:
-            notes = (f"the last line ({self._short[0]}) was cut short and is left out",)
-        table = stacked(self._parts)
-        self.breaks = [row for row in dict.fromkeys(self.breaks) if 0 < row < len(table)]
-        if self._counts and not counts_agree(self._counts, table.shape):
+            number, line, fault = self._short
+            if self.options.layout != "points" or not self._rows:
+                raise InputError(
+                    f"{self.path}: its last line ({number}) {fault}, after {self._rows} rows of "
+                    f"{self._width}: {line[-40:]!r}; the file is cut off, so export it again"
+                )
+            notes = (f"the last line ({number}) was cut short and is left out",)
+        if not self._parts:
             raise InputError(
-                f"{self.path}: its first line holds {' '.join(map(str, self._counts))}, which is "
-                f"neither numbers of the table nor its size: {table.shape[0]} lines of "
-                f"{table.shape[1]} numbers follow; export it again, or remove the line"
+                f"{self.path}: no line of numbers behind its header of {self.options.header} "
+                "lines; write the number of lines above the first number, 'header: 1'"
             )
-        return table, self.style, notes
+        table = stacked(self._parts)
+        breaks = [row for row in dict.fromkeys(self._breaks) if 0 < row < len(table)]
+        above = None if self._above is None else self._coordinates(self._above)
+        return table, TextParts(self._names(), above, breaks), notes
 
     def _take(self, part: np.ndarray) -> None:
         self._parts.append(part)
         self._rows += len(part)
 
-    def _add_lines(self, lines: list[str]) -> None:
-        data, gaps = self._data_lines(lines)
+    def _names(self) -> list[str] | None:
+        """Cells of the last header line, which is above the numbers."""
+        if not self.header:
+            return None
+        cells = cells_of(self.header[-1].lstrip("#%!/ "), self.delimiter)
+        return [cell.strip().strip("\"'") for cell in cells]
+
+    def _coordinates(self, cells: list[str]) -> np.ndarray:
+        """Numbers of the first row; a word may stand in its corner, or nothing."""
+        if len(cells) > self._width and not cells[-1].strip():
+            cells = cells[:-1]
+        if self.options.axes == "both" and len(cells) == self._width:
+            cells = cells[1:]
+        return self._parse(self.delimiter.join(cells), len(cells)).ravel()
+
+    def _add_lines(self, block: str) -> None:
+        data = self._data_lines(block.split("\n"))
         if not data:
             return
-        if self.style is None:
-            self.style = find_style([line for _, line in data], self.path)
-            in_front = self._lines_in_front(data, self.style)
-            gaps = [gap - in_front for gap in gaps]
-        if self.style.delimiter == "\t":
-            cells = self.style.width - 1 + self.style.trailing
-            data = [(n, line) for n, line in data if line.strip() or line.count("\t") == cells]
-        else:
-            data = [(n, line) for n, line in data if line.strip()]
-        self.breaks += [self._rows + gap for gap in gaps]
-        if rows := self._whole_rows(data, self.style):
-            # Without the delimiter at the end, which is cut off here.
-            style = replace(self.style, trailing=False)
-            self._take(_parse("\n".join(rows), style, self.path))
+        if self._has_frame and self._above is None:
+            self._above = cells_of(data.pop(0)[1], self.delimiter)
+            self._breaks = [max(row - 1, 0) for row in self._breaks]
+        if not self._width and data:
+            self._measure([line for _, line in data])
+        rows = self._whole_rows(data, block.endswith("\n"))
+        if rows:
+            self._take(self._parse("\n".join(rows), self._width))
 
-    def _lines_in_front(self, data: list[tuple[int, str]], style: Style) -> int:
-        """Take counts off the front of the lines; complete a row of coordinates without corner."""
-        taken = 0
-        while data and taken < _MOST_COUNTS:
-            cells = [cell.strip() for cell in split_cells(data[0][1].strip(), style.delimiter)]
-            if len(cells) == 1:  # counts may be parted otherwise than the numbers
-                cells = data[0][1].split()
-            if len(cells) >= min(style.width, _MOST_COUNTS) or not all(map(str.isdecimal, cells)):
-                break
-            self._counts += [int(cell) for cell in cells]
-            del data[0]
-            taken += 1
-        if data and style.width > SMALLEST_SIDE and not style.trailing:
-            number, line = data[0]
-            if len(split_cells(line, style.delimiter)) == style.width - 1:
-                delimiter = style.delimiter
-                data[0] = (number, f"nan{delimiter}{line}")
-        return taken
+    def _measure(self, lines: list[str]) -> None:
+        """Take the width from the first lines, and whether each ends with a delimiter."""
+        sample = lines[: max(1, min(len(lines) - 1, 200))]
+        self._trailing = self.delimiter != " " and all(
+            line.rstrip(" ").endswith(self.delimiter) for line in sample
+        )
+        self._width = len(cells_of(sample[0], self.delimiter)) - self._trailing
 
-    def _data_lines(self, lines: list[str]) -> tuple[list[tuple[int, str]], list[int]]:
-        """Number and text of the lines of numbers, and before which of them other lines stand.
-
-        The header is kept, comments are passed over.
-        """
+    def _data_lines(self, lines: list[str]) -> list[tuple[int, str]]:
+        """Number and text of the lines of numbers; of others it is kept where they stand."""
         data: list[tuple[int, str]] = []
-        gaps, header = [], set(self.header)
+        words = self.options.missing_words
+        header = set(self.header)
         for number, line in enumerate(lines, self._lines + 1):
-            line = line.strip(" \r\n\x1a\f")
-            if not line or not (line.strip() or data):
-                gaps.append(len(data))
+            line = line.strip(" \r\x1a\f")
+            is_mark = bool(words) and line.startswith(words)
+            is_comment = line.startswith(COMMENT_MARKS) and not is_mark
+            tabs = self.delimiter == "\t" and self._width > 1
+            is_empty_row = tabs and line.count("\t") == self._width - 1 + self._trailing
+            if (not line.strip() and not is_empty_row) or is_comment or line in header:
+                self._breaks.append(self._rows + len(data))
                 continue
-            numbers = numbers_of(line, in_front=not data and self.style is None)
-            if numbers is not None:
-                data.append((number, numbers))
-            elif not data and self.style is None:
-                self.header.append(line)
-                header.add(line)
-            elif line.startswith(COMMENT_MARKS) or line in header:
-                gaps.append(len(data))
-            else:
-                raise InputError(
-                    f"{self.path}: line {number} is not numbers: {line[:60]!r}; remove it, or put "
-                    "'#' in front of a comment; tables under one another belong in files of their "
-                    "own"
-                )
-        return data, gaps
+            data.append((number, cleaned(line, self.delimiter, words)))
+        return data
 
-    def _whole_rows(self, data: list[tuple[int, str]], style: Style) -> list[str]:
-        """The lines, checked to have the same number of cells; one cut short may be the last."""
-        delimiter, width = style.delimiter, style.width
-        rows = []
+    def _whole_rows(self, data: list[tuple[int, str]], is_ended: bool) -> list[str]:
+        """Lines of as many numbers each; one cut short may be the last."""
+        rows: list[str] = []
         for number, line in data:
             if self._short:
-                raise self._wrong_width(*self._short, width)
-            if style.trailing:
-                line = line.removesuffix(delimiter)
-            if delimiter not in " \t":
+                raise self._wrong_width(*self._short[:2])
+            if self.delimiter not in " \t":
                 line = line.replace("\t", " ")
-            found = len(split_cells(line, delimiter))
-            if found == width + 1 and line.endswith(delimiter):
-                line, found = line.removesuffix(delimiter), width
-            if found > width:
-                raise self._wrong_width(number, found, width)
-            if found < width:
-                self._short = (number, found)
-            else:
-                rows.append(line)
+            cells = cells_of(line, self.delimiter)
+            if len(cells) == self._width + 1 and not cells[-1].strip():
+                cells = cells[:-1]
+            if len(cells) > self._width:
+                raise self._wrong_width(number, line)
+            if len(cells) < self._width:
+                self._short = (number, line, f"holds {len(cells)} numbers")
+                continue
+            rows.append(self.delimiter.join(cells))
+            self._refuse_words(number, line, cells)
+        if rows and not is_ended and not self._short and is_cut_off(rows, self.delimiter):
+            self._short = (data[-1][0], rows.pop(), "breaks off within a number")
         return rows
 
-    def _wrong_width(self, number: int, found: int, width: int) -> InputError:
+    def _refuse_words(self, number: int, line: str, cells: list[str]) -> None:
+        if not re.search(r"[^-+0-9.,;eE \t]", line):
+            return
+        known = (*_NAN, *self.options.missing_words)
+        for cell in cells:
+            cell = cell.strip()
+            if cell not in known and not is_number(cell, self.options):
+                raise InputError(
+                    f"{self.path}: line {number} holds {cell[:40]!r}, no number as its sidecar "
+                    f"says numbers are written; write 'header: {number}' if the line stands above "
+                    f"the numbers, 'missing: {cell[:20]}' if the word marks a missing cell"
+                )
+
+    def _wrong_width(self, number: int, line: str) -> InputError:
+        found = len(cells_of(line, self.delimiter))
         return InputError(
-            f"{self.path}: line {number} has {found} values, the others have {width}; mend the "
+            f"{self.path}: line {number} has {found} values, those before have {self._width}: is "
+            f"'delimiter: {self.options.delimiter}' right, and is each row in one line? Mend the "
             "line, or export the file again with a mark such as nan in each missing cell"
         )
 
+    def _parse(self, content: str | bytes, width: int) -> np.ndarray:
+        import pandas as pd
 
-def _parse_plain(block: str, style: Style) -> bytes | None:
+        options = self.options
+        source = io.StringIO(content) if isinstance(content, str) else io.BytesIO(content)
+        try:
+            frame = pd.read_csv(
+                source,
+                sep=r"\s+" if self.delimiter == " " else self.delimiter,
+                decimal=options.decimal or ".",
+                thousands=options.thousands,
+                header=None,
+                names=range(width),
+                index_col=False,
+                skipinitialspace=True,
+                skip_blank_lines=self.delimiter != "\t",
+                na_values=[*_NAN, *options.missing_words],
+                keep_default_na=False,
+                dtype=np.float64,
+            )
+        except (ValueError, pd.errors.ParserError) as error:
+            raise InputError(
+                f"{self.path}: its numbers are not written as its sidecar says, delimiter "
+                f"{options.delimiter} and decimal {options.decimal!r} ({error}); mend the sidecar, "
+                "with 'thousands' if their digits are grouped"
+            ) from error
+        return frame.to_numpy()[:, : self._width or width]
+
+
+def _plain_block(block: str, delimiter: str, width: int, trailing: bool) -> bytes | None:
     """The block as it is if it holds nothing but numbers, as many in each line; else None."""
     if not (block.isascii() and block.endswith("\n")):
         return None
     content = block.encode("ascii")
     if content.translate(None, _PLAIN):
         return None
-    if style.delimiter not in " \t" and b"\t" in content:
+    if delimiter not in " \t" and b"\t" in content:
         return None
     characters = np.frombuffer(content, dtype=np.uint8)
     ends = np.flatnonzero(characters == ord("\n"))
     starts = np.r_[0, ends[:-1] + 1]
-    if style.delimiter == " ":
+    if delimiter == " ":
         solid = characters > ord(" ")
         solid[1:] &= ~solid[:-1]  # each number's first character
-        counts, wanted = np.add.reduceat(solid, starts, dtype=np.int64), style.width
+        counts, wanted = np.add.reduceat(solid, starts, dtype=np.int64), width
     else:
-        delimiters = characters == ord(style.delimiter)
+        delimiters = characters == ord(delimiter)
         counts = np.add.reduceat(delimiters, starts, dtype=np.int64)
-        wanted = style.width - 1 + style.trailing
-        if style.trailing and not delimiters[ends - 1].all():
+        wanted = width - 1 + trailing
+        if trailing and not delimiters[ends - 1].all():
             return None
     return content if (counts == wanted).all() else None
-
-
-def _parse(content: str | bytes, style: Style, path: Path) -> np.ndarray:
-    import pandas as pd
-
-    source = io.StringIO(content) if isinstance(content, str) else io.BytesIO(content)
-    try:
-        frame = pd.read_csv(
-            source,
-            sep=r"\s+" if style.delimiter == " " else style.delimiter,
-            decimal=style.decimal,
-            header=None,
-            names=range(style.width + style.trailing),
-            index_col=False,
-            skipinitialspace=True,
-            na_values=_EXTRA_MISSING,
-            dtype=np.float64,
-        )
-    except (ValueError, pd.errors.ParserError) as error:
-        raise InputError(
-            f"{path}: cannot be read as numbers ({error}); export it with one delimiter and "
-            "decimal points, and a mark such as nan in missing cells"
-        ) from error
-    return frame.to_numpy()[:, : style.width]
 
 
 def _reader() -> str:
@@ -306,6 +286,7 @@ def _reader() -> str:
 FORMAT = Format(
     read_text,
     endings=(".asc", ".csv", ".dat", ".tsv", ".txt", ".xyz"),
+    keys=(*LAYOUT_KEYS,),
     takes=is_text,
     libraries=("pandas",),
     refusal="not a text file; export it again as text, or give it the extension of its format",

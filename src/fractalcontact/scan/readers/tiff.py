@@ -6,21 +6,23 @@ from pathlib import Path
 import numpy as np
 
 from ...core.errors import InputError
+from ..draft import Hints, Suggestion
 from ..format import Format
 from ..options import ScanOptions
-from ..raw import RawScan, foreign_units, reading, refuse_larger, stated_unit
+from ..raw import RawScan, reading, refuse_larger, stated_unit
+from ..stated import Needs, require_stated
 from ..tables import choose_array
 
 PARK_TAG = 50432  # Park Systems keep the heights of their microscopes in tags of their own
-_PIXEL_SCALE, _NODATA = 33550, 42113  # GeoTIFF's and GDAL's tags
+_PIXEL_SCALE, _NODATA, _GDAL = 33550, 42113, 42112  # GeoTIFF's and GDAL's tags
 _UPRIGHT = 1
 
 
 def read_tiff(path: Path, options: ScanOptions) -> RawScan:
-    """Read a page of a TIFF file as heights; its first row is the top.
+    """Read a page of a TIFF file as heights, as its sidecar says.
 
-    ImageJ's unit, GeoTIFF's pixel size and GDAL's number for missing cells are used. Dots per inch
-    are not: most programs write them without meaning anything.
+    GDAL's scale, offset and number for missing cells are used. A pixel size that ImageJ or a
+    GeoTIFF states is only compared with the sidecar's.
 
     Raises
     ------
@@ -32,15 +34,22 @@ def read_tiff(path: Path, options: ScanOptions) -> RawScan:
 
     with reading(path, "TIFF file"), tifffile.TiffFile(path) as file:
         names = [f"page {number}" for number in range(1, len(file.pages) + 1)]
+        page = file.pages[0 if options.variable not in names else names.index(options.variable)]
+        _refuse_images(page, options, path)
+        stated = _imagej(file, page) or _geotiff(page)
+        needs = Needs(arrays=names)
+        require_stated(path, options, needs, lambda: _hints(names, stated))
         name = choose_array(names, options.variable, path)
         page = file.pages[names.index(name)]
-        _refuse_images(page, options, path)
         refuse_larger(math.prod(page.shape) * 8, path)
         values = page.asarray().astype(np.float64)
         if values.shape != page.shape:
             raise ValueError(f"pixels of shape {values.shape}, its header promises {page.shape}")
-        stated = _imagej(file, page) or _geotiff(page)
         missing = _nodata(page)
+        if missing is not None:
+            values[np.isclose(values, missing, rtol=1e-6, atol=0)] = np.nan
+        scale, offset = _gdal_scale(page, path)
+        values = values * scale + offset
     notes: tuple[str, ...] = (f"{name} of {len(names)}",) if len(names) > 1 else ()
     if page.dtype is not None and page.dtype.itemsize == 1:
         notes += ("8 bits: heights in 256 steps at most",)
@@ -48,8 +57,6 @@ def read_tiff(path: Path, options: ScanOptions) -> RawScan:
         values,
         "matrix",
         reader=f"tifffile {tifffile.__version__} / tiff",
-        first_row="top",
-        missing=missing,
         notes=notes,
         **stated,
     )
@@ -87,8 +94,6 @@ def _refuse_images(page, options: ScanOptions, path: Path) -> None:
 def _imagej(file, page) -> dict | None:
     """Pixel size and unit as ImageJ writes them: pixels in a unit of its own description."""
     said = (file.imagej_metadata or {}).get("unit")
-    if foreign := foreign_units(x=said):
-        return {"unread": foreign}
     unit = stated_unit(said)
     pixels = [page.tags.valueof(f"{axis}Resolution") for axis in "XY"]
     if unit is None or None in pixels or 0 in (n for pair in pixels for n in pair):
@@ -101,6 +106,32 @@ def _geotiff(page) -> dict:
     """Pixel size of a GeoTIFF, in a unit the sidecar has to say."""
     scale = page.tags.valueof(_PIXEL_SCALE)
     return {} if scale is None else {"spacing": (float(scale[0]), float(scale[1]))}
+
+
+def _gdal_scale(page, path: Path) -> tuple[float, float]:
+    """Scale and offset that GDAL states for the numbers of a page, 1 and 0 if none."""
+    from defusedxml import ElementTree
+
+    text = page.tags.valueof(_GDAL)
+    found = {"scale": 1.0, "offset": 0.0}
+    if text is not None:
+        for item in ElementTree.fromstring(str(text).strip("\0 ")).iter("Item"):
+            if item.get("sample", "0") == "0" and item.get("role") in found:
+                found[str(item.get("role"))] = float(item.text or "nan")
+    if not all(map(math.isfinite, found.values())):
+        raise InputError(f"{path}: GDAL's scale or offset is no number; export it again")
+    return found["scale"], found["offset"]
+
+
+def _hints(names: list[str], stated: dict) -> Hints:
+    """What an image seems to say of its cells."""
+    hints = Hints({"first_row": Suggestion("top", "images begin at the top")})
+    hints.add("variable", names[0], f"the first of {len(names)} pages")
+    if "spacing" in stated:
+        unit = stated.get("unit_xy")
+        steps = [f"{step:.9g} {unit}" if unit else float(step) for step in stated["spacing"]]
+        hints.add("spacing", steps, "the pixel size in the file")
+    return hints
 
 
 def _nodata(page) -> float | None:

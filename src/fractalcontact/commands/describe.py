@@ -1,0 +1,383 @@
+"""Draft a sidecar, with a picture, for each scan that is read only as its sidecar says.
+
+python -m fractalcontact.commands.describe [FOLDER] [--file SCAN] [--like SIDECAR]
+"""
+
+import argparse
+import html
+import sys
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import yaml
+
+from ..core.errors import InputError
+from ..core.file_names import split_file_name
+from ..core.labels import natural_key, percent, printable
+from ..core.units import length_factor
+from ..scan.draft import written
+from ..scan.measured import Measured
+from ..scan.options import NO_MARK, of_face
+from ..scan.raw import IncompleteSidecar
+from ..scan.read import measure
+from ..scan.undeclared import find_marks, number
+from ..study.checks import read_sidecar
+from ..study.documents import read_study
+from ..study.scan_files import ScanFiles, list_scans
+from ..study.sidecar import is_contact_map, plain_value, read_yaml
+from .describe_picture import draw_faces
+
+DRAFT = ".draft"
+PAGE = f"scans{DRAFT}.html"
+#: What is shown where a line is not filled in yet; the picture says so.
+_SHOWN = {"unit": "mm", "unit_xy": "mm", "unit_z": "mm", "spacing": "1 mm", "first_row": "bottom"}
+#: Files of one instrument may differ in relief by this factor from the one that was looked at.
+ALIKE = 5.0
+_HEAD = """\
+# Draft of the sidecar of {files}: what the file seems to say. Nobody has looked at it yet.
+# Look at {picture}, mend and fill in the lines, then rename this file to {sidecar}.
+"""
+_CONFIRMED = """\
+confirmed:                # what was read when this was drafted; a file that differs is refused
+"""
+
+
+@dataclass
+class Described:
+    """Report on one specimen.
+
+    Attributes
+    ----------
+    name : str
+    state : str
+        "draft", "complete", "written" or "refused".
+    sizes : list of str
+        Cells or points of each face, relief in the numbers of the file, share of missing cells.
+    to_fill : list of str
+        Keys of the draft that the program could not tell.
+    sentences : list of str
+    picture : Path or None
+    """
+
+    name: str
+    state: str
+    sizes: list[str] = field(default_factory=list)
+    to_fill: list[str] = field(default_factory=list)
+    sentences: list[str] = field(default_factory=list)
+    picture: Path | None = None
+
+
+@dataclass
+class Face:
+    """One file as it would be read.
+
+    Attributes
+    ----------
+    path : Path
+    options : dict
+        Scan keys that it is read with.
+    measured : Measured or None
+        None if it is refused.
+    notes : list of str
+        What its picture says beside it.
+    """
+
+    path: Path
+    options: dict[str, Any]
+    measured: Measured | None = None
+    notes: list[str] = field(default_factory=list)
+
+
+def describe(scan: ScanFiles, schema: Mapping, *, always: bool = False) -> Described:
+    """Draft the sidecar of a scan and draw what would be read.
+
+    Parameters
+    ----------
+    scan : ScanFiles
+    schema : mapping
+        Of a study.
+    always : bool, optional
+        Draw also what needs no draft.
+    """
+    stated = _stated(scan, schema)
+    faces = {"lower": scan.lower} | ({"upper": scan.upper} if scan.upper else {})
+    drafts = {face: _draft_of(path, of_face(stated, face)) for face, path in faces.items()}
+    shown = {face: _read_as_drafted(path, stated, face, drafts[face][1])
+             for face, path in faces.items()}  # fmt: skip
+    lines, values = drafts["lower"]
+    to_fill = [key for key, value in values.items() if value is None]
+    described = Described(scan.name, "draft" if lines else "complete", to_fill=to_fill)
+    described.sizes = [size_words(face) for face in shown.values()]
+    described.sentences = [note for face in shown.values() for note in face.notes]
+    if not lines and all(face.measured is None for face in shown.values()):
+        described.state = "refused"
+    if lines or always:
+        described.picture = _beside(scan, ".png")
+        draw_faces(list(shown.values()), described.picture)
+    if lines:
+        text = _draft_text(scan, lines, drafts, shown)
+        _beside(scan, ".yaml").write_text(text, encoding="utf-8")
+    return described
+
+
+def _stated(scan: ScanFiles, schema: Mapping) -> dict[str, Any]:
+    """Scan keys of a sidecar, or of a draft that its owner may have mended."""
+    if scan.sidecar is not None:
+        return read_sidecar(scan.sidecar, schema)[0]
+    draft = _beside(scan, ".yaml")
+    if not draft.is_file():
+        return {}
+    keys = schema["$defs"]["scan"]["properties"]
+    document = {key: value for key, value in read_yaml(draft).items() if value is not None}
+    return {key: document[key] for key in document if key in keys and key != "confirmed"}
+
+
+def _draft_of(path: Path, options: Mapping[str, Any]) -> tuple[list[str], dict[str, Any]]:
+    """Lines of the draft for one file, and their values; none if nothing is lacking."""
+    try:
+        measure(path, options, are_heights=not is_contact_map(options))
+    except IncompleteSidecar as error:
+        lines = [line.removeprefix("    ") for line in error.draft.split("\n")]
+        return lines, plain_value("\n".join(lines), f"draft for {path}")
+    except InputError:
+        pass
+    return [], {}
+
+
+def _read_as_drafted(path: Path, stated: Mapping, face: str, draft: Mapping[str, Any]) -> Face:
+    """A file as its draft says, lines that are not filled in shown in some way."""
+    blanks = [key for key, value in draft.items() if value is None]
+    filled = {key: value for key, value in draft.items() if value is not None}
+    options = {**of_face(stated, face), **filled}
+    options |= {key: _SHOWN[key] for key in blanks if key in _SHOWN}
+    shown = Face(path, options)
+    shown.notes = [f"NOT STATED: {key}, shown as {_SHOWN.get(key, 'nothing')}" for key in blanks]
+    kind = options.get("kind")
+    if kind in ("aperture", "profile"):
+        shown.notes.append(f"the file seems to hold an {kind}: no face")
+        options["kind"] = "face"
+    try:
+        shown.measured = measure(path, options, are_heights=False)
+    except InputError as error:
+        shown.notes.append(str(error).split("\n")[0])
+        return shown
+    if warnings := shown.measured.provenance["warnings"]:
+        shown.notes += warnings.split("\n")
+    every = _marks(shown)
+    marks = [mark for mark, is_outside in every.items() if is_outside]
+    if every:
+        shown.notes.append(f"is {' and '.join(map(number, every))} the mark of missing cells?")
+    if marks and draft.get("missing") == NO_MARK:
+        options["missing"] = marks if len(marks) > 1 else marks[0]
+        shown.measured = measure(path, options, are_heights=False)
+    return shown
+
+
+def _marks(face: Face) -> dict[float, bool]:
+    """Numbers of the file that may mark missing cells, and whether each lies far outside others."""
+    assert face.measured is not None
+    options, values = face.options, face.measured.values
+    if is_contact_map(options):
+        return {}
+    heights = values if face.measured.layout == "matrix" else values[:, 2]
+    unit = options.get("unit_z") or options.get("unit") or "mm"
+    sign = -1 if options.get("heights") == "down" else 1
+    factor = sign * length_factor(str(unit), str(face.path))
+    marks = find_marks(heights)
+    return {float(f"{mark.value / factor:.7g}"): mark.outside for mark in marks}
+
+
+def _draft_text(scan: ScanFiles, lines: list[str], drafts: Mapping, shown: Mapping) -> str:
+    """The draft of a sidecar: what holds for both faces, then what holds for one of them."""
+    files = " and ".join(printable(path.name) for path in scan.files)
+    name = split_file_name(scan.lower.name)[0]
+    text = _HEAD.format(files=files, picture=f"{name}{DRAFT}.png", sidecar=f"{name}.yaml")
+    lower, upper = shown["lower"], shown.get("upper")
+    text += "\n".join(_with_marks(lines, lower)) + "\n"
+    if upper is None:
+        return text + _confirmed(lower)
+    own = {key: value for key, value in drafts["upper"][1].items()
+           if value is not None and value != drafts["lower"][1].get(key, value)}  # fmt: skip
+    for face, described in (("lower", lower), ("upper", upper)):
+        block = [f"{key}: {written(value)}" for key, value in own.items()] * (face == "upper")
+        block += _confirmed(described).rstrip("\n").split("\n") if described.measured else []
+        text += f"{face}:\n" + "".join(f"  {line}\n" for line in block) if block else ""
+    return text
+
+
+def _with_marks(lines: list[str], face: Face) -> list[str]:
+    """Lines with the marks of missing cells that all of the file shows, not its first lines."""
+    missing = face.options.get("missing")
+    return [
+        f"missing: {written(missing):<16} # the file holds it as no height could be"
+        if line.startswith(f"missing: {NO_MARK}") and missing not in (None, NO_MARK)
+        else line
+        for line in lines
+    ]
+
+
+def _confirmed(face: Face) -> str:
+    if face.measured is None:
+        return ""
+    size = face.measured.size
+    return _CONFIRMED + "".join(f"  {key}: {written(value)}\n" for key, value in size.items())
+
+
+def size_words(face: Face) -> str:
+    """Cells or points of a file, its relief in its own numbers, and its missing cells."""
+    if face.measured is None:
+        return "refused"
+    size, values = face.measured.size, face.measured.values
+    heights = values if face.measured.layout == "matrix" else values[:, 2]
+    missing = percent(float(np.isnan(heights).mean()))
+    cells = f"{size['shape'][1]} x {size['shape'][0]}" if "shape" in size else f"{size['points']}"
+    return f"{cells}, relief {size.get('relief', float('nan')):g}, missing {missing}"
+
+
+def _beside(scan: ScanFiles, ending: str) -> Path:
+    """Path of a draft's file beside a scan."""
+    return scan.lower.with_name(f"{split_file_name(scan.lower.name)[0]}{DRAFT}{ending}")
+
+
+# -- files of one instrument ---------------------------------------------------------------------
+
+
+def write_alike(scan: ScanFiles, like: Mapping[str, Any]) -> Described:
+    """Give a scan the sidecar of another one of the same instrument, if it fits.
+
+    Parameters
+    ----------
+    scan : ScanFiles
+        Without a sidecar.
+    like : mapping
+        What the sidecar of the other one says, complete.
+    """
+    faces = [Face(path, {**_scan_keys(like)}) for path in scan.files]
+    confirmed = like.get("confirmed", {})
+    for face in faces:
+        try:
+            face.measured = measure(face.path, face.options)
+        except InputError as error:
+            return Described(scan.name, "refused", sentences=[str(error).split("\n")[0]])
+        relief, expected = face.measured.size.get("relief"), confirmed.get("relief")
+        if relief and expected and not 1 / ALIKE <= relief / expected <= ALIKE:
+            sentence = (
+                f"{face.path}: a relief of {relief:g} where {expected:g} was confirmed is not of "
+                "the same kind; describe it by itself"
+            )
+            return Described(scan.name, "refused", sentences=[sentence])
+    described = Described(scan.name, "written", [size_words(face) for face in faces])
+    document = {key: value for key, value in like.items() if key not in ("confirmed", "label")}
+    text = yaml.safe_dump(document, sort_keys=False, allow_unicode=True)
+    if len(faces) == 1:
+        text += _confirmed(faces[0])
+    name = split_file_name(scan.lower.name)[0]
+    scan.lower.with_name(f"{name}.yaml").write_text(text, encoding="utf-8")
+    described.picture = _beside(scan, ".png")
+    draw_faces(faces, described.picture)
+    return described
+
+
+def _scan_keys(document: Mapping[str, Any]) -> dict[str, Any]:
+    from dataclasses import fields
+
+    from ..scan.options import ScanOptions
+
+    known = {key.name for key in fields(ScanOptions)} - {"confirmed"}
+    return {key: value for key, value in document.items() if key in known}
+
+
+def _like(path: Path, scans: Mapping[str, ScanFiles]) -> tuple[dict, ScanFiles]:
+    """What a sidecar or a draft says, and the scan that it is of."""
+    document = read_yaml(path)
+    if empty := [key for key, value in document.items() if value is None]:
+        raise InputError(f"{path}: key '{empty[0]}' is empty; fill it in")
+    name = split_file_name(path.name)[0].removesuffix(DRAFT)
+    own = [scan for scan in scans.values() if split_file_name(scan.lower.name)[0] == name]
+    if not own:
+        raise InputError(f"{path}: no scan {name} beside it; name the sidecar of a scan")
+    return document, own[0]
+
+
+# -- the command -----------------------------------------------------------------------------------
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Write drafts and pictures, print one table; 1 if a file cannot be read at all, else 0."""
+    parser = argparse.ArgumentParser(prog="describe", description=__doc__.split("\n")[0])
+    parser.add_argument("folder", nargs="?", help="default: the study's")
+    parser.add_argument("--file", type=Path, help="this scan alone, with its picture in any case")
+    parser.add_argument("--like", type=Path, help="sidecar or draft that holds for all alike")
+    parser.add_argument("--study", default="config/paper.yaml")
+    parser.add_argument("--schema", default="config/schema/study.schema.yaml")
+    chosen = parser.parse_args(arguments)
+    sys.stdout.reconfigure(errors="backslashreplace")  # type: ignore[union-attr]  # a text file
+    try:
+        study, schema = read_study(chosen.study), read_study(chosen.schema)
+        one = chosen.file or chosen.like
+        folder = one.parent if one else Path(chosen.folder or study.get("scans") or "scans")
+        return _run(folder, schema, chosen)
+    except InputError as error:
+        sys.stderr.write(f"error: {error}\n")
+        return 1
+
+
+def _run(folder: Path, schema: Mapping, chosen: argparse.Namespace) -> int:
+    scans, refused = list_scans(folder)
+    names = sorted(scans, key=natural_key)
+    if chosen.file:
+        names = [name for name in names if chosen.file.name in [f.name for f in scans[name].files]]
+        if not names:
+            raise InputError(f"{chosen.file}: no scan of this name in {folder}")
+    rows = [Described(name, "refused", sentences=[str(why)]) for name, why in refused.items()]
+    like = _like(chosen.like, scans) if chosen.like else None
+    for name in names:
+        scan = scans[name]
+        if like is None:
+            row = _described(scan, schema, always=chosen.file is not None)
+        elif scan.sidecar is None and scan.lower.suffix == like[1].lower.suffix:
+            row = write_alike(scan, like[0])
+        else:
+            continue
+        rows.append(row)
+        sys.stdout.write("\n".join(_row(row)) + "\n")
+        sys.stdout.flush()
+    drawn = [row for row in rows if row.picture]
+    if len(drawn) > 1:
+        (folder / PAGE).write_text(_page(rows), encoding="utf-8")
+        sys.stdout.write(f"pictures: {folder / PAGE}\n")
+    states = [row.state for row in rows]
+    counts = {state: states.count(state) for state in dict.fromkeys(states)}
+    sys.stdout.write(f"{folder}: {', '.join(f'{n} {state}' for state, n in counts.items())}\n")
+    return int("refused" in counts)
+
+
+def _described(scan: ScanFiles, schema: Mapping, *, always: bool) -> Described:
+    try:
+        return describe(scan, schema, always=always)
+    except InputError as error:
+        return Described(scan.name, "refused", sentences=[str(error)])
+
+
+def _row(row: Described) -> list[str]:
+    """Lines of the table for one specimen."""
+    fill = f"; fill in {', '.join(row.to_fill)}" if row.to_fill else ""
+    first = f"{printable(row.name, 24):24} {row.state:9} {' | '.join(row.sizes)}{fill}"
+    return [first, *(f"    {printable(sentence, 300)}" for sentence in row.sentences)]
+
+
+def _page(rows: Sequence[Described]) -> str:
+    """A page of all pictures, with what is to be done."""
+    parts = ["<!doctype html><meta charset='utf-8'><title>scans as they would be read</title>"]
+    for row in rows:
+        words = html.escape("\n".join(_row(row)))
+        image = f"<img src='{html.escape(row.picture.name)}' width='900'>" if row.picture else ""
+        parts.append(f"<pre>{words}</pre>{image}")
+    return "\n".join(parts)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

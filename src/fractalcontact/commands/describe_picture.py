@@ -1,0 +1,102 @@
+"""Picture of scans as they would be read: relief, histogram, sizes, the first lines of the file."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..core.labels import percent, printable
+
+_MOST_POINTS = 60_000
+_MOST_CELLS = 800  # along a side
+_LINES, _WIDTH = 8, 110  # of text
+
+
+def draw_faces(faces: Sequence[Any], path: Path) -> None:
+    """Draw files as they would be read, one row each.
+
+    Parameters
+    ----------
+    faces : sequence of commands.describe.Face
+    path : Path
+        The PNG to write.
+    """
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(11, 5.6 * len(faces)), layout="constrained")
+    FigureCanvasAgg(figure)
+    grid = figure.add_gridspec(
+        2 * len(faces), 2, width_ratios=(3, 2), height_ratios=(4, 1.6) * len(faces)
+    )
+    for n, face in enumerate(faces):
+        beside, histogram = figure.add_subplot(grid[2 * n, 0]), figure.add_subplot(grid[2 * n, 1])
+        _write_lines(figure.add_subplot(grid[2 * n + 1, :]), face)
+        if face.measured is None:
+            beside.set_axis_off()
+            histogram.set_axis_off()
+            continue
+        z = _draw_relief(figure, beside, face)
+        _draw_histogram(histogram, z)
+    figure.savefig(path, dpi=90)
+
+
+def _draw_relief(figure, axes, face):
+    """The relief over x and y, missing cells in red; its heights in mm."""
+    measured = face.measured
+    if measured.layout == "matrix":
+        z, (dx, dy) = measured.values, measured.spacing
+        ny, nx = z.shape
+        step = max(1, -(-max(z.shape) // _MOST_CELLS))
+        shown = np.ma.masked_invalid(z[::step, ::step])
+        extent = (0, nx * dx, 0, ny * dy)
+        image = axes.imshow(shown, origin="lower", extent=extent, cmap=_colours(), aspect="equal")
+        title = f"{nx} x {ny} cells of {dx:.4g} x {dy:.4g} mm"
+    else:
+        points = measured.values[:: max(1, len(measured.values) // _MOST_POINTS)]
+        x, y, z = points.T
+        image = axes.scatter(x, y, c=z, s=2, cmap=_colours(), linewidths=0)
+        axes.set_aspect("equal")
+        title = f"{len(measured.values)} points"
+        z = measured.values[:, 2]
+    figure.colorbar(image, ax=axes, label="height (mm)")
+    axes.set(xlabel="x (mm)", ylabel="y (mm)", title=f"{printable(face.path.name, 60)}: {title}")
+    return z
+
+
+def _colours():
+    from matplotlib import colormaps
+
+    return colormaps["viridis"].with_extremes(bad="red")
+
+
+def _draw_histogram(axes, z):
+    present = z[np.isfinite(z)]
+    if present.size:
+        axes.hist(present, bins=60, color="0.4")
+        axes.set_title(
+            f"{present.min():.5g} to {present.max():.5g} mm, median {np.median(present):.5g} mm\n"
+            f"missing {percent(1 - present.size / z.size)} (red)",
+            fontsize=9,
+        )
+    axes.set(xlabel="height (mm)", ylabel="cells")
+
+
+def _write_lines(axes, face):
+    """What to look at, then the first lines of the file as they stand."""
+    axes.set_axis_off()
+    notes = [f"! {printable(note, _WIDTH)}" for note in face.notes]
+    shown = [*notes, *first_lines(face.path)][: _LINES + len(notes)]
+    axes.text(0, 1, "\n".join(shown), va="top", family="monospace", fontsize=8, parse_math=False)
+
+
+def first_lines(path: Path) -> list[str]:
+    """First lines of a text file as they stand; none of a binary one."""
+    with open(path, "rb") as stream:
+        head = stream.read(4000)
+    wide = head.startswith((b"\xff\xfe", b"\xfe\xff"))
+    if b"\0" in head and not wide:
+        return ["(no text)"]
+    text = head.decode("utf-16" if wide else "utf-8", errors="replace")
+    return [printable(line.expandtabs(4), _WIDTH) for line in text.splitlines()[:_LINES]]

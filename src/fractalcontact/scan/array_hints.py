@@ -1,0 +1,72 @@
+"""Arrays of a file without units: which of them seem to be heights, and what others say of them."""
+
+import re
+from collections.abc import Callable, Mapping
+
+import numpy as np
+
+from .draft import Hints, add_words
+from .text_hints import add_axes
+
+_HEIGHTS = re.compile(r"(?:^|[^a-z])(?:z|heights?|topo\w*|elev\w*|surf\w*|data)(?:[^a-z]|$)")
+#: A larger array is not looked into.
+_MOST_CELLS = 20_000_000
+_STEP = re.compile(r"(?:d|delta_?|pixel_?|step_?)([xy])?|spacing|pitch|resolution")
+
+
+def array_hints(
+    tables: Mapping[str, tuple],
+    wanted: str | None,
+    small: Mapping[str, float],
+    read: Callable[[str], np.ndarray],
+    words: list[tuple[str, str]] | None = None,
+) -> Hints:
+    """What the names and the other numbers of a file seem to say of its array of heights.
+
+    Parameters
+    ----------
+    tables : mapping of str to tuple
+        Shapes of the 2-D arrays, by name.
+    wanted : str or None
+        The array that the sidecar names.
+    small : mapping of str to float
+        Single numbers in the file, by name: a spacing may be among them.
+    read : callable
+        The numbers of an array.
+    words : list of (str, str), optional
+        Attributes of the file: where each stands, and its text.
+    """
+    hints = Hints()
+    names = sorted(tables, key=lambda name: (not _HEIGHTS.search(name.lower()), name))
+    name = wanted if wanted in tables else names[0] if names else None
+    if name is None:
+        return hints
+    others = [
+        f"{other} of {tables[other][0]} x {tables[other][1]}" for other in names if other != name
+    ]
+    hints.add("variable", name, f"an array of {tables[name][0]} x {tables[name][1]}", others)
+    _add_spacing(hints, small)
+    add_words(hints, words or [])
+    if np.prod(tables[name]) > _MOST_CELLS:
+        return hints
+    values = np.asarray(read(name), dtype=float)
+    if values.shape[1] < 8:
+        hints.add("layout", "points", f"{values.shape[1]} columns")
+        hints.add("columns", [0, 1, 2], "in the order in which they stand; it may be another")
+        hints.heights = values[:, min(2, values.shape[1] - 1)]
+    else:
+        hints.add("layout", "matrix", f"{values.shape[1]} columns")
+        add_axes(hints, values)
+        hints.heights = values
+    return hints
+
+
+def _add_spacing(hints: Hints, small: Mapping[str, float]) -> None:
+    """Suggest single numbers that are called as a spacing is."""
+    steps = {name: value for name, value in small.items() if _STEP.fullmatch(name.lower())}
+    by_axis = {match[1]: name for name in steps if (match := _STEP.fullmatch(name.lower()))}
+    source = ", ".join(f"{name} = {value:g}" for name, value in steps.items())
+    if {"x", "y"} <= by_axis.keys():
+        hints.add("spacing", [steps[by_axis["x"]], steps[by_axis["y"]]], f"in the file: {source}")
+    elif steps:
+        hints.add("spacing", next(iter(steps.values())), f"in the file: {source}")

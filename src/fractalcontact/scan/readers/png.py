@@ -1,0 +1,39 @@
+"""Grey PNG images, whose sidecar says what a grey level means."""
+
+from pathlib import Path
+
+import numpy as np
+
+from ...core.errors import InputError
+from ..draft import Hints, Suggestion
+from ..format import Format
+from ..options import ScanOptions
+from ..raw import RawScan, reading, refuse_larger
+from ..stated import Needs, require_stated
+
+_GREY = ("I;16", "I;16B", "I", "L")
+
+
+def read_png(path: Path, options: ScanOptions) -> RawScan:
+    """Read a grey PNG image as heights, as its sidecar says: ``unit_z: 0.01 um`` is one grey level.
+
+    Raises
+    ------
+    InputError
+        If the file is damaged, a colour image, or the sidecar does not state all that is needed.
+    """
+    import PIL
+    from PIL import Image
+
+    with reading(path, "PNG image"), Image.open(path, formats=("PNG",)) as image:
+        refuse_larger(8 * image.width * image.height, path)
+        if image.mode not in _GREY:
+            raise InputError(f"{path}: a colour image, no heights; export the heights themselves")
+        first = {"first_row": Suggestion("top", "images begin at the top")}
+        require_stated(path, options, Needs(), lambda: Hints(first))
+        values = np.asarray(image, dtype=np.float64)
+    notes = ("8 bits: heights in 256 steps at most",) if image.mode == "L" else ()
+    return RawScan(values, "matrix", reader=f"Pillow {PIL.__version__} / png", notes=notes)
+
+
+FORMAT = Format(read_png, endings=(".png",), libraries=("PIL.Image",))

@@ -1,0 +1,131 @@
+"""Keys that the owner of a file must state, because the file itself does not: nothing is guessed.
+
+What describes itself (instruments' files, X3P, netCDF by the CF conventions, text whose columns are
+named x, y and z with a unit each) needs none of them.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from ..core.errors import InputError
+from ..core.file_names import split_file_name
+from .draft import Hints, draft_lines, drafted_options
+from .options import CONTACT_MAP, ScanOptions
+from .raw import IncompleteSidecar
+from .tables import choose_array
+
+_NO_FACE = {
+    "aperture": "the opening between two faces and no face; scan or export the faces themselves",
+    "profile": "a profile and no surface; export the whole surface",
+}
+
+
+@dataclass(frozen=True)
+class Needs:
+    """Kind of a file that does not describe itself.
+
+    Attributes
+    ----------
+    text : bool
+        Lines of numbers: how they are written is to be stated.
+    table : bool
+        Rows and columns that may be a matrix or points.
+    grid : bool
+        A matrix whose format says its spacing, its first row and its missing cells.
+    arrays : sequence of str
+        Arrays, channels or pages of which ``variable`` names one.
+    """
+
+    text: bool = False
+    table: bool = False
+    grid: bool = False
+    arrays: Sequence[str] = ()
+
+
+def require_stated(
+    path: Path, options: ScanOptions, needs: Needs, hints: Callable[[], Hints]
+) -> None:
+    """Refuse a file of which the sidecar does not state all that its reading depends on.
+
+    Parameters
+    ----------
+    path : Path
+    options : ScanOptions
+    needs : Needs
+    hints : callable
+        What the file seems to say, only asked where something is lacking: for the draft.
+
+    Raises
+    ------
+    IncompleteSidecar
+        With the sidecar to write.
+    InputError
+        If the sidecar says that the file holds no face.
+    """
+    if options.kind in _NO_FACE:
+        raise InputError(f"{path}: its sidecar says that it holds {_NO_FACE[options.kind]}")
+    if needs.table and not needs.text and (options.variable is not None or not needs.arrays):
+        choose_array(list(needs.arrays), options.variable, path)
+    if not (lacks := lacking(options, needs)):
+        return
+    found = hints()
+    complete = drafted_options(options, found, needs.arrays)
+    required = set(required_keys(complete, needs))
+    # A layout that only the draft knows asks for keys of its own.
+    draft = "\n".join(draft_lines(options, found, required, needs.arrays))
+    stated = replace(options, registration=None, mirror_upper=None, grid=None)
+    states_some = stated != ScanOptions()
+    name, _ = split_file_name(path.name)
+    sidecar = path.with_name(f"{name}.yaml")
+    what = f"its sidecar lacks {', '.join(lacks)}" if states_some else "it has no sidecar"
+    raise IncompleteSidecar(
+        f"{path}: such a file is read only as its sidecar says, and {what}. Write into {sidecar} "
+        f"and look at each line ('make describe FILE={path}' draws what would be read):",
+        draft,
+    )
+
+
+def lacking(options: ScanOptions, needs: Needs) -> list[str]:
+    """Keys that are required and not stated."""
+    return [key for key in required_keys(options, needs) if getattr(options, key) is None]
+
+
+def required_keys(options: ScanOptions, needs: Needs) -> list[str]:
+    """Keys that must be stated of a file, given those that are: in the order of a sidecar."""
+    is_map = options.kind == CONTACT_MAP
+    layout = options.layout if needs.table and not is_map else "matrix"
+    keys = ["kind"]
+    if needs.text:
+        keys += ["delimiter", "decimal", "header"]
+    if needs.table and not is_map:
+        keys += ["layout"]
+    if len(needs.arrays) > 1:
+        keys += ["variable"]
+    if layout == "points":
+        keys += ["columns"]
+    elif needs.table and layout == "matrix":
+        keys += ["axes"]
+    keys += _units(options, layout, is_map)
+    has_coordinates = needs.grid or (options.axes == "both" and options.spacing is None)
+    if layout == "matrix" and not has_coordinates:
+        keys += ["spacing", "first_row"]
+    if layout == "points" and options.spacing is not None:
+        keys += ["first_row"]
+    if not is_map:
+        keys += ["heights"]
+    return keys if needs.grid else [*keys, "missing"]
+
+
+def _units(options: ScanOptions, layout: str | None, is_map: bool) -> list[str]:
+    """Which of the keys of units are needed: ``unit`` alone where it can be of all."""
+    if options.unit is not None:
+        return []
+    spacing = options.spacing
+    pair = spacing if isinstance(spacing, tuple) else (spacing,)
+    has_own = spacing is not None and all(isinstance(step, str) for step in pair)
+    by_unit_xy = options.unit_xy is None and not has_own
+    by_unit_z = options.unit_z is None and not is_map
+    if by_unit_xy and by_unit_z:
+        return ["unit"]
+    return ["unit_xy"] * by_unit_xy + ["unit_z"] * by_unit_z

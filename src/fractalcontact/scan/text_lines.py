@@ -1,0 +1,167 @@
+"""Lines of a text file: encoding, cells, numbers, the counts that a header states."""
+
+import codecs
+import math
+import re
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TextIO
+
+from ..core.errors import InputError
+from .options import ScanOptions
+
+COMMENT_MARKS = ("#", "%", "//", "!")
+_TYPOGRAPHY = str.maketrans("\u2212\u2012\u2013\u00a0\u2009\u202f", "---   ")
+_FORTRAN_EXPONENT = re.compile(r"(?<=[\d.,])[dD](?=[-+]?\d)")
+_QUOTED = re.compile(r'"[^"]*"')
+_ORDINARY = re.compile(r"[-+0-9.,;eE \t]*")
+_ENDING = re.compile(r"(?:[.,](?P<decimals>\d*))?(?:[eEdD](?P<exponent>[-+]?\d*))?$")
+_BLOCK = 2**24  # bytes
+#: What programs call the sides of a matrix in its header.
+_SIDES = re.compile(
+    r"[#%!/\s\"']*(?:(?P<x>nx|ncols|n_cols|columns)|(?P<y>ny|nrows|n_rows|rows))[\s:=,;\t]+"
+    r"(?P<n>\d{1,12})[\s\"']*",
+    re.IGNORECASE,
+)
+
+
+def open_text(path: Path) -> TextIO:
+    """A text file open for reading: UTF-16 by its mark or zeros; UTF-8 if all is, else Latin-1."""
+    return open(path, encoding=_encoding(path), errors="replace")
+
+
+def wide_encoding(head: bytes) -> str | None:
+    """UTF-16 without its mark: every other byte of plain text is zero."""
+    if len(head) < 8 or head.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+        return None
+    even, odd = head[0::2], head[1::2]
+    for zeros, others, name in ((odd, even, "utf-16-le"), (even, odd, "utf-16-be")):
+        if zeros.count(0) > 0.8 * len(zeros) and b"\0" not in others:  # signs beyond Latin-1
+            return name
+    return None
+
+
+def _encoding(path: Path) -> str:
+    with open(path, "rb") as stream:
+        head = stream.read(64)
+        if head.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+            return "utf-16"
+        if wide := wide_encoding(head[:64]):
+            return wide
+        stream.seek(0)
+        decoder = codecs.getincrementaldecoder("utf-8")()
+        try:
+            while content := stream.read(_BLOCK):
+                decoder.decode(content)
+            decoder.decode(b"", final=True)
+        except UnicodeDecodeError:  # instruments in Europe still write this one
+            return "latin-1"
+    return "utf-8-sig"
+
+
+def cells_of(line: str, delimiter: str) -> list[str]:
+    """Cells of a line; the delimiter ``" "`` is white space of any length."""
+    return line.split() if delimiter == " " else line.split(delimiter)
+
+
+def cleaned(line: str, delimiter: str, missing_words: Sequence[str] = ()) -> str:
+    """A line with typographers' signs, Fortran's exponents and quotes as numbers have them."""
+    if _ORDINARY.fullmatch(line):
+        return line
+    for word in missing_words:
+        if delimiter == " " and " " in word:
+            line = line.replace(word, "nan")
+    line = _FORTRAN_EXPONENT.sub("e", line.translate(_TYPOGRAPHY))
+    if all(delimiter not in quoted for quoted in _QUOTED.findall(line)):
+        line = line.replace('"', "")
+    return line
+
+
+def is_number(cell: str, options: ScanOptions) -> bool:
+    """Whether a cell is a number as the sidecar says numbers are written."""
+    text = cell.replace(options.thousands, "") if options.thousands else cell
+    try:
+        float(text.replace(options.decimal or ".", "."))
+    except ValueError:
+        return False
+    return True
+
+
+def is_cut_off(rows: list[str], delimiter: str) -> bool:
+    """Whether the last number of the last row, without a line end, is written shorter than others.
+
+    Only numbers of a fixed form tell: as many decimals each, or exponents of two digits.
+    """
+    last, *others = [cells_of(row, delimiter)[-1].strip() for row in rows[-1:-200:-1]]
+    forms = [_form(other) for other in others if re.search(r"\d", other)]
+    if len(forms) < 3:
+        return False
+    decimals, digits = _form(last)
+    if last and not re.search(r"[\d.,]$|^[a-zA-Z#]", last):  # ends in e, + or -
+        return True
+    if digits is not None and digits < min((d for _, d in forms if d is not None), default=0):
+        return True
+    least = min(decimal for decimal, _ in forms)
+    is_fixed = least == max(decimal for decimal, _ in forms) and least > 0
+    return is_fixed and bool(re.search(r"\d", last)) and decimals < least
+
+
+def _form(number: str) -> tuple[int, int | None]:
+    """Decimals of a number, and digits of its exponent if it has one."""
+    match = _ENDING.search(number)
+    assert match is not None  # nothing matches as well
+    exponent = match["exponent"]
+    digits = None if exponent is None else len(exponent.lstrip("+-"))
+    return len(match["decimals"] or ""), digits
+
+
+def refuse_other_counts(
+    header: Sequence[str], shape: tuple[int, ...], options: ScanOptions, where: str
+) -> None:
+    """Refuse a table of another size than its header states: rows wrapped, or a file cut off.
+
+    A line of ``nx`` or ``ncols`` and one of ``ny`` or ``nrows`` count, and a line of whole numbers
+    alone. Nothing is read otherwise because of them, and a size that the sidecar confirms rules.
+
+    Parameters
+    ----------
+    header : sequence of str
+    shape : (int, int)
+        Rows and columns that were read.
+    options : ScanOptions
+    where : str
+        The file, for errors.
+
+    Raises
+    ------
+    InputError
+        With both sizes.
+    """
+    if options.confirmed is not None:
+        return
+    sides = {}
+    for line in header:
+        if match := _SIDES.fullmatch(line):
+            sides["x" if match["x"] else "y"] = int(match["n"])
+        elif re.fullmatch(r"\s*\d{1,9}(?:[\s,;]+\d{1,9}){0,2}[\s,;]*", line):
+            counts = [int(word) for word in re.findall(r"\d+", line)]
+            if not _agree(counts, shape):
+                raise _other_size(where, shape, line.strip())
+    if len(sides) == 2 and not _agree(list(sides.values()), shape):
+        raise _other_size(where, shape, f"{sides['x']} columns and {sides['y']} rows")
+
+
+def _agree(counts: list[int], shape: tuple[int, ...]) -> bool:
+    """Whether counts are those of rows, columns or points, with or without coordinates."""
+    rows, columns = shape
+    near = {rows, columns, rows - 1, columns - 1, rows + 1, columns + 1, rows * columns}
+    return set(counts) <= near or math.prod(counts) == rows
+
+
+def _other_size(where: str, shape: tuple[int, ...], stated: str) -> InputError:
+    rows, columns = shape
+    return InputError(
+        f"{where}: its header states {stated!r}, but {rows} rows of {columns} numbers were read: "
+        "rows may be wrapped, or the file cut off; export it again, each row in one line, or "
+        f"write 'confirmed: {{shape: [{rows}, {columns}]}}' into the sidecar if that is right"
+    )
