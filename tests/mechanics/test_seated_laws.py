@@ -69,6 +69,7 @@ def test_a_hyperbola_is_found_again_with_its_range():
 def test_a_logarithm_is_found_again():
     found = laws_of(0.07 * np.log(PRESSURE / PRESSURE[0]))
     assert found["seated_chi"] == pytest.approx(0.07, rel=1e-9)
+    assert found["seated_d_0"] == pytest.approx(0.07 * np.log(1 / PRESSURE[0]), rel=1e-9)
     assert found["seated_logarithm_misfit"] < 1e-9 < found["seated_hyperbola_misfit"]
 
 
@@ -77,7 +78,7 @@ def test_constants_follow_the_unit_of_length(unit):
     closure = seated(hyperbola(PRESSURE) * (1 + 0.01 * np.cos(PRESSURE)))
     one, other = laws_of(closure), laws_of(unit * closure)
     assert other["seated_k_ni"] * unit == pytest.approx(one["seated_k_ni"].item(), rel=1e-4)
-    for name in ("seated_v_m", "seated_chi"):
+    for name in ("seated_v_m", "seated_chi", "seated_d_0"):
         assert other[name] == pytest.approx(unit * one[name].item(), rel=1e-4)
 
 

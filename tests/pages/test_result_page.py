@@ -177,10 +177,10 @@ def test_summary_has_the_numbers_of_the_atlas(results, atlas):
             "interface_closure_mm": here["interface_closure"],
             "stiffness_MPa_per_mm": here["interface_stiffness"],
             "contact_nodes": here["nodes"],
-            "k_ni_MPa_per_mm": here["hyperbola_k_ni"],
+            "k_ni_MPa_per_mm": here["seated_k_ni"],
             "interface_closure_error_surface_mm": closures["total"],
             "interface_closure_error_population_mm": closures["total_of_population"],
-            "k_ni_change_at_twice_the_spacing": here["hyperbola_k_ni_change"],
+            "k_ni_change_at_twice_the_spacing": here["seated_k_ni_change"],
             "delta_g": surface["recommended_dimension"],
             "delta_sigma_boxes": domains["delta_sigma"],
             "delta_sigma_boxes_high": domains["delta_sigma_high"],
@@ -421,18 +421,18 @@ def with_told(atlas, group, **values):
 
 def test_k_ni_is_as_determined_as_the_atlas_says(results, atlas):
     table = pd.read_csv(results / "summary.csv").set_index("specimen")
-    ends = {f"hyperbola_k_ni{end}": x for end, x in (("", 100.0), ("_low", 1.0), ("_high", 1e4))}
+    ends = {f"seated_k_ni{end}": x for end, x in (("", 100.0), ("_low", 1.0), ("_high", 1e4))}
     for name in NAMES:
         for determined, reason in ((True, ""), (False, "it is told so")):
-            told = {"hyperbola_k_ni_determined": determined, "hyperbola_k_ni_reason": reason}
+            told = {"seated_k_ni_determined": determined, "seated_k_ni_reason": reason}
             changed = with_told(atlas, f"closure/{name}", **ends, **told)
             found = summarised(Subject.of(changed, name)).k_ni
             assert (found.value, found.low, found.high) == (100, 1, 1e4)
             assert (found.determined, why(found)) == (determined, reason)
         row = table.loc[[name]].iloc[0]
         known = Subject.of(atlas, name).states("closure")
-        assert row["k_ni_MPa_per_mm_determined"] == known["hyperbola_k_ni_determined"].item()
-        assert row["k_ni_reason"] == known["hyperbola_k_ni_reason"].item()
+        assert row["k_ni_MPa_per_mm_determined"] == known["seated_k_ni_determined"].item()
+        assert row["k_ni_reason"] == known["seated_k_ni_reason"].item()
 
 
 def test_the_dilatancy_of_the_summary_is_the_plateau_of_the_atlas(atlas):
@@ -526,7 +526,7 @@ def test_the_page_states_what_twice_the_spacing_changes(results, atlas):
         curves = curves.sel(offset=subject.offset, method="nearest")
         tangent = curves["interface_stiffness"].isel(normal_force=subject.reported.reference).values
         assert one.stiffness == pytest.approx(tangent[1] / tangent[0] - 1)
-        initial = curves["hyperbola_k_ni"].values
+        initial = curves["seated_k_ni"].values
         change = initial[1] / initial[0] - 1
         assert one.k_ni == pytest.approx(change, nan_ok=True)
     index = (results / "index.html").read_text(encoding="utf-8")

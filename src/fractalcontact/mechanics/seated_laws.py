@@ -20,6 +20,7 @@ _RANGE = "from the seating pressure on, over at most two decades"
 _PARAMETERS = {
     "seated_k_ni": ("MPa/mm", f"initial normal stiffness k_ni of the hyperbola {_RANGE}"),
     "seated_v_m": ("mm", f"largest closure v_m of the hyperbola {_RANGE}"),
+    "seated_d_0": ("mm", f"d_0 of d = d_0 + chi ln sigma, closure at 1 MPa, {_RANGE}"),
     "seated_chi": (
         "mm",
         f"chi of d = d_0 + chi ln sigma, closure per e-fold, {_RANGE}",
@@ -80,7 +81,7 @@ class _Fit:
         hyperbola = fit_hyperbola(pressure[fitted], closure[fitted])
         logarithm = fit_semi_logarithmic(pressure[fitted], closure[fitted])
         self.seated_k_ni, self.seated_v_m = hyperbola.k_ni, hyperbola.w_m
-        self.seated_chi = logarithm.b
+        self.seated_d_0, self.seated_chi = logarithm.a, logarithm.b
         self.seated_hyperbola_misfit = hyperbola.misfit
         self.seated_logarithm_misfit = logarithm.misfit
         self.seated_fit_points = int(fitted.sum())

@@ -30,9 +30,7 @@ class Doubled:
 def doubled_spacing(subject: Subject) -> Doubled:
     """What twice the spacing of a specimen makes of both stiffnesses."""
     state = subject.state("closure")
-    return Doubled(
-        *(float(state[f"{of}_change"]) for of in ("hyperbola_k_ni", "interface_stiffness"))
-    )
+    return Doubled(*(float(state[f"{of}_change"]) for of in ("seated_k_ni", "interface_stiffness")))
 
 
 def spacing_words(found: Sequence[Doubled]) -> Markup:

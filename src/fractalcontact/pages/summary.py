@@ -205,6 +205,10 @@ class Specimen:
     estimator: str
     rms_slope: float
     k_ni: Estimate
+    v_m: Estimate
+    chi: Estimate
+    seat: float
+    stiffness: dict[float, float]
     doubled: Doubled
     closure_law: str
     dilatancy: Dilatancy
@@ -249,6 +253,10 @@ def summarised(subject: Subject, common: Sequence[CommonLoad] = ()) -> Specimen:
         estimator=str(surface["recommended"].item()).replace("_", " "),
         rms_slope=float(subject.states("area")["rms_slope"]),
         k_ni=_initial_stiffness(curve),
+        v_m=Estimate.read(curve, "seated_v_m"),
+        chi=Estimate.read(curve, "seated_chi"),
+        seat=float(curve["seating_pressure"]),
+        stiffness=_stated_stiffness(curve),
         doubled=doubled_spacing(subject),
         closure_law=str(curve["closure_law"].item()),
         dilatancy=dilatancy_of(subject),
@@ -260,10 +268,16 @@ def summarised(subject: Subject, common: Sequence[CommonLoad] = ()) -> Specimen:
 
 
 def _initial_stiffness(curve):
-    """k_ni of the hyperbola: undetermined, with the reason, where the atlas says so."""
-    says, reason = (curve[f"hyperbola_k_ni_{name}"].item() for name in ("determined", "reason"))
-    found = Estimate.read(curve, "hyperbola_k_ni")
+    """k_ni of the seated hyperbola: undetermined, with the reason, where the atlas says so."""
+    says, reason = (curve[f"seated_k_ni_{name}"].item() for name in ("determined", "reason"))
+    found = Estimate.read(curve, "seated_k_ni")
     return Judged(*found.ends, reason=reason, says=bool(says))
+
+
+def _stated_stiffness(curve):
+    """Tangent stiffness by the nominal pressure at which it is stated, MPa/mm; NaN if unknown."""
+    stated = curve["reference_stiffness"]
+    return dict(zip(stated["reference_pressure"].values.tolist(), stated.values, strict=True))
 
 
 def _at_load(subject, curve, number):
@@ -378,7 +392,11 @@ def _of_specimen(one):
         **_columns("delta_g", one.delta_g),
         "delta_g_estimator": one.estimator,
         "rms_slope": one.rms_slope,
+        "seating_pressure_MPa": one.seat,
+        **{f"stiffness_at_{p:g}_MPa_MPa_per_mm": k for p, k in one.stiffness.items()},
         **_columns("k_ni_MPa_per_mm", one.k_ni),
+        **_columns("v_m_mm", one.v_m),
+        **_columns("chi_mm", one.chi),
         "k_ni_reason": why(one.k_ni),
         "k_ni_change_at_twice_the_spacing": one.doubled.k_ni,
         "stiffness_change_at_twice_the_spacing": one.doubled.stiffness,

@@ -1,0 +1,108 @@
+"""Closure from the seat with the laws that laboratories fit, and tangent stiffness."""
+
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from xarray import DataTree
+
+from ...core.estimate import Estimate
+from ...core.limits import RESOLVED_NODES
+from ...core.subject import Subject
+from ..kit.caption import caption
+from ..kit.drawing import WIDTH, Drawing, colour_of
+from ..kit.empty import TOO_FULL, say_empty
+from ..kit.legends import entries, heading, legends_below
+from ..kit.panel import Panel, table_of
+from ..kit.titles import headline
+from ..kit.words import NOMINAL_PRESSURE, place, pressure_label, short
+from ..paper._closure_laws import offset_words
+
+TITLE = "Closure from the seat, its laws, and tangent stiffness"
+SUBJECT = "specimen"
+NEEDS = ("specimens", "closure")
+ORDER = 45
+
+_KEPT = (
+    *("nodes", "seating_pressure", "seated_k_ni", "seated_k_ni_determined", "seated_v_m"),
+    *("seated_d_0", "seated_chi", "seated_hyperbola_misfit", "seated_logarithm_misfit"),
+)
+
+
+def draw(atlas: DataTree, name: str) -> Drawing:
+    """Closure under the loads from the seat on, and stiffness, at the reported offset."""
+    subject = Subject.of(atlas, name)
+    curve = subject.states("closure")
+    figure = Figure(figsize=(WIDTH, 4.2))
+    seat = float(curve["seating_pressure"])
+    since = f"from {pressure_label(seat)} on" if np.isfinite(seat) else "from no seat"
+    titles = (f"closure {since}, {offset_words(subject, subject.offset)}", "tangent stiffness")
+    a, b = (Panel(*one) for one in zip(figure.subplots(1, 2), "ab", titles, strict=True))
+    style = {"filled": "resolved", "ls": "none", "color": colour_of(0), "marker": "o"}
+    a.curve(curve, "seated_closure", "nominal_pressure", keep=_KEPT, label="states", **style)
+    _draw_laws(a.axes, curve)
+    _draw_stiffness(b, curve, style)
+    if not np.isfinite(curve["seated_closure"]).any():
+        say_empty(a.axes, f"no load from the seat on has {RESOLVED_NODES} nodes in contact")
+    a.axes.set_xlabel("closure $d$ from the seat (mm)")
+    a.axes.set_ylabel(f"{NOMINAL_PRESSURE} (MPa)")
+    why = str(curve["seated_k_ni_reason"].item())
+    remarks = [heading(f"$k_{{ni}}$ undetermined: {why}")] if why else []
+    legends_below(figure, entries(a.axes) + remarks, entries(b.axes))
+    headline(figure, subject.label, place(subject.direction))
+    return Drawing(figure, table_of(a, b), caption(__name__, **_words(curve, seat)))
+
+
+def _draw_laws(axes: Axes, curve: xr.Dataset) -> None:
+    """Both laws over the pressures that they are fitted to."""
+    ends = float(curve["seating_pressure"]), float(curve["seated_fit_max"])
+    if not np.isfinite(ends).all():
+        return
+    pressure = np.geomspace(*ends, 100)
+    k_ni, v_m, d_0, chi = (float(curve[f"seated_{name}"]) for name in ("k_ni", "v_m", "d_0", "chi"))
+    hyperbola = pressure * v_m / (k_ni * v_m + pressure)
+    for closure, words, line, colour in (
+        (hyperbola, r"hyperbola $\sigma_0 = k_{ni}d/(1 - d/v_m)$", "--", 1),
+        (d_0 + chi * np.log(pressure), r"logarithm $d = d_0 + \chi\ln\sigma_0$", "-", 2),
+    ):
+        if np.isfinite(closure).any():
+            axes.plot(closure, pressure, ls=line, lw=1.0, color=colour_of(colour), label=words)
+
+
+def _draw_stiffness(panel: Panel, curve: xr.Dataset, style: dict[str, Any]) -> None:
+    """Stiffness of the states, and at the pressures at which it is stated."""
+    kept = ("interface_stiffness_reason",)
+    panel.curve(
+        curve, "nominal_pressure", "interface_stiffness", keep=kept, label="states", **style
+    )
+    stated = {"ls": "none", "marker": "D", "color": colour_of(3), "ms": 6, "mfc": "none"}
+    panel.curve(
+        curve, "reference_pressure", "reference_stiffness", label="stated pressures", **stated
+    )
+    axes = panel.axes
+    axes.set(xscale="log", yscale="log")
+    if not np.isfinite(curve["interface_stiffness"]).any():
+        say_empty(axes, TOO_FULL)
+    axes.set_xlabel(f"{NOMINAL_PRESSURE} (MPa)")
+    axes.set_ylabel(r"$\mathrm{d}\sigma_0/\mathrm{d}w_\mathrm{int}$ (MPa/mm)")
+
+
+def _words(curve: xr.Dataset, seat: float) -> dict[str, Any]:
+    """Values of the caption."""
+    stiffness = curve["reference_stiffness"]
+    known = stiffness[np.isfinite(stiffness)]
+    return {
+        "seat": seat,
+        "largest": float(curve["seated_fit_max"]),
+        "k_ni": Estimate.read(curve, "seated_k_ni"),
+        "v_m": Estimate.read(curve, "seated_v_m"),
+        "chi": Estimate.read(curve, "seated_chi"),
+        "misfits": [float(curve[f"seated_{law}_misfit"]) for law in ("hyperbola", "logarithm")],
+        "reason": str(curve["seated_k_ni_reason"].item()),
+        "stated": [
+            (short(float(pressure)), short(float(value), 3))
+            for pressure, value in zip(known["reference_pressure"], known, strict=True)
+        ],
+    }
