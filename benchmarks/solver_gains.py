@@ -23,11 +23,13 @@ import time
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
+from functools import cache
 from itertools import product
 from pathlib import Path
 from unittest import mock
 
 import numpy as np
+from scipy import fft
 
 from fractalcontact import ContactState, HalfSpace, NotConverged, solve_contact
 from fractalcontact.surface.synthesis import self_affine
@@ -85,8 +87,27 @@ def _factor_alone(correction, residual, inverse):
     return inverse(residual)
 
 
+@cache
+def _spectrum(space, dtype):
+    """Padded lengths and spectrum of the influence, which is real: it is even."""
+    padded = [fft.next_fast_len(2 * n - 1, real=True) for n in space.shape]
+    y, x = (np.arange(1 - n, n) for n in space.shape)
+    circulant = np.zeros(padded)
+    circulant[y[:, None], x] = space.influence()[np.abs(y)[:, None], np.abs(x)]
+    return padded, fft.rfft2(circulant).real.astype(dtype)
+
+
+def _convolve_by_scipy(space, values):
+    """The operator by scipy.fft, which is not given the rows of zeros."""
+    (ny, nx), (padded, spectrum) = space.shape, _spectrum(space, values.dtype)
+    image = fft.fft(fft.rfft(values, padded[1]), padded[0], axis=0)
+    image *= spectrum
+    return fft.irfft(fft.ifft(image, axis=0)[:ny], padded[1])[:, :nx]
+
+
 #: What is left out of a cold solve, and what is put in its place: (owner, name, value).
 COLD = {
+    "transforms of its own": [(HalfSpace, "convolve", _convolve_by_scipy)],
     "preconditioner": [(operator, "preconditioner", Identity)],
     "coarse correction": [
         (coarse_correction.CoarseCorrection, "update", lambda self, nodes, fresh: None),

@@ -105,5 +105,5 @@ def test_commands_files_and_links_of_a_document_exist(path):
     files = re.findall(r"`((?:[a-z_.]+/)+[a-z_0-9.-]+\.(?:py|md|yaml|smk|yml))`", text)
     files += [link for link in re.findall(r"\]\(([^)#]+)", text) if "://" not in link]
     files = [file for file in files if not file.startswith("results/")]  # made by a command
-    homes = (ROOT, path.parent, ROOT / "src", ROOT / "src/fractalcontact")
+    homes = (ROOT, path.parent, ROOT / "src", *ROOT.glob("src/*"))
     assert [file for file in files if not any((home / file).exists() for home in homes)] == []

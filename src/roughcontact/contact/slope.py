@@ -1,5 +1,6 @@
 """Slope of the force over the closure: the normal stiffness of a contact, yielding or not."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -36,12 +37,14 @@ class Slope:
     reason: str = ""
 
 
-def secant_slope(state: Any) -> Slope:
+def secant_slope(state: Any, solve_contact: Callable[..., Any] | None) -> Slope:
     """Slope of the loading branch at a state in which nodes yield.
 
     Parameters
     ----------
     state : ContactState
+    solve_contact : callable or None
+        The solver that it is of; no value without.
 
     Returns
     -------
@@ -60,8 +63,8 @@ def secant_slope(state: Any) -> Slope:
     that of the state. The error is the scatter of a sum over independent cells, relative to it
     sqrt(sum dp^2) / sum dp.
     """
-    from .solve import solve_contact  # which imports this
-
+    if solve_contact is None:
+        return Slope(np.nan, np.nan, 0.0, "solved by another method, of which there is no secant")
     space, hardness = state.space, state.hardness
     own = float(space.influence()[0, 0]) * space.cell / space.modulus
     node_span = float(np.min(hardness)) * own

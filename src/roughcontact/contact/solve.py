@@ -345,6 +345,7 @@ class _Units:
                 pressure,
                 **common,
                 before=before,
+                solver=solve_contact,
                 candidates=Candidates(
                     problem.nodes,
                     on_nodes,
@@ -360,4 +361,5 @@ class _Units:
             gap=displacement + topography.clearance() - closure,
             **common,
             _before=before,
+            _solver=solve_contact,
         )

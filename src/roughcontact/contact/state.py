@@ -2,7 +2,9 @@
 
 import copy
 import dataclasses
+from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -60,6 +62,7 @@ class ContactState:
     space: HalfSpace = dataclasses.field(repr=False)
     hardness: float | np.ndarray = np.inf
     _before: "ContactState | None" = dataclasses.field(default=None, repr=False, compare=False)
+    _solver: Callable[..., Any] | None = dataclasses.field(default=None, repr=False, compare=False)
 
     def __repr__(self):
         least = np.min(self.hardness)
@@ -142,7 +145,7 @@ class ContactState:
         secant of the loading branch (`slope.secant_slope`), from two more solves.
         """
         if self._yields():
-            return secant_slope(self)
+            return secant_slope(self, self._solver)
         with SOLVING.counted(0):
             value, error = stiffness(*self._operator_on_active())
         if not error <= STIFFNESS_ERROR:
@@ -206,6 +209,8 @@ class CandidateState(ContactState):
     before : ContactState or None
         The state it was solved from.
     candidates : Candidates
+    solver : callable, optional
+        That of the state, for its slope.
     """
 
     _candidates: Candidates
@@ -222,6 +227,7 @@ class CandidateState(ContactState):
         hardness: float,
         before: ContactState | None,
         candidates: Candidates,
+        solver: Callable[..., Any] | None = None,
     ):
         vars(self).update(
             pressure=pressure,
@@ -232,6 +238,7 @@ class CandidateState(ContactState):
             space=space,
             hardness=hardness,
             _before=before,
+            _solver=solver,
             _candidates=candidates,
         )
 
