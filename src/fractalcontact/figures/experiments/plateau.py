@@ -28,7 +28,7 @@ ORDER = 10
 PLATEAUS = ("dilatancy_flattens", "dilatancy_flattens_in_two")
 
 #: Specimens that the caption names, and letters of the label of each.
-MOST_NAMED, LONGEST_IN_CAPTION = 3, 40
+MAX_NAMED, MAX_IN_CAPTION = 3, 40
 
 #: Specimens whose largest offsets differ by more than this are drawn in decades.
 WIDE = 5
@@ -148,7 +148,7 @@ def _words(atlas, names, slides):
         for row in (row_of(atlas, "statements", name, statement) for statement in PLATEAUS):
             if row is not None:
                 circular = f" ({CIRCULAR_SHORT})" if row["circular"] else ""
-                label = printable(Subject.of(atlas, name).label, LONGEST_IN_CAPTION)
+                label = printable(Subject.of(atlas, name).label, MAX_IN_CAPTION)
                 said.setdefault(row["verdict"].item(), []).append(f"{label}{circular}")
     with_it, without = (slide.trend for slide in slides if slide.slope is not None)
     return {
@@ -156,5 +156,5 @@ def _words(atlas, names, slides):
         "without": without,
         "ratios": dict.fromkeys(short(end) for end in least_and_largest(slides)),
         "verdicts": said,
-        "named": sum(map(len, said.values())) <= MOST_NAMED,
+        "named": sum(map(len, said.values())) <= MAX_NAMED,
     }

@@ -49,11 +49,11 @@ def draw_summary(panel: Panel, strength: xr.Dataset) -> None:
     valid = strength["peak_strength_valid"].values
     for name, (words, style) in _SUMMARY.items():
         if name in known:
-            held = ~valid if name == "peak_strength" else np.zeros_like(valid)
-            label = None if held.all() else words
-            draw_points(axes, sigma, known[name], ~held, label=label, **style)
-            if held.any():
-                hollow_entry(axes, f"{words}: held, no result", **style)
+            truncated = ~valid if name == "peak_strength" else np.zeros_like(valid)
+            label = None if truncated.all() else words
+            draw_points(axes, sigma, known[name], ~truncated, label=label, **style)
+            if truncated.any():
+                hollow_entry(axes, f"{words}: truncated, excluded", **style)
     bars = Estimate.read(strength, "residual_strength").ends
     draw_bars(axes, sigma, *bars, _SUMMARY["residual_strength"][1]["color"])
     axes.set(xscale="log")

@@ -20,7 +20,7 @@ ESTIMATORS = {"area": ("-", "$A_r(s)$"), "box": ("--", "box counting")}
 #: Colour of each: measured points alone are black.
 ESTIMATOR_COLOURS = {"area": COLOURS[1], "box": COLOURS[2]}
 #: Loads shown over the side b, and the marker of each in both panels; "." are all others.
-MOST_LOADS = 3
+MAX_LOADS = 3
 LOAD_MARKERS = ("o", "s", "^")
 #: Verdicts and their reasons: of the well-conditioned form, of eq. 6's own, and of both.
 JUDGED = ("area_verdict", "area_reason", "slope_verdict", "slope_reason", "verdict", "reason")
@@ -41,7 +41,7 @@ def first_loads(test: xr.Dataset, name: str) -> np.ndarray:
 def shown_loads(test: xr.Dataset, name: str) -> np.ndarray:
     """Indices of the loads that are drawn over b: a few of :func:`first_loads`."""
     fitted = first_loads(test, name)
-    return fitted[spread(len(fitted), MOST_LOADS)]
+    return fitted[spread(len(fitted), MAX_LOADS)]
 
 
 def draw_over_side(
