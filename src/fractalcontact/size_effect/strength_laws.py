@@ -182,7 +182,8 @@ def add_slope_trends(laws: xr.Dataset) -> None:
     )
     laws["slope_at_equal_v_over_b_trend"].attrs = attrs
     slope = laws["slope_at_equal_v_over_b"]
-    middle = np.exp(np.log(slope.where((slope > 0).all("normal_force"))).mean("normal_force"))
+    everywhere = slope.where((slope > 0).all("normal_force"))
+    middle = xr.ufuncs.exp(xr.ufuncs.log(everywhere).mean("normal_force"))
     middle = middle.where(middle.count("part") >= FEWEST_POINTS).assign_attrs(slope.attrs)
     words = "slope d delta/dv at one v/b as a self-affine face has it, b^(H - 1)"
     laws["slope_at_equal_v_over_b_expected"] = power_through(

@@ -1,5 +1,7 @@
 """Peak and residual strength over the nominal pressure, with Barton's law: a panel of strength."""
 
+from typing import Any
+
 import numpy as np
 import xarray as xr
 from matplotlib.lines import Line2D
@@ -14,7 +16,7 @@ from ..kit.points import draw_points, hollow_entry
 from ..kit.sizes import draw_bars, logarithmic, roughness_words
 
 #: What (c) shows: variable, words and style.
-_SUMMARY = {
+_SUMMARY: dict[str, tuple[str, dict[str, Any]]] = {
     "peak_strength": (
         "peak over the offsets",
         {"ls": "none", "marker": "o", "ms": 6, "color": "k"},

@@ -5,8 +5,8 @@ from typing import Any
 import numpy as np
 import pandas as pd
 import xarray as xr
-from matplotlib.artist import Artist
 from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
 
 from ...core.estimate import DIMENSION, Estimate
 from ..kit.drawing import COLOURS, spread
@@ -46,7 +46,7 @@ def shown_loads(test: xr.Dataset, name: str) -> np.ndarray:
 
 def draw_over_side(
     axes: Axes, test: xr.Dataset, name: str, exponent: str, loads: np.ndarray
-) -> list[Artist]:
+) -> list[Line2D]:
     """Values over b under some loads, with what eq. 6 makes of the whole window's.
 
     Parameters
@@ -60,13 +60,13 @@ def draw_over_side(
 
     Returns
     -------
-    list of matplotlib.artist.Artist
+    list of matplotlib.lines.Line2D
         Entries of a legend, one a load: the exponent with its interval.
     """
     b, values, handles = test["side"].values, test[name].values, []
     exponents = Estimate.read(test, exponent, scale=DIMENSION)
     for n, i in enumerate(loads):
-        style = {"color": "k", "marker": LOAD_MARKERS[n], "ls": "none"}
+        style: dict[str, Any] = {"color": "k", "marker": LOAD_MARKERS[n], "ls": "none"}
         axes.plot(b, values[i], **style)
         if f"{name}_low" in test:
             low, high = (test[f"{name}_{end}"].values[i] for end in ("low", "high"))
