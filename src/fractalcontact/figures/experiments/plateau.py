@@ -7,14 +7,13 @@ import pandas as pd
 from matplotlib.figure import Figure
 from xarray import DataTree
 
-from ...core.labels import printable
-from ...core.subject import Subject, configuration_of
+from ...core.subject import configuration_of
 from ..kit.caption import caption
 from ..kit.drawing import LINES, WIDTH, Drawing, colour_of
 from ..kit.legends import entries, heading, legends_below, mark
 from ..kit.sizes import plain_decades
 from ..kit.titles import LINE, label_in_lines, letter
-from ..kit.verdicts import CIRCULAR_SHORT, row_of
+from ..kit.verdicts import labels_by_verdict
 from ..kit.words import short
 from ._slides import Slide, least_and_largest, without_repeats
 
@@ -30,11 +29,8 @@ PLATEAUS = ("dilatancy_flattens", "dilatancy_flattens_in_two")
 #: Specimens that the caption names, and letters of the label of each.
 MAX_NAMED, MAX_IN_CAPTION = 3, 40
 
-#: Specimens whose largest offsets differ by more than this are drawn in decades.
-WIDE = 5
-
-#: Inches that a label's lines are broken for, so that a column of the legend holds them.
-COLUMN = 4
+#: Largest offsets that differ by more than this are drawn in decades; inches of a legend's column.
+WIDE, COLUMN = 5, 4
 
 #: The second half of the offsets, over which slopes are taken.
 _SECOND_HALF = {"lw": 3}
@@ -143,13 +139,7 @@ def _start_at_zero(panels):
 
 def _words(atlas, names, slides):
     """Trends of the synthetic joints, and verdicts on the plateaus that the paper has."""
-    said: dict[str, list[str]] = {}
-    for name in names:
-        for row in (row_of(atlas, "statements", name, statement) for statement in PLATEAUS):
-            if row is not None:
-                circular = f" ({CIRCULAR_SHORT})" if row["circular"] else ""
-                label = printable(Subject.of(atlas, name).label, MAX_IN_CAPTION)
-                said.setdefault(row["verdict"].item(), []).append(f"{label}{circular}")
+    said = labels_by_verdict(atlas, names, PLATEAUS, MAX_IN_CAPTION)
     with_it, without = (slide.trend for slide in slides if slide.slope is not None)
     return {
         "with_it": with_it,
