@@ -237,6 +237,25 @@ def test_a_power_through_scattered_values_leaves_their_mean_logarithm(exponent):
     assert line.attrs == {"units": "mm", "long_name": "a line"}
 
 
+def test_slopes_of_a_self_affine_face_lie_about_those_that_are_positive(laws):
+    slope, line = laws["slope_at_equal_v_over_b"], laws["slope_at_equal_v_over_b_expected"]
+    everywhere = (slope > 0).all("normal_force")
+    enough = everywhere.sum("part") >= 3
+    assert enough.any()
+    np.testing.assert_array_equal(line.notnull(), (everywhere & enough).transpose(*line.dims))
+    logs = np.log(slope.where(everywhere)).mean("normal_force") - np.log(line)
+    np.testing.assert_allclose(logs.mean("part").values[enough.values], 0, atol=1e-12)
+    exponents = np.log(line / laws["side"] ** (laws["expected_hurst"] - 1))
+    np.testing.assert_allclose(exponents.std("part").values[enough.values], 0, atol=1e-12)
+
+
+def test_a_trend_is_one_only_where_the_interval_of_its_exponent_says_so(laws):
+    low, high = (laws[f"slope_at_equal_v_over_b_exponent_{end}"] for end in ("low", "high"))
+    trend = laws["slope_at_equal_v_over_b_trend"]
+    np.testing.assert_array_equal(trend == "falling", high < 0)
+    np.testing.assert_array_equal(trend == "rising", low > 0)
+
+
 def test_a_self_similar_climb_has_one_strength_at_one_share_of_the_side(states):
     # delta = b f(v/b): larger in all its lengths, so that sizes differ at one v but not at one v/b.
     made = states.copy(deep=True)
