@@ -419,10 +419,10 @@ def without_statements(atlas, name):
 def test_parts_may_have_a_strength_where_the_whole_has_none(atlas):
     changed = atlas.copy(deep=True)
     laws = changed["windows/sliding"].to_dataset()
-    strength = laws["similar_strength"].values
+    strength = laws["strength_at_equal_v_over_b"].values
     strength[:, 0] = np.nan
     strength[:, 1:] = 1.0
-    laws["similar_strength"] = laws["similar_strength"].copy(data=strength)
+    laws["strength_at_equal_v_over_b"] = laws["strength_at_equal_v_over_b"].copy(data=strength)
     changed["windows/sliding"] = xr.DataTree(laws)
     assert len(drawn(changed, "sliding", "fig11_slope_angle").data)
 

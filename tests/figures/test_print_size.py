@@ -12,7 +12,7 @@ from print_size import faults, faults_of_study
 
 from fractalcontact.figures.draw import draw_figure, drawer_of
 from fractalcontact.figures.kit.drawing import print_style
-from fractalcontact.figures.kit.maps import LEAST_DOT, MOST_BLACK, enlarged
+from fractalcontact.figures.kit.maps import MAX_BLACK, MIN_DOT, enlarged
 from fractalcontact.study.figure_list import accuracy_figures_of, all_figures, figures_of
 
 #: Those that changed last, or are crowded, come first: the quick suite draws them alone.
@@ -128,14 +128,14 @@ def test_a_single_panel_has_no_letter(atlas):
 def test_nodes_are_enlarged_for_print_alone():
     domain = np.zeros((200, 200), bool)
     domain[50, 60] = domain[120, 130] = True
-    assert enlarged(domain, LEAST_DOT) is domain
+    assert enlarged(domain, MIN_DOT) is domain
     for points in (0.5, 0.3, 0.1):
         drawn = enlarged(domain, points)
         times = np.sqrt(drawn.sum() / 2)
-        assert times == pytest.approx(np.ceil(LEAST_DOT / points))
+        assert times == pytest.approx(np.ceil(MIN_DOT / points))
         assert drawn[domain].all()
     full = np.random.default_rng(1).random((200, 200)) < 0.2
     drawn = enlarged(full, 0.1)
-    assert drawn is full or drawn.mean() <= MOST_BLACK
+    assert drawn is full or drawn.mean() <= MAX_BLACK
     empty = np.zeros((8, 8), bool)
     assert not enlarged(empty, 0.1).any()

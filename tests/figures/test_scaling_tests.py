@@ -247,7 +247,7 @@ def test_slope_angle_labels_table_and_caption(atlas, name):
     laws = atlas[f"windows/{name}"].to_dataset()
     shares = laws.sizes["share"] * laws.sizes["normal_force"] * laws.sizes["part"]
     assert len(drawing.data) == shares
-    expected = np.degrees(np.arctan(laws["similar_strength"] / laws["nominal_pressure"]))
+    expected = np.degrees(np.arctan(laws["strength_at_equal_v_over_b"] / laws["nominal_pressure"]))
     expected = expected.transpose("share", "normal_force", "part").values.ravel()
     np.testing.assert_allclose(drawing.data["limit_slope_angle_degree"], expected)
 

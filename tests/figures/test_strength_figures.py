@@ -33,7 +33,7 @@ def drawn(atlas, specimen, figure):
 def unstated(atlas):
     """The atlas of a study that states neither basic friction angle nor wall strength."""
     changed = atlas.copy(deep=True)
-    lost = ("strength", "held", "barton", "scaled", "friction_angle", "joint_wall")
+    lost = ("strength", "truncated", "barton", "scaled", "friction_angle", "joint_wall")
     for stage in ("strength", "windows"):
         for specimen in changed[stage].children:
             dataset = changed[f"{stage}/{specimen}"].to_dataset()
@@ -110,8 +110,10 @@ def test_strength_by_size_is_that_of_the_atlas(atlas):
     table = drawn(atlas, "sliding", "fig01_strength").data
     laws = atlas["windows/sliding"].to_dataset()
     similar = table[table["at"] == "v/b"]
-    stored = laws["similar_slope"].transpose("normal_force", "share", "part").values.ravel()
-    np.testing.assert_array_equal(similar["similar_slope"], stored)
+    stored = (
+        laws["slope_at_equal_v_over_b"].transpose("normal_force", "share", "part").values.ravel()
+    )
+    np.testing.assert_array_equal(similar["slope_at_equal_v_over_b"], stored)
     peak = table[table["at"] == "peak"]
     stored = laws["peak_strength"].transpose("normal_force", "part").values.ravel()
     np.testing.assert_array_equal(peak["peak_strength_MPa"], stored)
@@ -123,7 +125,7 @@ def test_the_right_axis_adds_the_basic_angle(atlas):
     basic = float(atlas["strength/sliding"]["basic_friction_angle"])
     axes.figure.draw_without_rendering()
     np.testing.assert_allclose(np.subtract(other.get_ylim(), axes.get_ylim()), basic)
-    held = next(line for line in axes.lines if line.get_label().startswith("held above"))
+    held = next(line for line in axes.lines if line.get_label().startswith("truncated above"))
     assert held.get_ydata()[0] + basic == LARGEST_FRICTION_ANGLE
 
 
@@ -184,19 +186,19 @@ def test_drawn_twice_the_files_are_the_same(atlas, specimen, figure, tmp_path):
         assert once
 
 
-def test_strengths_of_angles_held_at_their_bound_are_marked_and_compared_with_nothing(atlas):
+def test_strengths_of_truncated_angles_are_marked_and_compared_with_nothing(atlas):
     strength = atlas["strength/sliding"].to_dataset().isel(contact_direction=0)
     table = drawn(atlas, "sliding", "strength").data
     over = table[(table["panel"] == "a") & table["normal_force_N"].notna()]
     held = over["friction_angle_degree"] > LARGEST_FRICTION_ANGLE
     assert (over["shear_strength_valid"].astype(bool) == ~held).all()
     counts = over[held].groupby("normal_force_N").size()
-    stored = strength["held_high"].sel(normal_force=over["normal_force_N"].unique())
+    stored = strength["truncated_high"].sel(normal_force=over["normal_force_N"].unique())
     assert counts.sum() == stored.sum() > 0
     # Where any angle is held, the strength there is the largest that there can be.
     valid = table[table["panel"] == "c"]["peak_strength_valid"].astype(bool)
-    assert (valid.values == (strength["held_high"].values == 0)).all()
-    none = "every peak is held at the bound" in drawn(atlas, "sliding", "strength").caption
+    assert (valid.values == (strength["truncated_high"].values == 0)).all()
+    none = "every peak is truncated" in drawn(atlas, "sliding", "strength").caption
     assert none == (not valid.any())
 
 

@@ -266,9 +266,9 @@ def test_load_takes_from_the_peak_angle(strength):
 
 def test_held_intervals_are_those_beyond_the_largest_angle(strength):
     above = (strength["friction_angle"] > LARGEST_FRICTION_ANGLE).sum("interval")
-    np.testing.assert_array_equal(strength["held_high"], above)
+    np.testing.assert_array_equal(strength["truncated_high"], above)
     below = (strength["friction_angle"] < 0).sum("interval")
-    np.testing.assert_array_equal(strength["held_low"], below)
+    np.testing.assert_array_equal(strength["truncated_low"], below)
 
 
 def test_roughness_used_stays_within_bartons_profiles(strength):
@@ -294,7 +294,11 @@ def test_the_note_tells_of_a_coarse_scan_and_of_a_small_window():
 @pytest.mark.parametrize(
     ("missing", "lost", "kept"),
     [
-        ("basic_friction_angle", ("shear_strength", "held_high", "barton_strength"), "jrc_used"),
+        (
+            "basic_friction_angle",
+            ("shear_strength", "truncated_high", "barton_strength"),
+            "jrc_used",
+        ),
         ("joint_wall_strength", ("barton_strength", "scaled_wall_strength"), "shear_strength"),
     ],
 )

@@ -229,7 +229,7 @@ def test_contact_at_equal_pressure_is_that_of_the_windows_solved_for_themselves(
     at = found.sel(normal_force=states["normal_force"], method="nearest").sel(part=states["part"])
     np.testing.assert_allclose(at["nominal_pressure"], states["nominal_pressure"])
     least = states["nodes"].min("window")
-    np.testing.assert_array_equal(at["least_nodes"], least.T)
+    np.testing.assert_array_equal(at["min_nodes"], least.T)
     for name, of_states, fewest in (
         ("area_fraction", "corrected_area_share", 30),
         ("interface_compliance", "interface_compliance", 10),

@@ -237,6 +237,25 @@ def test_a_power_through_scattered_values_leaves_their_mean_logarithm(exponent):
     assert line.attrs == {"units": "mm", "long_name": "a line"}
 
 
+def test_slopes_of_a_self_affine_face_lie_about_those_that_are_positive(laws):
+    slope, line = laws["slope_at_equal_v_over_b"], laws["slope_at_equal_v_over_b_expected"]
+    everywhere = (slope > 0).all("normal_force")
+    enough = everywhere.sum("part") >= 3
+    assert enough.any()
+    np.testing.assert_array_equal(line.notnull(), (everywhere & enough).transpose(*line.dims))
+    logs = np.log(slope.where(everywhere)).mean("normal_force") - np.log(line)
+    np.testing.assert_allclose(logs.mean("part").values[enough.values], 0, atol=1e-12)
+    exponents = np.log(line / laws["side"] ** (laws["expected_hurst"] - 1))
+    np.testing.assert_allclose(exponents.std("part").values[enough.values], 0, atol=1e-12)
+
+
+def test_a_trend_is_one_only_where_the_interval_of_its_exponent_says_so(laws):
+    low, high = (laws[f"slope_at_equal_v_over_b_exponent_{end}"] for end in ("low", "high"))
+    trend = laws["slope_at_equal_v_over_b_trend"]
+    np.testing.assert_array_equal(trend == "falling", high < 0)
+    np.testing.assert_array_equal(trend == "rising", low > 0)
+
+
 def test_a_self_similar_climb_has_one_strength_at_one_share_of_the_side(states):
     # delta = b f(v/b): larger in all its lengths, so that sizes differ at one v but not at one v/b.
     made = states.copy(deep=True)
@@ -250,13 +269,13 @@ def test_a_self_similar_climb_has_one_strength_at_one_share_of_the_side(states):
     expected = made["nominal_pressure"].values * np.tan(np.radians(angle))
     for name in ("peak_strength", "residual_strength"):
         np.testing.assert_allclose(found[name], np.tile(expected, (4, 1)))
-    similar = found["similar_strength"].values
+    similar = found["strength_at_equal_v_over_b"].values
     known = np.isfinite(similar)
     np.testing.assert_allclose(similar[known], np.broadcast_to(expected, similar.shape)[known])
     # v = share b lies between the first step of 0.1 mm and the last of 3.2 mm.
     reached = np.outer(OFFSET_FRACTIONS, b) >= 0.1 - 1e-9
     np.testing.assert_array_equal(known.all(axis=2), reached)
-    np.testing.assert_allclose(found["similar_slope_exponent"][-1], 0, atol=1e-9)
+    np.testing.assert_allclose(found["slope_at_equal_v_over_b_exponent"][-1], 0, atol=1e-9)
 
 
 def climbing(states, slopes):
@@ -278,11 +297,11 @@ def test_no_exponent_goes_through_strengths_held_at_their_bound(states):
     for name in ("strength_exponent", "residual_exponent"):
         np.testing.assert_allclose(found[name], 0, atol=1e-9)
         np.testing.assert_array_equal(found[f"{name}_n"], 3)
-    np.testing.assert_array_equal(found["held_share"].sel(part=8), 1)
-    assert (found["similar_strength_exponent_n"] <= 3).all()
+    np.testing.assert_array_equal(found["truncated_fraction_at_peak"].sel(part=8), 1)
+    assert (found["strength_at_equal_v_over_b_exponent_n"] <= 3).all()
     # Where two sizes are left there is no exponent, though all have a strength.
     found = size_laws(climbing(states, [0.5, 0.5, 1.0, 1.0]), ROCK, 12.0, DIMENSION)
-    for name in ("strength_exponent", "residual_exponent", "similar_strength_exponent"):
+    for name in ("strength_exponent", "residual_exponent", "strength_at_equal_v_over_b_exponent"):
         assert np.isnan(found[name]).all(), name
     assert np.isfinite(found["peak_strength"]).all()
 
@@ -371,7 +390,12 @@ def test_loose_states_are_off_by_no_more_than_they_say(rock, laws):
     differ = 0
     for name in (
         *("interface_closure", "interface_compliance", "area_share", "shear_strength"),
-        *("peak_strength", "peak_dilatancy_angle", "similar_strength", "similar_slope"),
+        *(
+            "peak_strength",
+            "peak_dilatancy_angle",
+            "strength_at_equal_v_over_b",
+            "slope_at_equal_v_over_b",
+        ),
     ):
         off, bound = abs(found[name] - laws[name]), found[f"{name}_error"] + laws[f"{name}_error"]
         assert bound.dims == off.dims, name
@@ -432,7 +456,12 @@ def test_a_window_of_few_cells_has_one_size_and_no_law(cells):
     found = size_laws(states_of(tiny, "E", cells, settings()), ROCK, 12.0, DIMENSION)
     assert found["part"].values.tolist() == [1]
     assert np.isfinite(found["interface_closure"]).all()
-    for name in ("closure_exponent", "face_hurst", "strength_exponent", "similar_slope_exponent"):
+    for name in (
+        "closure_exponent",
+        "face_hurst",
+        "strength_exponent",
+        "slope_at_equal_v_over_b_exponent",
+    ):
         assert np.isnan(found[name]).all()
 
 
@@ -478,10 +507,15 @@ def test_a_surface_against_a_plane_has_no_strength():
 def test_what_the_study_does_not_state_is_missing(states):
     unstated = Friction(basic_friction_angle=np.nan, joint_wall_strength=np.nan)
     found = size_laws(states, unstated, 12.0, DIMENSION)
-    for name in ("peak_strength", "similar_strength", "held_share", "barton_scaled_strength"):
+    for name in (
+        "peak_strength",
+        "strength_at_equal_v_over_b",
+        "truncated_fraction_at_peak",
+        "barton_scaled_strength",
+    ):
         assert np.isnan(found[name]).all()
     assert np.isfinite(found["peak_dilatancy_angle"]).all()
-    assert np.isfinite(found["similar_slope"][-1]).all()
+    assert np.isfinite(found["slope_at_equal_v_over_b"][-1]).all()
 
 
 def test_two_faces_and_an_oblong_window():

@@ -159,14 +159,17 @@ def stages(**changes):
         )
         density = np.full((len(V), 1), values["density_exponent"] + by)
         windows[f"area_exponent{end}"] = (("offset", "normal_force"), density)
-        windows[f"similar_strength_exponent{end}"] = (
+        windows[f"strength_at_equal_v_over_b_exponent{end}"] = (
             ("share", "normal_force"),
             values["strength_exponent"] + by,
         )
     windows["closure_exponent"] = ("offset", "normal_force"), np.full((len(V), 1), 0.5)
     of_parts = ("share", "part", "normal_force")
-    windows["similar_strength"] = of_parts, np.ones((2, 3, 1))
-    windows["similar_held"] = of_parts, np.repeat(np.asarray(values["held"])[:, np.newaxis], 3, 1)
+    windows["strength_at_equal_v_over_b"] = of_parts, np.ones((2, 3, 1))
+    windows["truncated_fraction_at_equal_v_over_b"] = (
+        of_parts,
+        np.repeat(np.asarray(values["held"])[:, np.newaxis], 3, 1),
+    )
     slid = slid.assign(rigid_plateaus(RIGID, values["dilatancy"], [*"WENS"]))
     specimen = xr.Dataset(
         attrs={"window_ny": 10, "window_nx": 10, "spacing_y": 1.0, "spacing_x": 1.0}

@@ -76,3 +76,8 @@ def test_the_table_imports_none_of_the_functions_that_it_names():
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout == "set() []\n"
+
+
+def test_the_page_on_the_atlas_names_every_stage():
+    page = (ROOT / "docs/atlas.md").read_text(encoding="utf-8")
+    assert not [name for name in STAGES if f"`{name}`" not in page]

@@ -55,7 +55,7 @@ def estimator_bias(recipe: Mapping[str, Any]) -> xr.Dataset:
         ``fitted`` (fraction of surfaces with one: a short roll-off leaves too few lags). Over
         (hurst, size, roll_off): ``roll_off_seen`` and ``roll_off_coverage``, fractions of surfaces.
         Over estimator, for H >= 0.5: ``worst_bias``, ``overall_error`` (rms), ``mean_coverage`` and
-        ``least_coverage``; for smaller H ``rough_coverage``. Attributes ``first_cells`` and
+        ``min_coverage``; for smaller H ``rough_coverage``. Attributes ``first_cells`` and
         ``last_part``: default range; ``recommended``: estimator; ``tolerated_bias`` and
         ``promised_coverage``: what is aimed at.
     """
@@ -152,13 +152,13 @@ def _with_verdicts(result: xr.Dataset) -> xr.Dataset:
         "worst_bias": f"largest mean bias, {of}",
         "overall_error": f"root mean square error of H, {of}",
         "mean_coverage": f"fraction of intervals that hold H, {of}",
-        "least_coverage": f"smallest coverage of any H, size and roll-off, {of}",
+        "min_coverage": f"smallest coverage of any H, size and roll-off, {of}",
     }
     values: dict[str, Any] = {
         "worst_bias": abs(natural["bias"]).max(every),
         "overall_error": np.sqrt((natural["rms_error"] ** 2).mean(every)),
         "mean_coverage": natural["coverage"].mean(every),
-        "least_coverage": natural["coverage"].min(every),
+        "min_coverage": natural["coverage"].min(every),
     }
     for name, words in table.items():
         result[name] = values[name].assign_attrs(cf_attrs("1", words))

@@ -19,9 +19,9 @@ JRC_RANGE = (0.0, 20.0)
 #: (1977) 1): at low stress the logarithm would take it past the vertical.
 LARGEST_FRICTION_ANGLE = 70.0
 
-#: Where more than this fraction of the sub-windows of a size had their angle held there, their mean
-#: strength is a bound and no result.
-MOSTLY_HELD = 0.5
+#: Where more than this fraction of the sub-windows of a size had their angle truncated there, their
+#: mean strength is a bound and no result.
+MOSTLY_TRUNCATED = 0.5
 
 #: A dimension whose 95 % interval is wider than this is undetermined: half of all that sets in the
 #: plane can have.

@@ -2,8 +2,8 @@
 
 The effective friction angle is the basic one plus the dilatancy angle (Goodman 1989, as the paper
 has it). Nothing breaks in this model: at small offsets, where the faces climb their steepest
-asperities, the sum can pass the vertical, and what is stated as strength is held at
-:data:`core.limits.LARGEST_FRICTION_ANGLE` as in Barton's law. What was held is counted.
+asperities, the sum can pass the vertical, and what is stated as strength is truncated at
+:data:`core.limits.LARGEST_FRICTION_ANGLE` as in Barton's law. What was truncated is counted.
 """
 
 from collections.abc import Mapping
@@ -105,7 +105,7 @@ def slopes_apart(offset: ArrayLike, dilatancy: ArrayLike, off: ArrayLike) -> np.
 
 
 def shear_strength(pressure: ArrayLike, friction_angle: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
-    """tau = sigma_n tan(angle), the angle held between 0 and `LARGEST_FRICTION_ANGLE`.
+    """tau = sigma_n tan(angle), the angle truncated to 0 and `LARGEST_FRICTION_ANGLE`.
 
     Parameters
     ----------
@@ -118,13 +118,13 @@ def shear_strength(pressure: ArrayLike, friction_angle: ArrayLike) -> tuple[np.n
     -------
     strength : ndarray
         MPa.
-    held : ndarray of int
-        1 where the angle was held at the largest, -1 at 0, else 0.
+    truncated : ndarray of int
+        1 where the angle was truncated at the largest, -1 at 0, else 0.
     """
     angle = np.asarray(friction_angle, float)
-    held = (angle > LARGEST_FRICTION_ANGLE).astype(int) - (angle < 0)
+    truncated = (angle > LARGEST_FRICTION_ANGLE).astype(int) - (angle < 0)
     angle = np.clip(angle, 0.0, LARGEST_FRICTION_ANGLE)
-    return np.asarray(pressure) * np.tan(np.radians(angle)), held
+    return np.asarray(pressure) * np.tan(np.radians(angle)), truncated
 
 
 def strength_with_error(
@@ -141,13 +141,13 @@ def strength_with_error(
 
     Returns
     -------
-    strength, held
+    strength, truncated
     error : ndarray
         MPa.
     """
-    strength, held = shear_strength(pressure, friction_angle)
+    strength, truncated = shear_strength(pressure, friction_angle)
     ends = [shear_strength(pressure, friction_angle + sign * off)[0] for sign in (-1, 1)]
-    return strength, held, abs(np.array(ends) - strength).max(axis=0)
+    return strength, truncated, abs(np.array(ends) - strength).max(axis=0)
 
 
 def peak(midpoint: ArrayLike, values: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
@@ -243,10 +243,13 @@ _QUANTITIES = {
     "midpoint": ("mm", "middle of the interval of offsets"),
     "dilatancy_angle": ("degree", "dilatancy angle i"),
     "rigid_dilatancy_angle": ("degree", "dilatancy angle of the rigid joint, F = 0"),
-    "friction_angle": ("degree", "effective friction angle phi_b + i, not held"),
+    "friction_angle": ("degree", "effective friction angle phi_b + i, not truncated"),
     "shear_strength": ("MPa", "shear strength tau"),
-    "held_high": ("1", f"intervals whose angle was held at {LARGEST_FRICTION_ANGLE:g} degrees"),
-    "held_low": ("1", "intervals whose angle was held at 0"),
+    "truncated_high": (
+        "1",
+        f"intervals whose angle was truncated at {LARGEST_FRICTION_ANGLE:g} degrees",
+    ),
+    "truncated_low": ("1", "intervals whose angle was truncated at 0"),
     "shear_strength_valid": ("1", "angle below its upper bound, so that the strength is a result"),
     "peak_strength_valid": ("1", "angle of the peak below its upper bound"),
     "peak_strength": ("MPa", "largest shear strength over the offsets"),
@@ -291,7 +294,7 @@ def _one_direction(
     curves = _curves_with_rigid(dilatancy, joint, specimen, direction)
     midpoint, angles, angles_off = angles_with_errors(*curves)
     rigid_angle, angle, angle_off = angles[:, 0], angles[:, 1:], angles_off[:, 1:]
-    tau, held, tau_off = strength_with_error(pressure, angle_b + angle, angle_off)
+    tau, truncated, tau_off = strength_with_error(pressure, angle_b + angle, angle_off)
     stated = np.where(np.isfinite(angle_b), 1.0, np.nan)
     values = {
         "midpoint": midpoint,
@@ -299,8 +302,8 @@ def _one_direction(
         "rigid_dilatancy_angle": rigid_angle,
         "friction_angle": angle_b + angle,
         "shear_strength": tau,
-        "held_high": stated * (held > 0).sum(axis=0),
-        "held_low": stated * (held < 0).sum(axis=0),
+        "truncated_high": stated * (truncated > 0).sum(axis=0),
+        "truncated_low": stated * (truncated < 0).sum(axis=0),
         "peak_dilatancy_angle": peak(midpoint, angle)[0],
         "dilatancy_angle_error": angle_off,
         "friction_angle_error": stated * angle_off,
@@ -343,11 +346,11 @@ def judged_strengths(values: Mapping[str, ArrayLike]) -> dict[str, np.ndarray]:
             "barton_strength",
         )
     )
-    held = angle > LARGEST_FRICTION_ANGLE
+    truncated = angle > LARGEST_FRICTION_ANGLE
     at_peak = np.equal.outer(midpoint, peak_offset)
     return {
-        "shear_strength_valid": ~held,
-        "peak_strength_valid": ~(held & at_peak).any(axis=0),
+        "shear_strength_valid": ~truncated,
+        "peak_strength_valid": ~(truncated & at_peak).any(axis=0),
         "peak_over_barton": peaks / barton,
     }
 

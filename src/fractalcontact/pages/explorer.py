@@ -18,7 +18,7 @@ COLOUR_MAP = "cividis"
 #: Colours of the map that the page gets; it interpolates between them.
 COLOURS = 33
 #: Letters of a specimen's label that are shown.
-LONGEST_LABEL = 100
+MAX_LABEL = 100
 #: Stages that the page shows.
 NEEDS = (
     "specimens",
@@ -66,7 +66,7 @@ def _specimens(atlas) -> Iterator[dict[str, Any]]:
     groups = atlas["closure"].children if "closure" in atlas.children else ()
     for name in groups:
         attrs = atlas[f"specimens/{name}"].attrs
-        label = printable(attrs.get("label") or name, LONGEST_LABEL)
+        label = printable(attrs.get("label") or name, MAX_LABEL)
         yield {"name": name, "label": label, "states": packed_states(atlas, name)}
 
 

@@ -53,7 +53,7 @@ COMPRESSION = 5
 #: Steps that the largest gap of a specimen has; the code after the last stands for a missing gap.
 GAP_STEPS = 1000
 #: Gaps that a page may hold of one specimen; of a larger window only those under the map load.
-MOST_GAPS = 2_000_000
+MAX_GAPS = 2_000_000
 
 
 def packed(values: np.ndarray) -> str:
@@ -276,7 +276,7 @@ def _fields(contact):
     for kind, pack in (("pressure", _pressures), ("gap", _gaps)):
         data = contact[f"map_{kind}"].transpose("normal_force", ...)
         loads = np.flatnonzero(np.isfinite(data.values).any(axis=(1, 2)))
-        if kind == "gap" and data[loads].size > MOST_GAPS:
+        if kind == "gap" and data[loads].size > MAX_GAPS:
             forces = data["normal_force"].values[loads]
             loads = loads[[np.abs(forces - fields["normal_force"]).argmin()]]
         of_kind = {"units": data.attrs["units"], "loads": loads.tolist()}

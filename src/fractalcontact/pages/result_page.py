@@ -196,7 +196,7 @@ def _sort_value(state: AtLoad | None, of: Shown | str) -> float | str:
     if state is None:
         return ""
     found = _quoted(state, of)
-    if isinstance(of, Shown) and of.dimension and not found.determined:
+    if isinstance(found, Estimate) and _of_dimension(of) and not found.determined:
         return ""
     if isinstance(found, Quantity) and state.decided_by_scan:
         return ""
@@ -210,8 +210,12 @@ def _shown(value: float) -> float | str:
 
 def _note_of(state: AtLoad | None, of: Shown | str) -> str:
     """Why a dimension is missing, or what to know of it."""
-    dimension = state is not None and isinstance(of, Shown) and of.dimension
-    return why(_quoted(state, of)) if dimension else ""
+    found = None if state is None else _quoted(state, of)
+    return why(found) if isinstance(found, Estimate) and _of_dimension(of) else ""
+
+
+def _of_dimension(of):
+    return isinstance(of, Shown) and of.dimension
 
 
 def _columns() -> dict[str, list[Shown]]:

@@ -225,8 +225,8 @@ def add_decisions(result: xr.Dataset) -> None:
     attrs = cf_attrs("1", "whether a load of the study decides about eq. 6")
     result["decides"] = (result["verdict"].isin(DECIDED) & of_study).assign_attrs(attrs)
     errors = result[["closure_error", "area_error"]].to_dataarray()
-    known = np.isfinite(errors).all(("variable", "predictor"))
-    known = known & of_study if (known & of_study).any() else known
+    every = errors.notnull().all(("variable", "predictor"))
+    known = every & of_study if (every & of_study).any() else every
     agrees = result["decides"] & (result["verdict"] == AGREES)
     for name, counted, words in (
         ("deciding_loads", result["decides"], "loads that decide about eq. 6"),

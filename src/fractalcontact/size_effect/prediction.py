@@ -92,10 +92,10 @@ def _mean_curves(states: xr.Dataset, fewest_nodes: int) -> tuple[np.ndarray, np.
 
 _STRENGTH = {
     "strength_share": ((), "1", "v/b at which strengths are compared"),
-    "strength_held": (
+    "largest_truncated_fraction": (
         "dilatancy_load",
         "1",
-        "largest fraction of windows of any size whose angle was held",
+        "largest fraction of windows of any size whose angle was truncated",
     ),
 }
 
@@ -115,17 +115,19 @@ def predict_whole_strength(laws: xr.Dataset, delta_sigma: xr.DataArray) -> xr.Da
     xr.Dataset
         ``predicted_strength`` (predictor, dilatancy_load), ``direct_strength`` (dilatancy_load),
         ``strength_error``; ``strength_share``, the v/b at which most sizes can be compared;
-        ``strength_held`` (dilatancy_load), the largest fraction of windows of any size whose angle
-        was held there. NaN where the study states no basic friction angle.
+        ``largest_truncated_fraction`` (dilatancy_load), the largest fraction of windows of any size
+        whose angle was truncated there. NaN where the study states no basic friction angle.
 
     Notes
     -----
     Eq. 6 with tau* = mu sigma* has the apparent strength at a given sigma_0 fall as
     b^-(2 - Delta).
     """
-    at = int(np.argmax(laws["similar_slope"].notnull().all("normal_force").sum("part").values))
+    at = int(
+        np.argmax(laws["slope_at_equal_v_over_b"].notnull().all("normal_force").sum("part").values)
+    )
     chosen = laws.isel(share=at)
-    strength = chosen["similar_strength"].transpose("part", "normal_force").values
+    strength = chosen["strength_at_equal_v_over_b"].transpose("part", "normal_force").values
     strength = np.where(strength > 0, strength, np.nan)
     b, forces = laws["side"].values, laws["normal_force"].values
     delta = delta_sigma.sel(normal_force=forces, method="nearest").values
@@ -139,7 +141,9 @@ def predict_whole_strength(laws: xr.Dataset, delta_sigma: xr.DataArray) -> xr.Da
         _STRENGTH,
         {
             "strength_share": float(chosen["share"]),
-            "strength_held": chosen["similar_held"].max("part").values,
+            "largest_truncated_fraction": chosen["truncated_fraction_at_equal_v_over_b"]
+            .max("part")
+            .values,
         },
         coords={
             "predictor": list(PREDICTORS),

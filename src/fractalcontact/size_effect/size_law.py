@@ -21,7 +21,7 @@ QUANTITIES = {
 
 _OF_SIZE = ("normal_force", "part")
 _TABLE = {
-    "least_nodes": (_OF_SIZE, "1", "fewest nodes in contact of any sub-window of that size"),
+    "min_nodes": (_OF_SIZE, "1", "fewest nodes in contact of any sub-window of that size"),
     "edge_ratio": (_OF_SIZE, "1", "compliance of the bulk over that of the interface"),
     "central_load": (
         _OF_SIZE,
@@ -43,7 +43,7 @@ def size_law(states: xr.Dataset) -> xr.Dataset:
     -------
     xr.Dataset
         Over (normal_force, part): :data:`QUANTITIES`, means over the disjoint sub-windows of a size
-        with the interval over them, NaN where one of them holds too few nodes; ``least_nodes``,
+        with the interval over them, NaN where one of them holds too few nodes; ``min_nodes``,
         ``edge_ratio`` and ``central_load``. Over (normal_force,): ``area_exponent``,
         ``compliance_exponent`` and ``gap_exponent``, as
         :func:`size_effect.size_exponents.add_size_exponents` makes them.
@@ -69,7 +69,7 @@ def size_law(states: xr.Dataset) -> xr.Dataset:
     result = labelled_dataset(
         _TABLE,
         {
-            "least_nodes": nodes.min("window").values.T,
+            "min_nodes": nodes.min("window").values.T,
             "edge_ratio": np.where(resolved, edge_ratio, np.nan).T,
             "central_load": tested["central_load"].mean("window").transpose(*_OF_SIZE).values,
         },

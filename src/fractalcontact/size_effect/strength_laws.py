@@ -11,7 +11,7 @@ from ..core.estimate import Estimate
 from ..core.fitting import FEWEST_POINTS
 from ..core.intervals import mean_interval
 from ..core.labels import cf_attrs
-from ..core.limits import JRC_RANGE, LARGEST_FRICTION_ANGLE, MOSTLY_HELD
+from ..core.limits import JRC_RANGE, LARGEST_FRICTION_ANGLE, MOSTLY_TRUNCATED
 from ..core.settings import Friction
 from ..core.verdicts import FALLING, RISING
 from ..mechanics.strength import (
@@ -43,25 +43,26 @@ def strength_by_size(states: xr.Dataset, material: Friction, roughness: float) -
     -------
     xr.Dataset
         Means over sub-windows with ``_low``, ``_high`` and the ``_error`` of the solver:
-        ``peak_strength``, ``peak_dilatancy_angle`` (which is not held), ``residual_strength``
-        (part, normal_force) and ``shear_strength`` (interval, part, normal_force); ``held_share``
-        (part, normal_force), the fraction of sub-windows whose peak was held;
-        ``strength_exponent``, ``residual_exponent`` (normal_force) and ``shear_exponent``
-        (interval, normal_force); ``barton_scaled_strength`` (part, normal_force) with the JRC and
-        JCS of that size by Barton and Bandis' law (which was measured on joints of 50 mm and more);
-        none where that JRC is beyond Barton's scale of 0 to 20.
+        ``peak_strength``, ``peak_dilatancy_angle`` (which is not truncated), ``residual_strength``
+        (part, normal_force) and ``shear_strength`` (interval, part, normal_force);
+        ``truncated_fraction_at_peak`` (part, normal_force), the fraction of sub-windows whose angle
+        was truncated there; ``strength_exponent``, ``residual_exponent`` (normal_force) and
+        ``shear_exponent`` (interval, normal_force); ``barton_scaled_strength`` (part, normal_force)
+        with the JRC and JCS of that size by Barton and Bandis' law (which was measured on joints of
+        50 mm and more); none where that JRC is beyond Barton's scale of 0 to 20.
 
         At offsets in proportion to the size, v = (v/b) b, over (share, part, load): mean
-        ``similar_strength`` and ``similar_slope`` (d delta/dv, not held), ``similar_held`` (the
-        fraction of sub-windows whose angle was held there) and their exponents (share, load).
-        ``share`` holds the fractions v/b. Besides those of :func:`with_slope_angles`.
+        ``strength_at_equal_v_over_b`` and ``slope_at_equal_v_over_b`` (d delta/dv, not truncated),
+        ``truncated_fraction_at_equal_v_over_b`` (the fraction of sub-windows whose angle was
+        truncated there) and their exponents (share, load). ``share`` holds the fractions v/b.
+        Besides those of :func:`with_slope_angles`.
 
     Notes
     -----
-    A strength whose angle is held is a bound, and its size says nothing: no exponent is fitted to
-    a size of which a sub-window is held. ``peak_dilatancy_angle`` then says something. At one v a
-    large sub-window is at an earlier stage of its sliding than a small one; only at one v/b are
-    they alike. There a self-affine face has d delta/dv ~ b^(H - 1), which falls with size.
+    A strength whose angle is truncated is a bound, and its size says nothing: no exponent is fitted
+    to a size of which a sub-window is truncated. ``peak_dilatancy_angle`` then says something. At
+    one v a large sub-window is at an earlier stage of its sliding than a small one; only at one v/b
+    are they alike. There a self-affine face has d delta/dv ~ b^(H - 1), which falls with size.
 
     The largest of several noisy values grows with their noise, which is larger in a small
     sub-window, so part of any size effect on a peak is scatter itself, as in a laboratory.
@@ -72,7 +73,7 @@ def strength_by_size(states: xr.Dataset, material: Friction, roughness: float) -
     friction = material.basic_friction_angle + angle
     pressure = states["nominal_pressure"].values
     strength, bound, off = strength_with_error(pressure, friction, angle_off)
-    held = np.where(np.isnan(strength), np.nan, bound == 1)
+    truncated = np.where(np.isnan(strength), np.nan, bound == 1)
     bound = (bound != 0).astype(float)
 
     words = cf_attrs("mm", "middle of the interval of offsets")
@@ -92,8 +93,8 @@ def strength_by_size(states: xr.Dataset, material: Friction, roughness: float) -
         add_mean(result, name, mean_of, mean_of.copy(data=errors))
     slopes = [slopes_apart(offset, curve, sign * error) for sign in (0, 1)]
     similar = {
-        "similar_strength": (strength, off),
-        "similar_slope": (slopes[0], slopes[1] - slopes[0]),
+        "strength_at_equal_v_over_b": (strength, off),
+        "slope_at_equal_v_over_b": (slopes[0], slopes[1] - slopes[0]),
     }
     for name, of_intervals in similar.items():
         values, errors = (_at_fractions(offset, side.values, of) for of in of_intervals)
@@ -102,10 +103,10 @@ def strength_by_size(states: xr.Dataset, material: Friction, roughness: float) -
         add_mean(result, name, mean_of, mean_of.copy(data=errors))
     attrs = cf_attrs("1", "offset as a fraction of the side, v/b")
     result["share"] = ("share", np.array(OFFSET_FRACTIONS), attrs)
-    # Missing sub-windows, NaN, are held nowhere.
+    # Missing sub-windows, NaN, are truncated nowhere.
     bounds = {
-        "similar_strength": (_at_fractions(offset, side.values, bound) > 0).any(axis=2),
-        "peak_strength": (peak(midpoint, held)[0] > 0).any(axis=1),
+        "strength_at_equal_v_over_b": (_at_fractions(offset, side.values, bound) > 0).any(axis=2),
+        "peak_strength": (peak(midpoint, truncated)[0] > 0).any(axis=1),
         "residual_strength": (residual(midpoint, bound, largest).value > 0).any(axis=1),
         "shear_strength": (bound > 0).any(axis=2),
     }
@@ -114,12 +115,15 @@ def strength_by_size(states: xr.Dataset, material: Friction, roughness: float) -
         if name in bounds:
             fitted = fitted.where(fitted.copy(data=~bounds[name]))
         add_law(result, exponent, side, fitted, f"exponent of {name} against b")
-    of_held = {
-        "held_share": mean_interval(peak(midpoint, held)[0], axis=1).value,
-        "similar_held": mean_interval(_at_fractions(offset, side.values, held), axis=2).value,
+    of_truncated = {
+        "truncated_fraction_at_peak": mean_interval(peak(midpoint, truncated)[0], axis=1).value,
+        "truncated_fraction_at_equal_v_over_b": mean_interval(
+            _at_fractions(offset, side.values, truncated), axis=2
+        ).value,
     }
     result = result.assign(
-        labelled(_HELD, of_held) | labelled(_BARTON, _by_barton(states, material, roughness))
+        labelled(_TRUNCATED, of_truncated)
+        | labelled(_BARTON, _by_barton(states, material, roughness))
     )
     return with_slope_angles(result, pressure)
 
@@ -130,28 +134,33 @@ def with_slope_angles(laws: xr.Dataset, pressure: np.ndarray) -> xr.Dataset:
     Parameters
     ----------
     laws : xr.Dataset
-        ``similar_strength`` with its interval, ``similar_held`` and ``barton_scaled_strength``.
+        ``strength_at_equal_v_over_b`` with its interval, ``truncated_fraction_at_equal_v_over_b``
+        and ``barton_scaled_strength``.
     pressure : (n_load,) ndarray
         sigma_0, MPa.
 
     Returns
     -------
     xr.Dataset
-        With ``limit_slope_angle``, ``relative_strength`` and ``similar_strength_valid`` (share,
-        part, normal_force), and ``barton_slope_angle`` (part, normal_force).
+        With ``limit_slope_angle``, ``relative_strength`` and ``strength_at_equal_v_over_b_valid``
+        (share, part, normal_force), and ``barton_slope_angle`` (part, normal_force).
     """
     dims = ("share", *_DIMS[::2])
-    strength = Estimate.read(laws.transpose(*dims, ...), "similar_strength")
+    strength = Estimate.read(laws.transpose(*dims, ...), "strength_at_equal_v_over_b")
     angle = strength.mapped(partial(slope_angle, pressure=pressure))
     # Part 1 is the whole window.
     relative = strength.mapped(lambda values: values / strength.value[:, :1])
     by_barton = slope_angle(laws["barton_scaled_strength"].values, pressure)
-    valid = ~(laws["similar_held"].transpose(*dims).values > MOSTLY_HELD)
+    valid = ~(
+        laws["truncated_fraction_at_equal_v_over_b"].transpose(*dims).values > MOSTLY_TRUNCATED
+    )
     words = "shear strength at one v/b over that of the whole window"
     return laws.assign(
         angle.variables("limit_slope_angle", dims, "degree", "limit slope angle atan(tau/sigma_0)")
         | relative.variables("relative_strength", dims, "1", words)
-        | labelled(_ANGLES, {"barton_slope_angle": by_barton, "similar_strength_valid": valid})
+        | labelled(
+            _ANGLES, {"barton_slope_angle": by_barton, "strength_at_equal_v_over_b_valid": valid}
+        )
     )
 
 
@@ -161,20 +170,23 @@ def add_slope_trends(laws: xr.Dataset) -> None:
     Parameters
     ----------
     laws : xr.Dataset
-        Of :func:`size_effect.laws.size_laws`: gets ``similar_slope_trend`` (share, normal_force)
-        and ``similar_slope_expected`` (share, part), b^(H - 1) through the mean over the loads of
-        the sizes whose slopes are all positive, if three are.
+        Of :func:`size_effect.laws.size_laws`: gets ``slope_at_equal_v_over_b_trend`` (share,
+        normal_force) and ``slope_at_equal_v_over_b_expected`` (share, part), b^(H - 1) through the
+        mean over the loads of the sizes whose slopes are all positive, if three are.
     """
-    exponent = Estimate.read(laws, "similar_slope_exponent")
+    exponent = Estimate.read(laws, "slope_at_equal_v_over_b_exponent")
     trend = np.where(exponent.high < 0, FALLING, np.where(exponent.low > 0, RISING, ""))
     attrs = cf_attrs("1", f"{RISING}, {FALLING}, or empty where the exponent leaves it open")
-    laws["similar_slope_trend"] = laws["similar_slope_exponent"].copy(data=trend)
-    laws["similar_slope_trend"].attrs = attrs
-    slope = laws["similar_slope"]
-    middle = np.exp(np.log(slope.where((slope > 0).all("normal_force"))).mean("normal_force"))
+    laws["slope_at_equal_v_over_b_trend"] = laws["slope_at_equal_v_over_b_exponent"].copy(
+        data=trend
+    )
+    laws["slope_at_equal_v_over_b_trend"].attrs = attrs
+    slope = laws["slope_at_equal_v_over_b"]
+    everywhere = slope.where((slope > 0).all("normal_force"))
+    middle = xr.ufuncs.exp(xr.ufuncs.log(everywhere).mean("normal_force"))
     middle = middle.where(middle.count("part") >= FEWEST_POINTS).assign_attrs(slope.attrs)
     words = "slope d delta/dv at one v/b as a self-affine face has it, b^(H - 1)"
-    laws["similar_slope_expected"] = power_through(
+    laws["slope_at_equal_v_over_b_expected"] = power_through(
         middle, laws["side"], laws["expected_hurst"] - 1, words
     )
 
@@ -194,23 +206,31 @@ _DIMS = ("part", "window", "normal_force")
 
 #: What is compared at one v/b: unit, long name.
 _SIMILAR = {
-    "similar_strength": ("MPa", "shear strength at one v/b"),
-    "similar_slope": ("1", "slope d delta/dv at one v/b"),
+    "strength_at_equal_v_over_b": ("MPa", "shear strength at one v/b"),
+    "slope_at_equal_v_over_b": ("1", "slope d delta/dv at one v/b"),
 }
 
 #: Exponents against b by what they are of.
 _EXPONENTS = {
-    "similar_strength": "similar_strength_exponent",
-    "similar_slope": "similar_slope_exponent",
+    "strength_at_equal_v_over_b": "strength_at_equal_v_over_b_exponent",
+    "slope_at_equal_v_over_b": "slope_at_equal_v_over_b_exponent",
     "peak_strength": "strength_exponent",
     "residual_strength": "residual_exponent",
     "shear_strength": "shear_exponent",
 }
 
-_OF_HELD = f"fraction of sub-windows held at {LARGEST_FRICTION_ANGLE:g} degrees"
-_HELD = {
-    "held_share": (("part", "normal_force"), "1", f"{_OF_HELD} at their peak"),
-    "similar_held": (("share", "part", "normal_force"), "1", f"{_OF_HELD} at one v/b"),
+_TRUNCATED_FRACTION = f"fraction of sub-windows truncated at {LARGEST_FRICTION_ANGLE:g} degrees"
+_TRUNCATED = {
+    "truncated_fraction_at_peak": (
+        ("part", "normal_force"),
+        "1",
+        f"{_TRUNCATED_FRACTION} at their peak",
+    ),
+    "truncated_fraction_at_equal_v_over_b": (
+        ("share", "part", "normal_force"),
+        "1",
+        f"{_TRUNCATED_FRACTION} at one v/b",
+    ),
 }
 
 _BARTON = {
@@ -228,10 +248,10 @@ _ANGLES = {
         "degree",
         "limit slope angle by Barton's law with JRC_n and JCS_n of each size",
     ),
-    "similar_strength_valid": (
+    "strength_at_equal_v_over_b_valid": (
         ("share", "part", "normal_force"),
         "1",
-        "the angle of at most half of the sub-windows was held",
+        "the angle of at most half of the sub-windows was truncated",
     ),
 }
 

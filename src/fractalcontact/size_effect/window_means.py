@@ -81,7 +81,8 @@ def power_through(
     xr.DataArray
         As ``values``, missing where these are left out or the exponent is unknown.
     """
-    logs, (size,) = np.log(values.where(values > 0)), side.dims
-    powers = exponent * np.log(side)
-    line = np.exp(powers + (logs - powers).mean(size)).where(logs.notnull())
+    positive, (size,) = values.where(values > 0), side.dims
+    powers = exponent * xr.ufuncs.log(side)
+    level = (xr.ufuncs.log(positive) - powers).mean(size)
+    line = xr.ufuncs.exp(powers + level).where(positive.notnull())
     return line.transpose(*values.dims).assign_attrs(cf_attrs(values.attrs["units"], words))

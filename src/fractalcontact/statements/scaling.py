@@ -198,22 +198,24 @@ def larger_domains_are_less_dense(joint: Joint) -> Finding:
 def strength_falls_with_size(joint: Joint) -> Finding:
     """Exponents of shear strength against window size, at equal v/b and all loads.
 
-    Where a sub-window's angle is held at its bound its strength is no result, and the size has no
-    strength: what is left of the sizes decides, if three are.
+    Where a sub-window's angle is truncated its strength is no result, and the size has no strength:
+    what is left of the sizes decides, if three are.
     """
     windows = joint["windows"]
     order = ("share", "normal_force")
-    exponent = Estimate.read(windows.transpose(*order, ...), "similar_strength_exponent")
+    exponent = Estimate.read(windows.transpose(*order, ...), "strength_at_equal_v_over_b_exponent")
     value, low, high = exponent.ends
-    sizes = windows["similar_strength"].notnull().sum("part").transpose(*order).values
-    held = (windows["similar_held"] > 0).any("part").transpose(*order).values
+    sizes = windows["strength_at_equal_v_over_b"].notnull().sum("part").transpose(*order).values
+    truncated = (
+        (windows["truncated_fraction_at_equal_v_over_b"] > 0).any("part").transpose(*order).values
+    )
     cases = sizes >= FEWEST_POINTS
     if not cases.any():
         return Finding(UNDETERMINED, "no v/b at which three sizes of window could be compared")
-    known = cases & ~held & np.isfinite(value)
+    known = cases & ~truncated & np.isfinite(value)
     exponents = _exponents(value, low, high, known)
     if 2 * known.sum() <= cases.sum():
-        bounded = int((cases & held).sum())
+        bounded = int((cases & truncated).sum())
         bound = f"some strength at its bound in {bounded} of {cases.sum()} cases (v/b, F)"
         return Finding(UNDETERMINED, bound, exponents)
     falls, rises = int((high[known] < 0).sum()), int((low[known] > 0).sum())

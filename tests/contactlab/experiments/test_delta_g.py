@@ -71,7 +71,7 @@ def test_verdicts_are_about_natural_surfaces_alone(bias):
     natural = bias.sel(hurst=[0.5, 0.8])
     every = ["hurst", "size", "roll_off"]
     np.testing.assert_allclose(bias["worst_bias"], np.abs(natural["bias"]).max(every))
-    np.testing.assert_allclose(bias["least_coverage"], natural["coverage"].min(every))
+    np.testing.assert_allclose(bias["min_coverage"], natural["coverage"].min(every))
     rough = bias["coverage"].sel(hurst=bias["hurst"] < 0.5).min(every)
     np.testing.assert_array_equal(bias["rough_coverage"], rough)
     mean_square = (natural["rms_error"] ** 2).mean(every)
@@ -137,13 +137,13 @@ def test_figure_shows_the_table_and_says_what_holds(bias):
 def test_verdict_follows_the_numbers(bias):
     errors = bias["overall_error"]
     least = errors.where(errors["estimator"] != RECOMMENDED, 0.01)
-    good = bias.assign(overall_error=least, least_coverage=xr.full_like(least, 0.95))
+    good = bias.assign(overall_error=least, min_coverage=xr.full_like(least, 0.95))
     good["rough_coverage"] = xr.full_like(least, 0.95)
     words = drawn(good).caption
     assert "has an rms error of 0.010, the least" in words
     assert "hold H in 95 % or more, those of the worst estimator in 95 %" in words
     bad = bias.assign(overall_error=xr.where(errors["estimator"] == "variogram", 0.01, 0.2))
-    bad["least_coverage"] = xr.full_like(least, 0.5)
+    bad["min_coverage"] = xr.full_like(least, 0.5)
     bad["rough_coverage"] = xr.full_like(least, 0.5)
     words = drawn(bad).caption
     assert "On rougher surfaces 7 fall to 50 %" in words

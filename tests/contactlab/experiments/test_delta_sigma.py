@@ -73,6 +73,8 @@ def test_means_and_trends(found):
     assert [float(mean[f"mean_difference{end}"]) for end in ("", "_low", "_high")] == pytest.approx(
         expected
     )
+    agrees = found["mean_difference_low"] * found["mean_difference_high"] <= 0
+    np.testing.assert_array_equal(found["difference_agrees"], agrees)
     both = found["difference"].sel(dimension=2.5, reduced_pressure=0.05).mean("seed")
     assert float(found["growth"].sel(dimension=2.5, reduced_pressure=0.05)) == pytest.approx(
         float(both.sel(size=256) - both.sel(size=128))

@@ -45,17 +45,22 @@ def _shown(test):
     return sorted({0, test.sizes["reduced_pressure"] - 1})
 
 
+def _curves(test):
+    """Each dimension and load drawn: its data, style, and place beside the others."""
+    for i in range(test.sizes["dimension"]):
+        for n, j in enumerate(_shown(test)):
+            style = {"color": colour_of(i), "ls": LINES[n % len(LINES)], "marker": MARKERS[i]}
+            yield test.isel(dimension=i, reduced_pressure=j), style, n + 2 * i - 2
+
+
 def _draw_difference(axes, test, which):
     """Difference of the two over the size; a line style a load, a colour a dimension."""
     size = test["size"].values
-    for i in range(test.sizes["dimension"]):
-        for n, j in enumerate(_shown(test)):
-            one = test.isel(dimension=i, reduced_pressure=j)
-            mean, low, high = Estimate.read(one, "mean_difference").ends
-            beside = size * 1.03 ** (n + 2 * i - 2)
-            colour = colour_of(i)
-            axes.plot(beside, mean, color=colour, ls=LINES[n % len(LINES)], marker=MARKERS[i])
-            axes.vlines(beside, low, high, color=colour, lw=0.5)
+    for one, style, place in _curves(test):
+        mean, low, high = Estimate.read(one, "mean_difference").ends
+        beside = size * 1.03**place
+        axes.plot(beside, mean, **style)
+        axes.vlines(beside, low, high, color=style["color"], lw=0.5)
     axes.axhline(0, color="0.5", lw=0.8, ls=LINES[2])
     _in_doublings(axes, size)
     axes.set_ylim(*_DIFFERENCES)
@@ -75,11 +80,8 @@ def _draw_boxes(axes, test, which):
     """Occupied boxes of the finest domain over nodes in contact, at the largest size."""
     largest = test.isel(size=-1)
     k = test["resolution"].values
-    for i in range(test.sizes["dimension"]):
-        for n, j in enumerate(_shown(test)):
-            ratio = largest["mean_boxes_per_node"].isel(dimension=i, reduced_pressure=j)
-            style = {"color": colour_of(i), "ls": LINES[n % len(LINES)], "marker": MARKERS[i]}
-            axes.plot(k, ratio, **style)
+    for one, style, _ in _curves(largest):
+        axes.plot(k, one["mean_boxes_per_node"], **style)
     axes.axhline(1, color="0.5", lw=0.8, ls=LINES[2])
     _in_doublings(axes, k)
     axes.set_xlabel("resolution: every $k$-th node (1)")

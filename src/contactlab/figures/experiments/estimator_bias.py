@@ -130,7 +130,7 @@ def _words(bias):
     known = bias.sel(estimator=bias["worst_bias"].notnull())
     names = [_name(name) for name in known["estimator"].values]
     errors = dict(zip(names, known["overall_error"].values.tolist(), strict=True))
-    least = dict(zip(names, known["least_coverage"].values.tolist(), strict=True))
+    least = dict(zip(names, known["min_coverage"].values.tolist(), strict=True))
     rough = bias["rough_coverage"]
     return {
         "seeds": bias.sizes["seed"],

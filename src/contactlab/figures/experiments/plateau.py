@@ -7,14 +7,13 @@ import pandas as pd
 from matplotlib.figure import Figure
 from xarray import DataTree
 
-from fractalcontact.core.labels import printable
-from fractalcontact.core.subject import Subject, configuration_of
+from fractalcontact.core.subject import configuration_of
 from fractalcontact.figures.kit.caption import caption
 from fractalcontact.figures.kit.drawing import LINES, WIDTH, Drawing, colour_of
 from fractalcontact.figures.kit.legends import entries, heading, legends_below, mark
 from fractalcontact.figures.kit.sizes import plain_decades
 from fractalcontact.figures.kit.titles import LINE, label_in_lines, letter
-from fractalcontact.figures.kit.verdicts import CIRCULAR_SHORT, row_of
+from fractalcontact.figures.kit.verdicts import labels_by_verdict
 from fractalcontact.figures.kit.words import short
 
 from ._slides import Slide, least_and_largest, without_repeats
@@ -29,13 +28,10 @@ ORDER = 10
 PLATEAUS = ("dilatancy_flattens", "dilatancy_flattens_in_two")
 
 #: Specimens that the caption names, and letters of the label of each.
-MOST_NAMED, LONGEST_IN_CAPTION = 3, 40
+MAX_NAMED, MAX_IN_CAPTION = 3, 40
 
-#: Specimens whose largest offsets differ by more than this are drawn in decades.
-WIDE = 5
-
-#: Inches that a label's lines are broken for, so that a column of the legend holds them.
-COLUMN = 4
+#: Largest offsets that differ by more than this are drawn in decades; inches of a legend's column.
+WIDE, COLUMN = 5, 4
 
 #: The second half of the offsets, over which slopes are taken.
 _SECOND_HALF = {"lw": 3}
@@ -144,18 +140,12 @@ def _start_at_zero(panels):
 
 def _words(atlas, names, slides):
     """Trends of the synthetic joints, and verdicts on the plateaus that the paper has."""
-    said: dict[str, list[str]] = {}
-    for name in names:
-        for row in (row_of(atlas, "statements", name, statement) for statement in PLATEAUS):
-            if row is not None:
-                circular = f" ({CIRCULAR_SHORT})" if row["circular"] else ""
-                label = printable(Subject.of(atlas, name).label, LONGEST_IN_CAPTION)
-                said.setdefault(row["verdict"].item(), []).append(f"{label}{circular}")
+    said = labels_by_verdict(atlas, names, PLATEAUS, MAX_IN_CAPTION)
     with_it, without = (slide.trend for slide in slides if slide.slope is not None)
     return {
         "with_it": with_it,
         "without": without,
         "ratios": dict.fromkeys(short(end) for end in least_and_largest(slides)),
         "verdicts": said,
-        "named": sum(map(len, said.values())) <= MOST_NAMED,
+        "named": sum(map(len, said.values())) <= MAX_NAMED,
     }

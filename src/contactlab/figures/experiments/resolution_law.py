@@ -80,7 +80,12 @@ def _draw_slopes(axes: Axes, table: pd.DataFrame, light: tuple[float, float]) ->
         one = table[chosen].groupby("resolved_pressure")["resolved_kappa"]
         one = one.agg(["mean", "min", "max"])
         beside = one.index * _BESIDE ** (i - (len(hursts) - 1) / 2)
-        style = {"marker": MARKERS[j % len(MARKERS)], "ms": 3.5, "color": _colour(i), "lw": 0.6}
+        style: dict[str, Any] = {
+            "marker": MARKERS[j % len(MARKERS)],
+            "ms": 3.5,
+            "color": _colour(i),
+            "lw": 0.6,
+        }
         style["label"] = f"$H$ = {hurst:g}, $s$ = {cut_off:g} nodes"
         bars = reach(one["mean"], one["min"], one["max"])
         drawn.append(axes.errorbar(beside, one["mean"], bars, **style))
@@ -107,7 +112,7 @@ def _draw_theories(axes: Axes, test: xr.Dataset) -> list:
     published, share = test["published_pressure"].values, test["published_share"].values
     kappa, scatter = share / published, test.attrs["published_scatter"]
     label = "published: periodic, $H$ = 0.8,\nwith its scatter"
-    style = {"fmt": "D", "ms": 3.5, "mfc": "white", "color": _PUBLISHED, "lw": 0.8}
+    style: dict[str, Any] = {"fmt": "D", "ms": 3.5, "mfc": "white", "color": _PUBLISHED, "lw": 0.8}
     bars = kappa * scatter / 2
     axes.errorbar(published, kappa * (1 - scatter / 2), bars, label=label, **style)
     return entries(axes)

@@ -37,9 +37,9 @@ _DECADE = 10
 #: What stands for a group in a study that states none.
 UNGROUPED = "no group"
 #: Specimens of a study without groups up to which each stands for itself: colours there are.
-MOST_ALONE = 7
+MAX_ALONE = 7
 #: Letters of the name of a group that are shown, and groups that a caption names.
-LONGEST, MOST_NAMED = 24, 3
+LONGEST, MAX_NAMED = 24, 3
 
 
 def group_labels(comparison: xr.Dataset) -> list[str]:
@@ -51,7 +51,7 @@ def group_labels(comparison: xr.Dataset) -> list[str]:
 
 def alone(comparison: xr.Dataset) -> bool:
     """Whether every specimen stands for itself: few of them, and no group stated."""
-    few = comparison.sizes["specimen"] <= MOST_ALONE
+    few = comparison.sizes["specimen"] <= MAX_ALONE
     return few and list(comparison["group_name"].values) == [UNGROUPED]
 
 

@@ -15,7 +15,7 @@ from ..kit.titles import TITLE_SIZE, letter
 from ..kit.words import pressure_label
 from ._groups import (
     AXES,
-    MOST_NAMED,
+    MAX_NAMED,
     TITLES,
     alone,
     group_labels,
@@ -34,7 +34,7 @@ KEY = "comparison"
 ORDER = 6
 
 #: Specimens of a group up to which each has its own error bar.
-MOST_BARS = 40
+MAX_BARS = 40
 #: Half the width that the specimens of a group take, of the distance between groups; where the
 #: mean stands.
 HALF_WIDTH, MEAN_AT = 0.25, 0.38
@@ -72,7 +72,7 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
         pressure=pressure,
         ends={name: least_and_largest(under[name].values, labels) for name in _QUOTED},
         means=means_of_groups(under, "delta_g"),
-        most=MOST_NAMED,
+        most=MAX_NAMED,
     )
     return Drawing(figure, table, words)
 
@@ -96,7 +96,7 @@ def _draw_strip(axes, name, under):
         found, low, high = Estimate.read(under, name)[members].ends
         place = i + HALF_WIDTH * _spread(members.sum())
         colour = colour_of(i + 1)
-        if members.sum() <= MOST_BARS:
+        if members.sum() <= MAX_BARS:
             bars = reach(found, low, high)
             axes.errorbar(place, found, bars, fmt="o", ms=2.5, lw=0.5, color=colour, alpha=0.7)
         else:
@@ -120,7 +120,7 @@ def _draw_key(axes, under, *, by_specimen):
         words = "a specimen with its 95 %\ninterval, where it is known;\nno point: no value there"
         axes.text(0.2, 0.7, words, va="center")
         return
-    many = np.unique(under["group"].values, return_counts=True)[1].max() > MOST_BARS
+    many = np.unique(under["group"].values, return_counts=True)[1].max() > MAX_BARS
     of_each = "one specimen" if many else "one specimen with its\n95 % interval"
     axes.errorbar([0.1], [0.7], [0 if many else 0.06], fmt="o", ms=2.5, lw=0.5, color=colour_of(1))
     axes.text(0.2, 0.7, of_each, va="center")

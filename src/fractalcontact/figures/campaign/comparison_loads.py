@@ -17,7 +17,7 @@ from ..kit.titles import letter
 from ..kit.words import NOMINAL_PRESSURE, pressure_label
 from ._groups import (
     AXES,
-    MOST_NAMED,
+    MAX_NAMED,
     TITLES,
     alone,
     group_labels,
@@ -38,9 +38,9 @@ ORDER = 7
 #: What each specimen has under every load.
 _UNDER_LOAD = tuple(AXES)[1:]
 #: Specimens up to which each has its own line.
-MOST_LINES = 40
+MAX_LINES = 40
 #: Groups that are drawn; the others stand in the table.
-MOST_GROUPS = 7
+MAX_GROUPS = 7
 #: Letters of a line of a specimen's label in the legend.
 _LETTERS = 42
 
@@ -72,7 +72,7 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
         pressure=pressure,
         ends=least_and_largest(under["stiffness"].values, comparison["label"].values),
         means=means_of_groups(under, "stiffness", "MPa/mm"),
-        most=MOST_NAMED,
+        most=MAX_NAMED,
     )
     return Drawing(figure, rows(comparison, *names), words)
 
@@ -109,7 +109,7 @@ def _marks(comparison, *, by_specimen):
         heading("bars: 95 % interval of the mean"),
         no_effect,
     ]
-    if comparison.sizes["specimen"] <= MOST_LINES:
+    if comparison.sizes["specimen"] <= MAX_LINES:
         marks.append(mark(color="0.5", lw=0.4, label="thin: one specimen"))
     return marks
 
@@ -117,9 +117,9 @@ def _marks(comparison, *, by_specimen):
 def _draw_quantity(axes, comparison, name):
     pressure = comparison["pressure"].values
     axes.set_xscale("log")
-    if comparison.sizes["specimen"] <= MOST_LINES:
+    if comparison.sizes["specimen"] <= MAX_LINES:
         _draw_specimens(axes, comparison, name)
-    for i, label in enumerate(group_labels(comparison)[:MOST_GROUPS]):
+    for i, label in enumerate(group_labels(comparison)[:MAX_GROUPS]):
         one, colour = comparison.isel(group_name=i), colour_of(i + 1)
         mean, deviation = one[f"{name}_mean"].values, one[f"{name}_deviation"].values
         members = one[f"{name}_n"].values
@@ -142,7 +142,7 @@ def _draw_quantity(axes, comparison, name):
 
 
 def _draw_specimens(axes, comparison, name):
-    groups = list(comparison["group_name"].values[:MOST_GROUPS])
+    groups = list(comparison["group_name"].values[:MAX_GROUPS])
     for one in comparison["specimen"].values:
         specimen = comparison.sel(specimen=one)
         if (of_group := str(specimen["group"].values)) in groups:

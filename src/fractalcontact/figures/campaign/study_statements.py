@@ -1,6 +1,7 @@
 """Statements of the paper over all specimens of a study: a table of verdicts."""
 
 from collections.abc import Sequence
+from typing import Any
 
 import pandas as pd
 from matplotlib.figure import Figure
@@ -38,11 +39,8 @@ WHOLE = "study"
 def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
     """A sign for each verdict, specimen by specimen, and below what needs several specimens."""
     if not len(names):  # measured contact maps alone
-        return Drawing(
-            Figure(figsize=(WIDTH, 1)),
-            pd.DataFrame(),
-            caption(__name__, **_counted({}, _whole(atlas))),
-        )
+        words = caption(__name__, **_counted({}, _whole(atlas)))
+        return Drawing(Figure(figsize=(WIDTH, 1)), pd.DataFrame(), words)
     tables = {name: _table(atlas, "statements", name) for name in names}
     rows = {
         name: {"figure": claim.figure, "claim": claim.claim}
@@ -64,16 +62,8 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
     places = draw_texts(axes, texts, heights, COLUMNS, top)
     at = {name: FIRST + (i + 0.5) * (LAST - FIRST) / len(tables) for i, name in enumerate(tables)}
     for name, table in tables.items():
-        axes.text(
-            at[name],
-            top - 0.6,
-            heads[name],
-            rotation=90,
-            va="bottom",
-            ha="center",
-            fontsize=LABEL_SIZE,
-            linespacing=1,
-        )
+        style: dict[str, Any] = {"rotation": 90, "va": "bottom", "ha": "center", "linespacing": 1}
+        axes.text(at[name], top - 0.6, heads[name], fontsize=LABEL_SIZE, **style)
         for statement, y in zip(rows, places, strict=False):
             if statement in table.index:
                 row = table.loc[statement]

@@ -1,9 +1,11 @@
 """Area slope kappa over the reduced pressure: the right panel of the figure of area theories."""
 
+from typing import Any
+
 import numpy as np
 import xarray as xr
-from matplotlib.artist import Artist
 from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
 
 from ...core.estimate import EXPONENT, Estimate
 from ...core.limits import LIGHT_LOAD
@@ -30,13 +32,19 @@ def draw_kappa(axes: Axes, laws: xr.Dataset, law: xr.Dataset) -> None:
         label = "corrected, other offsets" if i == 0 else None
         points = _touching(others.isel(offset=i), "corrected_")
         axes.plot(*points, color="0.75", lw=0.6, zorder=1, label=label)
-    style = {"color": COLOURS[0], "marker": "o", "lw": 0.7, "zorder": 3}
+    style: dict[str, Any] = {"color": COLOURS[0], "marker": "o", "lw": 0.7, "zorder": 3}
     axes.plot(*_touching(law, "corrected_"), **style)
     axes.plot(*_touching(law, ""), mfc="none", **style | {"lw": 0})
     for prefix, _, face, at in _MEANS:
         if not str(law[f"no_{prefix}mean_kappa"].values):
             mean = Estimate.read(law, f"{prefix}mean_kappa")
-            bar = {"fmt": "s", "color": COLOURS[0], "mfc": face, "capsize": 2, "elinewidth": 0.8}
+            bar: dict[str, Any] = {
+                "fmt": "s",
+                "color": COLOURS[0],
+                "mfc": face,
+                "capsize": 2,
+                "elinewidth": 0.8,
+            }
             edge = axes.get_yaxis_transform()
             axes.errorbar([at], [mean.value], yerr=reach(*mean.ends), transform=edge, **bar)
     if laws["fitted"].any():
@@ -58,7 +66,7 @@ def _touching(law, prefix):
     return law["reduced_pressure"].values[fitted], law[f"{prefix}kappa"].values[fitted]
 
 
-def kappa_entries(law: xr.Dataset) -> list[Artist]:
+def kappa_entries(law: xr.Dataset) -> list[Line2D]:
     """Entries of the legend that state the mean kappas."""
     words = [
         mark(ls="none", marker="s", color=COLOURS[0], mfc=face, label=label)

@@ -28,7 +28,11 @@ def draw_sizes(panel: Panel, sizes: xr.Dataset) -> None:
         words = rf"$\beta$ = {exponent.text()}" if exponent.known else "too few for a law"
         if exponent.known and not bool(domain["cluster_law_followed"]):
             words += ", not followed"
-        style = {"color": _OFFSET_COLOURS[n], "marker": _OFFSET_MARKERS[n], "ls": "none"}
+        style: dict[str, Any] = {
+            "color": _OFFSET_COLOURS[n],
+            "marker": _OFFSET_MARKERS[n],
+            "ls": "none",
+        }
         area, label = domain["cluster_area"], f"$v$ = {short(offset)} mm: {words}"
         axes.plot(area, domain["clusters_at_least"], label=label, **style)
         axes.plot(area, domain["cluster_law_count"], color=style["color"], lw=0.8)

@@ -80,5 +80,5 @@ def caption_values(here: xr.Dataset) -> dict[str, Any]:
             added.append(SOURCES[source])
     run = len(letters) > 2 and "".join(letters) in "abcde"
     larger = f"({letters[0]}) to ({letters[-1]})" if run else ", ".join(f"({x})" for x in letters)
-    words = {"totals": totals, "larger": larger, "added": list(dict.fromkeys(added))}
-    return words | {"force": float(here["normal_force"])}
+    values = {"totals": totals, "larger": larger, "added": list(dict.fromkeys(added))}
+    return values | {"force": float(here["normal_force"])}

@@ -10,7 +10,7 @@ from ...core.limits import STEEP_TILT
 from ...core.window import window_sides
 
 #: Longest file name and note that stand in a figure whole; of longer ones both ends are shown.
-LONGEST_NAME, LONGEST_NOTE = 60, 400
+MAX_NAME, MAX_NOTE = 60, 400
 
 
 def history(specimen: xr.Dataset, faces: Sequence[str]) -> list[str]:
@@ -34,7 +34,7 @@ def _file_words(specimen, face):
     attrs = json.loads(specimen.attrs[f"{face}_scan"])
     spacing = " × ".join(f"{specimen.attrs[f'spacing_{axis}']:.5g}" for axis in "xy")
     words = [
-        f"{face.capitalize()} face: {printable(attrs['source'], LONGEST_NAME)} "
+        f"{face.capitalize()} face: {printable(attrs['source'], MAX_NAME)} "
         f"(SHA-256 {attrs['sha256'][:12]}…), "
         f"read by {attrs.get('reader', 'nothing stated')}, {attrs.get('layout', 'matrix')}, "
         f"unit {attrs.get('file_unit', 'mm')}; "
@@ -50,7 +50,7 @@ def _file_words(specimen, face):
     overrides = attrs.get("overrides", "")
     words.append(f"the sidecar overrides: {overrides}" if overrides else "")
     words += [attrs.get("gridding", ""), attrs.get("notes", "")]
-    return ". ".join(printable(_sentence(part), LONGEST_NOTE) for part in words if part) + "."
+    return ". ".join(printable(_sentence(part), MAX_NOTE) for part in words if part) + "."
 
 
 def _sentence(words):

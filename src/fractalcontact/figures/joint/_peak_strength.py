@@ -1,5 +1,7 @@
 """Peak and residual strength over the nominal pressure, with Barton's law: a panel of strength."""
 
+from typing import Any
+
 import numpy as np
 import xarray as xr
 from matplotlib.lines import Line2D
@@ -14,7 +16,7 @@ from ..kit.points import draw_points, hollow_entry
 from ..kit.sizes import draw_bars, logarithmic, roughness_words
 
 #: What (c) shows: variable, words and style.
-_SUMMARY = {
+_SUMMARY: dict[str, tuple[str, dict[str, Any]]] = {
     "peak_strength": (
         "peak over the offsets",
         {"ls": "none", "marker": "o", "ms": 6, "color": "k"},
@@ -49,11 +51,11 @@ def draw_summary(panel: Panel, strength: xr.Dataset) -> None:
     valid = strength["peak_strength_valid"].values
     for name, (words, style) in _SUMMARY.items():
         if name in known:
-            held = ~valid if name == "peak_strength" else np.zeros_like(valid)
-            label = None if held.all() else words
-            draw_points(axes, sigma, known[name], ~held, label=label, **style)
-            if held.any():
-                hollow_entry(axes, f"{words}: held, no result", **style)
+            truncated = ~valid if name == "peak_strength" else np.zeros_like(valid)
+            label = None if truncated.all() else words
+            draw_points(axes, sigma, known[name], ~truncated, label=label, **style)
+            if truncated.any():
+                hollow_entry(axes, f"{words}: truncated, excluded", **style)
     bars = Estimate.read(strength, "residual_strength").ends
     draw_bars(axes, sigma, *bars, _SUMMARY["residual_strength"][1]["color"])
     axes.set(xscale="log")

@@ -5,8 +5,8 @@ from typing import Any
 import numpy as np
 import pandas as pd
 import xarray as xr
-from matplotlib.artist import Artist
 from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
 
 from ...core.estimate import DIMENSION, Estimate
 from ..kit.drawing import COLOURS, spread
@@ -20,7 +20,7 @@ ESTIMATORS = {"area": ("-", "$A_r(s)$"), "box": ("--", "box counting")}
 #: Colour of each: measured points alone are black.
 ESTIMATOR_COLOURS = {"area": COLOURS[1], "box": COLOURS[2]}
 #: Loads shown over the side b, and the marker of each in both panels; "." are all others.
-MOST_LOADS = 3
+MAX_LOADS = 3
 LOAD_MARKERS = ("o", "s", "^")
 #: Verdicts and their reasons: of the well-conditioned form, of eq. 6's own, and of both.
 JUDGED = ("area_verdict", "area_reason", "slope_verdict", "slope_reason", "verdict", "reason")
@@ -41,12 +41,12 @@ def first_loads(test: xr.Dataset, name: str) -> np.ndarray:
 def shown_loads(test: xr.Dataset, name: str) -> np.ndarray:
     """Indices of the loads that are drawn over b: a few of :func:`first_loads`."""
     fitted = first_loads(test, name)
-    return fitted[spread(len(fitted), MOST_LOADS)]
+    return fitted[spread(len(fitted), MAX_LOADS)]
 
 
 def draw_over_side(
     axes: Axes, test: xr.Dataset, name: str, exponent: str, loads: np.ndarray
-) -> list[Artist]:
+) -> list[Line2D]:
     """Values over b under some loads, with what eq. 6 makes of the whole window's.
 
     Parameters
@@ -60,13 +60,13 @@ def draw_over_side(
 
     Returns
     -------
-    list of matplotlib.artist.Artist
+    list of matplotlib.lines.Line2D
         Entries of a legend, one a load: the exponent with its interval.
     """
     b, values, handles = test["side"].values, test[name].values, []
     exponents = Estimate.read(test, exponent, scale=DIMENSION)
     for n, i in enumerate(loads):
-        style = {"color": "k", "marker": LOAD_MARKERS[n], "ls": "none"}
+        style: dict[str, Any] = {"color": "k", "marker": LOAD_MARKERS[n], "ls": "none"}
         axes.plot(b, values[i], **style)
         if f"{name}_low" in test:
             low, high = (test[f"{name}_{end}"].values[i] for end in ("low", "high"))

@@ -1,10 +1,11 @@
 """The paper's stages of sliding: verdicts, a column of a legend, numbers along the offset."""
 
 import textwrap
+from typing import Any
 
 import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
-from matplotlib.lines import Line2D
 from xarray import DataTree
 
 from ...core.limits import LOOSELY, NEARLY
@@ -38,7 +39,7 @@ def stages_of_sliding(
     return found
 
 
-def stage_column(stages: list, force: float) -> list[list[Line2D]]:
+def stage_column(stages: list, force: float) -> list[list[Artist]]:
     """Column of a legend with the stages, in lines that fit; none without stages."""
     if not stages:
         return []
@@ -56,7 +57,7 @@ def number_stages(axes: Axes, stages: list) -> None:
     axes.set_ylim(top=high * (high / low) ** 0.12)
     log = axes.get_xscale() != "linear"
     left, right = axes.dataLim.intervalx if log else axes.get_xlim()
-    style = {"ha": "center", "va": "top", "fontweight": "bold"}
+    style: dict[str, Any] = {"ha": "center", "va": "top", "fontweight": "bold"}
     for n, (*_, first, last) in enumerate(stages, 1):
         # One that ends nowhere in the window goes on to its edge.
         first, last = (left if np.isneginf(first) else first), np.fmin(last, right)

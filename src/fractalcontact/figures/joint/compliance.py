@@ -1,6 +1,7 @@
 """Correlation of the faces, and closure and compliance of the interface, against the offset."""
 
 import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.figure import Figure
 from xarray import DataTree
 
@@ -50,7 +51,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     offset_axis(c.axes, curves["offset"].values)
     if c.axes.get_xscale() == "log":
         plain_decades(c.axes.xaxis)
-    columns = [entries(a.axes), entries(c.axes), *stage_column(stages, force)]
+    columns: list[list[Artist]] = [entries(a.axes), entries(c.axes), *stage_column(stages, force)]
     if np.isfinite(curves["interface_compliance"]).any():
         number_stages(c.axes, stages)
         why = missing_lines(curves["interface_stiffness_reason"], "c")

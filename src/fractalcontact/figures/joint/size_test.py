@@ -77,7 +77,7 @@ def _draw_exponents(axes, test, loads):
 def _table(test):
     means = ("area_fraction", "interface_compliance", "mean_gap")
     exponents = [of for name in _EXPONENTS for of in (name, f"{name}_n")]
-    of_sizes = (*means, "side", "least_nodes", "central_load")
+    of_sizes = (*means, "side", "min_nodes", "central_load")
     tables = [
         rows_of_loads(test, *of_sizes, panel="a"),
         rows_of_loads(test, *exponents, panel="b"),

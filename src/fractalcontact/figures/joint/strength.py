@@ -25,8 +25,8 @@ NEEDS = ("closure", "strength")
 ORDER = 110
 
 _OFFSET = "offset $v$, middle of the interval (mm)"
-#: Of strengths whose angle was held at its bound.
-_NO_RESULT = f"angle held at {LARGEST_FRICTION_ANGLE:g}°, no result"
+#: Of strengths whose friction angle was truncated.
+_NO_RESULT = f"truncated at {LARGEST_FRICTION_ANGLE:g}°, excluded"
 #: Of curves over the offset: hollow points stand above the lines of the other pressures.
 _CURVES = {
     "hue": "normal_force",
@@ -72,7 +72,7 @@ def _draw_angles(panel, strength):
     axes.axhline(0, color="0.8", lw=0.6, zorder=0)
     basic = float(strength["basic_friction_angle"])
     if np.isfinite(basic):
-        label = f"held above: friction angle {LARGEST_FRICTION_ANGLE:g}°"
+        label = f"truncated above: friction angle {LARGEST_FRICTION_ANGLE:g}°"
         axes.axhline(LARGEST_FRICTION_ANGLE - basic, color="0.4", lw=0.8, ls=":", label=label)
         other = axes.secondary_yaxis(
             "right", functions=(lambda i: i + basic, lambda angle: angle - basic)
@@ -124,7 +124,7 @@ def _words(strength, shown):
         "stated": bool(np.isfinite(strength["basic_friction_angle"])),
         "peaks": shown["peak_dilatancy_angle"].values.tolist(),
         "rigid": max(strength["rigid_dilatancy_angle"].values, default=np.nan),
-        "held": shown["held_high"].values.tolist(),
+        "truncated": shown["truncated_high"].values.tolist(),
         "limit": LARGEST_FRICTION_ANGLE,
         "roughness": roughness_words(strength),
         "law": bool(np.isfinite(strength["peak_over_barton"]).any()),

@@ -17,7 +17,7 @@ from matplotlib.transforms import BboxBase
 #: Points between words and the edge of the figure, and between two titles side by side.
 _EDGE, _GAP = 1, 4
 #: Points between the columns of a legend that has no room for more, and that a title has at least.
-_LEAST_SPACING, _LEAST_ROOM = 6, 36
+_MIN_SPACING, _MIN_ROOM = 6, 36
 #: A blank where a line may end: not within "95 %" or "[0.20, 2.00]".
 _BLANK = re.compile(r" (?!%)(?![^\[\]]*\])")
 #: A dollar sign that begins or ends a formula.
@@ -88,7 +88,7 @@ def _break_panel_titles(figure) -> Iterator[bool]:
             if other.x0 > box.x0 and _side_by_side(other, box)
         ]
         right = min([figure.bbox.x1 - _pixels(figure, _EDGE), *beside])
-        room = max(right - box.x0, _pixels(figure, _LEAST_ROOM))
+        room = max(right - box.x0, _pixels(figure, _MIN_ROOM))
         yield title.get_horizontalalignment() == "left" and _fill(title, room)
 
 
@@ -104,7 +104,7 @@ def _narrow(legend: Legend, figure: Figure) -> bool:
     columns = vars(legend)["_legend_handle_box"]  # matplotlib has no other way to them
     gaps = max(len(columns.get_children()) - 1, 1)
     before = columns.sep
-    columns.sep = min(before, max(before - excess / gaps * 72 / figure.dpi, _LEAST_SPACING))
+    columns.sep = min(before, max(before - excess / gaps * 72 / figure.dpi, _MIN_SPACING))
     narrowed = columns.sep < before
     entries = [*legend.get_texts(), legend.get_title()]
     while (excess := _excess(legend, figure)) > 0:

@@ -34,7 +34,7 @@ _RING["mec"] = COLOURS[3]
 
 #: Points that a node in contact is wide at least, so that print shows it, as long as no more than
 #: this fraction of the map becomes black.
-LEAST_DOT, MOST_BLACK = 0.8, 0.3
+MIN_DOT, MAX_BLACK = 0.8, 0.3
 
 
 def scan_extent(specimen: xr.Dataset) -> tuple[float, ...]:
@@ -169,9 +169,9 @@ def enlarged(domain: np.ndarray, points: float) -> np.ndarray:
     (ny, nx) bool ndarray
         The domain itself where its nodes can be seen, or would fill the map.
     """
-    for times in range(int(np.ceil(LEAST_DOT / points)), 1, -1):
+    for times in range(int(np.ceil(MIN_DOT / points)), 1, -1):
         drawn = maximum_filter(domain, size=times, mode="constant", cval=0)
-        if drawn.mean() <= MOST_BLACK:
+        if drawn.mean() <= MAX_BLACK:
             return drawn
     return domain
 

@@ -15,7 +15,7 @@ from .points import draw_points
 from .words import length_unit, short
 
 #: Legend of means whose friction angle is truncated in most sub-windows.
-HELD = f"hollow: friction angle of most held at {LARGEST_FRICTION_ANGLE:g}°, no result"
+TRUNCATED = f"hollow: truncated at {LARGEST_FRICTION_ANGLE:g}° in most, excluded"
 #: What the legends of :func:`draw_over_size` declare.
 BARS = "bars: 95 % intervals; none of the whole window"
 SHIFTED = "pressures at one $b$ are drawn side by side"
@@ -105,11 +105,13 @@ def series(j: int) -> dict[str, Any]:
 
 def name_exponents(axes: Axes, laws: xr.Dataset, name: str, of: str) -> None:
     """Entries of a legend: the power of b under each pressure, "of" what it is."""
-    held = (laws["similar_held"] > 0).any("part").values & ("strength" in name)
+    truncated = (laws["truncated_fraction_at_equal_v_over_b"] > 0).any("part").values & (
+        "strength" in name
+    )
     exponents = Estimate.read(laws, name, scale=EXPONENT)
     for j, pressure in enumerate(laws["nominal_pressure"].values):
         exponent = exponents[j].text()
-        words = f"{exponent} (held)" if held[j] and not exponents[j].known else exponent
+        words = f"{exponent} (truncated)" if truncated[j] and not exponents[j].known else exponent
         label = rf"$\sigma_0$ = {short(pressure)} MPa: ${of}\sim b^x$, $x$ = {words}"
         axes.plot([], [], ls="none", label=label, **series(j))
 

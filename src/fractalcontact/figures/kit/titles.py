@@ -13,7 +13,7 @@ TITLE_SIZE, LINE = 9, 0.15
 #: Inches between the edge of a figure and its title.
 _EDGE = 0.05
 #: Letters of a specimen's label that are shown.
-LONGEST_LABEL = 300
+MAX_LABEL = 300
 
 
 def letter(axes: Axes, which: str, title: str) -> None:
@@ -70,5 +70,5 @@ def entitle(figure: Figure, title: str) -> None:
 def label_in_lines(label: str, *where: str, width: float) -> str:
     """A label and what follows it, as :func:`headline` has it, in lines of ``width`` inches."""
     # Dollar signs of a label make no formula.
-    label = printable(label, LONGEST_LABEL).replace("$", r"\$")
+    label = printable(label, MAX_LABEL).replace("$", r"\$")
     return in_lines(", ".join((label, *where)), TITLE_SIZE, width - 2 * _EDGE)

@@ -1,9 +1,13 @@
 """How captions quote the verdicts on the paper's statements, which :mod:`statements` decides."""
 
+from collections.abc import Sequence
+
 import xarray as xr
 from xarray import DataTree
 
 from ...core.claims import all_claims
+from ...core.labels import printable
+from ...core.subject import Subject
 from ...core.verdicts import ILL_POSED
 
 #: Added to a verdict where the specimen was chosen for it: in a sentence, in a table.
@@ -65,6 +69,30 @@ def claim(
     """
     words = verdict_words(atlas, name, statement, numbers=numbers, why=why)
     return f"The paper's {all_claims()[statement].short}: {words}." if words else ""
+
+
+def labels_by_verdict(
+    atlas: DataTree, names: Sequence[str], statements: Sequence[str], letters: int
+) -> dict[str, list[str]]:
+    """Labels of the specimens that are asked some statements, by verdict.
+
+    Parameters
+    ----------
+    atlas : DataTree
+    names : sequence of str
+        Of the specimens.
+    statements : sequence of str
+    letters : int
+        Of a label at most.
+    """
+    found: dict[str, list[str]] = {}
+    for name in names:
+        for row in (row_of(atlas, "statements", name, statement) for statement in statements):
+            if row is not None:
+                circular = f" ({CIRCULAR_SHORT})" if row["circular"] else ""
+                label = printable(Subject.of(atlas, name).label, letters)
+                found.setdefault(row["verdict"].item(), []).append(f"{label}{circular}")
+    return found
 
 
 def row_of(atlas: DataTree, stage: str, name: str, statement: str) -> xr.Dataset | None:

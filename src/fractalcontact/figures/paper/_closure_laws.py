@@ -41,7 +41,7 @@ def draw_closure(axes: Axes, drawn: xr.Dataset, subject: Subject) -> None:
     """Closure curves with both laws over the loads that they were fitted to."""
     size = force_axis(axes.yaxis, drawn["normal_force"])
     for curve, style in each_curve(drawn):
-        label = f"{offset_words(subject, curve['offset'])}: {_law_words(curve)}"
+        label = f"{offset_words(subject, float(curve['offset']))}: {_law_words(curve)}"
         points = curve["interface_closure"], curve["normal_force"] / size, curve["resolved"]
         draw_points(axes, *points, OPEN, label=label, **style)
         _draw_laws(
@@ -57,7 +57,7 @@ def draw_closure(axes: Axes, drawn: xr.Dataset, subject: Subject) -> None:
         say_empty(axes, TOO_FULL)
     axes.set_ylim(0, 1.05 * float(drawn["normal_force"][-1]) / size)
     axes.set_xlabel(r"interface closure $w_\mathrm{int}$ (mm)")
-    second_axis(axes, size / subject.area).set_ylabel(f"{NOMINAL_PRESSURE} (MPa)")
+    second_axis(axes, size / subject.area, f"{NOMINAL_PRESSURE} (MPa)")
 
 
 def draw_light_loads(axes: Axes, drawn: xr.Dataset, subject: Subject) -> None:
@@ -122,11 +122,12 @@ def no_law(curve: xr.Dataset) -> str:
     return str(curve["closure_law_reason"].values).split(":")[0]
 
 
-def offset_words(subject: Subject, offset: float | xr.DataArray) -> str:
+def offset_words(subject: Subject, offset: float) -> str:
     """One of the states of a legend."""
     return "against a plane" if subject.direction == "none" else f"$v$ = {short(offset)} mm"
 
 
-def second_axis(axes: Axes, factor: float) -> Axes:
-    """The left axis times a factor, at the right."""
-    return axes.secondary_yaxis("right", functions=(lambda y: y * factor, lambda y: y / factor))
+def second_axis(axes: Axes, factor: float, label: str) -> None:
+    """Label the left axis times a factor, at the right."""
+    ways = (lambda y: np.asarray(y) * factor, lambda y: np.asarray(y) / factor)
+    axes.secondary_yaxis("right", functions=ways).set_ylabel(label)

@@ -22,15 +22,16 @@ _SLOPES = ("local_slope", "local_slope_random", "local_slope_cut")
 
 
 def draw_slopes(panel: Panel, counts: xr.Dataset) -> None:
+    """Local slopes with intervals over the box side, beside those of the null models."""
     axes = panel.axes
     panel.keep(counts, *_SIDES, *_SLOPES)
-    slopes = counts.isel(null_octave=np.isfinite(counts["local_slope"]).values)
+    slopes = counts.isel(null_octave=counts["local_slope"].notnull().values)
     middle, slope = slopes["local_slope_side"].values, Estimate.read(slopes, "local_slope")
     random, low, high = Estimate.read(slopes, "local_slope_random").ends
     axes.fill_between(middle, low, high, color=RANDOM, lw=1.5, zorder=0)
     axes.plot(middle, random, color=RANDOM, lw=1)
     axes.plot(middle, slopes["local_slope_cut"], **CUT, lw=1)
-    bars = {"yerr": reach(*slope.ends), "fmt": "D", "ms": 4, "lw": 0.8}
+    bars: dict[str, Any] = {"yerr": reach(*slope.ends), "fmt": "D", "ms": 4, "lw": 0.8}
     axes.errorbar(middle, slope.value, color=LAW, **bars)
     axes.set_xscale("log")
     for name, fit, sure, colour, ls in (
@@ -45,9 +46,9 @@ def draw_slopes(panel: Panel, counts: xr.Dataset) -> None:
     axes.set_ylim(-0.1, 2.3)
     axes.set(xlabel="box side $r$ (mm)", ylabel=r"local slope $-$d log $N$ / d log $r$ (1)")
     label_short_span(axes.xaxis)
-    ends = (slope.value.min(), slope.value.max()) if middle.size else ()
-    ends = dict.fromkeys(f"{end:.2f}" for end in ends)
-    panel.title(f"local slopes: {' to '.join(ends)}" if ends else "no local slopes")
+    extremes = (slope.value.min(), slope.value.max()) if middle.size else ()
+    words = dict.fromkeys(f"{end:.2f}" for end in extremes)
+    panel.title(f"local slopes: {' to '.join(words)}" if words else "no local slopes")
 
 
 def band_of(colour: str) -> dict[str, Any]:

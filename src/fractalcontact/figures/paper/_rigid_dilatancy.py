@@ -14,7 +14,7 @@ from ..kit.panel import Panel
 from ..kit.words import TOWARDS, percent, short
 
 #: The fitted lines.
-_FITTED = {"lw": 2.2, "alpha": 0.7}
+_FITTED: dict[str, Any] = {"lw": 2.2, "alpha": 0.7}
 
 
 def draw_rigid(panel: Panel, dilatancy: xr.Dataset, plateaus: xr.Dataset) -> list[Artist]:

@@ -1,5 +1,7 @@
 """Profile of a joint that slid: both faces along the line of sliding, offset and dilatancy."""
 
+from typing import Any
+
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
@@ -11,7 +13,14 @@ from ..kit.drawing import COLOURS
 from ..kit.words import length_unit
 
 #: The node that touches first.
-TOUCH = {"marker": "o", "ms": 7, "mfc": "none", "mec": COLOURS[2], "mew": 1.5, "ls": "none"}
+TOUCH: dict[str, Any] = {
+    "marker": "o",
+    "ms": 7,
+    "mfc": "none",
+    "mec": COLOURS[2],
+    "mew": 1.5,
+    "ls": "none",
+}
 
 
 def way_of(slid: xr.Dataset) -> tuple[str, int]:
@@ -54,7 +63,7 @@ def draw_profile(axes: Axes, profile: xr.Dataset, slid: xr.Dataset, *, before: b
     height_unit, height = length_unit(highest - float(lower.min()))
     axes.plot(x / size, lower / height, color=COLOURS[0], lw=0.9, label="lower face")
     if before:
-        style = {"color": COLOURS[1], "lw": 0.7, "ls": "--"}
+        style: dict[str, Any] = {"color": COLOURS[1], "lw": 0.7, "ls": "--"}
         label = "upper face at first touch, $v$ = 0"
         axes.plot(x / size, profile["upper_before"] / height, label=label, **style)
     label = r"upper face, slid by $v$ and lifted by $\delta_r$"

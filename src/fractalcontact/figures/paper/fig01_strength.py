@@ -14,9 +14,9 @@ from ..kit.panel import rows
 from ..kit.points import hollow_entry
 from ..kit.sizes import (
     BARS,
-    HELD,
     NO_STRENGTH,
     SHIFTED,
+    TRUNCATED,
     draw_over_size,
     logarithmic,
     name_exponents,
@@ -50,12 +50,12 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     _draw_slope(slope, drawn)
     legends_below(figure, entries(strength), entries(slope))
     headline(figure, subject.label, place(str(laws["direction"].values)))
-    known = drawn["similar_slope_exponent"].notnull()
+    known = drawn["slope_at_equal_v_over_b_exponent"].notnull()
     words = caption(
         __name__,
         share=float(drawn["share"]),
-        trends=drawn["similar_slope_trend"].values[known].tolist(),
-        lost=int((drawn["similar_slope"] <= 0).sum()),
+        trends=drawn["slope_at_equal_v_over_b_trend"].values[known].tolist(),
+        lost=int((drawn["slope_at_equal_v_over_b"] <= 0).sum()),
         claim=claim(atlas, name, "strength_falls_with_size"),
     )
     return Drawing(figure, _table(laws), words)
@@ -63,17 +63,17 @@ def draw(atlas: DataTree, name: str) -> Drawing:
 
 def _draw_strength(axes, laws):
     b = laws["side"].values
-    valid = laws["similar_strength_valid"]
-    draw_over_size(axes, laws, "similar_strength", filled=valid)
+    valid = laws["strength_at_equal_v_over_b_valid"]
+    draw_over_size(axes, laws, "strength_at_equal_v_over_b", filled=valid)
     for j in range(laws.sizes["normal_force"]):
         style = {"color": series(j)["color"], "lw": 0.8, "ls": "--"}
         axes.plot(b, laws["barton_scaled_strength"].isel(normal_force=j), **style)
     size_axis(axes, b, "joint")
-    if np.isfinite(laws["similar_strength"]).any():
-        name_exponents(axes, laws, "similar_strength_exponent", r"\tau")
-        logarithmic(axes, laws["similar_strength"].values)
+    if np.isfinite(laws["strength_at_equal_v_over_b"]).any():
+        name_exponents(axes, laws, "strength_at_equal_v_over_b_exponent", r"\tau")
+        logarithmic(axes, laws["strength_at_equal_v_over_b"].values)
         if not valid.all():
-            hollow_entry(axes, HELD)
+            hollow_entry(axes, TRUNCATED)
     else:
         say_empty(axes, NO_STRENGTH, ticks=False)
     if np.isfinite(laws["barton_scaled_strength"]).any():
@@ -83,10 +83,13 @@ def _draw_strength(axes, laws):
 
 def _draw_slope(axes, laws):
     b = laws["side"].values
-    slopes = laws["similar_slope"].transpose("part", "normal_force").values
-    draw_over_size(axes, laws, "similar_slope")
-    name_exponents(axes, laws, "similar_slope_exponent", r"d\delta/dv")
-    expected, line = float(laws["expected_hurst"]) - 1, laws["similar_slope_expected"].values
+    slopes = laws["slope_at_equal_v_over_b"].transpose("part", "normal_force").values
+    draw_over_size(axes, laws, "slope_at_equal_v_over_b")
+    name_exponents(axes, laws, "slope_at_equal_v_over_b_exponent", r"d\delta/dv")
+    expected, line = (
+        float(laws["expected_hurst"]) - 1,
+        laws["slope_at_equal_v_over_b_expected"].values,
+    )
     if (known := np.isfinite(line)).any():
         label = rf"self-affine, Hurst exponent $H$: $x = H - 1$ = {short(expected)}"
         axes.plot(b[known], line[known], color="0.5", ls=":", label=label)
@@ -102,11 +105,15 @@ def _draw_slope(axes, laws):
 
 def _table(laws):
     """Means at every v/b, then the peaks."""
-    means = ("similar_strength", "similar_slope", "similar_held")
+    means = (
+        "strength_at_equal_v_over_b",
+        "slope_at_equal_v_over_b",
+        "truncated_fraction_at_equal_v_over_b",
+    )
     laws = laws.transpose("normal_force", "share", "part", ...)
     every = ("side", "windows", "barton_scaled_strength")
     tables = [
         rows(laws, *means, *every, at="v/b"),
-        rows(laws, "peak_strength", "held_share", *every, at="peak"),
+        rows(laws, "peak_strength", "truncated_fraction_at_peak", *every, at="peak"),
     ]
     return pd.concat(tables, ignore_index=True)

@@ -108,14 +108,14 @@ def _draw_area(axes, drawn, subject):
         exponent = Estimate.read(curve, "corrected_exponent", scale=EXPONENT)
         words = exponent.text() if exponent.known else f"no fit: {curve['corrected_n']:.0f} loads"
         share = 100 * np.where(enough, curve["area_corrected_share"], curve["area_share"])
-        label = f"{offset_words(subject, curve['offset'])}: {words}"
+        label = f"{offset_words(subject, float(curve['offset']))}: {words}"
         draw_points(axes, force, share, enough, OPEN, label=label, **style)
         if exponent.known:
             ends = np.array([float(curve[f"corrected_force_{end}"]) for end in ("low", "high")])
             line = 100 * float(curve["corrected_unit_area"]) * ends**exponent.value / subject.area
             axes.plot(ends / size, line, color=style["color"], lw=0.8, ls=LINES["area"][0])
     axes.set(xscale="log", yscale="log", ylabel="real contact area $A_r/A_0$ (%)")
-    second_axis(axes, subject.area / 100).set_ylabel("$A_r$ (mm$^2$)")
+    second_axis(axes, subject.area / 100, "$A_r$ (mm$^2$)")
 
 
 def _keyed(head, axes, drawn, *lines):

@@ -12,7 +12,7 @@ from ..kit.axes import label_short_span
 from ..kit.caption import caption
 from ..kit.domains import contact_domain, estimates_of, prefractals
 from ..kit.drawing import COLOURS, WIDTH, Drawing
-from ..kit.maps import LEAST_DOT, draw_domain
+from ..kit.maps import MIN_DOT, draw_domain
 from ..kit.panel import Panel, table_of
 from ..kit.titles import headline, letter
 from ..kit.verdicts import claim
@@ -81,7 +81,7 @@ def _times(nodes, columns):
     One number for all: with one for each, finer domains would look fuller than coarser ones.
     """
     points = 72 * 0.85 * WIDTH / columns / nodes
-    return int(np.clip(np.ceil(LEAST_DOT / points), 1, _WIDEST))
+    return int(np.clip(np.ceil(MIN_DOT / points), 1, _WIDEST))
 
 
 def _area_words(state):

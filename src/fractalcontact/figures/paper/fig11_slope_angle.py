@@ -15,9 +15,9 @@ from ..kit.panel import rows
 from ..kit.points import hollow_entry
 from ..kit.sizes import (
     BARS,
-    HELD,
     NO_STRENGTH,
     SHIFTED,
+    TRUNCATED,
     draw_over_size,
     name_exponents,
     plain_decades,
@@ -50,7 +50,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     direction = str(laws["direction"].values)
     strength = subject["strength"].sel(contact_direction=direction)
     shown = laws.sel(share=float(laws["strength_share"]))
-    drawn = bool(shown["similar_strength"].notnull().all("normal_force").any())
+    drawn = bool(shown["strength_at_equal_v_over_b"].notnull().all("normal_force").any())
     # Barton's law was to be drawn, and cannot be: his scale of roughness ends at 20.
     stated = bool(np.isfinite(strength["joint_wall_strength"]))
     beyond = stated and bool(np.isnan(laws["barton_roughness"]).all())
@@ -70,20 +70,26 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     values = {"share": share, "drawn": drawn, "beyond": beyond, "roughness": roughness}
     table = rows(
         laws.transpose("share", "normal_force", "part", ...),
-        *("limit_slope_angle", "side", "windows", "similar_held", "barton_slope_angle"),
-        *("relative_strength", "similar_strength_exponent"),
+        *(
+            "limit_slope_angle",
+            "side",
+            "windows",
+            "truncated_fraction_at_equal_v_over_b",
+            "barton_slope_angle",
+        ),
+        *("relative_strength", "strength_at_equal_v_over_b_exponent"),
     )
     return Drawing(figure, table, caption(__name__, claim=said, **values))
 
 
 def _draw_angle(axes, laws, drawn, notes):
     b = laws["side"].values
-    draw_over_size(axes, laws, "limit_slope_angle", filled=laws["similar_strength_valid"])
+    draw_over_size(axes, laws, "limit_slope_angle", filled=laws["strength_at_equal_v_over_b_valid"])
     for j in range(laws.sizes["normal_force"]):
         barton = laws["barton_slope_angle"].isel(normal_force=j)
         axes.plot(b, barton, color=series(j)["color"], lw=0.8, ls="--")
-    if not laws["similar_strength_valid"].all():
-        hollow_entry(axes, HELD)
+    if not laws["strength_at_equal_v_over_b_valid"].all():
+        hollow_entry(axes, TRUNCATED)
     if np.isfinite(laws["barton_scaled_strength"]).any():
         axes.plot([], [], color="0.4", ls="--", lw=0.8, label="Barton and Bandis' scale law")
     for words in (SHIFTED, *notes):
@@ -99,8 +105,8 @@ def _draw_ratio(axes, laws, drawn):
     """tau / tau of the whole window, beside the exponent quoted for shear tests."""
     b = laws["side"].values
     slope = QUOTED_DELTA - 2
-    draw_over_size(axes, laws, "relative_strength", filled=laws["similar_strength_valid"])
-    name_exponents(axes, laws, "similar_strength_exponent", r"\tau")
+    draw_over_size(axes, laws, "relative_strength", filled=laws["strength_at_equal_v_over_b_valid"])
+    name_exponents(axes, laws, "strength_at_equal_v_over_b_exponent", r"\tau")
     if drawn:
         label = f"$x$ = {QUOTED_DELTA:g} - 2 = {slope:.2f}, by later work\nof the same school"
         axes.plot(b, (b / b[0]) ** slope, color="0.3", ls=":", label=label)
