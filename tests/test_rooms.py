@@ -11,6 +11,8 @@ PACKAGE = Path(fractalcontact.__file__).parent
 FLOORS = (
     ("core",),
     ("elastic", "surface"),
+    ("registration",),
+    ("gridding",),
     ("contact", "roughness", "scan"),
     ("domain", "mechanics", "methods", "study"),
     ("size_effect", "experiments", "accuracy", "statements", "commands"),

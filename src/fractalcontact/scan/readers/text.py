@@ -48,7 +48,7 @@ def read_text(path: Path, options: ScanOptions) -> RawScan:
         If the sidecar does not state all that is needed, a line is not as it says, or the numbers
         of rows, columns or points disagree with those that the header states.
     """
-    units = {}
+    units: dict[str, str] = {}
     if all(getattr(options, key) is None for key in LAYOUT_KEYS) and (found := named_columns(path)):
         keys, units = found
         options = replace(options, **keys)
