@@ -58,10 +58,10 @@ def register(
     """Move the upper face to where the spread of the gap is least; crop both to what they share.
 
     The spread is the biweight one of :mod:`registration.registration`, to which spikes and places
-    where rock is lost do not count. Nothing is moved if it would fall by less than 1 %, or if the faces
-    do not match. The mean gap is a measurement and stays, so the upper face slides along its mean
-    plane. Where the mean gap is not known, because the face was turned over or shares no area with
-    the lower one as given, the upper face is set down until 1 % of the cells touch.
+    where rock is lost do not count. Nothing is moved if it would fall by less than 1 %, or if the
+    faces do not match. The mean gap is a measurement and stays, so the upper face slides along its
+    mean plane. Where the mean gap is not known, because the face was turned over or shares no area
+    with the lower one as given, the upper face is set down until 1 % of the cells touch.
 
     Parameters
     ----------
