@@ -87,12 +87,15 @@ def is_number(cell: str, options: ScanOptions) -> bool:
     return True
 
 
-def is_cut_off(rows: list[str], delimiter: str) -> bool:
+def is_cut_off(rows: list[str], delimiter: str, layout: str | None) -> bool:
     """Whether the last number of a file without a final line end is written shorter than others.
 
-    Only numbers of a fixed form tell: as many decimals each, or exponents of two digits.
+    Only numbers of a fixed form tell: as many decimals each, or exponents of two digits. Of points
+    those of the last column, of a matrix all.
     """
-    *others, last = [cell.strip() for row in rows[-20:] for cell in cells_of(row, delimiter)]
+    first = -1 if layout == "points" else 0
+    latest = [cells_of(row, delimiter)[first:] for row in rows[-60:]]
+    *others, last = [cell.strip() for cells in latest for cell in cells]
     forms = [_form(other) for other in others if re.search(r"\d", other)]
     if len(forms) < 3:
         return False

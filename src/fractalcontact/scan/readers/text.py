@@ -211,7 +211,12 @@ class _Reading:
                 continue
             rows.append(self.delimiter.join(cells))
             self._refuse_words(number, line, cells)
-        if rows and not is_ended and not self._short and is_cut_off(rows, self.delimiter):
+        if (
+            rows
+            and not is_ended
+            and not self._short
+            and is_cut_off(rows, self.delimiter, self.options.layout)
+        ):
             self._short = (data[-1][0], rows.pop(), "breaks off within a number")
         return rows
 
