@@ -38,10 +38,10 @@ from fractalcontact.mechanics.overlap import fits_undetermined
 from fractalcontact.mechanics.registration_spread import registration_spread
 from fractalcontact.mechanics.states import combine, forces_of
 from fractalcontact.mechanics.sweep import contact_states
+from fractalcontact.registration.registration_scatter import motion_variables, scattered_motions
 from fractalcontact.roughness.quality import scan_quality
 from fractalcontact.roughness.quality_words import overlap_words, suspect_words
 from fractalcontact.scan.read import read_faces
-from fractalcontact.scan.registration_scatter import motion_variables, scattered_motions
 from fractalcontact.study.checks import read_sidecar
 from fractalcontact.study.configuration import (
     resolve_settings,

@@ -8,6 +8,7 @@ import yaml
 from places import ROOT
 
 from fractalcontact.study.checks import read_sidecar, resolve_study
+from fractalcontact.study.sidecar import sidecar_of_matrix
 
 #: All but the changelog, which names things as they were called at its time.
 DOCUMENTS = [
@@ -57,21 +58,21 @@ def test_the_study_of_the_first_hour_takes_what_is_dropped_in(schema, tmp_path, 
     """It is valid, without twins, and its own: nothing is solved here."""
     (tmp_path / "scans").mkdir()
     (tmp_path / "scans/rock.npy").touch()
-    (tmp_path / "scans/rock.yaml").write_text(block_of("docs/first_hour.md", "unit: mm"))
+    (tmp_path / "scans/rock.yaml").write_text(block_of("docs/first_hour.md", "kind: face"))
     config = yaml.safe_load(block_of("docs/first_hour.md", "study: mine"))
     monkeypatch.chdir(tmp_path)
     study = resolve_study(config, schema, "config/mine.yaml")
     assert config["study"] == "mine"
     assert set(study.settings) == {"rock"}
     assert study.settings["rock"].material.modulus == 40e3  # of the sidecar, not the study
-    assert study.options["rock"] == {"unit": "mm", "spacing": "0.05 mm"}
+    assert study.options["rock"] == sidecar_of_matrix(0.05)
 
 
 def test_the_sidecar_of_the_readme_is_one(schema, tmp_path):
     path = tmp_path / "rock.yaml"
     path.write_text(block_of("README.md", "label: granite"))
     keys, settings = read_sidecar(path, schema)
-    assert keys == {"unit": "mm", "spacing": "0.05 mm"}
+    assert keys == sidecar_of_matrix(0.05)
     assert set(settings["material"]) == {
         "modulus",
         "poisson",

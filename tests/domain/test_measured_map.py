@@ -161,7 +161,7 @@ def test_an_outline_says_what_was_measured(tmp_path, outline, inside):
     assert float(found["nominal_pressure"]) == pytest.approx(1000 / (cells * 0.25))
     assert float(found["force"]) == pytest.approx(1000)
     assert float(found["area"]) == pytest.approx(float(found["in_contact"].sum()) * 0.25)
-    assert found.attrs["warning"] == ""
+    assert "no contact all round" not in found.attrs["warning"]
 
 
 def test_cells_of_a_mask_and_missing_cells_lie_outside(tmp_path):
@@ -204,7 +204,7 @@ def test_zeros_around_a_round_film_are_warned_of(tmp_path):
     assert "write 'outline: disc'" in found.attrs["warning"]
     for outline in ("disc", "rectangle"):
         said = read_contact_map(path, OPTIONS | {"outline": outline}, label="film")
-        assert said.attrs["warning"] == ""
+        assert "no contact all round" not in said.attrs["warning"]
     ratio = float(said["nominal_area"]) / (np.pi * 16**2)
     assert ratio == pytest.approx(4 / np.pi)
 

@@ -12,8 +12,8 @@ from fractalcontact.mechanics.registration_spread import (
     registration_spread,
     registration_values,
 )
-from fractalcontact.scan.registration_scatter import motion_variables
-from fractalcontact.scan.surface_motion import Motion
+from fractalcontact.registration.registration_scatter import motion_variables
+from fractalcontact.registration.surface_motion import Motion
 from fractalcontact.study.configuration import resolve_settings, solver_settings, window_arguments
 from fractalcontact.surface.specimen import make_specimen
 from fractalcontact.surface.synthesis import self_affine

@@ -1,5 +1,6 @@
 """A known surface in every dialect of text; `make fuzz-dialects FILES=5000` is the whole."""
 
+import itertools
 from dataclasses import replace
 
 import dialect_fuzzing
@@ -8,9 +9,12 @@ import numpy as np
 import pytest
 from ensembles import ensemble
 
+from fractalcontact.core.errors import InputError
+from fractalcontact.scan.read import read_scan
+
 
 def test_files_depend_on_seed_and_number_alone_and_differ():
-    assert len(dialects.DIALECTS) >= 60
+    assert len(dialects.DIALECTS) >= 100
     count = len(dialects.DIALECTS)
     first, again = dialects.make(3, 7), dialects.make(3, 7)
     assert (first.content, first.sidecar) == (again.content, again.sidecar)
@@ -37,9 +41,26 @@ def test_the_judge_sees_what_must_not_happen(tmp_path):
     read = dialect_fuzzing.judge(replace(written, expected="refused"), tmp_path)
     assert read.outcome == "wrong"
     refused = dialect_fuzzing.judge(replace(written, sidecar={}), tmp_path)
-    assert "refused, but says all" in refused.fault
-    denied = dialect_fuzzing.judge(replace(written, states_units=True), tmp_path)
-    assert "it states its units, but" in denied.fault
+    assert "refused, but its sidecar says all" in refused.fault
+    named = dialects.make(1, 0, "units with the names")
+    while not named.describes_itself or read_alone(named, tmp_path) != "read":
+        named = dialects.make(1, next(NUMBERS), "units with the names")
+    believed = dialect_fuzzing.judge(replace(named, describes_itself=False), tmp_path)
+    assert "read without a sidecar, right" in believed.fault
+    assert dialect_fuzzing.judge(named, tmp_path).fault == ""
+
+
+NUMBERS = itertools.count(1)
+
+
+def read_alone(written, folder):
+    path = folder / f"alone{written.ending}"
+    path.write_bytes(written.content)
+    try:
+        read_scan(path)
+    except InputError:
+        return "refused"
+    return "read"
 
 
 @pytest.mark.parametrize("name", dialects.DIALECTS)

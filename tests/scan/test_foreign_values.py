@@ -5,15 +5,18 @@ import struct
 import numpy as np
 import pytest
 from scan_writers import nodes
-from stated import read_faces, read_scan
+from stated import ARRAY, COMMAS, POINTS, read_faces, read_scan
 
 from fractalcontact.core.errors import InputError
 from fractalcontact.core.labels import listed, on_one_line, percent, plain
 from fractalcontact.core.units import length_factor
+from fractalcontact.scan import read
 from fractalcontact.scan.undeclared import find_marks
 from fractalcontact.surface.synthesis import self_affine
 
-MATRIX = {"unit": "mm", "spacing": 0.1}
+#: A sidecar that states a mark of missing cells, and not the one in the file.
+MATRIX = {**ARRAY, "unit": "mm", "spacing": 0.1, "missing": 12345}
+CLOUD = {key: value for key, value in POINTS.items() if key not in COMMAS} | {"missing": 12345}
 N = 48
 
 
@@ -75,8 +78,8 @@ def test_points_have_marks_too(tmp_path):
     points[40:60, 2] = -9999.0
     path = saved(tmp_path / "rock.npy", points)
     with pytest.raises(InputError, match=r"20 cells \(0\.9 %\) hold -9999.*'missing: -9999'"):
-        read_scan(path, {"unit": "mm"})
-    heights = read_scan(path, {"unit": "mm", "missing": -9999})
+        read_scan(path, CLOUD)
+    heights = read_scan(path, CLOUD | {"missing": -9999})
     assert int(heights.isnull().sum()) == 20
 
 
@@ -278,13 +281,13 @@ def test_steep_matrices_are_judged_level(tmp_path, degrees, axis):
     ("options", "said"),
     [
         ({"unit": "mm", "spacing": "0.1 um"}, "more than the field is wide"),
-        ({"unit_z": "m", "spacing": "0.1 mm"}, "more than the field is wide"),
+        ({"unit": "m", "spacing": "0.1 mm"}, "more than the field is wide"),
         ({"unit": "mm", "spacing": "1 m"}, "from 1e-06 to 10000 mm are"),
     ],
 )
 def test_wrong_units_are_still_refused(tmp_path, options, said):
     with pytest.raises(InputError, match=said):
-        read_scan(saved(tmp_path / "rock.npy", rough()), options)
+        read_scan(saved(tmp_path / "rock.npy", rough()), MATRIX | options)
 
 
 def test_a_slope_that_no_scan_has_is_refused(tmp_path):
@@ -336,14 +339,15 @@ def test_faces_in_order_keep_their_gap(tmp_path, gap):
         assert float((upper - lower).mean()) == pytest.approx(gap, abs=2e-3)
 
 
-@pytest.mark.parametrize("options", [{"unit": "mm"}, MATRIX, {"unit": "mm", "grid": "0.1 mm"}])
 @pytest.mark.parametrize("swapped", [False, True])
-def test_a_cloud_beside_a_matrix_has_one_advice_whatever_the_keys(tmp_path, options, swapped):
+def test_a_cloud_beside_a_matrix_has_one_advice(tmp_path, swapped):
     cloud = saved(tmp_path / "joint.lower.npy", nodes(rough(), 0.1, 0.1))
     matrix = saved(tmp_path / "joint.upper.npy", rough())
     pair = (matrix, cloud) if swapped else (cloud, matrix)
+    stated = (MATRIX, CLOUD) if swapped else (CLOUD, MATRIX)
+    options = dict(zip(("lower", "upper"), stated, strict=True))
     with pytest.raises(InputError, match=r"export joint\.upper\.npy as points x, y, z too"):
-        read_faces(*pair, options)
+        read.read_faces(*pair, options)
 
 
 # --- numbers and names in sentences ------------------------------------------------------------

@@ -537,3 +537,37 @@ def test_nothing_but_the_reader_process_imports_the_readers(tmp_path):
         [sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, timeout=60
     )
     assert (done.stdout, done.stderr) == ("[]\n", "")
+
+
+# --- order of rows -----------------------------------------------------------------------------
+
+
+def write_sdf(path, z):
+    """ISO 25178-71 in text, heights and spacing in m."""
+    ny, nx = z.shape
+    head = ["aISO-1.0", "ManufacID = test", "CreateDate = 010120200000", "ModDate = 010120200000"]
+    head += [f"NumPoints = {nx}", f"NumProfiles = {ny}", "Xscale = 1E-4", "Yscale = 2E-4"]
+    head += ["Zscale = 1E-6", "Zresolution = -1", "Compression = 0", "DataType = 7"]
+    head += ["CheckType = 0", "*"]
+    rows = [" ".join(f"{v * 1e3:.6f}" for v in row) for row in z]
+    path.write_text("\r\n".join([*head, *rows, "*", ""]))
+
+
+def write_bcrf(path, z):
+    """SPIP's floating point format, heights in nm."""
+    ny, nx = z.shape
+    head = f"fileformat = bcrf\nxpixels = {nx}\nypixels = {ny}\nxlength = {nx * 1e5}\n"
+    head += f"ylength = {ny * 2e5}\nintelmode = 1\nbit2nm = 1\nxunit = nm\nyunit = nm\nzunit = nm\n"
+    path.write_bytes(head.encode().ljust(2048) + (z * 1e6).astype("<f4").tobytes())
+
+
+@pytest.mark.parametrize(("ending", "save"), [("sdf", write_sdf), ("bcrf", write_bcrf)])
+def test_a_mark_in_the_first_stored_corner_lies_at_the_smallest_x_and_y(tmp_path, ending, save):
+    z = np.nan_to_num(surface())
+    z[0, 0], z[0, -1] = 0.9, -0.9  # first row, first and last number
+    save(tmp_path / f"rock.{ending}", z)
+    heights = read_scan(tmp_path / f"rock.{ending}")
+    np.testing.assert_allclose(heights, z, atol=1e-6)
+    assert "'first_row: top'" in heights.attrs["notes"]
+    turned = read_scan(tmp_path / f"rock.{ending}", {"first_row": "top"})
+    np.testing.assert_allclose(turned, z[::-1], atol=1e-6)

@@ -14,8 +14,8 @@ from scipy.spatial import Delaunay
 from stated import drafted, read_faces, read_scan
 
 from fractalcontact.core.errors import InputError
-from fractalcontact.scan import density, levelling, overhangs, points
-from fractalcontact.scan import triangles as tri
+from fractalcontact.gridding import density, levelling, overhangs, points
+from fractalcontact.gridding import triangles as tri
 from fractalcontact.scan.options import parse_options
 from fractalcontact.scan.readers import text
 

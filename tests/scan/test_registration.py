@@ -10,9 +10,9 @@ from stated import read_faces
 
 from fractalcontact.core.errors import InputError
 from fractalcontact.core.mean_plane import without_mean_plane
-from fractalcontact.scan.pairs import register
-from fractalcontact.scan.registration import biweight_limit, biweight_spread, find_motion
-from fractalcontact.scan.surface_motion import Motion, Surface, grid_nodes
+from fractalcontact.registration.pairs import register
+from fractalcontact.registration.registration import biweight_limit, biweight_spread, find_motion
+from fractalcontact.registration.surface_motion import Motion, Surface, grid_nodes
 from fractalcontact.surface.specimen import make_specimen
 from fractalcontact.surface.synthesis import self_affine
 

@@ -7,15 +7,15 @@ import pytest
 from ensembles import ensemble
 from scanned_pairs import joint, labelled, motion
 
-from fractalcontact.scan.pairs import register
-from fractalcontact.scan.registration import find_motion
-from fractalcontact.scan.registration_scatter import (
+from fractalcontact.registration.pairs import register
+from fractalcontact.registration.registration import find_motion
+from fractalcontact.registration.registration_scatter import (
     MOTIONS,
     motion_variables,
     scattered_motions,
     stored_motions,
 )
-from fractalcontact.scan.surface_motion import Surface, grid_nodes
+from fractalcontact.registration.surface_motion import Surface, grid_nodes
 from fractalcontact.surface.specimen import make_specimen
 from fractalcontact.surface.synthesis import self_affine
 

@@ -3,7 +3,7 @@
 import numpy as np
 import xarray as xr
 
-from fractalcontact.scan.surface_motion import Motion, Surface, grid_nodes
+from fractalcontact.registration.surface_motion import Motion, Surface, grid_nodes
 from fractalcontact.surface.synthesis import self_affine
 
 SPACING = 0.1

@@ -18,8 +18,8 @@ from ..core.errors import InputError
 from ..core.file_names import split_file_name
 from ..core.labels import natural_key, percent, printable
 from ..core.units import length_factor
+from ..gridding.measured import Measured
 from ..scan.draft import written
-from ..scan.measured import Measured
 from ..scan.options import NO_MARK, of_face
 from ..scan.raw import IncompleteSidecar
 from ..scan.read import measure

@@ -9,6 +9,9 @@ CORRECTED_NODES = 30
 #: What is called nearly equal, nearly flat or nearly linear, and what is so in part.
 NEARLY, LOOSELY = 0.1, 0.25
 
+#: A matrix or grid needs at least this many cells along each side to hold any roughness.
+SMALLEST_SIDE = 8
+
 #: Sampling step of the profiles that JRC is taken from.
 JRC_SAMPLING = "1.27 mm"
 

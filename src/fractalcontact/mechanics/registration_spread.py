@@ -8,8 +8,8 @@ import xarray as xr
 
 from ..core.intervals import t_quantile
 from ..core.settings import Load
-from ..scan.registration_scatter import stored_motions
-from ..scan.surface_motion import Motion, Surface, grid_nodes
+from ..registration.registration_scatter import stored_motions
+from ..registration.surface_motion import Motion, Surface, grid_nodes
 from .closure import bulk_settlement, interface_closure, interface_stiffness
 from .loading import JointLoading
 from .state_scalars import numbers_of
@@ -31,7 +31,7 @@ def moved_specimen(specimen: xr.Dataset, motion: Motion) -> xr.Dataset:
     ----------
     specimen : xr.Dataset
     motion : Motion
-        Small: from :func:`scan.registration_scatter.stored_motions`.
+        Small: from :func:`registration.registration_scatter.stored_motions`.
 
     Returns
     -------

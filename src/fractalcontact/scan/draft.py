@@ -109,10 +109,10 @@ def add_words(hints: Hints, lines: Iterable[tuple[str, str]]) -> None:
             for unit in units:
                 before = text[: text.rindex(unit)]
                 seen(_unit_key(before), unit, source)
-        if match := _NO_DATA.search(text):
-            seen("missing", float(match[1].replace(",", ".")), source)
-        if match := _ROWS.search(text):
-            seen("first_row", "top" if match[1].lower() in ("top", "upper") else "bottom", source)
+        if marked := _NO_DATA.search(text):
+            seen("missing", float(marked[1].replace(",", ".")), source)
+        if rows := _ROWS.search(text):
+            seen("first_row", "top" if rows[1].lower() in ("top", "upper") else "bottom", source)
         if _DOWN.search(text):
             seen("heights", "down", source)
         if _NO_FACE.search(text):
@@ -168,7 +168,7 @@ def draft_lines(
     arrays : sequence of str
         Names of which ``variable`` is one.
     """
-    drafted = drafted_options(options, hints, arrays)
+    drafted = drafted_options(options, hints)
     lines = []
     for key in _TO_FILL:
         value = getattr(options, key)

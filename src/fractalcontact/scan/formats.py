@@ -79,6 +79,11 @@ def _read(form: Format, path: Path, options: ScanOptions) -> RawScan:
             raise InputError(
                 f"{path}: key '{key}' has no meaning for a {path.suffix.lower()} file; remove it"
             )
+    if options.missing_words and "delimiter" not in form.keys:
+        raise InputError(
+            f"{path}: key 'missing' is {options.missing_words[0]!r}, a word, and a "
+            f"{path.suffix.lower()} file holds numbers alone; write the number, or 'none'"
+        )
     return form.read(path, options)
 
 

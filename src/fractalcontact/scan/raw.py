@@ -12,8 +12,6 @@ from ..core.labels import on_one_line
 from ..core.units import length_unit
 
 LARGEST_FILE = 4 * 1024**3  # bytes, also for what an archive inflates to or a header promises
-#: A matrix or grid needs at least this many cells along each side to hold any roughness.
-SMALLEST_SIDE = 8
 
 
 @dataclass(frozen=True)

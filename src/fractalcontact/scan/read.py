@@ -1,43 +1,26 @@
 """Scan files of any kind as heights (y, x) in mm, with missing cells and provenance."""
 
-import math
 from collections.abc import Mapping
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
 
 from ..core.errors import InputError
-from ..core.file_names import split_file_name
-from ..core.units import length_factor
+from ..gridding.measured import Measured
 from .confined import read_confined
-from .draft import draft_line
 from .faces import grid_one, grid_pair
 from .files import is_unchanged, regular_file, sha256
-from .measured import NOTE, Measured, warnings_of
+from .in_mm import ScanFile, in_mm
 from .options import (
     FACES,
-    MATRIX_KEYS,
-    NO_MARK,
     PAIR_KEYS,
-    POINT_KEYS,
     ScanOptions,
-    length_mm,
     of_face,
     parse_options,
-    spacing_mm,
 )
-from .plausible import check_spacing
-from .points import single_precision_note
-from .raw import IncompleteSidecar, RawScan
-from .undeclared import refuse_or_warn
 
 __all__ = ["measure", "read_faces", "read_matrix", "read_scan"]
-
-#: Relief that is confirmed is written with four digits.
-SAME_RELIEF = 2e-3
-LARGEST_NUMBER = 1e12  # mm; coordinates of a country's grid reach 1e10
 
 
 def read_scan(path: Path | str, options: Mapping | None = None) -> xr.DataArray:
@@ -110,7 +93,7 @@ def read_faces(
     stated = {f: parse_options(of_face(options, f), str(path)) for f, path in paths.items()}
     files = {face: _read(path, stated[face]) for face, path in paths.items()}
     _require_one_layout(files["lower"], files["upper"])
-    lower, upper = (_in_mm(files[face], stated[face]) for face in FACES)
+    lower, upper = (in_mm(files[face], stated[face]) for face in FACES)
     given = stated["lower"]
     return grid_pair(lower, upper, given.registration or "rigid", given.mirror_upper)
 
@@ -146,14 +129,6 @@ def read_matrix(
     return measured.values, measured.spacing, measured.provenance
 
 
-class _File(NamedTuple):
-    """What a file holds, in its own units."""
-
-    path: Path
-    raw: RawScan
-    checksum: str
-
-
 def measure(path: Path, options: Mapping | None, *, are_heights: bool = True) -> Measured:
     """Numbers of a file in mm, before they are on a grid, as its sidecar says.
 
@@ -171,10 +146,10 @@ def measure(path: Path, options: Mapping | None, *, are_heights: bool = True) ->
         As `read_scan`, but for a surface that is none.
     """
     given = parse_options(options, str(path))
-    return _in_mm(_read(path, given), given, are_heights=are_heights)
+    return in_mm(_read(path, given), given, are_heights=are_heights)
 
 
-def _read(path: Path, options: ScanOptions) -> _File:
+def _read(path: Path, options: ScanOptions) -> ScanFile:
     before = regular_file(path)
     raw = read_confined(path, options)
     checksum = sha256(path)
@@ -183,10 +158,10 @@ def _read(path: Path, options: ScanOptions) -> _File:
             f"{path}: the file changed while it was read; wait until the copy or export has "
             "finished, then run again"
         )
-    return _File(path, raw, checksum)
+    return ScanFile(path, raw, checksum)
 
 
-def _require_one_layout(lower: _File, upper: _File) -> None:
+def _require_one_layout(lower: ScanFile, upper: ScanFile) -> None:
     """Refuse a matrix beside points before either asks for keys that the other has no use for."""
     if (lower.raw.layout == "matrix") != (upper.raw.layout == "matrix"):
         matrix, cloud = (lower, upper) if lower.raw.layout == "matrix" else (upper, lower)
@@ -196,244 +171,3 @@ def _require_one_layout(lower: _File, upper: _File) -> None:
             f"read alike, so export {matrix.path.name} as points x, y, z too (or both as matrices "
             "of one spacing)"
         )
-
-
-def _in_mm(file: _File, options: ScanOptions, *, are_heights: bool = True) -> Measured:
-    """What a file holds converted to mm, with what the sidecar says."""
-    path, raw = file.path, file.raw
-    _refuse_idle_keys(raw, options, path)
-    _refuse_known_rows(raw, options, path)
-    overrides: list[str] = []
-    notes = list(raw.notes)
-    _refuse_one_unit_for_two(raw, options, path)
-    unit_xy = _choose_unit("unit_xy", raw.unit_xy, options, overrides)
-    unit_z = _choose_unit("unit_z", raw.unit_z, options, overrides)
-    _require_units(raw, options, unit_xy, unit_z, path)
-    assert unit_z is not None
-    missing = options.missing
-    is_matrix = raw.layout == "matrix"
-    heights = _without_missing(raw.values if is_matrix else raw.values[:, 2], options.marks)
-    size = size_and_relief(heights, raw.layout)
-    _refuse_unconfirmed(size, raw, options, path)
-    if are_heights and missing != NO_MARK and (doubt := refuse_or_warn(heights, path)):
-        notes.append(f"{NOTE}{doubt}")
-    sign = -1 if _choose("heights", raw.heights, options, overrides) == "down" else 1
-    heights *= sign * length_factor(unit_z, f"{path}: unit_z")
-    if is_matrix:
-        values = heights
-        if _choose("first_row", raw.first_row, options, overrides) == "top":
-            values = values[::-1].copy()
-        spacing = _choose_spacing(raw, options, unit_xy, path, overrides)
-    else:
-        if note := single_precision_note(raw.values):
-            notes.append(note)
-        assert unit_xy is not None  # points were required to have one
-        values = _own(raw.values)
-        values[:, 2] = heights
-        values[:, :2] *= length_factor(unit_xy, f"{path}: unit_xy")
-        spacing = None
-    _refuse_enormous(values, path)
-    notes += [f"{NOTE}{override}" for override in overrides]
-    grid = options.grid
-    if grid is not None:
-        grid = length_mm(grid, unit_xy, f"{path}: key 'grid'")
-    provenance = {
-        "source": path.name,
-        "sha256": file.checksum,
-        "reader": raw.reader,
-        "file_unit": unit_z if unit_xy in (None, unit_z) else f"x, y {unit_xy}; z {unit_z}",
-        "layout": raw.layout,
-        "notes": "; ".join(notes),
-        "warnings": warnings_of(notes),
-        "overrides": "; ".join(overrides),
-    }
-    return Measured(path, raw.layout, values, spacing, grid, provenance, raw.triangles, size)
-
-
-def _own(values: np.ndarray) -> np.ndarray:
-    """Numbers that were read, to be changed in place: nobody else has them."""
-    return values if values.flags.writeable else values.copy()
-
-
-def _refuse_enormous(values: np.ndarray, path: Path) -> None:
-    """Numbers such as 1e300 are damage or an undeclared mark, and make arithmetic overflow."""
-    finite = np.isfinite(values)
-    low, high = values.min(where=finite, initial=np.inf), values.max(where=finite, initial=-np.inf)
-    largest = max(low, high, key=abs) if finite.any() else 0.0
-    if abs(largest) > LARGEST_NUMBER:
-        raise InputError(
-            f"{path}: it holds {largest:g} mm, which no instrument measures; if that marks missing "
-            "cells, say so in the sidecar ('missing: -9999', in the file's own unit), else export "
-            "the file again"
-        )
-
-
-def _refuse_idle_keys(raw: RawScan, options: ScanOptions, path: Path) -> None:
-    """A key that would change nothing was meant to change something."""
-    idle = POINT_KEYS if raw.layout == "matrix" else MATRIX_KEYS
-    for key in idle:
-        is_by_cell = key == "columns" and options.layout == "points"
-        if getattr(options, key) is not None and not is_by_cell:
-            hint = "'grid'" if key == "spacing" else "'spacing'" if key == "grid" else "'layout'"
-            raise InputError(
-                f"{path}: key '{key}' has no meaning for a scan read as {raw.layout}; "
-                f"remove it (did you mean {hint}?)"
-            )
-
-
-def _refuse_known_rows(raw: RawScan, options: ScanOptions, path: Path) -> None:
-    """Refuse ``first_row`` where coordinates beside a matrix say it."""
-    if options.axes == "both" and options.spacing is None and options.first_row is not None:
-        raise InputError(
-            f"{path}: the coordinates beside its rows say where the first row lies ({raw.first_row}"
-            "); remove 'first_row'"
-        )
-
-
-def _choose(key: str, stated, options: ScanOptions, overrides: list):
-    """The sidecar's value, else the file's; recorded where they differ."""
-    given = getattr(options, key)
-    if given is None:
-        return stated
-    if stated is not None and given != stated:
-        overrides.append(f"{key} {given} from the sidecar, the file says {stated}")
-    return given
-
-
-def _choose_unit(key: str, stated: str | None, options: ScanOptions, overrides: list) -> str | None:
-    """The sidecar's unit, else the file's; recorded where they differ."""
-    given = getattr(options, key) or options.unit
-    if given and stated and length_factor(given, key) != length_factor(stated, key):
-        overrides.append(f"{key} {given} from the sidecar, the file says {stated}")
-    return given or stated
-
-
-def _refuse_one_unit_for_two(raw: RawScan, options: ScanOptions, path: Path) -> None:
-    """Refuse the key ``unit`` where the file gives x and y a unit that heights do not share.
-
-    It is meant of the heights, most likely, and would change the spacing as well.
-    """
-    if options.unit is None or raw.unit_xy is None or (options.unit_xy and options.unit_z):
-        return
-    lateral = length_factor(raw.unit_xy, f"{path}: unit_xy")
-    if raw.unit_z is not None and length_factor(raw.unit_z, f"{path}: unit_z") == lateral:
-        return
-    given = length_factor(options.unit, f"{path}: unit")
-    of_spacing = raw.layout != "matrix" or (raw.spacing is not None and options.spacing is None)
-    if options.unit_xy is None and of_spacing and not math.isclose(given, lateral):
-        heights = f"heights in {raw.unit_z}" if raw.unit_z else "no unit of heights"
-        raise InputError(
-            f"{path}: the file says x and y in {raw.unit_xy} and {heights}, its sidecar 'unit: "
-            f"{options.unit}' of all; write 'unit_z: {options.unit}' if that is of heights, and "
-            f"'unit_xy: {options.unit}' if the file is wrong"
-        )
-
-
-def _require_units(raw: RawScan, options: ScanOptions, unit_xy, unit_z, path: Path) -> None:
-    """Ask for everything the file lacks in one message, ready to be copied."""
-    stated_spacing = options.spacing if options.spacing is not None else raw.spacing
-    lacks_spacing = raw.layout == "matrix" and stated_spacing is None
-    needs_unit_xy = raw.layout != "matrix" or (
-        not lacks_spacing and not _has_units_of_its_own(options.spacing)
-    )
-    lacks_unit = unit_z is None or (needs_unit_xy and unit_xy is None)
-    if not (lacks_unit or lacks_spacing):
-        return
-    lacking = _lacking_unit(unit_xy, unit_z, needs_unit_xy) if lacks_unit else ()
-    what = " and ".join(filter(None, (*lacking[:1], "spacing" if lacks_spacing else "")))
-    lines = list(lacking[1:])
-    if lacks_spacing:
-        lines.append(draft_line("spacing", None))
-    name, _ = split_file_name(path.name)
-    raise IncompleteSidecar(
-        f"{path}: the file states no {what}. Write into {path.with_name(name + '.yaml')}, with "
-        "your own values:",
-        "\n".join(f"    {line}" for line in lines),
-    )
-
-
-def _lacking_unit(unit_xy, unit_z, needs_unit_xy: bool) -> tuple[str, str]:
-    """What unit is missing, and the line of a sidecar that states it."""
-    if unit_z is None and unit_xy is not None:
-        return "unit of heights", draft_line("unit_z", None)
-    if unit_z is not None and needs_unit_xy:
-        return "unit of x and y", draft_line("unit_xy", None)
-    return "unit", draft_line("unit", None)
-
-
-def _has_units_of_its_own(spacing) -> bool:
-    """Whether a spacing, or each of a pair, is a text such as "0.1 mm"."""
-    pair = spacing if isinstance(spacing, tuple) else (spacing,)
-    return all(isinstance(step, str) for step in pair)
-
-
-def _choose_spacing(raw, options, unit_xy, path: Path, overrides: list) -> tuple[float, float]:
-    """The sidecar's spacing, else the file's, in mm; recorded where they differ."""
-    stated = None
-    if raw.spacing is not None and unit_xy is not None:
-        factor = length_factor(unit_xy, f"{path}: unit_xy")
-        stated = factor * raw.spacing[0], factor * raw.spacing[1]
-    if options.spacing is not None:
-        spacing = spacing_mm(options.spacing, unit_xy, f"{path}: key 'spacing'")
-        check_spacing(spacing, path)
-        if stated and not np.allclose(spacing, stated, rtol=1e-6, atol=0):
-            overrides.append(
-                f"spacing {spacing[0]:.6g} x {spacing[1]:.6g} mm from the sidecar, the file says "
-                f"{stated[0]:.6g} x {stated[1]:.6g} mm"
-            )
-        return spacing
-    assert stated is not None  # it was required, with its unit
-    check_spacing(stated, path)
-    return stated
-
-
-def _without_missing(values: np.ndarray, marks: tuple[float, ...]) -> np.ndarray:
-    """A copy, in file units, with the missing numbers and infinities as NaN."""
-    absent = ~np.isfinite(values)
-    for mark in marks:
-        # Markers such as 3.4e38 come back from text and float32 not quite the same.
-        absent |= np.isclose(values, mark, rtol=1e-6, atol=0)
-    return np.where(absent, np.nan, values)
-
-
-def _refuse_unconfirmed(found: dict, raw: RawScan, options: ScanOptions, path: Path) -> None:
-    """Refuse a file of another size or relief than its owner has looked at and confirmed."""
-    if options.confirmed is None:
-        return
-    for key, value in options.confirmed.items():
-        if key not in found:
-            raise InputError(
-                f"{path}: its sidecar confirms {key!r}, but it is read as {raw.layout} with "
-                f"{', '.join(found)}; run 'make describe FILE={path}' and confirm that"
-            )
-        if not np.allclose(value, found[key], rtol=SAME_RELIEF, atol=0):
-            raise InputError(
-                f"{path}: its sidecar confirms {key} {_plain(value)}, the file holds "
-                f"{_plain(found[key])}: it is another file, or is read otherwise than when it was "
-                f"looked at; 'make describe FILE={path}' draws it, then write '{key}: "
-                f"{_plain(found[key])}' under 'confirmed'"
-            )
-
-
-def size_and_relief(heights: np.ndarray, layout: str) -> dict:
-    """What is confirmed of a file: its rows and columns or points, and its relief.
-
-    Parameters
-    ----------
-    heights : ndarray
-        Numbers of the file, NaN where missing.
-    layout : {"matrix", "points", "mesh"}
-
-    Returns
-    -------
-    dict
-        ``shape`` or ``points``; ``relief``, the highest less the lowest number of the file.
-    """
-    size = {"shape": heights.shape} if layout == "matrix" else {"points": len(heights)}
-    if not np.isfinite(heights).any():
-        return size
-    return size | {"relief": float(f"{np.nanmax(heights) - np.nanmin(heights):.4g}")}
-
-
-def _plain(value) -> str:
-    return f"[{', '.join(map(str, value))}]" if isinstance(value, tuple | list) else f"{value:g}"

@@ -70,7 +70,7 @@ def require_stated(
     if not (lacks := lacking(options, needs)):
         return
     found = hints()
-    complete = drafted_options(options, found, needs.arrays)
+    complete = drafted_options(options, found)
     required = set(required_keys(complete, needs))
     # A layout that only the draft knows asks for keys of its own.
     draft = "\n".join(draft_lines(options, found, required, needs.arrays))

@@ -9,8 +9,9 @@ import numpy as np
 
 from ..core.errors import InputError
 from ..core.labels import listed
+from ..core.limits import SMALLEST_SIDE
 from .options import ScanOptions
-from .raw import SMALLEST_SIDE, RawScan
+from .raw import RawScan
 
 #: Numbered columns and rows may leave at most this many empty cells for each cell that they fill.
 MOST_EMPTY = 20

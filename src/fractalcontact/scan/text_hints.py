@@ -116,8 +116,8 @@ def text_hints(path: Path) -> Hints:
             _add_field(hints, above, table.shape)
     if table.size:
         columns = hints.keys["columns"].value if "columns" in hints.keys else None
-        is_there = columns and columns[2] < table.shape[1]
-        hints.heights = table[:, columns[2]] if is_there else table
+        z = columns[2] if columns else table.shape[1]
+        hints.heights = table[:, z] if z < table.shape[1] else table
     return hints
 
 

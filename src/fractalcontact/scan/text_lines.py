@@ -87,12 +87,15 @@ def is_number(cell: str, options: ScanOptions) -> bool:
     return True
 
 
-def is_cut_off(rows: list[str], delimiter: str) -> bool:
-    """Whether the last number of the last row, without a line end, is written shorter than others.
+def is_cut_off(rows: list[str], delimiter: str, layout: str | None) -> bool:
+    """Whether the last number of a file without a final line end is written shorter than others.
 
-    Only numbers of a fixed form tell: as many decimals each, or exponents of two digits.
+    Only numbers of a fixed form tell: as many decimals each, or exponents of two digits. Of points
+    those of the last column, of a matrix all.
     """
-    last, *others = [cells_of(row, delimiter)[-1].strip() for row in rows[-1:-200:-1]]
+    first = -1 if layout == "points" else 0
+    latest = [cells_of(row, delimiter)[first:] for row in rows[-60:]]
+    *others, last = [cell.strip() for cells in latest for cell in cells]
     forms = [_form(other) for other in others if re.search(r"\d", other)]
     if len(forms) < 3:
         return False
@@ -147,7 +150,9 @@ def refuse_other_counts(
             counts = [int(word) for word in re.findall(r"\d+", line)]
             if not _agree(counts, shape):
                 raise _other_size(where, shape, line.strip())
-    if len(sides) == 2 and not _agree(list(sides.values()), shape):
+    beside = options.axes in ("both", "column")
+    is_matrix = options.layout != "points" and len(sides) == 2
+    if is_matrix and (sides["y"], sides["x"]) != (shape[0], shape[1] - beside):
         raise _other_size(where, shape, f"{sides['x']} columns and {sides['y']} rows")
 
 

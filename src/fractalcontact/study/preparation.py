@@ -6,8 +6,8 @@ from pathlib import Path
 import xarray as xr
 
 from ..core.settings import SpecimenSettings
+from ..registration.registration_scatter import motion_variables, scattered_motions
 from ..scan.read import read_faces
-from ..scan.registration_scatter import motion_variables, scattered_motions
 from ..surface.specimen import make_specimen
 from .configuration import window_arguments
 

@@ -87,7 +87,8 @@ def height_is_known(upper: xr.DataArray) -> bool:
     Parameters
     ----------
     upper : DataArray
-        With the attribute ``registration`` of :func:`scan.pairs.register`, if it was registered.
+        With the attribute ``registration`` of :func:`registration.pairs.register`, if it was
+        registered.
     """
     record = json.loads(upper.attrs.get("registration", "{}"))
     return record.get("gap_mean_before_mm", 0.0) is not None

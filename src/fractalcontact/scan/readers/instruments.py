@@ -35,6 +35,9 @@ LATERAL_FAULTS = {
 #: the last and others over all cells: MountainsMap writes (n - 1) dx to .bcrf, TrueMap to .tmd,
 #: GelSight writes n dx to .tmd. Like SurfaceTopography and Gwyddion we take n dx.
 LENGTH_UNCLEAR = ("bcr", "tmd")
+#: Formats whose rows are stored as an image's are, and as SurfaceTopography gives them: the first
+#: one lies at the smallest y here, where Gwyddion draws it at the top.
+FIRST_ROW_UNCLEAR = ("sur", "sdf", "bcr", "vk")
 
 
 @cache
@@ -103,6 +106,11 @@ def _read_format(path: Path, format_name: str, wanted: str | None) -> RawScan:
         notes += (
             "the file states lengths, taken as those of all cells; if they reach from the first "
             f"point to the last, the spacing is {steps} times as large",
+        )
+    if format_name in FIRST_ROW_UNCLEAR:
+        notes += (
+            "its first row lies at the smallest y; if the instrument draws it at the top, write "
+            "'first_row: top'",
         )
     return RawScan(
         np.ascontiguousarray(heights.T),

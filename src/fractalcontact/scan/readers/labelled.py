@@ -10,10 +10,10 @@ import numpy as np
 from ...core.errors import InputError
 from ...core.labels import percent
 from ...core.units import length_factor
+from ...gridding.measured import NOTE
 from ..array_hints import array_hints
 from ..draft import Hints
 from ..format import Format
-from ..measured import NOTE
 from ..options import ScanOptions
 from ..raw import RawScan, reading, stated_unit
 from ..stated import Needs, require_stated

@@ -48,7 +48,7 @@ def read_text(path: Path, options: ScanOptions) -> RawScan:
         If the sidecar does not state all that is needed, a line is not as it says, or the numbers
         of rows, columns or points disagree with those that the header states.
     """
-    units = {}
+    units: dict[str, str] = {}
     if all(getattr(options, key) is None for key in LAYOUT_KEYS) and (found := named_columns(path)):
         keys, units = found
         options = replace(options, **keys)
@@ -61,6 +61,7 @@ def read_text(path: Path, options: ScanOptions) -> RawScan:
         while block := stream.read(_BLOCK) + stream.readline():
             reading.add(block)
     table, parts, notes = reading.finish()
+    reading.refuse_numbers_above()
     refuse_other_counts(reading.header, table.shape, options, str(path))
     return table_to_raw(table, options, str(path), parts, reader=_reader(), notes=notes, **units)
 
@@ -122,6 +123,18 @@ class _Reading:
         breaks = [row for row in dict.fromkeys(self._breaks) if 0 < row < len(table)]
         above = None if self._above is None else self._coordinates(self._above)
         return table, TextParts(self._names(), above, breaks), notes
+
+    def refuse_numbers_above(self) -> None:
+        """Refuse a header that holds points: one sidecar of two files may skip too many lines."""
+        if self.options.layout != "points":
+            return
+        for number, line in enumerate(self.header, 1):
+            cells = [cell.strip() for cell in cells_of(line.strip(), self.delimiter)]
+            if len(cells) >= max(2, self._width) and all(is_number(c, self.options) for c in cells):
+                raise InputError(
+                    f"{self.path}: line {number} of its header holds numbers as the points do; "
+                    f"write 'header: {number - 1}' (for one of two faces below 'upper:')"
+                )
 
     def _take(self, part: np.ndarray) -> None:
         self._parts.append(part)
@@ -198,7 +211,12 @@ class _Reading:
                 continue
             rows.append(self.delimiter.join(cells))
             self._refuse_words(number, line, cells)
-        if rows and not is_ended and not self._short and is_cut_off(rows, self.delimiter):
+        if (
+            rows
+            and not is_ended
+            and not self._short
+            and is_cut_off(rows, self.delimiter, self.options.layout)
+        ):
             self._short = (data[-1][0], rows.pop(), "breaks off within a number")
         return rows
 

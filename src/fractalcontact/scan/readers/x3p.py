@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from ...core.errors import InputError
+from ...gridding.measured import NOTE
 from ..format import Format
-from ..measured import NOTE
 from ..options import ScanOptions
 from ..raw import RawScan, reading
 from ..tables import choose_array

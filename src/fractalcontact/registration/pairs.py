@@ -10,9 +10,9 @@ import xarray as xr
 
 from ..core.errors import InputError
 from ..core.labels import percent, plain
+from ..core.limits import SMALLEST_SIDE
 from ..core.mean_plane import without_mean_plane
 from .face_match import LARGEST_ROTATION, for_comparison, mirror_images
-from .raw import SMALLEST_SIDE
 from .registration import biweight_limit, biweight_spread, find_motion
 from .surface_motion import Motion, Surface, correlation, grid_nodes
 
@@ -57,11 +57,11 @@ def register(
 ) -> tuple[xr.DataArray, xr.DataArray]:
     """Move the upper face to where the spread of the gap is least; crop both to what they share.
 
-    The spread is the biweight one of :mod:`scan.registration`, to which spikes and places where
-    rock is lost do not count. Nothing is moved if it would fall by less than 1 %, or if the faces
-    do not match. The mean gap is a measurement and stays, so the upper face slides along its mean
-    plane. Where the mean gap is not known, because the face was turned over or shares no area with
-    the lower one as given, the upper face is set down until 1 % of the cells touch.
+    The spread is the biweight one of :mod:`registration.registration`, to which spikes and places
+    where rock is lost do not count. Nothing is moved if it would fall by less than 1 %, or if the
+    faces do not match. The mean gap is a measurement and stays, so the upper face slides along its
+    mean plane. Where the mean gap is not known, because the face was turned over or shares no area
+    with the lower one as given, the upper face is set down until 1 % of the cells touch.
 
     Parameters
     ----------

@@ -8,12 +8,12 @@ import numpy as np
 
 from ..core.errors import InputError
 from ..core.labels import percent
+from ..core.limits import SMALLEST_SIDE
+from ..registration.surface_motion import Motion
 from . import density as dense
 from . import levelling, overhangs
 from . import points as pts
 from .measured import NOTE, Measured
-from .raw import SMALLEST_SIDE
-from .surface_motion import Motion
 from .triangles import interpolate_mesh, interpolate_points, places_across
 
 _OVERHANG_OF_POINTS = (

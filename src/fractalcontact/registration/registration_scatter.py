@@ -27,7 +27,7 @@ def scattered_motions(lower: xr.DataArray, upper: xr.DataArray) -> list[Motion]:
     Parameters
     ----------
     lower, upper : DataArray (y, x)
-        On one grid, from `scan.pairs.register`.
+        On one grid, from `registration.pairs.register`.
 
     Returns
     -------

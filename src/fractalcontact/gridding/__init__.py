@@ -1,0 +1,1 @@
+"""Points and triangles on a regular grid: repeats, tilt, overhangs, spacing, interpolation."""
