@@ -2,8 +2,10 @@
 
 import numpy as np
 import pytest
+from made_stages import scan, stages_of
 
 from fractalcontact.mechanics.branches import OF_BRANCHES, OF_CYCLE, branches
+from fractalcontact.study.configuration import resolve_settings, solver_settings
 from fractalcontact.surface.synthesis import self_affine
 from roughcontact.contact.solve import solve_contact
 from roughcontact.elastic.halfspace import HalfSpace
@@ -70,3 +72,56 @@ def test_a_failure_names_what_is_loaded(joint):
     with pytest.raises(NotConverged) as caught:
         branches(*joint, FORCES, SOLVING | {"rtol": 1e-17}, "offset 0.3 mm")
     assert "offset 0.3 mm" in caught.value.__notes__[0]
+
+
+STUDY = {
+    "study": "branches",
+    "materials": {
+        "elastic": {"modulus": "20 GPa", "poisson": 0.2},
+        "weak": {"modulus": "20 GPa", "poisson": 0.2, "hardness": "80 MPa"},
+    },
+    "defaults": {
+        **{"material": "weak", "contact_directions": ["E"], "offsets": ["0.3 mm"]},
+        **{"loads": ["0.5 MPa", "1 MPa", "2 MPa", "4 MPa", "8 MPa", "16 MPa"]},
+        **{"resolutions": [1], "window": "4.8 mm", "seating_pressure": "1 MPa"},
+    },
+    "specimens": {"elastic": {"material": "elastic"}, "weak": {}},
+}
+
+
+@pytest.fixture(scope="module", params=["elastic", "weak"])
+def stages(request):
+    heights = self_affine((72, 72), 0.1, 0.8, rms=0.1, seed=5, roll_off=1.5)
+    settings = resolve_settings(STUDY, request.param, {}, "branches")
+    faces, solver = (scan(heights, 0.1), None), solver_settings({}, "branches")
+    found = stages_of(request.param, faces, settings, solver, later=("closure",))
+    return settings, found["branches"], found["closure"].squeeze()
+
+
+def test_branches_of_the_interface_begin_and_end_on_the_closure_curve(stages):
+    settings, data, curve = stages
+    load, unload, reload = (data.sel(branch=name) for name in data["branch"].values)
+    np.testing.assert_allclose(load["interface_closure"], curve["interface_closure"], rtol=1e-3)
+    seated = curve["seated_closure"].values
+    np.testing.assert_allclose(load["seated_closure"], seated, rtol=1e-2, atol=1e-6)
+    assert unload["seated_closure"][-1] == load["seated_closure"][-1]
+    np.testing.assert_allclose(reload["interface_closure"], unload["interface_closure"], rtol=1e-4)
+    crushes = np.isfinite(settings.material.hardness)
+    assert (data["residual_closure"] > 0) == crushes
+    assert (data["permanent_set"].max() > 0) == crushes
+    if not crushes:
+        np.testing.assert_array_equal(unload["interface_closure"], load["interface_closure"])
+
+
+def test_reloading_is_stiffer_than_loading_where_contacts_crush(stages):
+    """Its slope is that of its curve; an elastic joint has one stiffness."""
+    settings, data, _ = stages
+    reload = data.sel(branch="reload")
+    closure, pressure = reload["interface_closure"].values, reload["nominal_pressure"].values
+    secants = np.diff(pressure) / np.diff(closure)
+    stiffness = reload["interface_stiffness"].values
+    # A single node has one stiffness under all loads.
+    assert (stiffness[:-1] < secants * (1 + 1e-6)).all()
+    assert (secants < stiffness[1:] * (1 + 1e-6)).all()
+    at, first = (one["reference_stiffness"][1] for one in (reload, data.sel(branch="load")))
+    assert at > first if np.isfinite(settings.material.hardness) else at == first

@@ -11,11 +11,19 @@ from roughcontact.contact.path import BRANCHES, LOAD, UNLOAD, BranchState, load_
 from roughcontact.elastic.halfspace import HalfSpace
 from roughcontact.errors import NotConverged
 
+from ..core.datasets import labelled, labelled_dataset
 from ..core.labels import cf_attrs
+from .closure import bulk_settlement, interface_stiffness
+from .loading import JointLoading
+from .seated_laws import reference_stiffness
+
+_STATES = ("branch", "normal_force")
+_PRESSED = ("mm", "how far each node is pressed in for good")
 
 #: What each state of a branch has: unit, long name.
 OF_BRANCHES = {
     "closure": ("mm", "closure w from first touch before any load"),
+    "stiffness": ("N/mm", "stiffness dF/dw of an elastic branch; of loading that of the states"),
     "area": ("mm2", "real contact area A_r"),
     "set_volume": ("mm3", "volume pressed in for good"),
     "yielded_fraction": ("1", "fraction of the window that has carried the hardness"),
@@ -72,11 +80,14 @@ def branches(
     top, empty = path[n - 1], path[2 * n - 1]
     of = {LOAD: path[:n], UNLOAD: [*path[2 * n - 2 : n - 1 : -1], top]}
     states = [of.get(branch, path[2 * n :]) for branch in BRANCHES]
-    rows = [[_numbers(state) for state in branch] for branch in states]
+    rows = [
+        [_numbers(state, branch) for state in of_branch]
+        for branch, of_branch in zip(BRANCHES, states, strict=True)
+    ]
     data = xr.Dataset(
         {
             name: (
-                ("branch", "normal_force"),
+                _STATES,
                 [[one[name] for one in row] for row in rows],
                 cf_attrs(*attrs),
             )
@@ -94,17 +105,97 @@ def branches(
     }
     for name, attrs in OF_CYCLE.items():
         data[name] = (), of_cycle[name], cf_attrs(*attrs)
-    pressed = cf_attrs("mm", "how far each node is pressed in for good")
-    data["permanent_set"] = ("y", "x"), top.permanent_set, pressed
+    data["permanent_set"] = ("y", "x"), top.permanent_set, cf_attrs(*_PRESSED)
     return data
 
 
-def _numbers(state: BranchState) -> dict[str, float]:
+def _numbers(state: BranchState, branch: str) -> dict[str, float]:
     """The :data:`OF_BRANCHES` of a state."""
     return {
         "closure": state.closure,
+        "stiffness": np.nan if branch == LOAD else state.contact.stiffness,
         "area": state.contact.area,
         "set_volume": state.set_volume,
         "yielded_fraction": float(state.yielded.mean()),
         "plastic_load_fraction": state.plastic_load_fraction,
     }
+
+
+#: What the interface has on each branch: dimensions, unit, long name.
+_OF_INTERFACE = {
+    "interface_closure": (_STATES, "mm", "interface closure w_int = w - w_b"),
+    "seated_closure": (
+        _STATES,
+        "mm",
+        "interface closure since loading passed the seat",
+    ),
+    "interface_stiffness": (_STATES, "MPa/mm", "tangent stiffness d sigma_0 / d w_int"),
+    "reference_stiffness": (
+        ("branch", "reference_pressure"),
+        "MPa/mm",
+        "tangent stiffness of the interface at a pressure",
+    ),
+}
+
+
+def joint_branches(loading: JointLoading, curves: xr.Dataset) -> xr.Dataset:
+    """Branches of a joint at the reported offset, from the seat up to its largest load and back.
+
+    Parameters
+    ----------
+    loading : JointLoading
+        At that offset alone.
+    curves : xr.Dataset
+        The stage ``closure``.
+
+    Returns
+    -------
+    xr.Dataset
+        That of :func:`branches` and closures and stiffness of the interface. Where nothing yields
+        all branches are that of loading, which is not solved again.
+    """
+    (cells,), (offset,) = loading.cells, loading.offsets
+    curve = curves.sel(direction=loading.direction, resolution=curves["resolution"].min())
+    curve = curve.sel(offset=offset, method="nearest")
+    forces = curve["normal_force"].values
+    composite = loading.composite(int(cells))
+    space = loading.half_space(composite.shape)
+    if np.isfinite(loading.solving["hardness"]):
+        where = f"specimen {loading.specimen.attrs['name']}"
+        data = branches(composite, space, forces, loading.solving, where)
+        data["stiffness"].values[0] = curve["stiffness"].values
+    else:
+        data = _elastic(curve, composite.shape)
+    sides = np.multiply(space.shape, space.spacing)
+    settlement = bulk_settlement(forces, space.modulus, *sides)
+    pressure = forces / loading.area
+    closure = data["closure"] - xr.DataArray(settlement, dims="normal_force")
+    seat = closure[0].where(pressure == float(curve["seating_pressure"])).sum(min_count=1)
+    beyond = pressure >= float(curve["seating_pressure"])
+    bulk = xr.DataArray(pressure / settlement, dims="normal_force")
+    stiffness = interface_stiffness(data["stiffness"] / loading.area, bulk)
+    values = {
+        "interface_closure": closure.values,
+        "seated_closure": (closure - seat).where(xr.DataArray(beyond, dims="normal_force")).values,
+        "interface_stiffness": stiffness.values,
+        "reference_stiffness": [reference_stiffness(pressure, row) for row in stiffness.values],
+    }
+    data.coords["reference_pressure"] = curve["reference_pressure"]
+    return data.assign(labelled(_OF_INTERFACE, values)).assign_coords(
+        nominal_pressure=("normal_force", pressure, cf_attrs("MPa", "nominal pressure F / A_0"))
+    )
+
+
+def _elastic(curve: xr.Dataset, shape: tuple[int, ...]) -> xr.Dataset:
+    """Branches where nothing yields: the curve of loading three times, and nothing pressed in."""
+    n = curve.sizes["normal_force"]
+    of = {"closure": curve["closure"].values, "stiffness": curve["stiffness"].values}
+    of["area"] = curve["area"].values
+    values = {name: [of.get(name, np.zeros(n))] * len(BRANCHES) for name in OF_BRANCHES}
+    table = {name: (_STATES, *words) for name, words in OF_BRANCHES.items()}
+    table |= {name: ((), *words) for name, words in OF_CYCLE.items()}
+    table["permanent_set"] = (("y", "x"), *_PRESSED)
+    values |= {"residual_closure": 0.0, "dissipated_energy": 0.0, "recovered_energy": np.nan}
+    values["permanent_set"] = np.zeros(shape)
+    coords = {"branch": list(BRANCHES), "normal_force": curve["normal_force"]}
+    return labelled_dataset(table, values, coords)

@@ -108,6 +108,28 @@ class _Fit:
         return ""
 
 
+def reference_stiffness(pressure: np.ndarray, stiffness: np.ndarray) -> np.ndarray:
+    """Stiffness at :data:`core.limits.REFERENCE_PRESSURES`, straight in logarithms between states.
+
+    Parameters
+    ----------
+    pressure : (n,) ndarray
+        Nominal, MPa, ascending.
+    stiffness : (n,) ndarray
+        MPa/mm; NaN where unknown.
+
+    Returns
+    -------
+    (k,) ndarray
+        MPa/mm; NaN outside the states that are known.
+    """
+    known = np.isfinite(stiffness) & (stiffness > 0)
+    if known.sum() < 2:
+        return np.full(len(REFERENCE_PRESSURES), np.nan)
+    wanted, x = np.log(REFERENCE_PRESSURES), np.log(pressure[known])
+    return np.exp(np.interp(wanted, x, np.log(stiffness[known]), left=np.nan, right=np.nan))
+
+
 def _add_reference_stiffness(curves: xr.Dataset) -> None:
     """Tangent stiffness of the interface at set nominal pressures, into ``curves``."""
     resolved = curves["resolved"]
@@ -117,17 +139,15 @@ def _add_reference_stiffness(curves: xr.Dataset) -> None:
     shape = tuple(curves.sizes[dim] for dim in _DIMS)
     found = np.full((*shape, len(REFERENCE_PRESSURES), 2), np.nan)
     values = (one.transpose(*_DIMS, "normal_force").values for one in (stiffness, error))
-    pressure = np.log(curves["nominal_pressure"].values)
+    pressure = curves["nominal_pressure"].values
     each, each_error = values
     for place in np.ndindex(shape):
+        at = reference_stiffness(pressure, each[place])
         known = np.isfinite(each[place]) & (each[place] > 0)
-        if known.sum() < 2:
-            continue
-        x, k = pressure[known], np.log(each[place][known])
-        share = each_error[place][known] / each[place][known]
-        wanted = np.log(REFERENCE_PRESSURES)
-        at = np.exp(np.interp(wanted, x, k, left=np.nan, right=np.nan))
-        found[place] = np.column_stack((at, at * np.interp(wanted, x, share)))
+        if known.any():
+            share = each_error[place][known] / each[place][known]
+            at_share = np.interp(np.log(REFERENCE_PRESSURES), np.log(pressure[known]), share)
+            found[place] = np.column_stack((at, at * at_share))
     table = {
         "reference_stiffness": (dims, "MPa/mm", "tangent stiffness of the interface at a pressure"),
         "reference_stiffness_error": (dims, "MPa/mm", "bound of the solver's error of it"),

@@ -1,4 +1,4 @@
-"""Error budget of a specimen, and with it what was solved and how exactly."""
+"""What takes further solves: branches, error budget, and what was solved and how exactly."""
 
 import xarray as xr
 
@@ -6,6 +6,7 @@ from ..core.labels import cf_attrs
 from ..core.settings import Solver, StateSettings
 from ..core.units import share
 from ..error_budget.error_budget import error_budget
+from ..mechanics.branches import joint_branches
 from ..mechanics.loading import JointLoading
 from ..mechanics.plan import solve_plan
 from ..mechanics.registration_spread import registration_spread
@@ -35,7 +36,7 @@ def error_stages(
     Returns
     -------
     dict of str to xr.Dataset
-        By stage: error_budget and choices.
+        By stage: branches, error_budget and choices.
     """
     direction = settings.contact_directions[0]
     joint = JointLoading.of_joint(specimens, joints, direction, settings, solver)
@@ -44,6 +45,7 @@ def error_stages(
     budget = error_budget(loading, closure, domains, registration_spread=spread)
     plan = solve_plan(closure, dilatancy, settings, solver, budget)
     return {
+        "branches": joint_branches(loading, closure),
         "error_budget": with_pressure(budget, joint.area),
         "choices": plan.merge(stated_errors(closure, domains, direction)).assign(asked(solver)),
     }

@@ -88,6 +88,7 @@ _TABLE = (
         "domain_measures",
         "lacunarity and generalised dimensions of the contact at the map offset",
     ),
+    _of_states("branches", "closure of loading, unloading and reloading, at the reported offset"),
     _of_states("choices", "what was solved and how exactly, why, and the errors that makes"),
     _of_states("error_budget", "error of the published quantities, split by source"),
     _of_report("windows", "closure, roughness and strength of sub-windows against their size"),

@@ -22,9 +22,14 @@ from ..paper._closure_laws import offset_words
 
 TITLE = "Closure from the seat, its laws, and tangent stiffness"
 SUBJECT = "specimen"
-NEEDS = ("specimens", "closure")
+NEEDS = ("specimens", "closure", "branches")
 ORDER = 45
 
+RELOAD = "reload"
+_AGAIN = {
+    **{"labels": ["unloading and reloading"], "color": colour_of(4), "marker": "s"},
+    **{"ls": ":", "ms": 3},
+}
 _KEPT = (
     *("nodes", "seating_pressure", "seated_k_ni", "seated_k_ni_determined", "seated_v_m"),
     *("seated_d_0", "seated_chi", "seated_hyperbola_misfit", "seated_logarithm_misfit"),
@@ -42,8 +47,11 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     a, b = (Panel(*one) for one in zip(figure.subplots(1, 2), "ab", titles, strict=True))
     style = {"filled": "resolved", "ls": "none", "color": colour_of(0), "marker": "o"}
     a.curve(curve, "seated_closure", "nominal_pressure", keep=_KEPT, label="states", **style)
+    again = subject["branches"].sel(branch=[RELOAD])
+    a.curves(again, "seated_closure", "nominal_pressure", hue="branch", **_AGAIN)
     _draw_laws(a.axes, curve)
     _draw_stiffness(b, curve, style)
+    b.curves(again, "nominal_pressure", "interface_stiffness", hue="branch", **_AGAIN)
     if not np.isfinite(curve["seated_closure"]).any():
         say_empty(a.axes, f"no load from the seat on has {RESOLVED_NODES} nodes in contact")
     a.axes.set_xlabel("closure $d$ from the seat (mm)")
@@ -52,7 +60,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     remarks = [heading(f"$k_{{ni}}$ undetermined: {why}")] if why else []
     legends_below(figure, entries(a.axes) + remarks, entries(b.axes))
     headline(figure, subject.label, place(subject.direction))
-    return Drawing(figure, table_of(a, b), caption(__name__, **_words(curve, seat)))
+    return Drawing(figure, table_of(a, b), caption(__name__, **_words(curve, seat, again)))
 
 
 def _draw_laws(axes: Axes, curve: xr.Dataset) -> None:
@@ -89,11 +97,16 @@ def _draw_stiffness(panel: Panel, curve: xr.Dataset, style: dict[str, Any]) -> N
     axes.set_ylabel(r"$\mathrm{d}\sigma_0/\mathrm{d}w_\mathrm{int}$ (MPa/mm)")
 
 
-def _words(curve: xr.Dataset, seat: float) -> dict[str, Any]:
+def _words(curve: xr.Dataset, seat: float, again: xr.Dataset) -> dict[str, Any]:
     """Values of the caption."""
     stiffness = curve["reference_stiffness"]
     known = stiffness[np.isfinite(stiffness)]
+    on_reload = again["reference_stiffness"].sel(branch=RELOAD)
+    middle = on_reload["reference_pressure"].values[len(on_reload) // 2]
     return {
+        "residual": float(again["residual_closure"]),
+        "reload": float(on_reload.sel(reference_pressure=middle)),
+        "middle": float(middle),
         "seat": seat,
         "largest": float(curve["seated_fit_max"]),
         "k_ni": Estimate.read(curve, "seated_k_ni"),
