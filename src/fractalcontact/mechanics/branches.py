@@ -191,8 +191,12 @@ def _elastic(curve: xr.Dataset, shape: tuple[int, ...]) -> xr.Dataset:
     n = curve.sizes["normal_force"]
     of = {"closure": curve["closure"].values, "stiffness": curve["stiffness"].values}
     of["area"] = curve["area"].values
-    values = {name: [of.get(name, np.zeros(n))] * len(BRANCHES) for name in OF_BRANCHES}
-    table = {name: (_STATES, *words) for name, words in OF_BRANCHES.items()}
+    values: dict[str, Any] = {
+        name: [of.get(name, np.zeros(n))] * len(BRANCHES) for name in OF_BRANCHES
+    }
+    table: dict[str, tuple[Any, str, str]] = {
+        name: (_STATES, *words) for name, words in OF_BRANCHES.items()
+    }
     table |= {name: ((), *words) for name, words in OF_CYCLE.items()}
     table["permanent_set"] = (("y", "x"), *_PRESSED)
     values |= {"residual_closure": 0.0, "dissipated_energy": 0.0, "recovered_energy": np.nan}

@@ -26,7 +26,7 @@ NEEDS = ("specimens", "closure", "branches")
 ORDER = 45
 
 RELOAD = "reload"
-_AGAIN = {
+_AGAIN: dict[str, Any] = {
     **{"labels": ["unloading and reloading"], "color": colour_of(4), "marker": "s"},
     **{"ls": ":", "ms": 3},
 }
@@ -45,7 +45,12 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     since = f"from {pressure_label(seat)} on" if np.isfinite(seat) else "from no seat"
     titles = (f"closure {since}, {offset_words(subject, subject.offset)}", "tangent stiffness")
     a, b = (Panel(*one) for one in zip(figure.subplots(1, 2), "ab", titles, strict=True))
-    style = {"filled": "resolved", "ls": "none", "color": colour_of(0), "marker": "o"}
+    style: dict[str, Any] = {
+        "filled": "resolved",
+        "ls": "none",
+        "color": colour_of(0),
+        "marker": "o",
+    }
     a.curve(curve, "seated_closure", "nominal_pressure", keep=_KEPT, label="states", **style)
     again = subject["branches"].sel(branch=[RELOAD])
     a.curves(again, "seated_closure", "nominal_pressure", hue="branch", **_AGAIN)
@@ -57,8 +62,8 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     a.axes.set_xlabel("closure $d$ from the seat (mm)")
     a.axes.set_ylabel(f"{NOMINAL_PRESSURE} (MPa)")
     why = str(curve["seated_k_ni_reason"].item())
-    remarks = [heading(f"$k_{{ni}}$ undetermined: {why}")] if why else []
-    legends_below(figure, entries(a.axes) + remarks, entries(b.axes))
+    remarks: list[Any] = [heading(f"$k_{{ni}}$ undetermined: {why}")] if why else []
+    legends_below(figure, [*entries(a.axes), *remarks], entries(b.axes))
     headline(figure, subject.label, place(subject.direction))
     return Drawing(figure, table_of(a, b), caption(__name__, **_words(curve, seat, again)))
 
@@ -85,7 +90,13 @@ def _draw_stiffness(panel: Panel, curve: xr.Dataset, style: dict[str, Any]) -> N
     panel.curve(
         curve, "nominal_pressure", "interface_stiffness", keep=kept, label="states", **style
     )
-    stated = {"ls": "none", "marker": "D", "color": colour_of(3), "ms": 6, "mfc": "none"}
+    stated: dict[str, Any] = {
+        "ls": "none",
+        "marker": "D",
+        "color": colour_of(3),
+        "ms": 6,
+        "mfc": "none",
+    }
     panel.curve(
         curve, "reference_pressure", "reference_stiffness", label="stated pressures", **stated
     )
