@@ -19,6 +19,7 @@ import shutil
 import signal
 import subprocess
 import sys
+import threading
 import time
 from pathlib import Path
 
@@ -43,6 +44,8 @@ WAIT, GRACE, CLUSTER_GRACE = 3, 20, 120
 SPLITS = r"[\s'\"\\$`&;|<>()*?\[\]#!{}]"
 #: Bytes free below which a study is not begun: the default one makes some 100 MB.
 LEAST_ROOM = 50 * 2**20
+#: Seconds that are waited for the last words of jobs, which may outlive Snakemake.
+LAST_WORDS = 2
 SIGNALS = (signal.SIGTERM, signal.SIGINT, signal.SIGHUP, signal.SIGQUIT)
 
 
@@ -170,11 +173,18 @@ def _run(command, options, results):
             # Jobs of a cluster run elsewhere; only Linux is sure to fork what libraries have loaded.
             if not cluster and sys.platform == "linux" and not options.dry_run:
                 told[ADDRESS] = warmth.enter_context(warm.started())
-            child = subprocess.Popen(command, env=os.environ | told, start_new_session=True)
+            words = None if options.verbose else subprocess.PIPE
+            child = subprocess.Popen(
+                command, env=os.environ | told, stderr=words, start_new_session=True
+            )
+            listener = threading.Thread(target=_pass_on, args=(child.stderr,), daemon=True)
+            listener.start()
             status = child.wait()
+            listener.join(LAST_WORDS)
         except _Stopped as stopped:
             for number in SIGNALS:
                 signal.signal(number, signal.SIG_IGN)
+            _muted.set()
             _say("interrupted: jobs end, and 'make' goes on from there")
             if child is not None:
                 _end(child, cluster=cluster)
@@ -182,6 +192,18 @@ def _run(command, options, results):
     for number in SIGNALS:
         signal.signal(number, signal.SIG_DFL)
     return status if status >= 0 else 128 - status
+
+
+#: Set once jobs are told to end: what they say then is of no use.
+_muted = threading.Event()
+
+
+def _pass_on(stream):
+    """Say what Snakemake says, but for the profile that it was given."""
+    for line in stream or ():
+        if not _muted.is_set() and not line.startswith(b"Using workflow specific profile"):
+            sys.stderr.buffer.write(line)
+            sys.stderr.flush()
 
 
 class _Stopped(Exception):
@@ -198,7 +220,6 @@ def _end(child, *, cluster):
     Jobs on a cluster are taken back by Snakemake alone, and only where it is interrupted.
     """
     deadline = time.monotonic() + (CLUSTER_GRACE if cluster else GRACE)
-    child.send_signal(signal.SIGUSR2)  # what jobs say that are told to end is of no use
     if cluster:
         child.send_signal(signal.SIGINT)
         left = True

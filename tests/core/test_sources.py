@@ -1,13 +1,12 @@
 """Which files code follows from, found as the parser of Python finds them, and their digest."""
 
-import ast
 import os
 import subprocess
 import sys
-from functools import cache
 from pathlib import Path
 
 import pytest
+from parsed_imports import parsed_files
 
 import fractalcontact
 from fractalcontact.core import sources
@@ -15,68 +14,6 @@ from fractalcontact.core import sources
 PACKAGE = Path(fractalcontact.__file__).parent
 SCRIPTS = PACKAGE.parents[1] / "workflow/scripts"
 CODE = sorted(PACKAGE.rglob("*.py"))
-#: Optional, and not installed everywhere.
-PEERS = {"ContactMechanics", "NuMPI", "aspher", "muGrid", "tamaas"}
-
-
-def module_in(folder, name):
-    """The file of a module in a folder, in a list that may be empty."""
-    files = [folder / name / "__init__.py", folder / f"{name}.py"]
-    return [file for file in files if file.is_file()][:1]
-
-
-@cache
-def parsed_imports(path, package):
-    """Files that the import statements of one file name, and those of folders that it lists."""
-    found = []
-    nodes = list(ast.walk(ast.parse(path.read_text(encoding="utf-8"))))
-    listed = {
-        node.args[0].id
-        for node in nodes
-        if isinstance(node, ast.Call) and getattr(node.func, "id", "") == "modules_of"
-    }
-    for node in nodes:
-        if isinstance(node, ast.ImportFrom):
-            parts = (node.module or "").split(".") if node.module else []
-            chains = [(node.level, parts, [alias.name for alias in node.names])]
-        elif isinstance(node, ast.Import):
-            chains = [(0, alias.name.split("."), []) for alias in node.names]
-        else:
-            continue
-        for level, parts, names in chains:
-            if level:
-                folder = path.parents[level - 1]
-            elif parts[0] == package.name:
-                folder = package.parent
-            elif (path.parent / "__init__.py").exists():
-                continue
-            else:
-                folder = path.parent
-            if not level and not module_in(folder, parts[0]):
-                continue
-            for part in parts:
-                found += module_in(folder, part)
-                folder /= part
-            if (folder / "__init__.py").exists():
-                for name in names:
-                    found += module_in(folder, name)
-                    if name in listed:
-                        found += sorted((folder / name).glob("*.py"))
-    return found
-
-
-def parsed_files(path, package):
-    seen, queue = set(), [path]
-    while queue:
-        path = queue.pop()
-        if path not in seen:
-            seen.add(path)
-            queue += parsed_imports(path, package)
-            for folder in path.parents:
-                if not (folder / "__init__.py").exists():
-                    break
-                queue.append(folder / "__init__.py")
-    return sorted(seen)
 
 
 @pytest.mark.parametrize("path", [*CODE, *sorted(SCRIPTS.glob("*.py"))], ids=lambda path: path.stem)
@@ -181,11 +118,6 @@ def test_every_module_of_a_listed_folder_counts(project):
     assert files_of(project, "rocks/a") == []
 
 
-def test_the_readers_of_scans_count_for_whoever_reads_scans():
-    files = sources.source_files([SCRIPTS / "specimen.py"], package=PACKAGE)
-    assert set((PACKAGE / "scan/readers").glob("*.py")) <= set(files)
-
-
 def test_circles_end(project):
     (project / "rocks/a.py").write_text("from . import b\n")
     (project / "rocks/b.py").write_text("from . import a\n")
@@ -204,46 +136,11 @@ def test_the_package_follows_from_itself_alone():
     assert sources.source_files(CODE, package=PACKAGE) == CODE
 
 
-def test_reading_the_workflow_imports_nothing_heavy_for_it():
+def test_nothing_heavy_is_imported_for_it():
     heavy = "{'ast', 'numpy', 'numba', 'xarray', 'snakemake', 'importlib.metadata'}"
     code = f"import sys, fractalcontact.core.sources; print({heavy} & set(sys.modules))"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "set()"
-
-
-def test_libraries_are_neither_python_s_nor_ours(project):
-    (project / "scripts/job.py").write_text(
-        '"""One must not\nimport whatever comes along.\n"""\n'
-        "from __future__ import annotations\n"
-        "import os.path, numpy as np\n"
-        "import matplotlib.pyplot\n"
-        "from scipy import (\n    fft,\n)\n"
-        "import _help\n"
-        "from fractalcontact import store\n"
-        "def f():\n    import yaml\n"
-    )
-    found = sources.libraries([project / "scripts/job.py", project / "rocks/a.py"])
-    assert found == ["matplotlib", "numpy", "scipy", "yaml"]
-    (project / "rocks/a.py").write_text("from . import b\nimport numpy\n")
-    assert sources.libraries([project / "rocks/a.py"]) == ["numpy"]
-
-
-def test_every_library_of_the_package_has_a_version():
-    versions = sources.versions_of(sources.libraries([*CODE, *SCRIPTS.glob("*.py")]))
-    assert {"numba", "llvmlite", "numpy", "yaml", "netCDF4", "xarray"} <= versions.keys()
-    assert {name for name, version in versions.items() if not version} <= PEERS
-    assert list(versions) == sorted(versions)
-
-
-def test_versions_are_those_of_the_distributions():
-    import yaml
-
-    assert sources.versions_of(["yaml", "no_such_library"]) == {
-        "no_such_library": "",
-        "yaml": yaml.__version__,
-    }
-    assert list(sources.versions_of(["numba"])) == ["llvmlite", "numba"]
-    assert sources.versions_of([]) == {}
 
 
 def test_the_digest_follows_content_names_and_versions_not_the_place(project, tmp_path_factory):

@@ -11,15 +11,14 @@ import pytest
 import yaml
 from projects import ROOT, copy_project, jobs_of, made, rough_heights, run, small_study, write_scan
 
-from fractalcontact.core import sources
 from fractalcontact.core.checksums import sha256
+from fractalcontact.core.code_digest import Code
 from fractalcontact.study.atlas import read_atlas
 from fractalcontact.study.stages import STAGES, paths_of
 
 pytestmark = pytest.mark.workflow
 STUDY = "config/test.yaml"
 ATLAS, FIGURE = "results/test/atlas.nc", "results/test/figures/rock/fig02_relief.png"
-PACKAGE = ROOT / "src/fractalcontact"
 
 
 @pytest.fixture(scope="module")
@@ -216,23 +215,35 @@ def test_a_job_that_failed_with_a_new_scan_leaves_nothing_that_counts_as_made_of
     assert {"specimen", "contact", "atlas"} <= set(planned(project))
 
 
-def _files_behind(*modules):
-    paths = [ROOT / "workflow/scripts/stage.py", *(PACKAGE / f"{name}.py" for name in modules)]
-    files = sources.source_files(paths, package=PACKAGE)
-    return {path.relative_to(ROOT).as_posix() for path in files}
+def _rooms_behind(*modules):
+    """Rooms of the package whose files count for a stage, and its own modules."""
+    names = (ROOT / "workflow/scripts/stage.py", *(f"fractalcontact/{name}.py" for name in modules))
+    code = Code(ROOT / "src", ROOT)
+    files = {Path(path).relative_to(ROOT).parts for path in code.files_behind(*names)}
+    return {parts[2] for parts in files if len(parts) > 3}, {"/".join(parts) for parts in files}
 
 
 def test_the_script_of_all_stages_follows_from_the_function_that_it_calls():
-    alone = _files_behind()
-    assert "workflow/scripts/_job.py" in alone
-    assert not {path for path in alone if Path(path).parts[2:3] in (("stages",), ("study",))}
+    rooms, files = _rooms_behind()
+    assert "workflow/scripts/_job.py" in files
+    assert not {"stages", "study", "mechanics", "figures"} & rooms
     for stage in STAGES.values():
-        files = _files_behind(stage.module)
-        assert f"src/fractalcontact/{stage.module}.py" in files
-    windows = _files_behind(STAGES["window_states"].module)
-    assert {"src/fractalcontact/size_effect/eq6.py", "src/fractalcontact/contact/solve.py"} <= (
-        windows - alone
-    )
-    assert "src/fractalcontact/study/stages.py" not in windows
-    # What follows from states takes no solver.
-    assert "src/fractalcontact/contact/solve.py" not in _files_behind(STAGES["windows"].module)
+        assert f"src/fractalcontact/{stage.module}.py" in _rooms_behind(stage.module)[1]
+    rooms, files = _rooms_behind(STAGES["window_states"].module)
+    assert {"size_effect", "contact", "mechanics"} <= rooms
+    # Neither the table of stages nor another stage makes it again, nor what stands above.
+    assert not {"study", "figures", "pages"} & rooms
+    assert "src/fractalcontact/stages/strength.py" not in files
+
+
+def test_rooms_above_and_what_is_no_code_make_nothing_of_a_room_again(project):
+    for name in ("tests/test_a.py", "docs/a.md", "benchmarks/a.py"):
+        (project / name).parent.mkdir(exist_ok=True)
+        (project / name).write_text("# a comment\n")
+    assert planned(project, ATLAS, FIGURE) == {}
+    append(project, "src/fractalcontact/figures/kit/__init__.py")
+    assert set(planned(project, ATLAS, FIGURE)) == {"figures_against_plane"}
+    append(project, "src/fractalcontact/statements/judge.py")
+    assert set(planned(project, ATLAS, FIGURE)) == {"figures_against_plane", "atlas"}
+    append(project, "src/fractalcontact/mechanics/__init__.py")
+    assert {"specimen", "contact", "windows", "analysis"} <= set(planned(project, ATLAS))

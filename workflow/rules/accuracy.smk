@@ -178,7 +178,6 @@ use rule study_figures as accuracy_figures with:
     params:
         specimens=[],
         names=ACCURACY_FIGURES,
-        folder=f"{RESULTS}/figures",
         code=code("figures", "fractalcontact/figures"),
     message:
         "accuracy: figures"

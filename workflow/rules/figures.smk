@@ -124,7 +124,6 @@ rule study_figures:
     params:
         specimens=SPECIMENS,
         names=STUDY_FIGURES,
-        folder=f"{RESULTS}/figures",
         code=code("figures", "fractalcontact/figures"),
     message:
         "the study: figures over all specimens"

@@ -29,7 +29,7 @@ with job(snakemake) as log:
         drawn = (
             draw_figures(atlas, specimen, params.folder, names)
             if specimen
-            else draw_study_figures(atlas, params.specimens, params.folder, names)
+            else draw_study_figures(atlas, params.specimens, Path(atlas).parent / "figures", names)
         )
         captions, failures = drawn.captions, drawn.failures
     for name, caption in captions.items():

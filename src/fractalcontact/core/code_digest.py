@@ -58,11 +58,17 @@ class Code:
             if place not in seen:
                 seen.add(place)
                 whole = place in self._rooms
-                files = self._rooms[place] if whole else [place]
+                files = self._rooms[place] if whole else [place, *self._inits(place)]
                 found.update(files)
                 for file in files:
                     queue += self._followed(file, whole)
         return found
+
+    def _inits(self, file: str) -> list[str]:
+        """What is run before a module: the files of its folder and of its room."""
+        folders = {os.path.dirname(file), self._room_of(file)} - {None}
+        inits = [f"{folder}/__init__.py" for folder in folders]
+        return [init for init in inits if self._room_of(init) and os.path.isfile(init)]
 
     def versions(self, files: Iterable[str]) -> dict[str, str]:
         """Versions of the installed libraries that files import, by name; with numba llvmlite's."""

@@ -1,15 +1,14 @@
-"""Source files that code follows from its imports, and their digest.
+"""Source files that a module with kernels follows from, and their digest.
 
-They decide what has to be made again when code changes: results by the files behind a script,
-compiled kernels by those behind a module. Import statements are found by a regular expression, at
-the beginning of any line: to parse the package would take half a second in every process that reads
-the workflow.
+They decide which compiled kernels are out of date, file by file: a comment elsewhere compiles
+nothing. What jobs make goes by rooms (`core.code_digest`). Import statements are found by a regular
+expression, at the beginning of any line: to parse the package would take half a second in every
+process that solves.
 """
 
 import hashlib
 import os
 import re
-import sys
 from collections.abc import Iterable, Mapping
 from functools import cache
 from pathlib import Path
@@ -25,12 +24,6 @@ _COMMENT = re.compile(rb"#[^\n]*")
 _LAZY = re.compile(rb'"(\w+)": "\.([\w.]+)"')
 #: Call that imports every module of a package, see :func:`core.modules.modules_of`.
 _ALL_OF = re.compile(rb"\bmodules_of\((\w+)\)")
-
-_OWN = __name__.partition(".")[0]
-#: Distributions that are not called what one imports.
-_DISTRIBUTIONS = {"mpl_toolkits": "matplotlib", "yaml": "PyYAML"}
-#: Libraries that come with another, and make its numbers.
-_BROUGHT = {"numba": "llvmlite"}
 
 
 def source_files(paths: Iterable[Path | str], *, package: Path | str) -> list[Path]:
@@ -61,28 +54,6 @@ def source_files(paths: Iterable[Path | str], *, package: Path | str) -> list[Pa
     return sorted(map(Path, seen))
 
 
-def libraries(paths: Iterable[Path | str]) -> list[str]:
-    """Names of the top-level modules that files import from other projects.
-
-    Parameters
-    ----------
-    paths : iterable of path-like
-
-    Returns
-    -------
-    list of str
-        Sorted, without the standard library, this package and files beside the importing script.
-    """
-    found: set[str] = set()
-    tree = _Tree()
-    for path in map(os.path.abspath, paths):
-        for module, _ in _imports(_read(path)):
-            name = module.partition(".")[0]
-            if name and not _is_beside(path, name, tree):
-                found.add(name)
-    return sorted(found - sys.stdlib_module_names - {_OWN})
-
-
 def digest(
     paths: Iterable[Path | str],
     *,
@@ -98,7 +69,7 @@ def digest(
     root : path-like
         Folder they are in: names count from there, so that a moved checkout stays the same.
     versions : mapping of str to str, optional
-        Versions that count too, such as those of :func:`versions_of`.
+        Versions that count too, by library.
 
     Returns
     -------
@@ -121,34 +92,6 @@ def digest(
     for name, version in sorted((versions or {}).items()):
         total.update(f"{name}=={version}\n".encode())
     return total.hexdigest()[:16]
-
-
-def versions_of(names: Iterable[str]) -> dict[str, str]:
-    """Installed versions of libraries.
-
-    Parameters
-    ----------
-    names : iterable of str
-        What one imports, as :func:`libraries` gives it.
-
-    Returns
-    -------
-    dict of str to str
-        By name, sorted; empty where nothing of that name is installed. With numba comes llvmlite.
-    """
-    names = set(names)
-    names |= {_BROUGHT[name] for name in names & _BROUGHT.keys()}
-    return {name: _version(name) for name in sorted(names)}
-
-
-@cache
-def _version(name):
-    from importlib import metadata  # takes longer to import than all the rest
-
-    try:
-        return metadata.version(_DISTRIBUTIONS.get(name, name))
-    except metadata.PackageNotFoundError:
-        return ""
 
 
 class _Tree:

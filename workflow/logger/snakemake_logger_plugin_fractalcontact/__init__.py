@@ -6,7 +6,7 @@ gives it; Snakemake's own log in .snakemake/log keeps everything.
 
 import os
 import re
-import signal
+import shutil
 import sys
 import textwrap
 import time
@@ -17,10 +17,10 @@ from snakemake_interface_logger_plugins.base import LogHandlerBase
 
 #: Columns of the terminal; lines of warnings at the end, of which the result page has all.
 WIDTH, MOST_WARNINGS = 120, 24
+#: Bytes free on a disk below which it counts as full.
+LEAST_ROOM = 2**20
 #: Environment variable with the folder of the study's results.
 RESULTS = "FRACTALCONTACT_RESULTS"
-#: What says that nothing more need be said: the run is told to end.
-MUTE = signal.SIGUSR2
 #: Rules that make nothing themselves: what they ask for is made when they come.
 _TARGETS = ("all", "pages", "accuracy")
 _FULL = ("No space left on device", "Disk quota exceeded", "no space left on its disk")
@@ -52,9 +52,9 @@ class LogHandler(LogHandlerBase):
         self.jobs, self.running, self.failed = {}, {}, {}
         self.total, self.done, self.errors, self.warnings = 0, 0, [], {}
         self.nothing = self.stopped = self.closed = False
-        for stream in (sys.stdout, sys.stderr):
+        self.out, self.err = sys.stdout, sys.stderr
+        for stream in (self.out, self.err):
             stream.reconfigure(errors="backslashreplace")  # names of specimens are in any script
-        signal.signal(MUTE, lambda number, frame: setattr(self, "stopped", True))
 
     def emit(self, record):
         """Take in one event of Snakemake."""
@@ -103,11 +103,13 @@ class LogHandler(LogHandlerBase):
         if said := self._error_of(logs):
             lines = [f"error: {said}", f"  job: {_cut(title, WIDTH - 7)}"]
             for line in [*lines, *(f"  log: {path}" for path in logs)]:
-                self._say(line, sys.stderr)
+                self._say(line, self.err)
 
     def _error(self, record):
         lines = str(record.msg).splitlines() or [""]
-        if len(lines) > 1 and re.fullmatch(r"\w+(?: in (?:rule .*|file \".*\", line \d+))?:", lines[0]):
+        if len(lines) > 1 and re.fullmatch(
+            r"\w+(?: in (?:rule .*|file \".*\", line \d+))?:", lines[0]
+        ):
             del lines[0]
         self.errors.append("\n".join(s for s in lines if not s.startswith('  File "')).strip())
 
@@ -129,7 +131,9 @@ class LogHandler(LogHandlerBase):
         if "stopped before it was done" in lines[-1:]:
             self.stopped = True
             return ""
-        if _is_full(lines):
+        # Of a full disk the log may say nothing, which stands on it too.
+        place = self.results if os.path.isdir(self.results) else "."
+        if _is_full(lines) or (not lines and shutil.disk_usage(place).free < LEAST_ROOM):
             return f"{self.results}: no space left on its disk; make room there and run again"
         if "error in the program" in lines:
             return f"a fault of the program, not of the input: {lines[-1]}"
@@ -146,11 +150,11 @@ class LogHandler(LogHandlerBase):
             left = self.total - self.done - len(self.failed)
             waiting = f"; {left} more were not begun" if left > 0 else ""
             done = f"{self.done} of {_counted(self.total)} done, {len(self.failed)} failed"
-            self._say(done + waiting, sys.stderr)
+            self._say(done + waiting, self.err)
         elif _is_full(self.errors):
-            self._say("error: .snakemake: no space left on its disk; make room there", sys.stderr)
+            self._say("error: .snakemake: no space left on its disk; make room there", self.err)
         elif self.errors:
-            self._say(f"error: {self.errors[-1]}", sys.stderr)
+            self._say(f"error: {self.errors[-1]}", self.err)
         elif self.nothing or (self.dry_run and not self.jobs):
             self._say("nothing to do: everything there is, is up to date")
         elif self.dry_run:
@@ -177,16 +181,16 @@ class LogHandler(LogHandlerBase):
         ]
         more = ["  and more, which the result page has"] if len(lines) > MOST_WARNINGS else []
         for line in ["warnings of the data:", *lines[:MOST_WARNINGS], *more] if lines else []:
-            self._say(line, sys.stderr)
+            self._say(line, self.err)
 
     def _wrapped(self, text):
         for line in _lines(text, WIDTH):
-            self._say(line, sys.stderr)
+            self._say(line, self.err)
 
     def _say(self, line, stream=None):
         if not self.stopped:
             line = _CONTROL.sub(lambda found: f"\\x{ord(found[0]):02x}", line)
-            put(f"{line}\n", stream or sys.stdout)
+            put(f"{line}\n", stream or self.out)
 
 
 def put(text, stream):
