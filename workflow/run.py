@@ -170,7 +170,7 @@ def _run(command, options, results):
         try:
             for number in SIGNALS:
                 signal.signal(number, _stop)
-            # Jobs of a cluster run elsewhere; only Linux is sure to fork what libraries have loaded.
+            # Jobs of a cluster run elsewhere; only Linux surely forks what libraries have loaded.
             if not cluster and sys.platform == "linux" and not options.dry_run:
                 told[ADDRESS] = warmth.enter_context(warm.started())
             words = None if options.verbose else subprocess.PIPE

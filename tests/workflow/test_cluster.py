@@ -160,9 +160,8 @@ from types import SimpleNamespace
 sys.path[:0] = [{scripts!r}, {package!r}]
 from _job import job
 from fractalcontact.core.errors import InputError, OutputError
-snakemake = SimpleNamespace(
-    log=["job.log"], config={{"study": "test"}}, input=[], output=[], resources=json.loads(sys.argv[1])
-)
+told = {{"resources": json.loads(sys.argv[1]), "config": {{"study": "test"}}}}
+snakemake = SimpleNamespace(log=["job.log"], input=[], output=[], **told)
 with job(snakemake):
     print("works")
     raise {error}("rock.npy: no numbers; write some")

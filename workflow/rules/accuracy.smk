@@ -33,7 +33,10 @@ MEASURED = {
     **{
         f"stability/{part}": (
             "accuracy.stability:stability",
-            {"kinds": list(KINDS)[part : part + KINDS_A_JOB], "draws": config["stability"]["draws"]},
+            {
+                "kinds": list(KINDS)[part : part + KINDS_A_JOB],
+                "draws": config["stability"]["draws"],
+            },
         )
         for part in PARTS
     },
@@ -78,8 +81,8 @@ rule speed_growth:
     resources:
         **fixed(1000, 10),
     params:
-        error=config.get("speed", {}).get("error"),
         **calling("speed_growth"),
+        error=config.get("speed", {}).get("error"),
     message:
         "speed: time over the size of surfaces"
     script:
@@ -131,9 +134,7 @@ if TIMED:
     ACCURACY_FILES["speed"] = expand(rules.speed.output[0], case=TIMED)
     ACCURACY_FILES["speed_growth"] = rules.speed_growth.output[0]
 if PROBLEMS:
-    ACCURACY_FILES["convergence"] = [
-        f"{RESULTS}/convergence/{problem}.nc" for problem in PROBLEMS
-    ]
+    ACCURACY_FILES["convergence"] = [f"{RESULTS}/convergence/{problem}.nc" for problem in PROBLEMS]
 if PARTS:
     ACCURACY_FILES["stability"] = rules.stability.output[0]
     ACCURACY_FILES["elimination"] = f"{RESULTS}/elimination/scenes.nc"

@@ -103,7 +103,9 @@ def asked_for(job, grid=1):
         return lambda wildcards, attempt: amount(
             job,
             nodes_of(known(wildcards))[grid],
-            states=resources.states_of(SETTINGS[wildcards.specimen], most_offsets(wildcards.specimen)),
+            states=resources.states_of(
+                SETTINGS[wildcards.specimen], most_offsets(wildcards.specimen)
+            ),
             attempt=attempt,
         )
 
@@ -219,7 +221,11 @@ def calling(stage):
     """Parameters by which scripts/stage.py calls the function of a stage."""
     function = stages.STAGES[stage].function
     given = {"settings": settings_read_by(function)} if stages.sections_of(function) else {}
-    return {"function": function, "code": code("stage", f"fractalcontact/{stages.STAGES[stage].module}.py"), **given}
+    return {
+        "function": function,
+        "code": code("stage", f"fractalcontact/{stages.STAGES[stage].module}.py"),
+        **given,
+    }
 
 
 #: Files of the stages that every specimen has, and of those that only joints that slide have.

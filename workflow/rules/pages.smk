@@ -2,6 +2,7 @@
 # specimen and tables beside them.
 from fractalcontact.pages import files as page_files
 
+
 rule explorer:
     input:
         rules.atlas.output[0],

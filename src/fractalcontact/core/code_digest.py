@@ -98,7 +98,7 @@ class Code:
         return rooms
 
     def _followed(self, file: str, whole: bool) -> Iterator[str]:
-        """What a file imports: rooms, and single files of its own room, unless that counts whole."""
+        """What a file imports: rooms, and files of its own room unless that counts whole."""
         home = os.path.dirname(file)
         room = self._room_of(home)
         for module in self._read(file)[1]:

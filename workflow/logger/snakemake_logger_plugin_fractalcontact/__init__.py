@@ -35,6 +35,8 @@ _REASONS = {
 }
 #: In a reason, the checksum of a scan; the digest of code; what would do things to a terminal.
 _CHECKSUM, _DIGEST = re.compile(r"\b[0-9a-f]{64}\b"), re.compile(r"'?[0-9a-f]{16}'?")
+#: Where in the workflow an error was noticed, before what it says.
+_PLACE = re.compile(r"\w+(?: in (?:rule .*|file \".*\", line \d+))?:")
 _CONTROL = re.compile(r"[\x00-\x08\x0b-\x1f\x7f-\x9f]")
 
 
