@@ -262,7 +262,7 @@ def test_a_job_that_succeeds_at_the_second_attempt_has_not_failed(said):
     one.close()
     lines, errors = both()
     assert lines[-2:] == ["[1/1] rock: scan (0 s)", "1 job done in 0 s"]
-    assert errors[0].startswith("error: ended without a word")
+    assert errors[0].startswith("error: ended before it could write its log")
 
 
 def test_a_reader_that_ends_early_stops_nothing():

@@ -84,15 +84,24 @@ def test_a_run_is_a_line_a_job_and_leaves_a_crate_of_what_it_made(finished):
     assert (finished / "results/test/code/Snakefile").is_file()
 
 
-def test_code_counts_that_a_script_shares_with_others_or_calls_by_name(project):
+def test_code_counts_by_rooms_and_what_is_no_code_makes_nothing_again(project):
+    for name in ("tests/test_a.py", "docs/a.md", "benchmarks/a.py"):
+        (project / name).parent.mkdir(exist_ok=True)
+        (project / name).write_text("# a comment\n")
+    # Another stage: those there are need nothing of it.
+    (project / "src/fractalcontact/stages/another.py").write_text("# its function\n")
+    append(project, "src/fractalcontact/figures/kit/__init__.py")
+    assert set(planned(project, ATLAS, FIGURE)) == {"figures_against_plane"}
     for name in (
         "workflow/scripts/_stages.py",  # beside the script of the atlas
         "src/fractalcontact/stages/windows.py",  # the function that a generic script calls
-        "src/fractalcontact/study/stages.py",  # another stage: the others are not made again
+        "src/fractalcontact/study/stages.py",  # the table, in which another stage stands
+        "src/fractalcontact/statements/judge.py",
     ):
         append(project, name)
-    (project / "src/fractalcontact/stages/another.py").write_text("# its function\n")
     assert set(planned(project)) == {"windows", "size_laws_against_plane", "atlas"}
+    append(project, "src/fractalcontact/mechanics/__init__.py")
+    assert {"specimen", "contact", "analysis"} <= set(planned(project))
 
 
 def test_a_scan_replaced_by_an_older_file_is_read(project):
@@ -234,16 +243,3 @@ def test_the_script_of_all_stages_follows_from_the_function_that_it_calls():
     # Neither the table of stages nor another stage makes it again, nor what stands above.
     assert not {"study", "figures", "pages"} & rooms
     assert "src/fractalcontact/stages/strength.py" not in files
-
-
-def test_rooms_above_and_what_is_no_code_make_nothing_of_a_room_again(project):
-    for name in ("tests/test_a.py", "docs/a.md", "benchmarks/a.py"):
-        (project / name).parent.mkdir(exist_ok=True)
-        (project / name).write_text("# a comment\n")
-    assert planned(project, ATLAS, FIGURE) == {}
-    append(project, "src/fractalcontact/figures/kit/__init__.py")
-    assert set(planned(project, ATLAS, FIGURE)) == {"figures_against_plane"}
-    append(project, "src/fractalcontact/statements/judge.py")
-    assert set(planned(project, ATLAS, FIGURE)) == {"figures_against_plane", "atlas"}
-    append(project, "src/fractalcontact/mechanics/__init__.py")
-    assert {"specimen", "contact", "windows", "analysis"} <= set(planned(project, ATLAS))

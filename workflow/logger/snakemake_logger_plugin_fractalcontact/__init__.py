@@ -137,6 +137,8 @@ class LogHandler(LogHandlerBase):
         place = self.results if os.path.isdir(self.results) else "."
         if _is_full(lines) or (not lines and shutil.disk_usage(place).free < LEAST_ROOM):
             return f"{self.results}: no space left on its disk; make room there and run again"
+        if not any(os.access(path, os.W_OK) for path in logs):
+            return "ended before it could write its log"
         if "error in the program" in lines:
             return f"a fault of the program, not of the input: {lines[-1]}"
         unwritten = "ended without a word; it was killed, or the memory did not suffice"
