@@ -10,6 +10,11 @@ import _running
 from fractalcontact.study import crate, guards
 
 
+#: Whether a killed run left jobs half done, whose files may be newer than their checksums: Snakemake
+#: runs those again itself. Known before more files are marked as theirs are.
+HALF_DONE = any(Path(".snakemake/incomplete").glob("*"))
+
+
 def remake_without_record():
     """Mark results that Snakemake would take for up to date though its record of them is lost."""
     if not workflow.is_main_process:
@@ -28,7 +33,7 @@ def begin():
     try:
         # Whoever runs it says these two, never a study: workflow/run.py, that it has set damaged
         # files aside, and the user, that specimens may go.
-        if "FRACTALCONTACT_CHECKED" not in os.environ:
+        if "FRACTALCONTACT_CHECKED" not in os.environ and not HALF_DONE:
             guards.refuse_damage(RESULTS, DIGESTS.of)
         if "FRACTALCONTACT_DROP" not in os.environ:
             guards.refuse_loss(RESULTS, [*SETTINGS, *LABELS])
