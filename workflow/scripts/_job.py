@@ -80,10 +80,16 @@ def job(snakemake):
         sys.exit(1)
 
 
+#: Standard error as it was before the log took it.
+_terminal = os.dup(2)
+
+
 def _begin_log(path):
     """Let the log take what the job says, and what libraries write past it."""
     try:
-        logging.basicConfig(filename=path, filemode="w", level=logging.INFO, format="%(message)s")
+        logging.basicConfig(
+            filename=path, filemode="w", encoding="utf-8", level=logging.INFO, format="%(message)s"
+        )
         os.dup2(logging.getLogger().handlers[0].stream.fileno(), sys.stderr.fileno())
     except OSError as error:
         sys.exit(f"error: {path}: cannot be written ({error.strerror}); mend that and run again")
@@ -92,6 +98,8 @@ def _begin_log(path):
 def _end_with(message, *, certain):
     logging.raiseExceptions = False  # the log may stand on the same full disk
     log.error(message)
+    if message not in Path(logging.getLogger().handlers[0].baseFilename).read_text("utf-8"):
+        os.write(_terminal, f"{message}\n".encode())
     if certain:
         log.info(CERTAIN)
     sys.exit(1)

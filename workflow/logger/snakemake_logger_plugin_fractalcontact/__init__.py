@@ -135,7 +135,7 @@ class LogHandler(LogHandlerBase):
             return ""
         # Of a full disk the log may say nothing, which stands on it too.
         place = self.results if os.path.isdir(self.results) else "."
-        if _is_full(lines) or (not lines and shutil.disk_usage(place).free < LEAST_ROOM):
+        if _is_full(lines) or shutil.disk_usage(place).free < LEAST_ROOM:
             return f"{self.results}: no space left on its disk; make room there and run again"
         if not any(os.access(path, os.W_OK) for path in logs):
             return "ended before it could write its log"
