@@ -14,7 +14,8 @@ arguments = dict(snakemake.params.items())
 # Not from the table of stages: then a new one would make all others again.
 module, _, name = arguments.pop("function").partition(":")
 function = getattr(import_module(f"fractalcontact.{module}"), name)
-del arguments["code"]
+for key in ("code", "peers"):  # they only say when it is to be made again
+    arguments.pop(key, None)
 arguments |= settings.arguments(function, arguments.pop("settings", {}))
 arguments |= arguments.pop("arguments", {})
 
