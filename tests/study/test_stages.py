@@ -54,6 +54,8 @@ def test_a_stage_with_files_has_a_rule():
         if stage.filed:
             together = "|".join(made_together(name))
             made = rf'(outputs_of|calling)\(\s*"({together})"|RESULTS}}/({together})/'
+            # Experiments that share a rule.
+            made += rf'|(?:LONG|SHORT) = [({{][^)}}]*"({together})"'
             assert re.search(made, rules), f"no rule in workflow/rules makes {name}"
 
 
