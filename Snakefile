@@ -20,21 +20,25 @@ include: "workflow/rules/size_effect.smk"
 include: "workflow/rules/experiments.smk"
 include: "workflow/rules/atlas.smk"
 include: "workflow/rules/figures.smk"
-include: "workflow/rules/explorer.smk"
 include: "workflow/rules/pages.smk"
 include: "workflow/rules/accuracy.smk"
+include: "workflow/rules/records.smk"
+
+
+# Before Snakemake looks at what there is: results of which it has lost the record are made again.
+remake_without_record()
 
 
 onstart:
-    plan.write_plan(PLAN, NOW)
+    begin()
 
 
 onsuccess:
-    write_records()
+    end()
 
 
 onerror:
-    write_records()
+    end()
 
 
 rule all:

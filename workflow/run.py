@@ -7,14 +7,12 @@ WORDS are options and targets of Snakemake.
 The study is read as plain data first: Snakemake itself runs Python that stands in a study which
 says `__use_yte__: true`. A lock that a killed run left is taken away, that of a living run never.
 Files that were damaged since they were made are set aside, so that Snakemake makes them again. Told
-to end, it ends all jobs. The terminal gets a line a job; Snakemake's own words are in
-.snakemake/log, or, with --verbose, in the terminal instead.
+to end, it ends all jobs. The terminal gets a line a job, from the logger plugin in workflow/logger;
+Snakemake's own words are in .snakemake/log, or, with --verbose, in the terminal instead.
 """
 
 import argparse
 import contextlib
-import io
-import json
 import os
 import re
 import shutil
@@ -33,24 +31,22 @@ import _running
 import warm
 from _warm import ADDRESS
 from cluster import left_in_queue
-from terminal import Terminal, put
 
 from fractalcontact.core import checksums
 from fractalcontact.core.atomic import sweep
 from fractalcontact.core.errors import InputError
 from fractalcontact.study.documents import read_study, study_name
 
-#: Seconds that another run is waited for, which may only be reading the workflow; and that jobs get
-#: to end when they are told to.
+#: Seconds that another run is waited for, which may only be beginning; and that jobs get to end
+#: when they are told to.
 WAIT, GRACE, CLUSTER_GRACE = 3, 20, 120
-#: Seconds that are waited for the last words of jobs once Snakemake has ended.
-LAST_WORDS = 2
-#: Where Snakemake finds the logger that shows on the terminal what happens.
-LOGGER = ROOT / "workflow/logger"
 #: What a shell does not take as it is.
 SPLITS = r"[\s'\"\\$`&;|<>()*?\[\]#!{}]"
 #: Bytes free below which a study is not begun: the default one makes some 100 MB.
 LEAST_ROOM = 50 * 2**20
+#: Seconds that are waited for the last words of jobs, which may outlive Snakemake.
+LAST_WORDS = 2
+SIGNALS = (signal.SIGTERM, signal.SIGINT, signal.SIGHUP, signal.SIGQUIT)
 
 
 def main():
@@ -61,25 +57,11 @@ def main():
         name = study_name(read_study(options.study), options.study)
         results = Path("results") / (f"{name}_full" if options.full else name)
         if options.dry_run:
-            _name_damage(results)
+            for path, why in _spoilt(results):
+                _say(f"{path}: {why}; a run sets it aside, and makes it again if needed")
             sys.exit(_run([*_command(options, name), "--dry-run", *passed], options, results))
         _require_room(results)
-        guard, has_locks = _running.alone(WAIT)
-        if guard is None:
-            raise InputError(
-                "another run is at work in this folder (or jobs that a killed one left, which end "
-                "by themselves); wait for it, or end it first"
-            )
-        _require_empty_queue(options.profile)
-        if has_locks:
-            _unlock(_command(options, name), options)
-            _clean(results)
-        else:
-            print(
-                "this file system knows no locks: what a killed run may have left stays",
-                file=sys.stderr,
-            )
-        _running.share(guard)
+        _clean(options, results)
         status = _run([*_command(options, name), *passed], options, results)
         if status == 0:
             _name_leftovers(results)
@@ -87,10 +69,7 @@ def main():
     except (InputError, OSError) as error:  # a result, the guard or a folder that cannot be used
         sys.exit(f"error: {error}")
     if status:
-        print(
-            "the study did not finish; what is done is kept, and 'make' goes on from there",
-            file=sys.stderr,
-        )
+        _say("the study did not finish; what is done is kept, and 'make' goes on from there")
     sys.exit(status)
 
 
@@ -110,6 +89,7 @@ def _options():
 def _command(options, name):
     command = [sys.executable, "-m", "snakemake", "--configfile", str(options.study)]
     command += ["--workflow-profile", f"workflow/profiles/{options.profile}"]
+    command += [] if options.verbose else ["--logger", "fractalcontact"]
     return command + (["--config", f"study={name}_full", "accuracy=full"] if options.full else [])
 
 
@@ -124,9 +104,7 @@ def _require_plain_path():
 
 def _require_room(results):
     """Say before minutes are spent that there is no place for what they would give."""
-    folder = results
-    while not folder.exists():
-        folder = folder.parent
+    folder = next(path for path in (results, *results.parents) if path.exists())
     if not folder.is_dir() or not os.access(folder, os.W_OK | os.X_OK):
         raise InputError(f"{folder}: no folder that can be written to; allow it (chmod u+w)")
     free = shutil.disk_usage(folder).free
@@ -137,28 +115,29 @@ def _require_room(results):
         )
 
 
-def _require_empty_queue(profile):
-    """Jobs of a killed run that wait on a cluster would write beside those of this one."""
-    if left := left_in_queue(f"workflow/profiles/{profile}"):
+def _clean(options, results):
+    """Take away what a killed run left, where nothing is at work; set aside what is damaged."""
+    guard, has_locks = _running.alone(WAIT)
+    if guard is None:
+        raise InputError(
+            "another run is at work in this folder (or jobs that a killed one left, which end "
+            "by themselves); wait for it, or end it first"
+        )
+    if left := left_in_queue(f"workflow/profiles/{options.profile}"):
         raise InputError(
             f"jobs of a run that was killed are still in the cluster's queue ({', '.join(left)}); "
             f"wait until they have ended, or end them: scancel {' '.join(left)}"
         )
-
-
-def _unlock(command, options):
-    """Take away what a killed run left of Snakemake's lock: nothing lives here now."""
-    locks = Path(".snakemake/locks")
-    if locks.is_dir() and any(locks.iterdir()):
-        # What is wrong with the study is said by the run itself.
-        environment = _environment(options) | {"FRACTALCONTACT_ALONE": "1"}
-        subprocess.run([*command, "--unlock"], env=environment, capture_output=True)
-
-
-def _environment(options):
-    """What the workflow is told: that results were looked at here, and whether some may go."""
-    told = {"FRACTALCONTACT_CHECKED": "1"} | ({"FRACTALCONTACT_DROP": "1"} if options.drop else {})
-    return os.environ | told
+    if has_locks:
+        shutil.rmtree(".snakemake/locks", ignore_errors=True)
+        for path in sweep(results):
+            _say(f"removed {path}, which a killed run left unfinished")
+        for path, why in list(_spoilt(results)):
+            aside = checksums.set_aside(results, path)
+            _say(f"{path}: {why}; moved to {aside}, and made again if needed")
+    else:
+        _say("this file system knows no locks: what a killed run may have left stays")
+    _running.share(guard)
 
 
 def _spoilt(results):
@@ -172,96 +151,59 @@ def _spoilt(results):
     digests = checksums.Digests(".snakemake/fractalcontact-digests.json")
     checked = checksums.check(results, digests.of)
     digests.save()
-    for path in checked.damaged:
-        yield path, "damaged or replaced after it was made"
-    for path in checked.unrecorded:
-        yield path, "without a checksum"
-
-
-def _clean(results):
-    """Remove what is half written; set aside what must not be read."""
-    for path in sweep(results):
-        print(f"removed {path}, which a killed run left unfinished", file=sys.stderr)
-    for path, why in list(_spoilt(results)):
-        aside = checksums.set_aside(results, path)
-        print(f"{path}: {why}; moved to {aside}, and made again if needed", file=sys.stderr)
-
-
-def _name_damage(results):
-    for path, why in _spoilt(results):
-        print(f"{path}: {why}; a run sets it aside, and makes it again if needed", file=sys.stderr)
+    yield from ((path, "damaged or replaced after it was made") for path in checked.damaged)
+    yield from ((path, "without a checksum") for path in checked.unrecorded)
 
 
 def _run(command, options, results):
-    """Exit code of a command whose whole family of processes ends with this one."""
-    signals, child = (signal.SIGTERM, signal.SIGINT, signal.SIGHUP, signal.SIGQUIT), None
-    terminal = None if options.verbose else Terminal(results, dry_run=options.dry_run)
-    listeners = []
-    warmth = contextlib.ExitStack()
-    try:
-        for number in signals:
-            signal.signal(number, _stop)
-        environment = _environment(options)
-        # Jobs of a cluster run elsewhere; only Linux is sure to fork what libraries have loaded.
-        local = options.profile == "default" and sys.platform == "linux"
-        if local and not options.dry_run:
-            environment[ADDRESS] = warmth.enter_context(warm.started())
-        if terminal is None:
-            child = subprocess.Popen(command, env=environment, start_new_session=True)
-        else:
-            child, listeners = _start(command, environment, terminal)
-        status = child.wait()
-    except _Stopped as stopped:
-        for number in signals:
-            signal.signal(number, signal.SIG_IGN)
-        if terminal is not None:
-            terminal.mute()
-        print("interrupted: jobs end, and 'make' goes on from there", file=sys.stderr)
-        if child is not None:
-            _end(child, cluster=options.profile != "default")
-        sys.exit(128 + stopped.args[0])
-    finally:
-        warmth.close()
-    for number in signals:
+    """Exit code of Snakemake, whose whole family of processes ends with this one."""
+    path = [str(ROOT / "workflow/logger"), str(ROOT / "workflow"), os.environ.get("PYTHONPATH")]
+    told = {
+        "PYTHONPATH": os.pathsep.join(filter(None, path)),
+        # That results were looked at here, where they are, and whether some may go.
+        "FRACTALCONTACT_CHECKED": "1",
+        "FRACTALCONTACT_RESULTS": str(results),
+        **({"FRACTALCONTACT_DROP": "1"} if options.drop else {}),
+    }
+    cluster, child = options.profile != "default", None
+    with contextlib.ExitStack() as warmth:
+        try:
+            for number in SIGNALS:
+                signal.signal(number, _stop)
+            # Jobs of a cluster run elsewhere; only Linux surely forks what libraries have loaded.
+            if not cluster and sys.platform == "linux" and not options.dry_run:
+                told[ADDRESS] = warmth.enter_context(warm.started())
+            words = None if options.verbose else subprocess.PIPE
+            child = subprocess.Popen(
+                command, env=os.environ | told, stderr=words, start_new_session=True
+            )
+            listener = threading.Thread(target=_pass_on, args=(child.stderr,), daemon=True)
+            listener.start()
+            status = child.wait()
+            listener.join(LAST_WORDS)
+        except _Stopped as stopped:
+            for number in SIGNALS:
+                signal.signal(number, signal.SIG_IGN)
+            _muted.set()
+            _say("interrupted: jobs end, and 'make' goes on from there")
+            if child is not None:
+                _end(child, cluster=cluster)
+            sys.exit(128 + stopped.args[0])
+    for number in SIGNALS:
         signal.signal(number, signal.SIG_DFL)
-    for listener in listeners:
-        listener.join(LAST_WORDS)  # jobs that outlive Snakemake keep the pipe open
-    if terminal is not None:
-        terminal.finish(status)
     return status if status >= 0 else 128 - status
 
 
-def _start(command, environment, terminal):
-    """Snakemake and those who listen to it: events of its logger, and what jobs write to stderr."""
-    heard, told = os.pipe()
-    path = os.pathsep.join(filter(None, [str(LOGGER), os.environ.get("PYTHONPATH")]))
-    environment = environment | {"PYTHONPATH": path, "FRACTALCONTACT_EVENTS": str(told)}
-    child = subprocess.Popen(
-        [*command[:3], "--logger", "fractalcontact", *command[3:]],
-        env=environment,
-        pass_fds=(told,),
-        stderr=subprocess.PIPE,
-        start_new_session=True,
-    )
-    os.close(told)
-    events = os.fdopen(heard, encoding="utf-8", errors="replace")
-    words = io.TextIOWrapper(child.stderr, encoding="utf-8", errors="replace")
-    listeners = [
-        threading.Thread(
-            target=_listen, args=(events, lambda line: terminal.hear(json.loads(line)))
-        ),
-        threading.Thread(target=_listen, args=(words, terminal.overhear)),
-    ]
-    for listener in listeners:
-        listener.daemon = True
-        listener.start()
-    return child, listeners
+#: Set once jobs are told to end: what they say then is of no use.
+_muted = threading.Event()
 
 
-def _listen(stream, take):
-    with stream:
-        for line in stream:
-            take(line)
+def _pass_on(stream):
+    """Say what Snakemake says, but for the profile that it was given."""
+    for line in stream or ():
+        if not _muted.is_set() and not line.startswith(b"Using workflow specific profile"):
+            sys.stderr.buffer.write(line)
+            sys.stderr.flush()
 
 
 class _Stopped(Exception):
@@ -306,14 +248,12 @@ def _name_leftovers(results):
     listed = results / "specimens.txt"
     if not listed.is_file():
         return
-    names = listed.read_text(encoding="utf-8").split()
-    left = {path.stem for path in results.glob("specimens/*.nc")} - set(names)
-    left |= {path.stem for path in results.glob("contact_maps/*.nc")} - set(names)
+    made = [*results.glob("specimens/*.nc"), *results.glob("contact_maps/*.nc")]
+    left = {path.stem for path in made} - set(listed.read_text(encoding="utf-8").split())
     if left:
-        print(
+        _say(
             f"{results} keeps files of {', '.join(sorted(left))}, which the study no longer has; "
-            "remove those you do not need",
-            file=sys.stderr,
+            "remove those you do not need"
         )
 
 
@@ -321,7 +261,12 @@ def _name_page(results):
     """The last line of a run: where the results can be looked at, if these are the last ones."""
     page, atlas = results / "index.html", results / "atlas.nc"
     if page.is_file() and atlas.is_file() and page.stat().st_mtime >= atlas.stat().st_mtime:
-        put(f"the results: {page.resolve().as_uri()}\n", sys.stdout)
+        with contextlib.suppress(BrokenPipeError):
+            print(f"the results: {page.resolve().as_uri()}", flush=True)
+
+
+def _say(line):
+    print(line, file=sys.stderr)
 
 
 if __name__ == "__main__":

@@ -3,7 +3,7 @@
     python workflow/warm.py FOLDER SOCKET
 
 It listens on a socket, that of a folder of its own, until whoever started it closes its standard
-input. ``scripts/_warm.py`` is the other end.
+input. ``scripts/_warm.py`` is the other end. What it saves is measured in CONTRIBUTING.md.
 """
 
 import contextlib
@@ -13,6 +13,7 @@ import importlib
 import json
 import logging
 import os
+import pkgutil
 import runpy
 import select
 import shutil
@@ -25,29 +26,13 @@ import traceback
 from collections.abc import Iterator
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[1]
-sys.path.insert(0, str(ROOT / "src"))
-#: What the scripts of a study import, and what their functions import when they are called.
-MODULES = (
-    "fractalcontact.core.netcdf",
-    "contactlab.experiments.size_states",
-    "fractalcontact.figures.draw",
-    "fractalcontact.mechanics.sweep",
-    "fractalcontact.pages.explorer",
-    "fractalcontact.pages.result_page",
-    "fractalcontact.stages.atlas",
-    "fractalcontact.stages.specimen",
-    "fractalcontact.stages.states",
-    "fractalcontact.stages.report",
-    "fractalcontact.stages.windows",
-    "fractalcontact.study.embedded",
-    "fractalcontact.study.preparation",
-    "netCDF4",
-    "scipy.optimize",
-    "scipy.stats",
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "src"))
+#: Rooms whose modules are loaded, with all that they import; the others are so too, or rarely used.
+ROOMS = (
+    *("fractalcontact.figures", "fractalcontact.mechanics", "fractalcontact.pages"),
+    *("fractalcontact.stages", "fractalcontact.study"),
+    *("contactlab.experiments", "contactlab.figures"),
 )
-
-
 _SOCKET = "warm"
 #: What the libraries that are loaded take their number of threads from: that of a job.
 ONE_THREAD = ("OMP", "GOTO", "OPENBLAS", "MKL", "VECLIB_MAXIMUM", "NUMEXPR")
@@ -97,34 +82,28 @@ def main():
     load()
     gc.collect()
     gc.freeze()  # what is loaded stays, and forks share it: none is to go through it
-    _serve(listener)
+    signal.signal(signal.SIGCHLD, signal.SIG_IGN)  # nobody waits for the forks
+    while sys.stdin not in select.select([listener, sys.stdin], [], [])[0]:
+        connection, _ = listener.accept()
+        with connection:
+            if os.fork() == 0:
+                listener.close()
+                _work(connection)
     # Whoever started it removes the folder too, unless it was killed: then nobody else does.
     shutil.rmtree(folder, ignore_errors=True)
 
 
 def load():
     """Import what jobs import, and load the kernels that were compiled."""
-    from fractalcontact.study.figure_list import all_figures
     from roughcontact.kernel_cache import load_kept
 
-    for name in MODULES:
+    for room in ROOMS:
+        package = importlib.import_module(room)
+        for module in pkgutil.walk_packages(package.__path__, f"{package.__name__}."):
+            importlib.import_module(module.name)
+    for name in ("netCDF4", "scipy.optimize", "scipy.stats"):
         importlib.import_module(name)
-    for figure in all_figures().values():
-        importlib.import_module(figure.module.replace("/", "."))
     load_kept()
-
-
-def _serve(listener):
-    signal.signal(signal.SIGCHLD, signal.SIG_IGN)  # nobody waits for the forks
-    while True:
-        ready, _, _ = select.select([listener, sys.stdin], [], [])
-        if sys.stdin in ready:
-            return
-        connection, _ = listener.accept()
-        with connection:
-            if os.fork() == 0:
-                listener.close()
-                _work(connection)
 
 
 def _work(connection):
@@ -139,28 +118,29 @@ def _work(connection):
         signal.signal(signal.SIGCHLD, signal.SIG_DFL)
         _, (*standard, life), _, _ = socket.recv_fds(connection, 1, 4)
         with connection.makefile("r") as told:
-            job = json.loads(told.readline())
+            words, path, folder, environment = json.loads(told.readline())
         for number, handle in enumerate(standard):
             os.dup2(handle, number)
             os.close(handle)
-        os.chdir(job["folder"])
+        os.chdir(folder)
         os.environ.clear()
-        os.environ.update(job["environment"])
-        sys.path[:], sys.argv = job["path"], job["words"]
+        os.environ.update(environment)
+        sys.path[:], sys.argv = path, words
         # The system ends this process once the other end is closed, even inside a kernel.
         fcntl.fcntl(life, fcntl.F_SETOWN, os.getpid())
         fcntl.fcntl(life, fcntl.F_SETFL, fcntl.fcntl(life, fcntl.F_GETFL) | os.O_ASYNC)
         connection.sendall(f"{os.getpid()}\n".encode())
-        code = _run(job["words"][0])
+        code = _run(words[0])
         fcntl.fcntl(life, fcntl.F_SETFL, 0)
         connection.sendall(f"{code}\n".encode())
     finally:
-        # A fork must not go on in the loop of `_serve`, whatever was raised.
+        # A fork must not go on in the loop of `main`, whatever was raised.
         os._exit(code)
 
 
 def _run(script):
     """Exit code of a script, as Python itself would end with it."""
+    code = 1
     try:
         runpy.run_path(script, run_name="__main__")
         code = 0
@@ -171,7 +151,6 @@ def _run(script):
             code = 1
     except BaseException:
         traceback.print_exc()
-        code = 1
     logging.shutdown()
     for stream in (sys.stdout, sys.stderr):
         with contextlib.suppress(OSError):

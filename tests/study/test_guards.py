@@ -43,7 +43,3 @@ def test_damage_is_refused_unless_a_killed_run_left_it(results):
         (results / f"specimens/{name}.nc").write_text("other")
     with pytest.raises(InputError, match=r"joint\.nc: damaged .* made, and 1 more files; run"):
         refuse_damage(results, checksums.sha256)
-    unfinished = results.parents[1] / ".snakemake/incomplete"
-    unfinished.mkdir(parents=True)
-    (unfinished / "a job").write_text("")
-    refuse_damage(results, checksums.sha256)

@@ -11,7 +11,7 @@ SCANS = {"scans/a.npy": "0" * 64}
 
 
 def plan(study=STUDY, settings=SETTINGS, options=OPTIONS, scans=SCANS):
-    return plan_of(study, settings, options, scans)
+    return plan_of(study, settings, options) | {"scans": scans}
 
 
 def test_plan_is_kept_as_it_is(tmp_path):

@@ -46,6 +46,8 @@ def test_a_stage_has_a_rule_but_those_of_all_specimens_together():
         if stage.grain != STUDY:
             together = "|".join(made_together(name))
             made = rf'(outputs_of|calling)\(\s*"({together})"|RESULTS}}/({together})/'
+            # Experiments that share a rule.
+            made += rf'|(?:LONG|SHORT) = [({{][^)}}]*"({together})"'
             assert re.search(made, rules), f"no rule in workflow/rules makes {name}"
 
 

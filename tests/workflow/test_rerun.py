@@ -11,15 +11,14 @@ import pytest
 import yaml
 from projects import ROOT, copy_project, jobs_of, made, rough_heights, run, small_study, write_scan
 
-from fractalcontact.core import sources
 from fractalcontact.core.checksums import sha256
+from fractalcontact.core.code_digest import Code
 from fractalcontact.study.atlas import read_atlas
 from fractalcontact.study.stages import STAGES, paths_of
 
 pytestmark = pytest.mark.workflow
 STUDY = "config/test.yaml"
 ATLAS, FIGURE = "results/test/atlas.nc", "results/test/figures/rock/fig02_relief.png"
-PACKAGE = ROOT / "src/fractalcontact"
 
 
 @pytest.fixture(scope="module")
@@ -85,15 +84,24 @@ def test_a_run_is_a_line_a_job_and_leaves_a_crate_of_what_it_made(finished):
     assert (finished / "results/test/code/Snakefile").is_file()
 
 
-def test_code_counts_that_a_script_shares_with_others_or_calls_by_name(project):
+def test_code_counts_by_rooms_and_what_is_no_code_makes_nothing_again(project):
+    for name in ("tests/test_a.py", "docs/a.md", "benchmarks/a.py"):
+        (project / name).parent.mkdir(exist_ok=True)
+        (project / name).write_text("# a comment\n")
+    # Another stage: those there are need nothing of it.
+    (project / "src/fractalcontact/stages/another.py").write_text("# its function\n")
+    append(project, "src/fractalcontact/figures/kit/__init__.py")
+    assert set(planned(project, ATLAS, FIGURE)) == {"figures_against_plane"}
     for name in (
         "workflow/scripts/_stages.py",  # beside the script of the atlas
         "src/fractalcontact/stages/windows.py",  # the function that a generic script calls
-        "src/fractalcontact/study/stages.py",  # another stage: the others are not made again
+        "src/fractalcontact/study/stages.py",  # the table, in which another stage stands
+        "src/fractalcontact/statements/judge.py",
     ):
         append(project, name)
-    (project / "src/fractalcontact/stages/another.py").write_text("# its function\n")
     assert set(planned(project)) == {"windows", "size_laws_against_plane", "atlas"}
+    append(project, "src/fractalcontact/mechanics/__init__.py")
+    assert {"specimen", "contact", "analysis"} <= set(planned(project))
 
 
 def test_a_scan_replaced_by_an_older_file_is_read(project):
@@ -216,26 +224,22 @@ def test_a_job_that_failed_with_a_new_scan_leaves_nothing_that_counts_as_made_of
     assert {"specimen", "contact", "atlas"} <= set(planned(project))
 
 
-def _files_behind(*modules):
-    paths = [
-        ROOT / "workflow/scripts/stage.py",
-        *(PACKAGE.parent / f"{name}.py" for name in modules),
-    ]
-    files = sources.source_files(paths, package=PACKAGE)
-    return {path.relative_to(ROOT).as_posix() for path in files}
+def _rooms_behind(*modules):
+    """Rooms of the package whose files count for a stage, and its own modules."""
+    names = (ROOT / "workflow/scripts/stage.py", *(f"{name}.py" for name in modules))
+    code = Code(ROOT / "src", ROOT)
+    files = {Path(path).relative_to(ROOT).parts for path in code.files_behind(*names)}
+    return {parts[2] for parts in files if len(parts) > 3}, {"/".join(parts) for parts in files}
 
 
 def test_the_script_of_all_stages_follows_from_the_function_that_it_calls():
-    alone = _files_behind()
-    assert "workflow/scripts/_job.py" in alone
-    assert not {path for path in alone if Path(path).parts[2:3] in (("stages",), ("study",))}
+    rooms, files = _rooms_behind()
+    assert "workflow/scripts/_job.py" in files
+    assert not {"stages", "study", "mechanics", "figures"} & rooms
     for stage in STAGES.values():
-        files = _files_behind(stage.module)
-        assert f"src/{stage.module}.py" in files
-    windows = _files_behind(STAGES["window_states"].module)
-    assert {"src/fractalcontact/size_effect/eq6.py", "src/roughcontact/contact/solve.py"} <= (
-        windows - alone
-    )
-    assert "src/fractalcontact/study/stages.py" not in windows
-    # What follows from states takes no solver.
-    assert "src/roughcontact/contact/solve.py" not in _files_behind(STAGES["windows"].module)
+        assert f"src/{stage.module}.py" in _rooms_behind(stage.module)[1]
+    rooms, files = _rooms_behind(STAGES["window_states"].module)
+    assert {"size_effect", "contact", "mechanics"} <= rooms
+    # Neither the table of stages nor another stage makes it again, nor what stands above.
+    assert not {"study", "figures", "pages"} & rooms
+    assert "src/fractalcontact/stages/report.py" not in files

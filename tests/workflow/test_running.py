@@ -69,7 +69,7 @@ def start(project, *words):
         )
 
 
-def wait_for(path, process, seconds=60):
+def wait_for(path, process, seconds=300):
     end = time.monotonic() + seconds
     while not path.exists():
         assert process.poll() is None

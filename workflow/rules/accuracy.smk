@@ -10,8 +10,6 @@ if "speed" in config:
 
     TIMED = list(problems_of(config["speed"]))
 
-# Imported by name when they are called, and so not seen by `code` on its own.
-METHOD_MODULES = [f"contactlab/methods/{module}" for module in registry.MODULES]
 PROBLEMS = ["hertz", "punch", "richardson"] if "convergence" in config else []
 # Installed later, they are measured later.
 PEERS = list(registry.installed_peers())
@@ -23,6 +21,29 @@ if "stability" in config:
 PARTS = list(range(0, len(KINDS), KINDS_A_JOB))
 ACCURACY_FIGURES = accuracy_figures_of(config)
 ACCURACY_FILES = {}
+#: What is measured job by job, by the file that it gives: a function and its arguments.
+MEASURED = {
+    **{
+        f"convergence/{problem}": (
+            "contactlab.accuracy.stage:convergence",
+            {"problem": problem, "recipe": config["convergence"]},
+        )
+        for problem in PROBLEMS
+    },
+    **{
+        f"stability/{part}": (
+            "contactlab.accuracy.stability:stability",
+            {
+                "kinds": list(KINDS)[part : part + KINDS_A_JOB],
+                "draws": config["stability"]["draws"],
+            },
+        )
+        for part in PARTS
+    },
+}
+if PARTS:
+    draws = {"draws": config["stability"]["elimination"]}
+    MEASURED["elimination/scenes"] = ("contactlab.accuracy.elimination:elimination", draws)
 
 
 # A clock is running: the job takes all cores, so that no other runs beside it.
@@ -37,12 +58,11 @@ rule speed:
         case=one_of(TIMED),
     threads: lambda wildcards: workflow.cores
     resources:
-        mem_mb=doubled(4000),
-        runtime=doubled(30),
+        **fixed(4000, 30),
     params:
         recipe=config.get("speed"),
         peers=PEERS,
-        code=code("speed", *METHOD_MODULES),
+        code=code("speed", "contactlab/methods"),
     message:
         "speed: {wildcards.case}, by every solver and model"
     script:
@@ -51,7 +71,7 @@ rule speed:
 
 rule speed_growth:
     input:
-        expand(rules.speed.output[0], case=TIMED),
+        problems=expand(rules.speed.output[0], case=TIMED),
     output:
         f"{RESULTS}/speed_growth/surfaces.nc",
     log:
@@ -59,62 +79,41 @@ rule speed_growth:
     benchmark:
         f"{RESULTS}/benchmarks/speed_growth.tsv"
     resources:
-        mem_mb=doubled(1000),
-        runtime=doubled(10),
+        **fixed(1000, 10),
     params:
+        **calling("speed_growth"),
         error=config.get("speed", {}).get("error"),
-        code=code("speed_growth"),
     message:
         "speed: time over the size of surfaces"
     script:
-        "../scripts/speed_growth.py"
+        "../scripts/stage.py"
 
 
-rule convergence:
+rule measurement:
     output:
-        f"{RESULTS}/convergence/{{problem}}.nc",
+        f"{RESULTS}/{{measured}}.nc",
     log:
-        f"{RESULTS}/logs/convergence/{{problem}}.log",
+        f"{RESULTS}/logs/{{measured}}.log",
     benchmark:
-        f"{RESULTS}/benchmarks/convergence/{{problem}}.tsv"
+        f"{RESULTS}/benchmarks/{{measured}}.tsv"
     wildcard_constraints:
-        problem=one_of(PROBLEMS),
+        measured=one_of(MEASURED),
     resources:
-        mem_mb=doubled(1000),
-        runtime=doubled(30),
+        **fixed(1500, 60),
     params:
-        recipe=config.get("convergence"),
-        code=code("convergence"),
+        function=lambda wc: MEASURED[wc.measured][0],
+        arguments=lambda wc: MEASURED[wc.measured][1],
+        peers=lambda wc: PEERS if "stability" in wc.measured else [],
+        code=code("stage", "contactlab/accuracy", "contactlab/methods"),
     message:
-        "convergence: {wildcards.problem}, compared with the exact solution"
+        "accuracy: {wildcards.measured}"
     script:
-        "../scripts/convergence.py"
-
-
-rule stability_part:
-    output:
-        f"{RESULTS}/stability/{{part}}.nc",
-    log:
-        f"{RESULTS}/logs/stability/{{part}}.log",
-    benchmark:
-        f"{RESULTS}/benchmarks/stability/{{part}}.tsv"
-    resources:
-        mem_mb=doubled(1500),
-        runtime=doubled(60),
-    params:
-        kinds=lambda wc: list(KINDS)[int(wc.part) : int(wc.part) + KINDS_A_JOB],
-        draws=config.get("stability", {}).get("draws"),
-        peers=PEERS,
-        code=code("stability_part", *METHOD_MODULES),
-    message:
-        "stability: hard test problems from kind {wildcards.part} on"
-    script:
-        "../scripts/stability_part.py"
+        "../scripts/stage.py"
 
 
 rule stability:
     input:
-        expand(rules.stability_part.output[0], part=PARTS),
+        parts=expand(rules.measurement.output[0], measured=[f"stability/{part}" for part in PARTS]),
     output:
         f"{RESULTS}/stability/scenes.nc",
     log:
@@ -122,43 +121,23 @@ rule stability:
     benchmark:
         f"{RESULTS}/benchmarks/stability.tsv"
     resources:
-        mem_mb=doubled(1000),
-        runtime=doubled(10),
+        **fixed(1000, 10),
     params:
-        code=code("stability"),
+        **calling("stability"),
     message:
         "stability: verdicts over all hard test problems"
     script:
-        "../scripts/stability.py"
-
-
-rule elimination:
-    output:
-        f"{RESULTS}/elimination/scenes.nc",
-    log:
-        f"{RESULTS}/logs/elimination.log",
-    benchmark:
-        f"{RESULTS}/benchmarks/elimination.tsv"
-    resources:
-        mem_mb=doubled(1000),
-        runtime=doubled(30),
-    params:
-        draws=config.get("stability", {}).get("elimination"),
-        code=code("elimination", *METHOD_MODULES),
-    message:
-        "stability: elimination of nodes in tension alone, as the paper does"
-    script:
-        "../scripts/elimination.py"
+        "../scripts/stage.py"
 
 
 if TIMED:
     ACCURACY_FILES["speed"] = expand(rules.speed.output[0], case=TIMED)
     ACCURACY_FILES["speed_growth"] = rules.speed_growth.output[0]
 if PROBLEMS:
-    ACCURACY_FILES["convergence"] = expand(rules.convergence.output[0], problem=PROBLEMS)
+    ACCURACY_FILES["convergence"] = [f"{RESULTS}/convergence/{problem}.nc" for problem in PROBLEMS]
 if PARTS:
     ACCURACY_FILES["stability"] = rules.stability.output[0]
-    ACCURACY_FILES["elimination"] = rules.elimination.output[0]
+    ACCURACY_FILES["elimination"] = f"{RESULTS}/elimination/scenes.nc"
 
 
 rule accuracy_atlas:
@@ -171,8 +150,7 @@ rule accuracy_atlas:
     benchmark:
         f"{RESULTS}/benchmarks/accuracy_atlas.tsv"
     resources:
-        mem_mb=doubled(1000),
-        runtime=doubled(10),
+        **fixed(1000, 10),
     params:
         configuration={"study": config, "settings": {}},
         code=code("atlas"),
@@ -201,7 +179,7 @@ use rule study_figures as accuracy_figures with:
     params:
         specimens=[],
         names=ACCURACY_FIGURES,
-        code=code("study_figures", *figure_modules(ACCURACY_FIGURES)),
+        code=code("figures", "fractalcontact/figures", "contactlab/figures"),
     message:
         "accuracy: figures"
 
@@ -226,13 +204,12 @@ def accuracy_pictures(wildcards):
             f"{SOURCE}: no key 'speed', 'convergence' or 'stability', so nothing to measure; "
             "give --configfile config/accuracy.yaml"
         )
-    parts = expand(rules.stability_part.output[0], part=PARTS)
     return [
         *rules.accuracy_figures.output,
         *rules.accuracy_drawn.output,
         *rules.accuracy_atlas.output,
         *rules.accuracy_atlas.input,
-        *parts,
+        *rules.stability.input,
     ]
 
 

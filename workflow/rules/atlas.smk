@@ -34,8 +34,7 @@ rule atlas:
     benchmark:
         f"{RESULTS}/benchmarks/atlas.tsv"
     resources:
-        mem_mb=doubled(4000),
-        runtime=doubled(10),
+        **fixed(4000, 10),
     params:
         configuration={"study": config, "settings": RECORDS},
         code=code("atlas"),

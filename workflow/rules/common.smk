@@ -1,38 +1,26 @@
 # What every rule file uses: the checked study, its specimens, files of its stages, and digests of
-# scans and code.
+# scans and code, which are taken when a rule is asked for them.
 import functools
-import os
 import sys
 from dataclasses import asdict
 from pathlib import Path
 
-import snakemake
 import yaml
 from snakemake.exceptions import WorkflowError
 from snakemake.logging import logger
 
 # The code of this checkout, wherever its environment was installed from: it may have been moved.
-SOURCES = Path(workflow.basedir) / "src"
-PACKAGE = SOURCES / "fractalcontact"
-SCRIPTS = Path(workflow.basedir) / "workflow/scripts"
-sys.path.insert(0, str(PACKAGE.parent))
-sys.path.append(str(SCRIPTS))
-os.environ.update(
-    PYTHONPATH=os.pathsep.join(filter(None, [str(PACKAGE.parent), os.environ.get("PYTHONPATH")]))
-)
-# On a cluster jobs are begun again after any error: theirs, which stay, they then only repeat.
-os.environ.update(FRACTALCONTACT_ATTEMPT=str(workflow.attempt))
-
-import _provenance
-import _running
+ROOT = Path(workflow.basedir)
+sys.path[:0] = [str(ROOT / "src"), str(ROOT / "workflow/scripts")]
 
 # Light modules, without xarray, numba or matplotlib: on a cluster every job reads the workflow.
-from fractalcontact.core import checksums, sources
+from fractalcontact.core import checksums
+from fractalcontact.core.code_digest import Code
 from fractalcontact.core.directions import AUTOMATIC_OFFSETS
 from fractalcontact.core.errors import InputError
 from fractalcontact.core.patterns import one_of
 from fractalcontact.core.stage import EXPERIMENT, GRAINS, JOINT, MAP, SPECIMEN
-from fractalcontact.study import campaign, crate, guards, plan, resources, stages
+from fractalcontact.study import campaign, plan, resources, stages
 from fractalcontact.study.checks import resolve_study
 from fractalcontact.study.configuration import resolve_embedded, resolve_roll_off
 from fractalcontact.study.figure_list import all_figures, study_figures_of
@@ -40,56 +28,34 @@ from fractalcontact.study.scan_groups import grouped_notes
 from fractalcontact.study.sidecar import sidecar_of_matrix
 from contactlab.experiments.size_tasks import size_jobs
 
-SCHEMA = yaml.safe_load((Path(workflow.basedir) / "config/schema/study.schema.yaml").read_text())
+SCHEMA = yaml.safe_load((ROOT / "config/schema/study.schema.yaml").read_text())
 SOURCE = str(workflow.configfiles[-1]) if workflow.configfiles else "config/paper.yaml"
-if workflow.is_main_process and "FRACTALCONTACT_ALONE" not in os.environ:
-    # Held as long as this process lives; jobs hold their own. workflow/run.py alone lets nobody
-    # else work while it looks at what killed runs left.
-    AT_WORK = _running.mark()
-
-DIGESTS = checksums.Digests(".snakemake/fractalcontact-digests.json")
 # What is wrong with one scan stops only that where the user asks so on the command line, which
 # Snakemake itself looks at later. Jobs read the workflow too, after the run has decided.
 LEAVE_OUT = not workflow.is_main_process or bool({"-k", "--keep-going"} & set(sys.argv))
+#: What the run was planned with, for its jobs on a cluster, each of which reads all this again.
+PLAN, PLANNED = ".snakemake/fractalcontact-plan.json", None
 try:
     STUDY = resolve_study(config, SCHEMA, SOURCE, leave_out=LEAVE_OUT)
     RESULTS, SCAN_FOLDER = f"results/{config['study']}", config.get("scans", "scans")
-    if workflow.is_main_process:
-        if SCAN_FOLDER and not STUDY.scans:
-            made_alone = "no scan files there; only what the study itself makes is used"
-            logger.warning(f"{SCAN_FOLDER}: {made_alone}")
-        for note in grouped_notes(SCAN_FOLDER, config.get("groups")) if SCAN_FOLDER else ():
-            logger.warning(note)
-        # Whoever runs it says these two, never a study: workflow/run.py, that it has set damaged
-        # files aside, and the user, that specimens may go.
-        if "FRACTALCONTACT_CHECKED" not in os.environ:
-            guards.refuse_damage(RESULTS, DIGESTS.of)
-        if "FRACTALCONTACT_DROP" not in os.environ:
-            guards.refuse_loss(RESULTS, [*STUDY.settings, *STUDY.labels])
-        if again := _provenance.mark_without_provenance(RESULTS, workflow.workflow_settings):
-            logger.warning(
-                f"{RESULTS}: {again} of its files will be made again, since Snakemake's record of "
-                "how a file was made (in .snakemake), or a file that it was made from, is missing "
-                "or damaged"
-            )
+    if not workflow.is_main_process:
+        PLANNED = plan.read_plan(PLAN)
 except InputError as error:
     raise WorkflowError(str(error))
 
 SCANS, SETTINGS, OPTIONS, LABELS = STUDY.scans, STUDY.settings, STUDY.options, STUDY.labels
 SOLVER = STUDY.solver
-#: What the run was planned with, for its jobs on a cluster, each of which reads all this again: what
-#: they have to say before they work, and specimens that came meanwhile, which are the next run's.
-PLAN, PLANNED = ".snakemake/fractalcontact-plan.json", None
-os.environ.update(FRACTALCONTACT_CHANGED="")
-if not workflow.is_main_process:
-    try:
-        PLANNED = plan.read_plan(PLAN)
-    except InputError as error:
-        os.environ.update(FRACTALCONTACT_CHANGED=str(error))
-    else:
-        for named in (SCANS, SETTINGS, OPTIONS, LABELS):
-            for name in named.keys() - PLANNED["specimens"]:
-                del named[name]
+if PLANNED:
+    # Specimens that came meanwhile are the next run's.
+    for named in (SCANS, SETTINGS, OPTIONS, LABELS):
+        for name in named.keys() - PLANNED["specimens"]:
+            del named[name]
+elif SCAN_FOLDER:
+    if not SCANS:
+        made_alone = "no scan files there; only what the study itself makes is used"
+        logger.warning(f"{SCAN_FOLDER}: {made_alone}")
+    for note in grouped_notes(SCAN_FOLDER, config.get("groups")):
+        logger.warning(note)
 #: What is wrong with scans that are left out; each has a job that says so.
 REFUSED = [str(STUDY.refused[name]) for name in sorted(STUDY.refused)]
 
@@ -98,6 +64,11 @@ MAPS = {name: SCANS[name] for name in LABELS}
 SPECIMENS = sorted(SETTINGS)
 #: Settings as the atlas keeps them.
 RECORDS = {name: asdict(stated) for name, stated in SETTINGS.items()}
+#: What is said of each specimen; what changed of it since the run was planned ends its jobs.
+SAID = plan.plan_of(config, RECORDS, OPTIONS)
+if PLANNED and (changed := plan.changed_since(PLANNED, SAID, SOURCE)):
+    # As jobs say it in their logs: on a cluster this is the log.
+    raise WorkflowError(f"\nerror: {changed}")
 
 
 def recipe_named(name):
@@ -122,33 +93,50 @@ def most_offsets(name):
     return len(stated) if stated else AUTOMATIC_OFFSETS + 1
 
 
-def states_of(name):
-    """Most contact states that are kept of a specimen at its finest resolution."""
-    return resources.states_of(SETTINGS[name], most_offsets(name))
+def asked_for(job, grid=1):
+    """Memory and minutes that the job of a rule asks for, twice as many at every further attempt.
+
+    They follow from the nodes of the window, or with grid=0 of a face, and from the number of
+    states that are kept at the finest resolution.
+    """
+
+    def ask(amount):
+        return lambda wildcards, attempt: amount(
+            job,
+            nodes_of(known(wildcards))[grid],
+            states=resources.states_of(
+                SETTINGS[wildcards.specimen], most_offsets(wildcards.specimen)
+            ),
+            attempt=attempt,
+        )
+
+    return {"mem_mb": ask(resources.memory), "runtime": ask(resources.minutes)}
 
 
-def memory_for(job):
-    """Megabytes that the job of a rule asks for, twice as many at every further attempt."""
-    return lambda wildcards, attempt: resources.memory(
-        job,
-        nodes_of(known(wildcards))[1],
-        states=states_of(wildcards.specimen),
-        attempt=attempt,
-    )
+def doubled(amount):
+    """Megabytes or minutes that a job asks for, twice as many at every further attempt.
+
+    So what a cluster has ended for its memory or its time is done by the next.
+    """
+    return lambda wildcards, attempt: amount * 2 ** (attempt - 1)
 
 
-def minutes_for(job):
-    """Minutes that the job of a rule asks for, likewise."""
-    return lambda wildcards, attempt: resources.minutes(
-        job,
-        nodes_of(known(wildcards))[1],
-        states=states_of(wildcards.specimen),
-        attempt=attempt,
-    )
+def fixed(megabytes, minutes):
+    """Both of a job whose grid says nothing of them."""
+    return {"mem_mb": doubled(megabytes), "runtime": doubled(minutes)}
 
 
+DIGESTS = checksums.Digests(".snakemake/fractalcontact-digests.json")
+
+
+@functools.cache
 def digest_of(path):
-    """SHA-256 of a scan file; none of one that cannot be read, which its job explains."""
+    """SHA-256 of a scan file; none of one that cannot be read, which its job explains.
+
+    Taken before any job: a scan that is replaced meanwhile belongs to the next run.
+    """
+    if PLANNED and path in PLANNED["scans"]:
+        return PLANNED["scans"][path]
     try:
         return DIGESTS.of(path)
     except OSError:
@@ -160,17 +148,12 @@ def digests_of(scan):
 
     Times say nothing of a file that was moved, copied or unpacked over another.
     """
-    return {str(path): DIGEST_OF_SCAN[path] for path in scan.files}
+    return {str(path): digest_of(str(path)) for path in scan.files}
 
 
-# Taken now, before any job: a scan that is replaced meanwhile belongs to the next run.
-DIGEST_OF_SCAN = {path: digest_of(path) for scan in SCANS.values() for path in scan.files}
-NOW = plan.plan_of(config, RECORDS, OPTIONS, {str(p): d for p, d in DIGEST_OF_SCAN.items()})
-if workflow.is_main_process:
-    DIGESTS.save()
-elif PLANNED:
-    DIGEST_OF_SCAN |= {p: PLANNED["scans"].get(str(p), d) for p, d in DIGEST_OF_SCAN.items()}
-    os.environ.update(FRACTALCONTACT_CHANGED=plan.changed_since(PLANNED, NOW, SOURCE))
+def scan_digests():
+    """The same of all scan files of the study."""
+    return {path: digest for scan in SCANS.values() for path, digest in digests_of(scan).items()}
 
 
 # Any name without a slash: to look for each file among ten thousand names takes minutes. Whoever
@@ -198,14 +181,6 @@ def settings_read_by(function):
     A change of others is no change: a friction angle or a label solves nothing again.
     """
     return lambda wildcards: stages.read_by(function, SETTINGS[known(wildcards)], SOLVER)
-
-
-def doubled(amount):
-    """Megabytes or minutes that a job asks for, twice as many at every further attempt.
-
-    So what a cluster has ended for its memory or its time is done by the next.
-    """
-    return lambda wildcards, attempt: amount * 2 ** (attempt - 1)
 
 
 def is_pair(specimen):
@@ -245,9 +220,13 @@ def outputs_of(stage, grains=GRAINS):
 
 def calling(stage):
     """Parameters by which scripts/stage.py calls the function of a stage."""
-    function, module = stages.STAGES[stage].function, stages.STAGES[stage].module
+    function = stages.STAGES[stage].function
     given = {"settings": settings_read_by(function)} if stages.sections_of(function) else {}
-    return {"function": function, "code": code("stage", module), **given}
+    return {
+        "function": function,
+        "code": code("stage", f"{stages.STAGES[stage].module}.py"),
+        **given,
+    }
 
 
 #: Files of the stages that every specimen has, and of those that only joints that slide have.
@@ -261,15 +240,8 @@ MAP_FILES = (
 )
 # What the study has once.
 STUDY_FILES = {
-    stage: path
-    for stage, path in files_of(stages.paths_of(EXPERIMENT)).items()
-    if stage in config
+    stage: path for stage, path in files_of(stages.paths_of(EXPERIMENT)).items() if stage in config
 }
-
-
-def figure_modules(names):
-    """Modules that draw figures, for `code`: they are imported by name when they are called."""
-    return [all_figures()[name].module for name in names]
 
 
 def grain(key, n):
@@ -279,51 +251,20 @@ def grain(key, n):
     return [[start, min(start + size, n)] for start in range(0, n, size)]
 
 
-def code(script, *modules):
-    """Digest of all that a script runs: a change of it reruns the rule.
+CODE = Code(ROOT / "src", ROOT)
+digest_of_code = functools.cache(CODE.digest)
+
+
+def code(script, *names):
+    """Parameter that changes with the code that a script runs: its change makes again what it made.
 
     Parameters
     ----------
     script : str
-        Of workflow/scripts; with it count all files it imports, of the package and beside it, and
-        the versions of the libraries that any of them imports.
-    *modules : str
-        Of the package, which are imported by names that only exist when it runs.
+        Of workflow/scripts.
+    *names : str
+        Modules, or whole rooms, of the package that are imported by names which only exist when it
+        runs, such as "fractalcontact/figures".
     """
-    if (script, *modules) not in CODE:
-        paths = [SCRIPTS / f"{script}.py", *(SOURCES / f"{module}.py" for module in modules)]
-        files = sources.source_files(paths, package=PACKAGE)
-        versions = sources.versions_of(sources.libraries(files))
-        CODE[script, *modules] = sources.digest(files, root=workflow.basedir, versions=versions)
-    return CODE[script, *modules]
-
-
-# Two rules may run one script, in every process that reads the workflow.
-CODE = {}
-
-
-#: What made a study, for its crate of linked data.
-WORKFLOW = crate.Workflow(
-    folder=Path(workflow.basedir),
-    main="Snakefile",
-    parts=(
-        *("workflow/*.py", "workflow/rules/*.smk", "workflow/scripts/*.py"),
-        *(
-            "config/schema/*.yaml",
-            "environment.yml",
-            "requirements.lock",
-            "CITATION.cff",
-            "LICENSE",
-        ),
-    ),
-    language="Snakemake",
-    url="https://snakemake.github.io",
-    version=snakemake.__version__,
-)
-
-
-def write_records():
-    """Checksums of all that was made, and what it is: after the last job, be it done or not."""
-    checksums.write_manifest(RESULTS)
-    scans = {str(path): digest for path, digest in DIGEST_OF_SCAN.items() if digest}
-    crate.write_crate(RESULTS, WORKFLOW, config["study"], scans)
+    path = ROOT / f"workflow/scripts/{script}.py"
+    return lambda wildcards: digest_of_code(path, *names)

@@ -29,8 +29,7 @@ rule contact:
     benchmark:
         f"{RESULTS}/benchmarks/contact/{{specimen}}/{{directions}}.{{offsets}}.{{resolutions}}.tsv"
     resources:
-        mem_mb=memory_for("contact"),
-        runtime=minutes_for("contact"),
+        **asked_for("contact"),
     params:
         settings=settings_read_by(stages.CONTACT),
         directions=lambda wc: SETTINGS[wc.specimen].contact_directions[
@@ -51,10 +50,6 @@ def contact_parts_of(specimen):
     return expand(rules.contact.output, specimen=specimen, **counts)
 
 
-def contact_parts(wildcards):
-    return contact_parts_of(wildcards.specimen)
-
-
 # What follows from the states of a specimen: closure curves and laws of area; box counts, dimension
 # and clusters of every contact domain, what changes with resolution, lacunarity and generalised
 # dimensions of the domains that are drawn; and the error of what is published, by source, for which
@@ -62,7 +57,7 @@ def contact_parts(wildcards):
 rule analysis:
     input:
         **inputs_of("closure"),
-        parts=contact_parts,
+        parts=lambda wc: contact_parts_of(wc.specimen),
     output:
         **outputs_of("closure"),
     log:
@@ -70,8 +65,7 @@ rule analysis:
     benchmark:
         f"{RESULTS}/benchmarks/analysis/{{specimen}}.tsv"
     resources:
-        mem_mb=memory_for("analysis"),
-        runtime=minutes_for("analysis"),
+        **asked_for("analysis"),
     params:
         **calling("closure"),
     message:
@@ -94,8 +88,7 @@ rule strength:
     wildcard_constraints:
         specimen=kind_of(SLIDING, FLAT),
     resources:
-        mem_mb=memory_for("strength"),
-        runtime=minutes_for("strength"),
+        **asked_for("strength"),
     params:
         **calling("windows"),
     message:
@@ -130,8 +123,7 @@ rule contact_map:
     benchmark:
         f"{RESULTS}/benchmarks/contact_map/{{map}}.tsv"
     resources:
-        mem_mb=doubled(2000),
-        runtime=doubled(10),
+        **fixed(2000, 10),
     params:
         options=lambda wc: OPTIONS[wc.map],
         label=lambda wc: LABELS[wc.map],

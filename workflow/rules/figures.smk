@@ -19,30 +19,10 @@ def pictures(opposite):
 
 
 def picture(name, folder="{specimen}/", category="{specimen}"):
-    """The PNG file of a figure, with its title and its caption for the report."""
-    path, title = f"{RESULTS}/figures/{folder}{name}", all_figures()[name].title
-    labels, caption = {"figure": name, "title": title}, report_text(title, f"{path}.txt")
+    """The PNG file of a figure, with its title for the report."""
+    labels = {"figure": name, "title": all_figures()[name].title}
     # On a line of its own, `report` would be read as the directive.
-    return report(f"{path}.png", category=category, labels=labels, caption=caption)
-
-
-def report_text(title, caption):
-    """Template of what the report says of a figure: its title, and the caption drawn beside it.
-
-    Snakemake wants a file of each; they hold nothing that the figure does not state itself.
-    """
-    path = Path(".snakemake/fractalcontact-report", f"{Path(caption).stem}.rst").absolute()
-    written = REPORT_TEXT.replace("TITLE", title)
-    written = written.replace("CAPTION", caption.replace("{specimen}", SPECIMEN_OF_REPORT))
-    if workflow.is_main_process and not (path.is_file() and path.read_text() == written):
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(written)
-    return path
-
-
-# What a user wrote, such as a label, is shown as it stands.
-REPORT_TEXT = (Path(workflow.basedir) / "workflow/report/figure.rst").read_text()
-SPECIMEN_OF_REPORT = "{{ snakemake.wildcards.specimen }}"
+    return report(f"{RESULTS}/figures/{folder}{name}.png", category=category, labels=labels)
 
 
 def beside(opposite):
@@ -90,13 +70,12 @@ rule figures:
     # it alone while the others have nothing to do. Of a campaign nobody wants to wait that long.
     priority: 0 if IN_PARTS else -2
     resources:
-        mem_mb=memory_for("figures" if drawn_of("match") else "atlas_part"),
-        runtime=minutes_for("figures" if drawn_of("match") else "atlas_part"),
+        **asked_for("figures" if drawn_of("match") else "atlas_part"),
     params:
         names=drawn_of("match"),
         folder=lambda wildcards: f"{RESULTS}/figures/{wildcards.specimen}",
         configuration=configuration_of,
-        code=code("figures", *figure_modules(drawn_of("match"))),
+        code=code("figures", "fractalcontact/figures"),
     message:
         "{wildcards.specimen}: figures"
     script:
@@ -121,7 +100,7 @@ use rule figures as figures_against_plane with:
         names=drawn_of("flat"),
         folder=lambda wildcards: f"{RESULTS}/figures/{wildcards.specimen}",
         configuration=configuration_of,
-        code=code("figures", *figure_modules(drawn_of("flat"))),
+        code=code("figures", "fractalcontact/figures"),
 
 
 # What only the whole study shows.
@@ -141,16 +120,15 @@ rule study_figures:
     benchmark:
         f"{RESULTS}/benchmarks/study_figures.tsv"
     resources:
-        mem_mb=doubled(4000),
-        runtime=doubled(10),
+        **fixed(4000, 10),
     params:
         specimens=SPECIMENS,
         names=STUDY_FIGURES,
-        code=code("study_figures", *figure_modules(STUDY_FIGURES)),
+        code=code("figures", "fractalcontact/figures", "contactlab/figures"),
     message:
         "the study: figures over all specimens"
     script:
-        "../scripts/study_figures.py"
+        "../scripts/figures.py"
 
 
 # A figure that fails keeps no other from being drawn, of this specimen or another; but the study has
@@ -170,8 +148,7 @@ rule all_drawn:
     benchmark:
         f"{RESULTS}/benchmarks/all_drawn.tsv"
     resources:
-        mem_mb=doubled(500),
-        runtime=doubled(5),
+        **fixed(500, 5),
     params:
         logs=f"the logs in {RESULTS}/logs/figures",
         code=code("all_drawn"),

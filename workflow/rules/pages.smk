@@ -1,5 +1,26 @@
-# The result page: an index, a page a specimen and tables beside them.
+# The explorer, every contact state of the study on one page; and the result page: an index, a page a
+# specimen and tables beside them.
 from fractalcontact.pages import files as page_files
+
+
+rule explorer:
+    input:
+        rules.atlas.output[0],
+    output:
+        f"{RESULTS}/explorer.html",
+    log:
+        f"{RESULTS}/logs/explorer.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/explorer.tsv"
+    resources:
+        **fixed(3000, 10),
+    params:
+        code=code("pages", "fractalcontact/pages"),
+    message:
+        "the study: explorer of all contact states"
+    script:
+        "../scripts/pages.py"
+
 
 # Measured contact maps alone have no states to explore.
 EXPLORER = list(rules.explorer.output) if SPECIMENS and not IN_PARTS else []
@@ -28,15 +49,13 @@ rule result_page:
     benchmark:
         f"{RESULTS}/benchmarks/result_page.tsv"
     resources:
-        mem_mb=doubled(2000),
-        runtime=doubled(10),
+        **fixed(2000, 10),
     params:
-        code=code("result_page"),
-        templates=sources.digest(PACKAGE.glob("pages/templates/*"), root=workflow.basedir),
+        code=code("pages", "fractalcontact/pages"),
     message:
         "the study: result page"
     script:
-        "../scripts/result_page.py"
+        "../scripts/pages.py"
 
 
 # `make report`: the pages, and what they are made of.

@@ -15,8 +15,7 @@ rule windows:
     # The longest of a specimen, and the others wait for it.
     priority: 1
     resources:
-        mem_mb=memory_for("windows"),
-        runtime=minutes_for("windows"),
+        **asked_for("windows"),
     params:
         **calling("window_states"),
     message:
@@ -28,11 +27,6 @@ rule windows:
 # The decisive experiment: surfaces of one class a job, minutes each, in any order; small classes
 # share a job.
 SIZE_JOBS = size_jobs(config["size_effect"]) if "size_effect" in config else {}
-
-
-def largest_side(job):
-    """Nodes per side of the largest surface of a job."""
-    return max(task.whole or task.size for task in SIZE_JOBS[job])
 
 
 rule size_effect_part:
@@ -47,8 +41,11 @@ rule size_effect_part:
     # The longest first: begun last it would keep one core busy and the others idle.
     priority: 1
     resources:
+        # By the largest surface of the job.
         mem_mb=lambda wc, attempt: resources.memory(
-            "size_effect_part", largest_side(wc.job) ** 2, attempt=attempt
+            "size_effect_part",
+            max(task.whole or task.size for task in SIZE_JOBS[wc.job]) ** 2,
+            attempt=attempt,
         ),
         runtime=doubled(60),
     params:
@@ -72,8 +69,7 @@ rule size_effect:
     benchmark:
         f"{RESULTS}/benchmarks/size_effect.tsv"
     resources:
-        mem_mb=doubled(2000),
-        runtime=doubled(20),
+        **fixed(2000, 20),
     params:
         **calling("size_effect"),
         recipe=config.get("size_effect"),

@@ -10,12 +10,7 @@ rule embedded:
     benchmark:
         f"{RESULTS}/benchmarks/embedded/{{specimen}}.tsv"
     resources:
-        mem_mb=lambda wc, attempt: resources.memory(
-            "embedded", nodes_of(known(wc))[0], attempt=attempt
-        ),
-        runtime=lambda wc, attempt: resources.minutes(
-            "embedded", nodes_of(wc.specimen)[0], attempt=attempt
-        ),
+        **asked_for("embedded", grid=0),
     params:
         recipe=lambda wc: recipe_named(known(wc)),
         code=code("embedded"),
@@ -34,19 +29,13 @@ def scan_files(wildcards):
     return {face: ancient(str(path)) for face, path in faces.items() if path is not None}
 
 
-def scan_digests(wildcards):
-    """SHA-256 of the scan files of a specimen, by path; of embedded ones none."""
-    scan = SCANS.get(wildcards.specimen)
-    return {} if scan is None else digests_of(scan)
-
-
 def options_of(wildcards):
     """How the scan of a specimen is read: the scan keys of its sidecar."""
     name = wildcards.specimen
     return OPTIONS[name] if name in SCANS else sidecar_of_matrix(recipe_named(name)["spacing"])
 
 
-def memory_of(wildcards, attempt):
+def memory_of_reading(wildcards, attempt):
     """Megabytes that the job of a specimen asks for, by the size of its scan files."""
     name = known(wildcards)
     if name in SCANS:
@@ -67,14 +56,11 @@ rule specimen:
     benchmark:
         f"{RESULTS}/benchmarks/specimen/{{specimen}}.tsv"
     resources:
-        mem_mb=memory_of,
-        runtime=lambda wc, attempt: resources.minutes(
-            "specimen", nodes_of(wc.specimen)[0], attempt=attempt
-        ),
+        **(asked_for("specimen", grid=0) | {"mem_mb": memory_of_reading}),
     params:
         settings=settings_read_by(stages.STAGES["specimens"].function),
         options=options_of,
-        digests=scan_digests,
+        digests=lambda wc: digests_of(SCANS[wc.specimen]) if wc.specimen in SCANS else {},
         code=code("specimen"),
     message:
         "{wildcards.specimen}: levelled scan, its surface dimension and its joint"

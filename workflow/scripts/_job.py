@@ -8,27 +8,31 @@ import sys
 import time
 from pathlib import Path
 
+# The code of this checkout, wherever its environment was installed from: it may have been moved.
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "src"))
+
 import _running
 import _warm
+
+_warm.hand_over()  # before the script imports what takes long
 
 from fractalcontact.core import checksums
 from fractalcontact.core.errors import InputError, OutputError
 from roughcontact.contact.effort import SOLVING
 from roughcontact.errors import NotConverged
 
-_warm.hand_over()  # before the script imports what takes long
-
 #: What a job says, and exits with, that is told to end.
 STOPPED, STOPPED_CODE = "stopped before it was done", 143
 #: What stands in a log below an error that every further attempt would find again.
 CERTAIN = "no further attempt can do better"
+log = logging.getLogger("fractalcontact")
 
 
 @contextlib.contextmanager
 def job(snakemake):
     """One job: its inputs are as they were made, its outputs leave their checksums, it has a log.
 
-    Where the input is at fault, or the disk is full, it ends with one clear line and no traceback.
+    Where the input is at fault, or the disk is full, its log has one clear line and no traceback.
     What a further attempt on a cluster would find again it says at once, without working again.
     The log's last line says what the job spent on its work, imports not counted, and of that on
     contact solves: ``benchmarks/study_cost.py`` adds them up.
@@ -42,25 +46,15 @@ def job(snakemake):
     ------
     logging.Logger
     """
-    found_before = _found_before(snakemake.log[0])
-    try:
-        logging.basicConfig(
-            filename=snakemake.log[0], filemode="w", level=logging.INFO, format="%(message)s"
-        )
-    except PermissionError:
-        why = "cannot be written, no permission; allow writing there and run again"
-        sys.exit(f"error: {snakemake.log[0]}: {why}")
-    log = logging.getLogger("fractalcontact")
+    found_before = _found_before(snakemake)
+    _begin_log(snakemake.log[0])
     results = Path("results") / snakemake.config["study"]
     signal.signal(signal.SIGTERM, _stop)
     begin = time.perf_counter()
     if found_before:
-        log.error("%s\n%s", found_before, CERTAIN)
-        sys.exit(found_before)
+        _end_with(found_before, certain=True)
     try:
         with _running.marked():
-            if changed := os.environ.get("FRACTALCONTACT_CHANGED"):
-                raise InputError(changed)
             for path in _below(results, snakemake.input):
                 checksums.require_intact(results, path)
             yield log
@@ -76,27 +70,48 @@ def job(snakemake):
             time.process_time(),  # imports counted, but where a warm interpreter had them
         )
     except (InputError, NotConverged, OutputError) as error:
-        lines = [str(error), *getattr(error, "__notes__", [])]
-        message = "error: " + "; ".join(lines)
-        logging.raiseExceptions = False  # the log may stand on the same full disk
-        log.error(message)
-        if not isinstance(error, OutputError):
-            log.info(CERTAIN)
-        sys.exit(message)
+        said = "; ".join([str(error), *getattr(error, "__notes__", [])])
+        _end_with(f"error: {said}", certain=not isinstance(error, OutputError))
     except (Exception, KeyboardInterrupt) as error:
         # Inside a compiled kernel the interrupt ends as an error of another kind.
         if isinstance(error, KeyboardInterrupt) or _told_to_stop:
             log.error(STOPPED)
             sys.exit(STOPPED_CODE)
         log.exception("error in the program")
-        raise
+        sys.exit(1)
 
 
-def _found_before(log):
+#: Standard error as it was before the log took it.
+_terminal = os.dup(2)
+
+
+def _begin_log(path):
+    """Let the log take what the job says, and what libraries write past it."""
+    try:
+        logging.basicConfig(
+            filename=path, filemode="w", encoding="utf-8", level=logging.INFO, format="%(message)s"
+        )
+        os.dup2(logging.getLogger().handlers[0].stream.fileno(), sys.stderr.fileno())
+    except OSError as error:
+        sys.exit(f"error: {path}: cannot be written ({error.strerror}); mend that and run again")
+
+
+def _end_with(message, *, certain):
+    logging.raiseExceptions = False  # the log may stand on the same full disk
+    log.error(message)
+    if message not in Path(logging.getLogger().handlers[0].baseFilename).read_text("utf-8"):
+        os.write(_terminal, f"{message}\n".encode())
+    if certain:
+        log.info(CERTAIN)
+    sys.exit(1)
+
+
+def _found_before(snakemake):
     """The error of the attempt before this one, if it would be that of this one too."""
-    if int(os.environ.get("FRACTALCONTACT_ATTEMPT", 1)) == 1 or not Path(log).is_file():
+    path = Path(snakemake.log[0])
+    if snakemake.resources.get("attempt", 1) == 1 or not path.is_file():
         return ""
-    *before, last = Path(log).read_text(encoding="utf-8").splitlines() or [""]
+    *before, last = path.read_text(encoding="utf-8").splitlines() or [""]
     errors = [line for line in before if line.startswith("error: ")]
     return errors[-1] if errors and last == CERTAIN else ""
 
@@ -121,7 +136,7 @@ def require_unchanged(digests):
     Parameters
     ----------
     digests : mapping of str to str
-        SHA-256 by path, taken when the workflow was read.
+        SHA-256 by path, taken when the run was planned.
 
     Raises
     ------

@@ -1,9 +1,8 @@
-"""Provenance of results: Snakemake's record of how each was made, and results that lack it.
+"""Results of which Snakemake has lost the record of how they were made: they are made again.
 
 Snakemake compares the parameters and inputs of a file with its record. It takes a file for up to
 date whose record is lost or unreadable, and one that was made from a result that has since been
-removed, even if the job of that result failed after its scan was replaced. Both are made again once
-`mark_without_provenance` has marked them.
+removed, even if the job of that result failed after its scan was replaced.
 """
 
 import functools
@@ -20,9 +19,7 @@ from fractalcontact.core import checksums
 
 
 def mark_without_provenance(results, settings):
-    """Number of results without provenance, which are marked as incomplete.
-
-    Snakemake makes incomplete files again, as those of jobs that were killed.
+    """Number of such results, which are marked as incomplete, as those of killed jobs are.
 
     Parameters
     ----------

@@ -8,13 +8,9 @@ nothing is at work here. (A job that still waits in a cluster's queue is not.)
 
 import contextlib
 import errno
+import fcntl
 import os
 import time
-
-try:
-    import fcntl
-except ImportError:  # not on Windows, which this project does not run on but may be read on
-    fcntl = None
 
 FILE = ".snakemake.guard"
 #: File systems that know no such locks: nothing can be told there.
@@ -23,8 +19,6 @@ _NO_LOCKS = (errno.ENOLCK, errno.ENOSYS, errno.EOPNOTSUPP)
 
 def _locked(handle, kind):
     """Whether a lock was got; None where the file system knows none."""
-    if fcntl is None:
-        return None
     try:
         fcntl.flock(handle, kind | fcntl.LOCK_NB)
     except BlockingIOError:
@@ -37,15 +31,9 @@ def _locked(handle, kind):
 
 
 def mark():
-    """Say that this process is at work, until it ends.
-
-    Returns
-    -------
-    int
-        A file descriptor that must stay open as long as that.
-    """
+    """Say that this process is at work, until it ends or closes the file descriptor given back."""
     handle = os.open(FILE, os.O_RDWR | os.O_CREAT, 0o666)
-    while _locked(handle, fcntl.LOCK_SH if fcntl else 0) is False:
+    while _locked(handle, fcntl.LOCK_SH) is False:
         time.sleep(0.05)  # held alone for a moment, by a run that looks whether others live
     return handle
 
@@ -66,7 +54,7 @@ def alone(seconds):
     Parameters
     ----------
     seconds : float
-        How long to wait for others: to read the workflow takes a moment, too.
+        How long to wait for others.
 
     Returns
     -------
@@ -77,7 +65,7 @@ def alone(seconds):
     """
     handle = os.open(FILE, os.O_RDWR | os.O_CREAT, 0o666)
     end = time.monotonic() + seconds
-    while (locked := _locked(handle, fcntl.LOCK_EX if fcntl else 0)) is False:
+    while (locked := _locked(handle, fcntl.LOCK_EX)) is False:
         if time.monotonic() > end:
             os.close(handle)
             return None, True
@@ -91,4 +79,4 @@ def share(handle):
     For a moment nobody holds the file. Another run may take it then, which finds what this one has
     just left behind: nothing that it could harm.
     """
-    _locked(handle, fcntl.LOCK_SH if fcntl else 0)
+    _locked(handle, fcntl.LOCK_SH)

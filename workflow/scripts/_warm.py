@@ -1,10 +1,9 @@
 """A job handed over to a fork of an interpreter that has all modules and kernels loaded.
 
-To import them takes 1.5 s a job and to load the compiled kernels another half, which is a quarter
-of the work of the default study. The interpreter is ``workflow/warm.py``; where none listens, as on
-a cluster or where Snakemake was started without `make`, the job goes on here as if this did not
-exist. What Snakemake started stays, and stands for the fork: it ends as that ends, a signal to it
-is passed on, and the fork does not outlive it.
+The interpreter is ``workflow/warm.py``; where none listens, as on a cluster or where Snakemake was
+started without `make`, the job goes on here as if this did not exist. What Snakemake started stays,
+and stands for the fork: it ends as that ends, a signal to it is passed on, and the fork does not
+outlive it.
 """
 
 import contextlib
@@ -30,47 +29,32 @@ def hand_over():
     signal.pthread_sigmask(signal.SIG_BLOCK, _PASSED_ON)
     code = _handed_over(address)
     signal.pthread_sigmask(signal.SIG_UNBLOCK, _PASSED_ON)
-    if code is None:
-        return
-    # Without a word: killed, and so this is too, that Snakemake says so.
-    os._exit(int(code) if code else 128 + signal.SIGKILL)
+    if code is not None:
+        # Without a word: killed, and so this is too, that Snakemake says so.
+        os._exit(int(code) if code else 128 + signal.SIGKILL)
 
 
 def _handed_over(address):
     """What the fork ended with, nothing where it was killed; None where there is no fork."""
-    with socket.socket(socket.AF_UNIX) as connection:
+    environment = {key: value for key, value in os.environ.items() if key != ADDRESS}
+    job = [sys.argv, sys.path, os.getcwd(), environment]
+    life, alive = os.pipe()  # open for as long as this process lives, and no longer
+    with socket.socket(socket.AF_UNIX) as connection, connection.makefile("r") as told:
         try:
             connection.connect(address)
-        except OSError:  # it has ended, or never begun
+            socket.send_fds(connection, [b"\n"], [0, 1, 2, life])
+            connection.sendall(json.dumps(job).encode() + b"\n")
+            number = told.readline()
+        except OSError:  # there is none, or it ended without having read all of it
+            number = ""
+        os.close(life)
+        if not number.endswith("\n"):  # it ended before it began: nothing has been run
+            os.close(alive)
             return None
-        # For as long as this process lives, and no longer.
-        life, alive = os.pipe()
-        with connection.makefile("r") as told:
-            try:
-                socket.send_fds(connection, [b"\n"], [0, 1, 2, life])
-                connection.sendall(json.dumps(_described()).encode() + b"\n")
-                number = told.readline()
-            except OSError:  # it ended without having read all of it
-                number = ""
-            finally:
-                os.close(life)
-            if not number.endswith("\n"):  # it ended before it began: nothing has been run
-                os.close(alive)
-                return None
-            for passed in _PASSED_ON:
-                signal.signal(passed, lambda received, frame: _pass_on(int(number), received))
-            signal.pthread_sigmask(signal.SIG_UNBLOCK, _PASSED_ON)
-            return told.readline()
-
-
-def _described():
-    environment = {key: value for key, value in os.environ.items() if key != ADDRESS}
-    return {
-        "words": sys.argv,
-        "path": sys.path,
-        "folder": os.getcwd(),
-        "environment": environment,
-    }
+        for passed in _PASSED_ON:
+            signal.signal(passed, lambda received, frame: _pass_on(int(number), received))
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, _PASSED_ON)
+        return told.readline()
 
 
 def _pass_on(process, number):

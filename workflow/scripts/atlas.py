@@ -3,23 +3,25 @@
 from pathlib import Path
 
 from _job import job
-from _stages import join_rows, join_stages, read_stages
+from _stages import read_by_name, read_stages, warn_of_versions
 
 from fractalcontact.core.atomic import atomic_write
+from fractalcontact.stages.atlas import join_rows, join_stages
 
 with job(snakemake) as log:
     files = dict(snakemake.input.items())
-    rows = files.pop("rows", [])
-    rows = [rows] if isinstance(rows, str) else rows
+    datasets, versions = read_by_name(files.pop("rows", []))
+    rows = {name: (dataset, versions[name]) for name, dataset in datasets.items()}
     stages, made_with = read_stages(files)
     output, configuration = snakemake.output, snakemake.params.configuration
     if rows:
-        join_rows(rows, stages, made_with, output[0], configuration, log)
+        differing = join_rows(rows, stages, output[0], configuration, made_with)
     else:
-        join_stages(stages, made_with, output[0], configuration, log)
-    names = {*(Path(row).stem for row in rows), *stages.get("specimens", {})}
+        differing = join_stages(stages, output[0], configuration, made_with)
+    warn_of_versions(differing, log)
+    names = {*rows, *stages.get("specimens", {})}
     if output.get("names"):
         listed = sorted({*names, *stages.get("contact_maps", {})})
         with atomic_write(output.names) as path:
-            path.write_text("".join(f"{name}\n" for name in listed), encoding="utf-8")
+            Path(path).write_text("".join(f"{name}\n" for name in listed), encoding="utf-8")
     log.info("%d specimens", len(names))

@@ -14,15 +14,18 @@ arguments = dict(snakemake.params.items())
 # Not from the table of stages: then a new one would make all others again.
 module, _, name = arguments.pop("function").partition(":")
 function = getattr(import_module(module), name)
-del arguments["code"]
+for key in ("code", "peers"):  # they only say when it is to be made again
+    arguments.pop(key, None)
 arguments |= settings.arguments(function, arguments.pop("settings", {}))
+arguments |= arguments.pop("arguments", {})
 
 with job(snakemake) as log:
     for key, paths in snakemake.input.items():
         one = isinstance(paths, str)
         arguments[key] = netcdf.read(paths) if one else [netcdf.read(path) for path in paths]
     result = function(**arguments)
-    for stage, path in snakemake.output.items():
+    made = dict(snakemake.output.items()) or {"": snakemake.output[0]}
+    for stage, path in made.items():
         dataset = result[stage] if isinstance(result, dict) else result
         netcdf.write(dataset, path)
         log.info("%s", dataset)

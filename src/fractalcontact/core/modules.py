@@ -12,7 +12,7 @@ def modules_of(package: ModuleType) -> dict[str, ModuleType]:
     ----------
     package : module
         Imported by the calling module with a statement, ``from . import NAME``, and given by that
-        name: so `core.sources.source_files` sees that all that lies in it is imported.
+        name.
 
     Returns
     -------

@@ -4,6 +4,7 @@ import xarray as xr
 
 from ..core.labels import cf_attrs
 from ..core.settings import Solver, StateSettings
+from ..core.tolerance import ACCURACY
 from ..core.units import share
 from ..error_budget.error_budget import error_budget
 from ..mechanics.branches import joint_branches
@@ -12,7 +13,6 @@ from ..mechanics.plan import solve_plan
 from ..mechanics.registration_spread import registration_spread
 from ..mechanics.stated_errors import stated_errors
 from ..mechanics.states import with_pressure
-from ..study.configuration import ACCURACY
 
 
 def error_stages(

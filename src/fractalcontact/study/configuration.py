@@ -5,7 +5,7 @@ from collections.abc import Mapping
 
 from ..core.errors import InputError
 from ..core.settings import Material, Settings, Solver, SpecimenSettings
-from ..core.tolerance import tolerance
+from ..core.tolerance import ACCURACY, tolerance
 from ..core.units import load, quantity, share
 from .scan_files import ScanFiles
 from .schema import nearest
@@ -25,7 +25,6 @@ SPECIMEN = {
 #: Of its hardness, up to which a specimen carries the loads that the study's defaults name.
 LARGEST_SHARE = 0.95
 SOLVER = {"kernel": "love"}
-ACCURACY = {"closure": "1 %", "delta_sigma": 0.02}
 #: Tolerance of a study that asks for everything.
 FULL_RTOL = 1e-6
 

@@ -6,9 +6,6 @@ from pathlib import Path
 from ..core import checksums
 from ..core.errors import InputError
 
-#: Where Snakemake keeps what it knows of its jobs.
-SNAKEMAKE = Path(".snakemake")
-
 
 def refuse_loss(results: Path | str, names: Iterable[str]) -> None:
     """Keep an atlas from losing specimens without a word.
@@ -60,10 +57,6 @@ def refuse_damage(results: Path | str, digest_of: Callable) -> None:
     ------
     InputError
     """
-    # Jobs that a killed run left half done, whose files may be newer than their checksums, are run
-    # again by Snakemake itself.
-    if any((SNAKEMAKE / "incomplete").glob("*")):
-        return
     damaged = checksums.check(results, digest_of).damaged
     if damaged:
         raise InputError(

@@ -22,9 +22,8 @@ def plan_of(
     study: Mapping[str, Any],
     settings: Mapping[str, Mapping],
     options: Mapping[str, Mapping],
-    scans: Mapping[str, str],
 ) -> Plan:
-    """What a run is planned with.
+    """What a run is planned with, but for the key ``scans``: SHA-256 of scan files by path.
 
     Parameters
     ----------
@@ -32,13 +31,11 @@ def plan_of(
         As read from YAML.
     settings, options : mapping of str to mapping
         By specimen: what is computed of it, and how its scan is read.
-    scans : mapping of str to str
-        SHA-256 of scan files by path.
     """
     said = {
         name: _digest([settings.get(name), options.get(name)]) for name in {*settings, *options}
     }
-    return {"study": _digest(study), "specimens": said, "scans": dict(scans)}
+    return {"study": _digest(study), "specimens": said}
 
 
 def write_plan(path: Path | str, plan: Plan) -> None:

@@ -1,63 +1,246 @@
-"""What Snakemake does, as one line of JSON an event, for the terminal that workflow/run.py writes.
+"""What a user reads while a study is made: one line a job, what is wrong and where its log is.
 
 A logger plugin, which Snakemake finds by the name of its package on the path that workflow/run.py
 gives it; Snakemake's own log in .snakemake/log keeps everything.
 """
 
-import json
 import os
+import re
+import shutil
+import sys
+import textwrap
+import time
+from pathlib import Path
 
-from snakemake_interface_common.exceptions import WorkflowError
+from cluster import ended_by_cluster
 from snakemake_interface_logger_plugins.base import LogHandlerBase
 
-#: Environment variable with the number of the file descriptor that events go to.
-EVENTS = "FRACTALCONTACT_EVENTS"
-#: What is passed on of an event, beside its kind, level and text.
-_KEYS = ("stats", "jobid", "jobs", "job_id", "rule_name", "rule_msg", "reason", "log")
+#: Columns of the terminal; lines of warnings at the end, of which the result page has all.
+WIDTH, MOST_WARNINGS = 120, 24
+#: Bytes free on a disk below which it counts as full.
+LEAST_ROOM = 2**20
+#: Environment variable with the folder of the study's results.
+RESULTS = "FRACTALCONTACT_RESULTS"
+#: Rules that make nothing themselves: what they ask for is made when they come.
+_TARGETS = ("all", "pages", "accuracy")
+_FULL = ("No space left on device", "Disk quota exceeded", "no space left on its disk")
+#: What Snakemake's reasons begin with, and what is said of them; the first that fits.
+_REASONS = {
+    "Missing output files": "not made yet",
+    "Forced execution": "left incomplete, or asked for",
+    "Set of input files": "is made of other files than before",
+    "Updated input files": "a file that it is made of is newer",
+    "Input files updated by another job": "what it is made of is made again",
+    "Params have changed": "settings changed",
+}
+#: In a reason, the checksum of a scan; the digest of code; what would do things to a terminal.
+_CHECKSUM, _DIGEST = re.compile(r"\b[0-9a-f]{64}\b"), re.compile(r"'?[0-9a-f]{16}'?")
+#: Where in the workflow an error was noticed, before what it says.
+_PLACE = re.compile(r"\w+(?: in (?:rule .*|file \".*\", line \d+))?:")
+_CONTROL = re.compile(r"[\x00-\x08\x0b-\x1f\x7f-\x9f]")
 
 
 class LogHandler(LogHandlerBase):
-    """Writes events to the pipe of the process that started Snakemake."""
+    """Writes lines in place of what Snakemake writes to the terminal."""
+
+    writes_to_stream = has_filter = has_formatter = True
+    writes_to_file = needs_rulegraph = False
 
     def __post_init__(self):
-        """Open the pipe."""
-        number = os.environ.pop(EVENTS, None)  # jobs have no such file
-        if number is None:
-            raise WorkflowError("--logger fractalcontact is for workflow/run.py, which 'make' runs")
-        self.pipe = os.fdopen(int(number), "w", encoding="utf-8", errors="backslashreplace")
+        """Begin with nothing said."""
+        self.results = os.environ.get(RESULTS, "results")
+        self.dry_run, self.begin = self.common_settings.dryrun, (time.monotonic(), time.time())
+        #: Jobs by number: title, rule, logs, reason; when those at work began; those that failed.
+        self.jobs, self.running, self.failed = {}, {}, {}
+        self.total, self.done, self.errors, self.warnings = 0, 0, [], {}
+        self.nothing = self.stopped = self.closed = False
+        self.out, self.err = sys.stdout, sys.stderr
+        for stream in (self.out, self.err):
+            stream.reconfigure(errors="backslashreplace")  # names of specimens are in any script
 
     def emit(self, record):
-        """Pass on one event."""
-        event = getattr(record, "event", None)
-        told = {"event": event and str(event), "level": record.levelname, "text": str(record.msg)}
-        found = {key: getattr(record, key) for key in _KEYS if hasattr(record, key)}
-        try:
-            self.pipe.write(json.dumps(told | found, default=str) + "\n")
-            self.pipe.flush()
-        except BrokenPipeError:  # whoever listened has ended, and ends this process too
-            pass
+        """Take in one event of Snakemake."""
+        kind = getattr(record, "event", None)
+        if kind is not None:
+            getattr(self, f"_{kind}", lambda record: None)(record)
+        elif str(record.msg).startswith("Nothing to be done"):
+            self.nothing = True
+        elif record.levelname == "WARNING":
+            self._wrapped(f"warning: {record.msg}")
 
-    @property
-    def writes_to_stream(self) -> bool:
-        """In place of what Snakemake writes to the terminal."""
-        return True
+    def _run_info(self, record):
+        if not self.total:  # a dry run counts twice
+            counts = dict(record.stats)
+            self.total = counts.pop("total") - sum(counts.get(rule, 0) for rule in _TARGETS)
+            if not self.dry_run:
+                self._say(f"{_counted(self.total)}; what is made goes to {self.results}")
 
-    @property
-    def writes_to_file(self) -> bool:
-        """No file of its own."""
-        return False
+    def _job_info(self, record):
+        if record.rule_name not in _TARGETS:
+            title = " ".join((record.rule_msg or record.rule_name).split())
+            self.jobs[record.jobid] = title, list(record.log or ()), record.reason or ""
 
-    @property
-    def has_filter(self) -> bool:
-        """Whoever reads the events chooses among them."""
-        return True
+    def _job_started(self, record):
+        for number in record.jobs:
+            self.running[number] = time.monotonic()
+            self.failed.pop(number, None)  # on a cluster, begun again with more memory
 
-    @property
-    def has_formatter(self) -> bool:
-        """Records are written as they are."""
-        return True
+    def _job_finished(self, record):
+        if self.dry_run or record.job_id not in self.jobs:
+            return
+        title, logs, _ = self.jobs[record.job_id]
+        self.done += 1
+        for line in self._lines_of(logs):
+            if line.startswith("warning: "):
+                self.warnings.setdefault(line[len("warning: ") :], title.partition(": ")[0])
+        took = f" ({_duration(time.monotonic() - self.running.pop(record.job_id))})"
+        count = f"[{self.done:>{len(str(self.total))}}/{self.total}] "
+        self._say(count + _cut(title, WIDTH - len(count) - len(took)) + took)
 
-    @property
-    def needs_rulegraph(self) -> bool:
-        """Jobs suffice."""
-        return False
+    def _job_error(self, record):
+        if record.jobid in self.failed:  # Snakemake says it twice where it gives up
+            return
+        title, logs = self.jobs.get(record.jobid, (record.rule_name,))[0], list(record.log or ())
+        self.failed[record.jobid] = title
+        if said := self._error_of(logs):
+            lines = [f"error: {said}", f"  job: {_cut(title, WIDTH - 7)}"]
+            for line in [*lines, *(f"  log: {path}" for path in logs)]:
+                self._say(line, self.err)
+
+    def _error(self, record):
+        lines = str(record.msg).splitlines() or [""]
+        if len(lines) > 1 and re.fullmatch(
+            r"\w+(?: in (?:rule .*|file \".*\", line \d+))?:", lines[0]
+        ):
+            del lines[0]
+        self.errors.append("\n".join(s for s in lines if not s.startswith('  File "')).strip())
+
+    def _lines_of(self, logs):
+        """What a job wrote into its logs in this run."""
+        for path in map(Path, logs):
+            try:
+                if path.stat().st_mtime >= self.begin[1] - 2:
+                    yield from path.read_text(encoding="utf-8", errors="replace").splitlines()
+            except OSError:
+                continue
+
+    def _error_of(self, logs):
+        """Why a job failed, in its own words; nothing of one that was told to stop."""
+        lines = [line for line in self._lines_of(logs) if line.strip()]
+        said = [line[len("error: ") :] for line in lines if line.startswith("error: ")]
+        if said:
+            return said[-1]
+        if "stopped before it was done" in lines[-1:]:
+            self.stopped = True
+            return ""
+        # Of a full disk the log may say nothing, which stands on it too.
+        place = self.results if os.path.isdir(self.results) else "."
+        if _is_full(lines) or shutil.disk_usage(place).free < LEAST_ROOM:
+            return f"{self.results}: no space left on its disk; make room there and run again"
+        if not any(os.access(path, os.W_OK) for path in logs):
+            return "ended before it could write its log"
+        if "error in the program" in lines:
+            return f"a fault of the program, not of the input: {lines[-1]}"
+        unwritten = "ended without a word; it was killed, or the memory did not suffice"
+        return ended_by_cluster(lines) or unwritten
+
+    def close(self):
+        """Say how the run ended: what there is to know of the data, or why it did not finish."""
+        super().close()
+        if self.closed:
+            return
+        self.closed = True
+        if self.failed:
+            left = self.total - self.done - len(self.failed)
+            waiting = f"; {left} more were not begun" if left > 0 else ""
+            done = f"{self.done} of {_counted(self.total)} done, {len(self.failed)} failed"
+            self._say(done + waiting, self.err)
+        elif _is_full(self.errors):
+            self._say("error: .snakemake: no space left on its disk; make room there", self.err)
+        elif self.errors:
+            self._say(f"error: {self.errors[-1]}", self.err)
+        elif self.nothing or (self.dry_run and not self.jobs):
+            self._say("nothing to do: everything there is, is up to date")
+        elif self.dry_run:
+            self._list_jobs()
+        elif self.total:  # not where something else was asked for, such as a report
+            took = _duration(time.monotonic() - self.begin[0])
+            self._say(f"{_counted(self.done)} done in {took}")
+        self._say_warnings()
+
+    def _list_jobs(self):
+        """A table of what would be done, and why."""
+        rows = sorted((title, _reason(reason)) for title, _, reason in self.jobs.values())
+        room = WIDTH - 4 - max(len(why) for _, why in rows)
+        width = min(room, max(len(title) for title, _ in rows))
+        for title, why in rows:
+            self._say(f"  {_cut(title, width):<{width}}  {why}")
+        self._say(f"{_counted(len(rows))} would be done; nothing was")
+
+    def _say_warnings(self):
+        lines = [
+            f"  {line}"
+            for text, name in self.warnings.items()
+            for line in _lines(f"{name}: {text}", WIDTH - 2)
+        ]
+        more = ["  and more, which the result page has"] if len(lines) > MOST_WARNINGS else []
+        for line in ["warnings of the data:", *lines[:MOST_WARNINGS], *more] if lines else []:
+            self._say(line, self.err)
+
+    def _wrapped(self, text):
+        for line in _lines(text, WIDTH):
+            self._say(line, self.err)
+
+    def _say(self, line, stream=None):
+        if not self.stopped:
+            line = _CONTROL.sub(lambda found: f"\\x{ord(found[0]):02x}", line)
+            put(f"{line}\n", stream or self.out)
+
+
+def put(text, stream):
+    """Write to a terminal or a pipe; where nobody reads any more, the study goes on."""
+    try:
+        print(text, end="", file=stream, flush=True)
+    except BrokenPipeError:
+        # What is still in the stream would be an error at the end.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
+
+
+def _reason(text):
+    """Why a job is done, from the reasons that Snakemake gives."""
+    why = next((words for key, words in _REASONS.items() if key in text), text)
+    if "Params have changed" in text and why == "settings changed":
+        if _CHECKSUM.search(text):
+            return "its scan changed"
+        values = re.findall(r"(?:before|now): (.*?)(?= now: |;|$)", text)
+        kinds = [value.split(",") for value in values if "<nothing exclusive>" not in value]
+        if kinds and all(_DIGEST.fullmatch(one.strip()) for kind in kinds for one in kind):
+            return "its code, or a library, changed"
+    return why
+
+
+def _is_full(lines):
+    return any(words in line for line in lines for words in _FULL)
+
+
+def _counted(n):
+    return f"{n} job" if n == 1 else f"{n} jobs"
+
+
+def _lines(text, width):
+    return textwrap.wrap(text, width, subsequent_indent="  ", break_on_hyphens=False)
+
+
+def _cut(text, width):
+    return text if len(text) <= width else text[: max(width - 1, 0)] + "…"
+
+
+def _duration(seconds):
+    """Seconds in words: 8 s, 2 min 10 s, 3 h 5 min."""
+    minutes, rest = divmod(round(seconds), 60)
+    hours = minutes // 60
+    if round(seconds) < 100:
+        return f"{round(seconds)} s"
+    if minutes < 10:
+        return f"{minutes} min {rest} s"
+    return f"{hours} h {minutes % 60} min" if hours else f"{minutes} min"

@@ -1,47 +1,64 @@
-"""The terminal of a run: lines of jobs, time left, errors, warnings, told by events alone."""
+"""What a run says: lines of jobs, errors, warnings, told by Snakemake's events alone."""
 
-import importlib.util
 import io
 import os
 import sys
 import time
+from types import SimpleNamespace
 
 import pytest
 from places import ROOT
 
-sys.path.append(str(ROOT / "workflow"))
-SPEC = importlib.util.spec_from_file_location("terminal", ROOT / "workflow/terminal.py")
-terminal = importlib.util.module_from_spec(SPEC)
-SPEC.loader.exec_module(terminal)
+sys.path += [str(ROOT / "workflow"), str(ROOT / "workflow/logger")]
+import snakemake_logger_plugin_fractalcontact as terminal
+
 LONG = "x" * 220
+
+
+def stream(encoding="utf-8"):
+    return io.TextIOWrapper(io.BytesIO(), encoding=encoding)
+
+
+def text_of(stream):
+    stream.flush()
+    return stream.buffer.getvalue().decode(stream.encoding)
+
+
+def begun(out, err, *, dry_run=False):
+    one = terminal.LogHandler(SimpleNamespace(dryrun=dry_run), None)
+    for stream in (out, err):
+        stream.reconfigure(errors=one.out.errors)
+    one.out, one.err = out, err
+    return one
 
 
 @pytest.fixture
 def said(tmp_path, monkeypatch):
-    """A terminal, and a function that gives what it said on both streams."""
+    """A function that begins a run, and one that gives what was said on both streams."""
     monkeypatch.chdir(tmp_path)
-    out, err = io.StringIO(), io.StringIO()
+    monkeypatch.setenv(terminal.RESULTS, "results/test")
+    out, err = stream(), stream()
 
-    def start(**options):
-        return terminal.Terminal("results/test", out=out, err=err, **options)
+    def start(dry_run=False):
+        return begun(out, err, dry_run=dry_run)
 
-    return start, lambda: (out.getvalue().splitlines(), err.getvalue().splitlines())
+    return start, lambda: (text_of(out).splitlines(), text_of(err).splitlines())
 
 
 def event(kind, **keys):
-    return {"event": kind, "level": "INFO", "text": "None"} | keys
+    return SimpleNamespace(**({"event": kind, "levelname": "INFO", "msg": "None"} | keys))
 
 
 def begin(one, rules):
     """Jobs of these rules, numbered from 0; each is announced when it begins."""
     counts = {rule: rules.count(rule) for rule in rules}
-    one.hear(event("run_info", stats=counts | {"total": len(rules)}))
+    one.emit(event("run_info", stats=counts | {"total": len(rules)}))
 
 
 def start_job(one, number, rule, title=None, log=()):
-    one.hear(event("job_started", jobs=[number]))
+    one.emit(event("job_started", jobs=[number]))
     keys = {"rule_name": rule, "rule_msg": title, "reason": "Forced execution", "log": list(log)}
-    one.hear(event("job_info", jobid=number, **keys))
+    one.emit(event("job_info", jobid=number, **keys))
 
 
 def write_log(name, text, age=0):
@@ -59,7 +76,7 @@ def test_a_job_is_one_line_that_fits_whatever_its_specimen_is_called(said):
     begin(one, ["specimen"] * 12)
     for number, title in enumerate(["rock: levelled scan", f"{LONG}: levelled scan"]):
         start_job(one, number, "specimen", title)
-        one.hear(event("job_finished", job_id=number))
+        one.emit(event("job_finished", job_id=number))
     lines, errors = both()
     assert lines[0] == "12 jobs; what is made goes to results/test"
     assert lines[1] == "[ 1/12] rock: levelled scan (0 s)"
@@ -68,47 +85,20 @@ def test_a_job_is_one_line_that_fits_whatever_its_specimen_is_called(said):
     assert errors == []
 
 
-def test_the_time_left_follows_from_earlier_runs_and_is_shared_by_the_jobs_at_work(said, tmp_path):
-    start, both = said
-    for name, seconds in (("contact/rock.tsv", 100), ("contact/joint.tsv", 300), ("atlas.tsv", 40)):
-        path = tmp_path / "results/test/benchmarks" / name
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(f"s\th:m:s\n{seconds}\t0:01:00\n")
-    one = start()
-    begin(one, ["specimen", *["contact"] * 4, "atlas", "all"])
-    start_job(one, 0, "specimen")
-    start_job(one, 1, "contact")  # two at work from here on
-    one.hear(event("job_finished", job_id=0))
-    # Four of 200 s and one of 40 s by two at a time.
-    assert both()[0][-1].endswith("; about 7 min 0 s left)")
-    # What this run found counts more than what earlier ones did.
-    one.hear(event("job_finished", job_id=1))
-    assert both()[0][-1].endswith("; about 20 s left)")
-
-
 def test_what_only_asks_for_others_is_no_job(said):
     start, both = said
     one = start()
     begin(one, ["specimen", "all"])
     for number, rule in enumerate(("specimen", "all")):
         start_job(one, number, rule)
-        one.hear(event("job_finished", job_id=number))
-    one.finish(0)
+        one.emit(event("job_finished", job_id=number))
+    one.close()
     lines = [
         "1 job; what is made goes to results/test",
         "[1/1] specimen (0 s)",
         "1 job done in 0 s",
     ]
     assert both() == (lines, [])
-
-
-def test_no_time_is_guessed_before_anything_is_known(said):
-    start, both = said
-    one = start()
-    begin(one, ["contact"] * 4)
-    start_job(one, 0, "contact")
-    one.hear(event("job_finished", job_id=0))
-    assert "left" not in both()[0][-1]
 
 
 def test_a_failed_job_says_its_own_sentence_and_where_its_log_is(said):
@@ -129,12 +119,12 @@ def test_a_failed_job_says_its_own_sentence_and_where_its_log_is(said):
         log = write_log(name, text)
         start_job(one, number, "specimen", f"rock {number}", [log])
         told = event("job_error", jobid=number, rule_name="specimen", rule_msg=None, log=[log])
-        one.hear(told)
-        one.hear(told)  # Snakemake reports one twice where it gives up
+        one.emit(told)
+        one.emit(told)  # Snakemake reports one twice where it gives up
         errors = both()[1]
         assert errors[-3].startswith(expected)
         assert errors[-2:] == [f"  job: rock {number}", f"  log: {log}"]
-    one.finish(1)
+    one.close()
     assert both()[1][9:] == ["0 of 4 jobs done, 3 failed; 1 more were not begun"]
 
 
@@ -144,18 +134,18 @@ def test_the_log_of_an_earlier_run_explains_nothing(said):
     begin(one, ["specimen"])
     log = write_log("old", "error: scans/rock.npy: what was wrong yesterday\n", age=3600)
     start_job(one, 0, "specimen", "rock", [log])
-    one.hear(event("job_error", jobid=0, rule_name="specimen", rule_msg=None, log=[log]))
+    one.emit(event("job_error", jobid=0, rule_name="specimen", rule_msg=None, log=[log]))
     assert "yesterday" not in "\n".join(both()[1])
 
 
-def test_a_full_disk_is_one_sentence_where_the_log_found_no_place_on_it_either(said):
+def test_a_full_disk_is_one_sentence_where_the_log_found_no_place_on_it_either(said, monkeypatch):
     start, both = said
     one = start()
     begin(one, ["specimen"])
-    one.overhear("OSError: [Errno 28] No space left on device\n")
+    monkeypatch.setattr(terminal.shutil, "disk_usage", lambda path: SimpleNamespace(free=4096))
     start_job(one, 0, "specimen", "rock", [write_log("full", "")])
     told = event("job_error", jobid=0, rule_name="specimen", rule_msg=None, log=[])
-    one.hear(told)
+    one.emit(told)
     expected = "error: results/test: no space left on its disk; make room there and run again"
     assert both()[1][0] == expected
 
@@ -168,19 +158,10 @@ def test_an_error_of_the_study_is_said_without_its_place_in_the_workflow(said):
         "config/mine.yaml: unknown key 'grane'; did you mean 'grain'?\n"
         '  File "/home/me/workflow/rules/common.smk", line 55, in <module>\n'
     )
-    one.hear(event("error", text=text, level="ERROR"))
-    one.finish(1)
+    one.emit(event("error", msg=text, levelname="ERROR"))
+    one.close()
     expected = "error: config/mine.yaml: unknown key 'grane'; did you mean 'grain'?"
     assert both() == ([], [expected])
-
-
-def test_what_nobody_foresaw_is_said_in_the_words_of_the_process(said):
-    start, both = said
-    one = start()
-    for line in range(30):
-        one.overhear(f"line {line}\n")
-    one.finish(2)
-    assert both()[1] == [f"line {line}" for line in range(20, 30)]
 
 
 def test_warnings_of_the_data_stand_together_at_the_end_once_each(said):
@@ -191,9 +172,9 @@ def test_warnings_of_the_data_stand_together_at_the_end_once_each(said):
     for number in range(2):
         log = write_log(f"warned_{number}", f"some lines\n{warning}\n    warning:  \n")
         start_job(one, number, "specimen", "rock: levelled scan", [log])
-        one.hear(event("job_finished", job_id=number))
+        one.emit(event("job_finished", job_id=number))
     assert both()[1] == []
-    one.finish(0)
+    one.close()
     lines, errors = both()
     assert lines[-1].startswith("2 jobs done in ")
     assert errors[0] == "warnings of the data:"
@@ -208,8 +189,8 @@ def test_more_warnings_than_a_screen_takes_are_left_to_the_page(said):
     begin(one, ["specimen"])
     text = "".join(f"warning: number {n}\n" for n in range(100))
     start_job(one, 0, "specimen", "rock: scan", [write_log("many", text)])
-    one.hear(event("job_finished", job_id=0))
-    one.finish(0)
+    one.emit(event("job_finished", job_id=0))
+    one.close()
     assert both()[1][-1] == "  and more, which the result page has"
     assert len(both()[1]) == terminal.MOST_WARNINGS + 2
 
@@ -240,9 +221,9 @@ def test_a_dry_run_is_a_table_of_jobs_with_reasons(said):
     begin(one, ["contact"] * len(REASONS))
     for number, reason in enumerate(REASONS):
         keys = {"rule_name": "contact", "rule_msg": f"{number} {LONG}", "log": []}
-        one.hear(event("job_info", jobid=number, reason=reason, **keys))
-        one.hear(event("job_finished", job_id=number))
-    one.finish(0)
+        one.emit(event("job_info", jobid=number, reason=reason, **keys))
+        one.emit(event("job_finished", job_id=number))
+    one.close()
     lines, errors = both()
     assert errors == []
     for number, (line, words) in enumerate(zip(lines, REASONS.values(), strict=False)):
@@ -256,18 +237,9 @@ def test_nothing_to_do_is_said(said):
     start, both = said
     for dry_run in (False, True):
         one = start(dry_run=dry_run)
-        one.hear(event(None, text="Nothing to be done (all requested files are present)."))
-        one.finish(0)
+        one.emit(event(None, msg="Nothing to be done (all requested files are present)."))
+        one.close()
     assert both() == (["nothing to do: everything there is, is up to date"] * 2, [])
-
-
-def test_after_an_interruption_nothing_more_is_said(said):
-    start, both = said
-    one = start()
-    one.mute()
-    one.hear(event(None, level="WARNING", text="late"))
-    one.finish(1)
-    assert both() == ([], [])
 
 
 @pytest.mark.parametrize(
@@ -285,62 +257,38 @@ def test_a_job_that_succeeds_at_the_second_attempt_has_not_failed(said):
     told = event("job_error", jobid=0, rule_name="specimen", rule_msg=None, log=[])
     for attempt in range(2):
         start_job(one, 0, "specimen", "rock: scan")
-        one.hear(told if attempt == 0 else event("job_finished", job_id=0))
+        one.emit(told if attempt == 0 else event("job_finished", job_id=0))
     assert one.failed == {}
-    one.finish(0)
+    one.close()
     lines, errors = both()
     assert lines[-2:] == ["[1/1] rock: scan (0 s)", "1 job done in 0 s"]
-    assert errors[0].startswith("error: ended without a word")
-
-
-class Screen(io.StringIO):
-    """A terminal that can take a line back."""
-
-    def isatty(self):
-        return True
-
-
-def test_jobs_at_work_stand_in_the_last_line_of_a_screen():
-    screen = Screen()
-    one = terminal.Terminal("results/test", out=screen, err=screen)
-    begin(one, ["specimen", "contact"])
-    start_job(one, 0, "specimen", "rock: levelled scan")
-    start_job(one, 1, "contact", f"{LONG}: contact states")
-    shown = screen.getvalue().rpartition("\r\x1b[K")[2]
-    assert shown.startswith("at work: rock: levelled scan; xxx")
-    assert len(shown) < terminal.WIDTH
-    one.hear(event("job_finished", job_id=0))
-    line, shown = screen.getvalue().split("\r\x1b[K")[-2:]
-    assert line == "[1/2] rock: levelled scan (0 s)\n"
-    assert shown.startswith("at work: xxx")
-    one.mute()
-    assert screen.getvalue().endswith("\r\x1b[K")
+    assert errors[0].startswith("error: ended before it could write its log")
 
 
 def test_a_reader_that_ends_early_stops_nothing():
     read, write = os.pipe()
     with os.fdopen(write, "w") as stream:
-        one = terminal.Terminal("results/test", out=stream, err=stream)
+        one = begun(stream, stream)
         begin(one, ["specimen"])
         os.close(read)
         for attempt in range(3):
             start_job(one, attempt, "specimen", "rock: scan")
-            one.hear(event("job_finished", job_id=attempt))
+            one.emit(event("job_finished", job_id=attempt))
         assert one.done == 3
 
 
-def test_names_of_others_neither_stop_nor_change_a_terminal(tmp_path):
+def test_names_of_others_neither_stop_nor_change_a_terminal():
     narrow = io.TextIOWrapper(io.BytesIO(), encoding="ascii")
-    one = terminal.Terminal(tmp_path, out=narrow, err=narrow)
+    one = begun(narrow, narrow)
     begin(one, ["specimen"])
     start_job(one, 0, "specimen", "Stein\x1b[2J 岩: scan")
-    one.hear(event("job_finished", job_id=0))
+    one.emit(event("job_finished", job_id=0))
     said = narrow.buffer.getvalue().decode("ascii").splitlines()
     assert said[-1] == r"[1/1] Stein\x1b[2J \u5ca9: scan (0 s)"
 
 
 def test_a_warning_before_the_jobs_is_wrapped(said):
     start, both = said
-    start().hear(event(None, level="WARNING", text="scans: passed over: " + "a b.tmp, " * 40))
+    start().emit(event(None, levelname="WARNING", msg="scans: passed over: " + "a b.tmp, " * 40))
     assert both()[1][0].startswith("warning: scans: passed over: ")
     assert max(map(len, both()[1])) <= terminal.WIDTH

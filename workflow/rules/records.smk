@@ -1,0 +1,63 @@
+# What a run looks at before its first job, and leaves behind after its last: guards of results, its
+# plan, checksums, and what was made of what in linked data.
+import os
+
+import snakemake
+
+import _provenance
+import _running
+
+from fractalcontact.study import crate, guards
+
+#: Whether a killed run left jobs half done, whose files may be newer than their checksums: Snakemake
+#: runs those again itself. Known before more files are marked as theirs are.
+HALF_DONE = any(Path(".snakemake/incomplete").glob("*"))
+
+
+def remake_without_record():
+    """Mark results that Snakemake would take for up to date though its record of them is lost."""
+    if not workflow.is_main_process:
+        return
+    if again := _provenance.mark_without_provenance(RESULTS, workflow.workflow_settings):
+        logger.warning(
+            f"{RESULTS}: {again} of its files will be made again, since Snakemake's record of "
+            "how a file was made (in .snakemake), or a file that it was made from, is missing "
+            "or damaged"
+        )
+
+
+def begin():
+    """Refuse what would lose or misread results; else say that a run is at work, and its plan."""
+    _running.mark()
+    try:
+        # Whoever runs it says these two, never a study: workflow/run.py, that it has set damaged
+        # files aside, and the user, that specimens may go.
+        if "FRACTALCONTACT_CHECKED" not in os.environ and not HALF_DONE:
+            guards.refuse_damage(RESULTS, DIGESTS.of)
+        if "FRACTALCONTACT_DROP" not in os.environ:
+            guards.refuse_loss(RESULTS, [*SETTINGS, *LABELS])
+        plan.write_plan(PLAN, SAID | {"scans": scan_digests()})
+    except InputError as error:
+        raise WorkflowError(str(error))
+    DIGESTS.save()
+
+
+def end():
+    """Write checksums of all that was made, and what it is: be everything done or not."""
+    checksums.write_manifest(RESULTS)
+    scans = {path: digest for path, digest in scan_digests().items() if digest}
+    crate.write_crate(RESULTS, WORKFLOW, config["study"], scans)
+
+
+#: What made a study, for its crate of linked data.
+WORKFLOW = crate.Workflow(
+    folder=ROOT,
+    main="Snakefile",
+    parts=(
+        *("workflow/*.py", "workflow/rules/*.smk", "workflow/scripts/*.py", "config/schema/*.yaml"),
+        *("environment.yml", "requirements.lock", "CITATION.cff", "LICENSE"),
+    ),
+    language="Snakemake",
+    url="https://snakemake.github.io",
+    version=snakemake.__version__,
+)

@@ -1,0 +1,16 @@
+"""Write the explorer of all contact states, or the result page, from the atlas and its figures."""
+
+from pathlib import Path
+
+from _job import job
+
+from fractalcontact.pages.explorer import write_explorer
+from fractalcontact.pages.result_page import Place, write_result_page
+
+with job(snakemake) as log:
+    atlas, page = Path(snakemake.input[0]), Path(snakemake.output[0])
+    if snakemake.rule == "explorer":
+        write_explorer(atlas, page)
+        log.info("%.1f MB", page.stat().st_size / 1e6)
+    else:
+        log.info("%d specimens", len(write_result_page(Place.of(atlas.parent))))
