@@ -12,7 +12,7 @@ from fractalcontact.core.code_digest import Code
 from fractalcontact.study.stages import STAGES
 
 SRC, SCRIPTS = ROOT / "src", sorted((ROOT / "workflow/scripts").glob("[a-z]*.py"))
-MODULES = sorted({SRC / f"fractalcontact/{stage.module}.py" for stage in STAGES.values()})
+MODULES = sorted({SRC / f"{stage.module}.py" for stage in STAGES.values()})
 CODE = Code(SRC, ROOT)
 
 
