@@ -92,15 +92,12 @@ def test_applications_are_saved_on_large_grids(monkeypatch, control):
     monkeypatch.setattr(candidates, "LEAST_WINDOW", n + 1)
     height, space = rough((n, n), seed=1)
     depth = np.ptp(height)
-    loads = [{"closure": share * depth} for share in (0.16, 0.18, 0.20)]
+    loads = [{"closure": share * depth} for share in (0.16, 0.20)]
     if control == "force":
         loads = [{"force": solve_contact(height, space, **load).force} for load in loads]
-    first = solve_contact(height, space, **loads[0])
-    applications = {}
+    first, applications = solve_contact(height, space, **loads[0]), {}
     for smallest in (n, n + 1):
         monkeypatch.setattr(full_approximation, "LEAST_FINE_SIDE", smallest)
-        state, applications[smallest] = first, 0
-        for load in loads[1:]:
-            state = solve_contact(height, space, start=state, **load)
-            applications[smallest] += state.iterations
+        state = solve_contact(height, space, start=first, **loads[1])
+        applications[smallest] = state.iterations
     assert applications[n] < applications[n + 1]
