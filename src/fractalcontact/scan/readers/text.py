@@ -174,7 +174,8 @@ class _Reading:
         self._trailing = self.delimiter != " " and all(
             line.rstrip(" ").endswith(self.delimiter) for line in sample
         )
-        self._width = len(cells_of(sample[0], self.delimiter)) - self._trailing
+        cells = [cells_of(line, self.delimiter) for line in sample]
+        self._width = max(len(row) - (not row[-1].strip()) for row in cells)
 
     def _data_lines(self, lines: list[str]) -> list[tuple[int, str]]:
         """Number and text of the lines of numbers; of others it is kept where they stand."""
@@ -207,6 +208,7 @@ class _Reading:
             if len(cells) > self._width:
                 raise self._wrong_width(number, line)
             if len(cells) < self._width:
+                self._refuse_words(number, line, cells[:-1])
                 self._short = (number, line, f"holds {len(cells)} numbers")
                 continue
             rows.append(self.delimiter.join(cells))
