@@ -2,6 +2,7 @@
 
 import io
 import re
+from collections import Counter
 from dataclasses import replace
 from pathlib import Path
 
@@ -175,7 +176,12 @@ class _Reading:
             line.rstrip(" ").endswith(self.delimiter) for line in sample
         )
         cells = [cells_of(line, self.delimiter) for line in sample]
-        self._width = max(len(row) - (not row[-1].strip()) for row in cells)
+        widths = Counter(len(row) for row in cells)
+        if len(widths) > 1:  # a delimiter ends some lines, or a line is spoilt
+            widths = Counter(len(row) - (not row[-1].strip()) for row in cells)
+            self._width = widths.most_common(1)[0][0]
+        else:
+            self._width = len(cells[0]) - self._trailing
 
     def _data_lines(self, lines: list[str]) -> list[tuple[int, str]]:
         """Number and text of the lines of numbers; of others it is kept where they stand."""
