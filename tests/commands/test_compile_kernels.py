@@ -17,7 +17,11 @@ def test_no_module_with_kernels_is_left_to_the_jobs_of_a_study():
     used = {}
     # The methods kept for comparison and the readers of clouds compile their own when used.
     for module in pkgutil.walk_packages(fractalcontact.__path__, "fractalcontact."):
+<<<<<<< HEAD
         if not module.name.startswith(("contactlab.methods", "fractalcontact.scan")):
+=======
+        if not module.name.startswith(("fractalcontact.methods", "fractalcontact.gridding")):
+>>>>>>> scan
             found = importlib.import_module(module.name)
             for value in vars(found).values():
                 if isinstance(value, Dispatcher):

@@ -150,7 +150,7 @@ def test_named_columns_are_found_in_any_order(tmp_path):
     for columns in (["east", "north", "h"], [4, 3, 1]):
         heights = read_scan(path, {"unit": "mm", "columns": columns})
         np.testing.assert_array_equal(heights.values, surface())
-    with pytest.raises(InputError, match=r"no column 'x'.*east"):
+    with pytest.raises(InputError, match=r"no single column 'x'.*east"):
         read_scan(path, {"unit": "mm", "columns": ["x", "north", "h"]})
 
 
@@ -185,11 +185,11 @@ def test_gwyddion_export_states_its_size_and_runs_from_the_top(tmp_path, languag
     assert heights.attrs["spacing_y"] == pytest.approx(0.001)
 
 
-def test_esri_grid_states_its_cells_and_missing_number(tmp_path):
+def test_an_esri_grid_is_a_matrix_under_six_lines(tmp_path):
     z = surface()
     header = "ncols 15\nnrows 12\nxllcorner 0.0\nyllcorner 0.0\ncellsize 2.5\nNODATA_value -9999\n"
     path = save_text(tmp_path / "rock.asc", np.where(np.isnan(z), -9999, z), header=header)
-    heights = read_scan(path, {"unit": "cm"})
+    heights = read_scan(path, {"unit": "cm", "spacing": 2.5, "first_row": "top"})
     np.testing.assert_allclose(heights.values, z[::-1] * 10)
     assert heights.attrs["spacing_x"] == pytest.approx(25.0)
 
@@ -478,7 +478,7 @@ def test_unreadable_text_is_named_with_its_line(tmp_path):
     path = save_text(tmp_path / "rock.txt", surface())
     path.write_text(path.read_text() + "and then it broke\n")
     with pytest.raises(InputError, match=r"rock\.txt: line 13 holds 'and', no number"):
-        read_scan(path, {"unit": "mm", "spacing": 0.1})
+        read_scan(path, {"unit": "mm", "spacing": 0.1, "missing": "none"})
     lines = save_text(path, surface()).read_text().splitlines()
     path.write_text("\n".join([*lines[:5], lines[5] + " 1.0", *lines[6:]]))
     with pytest.raises(InputError, match="line 6 has 16 values, those before have 15"):

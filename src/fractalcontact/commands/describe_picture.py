@@ -60,7 +60,10 @@ def _draw_relief(figure, axes, face):
         axes.set_aspect("equal")
         title = f"{len(measured.values)} points"
         z = measured.values[:, 2]
-    figure.colorbar(image, ax=axes, label="height (mm)")
+    present = z[np.isfinite(z)]
+    if present.size:  # a few spikes must not hide the relief
+        image.set_clim(*np.percentile(present, [0.5, 99.5]))
+    figure.colorbar(image, ax=axes, label="height (mm)", extend="both")
     axes.set(xlabel="x (mm)", ylabel="y (mm)", title=f"{printable(face.path.name, 60)}: {title}")
     return z
 

@@ -2,6 +2,7 @@
 
 import io
 import re
+from collections import Counter
 from dataclasses import replace
 from pathlib import Path
 
@@ -30,6 +31,7 @@ _NAN = ("", "nan", "NaN", "NAN", "-nan", "-NaN", "+nan")
 #: Keys that say how a text is laid out; a table that describes itself needs none of them.
 LAYOUT_KEYS = ("delimiter", "decimal", "thousands", "header", "layout", "axes", "columns")
 _BLOCK = 2**24  # characters read at once
+_SAMPLE = 200  # lines that tell how many numbers stand in one
 _PLAIN = b"0123456789+-.,;eE \t\n"
 
 
@@ -95,6 +97,11 @@ class _Reading:
         """Take up the next block."""
         # The quick way passes no line it has not understood; what it refuses is read line by line.
         plain = None
+        if not self._width and not self._has_frame:
+            breaks = list(self._breaks)
+            if first := self._data_lines(block.split("\n", _SAMPLE)[:_SAMPLE]):
+                self._measure([line for _, line in first])
+            self._breaks = breaks
         if self._width and not self._short:
             plain = _plain_block(block, self.delimiter, self._width, self._trailing)
         if plain is None:
@@ -170,11 +177,17 @@ class _Reading:
 
     def _measure(self, lines: list[str]) -> None:
         """Take the width from the first lines, and whether each ends with a delimiter."""
-        sample = lines[: max(1, min(len(lines) - 1, 200))]
+        sample = lines[: max(1, min(len(lines) - 1, _SAMPLE))]
         self._trailing = self.delimiter != " " and all(
             line.rstrip(" ").endswith(self.delimiter) for line in sample
         )
-        self._width = len(cells_of(sample[0], self.delimiter)) - self._trailing
+        cells = [cells_of(line, self.delimiter) for line in sample]
+        widths = Counter(len(row) for row in cells)
+        if len(widths) > 1:  # a delimiter ends some lines, or a line is spoilt
+            widths = Counter(len(row) - (not row[-1].strip()) for row in cells)
+            self._width = widths.most_common(1)[0][0]
+        else:
+            self._width = len(cells[0]) - self._trailing
 
     def _data_lines(self, lines: list[str]) -> list[tuple[int, str]]:
         """Number and text of the lines of numbers; of others it is kept where they stand."""
@@ -207,6 +220,7 @@ class _Reading:
             if len(cells) > self._width:
                 raise self._wrong_width(number, line)
             if len(cells) < self._width:
+                self._refuse_words(number, line, cells[:-1])
                 self._short = (number, line, f"holds {len(cells)} numbers")
                 continue
             rows.append(self.delimiter.join(cells))
