@@ -159,6 +159,7 @@ def test_an_error_of_the_study_is_said_without_its_place_in_the_workflow(said):
         '  File "/home/me/workflow/rules/common.smk", line 55, in <module>\n'
     )
     one.emit(event("error", msg=text, levelname="ERROR"))
+    one.emit(event("error", msg="WorkflowError:\nAt least one job did not complete successfully."))
     one.close()
     expected = "error: config/mine.yaml: unknown key 'grane'; did you mean 'grain'?"
     assert both() == ([], [expected])

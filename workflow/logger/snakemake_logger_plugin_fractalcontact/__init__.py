@@ -158,7 +158,7 @@ class LogHandler(LogHandlerBase):
         elif _is_full(self.errors):
             self._say("error: .snakemake: no space left on its disk; make room there", self.err)
         elif self.errors:
-            self._say(f"error: {self.errors[-1]}", self.err)
+            self._say(f"error: {self.errors[0]}", self.err)  # later ones only say that it failed
         elif self.nothing or (self.dry_run and not self.jobs):
             self._say("nothing to do: everything there is, is up to date")
         elif self.dry_run:
