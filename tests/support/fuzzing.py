@@ -28,15 +28,18 @@ import yaml
 from mutations import spoil
 from places import ROOT, SCANS
 from scan_writers import WRITERS, write
+from stated import ARRAY
 
 from fractalcontact.core.errors import InputError
 from fractalcontact.scan import confined
+from fractalcontact.scan.raw import IncompleteSidecar
 from fractalcontact.scan.read import read_scan
 from fractalcontact.study.checks import read_sidecar
 
 LONGEST_SECONDS = 10
 MOST_MEMORY = 2 * 1024**3
 LONGEST_MESSAGE = 1000
+LONGEST_DRAFT = 6100  # what the reader cuts it to, and what it puts in place
 _LARGEST_SEED = 2_500_000  # bytes of a real file that is worth spoiling a hundred times
 _SCHEMA = yaml.safe_load((ROOT / "config/schema/study.schema.yaml").read_text())
 _SIDECAR = (
@@ -45,6 +48,16 @@ _SIDECAR = (
     b"material: {modulus: 20 GPa, poisson: 0.2}\n"
 )
 _ESRI = b"ncols 15\nnrows 12\nxllcorner 0.0\nyllcorner 0.0\ncellsize 0.5\nNODATA_value -9999\n"
+_ESRI_SIDECAR = {
+    **ARRAY,
+    "delimiter": "blank",
+    "decimal": ".",
+    "header": 6,
+    "unit": "mm",
+    "spacing": 0.5,
+    "first_row": "top",
+    "missing": -9999,
+}
 
 
 @dataclass(frozen=True)
@@ -77,7 +90,7 @@ def make_seeds(folder: Path, real: bool) -> list[Seed]:
     heights = np.round(rng.uniform(-0.5, 0.5, (12, 15)), 4)
     seeds = [Seed(".yaml", _SIDECAR, {})]
     rows = "\n".join(" ".join(map(str, row)) for row in heights)
-    seeds.append(Seed(".asc", _ESRI + rows.encode(), {"unit": "mm"}))
+    seeds.append(Seed(".asc", _ESRI + rows.encode(), _ESRI_SIDECAR))
     heights[3, 4] = heights[7, 2] = np.nan
     for ending in WRITERS:
         whole = np.nan_to_num(heights) if ending in (".stl", ".obj", ".ply") else heights
@@ -112,7 +125,7 @@ def judge(chosen: Seed, content: bytes, folder: Path) -> Verdict:
         _read(path, chosen)
         was_read = True
     except InputError as error:
-        fault = _fault_of_message(str(error), path)
+        fault = _fault_of_refusal(error, path)
     except _Hangs:
         fault = "".join(traceback.format_exc(limit=-6))
     except Exception as error:
@@ -135,6 +148,15 @@ def _read(path: Path, chosen: Seed) -> None:
         read_sidecar(path, _SCHEMA)
     else:
         read_scan(path, chosen.options)
+
+
+def _fault_of_refusal(error: InputError, path: Path) -> str:
+    """The fault of a sentence, and of the draft of a sidecar that may follow it."""
+    if not isinstance(error, IncompleteSidecar):
+        return _fault_of_message(str(error), path)
+    if len(error.draft) > LONGEST_DRAFT:
+        return f"a draft of {len(error.draft)} characters: {error.draft}"
+    return _fault_of_message(error.message, path)
 
 
 def _fault_of_message(message: str, path: Path) -> str:

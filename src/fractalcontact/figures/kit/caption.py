@@ -13,7 +13,6 @@ An entry of ``PACKAGE/figures/GROUP/captions.yaml`` has the name of a figure and
 They are Jinja templates: names stand for values, and filters put numbers into words.
 """
 
-import sys
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -21,6 +20,7 @@ from typing import Any
 import yaml
 from jinja2 import Environment, StrictUndefined
 
+from ...core.packages import SOURCES
 from .words import PAPER, force_label, number, percent, pressure_label, short
 
 
@@ -68,7 +68,7 @@ def caption(module: str, **values: Any) -> Caption:
     jinja2.UndefinedError
         If a template uses a name that is not handed over.
     """
-    file = Path(sys.modules[module].__file__ or "")
+    file = SOURCES / f"{module.replace('.', '/')}.py"
     entry = _templates(file.with_name("captions.yaml"))[file.stem]
 
     def filled(template: str) -> str:

@@ -132,16 +132,16 @@ class _Reading:
         return table, TextParts(self._names(), above, breaks), notes
 
     def refuse_numbers_above(self) -> None:
-        """Refuse a header that holds points: one sidecar of two files may skip too many lines."""
-        if self.options.layout != "points":
+        """Refuse a header that ends in a point, as a sidecar shared by two files may say."""
+        if self.options.layout != "points" or not self.header:
             return
-        for number, line in enumerate(self.header, 1):
-            cells = [cell.strip() for cell in cells_of(line.strip(), self.delimiter)]
-            if len(cells) >= max(2, self._width) and all(is_number(c, self.options) for c in cells):
-                raise InputError(
-                    f"{self.path}: line {number} of its header holds numbers as the points do; "
-                    f"write 'header: {number - 1}' (for one of two faces below 'upper:')"
-                )
+        cells = [cell.strip() for cell in cells_of(self.header[-1].strip(), self.delimiter)]
+        if len(cells) >= max(2, self._width) and all(is_number(c, self.options) for c in cells):
+            number = len(self.header)
+            raise InputError(
+                f"{self.path}: line {number}, the last of its header, holds numbers as the points "
+                "do; write a smaller number, 'header: 0' (for one of two faces below 'upper:')"
+            )
 
     def _take(self, part: np.ndarray) -> None:
         self._parts.append(part)
