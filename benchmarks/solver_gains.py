@@ -100,9 +100,9 @@ def _spectrum(space, dtype):
 def _convolve_by_scipy(space, values):
     """The operator by scipy.fft, which is not given the rows of zeros."""
     (ny, nx), (padded, spectrum) = space.shape, _spectrum(space, values.dtype)
-    image = fft.fft(fft.rfft(values, padded[1]), padded[0], axis=0)
+    image = fft.fft(fft.rfft(values, padded[1]), padded[0], axis=-2)
     image *= spectrum
-    return fft.irfft(fft.ifft(image, axis=0)[:ny], padded[1])[:, :nx]
+    return fft.irfft(fft.ifft(image, axis=-2)[..., :ny, :], padded[1])[..., :nx]
 
 
 #: What is left out of a cold solve, and what is put in its place: (owner, name, value).
