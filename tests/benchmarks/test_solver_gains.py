@@ -15,7 +15,7 @@ def test_every_part_is_left_out_once(tmp_path):
         rows = list(csv.DictReader(file))
     cold = {row["without"]: row for row in rows if row["loading"] == "cold"}
     parts = {"preconditioner", "coarse correction", "clipping of the steps"}
-    assert cold.keys() == {"", "nested iteration"} | parts
+    assert cold.keys() == {"", "nested iteration", "transforms of its own"} | parts
     assert all(int(row["applications"]) > 0 for row in rows)
     assert float(cold[""]["applications ratio"]) == 1.0
     assert float(cold["preconditioner"]["applications ratio"]) > 1.5

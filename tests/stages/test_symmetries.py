@@ -25,16 +25,19 @@ MADE_OF_SPECIMEN = [name for name, stage in STAGES.items() if stage.grain in ("s
 
 #: What is stated at an absolute length or force: Tse and Cruden's JRC takes its steps in mm, and
 #: Barton's strength follows it; a spectrum at a wave of 1 mm; an area at 1 N; a conductance at
-#: 1 MPa; a spacing in words.
+#: 1 MPa; stiffnesses at 1, 5 and 10 MPa; a spacing in words.
 ABSOLUTE = {
     *("step", "z2", "jrc", "jrc_used", "jrc_note", "barton_roughness", "barton_strength"),
     *("scaled_roughness", "scaled_wall_strength", "barton_scaled_strength", "line_level"),
     *("barton_slope_angle", "peak_over_barton"),
     *("unit_area", "unit_area_low", "unit_area_high", "value"),
     *("unit_conductance", "unit_conductance_low", "unit_conductance_high"),
+    *("reference_pressure", "reference_stiffness", "reference_stiffness_error"),
+    *("seated_d_0", "seated_d_0_low", "seated_d_0_high"),
 }
 #: Sentences with numbers and letters in them, by stage: their verdicts are compared.
 SENTENCES = {
+    "closure": {"seated_k_ni_reason", "no_common_seat"},
     "elastic_model": {"reason"},
     "statements": {"claim", "short", "rule", "numbers", "note"},
 }
@@ -77,6 +80,7 @@ def rock_joint(length=1.0, stress=1.0, turned=False):
             "offsets": [f"{length * v} mm" for v in OFFSETS],
             "window": [f"{length * side} mm" for side in window],
             "resolutions": [1, 2],
+            "seating_pressure": f"{2 * stress} MPa",
             "fill_holes": 3,
         },
     }

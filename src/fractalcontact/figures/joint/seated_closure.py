@@ -116,6 +116,7 @@ def _words(curve: xr.Dataset, seat: float, again: xr.Dataset) -> dict[str, Any]:
     middle = on_reload["reference_pressure"].values[len(on_reload) // 2]
     return {
         "residual": float(again["residual_closure"]),
+        "top": float(again["nominal_pressure"][-1]),
         "reload": float(on_reload.sel(reference_pressure=middle)),
         "middle": float(middle),
         "seat": seat,

@@ -110,7 +110,7 @@ def _table(laws):
         "slope_at_equal_v_over_b",
         "truncated_fraction_at_equal_v_over_b",
     )
-    laws = laws.transpose("normal_force", "share", "part", ...)
+    laws = laws.compute().transpose("normal_force", "share", "part", ...)
     every = ("side", "windows", "barton_scaled_strength")
     tables = [
         rows(laws, *means, *every, at="v/b"),
