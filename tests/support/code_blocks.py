@@ -41,6 +41,10 @@ NOT_RUN = {
     ("docs/solver.md", "0 <= p <= H;"): "mathematics",
     ("docs/solver.md", "p, u, w <- a start"): "pseudo-code",
     ("docs/solver.md", "python benchmarks/solver_gains.py"): "takes minutes of a quiet machine",
+    (
+        "docs/solver.md",
+        "OMP_NUM_THREADS=1 python benchmarks/capped.py",
+    ): "takes minutes of a quiet machine",
     ("docs/solver.md", "OMP_NUM_THREADS=1 make bench"): f"{HOURS}, installs other programs",
 }
 

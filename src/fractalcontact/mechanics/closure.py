@@ -22,8 +22,8 @@ from .theory import Numbers
 #: Why a state that was solved has no stiffness of the interface.
 FLUSH_FACES = "the faces lie flush: there is no interface"
 SINGLE_CELLS = (
-    f"fewer than {RESOLVED_NODES} cells carry the change of the force: a stiffness would be that of "
-    "single cells"
+    f"fewer than {RESOLVED_NODES} cells carry the change of the force: a stiffness would be that "
+    "of single cells"
 )
 FULL_CONTACT = "contact is so full that joint and blocks together are no softer than the blocks"
 
