@@ -13,9 +13,11 @@ from roughcontact.errors import NotConverged
 
 from ..core.datasets import labelled, labelled_dataset
 from ..core.labels import cf_attrs
+from ..core.limits import SEATED_SPAN
 from .closure import bulk_settlement, interface_stiffness
 from .loading import JointLoading
 from .seated_laws import reference_stiffness
+from .separation import ROUNDING
 
 _STATES = ("branch", "normal_force")
 _PRESSED = ("mm", "how far each node is pressed in for good")
@@ -139,7 +141,7 @@ _OF_INTERFACE = {
 
 
 def joint_branches(loading: JointLoading, curves: xr.Dataset) -> xr.Dataset:
-    """Branches of a joint at the reported offset, from the seat up to its largest load and back.
+    """Branches of a joint at the reported offset, over the loads that closure laws are fitted to.
 
     Parameters
     ----------
@@ -151,12 +153,17 @@ def joint_branches(loading: JointLoading, curves: xr.Dataset) -> xr.Dataset:
     Returns
     -------
     xr.Dataset
-        That of :func:`branches` and closures and stiffness of the interface. Where nothing yields
-        all branches are that of loading, which is not solved again.
+        That of :func:`branches` and closures and stiffness of the interface, up to
+        :data:`core.limits.SEATED_SPAN` times the seating pressure: what was loaded until the whole
+        window crushes tells nothing of a joint in use. Where nothing yields all branches are that
+        of loading, which is not solved again.
     """
     (cells,), (offset,) = loading.cells, loading.offsets
     curve = curves.sel(direction=loading.direction, resolution=curves["resolution"].min())
     curve = curve.sel(offset=offset, method="nearest")
+    seating = float(curve["seating_pressure"])
+    light = curve["nominal_pressure"].values <= SEATED_SPAN * seating * (1 + ROUNDING)
+    curve = curve.isel(normal_force=light | (light.sum() < 2))
     forces = curve["normal_force"].values
     composite = loading.composite(int(cells))
     space = loading.half_space(composite.shape)
@@ -170,8 +177,8 @@ def joint_branches(loading: JointLoading, curves: xr.Dataset) -> xr.Dataset:
     settlement = bulk_settlement(forces, space.modulus, *sides)
     pressure = forces / loading.area
     closure = data["closure"] - xr.DataArray(settlement, dims="normal_force")
-    seat = closure[0].where(pressure == float(curve["seating_pressure"])).sum(min_count=1)
-    beyond = pressure >= float(curve["seating_pressure"])
+    seat = closure[0].where(np.isclose(pressure, seating, rtol=ROUNDING, atol=0)).sum(min_count=1)
+    beyond = pressure >= seating * (1 - ROUNDING)
     bulk = xr.DataArray(pressure / settlement, dims="normal_force")
     stiffness = interface_stiffness(data["stiffness"] / loading.area, bulk)
     values = {
