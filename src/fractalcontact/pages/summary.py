@@ -208,7 +208,7 @@ class Specimen:
     v_m: Estimate
     chi: Estimate
     seat: float
-    stiffness: dict[float, float]
+    stiffness: dict[float, tuple[float, float]]
     doubled: Doubled
     closure_law: str
     dilatancy: Dilatancy
@@ -275,9 +275,10 @@ def _initial_stiffness(curve):
 
 
 def _stated_stiffness(curve):
-    """Tangent stiffness by the nominal pressure at which it is stated, MPa/mm; NaN if unknown."""
-    stated = curve["reference_stiffness"]
-    return dict(zip(stated["reference_pressure"].values.tolist(), stated.values, strict=True))
+    """Tangent stiffness and its error by nominal pressure, MPa/mm; NaN if unknown."""
+    stated, error = curve["reference_stiffness"], curve["reference_stiffness_error"]
+    pairs = zip(stated.values.tolist(), error.values.tolist(), strict=True)
+    return dict(zip(stated["reference_pressure"].values.tolist(), pairs, strict=True))
 
 
 def _at_load(subject, curve, number):
@@ -393,7 +394,11 @@ def _of_specimen(one):
         "delta_g_estimator": one.estimator,
         "rms_slope": one.rms_slope,
         "seating_pressure_MPa": one.seat,
-        **{f"stiffness_at_{p:g}_MPa_MPa_per_mm": k for p, k in one.stiffness.items()},
+        **{
+            f"stiffness_at_{pressure:g}_MPa_{of}MPa_per_mm": number
+            for pressure, pair in one.stiffness.items()
+            for of, number in zip(("", "error_"), pair, strict=True)
+        },
         **_columns("k_ni_MPa_per_mm", one.k_ni),
         **_columns("v_m_mm", one.v_m),
         **_columns("chi_mm", one.chi),

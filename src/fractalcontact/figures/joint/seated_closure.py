@@ -25,7 +25,7 @@ SUBJECT = "specimen"
 NEEDS = ("specimens", "closure", "branches")
 ORDER = 45
 
-RELOAD = "reload"
+RELOAD, REFERENCE = "reload", "reference_pressure"
 _AGAIN: dict[str, Any] = {
     **{"labels": ["unloading and reloading"], "color": colour_of(4), "marker": "s"},
     **{"ls": ":", "ms": 3},
@@ -111,6 +111,7 @@ def _draw_stiffness(panel: Panel, curve: xr.Dataset, style: dict[str, Any]) -> N
 def _words(curve: xr.Dataset, seat: float, again: xr.Dataset) -> dict[str, Any]:
     """Values of the caption."""
     stiffness = curve["reference_stiffness"]
+    errors = curve["reference_stiffness_error"].where(np.isfinite(stiffness), drop=True)
     known = stiffness[np.isfinite(stiffness)]
     on_reload = again["reference_stiffness"].sel(branch=RELOAD)
     middle = on_reload["reference_pressure"].values[len(on_reload) // 2]
@@ -127,7 +128,9 @@ def _words(curve: xr.Dataset, seat: float, again: xr.Dataset) -> dict[str, Any]:
         "misfits": [float(curve[f"seated_{law}_misfit"]) for law in ("hyperbola", "logarithm")],
         "reason": str(curve["seated_k_ni_reason"].item()),
         "stated": [
-            (short(float(pressure)), short(float(value), 3))
-            for pressure, value in zip(known["reference_pressure"], known, strict=True)
+            (short(float(pressure)), short(float(value), 3), short(float(error), 2))
+            for pressure, value, error in zip(
+                known["reference_pressure"], known, errors, strict=True
+            )
         ],
     }
