@@ -13,16 +13,14 @@ from roughcontact.errors import NotConverged
 
 from ..core.datasets import labelled, labelled_dataset
 from ..core.labels import cf_attrs
-from ..core.limits import SEATED_SPAN
 from .closure import bulk_settlement, interface_stiffness
 from .loading import JointLoading
-from .seated_laws import reference_stiffness
+from .seated_laws import reference_stiffness, within_span
 from .separation import ROUNDING
 
 _STATES = ("branch", "normal_force")
-_PRESSED = ("mm", "how far each node is pressed in for good")
 
-#: What each state of a branch has: unit, long name.
+#: Numbers of each state of a branch: unit, long name.
 OF_BRANCHES = {
     "closure": ("mm", "closure w from first touch before any load"),
     "stiffness": ("N/mm", "stiffness dF/dw of an elastic branch; of loading that of the states"),
@@ -31,11 +29,16 @@ OF_BRANCHES = {
     "yielded_fraction": ("1", "fraction of the window that has carried the hardness"),
     "plastic_load_fraction": ("1", "fraction of the force on nodes at the hardness"),
 }
-#: What the cycle has: unit, long name.
+#: Numbers of the cycle: unit, long name.
 OF_CYCLE = {
     "residual_closure": ("mm", "closure at which contact is lost after unloading"),
     "dissipated_energy": ("N mm", "energy spent on what is pressed in"),
     "recovered_energy": ("N mm", "elastic energy that unloading gives back"),
+}
+_TABLE: dict[str, tuple[Any, str, str]] = {
+    **{name: (_STATES, *words) for name, words in OF_BRANCHES.items()},
+    **{name: ((), *words) for name, words in OF_CYCLE.items()},
+    "permanent_set": (("y", "x"), "mm", "how far each node is pressed in for good"),
 }
 
 
@@ -86,29 +89,15 @@ def branches(
         [_numbers(state, branch) for state in of_branch]
         for branch, of_branch in zip(BRANCHES, states, strict=True)
     ]
-    data = xr.Dataset(
-        {
-            name: (
-                _STATES,
-                [[one[name] for one in row] for row in rows],
-                cf_attrs(*attrs),
-            )
-            for name, attrs in OF_BRANCHES.items()
-        },
-        coords={
-            "branch": list(BRANCHES),
-            "normal_force": ("normal_force", up, cf_attrs("N", "normal force F")),
-        },
-    )
-    of_cycle = {
+    values = {
+        **{name: [[one[name] for one in row] for row in rows] for name in OF_BRANCHES},
         "residual_closure": empty.closure,
         "dissipated_energy": top.dissipated_energy,
         "recovered_energy": top.elastic_energy,
+        "permanent_set": top.permanent_set,
     }
-    for name, attrs in OF_CYCLE.items():
-        data[name] = (), of_cycle[name], cf_attrs(*attrs)
-    data["permanent_set"] = ("y", "x"), top.permanent_set, cf_attrs(*_PRESSED)
-    return data
+    loads = ("normal_force", up, cf_attrs("N", "normal force F"))
+    return labelled_dataset(_TABLE, values, {"branch": list(BRANCHES), "normal_force": loads})
 
 
 def _numbers(state: BranchState, branch: str) -> dict[str, float]:
@@ -123,7 +112,7 @@ def _numbers(state: BranchState, branch: str) -> dict[str, float]:
     }
 
 
-#: What the interface has on each branch: dimensions, unit, long name.
+#: Numbers of the interface on each branch: dimensions, unit, long name.
 _OF_INTERFACE = {
     "interface_closure": (_STATES, "mm", "interface closure w_int = w - w_b"),
     "seated_closure": (
@@ -162,7 +151,7 @@ def joint_branches(loading: JointLoading, curves: xr.Dataset) -> xr.Dataset:
     curve = curves.sel(direction=loading.direction, resolution=curves["resolution"].min())
     curve = curve.sel(offset=offset, method="nearest")
     seating = float(curve["seating_pressure"])
-    light = curve["nominal_pressure"].values <= SEATED_SPAN * seating * (1 + ROUNDING)
+    light = within_span(curve["nominal_pressure"].values, seating)
     curve = curve.isel(normal_force=light | (light.sum() < 2))
     forces = curve["normal_force"].values
     composite = loading.composite(int(cells))
@@ -198,15 +187,10 @@ def _elastic(curve: xr.Dataset, shape: tuple[int, ...]) -> xr.Dataset:
     n = curve.sizes["normal_force"]
     of = {"closure": curve["closure"].values, "stiffness": curve["stiffness"].values}
     of["area"] = curve["area"].values
-    values: dict[str, Any] = {
-        name: [of.get(name, np.zeros(n))] * len(BRANCHES) for name in OF_BRANCHES
+    values = {
+        **{name: [of.get(name, np.zeros(n))] * len(BRANCHES) for name in OF_BRANCHES},
+        **{"residual_closure": 0.0, "dissipated_energy": 0.0, "recovered_energy": np.nan},
+        "permanent_set": np.zeros(shape),
     }
-    table: dict[str, tuple[Any, str, str]] = {
-        name: (_STATES, *words) for name, words in OF_BRANCHES.items()
-    }
-    table |= {name: ((), *words) for name, words in OF_CYCLE.items()}
-    table["permanent_set"] = (("y", "x"), *_PRESSED)
-    values |= {"residual_closure": 0.0, "dissipated_energy": 0.0, "recovered_energy": np.nan}
-    values["permanent_set"] = np.zeros(shape)
     coords = {"branch": list(BRANCHES), "normal_force": curve["normal_force"]}
-    return labelled_dataset(table, values, coords)
+    return labelled_dataset(_TABLE, values, coords)

@@ -13,6 +13,7 @@ from ..core.estimate import Estimate
 from ..core.labels import percent
 from ..core.limits import LARGEST_MISFIT, REFERENCE_PRESSURES, SEATED_SPAN
 from .closure_laws import FEWEST_CLOSURE_POINTS, at_twice, fit_hyperbola, fit_semi_logarithmic
+from .separation import ROUNDING
 
 _DIMS = ("direction", "offset", "resolution")
 _RANGE = "from the seating pressure on, over at most two decades"
@@ -26,7 +27,7 @@ _PARAMETERS = {
         f"chi of d = d_0 + chi ln sigma, closure per e-fold, {_RANGE}",
     ),
 }
-#: What else is kept of the fits: unit, long name.
+#: Other numbers of the fits: unit, long name.
 _OF_FITS = {
     "seated_hyperbola_misfit": ("1", "rms misfit of the seated hyperbola over the largest closure"),
     "seated_logarithm_misfit": ("1", "rms misfit of the seated logarithm over the largest closure"),
@@ -73,11 +74,16 @@ def add_seated_laws(curves: xr.Dataset) -> None:
     _add_reference_stiffness(curves)
 
 
+def within_span(pressure: np.ndarray, seat: float) -> np.ndarray:
+    """Loads (n,) bool up to :data:`core.limits.SEATED_SPAN` times the seating pressure, MPa."""
+    return pressure <= SEATED_SPAN * seat * (1 + ROUNDING)
+
+
 class _Fit:
     """Both laws of one curve, under the names of the atlas."""
 
     def __init__(self, pressure: np.ndarray, closure: np.ndarray, seat: float):
-        fitted = np.isfinite(closure) & (closure > 0) & (pressure <= SEATED_SPAN * seat * 1.001)
+        fitted = np.isfinite(closure) & (closure > 0) & within_span(pressure, seat)
         hyperbola = fit_hyperbola(pressure[fitted], closure[fitted])
         logarithm = fit_semi_logarithmic(pressure[fitted], closure[fitted])
         self.seated_k_ni, self.seated_v_m = hyperbola.k_ni, hyperbola.w_m
@@ -150,7 +156,11 @@ def _add_reference_stiffness(curves: xr.Dataset) -> None:
             found[place] = np.column_stack((at, at * at_share))
     table = {
         "reference_stiffness": (dims, "MPa/mm", "tangent stiffness of the interface at a pressure"),
-        "reference_stiffness_error": (dims, "MPa/mm", "bound of the solver's error of it"),
+        "reference_stiffness_error": (
+            dims,
+            "MPa/mm",
+            "error of it, from the states beside it",
+        ),
     }
     curves.coords["reference_pressure"] = (
         "reference_pressure",

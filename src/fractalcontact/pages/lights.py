@@ -14,8 +14,8 @@ from .words import with_unit
 
 #: What would make lights better.
 FINER_SCAN = "heights as measured, without the instrument's filter, or a scan finer than its noise"
-REGISTER = "faces scanned with common marks, or 'registration: rigid'"
-LIGHTER = "lighter loads; steep slopes belong to the surface, and no setting makes them small"
+MARKS = "faces scanned with common marks; 'outliers: fill' where spikes or deep overlaps carry load"
+LIGHTER = "lighter loads where the window is nearly full; nothing makes steep slopes small"
 CRUSH = "contacts that crush: 'hardness' in the material, such as the joint wall strength"
 STATE = "'joint_wall_strength' of the rock in its material, at which contacts then crush"
 
@@ -70,14 +70,16 @@ def _scan(subject):
     quality, load = (
         str(subject[stage].attrs.get("warning", "")) for stage in ("quality", "closure")
     )
-    found = [text for text in (quality, "" if _is_pair(subject) else load) if text]
+    if _is_pair(subject):
+        load = ""
+    found = [text for text in (quality, load) if text]
     if not found:
         reason = "all resolutions lie within the fractal range, suspicious cells carry little load"
         return Light("scan", "Scan", GOOD, reason)
     helps = "'outliers: mask' leaves suspicious cells out" if load else FINER_SCAN
     # The noise or the filter of the instrument decides at all resolutions, or at the finer ones.
     below = subject["quality"]["below_range"].values
-    word = POOR if below.all() or (load and not _is_pair(subject)) else IN_PART
+    word = POOR if below.all() or load else IN_PART
     return Light("scan", "Scan", word, "; ".join(found), helps)
 
 
@@ -88,9 +90,9 @@ def _faces(subject):
     overlap = str(subject["quality"].attrs["overlap"])
     load = str(subject["closure"].attrs.get("warning", ""))
     if load:
-        return Light(key, title, POOR, f"{load}; {overlap}", REGISTER)
+        return Light(key, title, POOR, f"{load}; {overlap}", MARKS)
     touching = subject["quality"].sel(region="window")["overlap_cells"].item()
-    return Light(key, title, *((IN_PART, overlap, REGISTER) if touching else (GOOD, overlap)))
+    return Light(key, title, *((IN_PART, overlap, MARKS) if touching else (GOOD, overlap)))
 
 
 def _nodes(subject):

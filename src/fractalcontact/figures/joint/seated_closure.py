@@ -18,7 +18,7 @@ from ..kit.legends import entries, heading, legends_below
 from ..kit.panel import Panel, table_of
 from ..kit.titles import headline
 from ..kit.words import NOMINAL_PRESSURE, place, pressure_label, short
-from ..paper._closure_laws import offset_words
+from ..paper._closure_laws import hyperbola, offset_words
 
 TITLE = "Closure from the seat, its laws, and tangent stiffness"
 SUBJECT = "specimen"
@@ -74,10 +74,10 @@ def _draw_laws(axes: Axes, curve: xr.Dataset) -> None:
     if not np.isfinite(ends).all():
         return
     pressure = np.geomspace(*ends, 100)
-    k_ni, v_m, d_0, chi = (float(curve[f"seated_{name}"]) for name in ("k_ni", "v_m", "d_0", "chi"))
-    hyperbola = pressure * v_m / (k_ni * v_m + pressure)
+    d_0, chi = (float(curve[f"seated_{name}"]) for name in ("d_0", "chi"))
+    bent = hyperbola(pressure, curve["seated_k_ni"], curve["seated_v_m"])
     for closure, words, line, colour in (
-        (hyperbola, r"hyperbola $\sigma_0 = k_{ni}d/(1 - d/v_m)$", "--", 1),
+        (bent, r"hyperbola $\sigma_0 = k_{ni}d/(1 - d/v_m)$", "--", 1),
         (d_0 + chi * np.log(pressure), r"logarithm $d = d_0 + \chi\ln\sigma_0$", "-", 2),
     ):
         if np.isfinite(closure).any():

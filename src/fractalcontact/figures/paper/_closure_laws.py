@@ -100,10 +100,15 @@ def _closure_by(law, curve, pressure):
     The hyperbola is sigma_0 = k_ni w / (1 - w / w_m), the other w = a + b ln(sigma_0 / 1 MPa).
     """
     if law != "semi_logarithmic":
-        k_ni, w_m = (float(curve[f"hyperbola_{name}"]) for name in ("k_ni", "w_m"))
-        return pressure * w_m / (k_ni * w_m + pressure)
+        return hyperbola(pressure, *(curve[f"hyperbola_{name}"] for name in ("k_ni", "w_m")))
     a, b = (float(curve[f"semi_logarithmic_{name}"]) for name in "ab")
     return a + b * np.log(pressure)
+
+
+def hyperbola(pressure: np.ndarray, k_ni: xr.DataArray, largest: xr.DataArray) -> np.ndarray:
+    """Closure by the hyperbola under pressures in MPa, from k_ni (MPa/mm) and its asymptote, mm."""
+    k, w_m = float(k_ni), float(largest)
+    return pressure * w_m / (k * w_m + pressure)
 
 
 def _law_words(curve):
