@@ -43,7 +43,7 @@ WAIT, GRACE, CLUSTER_GRACE = 3, 20, 120
 #: What a shell does not take as it is.
 SPLITS = r"[\s'\"\\$`&;|<>()*?\[\]#!{}]"
 #: Bytes free below which a study is not begun: the default one makes some 100 MB.
-LEAST_ROOM = 50 * 2**20
+MIN_FREE_BYTES = 50 * 2**20
 #: Seconds that are waited for the last words of jobs, which may outlive Snakemake.
 LAST_WORDS = 2
 SIGNALS = (signal.SIGTERM, signal.SIGINT, signal.SIGHUP, signal.SIGQUIT)
@@ -108,10 +108,10 @@ def _require_room(results):
     if not folder.is_dir() or not os.access(folder, os.W_OK | os.X_OK):
         raise InputError(f"{folder}: no folder that can be written to; allow it (chmod u+w)")
     free = shutil.disk_usage(folder).free
-    if free < LEAST_ROOM:
+    if free < MIN_FREE_BYTES:
         raise InputError(
             f"{folder}: {free / 2**20:.0f} MB free on its disk, less than the "
-            f"{LEAST_ROOM / 2**20:.0f} MB that a study needs at least; make room"
+            f"{MIN_FREE_BYTES / 2**20:.0f} MB that a study needs at least; make room"
         )
 
 

@@ -1,4 +1,4 @@
-"""What type checkers and editors see of the package, whose names are imported when asked for."""
+"""Signatures for type checkers and editors: the package imports its names when asked for."""
 
 from .contact.path import BranchState as BranchState
 from .contact.path import load_path as load_path

@@ -1,4 +1,4 @@
-"""What the solver raises, without what it takes to compute anything."""
+"""Error of the solver, in a module that imports nothing to compute with."""
 
 from typing import Any
 

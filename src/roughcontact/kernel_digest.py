@@ -1,4 +1,4 @@
-"""What a kernel is compiled from, as one digest: its instructions and all that they lead to."""
+"""Digest of a kernel: its instructions and all that they lead to."""
 
 import hashlib
 import sys

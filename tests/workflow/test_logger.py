@@ -193,7 +193,7 @@ def test_more_warnings_than_a_screen_takes_are_left_to_the_page(said):
     one.emit(event("job_finished", job_id=0))
     one.close()
     assert both()[1][-1] == "  and more, which the result page has"
-    assert len(both()[1]) == terminal.MOST_WARNINGS + 2
+    assert len(both()[1]) == terminal.MAX_WARNINGS + 2
 
 
 REASONS = {

@@ -10,7 +10,7 @@ SHORT = ("area_slope", "estimator_bias")
 
 
 def experiment(wildcards):
-    """What the function of an experiment gets: its recipe, and how exactly it is to solve."""
+    """Arguments of an experiment: its recipe, and how exactly it is to solve."""
     name = wildcards.experiment
     if name == "roll_off":
         return resolve_roll_off(config, SOURCE)

@@ -291,7 +291,7 @@ def _scan_keys(document: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _like(path: Path, scans: Mapping[str, ScanFiles]) -> tuple[dict, ScanFiles]:
-    """What a sidecar or a draft says, and the scan that it is of."""
+    """Statement of a sidecar or a draft, and the scan that it is of."""
     document = read_yaml(path)
     if empty := [key for key, value in document.items() if value is None]:
         raise InputError(f"{path}: key '{empty[0]}' is empty; fill it in")

@@ -87,7 +87,7 @@ def _draw_histogram(axes, z):
 
 
 def _write_lines(axes, face):
-    """What to look at, then the first lines of the file as they stand."""
+    """Remarks to look at, then the first lines of the file as they stand."""
     axes.set_axis_off()
     notes = [f"! {printable(note, _WIDTH)}" for note in face.notes]
     shown = [*notes, *first_lines(face.path)][: _LINES + len(notes)]

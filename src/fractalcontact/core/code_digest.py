@@ -65,7 +65,7 @@ class Code:
         return found
 
     def _inits(self, file: str) -> list[str]:
-        """What is run before a module: the files of its folder and of its room."""
+        """Files that run before a module: those of its folder and of its room."""
         folders = {os.path.dirname(file), self._room_of(file)} - {None}
         inits = [f"{folder}/__init__.py" for folder in folders]
         return [init for init in inits if self._room_of(init) and os.path.isfile(init)]
@@ -98,7 +98,7 @@ class Code:
         return rooms
 
     def _followed(self, file: str, whole: bool) -> Iterator[str]:
-        """What a file imports: rooms, and files of its own room unless that counts whole."""
+        """Imports of a file: rooms, and files of its own room unless that counts whole."""
         home = os.path.dirname(file)
         room = self._room_of(home)
         for module in self._read(file)[1]:

@@ -83,7 +83,7 @@ class Value(NamedTuple):
 
 
 def shown_in(*places: str) -> tuple[Shown, ...]:
-    """Those that are shown in any of some places: "summary", "page" or "index"."""
+    """Quantities shown in any of some places: "summary", "page" or "index"."""
     return tuple(one for one in shown_quantities() if any(getattr(one, place) for place in places))
 
 

@@ -21,7 +21,7 @@ def array_hints(
     read: Callable[[str], np.ndarray],
     words: list[tuple[str, str]] | None = None,
 ) -> Hints:
-    """What the names and the other numbers of a file seem to say of its array of heights.
+    """Hints of the names and the other numbers of a file on its array of heights.
 
     Parameters
     ----------

@@ -65,7 +65,7 @@ class Suggestion:
 
 @dataclass
 class Hints:
-    """What a file seems to say.
+    """Hints that a file gives.
 
     Attributes
     ----------
@@ -123,7 +123,7 @@ def add_words(hints: Hints, lines: Iterable[tuple[str, str]]) -> None:
 
 
 def _unit_key(before: str) -> str:
-    """Of what a unit is, by the words before it."""
+    """Quantity of a unit, by the words before it."""
     up, lateral = _UP.search(before), _LATERAL.search(before)
     if bool(up) == bool(lateral):
         return "unit"

@@ -23,7 +23,7 @@ LARGEST_NUMBER = 1e12  # mm; coordinates of a country's grid reach 1e10
 
 
 class ScanFile(NamedTuple):
-    """What a file holds, in its own units.
+    """Content of a file, in its own units.
 
     Attributes
     ----------
@@ -38,7 +38,7 @@ class ScanFile(NamedTuple):
 
 
 def in_mm(file: ScanFile, options: ScanOptions, *, are_heights: bool = True) -> Measured:
-    """What a file holds converted to mm, with what the sidecar says."""
+    """Content of a file converted to mm, with the keys of the sidecar."""
     path, raw = file.path, file.raw
     _refuse_idle_keys(raw, options, path)
     _refuse_known_rows(raw, options, path)
@@ -192,7 +192,7 @@ def _require_units(raw: RawScan, options: ScanOptions, unit_xy, unit_z, path: Pa
 
 
 def _lacking_unit(unit_xy, unit_z, needs_unit_xy: bool) -> tuple[str, str]:
-    """What unit is missing, and the line of a sidecar that states it."""
+    """Unit that is missing, and the line of a sidecar that states it."""
     if unit_z is None and unit_xy is not None:
         return "unit of heights", draft_line("unit_z", None)
     if unit_z is not None and needs_unit_xy:
@@ -201,7 +201,7 @@ def _lacking_unit(unit_xy, unit_z, needs_unit_xy: bool) -> tuple[str, str]:
 
 
 def _has_units_of_its_own(spacing) -> bool:
-    """Whether a spacing, or each of a pair, is a text such as "0.1 mm"."""
+    """True if a spacing, or each of a pair, is a text such as "0.1 mm"."""
     pair = spacing if isinstance(spacing, tuple) else (spacing,)
     return all(isinstance(step, str) for step in pair)
 
@@ -255,7 +255,7 @@ def _refuse_unconfirmed(found: dict, raw: RawScan, options: ScanOptions, path: P
 
 
 def size_and_relief(heights: np.ndarray, layout: str) -> dict:
-    """What is confirmed of a file: its rows and columns or points, and its relief.
+    """Confirmed properties of a file: its rows and columns or points, and its relief.
 
     Parameters
     ----------

@@ -12,7 +12,7 @@ from ..core.units import length_factor, quantity
 
 @dataclass(frozen=True)
 class ScanOptions:
-    """What the owner states about a scan file; None where not stated.
+    """Statements of the owner about a scan file; None where not stated.
 
     A file that describes itself needs none of them, any other is read only as they say: see
     :mod:`scan.stated`.
@@ -80,7 +80,7 @@ COORDINATE_KEYS = ("x", "y")
 MATRIX_KEYS = ("spacing", "first_row", "axes")
 POINT_KEYS = ("columns", "grid")
 #: Most lines of words in front of the numbers of a text.
-MOST_HEADER = 10_000
+MAX_HEADER_LINES = 10_000
 
 
 def parse_options(options: Mapping | None, where: str) -> ScanOptions:
@@ -153,11 +153,11 @@ def of_face(options: Mapping | None, face: str) -> dict[str, Any]:
 def _check_text_keys(options: dict, where: str) -> None:
     header, decimal = options.get("header"), options.get("decimal")
     _require(
-        header is None or (_is_index(header) and header <= MOST_HEADER),
+        header is None or (_is_index(header) and header <= MAX_HEADER_LINES),
         where,
         "header",
         header,
-        f"the number of lines above the numbers, 0 to {MOST_HEADER}",
+        f"the number of lines above the numbers, 0 to {MAX_HEADER_LINES}",
     )
     taken = {"decimal mark": decimal, "delimiter": DELIMITERS.get(str(options.get("delimiter")))}
     for name, mark in taken.items():

@@ -14,7 +14,7 @@ from .options import ScanOptions
 from .raw import RawScan
 
 #: Numbered columns and rows may leave at most this many empty cells for each cell that they fill.
-MOST_EMPTY = 20
+MAX_EMPTY_PER_POINT = 20
 #: Coordinates may stray this fraction of a step from equal steps: rounding in the export.
 EVEN = 0.1
 
@@ -176,7 +176,7 @@ def _by_cell(points: np.ndarray, where: str) -> np.ndarray:
             "numbers; remove 'spacing' if they are lengths"
         )
     nx, ny = (int(count) for count in high - low + 1)
-    if nx * ny > MOST_EMPTY * len(points):
+    if nx * ny > MAX_EMPTY_PER_POINT * len(points):
         raise InputError(
             f"{where}: {len(points)} heights for {nx} columns and {ny} rows; remove what is no "
             "height, or export x, y, z"

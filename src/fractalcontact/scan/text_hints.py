@@ -38,7 +38,7 @@ def first_lines(path: Path) -> list[str]:
 
 
 def named_columns(path: Path) -> tuple[dict[str, Any], dict[str, Any]] | None:
-    """How a table is written whose columns are named x, y and z, each with a unit of length.
+    """Keys of a table whose columns are named x, y and z, each with a unit of length.
 
     The names stand in the line above the numbers, one for each column: ``x [mm], y [mm], z [um]``.
 
@@ -76,7 +76,7 @@ def named_columns(path: Path) -> tuple[dict[str, Any], dict[str, Any]] | None:
 
 
 def _is_plain(cells: list[str]) -> bool:
-    """Whether no comma is in a number, and its points can be nothing but decimal points."""
+    """True if no comma is in a number, and its points can be nothing but decimal points."""
     pointed = [cell for cell in cells if "." in cell]
     grouped = bool(pointed) and all(_MAYBE_GROUPED.fullmatch(cell) for cell in pointed)
     return not grouped and not any("," in cell for cell in cells)
@@ -92,7 +92,7 @@ def _first_numbers(lines: list[str]) -> int | None:
 
 
 def text_hints(path: Path) -> Hints:
-    """What the first lines of a text seem to say of how it is to be read."""
+    """Hints of the first lines of a text on how it is to be read."""
     lines, hints = first_lines(path), Hints()
     start = _table_start(lines)
     above, data = lines[:start], [line for line in lines[start:] if line.strip()]

@@ -78,7 +78,7 @@ def cleaned(line: str, delimiter: str, missing_words: Sequence[str] = ()) -> str
 
 
 def is_number(cell: str, options: ScanOptions) -> bool:
-    """Whether a cell is a number as the sidecar says numbers are written."""
+    """True if a cell is a number as the sidecar says numbers are written."""
     text = cell.replace(options.thousands, "") if options.thousands else cell
     try:
         float(text.replace(options.decimal or ".", "."))
@@ -88,7 +88,7 @@ def is_number(cell: str, options: ScanOptions) -> bool:
 
 
 def is_cut_off(rows: list[str], delimiter: str, layout: str | None) -> bool:
-    """Whether the last number of a file without a final line end is written shorter than others.
+    """True if the last number of a file without a final line end is shorter than others.
 
     Only numbers of a fixed form tell: as many decimals each, or exponents of two digits. Of points
     those of the last column, of a matrix all.
@@ -157,7 +157,7 @@ def refuse_other_counts(
 
 
 def _agree(counts: list[int], shape: tuple[int, ...]) -> bool:
-    """Whether counts are those of rows, columns or points, with or without coordinates."""
+    """True if counts are those of rows, columns or points, with or without coordinates."""
     rows, columns = shape
     near = {rows, columns, rows - 1, columns - 1, rows + 1, columns + 1, rows * columns}
     return set(counts) <= near or math.prod(counts) == rows

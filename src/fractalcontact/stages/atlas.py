@@ -147,7 +147,7 @@ def _maps(stages):
 
 
 def _together(stages, settings):
-    """What is judged and compared of several specimens; nothing of one, as its own atlas has it."""
+    """Verdicts and comparison of several specimens; none of one, as its own atlas has them."""
     if len(stages.get("comparison", {})) < 2:
         return {}
     together = {"study_comparison": {WHOLE: compare_specimens(stages["comparison"])}}

@@ -1,4 +1,4 @@
-"""What takes further solves: branches, error budget, and what was solved and how exactly."""
+"""Stages that take further solves: branches, error budget, and the plan of what was solved."""
 
 import xarray as xr
 

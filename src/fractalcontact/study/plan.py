@@ -23,7 +23,7 @@ def plan_of(
     settings: Mapping[str, Mapping],
     options: Mapping[str, Mapping],
 ) -> Plan:
-    """What a run is planned with, but for the key ``scans``: SHA-256 of scan files by path.
+    """Plan of a run, but for the key ``scans``: SHA-256 of scan files by path.
 
     Parameters
     ----------

@@ -22,12 +22,12 @@ class Bounds:
 
     @property
     def uniform(self) -> bool:
-        """Whether they are the same on all nodes."""
+        """True if they are the same on all nodes."""
         return np.ndim(self.lower) == np.ndim(self.upper) == 0
 
     @property
     def elastic(self) -> bool:
-        """Whether no node has an upper bound."""
+        """True if no node has an upper bound."""
         return bool(np.isinf(self.upper).all())
 
     def clip(self, pressure: np.ndarray) -> np.ndarray:
@@ -44,7 +44,7 @@ class Bounds:
         return np.flatnonzero(inside).astype(np.int32)
 
     def reached_by(self, pressure: np.ndarray, rounding: float = 0.0) -> bool:
-        """Whether a pressure, (n,), comes to the upper bound anywhere, but for rounding."""
+        """True if a pressure, (n,), comes to the upper bound anywhere, but for rounding."""
         return bool((pressure >= (1 - rounding) * self.upper).any())
 
     def over(self, unit: float) -> "Bounds":
@@ -52,7 +52,7 @@ class Bounds:
         return Bounds(self.lower / unit, self.upper / unit)
 
     def at(self, nodes: np.ndarray) -> "Bounds":
-        """Those of some nodes, given by their numbers."""
+        """Bounds of some nodes, given by their numbers."""
         if self.uniform:
             return self
         lower, upper = np.broadcast_arrays(self.lower, self.upper)
@@ -63,7 +63,7 @@ class Bounds:
         return np.broadcast_to(self.lower, (n,)), np.broadcast_to(self.upper, (n,))
 
     def coarser(self, shape: tuple[int, int]) -> "Bounds":
-        """Those on the grid twice as coarse as one of a shape.
+        """Bounds on the grid twice as coarse as one of a shape.
 
         In units of the fine grid the same pressure displaces cells twice as wide twice as much:
         its number is doubled there. A cell carries what its nodes do together.

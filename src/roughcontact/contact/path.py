@@ -8,7 +8,7 @@ pressed in: loading, on heights h. Where the load turns back, what was pressed i
 and until the load exceeds its maximum again the contact is elastic on these heights: unloading, and
 reloading on the same curve. There the state of the maximum is the elastic one, as no gap of it is
 negative any more; a bound at H, which its nodes touch without being pressed in, would leave them
-doubly degenerate. Loading does not depend on its steps, so the set is held at turning points alone.
+doubly degenerate. Loading does not depend on its steps: the set is updated at turning points alone.
 
 Perfect plasticity: a second cycle to the same load changes nothing, and what is pressed in is gone
 (rock is crushed, its volume is not conserved).

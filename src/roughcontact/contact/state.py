@@ -154,7 +154,7 @@ class ContactState:
         return Slope(value, STIFFNESS_ERROR * value)
 
     def _yields(self):
-        """Whether a node is at its hardness."""
+        """True if a node is at its hardness."""
         return bool((self.pressure >= self.hardness).any())
 
     def _operator_on_active(self):

@@ -1,4 +1,4 @@
-"""What a user reads while a study is made: one line a job, what is wrong and where its log is.
+"""Lines that a user reads while a study is made: one a job, and errors with their logs.
 
 A logger plugin, which Snakemake finds by the name of its package on the path that workflow/run.py
 gives it; Snakemake's own log in .snakemake/log keeps everything.
@@ -16,9 +16,9 @@ from cluster import ended_by_cluster
 from snakemake_interface_logger_plugins.base import LogHandlerBase
 
 #: Columns of the terminal; lines of warnings at the end, of which the result page has all.
-WIDTH, MOST_WARNINGS = 120, 24
+WIDTH, MAX_WARNINGS = 120, 24
 #: Bytes free on a disk below which it counts as full.
-LEAST_ROOM = 2**20
+MIN_FREE_BYTES = 2**20
 #: Environment variable with the folder of the study's results.
 RESULTS = "FRACTALCONTACT_RESULTS"
 #: Rules that make nothing themselves: what they ask for is made when they come.
@@ -116,7 +116,7 @@ class LogHandler(LogHandlerBase):
         self.errors.append("\n".join(s for s in lines if not s.startswith('  File "')).strip())
 
     def _lines_of(self, logs):
-        """What a job wrote into its logs in this run."""
+        """Text that a job wrote into its logs in this run."""
         for path in map(Path, logs):
             try:
                 if path.stat().st_mtime >= self.begin[1] - 2:
@@ -135,7 +135,7 @@ class LogHandler(LogHandlerBase):
             return ""
         # Of a full disk the log may say nothing, which stands on it too.
         place = self.results if os.path.isdir(self.results) else "."
-        if _is_full(lines) or shutil.disk_usage(place).free < LEAST_ROOM:
+        if _is_full(lines) or shutil.disk_usage(place).free < MIN_FREE_BYTES:
             return f"{self.results}: no space left on its disk; make room there and run again"
         if not any(os.access(path, os.W_OK) for path in logs):
             return "ended before it could write its log"
@@ -183,8 +183,8 @@ class LogHandler(LogHandlerBase):
             for text, name in self.warnings.items()
             for line in _lines(f"{name}: {text}", WIDTH - 2)
         ]
-        more = ["  and more, which the result page has"] if len(lines) > MOST_WARNINGS else []
-        for line in ["warnings of the data:", *lines[:MOST_WARNINGS], *more] if lines else []:
+        more = ["  and more, which the result page has"] if len(lines) > MAX_WARNINGS else []
+        for line in ["warnings of the data:", *lines[:MAX_WARNINGS], *more] if lines else []:
             self._say(line, self.err)
 
     def _wrapped(self, text):

@@ -146,7 +146,7 @@ def without_repeats(slides: Sequence[Slide]) -> list[Slide]:
 
 
 def _alike(slide, other):
-    """Whether one slide is the other, or begins as it does."""
+    """True if one slide is the other, or begins as it does."""
     n = min(slide.v.size, other.v.size)
     names = ["rigid_dilatancy", "composite_rms"]
     one, two = (each.data[names].isel(rigid_offset=slice(n)) for each in (slide, other))

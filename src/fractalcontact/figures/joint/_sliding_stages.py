@@ -27,7 +27,7 @@ _LINE = 50
 def stages_of_sliding(
     atlas: DataTree, name: str, ends: tuple[float, float]
 ) -> list[tuple[str, str, float, float]]:
-    """What the paper says of each stage with its verdict, the limits, and between which offsets."""
+    """Statement of the paper on each stage with its verdict, limits, and between which offsets."""
     bounds = ((-np.inf, ends[0]), ends, (ends[1], np.inf))
     found = []
     for (statement, (words, limits)), between in zip(STAGES.items(), bounds, strict=True):

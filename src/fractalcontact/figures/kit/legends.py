@@ -9,7 +9,7 @@ from matplotlib.lines import Line2D
 
 
 def entries(axes: Axes) -> list[Artist]:
-    """What stands in a legend of the axes."""
+    """Entries of a legend of the axes."""
     return axes.get_legend_handles_labels()[0]
 
 

@@ -33,7 +33,7 @@ def each_curve(drawn: xr.Dataset) -> Iterator[tuple[xr.Dataset, dict[str, Any]]]
 
 
 def is_known(data: xr.Dataset, name: str) -> bool:
-    """Whether any value of a variable is known."""
+    """True if any value of a variable is known."""
     return bool(np.isfinite(data[name]).any())
 
 

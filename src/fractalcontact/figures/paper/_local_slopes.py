@@ -52,7 +52,7 @@ def draw_slopes(panel: Panel, counts: xr.Dataset) -> None:
 
 
 def band_of(colour: str) -> dict[str, Any]:
-    """How the interval of a fit is drawn in (c): that of the black one hides nothing grey."""
+    """Style of the interval of a fit in (c): that of the black one hides nothing grey."""
     if colour == ORDINARY:
         return {"fc": "none", "ec": colour, "ls": ":", "lw": 0.8}
     return {"fc": to_rgba(colour, 0.15), "ec": "none"}

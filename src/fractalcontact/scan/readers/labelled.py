@@ -91,7 +91,7 @@ def read_labelled(path: Path, options: ScanOptions) -> RawScan:
 
 
 def _any_conforms(variables: dict) -> bool:
-    """Whether the unit of a variable says that the file is labelled: only its choice is open."""
+    """True if the unit of a variable says that the file is labelled: only its choice is open."""
     return any(_unit(v) for v in variables.values() if len(v.shape) == 2)
 
 
@@ -191,7 +191,7 @@ def _axis(dimension: str, variables: dict, path: Path) -> Axis | None:
 
 
 def _hints(variables: dict, names: list[str], options: ScanOptions) -> Hints:
-    """What names, single numbers and attributes seem to say."""
+    """Hints of names, single numbers and attributes."""
     tables = {name: variables[name].shape for name in names}
     small: dict[str, Any] = {
         name: variable.read().ravel()[0]

@@ -124,7 +124,7 @@ def _gdal_scale(page, path: Path) -> tuple[float, float]:
 
 
 def _hints(names: list[str], stated: dict) -> Hints:
-    """What an image seems to say of its cells."""
+    """Hints of an image on its cells."""
     hints = Hints({"first_row": Suggestion("top", "images begin at the top")})
     hints.add("variable", names[0], f"the first of {len(names)} pages")
     if "spacing" in stated:
