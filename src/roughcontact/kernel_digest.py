@@ -81,6 +81,7 @@ def _of_function(function: FunctionType, seen: set[int]) -> Iterator[str]:
     seen.add(id(function))
     yield from _of_code(function.__code__, seen)
     yield from _parts(function.__defaults__ or (), seen)
+    yield from _parts(sorted((function.__kwdefaults__ or {}).items()), seen)
     for cell in function.__closure__ or ():
         yield from _parts(cell.cell_contents, seen)
     packages = {_OWN, function.__module__.partition(".")[0]}
@@ -93,6 +94,8 @@ def _of_function(function: FunctionType, seen: set[int]) -> Iterator[str]:
             if isinstance(value, ModuleType) and value.__name__.partition(".")[0] in packages:
                 for attribute in names:
                     if hasattr(value, attribute):
+                        if isinstance(getattr(value, attribute), ModuleType):
+                            raise TypeError(f"{function.__qualname__}: import {attribute} by name")
                         yield attribute
                         yield from _parts(getattr(value, attribute), seen)
 

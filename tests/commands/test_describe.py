@@ -7,6 +7,8 @@ from places import ROOT
 
 from fractalcontact.commands.describe import main
 from fractalcontact.core.errors import InputError
+from fractalcontact.scan.draft import written
+from fractalcontact.scan.options import of_face
 from fractalcontact.scan.read import read_scan
 from fractalcontact.study.checks import read_sidecar
 from fractalcontact.study.scan_files import list_scans
@@ -112,3 +114,54 @@ def test_a_mark_of_missing_cells_deep_in_the_file_is_drafted(tmp_path):
     export(tmp_path, "granite", z)
     describe(tmp_path)
     assert yaml.safe_load((tmp_path / "granite.draft.yaml").read_text())["missing"] == -9999
+
+
+def drafted(folder, header, rows="1.1;2.2;3.3\n4.4;5.5;6.5\n7.7;8.8;9.1\n" * 4):
+    (folder / "rock.txt").write_text(header + rows)
+    describe(folder)
+    return yaml.safe_load((folder / "rock.draft.yaml").read_text())
+
+
+def test_a_unit_of_all_lengths_reaches_the_draft(tmp_path):
+    assert drafted(tmp_path, "# all lengths in um\n")["unit"] == "um"
+
+
+def test_units_of_columns_are_told_apart(tmp_path):
+    found = drafted(tmp_path, "# x [mm], y [mm], height [um]\n")
+    assert (found["unit_xy"], found["unit_z"], found.get("unit")) == ("mm", "um", None)
+
+
+def test_a_word_that_ends_in_dy_is_no_spacing(tmp_path):
+    assert drafted(tmp_path, "# Study of block 7, 50 mm\n").get("spacing") is None
+
+
+@pytest.mark.parametrize("value", ["null", "NULL", "1", "1e5", "-9999", "yes", "rock 7", "NaN"])
+def test_a_word_is_written_so_that_it_is_read_as_one(value):
+    assert yaml.safe_load(f"key: {written(value)}") == {"key": value}
+
+
+def test_what_is_refused_by_its_name_is_told_with_its_reason(tmp_path, capsys):
+    export(tmp_path, "granite", heights())
+    for ending in ("csv", "txt"):
+        (tmp_path / f"twice.{ending}").write_text("1 2\n")
+    describe(tmp_path)
+    assert "twice" in (out := capsys.readouterr().out)
+    assert out.index("twice") < out.index("granite")
+    assert describe("--file", tmp_path / "granite.txt") == 0
+
+
+def test_pairs_of_one_instrument_take_the_sidecar_of_one_face_by_face(tmp_path):
+    for seed, name in enumerate(("a", "b")):
+        for face in ("lower", "upper"):
+            export(tmp_path, f"{name}.{face}", (1 + 3 * (face == "upper")) * heights(seed))
+    assert describe("--file", tmp_path / "a.lower.txt") == 0
+    draft = tmp_path / "a.draft.yaml"
+    text = draft.read_text().replace("spacing: 20 mm ", "spacing: 0.1 mm")
+    draft.write_text(text.replace("first_row: ", "first_row: top "))
+    assert describe("--like", draft) == 0
+    keys, _ = read_sidecar(tmp_path / "b.yaml", SCHEMA)
+    for face in ("lower", "upper"):
+        confirmed = of_face(keys, face)["confirmed"]
+        own = read_scan(tmp_path / f"b.{face}.txt", of_face(keys, face))
+        assert confirmed["shape"] == [20, 30] == list(own.shape)
+        assert confirmed["relief"] == pytest.approx(1e3 * float(own.max() - own.min()), rel=1e-3)

@@ -7,7 +7,7 @@ import argparse
 import html
 import sys
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import Any
 
@@ -20,7 +20,7 @@ from ..core.labels import natural_key, percent, printable
 from ..core.units import length_factor
 from ..gridding.measured import Measured
 from ..scan.draft import written
-from ..scan.options import NO_MARK, of_face
+from ..scan.options import FACES, NO_MARK, ScanOptions, of_face
 from ..scan.raw import IncompleteSidecar
 from ..scan.read import measure
 from ..scan.undeclared import find_marks, number
@@ -157,7 +157,7 @@ def _read_as_drafted(path: Path, stated: Mapping, face: str, draft: Mapping[str,
     shown.notes = [f"NOT STATED: {key}, shown as {_SHOWN.get(key, 'nothing')}" for key in blanks]
     kind = options.get("kind")
     if kind in ("aperture", "profile"):
-        shown.notes.append(f"the file seems to hold an {kind}: no face")
+        shown.notes.append(f"the file seems to hold no face, but: {kind}")
         options["kind"] = "face"
     try:
         shown.measured = measure(path, options, are_heights=False)
@@ -255,14 +255,16 @@ def write_alike(scan: ScanFiles, like: Mapping[str, Any]) -> Described:
     like : mapping
         What the sidecar of the other one says, complete.
     """
-    faces = [Face(path, {**_scan_keys(like)}) for path in scan.files]
-    confirmed = like.get("confirmed", {})
-    for face in faces:
+    blocks = [of_face(like, face) for face in FACES][: len(scan.files)]
+    faces = [Face(*pair) for pair in zip(scan.files, map(_scan_keys, blocks), strict=True)]
+    sizes = []
+    for face, block in zip(faces, blocks, strict=True):
         try:
             face.measured = measure(face.path, face.options)
         except InputError as error:
             return Described(scan.name, "refused", sentences=[str(error).split("\n")[0]])
-        relief, expected = face.measured.size.get("relief"), confirmed.get("relief")
+        sizes.append(face.measured.size)
+        relief, expected = sizes[-1].get("relief"), block.get("confirmed", {}).get("relief")
         if relief and expected and not 1 / ALIKE <= relief / expected <= ALIKE:
             sentence = (
                 f"{face.path}: a relief of {relief:g} where {expected:g} was confirmed is not of "
@@ -270,10 +272,16 @@ def write_alike(scan: ScanFiles, like: Mapping[str, Any]) -> Described:
             )
             return Described(scan.name, "refused", sentences=[sentence])
     described = Described(scan.name, "written", [size_words(face) for face in faces])
-    document = {key: value for key, value in like.items() if key not in ("confirmed", "label")}
-    text = yaml.safe_dump(document, sort_keys=False, allow_unicode=True)
+    own = ("confirmed", "label", *FACES)
+    whole = like if len(faces) == 2 else blocks[0]
+    document = {key: value for key, value in whole.items() if key not in own}
     if len(faces) == 1:
-        text += _confirmed(faces[0])
+        document["confirmed"] = sizes[0]
+    else:
+        for key, size in zip(FACES, sizes, strict=True):
+            block = {name: value for name, value in like.get(key, {}).items() if name not in own}
+            document[key] = block | {"confirmed": size}
+    text = yaml.safe_dump(document, sort_keys=False, allow_unicode=True)
     name = split_file_name(scan.lower.name)[0]
     scan.lower.with_name(f"{name}.yaml").write_text(text, encoding="utf-8")
     described.picture = _beside(scan, ".png")
@@ -282,10 +290,6 @@ def write_alike(scan: ScanFiles, like: Mapping[str, Any]) -> Described:
 
 
 def _scan_keys(document: Mapping[str, Any]) -> dict[str, Any]:
-    from dataclasses import fields
-
-    from ..scan.options import ScanOptions
-
     known = {key.name for key in fields(ScanOptions)} - {"confirmed"}
     return {key: value for key, value in document.items() if key in known}
 
@@ -332,7 +336,11 @@ def _run(folder: Path, schema: Mapping, chosen: argparse.Namespace) -> int:
         names = [name for name in names if chosen.file.name in [f.name for f in scans[name].files]]
         if not names:
             raise InputError(f"{chosen.file}: no scan of this name in {folder}")
-    rows = [Described(name, "refused", sentences=[str(why)]) for name, why in refused.items()]
+    rows = []
+    if not chosen.file:
+        rows = [Described(name, "refused", sentences=[str(why)]) for name, why in refused.items()]
+    for row in rows:
+        sys.stdout.write("\n".join(_row(row)) + "\n")
     like = _like(chosen.like, scans) if chosen.like else None
     for name in names:
         scan = scans[name]

@@ -7,7 +7,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from roughcontact.contact.path import BRANCHES, LOAD, UNLOAD, BranchState, load_path
+from roughcontact.contact.path import BRANCHES, LOAD, RELOAD, UNLOAD, BranchState, load_path
 from roughcontact.elastic.halfspace import HalfSpace
 from roughcontact.errors import NotConverged
 
@@ -85,12 +85,15 @@ def branches(
     top, empty = path[n - 1], path[2 * n - 1]
     of = {LOAD: path[:n], UNLOAD: [*path[2 * n - 2 : n - 1 : -1], top]}
     states = [of.get(branch, path[2 * n :]) for branch in BRANCHES]
-    rows = [
-        [_numbers(state, branch) for state in of_branch]
+    rows = {
+        branch: [_numbers(state, branch) for state in of_branch]
         for branch, of_branch in zip(BRANCHES, states, strict=True)
-    ]
+    }
+    # Unloading begins elastically at the closure where loading ended, as reloading ends.
+    begun = {name: rows[RELOAD][-1][name] for name in ("stiffness", "plastic_load_fraction")}
+    rows[UNLOAD][-1] |= begun
     values = {
-        **{name: [[one[name] for one in row] for row in rows] for name in OF_BRANCHES},
+        **{name: [[one[name] for one in row] for row in rows.values()] for name in OF_BRANCHES},
         "residual_closure": empty.closure,
         "dissipated_energy": top.dissipated_energy,
         "recovered_energy": top.elastic_energy,

@@ -24,7 +24,11 @@ _NO_DATA = re.compile(
     re.IGNORECASE,
 )
 _SPACING = re.compile(
-    r"spacing|step|pitch|pixel|cell ?size|sampling|increment|interval|d[xy]\b", re.IGNORECASE
+    r"spacing|step|pitch|pixel|cell ?size|sampling|increment|interval|\bd[xy]\b", re.IGNORECASE
+)
+#: Words that a sidecar would read as a number, a truth or nothing.
+_READ_AS_ANOTHER = re.compile(
+    rf"{_NUMBER}|[.\d]+e[-+]?\d+|\.?(?:nan|inf)|null|true|false|yes|no|on|off", re.IGNORECASE
 )
 _UP = re.compile(r"\b(z|heights?|values?|data|elevations?|depths?|vertical)\b", re.IGNORECASE)
 _LATERAL = re.compile(r"\b(x|y|xy|lateral|coordinates?|positions?|width)\b", re.IGNORECASE)
@@ -105,10 +109,11 @@ def add_words(hints: Hints, lines: Iterable[tuple[str, str]]) -> None:
             key = "spacing" if _SPACING.search(text) else "length"
             seen(key, value if len(value) == 2 else value[0], source)
         if not lengths:
-            units = [unit for unit in _ALONE.findall(text) if length_unit(unit)]
-            for unit in units:
-                before = text[: text.rindex(unit)]
-                seen(_unit_key(before), unit, source)
+            begin = 0
+            for match in _ALONE.finditer(text):
+                if length_unit(match[1]):
+                    seen(_unit_key(text[begin : match.start(1)]), match[1], source)
+                begin = match.end()
         if marked := _NO_DATA.search(text):
             seen("missing", float(marked[1].replace(",", ".")), source)
         if rows := _ROWS.search(text):
@@ -176,7 +181,7 @@ def draft_lines(
             lines.append(draft_line(key, value, "as stated"))
             continue
         value = getattr(drafted, key)
-        if key not in required and (value is None or not key.startswith("unit_")):
+        if key not in required and (value is None or not key.startswith("unit")):
             continue
         lines += _drafted_line(key, value, hints, arrays)
     return lines
@@ -231,4 +236,6 @@ def written(value: Any) -> str:
     if isinstance(value, int):
         return str(value)
     text = printable(value)
+    if _READ_AS_ANOTHER.fullmatch(text):
+        return f'"{text}"'
     return text if re.fullmatch(r"[A-Za-z0-9][\w ./µ-]*", text) and text[-1] != " " else f'"{text}"'
