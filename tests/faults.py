@@ -40,6 +40,7 @@ FAULTS = (
     "noticed",
     "scans",
     "scans meanwhile",
+    "scans ahead",
     "stops",
     "full disks",
     "two runs",
@@ -217,8 +218,19 @@ class Trials:
         """A scan replaced by another, and put back, with older, equal and newer times."""
         self.know_another_scan()
         for _ in range(times):
-            self.replace(self.another_scan(), self.chance.choice([-1e8, -3600, 0, 3600]))
+            self.replace(self.another_scan(), self.chance.choice([-1e8, -3600, 0]))
             yield self.verdict(refusals=0)
+
+    def scans_ahead(self, times):
+        """The same from a machine whose clock runs ahead: refused until it is dated today."""
+        self.know_another_scan()
+        for _ in range(times):
+            self.replace(self.another_scan(), time.time() - self.scan.stat().st_mtime + 3600)
+            refused = self.make()
+            os.utime(self.scan)
+            said = "ahead of this machine's clock" in refused.stderr and refused.returncode
+            same = self.verdict(refusals=0) == "same"
+            yield "refused, then same" if said and same else "WRONG"
 
     def know_another_scan(self):
         """What an undisturbed run makes of a second scan."""

@@ -54,7 +54,9 @@ def main():
     options, passed = _options()
     try:
         _require_plain_path()
-        name = study_name(read_study(options.study), options.study)
+        study = read_study(options.study)
+        name = study_name(study, options.study)
+        _require_past(Path(str(study.get("scans", "scans"))))
         results = Path("results") / (f"{name}_full" if options.full else name)
         if options.dry_run:
             for path, why in _spoilt(results):
@@ -100,6 +102,17 @@ def _require_plain_path():
             f"{sys.executable}: Snakemake cannot start scripts from a folder whose name has spaces "
             "or quotes in it; move the checkout to one without (nothing is made again for that)"
         )
+
+
+def _require_past(scans):
+    """A result would be older than a scan from the future, which Snakemake takes for an error."""
+    now = time.time()
+    for path in sorted(scans.glob("*")):
+        if path.is_file() and (ahead := path.stat().st_mtime - now) > 1:
+            raise InputError(
+                f"{path}: dated {ahead:.0f} s ahead of this machine's clock, so that no result could "
+                f"be younger than it; set the clock, or date the file today: touch '{path}'"
+            )
 
 
 def _require_room(results):

@@ -29,6 +29,12 @@ CARDS = [
 open_once = functools.cache(xr.open_datatree)
 
 
+@pytest.fixture(scope="module")
+def groups(results):
+    """Names of the groups of the atlas."""
+    return group_names(results / "atlas.nc")
+
+
 def words_of(results, specimen):
     """Text of the page of a specimen."""
     return html.unescape((results / f"pages/{specimen}.html").read_text(encoding="utf-8"))
@@ -36,10 +42,9 @@ def words_of(results, specimen):
 
 @pytest.mark.parametrize(("figure", "specimen", "style"), representative(CARDS, 3))
 def test_the_lines_on_the_page_draw_the_figure_again(
-    results, tmp_path, monkeypatch, figure, specimen, style
+    results, groups, tmp_path, monkeypatch, figure, specimen, style
 ):
     """The same picture to the pixel, whatever the style where they are pasted."""
-    groups = group_names(results / "atlas.nc")
     code = redrawn(figure, specimen, "results/tiny/atlas.nc", groups)
     if specimen:  # no figure of the study is drawn beside this page
         assert code in words_of(results, specimen)
@@ -60,10 +65,10 @@ def test_the_lines_on_the_page_draw_the_figure_again(
         np.testing.assert_array_equal(np.asarray(again), np.asarray(drawn))
 
 
-def test_the_lines_on_the_page_read_groups_that_exist(results):
+def test_the_lines_on_the_page_read_groups_that_exist(results, groups):
     """Those of every figure: run on the atlas, each leads to a group with numbers in it."""
     whole = read_atlas(results / "atlas.nc")
-    assert group_names(results / "atlas.nc") == {
+    assert groups == {
         node.path.strip("/")
         for node in whole.subtree
         if node.path != "/" and (node.data_vars or node.children)
@@ -71,7 +76,7 @@ def test_the_lines_on_the_page_read_groups_that_exist(results):
     for name, opposite in (("pair", "match"), ("flat.1", "flat")):
         text = words_of(results, name)
         for figure in figures_of(opposite):
-            code = redrawn(figure, name, "results/tiny/atlas.nc", group_names(results / "atlas.nc"))
+            code = redrawn(figure, name, "results/tiny/atlas.nc", groups)
             assert code in text
             read = re.findall(r"^(\w+) = (atlas\[.+\])$", code, re.MULTILINE)
             assert read, figure

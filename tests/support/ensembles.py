@@ -105,6 +105,7 @@ ENSEMBLES: dict[str, tuple] = {
     "faults: damage": (4, 0),
     "faults: scans": (3, 12),
     "faults: scans meanwhile": (1, 10),
+    "faults: scans ahead": (1, 3),
     "faults: stops": (1, 6),
     "faults: full disks": (1, 6),
     "faults: two runs": (1, 4),

@@ -96,7 +96,8 @@ def text_hints(path: Path) -> Hints:
     lines, hints = first_lines(path), Hints()
     start = _table_start(lines)
     above, data = lines[:start], [line for line in lines[start:] if line.strip()]
-    data = [line for line in data if not line.startswith(COMMENT_MARKS) and line not in above]
+    known = set(above)
+    data = [line for line in data if not line.startswith(COMMENT_MARKS) and line not in known]
     name, decimal = _style(data)
     delimiter = DELIMITERS[name]
     hints.add("delimiter", name, f"between the numbers of line {start + 1}")
