@@ -223,7 +223,7 @@ def map_fields(
 
 
 def map_states(parts: Sequence[xr.Dataset]) -> xr.Dataset:
-    """Pressures of the states that are looked at closely, under every load.
+    """Pressures and gaps of the states that are looked at closely, under every load.
 
     Parameters
     ----------
@@ -233,14 +233,18 @@ def map_states(parts: Sequence[xr.Dataset]) -> xr.Dataset:
     Returns
     -------
     xr.Dataset
-        ``pressure`` (normal_force, y, x), MPa, with the scalars ``direction``, ``offset`` and
-        ``resolution``, the multiple k of the scan's spacing.
+        ``pressure``, MPa, and ``gap``, mm, (normal_force, y, x), with the scalars ``direction``,
+        ``offset`` and ``resolution``, the multiple k of the scan's spacing.
     """
     part = next(part for part in parts if MAP_PRESSURE in part)
     pressure = part[MAP_PRESSURE]
     place = pressure.attrs
+    dims = ("normal_force", "y", "x")
     return xr.Dataset(
-        {"pressure": (("normal_force", "y", "x"), pressure.values, cf_attrs("MPa", "pressure p"))},
+        {
+            "pressure": (dims, pressure.values, cf_attrs("MPa", "pressure p")),
+            "gap": (dims, part[MAP_GAP].values, cf_attrs("mm", "gap g")),
+        },
         coords={
             "normal_force": part["normal_force"],
             "direction": place["direction"],

@@ -10,7 +10,7 @@ from ..limits import RESOLVED_NODES
 
 #: Half the span of a secant: a fraction of the closure, or as many times that over which one node
 #: comes from first touch to its hardness, where that is more; no more than a part of the closure.
-SPAN, NODE_SPANS, LARGEST_SPAN = 0.02, 4.0, 0.25
+HALF_SPAN, HALF_SPAN_OF_NODES, MAX_HALF_SPAN = 0.02, 4.0, 0.25
 #: Tolerance of the two states at its ends.
 SECANT_RTOL = 1e-5
 
@@ -67,15 +67,16 @@ def secant_slope(state: Any, solve_contact: Callable[..., Any] | None) -> Slope:
         return Slope(np.nan, np.nan, 0.0, "solved by another method, of which there is no secant")
     space, hardness = state.space, state.hardness
     own = float(space.influence()[0, 0]) * space.cell / space.modulus
-    node_span = float(np.min(hardness)) * own
-    span = min(max(SPAN * state.closure, NODE_SPANS * node_span), LARGEST_SPAN * state.closure)
-    low, high = (
-        solve_contact(
-            *(state.composite, space),
-            **{"closure": closure, "hardness": hardness, "start": state, "rtol": SECANT_RTOL},
+    of_nodes = HALF_SPAN_OF_NODES * float(np.min(hardness)) * own
+    half = min(max(HALF_SPAN * state.closure, of_nodes), MAX_HALF_SPAN * state.closure)
+
+    def at(closure):
+        case = (state.composite, space)
+        return solve_contact(
+            *case, closure=closure, hardness=hardness, start=state, rtol=SECANT_RTOL
         )
-        for closure in (state.closure - span, state.closure + span)
-    )
+
+    low, high = at(state.closure - half), at(state.closure + half)
     change = (high.pressure - low.pressure) * space.cell_area
     total, scatter = float(change.sum()), float(np.sqrt((change**2).sum()))
     if not total > 0:
@@ -84,5 +85,5 @@ def secant_slope(state: Any, solve_contact: Callable[..., Any] | None) -> Slope:
     if cells < RESOLVED_NODES:
         reason = f"the force changes on {cells:.1f} cells, fewer than {RESOLVED_NODES}"
         return Slope(np.nan, np.nan, cells, reason)
-    value = total / (2 * span)
+    value = total / (2 * half)
     return Slope(value, value * scatter / total, cells)
