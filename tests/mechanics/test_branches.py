@@ -149,5 +149,7 @@ def test_reloading_is_stiffer_than_loading_where_contacts_crush(stages):
     # A single node has one stiffness under all loads.
     assert (stiffness[:-1] < secants * (1 + 1e-6)).all()
     assert (secants < stiffness[1:] * (1 + 1e-6)).all()
+    missing = data["interface_stiffness"].isnull()
+    np.testing.assert_array_equal(data["interface_stiffness_reason"] != "", missing)
     at, first = (one["reference_stiffness"][1] for one in (reload, data.sel(branch="load")))
     assert at > first if np.isfinite(settings.material.hardness) else at == first

@@ -13,7 +13,7 @@ from roughcontact.errors import NotConverged
 
 from ..core.datasets import labelled, labelled_dataset
 from ..core.labels import cf_attrs
-from .closure import bulk_settlement, interface_stiffness
+from .closure import bulk_settlement, interface_stiffness, stiffness_reason
 from .joint import prefractal
 from .loading import JointLoading
 from .seated_laws import reference_stiffness, within_span
@@ -127,6 +127,7 @@ _OF_INTERFACE = {
         "interface closure since loading passed the seat",
     ),
     "interface_stiffness": (_STATES, "MPa/mm", "tangent stiffness d sigma_0 / d w_int"),
+    "interface_stiffness_reason": (_STATES, "1", "why there is no tangent stiffness"),
     "reference_stiffness": (
         ("branch", "reference_pressure"),
         "MPa/mm",
@@ -176,10 +177,12 @@ def joint_branches(loading: JointLoading, curves: xr.Dataset, mapped: xr.Dataset
     beyond = pressure >= seating * (1 - ROUNDING)
     bulk = xr.DataArray(pressure / settlement, dims="normal_force")
     stiffness = interface_stiffness(data["stiffness"] / loading.area, bulk)
+    reason = stiffness_reason(stiffness, data["stiffness"], bool(np.ptp(composite) == 0))
     values = {
         "interface_closure": closure.values,
         "seated_closure": (closure - seat).where(xr.DataArray(beyond, dims="normal_force")).values,
         "interface_stiffness": stiffness.values,
+        "interface_stiffness_reason": reason.values,
         "reference_stiffness": [reference_stiffness(pressure, row) for row in stiffness.values],
     }
     data.coords["reference_pressure"] = curve["reference_pressure"]

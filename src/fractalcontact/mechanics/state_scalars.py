@@ -42,6 +42,7 @@ def numbers_of(state: ContactState, suspicious: np.ndarray | None = None) -> dic
         "suspect_load_share": (
             0.0 if suspicious is None else suspect_load_share(state.pressure, suspicious)
         ),
+        "stiffness_scatter": state.slope.scatter,
     }
     of_state = {name: getattr(state, name) for name in SCALARS if name not in of_domain}
     return of_domain | of_state | state_errors(state)
@@ -72,7 +73,8 @@ def state_errors(state: ContactState) -> dict[str, float]:
     A state that violates the conditions by a fraction r of its closure w is the exact one of a
     topography that differs by up to r w, and heights raised by no more than that change the closure
     by no more. Area and perimeter change by the nodes whose contact that leaves ambiguous, each
-    with all its edges; so does the stiffness, in proportion to the nodes with inactive bounds.
+    with all its edges; so does the stiffness, in proportion to the nodes with inactive bounds. Where
+    nodes yield the stiffness is a secant between two other states, and has an error of its own.
     """
     space, ambiguous = state.space, state.ambiguous
     dy, dx = space.spacing
@@ -81,11 +83,12 @@ def state_errors(state: ContactState) -> dict[str, float]:
     near_cap = below_cap & (state.pressure >= state.hardness - hidden)
     loose = ambiguous + np.count_nonzero(near_cap)
     fraction = STIFFNESS_ERROR + loose / max(int(np.count_nonzero(below_cap)), 1)
+    slope = state.slope
     return {
         "closure_error": state.residual * state.closure,
         "area_error": ambiguous * space.cell_area,
         "nodes_error": ambiguous,
         "perimeter_error": ambiguous * 2 * (dy + dx),
         "area_corrected_error": ambiguous * (1 + 4 * EDGE_EXCESS) * space.cell_area,
-        "stiffness_error": max(fraction * state.stiffness, state.slope.error),
+        "stiffness_error": fraction * slope.value if np.isinf(slope.cells) else slope.error,
     }

@@ -22,8 +22,8 @@ class Slope:
     Attributes
     ----------
     value, error : float
-        N/mm; NaN where it is not determined. Of a yielding contact the error is that of counting
-        the ``cells``; of an elastic one, of solving its equations.
+        N/mm; NaN where it is not determined. The error is that of solving, and of a yielding
+        contact the ``scatter`` added.
     cells : float
         Number of equal cells that would carry the change of the force with as much scatter: one
         where a single cell carries it. Infinite on an elastic branch, whose slope is exact.
@@ -35,6 +35,11 @@ class Slope:
     error: float
     cells: float = np.inf
     reason: str = ""
+
+    @property
+    def scatter(self) -> float:
+        """Scatter of the value as a sum over so many cells, N/mm; 0 of an elastic branch."""
+        return self.value / float(np.sqrt(self.cells)) if self.cells else np.nan
 
 
 def secant_slope(state: Any, solve_contact: Callable[..., Any] | None) -> Slope:
@@ -60,7 +65,7 @@ def secant_slope(state: Any, solve_contact: Callable[..., Any] | None) -> Slope:
     At one closure the force changes on the few nodes alone that are between first touch and the
     hardness, while over a span of closures it rises by all those that come to yield: the first is
     a number of the grid, the second one of the joint. It is the secant between two closures about
-    that of the state. The error is the scatter of a sum over independent cells, relative to it
+    that of the state. The scatter is that of a sum over independent cells, relative to it
     sqrt(sum dp^2) / sum dp.
     """
     if solve_contact is None:
@@ -86,4 +91,5 @@ def secant_slope(state: Any, solve_contact: Callable[..., Any] | None) -> Slope:
         reason = f"the force changes on {cells:.1f} cells, fewer than {RESOLVED_NODES}"
         return Slope(np.nan, np.nan, cells, reason)
     value = total / (2 * half)
-    return Slope(value, value * scatter / total, cells)
+    solved = SECANT_RTOL * state.closure / half
+    return Slope(value, value * (scatter / total + solved), cells)
