@@ -72,7 +72,9 @@ def test_only_loading_presses_in(data):
 
 
 def test_everything_has_a_unit_and_a_name(data):
-    assert {*OF_BRANCHES, *OF_CYCLE, "permanent_set"} == set(data.data_vars)
+    assert {*OF_BRANCHES, *OF_CYCLE, "permanent_set", "yielded"} == set(data.data_vars)
+    assert data.branch_maximum == pytest.approx(FORCES[-1])
+    assert data.yielded.values[data.permanent_set.values > 0].all()
     assert all({"units", "long_name"} <= set(values.attrs) for values in data.values())
 
 

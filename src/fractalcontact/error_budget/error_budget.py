@@ -281,9 +281,9 @@ def _solver(curve: LoadCurve) -> np.ndarray:
 def _estimator(curve: LoadCurve) -> np.ndarray:
     """Choice of the estimator of Delta_sigma, and scatter of the secant of a yielding contact.
 
-    Of Delta_sigma the published interval, which holds fit range, rival laws and parts of the window left out, or
-    the distance to the ordinary slope if that is larger: what Fig. 9 calls undetermined has no
-    small error here.
+    Of Delta_sigma the published interval, which holds fit range, rival laws and parts of the window
+    left out, or the distance to the ordinary slope if that is larger: what Fig. 9 calls
+    undetermined has no small error here.
     """
     domains = curve.domains
     spread = np.zeros((len(BUDGET_QUANTITIES), len(curve.forces)))

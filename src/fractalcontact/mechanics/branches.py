@@ -32,6 +32,7 @@ OF_BRANCHES = {
 }
 #: Numbers of the cycle: unit, long name.
 OF_CYCLE = {
+    "branch_maximum": ("N", "largest load of the branches, from which they unload"),
     "residual_closure": ("mm", "closure at which contact is lost after unloading"),
     "dissipated_energy": ("N mm", "energy spent on what is pressed in"),
     "recovered_energy": ("N mm", "elastic energy that unloading gives back"),
@@ -40,6 +41,7 @@ _TABLE: dict[str, tuple[Any, str, str]] = {
     **{name: (_STATES, *words) for name, words in OF_BRANCHES.items()},
     **{name: ((), *words) for name, words in OF_CYCLE.items()},
     "permanent_set": (("y", "x"), "mm", "how far each node is pressed in for good"),
+    "yielded": (("y", "x"), "1", "nodes that have carried the hardness"),
 }
 
 
@@ -63,8 +65,8 @@ def branches(
     -------
     xr.Dataset
         :data:`OF_BRANCHES` over ``branch`` and ``normal_force`` (N), of which the unloading branch
-        begins with the state that loading ended with; :data:`OF_CYCLE`; the map ``permanent_set``
-        (mm), of the cycle.
+        begins with the state that loading ended with; :data:`OF_CYCLE`; the maps ``permanent_set``
+        (mm) and ``yielded`` of the cycle.
 
     Raises
     ------
@@ -97,10 +99,12 @@ def branches(
     rows = [first, [*second[:-1], second[-1] | {"closure": top.closure}], second]
     values = {
         **{name: [[state[name] for state in row] for row in rows] for name in OF_BRANCHES},
+        "branch_maximum": forces[-1],
         "residual_closure": residual,
         "dissipated_energy": top.dissipated_energy,
         "recovered_energy": top.elastic_energy,
         "permanent_set": top.permanent_set,
+        "yielded": top.yielded,
     }
     loads = ("normal_force", forces, cf_attrs("N", "normal force F"))
     return labelled_dataset(_TABLE, values, {"branch": list(BRANCHES), "normal_force": loads})

@@ -209,7 +209,9 @@ def _add_interface(curves: xr.Dataset, settlement: np.ndarray, area: float) -> N
         "tangent stiffness d sigma_0 / d w_int of the interface; none if flush",
     )
     reason = stiffness_reason(curves["interface_stiffness"], curves["stiffness"], flush)
-    curves["interface_stiffness_reason"] = reason.where(curves["solved"], "")
+    # As bare values: labels that xr.where made have no units.
+    words = reason.where(curves["solved"], "").transpose(*order).values
+    curves["interface_stiffness_reason"] = (order, words, reason.attrs)
 
 
 def stiffness_reason(

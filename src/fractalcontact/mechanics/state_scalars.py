@@ -35,10 +35,7 @@ def numbers_of(state: ContactState, suspicious: np.ndarray | None = None) -> dic
         "nodes": np.count_nonzero(state.in_contact),
         "extent": _extent(state.in_contact),
         "perimeter": contact_perimeter(state.in_contact, spacing),
-        # No less than what carries the force at the largest pressure, if there is one.
-        "area_corrected": max(
-            float(corrected_area(state.in_contact, spacing)), state.force / state.hardness
-        ),
+        "area_corrected": state_area(state),
         "suspect_load_share": (
             0.0 if suspicious is None else suspect_load_share(state.pressure, suspicious)
         ),
@@ -46,6 +43,15 @@ def numbers_of(state: ContactState, suspicious: np.ndarray | None = None) -> dic
     }
     of_state = {name: getattr(state, name) for name in SCALARS if name not in of_domain}
     return of_domain | of_state | state_errors(state)
+
+
+def state_area(state: ContactState) -> float:
+    """Real contact area of a state, corrected for the perimeter, mm2.
+
+    No less than what carries the force at the hardness, if there is one.
+    """
+    corrected = float(corrected_area(state.in_contact, state.space.spacing))
+    return max(corrected, state.force / float(np.max(state.hardness)))
 
 
 def _extent(in_contact: np.ndarray) -> float:
@@ -73,8 +79,8 @@ def state_errors(state: ContactState) -> dict[str, float]:
     A state that violates the conditions by a fraction r of its closure w is the exact one of a
     topography that differs by up to r w, and heights raised by no more than that change the closure
     by no more. Area and perimeter change by the nodes whose contact that leaves ambiguous, each
-    with all its edges; so does the stiffness, in proportion to the nodes with inactive bounds. Where
-    nodes yield the stiffness is a secant between two other states, and has an error of its own.
+    with all its edges; so does the stiffness, in proportion to the nodes with inactive bounds.
+    Where nodes yield it is a secant between two other states, and has an error of its own.
     """
     space, ambiguous = state.space, state.ambiguous
     dy, dx = space.spacing
