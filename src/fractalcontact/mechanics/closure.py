@@ -143,8 +143,9 @@ def closure_curves(
     -------
     xr.Dataset
         ``bulk_settlement`` and ``nominal_pressure`` (normal_force); ``interface_closure``,
-        ``separation``, ``seated_closure``, ``closure_from_common_seat``, ``interface_stiffness``,
-        ``conductance``, ``area_share``, ``area_corrected_share``, each with an ``_error``,
+        ``separation``, ``seated_closure``, ``closure_from_common_seat``,
+        ``closure_from_stated_seat``, ``interface_stiffness``, ``conductance``, ``area_share``,
+        ``area_corrected_share``, each with an ``_error``,
         ``interface_compliance`` with the bounds that its error leaves,
         ``interface_stiffness_reason``, ``interface_stiffness_change``, ``resolved``,
         ``area_corrected_resolved``, ``closure_spacing_error`` and the numbers of the states over

@@ -7,6 +7,7 @@ import xarray as xr
 from matplotlib.figure import FigureBase
 
 from ..kit.drawing import colour_of
+from ..kit.legends import entries, heading, legends_below
 from ..kit.maps import draw_map
 from ..kit.panel import Panel
 from ..kit.words import NOMINAL_PRESSURE, length_unit, pressure_label
@@ -42,7 +43,6 @@ def draw_permanent_set(
         shown = load.assign({name: load[name].where(load[name] > 0)})
         fractions.curve(shown, "nominal_pressure", name, label=label, **style)
     fractions.axes.set(xscale="log", yscale="log", ylabel="fraction (1)")
-    fractions.axes.legend(loc="lower right", fontsize=6)
     shown = load.assign(set_volume=load["set_volume"].where(load["set_volume"] > 0))
     line: dict[str, Any] = {"color": colour_of(2), "marker": "^", "ls": "-", "ms": 4}
     volume.curve(shown, "nominal_pressure", "set_volume", **line)
@@ -55,5 +55,6 @@ def draw_permanent_set(
     drawn = draw_map(where.axes, image, sides, ticks=3, cmap="viridis_r")
     where.axes.set_facecolor("white")
     figure.colorbar(drawn, ax=where.axes, label=f"permanent set ({unit})")
+    legends_below(figure, [heading("(c)")], *([one] for one in entries(fractions.axes)))
     where.keep(data, "branch_maximum", "residual_closure", "dissipated_energy", "recovered_energy")
     return panels

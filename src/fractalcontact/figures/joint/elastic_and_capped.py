@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from xarray import DataTree
 
 from ...core.estimate import Estimate
+from ...core.limits import RESOLVED_NODES
 from ...core.subject import Subject
 from ..kit.caption import caption
 from ..kit.domains import prefractals
@@ -17,6 +18,7 @@ from ..kit.drawing import MARKERS, WIDTH, Drawing, colour_of
 from ..kit.empty import say_empty
 from ..kit.legends import entries, heading, legends_below
 from ..kit.panel import Panel, table_of
+from ..kit.titles import headline
 from ..kit.words import NOMINAL_PRESSURE, place
 
 TITLE = "Fig. 12 and grid convergence: elastic contact beside contact that crushes"
@@ -26,6 +28,7 @@ KEY = "capped_variants"
 ORDER = 8
 
 _LETTERS = "abcdefghi"
+_SPACING = "closure from the seat; $s$: spacing of the scan"
 #: Pairs drawn: more have no room on a page.
 _MAX_PAIRS = 3
 
@@ -37,20 +40,23 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
     if not pairs:
         say_empty(figure.subplots(), "no surface of the study is both elastic and capped")
         return Drawing(figure, table_of(), caption(__name__, pairs=[]))
-    grid = figure.subplots(len(pairs), 3, squeeze=False)
     panels: list[Panel] = []
-    for row, pair in zip(grid, pairs, strict=True):
-        letters = _LETTERS[len(panels) :]
-        titles = [f"{_model(one)}, {place(one.direction, one.offset)}" for one in pair]
-        row[1].sharex(row[0])
+    for part, pair in zip(
+        figure.subfigures(len(pairs), 1, squeeze=False)[:, 0], pairs, strict=True
+    ):
+        row, letters = part.subplots(1, 3, sharex=True), _LETTERS[len(panels) :]
         row[1].sharey(row[0])
-        for axes, which, title, one in zip(row, letters, titles, pair, strict=False):
-            panels.append(Panel(axes, which, title))
+        for axes, which, one in zip(row, letters, pair, strict=False):
+            panels.append(Panel(axes, which, _model(one)))
             _draw_closures(panels[-1], one)
         panels.append(Panel(row[2], letters[2], r"$\Delta_\sigma$ by box counting"))
         _draw_dimensions(panels[-1], pair)
-    of_grid = [heading("closure from the seat"), *entries(grid[0][0])]
-    legends_below(figure, of_grid, [heading("dimension, 95 %"), *entries(grid[0][2])])
+        headline(part, pair[0].label, place(pair[0].direction, pair[0].offset))
+    of_grid = [heading(_SPACING), *entries(panels[0].axes)]
+    few = f"hollow: fewer than {RESOLVED_NODES} nodes touch"
+    legends_below(
+        figure, of_grid, [heading("dimension, 95 %"), *entries(panels[2].axes), heading(few)]
+    )
     return Drawing(figure, table_of(*panels), caption(__name__, pairs=[_words(*p) for p in pairs]))
 
 
@@ -75,9 +81,10 @@ def _model(subject: Subject) -> str:
 def _draw_closures(panel: Panel, subject: Subject) -> None:
     """Closure from the seat over the load at each resolution."""
     curves = prefractals(subject, "closure")
-    labels = [f"{k} times the scan's spacing" for k in curves["resolution"].values]
+    labels = ["$s$" if k == 1 else f"{k} $s$" for k in curves["resolution"].values]
     style: dict[str, Any] = {"ls": "-", "lw": 0.9, "ms": 3.5, "labels": labels}
-    panel.curves(curves, "nominal_pressure", "seated_closure", hue="resolution", **style)
+    style |= {"hue": "resolution", "filled": "resolved"}
+    panel.curves(curves, "nominal_pressure", "closure_from_stated_seat", **style)
     _pressure_axis(panel.axes)
     panel.axes.set_ylabel("closure from the seat (mm)")
 
