@@ -21,6 +21,7 @@
 # make cost   where the time of the study went
 # make campaign SPECIMENS=1000   the scans and the study of that many small twins, in results/campaigns
 # make bench  the contact solver timed; with PEERS=1 also against other codes, installed for it
+# make grid-table   elastic and capped contact on four grids: the table of docs/verification.md
 # make problems PROBLEMS=5000   PROBLEMS random contact problems, each state verified
 # make extremes   synthetic extremes and real scans through the whole chain, all figures: many minutes
 # make fuzz FILES=5000     FILES damaged scan files, each read or refused in one sentence
@@ -42,7 +43,7 @@ RUN = exec $(BIN)/python workflow/run.py "$$STUDY" $(if $(filter yes y true 1,$(
   $(if $(filter yes y true 1,$(VERBOSE)),--verbose)
 OPTIONS = -- --cores $(CORES)
 
-.PHONY: describe all study campaign report smoke size-effect-small keep-going slurm dry-run verify faults check-scans check-accuracy keep same cost accuracy test test-all test-browser test-slurm test-slurm-accounting docs bench problems extremes fuzz fuzz-dialects lint format lock clean
+.PHONY: describe all study campaign report smoke size-effect-small keep-going slurm dry-run verify faults check-scans check-accuracy keep same cost accuracy test test-all test-browser test-slurm test-slurm-accounting docs bench problems grid-table extremes fuzz fuzz-dialects lint format lock clean
 # Two runs in one checkout would refuse each other.
 .NOTPARALLEL:
 all: study
@@ -148,6 +149,10 @@ bench: $(VENV)/installed $(if $(PEERS),$(VENV)/peers-installed)
 SPECIMENS ?= 100
 campaign: $(VENV)/installed
 	$(BIN)/python benchmarks/campaign.py $(SPECIMENS) $(CAMPAIGN)
+
+# Into docs/grid_table.csv and docs/verification.md; GRID_SPECIMENS=granite: of a scan of the study.
+grid-table: $(VENV)/installed
+	$(BIN)/python benchmarks/grid_table.py --study "$$STUDY" $(if $(GRID_SPECIMENS),--specimens $(GRID_SPECIMENS))
 
 extremes: $(VENV)/tests-installed
 	EXTREMES=all $(PYTEST) tests/figures/test_extremes.py

@@ -95,7 +95,7 @@ def main():
 
 def load():
     """Import what jobs import, and load the kernels that were compiled."""
-    from roughcontact.kernel_cache import load_kept
+    from roughcontact.kernel_cache import load_cached
 
     for room in ROOMS:
         package = importlib.import_module(room)
@@ -103,7 +103,7 @@ def load():
             importlib.import_module(module.name)
     for name in ("netCDF4", "scipy.optimize", "scipy.stats"):
         importlib.import_module(name)
-    load_kept()
+    load_cached()
 
 
 def _work(connection):

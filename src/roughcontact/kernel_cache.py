@@ -40,11 +40,11 @@ from .kernel_digest import kernel_digest
 
 PACKAGE = Path(__file__).absolute().parent
 #: Kernels that come with the package; who can write there can write its code.
-OWN = PACKAGE / "__pycache__" / "kernels"
+PACKAGE_FOLDER = PACKAGE / "__pycache__" / "kernels"
 LOG = logging.getLogger("roughcontact")
 #: Files of a kernel that are kept, for versions of it and types it is called with: to change
 #: between branches compiles nothing.
-FILES_KEPT = 12
+MAX_FILES = 12
 #: Bytes of a file's SHA-256, with which it begins.
 _CHECKSUM = hashlib.sha256().digest_size
 
@@ -74,15 +74,15 @@ def njit(function: Callable | None = None, /, *, cache: bool = False, **options:
     # With NUMBA_DISABLE_JIT numba returns the function as it is.
     if cache and kernel is not function:
         kernel._cache = KernelCache(kernel)
-        _KEPT.append(kernel)
+        _CACHED.append(kernel)
     return kernel
 
 
 #: Kernels that are kept on disk.
-_KEPT: list[Any] = []
+_CACHED: list[Any] = []
 
 
-def load_kept() -> int:
+def load_cached() -> int:
     """Load from disk what the kernels of all imported modules were compiled to.
 
     A process that forks does so beforehand: each of its forks would else load them again.
@@ -93,12 +93,12 @@ def load_kept() -> int:
         How many were loaded; nothing is compiled.
     """
     loaded = 0
-    for kernel in _KEPT:
-        known = set(kernel.signatures)
-        for signature in kernel._cache.kept():
-            if signature not in known:
+    for kernel in _CACHED:
+        compiled = set(kernel.signatures)
+        for signature in kernel._cache.signatures():
+            if signature not in compiled:
                 kernel.compile(signature)
-                known.add(signature)
+                compiled.add(signature)
                 loaded += 1
     return loaded
 
@@ -130,7 +130,7 @@ class KernelCache(FunctionCache):
             for path in self._cache_path.glob(f"{self._stem}-*"):
                 path.unlink(missing_ok=True)
 
-    def kept(self) -> Iterator[tuple]:
+    def signatures(self) -> Iterator[tuple]:
         """Signatures for which this kernel is on disk, compiled for this processor."""
         codegen = cpu_target.target_context.codegen()
         names = {path.name: path for path in self._files(f"{self._digest[:16]}-*.nbc")}
@@ -173,7 +173,7 @@ class KernelCache(FunctionCache):
         if not self._enabled or not self._impl.check_cachable(data):
             return
         if self._cache_path is None:
-            places = " nor ".join(map(str, _places()))
+            places = " nor ".join(map(str, _candidate_folders()))
             self._warn(f"neither {places} is a folder that this user alone can write to")
             return
         key = self._key(sig, data.codegen)
@@ -198,7 +198,7 @@ class KernelCache(FunctionCache):
         with contextlib.suppress(FileNotFoundError):  # removed by another process meanwhile
             files = list(self._cache_path.glob(f"{self._stem}-*.nbc"))
             files.sort(key=lambda path: path.stat().st_mtime, reverse=True)
-            for path in files[FILES_KEPT:]:
+            for path in files[MAX_FILES:]:
                 path.unlink()
 
     def _file_name(self, key):
@@ -229,8 +229,8 @@ class _Serialised(CompileResultCacheImpl):
 @cache
 def _folders():
     """Where kernels are written, or None, and where they are looked for."""
-    writable = next(filter(_is_safe, _places()), None)
-    wanted = next(_places())
+    writable = next(filter(_is_safe, _candidate_folders()), None)
+    wanted = next(_candidate_folders())
     if numba.config.CACHE_DIR and writable not in (wanted, None):
         warnings.warn(
             f"{wanted}: not a folder that this user alone can use, so compiled kernels go to "
@@ -238,14 +238,14 @@ def _folders():
             stacklevel=2,
         )
     # What was compiled with the installation serves those who may only read it.
-    readable = (writable,) if numba.config.CACHE_DIR else (writable, OWN)
+    readable = (writable,) if numba.config.CACHE_DIR else (writable, PACKAGE_FOLDER)
     return writable, [folder for folder in dict.fromkeys(readable) if folder is not None]
 
 
-def _places():
+def _candidate_folders():
     if numba.config.CACHE_DIR:
         yield Path(numba.config.CACHE_DIR).absolute() / "roughcontact-kernels"
-    yield OWN
+    yield PACKAGE_FOLDER
     users = Path(os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache"))
     if users.is_absolute():
         yield users / "roughcontact"
@@ -256,14 +256,15 @@ def _places():
 def _is_safe(folder):
     """Whether kernels can be kept in a folder, and nobody else can put any there."""
     try:
-        os.makedirs(folder, mode=0o777 if folder == OWN else 0o700, exist_ok=True)
+        os.makedirs(folder, mode=0o777 if folder == PACKAGE_FOLDER else 0o700, exist_ok=True)
     except OSError:
         return False
     if not os.access(folder, os.W_OK | os.X_OK):
         return False
-    found = os.lstat(folder)
-    mine = stat.S_ISDIR(found.st_mode) and found.st_uid == os.geteuid()
-    return folder == OWN or (mine and not found.st_mode & (stat.S_IRWXG | stat.S_IRWXO))
+    status = os.lstat(folder)
+    private = not status.st_mode & (stat.S_IRWXG | stat.S_IRWXO)
+    owned = stat.S_ISDIR(status.st_mode) and status.st_uid == os.geteuid()
+    return folder == PACKAGE_FOLDER or (owned and private)
 
 
 def _intact(path):

@@ -1,5 +1,8 @@
 """Branches of a joint whose contacts crush."""
 
+from dataclasses import replace
+from unittest import mock
+
 import numpy as np
 import pytest
 from made_stages import scan, stages_of
@@ -7,6 +10,8 @@ from made_stages import scan, stages_of
 from fractalcontact.mechanics.branches import OF_BRANCHES, OF_CYCLE, branches
 from fractalcontact.study.configuration import resolve_settings, solver_settings
 from fractalcontact.surface.synthesis import self_affine
+from roughcontact.contact import path as path_module
+from roughcontact.contact.path import load_path
 from roughcontact.contact.solve import solve_contact
 from roughcontact.elastic.halfspace import HalfSpace
 from roughcontact.errors import NotConverged
@@ -22,18 +27,26 @@ def joint():
 
 
 @pytest.fixture(scope="module")
-def data(joint):
-    return branches(*joint, FORCES, SOLVING, "joint")
+def loaded(joint):
+    return [solve_contact(*joint, force=force, **SOLVING) for force in FORCES]
 
 
-def test_loading_is_that_of_single_states(joint, data):
-    for force in FORCES:
-        state = solve_contact(*joint, force=force, **SOLVING)
-        loaded = data.sel(branch="load", normal_force=force)
-        assert loaded.closure == pytest.approx(state.closure, rel=1e-6)
-        assert loaded.area == pytest.approx(state.area, rel=1e-2)
-        at_limit = state.pressure == state.hardness
-        assert loaded.yielded_fraction == pytest.approx(at_limit.mean(), rel=1e-2)
+@pytest.fixture(scope="module")
+def data(joint, loaded):
+    return branches(joint[0], loaded, SOLVING, "joint")
+
+
+def test_branches_are_those_of_one_path(joint, data):
+    """Loading from stored states and unloading, beside a path whose states are all solved."""
+    path = load_path(*joint, forces=[*FORCES, *FORCES[-2::-1], 0.0, *FORCES], **SOLVING)
+    exact = {"load": path[:3], "unload": path[2:5][::-1], "reload": path[6:]}
+    for branch, states in exact.items():
+        found = data.sel(branch=branch)
+        np.testing.assert_allclose(found.closure, [state.closure for state in states], rtol=1e-5)
+        volumes = [state.set_volume for state in states]
+        np.testing.assert_allclose(found.set_volume, volumes, rtol=1e-4)
+    assert data.residual_closure == pytest.approx(path[5].closure, rel=1e-5)
+    assert data.recovered_energy == pytest.approx(path[2].elastic_energy, rel=1e-5)
 
 
 def test_unloading_lies_above_loading_and_reloading_on_it(data):
@@ -59,21 +72,34 @@ def test_only_loading_presses_in(data):
 
 
 def test_everything_has_a_unit_and_a_name(data):
-    assert {*OF_BRANCHES, *OF_CYCLE, "permanent_set"} == set(data.data_vars)
+    assert {*OF_BRANCHES, *OF_CYCLE, "permanent_set", "yielded"} == set(data.data_vars)
+    assert data.branch_maximum == pytest.approx(FORCES[-1])
+    assert data.yielded.values[data.permanent_set.values > 0].all()
     assert all({"units", "long_name"} <= set(values.attrs) for values in data.values())
 
 
-def test_one_load_is_a_cycle_as_well(joint):
-    one = branches(*joint, FORCES[-1:], SOLVING, "joint")
+def test_one_load_is_a_cycle_as_well(joint, loaded):
+    one = branches(joint[0], loaded[-1:], SOLVING, "joint")
     assert one.closure.sel(branch="reload").item() == pytest.approx(
         one.closure.sel(branch="load").item(), rel=1e-5
     )
 
 
-def test_a_failure_names_what_is_loaded(joint):
+def test_a_failure_names_what_is_loaded(joint, loaded):
     with pytest.raises(NotConverged) as caught:
-        branches(*joint, FORCES, SOLVING | {"rtol": 1e-17}, "offset 0.3 mm")
+        branches(joint[0], loaded, SOLVING | {"rtol": 1e-17}, "offset 0.3 mm")
     assert "offset 0.3 mm" in caught.value.__notes__[0]
+
+
+def test_branches_solve_only_what_loading_did_not(joint, loaded):
+    """A state for each load below the largest, none at all, and the largest again."""
+    with mock.patch.object(path_module, "solve_contact", wraps=solve_contact) as counted:
+        branches(joint[0], loaded, SOLVING, "joint")
+        assert counted.call_count == len(loaded) + 1
+        elastic = [replace(state, hardness=np.inf) for state in loaded]
+        still = branches(joint[0], elastic, SOLVING, "joint")
+        assert counted.call_count == len(loaded) + 1
+    assert still.recovered_energy > 0
 
 
 STUDY = {
@@ -125,5 +151,7 @@ def test_reloading_is_stiffer_than_loading_where_contacts_crush(stages):
     # A single node has one stiffness under all loads.
     assert (stiffness[:-1] < secants * (1 + 1e-6)).all()
     assert (secants < stiffness[1:] * (1 + 1e-6)).all()
+    missing = data["interface_stiffness"].isnull()
+    np.testing.assert_array_equal(data["interface_stiffness_reason"] != "", missing)
     at, first = (one["reference_stiffness"][1] for one in (reload, data.sel(branch="load")))
     assert at > first if np.isfinite(settings.material.hardness) else at == first

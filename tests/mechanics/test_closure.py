@@ -10,10 +10,15 @@ from fractalcontact.core.settings import Solver
 from fractalcontact.core.verdicts import ABOVE, BELOW, WITHIN
 from fractalcontact.core.window import window_sides
 from fractalcontact.mechanics.closure import (
+    FLUSH_FACES,
+    FULL_CONTACT,
+    SINGLE_CELLS,
     bulk_settlement,
     closure_curves,
     elastic_dilatancy,
     full_contact_warning,
+    interface_stiffness,
+    stiffness_reason,
 )
 from fractalcontact.mechanics.conductance import beside_theory
 from fractalcontact.mechanics.joint import composite_topography, describe_joint
@@ -301,6 +306,15 @@ def slid_joint(cells, loads, resolutions=(1,)):
 SOLVER = Solver(1e-7, "love", None)
 
 
+def test_a_missing_stiffness_has_its_reason_and_none_is_negative():
+    total = xr.DataArray([1.0, 3.0, np.nan, 1.0], dims="state")
+    flush = xr.DataArray([False, False, False, True], dims="state")
+    found = interface_stiffness(total, xr.full_like(total, 2.0)).where(~flush)
+    np.testing.assert_allclose(found, [2.0, np.nan, np.nan, np.nan])
+    reasons = stiffness_reason(found, total, flush).values.tolist()
+    assert reasons == ["", FULL_CONTACT, SINGLE_CELLS, FLUSH_FACES]
+
+
 def test_the_closure_of_polished_faces_in_full_contact_is_undetermined():
     """They settle like a rigid punch, by less than w_b: the difference says nothing of them."""
     heights = self_affine((32, 32), 0.1, 0.8, seed=3, rms=5e-5)
@@ -313,6 +327,7 @@ def test_the_closure_of_polished_faces_in_full_contact_is_undetermined():
     assert np.isnan(full)
     assert 0 < light <= heights.max() - heights.min()
     assert np.isnan(curves["interface_stiffness"].squeeze()[1])
+    assert curves["interface_stiffness_reason"].squeeze().values.tolist() == ["", FULL_CONTACT]
     assert "so full in 1 of 2 states" in full_contact_warning(curves)
     rough = curves_of(self_affine((32, 32), 0.1, 0.8, seed=3, rms=0.05), [1.0, 100.0])
     assert (rough["interface_closure"] > 0).all()

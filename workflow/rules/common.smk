@@ -25,6 +25,7 @@ from fractalcontact.study.checks import resolve_study
 from fractalcontact.study.configuration import resolve_embedded, resolve_roll_off
 from fractalcontact.study.figure_list import all_figures, study_figures_of
 from fractalcontact.study.scan_groups import grouped_notes
+from fractalcontact.study.selection import CAPPED_VARIANTS
 from fractalcontact.study.sidecar import sidecar_of_matrix
 from contactlab.experiments.size_tasks import size_jobs
 

@@ -2,7 +2,12 @@
 
 # Measured contact maps ask for their figures themselves, and so do several specimens.
 STUDY_FIGURES = study_figures_of(
-    [*config, *MAP_FILES, *([campaign.COMPARISON] if len(SPECIMENS) > 1 else [])]
+    [
+        *config,
+        *MAP_FILES,
+        *([campaign.COMPARISON] if len(SPECIMENS) > 1 else []),
+        *([CAPPED_VARIANTS] if any(record["capped_variant"] for record in RECORDS.values()) else []),
+    ]
 )
 if IN_PARTS:
     STUDY_FIGURES = campaign.of_study_alone(STUDY_FIGURES)

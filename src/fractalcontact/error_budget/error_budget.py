@@ -272,24 +272,26 @@ def _solver(curve: LoadCurve) -> np.ndarray:
             states["interface_closure_error"].values,
             states["closure_error"].values,
             states["area_corrected_error"].values,
-            states["interface_stiffness_error"].values,
+            (states["interface_stiffness_error"] - states["interface_stiffness_scatter"]).values,
             curve.domains["delta_sigma_error"].values,
         ]
     )
 
 
 def _estimator(curve: LoadCurve) -> np.ndarray:
-    """Choice of the estimator of Delta_sigma; no other quantity has one.
+    """Choice of the estimator of Delta_sigma, and scatter of the secant of a yielding contact.
 
-    The published interval, which holds fit range, rival laws and parts of the window left out, or
-    the distance to the ordinary slope if that is larger: what Fig. 9 calls undetermined has no
-    small error here.
+    Of Delta_sigma the published interval, which holds fit range, rival laws and parts of the window
+    left out, or the distance to the ordinary slope if that is larger: what Fig. 9 calls
+    undetermined has no small error here.
     """
     domains = curve.domains
     spread = np.zeros((len(BUDGET_QUANTITIES), len(curve.forces)))
     value, low, high = Estimate.read(domains, "delta_sigma").ends
     other = np.abs(domains["delta_sigma_ordinary"].values - value)
     spread[-1] = np.fmax(np.fmax(high - value, value - low), other)
+    scatter = curve.curve["interface_stiffness_scatter"].values
+    spread[list(BUDGET_QUANTITIES).index("stiffness")] = np.nan_to_num(scatter)
     return spread
 
 
@@ -416,6 +418,6 @@ def _reasons(curve, errors, found: Refinement, effective, registered: bool) -> n
                 reasons[i, j] = _COUNTED
             elif not np.isfinite(errors[source][i]).any():
                 reasons[i, j] = missing[source]
-            elif source == "estimator" and name != "delta_sigma":
+            elif source == "estimator" and not errors[source][i].any():
                 reasons[i, j] = _DEFINED
     return reasons.astype(str)

@@ -1,19 +1,20 @@
 """Branches of the closure curve of a joint whose contacts crush: loading, unloading, reloading."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
 import xarray as xr
-from numpy.typing import ArrayLike
 
-from roughcontact.contact.path import BRANCHES, LOAD, RELOAD, UNLOAD, BranchState, load_path
+from roughcontact.contact.path import BRANCHES, LOAD, BranchState, load_path, loaded_state
+from roughcontact.contact.state import ContactState
 from roughcontact.elastic.halfspace import HalfSpace
 from roughcontact.errors import NotConverged
 
 from ..core.datasets import labelled, labelled_dataset
 from ..core.labels import cf_attrs
-from .closure import bulk_settlement, interface_stiffness
+from .closure import bulk_settlement, interface_stiffness, stiffness_reason
+from .joint import prefractal
 from .loading import JointLoading
 from .seated_laws import reference_stiffness, within_span
 from .separation import ROUNDING
@@ -31,6 +32,7 @@ OF_BRANCHES = {
 }
 #: Numbers of the cycle: unit, long name.
 OF_CYCLE = {
+    "branch_maximum": ("N", "largest load of the branches, from which they unload"),
     "residual_closure": ("mm", "closure at which contact is lost after unloading"),
     "dissipated_energy": ("N mm", "energy spent on what is pressed in"),
     "recovered_energy": ("N mm", "elastic energy that unloading gives back"),
@@ -39,15 +41,12 @@ _TABLE: dict[str, tuple[Any, str, str]] = {
     **{name: (_STATES, *words) for name, words in OF_BRANCHES.items()},
     **{name: ((), *words) for name, words in OF_CYCLE.items()},
     "permanent_set": (("y", "x"), "mm", "how far each node is pressed in for good"),
+    "yielded": (("y", "x"), "1", "nodes that have carried the hardness"),
 }
 
 
 def branches(
-    composite: np.ndarray,
-    space: HalfSpace,
-    forces: ArrayLike,
-    solving: Mapping[str, Any],
-    where: str,
+    composite: np.ndarray, loaded: Sequence[ContactState], solving: Mapping[str, Any], where: str
 ) -> xr.Dataset:
     """States of loading, of unloading from the largest load to none, and of reloading to it.
 
@@ -55,9 +54,8 @@ def branches(
     ----------
     composite : (ny, nx) ndarray
         h, mm.
-    space : HalfSpace
-    forces : (n,) array_like
-        N, above zero, ascending.
+    loaded : (n,) sequence of ContactState
+        Of that topography under ascending forces above zero; they are not solved again.
     solving : mapping
         ``hardness`` and ``rtol`` of :func:`roughcontact.load_path`.
     where : str
@@ -67,47 +65,56 @@ def branches(
     -------
     xr.Dataset
         :data:`OF_BRANCHES` over ``branch`` and ``normal_force`` (N), of which the unloading branch
-        begins with the state that loading ended with; :data:`OF_CYCLE`; the map ``permanent_set``
-        (mm), of the cycle.
+        begins with the state that loading ended with; :data:`OF_CYCLE`; the maps ``permanent_set``
+        (mm) and ``yielded`` of the cycle.
 
     Raises
     ------
     NotConverged
         If a state could not be verified; its note names it.
+
+    Notes
+    -----
+    Below the largest load the contact is elastic on the heights that loading has left: unloading
+    and reloading are one curve, solved once, and where nothing has yielded that of loading.
     """
-    up = np.asarray(forces, float)
-    down, n = up[-2::-1], up.size
-    try:
-        path = load_path(composite, space, forces=[*up, *down, 0.0, *up], **solving)
-    except NotConverged as error:
-        error.add_note(f"{where}, loading, unloading and reloading up to F = {up[-1]:g} N")
-        raise
-    top, empty = path[n - 1], path[2 * n - 1]
-    of = {LOAD: path[:n], UNLOAD: [*path[2 * n - 2 : n - 1 : -1], top]}
-    states = [of.get(branch, path[2 * n :]) for branch in BRANCHES]
-    rows = {
-        branch: [_numbers(state, branch) for state in of_branch]
-        for branch, of_branch in zip(BRANCHES, states, strict=True)
-    }
-    # Unloading begins elastically at the closure where loading ended, as reloading ends.
-    begun = {name: rows[RELOAD][-1][name] for name in ("stiffness", "plastic_load_fraction")}
-    rows[UNLOAD][-1] |= begun
+    load = [loaded_state(state) for state in loaded]
+    forces, top = np.array([state.force for state in load]), load[-1]
+    again, residual = load, 0.0
+    if top.yielded.any():
+        try:
+            *down, empty, full = load_path(
+                composite,
+                top.contact.space,
+                forces=[*forces[-2::-1], 0.0, forces[-1]],
+                loaded=top.contact,
+                **solving,
+            )
+        except NotConverged as error:
+            error.add_note(f"{where}, unloading from F = {forces[-1]:g} N")
+            raise
+        again, residual = [*down[::-1], full], empty.closure
+    first, second = ([_numbers(state) for state in states] for states in (load, again))
+    # Unloading begins elastically at the closure where loading ended.
+    rows = [first, [*second[:-1], second[-1] | {"closure": top.closure}], second]
     values = {
-        **{name: [[one[name] for one in row] for row in rows.values()] for name in OF_BRANCHES},
-        "residual_closure": empty.closure,
+        **{name: [[state[name] for state in row] for row in rows] for name in OF_BRANCHES},
+        "branch_maximum": forces[-1],
+        "residual_closure": residual,
         "dissipated_energy": top.dissipated_energy,
         "recovered_energy": top.elastic_energy,
         "permanent_set": top.permanent_set,
+        "yielded": top.yielded,
     }
-    loads = ("normal_force", up, cf_attrs("N", "normal force F"))
+    loads = ("normal_force", forces, cf_attrs("N", "normal force F"))
     return labelled_dataset(_TABLE, values, {"branch": list(BRANCHES), "normal_force": loads})
 
 
-def _numbers(state: BranchState, branch: str) -> dict[str, float]:
+def _numbers(state: BranchState) -> dict[str, float]:
     """The :data:`OF_BRANCHES` of a state."""
     return {
         "closure": state.closure,
-        "stiffness": np.nan if branch == LOAD else state.contact.stiffness,
+        "stiffness": np.nan if state.branch == LOAD else state.contact.stiffness,
         "area": state.contact.area,
         "set_volume": state.set_volume,
         "yielded_fraction": float(state.yielded.mean()),
@@ -124,6 +131,7 @@ _OF_INTERFACE = {
         "interface closure since loading passed the seat",
     ),
     "interface_stiffness": (_STATES, "MPa/mm", "tangent stiffness d sigma_0 / d w_int"),
+    "interface_stiffness_reason": (_STATES, "1", "why there is no tangent stiffness"),
     "reference_stiffness": (
         ("branch", "reference_pressure"),
         "MPa/mm",
@@ -132,7 +140,7 @@ _OF_INTERFACE = {
 }
 
 
-def joint_branches(loading: JointLoading, curves: xr.Dataset) -> xr.Dataset:
+def joint_branches(loading: JointLoading, curves: xr.Dataset, mapped: xr.Dataset) -> xr.Dataset:
     """Branches of a joint at the reported offset, over the loads that closure laws are fitted to.
 
     Parameters
@@ -141,30 +149,30 @@ def joint_branches(loading: JointLoading, curves: xr.Dataset) -> xr.Dataset:
         At that offset alone.
     curves : xr.Dataset
         The stage ``closure``.
+    mapped : xr.Dataset
+        Fields of the states at that offset, from :func:`mechanics.states.map_states`.
 
     Returns
     -------
     xr.Dataset
         That of :func:`branches` and closures and stiffness of the interface, up to
         :data:`core.limits.SEATED_SPAN` times the seating pressure: what was loaded until the whole
-        window crushes tells nothing of a joint in use. Where nothing yields all branches are that
-        of loading, which is not solved again.
+        window crushes tells nothing of a joint in use.
     """
     (cells,), (offset,) = loading.cells, loading.offsets
-    curve = curves.sel(direction=loading.direction, resolution=curves["resolution"].min())
+    factor = int(curves["resolution"].min())
+    curve = curves.sel(direction=loading.direction, resolution=factor)
     curve = curve.sel(offset=offset, method="nearest")
     seating = float(curve["seating_pressure"])
     light = within_span(curve["nominal_pressure"].values, seating)
     curve = curve.isel(normal_force=light | (light.sum() < 2))
     forces = curve["normal_force"].values
-    composite = loading.composite(int(cells))
-    space = loading.half_space(composite.shape)
-    if np.isfinite(loading.solving["hardness"]):
-        where = f"specimen {loading.specimen.attrs['name']}"
-        data = branches(composite, space, forces, loading.solving, where)
-        data["stiffness"].values[0] = curve["stiffness"].values
-    else:
-        data = _elastic(curve, composite.shape)
+    composite = prefractal(loading.composite(int(cells)), factor)
+    space = loading.half_space(composite.shape, factor)
+    loaded = _solved_states(composite, space, curve, mapped, loading.solving["hardness"])
+    where = f"specimen {loading.specimen.attrs['name']}"
+    data = branches(composite, loaded, loading.solving, where)
+    data["stiffness"] = data["stiffness"].fillna(curve["stiffness"].reset_coords(drop=True))
     sides = np.multiply(space.shape, space.spacing)
     settlement = bulk_settlement(forces, space.modulus, *sides)
     pressure = forces / loading.area
@@ -173,10 +181,12 @@ def joint_branches(loading: JointLoading, curves: xr.Dataset) -> xr.Dataset:
     beyond = pressure >= seating * (1 - ROUNDING)
     bulk = xr.DataArray(pressure / settlement, dims="normal_force")
     stiffness = interface_stiffness(data["stiffness"] / loading.area, bulk)
+    reason = stiffness_reason(stiffness, data["stiffness"], bool(np.ptp(composite) == 0))
     values = {
         "interface_closure": closure.values,
         "seated_closure": (closure - seat).where(xr.DataArray(beyond, dims="normal_force")).values,
         "interface_stiffness": stiffness.values,
+        "interface_stiffness_reason": reason.values,
         "reference_stiffness": [reference_stiffness(pressure, row) for row in stiffness.values],
     }
     data.coords["reference_pressure"] = curve["reference_pressure"]
@@ -185,15 +195,23 @@ def joint_branches(loading: JointLoading, curves: xr.Dataset) -> xr.Dataset:
     )
 
 
-def _elastic(curve: xr.Dataset, shape: tuple[int, ...]) -> xr.Dataset:
-    """Branches where nothing yields: the curve of loading three times, and nothing pressed in."""
-    n = curve.sizes["normal_force"]
-    of = {"closure": curve["closure"].values, "stiffness": curve["stiffness"].values}
-    of["area"] = curve["area"].values
-    values = {
-        **{name: [of.get(name, np.zeros(n))] * len(BRANCHES) for name in OF_BRANCHES},
-        **{"residual_closure": 0.0, "dissipated_energy": 0.0, "recovered_energy": np.nan},
-        "permanent_set": np.zeros(shape),
-    }
-    coords = {"branch": list(BRANCHES), "normal_force": curve["normal_force"]}
-    return labelled_dataset(_TABLE, values, coords)
+def _solved_states(
+    composite: np.ndarray,
+    space: HalfSpace,
+    curve: xr.Dataset,
+    mapped: xr.Dataset,
+    hardness: float,
+) -> list[ContactState]:
+    """States of a closure curve with their fields, which are stored in single precision."""
+    clearance = composite.max() - composite
+    states = []
+    for force, closure, residual in zip(
+        curve["normal_force"].values, curve["closure"].values, curve["residual"].values, strict=True
+    ):
+        fields = mapped.sel(normal_force=force)
+        pressure, gap = (fields[name].values.astype(float) for name in ("pressure", "gap"))
+        pressure[fields["pressure"].values >= np.float32(hardness)] = hardness
+        displacement = gap + closure - clearance
+        known = float(closure), float(force), float(residual), 0, space, hardness
+        states.append(ContactState(pressure, displacement, gap, *known))
+    return states

@@ -16,7 +16,7 @@ from .conductance import add_conductance
 from .load_curve import left_out_misses
 from .seated_laws import add_seated_laws
 from .separation import add_seated_closure, add_separation
-from .states import OF_STATES, OFFSETS, error_attrs
+from .states import OF_STATES, OFFSETS, WITH_SCATTER, error_attrs
 from .theory import Numbers
 
 #: Why a state that was solved has no stiffness of the interface.
@@ -143,8 +143,9 @@ def closure_curves(
     -------
     xr.Dataset
         ``bulk_settlement`` and ``nominal_pressure`` (normal_force); ``interface_closure``,
-        ``separation``, ``seated_closure``, ``closure_from_common_seat``, ``interface_stiffness``,
-        ``conductance``, ``area_share``, ``area_corrected_share``, each with an ``_error``,
+        ``separation``, ``seated_closure``, ``closure_from_common_seat``,
+        ``closure_from_stated_seat``, ``interface_stiffness``, ``conductance``, ``area_share``,
+        ``area_corrected_share``, each with an ``_error``,
         ``interface_compliance`` with the bounds that its error leaves,
         ``interface_stiffness_reason``, ``interface_stiffness_change``, ``resolved``,
         ``area_corrected_resolved``, ``closure_spacing_error`` and the numbers of the states over
@@ -208,21 +209,28 @@ def _add_interface(curves: xr.Dataset, settlement: np.ndarray, area: float) -> N
         "MPa/mm",
         "tangent stiffness d sigma_0 / d w_int of the interface; none if flush",
     )
-    _add_stiffness_reason(curves, flush)
+    reason = stiffness_reason(curves["interface_stiffness"], curves["stiffness"], flush)
+    # As bare values: labels that xr.where made have no units.
+    words = reason.where(curves["solved"], "").transpose(*order).values
+    curves["interface_stiffness_reason"] = (order, words, reason.attrs)
 
 
-def _add_stiffness_reason(curves: xr.Dataset, flush: xr.DataArray) -> None:
-    """Why solved states have no stiffness of the interface, into ``curves``; "" of all others."""
-    known = curves["interface_stiffness"].notnull() | ~curves["solved"]
-    reasons = {"": known, FLUSH_FACES: flush, SINGLE_CELLS: curves["stiffness"].isnull()}
-    dims = curves["closure"].dims
-    conditions = [
-        condition.broadcast_like(curves["closure"]).transpose(*dims).values
-        for condition in reasons.values()
-    ]
-    words = np.select(conditions, [np.array(reason) for reason in reasons], FULL_CONTACT)
+def stiffness_reason(
+    interface: xr.DataArray, total: xr.DataArray, flush: xr.DataArray | bool
+) -> xr.DataArray:
+    """Why states have no stiffness of the interface; "" of those that have one.
+
+    Parameters
+    ----------
+    interface, total : xr.DataArray
+        Stiffness of the interface, and of it and the blocks; NaN where there is none.
+    flush : xr.DataArray or bool
+        Where faces match everywhere.
+    """
+    why = xr.where(total.isnull(), SINGLE_CELLS, FULL_CONTACT)
+    why = xr.where(interface.notnull(), "", xr.where(flush, FLUSH_FACES, why))
     attrs = cf_attrs("1", "why there is no tangent stiffness of the interface")
-    curves["interface_stiffness_reason"] = (dims, words, attrs)
+    return why.transpose(*interface.dims).assign_attrs(attrs)
 
 
 def _add_errors(curves: xr.Dataset, area: float, e_star: float) -> None:
@@ -239,6 +247,11 @@ def _add_errors(curves: xr.Dataset, area: float, e_star: float) -> None:
     for name, error in errors.items():
         curves[f"{name}_error"] = error.transpose(*curves["closure"].dims)
         curves[f"{name}_error"].attrs = error_attrs(curves[name].attrs)
+    scatter = (curves["stiffness_scatter"] / area * fraction).transpose(*curves["closure"].dims)
+    words = "scatter of the interface stiffness over the cells that come to yield"
+    curves["interface_stiffness_scatter"] = scatter.assign_attrs(cf_attrs("MPa/mm", words))
+    for name in ("interface_stiffness", "conductance"):
+        curves[f"{name}_error"].attrs = error_attrs(curves[name].attrs, WITH_SCATTER)
     curves["closure_spacing_error"] = _spacing_error(curves["closure"])
     _add_compliance(curves)
     curves["interface_stiffness_change"] = at_twice(curves["interface_stiffness"]).assign_attrs(

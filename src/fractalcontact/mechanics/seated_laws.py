@@ -138,33 +138,23 @@ def reference_stiffness(pressure: np.ndarray, stiffness: np.ndarray) -> np.ndarr
 
 def _add_reference_stiffness(curves: xr.Dataset) -> None:
     """Tangent stiffness of the interface at set nominal pressures, into ``curves``."""
-    resolved = curves["resolved"]
-    stiffness = curves["interface_stiffness"].where(resolved)
-    error = curves["interface_stiffness_error"].where(resolved)
-    dims = (*_DIMS, "reference_pressure")
-    shape = tuple(curves.sizes[dim] for dim in _DIMS)
-    found = np.full((*shape, len(REFERENCE_PRESSURES), 2), np.nan)
-    values = (one.transpose(*_DIMS, "normal_force").values for one in (stiffness, error))
+    order, dims = (*_DIMS, "normal_force"), (*_DIMS, "reference_pressure")
+    stiffness, error = (
+        curves[name].where(curves["resolved"]).transpose(*order).values
+        for name in ("interface_stiffness", "interface_stiffness_error")
+    )
     pressure = curves["nominal_pressure"].values
-    each, each_error = values
-    for place in np.ndindex(shape):
-        at = reference_stiffness(pressure, each[place])
-        known = np.isfinite(each[place]) & (each[place] > 0)
-        if known.any():
-            share = each_error[place][known] / each[place][known]
-            at_share = np.interp(np.log(REFERENCE_PRESSURES), np.log(pressure[known]), share)
-            found[place] = np.column_stack((at, at * at_share))
+    value, upper = (
+        np.apply_along_axis(lambda curve: reference_stiffness(pressure, curve), -1, of)
+        for of in (stiffness, stiffness + error)
+    )
     table = {
         "reference_stiffness": (dims, "MPa/mm", "tangent stiffness of the interface at a pressure"),
-        "reference_stiffness_error": (
-            dims,
-            "MPa/mm",
-            "error of it, from the states beside it",
-        ),
+        "reference_stiffness_error": (dims, "MPa/mm", "error of it, from the states beside it"),
     }
     curves.coords["reference_pressure"] = (
         "reference_pressure",
         np.array(REFERENCE_PRESSURES),
         {"units": "MPa", "long_name": "nominal pressure at which the stiffness is stated"},
     )
-    curves.update(labelled(table, dict(zip(table, np.moveaxis(found, -1, 0), strict=True))))
+    curves.update(labelled(table, dict(zip(table, (value, upper - value), strict=True))))

@@ -65,6 +65,10 @@ _WORDS = {
         "mm",
         "interface closure from the common seating pressure on, one for all offsets",
     ),
+    "closure_from_stated_seat": (
+        "mm",
+        "interface closure from the stated seating pressure on, however few nodes touch there",
+    ),
 }
 
 #: Seating pressures: dimensions, unit and long name.
@@ -134,8 +138,9 @@ def add_seated_closure(curves: xr.Dataset, seating_pressure: float) -> None:
     ``seated_closure`` counts from the seating load of its own offset, so that each curve begins as
     early as it can. Closures of several offsets compare only from one pressure on:
     ``closure_from_common_seat`` counts from the largest of these loads, at which enough nodes touch
-    at all offsets that have one. Below its load a closure has no value, nor where the state under
-    that load was not solved.
+    at all offsets that have one. Those of several resolutions do from the stated pressure:
+    ``closure_from_stated_seat`` counts from the first load from there on. Below its load a closure
+    has no value, nor where the state under that load was not solved.
     """
     force = curves["normal_force"]
     solved = np.isfinite(curves["interface_closure"])
@@ -144,6 +149,8 @@ def add_seated_closure(curves: xr.Dataset, seating_pressure: float) -> None:
     common = seats.max("offset")
     _add_closure_from(curves, seats, "seated_closure")
     _add_closure_from(curves, common, "closure_from_common_seat")
+    stated = force.where(heavy).min("normal_force")
+    _add_closure_from(curves, xr.full_like(seats, stated), "closure_from_stated_seat")
     area = float((force / curves["nominal_pressure"])[0])
     none = f"no state of any offset has {RESOLVED_NODES} nodes in contact"
     if seating_pressure > 0:

@@ -35,16 +35,23 @@ def numbers_of(state: ContactState, suspicious: np.ndarray | None = None) -> dic
         "nodes": np.count_nonzero(state.in_contact),
         "extent": _extent(state.in_contact),
         "perimeter": contact_perimeter(state.in_contact, spacing),
-        # No less than what carries the force at the largest pressure, if there is one.
-        "area_corrected": max(
-            float(corrected_area(state.in_contact, spacing)), state.force / state.hardness
-        ),
+        "area_corrected": state_area(state),
         "suspect_load_share": (
             0.0 if suspicious is None else suspect_load_share(state.pressure, suspicious)
         ),
+        "stiffness_scatter": state.slope.scatter,
     }
     of_state = {name: getattr(state, name) for name in SCALARS if name not in of_domain}
     return of_domain | of_state | state_errors(state)
+
+
+def state_area(state: ContactState) -> float:
+    """Real contact area of a state, corrected for the perimeter, mm2.
+
+    No less than what carries the force at the hardness, if there is one.
+    """
+    corrected = float(corrected_area(state.in_contact, state.space.spacing))
+    return max(corrected, state.force / float(np.max(state.hardness)))
 
 
 def _extent(in_contact: np.ndarray) -> float:
@@ -73,6 +80,7 @@ def state_errors(state: ContactState) -> dict[str, float]:
     topography that differs by up to r w, and heights raised by no more than that change the closure
     by no more. Area and perimeter change by the nodes whose contact that leaves ambiguous, each
     with all its edges; so does the stiffness, in proportion to the nodes with inactive bounds.
+    Where nodes yield it is a secant between two other states, and has an error of its own.
     """
     space, ambiguous = state.space, state.ambiguous
     dy, dx = space.spacing
@@ -81,11 +89,12 @@ def state_errors(state: ContactState) -> dict[str, float]:
     near_cap = below_cap & (state.pressure >= state.hardness - hidden)
     loose = ambiguous + np.count_nonzero(near_cap)
     fraction = STIFFNESS_ERROR + loose / max(int(np.count_nonzero(below_cap)), 1)
+    slope = state.slope
     return {
         "closure_error": state.residual * state.closure,
         "area_error": ambiguous * space.cell_area,
         "nodes_error": ambiguous,
         "perimeter_error": ambiguous * 2 * (dy + dx),
         "area_corrected_error": ambiguous * (1 + 4 * EDGE_EXCESS) * space.cell_area,
-        "stiffness_error": max(fraction * state.stiffness, state.slope.error),
+        "stiffness_error": fraction * slope.value if np.isinf(slope.cells) else slope.error,
     }

@@ -24,6 +24,7 @@ SCALARS = {
     "perimeter": ("mm", "perimeter of the contact domain's cells inside the window"),
     "area_corrected": ("mm2", "real contact area less what the cells on its edge overstate"),
     "stiffness": ("N/mm", "normal stiffness dF/dw"),
+    "stiffness_scatter": ("N/mm", "scatter of the stiffness over the cells that come to yield"),
     "residual": ("1", "largest KKT residual, fraction of the closure"),
     "energy_error": ("1", "Frank-Wolfe bound on the energy above its minimum, fraction of it"),
     "iterations": ("1", "applications of the elastic operator"),
@@ -39,6 +40,9 @@ UNCERTAIN = ("closure", "area", "nodes", "perimeter", "area_corrected", "stiffne
 ERRORS = {
     f"{name}_error": (SCALARS[name][0], f"{SCALARS[name][1]}, {SOLVER_ERROR}") for name in UNCERTAIN
 }
+#: Ends the long name of the error of a stiffness, whose own scatter is added where nodes yield.
+WITH_SCATTER = f"{SOLVER_ERROR} and scatter"
+ERRORS["stiffness_error"] = ("N/mm", f"{SCALARS['stiffness'][1]}, {WITH_SCATTER}")
 
 #: All that is kept of a state but its contact domain.
 OF_STATES = [*SCALARS, *ERRORS, "solved"]
@@ -59,9 +63,9 @@ MAP_GAP = "map_gap"
 MAP_FIELDS = (MAP_PRESSURE, MAP_GAP)
 
 
-def error_attrs(attrs: Mapping[str, str]) -> dict[str, str]:
-    """Attributes of the solver error bound of what has these attributes."""
-    return cf_attrs(attrs["units"], f"{attrs['long_name']}, {SOLVER_ERROR}")
+def error_attrs(attrs: Mapping[str, str], kind: str = SOLVER_ERROR) -> dict[str, str]:
+    """Attributes of the solver error bound, or another, of what has these attributes."""
+    return cf_attrs(attrs["units"], f"{attrs['long_name']}, {kind}")
 
 
 def forces_of(loads: Sequence[Load], area: float) -> np.ndarray:
@@ -223,7 +227,7 @@ def map_fields(
 
 
 def map_states(parts: Sequence[xr.Dataset]) -> xr.Dataset:
-    """Pressures of the states that are looked at closely, under every load.
+    """Pressures and gaps of the states that are looked at closely, under every load.
 
     Parameters
     ----------
@@ -233,14 +237,18 @@ def map_states(parts: Sequence[xr.Dataset]) -> xr.Dataset:
     Returns
     -------
     xr.Dataset
-        ``pressure`` (normal_force, y, x), MPa, with the scalars ``direction``, ``offset`` and
-        ``resolution``, the multiple k of the scan's spacing.
+        ``pressure``, MPa, and ``gap``, mm, (normal_force, y, x), with the scalars ``direction``,
+        ``offset`` and ``resolution``, the multiple k of the scan's spacing.
     """
     part = next(part for part in parts if MAP_PRESSURE in part)
     pressure = part[MAP_PRESSURE]
     place = pressure.attrs
+    dims = ("normal_force", "y", "x")
     return xr.Dataset(
-        {"pressure": (("normal_force", "y", "x"), pressure.values, cf_attrs("MPa", "pressure p"))},
+        {
+            "pressure": (dims, pressure.values, cf_attrs("MPa", "pressure p")),
+            "gap": (dims, part[MAP_GAP].values, cf_attrs("mm", "gap g")),
+        },
         coords={
             "normal_force": part["normal_force"],
             "direction": place["direction"],

@@ -9,8 +9,8 @@ from numpy.typing import ArrayLike
 from roughcontact.contact.state import ContactState
 from roughcontact.elastic.halfspace import HalfSpace
 
-from .area import corrected_area
 from .closure import bulk_settlement, interface_closure
+from .state_scalars import state_area
 from .sweep import load_steps
 
 #: Quantities of a state whose numerical error is found: unit, long name.
@@ -138,6 +138,6 @@ def state_quantities(
     return {
         "closure": float(interface_closure(state.closure, settlement)),
         "separation": highest - reference - state.closure,
-        "area_corrected": float(corrected_area(state.in_contact, space.spacing)),
+        "area_corrected": state_area(state),
         "stiffness": 1 / compliance if compliance > 0 else np.nan,
     }

@@ -13,10 +13,10 @@ from ..core.limits import RESOLVED_NODES
 from ..core.ranges import within
 from ..core.settings import JointSettings
 from ..domain.renormalisation import FEWEST_NODES
-from ..mechanics.area import corrected_area
 from ..mechanics.closure import bulk_settlement, interface_closure
 from ..mechanics.joint import prefractal
 from ..mechanics.loading import JointLoading
+from ..mechanics.state_scalars import state_area
 from ..mechanics.states import SOLVER_ERROR
 from ..mechanics.sweep import load_steps
 from .division import PARTS, solvable_parts, split
@@ -189,7 +189,7 @@ class _LoadedSize:
                 self.nodes[j, k, step] = np.count_nonzero(state.in_contact)
                 self.ambiguous[j, k, step] = state.ambiguous
                 if k == 0 or len(self.nodes) == 1:
-                    self.corrected[j, k, step] = _corrected(state)
+                    self.corrected[j, k, step] = state_area(state)
                 if k == 0:
                     for name, value in self._of_state(state, j, step).items():
                         self.finest[name][j, step] = value
@@ -358,18 +358,12 @@ def whole_areas(loading: JointLoading[JointSettings], states: xr.Dataset) -> xr.
         h = prefractal(composite, factor)
         space = loading.half_space(h.shape, factor)
         steps = load_steps(h, space, loads.values, loading.solving, f"resolution {factor}")
-        found = np.array([(_corrected(state), state.in_contact.sum()) for state in steps])
+        found = np.array([(state_area(state), state.in_contact.sum()) for state in steps])
         areas.append(found[:, 0])
         nodes.append(found[:, 1])
     dims = ("resolution", "normal_force")
     coords = {"resolution": factors, "normal_force": loads}
     return xr.Dataset({"area_corrected": (dims, areas), "nodes": (dims, nodes)}, coords)
-
-
-def _corrected(state: ContactState) -> float:
-    """Corrected area, mm2: no less than what carries the force at the largest pressure."""
-    area = float(corrected_area(state.in_contact, state.space.spacing))
-    return max(area, float(state.force / state.hardness))
 
 
 def _ladder(pressures: np.ndarray, hardness: float) -> np.ndarray:

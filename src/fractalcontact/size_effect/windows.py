@@ -15,11 +15,10 @@ from ..core.datasets import labelled_dataset
 from ..core.labels import cf_attrs
 from ..core.mean_plane import without_mean_planes
 from ..core.settings import JointSettings
-from ..mechanics.area import corrected_area
 from ..mechanics.closure import bulk_settlement, interface_closure
 from ..mechanics.joint import sliding_axis
 from ..mechanics.loading import JointLoading
-from ..mechanics.state_scalars import state_errors
+from ..mechanics.state_scalars import state_area, state_errors
 from ..mechanics.states import SOLVER_ERROR
 from ..mechanics.sweep import load_steps
 from .division import PARTS, solvable_parts, split, spread_windows
@@ -203,8 +202,7 @@ def _solved(
             values[name][j] = getattr(state, name)
         values["nodes"][j] = np.count_nonzero(state.in_contact)
         values["mean_gap"][j] = 0.0 if flush else state.gap.mean()
-        corrected = float(corrected_area(state.in_contact, space.spacing))
-        values["corrected_area_share"][j] = max(corrected, state.force / state.hardness) / area
+        values["corrected_area_share"][j] = state_area(state) / area
         off = state_errors(state)
         values["corrected_area_share_error"][j] = off["area_corrected_error"] / area
         values["interface_closure_error"][j] = off["closure_error"]

@@ -21,6 +21,7 @@ def error_stages(
     closure: xr.Dataset,
     dilatancy: xr.Dataset,
     domains: xr.Dataset,
+    mapped: xr.Dataset,
     settings: StateSettings,
     solver: Solver,
 ) -> dict[str, xr.Dataset]:
@@ -30,6 +31,8 @@ def error_stages(
     ----------
     specimens, joints, closure, dilatancy, domains : xr.Dataset
         Of the stages of these names.
+    mapped : xr.Dataset
+        Fields of the states at the offset of the maps, from :func:`mechanics.states.map_states`.
     settings : StateSettings
     solver : Solver
 
@@ -45,7 +48,7 @@ def error_stages(
     budget = error_budget(loading, closure, domains, registration_spread=spread)
     plan = solve_plan(closure, dilatancy, settings, solver, budget)
     return {
-        "branches": joint_branches(loading, closure),
+        "branches": joint_branches(loading, closure, mapped),
         "error_budget": with_pressure(budget, joint.area),
         "choices": plan.merge(stated_errors(closure, domains, direction)).assign(asked(solver)),
     }

@@ -103,6 +103,7 @@ def state_stages(
         stages["closure"],
         stages["dilatancy"],
         stages["domains"],
+        mapped,
         settings=settings,
         solver=solver,
     )

@@ -3,6 +3,9 @@
 from collections.abc import Mapping
 from typing import Any
 
+#: Key that figures of one surface, elastic and capped, ask for: every study that has one.
+CAPPED_VARIANTS = "capped_variants"
+
 
 def is_capped_variant(study: Mapping[str, Any], name: str | None) -> bool:
     """Whether an embedded specimen with a hardness stands in the study once more without one."""

@@ -107,9 +107,25 @@ class BranchState:
         A node is pressed in under the pressure H alone. With the elastic energy this is the work
         of the force, the integral of F dw: over a cycle, the area between its branches.
         """
-        pressed = self.permanent_set > 0
-        spent = np.broadcast_to(self.hardness, pressed.shape)[pressed] * self.permanent_set[pressed]
+        sunk = self.permanent_set > 0
+        spent = np.broadcast_to(self.hardness, sunk.shape)[sunk] * self.permanent_set[sunk]
         return float(spent.sum()) * self.contact.space.cell_area
+
+
+def loaded_state(contact: ContactState) -> BranchState:
+    """State on the loading branch, with what it presses in.
+
+    Parameters
+    ----------
+    contact : ContactState
+        On heights that nothing has pressed in before, under its largest load so far.
+
+    Returns
+    -------
+    BranchState
+    """
+    held, yielded = np.zeros(contact.space.shape), np.zeros(contact.space.shape, bool)
+    return _branch_state(LOAD, contact, contact.closure, held, yielded, contact.hardness)
 
 
 def load_path(
@@ -120,6 +136,7 @@ def load_path(
     closures: Sequence[float] | None = None,
     hardness: float | ArrayLike | None,
     rtol: float = 1e-6,
+    loaded: ContactState | None = None,
 ) -> list[BranchState]:
     """States of contact under loads that follow one another: up, down and up again.
 
@@ -136,6 +153,8 @@ def load_path(
         H, MPa, as of `solve_contact`; None for an elastic surface.
     rtol : float
         As of `solve_contact`.
+    loaded : ContactState, optional
+        State of the same topography and hardness under its first load, from which the path goes on.
 
     Returns
     -------
@@ -156,18 +175,24 @@ def load_path(
     height = field(composite, "composite topography", space.shape)
     limit = np.inf if hardness is None else hardness
     path = _Path(height, space, limit, rtol)
+    if loaded is not None:
+        path.begin(loaded, loaded.closure if forces is None else loaded.force)
     return [path.next(float(load), by_force=forces is not None) for load in loads]
 
 
 class _Path:
-    """The heights as they are pressed in, and the states so far."""
+    """Heights as they have sunk until the last turn, and the last state."""
 
     def __init__(self, height, space, hardness, rtol):
-        self.height, self.space, self.hardness, self.rtol = height, space, hardness, rtol
+        self.first, self.space, self.hardness, self.rtol = height, space, hardness, rtol
         self.held, self.yielded = np.zeros(space.shape), np.zeros(space.shape, bool)
-        self.pressed, self.sunk = height, 0.0
+        self.height, self.lowered = height, 0.0
         self.branch, self.load, self.largest = LOAD, -np.inf, -np.inf
         self.state: BranchState | None = None
+
+    def begin(self, contact, load):
+        """Go on from a state of loading, whose force or closure is given."""
+        self.state, self.load, self.largest = loaded_state(contact), load, load
 
     def next(self, load, *, by_force):
         """The state of the next load."""
@@ -179,35 +204,39 @@ class _Path:
         elif load != self.load:
             self.branch = UNLOAD if load < self.load else RELOAD
         self.load, self.largest = load, max(load, self.largest)
-        self.state = self._pressed(self._contact(load, by_force))
+        contact = self._contact(load, by_force)
+        closure = contact.closure + self.lowered
+        known = closure, self.held, self.yielded, self.hardness
+        self.state = _branch_state(self.branch, contact, *known)
         return self.state
 
     def _turn(self):
         """Hold the set of the last state: its heights are those of what follows."""
         self.held, self.yielded = self.state.permanent_set, self.state.yielded
-        self.pressed = self.height - self.held
-        self.sunk = float(self.height.max() - self.pressed.max())
+        self.height = self.first - self.held
+        self.lowered = float(self.first.max() - self.height.max())
 
     def _contact(self, load, by_force):
         """The state of a load on the heights as they are, bounded on loading alone."""
         start = None if self.state is None else self.state.contact.without_before()
-        solving = {"start": start, "rtol": self.rtol}
-        if self.branch == LOAD:
-            solving["hardness"] = self.hardness
+        bound = self.hardness if self.branch == LOAD else None
+        case = (self.height, self.space)
         if by_force:
-            return solve_contact(self.pressed, self.space, force=load, **solving)
-        reach = load - self.sunk
-        contact = solve_contact(self.pressed, self.space, closure=max(reach, 0.0), **solving)
+            return solve_contact(*case, force=load, start=start, rtol=self.rtol, hardness=bound)
+        reach = load - self.lowered
+        at = max(reach, 0.0)
+        contact = solve_contact(*case, closure=at, start=start, rtol=self.rtol, hardness=bound)
         return replace(contact, gap=contact.gap - reach, closure=reach) if reach < 0 else contact
 
-    def _pressed(self, contact):
-        """A state with what it presses in."""
-        at_limit = contact.pressure >= contact.hardness
-        return BranchState(
-            branch=self.branch,
-            closure=contact.closure + self.sunk,
-            permanent_set=self.held + np.where(at_limit, np.maximum(-contact.gap, 0.0), 0.0),
-            yielded=self.yielded | at_limit,
-            contact=contact,
-            hardness=self.hardness,
-        )
+
+def _branch_state(branch, contact, closure, held, yielded, hardness):
+    """A state with what was held before it and what it presses in itself."""
+    at_limit = contact.pressure >= contact.hardness
+    return BranchState(
+        branch=branch,
+        closure=closure,
+        permanent_set=held + np.where(at_limit, np.maximum(-contact.gap, 0.0), 0.0),
+        yielded=yielded | at_limit,
+        contact=contact,
+        hardness=hardness,
+    )

@@ -72,7 +72,8 @@ def test_slope_is_never_negative_and_missing_with_its_reason(seed):
                 missing += 1
             else:
                 assert slope.value > 0
-                assert 0 < slope.error <= slope.value / np.sqrt(RESOLVED_NODES)
+                assert 0 <= slope.scatter <= slope.value / np.sqrt(RESOLVED_NODES)
+                assert slope.scatter < slope.error < slope.scatter + 1e-3 * slope.value
     assert missing
 
 

@@ -18,7 +18,7 @@ QUANTITIES = {
 SOURCES = {
     "solver": "solver",
     "numerical": "numerical (same surface, finer grid)",
-    "estimator": "choice of estimator",
+    "estimator": "choice of estimator, scatter of a secant",
     "counting": "counting of contacts",
     "window": "other windows of the scan",
     "registration": "registration of the faces",

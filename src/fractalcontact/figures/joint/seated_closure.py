@@ -11,6 +11,7 @@ from xarray import DataTree
 from ...core.estimate import Estimate
 from ...core.limits import RESOLVED_NODES
 from ...core.subject import Subject
+from ...core.window import window_sides
 from ..kit.caption import caption
 from ..kit.drawing import WIDTH, Drawing, colour_of
 from ..kit.empty import TOO_FULL, say_empty
@@ -19,6 +20,7 @@ from ..kit.panel import Panel, table_of
 from ..kit.titles import headline
 from ..kit.words import NOMINAL_PRESSURE, place, pressure_label, short
 from ..paper._closure_laws import hyperbola, offset_words
+from ._permanent_set import draw_permanent_set
 
 TITLE = "Closure from the seat, its laws, and tangent stiffness"
 SUBJECT = "specimen"
@@ -27,8 +29,11 @@ ORDER = 45
 
 RELOAD, REFERENCE = "reload", "reference_pressure"
 _AGAIN: dict[str, Any] = {
-    **{"labels": ["unloading and reloading"], "color": colour_of(4), "marker": "s"},
-    **{"ls": ":", "ms": 3},
+    "labels": ["unloading and reloading"],
+    "color": colour_of(4),
+    "marker": "s",
+    "ls": ":",
+    "ms": 3,
 }
 _KEPT = (
     *("nodes", "seating_pressure", "seated_k_ni", "seated_k_ni_determined", "seated_v_m"),
@@ -40,11 +45,14 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     """Closure under the loads from the seat on, and stiffness, at the reported offset."""
     subject = Subject.of(atlas, name)
     curve = subject.states("closure")
-    figure = Figure(figsize=(WIDTH, 4.2))
+    branches = subject["branches"]
+    crushed = bool(branches["yielded"].any())
+    figure = Figure(figsize=(WIDTH, 7.0 if crushed else 4.2))
+    top, bottom = figure.subfigures(2, 1, height_ratios=[3.4, 2.4]) if crushed else (figure, None)
     seat = float(curve["seating_pressure"])
     since = f"from {pressure_label(seat)} on" if np.isfinite(seat) else "from no seat"
     titles = (f"closure {since}, {offset_words(subject, subject.offset)}", "tangent stiffness")
-    a, b = (Panel(*one) for one in zip(figure.subplots(1, 2), "ab", titles, strict=True))
+    a, b = (Panel(*one) for one in zip(top.subplots(1, 2), "ab", titles, strict=True))
     style: dict[str, Any] = {
         "filled": "resolved",
         "ls": "none",
@@ -52,7 +60,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
         "marker": "o",
     }
     a.curve(curve, "seated_closure", "nominal_pressure", keep=_KEPT, label="states", **style)
-    again = subject["branches"].sel(branch=[RELOAD])
+    again = branches.sel(branch=[RELOAD])
     a.curves(again, "seated_closure", "nominal_pressure", hue="branch", **_AGAIN)
     _draw_laws(a.axes, curve)
     _draw_stiffness(b, curve, style)
@@ -63,9 +71,12 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     a.axes.set_ylabel(f"{NOMINAL_PRESSURE} (MPa)")
     why = str(curve["seated_k_ni_reason"].item())
     remarks: list[Any] = [heading(f"$k_{{ni}}$ undetermined: {why}")] if why else []
-    legends_below(figure, [*entries(a.axes), *remarks], entries(b.axes))
+    legends_below(top, [*entries(a.axes), *remarks], entries(b.axes))
     headline(figure, subject.label, place(subject.direction))
-    return Drawing(figure, table_of(a, b), caption(__name__, **_words(curve, seat, again)))
+    sides = window_sides(subject["specimens"])
+    below = draw_permanent_set(bottom, branches, sides) if crushed else []
+    table = table_of(a, b, *below)
+    return Drawing(figure, table, caption(__name__, **_words(curve, seat, again)))
 
 
 def _draw_laws(axes: Axes, curve: xr.Dataset) -> None:
@@ -117,6 +128,7 @@ def _words(curve: xr.Dataset, seat: float, again: xr.Dataset) -> dict[str, Any]:
     middle = on_reload["reference_pressure"].values[len(on_reload) // 2]
     return {
         "residual": float(again["residual_closure"]),
+        "yielded": float(again["yielded_fraction"][0, -1]),
         "top": float(again["nominal_pressure"][-1]),
         "reload": float(on_reload.sel(reference_pressure=middle)),
         "middle": float(middle),

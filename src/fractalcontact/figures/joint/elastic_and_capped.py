@@ -1,0 +1,118 @@
+"""One surface elastic and crushing at its wall strength: change with the grid and the load."""
+
+import json
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from xarray import DataTree
+
+from ...core.estimate import Estimate
+from ...core.limits import RESOLVED_NODES
+from ...core.subject import Subject
+from ..kit.caption import caption
+from ..kit.domains import prefractals
+from ..kit.drawing import MARKERS, WIDTH, Drawing, colour_of
+from ..kit.empty import say_empty
+from ..kit.legends import entries, heading, legends_below
+from ..kit.panel import Panel, table_of
+from ..kit.titles import headline
+from ..kit.words import NOMINAL_PRESSURE, place
+
+TITLE = "Fig. 12 and grid convergence: elastic contact beside contact that crushes"
+SUBJECT = "study"
+NEEDS = ("specimens", "closure", "domains")
+KEY = "capped_variants"
+ORDER = 8
+
+_LETTERS = "abcdefghi"
+_SPACING = "closure from the seat; $s$: spacing of the scan"
+#: Pairs drawn: more have no room on a page.
+_MAX_PAIRS = 3
+
+
+def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
+    """Closure from the seat at every resolution, elastic and capped, and Delta_sigma of both."""
+    pairs = _pairs([Subject.of(atlas, name) for name in names])[:_MAX_PAIRS]
+    figure = Figure(figsize=(WIDTH, 2.6 * max(len(pairs), 1) + 0.8))
+    if not pairs:
+        say_empty(figure.subplots(), "no surface of the study is both elastic and capped")
+        return Drawing(figure, table_of(), caption(__name__, pairs=[]))
+    panels: list[Panel] = []
+    for part, pair in zip(
+        figure.subfigures(len(pairs), 1, squeeze=False)[:, 0], pairs, strict=True
+    ):
+        row, letters = part.subplots(1, 3, sharex=True), _LETTERS[len(panels) :]
+        row[1].sharey(row[0])
+        for axes, which, one in zip(row, letters, pair, strict=False):
+            panels.append(Panel(axes, which, _model(one)))
+            _draw_closures(panels[-1], one)
+        panels.append(Panel(row[2], letters[2], r"$\Delta_\sigma$ by box counting"))
+        _draw_dimensions(panels[-1], pair)
+        headline(part, pair[0].label, place(pair[0].direction, pair[0].offset))
+    of_grid = [heading(_SPACING), *entries(panels[0].axes)]
+    few = f"hollow: fewer than {RESOLVED_NODES} nodes touch"
+    legends_below(
+        figure, of_grid, [heading("dimension, 95 %"), *entries(panels[2].axes), heading(few)]
+    )
+    return Drawing(figure, table_of(*panels), caption(__name__, pairs=[_words(*p) for p in pairs]))
+
+
+def _pairs(subjects: Sequence[Subject]) -> list[tuple[Subject, Subject]]:
+    """Elastic and capped specimens of one scan, in the order of the study."""
+    elastic = {_scan(one): one for one in subjects if not one.settings["capped_variant"]}
+    capped = [one for one in subjects if one.settings["capped_variant"]]
+    return [(elastic[_scan(one)], one) for one in capped if _scan(one) in elastic]
+
+
+def _scan(subject: Subject) -> str:
+    """Checksum of the scan of a specimen."""
+    return str(json.loads(subject["specimens"].attrs["lower_scan"])["sha256"])
+
+
+def _model(subject: Subject) -> str:
+    """A specimen by its largest pressure."""
+    hardness = subject.settings["material"]["hardness"]
+    return "elastic" if not np.isfinite(hardness) else f"capped at {hardness:g} MPa"
+
+
+def _draw_closures(panel: Panel, subject: Subject) -> None:
+    """Closure from the seat over the load at each resolution."""
+    curves = prefractals(subject, "closure")
+    labels = ["$s$" if k == 1 else f"{k} $s$" for k in curves["resolution"].values]
+    style: dict[str, Any] = {"ls": "-", "lw": 0.9, "ms": 3.5, "labels": labels}
+    style |= {"hue": "resolution", "filled": "resolved"}
+    panel.curves(curves, "nominal_pressure", "closure_from_stated_seat", **style)
+    _pressure_axis(panel.axes)
+    panel.axes.set_ylabel("closure from the seat (mm)")
+
+
+def _draw_dimensions(panel: Panel, pair: tuple[Subject, Subject]) -> None:
+    """Delta_sigma of both over the load."""
+    for n, subject in enumerate(pair):
+        style: dict[str, Any] = {"color": colour_of(5 * n), "marker": MARKERS[n], "ms": 3.5}
+        label = "capped at the wall strength" if n else "elastic"
+        states = subject.states("domains")
+        panel.curve(states, "nominal_pressure", "delta_sigma", label=label, **style)
+    _pressure_axis(panel.axes)
+    panel.axes.set(ylim=(-0.05, 2.05), ylabel=r"dimension $\Delta_\sigma$ (1)")
+
+
+def _pressure_axis(axes: Axes) -> None:
+    axes.set_xscale("log")
+    axes.set_xlabel(f"{NOMINAL_PRESSURE} (MPa)")
+
+
+def _words(elastic: Subject, capped: Subject) -> dict[str, Any]:
+    """Values of the caption of a pair."""
+    values = [
+        Estimate.read(one.states("domains"), "delta_sigma").value for one in (elastic, capped)
+    ]
+    changes = [float(one.states("closure")["seated_k_ni_change"]) for one in (elastic, capped)]
+    return {
+        "label": elastic.label,
+        "spans": [(float(np.nanmin(one)), float(np.nanmax(one))) for one in values],
+        "changes": changes,
+    }
