@@ -4,6 +4,10 @@ from collections.abc import Mapping
 from typing import Any
 
 
+#: Keys of a recipe that do not change its surface.
+BESIDE_SURFACE = ("label", "chosen_for", "realisations")
+
+
 def is_capped_variant(study: Mapping[str, Any], name: str | None) -> bool:
     """Whether an embedded specimen with a hardness stands in the study once more without one."""
     embedded = study.get("embedded", {})
@@ -17,8 +21,8 @@ def is_capped_variant(study: Mapping[str, Any], name: str | None) -> bool:
 
 
 def _surface_of(recipe):
-    """What makes the surface of an embedded specimen: its recipe but for words."""
-    return {key: value for key, value in recipe.items() if key not in ("label", "chosen_for")}
+    """Keys of a recipe that make the surface."""
+    return {key: value for key, value in recipe.items() if key not in BESIDE_SURFACE}
 
 
 def _has_hardness(study, name):
