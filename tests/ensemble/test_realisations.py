@@ -113,9 +113,11 @@ def test_every_number_has_its_mean_interval_and_spread(made):
         mean = Estimate.read(found, f"{name}_mean")
         known = found[f"{name}_n"].values == 4
         half = found[f"{name}_spread"].values * 3.182446 / 2  # t of three degrees of freedom
-        np.testing.assert_allclose((mean.high - mean.low)[known] / 2, half[known], rtol=1e-5)
+        np.testing.assert_allclose((mean.high - mean.low)[known] / 2, half[known], rtol=1e-5, atol=1e-12)
         np.testing.assert_allclose(
-            np.asarray(mean.value)[known], found[name].mean("realisation").values[known]
+            np.asarray(mean.value)[known],
+            found[name].mean("realisation").values[known],
+            atol=1e-12,
         )
 
 
