@@ -12,11 +12,13 @@ import xarray as xr
 
 from ..core.datasets import labelled, labelled_dataset
 from ..core.labels import cf_attrs
-from ..core.limits import RESOLVED_NODES
+from ..core.limits import CORRECTED_NODES, RESOLVED_NODES
+from ..core.ranges import within
 from ..core.settings import EnsembleSettings, Solver
 from ..core.window import cell_side, window_sides
 from ..domain.analysis import analyse_domains, scaling_over_resolutions
 from ..domain.random_nodes import expected_dimension
+from ..domain.renormalisation import area_bend
 from ..mechanics.closure import interface_curves
 from ..mechanics.loading import JointLoading
 from ..mechanics.separation import ROUNDING
@@ -45,10 +47,20 @@ STATES = {
     "delta_sigma": ("1", "Delta_sigma from box counting"),
     "delta_sigma_random": ("1", "Delta_sigma expected of as many random nodes over the same boxes"),
     "delta_sigma_area": ("1", "Delta_sigma from the contact area over resolutions"),
+    "area_bend": (
+        "1",
+        "Delta_sigma from the area of the two finest resolutions less that of the two coarsest",
+    ),
     "difference": ("1", "Delta_sigma from area less that from box counting"),
 }
 #: The closure that compares between realisations: from one load, at which all are resolved.
 _SEATED = "closure_from_common_seat"
+
+#: Exponent of the corrected area less that of eq. 6: the Delta_sigma that eq. 6 has it from, words.
+_EQ6 = {
+    "eq6_area": ("delta_sigma_area", "A_r(s)"),
+    "eq6_box": ("delta_sigma", "boxes"),
+}
 
 #: Exponents of every realisation against the size of sub-windows under the reference load: quantity
 #: of the sub-windows, fewest nodes of each, what it is.
@@ -107,8 +119,9 @@ def ensemble(
         result[name].attrs = rows[0][name].attrs
     _add_seated_closure(result, settings.seating_pressure * whole.area)
     result["seed"] = ("realisation", seeds, cf_attrs("1", "seed of the synthesis"))
+    _add_eq6(result)
     add_trends(result)
-    add_statistics(result, [*STATES, _SEATED, *EXPONENTS])
+    add_statistics(result, [*STATES, _SEATED, *EXPONENTS, *_EQ6])
     return with_pressure(result, whole.area).assign_attrs(
         direction=loading.direction,
         offset=float(loading.offsets[0]),
@@ -140,6 +153,14 @@ def _add_seated_closure(result: xr.Dataset, seat: float) -> None:
     result[_SEATED] = seated.where(force >= common).transpose(*closing.dims).assign_attrs(attrs)
 
 
+def _add_eq6(result: xr.Dataset) -> None:
+    """Exponent of the corrected area less Delta_sigma - 2 of the same window, into ``result``."""
+    for name, (dimension, by) in _EQ6.items():
+        words = f"exponent of corrected A_r/A_0 against b less Delta_sigma - 2 of eq. 6 by {by}"
+        residual = result["area_exponent"] - (result[dimension] - 2)
+        result[name] = residual.assign_attrs(cf_attrs("1", words))
+
+
 def _realised(specimens: xr.Dataset, recipe: Mapping, settings: EnsembleSettings) -> xr.Dataset:
     """A specimen made of a recipe as the named one is of its scan."""
     spacing = {key: specimens.attrs[key] for key in ("spacing_y", "spacing_x")}
@@ -169,14 +190,26 @@ def _realisation(loading: JointLoading[EnsembleSettings]) -> xr.Dataset:
         "delta_sigma_random": [
             expected_dimension(domain, spacing, fit_range=settings.box_range) for domain in touching
         ],
+        "area_bend": _bend(curves, settings, spacing),
     }
     for name in STATES.keys() - values.keys():
         at = {"direction": loading.direction, "offset": loading.offsets[0], "resolution": finest}
         stage = next(one for one in (curves, domains, scaling) if name in one)
-        values[name] = stage[name].sel({dim: at[dim] for dim in at if dim in stage[name].dims}).values
+        values[name] = (
+            stage[name].sel({dim: at[dim] for dim in at if dim in stage[name].dims}).values
+        )
     table = {name: ("normal_force", *words) for name, words in STATES.items()}
     result = labelled_dataset(table, values, coords={"normal_force": curves["normal_force"]})
     return result.assign(_size_exponents(loading))
+
+
+def _bend(curves: xr.Dataset, settings: EnsembleSettings, spacing: float) -> np.ndarray:
+    """``area_bend`` over the loads, of the areas that Delta_sigma is fitted to."""
+    at = curves.isel(direction=0, offset=0)
+    if settings.scaling_range is not None:
+        at = at.where(within(at["resolution"] * spacing, *settings.scaling_range))
+    s = at["resolution"] * spacing
+    return area_bend(s, at["area_corrected"], at["nodes"], CORRECTED_NODES).values
 
 
 def _size_exponents(loading: JointLoading[EnsembleSettings]) -> dict:
