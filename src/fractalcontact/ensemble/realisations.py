@@ -95,9 +95,10 @@ def ensemble(
     -------
     xr.Dataset
         :data:`STATES` and ``closure_from_common_seat`` over (realisation, normal_force): under the
-        first load at the seat, the loads that figures draw and the heaviest. Over (realisation,): :data:`EXPONENTS` under the
-        reference load and the trends of :func:`ensemble.statistics.add_trends`. Of each the mean
-        over the realisations with its interval and the spread, as
+        first load at the seat, the loads that figures draw and the heaviest. Over (realisation,):
+        :data:`EXPONENTS` under the reference load and the trends of
+        :func:`ensemble.statistics.add_trends`; over both, by how much eq. 6 is missed, ``eq6_area``
+        and ``eq6_box``. Of each the mean over the realisations with its interval and the spread, as
         :func:`ensemble.statistics.add_statistics` names them.
 
     Raises

@@ -11,6 +11,7 @@ import xarray as xr
 
 from ..core.claims import all_claims
 from ..core.estimate import Estimate
+from ..core.labels import loads_of
 from ..core.verdicts import FAILS, HOLDS, PARTLY, UNDETERMINED
 from .findings import Finding, Joint, beyond_margin, by_sign, of_the_area
 from .findings import share as share_of
@@ -129,9 +130,10 @@ def estimates_agree(joint: Joint) -> Finding:
     decided = [verdict for verdict in each if verdict != UNDETERMINED]
     value = found.value[known]
     ends = " to ".join(dict.fromkeys(f"{end:+.2f}" for end in (value[0], value[-1])))
+    apart = loads_of(each.count(FAILS), len(each))
     return Finding(
         share_of(decided.count(HOLDS), len(decided)) if decided else UNDETERMINED,
-        f"A_r(s) less boxes {ends}, beyond its interval at {each.count(FAILS)} of {len(each)} loads",
+        f"A_r(s) less boxes {ends}, not zero at {apart}",
         f"{_pressure(joint, known)}; {_margin_words(name)}",
     )
 

@@ -133,8 +133,9 @@ def span_finding(ends: Estimate, random: float, pressures: np.ndarray, note: str
     """
     lower, upper = ends[0], ends[1]
     reached = int(lower.high <= NEAR_POINTS) + int(upper.low >= NEAR_FULL)
-    missed = upper.high < NEAR_FULL or lower.low > NEAR_POINTS >= random
-    verdict = FAILS if missed else (UNDETERMINED, PARTLY, HOLDS)[reached]
+    begins_late = lower.low > NEAR_POINTS >= random
+    verdict = (FAILS if begins_late else UNDETERMINED, PARTLY, HOLDS)[reached]
+    verdict = FAILS if upper.high < NEAR_FULL else verdict
     words = (
         f"by boxes {lower:.2f} at {pressures[0]:.3g} MPa to {upper:.2f} at {pressures[1]:.3g} MPa"
     )

@@ -3,7 +3,6 @@
 from collections.abc import Mapping
 from typing import Any
 
-
 #: Keys of a recipe that do not change its surface.
 BESIDE_SURFACE = ("label", "chosen_for", "realisations")
 
