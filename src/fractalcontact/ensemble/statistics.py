@@ -7,6 +7,7 @@ import xarray as xr
 
 from ..core.intervals import mean_interval
 from ..core.labels import cf_attrs
+from ..domain.random_nodes import band_of
 
 #: Trends with the load: quantity, and what is taken from it or None; what the trend is of.
 TRENDS = {
@@ -58,8 +59,9 @@ def add_statistics(result: xr.Dataset, names: Sequence[str]) -> None:
     ----------
     result : xr.Dataset
         Of each name it gets ``NAME_mean`` with ``_low`` and ``_high``, by Student's t of the mean;
-        ``NAME_spread``, the standard deviation over the realisations; and ``NAME_n``, those that
-        have a value.
+        ``NAME_spread``, the standard deviation over the realisations; ``NAME_band_low`` and
+        ``NAME_band_high``, between which one more realisation lies with 95 % probability; and
+        ``NAME_n``, those that have a value.
     names : sequence of str
         Variables over realisation.
     """
@@ -71,6 +73,15 @@ def add_statistics(result: xr.Dataset, names: Sequence[str]) -> None:
         result.update(
             mean.variables(f"{name}_mean", dims, units, f"{words}, mean over realisations")
         )
+        band = band_of(values.values)
+        for end, words_of_end, of_band in (
+            ("low", "lower", band.low),
+            ("high", "upper", band.high),
+        ):
+            attrs = cf_attrs(
+                units, f"{words}, {words_of_end} end of the 95 % band of one more realisation"
+            )
+            result[f"{name}_band_{end}"] = (dims, of_band, attrs)
         attrs = cf_attrs(units, f"{words}, standard deviation over realisations")
         result[f"{name}_spread"] = values.std("realisation", ddof=1).assign_attrs(attrs)
         attrs = cf_attrs("1", f"{words}, realisations that have a value")
