@@ -307,7 +307,8 @@ def area_bend(
     DataArray
         On the other dimensions of `area`; NaN where fewer than three resolutions count.
     """
-    local = 2 - np.log(area.where(nodes >= fewest)).diff(RESOLUTION) / np.log(s).diff(RESOLUTION)
+    log_area, log_s = (xr.apply_ufunc(np.log, one) for one in (area.where(nodes >= fewest), s))
+    local = 2 - log_area.diff(RESOLUTION) / log_s.diff(RESOLUTION)
     known = local.notnull()
     finest = local.where(known & (known.cumsum(RESOLUTION) == 1)).sum(RESOLUTION)
     counted = known.sum(RESOLUTION)

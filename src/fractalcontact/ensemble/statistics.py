@@ -74,13 +74,8 @@ def add_statistics(result: xr.Dataset, names: Sequence[str]) -> None:
             mean.variables(f"{name}_mean", dims, units, f"{words}, mean over realisations")
         )
         band = band_of(values.values)
-        for end, words_of_end, of_band in (
-            ("low", "lower", band.low),
-            ("high", "upper", band.high),
-        ):
-            attrs = cf_attrs(
-                units, f"{words}, {words_of_end} end of the 95 % band of one more realisation"
-            )
+        for end, of_end, of_band in (("low", "lower", band.low), ("high", "upper", band.high)):
+            attrs = cf_attrs(units, f"{words}, {of_end} end of the 95 % band of one more")
             result[f"{name}_band_{end}"] = (dims, of_band, attrs)
         attrs = cf_attrs(units, f"{words}, standard deviation over realisations")
         result[f"{name}_spread"] = values.std("realisation", ddof=1).assign_attrs(attrs)

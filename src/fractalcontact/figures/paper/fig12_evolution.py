@@ -24,8 +24,16 @@ from ..kit.words import area_label, force_label, place, wrapped
 
 TITLE = "Fig. 12: contact domains and their dimension under growing load"
 SUBJECT = "specimen"
-NEEDS = ("specimens", "contact", "closure", "domains", "scaling", "contact_maps", "statements")
-NEEDS += ("ensemble",)
+NEEDS = (
+    "specimens",
+    "contact",
+    "closure",
+    "domains",
+    "scaling",
+    "ensemble",
+    "contact_maps",
+    "statements",
+)
 ORDER = 190
 
 #: Contact domains drawn.
