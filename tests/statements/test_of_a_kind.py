@@ -100,6 +100,14 @@ def test_what_does_not_hold_of_a_kind_is_said(name, changes, expected):
     assert verdict(name, **changes) == expected
 
 
+def test_a_wide_interval_under_the_heaviest_load_leaves_the_upper_end_open():
+    wide = made(delta_sigma=[0.6, 0.7, 0.9, 0.8])
+    wide["delta_sigma_mean_high"][-1] = 1.9
+    joint = Joint({**stages(), "ensemble": wide}, SETTINGS)
+    wide["delta_sigma_random_mean"][:] = 0.6
+    assert of_a_kind.dimension_spans_all(joint).verdict == UNDETERMINED
+
+
 def test_what_the_interval_leaves_open_is_undetermined_with_what_would_decide_it():
     wide = made()
     for end, value in (("", 0.1), ("_low", -0.1), ("_high", 0.3)):

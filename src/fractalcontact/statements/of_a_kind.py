@@ -25,8 +25,11 @@ def _of_realisations(rule):
     def judged(joint: Joint) -> Finding:
         found = rule(joint)
         realisations = f"{joint['ensemble'].sizes['realisation']} realisations"
-        numbers = f"{found.numbers}, mean of {realisations}" if found.numbers else ""
-        return found._replace(numbers=numbers, judged_on=realisations)
+        # A finding without a note has no number, but the reason why there is none.
+        of = "mean of" if found.note else "in"
+        return found._replace(
+            numbers=f"{found.numbers}, {of} {realisations}", judged_on=realisations
+        )
 
     return judged
 
@@ -56,7 +59,7 @@ def _of_size(joint: Joint, name: str, exponent: str, law: str, *, rising: bool) 
     """Verdict on an exponent over the size of sub-windows."""
     found = _mean(joint["ensemble"], exponent)
     if not found.known:
-        return Finding(UNDETERMINED, "", "too few nodes in contact in sub-windows of two sizes")
+        return Finding(UNDETERMINED, "too few nodes in contact in sub-windows of two sizes")
     return Finding(
         beyond_margin(found, name, rising=rising),
         f"x = {found:z.2f}",
@@ -98,7 +101,7 @@ def size_effect_follows(joint: Joint) -> Finding:
     found = {words: one for words, one in found.items() if np.isfinite(one.width)}
     exponent = _mean(joint["ensemble"], "area_exponent")
     if not found:
-        return Finding(UNDETERMINED, "", "no exponent beside a Delta_sigma of its own window")
+        return Finding(UNDETERMINED, "no exponent beside a Delta_sigma of its own window")
     verdicts = [_equal(one, all_claims()[name].margin) for one in found.values()]
     alike = verdicts.count(HOLDS)
     verdict = UNDETERMINED if UNDETERMINED in verdicts else share_of(alike, len(verdicts))
@@ -125,7 +128,7 @@ def estimates_agree(joint: Joint) -> Finding:
     found = _mean(joint["ensemble"], "difference")
     known = np.isfinite(found.width)
     if not known.any():
-        return Finding(UNDETERMINED, "", "no load with both estimates of two realisations")
+        return Finding(UNDETERMINED, "no load with both estimates of two realisations")
     each = [_equal(found[i], all_claims()[name].margin) for i in np.flatnonzero(known)]
     decided = [verdict for verdict in each if verdict != UNDETERMINED]
     value = found.value[known]
@@ -149,7 +152,7 @@ def area_is_lacunar(joint: Joint) -> Finding:
     name, state = "area_is_lacunar", _reference(joint)
     delta, bend = _mean(state, "delta_sigma_area"), _mean(state, "area_bend")
     if not np.isfinite(delta.width):
-        return Finding(UNDETERMINED, "", "too few resolutions with thirty nodes in contact")
+        return Finding(UNDETERMINED, "too few resolutions with thirty nodes in contact")
     falls = by_sign(delta.mapped(lambda value: 2 - value, falling=True), rising=True)
     one_power = _equal(bend, all_claims()[name].margin)
     verdict = falls if one_power == HOLDS or falls != HOLDS else PARTLY
@@ -182,8 +185,9 @@ def dimension_rises_by_boxes(joint: Joint) -> Finding:
     only_more_nodes = found.verdict == HOLDS and not departure.low > 0
     return found._replace(
         verdict=PARTLY if only_more_nodes else found.verdict,
-        numbers=found.numbers
-        and f"{found.numbers}, less that of as many random nodes {departure:+z.2f}",
+        numbers=f"{found.numbers}, less that of as many random nodes {departure:+z.2f}"
+        if found.note
+        else found.numbers,
     )
 
 
@@ -191,7 +195,7 @@ def _trend(joint: Joint, name: str, trend: str) -> Finding:
     """Verdict on a slope over the decades of F."""
     slope = _mean(joint["ensemble"], trend)
     if not slope.known:
-        return Finding(UNDETERMINED, "", "fewer than two loads with a dimension of each")
+        return Finding(UNDETERMINED, "fewer than two loads with a dimension of each")
     used = joint["ensemble"][f"{trend}_used"].values.astype(bool)
     return Finding(
         beyond_margin(slope, name, rising=True),
@@ -208,12 +212,10 @@ def dimension_spans_all(joint: Joint) -> Finding:
     every = stage["delta_sigma_n"].values == stage.sizes["realisation"]
     known = np.flatnonzero(every)
     if not known.size:
-        return Finding(UNDETERMINED, "", "no load with a dimension by boxes of each")
-    least, most = (known[at(delta.value[known])] for at in (np.argmin, np.argmax))
-    ends = delta[[least, most]]
+        return Finding(UNDETERMINED, "no load with a dimension by boxes of each")
     return span_finding(
-        ends,
-        float(stage["delta_sigma_random_mean"][least]),
-        stage["nominal_pressure"].values[[least, most]],
+        delta[known],
+        stage["delta_sigma_random_mean"].values[known],
+        stage["nominal_pressure"].values[known],
         f"loads of the ensemble at which all have a dimension{by_design(joint)}",
     )

@@ -105,41 +105,46 @@ def dimension_spans_all(joint: Joint) -> Finding:
     known = np.flatnonzero(delta.known)
     if not known.size:
         return Finding(UNDETERMINED, "no load with a dimension by boxes")
-    value = delta.value
-    least, most = known[np.argmin(value[known])], known[np.argmax(value[known])]
-    random, pressures = states["delta_sigma_random"].values, joint.forces / joint.area
+    touching = nodes[known[[np.argmin(delta.value[known]), np.argmax(delta.value[known])]]]
     return span_finding(
-        delta[[least, most]],
-        random[least],
-        pressures[[least, most]],
-        f"{int(nodes[least])} to {int(nodes[most])} nodes: near the lower end one more changes the "
+        delta[known],
+        states["delta_sigma_random"].values[known],
+        joint.forces[known] / joint.area,
+        f"{int(touching[0])} to {int(touching[1])} nodes: near the lower end one more changes the "
         f"answer{by_design(joint)}",
     )
 
 
-def span_finding(ends: Estimate, random: float, pressures: np.ndarray, note: str) -> Finding:
-    """Verdict on a Delta_sigma that is to go from near 0 to near 2.
+def span_finding(delta: Estimate, random: np.ndarray, pressures: np.ndarray, note: str) -> Finding:
+    """Verdict on a Delta_sigma that is to go from near 0 to near 2 as the load grows.
+
+    It does not where it stays below the upper end, by the intervals of its largest value and of
+    that under the heaviest load. Where random nodes are not near 0 at the lower end the loads are
+    not light enough, and that end is not missed.
 
     Parameters
     ----------
-    ends : Estimate
-        The smallest and the largest.
-    random : float
-        Delta_sigma of random nodes at the smallest: where it is not near 0 the loads are not light
-        enough, and the lower end is not missed.
-    pressures : (2,) ndarray
-        Where they are, MPa.
+    delta : Estimate
+        (n,), each with a value.
+    random : (n,) ndarray
+        That of random nodes.
+    pressures : (n,) ndarray
+        MPa, ascending.
     note : str
+        Begins with a small letter.
     """
-    lower, upper = ends[0], ends[1]
+    least, most = int(np.argmin(delta.value)), int(np.argmax(delta.value))
+    lower, upper = delta[least], delta[most]
     reached = int(lower.high <= NEAR_POINTS) + int(upper.low >= NEAR_FULL)
-    begins_late = lower.low > NEAR_POINTS >= random
+    begins_late = lower.low > NEAR_POINTS >= random[least]
     verdict = (FAILS if begins_late else UNDETERMINED, PARTLY, HOLDS)[reached]
-    verdict = FAILS if upper.high < NEAR_FULL else verdict
-    words = (
-        f"by boxes {lower:.2f} at {pressures[0]:.3g} MPa to {upper:.2f} at {pressures[1]:.3g} MPa"
+    if max(upper.high, delta.high[-1]) < NEAR_FULL:
+        verdict = FAILS
+    return Finding(
+        verdict,
+        f"by boxes {lower:.2f} to {upper:.2f} up to {pressures[-1]:.3g} MPa",
+        note,
     )
-    return Finding(verdict, words, note)
 
 
 def by_design(joint: Joint) -> str:

@@ -28,7 +28,7 @@ def draw_band(panel: Panel, subject: Subject, name: str, colour: str, words: str
         Of the quantity in the stage ``ensemble``.
     colour : str
     words : str
-        What the quantity is, for the legend.
+        What the quantity is from, for the legend.
     """
     if not (realisations := realisations_of(subject)):
         return
@@ -37,7 +37,7 @@ def draw_band(panel: Panel, subject: Subject, name: str, colour: str, words: str
     if not shown.sizes["normal_force"]:
         return
     force, low, high = (shown[of] for of in ("normal_force", *(f"{name}_band_{e}" for e in _ENDS)))
-    label = f"{words} of {realisations} realisations (95 % band)"
+    label = f"band of {realisations} realisations, {words}"
     panel.axes.fill_between(force, low, high, color=colour, alpha=0.2, lw=0, label=label)
     panel.axes.plot(force, shown[f"{name}_mean"], color=colour, lw=0.8, ls=":")
     panel.keep(shown, f"{name}_mean", *(f"{name}_band_{end}" for end in _ENDS), f"{name}_n")

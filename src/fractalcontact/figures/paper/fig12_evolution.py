@@ -125,12 +125,12 @@ def _draw_dimensions(panel, subject):
     corrected = states["area_corrected"].where(enough)
     panel.keep(states.assign(area_corrected=corrected), "area", "area_corrected", *kept)
     for one in estimates:
-        words = rf"$\Delta_\sigma$ by {one.symbol}"
-        draw_band(panel, subject, _OF_ENSEMBLE[one.key], one.style["color"], words)
+        draw_band(panel, subject, _OF_ENSEMBLE[one.key], one.style["color"], one.symbol)
         places, bars = forces * _APART[one.key], {"capsize": 2, "elinewidth": 0.8, "alpha": 0.35}
         axes.errorbar(places, one.value, yerr=reach(*one.ends), **one.style, **bars)
         sure, style = one.determined, one.style | {"linestyle": "none"}
-        axes.plot(places[sure], one.value[sure], **style, label=words)
+        label = rf"$\Delta_\sigma$ by {one.symbol}"
+        axes.plot(places[sure], one.value[sure], **style, label=label)
     axes.errorbar([], [], [], ls="none", color="0.4", capsize=2, label="bars: 95 % interval")
     faint = "faint: undetermined, not in the rise"
     axes.plot([], [], "s", color="0.4", mfc="white", alpha=0.35, label=faint)
