@@ -6,11 +6,13 @@ import xarray as xr
 from judged_joints import SETTINGS, stages
 
 from fractalcontact.core.claims import all_claims
+from fractalcontact.core.estimate import Estimate
 from fractalcontact.core.verdicts import FAILS, HOLDS, PARTLY, UNDETERMINED
 from fractalcontact.ensemble.statistics import add_statistics, add_trends
 from fractalcontact.statements import of_a_kind
 from fractalcontact.statements.findings import Joint
 from fractalcontact.statements.judge import judge, rule_for
+from fractalcontact.statements.study import judge_study
 
 FORCES = np.array([10.0, 100.0, 1000.0, 10000.0])
 REALISATIONS = 12
@@ -134,3 +136,24 @@ def test_every_statement_says_what_would_decide_it():
         "composite_dimension_rises",
         "compliance_goes_with_dimension",
     ]
+
+
+@pytest.mark.parametrize(
+    ("values", "expected"),
+    [((1.7, 1.7, 1.5), HOLDS), ((1.4, 1.6, 1.6), FAILS), ((1.6, 1.6, 1.6), UNDETERMINED)],
+)
+def test_kinds_are_compared_by_the_errors_of_their_means(values, expected, monkeypatch):
+    monkeypatch.setattr("fractalcontact.statements.study.best_dimension", Estimate)
+    flat = {**SETTINGS, "opposite": "flat"}
+    surfaces = {
+        str(dimension): {
+            **stages(),
+            "surface_dimension": dimension,
+            "ensemble": made(seed=seed, delta_sigma_area=np.full(4, value)),
+        }
+        for seed, (dimension, value) in enumerate(zip((2.1, 2.3, 2.5), values, strict=True))
+    }
+    judged = judge_study(surfaces, dict.fromkeys(surfaces, flat))
+    row = judged.sel(statement="size_exponent_grows_with_dimension")
+    assert row["verdict"] == expected
+    assert row["judged_on"] == "realisations of each"

@@ -97,7 +97,10 @@ def judge(stages: Mapping[str, xr.Dataset], settings: Mapping) -> xr.Dataset:
 
 
 def table_of(
-    rules: Mapping[str, Callable[..., Finding]], subject: Any, circular: Mapping[str, str]
+    rules: Mapping[str, Callable[..., Finding]],
+    subject: Any,
+    circular: Mapping[str, str],
+    asked: str = "this specimen",
 ) -> xr.Dataset:
     """Statements judged, as a dataset.
 
@@ -109,6 +112,8 @@ def table_of(
         What is judged.
     circular : mapping of str to str
         How the specimen was chosen for a statement, by the statement's name.
+    asked : str, optional
+        What the subject is, in words.
 
     Returns
     -------
@@ -129,7 +134,7 @@ def table_of(
             [_note(finding, claim) for finding, claim in zip(found, claims, strict=True)],
             "what to know of these numbers, and what would decide it where they do not",
         ),
-        "judged_on": ([finding.judged_on for finding in found], "what was judged"),
+        "judged_on": ([finding.judged_on or asked for finding in found], "what was judged"),
         "circular": (
             np.array([name in circular for name in rules], bool),
             "whether the specimen was chosen for it",

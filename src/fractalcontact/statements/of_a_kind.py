@@ -43,6 +43,11 @@ def _reference(joint: Joint) -> xr.Dataset:
     return joint["ensemble"].sel(normal_force=joint.force, method="nearest")
 
 
+def delta_sigma_by_area(joint: Joint) -> Estimate:
+    """Delta_sigma by A_r(s) under the reference load, mean over the realisations."""
+    return _mean(_reference(joint), "delta_sigma_area")
+
+
 def _pressure(joint: Joint, used: np.ndarray | None = None) -> str:
     """The reference pressure, or the range of pressures used, in words."""
     if used is None:
@@ -150,7 +155,7 @@ def area_is_lacunar(joint: Joint) -> Finding:
     that between the two coarsest.
     """
     name, state = "area_is_lacunar", _reference(joint)
-    delta, bend = _mean(state, "delta_sigma_area"), _mean(state, "area_bend")
+    delta, bend = delta_sigma_by_area(joint), _mean(state, "area_bend")
     if not np.isfinite(delta.width):
         return Finding(UNDETERMINED, "too few resolutions with thirty nodes in contact")
     falls = by_sign(delta.mapped(lambda value: 2 - value, falling=True), rising=True)
