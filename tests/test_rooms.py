@@ -21,6 +21,7 @@ FLOORS = (
     ("roughness", "scan"),
     ("domain", "mechanics", "study"),
     ("size_effect", "error_budget", "statements", "commands"),
+    ("ensemble",),
     ("figures", "pages", "stages"),
     ("contactlab.methods",),
     ("contactlab.accuracy", "contactlab.experiments"),

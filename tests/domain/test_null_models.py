@@ -18,9 +18,11 @@ from fractalcontact.domain.box_dimension import dimension_of_domain
 from fractalcontact.domain.correlation import pair_counts, pair_distances, pairs_slope
 from fractalcontact.domain.counted_domain import QUANTITIES, CountedDomain
 from fractalcontact.domain.departure import departure_of
+from fractalcontact.domain.mean_law import find_law
 from fractalcontact.domain.null_models import bearing_area_cut, null_models
 from fractalcontact.domain.random_nodes import (
     band_of,
+    expected_dimension,
     expected_mean_counts,
     random_bands,
     random_nodes,
@@ -98,6 +100,17 @@ def test_wide_and_missing_intervals_determine_nothing():
 
 
 # -- independent -----------------------------------------------------------------------------------
+
+
+def test_the_dimension_expected_of_random_nodes_is_that_of_drawn_ones():
+    cluster = percolation_cluster(96, seed=2)
+    nodes = int(cluster.sum())
+    law = find_law(cluster, (0.0, np.inf), False)
+    bands, _ = random_bands(cluster.shape, nodes, law=law)
+    expected = expected_dimension(cluster, 0.1)
+    assert expected == pytest.approx(bands["delta_sigma"].value, abs=0.02)
+    assert expected == pytest.approx(expected_dimension(cluster, 0.5))
+    assert np.isnan(expected_dimension(np.zeros((20, 20), bool), 0.1))
 
 
 def test_expected_counts_are_the_mean_of_draws():

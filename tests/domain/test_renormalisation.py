@@ -5,6 +5,7 @@ from scipy import stats
 
 from fractalcontact.core.estimate import Estimate
 from fractalcontact.domain.renormalisation import (
+    area_bend,
     compare_dimensions,
     fractal_pressure,
     hausdorff_measure,
@@ -27,6 +28,19 @@ def test_exact_fractal_gives_back_its_dimension_and_measure():
     np.testing.assert_allclose(result.hausdorff_spread, 1)
     np.testing.assert_allclose(result.sigma_star, FORCE / MEASURE)
     assert (result.n == 4).all()
+
+
+def test_one_power_law_does_not_bend():
+    nodes = AREA / S**2
+    np.testing.assert_allclose(area_bend(S, AREA, nodes, fewest=0), 0, atol=1e-12)
+    # Delta_sigma 1 between the two finest spacings, 1.5 then, 1.7 between the two coarsest.
+    bent = np.exp(np.cumsum(np.log(2) * np.array([0, 1, 0.5, 0.3]))) * xr.ones_like(S)
+    many = xr.full_like(S, 100.0)
+    assert float(area_bend(S, bent, many)) == pytest.approx(-0.7)
+    many[-1] = 3.0
+    assert float(area_bend(S, bent, many)) == pytest.approx(-0.5)
+    many[-2] = 3.0
+    assert np.isnan(area_bend(S, bent, many))
 
 
 def test_interval_of_an_exact_fractal_is_that_of_counting_its_nodes():

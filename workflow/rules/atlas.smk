@@ -7,7 +7,8 @@ SPECIMEN_ROW = f"{RESULTS}/rows/{{specimen}}.nc"
 def stages_of(wildcards):
     """Files of all stages that an atlas of one specimen has."""
     maps = {} if IN_PARTS else MAP_FILES
-    return STAGE_FILES | maps | (SLIDING_FILES if wildcards.specimen in SLIDING_NAMES else {})
+    sliding = SLIDING_FILES if wildcards.specimen in SLIDING_NAMES else {}
+    return STAGE_FILES | maps | sliding | ensemble_of(wildcards)
 
 
 def atlas_inputs():
@@ -16,7 +17,8 @@ def atlas_inputs():
         return {"rows": expand(SPECIMEN_ROW, specimen=SPECIMENS)}
     specimens = {stage: expand(path, specimen=SPECIMENS) for stage, path in STAGE_FILES.items()}
     sliding = {stage: expand(path, specimen=SLIDING) for stage, path in SLIDING_FILES.items()}
-    return specimens | sliding
+    ensembles = {stage: expand(path, specimen=REALISATIONS) for stage, path in ENSEMBLE_FILES.items()}
+    return specimens | sliding | (ensembles if REALISATIONS else {})
 
 
 # All stages, and what the paper says compared with them.

@@ -19,7 +19,7 @@ from fractalcontact.core.code_digest import Code
 from fractalcontact.core.directions import AUTOMATIC_OFFSETS
 from fractalcontact.core.errors import InputError
 from fractalcontact.core.patterns import one_of
-from fractalcontact.core.stage import EXPERIMENT, GRAINS, JOINT, MAP, SPECIMEN
+from fractalcontact.core.stage import ENSEMBLE, EXPERIMENT, GRAINS, JOINT, MAP, SPECIMEN
 from fractalcontact.study import campaign, plan, resources, stages
 from fractalcontact.study.checks import resolve_study
 from fractalcontact.study.configuration import resolve_embedded, resolve_roll_off
@@ -94,20 +94,23 @@ def most_offsets(name):
     return len(stated) if stated else AUTOMATIC_OFFSETS + 1
 
 
-def asked_for(job, grid=1):
+def kept_states(wildcards):
+    """Contact states of a specimen that are kept at the finest resolution."""
+    return resources.states_of(SETTINGS[wildcards.specimen], most_offsets(wildcards.specimen))
+
+
+def asked_for(job, grid=1, states=kept_states):
     """Memory and minutes that the job of a rule asks for, twice as many at every further attempt.
 
-    They follow from the nodes of the window, or with grid=0 of a face, and from the number of
-    states that are kept at the finest resolution.
+    They follow from the nodes of the window, or with grid=0 of a face, and from a number of states
+    or, of an ensemble, of realisations.
     """
 
     def ask(amount):
         return lambda wildcards, attempt: amount(
             job,
             nodes_of(known(wildcards))[grid],
-            states=resources.states_of(
-                SETTINGS[wildcards.specimen], most_offsets(wildcards.specimen)
-            ),
+            states=states(wildcards),
             attempt=attempt,
         )
 
@@ -200,6 +203,14 @@ def kind_of(some, others):
     return one_of(some) if others else "[^/]+" if some else one_of([])
 
 
+#: Realisations of the embedded specimens of which the study wants an ensemble.
+REALISATIONS = {
+    name: recipe["realisations"]
+    for name, recipe in config.get("embedded", {}).items()
+    if name in SETTINGS and "realisations" in recipe
+}
+
+
 #: Whether the atlas has a file a specimen: then nothing asks for all that was made of each of them.
 IN_PARTS = campaign.in_parts(config, SPECIMENS)
 
@@ -230,9 +241,18 @@ def calling(stage):
     }
 
 
-#: Files of the stages that every specimen has, and of those that only joints that slide have.
+#: Files of the stages that every specimen has, of those that only joints that slide have, and of
+#: those of an ensemble.
 STAGE_FILES = files_of(stages.paths_of(SPECIMEN))
 SLIDING_FILES = files_of(stages.paths_of(JOINT))
+ENSEMBLE_FILES = files_of(stages.paths_of(ENSEMBLE))
+
+
+def ensemble_of(wildcards):
+    """Files of the ensemble of a specimen; none where the study wants none."""
+    return ENSEMBLE_FILES if wildcards.specimen in REALISATIONS else {}
+
+
 # Measured contact maps stand in every atlas, beside the domains computed there.
 MAP_FILES = (
     {stage: expand(path, map=MAPS) for stage, path in files_of(stages.paths_of(MAP)).items()}

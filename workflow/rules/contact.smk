@@ -74,10 +74,37 @@ rule analysis:
         "../scripts/stage.py"
 
 
+# Realisations of an embedded specimen, its seed and those that follow, under a few loads.
+rule ensemble:
+    input:
+        **inputs_of("ensemble"),
+    output:
+        **outputs_of("ensemble"),
+    log:
+        f"{RESULTS}/logs/ensemble/{{specimen}}.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/ensemble/{{specimen}}.tsv"
+    wildcard_constraints:
+        specimen=one_of(REALISATIONS),
+    # As long as the sub-windows of a specimen, and the report waits for it.
+    priority: 1
+    resources:
+        **asked_for("ensemble", states=lambda wc: REALISATIONS[wc.specimen]),
+    params:
+        **calling("ensemble"),
+        recipe=lambda wc: recipe_named(known(wc)),
+        realisations=lambda wc: REALISATIONS[wc.specimen],
+    message:
+        "{wildcards.specimen}: its ensemble"
+    script:
+        "../scripts/stage.py"
+
+
 # The report: strength, size laws, and what the paper says compared with what was found. They alone
 # read friction angles, wall strengths and labels, and solve nothing.
 rule strength:
     input:
+        unpack(ensemble_of),
         **inputs_of("windows"),
     output:
         **outputs_of("windows"),

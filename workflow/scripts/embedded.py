@@ -4,7 +4,8 @@ from pathlib import Path
 
 from _job import job
 
-from fractalcontact.study.embedded import embedded_surface, write_scan
+from fractalcontact.study.embedded import write_scan
+from fractalcontact.surface.embedded import embedded_surface
 
 with job(snakemake) as log:
     recipe = snakemake.params.recipe

@@ -28,7 +28,7 @@ from fractalcontact.mechanics.joint import (
 )
 from fractalcontact.mechanics.plateau import relative_change, second_half
 from fractalcontact.roughness.dimension import slope_statistics
-from fractalcontact.study.embedded import embedded_surface
+from fractalcontact.surface.embedded import embedded_surface
 from fractalcontact.surface.specimen import largest_offset, make_specimen
 
 from .units import SURFACES

@@ -20,7 +20,7 @@ from fractalcontact.domain.null_models import bearing_area_cut
 from fractalcontact.mechanics.area import corrected_area
 from fractalcontact.mechanics.closure import bulk_settlement
 from fractalcontact.mechanics.sweep import load_steps
-from fractalcontact.study.embedded import embedded_surface
+from fractalcontact.surface.embedded import embedded_surface
 from fractalcontact.surface.synthesis import band_limited, band_slope
 from roughcontact.contact.state import ContactState
 from roughcontact.elastic.halfspace import HalfSpace

@@ -21,6 +21,10 @@ class Claim:
         Figures or section of the paper.
     claim : str
         In our words.
+    margin : float
+        Equivalence margin: an exponent, or a difference, whose interval stays below it is none.
+    decides : str
+        What would decide it where the data leave it open.
     short : str
         How captions call it.
     material : str
@@ -39,6 +43,8 @@ class Claim:
     name: str
     figure: str
     claim: str
+    margin: float = 0.0
+    decides: str = ""
     short: str = ""
     material: str = ""
     slides: bool = True

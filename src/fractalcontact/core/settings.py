@@ -100,6 +100,11 @@ class StateSettings(ContactSettings):
 
 
 @dataclass(frozen=True)
+class EnsembleSettings(SpecimenSettings, StateSettings):
+    """Settings of the realisations of an embedded specimen: of their making and their states."""
+
+
+@dataclass(frozen=True)
 class StrengthSettings:
     """Settings of strength and size laws."""
 

@@ -9,7 +9,7 @@ from ..core.limits import CONFIDENCE
 from .box_counts import cover_and_mean
 from .clusters import NEIGHBOURS, morisita_index, quadrat_counts
 from .correlation import expected_pairs, lags_of, pair_distances, pairs_slope
-from .mean_law import FoundLaw, dimension_by_means
+from .mean_law import FoundLaw, dimension_by_means, find_law
 from .ordinary_slope import cover_slope, cover_used, dyadic_sizes
 
 #: Draws of random nodes. The band allows for their number.
@@ -207,3 +207,29 @@ def expected_mean_counts(shape: tuple[int, int], nodes: int, sizes: np.ndarray) 
         occupied = 1 - empty[np.outer(along_y, along_x)]
         counts.append(times_y @ occupied @ times_x / size**2)
     return np.array(counts)
+
+
+def expected_dimension(
+    domain: np.ndarray, spacing: float, *, fit_range: tuple[float, float] | None = None
+) -> float:
+    """Delta_sigma of as many random nodes over the boxes of a domain's law, from expected counts.
+
+    Parameters
+    ----------
+    domain : (ny, nx) bool ndarray
+    spacing : float
+        mm.
+    fit_range : (float, float), optional
+        As :func:`domain.box_dimension.box_dimension` takes it.
+
+    Returns
+    -------
+    float
+        NaN where the domain, or random nodes at its boxes, follow no law.
+    """
+    limits = (0.0, np.inf) if fit_range is None else tuple(np.asarray(fit_range) / spacing)
+    law = find_law(domain, limits, False)
+    if law is None:
+        return np.nan
+    counts = expected_mean_counts(domain.shape, int(np.count_nonzero(domain)), law.separating)
+    return law.refound(counts, False)

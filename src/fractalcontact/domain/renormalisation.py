@@ -288,3 +288,29 @@ _COMPARED = {
     **rows_of("difference", "1", "Delta_sigma from area less that from box counting"),
     "disagree": ("1", "the two estimates of Delta_sigma differ by more than their intervals"),
 }
+
+
+def area_bend(
+    s: xr.DataArray, area: xr.DataArray, nodes: xr.DataArray, fewest: int = FEWEST_NODES
+) -> xr.DataArray:
+    """Delta_sigma of the two finest resolutions less that of the two coarsest, from their areas.
+
+    It is zero for one power law A_n ~ s_n^(2 - Delta_sigma).
+
+    Parameters
+    ----------
+    s, area, nodes, fewest
+        As of :func:`renormalisation`, s ascending.
+
+    Returns
+    -------
+    DataArray
+        On the other dimensions of `area`; NaN where fewer than three resolutions count.
+    """
+    log_area, log_s = (xr.apply_ufunc(np.log, one) for one in (area.where(nodes >= fewest), s))
+    local = 2 - log_area.diff(RESOLUTION) / log_s.diff(RESOLUTION)
+    known = local.notnull()
+    finest = local.where(known & (known.cumsum(RESOLUTION) == 1)).sum(RESOLUTION)
+    counted = known.sum(RESOLUTION)
+    coarsest = local.where(known & (known.cumsum(RESOLUTION) == counted)).sum(RESOLUTION)
+    return (finest - coarsest).where(counted > 1)

@@ -156,6 +156,34 @@ def closure_curves(
         (direction, resolution); what :data:`mechanics.states.OFFSETS` names over (direction,
         offset).
     """
+    result = interface_curves(
+        states, window, e_star, openings=openings, seating_pressure=seating_pressure
+    )
+    add_closure_laws(result, fit_range)
+    add_seated_laws(result)
+    return result
+
+
+def interface_curves(
+    states: xr.Dataset,
+    window: tuple[float, float],
+    e_star: float,
+    *,
+    openings: xr.DataArray | None = None,
+    seating_pressure: float = 0.0,
+) -> xr.Dataset:
+    """Closure curves of the interface without the laws that they follow.
+
+    Parameters
+    ----------
+    states, window, e_star, openings, seating_pressure
+        As of :func:`closure_curves`.
+
+    Returns
+    -------
+    xr.Dataset
+        That of :func:`closure_curves` without its fits.
+    """
     area = window[0] * window[1]
     result = states[[*OF_STATES, *OFFSETS]].copy()
     _add_interface(result, bulk_settlement(states["normal_force"].values, e_star, *window), area)
@@ -163,8 +191,6 @@ def closure_curves(
     _add_errors(result, area, e_star)
     add_separation(result, openings)
     add_seated_closure(result, seating_pressure)
-    add_closure_laws(result, fit_range)
-    add_seated_laws(result)
     return result
 
 

@@ -32,6 +32,8 @@ class Cell:
         In words; a sign; the class of its colour.
     numbers, note : str
         What decides it, and what to know of that.
+    judged_on : str
+        The specimen, or realisations of its kind.
     circular : str
         How the specimen was chosen for it; empty where it was not.
     figure : str
@@ -43,6 +45,7 @@ class Cell:
     kind: str
     numbers: str
     note: str
+    judged_on: str
     circular: str
     figure: str
 
@@ -112,6 +115,7 @@ def _cell(found, figure):
         kind=kind,
         numbers=str(found["numbers"].item()),
         note=str(found["note"].item()),
+        judged_on=str(found["judged_on"].item()),
         circular=str(found["circular_reason"].item()) if bool(found["circular"]) else "",
         figure=figure,
     )

@@ -8,7 +8,7 @@ from ..core.verdicts import FAILS, HOLDS, ILL_POSED, PARTLY, UNDETERMINED
 from .findings import (
     Finding,
     Joint,
-    by_sign,
+    beyond_margin,
     level,
     no_offsets,
     of_the_area,
@@ -109,7 +109,7 @@ def larger_samples_close_more(joint: Joint) -> Finding:
         return Finding(UNDETERMINED, "fewer than two sizes of window with ten nodes in contact")
     closure = float(windows["closure_exponent"])
     return Finding(
-        by_sign(exponent, rising=True),
+        beyond_margin(exponent, "larger_samples_close_more", rising=True),
         f"x = {exponent:z.2f}",
         f"compliance ~ b^x at {float(windows['nominal_pressure']):.3g} MPa; closure from first "
         f"contact, b^{closure:.2f}, grows as any largest value does",

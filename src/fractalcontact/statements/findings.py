@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..core.claims import all_claims
 from ..core.estimate import Estimate
 from ..core.fitting import FEWEST_POINTS, fit_line
 from ..core.limits import LOOSELY, NEARLY, RESOLVED_NODES
@@ -19,19 +20,22 @@ BY_CONSTRUCTION = "A_r = F/H by construction: all that touches yields"
 class Finding(NamedTuple):
     """Verdict on one statement, the numbers that decide it, and what to know of them.
 
-    Captions quote the verdict and the numbers; the note stands in the table alone.
+    Captions quote the verdict and the numbers; the note, and what was judged (empty for all that was
+    asked), stand in the table alone.
     """
 
     verdict: str
     numbers: str
     note: str = ""
+    judged_on: str = ""
 
 
 class Joint(Subject):
     """A joint, and what several statements ask of it.
 
     It has the stages ``specimens``, ``joints``, ``closure``, ``dilatancy``, ``area``, ``windows``,
-    ``domains``, ``scaling``, ``domain_measures`` and ``size_test``.
+    ``domains``, ``scaling``, ``domain_measures`` and ``size_test``, and ``ensemble`` if the study
+    wants one.
     """
 
     @property
@@ -178,6 +182,27 @@ def by_sign(found: Estimate, *, rising: bool) -> str:
     above, below = found.low > 0, found.high < 0
     above, below = (above, below) if rising else (below, above)
     return HOLDS if above else FAILS if below else UNDETERMINED
+
+
+def beyond_margin(found: Estimate, name: str, *, rising: bool) -> str:
+    """Verdict on a claim of a sign, with the equivalence margin of the claim.
+
+    It holds where the whole interval has the sign and some of it lies beyond the margin, and fails
+    where none does: a change smaller than the margin is called none.
+
+    Parameters
+    ----------
+    found : Estimate
+        What is to have the sign.
+    name : str
+        Of the claim.
+    rising : bool
+        Whether the sign is to be positive.
+    """
+    gain = found if rising else found.mapped(np.negative, falling=True)
+    if gain.high <= all_claims()[name].margin:
+        return FAILS
+    return HOLDS if gain.low > 0 else UNDETERMINED
 
 
 def level(values: np.ndarray, symbol: str, v: np.ndarray) -> Finding:

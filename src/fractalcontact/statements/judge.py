@@ -13,9 +13,10 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from ..core.claims import all_claims, claims_of
+from ..core.claims import Claim, all_claims, claims_of
 from ..core.labels import cf_attrs
-from . import closure, nulls, scaling, sliding
+from ..core.verdicts import UNDETERMINED
+from . import closure, nulls, of_a_kind, scaling, sliding
 from .findings import Finding, Joint
 
 #: Which of its two materials the paper would take a study's for, by words in its name.
@@ -34,6 +35,15 @@ def rule_of(name: str) -> Callable[..., Finding]:
         if hasattr(room, name):
             return getattr(room, name)
     raise KeyError(f"no rule is called {name!r}")
+
+
+def rule_for(name: str, joint: Joint) -> Callable[..., Finding]:
+    """Function that judges a statement: on the ensemble of a joint where one can be asked.
+
+    What the paper says of joints of a kind is judged on realisations of the kind.
+    """
+    on_specimen = rule_of(name)
+    return getattr(of_a_kind, name, on_specimen) if "ensemble" in joint.stages else on_specimen
 
 
 def material_of(settings: Mapping) -> str:
@@ -80,14 +90,17 @@ def judge(stages: Mapping[str, xr.Dataset], settings: Mapping) -> xr.Dataset:
         As :func:`table_of` makes it; attributes ``direction`` and ``force``, N.
     """
     joint = Joint(dict(stages), dict(settings))
-    rules = {name: rule_of(name) for name in statements_for(settings)}
+    rules = {name: rule_for(name, joint) for name in statements_for(settings)}
     return table_of(rules, joint, settings["chosen_for"]).assign_attrs(
         direction=joint.direction, force=joint.force
     )
 
 
 def table_of(
-    rules: Mapping[str, Callable[..., Finding]], subject: Any, circular: Mapping[str, str]
+    rules: Mapping[str, Callable[..., Finding]],
+    subject: Any,
+    circular: Mapping[str, str],
+    asked: str = "this specimen",
 ) -> xr.Dataset:
     """Statements judged, as a dataset.
 
@@ -99,12 +112,14 @@ def table_of(
         What is judged.
     circular : mapping of str to str
         How the specimen was chosen for a statement, by the statement's name.
+    asked : str, optional
+        What the subject is, in words.
 
     Returns
     -------
     xr.Dataset
         ``figure``, ``claim``, ``short``, ``rule``, ``verdict``, ``numbers``, ``note``,
-        ``circular`` and ``circular_reason`` over (statement,).
+        ``judged_on``, ``circular`` and ``circular_reason`` over (statement,).
     """
     found = [rule(subject) for rule in rules.values()]
     claims = [all_claims()[name] for name in rules]
@@ -115,7 +130,11 @@ def table_of(
         "rule": ([inspect.getdoc(rule) or "" for rule in rules.values()], "the rule that judges"),
         "verdict": ([finding.verdict for finding in found], "whether it holds here"),
         "numbers": ([finding.numbers for finding in found], "the numbers that decide it"),
-        "note": ([finding.note for finding in found], "what to know of these numbers"),
+        "note": (
+            [_note(finding, claim) for finding, claim in zip(found, claims, strict=True)],
+            "what to know of these numbers, and what would decide it where they do not",
+        ),
+        "judged_on": ([finding.judged_on or asked for finding in found], "what was judged"),
         "circular": (
             np.array([name in circular for name in rules], bool),
             "whether the specimen was chosen for it",
@@ -132,3 +151,9 @@ def table_of(
         },
         coords={"statement": list(rules)},
     )
+
+
+def _note(finding: Finding, claim: Claim) -> str:
+    """What to know of a finding, ending with what would decide it where it is open."""
+    remedy = claim.decides if finding.verdict == UNDETERMINED else ""
+    return "; ".join(filter(None, (finding.note, remedy)))

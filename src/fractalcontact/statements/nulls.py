@@ -59,7 +59,7 @@ def domains_are_fractal(joint: Joint) -> Finding:
     verdict = str(state["null_verdict"].item())
     if verdict == departure.UNDETERMINED:
         return Finding(UNDETERMINED, str(state["null_reason"].item()))
-    found, slopes, _ = one_slope(state)
+    found, slopes, *_ = one_slope(state)
     if verdict == LIKE_RANDOM:
         found = FAILS
     elif found == HOLDS and verdict == LIKE_CUT:

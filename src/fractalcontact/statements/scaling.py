@@ -9,14 +9,11 @@ from ..core.fitting import FEWEST_POINTS
 from ..core.limits import WIDEST
 from ..core.verdicts import AGREES, DECIDED, FAILS, HOLDS, PARTLY, UNDETERMINED
 from ..domain.pressure_trend import pressure_trend
-from .findings import Finding, Joint, by_sign, of_the_area, share
+from .findings import Finding, Joint, beyond_margin, by_sign, of_the_area, share
 from .local_slopes import one_slope
 
 #: Delta_sigma up to here is near 0, and from here on near 2, the ends of the paper's Fig. 12.
 NEAR_POINTS, NEAR_FULL = 0.25, 1.75
-
-#: An exponent over the side b whose whole interval is smaller is no size effect.
-NO_EFFECT = 0.02
 
 #: The two estimates of Delta_sigma, as their variables and in words.
 ESTIMATES = {"area": "by A_r(s)", "box": "by boxes"}
@@ -108,25 +105,52 @@ def dimension_spans_all(joint: Joint) -> Finding:
     known = np.flatnonzero(delta.known)
     if not known.size:
         return Finding(UNDETERMINED, "no load with a dimension by boxes")
-    value = delta.value
-    least, most = known[np.argmin(value[known])], known[np.argmax(value[known])]
-    # Where random nodes do not come near an end either, the loads do not: it is not missed.
-    random = states["delta_sigma_random"].values
+    touching = nodes[known[[np.argmin(delta.value[known]), np.argmax(delta.value[known])]]]
+    return span_finding(
+        delta[known],
+        states["delta_sigma_random"].values[known],
+        joint.forces[known] / joint.area,
+        f"{int(touching[0])} to {int(touching[1])} nodes: near the lower end one more changes the "
+        f"answer{by_design(joint)}",
+    )
+
+
+def span_finding(delta: Estimate, random: np.ndarray, pressures: np.ndarray, note: str) -> Finding:
+    """Verdict on a Delta_sigma that is to go from near 0 to near 2 as the load grows.
+
+    It does not where it stays below the upper end, by the intervals of its largest value and of
+    that under the heaviest load. Where random nodes are not near 0 at the lower end the loads are
+    not light enough, and that end is not missed.
+
+    Parameters
+    ----------
+    delta : Estimate
+        (n,), each with a value.
+    random : (n,) ndarray
+        That of random nodes.
+    pressures : (n,) ndarray
+        MPa, ascending.
+    note : str
+        Begins with a small letter.
+    """
+    least, most = int(np.argmin(delta.value)), int(np.argmax(delta.value))
     lower, upper = delta[least], delta[most]
     reached = int(lower.high <= NEAR_POINTS) + int(upper.low >= NEAR_FULL)
-    missed = int(lower.low > NEAR_POINTS >= random[least]) + int(
-        upper.high < NEAR_FULL <= random[most]
-    )
-    verdict = PARTLY if reached and missed else FAILS if missed else UNDETERMINED
-    verdict = HOLDS if reached == 2 else verdict
-    capped = np.isfinite(joint.settings["material"]["hardness"])
-    by_design = "; 2 at full yield is so by construction" if capped else ""
+    begins_late = lower.low > NEAR_POINTS >= random[least]
+    verdict = (FAILS if begins_late else UNDETERMINED, PARTLY, HOLDS)[reached]
+    if max(upper.high, delta.high[-1]) < NEAR_FULL:
+        verdict = FAILS
     return Finding(
         verdict,
-        f"by boxes {lower:.2f} to {upper:.2f}",
-        f"{int(nodes[least])} to {int(nodes[most])} nodes: near the lower end one more changes the "
-        f"answer{by_design}",
+        f"by boxes {lower:.2f} to {upper:.2f} up to {pressures[-1]:.3g} MPa",
+        note,
     )
+
+
+def by_design(joint: Joint) -> str:
+    """What a hardness makes of the upper end, in words; empty without one."""
+    capped = np.isfinite(joint.settings["material"]["hardness"])
+    return "; 2 at full yield is so by construction" if capped else ""
 
 
 def size_effect_follows(joint: Joint) -> Finding:
@@ -149,6 +173,8 @@ def size_effect_follows(joint: Joint) -> Finding:
         + ", ".join(f"{slope:.2f} {by}" for by, slope in wanted if np.isfinite(slope))
     )
     decided = test["decides"].values
+    if not decided.any() and _beyond(exponent, Estimate.read(best, "predicted_slope")):
+        return Finding(FAILS, numbers, "the interval of x leaves out all that eq. 6's own allows")
     if not decided.any():
         return Finding(UNDETERMINED, numbers, _why_open(test["reason"].values[:, known].ravel()))
     agree = (test["verdict"] == AGREES).values
@@ -171,6 +197,13 @@ def size_effect_follows(joint: Joint) -> Finding:
     )
 
 
+def _beyond(exponent: Estimate, predicted: Estimate) -> bool:
+    """Whether an exponent lies outside every predicted one, by the intervals of both."""
+    apart = (exponent.low > predicted.high) | (exponent.high < predicted.low)
+    known = np.isfinite(predicted.width)
+    return bool(known.any() and apart[known].all())
+
+
 def _why_open(reasons):
     """Why no load decides about eq. 6; a reason a load and estimate, the most frequent first."""
     counts = Counter(str(reason) for reason in reasons).most_common()
@@ -187,9 +220,8 @@ def larger_domains_are_less_dense(joint: Joint) -> Finding:
     if not exponent.known:
         return Finding(UNDETERMINED, "fewer than two sizes of window with 30 nodes in contact")
     pressure = float(windows["nominal_pressure"])
-    none = max(abs(exponent.low), abs(exponent.high)) < NO_EFFECT
     return Finding(
-        FAILS if none else by_sign(exponent, rising=False),
+        beyond_margin(exponent, "larger_domains_are_less_dense", rising=False),
         f"x = {exponent:z.2f}",
         f"A_r/A_0 ~ b^x at {pressure:.3g} MPa",
     )

@@ -12,6 +12,7 @@ from ..core.verdicts import FAILS, HOLDS, UNDETERMINED
 from ..roughness.recommended import best_dimension
 from .findings import Finding, Joint, by_sign
 from .judge import material_of, table_of
+from .of_a_kind import delta_sigma_by_area
 
 
 def judge_study(
@@ -34,7 +35,9 @@ def judge_study(
         As :func:`judge.table_of` makes it.
     """
     joints = {name: Joint(dict(parts), dict(settings[name])) for name, parts in stages.items()}
-    return table_of({name: _RULES[name] for name in claims_of("several")}, joints, {})
+    return table_of(
+        {name: _RULES[name] for name in claims_of("several")}, joints, {}, "the specimens"
+    )
 
 
 def size_exponent_grows_with_dimension(joints: Mapping[str, Joint]) -> Finding:
@@ -42,24 +45,39 @@ def size_exponent_grows_with_dimension(joints: Mapping[str, Joint]) -> Finding:
 
     The paper says that the size effect is more pronounced for larger Delta_g, and means this
     exponent; no size is varied here. Of surfaces against a plane where there are three: their
-    composite topography is the face, and one study loads them alike.
+    composite topography is the face, and one study loads them alike. Where each has an ensemble the
+    mean over its realisations, whose errors are those of the slope.
     """
     flat = [joint for joint in joints.values() if joint.settings["opposite"] == "flat"]
     if len(flat) < 3:
         return Finding(UNDETERMINED, f"{len(flat)} surfaces against a plane, three needed")
     dimension = np.array([best_dimension(j["surface_dimension"]).value for j in flat])
-    effect = np.array([2 - float(j.state("scaling")["delta_sigma"]) for j in flat])
+    of_kinds = all("ensemble" in joint.stages for joint in flat)
+    if of_kinds:
+        delta = Estimate.stack(map(delta_sigma_by_area, flat))
+        effect, error = 2 - delta.value, delta.width / 2
+        slope = _slope(dimension, effect, error)
+    else:
+        effect = np.array([2 - float(joint.state("scaling")["delta_sigma"]) for joint in flat])
+        slope = fit_line(dimension, effect).slope
     order = np.argsort(dimension)
-    line = fit_line(dimension, effect)
-    if not line.slope.known:
+    if not slope.known:
         return Finding(UNDETERMINED, "fewer than three surfaces with Delta_g and Delta_sigma")
     pairs = ", ".join(f"{effect[i]:.2f} at {dimension[i]:.2f}" for i in order)
     return Finding(
-        by_sign(line.slope, rising=True),
+        by_sign(slope, rising=True),
         f"2 - Delta_sigma by A_r(s) {pairs}",
         "at light load it is the growth of the slopes h'_rms of the surface with resolution; "
         "whether strength follows that exponent as the size grows is what eq. 6 is judged for",
+        "realisations of each" if of_kinds else "",
     )
+
+
+def _slope(x: np.ndarray, y: np.ndarray, error: np.ndarray) -> Estimate:
+    """Least-squares slope whose interval follows from those of y, half as wide as ``error``."""
+    lever = (x - x.mean()) / np.sum((x - x.mean()) ** 2)
+    slope, half = lever @ y, np.sqrt(np.sum((lever * error) ** 2))
+    return Estimate(float(slope), float(slope - half), float(slope + half), x.size)
 
 
 def area_falls_more_in_concrete(joints: Mapping[str, Joint]) -> Finding:

@@ -9,7 +9,7 @@ from ..core.tolerance import ACCURACY, tolerance
 from ..core.units import load, quantity, share
 from .scan_files import ScanFiles
 from .schema import nearest
-from .selection import is_capped_variant
+from .selection import BESIDE_SURFACE, is_capped_variant
 
 #: Nodes per side of an embedded specimen: a surface of that many takes some 35 GB to make.
 FEWEST_NODES, MOST_NODES = 2, 16384
@@ -223,7 +223,7 @@ def resolve_embedded(recipe: Mapping, where: str) -> dict:
         If a length has no unit of length or is not positive, the nodes are too few or too many, or
         the construction has no such surface.
     """
-    numbers = {key: value for key, value in recipe.items() if key not in ("label", "chosen_for")}
+    numbers = {key: value for key, value in recipe.items() if key not in BESIDE_SURFACE}
     for key in ("size", "spacing", "rms", "roll_off"):
         if recipe.get(key) is not None:
             numbers[key] = quantity(recipe[key], "length", f"{where}.{key}")

@@ -54,7 +54,8 @@ class Cost:
 
 
 #: By rule, memory fitted to grids of 128 to 2048 nodes along a side, seconds to 256, 512 and 1024
-#: of a surface against a plane and to a joint of 520 states (``docs/scaling.md``). Of ``specimen``
+#: of a surface against a plane and to a joint of 520 states (``docs/scaling.md``). States of
+#: ``ensemble`` are realisations. Of ``specimen``
 #: the nodes are those of a face, else of the window; ``atlas_part`` is ``figures`` without any.
 COSTS = {
     "embedded": Cost(80, 130, 0.5, 0.4),
@@ -62,6 +63,7 @@ COSTS = {
     "contact": Cost(210, 380, 2.5, 2.5, 1, 0.2),
     "analysis": Cost(190, 450, 8, 9, 5, 0.3),
     "windows": Cost(420, 620, 6, 55),
+    "ensemble": Cost(420, 620, 5, 0, 0, 25),
     "strength": Cost(190, 10, 2.5, 0),
     "figures": Cost(380, 300, 25, 4, 8),
     "atlas_part": Cost(190, 180, 3, 1, 1),

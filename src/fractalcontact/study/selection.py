@@ -5,6 +5,8 @@ from typing import Any
 
 #: Key that figures of one surface, elastic and capped, ask for: every study that has one.
 CAPPED_VARIANTS = "capped_variants"
+#: Keys of a recipe that do not change its surface.
+BESIDE_SURFACE = ("label", "chosen_for", "realisations")
 
 
 def is_capped_variant(study: Mapping[str, Any], name: str | None) -> bool:
@@ -20,8 +22,8 @@ def is_capped_variant(study: Mapping[str, Any], name: str | None) -> bool:
 
 
 def _surface_of(recipe):
-    """What makes the surface of an embedded specimen: its recipe but for words."""
-    return {key: value for key, value in recipe.items() if key not in ("label", "chosen_for")}
+    """Keys of a recipe that make the surface."""
+    return {key: value for key, value in recipe.items() if key not in BESIDE_SURFACE}
 
 
 def _has_hardness(study, name):

@@ -18,7 +18,7 @@ from typing import Any
 
 from ..core import settings
 from ..core.packages import CHAIN, SOURCES, installed
-from ..core.stage import GRAINS, JOINT, MAP, SPECIMEN, STUDY, Stage
+from ..core.stage import ENSEMBLE, GRAINS, JOINT, MAP, SPECIMEN, STUDY, Stage
 
 _SPECIMEN_STAGES = "fractalcontact.stages.specimen:specimen_stages"
 _STATE_STAGES = "fractalcontact.stages.states:state_stages"
@@ -76,6 +76,13 @@ _TABLE = (
         "contact against size at equal nominal pressure, eq. 6's own form, and the whole predicted",
         SPECIMEN,
         _WINDOW_STAGES,
+        ("specimens", "joints"),
+    ),
+    Stage(
+        "ensemble",
+        "realisations of an embedded specimen, their mean and spread",
+        ENSEMBLE,
+        "fractalcontact.ensemble.realisations:ensemble",
         ("specimens", "joints"),
     ),
     _of_states("closure", "closure curves, stiffness, real contact area"),

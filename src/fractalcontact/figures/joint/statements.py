@@ -26,7 +26,10 @@ SIGNS = {HOLDS: ("●", COLOURS[3]), PARTLY: ("◐", COLOURS[5]), FAILS: ("○",
 SIGNS |= {UNDETERMINED: ("?", "0.4"), ILL_POSED: ("×", "0.4")}
 
 #: Columns of the data, and where those drawn begin, as fractions of the width, with their letters.
-DATA = ("figure", "claim", "verdict", "circular", "numbers", "note", "circular_reason")
+DATA = (
+    *("figure", "claim", "verdict", "circular", "numbers", "note"),
+    *("judged_on", "circular_reason"),
+)
 COLUMNS = {"figure": (0.01, 8), "claim": (0.075, 44), "verdict": (0.44, 16), "numbers": (0.56, 57)}
 
 

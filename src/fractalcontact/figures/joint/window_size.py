@@ -21,7 +21,7 @@ from ..kit.sizes import (
     size_axis,
 )
 from ..kit.titles import headline
-from ..kit.verdicts import claim
+from ..kit.verdicts import claim, row_of
 from ..kit.words import place, pressure_label
 
 TITLE = "Roughness (eq. 2), closure and compliance (section 5) against the size of the window"
@@ -44,6 +44,7 @@ _HEADS = {
     "b": r"(b) $w_\mathrm{int} \sim b^x$ at nominal pressure",
     "c": r"(c) $\mathrm{d}w_\mathrm{int}/\mathrm{d}\sigma_0 \sim b^x$",
 }
+_CLAIM = "larger_samples_close_more"
 #: Points that no exponent goes through: beyond the range of eq. 2, or of few nodes in contact.
 _HOLLOW = "hollow: not fitted (out of range, few nodes)"
 
@@ -141,10 +142,13 @@ def _words(atlas, name, laws):
     force = float(atlas[f"statements/{name}"].attrs["force"])
     judged = laws["nominal_pressure"].sel(normal_force=force, method="nearest")
     fitted = np.isfinite(laws["compliance_exponent"]).any()
-    why = f"at {pressure_label(float(judged))}, filled sizes alone" if fitted else ""
+    row = row_of(atlas, "statements", name, _CLAIM)
+    of_specimen = row is None or "realisations" not in row["judged_on"].item()
+    why = f"at {pressure_label(float(judged))}" if fitted else ""
+    why += ", filled sizes alone" if why and of_specimen else ""
     return {
         "hurst": Estimate.read(laws, "face_hurst", scale=EXPONENT),
         "expected": Estimate.read(laws, "expected_hurst", scale=EXPONENT),
         "closure": bool(np.isfinite(laws["closure_exponent"]).any()),
-        "claim": claim(atlas, name, "larger_samples_close_more", why=why),
+        "claim": claim(atlas, name, _CLAIM, why=why),
     }

@@ -12,6 +12,7 @@ from ..kit.caption import caption
 from ..kit.domains import contact_domain, departures, estimates_of, rise_words, spread_loads
 from ..kit.drawing import COLOURS, WIDTH, Drawing
 from ..kit.empty import say_empty
+from ..kit.ensembles import draw_band, realisations_of
 from ..kit.legends import entries
 from ..kit.maps import draw_domain, ring_entry
 from ..kit.measured import draw_over_force, measured_range, measured_series
@@ -23,7 +24,16 @@ from ..kit.words import area_label, force_label, place, wrapped
 
 TITLE = "Fig. 12: contact domains and their dimension under growing load"
 SUBJECT = "specimen"
-NEEDS = ("specimens", "contact", "closure", "domains", "scaling", "contact_maps", "statements")
+NEEDS = (
+    "specimens",
+    "contact",
+    "closure",
+    "domains",
+    "scaling",
+    "ensemble",
+    "contact_maps",
+    "statements",
+)
 ORDER = 190
 
 #: Contact domains drawn.
@@ -35,6 +45,8 @@ _RAW = "; raw: not corrected for the perimeter"
 _ABOVE_MAPS = 8
 #: The two estimates stand this factor of F apart, so that neither hides the other.
 _APART = {"area": 1 / 1.04, "box": 1.04}
+#: Estimates in the stage ``ensemble``.
+_OF_ENSEMBLE = {"area": "delta_sigma_area", "box": "delta_sigma"}
 
 
 def draw(atlas: DataTree, name: str) -> Drawing:
@@ -73,6 +85,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
         verdicts=rise_words(atlas, name, numbers=False),
         least=MIN_NODES,
         larger=larger,
+        realisations=realisations_of(subject),
         **departures(counts),
         **measured_range(series),
     )
@@ -112,6 +125,7 @@ def _draw_dimensions(panel, subject):
     corrected = states["area_corrected"].where(enough)
     panel.keep(states.assign(area_corrected=corrected), "area", "area_corrected", *kept)
     for one in estimates:
+        draw_band(panel, subject, _OF_ENSEMBLE[one.key], one.style["color"], one.symbol)
         places, bars = forces * _APART[one.key], {"capsize": 2, "elinewidth": 0.8, "alpha": 0.35}
         axes.errorbar(places, one.value, yerr=reach(*one.ends), **one.style, **bars)
         sure, style = one.determined, one.style | {"linestyle": "none"}

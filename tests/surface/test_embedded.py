@@ -7,7 +7,7 @@ from known_sets import punch_dimensions
 from fractalcontact.core.errors import InputError
 from fractalcontact.roughness.dimension import surface_dimension
 from fractalcontact.study.configuration import resolve_embedded
-from fractalcontact.study.embedded import embedded_surface
+from fractalcontact.surface.embedded import embedded_surface
 
 RECIPE = {
     "label": "synthetic",

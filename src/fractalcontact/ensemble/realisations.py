@@ -1,0 +1,230 @@
+"""Contact of an ensemble: realisations of an embedded specimen that differ in their seed alone.
+
+What one specimen shows may be its own. What is said of specimens of a kind is said of the ensemble:
+of its mean, whose interval tells how well it is known, and of its spread.
+"""
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+import xarray as xr
+
+from ..core.datasets import labelled, labelled_dataset
+from ..core.labels import cf_attrs
+from ..core.limits import CORRECTED_NODES, RESOLVED_NODES
+from ..core.ranges import within
+from ..core.settings import EnsembleSettings, Solver
+from ..core.window import cell_side, window_sides
+from ..domain.analysis import analyse_domains, scaling_over_resolutions
+from ..domain.random_nodes import expected_dimension
+from ..domain.renormalisation import area_bend
+from ..mechanics.closure import interface_curves
+from ..mechanics.loading import JointLoading
+from ..mechanics.separation import ROUNDING
+from ..mechanics.states import MAP_GAP, domains_of, forces_of, with_pressure
+from ..mechanics.sweep import contact_states
+from ..size_effect.division import solvable_parts, spread_windows
+from ..size_effect.size_exponents import size_exponent, usable_sizes
+from ..size_effect.size_law import QUANTITIES
+from ..size_effect.windows import window_states
+from ..study.configuration import window_arguments
+from ..surface.embedded import embedded_surface
+from ..surface.specimen import make_specimen
+from .statistics import add_statistics, add_trends
+
+#: Sub-windows along a side of the window, and how many of each size are solved.
+PARTS, MOST_WINDOWS = (1, 2, 4), 4
+
+#: Of every realisation under every load, named as in the stages of the named specimen: unit, long
+#: name.
+STATES = {
+    "nodes": ("1", "nodes in contact"),
+    "interface_closure": ("mm", "interface closure w_int = w - w_b, from first touch"),
+    "mean_gap": ("mm", "mean gap of the window"),
+    "area_corrected_share": ("1", "real contact area A_r / A_0, corrected for the perimeter"),
+    "interface_stiffness": ("MPa/mm", "tangent stiffness d sigma_0 / d w_int of the interface"),
+    "delta_sigma": ("1", "Delta_sigma from box counting"),
+    "delta_sigma_random": ("1", "Delta_sigma expected of as many random nodes over the same boxes"),
+    "delta_sigma_area": ("1", "Delta_sigma from the contact area over resolutions"),
+    "area_bend": (
+        "1",
+        "Delta_sigma from the area of the two finest resolutions less that of the two coarsest",
+    ),
+    "difference": ("1", "Delta_sigma from area less that from box counting"),
+}
+#: The closure that compares between realisations: from one load, at which all are resolved.
+_SEATED = "closure_from_common_seat"
+
+#: Exponent of the corrected area less that of eq. 6: the Delta_sigma that eq. 6 has it from, words.
+_EQ6 = {
+    "eq6_area": ("delta_sigma_area", "A_r(s)"),
+    "eq6_box": ("delta_sigma", "boxes"),
+}
+
+#: Exponents of every realisation against the size of sub-windows under the reference load: quantity
+#: of the sub-windows, fewest nodes of each, what it is.
+EXPONENTS = {
+    exponent: ({"area_fraction": "corrected_area_share"}.get(name, name), fewest, words)
+    for name, (exponent, fewest, words) in QUANTITIES.items()
+}
+
+
+def ensemble(
+    specimens: xr.Dataset,
+    joints: xr.Dataset,
+    recipe: Mapping,
+    realisations: int,
+    settings: EnsembleSettings,
+    solver: Solver,
+) -> xr.Dataset:
+    """Contact of realisations of an embedded specimen, in the reported direction and offset.
+
+    Parameters
+    ----------
+    specimens, joints : xr.Dataset
+        Of the stages of these names: the named specimen, which is the first realisation.
+    recipe : mapping
+        From :func:`study.configuration.resolve_embedded`. The realisations have its seed and those
+        that follow it; none is chosen.
+    realisations : int
+    settings : EnsembleSettings
+    solver : Solver
+
+    Returns
+    -------
+    xr.Dataset
+        :data:`STATES` and ``closure_from_common_seat`` over (realisation, normal_force): under the
+        first load at the seat, the loads that figures draw and the heaviest. Over (realisation,):
+        :data:`EXPONENTS` under the reference load and the trends of
+        :func:`ensemble.statistics.add_trends`; over both, by how much eq. 6 is missed, ``eq6_area``
+        and ``eq6_box``. Of each the mean over the realisations with its interval and the spread, as
+        :func:`ensemble.statistics.add_statistics` names them.
+
+    Raises
+    ------
+    NotConverged
+        If a state could not be verified; the message names the realisation.
+    """
+    whole = JointLoading.of_joint(
+        specimens, joints, settings.contact_directions[0], settings, solver
+    )
+    loading = replace(whole, settings=_light(settings, whole.area)).at_map_offset()
+    seeds = recipe["seed"] + np.arange(realisations)
+    rows = []
+    for seed in seeds:
+        specimen = _realised(specimens, {**recipe, "seed": int(seed)}, settings)
+        rows.append(_realisation(replace(loading, specimen=specimen)))
+    result = xr.concat(rows, "realisation")
+    for name in result.data_vars:
+        result[name].attrs = rows[0][name].attrs
+    _add_seated_closure(result, settings.seating_pressure * whole.area)
+    result["seed"] = ("realisation", seeds, cf_attrs("1", "seed of the synthesis"))
+    _add_eq6(result)
+    add_trends(result)
+    add_statistics(result, [*STATES, _SEATED, *EXPONENTS, *_EQ6])
+    return with_pressure(result, whole.area).assign_attrs(
+        direction=loading.direction,
+        offset=float(loading.offsets[0]),
+        map_load=float(forces_of([settings.map_load], whole.area)[0]),
+    )
+
+
+def _light(settings: EnsembleSettings, area: float) -> EnsembleSettings:
+    """Settings with the loads of the ensemble alone, as forces, sub-windows under one."""
+    forces = forces_of(settings.loads, area)
+    seated = forces[forces >= settings.seating_pressure * area * (1 - ROUNDING)]
+    wanted = {*seated[:1], *forces_of(settings.drawn_loads, area), forces[-1]}
+    return replace(
+        settings,
+        loads=[(float(force), "force") for force in sorted(wanted)],
+        dilatancy_loads=[settings.map_load],
+    )
+
+
+def _add_seated_closure(result: xr.Dataset, seat: float) -> None:
+    """Closure from the first load, N, at or above ``seat`` that resolves every realisation."""
+    force = result["normal_force"]
+    heavy = force >= seat * (1 - ROUNDING)
+    resolved = (result["nodes"] >= RESOLVED_NODES).all("realisation") & heavy
+    common = force.where(resolved).min()
+    closing = result["interface_closure"]
+    seated = closing - closing.where(force == common).sum("normal_force")
+    attrs = cf_attrs("mm", "interface closure from the first load at which all have ten nodes on")
+    result[_SEATED] = seated.where(force >= common).transpose(*closing.dims).assign_attrs(attrs)
+
+
+def _add_eq6(result: xr.Dataset) -> None:
+    """Exponent of the corrected area less Delta_sigma - 2 of the same window, into ``result``."""
+    for name, (dimension, by) in _EQ6.items():
+        words = f"exponent of corrected A_r/A_0 against b less Delta_sigma - 2 of eq. 6 by {by}"
+        residual = result["area_exponent"] - (result[dimension] - 2)
+        result[name] = residual.assign_attrs(cf_attrs("1", words))
+
+
+def _realised(specimens: xr.Dataset, recipe: Mapping, settings: EnsembleSettings) -> xr.Dataset:
+    """A specimen made of a recipe as the named one is of its scan."""
+    spacing = {key: specimens.attrs[key] for key in ("spacing_y", "spacing_x")}
+    lower = specimens["lower"].copy(data=embedded_surface(recipe)).assign_attrs(spacing)
+    name = f"{specimens.attrs['name']}, realisation of seed {recipe['seed']}"
+    return make_specimen(lower, name=name, **window_arguments(settings))
+
+
+def _realisation(loading: JointLoading[EnsembleSettings]) -> xr.Dataset:
+    """:data:`STATES` over the loads, and :data:`EXPONENTS`, of one realisation."""
+    settings, spacing = loading.settings, cell_side(loading.specimen)
+    states = contact_states(loading, settings.resolutions, mapped=int(loading.cells[0]))
+    curves = interface_curves(
+        states,
+        window_sides(loading.specimen),
+        settings.material.e_star,
+        seating_pressure=settings.seating_pressure,
+    )
+    finest = min(settings.resolutions)
+    others = [f"in_contact_{k}" for k in settings.resolutions if k != finest]
+    fields = domains_of(states).drop_vars(others).sel(resolution=[finest])
+    domains = analyse_domains(fields, spacing, fit_range=settings.box_range)
+    scaling = scaling_over_resolutions(curves, domains, spacing, fit_range=settings.scaling_range)
+    touching = fields[f"in_contact_{finest}"].values[0, 0]
+    values = {
+        "mean_gap": states[MAP_GAP].mean(states[MAP_GAP].dims[1:]).values,
+        "delta_sigma_random": [
+            expected_dimension(domain, spacing, fit_range=settings.box_range) for domain in touching
+        ],
+        "area_bend": _bend(curves, settings, spacing),
+    }
+    for name in STATES.keys() - values.keys():
+        at = {"direction": loading.direction, "offset": loading.offsets[0], "resolution": finest}
+        stage = next(one for one in (curves, domains, scaling) if name in one)
+        values[name] = (
+            stage[name].sel({dim: at[dim] for dim in at if dim in stage[name].dims}).values
+        )
+    table = {name: ("normal_force", *words) for name, words in STATES.items()}
+    result = labelled_dataset(table, values, coords={"normal_force": curves["normal_force"]})
+    return result.assign(_size_exponents(loading))
+
+
+def _bend(curves: xr.Dataset, settings: EnsembleSettings, spacing: float) -> np.ndarray:
+    """``area_bend`` over the loads, of the areas that Delta_sigma is fitted to."""
+    at = curves.isel(direction=0, offset=0)
+    if settings.scaling_range is not None:
+        at = at.where(within(at["resolution"] * spacing, *settings.scaling_range))
+    s = at["resolution"] * spacing
+    return area_bend(s, at["area_corrected"], at["nodes"], CORRECTED_NODES).values
+
+
+def _size_exponents(loading: JointLoading[EnsembleSettings]) -> dict:
+    """Exponents of one realisation against the size of its sub-windows, as variables."""
+    parts = solvable_parts(PARTS, loading.shape)
+    windows = window_states(loading, parts, MOST_WINDOWS).isel(offset=0, normal_force=0)
+    windows = windows.transpose("part", "window", ...)
+    places = [spread_windows(n, MOST_WINDOWS) for n in parts]
+    table, values = {}, {}
+    for exponent, (name, fewest, words) in EXPONENTS.items():
+        each = windows[name].values
+        positive = ((each > 0) | np.isnan(each)).all(axis=1)
+        usable = usable_sizes(windows["nodes"].values, fewest) & positive
+        each = np.where(usable[:, np.newaxis], each, np.nan)
+        values[exponent] = size_exponent(parts, windows["side"].values, each, places).value
+        table[exponent] = ((), "1", f"exponent of {words} against b at equal sigma_0")
+    return labelled(table, values)

@@ -1,0 +1,83 @@
+"""Statistics of an ensemble: trends with load of each realisation, means, intervals and spreads."""
+
+from collections.abc import Sequence
+
+import numpy as np
+import xarray as xr
+
+from ..core.intervals import mean_interval
+from ..core.labels import cf_attrs
+from ..domain.random_nodes import band_of
+
+#: Trends with the load: quantity, and what is taken from it or None; what the trend is of.
+TRENDS = {
+    "delta_sigma_trend": ("delta_sigma", None, "Delta_sigma by boxes"),
+    "departure_trend": (
+        "delta_sigma",
+        "delta_sigma_random",
+        "Delta_sigma by boxes less that of random nodes",
+    ),
+    "delta_sigma_area_trend": ("delta_sigma_area", None, "Delta_sigma by A_r(s)"),
+}
+
+
+def add_trends(result: xr.Dataset) -> None:
+    """Slopes per decade of load of every realisation, into ``result``.
+
+    Parameters
+    ----------
+    result : xr.Dataset
+        Over (realisation, normal_force). Gets :data:`TRENDS` with their statistics, and
+        ``NAME_used`` (normal_force).
+
+    Notes
+    -----
+    Loads at which a realisation has no value are left out of all: realisations would else be
+    compared over different loads. Two loads are enough for a slope, for its error is that of the
+    mean over the realisations.
+    """
+    decades = np.log10(result["normal_force"].values)
+    for name, (quantity, less, words) in TRENDS.items():
+        values = result[quantity] if less is None else result[quantity] - result[less]
+        rows = values.transpose("realisation", "normal_force").values
+        used = np.isfinite(rows).all(axis=0)
+        slopes = np.full(len(rows), np.nan)
+        if used.sum() > 1:
+            lever = decades[used] - decades[used].mean()
+            slopes = rows[:, used] @ lever / (lever @ lever)
+        attrs = cf_attrs("1", f"slope of {words} per decade of load")
+        result[name] = ("realisation", slopes, attrs)
+        attrs = cf_attrs("1", f"load that {name} is fitted over: every realisation has a value")
+        result[f"{name}_used"] = ("normal_force", used, attrs)
+    add_statistics(result, list(TRENDS))
+
+
+def add_statistics(result: xr.Dataset, names: Sequence[str]) -> None:
+    """Mean with its 95 % interval, spread and number of realisations, into ``result``.
+
+    Parameters
+    ----------
+    result : xr.Dataset
+        Of each name it gets ``NAME_mean`` with ``_low`` and ``_high``, by Student's t of the mean;
+        ``NAME_spread``, the standard deviation over the realisations; ``NAME_band_low`` and
+        ``NAME_band_high``, between which one more realisation lies with 95 % probability; and
+        ``NAME_n``, those that have a value.
+    names : sequence of str
+        Variables over realisation.
+    """
+    for name in names:
+        values = result[name].transpose("realisation", ...)
+        units, words = values.attrs["units"], values.attrs["long_name"]
+        dims = values.dims[1:]
+        mean = mean_interval(values.values)
+        result.update(
+            mean.variables(f"{name}_mean", dims, units, f"{words}, mean over realisations")
+        )
+        band = band_of(values.values)
+        for end, of_end, of_band in (("low", "lower", band.low), ("high", "upper", band.high)):
+            attrs = cf_attrs(units, f"{words}, {of_end} end of the 95 % band of one more")
+            result[f"{name}_band_{end}"] = (dims, of_band, attrs)
+        attrs = cf_attrs(units, f"{words}, standard deviation over realisations")
+        result[f"{name}_spread"] = values.std("realisation", ddof=1).assign_attrs(attrs)
+        attrs = cf_attrs("1", f"{words}, realisations that have a value")
+        result[f"{name}_n"] = (dims, mean.n, attrs)

@@ -1,0 +1,159 @@
+"""Verdicts on realisations of a kind, of ensembles in which a statement is true, false or open."""
+
+import numpy as np
+import pytest
+import xarray as xr
+from judged_joints import SETTINGS, stages
+
+from fractalcontact.core.claims import all_claims
+from fractalcontact.core.estimate import Estimate
+from fractalcontact.core.verdicts import FAILS, HOLDS, PARTLY, UNDETERMINED
+from fractalcontact.ensemble.statistics import add_statistics, add_trends
+from fractalcontact.statements import of_a_kind
+from fractalcontact.statements.findings import Joint
+from fractalcontact.statements.judge import judge, rule_for
+from fractalcontact.statements.study import judge_study
+
+FORCES = np.array([10.0, 100.0, 1000.0, 10000.0])
+REALISATIONS = 12
+#: Values over realisations scatter about their mean by so much, over loads independently.
+SCATTER = 0.02
+NAMES = [name for name in all_claims() if hasattr(of_a_kind, name)]
+
+
+def made(seed=0, **changes):
+    """An ensemble of which everything the paper says holds, but for what is changed."""
+    means = {
+        "delta_sigma": [0.2, 0.8, 1.4, 1.9],
+        "delta_sigma_random": [0.1, 0.5, 0.9, 1.2],
+        "delta_sigma_area": [0.2, 0.8, 1.4, 1.9],
+        "difference": np.zeros(4),
+        "area_bend": np.zeros(4),
+        "eq6_area": np.zeros(4),
+        "eq6_box": np.zeros(4),
+        "area_exponent": -0.6,
+        "compliance_exponent": 0.6,
+    } | changes
+    rng = np.random.default_rng(seed)
+    result = xr.Dataset(coords={"normal_force": FORCES})
+    for name, mean in means.items():
+        mean = np.asarray(mean, float)
+        dims = ("realisation", "normal_force")[: 1 + mean.ndim]
+        values = mean + SCATTER * rng.standard_normal((REALISATIONS, *mean.shape))
+        result[name] = (dims, values, {"units": "1", "long_name": name})
+    add_trends(result)
+    add_statistics(result, list(means))
+    pressure = FORCES / 100.0
+    return result.assign_coords(nominal_pressure=("normal_force", pressure))
+
+
+def verdict(name, **changes):
+    return found(name, **changes).verdict
+
+
+def found(name, **changes):
+    joint = Joint({**stages(), "ensemble": made(**changes)}, SETTINGS)
+    return rule_for(name, joint)(joint)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_an_ensemble_as_the_paper_has_it(name):
+    held = found(name)
+    assert held.verdict == HOLDS
+    assert held.judged_on == "12 realisations"
+    assert held.numbers.endswith("mean of 12 realisations")
+
+
+@pytest.mark.parametrize(
+    ("name", "changes", "expected"),
+    [
+        ("larger_samples_close_more", {"compliance_exponent": 0.05}, FAILS),
+        ("larger_samples_close_more", {"compliance_exponent": 0.0}, FAILS),
+        ("larger_samples_close_more", {"compliance_exponent": -0.4}, FAILS),
+        ("larger_samples_close_more", {"compliance_exponent": np.nan}, UNDETERMINED),
+        ("larger_domains_are_less_dense", {"area_exponent": -0.02}, FAILS),
+        ("larger_domains_are_less_dense", {"area_exponent": 0.3}, FAILS),
+        ("larger_domains_are_less_dense", {"area_exponent": np.nan}, UNDETERMINED),
+        ("size_effect_follows", {"eq6_area": np.full(4, 0.5), "eq6_box": np.full(4, 0.7)}, FAILS),
+        ("size_effect_follows", {"eq6_area": np.full(4, 0.5)}, PARTLY),
+        (
+            "size_effect_follows",
+            {"eq6_area": np.full(4, np.nan), "eq6_box": np.full(4, np.nan)},
+            UNDETERMINED,
+        ),
+        ("estimates_agree", {"difference": [0.6, 0.5, 0.4, 0.2]}, FAILS),
+        ("estimates_agree", {"difference": [0.6, 0.5, 0.0, 0.0]}, PARTLY),
+        ("estimates_agree", {"difference": np.full(4, np.nan)}, UNDETERMINED),
+        ("area_is_lacunar", {"delta_sigma_area": np.full(4, 2.3)}, FAILS),
+        ("area_is_lacunar", {"area_bend": np.full(4, 0.3)}, PARTLY),
+        ("area_is_lacunar", {"delta_sigma_area": np.full(4, np.nan)}, UNDETERMINED),
+        ("dimension_rises_by_area", {"delta_sigma_area": np.full(4, 1.4)}, FAILS),
+        ("dimension_rises_by_area", {"delta_sigma_area": [1.9, 1.4, 0.8, 0.2]}, FAILS),
+        ("dimension_rises_by_area", {"delta_sigma_area": [np.nan] * 3 + [1.4]}, UNDETERMINED),
+        ("dimension_rises_by_boxes", {"delta_sigma_random": [0.1, 0.8, 1.4, 1.9]}, PARTLY),
+        ("dimension_rises_by_boxes", {"delta_sigma": np.full(4, 1.4)}, FAILS),
+        ("dimension_spans_all", {"delta_sigma": [0.2, 0.5, 0.8, 1.2]}, FAILS),
+        ("dimension_spans_all", {"delta_sigma": [0.8, 0.9, 1.1, 1.9]}, PARTLY),
+        ("dimension_spans_all", {"delta_sigma": np.full(4, np.nan)}, UNDETERMINED),
+    ],
+    ids=str,
+)
+def test_what_does_not_hold_of_a_kind_is_said(name, changes, expected):
+    assert verdict(name, **changes) == expected
+
+
+def test_a_wide_interval_under_the_heaviest_load_leaves_the_upper_end_open():
+    wide = made(delta_sigma=[0.6, 0.7, 0.9, 0.8])
+    wide["delta_sigma_mean_high"][-1] = 1.9
+    joint = Joint({**stages(), "ensemble": wide}, SETTINGS)
+    wide["delta_sigma_random_mean"][:] = 0.6
+    assert of_a_kind.dimension_spans_all(joint).verdict == UNDETERMINED
+
+
+def test_what_the_interval_leaves_open_is_undetermined_with_what_would_decide_it():
+    wide = made()
+    for end, value in (("", 0.1), ("_low", -0.1), ("_high", 0.3)):
+        wide[f"compliance_exponent_mean{end}"] = value
+    judged = judge({**stages(), "ensemble": wide}, SETTINGS).sel(
+        statement="larger_samples_close_more"
+    )
+    assert judged["verdict"] == UNDETERMINED
+    claim = all_claims()["larger_samples_close_more"]
+    assert str(judged["note"].item()).endswith(claim.decides)
+
+
+def test_without_an_ensemble_the_specimen_is_judged():
+    plain = judge(stages(), SETTINGS)
+    assert set(plain["judged_on"].values) == {"this specimen"}
+    both = judge({**stages(), "ensemble": made()}, SETTINGS)
+    on = dict(zip(both["statement"].values, both["judged_on"].values, strict=True))
+    for name, subject in on.items():
+        assert (subject == "12 realisations") == (name in NAMES)
+
+
+def test_every_statement_says_what_would_decide_it():
+    assert [name for name, claim in all_claims().items() if not claim.decides] == [
+        "composite_dimension_rises",
+        "compliance_goes_with_dimension",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("values", "expected"),
+    [((1.7, 1.7, 1.5), HOLDS), ((1.4, 1.6, 1.6), FAILS), ((1.6, 1.6, 1.6), UNDETERMINED)],
+)
+def test_kinds_are_compared_by_the_errors_of_their_means(values, expected, monkeypatch):
+    monkeypatch.setattr("fractalcontact.statements.study.best_dimension", Estimate)
+    flat = {**SETTINGS, "opposite": "flat"}
+    surfaces = {
+        str(dimension): {
+            **stages(),
+            "surface_dimension": dimension,
+            "ensemble": made(seed=seed, delta_sigma_area=np.full(4, value)),
+        }
+        for seed, (dimension, value) in enumerate(zip((2.1, 2.3, 2.5), values, strict=True))
+    }
+    judged = judge_study(surfaces, dict.fromkeys(surfaces, flat))
+    row = judged.sel(statement="size_exponent_grows_with_dimension")
+    assert row["verdict"] == expected
+    assert row["judged_on"] == "realisations of each"

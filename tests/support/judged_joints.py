@@ -1,0 +1,267 @@
+"""A joint of which everything the paper says holds, as the stages that statements are judged on."""
+
+import numpy as np
+import xarray as xr
+
+from fractalcontact.core.reported import Reported
+from fractalcontact.core.verdicts import DECIDED
+from fractalcontact.domain.cluster_laws import localisation
+from fractalcontact.mechanics.plateau import rigid_plateaus
+
+V = np.array([0.1, 0.2, 0.4, 1.2, 1.4, 1.6, 10.0])
+# Correlated up to 0.5 mm by 1/e, not at all from 2 mm on.
+RIGID = np.linspace(0, 10, 101)
+LOADS = [10.0, 100.0, 1000.0, 10000.0]
+ROCK = {"name": "sandstone", "hardness": np.inf}
+SETTINGS = {
+    "map_load": (1000.0, "force"),
+    "map_offset": 0.4,
+    "material": ROCK,
+    "opposite": "match",
+    "chosen_for": {},
+    "capped_variant": False,
+}
+
+
+def local_slopes(values, over_boxes):
+    """Curves of local slopes over one octave after another, the same under every load."""
+    slopes, sides = np.asarray(values["local_slopes"]), np.asarray(values["box_sides"])
+    curves = {
+        "": slopes,
+        "_low": slopes - values["local_slope_half"],
+        "_high": slopes + values["local_slope_half"],
+        "_random": np.linspace(0, 2, slopes.size),
+        "_cut": slopes + 0.2,
+    }
+    ends = {"": np.sqrt(sides[1:] * sides[:-1]), "_min": sides[:-1], "_max": sides[1:]}
+    return {
+        **{
+            f"local_slope{name}": (("normal_force", "null_octave"), np.tile(curve, (len(LOADS), 1)))
+            for name, curve in curves.items()
+        },
+        **{f"local_slope_side{end}": ("null_octave", side) for end, side in ends.items()},
+        "local_slope_random_p": over_boxes(values["random_p"]),
+        "local_slope_random_side": over_boxes(ends[""][0]),
+        "local_slope_cut_p": over_boxes(values["cut_p"]),
+        "local_slope_cut_side": over_boxes(ends[""][-1]),
+    }
+
+
+def stages(**changes):
+    """A joint of which everything the paper says holds, but for what is changed."""
+    values = {
+        "compliance": [1, 1.8, 3.2, 4, 4.1, 4.1, 5],
+        "nodes": np.full(7, 100.0),
+        "spacing_change": 0.05,
+        "law": ["", *["hyperbola"] * 6],
+        "null": "different from random nodes and from the bearing-area cut",
+        "local_slopes": [1.06, 1.1, 1.0, 1.08, 1.15],
+        "local_slope_half": 0.1,
+        "box_sides": 0.1 * 2.0 ** np.arange(6),
+        "random_p": 0.005,
+        "cut_p": 0.01,
+        "cut_less": 0.1,
+        "random": np.array([0.1, 0.5, 0.9, 1.2]),
+        "along": 0.2,
+        "across": 0.2,
+        "lag_half": 0.03,
+        "cut_half": 0.05,
+        "area": [9, 8, 7, 5, 5.1, 5.2, 4.95],
+        "dimension": [2.0, 2.05, 2.1, 2.2, 2.21, 2.3, 2.35],
+        "morisita": [1, 1.5, 2, 4, 4.5, 9, 18],
+        "exponent": np.full(7, 1.02),
+        "window_exponent": np.full(7, 0.4),
+        "dilatancy": [1 - np.exp(-RIGID), 1.5 * (1 - np.exp(-RIGID))] * 2,
+        "limit": 0.1,
+        "delta_sigma_area": [0.2, 0.8, 1.4, 1.9],
+        "delta_sigma_box": [0.2, 0.8, 1.4, 1.9],
+        "half": 0.05,
+        "disagree": np.zeros(4, bool),
+        "difference_half": 0.1,
+        "density_exponent": -0.3,
+        "size_verdict": [["agrees"] * 2, ["agrees", "undecided"]],
+        "beyond": [False, False],
+        "predicted": -0.5,
+        "strength_exponent": np.full((2, 1), -0.3),
+        "held": np.zeros((2, 1)),
+        "length": 0.5,
+        "uncorrelated": 2.0,
+    } | changes
+    dims = ("direction", "offset", "resolution", "normal_force")
+    coords = {"direction": ["W"], "offset": V, "resolution": [1], "normal_force": LOADS}
+
+    def states(name):
+        """Values over the offsets, the same under every load."""
+        of_offset = np.reshape(np.asarray(values[name], float), (1, len(V), 1, 1))
+        return dims, np.broadcast_to(of_offset, (1, len(V), 1, len(LOADS)))
+
+    def over_loads(found):
+        """Values over the loads, the same at every offset."""
+        shape = (1, len(V), len(LOADS))
+        return ("direction", "offset", "normal_force"), np.broadcast_to(found, shape)
+
+    def over_boxes(found):
+        """As over_loads, at one resolution."""
+        return dims, over_loads(found)[1][:, :, np.newaxis]
+
+    area, box = (np.asarray(values[f"delta_sigma_{key}"], float) for key in ("area", "box"))
+    half = values["half"]
+    scaling = {
+        "delta_sigma_area": area,
+        "delta_sigma_box": box,
+        "delta_sigma": area,
+        "delta_sigma_low": area - half,
+        "delta_sigma_high": area + half,
+        "difference": area - box,
+        "difference_low": area - box - values["difference_half"],
+        "difference_high": area - box + values["difference_half"],
+        "disagree": values["disagree"],
+        "n": np.full(4, 4),
+        "r2": np.full(4, 0.99),
+    }
+    of_box = {"": box, "_low": box - half, "_high": box + half}
+
+    of_offsets = ("direction", "offset", "resolution")
+    slid = xr.Dataset(
+        {
+            "rigid_dilatancy": (("direction", "rigid_offset"), values["dilatancy"]),
+            "face_correlation": (("direction", "rigid_offset"), [np.exp(-2 * RIGID)] * 4),
+            "correlation_length": ("direction", [values["length"]] * 4),
+            "uncorrelated_offset": ("direction", [values["uncorrelated"]] * 4),
+            "correlation_limit": values["limit"],
+            "composite_dimension": ("offset", values["dimension"]),
+            "composite_fit_min": ("offset", np.full(7, 0.2)),
+            "composite_fit_max": ("offset", np.full(7, 1.2)),
+        },
+        {"direction": [*"WENS"], "contact_direction": ["W"], "rigid_offset": RIGID, "offset": V},
+    )
+    ends = {"": 0, "_low": -0.1, "_high": 0.1}
+    windows = {"nominal_pressure": ("normal_force", [10.0])}
+    for end, by in ends.items():
+        windows[f"compliance_exponent{end}"] = (
+            ("offset", "normal_force"),
+            np.asarray(values["window_exponent"])[:, np.newaxis] + by,
+        )
+        density = np.full((len(V), 1), values["density_exponent"] + by)
+        windows[f"area_exponent{end}"] = (("offset", "normal_force"), density)
+        windows[f"strength_at_equal_v_over_b_exponent{end}"] = (
+            ("share", "normal_force"),
+            values["strength_exponent"] + by,
+        )
+    windows["closure_exponent"] = ("offset", "normal_force"), np.full((len(V), 1), 0.5)
+    of_parts = ("share", "part", "normal_force")
+    windows["strength_at_equal_v_over_b"] = of_parts, np.ones((2, 3, 1))
+    windows["truncated_fraction_at_equal_v_over_b"] = (
+        of_parts,
+        np.repeat(np.asarray(values["held"])[:, np.newaxis], 3, 1),
+    )
+    slid = slid.assign(rigid_plateaus(RIGID, values["dilatancy"], [*"WENS"]))
+    specimen = xr.Dataset(
+        attrs={"window_ny": 10, "window_nx": 10, "spacing_y": 1.0, "spacing_x": 1.0}
+    )
+    reported = Reported.choose(
+        xr.Dataset(coords=coords),
+        direction="W",
+        offset=SETTINGS["map_offset"],
+        loads=[],
+        reference=SETTINGS["map_load"][0],
+    )
+    made = {
+        "specimens": specimen,
+        "joints": slid,
+        "closure": xr.Dataset(
+            {
+                **reported.variables(),
+                "interface_compliance": (dims, states("compliance")[1]),
+                "area_corrected": states("area"),
+                "nodes": states("nodes"),
+                "composite_spread": (("direction", "offset"), [np.linspace(1, 2, 7)]),
+                "closure": (dims, np.ones((1, len(V), 1, len(LOADS)))),
+                "closure_spacing_error": (
+                    dims,
+                    np.broadcast_to(values["spacing_change"], (1, len(V), 1, len(LOADS))),
+                ),
+                "closure_law": (of_offsets, np.reshape(values["law"], (1, len(V), 1))),
+                "hyperbola_misfit": (of_offsets, np.full((1, len(V), 1), 0.01)),
+                "semi_logarithmic_misfit": (of_offsets, np.full((1, len(V), 1), 0.05)),
+            },
+            coords,
+        ),
+        "domains": xr.Dataset(
+            {
+                "morisita": states("morisita"),
+                **{f"delta_sigma{end}": over_boxes(found) for end, found in of_box.items()},
+                "fit_min": (dims, np.full((1, len(V), 1, len(LOADS)), 0.1)),
+                "fit_max": (dims, np.full((1, len(V), 1, len(LOADS)), 5.0)),
+                "reason": (dims, np.full((1, len(V), 1, len(LOADS)), "too few")),
+                "delta_sigma_cut": over_boxes(box - values["cut_less"]),
+                **{
+                    f"{name}_cut_difference{end}": over_boxes(
+                        np.full(4, values["cut_less"]) + np.sign(by) * values["cut_half"]
+                    )
+                    for name in ("delta_sigma", "correlation_dimension")
+                    for end, by in ends.items()
+                },
+                "null_verdict": (dims, np.full((1, len(V), 1, len(LOADS)), values["null"])),
+                "null_reason": (dims, np.full((1, len(V), 1, len(LOADS)), "too few")),
+                **local_slopes(values, over_boxes),
+                "delta_sigma_random": over_boxes(values["random"]),
+            },
+            coords,
+        ),
+        "scaling": xr.Dataset(
+            {name: over_loads(found) for name, found in scaling.items()},
+            {"direction": ["W"], "offset": V, "normal_force": LOADS},
+        ),
+        "area": xr.Dataset(
+            {
+                f"corrected_exponent{end}": (
+                    ("direction", "offset"),
+                    [np.asarray(values["exponent"]) + by / 5],
+                )
+                for end, by in ends.items()
+            },
+            {"direction": ["W"], "offset": V},
+        ),
+        "domain_measures": xr.Dataset(
+            {
+                f"contact_at_lag_{way}{end}": (
+                    "normal_force",
+                    np.full(4, values[way] + np.sign(by) * values["lag_half"]),
+                )
+                for way in ("along", "across")
+                for end, by in ends.items()
+            },
+            {"normal_force": LOADS},
+        ),
+        "size_test": xr.Dataset(
+            {
+                "verdict": (("estimator", "normal_force"), values["size_verdict"]),
+                "slope_verdict": (("estimator", "normal_force"), values["size_verdict"]),
+                "decides": (
+                    ("estimator", "normal_force"),
+                    np.isin(values["size_verdict"], DECIDED) & ~np.asarray(values["beyond"]),
+                ),
+                "reason": (("estimator", "normal_force"), np.full((2, 2), "too wide")),
+                **{
+                    f"predicted_slope{end}": (
+                        ("estimator", "normal_force"),
+                        np.full((2, 2), values["predicted"] + 2 * by),
+                    )
+                    for end, by in ends.items()
+                },
+                "area_exponent": ("normal_force", [-0.6, -0.4]),
+                "area_exponent_low": ("normal_force", [-0.8, -0.5]),
+                "area_exponent_high": ("normal_force", [-0.4, -0.3]),
+                "beyond_study": ("normal_force", values["beyond"]),
+            },
+            {
+                "estimator": ["area", "box"],
+                "nominal_pressure": ("normal_force", [25.0, 75.0]),
+            },
+        ),
+        "windows": xr.Dataset(windows, {"offset": V, "normal_force": [1000.0]}),
+    }
+    nodes = made["closure"]["nodes"].values
+    made["domains"] = made["domains"].assign(localisation(made["domains"], nodes))
+    return made
