@@ -26,6 +26,8 @@ from .renormalisation import compare_dimensions, renormalisation
 DOMAIN_FIELDS = {
     **rows_of("delta_sigma", "1", "box-counting dimension Delta_sigma of the contact domain"),
     "delta_sigma_error": ("1", "Delta_sigma, solver error bound"),
+    "delta_sigma_small_boxes": ("1", "Delta_sigma by the smaller half of the box sizes fitted"),
+    "delta_sigma_large_boxes": ("1", "Delta_sigma by the larger half of the box sizes fitted"),
     "fit_min": ("mm", "smallest box fitted"),
     "fit_max": ("mm", "largest box fitted"),
     "fit_n": ("1", "box sizes fitted"),
@@ -60,14 +62,10 @@ _TABLE = {
         "1",
         "contact clusters of 2^k to 2^(k+1) - 1 nodes, by octave k",
     ),
-    "reason": (_ORDER, "1", "why there is no dimension"),
+    "reason": (_ORDER, "1", "why there is no dimension, or none with an interval"),
     "estimator": (_ORDER, "1", "what delta_sigma is estimated by"),
-    "determined": (_ORDER, "1", "whether the interval of delta_sigma is no wider than 1"),
-    "ordinary_determined": (
-        _ORDER,
-        "1",
-        "whether the interval of delta_sigma_ordinary is no wider than 1",
-    ),
+    "determined": (_ORDER, "1", "whether delta_sigma has an interval"),
+    "ordinary_determined": (_ORDER, "1", "whether delta_sigma_ordinary has an interval"),
     "box_count": (
         (*_ORDER, "scale"),
         "1",
@@ -111,8 +109,8 @@ def analyse_domains(
     Returns
     -------
     xr.Dataset
-        :data:`DOMAIN_FIELDS`, ``reason`` (why there is no dimension) and ``determined`` over
-        (direction, offset, resolution, load); ``box_count`` and ``box_used`` with a last dimension
+        :data:`DOMAIN_FIELDS`, ``reason`` (why there is no dimension, or no interval) and
+        ``determined`` over (direction, offset, resolution, load); ``box_count`` and ``box_used`` with a last dimension
         scale, ``mean_count`` with mean_scale, ``cluster_octaves`` with octave; ``box_side`` and
         ``mean_side`` (resolution, ...) in mm; the curves of the laws that are fitted, by
         :func:`domain.fitted_counts.fitted_counts` and :func:`domain.cluster_laws.cluster_laws`.
@@ -203,6 +201,8 @@ def _row(domain, spacing, ambiguous, direction, **how) -> dict:
     return {
         **box.columns("delta_sigma"),
         "delta_sigma_error": ambiguous / domain.sum() if box.known else np.nan,
+        "delta_sigma_small_boxes": box.small_boxes,
+        "delta_sigma_large_boxes": box.large_boxes,
         "fit_min": box.over[0],
         "fit_max": box.over[1],
         "fit_n": box.n,

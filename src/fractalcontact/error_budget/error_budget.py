@@ -28,13 +28,13 @@ from .refinement import (
 )
 
 #: Sources of error: those of the number as a property of this surface, those of the population the
-#: window is a sample of; and, in no total, the change of the surface with its resolution and what a
-#: harder material would change.
-OF_SURFACE = ("solver", "numerical", "estimator")
+#: window is a sample of; and, in no total, the change of the surface with its resolution, what a
+#: harder material would change, and what another estimator gives.
+OF_SURFACE = ("solver", "numerical")
 OF_POPULATION = ("counting", "window", "registration")
 #: Of these only the larger is in a total: a spread over windows holds that of counting.
 _OF_WINDOW = ("counting", "window")
-SOURCES = (*OF_SURFACE, *OF_POPULATION, "resolution", "model")
+SOURCES = (*OF_SURFACE, *OF_POPULATION, "resolution", "model", "estimator")
 
 #: Hardness of rough contacts over the joint wall strength: between 1 and this (Tabor's 3).
 HARDEST = 3.0
@@ -84,7 +84,6 @@ _TABLE = {
 
 _FROM = {1: "interpolated between loads", 2: "s and s/2", 4: "s, s/2 and s/4"}
 _DEFINED = "none: no estimator is chosen"
-_COUNTED = "none beside the estimator's interval, which leaves out parts of the window"
 
 
 def map_curve(
@@ -154,12 +153,12 @@ def error_budget(
     errors = {
         "solver": _solver(curve),
         "numerical": over_loads(curve.forces, found.error, _scale(curve), WIDENED),
-        "estimator": _estimator(curve),
         "counting": counting_error(curve),
         "window": over_loads(curve.forces, windows, _scale(curve)),
         "registration": _registration(registration_spread, len(curve.forces)),
         "resolution": _resolution(loading, curves, domains, curve),
         "model": _model(curve),
+        "estimator": _estimator(curve),
     }
     reasons = _reasons(curve, errors, found, effective, registration_spread is not None)
     return _budget(curve, values, errors, found, reasons, (n_windows, effective))
@@ -279,17 +278,10 @@ def _solver(curve: LoadCurve) -> np.ndarray:
 
 
 def _estimator(curve: LoadCurve) -> np.ndarray:
-    """Choice of the estimator of Delta_sigma; no other quantity has one.
-
-    The published interval, which holds fit range, rival laws and parts of the window left out, or
-    the distance to the ordinary slope if that is larger: what Fig. 9 calls undetermined has no
-    small error here.
-    """
-    domains = curve.domains
+    """Distance of the ordinary box-counting slope; only Delta_sigma has estimators to choose."""
     spread = np.zeros((len(BUDGET_QUANTITIES), len(curve.forces)))
-    value, low, high = Estimate.read(domains, "delta_sigma").ends
-    other = np.abs(domains["delta_sigma_ordinary"].values - value)
-    spread[-1] = np.fmax(np.fmax(high - value, value - low), other)
+    domains = curve.domains
+    spread[-1] = np.abs((domains["delta_sigma_ordinary"] - domains["delta_sigma"]).values)
     return spread
 
 
@@ -311,8 +303,8 @@ def counting_error(curve: LoadCurve) -> np.ndarray:
     force varies by as much, so that at a given force the separation does by
     l/sqrt(N), l = sigma_0/(d sigma/d w_int) being the length over which the pressure falls by e.
     Closure also counts from the highest of the heights, whose tail falls over that length: the
-    largest of many such scatters by pi/sqrt(6) l (Gumbel). The interval of Delta_sigma, which is
-    its estimator's error, counts contacts in its own way. Where more than half of the window
+    largest of many such scatters by pi/sqrt(6) l (Gumbel). That of Delta_sigma is its published
+    interval, which leaves out parts of the window. Where more than half of the window
     touches there are no separate contacts, and nothing but the area is known: f (1 - f) is the
     variance of a fraction f.
     """
@@ -328,7 +320,7 @@ def counting_error(curve: LoadCurve) -> np.ndarray:
             fraction * length,
             fraction * np.sqrt(np.clip(1 - touching, 0, 1)) * area,
             np.where(touching > MOST_TOUCHING, np.nan, fraction * stiffness),
-            np.full(len(curve.forces), np.nan),
+            Estimate.read(curve.domains, "delta_sigma").width / 2,
         ]
     )
 
@@ -396,8 +388,8 @@ def _reasons(curve, errors, found: Refinement, effective, registered: bool) -> n
         "numerical": "the grid is too large to refine, or the faces are flush"
         if found.finest.max() == 1
         else "not resolved at any load refined",
-        "estimator": "no dimension at any load",
-        "counting": "no stiffness of the interface at any load",
+        "estimator": "no other estimate at any load",
+        "counting": "not known at any load",
         "window": TOO_SMALL
         if effective < FEWEST_EFFECTIVE
         else "no value in every window at any load",
@@ -412,9 +404,7 @@ def _reasons(curve, errors, found: Refinement, effective, registered: bool) -> n
     reasons = np.full((len(BUDGET_QUANTITIES), len(SOURCES)), "", object)
     for i, name in enumerate(BUDGET_QUANTITIES):
         for j, source in enumerate(SOURCES):
-            if source == "counting" and name == "delta_sigma":
-                reasons[i, j] = _COUNTED
-            elif not np.isfinite(errors[source][i]).any():
+            if not np.isfinite(errors[source][i]).any():
                 reasons[i, j] = missing[source]
             elif source == "estimator" and name != "delta_sigma":
                 reasons[i, j] = _DEFINED

@@ -7,7 +7,7 @@ from .summary import Quantity, Specimen
 from .words import with_unit
 
 #: Sources of the total of this surface, in the order of the bar; the rest belong to the population.
-OF_SURFACE = ("solver", "numerical", "estimator")
+OF_SURFACE = ("solver", "numerical")
 OF_POPULATION = (*OF_SURFACE, "counting", "window", "registration")
 
 
