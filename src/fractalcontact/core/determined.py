@@ -82,19 +82,6 @@ def decided_by_scan(share: float | np.ndarray | xr.DataArray) -> Any:
     return share > DECISIVE
 
 
-def is_determined(low: float, high: float) -> bool:
-    """Determination of a dimension: it has an interval, as of `MIN_NODES` nodes or more.
-
-    How wide it is says how well the dimension is known, and each verdict what that decides.
-
-    Parameters
-    ----------
-    low, high : float
-        NaN where there is none.
-    """
-    return bool(np.isfinite(high - low))
-
-
 def follows_law(clusters: Any, distance: Any) -> Any:
     """Agreement of cluster sizes with their power law, to the distance that chance allows.
 

@@ -46,8 +46,8 @@ SIZE = Scale()
 EXPONENT = Scale(span=1.0)
 #: Angles in degrees.
 ANGLE = Scale(span=30.0)
-#: Fractal dimensions and their slopes, which lie within 2: those of a contact domain, 0 and 2, need
-#: no interval.
+#: Fractal dimensions and their slopes, which lie within 2: any interval determines them, and each
+#: verdict is by what it leaves out; those of a contact domain, 0 and 2, need none.
 DIMENSION = Scale(span=2.0, exact=(0.0, 2.0), decimals=2)
 
 

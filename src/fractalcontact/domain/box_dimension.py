@@ -35,7 +35,7 @@ ESTIMATORS = {
 ONE_NODE = "one node is in contact, and what touches within its cell is not known"
 
 #: Why a dimension has no interval.
-FEW_NODES = f"{{}} nodes in contact, {MIN_NODES} are needed for an interval"
+FEW_NODES = f"no interval: {{}} nodes in contact, {MIN_NODES} are needed"
 ONE_PART = "no interval: nearly all nodes lie in one part of the domain"
 
 
@@ -119,10 +119,11 @@ def box_dimension(
         `dimension`, `low`, `high`; `r_min`, `r_max` of the fit in mm and its `n` sizes; `r` (mm),
         `count` (of the minimal cover) and `used` of all sizes; `reason` why there is no dimension
         (NaN) or no interval, else ""; `estimator`, "exact", "mean" or "cover" (for "mean", `n` are
-        the sizes of the law and `used` those of the minimal cover within its range); `misfit`, the root mean
-        square of the counts about the law, as a fraction of them; `terms` (mm) of the law, from
-        which :func:`domain.count_law.law_count` draws its curve; `means`, the mean counts over grid
-        origins; `ordinary`, the ordinary slope of :mod:`domain.ordinary_slope`, where any count is.
+        the sizes of the law and `used` those of the minimal cover within its range); `misfit`, the
+        root mean square of the counts about the law, as a fraction of them; `terms` (mm) of the
+        law, from which :func:`domain.count_law.law_count` draws its curve; `means`, the mean counts
+        over grid origins; `ordinary`, the ordinary slope of :mod:`domain.ordinary_slope`, where any
+        count is.
 
     Notes
     -----

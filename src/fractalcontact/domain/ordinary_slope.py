@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..core.estimate import Estimate
+from ..core.estimate import DIMENSION, Estimate, Scale
 from ..core.fitting import fit_line
 from ..core.limits import MIN_NODES
 from ..core.ranges import within
@@ -33,6 +33,7 @@ class OrdinarySlope(Estimate):
     sizes: np.ndarray
     counts: np.ndarray
     used: np.ndarray
+    scale: Scale = DIMENSION
 
 
 def dyadic_sizes(shape: tuple[int, ...]) -> np.ndarray:

@@ -11,6 +11,7 @@ from ..core.datasets import labelled_dataset
 from ..core.estimate import Estimate
 from ..core.intervals import t_quantile
 from ..core.labels import cf_attrs
+from ..core.limits import MIN_NODES
 from ..core.settings import StateSettings
 from ..mechanics.joint import prefractal
 from ..mechanics.loading import JointLoading
@@ -314,13 +315,14 @@ def counting_error(curve: LoadCurve) -> np.ndarray:
     length = np.where(touching > MOST_TOUCHING, np.nan, curve.decay_length())
     summit_spread = t_quantile(np.inf) * _LARGEST_SPREAD * length
     _, _, area, stiffness, _ = curve.values()
+    value, low, high = Estimate.read(curve.domains, "delta_sigma").ends
     return np.array(
         [
             np.hypot(fraction * length, summit_spread),
             fraction * length,
             fraction * np.sqrt(np.clip(1 - touching, 0, 1)) * area,
             np.where(touching > MOST_TOUCHING, np.nan, fraction * stiffness),
-            Estimate.read(curve.domains, "delta_sigma").width / 2,
+            np.fmax(high - value, value - low),
         ]
     )
 
@@ -389,7 +391,7 @@ def _reasons(curve, errors, found: Refinement, effective, registered: bool) -> n
         if found.finest.max() == 1
         else "not resolved at any load refined",
         "estimator": "no other estimate at any load",
-        "counting": "not known at any load",
+        "counting": f"fewer than {MIN_NODES} nodes, or no stiffness, at any load",
         "window": TOO_SMALL
         if effective < FEWEST_EFFECTIVE
         else "no value in every window at any load",

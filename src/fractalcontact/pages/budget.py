@@ -79,6 +79,7 @@ def _bar(quantity: Quantity) -> Bar:
 
 def _words(quantity, source):
     error = quantity.sources[source]
-    if math.isfinite(error) and not (error == 0 and quantity.reasons[source]):
-        return quantity.error_words(error)
-    return quantity.reasons[source] or "not known"
+    note = quantity.reasons[source]
+    if math.isfinite(error) and not (error == 0 and note):
+        return quantity.error_words(error) + (f" ({note})" if note else "")
+    return note or "not known"

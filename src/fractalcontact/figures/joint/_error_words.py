@@ -18,15 +18,15 @@ QUANTITIES = {
 SOURCES = {
     "solver": "solver",
     "numerical": "numerical (same surface, finer grid)",
-    "estimator": "choice of estimator",
     "counting": "counting of contacts",
     "window": "other windows of the scan",
     "registration": "registration of the faces",
     "resolution": "every second node: another surface, in no total",
     "model": "three times the hardness: another model, in no total",
+    "estimator": "ordinary box-counting slope: another estimator, in no total",
 }
 TOTALS = {
-    "total": ("total for this very surface\n(solver, numerical, estimator)", "-"),
+    "total": ("total for this very surface\n(solver, numerical)", "-"),
     "total_of_population": (
         "total for any surface of its kind\n(also counting or windows, registration)",
         "--",
