@@ -339,7 +339,7 @@ def _of_cover(cover: _Cover, ladder, estimator, extent) -> BoxDimension:
     slope, intercept = line.slope.value, line.intercept.value
     law = np.exp(intercept + slope * np.log(r[ladder]))
     small, large = (
-        0.0 - _line(r[ladder], count[ladder], half).slope.value
+        0.0 - _line(r, count, np.flatnonzero(ladder)[half]).slope.value
         if line.n // 2 >= FEWEST_SCALES
         else np.nan
         for half in halves(line.n)

@@ -104,8 +104,10 @@ def law_of_means(
     half = float(np.hypot(error, waves))
     of_halves = (np.nan, np.nan)
     if sizes.size // 2 >= FEWEST_SCALES:
-        small, large = halves(sizes.size)
-        of_halves = tuple(law_dimension(law, sizes[p], count[p], side) for p in (small, large))
+        small, large = (
+            law_dimension(law, sizes[part], count[part], side) for part in halves(sizes.size)
+        )
+        of_halves = small, large
     ends = law.dimension - half, law.dimension + half
     return FittedLaw(law, ends, sizes, terms, of_halves), means
 

@@ -53,6 +53,14 @@ class DeltaSigma(Estimate):
         """Whether each value is determined."""
         return np.array([self[i].determined for i in range(np.size(self.value))])
 
+    def number(self, i: int) -> str:
+        """Delta_sigma under the i-th load for a sentence, without interval or reason."""
+        return f"{self.value[i]:.2f}" if self.known[i] else "none"
+
+    def eq6_exponent(self, i: int) -> str:
+        """Exponent of the side b in eq. 6, Delta_sigma - 2, under the i-th load."""
+        return f"{self.value[i] - 2:.2f}" if self.known[i] else "none"
+
     def entry(self, i: int) -> str:
         """Delta_sigma under the i-th load for a legend, which has no room for the reason."""
         text = self.at(i).split(":")[0]
