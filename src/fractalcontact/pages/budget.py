@@ -81,5 +81,6 @@ def _words(quantity, source):
     error = quantity.sources[source]
     note = quantity.reasons[source]
     if math.isfinite(error) and not (error == 0 and note):
-        return quantity.error_words(error) + (f" ({note})" if note else "")
+        beside = f" ({note})" if source == "estimator" else ""
+        return quantity.error_words(error) + beside
     return note or "not known"
