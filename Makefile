@@ -18,6 +18,7 @@
 # make check-accuracy  the study against itself at full cost: numbers within their errors, and seconds
 # make keep, before a change, and make same, after it: what differs, bit for bit, in the smoke study
 #   and the default one (or STUDY); AGAINST=folder of other results; RENAMED=file of new names
+# make calibration   intervals of Delta_sigma: stated half-widths over those seen, and coverage (10 minutes)
 # make cost   where the time of the study went
 # make campaign SPECIMENS=1000   the scans and the study of that many small twins, in results/campaigns
 # make bench  the contact solver timed; with PEERS=1 also against other codes, installed for it
@@ -43,7 +44,7 @@ RUN = exec $(BIN)/python workflow/run.py "$$STUDY" $(if $(filter yes y true 1,$(
   $(if $(filter yes y true 1,$(VERBOSE)),--verbose)
 OPTIONS = -- --cores $(CORES)
 
-.PHONY: describe all study campaign report smoke size-effect-small keep-going slurm dry-run verify faults check-scans check-accuracy keep same cost accuracy test test-all test-browser test-slurm test-slurm-accounting docs bench problems grid-table extremes fuzz fuzz-dialects lint format lock clean
+.PHONY: describe all study campaign report smoke size-effect-small keep-going slurm dry-run verify faults check-scans check-accuracy calibration keep same cost accuracy test test-all test-browser test-slurm test-slurm-accounting docs bench problems grid-table extremes fuzz fuzz-dialects lint format lock clean
 # Two runs in one checkout would refuse each other.
 .NOTPARALLEL:
 all: study
@@ -105,6 +106,9 @@ same:
 	$(MAKE_COMPARED)
 	@$(BIN)/python benchmarks/same.py compare $(COMPARED) \
 	  $${AGAINST:+--against "$$AGAINST"} $${RENAMED:+--renamed "$$RENAMED"}
+
+calibration: $(VENV)/installed
+	@$(BIN)/python benchmarks/calibration.py --output results/calibration.csv
 
 cost: study
 	@$(BIN)/python benchmarks/study_cost.py "$$STUDY"

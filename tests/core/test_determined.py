@@ -19,9 +19,8 @@ from fractalcontact.core.determined import determined
         ((-0.1, -2.2, 1.4), {"span": 30.0}, True),
         ((-0.223, -2.79, 2.34), {"span": 1.0}, False),  # an exponent
         ((3.0, 1.9, 4.1), {"span": 1.0}, True),
-        ((0.92, 0.14, 2.00), {"widest": 1.0}, False),  # a dimension, of 0 to 2
-        ((1.1, 0.4, 1.8), {"widest": 1.0}, False),
-        ((0.2, -0.1, 0.5), {"span": 1.0, "widest": 1.0}, True),
+        ((0.92, 0.14, 2.00), {"span": 2.0}, True),  # a dimension, of 0 to 2
+        ((0.92, -0.4, 2.4), {"span": 2.0}, False),
         ((0.05, 0.0, 0.4), {"span": 1.0}, True),
         ((0.07, -0.06, 0.20), {}, True),
         ((0.01, -0.06, 0.20), {}, False),

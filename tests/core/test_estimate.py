@@ -73,7 +73,8 @@ def test_estimates_are_stacked_in_the_order_of_an_array_and_taken_apart_again():
         ((0.1, -0.3, 0.5), SIZE, True),
         ((0.1, -0.3, 0.5), EXPONENT, True),
         ((0.1, -0.6, 0.8), EXPONENT, False),  # wider than 1, and of either sign
-        ((1.2, 0.6, 1.8), DIMENSION, False),  # wider than half of what a set in the plane can have
+        ((1.2, 0.1, 2.0), DIMENSION, True),
+        ((1.2, -0.4, 2.8), DIMENSION, False),  # wider than all that a set in the plane can have
         ((2.0, 2.0, 2.0), DIMENSION, True),  # a full window
         ((1.2, 1.2, 1.2), DIMENSION, False),  # an error left out
         ((1.0, np.nan, np.nan), SIZE, False),
@@ -117,7 +118,7 @@ def test_error_has_two_digits_however_small_or_large():
 @pytest.mark.parametrize(
     ("ends", "scale", "unit", "words"),
     [
-        ((0.96, 0.02, 1.9), DIMENSION, "", "undetermined (0.96 ± 0.94)"),
+        ((0.96, -0.14, 2.06), DIMENSION, "", "undetermined (0.96 ± 1.10)"),
         ((3.0, -40, 46), SIZE, "mm", "undetermined (3 ± 43 mm)"),
         ((0.96, 0.9, 1.02), DIMENSION, "", "0.96 [0.90, 1.02]"),
         ((-1e-12, -0.004, 0.3), DIMENSION, "", "0.00 [0.00, 0.30]"),

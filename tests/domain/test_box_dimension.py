@@ -7,8 +7,9 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from known_sets import cantor_dust, percolation_cluster, sierpinski_carpet
 
+from fractalcontact.core.limits import MIN_NODES
 from fractalcontact.domain.box_counts import box_count, box_sizes
-from fractalcontact.domain.box_dimension import box_dimension, local_slopes
+from fractalcontact.domain.box_dimension import box_dimension, dimension_of_domain, local_slopes
 from fractalcontact.domain.mean_law import law_of_means
 from fractalcontact.surface.synthesis import self_affine
 
@@ -148,15 +149,25 @@ def test_filled_rectangle_inside_a_window(shape):
     assert result.dimension == pytest.approx(2, abs=0.02)
 
 
-@pytest.mark.parametrize(
-    ("side", "gap", "shift"), [(100, 40, 0), (60, 200, 0), (40, 300, 100), (100, 200, 150)]
-)
-def test_two_squares_are_plane_within_their_interval(side, gap, shift):
+def two_squares(side, gap, shift):
     domain = np.zeros((512, 512), dtype=bool)
     domain[100 : 100 + side, 10 : 10 + side] = True
     domain[100 + shift : 100 + shift + side, 10 + side + gap : 10 + 2 * side + gap] = True
-    result = box_dimension(domain, 0.1)
+    return box_dimension(domain, 0.1)
+
+
+@pytest.mark.parametrize(("side", "gap", "shift"), [(100, 40, 0), (100, 200, 150)])
+def test_two_squares_are_plane_within_their_interval(side, gap, shift):
+    result = two_squares(side, gap, shift)
     assert result.low < 2 == pytest.approx(result.high)
+
+
+@pytest.mark.parametrize(("side", "gap", "shift"), [(60, 200, 0), (40, 300, 100)])
+def test_two_squares_far_apart_have_slopes_that_bend(side, gap, shift):
+    # The value is that over its range, and so is its interval: the bend is a finding beside it.
+    result = two_squares(side, gap, shift)
+    assert result.large_boxes < result.dimension < result.small_boxes
+    assert result.small_boxes - result.large_boxes > 0.3
 
 
 @pytest.mark.parametrize("n", ensemble("carpet sizes"))
@@ -217,7 +228,10 @@ def test_sets_the_law_was_not_tuned_on(name, n):
     for _ in range(levels):
         points = ((points[:, np.newaxis] + np.array(kept)) / ratio).reshape(-1, 2)
     exact = np.log(len(kept)) / np.log(ratio)
-    result = box_dimension(drawn(points, n), 0.1)
+    domain = drawn(points, n)
+    assert box_dimension(domain, 0.1).dimension == pytest.approx(exact, abs=0.08)
+    # Whole cells taken for centres are a bias, which an interval of sampling does not hold.
+    result = box_dimension(domain, 0.1, whole_cells=True)
     assert result.dimension == pytest.approx(exact, abs=0.08)
     assert result.low <= exact <= result.high
 
@@ -434,6 +448,32 @@ def test_rough_domains_are_measured_by_mean_counts():
         assert 0 <= result.low < result.dimension < result.high <= 2
 
 
+@pytest.mark.parametrize("seed", range(4))
+def test_fewer_nodes_never_determine_a_dimension_that_more_do_not(seed):
+    rng = np.random.default_rng(seed)
+    heights = self_affine((128, 128), 1.0, 0.8, rms=1.0, seed=seed)
+    order = rng.permutation(np.flatnonzero(heights > np.quantile(heights, 0.95)))
+    determined = []
+    for nodes in (3, 5, 8, 12, 18, 25, 29, 30, 35, 45, 60, 100, 200, 400, order.size):
+        domain = np.zeros(heights.shape, bool)
+        domain.flat[order[:nodes]] = True
+        result = dimension_of_domain(domain, 0.1)
+        determined.append(result.determined)
+        if nodes < MIN_NODES and result.known:
+            assert f"{nodes} nodes" in result.reason
+        # The ordinary slope keeps the same rule.
+        assert np.isfinite(result.ordinary.width) <= (nodes >= MIN_NODES)
+    assert determined == sorted(determined)
+    assert determined[6:8] == [False, True]
+
+
+def test_bend_of_the_counts_is_no_error_of_the_slope():
+    # A cut of a smooth surface bends from 2 at small boxes to 1: its interval is of sampling.
+    heights = self_affine((256, 256), 1.0, 0.8, rms=1.0, seed=5)
+    result = dimension_of_domain(heights > np.quantile(heights, 0.97), 0.1)
+    assert result.large_boxes < result.dimension < result.small_boxes
+
+
 def test_local_slopes_of_a_power_law():
     r = np.array([1, 1.5, 2, 3, 4, 6, 8.0])
     middle, slope = local_slopes(r, r**-1.4)
@@ -452,7 +492,7 @@ def test_bad_arguments_are_refused():
 def test_no_law_is_fitted_where_every_box_is_occupied_wherever_the_grid_begins(side):
     domain = np.random.default_rng(1).random((side, side + 8)) > 0.1
     domain[[0, -1]] = domain[:, [0, -1]] = True  # so that no box at the rim is empty
-    law, means = law_of_means(domain, (0, np.inf), 2.0, None)
+    law, means = law_of_means(domain, (0, np.inf), None)
     assert law is None
     # A length of n cells meets (n - 1) / r + 1 boxes of r in the mean.
     boxes = np.prod([(n - 1) / means.sizes + 1 for n in domain.shape], axis=0)

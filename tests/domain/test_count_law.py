@@ -24,7 +24,7 @@ LAWS = [
 @pytest.mark.parametrize(("dimension", "outline"), LAWS)
 @pytest.mark.parametrize("c", [0, 1])
 def test_law_is_found_again(dimension, outline, c):
-    law, _ = best_law(SIZES, counts(dimension, c, outline), 256)
+    law = best_law(SIZES, counts(dimension, c, outline), 256)
     assert law.dimension == pytest.approx(dimension, abs=2e-3)
     # With an outline, what a node stands for may not show: sets of whole numbers do without.
     if len(outline) == 1:
@@ -37,27 +37,24 @@ def test_law_is_found_again(dimension, outline, c):
 
 def test_filled_figures_of_any_outline_are_plane():
     for half_perimeter in (1.8, 2.5, 3.9):
-        law, _ = best_law(SIZES, counts(2.0, 0, (1.0, half_perimeter, 1.0)), 256)
+        law = best_law(SIZES, counts(2.0, 0, (1.0, half_perimeter, 1.0)), 256)
         assert law.dimension == pytest.approx(2, abs=1e-3)
 
 
 @pytest.mark.parametrize("whole_cells", [True, False])
 def test_what_fills_less_than_a_line_has_no_outline(whole_cells):
     bent = counts(0.8, int(not whole_cells), (1.0, 1.0))
-    law, rivals = best_law(SIZES, bent, 256, whole_cells)
+    law = best_law(SIZES, bent, 256, whole_cells)
     assert (law.outline, law.dimension) == (0, pytest.approx(0.8, abs=0.1))
-    assert all(other.dimension >= 1 for other in rivals if other.outline)
 
 
 def test_rough_counts_are_taken_for_centres():
     rng = np.random.default_rng(0)
     noisy = counts(1.4, 0, (1.0,)) * np.exp(0.1 * rng.standard_normal(SIZES.size))
-    law, rivals = best_law(SIZES, noisy, 256)
+    law = best_law(SIZES, noisy, 256)
     assert law.c == 1
-    assert any(rival.c == 0 for rival in rivals)
 
 
 def test_no_law_with_too_few_scales():
-    law, rivals = best_law(SIZES[:2], SIZES[:2], 256)
+    law = best_law(SIZES[:2], SIZES[:2], 256)
     assert law is None
-    assert rivals == []

@@ -5,7 +5,6 @@ import pytest
 from ensembles import ensemble
 from known_sets import cantor_dust, percolation_cluster, sierpinski_carpet
 
-from fractalcontact.core.determined import is_determined
 from fractalcontact.core.verdicts import (
     BEYOND_BOTH,
     BEYOND_RANDOM,
@@ -91,12 +90,6 @@ DEPARTURES = [
 @pytest.mark.parametrize(("random", "cut", "surface", "expected"), DEPARTURES)
 def test_departure_is_what_both_nulls_say(random, cut, surface, expected):
     assert departure_of(random, cut, surface=surface) == expected
-
-
-def test_wide_and_missing_intervals_determine_nothing():
-    assert is_determined(0.5, 1.5)
-    assert not is_determined(0.14, 2.0)
-    assert not is_determined(np.nan, np.nan)
 
 
 # -- independent -----------------------------------------------------------------------------------

@@ -206,3 +206,11 @@ def test_missing_dimension_never_disagrees():
     result = compare_dimensions(known([1.5], 0.1), known([np.nan], 0.1))
     assert np.isnan(result.difference)
     assert not result.disagree
+
+
+def test_one_degree_of_freedom_is_no_interval():
+    three, four = (renormalisation(S[:n], AREA[:, :n], FORCE) for n in (3, 4))
+    np.testing.assert_allclose(three.delta_sigma, DELTA)
+    assert np.isnan(three.delta_sigma_low).all()
+    assert np.isnan(three.delta_sigma_high).all()
+    assert np.isfinite(four.delta_sigma_high - four.delta_sigma_low).all()

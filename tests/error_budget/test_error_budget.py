@@ -139,18 +139,22 @@ def test_the_largest_source_has_no_larger_beside_it(one):
             assert budget["error"].sel(source=source)[i, j] == largest[i, j]
 
 
-def test_an_undetermined_dimension_has_no_small_error(one):
-    loading, _, budget, _ = one
+def test_the_interval_of_the_dimension_counts_contacts_and_no_other_estimator_is_in_a_total():
+    loading, _, budget, _ = budget_of("crushing")  # under whose loads more than 30 nodes touch
     (offset,) = loading.offsets
     low, high = (
         end.sel(direction="E", resolution=1).sel(offset=offset, method="nearest").values
         for end in budget.attrs["interval"]
     )
-    error = budget["error"].sel(quantity="delta_sigma", source="estimator").values
+    of_dimension = budget.sel(quantity="delta_sigma")
+    error = of_dimension["error"].sel(source="counting").values
     half = (high - low) / 2
     known = np.isfinite(half)
     assert known.any()
     assert (error[known] >= half[known] - 1e-12).all()
+    assert (of_dimension["error"].sel(source="estimator") > 0).any()
+    own = of_dimension["error"].sel(source=["solver", "numerical"])
+    np.testing.assert_allclose(of_dimension["total"], np.sqrt((own**2).sum("source", skipna=False)))
 
 
 def test_published_values_are_those_of_the_stages(one):

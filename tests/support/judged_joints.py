@@ -76,7 +76,6 @@ def stages(**changes):
         "delta_sigma_area": [0.2, 0.8, 1.4, 1.9],
         "delta_sigma_box": [0.2, 0.8, 1.4, 1.9],
         "half": 0.05,
-        "disagree": np.zeros(4, bool),
         "difference_half": 0.1,
         "density_exponent": -0.3,
         "size_verdict": [["agrees"] * 2, ["agrees", "undecided"]],
@@ -115,7 +114,6 @@ def stages(**changes):
         "difference": area - box,
         "difference_low": area - box - values["difference_half"],
         "difference_high": area - box + values["difference_half"],
-        "disagree": values["disagree"],
         "n": np.full(4, 4),
         "r2": np.full(4, 0.99),
     }

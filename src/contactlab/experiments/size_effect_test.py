@@ -16,7 +16,6 @@ import xarray as xr
 from fractalcontact.core.datasets import labelled, labelled_dataset
 from fractalcontact.core.estimate import Estimate, rows_of
 from fractalcontact.core.labels import cf_attrs
-from fractalcontact.core.limits import WIDEST
 from fractalcontact.mechanics.theory import (
     PERIODIC_AREAS,
     PERIODIC_SCATTER,
@@ -142,7 +141,7 @@ def with_comparisons(result: xr.Dataset) -> xr.Dataset:
     xr.Dataset
         With ``eq6_exponent`` (hurst, reduced_pressure, delta_estimator) and its interval, and
         ``domain_determined`` and ``domain_beyond_cut`` (hurst, reduced_pressure): whether both
-        dimensions have intervals narrow enough to be compared, and whether these are disjoint.
+        dimensions have intervals, and whether these are disjoint.
     """
     dims = ("hurst", "reduced_pressure")
     found = result.transpose(*dims, ...)
@@ -159,10 +158,10 @@ def with_comparisons(result: xr.Dataset) -> xr.Dataset:
     }
     values: dict[str, np.ndarray] = wanted.columns("eq6_exponent")
     domain, cut = (Estimate.read(result, name) for name in ("band_delta", "cut_delta"))
-    determined = (domain.width <= WIDEST) & (cut.width <= WIDEST)
+    determined = np.isfinite(domain.width) & np.isfinite(cut.width)
     beyond = determined & ((domain.low > cut.high) | (domain.high < cut.low))
     table |= {
-        "domain_determined": (dims, "1", "dimensions of domain and cut are narrow enough"),
+        "domain_determined": (dims, "1", "dimensions of domain and cut have intervals"),
         "domain_beyond_cut": (dims, "1", "dimension of the domain differs from its cut's"),
     }
     values |= {"domain_determined": determined, "domain_beyond_cut": beyond}

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from .limits import CONFIDENCE, DECISIVE, LARGEST_DISTANCE, WIDEST
+from .limits import CONFIDENCE, DECISIVE, LARGEST_DISTANCE
 
 #: An interval whose ends are farther apart than this factor says not even the order of magnitude.
 DECADE = 10.0
@@ -21,7 +21,6 @@ def determined(
     high: float,
     *,
     span: float = 0.0,
-    widest: float = np.inf,
     exact: Sequence[float] = (),
 ) -> bool:
     """Whether an interval determines its quantity, so that the number may be printed.
@@ -33,8 +32,6 @@ def determined(
     span : float
         An interval up to this wide is narrow whatever the value, as 1 is for exponents; 0 where the
         quantity has no scale of its own.
-    widest : float
-        One wider than this says nothing whatever the value, as half of the physical range.
     exact : sequence of float
         Values that need no interval: a full window has the dimension 2.
 
@@ -51,8 +48,8 @@ def determined(
     size = max(abs(low), abs(high))
     if width <= NO_WIDTH * max(size, span):
         return any(abs(value - known) <= NO_WIDTH for known in exact)
-    if width > widest or width <= span:
-        return width <= widest
+    if width <= span:
+        return True
     if low * high > 0:
         return size <= DECADE * min(abs(low), abs(high))
     return span == 0 and width <= DECADE * abs(value)
@@ -83,17 +80,6 @@ def decided_by_scan(share: float | np.ndarray | xr.DataArray) -> Any:
     bool, or array of bool
     """
     return share > DECISIVE
-
-
-def is_determined(low: float, high: float) -> bool:
-    """Determination of a dimension: its interval is no wider than `WIDEST`.
-
-    Parameters
-    ----------
-    low, high : float
-        NaN where there is no dimension.
-    """
-    return bool(high - low <= WIDEST)
 
 
 def follows_law(clusters: Any, distance: Any) -> Any:

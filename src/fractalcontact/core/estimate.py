@@ -31,12 +31,11 @@ _EVEN = 0.02
 class Scale(NamedTuple):
     """Kind of a quantity: which intervals determine it, and how its numbers are written.
 
-    ``span``, ``widest`` and ``exact`` are those of :func:`core.determined.determined`; without
+    ``span`` and ``exact`` are those of :func:`core.determined.determined`; without
     ``decimals`` numbers have three digits.
     """
 
     span: float = 0.0
-    widest: float = np.inf
     exact: tuple[float, ...] = ()
     decimals: int | None = None
 
@@ -47,8 +46,9 @@ SIZE = Scale()
 EXPONENT = Scale(span=1.0)
 #: Angles in degrees.
 ANGLE = Scale(span=30.0)
-#: Fractal dimensions and their slopes: those of a contact domain, 0 and 2, need no interval.
-DIMENSION = Scale(span=1.0, widest=1.0, exact=(0.0, 2.0), decimals=2)
+#: Fractal dimensions and their slopes, which lie within 2: any interval determines them, and each
+#: verdict is by what it leaves out; those of a contact domain, 0 and 2, need none.
+DIMENSION = Scale(span=2.0, exact=(0.0, 2.0), decimals=2)
 
 
 @dataclass(frozen=True)
@@ -147,8 +147,8 @@ class Estimate:
     @property
     def determined(self) -> Any:
         """Whether the interval determines a quantity of this kind; of a single number."""
-        span, widest, exact, _ = self.scale
-        return determined(*self.ends, span=span, widest=widest, exact=exact)
+        span, exact, _ = self.scale
+        return determined(*self.ends, span=span, exact=exact)
 
     def text(self, unit: str = "") -> str:
         """Value with its interval: "0.954 [0.912, 1.02] MPa"; of a single number.

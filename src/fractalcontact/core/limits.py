@@ -26,12 +26,8 @@ LARGEST_FRICTION_ANGLE = 70.0
 #: mean strength is a bound and no result.
 MOSTLY_TRUNCATED = 0.5
 
-#: A dimension whose 95 % interval is wider than this is undetermined: half of all that sets in the
-#: plane can have.
-WIDEST = 1.0
-
-#: A contact domain of fewer nodes is compared with no null model: one node more or less would
-#: change its pattern.
+#: A contact domain of fewer nodes is compared with no null model, and its dimension has no
+#: interval: one node more or less would change its pattern.
 MIN_NODES = CORRECTED_NODES
 
 #: Above this fraction of the load on suspicious cells, errors of the scans decide a number.

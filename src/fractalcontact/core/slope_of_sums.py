@@ -1,8 +1,10 @@
 """Intervals of slopes that are fitted to sums over one and the same set.
 
 Counts at many scales of one set are no independent points, and the error of a regression alone is
-far too small. Here parts of the window are left out one by one (the jackknife), and the choice of
-range and the waves about the line come on top.
+far too small. Here parts of the window are left out one by one (the jackknife), and the waves of
+the sums about their smooth bend are added in quadrature. The bend itself is no error: that a slope
+changes with the scale is a finding of its own, which local slopes and the slopes of both halves of
+the range show.
 """
 
 from collections.abc import Callable
@@ -21,28 +23,32 @@ BLOCKS = 4
 FEWEST_SCALES = 4
 
 
-def wave_error(misfit: float, scales: np.ndarray) -> float:
-    """How far a wave of this relative misfit (rms) about a power law tilts it over its range."""
-    return 2 * np.sqrt(2) * misfit / np.log(scales[-1] / scales[0])
+#: Degree of the smooth bend of a power law in logarithms.
+_BEND = 2
 
 
-def interval(value: float, others: list[float], error: float, wave: float) -> tuple[float, float]:
-    """Interval of a value: other ways to find it and the jackknife's error, in quadrature.
+def wave_error(scales: np.ndarray, residuals: np.ndarray) -> float:
+    """Slope that waves about the smooth bend of a power law may add to it over its range.
 
     Parameters
     ----------
-    value : float
-    others : list of float
-        From parts of the range, or other estimators; NaN where there is none.
-    error : float
-        From :func:`jackknife_error`.
-    wave : float
-        From :func:`wave_error`; added at both ends.
+    scales : (k,) ndarray
+    residuals : (k,) ndarray
+        Logarithms of what was summed, less those of the law.
+
+    Returns
+    -------
+    float
+        Tilt of a wave of the root mean square of the residuals about their parabola over log scale;
+        0 where the parabola goes through all of them.
     """
-    values = np.array([value, *others])
-    values = values[np.isfinite(values)]
-    below, above = value - values.min(), values.max() - value
-    return value - np.hypot(error, below) - wave, value + np.hypot(error, above) + wave
+    freedom = scales.size - _BEND - 1
+    if freedom < 1:
+        return 0.0
+    x = np.log(scales / scales[0])
+    powers = np.vander(x, _BEND + 1)
+    about = residuals - powers @ np.linalg.lstsq(powers, residuals, rcond=None)[0]
+    return float(2 * np.sqrt(2 * np.sum(about**2) / freedom) / x[-1])
 
 
 def halves(n: int) -> tuple[slice, slice]:
@@ -52,10 +58,7 @@ def halves(n: int) -> tuple[slice, slice]:
 
 
 def slope_of_sums(
-    scales: ArrayLike,
-    parts: ArrayLike,
-    statistic: Callable[[np.ndarray], np.ndarray],
-    other: Callable[[np.ndarray], np.ndarray] | None = None,
+    scales: ArrayLike, parts: ArrayLike, statistic: Callable[[np.ndarray], np.ndarray]
 ) -> Estimate:
     """Slope of log of a statistic of sums against log scale, with the interval of this module.
 
@@ -68,8 +71,6 @@ def slope_of_sums(
     statistic : callable
         (k, m) sums of the whole window, or of all but one part, to (k,) values whose logarithm is
         taken; scales where it is not positive are left out.
-    other : callable, optional
-        Another statistic for the same slope: the interval spans what it gives.
 
     Returns
     -------
@@ -85,15 +86,12 @@ def slope_of_sums(
     x, y = x[positive], y[positive]
     line = fit_line(x, y)
     slope = line.slope.value
-    others = [_slope(x[part], y[part]) for part in halves(x.size)]
-    if other is not None:
-        others.append(_slope(x, _log(other(whole))[positive]))
     filled = np.flatnonzero(parts[positive].any(axis=(0, 1)))
     left = [_slope(x, _log(statistic(whole - parts[:, :, i]))[positive]) for i in filled]
-    misfit = float(np.std(y - line.intercept.value - slope * x))
-    low, high = interval(slope, others, jackknife_error(left), wave_error(misfit, np.exp(x)))
+    waves = wave_error(scales[positive], y - line.intercept.value - slope * x)
+    half = float(np.hypot(jackknife_error(left), waves))
     over = float(np.exp(x[0])), float(np.exp(x[-1]))
-    return Estimate(slope, float(low), float(high), x.size, over)
+    return Estimate(slope, slope - half, slope + half, x.size, over)
 
 
 def _slope(x, y):

@@ -7,9 +7,7 @@ import xarray as xr
 
 from ..core.arrays import padded
 from ..core.datasets import labelled_dataset
-from ..core.determined import is_determined
 from ..core.estimate import names_of, rows_of
-from ..core.fitting import FEWEST_POINTS
 from ..core.labels import cf_attrs
 from ..core.limits import CORRECTED_NODES, RESOLVED_NODES
 from ..core.ranges import within
@@ -20,12 +18,14 @@ from .clusters import CLUSTER_FIELDS, cluster_statistics
 from .fitted_counts import fitted_counts
 from .isotropy import LAG_FIELDS, contact_at_lag
 from .mean_law import mean_sizes
-from .renormalisation import compare_dimensions, renormalisation
+from .renormalisation import FEWEST_RESOLUTIONS, compare_dimensions, renormalisation
 
 #: Numbers kept of every contact domain: name, unit, long name.
 DOMAIN_FIELDS = {
     **rows_of("delta_sigma", "1", "box-counting dimension Delta_sigma of the contact domain"),
     "delta_sigma_error": ("1", "Delta_sigma, solver error bound"),
+    "delta_sigma_small_boxes": ("1", "Delta_sigma by the smaller half of the box sizes fitted"),
+    "delta_sigma_large_boxes": ("1", "Delta_sigma by the larger half of the box sizes fitted"),
     "fit_min": ("mm", "smallest box fitted"),
     "fit_max": ("mm", "largest box fitted"),
     "fit_n": ("1", "box sizes fitted"),
@@ -60,14 +60,10 @@ _TABLE = {
         "1",
         "contact clusters of 2^k to 2^(k+1) - 1 nodes, by octave k",
     ),
-    "reason": (_ORDER, "1", "why there is no dimension"),
+    "reason": (_ORDER, "1", "why there is no dimension, or none with an interval"),
     "estimator": (_ORDER, "1", "what delta_sigma is estimated by"),
-    "determined": (_ORDER, "1", "whether the interval of delta_sigma is no wider than 1"),
-    "ordinary_determined": (
-        _ORDER,
-        "1",
-        "whether the interval of delta_sigma_ordinary is no wider than 1",
-    ),
+    "determined": (_ORDER, "1", "whether delta_sigma has an interval"),
+    "ordinary_determined": (_ORDER, "1", "whether delta_sigma_ordinary has an interval"),
     "box_count": (
         (*_ORDER, "scale"),
         "1",
@@ -111,11 +107,12 @@ def analyse_domains(
     Returns
     -------
     xr.Dataset
-        :data:`DOMAIN_FIELDS`, ``reason`` (why there is no dimension) and ``determined`` over
-        (direction, offset, resolution, load); ``box_count`` and ``box_used`` with a last dimension
-        scale, ``mean_count`` with mean_scale, ``cluster_octaves`` with octave; ``box_side`` and
-        ``mean_side`` (resolution, ...) in mm; the curves of the laws that are fitted, by
-        :func:`domain.fitted_counts.fitted_counts` and :func:`domain.cluster_laws.cluster_laws`.
+        :data:`DOMAIN_FIELDS`, ``reason`` (why there is no dimension, or no interval) and
+        ``determined`` over (direction, offset, resolution, load); ``box_count`` and ``box_used``
+        with a last dimension scale, ``mean_count`` with mean_scale, ``cluster_octaves`` with
+        octave; ``box_side`` and ``mean_side`` (resolution, ...) in mm; the curves of the laws that
+        are fitted, by :func:`domain.fitted_counts.fitted_counts` and
+        :func:`domain.cluster_laws.cluster_laws`.
 
     Notes
     -----
@@ -203,6 +200,8 @@ def _row(domain, spacing, ambiguous, direction, **how) -> dict:
     return {
         **box.columns("delta_sigma"),
         "delta_sigma_error": ambiguous / domain.sum() if box.known else np.nan,
+        "delta_sigma_small_boxes": box.small_boxes,
+        "delta_sigma_large_boxes": box.large_boxes,
         "fit_min": box.over[0],
         "fit_max": box.over[1],
         "fit_n": box.n,
@@ -231,7 +230,7 @@ def _ordinary(box, spacing) -> dict:
         "ordinary_fit_min": slope.over[0] * spacing,
         "ordinary_fit_max": slope.over[1] * spacing,
         "ordinary_fit_n": slope.n,
-        "ordinary_determined": is_determined(slope.low, slope.high),
+        "ordinary_determined": slope.determined,
         "ordinary_used": used,
     }
 
@@ -267,7 +266,8 @@ def scaling_over_resolutions(
         ``sigma_n`` is F / A_r of the corrected area wherever `CORRECTED_NODES` touch,
         ``sigma_n_raw`` that of the raw one; ``area_used`` says which areas Delta_sigma is fitted
         to, ``fitted_area`` is their law. ``delta_sigma_area_reason`` and ``delta_sigma_box_reason``
-        say why there is no estimate.
+        say why there is no estimate, or no interval; ``area_local_exponent`` is that of the area
+        from each resolution to the next coarser one.
 
     Notes
     -----
@@ -299,24 +299,38 @@ def scaling_over_resolutions(
     finest = domains.sel(resolution=domains["resolution"].min())
     result = result.merge(compare_dimensions(result, finest), compat="override", join="exact")
     result.update(_reasons(result, finest))
+    result["area_local_exponent"] = _local_exponent(s, curves["area_corrected"].where(enough))
     result["spacing"] = s
     for name in ("area", "area_corrected", "nodes"):
         result[name] = curves[name]
     return result.drop_vars([n for n in result.coords if n not in result.dims])
 
 
+def _local_exponent(s, area):
+    """Exponent of the area between each resolution and the next coarser one."""
+    log_s, log_area = np.log(s), np.log(area)
+    coarser = {"resolution": -1}
+    exponent = (log_area.shift(coarser) - log_area) / (log_s.shift(coarser) - log_s)
+    words = "d ln A_r / d ln s from this resolution to the next coarser one: 2 - Delta_sigma"
+    return exponent.assign_attrs(cf_attrs("1", words))
+
+
 def _reasons(scaling, finest):
-    """Why an estimate of Delta_sigma is missing; empty where it is there."""
-    too_few = f"of the {FEWEST_POINTS} resolutions needed"
-    why = [f"no fit: A_r large enough at {n} {too_few}" for n in scaling["n"].values.flat]
-    area = scaling["n"].copy(data=np.reshape(why, scaling["n"].shape))
+    """Why an estimate of Delta_sigma, or its interval, is missing; empty where both are there."""
+    too_few = f"of the {FEWEST_RESOLUTIONS} resolutions needed"
+    why = [f": A_r large enough at {n} {too_few}" for n in scaling["n"].values.flat]
+    area = scaling["n"].copy(data=np.reshape(np.array(why, object), scaling["n"].shape))
+    area = xr.where(scaling["delta_sigma"].isnull(), "no fit", "no interval") + area
     no_box = finest["reason"].astype(object)
+    missing = finest["delta_sigma"].isnull()
     reasons = {
-        "delta_sigma_area_reason": area.where(scaling["delta_sigma"].isnull(), ""),
-        "delta_sigma_box_reason": xr.where(no_box == "", "", "no dimension: " + no_box),
+        "delta_sigma_area_reason": area.where(scaling["delta_sigma_low"].isnull(), ""),
+        "delta_sigma_box_reason": xr.where(missing, "no dimension: " + no_box, no_box),
     }
     for name, reason in reasons.items():
-        reason.attrs = cf_attrs("1", f"why there is no {name.removesuffix('_reason')}")
+        reason.attrs = cf_attrs(
+            "1", f"why there is no {name.removesuffix('_reason')}, or no interval"
+        )
     return {
         name: reason.drop_vars("resolution", errors="ignore").astype(str)
         for name, reason in reasons.items()

@@ -9,15 +9,15 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..core.determined import is_determined
-from ..core.estimate import Estimate
+from ..core.estimate import DIMENSION, Estimate, Scale
 from ..core.fitting import FEWEST_POINTS, LineFit, fit_line
+from ..core.limits import MIN_NODES
 from ..core.ranges import within
-from ..core.slope_of_sums import FEWEST_SCALES
-from .box_counts import RATIOS, box_count, box_sizes, cropped, window_sizes
+from ..core.slope_of_sums import BLOCKS, FEWEST_SCALES, halves, wave_error
+from .box_counts import RATIOS, box_count, box_sizes, cropped, mean_count, window_sizes
 from .count_law import NO_TERMS, LawTerms
 from .cut_offs import between_cut_offs
-from .mean_law import NO_MEANS, FittedLaw, MeanCounts, law_of_means
+from .mean_law import NO_MEANS, FittedLaw, MeanCounts, block_error, count_slope, law_of_means
 from .ordinary_slope import OrdinarySlope, dyadic_sizes, ordinary_slope
 
 #: No set in the plane has another dimension, whatever a regression says.
@@ -34,6 +34,10 @@ ESTIMATORS = {
 #: Why the contact domain of one node has no dimension.
 ONE_NODE = "one node is in contact, and what touches within its cell is not known"
 
+#: Why a dimension has no interval.
+FEW_NODES = f"no interval: {{}} nodes in contact, {MIN_NODES} are needed"
+ONE_PART = "no interval: nearly all nodes lie in one part of the domain"
+
 
 @dataclass(frozen=True, kw_only=True)
 class BoxDimension(Estimate):
@@ -49,6 +53,9 @@ class BoxDimension(Estimate):
         One of :data:`ESTIMATORS`.
     misfit : float
         Relative, rms, of the law that was fitted.
+    small_boxes, large_boxes : float
+        The dimension by the smaller and by the larger half of the sizes; NaN where they are too
+        few.
     terms : LawTerms
     means : MeanCounts
     ordinary : OrdinarySlope or None
@@ -59,12 +66,15 @@ class BoxDimension(Estimate):
     used: np.ndarray
     estimator: str = ""
     misfit: float = float("nan")
+    small_boxes: float = float("nan")
+    large_boxes: float = float("nan")
     terms: LawTerms = NO_TERMS
     means: MeanCounts = NO_MEANS
     ordinary: OrdinarySlope | None = None
+    scale: Scale = DIMENSION
 
     def __repr__(self):
-        if self.reason:
+        if not self.known:
             return f"<BoxDimension: none ({self.reason})>"
         return (
             f"<BoxDimension {self.value:.4g} [{self.low:.4g}, {self.high:.4g}] from {self.n} "
@@ -75,11 +85,6 @@ class BoxDimension(Estimate):
     def dimension(self) -> float:
         """The dimension, NaN where there is none."""
         return self.value
-
-    @property
-    def determined(self) -> bool:
-        """Whether the dimension is determined: its interval is no wider than `WIDEST`."""
-        return is_determined(self.low, self.high)
 
 
 def box_dimension(
@@ -113,11 +118,12 @@ def box_dimension(
     BoxDimension
         `dimension`, `low`, `high`; `r_min`, `r_max` of the fit in mm and its `n` sizes; `r` (mm),
         `count` (of the minimal cover) and `used` of all sizes; `reason` why there is no dimension
-        (NaN), else ""; `estimator`, "exact", "mean" or "cover" (for "mean", `n` are the sizes of
-        the law and `used` those of the minimal cover within its range); `misfit`, the root mean
-        square of the counts about the law, as a fraction of them; `terms` (mm) of the law, from
-        which :func:`domain.count_law.law_count` draws its curve; `means`, the mean counts over grid
-        origins; `ordinary`, the ordinary slope of :mod:`domain.ordinary_slope`, where any count is.
+        (NaN) or no interval, else ""; `estimator`, "exact", "mean" or "cover" (for "mean", `n` are
+        the sizes of the law and `used` those of the minimal cover within its range); `misfit`, the
+        root mean square of the counts about the law, as a fraction of them; `terms` (mm) of the
+        law, from which :func:`domain.count_law.law_count` draws its curve; `means`, the mean counts
+        over grid origins; `ordinary`, the ordinary slope of :mod:`domain.ordinary_slope`, where any
+        count is.
 
     Notes
     -----
@@ -137,19 +143,20 @@ def box_dimension(
       from the resolution to `LARGEST_BOX` of the extent. All rough contact domains.
     - "cover": the line through the minimal cover, where the domain is too small for the law.
 
-    The interval spans: the t-interval of the value by the jackknife, `BLOCKS` x `BLOCKS` parts of
-    the domain or strips of `BLOCKS` parts left out one by one, whichever is wider; the law on the
-    lower and the upper half of the sizes, and by how much these differ; the other laws that fit
-    almost as well; and the slope of the minimal cover. The counts belong to one set and are no
-    independent points: the error of a regression alone is far too small. An exact value has the
-    slopes of every run of sizes over half of the range or more instead.
+    The interval is that of the value over its range: the t-interval by the jackknife, `BLOCKS` x
+    `BLOCKS` parts of the domain or strips of `BLOCKS` parts left out one by one, whichever is
+    wider, and what waves of the counts about their smooth bend may tilt, in quadrature. The counts
+    belong to one set and are no independent points: the error of a regression alone is far too
+    small. A bend of the counts is no error of the value but a finding: `small_boxes` and
+    `large_boxes` are the slopes of both halves of the range. Fewer than `MIN_NODES` nodes have a
+    value and no interval. An exact value has the slopes of every run of sizes over half of the
+    range or more instead. How often intervals hold the truth: docs/verification.md.
 
     Known bias: percolation clusters of 512 and 1024 read 0.016 to 0.02 low in the mean. Sets marked
-    by whole cells read up to 0.1 high where their waves hide that, inside the interval: state
-    `whole_cells`. Levy dusts marked and stated so read high, where chance bends what is no
-    outline like one (indices of 1.2 and 1.5) or few boxes are left (0.8): by 0.025, 0.02 and 0.04
-    in windows of 512, by 0.02, 0.015 and 0.015 in windows of 2048; means of 120 to 400, known
-    within 0.007.
+    by whole cells read up to 0.1 high where their waves hide that: state `whole_cells`. Levy dusts
+    marked and stated so read high, where chance bends what is no outline like one (indices of 1.2
+    and 1.5) or few boxes are left (0.8): by 0.025, 0.02 and 0.04 in windows of 512, by 0.02, 0.015
+    and 0.015 in windows of 2048; means of 120 to 400, known within 0.007.
 
     What one window cannot show is whether it was struck by chance more densely than others: where
     parts fall on the same boxes, as those of flights or trails, the counts of size r differ by a
@@ -159,9 +166,10 @@ def box_dimension(
 
     Figures apart, as two squares: once boxes are larger than a figure or than the gap, what is
     counted is no outline any more. With more of it than `count_law.MOST_OUTLINE` allows they read
-    1.3 to 1.9, as a strip of 5 x 1 does, and their intervals reach 2 or nearly. Without that limit
-    they are exact, but cascades of 1.2 read 0.12 high. So with a set that is cut off so that copies
-    of several sizes are left: a dust of 650 of its 729 cells reads 0.09 low, inside its interval.
+    1.3 to 1.9, as a strip of 5 x 1 does, and where the gap is wide their intervals end short of 2:
+    `small_boxes` and `large_boxes` show the bend. Without that limit they are exact, but cascades
+    of 1.2 read 0.12 high. So with a set that is cut off so that copies of several sizes are left: a
+    dust of 650 of its 729 cells reads 0.09 low, inside its interval.
     """
     domain = np.asarray(domain, dtype=bool)
     extent = cropped(domain)
@@ -181,11 +189,22 @@ def box_dimension(
     side = max(extent.shape) * float(spacing)
     # Boxes of sizes that fit a filled window count it exactly, others overhang it.
     if nodes == 1 or (fitting and nodes == domain.size) or _is_exact(cover, ladder):
-        return replace(_of_cover(cover, ladder, "exact", side), ordinary=ordinary)
-    of_cover = -_line(sizes, count, used).slope.value
-    law, means = law_of_means(extent, limits, of_cover, whole_cells)
-    found = _of_law(cover, law, spacing) if law else _of_cover(cover, ladder, "cover", side)
-    return replace(found, ordinary=ordinary, means=means)
+        return replace(_exact(cover, ladder, side), ordinary=ordinary)
+    law, means = law_of_means(extent, limits, whole_cells)
+    found = _of_law(cover, law, spacing) if law else _of_line(cover, extent, side)
+    return replace(_with_interval(found, nodes), ordinary=ordinary, means=means)
+
+
+def _with_interval(found: BoxDimension, nodes: int) -> BoxDimension:
+    """The dimension without its interval where that means nothing, and with the reason."""
+    why = FEW_NODES.format(nodes) if nodes < MIN_NODES else ONE_PART
+    if nodes >= MIN_NODES and np.isfinite(found.width):
+        return replace(
+            found,
+            low=float(np.clip(found.low, *DIMENSIONS)),
+            high=float(np.clip(found.high, *DIMENSIONS)),
+        )
+    return replace(found, low=np.nan, high=np.nan, reason=why)
 
 
 def _minimal_covers(domain, extent, sizes, limits) -> tuple[np.ndarray, OrdinarySlope | None]:
@@ -265,12 +284,12 @@ def _used_sizes(domain, nodes, sizes, count, limits) -> tuple[np.ndarray, str]:
 
 def _of_law(cover: _Cover, law: FittedLaw, spacing) -> BoxDimension:
     """The dimension by the law of the mean counts."""
-    low, high = np.clip(law.ends, *DIMENSIONS)
+    low, high = law.ends
     terms = law.terms
     return BoxDimension(
         value=law.law.dimension,
-        low=float(low),
-        high=float(high),
+        low=low,
+        high=high,
         n=law.sizes.size,
         over=(float(law.sizes[0] * spacing), float(law.sizes[-1] * spacing)),
         r=cover.r,
@@ -278,6 +297,8 @@ def _of_law(cover: _Cover, law: FittedLaw, spacing) -> BoxDimension:
         used=cover.used & within(cover.sizes, law.sizes[0], law.sizes[-1]),
         estimator="mean",
         misfit=law.law.misfit,
+        small_boxes=law.of_halves[0],
+        large_boxes=law.of_halves[1],
         terms=terms._replace(node_width=terms.node_width * spacing, extent=terms.extent * spacing),
     )
 
@@ -285,20 +306,46 @@ def _of_law(cover: _Cover, law: FittedLaw, spacing) -> BoxDimension:
 # -- by the minimal cover --------------------------------------------------------------------------
 
 
-def _of_cover(cover: _Cover, ladder, estimator, extent) -> BoxDimension:
-    """The line through the minimal cover, and an interval that spans the choice of range."""
+def _exact(cover: _Cover, ladder, extent) -> BoxDimension:
+    """The exact power law, and an interval that spans the choice of range."""
     r, count, used = cover.r, cover.count, cover.used
     line = _line(r, count, used)
     parts = _slopes_of_parts(np.log(r[used]), np.log(count[used]))
     slopes = [line.slope.low, line.slope.high, *parts]
     line = _line(r, count, ladder)
     slopes += [line.slope.low, line.slope.high]
+    found = _of_cover(cover, ladder, "exact", extent)
+    low, high = np.clip([0.0 - max(slopes), 0.0 - min(slopes)], *DIMENSIONS)
+    return replace(found, low=float(low), high=float(high))
+
+
+def _of_line(cover: _Cover, extent, side) -> BoxDimension:
+    """The line through the minimal cover, with the jackknife of the mean counts at its sizes."""
+    r, count, used = cover.r, cover.count, cover.used
+    found = _of_cover(cover, used, "cover", side)
+    whole = np.unique(np.round(cover.sizes[used])).astype(int)
+    parts = mean_count(extent, whole, blocks=BLOCKS)
+    error = block_error(parts, lambda left: count_slope(left, whole))
+    line = _line(r, count, used)
+    law = line.intercept.value + line.slope.value * np.log(r[used])
+    half = np.hypot(error, wave_error(r[used], np.log(count[used]) - law))
+    return replace(found, low=found.value - half, high=found.value + half)
+
+
+def _of_cover(cover: _Cover, ladder, estimator, extent) -> BoxDimension:
+    """The line through the minimal cover, without an interval."""
+    r, count = cover.r, cover.count
+    line = _line(r, count, ladder)
     slope, intercept = line.slope.value, line.intercept.value
     law = np.exp(intercept + slope * np.log(r[ladder]))
+    small, large = (
+        0.0 - _line(r, count, np.flatnonzero(ladder)[half]).slope.value
+        if line.n // 2 >= FEWEST_SCALES
+        else np.nan
+        for half in halves(line.n)
+    )
     return BoxDimension(
         value=0.0 - slope,  # a constant count gives 0, not -0
-        low=float(np.clip(0.0 - max(slopes), *DIMENSIONS)),
-        high=float(np.clip(0.0 - min(slopes), *DIMENSIONS)),
         n=line.n,
         over=(float(r[ladder].min()), float(r[ladder].max())),
         r=r,
@@ -306,6 +353,8 @@ def _of_cover(cover: _Cover, ladder, estimator, extent) -> BoxDimension:
         used=ladder,
         estimator=estimator,
         misfit=float(np.sqrt(np.mean((law / count[ladder] - 1) ** 2))),
+        small_boxes=small,
+        large_boxes=large,
         terms=LawTerms(float(np.exp(intercept + slope * np.log(extent))), 0.0, 0.0, 0.0, extent),
     )
 

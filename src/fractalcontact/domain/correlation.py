@@ -142,8 +142,7 @@ def correlation_dimension(
     Notes
     -----
     Pairs are taken per lag of the grid and times r^2, so that a filled window has exactly 2 at any
-    distance. The interval is that of :mod:`core.slope_of_sums`: the jackknife over parts of
-    the window, the two halves of the range, and the value of a domain that ends at the window.
+    distance. The interval is that of :mod:`core.slope_of_sums`.
 
     References
     ----------
@@ -158,12 +157,7 @@ def correlation_dimension(
     if distances[-1] >= min(domain.shape) or not domain.any():
         return Estimate()
     pairs, lags = pair_counts(domain, distances)
-    slope = slope_of_sums(
-        distances * float(spacing),
-        pairs,
-        lambda sums: sums[:, 0] / lags,
-        lambda sums: sums[:, 1] / lags,
-    )
+    slope = slope_of_sums(distances * float(spacing), pairs, lambda sums: sums[:, 0] / lags)
     return slope.mapped(lambda exponent: 2 + exponent)
 
 

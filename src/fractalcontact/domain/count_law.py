@@ -51,9 +51,6 @@ WHOLE_GAIN = 1.6
 WHOLE_MISFIT = 0.026
 WHOLE_MISFIT_OUTLINE = 0.0015
 
-#: Other laws are almost as good where their misfit is at most this times as large.
-RIVAL = 2.0
-
 #: Smallest box, cells, by which forms of the law are separated, and of the fit itself: the
 #: smaller the box, the more what a node stands for shows, which is wanted in the one only.
 SMALLEST_SEPARATING = 3
@@ -117,8 +114,8 @@ class Law:
 
 def best_law(
     sizes: np.ndarray, count: np.ndarray, side: float, whole_cells: bool | None = None
-) -> tuple[Law | None, list[Law]]:
-    """The law that mean box counts follow, and its rivals.
+) -> Law | None:
+    """The law that mean box counts follow.
 
     Parameters
     ----------
@@ -131,12 +128,10 @@ def best_law(
 
     Returns
     -------
-    law : Law or None
+    Law or None
         Unless it is known, nodes are taken for centres (c = 1) where counts do not plainly follow
         the law of whole cells.
         None where no law with such terms fits.
-    rivals : list of Law
-        Those with other terms that fit almost as well.
 
     Raises
     ------
@@ -149,14 +144,12 @@ def best_law(
     fits = [_fit(form, sizes, count, side) for form in forms]
     laws = {(law.c, law.outline): law for law in fits if law is not None}
     if not laws:
-        return None, []
+        return None
     law = _whole_cells(laws) if whole_cells is None else None
     law = law or _simplest([law for law in laws.values() if law.c == _CENTRE])
     law = law or _simplest(list(laws.values()))
     kept = sizes >= SMALLEST
-    law = _fit(law, sizes[kept], count[kept], side) or law
-    rivals = [other for other in laws.values() if other.misfit <= RIVAL * law.misfit]
-    return law, rivals
+    return _fit(law, sizes[kept], count[kept], side) or law
 
 
 def _whole_cells(laws):

@@ -15,7 +15,7 @@ from .box_dimension import BoxDimension
 from .clusters import NEIGHBOURS, QUADRATS, morisita_index, quadrat_counts
 from .correlation import pair_counts, pair_distances, pairs_slope
 from .mean_law import FoundLaw, block_error, find_law
-from .ordinary_slope import cover_slope
+from .ordinary_slope import count_slope
 
 #: Quantities that are compared with null models, in words.
 QUANTITIES = {
@@ -171,7 +171,7 @@ def _ordinary_error(domains):
         return np.nan
     return _stacked_error(
         [one.ordinary_parts for one in domains],
-        [lambda count, used=used: cover_slope(count, used) for used in sizes],
+        [lambda count, used=used: count_slope(count, used) for used in sizes],
     )
 
 

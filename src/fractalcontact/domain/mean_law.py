@@ -9,9 +9,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..core.fitting import FEWEST_POINTS
 from ..core.intervals import jackknife_error
 from ..core.ranges import within
-from ..core.slope_of_sums import BLOCKS, FEWEST_SCALES, halves, interval, wave_error
+from ..core.slope_of_sums import BLOCKS, FEWEST_SCALES, halves, wave_error
 from .box_counts import cover_and_mean, cropped, mean_count, whole_sizes
 from .count_law import (
     SMALLEST,
@@ -19,6 +20,7 @@ from .count_law import (
     Law,
     LawTerms,
     best_law,
+    law_count,
     law_dimension,
     law_terms,
 )
@@ -46,6 +48,8 @@ class FittedLaw(NamedTuple):
     """(k,), cells."""
     terms: LawTerms
     """In cells."""
+    of_halves: tuple[float, float]
+    """Dimension by the smaller and by the larger half of the sizes; NaN where they are too few."""
 
 
 NO_MEANS = MeanCounts(np.empty(0, np.int64), np.empty(0))
@@ -62,7 +66,6 @@ def mean_sizes(shape: tuple[int, ...]) -> np.ndarray:
 def law_of_means(
     extent: np.ndarray,
     limits: tuple[float, float],
-    of_cover: float,
     whole_cells: bool | None,
 ) -> tuple[FittedLaw | None, MeanCounts]:
     """The law fitted to the mean counts of a domain, and these.
@@ -73,8 +76,6 @@ def law_of_means(
         The domain, without empty rows and columns about it.
     limits : (float, float)
         Smallest and largest box side that may be fitted, cells.
-    of_cover : float
-        Slope of the minimal cover, which the interval is to span.
     whole_cells : bool, optional
         As :func:`domain.count_law.best_law` takes it.
 
@@ -92,33 +93,34 @@ def law_of_means(
     found = _fitted(means, extent, limits, whole_cells)
     if found is None:
         return None, means
-    law, rivals, between = found
+    law, between = found
     kept = between & (sizes >= SMALLEST)
     sizes, parts, count = sizes[kept].astype(float), parts[kept], count[kept]
-    slopes = [law.dimension, of_cover, *(rival.dimension for rival in rivals)]
+    terms = law_terms(law, sizes, count, side)
+    error = block_error(parts, lambda left: law_dimension(law, sizes, left, side))
+    if np.isinf(error):  # what is left without the largest cluster may follow no law
+        error = block_error(parts, lambda left: count_slope(left, sizes))
+    waves = wave_error(sizes, np.log(count / law_count(sizes, law.dimension, terms)))
+    half = float(np.hypot(error, waves))
+    of_halves = (np.nan, np.nan)
     if sizes.size // 2 >= FEWEST_SCALES:
         small, large = (
             law_dimension(law, sizes[part], count[part], side) for part in halves(sizes.size)
         )
-        # What drifts by so much from half to half need not stop where the scales end, either way.
-        drift = np.abs(large - small)
-        slopes += [small, large, law.dimension - drift, law.dimension + drift]
-    error = block_error(parts, lambda left: law_dimension(law, sizes, left, side))
-    ends = interval(law.dimension, slopes, error, wave_error(law.misfit, sizes))
-    return FittedLaw(law, ends, sizes, law_terms(law, sizes, count, side)), means
+        of_halves = small, large
+    ends = law.dimension - half, law.dimension + half
+    return FittedLaw(law, ends, sizes, terms, of_halves), means
 
 
 def _fitted(means, extent, limits, whole_cells):
-    """Law, rivals and the sizes between the cut-offs, where they are enough; else None."""
+    """Law and the sizes between the cut-offs, where they are enough; else None."""
     sizes, count = means
     alone, full = _beyond_cut_offs(means, extent)
     between = ~alone & ~full & (sizes >= SMALLEST_SEPARATING) & within(sizes, *limits)
     if np.count_nonzero(between & (sizes >= SMALLEST)) < FEWEST_SCALES:
         return None
-    law, rivals = best_law(
-        sizes[between].astype(float), count[between], max(extent.shape), whole_cells
-    )
-    return None if law is None else (law, rivals, between)
+    law = best_law(sizes[between].astype(float), count[between], max(extent.shape), whole_cells)
+    return None if law is None else (law, between)
 
 
 def _beyond_cut_offs(means, extent):
@@ -145,7 +147,7 @@ class FoundLaw(NamedTuple):
 
     def refound(self, count: np.ndarray, whole_cells: bool | None) -> float:
         """Dimension of the best law of other counts at `separating`; NaN where none fits."""
-        law, _ = best_law(self.separating.astype(float), count, self.side, whole_cells)
+        law = best_law(self.separating.astype(float), count, self.side, whole_cells)
         return np.nan if law is None else law.dimension
 
     def dimension_of(self, count: np.ndarray) -> float:
@@ -172,7 +174,7 @@ def find_law(
     found = _fitted(means, extent, limits, whole_cells)
     if found is None:
         return None
-    law, _, between = found
+    law, between = found
     separating = sizes[between]
     return FoundLaw(law, separating[separating >= SMALLEST], separating, max(extent.shape))
 
@@ -245,3 +247,12 @@ def _without_parts(parts, statistic, firsts):
     occupied = (parts[list(firsts)] > 0).any(axis=0)
     left = parts.sum(axis=1)[:, np.newaxis] - parts[:, occupied]
     return [statistic(count) for count in left.T]
+
+
+def count_slope(count: np.ndarray, sizes: np.ndarray) -> float:
+    """Least-squares slope -d log N / d log r; NaN where a count is 0 or sizes are too few."""
+    if sizes.size < FEWEST_POINTS or not (count > 0).all():
+        return np.nan
+    x = np.log(sizes)
+    x -= x.mean()
+    return float(0.0 - x @ np.log(count) / (x @ x))

@@ -8,13 +8,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..core.estimate import Estimate
-from ..core.fitting import FEWEST_POINTS, fit_line
+from ..core.estimate import DIMENSION, Estimate, Scale
+from ..core.fitting import fit_line
+from ..core.limits import MIN_NODES
 from ..core.ranges import within
-from ..core.slope_of_sums import BLOCKS
+from ..core.slope_of_sums import BLOCKS, wave_error
 from .box_counts import mean_count
 from .cut_offs import between_cut_offs
-from .mean_law import block_error
+from .mean_law import block_error, count_slope
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -32,6 +33,7 @@ class OrdinarySlope(Estimate):
     sizes: np.ndarray
     counts: np.ndarray
     used: np.ndarray
+    scale: Scale = DIMENSION
 
 
 def dyadic_sizes(shape: tuple[int, ...]) -> np.ndarray:
@@ -64,18 +66,21 @@ def ordinary_slope(
     Returns
     -------
     OrdinarySlope
-        The interval is that of the regression and the jackknife's in quadrature, the latter of the
-        slope of the mean counts at the same sizes: a few counts may lie on a line by chance.
+        Its interval is that of :mod:`core.slope_of_sums`, by the mean counts at the same sizes;
+        none with fewer than `MIN_NODES` nodes.
     """
     nodes = int(np.count_nonzero(extent))
     used = cover_used(count, sizes, nodes, shape, limits)
-    slope = fit_line(np.log(sizes[used]), np.log(count[used])).slope
+    line = fit_line(np.log(sizes[used]), np.log(count[used]))
+    slope = line.slope
     if nodes < 2 or not np.isfinite(slope.value):
         unused = np.zeros(sizes.size, bool)
         return OrdinarySlope(sizes=sizes, counts=count, used=unused)
     parts = mean_count(extent, sizes[used], blocks=BLOCKS)
-    error = block_error(parts, lambda left: cover_slope(left, sizes[used]))
-    half = np.hypot(error, slope.high - slope.value)
+    error = block_error(parts, lambda left: count_slope(left, sizes[used]))
+    law = line.intercept.value + slope.value * np.log(sizes[used])
+    half = np.hypot(error, wave_error(sizes[used], np.log(count[used]) - law))
+    half = half if nodes >= MIN_NODES and np.isfinite(half) else np.nan
     ends = np.clip((-slope.value - half, -slope.value + half), 0.0, 2.0)
     return OrdinarySlope(
         value=0.0 - slope.value,  # a constant count gives 0, not -0
@@ -98,12 +103,3 @@ def cover_used(
 ) -> np.ndarray:
     """Whether each size lies between the cut-offs and within the range asked for."""
     return between_cut_offs(count, sizes, nodes, shape)[0] & within(sizes, *limits)
-
-
-def cover_slope(count: np.ndarray, sizes: np.ndarray) -> float:
-    """Least-squares slope -d log N / d log r; NaN where a count is 0 or sizes are too few."""
-    if sizes.size < FEWEST_POINTS or not (count > 0).all():
-        return np.nan
-    x = np.log(sizes)
-    x -= x.mean()
-    return float(0.0 - x @ np.log(count) / (x @ x))

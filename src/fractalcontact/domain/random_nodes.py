@@ -9,8 +9,8 @@ from ..core.limits import CONFIDENCE
 from .box_counts import cover_and_mean
 from .clusters import NEIGHBOURS, morisita_index, quadrat_counts
 from .correlation import expected_pairs, lags_of, pair_distances, pairs_slope
-from .mean_law import FoundLaw, dimension_by_means, find_law
-from .ordinary_slope import cover_slope, cover_used, dyadic_sizes
+from .mean_law import FoundLaw, count_slope, dimension_by_means, find_law
+from .ordinary_slope import cover_used, dyadic_sizes
 
 #: Draws of random nodes. The band allows for their number.
 DRAWS = 20
@@ -118,7 +118,7 @@ def random_bands(
         covers.append(cover)
         rows["delta_sigma"].append(dimension)
         kept = cover_used(cover, sizes, nodes, shape, limits) if used is None else used
-        rows["delta_sigma_ordinary"].append(cover_slope(cover[kept], sizes[kept]))
+        rows["delta_sigma_ordinary"].append(count_slope(cover[kept], sizes[kept]))
         rows["clusters"].append(scipy.ndimage.label(domain, NEIGHBOURS)[1])
     if not covers:
         names = (*rows, "correlation_dimension", "morisita")

@@ -14,6 +14,10 @@ from ..core.limits import CONFIDENCE
 #: The dimension along which resolutions s, 2s, 4s ... are stored.
 RESOLUTION = "resolution"
 
+#: Resolutions that the interval of the area's exponent needs: three leave one degree of freedom,
+#: whose t of 12.7 is no interval.
+FEWEST_RESOLUTIONS = 4
+
 #: Nodes that a contact domain needs at a resolution for its number N_n to count.
 FEWEST_NODES = 4
 
@@ -51,7 +55,8 @@ def renormalisation(
         resolutions fitted, `r2`; `hausdorff_measure` (geometric mean over resolutions, mm^Delta)
         and `hausdorff_spread`, the geometric standard deviation about it (1 = no spread);
         `sigma_star` = F / H_D, N mm^-Delta. On (resolution, ...): `sigma_n` = F / A_n, MPa, at the
-        resolutions that count. NaN where fewer than three resolutions can be.
+        resolutions that count. NaN where fewer than three resolutions can be;
+        no interval with fewer than `FEWEST_RESOLUTIONS`.
 
     Notes
     -----
@@ -125,8 +130,8 @@ def _area_exponent(log_s: np.ndarray, log_area: np.ndarray, nodes: np.ndarray) -
     """Slope of log A over log s with its interval, resolutions fitted and r2."""
     line = fit_line(log_s, log_area)
     slope = line.slope.value
-    if np.isnan(slope):
-        return np.nan, np.nan, np.nan, float(line.n), np.nan
+    if line.n < FEWEST_RESOLUTIONS:
+        return slope, np.nan, np.nan, float(line.n), line.r2
     half = max(line.slope.high - slope, _counting_error(log_s, log_area, nodes))
     return slope, slope - half, slope + half, float(line.n), line.r2
 

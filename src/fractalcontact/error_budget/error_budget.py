@@ -11,6 +11,7 @@ from ..core.datasets import labelled_dataset
 from ..core.estimate import Estimate
 from ..core.intervals import t_quantile
 from ..core.labels import cf_attrs
+from ..core.limits import MIN_NODES
 from ..core.settings import StateSettings
 from ..mechanics.joint import prefractal
 from ..mechanics.loading import JointLoading
@@ -28,13 +29,13 @@ from .refinement import (
 )
 
 #: Sources of error: those of the number as a property of this surface, those of the population the
-#: window is a sample of; and, in no total, the change of the surface with its resolution and what a
-#: harder material would change.
-OF_SURFACE = ("solver", "numerical", "estimator")
+#: window is a sample of; and, in no total, the change of the surface with its resolution, what a
+#: harder material would change, and what another estimator gives.
+OF_SURFACE = ("solver", "numerical", "secant")
 OF_POPULATION = ("counting", "window", "registration")
 #: Of these only the larger is in a total: a spread over windows holds that of counting.
 _OF_WINDOW = ("counting", "window")
-SOURCES = (*OF_SURFACE, *OF_POPULATION, "resolution", "model")
+SOURCES = (*OF_SURFACE, *OF_POPULATION, "resolution", "model", "estimator")
 
 #: Hardness of rough contacts over the joint wall strength: between 1 and this (Tabor's 3).
 HARDEST = 3.0
@@ -83,8 +84,8 @@ _TABLE = {
 }
 
 _FROM = {1: "interpolated between loads", 2: "s and s/2", 4: "s, s/2 and s/4"}
-_DEFINED = "none: no estimator is chosen"
-_COUNTED = "none beside the estimator's interval, which leaves out parts of the window"
+#: Why a source that may be none of a quantity is none.
+_NONE = {"estimator": "none: no estimator is chosen", "secant": "none: no slope of a yielding contact"}
 
 
 def map_curve(
@@ -154,12 +155,13 @@ def error_budget(
     errors = {
         "solver": _solver(curve),
         "numerical": over_loads(curve.forces, found.error, _scale(curve), WIDENED),
-        "estimator": _estimator(curve),
         "counting": counting_error(curve),
         "window": over_loads(curve.forces, windows, _scale(curve)),
         "registration": _registration(registration_spread, len(curve.forces)),
         "resolution": _resolution(loading, curves, domains, curve),
         "model": _model(curve),
+        "secant": _secant(curve),
+        "estimator": _estimator(curve),
     }
     reasons = _reasons(curve, errors, found, effective, registration_spread is not None)
     return _budget(curve, values, errors, found, reasons, (n_windows, effective))
@@ -279,17 +281,16 @@ def _solver(curve: LoadCurve) -> np.ndarray:
 
 
 def _estimator(curve: LoadCurve) -> np.ndarray:
-    """Choice of the estimator of Delta_sigma, and scatter of the secant of a yielding contact.
-
-    Of Delta_sigma the published interval, which holds fit range, rival laws and parts of the window
-    left out, or the distance to the ordinary slope if that is larger: what Fig. 9 calls
-    undetermined has no small error here.
-    """
-    domains = curve.domains
+    """Distance of the ordinary box-counting slope; only Delta_sigma has estimators to choose."""
     spread = np.zeros((len(BUDGET_QUANTITIES), len(curve.forces)))
-    value, low, high = Estimate.read(domains, "delta_sigma").ends
-    other = np.abs(domains["delta_sigma_ordinary"].values - value)
-    spread[-1] = np.fmax(np.fmax(high - value, value - low), other)
+    domains = curve.domains
+    spread[-1] = np.abs((domains["delta_sigma_ordinary"] - domains["delta_sigma"]).values)
+    return spread
+
+
+def _secant(curve: LoadCurve) -> np.ndarray:
+    """Scatter of the secant that stands for the slope of a yielding contact."""
+    spread = np.zeros((len(BUDGET_QUANTITIES), len(curve.forces)))
     scatter = curve.curve["interface_stiffness_scatter"].values
     spread[list(BUDGET_QUANTITIES).index("stiffness")] = np.nan_to_num(scatter)
     return spread
@@ -313,8 +314,8 @@ def counting_error(curve: LoadCurve) -> np.ndarray:
     force varies by as much, so that at a given force the separation does by
     l/sqrt(N), l = sigma_0/(d sigma/d w_int) being the length over which the pressure falls by e.
     Closure also counts from the highest of the heights, whose tail falls over that length: the
-    largest of many such scatters by pi/sqrt(6) l (Gumbel). The interval of Delta_sigma, which is
-    its estimator's error, counts contacts in its own way. Where more than half of the window
+    largest of many such scatters by pi/sqrt(6) l (Gumbel). That of Delta_sigma is its published
+    interval, which leaves out parts of the window. Where more than half of the window
     touches there are no separate contacts, and nothing but the area is known: f (1 - f) is the
     variance of a fraction f.
     """
@@ -324,13 +325,14 @@ def counting_error(curve: LoadCurve) -> np.ndarray:
     length = np.where(touching > MOST_TOUCHING, np.nan, curve.decay_length())
     summit_spread = t_quantile(np.inf) * _LARGEST_SPREAD * length
     _, _, area, stiffness, _ = curve.values()
+    value, low, high = Estimate.read(curve.domains, "delta_sigma").ends
     return np.array(
         [
             np.hypot(fraction * length, summit_spread),
             fraction * length,
             fraction * np.sqrt(np.clip(1 - touching, 0, 1)) * area,
             np.where(touching > MOST_TOUCHING, np.nan, fraction * stiffness),
-            np.full(len(curve.forces), np.nan),
+            np.fmax(high - value, value - low),
         ]
     )
 
@@ -398,8 +400,9 @@ def _reasons(curve, errors, found: Refinement, effective, registered: bool) -> n
         "numerical": "the grid is too large to refine, or the faces are flush"
         if found.finest.max() == 1
         else "not resolved at any load refined",
-        "estimator": "no dimension at any load",
-        "counting": "no stiffness of the interface at any load",
+        "secant": "no slope at any load",
+        "estimator": "no other estimate at any load",
+        "counting": f"fewer than {MIN_NODES} nodes, or no stiffness, at any load",
         "window": TOO_SMALL
         if effective < FEWEST_EFFECTIVE
         else "no value in every window at any load",
@@ -414,10 +417,8 @@ def _reasons(curve, errors, found: Refinement, effective, registered: bool) -> n
     reasons = np.full((len(BUDGET_QUANTITIES), len(SOURCES)), "", object)
     for i, name in enumerate(BUDGET_QUANTITIES):
         for j, source in enumerate(SOURCES):
-            if source == "counting" and name == "delta_sigma":
-                reasons[i, j] = _COUNTED
-            elif not np.isfinite(errors[source][i]).any():
+            if not np.isfinite(errors[source][i]).any():
                 reasons[i, j] = missing[source]
-            elif source == "estimator" and not errors[source][i].any():
-                reasons[i, j] = _DEFINED
+            elif source in _NONE and not errors[source][i].any():
+                reasons[i, j] = _NONE[source]
     return reasons.astype(str)

@@ -7,7 +7,7 @@ from .summary import Quantity, Specimen
 from .words import with_unit
 
 #: Sources of the total of this surface, in the order of the bar; the rest belong to the population.
-OF_SURFACE = ("solver", "numerical", "estimator")
+OF_SURFACE = ("solver", "numerical")
 OF_POPULATION = (*OF_SURFACE, "counting", "window", "registration")
 
 
@@ -79,6 +79,8 @@ def _bar(quantity: Quantity) -> Bar:
 
 def _words(quantity, source):
     error = quantity.sources[source]
-    if math.isfinite(error) and not (error == 0 and quantity.reasons[source]):
-        return quantity.error_words(error)
-    return quantity.reasons[source] or "not known"
+    note = quantity.reasons[source]
+    if math.isfinite(error) and not (error == 0 and note):
+        beside = f" ({note})" if source == "estimator" else ""
+        return quantity.error_words(error) + beside
+    return note or "not known"

@@ -207,6 +207,13 @@ def _listed(names: Sequence[str], most: int = _LISTED) -> str:
     return " and ".join((", ".join(names[:-1]), names[-1])) if len(names) > 1 else names[0]
 
 
+#: What the paper's number is an exponent of, and what eq. 6 makes of it.
+_OF_THE_PAPER = (
+    "The paper's 1.39 is a box count, printed under a picture of areas A_r(s): with it, eq. 6 has "
+    "-0.61 in place of -(2 - Delta_sigma) by A_r(s)."
+)
+
+
 def _dimensions(found: _At, under: str, rows: Sequence[Row]) -> Markup:
     """Delta_sigma by both estimators where it is determined, and the verdict beside nulls."""
     verdicts = {row.name: {n: cell.verdict for n, cell in row.cells.items()} for row in rows}
@@ -222,7 +229,7 @@ def _dimensions(found: _At, under: str, rows: Sequence[Row]) -> Markup:
     if beside:
         answer = _counted(beside, _ANSWERS)
         question = f" Is the contact a fractal set under its reference load? {answer}."
-    return symbols(f"{text}.{question}")
+    return symbols(f"{text}. {_OF_THE_PAPER}{question}")
 
 
 def _determined(estimates):

@@ -338,6 +338,15 @@ def quantities_at(subject: Subject, number: int) -> dict[str, Quantity]:
             reasons={source: str(one["reason"].sel(source=source).item()) for source in sources},
             missing=missing.get(name, ""),
         )
+    # Beside the dimension that is published, what other estimators give.
+    domains, scaling = (subject.states(stage) for stage in ("domains", "scaling"))
+    others = {
+        "by the ordinary slope": domains["delta_sigma_ordinary"],
+        "by A_r(s)": scaling["delta_sigma_area"],
+    }
+    values = {words: float(of.isel(normal_force=number)) for words, of in others.items()}
+    known = [f"{value:.2f} {words}" for words, value in values.items() if np.isfinite(value)]
+    found["delta_sigma"].reasons["estimator"] = ", ".join(known) or "no other estimate"
     return found
 
 

@@ -1,14 +1,16 @@
 """What the paper says of the contact domain and of size (sects. 6 and 7, Figs. 1b and 8 to 13)."""
 
 from collections import Counter
+from dataclasses import replace
 
 import numpy as np
 
 from ..core.estimate import Estimate
 from ..core.fitting import FEWEST_POINTS
-from ..core.limits import WIDEST
+from ..core.limits import LOOSELY
 from ..core.verdicts import AGREES, DECIDED, FAILS, HOLDS, PARTLY, UNDETERMINED
 from ..domain.pressure_trend import pressure_trend
+from ..domain.renormalisation import FEWEST_RESOLUTIONS
 from .findings import Finding, Joint, beyond_margin, by_sign, of_the_area, share
 from .local_slopes import one_slope
 
@@ -24,13 +26,12 @@ def area_is_lacunar(joint: Joint) -> Finding:
     """Exponent of A_r over the resolutions, at the reference load."""
     state = joint.state("scaling")
     delta = Estimate.read(state, "delta_sigma")
-    if not delta.known:
-        return Finding(UNDETERMINED, f"{int(state['n'])} of {FEWEST_POINTS} resolutions needed")
-    # A_r ~ s^(2 - Delta_sigma): it falls with refinement where the exponent is positive. That it
-    # falls is not yet a power law: for that its exponent must be determined.
-    falls = by_sign(delta.mapped(lambda value: 2 - value, falling=True), rising=True)
+    if not np.isfinite(delta.width):
+        few = f"{int(state['n'])} of {FEWEST_RESOLUTIONS} resolutions needed"
+        return Finding(UNDETERMINED, few)
+    # A_r ~ s^(2 - Delta_sigma): it falls with refinement where the exponent is positive.
     return Finding(
-        PARTLY if falls == HOLDS and delta.width > WIDEST else falls,
+        by_sign(delta.mapped(lambda value: 2 - value, falling=True), rising=True),
         f"A_r ~ s^(2 - Delta_sigma), Delta_sigma = {delta:.2f}",
         f"over {int(state['n'])} resolutions, r2 = {float(state['r2']):.3f}; at light load the "
         "exponent is that of the slopes h'_rms(s) of the surface",
@@ -47,22 +48,27 @@ def boxes_follow_one_law(joint: Joint) -> Finding:
 
 @of_the_area
 def estimates_agree(joint: Joint) -> Finding:
-    """Whether A_r(s) and box counting have one Delta_sigma, over all loads."""
-    states = joint.states("scaling")
-    width = Estimate.read(states, "difference").width
-    known = width <= WIDEST
+    """Whether A_r(s) and box counting have one Delta_sigma, over all loads that decide it.
+
+    Equal is a difference whose whole interval is within a quarter, unequal one whose interval
+    leaves out zero.
+    """
+    difference = Estimate.read(joint.states("scaling"), "difference")
+    equal = (difference.low >= -LOOSELY) & (difference.high <= LOOSELY)
+    known = equal | (difference.low > 0) | (difference.high < 0)
     if not known.any():
-        both = int(np.isfinite(width).sum())
+        both = int(np.isfinite(difference.width).sum())
         return Finding(
             UNDETERMINED,
-            f"{both} loads with both estimates, none with their difference known within {WIDEST:g}",
+            f"{both} loads with both estimates, none with their difference within {LOOSELY:g} or "
+            "beyond zero",
         )
-    agree = int((~states["disagree"].values[known].astype(bool)).sum())
-    difference = states["difference"].values[known]
+    agree = int(equal[known].sum())
+    difference = difference.value[known]
     ends = " to ".join(dict.fromkeys(f"{d:+.2f}" for d in (difference.min(), difference.max())))
     return Finding(
         share(agree, known.sum()),
-        f"their intervals agree at {agree} of {known.sum()} loads, A_r(s) less boxes {ends}",
+        f"they agree at {agree} of {known.sum()} loads, A_r(s) less boxes {ends}",
     )
 
 
@@ -269,10 +275,27 @@ def _exponents(value, low, high, known):
 
 
 def _over_load(states, random=np.nan):
-    """How a determined Delta_sigma goes with log F, and that less the one of random nodes."""
+    """How Delta_sigma goes with log F, and that less the one of random nodes.
+
+    The interval of each slope is that of the line and that of the values in quadrature.
+    """
     delta = Estimate.read(states, "delta_sigma")
-    known = np.where(delta.width <= WIDEST, delta.value, np.nan)
-    return pressure_trend(states["normal_force"].values, known, random)
+    known = np.where(np.isfinite(delta.width), delta.value, np.nan)
+    forces = states["normal_force"].values
+    trend = pressure_trend(forces, known, random)
+    x = np.log10(forces[np.isfinite(known)])
+    x, half = x - x.mean() if x.size else x, delta.width[np.isfinite(known)] / 2
+    of_values = np.sqrt(np.sum((x * half) ** 2)) / np.sum(x**2) if x.size > 1 else np.nan
+    return trend._replace(
+        line=_widened(trend.line, of_values), departure=_widened(trend.departure, of_values)
+    )
+
+
+def _widened(line, half):
+    """A line with the interval of its slope widened by another error."""
+    slope = line.slope
+    whole = np.hypot(slope.high - slope.value, half)
+    return line._replace(slope=replace(slope, low=slope.value - whole, high=slope.value + whole))
 
 
 def _by_decade(line):

@@ -10,7 +10,6 @@ from matplotlib.lines import Line2D
 from xarray import DataTree
 
 from fractalcontact.core.estimate import Estimate
-from fractalcontact.core.limits import WIDEST
 from fractalcontact.figures.kit.caption import caption
 from fractalcontact.figures.kit.drawing import WIDTH, Drawing, colour_of
 from fractalcontact.figures.kit.legends import entries, heading, legends_below, mark
@@ -61,7 +60,7 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
         letter(axes, next(letters), f"$H$ = {hurst:g}")
     panels[0].set_ylabel("correlation dimension $D_2$ (1)")
     undetermined = mark(color="0.4", marker="o", ls="none", mfc="white")
-    undetermined.set_label(f"hollow: undetermined (interval wider than {WIDEST:g}, not drawn)")
+    undetermined.set_label("hollow: no interval")
     handles = [*entries(panels[0]), undetermined]
     if constructions.size:
         others = np.atleast_1d(parts[1].subplots(1, len(constructions), sharey=True))
@@ -98,13 +97,13 @@ def _draw_curves(axes, one, curves, *, colours, of="") -> None:
     pairs = zip(curves, colours, strict=True)
     for beside, ((name, label, marker, line), colour) in zip(_BESIDE, pairs, strict=True):
         value, low, high = Estimate.read(one, name).ends
-        narrow = (high - low) <= WIDEST
-        error = np.where(narrow, reach(value, low, high), np.nan)
+        known = np.isfinite(high - low)
+        error = np.where(known, reach(value, low, high), np.nan)
         style = {"marker": marker, "ls": line, "color": colour_of(colour)}
         x = load * beside
         axes.errorbar(x, value, yerr=error, label=f"{label}{of}", **style)
         hollow = style | {"ls": "none", "mfc": "white", "zorder": 3}
-        axes.plot(x, np.where(narrow, np.nan, value), **hollow)
+        axes.plot(x, np.where(known, np.nan, value), **hollow)
     axes.axhline(2, color="k", lw=0.8, label="random nodes: 2" if not of else None)
     load_axis(axes, load)
     axes.set_xlabel(r"reduced pressure $p/(E^* h'_\mathrm{rms})$ (1)")

@@ -18,15 +18,16 @@ QUANTITIES = {
 SOURCES = {
     "solver": "solver",
     "numerical": "numerical (same surface, finer grid)",
-    "estimator": "choice of estimator, scatter of a secant",
+    "secant": "scatter of a secant, where nodes yield",
     "counting": "counting of contacts",
     "window": "other windows of the scan",
     "registration": "registration of the faces",
     "resolution": "every second node: another surface, in no total",
     "model": "three times the hardness: another model, in no total",
+    "estimator": "ordinary box-counting slope: another estimator, in no total",
 }
 TOTALS = {
-    "total": ("total for this very surface\n(solver, numerical, estimator)", "-"),
+    "total": ("total for this very surface\n(solver, numerical, secant)", "-"),
     "total_of_population": (
         "total for any surface of its kind\n(also counting or windows, registration)",
         "--",

@@ -8,8 +8,7 @@ import xarray as xr
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 
-from ...core.determined import is_determined
-from ...core.estimate import Estimate
+from ...core.estimate import EXPONENT, Estimate
 from ..kit.axes import label_short_span
 from ..kit.legends import entries
 from ._size_test import ESTIMATOR_COLOURS, ESTIMATORS, LOAD_MARKERS, grey_beyond
@@ -79,7 +78,7 @@ def draw_measured(
     value, low, high = Estimate.read(test, name).ends
     faint = False
     for i in np.flatnonzero(np.isfinite(value)):
-        sure = is_determined(low[i], high[i])
+        sure = Estimate(value[i], low[i], high[i], scale=EXPONENT).determined
         faint |= not sure
         alpha = 1.0 if sure else 0.3
         at = np.flatnonzero(shown == i)

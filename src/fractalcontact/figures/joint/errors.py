@@ -112,7 +112,7 @@ def _draw_errors(axes, errors, size):
                 axes.plot(force[shown], clipped[shown], **style | hollow)
 
     for i, (source, words) in enumerate(SOURCES.items()):
-        in_totals = source not in ("resolution", "model")
+        in_totals = source not in ("resolution", "model", "estimator")
         style = {"color": colour_of(i + 1) if in_totals else "0.55", "ms": 3.5, "lw": 0.9}
         style |= {"marker": MARKERS[(i + 1) % len(MARKERS)]}
         style |= {"ls": LINES[i % 3] if in_totals else ":"}

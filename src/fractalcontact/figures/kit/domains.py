@@ -7,7 +7,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 from xarray import DataTree
 
-from ...core.determined import differs, is_determined
+from ...core.determined import differs
 from ...core.estimate import DIMENSION, Estimate
 from ...core.labels import loads_of
 from ...core.subject import Subject
@@ -42,19 +42,30 @@ class DeltaSigma(Estimate):
         return f"delta_sigma_{self.key}"
 
     def at(self, i: int) -> str:
-        """Delta_sigma under the i-th load in words, or why there is none."""
-        return str(self.reason[i]) or self[i].text()
+        """Delta_sigma under the i-th load in words, and why it or its interval is missing."""
+        reason = str(self.reason[i])
+        if reason and self.known[i]:
+            return f"{self.value[i]:.2f}, {reason}"
+        return reason or self[i].text()
 
     @property
     def determined(self) -> np.ndarray:
-        """Whether each value is determined: not where its interval is too wide to say anything."""
-        return np.array([is_determined(*ends) for ends in zip(self.low, self.high, strict=True)])
+        """Whether each value is determined."""
+        return np.array([self[i].determined for i in range(np.size(self.value))])
+
+    def number(self, i: int) -> str:
+        """Delta_sigma under the i-th load for a sentence, without interval or reason."""
+        return f"{self.value[i]:.2f}" if self.known[i] else "none"
+
+    def eq6_exponent(self, i: int) -> str:
+        """Exponent of the side b in eq. 6, Delta_sigma - 2, under the i-th load."""
+        return f"{self.value[i] - 2:.2f}" if self.known[i] else "none"
 
     def entry(self, i: int) -> str:
         """Delta_sigma under the i-th load for a legend, which has no room for the reason."""
-        if self.reason[i]:
-            return self.reason[i].split(":")[0]
-        text = self.at(i)
+        text = self.at(i).split(":")[0]
+        if not self.known[i]:
+            return text
         return rf"$\Delta_\sigma$ {'' if text.startswith(UNDETERMINED) else '= '}{text}"
 
     @property

@@ -48,7 +48,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
         maps[i].label_outer()
     for axes in maps[n:]:
         axes.remove()
-    by_area, _ = estimates_of(subject.states("scaling"))
+    by_area, by_boxes = estimates_of(subject.states("scaling"))
     found = rf"$A_r \sim s^{{2-\Delta_\sigma}}$: {by_area.entry(load)}"
     title = rf"$\sigma_n = F/A_r$; {found}; rms slope of the surface {short(states['rms_slope'])}"
     panel = Panel(bottom.subplots(), _LETTERS[n], title)
@@ -58,8 +58,10 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     where = place(subject.direction, subject.offset)
     headline(figure, subject.label, where, f"$F$ = {force_label(force)}", below=wide)
     words = {key: str(model[key].item()) for key in ("verdict", "reason")}
-    falls = claim(atlas, name, "area_is_lacunar")
-    return Drawing(figure, table_of(panel), caption(__name__, force=force, falls=falls, **words))
+    words |= {"falls": claim(atlas, name, "area_is_lacunar")}
+    for key, one in (("area", by_area), ("box", by_boxes)):
+        words |= {key: one.number(load), f"by_{key}": one.eq6_exponent(load)}
+    return Drawing(figure, table_of(panel), caption(__name__, force=force, **words))
 
 
 def _states(subject):

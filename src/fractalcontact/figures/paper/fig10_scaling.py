@@ -43,7 +43,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     legends_below(figure, entries(a.axes), entries(b.axes))
     headline(figure, subject.label, place(subject.direction, subject.offset))
     state = states.isel(normal_force=load)
-    apart = bool(state["disagree"]) if np.isfinite(state["difference"]) else None
+    apart = bool(state["disagree"]) if np.isfinite(state["difference_low"]) else None
     words = {one.key: one.at(load) for one in estimates}
     falls = claim(atlas, name, "area_is_lacunar", numbers=False)
     text = caption(__name__, force=force, falls=falls, apart=apart, **words)
@@ -86,7 +86,7 @@ def _draw_pressures(panel, state, estimates, load, side):
     for one in estimates:
         line = state.sel(estimator=one.key)
         style = {"color": one.style["color"], "ls": one.style["linestyle"]}
-        if one.reason[load]:
+        if not one.known[load]:
             style["ls"] = "none"  # nothing is drawn: no line in the legend either
         style |= {} if one.determined[load] else WEAK
         label = f"{one.symbol}: {one.entry(load)}"

@@ -63,7 +63,7 @@ def _draw_lines(panel, states, one, shown, side):
     panel.keep(own.isel(normal_force=shown), *names, specimen_b_mm=side)
     handles = [heading(rf"{one.symbol}: slope $-(2-\Delta_\sigma)$ [95 % interval]")]
     for n, i in enumerate(shown):
-        if one.reason[i]:
+        if not one.known[i]:
             continue
         line = own.isel(normal_force=i)
         style: dict[str, Any] = {"color": COLOURS[n]}
