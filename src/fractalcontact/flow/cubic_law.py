@@ -56,7 +56,7 @@ class Flow:
         """Smallest fraction of the window that carries :data:`CHANNEL_FLOW` of the flow."""
         flux = np.sort(self.flux, axis=None)[::-1]
         total = flux.sum()
-        if total == 0:
+        if not total > 0:
             return np.nan
         return (int(np.searchsorted(flux.cumsum(), CHANNEL_FLOW * total)) + 1) / flux.size
 
@@ -97,11 +97,11 @@ def plane_flow(
             turned.flux.T,
             turned.pressure.T,
         )
-    gap = _checked(gap)
-    (ny, nx), (dy, dx) = gap.shape, spacing
+    opening = _checked(gap)
+    (ny, nx), (dy, dx) = opening.shape, spacing
     at_ends = np.zeros((2, ny, nx), bool)
     at_ends[0, :, 0] = at_ends[1, :, -1] = True
-    critical, conductivity = _conductivity(gap, *at_ends)
+    critical, conductivity = _conductivity(opening, *at_ends)
     # From the middle of a cell to the end of the window is half a cell.
     inlet, outlet = 2 * (dy / dx) * conductivity * at_ends
     network = Network(*harmonic_faces(conductivity, spacing), inlet, outlet)
@@ -152,8 +152,8 @@ def radial_flow(
     Between a cell and a circle that crosses the line to its neighbour the conductance is that of
     the distance to the circle.
     """
-    gap = _checked(gap)
-    (ny, nx), (dy, dx) = gap.shape, spacing
+    opening = _checked(gap)
+    (ny, nx), (dy, dx) = opening.shape, spacing
     y, x = dy * (np.arange(ny) - (ny - 1) / 2), dx * (np.arange(nx) - (nx - 1) / 2)
     if not 0 < hole < rim <= min(ny * dy, nx * dx) / 2:
         raise ValueError(f"hole {hole:g} mm and rim {rim:g} mm: expected 0 < hole < rim in the gap")
@@ -161,7 +161,7 @@ def radial_flow(
     between = (radius > hole) & (radius < rim)
     steps = _steps_to_circles(y, x, spacing, hole, rim)
     at_ends = between & (steps > 0).any(axis=1)
-    critical, conductivity = _conductivity(np.where(between, gap, 0.0), *at_ends)
+    critical, conductivity = _conductivity(np.where(between, opening, 0.0), *at_ends)
     sides = np.array([dy / dx, dy / dx, dx / dy, dx / dy])[:, np.newaxis, np.newaxis]
     over = np.divide(sides, steps, where=steps > 0, out=np.zeros_like(steps))
     inlet, outlet = over.sum(axis=1) * conductivity
@@ -181,8 +181,9 @@ def _steps_to_circles(y, x, spacing, hole, rim):
     dy, dx = spacing
     steps = np.zeros((2, 4, y.size, x.size))
     for way, (step, along, across) in enumerate(
-        [(dx, x, y[:, np.newaxis]), (-dx, x, y[:, np.newaxis])]
-        + [(dy, y[:, np.newaxis], x), (-dy, y[:, np.newaxis], x)]
+        (sign * step, *lines)
+        for step, *lines in ((dx, x, y[:, np.newaxis]), (dy, y[:, np.newaxis], x))
+        for sign in (1, -1)
     ):
         for circle, radius in enumerate((hole, rim)):
             half = np.sqrt(np.maximum(radius**2 - across**2, 0.0))
@@ -194,11 +195,13 @@ def _steps_to_circles(y, x, spacing, hole, rim):
     return steps
 
 
-def _checked(gap):
-    gap = np.asarray(gap, float)
-    if not np.isfinite(gap).any() or np.nanmin(gap) < 0:
-        raise ValueError("gap: expected numbers of 0 (contact) and more in a window that has some")
-    return np.nan_to_num(gap, nan=0.0)
+def _checked(gap: ArrayLike) -> np.ndarray:
+    """Gap with closed cells in place of missing ones."""
+    opening = np.asarray(gap, float)
+    known = opening[~np.isnan(opening)]
+    if opening.ndim != 2 or not known.size or not ((known >= 0) & (known < np.inf)).all():
+        raise ValueError("gap: expected (ny, nx) finite numbers of 0 (contact) and more, or NaN")
+    return np.nan_to_num(opening, nan=0.0)
 
 
 def critical_gap(gap: np.ndarray, inlet: np.ndarray, outlet: np.ndarray) -> float:

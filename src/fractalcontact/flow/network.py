@@ -9,7 +9,7 @@ from .cholesky import solve_symmetric
 from .errors import FlowNotConverged
 
 #: Largest error of a flow that the imbalance of its cells may make, a fraction of the flow.
-MAX_IMBALANCE = 1e-8
+MAX_IMBALANCE = 1e-6
 #: Steps of iterative refinement before a flow is refused.
 REFINEMENTS = 2
 
