@@ -99,9 +99,27 @@ def joined_cells(open_cells: np.ndarray, inlet: np.ndarray, outlet: np.ndarray) 
     open_cells, inlet, outlet : (ny, nx) bool ndarray
         Open cells, and those of them at each end.
     """
-    labels, _ = ndimage.label(open_cells)
-    at_both = np.intersect1d(labels[inlet & open_cells], labels[outlet & open_cells])
-    return np.isin(labels, at_both) & open_cells
+    labels, n = ndimage.label(open_cells)
+    joined = np.zeros(n + 1, bool)
+    joined[_at_both(labels, inlet, outlet)] = True
+    return joined[labels]
+
+
+def are_joined(open_cells: np.ndarray, inlet: np.ndarray, outlet: np.ndarray) -> bool:
+    """True if a path of open cells joins both ends.
+
+    Parameters
+    ----------
+    open_cells, inlet, outlet
+        As of :func:`joined_cells`.
+    """
+    return bool(_at_both(ndimage.label(open_cells)[0], inlet, outlet).size)
+
+
+def _at_both(labels, inlet, outlet):
+    """Labels above 0 at both ends."""
+    both = np.intersect1d(labels[inlet], labels[outlet])
+    return both[both > 0]
 
 
 def solve_network(
@@ -129,8 +147,8 @@ def solve_network(
     -----
     Solved for the pressure p and for its complement d = 1 - p at once: beside an end, the smaller
     of both has all its digits, and so do the flows through faces there, however narrow the
-    passages elsewhere are. With r the imbalance of the cells, the outflow is off by sum(r d), so
-    that sum(abs(r) d) bounds its error whatever solver gave p.
+    passages elsewhere are. With r the imbalance of the cells, the outflow is off by sum(r d) of the
+    exact d, which is between 0 and 1: sum(abs(r)) bounds its error whatever solver gave p.
     """
     cells = joined_cells(open_cells, network.inlet > 0, network.outlet > 0)
     shape = cells.shape
@@ -144,21 +162,30 @@ def solve_network(
     lower = _assemble(faces, ends, scale)
     right = ends * scale
     try:
-        solution = solve_symmetric(lower, right, cholmod=cholmod)
+        solution = _complementary(solve_symmetric(lower, right, cholmod=cholmod))
         for step in range(REFINEMENTS + 1):
             balance, flows = _balance(faces, ends, solution)
-            rate = min(flows)
-            bound = float(np.abs(balance) @ np.abs(solution[:, 1])) / rate if rate > 0 else np.inf
-            error = max(bound, abs(flows[0] - flows[1]) / rate) if rate > 0 else np.inf
+            error = _relative(float(np.abs(balance).sum()), min(flows))
             if error <= MAX_IMBALANCE or step == REFINEMENTS:
                 break
             change = np.stack([balance, -balance], axis=1) * scale
-            solution = solution + solve_symmetric(lower, change, cholmod=cholmod)
+            solution = _complementary(solution + solve_symmetric(lower, change, cholmod=cholmod))
     except ArithmeticError as failed:
         raise FlowNotConverged(f"the equations are singular ({failed})", np.inf) from failed
     if not error <= MAX_IMBALANCE:
         raise FlowNotConverged("the passages differ too much in width", error)
     return _network_flow(network, cells, solution, float(np.mean(flows)), error)
+
+
+def _complementary(solution):
+    """Pressure and its complement, the larger of both computed from the smaller."""
+    p, d = solution.T
+    low = p < d
+    return np.stack([np.where(low, p, 1 - d), np.where(low, 1 - p, d)], axis=1)
+
+
+def _relative(error, rate):
+    return error / rate if rate > 0 else np.inf
 
 
 def _faces_of(network, cells):

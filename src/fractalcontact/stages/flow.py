@@ -40,6 +40,9 @@ _LOADS: Dims = "normal_force"
 _STATES: Dims = ("branch", "normal_force")
 _LOAD, _UNLOAD, _RELOAD = range(3)
 
+#: Why a load has no transmissivity.
+NOT_QUOTED = "solved under the reported loads alone"
+
 #: Numbers of each way of the flow beside those of :data:`flow.curves.OF_WAY`.
 _MORE_OF_WAY: dict[str, tuple[Dims, str, str]] = {
     "hydraulic_ratio": (_LOADS, "1", "hydraulic aperture over the mean gap"),
@@ -134,7 +137,7 @@ def flow_stages(
     place = _Place((float(dy), float(dx)), axes_of(axis))
     states = reported.states(closure)
     mapped = next(part for part in parts if MAP_GAP in part)[MAP_GAP]
-    values: dict[str, Any] = _over_loads(mapped.values, place, reported.reference)
+    values: dict[str, Any] = _over_loads(mapped.values.astype(float), place, reported)
     values |= _laws(states, specimens, reported.direction, loading.slides)
     gap = states["mean_gap"].values
     total = error_budget["total"].sel(quantity="closure").values
@@ -154,7 +157,7 @@ def flow_stages(
     composite = loading.composite(int(cells))
     values |= _of_branches(composite, loading, branches, states, place, values)
     values |= place.both("unloaded", composite.max() - composite)
-    values |= _over_offsets(parts, closure, place)
+    values |= _over_offsets(parts, closure, place, reported, values)
     window = {f"flow_{axis}": mapped[f"{axis}_{reported.resolution}"].size for axis in "yx"}
     coords: dict[str, Any] = {
         "normal_force": closure["normal_force"],
@@ -194,19 +197,29 @@ def _coordinate(joints, axis, factor):
     return joints[f"window_{axis}"].values[::factor]
 
 
-def _over_loads(gaps: np.ndarray, place: _Place, reference: int) -> dict[str, Any]:
-    """Numbers of the states on loading, and the flux maps of one."""
-    gaps = gaps.astype(float)
+def _over_loads(gaps: np.ndarray, place: _Place, reported: Reported) -> dict[str, Any]:
+    """Numbers of the states on loading, and the flux maps under the reference load."""
     of_gaps = [numbers_of_aperture(gap, place.spacing) for gap in gaps]
     values: dict[str, Any] = {name: [one[name] for one in of_gaps] for name in OF_APERTURE}
     values["gap_quantile"] = np.transpose([one["quantiles"] for one in of_gaps])
     for way, axis in place.axes.items():
-        rows = [numbers_of_flow(gap, place.spacing, axis) for gap in gaps]
-        values |= {f"{name}_{way}": np.array([row[name] for row in rows]) for name in OF_WAY}
-        coarse = [coarse_transmissivity(gap, place.spacing, axis) for gap in gaps]
-        fine = values[f"transmissivity_{way}"]
-        values[f"transmissivity_grid_error_{way}"] = np.abs(coarse - fine)
-        values[f"flux_map_{way}"] = rows[reference]["flux"].astype(np.float32)
+        # What does not slide has no across: a second direction, at the loads that are quoted.
+        every = way == WAYS[0] or reported.direction != "none"
+        rows = {
+            load: numbers_of_flow(gaps[load], place.spacing, axis)
+            for load in (range(len(gaps)) if every else reported.quoted)
+        }
+        for name in OF_WAY:
+            missing = NOT_QUOTED if name == "flow_reason" else np.nan
+            values[f"{name}_{way}"] = np.array(
+                [rows[load][name] if load in rows else missing for load in range(len(gaps))]
+            )
+        error = np.full(len(gaps), np.nan)
+        for load in reported.quoted:
+            coarse = coarse_transmissivity(gaps[load], place.spacing, axis)
+            error[load] = abs(coarse - rows[load]["transmissivity"])
+        values[f"transmissivity_grid_error_{way}"] = error
+        values[f"flux_map_{way}"] = rows[reported.reference]["flux"].astype(np.float32)
     return values
 
 
@@ -260,14 +273,19 @@ def _of_branches(composite, loading, branches, states, place, on_loading):
     return values
 
 
-def _over_offsets(parts, closure, place):
+def _over_offsets(parts, closure, place, reported, on_loading):
     """Mean gaps and transmissivities over the offsets, under the reference load."""
-    names = ["offset_mean_gap", *(f"offset_transmissivity_{way}" for way in WAYS)]
-    values = {name: np.full(closure.sizes["offset"], np.nan) for name in names}
+    names = ["mean_gap", *(f"transmissivity_{way}" for way in WAYS)]
+    values = {f"offset_{name}": np.full(closure.sizes["offset"], np.nan) for name in names}
+    offsets = closure["offset"].values
     for part in (part for part in parts if OFFSET_GAP in part):
         for gap, offset in zip(part[OFFSET_GAP].values, part["offset"].values, strict=True):
-            number = int(np.argmin(np.abs(closure["offset"].values - offset)))
-            if np.isfinite(gap).all():
-                for name, value in place.both("offset", gap.astype(float)).items():
-                    values[name][number] = value
+            number = int(np.argmin(np.abs(offsets - offset)))
+            if offsets[number] == reported.offset:
+                found = {f"offset_{name}": on_loading[f"branch_{name}"] for name in names}
+                found = {name: of[_LOAD, reported.reference] for name, of in found.items()}
+            else:
+                found = place.both("offset", gap.astype(float))
+            for name, value in found.items():
+                values[name][number] = value
     return values
