@@ -81,7 +81,11 @@ _TABLE: dict[str, tuple[Dims, str, str]] = {
         ).items()
     },
     **{name: (_LOADS, *words) for name, words in OF_APERTURE.items()},
-    "gap_quantile": (("quantile", "normal_force"), "mm", "quantile of the gap over the window"),
+    "gap_quantile": (
+        ("gap_probability", "normal_force"),
+        "mm",
+        "quantile of the gap over the window",
+    ),
     "zimmerman_aperture": (_LOADS, "mm", "hydraulic aperture by Zimmerman and Bodvarsson's law"),
     "barton_aperture": (_LOADS, "mm", "hydraulic aperture by Barton's law"),
     "effective_stress_coefficient": (_LOADS, "1", "effective-stress coefficient 1 - A_r/A_0"),
@@ -163,7 +167,11 @@ def flow_stages(
         "normal_force": closure["normal_force"],
         "offset": closure["offset"],
         "branch": branches["branch"].values,
-        "quantile": list(QUANTILES),
+        "gap_probability": (
+            "gap_probability",
+            list(QUANTILES),
+            cf_attrs("1", "fraction of the window with a smaller gap"),
+        ),
         **{
             name: (
                 name,
