@@ -55,8 +55,8 @@ def draw(atlas: DataTree, name: str) -> Drawing:
             cmap="cividis",
             norm=LogNorm(_LEAST, _MOST),
         )
-        words = "flow per width over its mean (1)"
-        figure.colorbar(drawn, ax=c.axes, location="bottom", label=words, shrink=0.9, extend="both")
+        label = "flow per width over its mean (1)"
+        figure.colorbar(drawn, ax=c.axes, location="bottom", label=label, shrink=0.9, extend="both")
     else:
         say_empty(c.axes, str(flow["flow_reason_along"].values[reference]), ticks=False)
     for panel in (b, c):
