@@ -19,7 +19,7 @@ FLOORS = (
     ("registration",),
     ("gridding",),
     ("roughness", "scan"),
-    ("domain", "mechanics", "study"),
+    ("domain", "flow", "mechanics", "study"),
     ("size_effect", "error_budget", "statements", "commands"),
     ("ensemble",),
     ("figures", "pages", "stages"),

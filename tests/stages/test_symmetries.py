@@ -25,7 +25,8 @@ MADE_OF_SPECIMEN = [name for name, stage in STAGES.items() if stage.grain in ("s
 
 #: What is stated at an absolute length or force: Tse and Cruden's JRC takes its steps in mm, and
 #: Barton's strength follows it; a spectrum at a wave of 1 mm; an area at 1 N; a conductance at
-#: 1 MPa; stiffnesses at 1, 5 and 10 MPa; a spacing in words.
+#: 1 MPa; stiffnesses at 1, 5 and 10 MPa; a spacing in words; Barton's hydraulic aperture, a law in
+#: micrometres, and the gradient at which water, whose viscosity does not scale, reaches Re = 1.
 ABSOLUTE = {
     *("step", "z2", "jrc", "jrc_used", "jrc_note", "barton_roughness", "barton_strength"),
     *("scaled_roughness", "scaled_wall_strength", "barton_scaled_strength", "line_level"),
@@ -34,6 +35,7 @@ ABSOLUTE = {
     *("unit_conductance", "unit_conductance_low", "unit_conductance_high"),
     *("reference_pressure", "reference_stiffness", "reference_stiffness_error"),
     *("seated_d_0", "seated_d_0_low", "seated_d_0_high"),
+    *("barton_aperture", "reynolds_gradient_along", "reynolds_gradient_across"),
 }
 #: Sentences with numbers and letters in them, by stage: their verdicts are compared.
 SENTENCES = {
@@ -42,7 +44,9 @@ SENTENCES = {
     "statements": {"claim", "short", "rule", "numbers", "note"},
 }
 #: What depends on the order in which nodes are gone through: random nodes are drawn row by row.
-OF_ORDER = re.compile(r"residual|energy_error|iterations|.*_random.*|.*_departure")
+OF_ORDER = re.compile(
+    r"residual|flow_imbalance_.*|energy_error|iterations|.*_random.*|.*_departure"
+)
 
 
 def face(heights, spacing):

@@ -45,6 +45,8 @@ ENSEMBLES: dict[str, tuple] = {
     "surfaces with many hills": ((256, 4), (512, 5)),
     "joints with a roll-off": (6, 8),
     "surfaces of every dimension": (2, 3),
+    # flow
+    "fields solved densely": (100, 400),
     # domain
     "maps at random": (4, 100),
     "carpet sizes": ((81, 243, 500), (81, 200, 300, 400, 243, 256, 500, 512, 729, 1000)),

@@ -5,6 +5,7 @@ import xarray as xr
 
 from fractalcontact.core.settings import arguments
 from fractalcontact.mechanics.sweep import joint_states
+from fractalcontact.stages.flow import flow_stages
 from fractalcontact.stages.report import report_stages
 from fractalcontact.stages.specimen import specimen_stages
 from fractalcontact.stages.states import state_stages
@@ -22,7 +23,12 @@ def scan(heights, spacing):
 
 
 #: Functions that make the stages after those of the specimen itself, by their first stage.
-LATER = {"window_states": window_stages, "closure": state_stages, "windows": report_stages}
+LATER = {
+    "window_states": window_stages,
+    "closure": state_stages,
+    "flow": flow_stages,
+    "windows": report_stages,
+}
 
 
 def stages_of(name, faces, settings, solver, later=tuple(LATER)):
@@ -49,7 +55,7 @@ def stages_of_specimen(specimen, settings, solver, later=tuple(LATER)):
     )
     for stage in later:
         before = {need: known[need] for need in STAGES[stage].needs}
-        parts = {"parts": [states]} if stage == "closure" else {}
+        parts = {"parts": [states]} if stage in ("closure", "flow") else {}
         function = LATER[stage]
         known |= function(**before, **parts, **given(STAGES[stage].function, function))
     return known

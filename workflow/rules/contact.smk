@@ -100,6 +100,27 @@ rule ensemble:
         "../scripts/stage.py"
 
 
+# Flow through the gaps of the solved states: sparse equations of all open cells, so a job of its own.
+rule flow:
+    input:
+        **inputs_of("flow"),
+        parts=lambda wc: contact_parts_of(wc.specimen),
+    output:
+        **outputs_of("flow"),
+    log:
+        f"{RESULTS}/logs/flow/{{specimen}}.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/flow/{{specimen}}.tsv"
+    resources:
+        **asked_for("flow"),
+    params:
+        **calling("flow"),
+    message:
+        "{wildcards.specimen}: aperture and transmissivity"
+    script:
+        "../scripts/stage.py"
+
+
 # The report: strength, size laws, and what the paper says compared with what was found. They alone
 # read friction angles, wall strengths and labels, and solve nothing.
 rule strength:

@@ -11,6 +11,15 @@ from .overlap import suspect_load_share
 from .states import SCALARS
 
 
+def aperture(state: ContactState) -> np.ndarray:
+    """Aperture (ny, nx) of a state, mm: its gap, exactly 0 in contact.
+
+    There a solved gap is within the tolerance of 0, and negative where a node at the hardness is
+    pressed in: the face has crushed by as much.
+    """
+    return np.where(state.in_contact, 0.0, np.maximum(state.gap, 0.0))
+
+
 def numbers_of(state: ContactState, suspicious: np.ndarray | None = None) -> dict[str, Any]:
     """Scalars of a contact state: what is kept of it but its fields.
 
@@ -30,12 +39,14 @@ def numbers_of(state: ContactState, suspicious: np.ndarray | None = None) -> dic
     NotConverged
         As :attr:`contact.solve.ContactState.stiffness`.
     """
-    spacing = state.space.spacing
+    spacing, gap = state.space.spacing, aperture(state)
     of_domain: dict[str, Any] = {
         "nodes": np.count_nonzero(state.in_contact),
         "extent": _extent(state.in_contact),
         "perimeter": contact_perimeter(state.in_contact, spacing),
         "area_corrected": state_area(state),
+        "mean_gap": float(gap.mean()),
+        "gap_deviation": float(gap.std()),
         "suspect_load_share": (
             0.0 if suspicious is None else suspect_load_share(state.pressure, suspicious)
         ),

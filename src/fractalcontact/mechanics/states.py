@@ -25,6 +25,8 @@ SCALARS = {
     "area_corrected": ("mm2", "real contact area less what the cells on its edge overstate"),
     "stiffness": ("N/mm", "normal stiffness dF/dw"),
     "stiffness_scatter": ("N/mm", "scatter of the stiffness over the cells that come to yield"),
+    "mean_gap": ("mm", "mean gap over the nominal area: the mechanical aperture"),
+    "gap_deviation": ("mm", "standard deviation of the gap over the nominal area"),
     "residual": ("1", "largest KKT residual, fraction of the closure"),
     "energy_error": ("1", "Frank-Wolfe bound on the energy above its minimum, fraction of it"),
     "iterations": ("1", "applications of the elastic operator"),
@@ -58,9 +60,13 @@ OFFSETS = {
 #: Pressures of the states that are looked at closely: those of the contact maps, in the first
 #: direction and at the finest resolution, under every load. They are in one part of several.
 MAP_PRESSURE = "map_pressure"
-#: Gaps of the same states, and both.
+#: Gaps of the same states.
 MAP_GAP = "map_gap"
-MAP_FIELDS = (MAP_PRESSURE, MAP_GAP)
+#: Gaps in the first direction and at the finest resolution under the load of the maps, of every
+#: offset: what flows through the joint as it slides.
+OFFSET_GAP = "offset_gap"
+#: Fields of some parts alone.
+MAP_FIELDS = (MAP_PRESSURE, MAP_GAP, OFFSET_GAP)
 
 
 def error_attrs(attrs: Mapping[str, str], kind: str = SOLVER_ERROR) -> dict[str, str]:
@@ -188,8 +194,7 @@ def side_by_side(directions: Sequence[xr.Dataset]) -> xr.Dataset:
     states = [part.drop_vars(MAP_FIELDS, errors="ignore") for part in directions]
     joined = xr.concat(states, "direction", data_vars="minimal", join="override")
     for part in directions:
-        if MAP_PRESSURE in part:
-            joined = joined.assign({name: part[name] for name in MAP_FIELDS})
+        joined = joined.assign({name: part[name] for name in MAP_FIELDS if name in part})
     return joined
 
 
@@ -202,7 +207,7 @@ def domains_of(states: xr.Dataset) -> xr.Dataset:
 def map_fields(
     pressures: ArrayLike, gaps: ArrayLike, offset: float, direction: str, factor: int
 ) -> dict[str, tuple]:
-    """The variables :data:`MAP_FIELDS` of a dataset; their attributes say where they were solved.
+    """The variables :data:`MAP_PRESSURE` and :data:`MAP_GAP`; their attributes say where they are.
 
     Parameters
     ----------

@@ -19,8 +19,17 @@ from .closure import bulk_settlement, interface_closure
 from .joint import prefractal, rigid_dilatancy
 from .loading import JointLoading
 from .plan import solved_loads
-from .state_scalars import numbers_of
-from .states import ERRORS, OFFSETS, SCALARS, chosen_offset, map_fields, side_by_side
+from .state_scalars import aperture, numbers_of
+from .states import (
+    ERRORS,
+    OFFSET_GAP,
+    OFFSETS,
+    SCALARS,
+    chosen_offset,
+    forces_of,
+    map_fields,
+    side_by_side,
+)
 
 #: Tolerances are tightened by so much where that of the study leaves too large an error.
 TIGHTENING = 10.0
@@ -159,8 +168,8 @@ def contact_states(
         offset, resolution, load), those of :data:`OFFSETS` over (direction, offset) and, for each
         resolution k, the contact domain ``in_contact_k`` over (direction, offset, normal_force,
         y_k, x_k). NaN, and no contact, where a state was not solved. Where the states that are
-        looked at closely are among them, :data:`mechanics.states.MAP_FIELDS` over (normal_force,
-        y_k, x_k).
+        looked at closely are among them, those of :data:`mechanics.states.MAP_FIELDS`, over
+        (normal_force, y_k, x_k) or, of the offsets, (offset, y_k, x_k).
 
     Raises
     ------
@@ -175,22 +184,30 @@ def contact_states(
     scalars = {name: np.full(shape, np.nan) for name in SCALARS | ERRORS}
     solved = np.zeros(shape, bool)
     fields: dict[str, tuple] = {}
+    reference = int(np.argmin(np.abs(forces - forces_of([settings.map_load], loading.area)[0])))
     for k, factor in enumerate(resolutions):
         grid = tuple(-(-n // factor) for n in loading.shape)
         space = loading.half_space(grid, factor)
         touching = np.zeros((1, len(cells), len(forces), *grid), bool)
+        looked_at = _in_first_direction(loading) and factor == min(settings.resolutions)
+        of_offsets = np.full((len(cells), *grid), np.nan, np.float32) if looked_at else None
         for i, n in enumerate(cells):
             pressures, gaps = [], []
             suspicious = prefractal(loading.suspect_nodes(n), factor)
             for j, state in _load_curve(loading, n, factor, space, mapped=n == mapped):
                 pressures.append(state.pressure.astype(np.float32))
-                gaps.append(state.gap.astype(np.float32))
+                gaps.append(aperture(state).astype(np.float32))
+                if of_offsets is not None and j == reference:
+                    of_offsets[i] = gaps[-1]
                 solved[0, i, k, j] = True
                 touching[0, i, j] = state.in_contact
                 for name, value in numbers_of(state, suspicious).items():
                     scalars[name][0, i, k, j] = value
-            if _in_first_direction(loading) and n == mapped and factor == min(settings.resolutions):
+            if looked_at and n == mapped:
                 fields |= map_fields(pressures, gaps, loading.offsets[i], direction, factor)
+        if of_offsets is not None:
+            words = cf_attrs("mm", "gap g under the load of the contact maps")
+            fields[OFFSET_GAP] = ("offset", f"y_{factor}", f"x_{factor}"), of_offsets, words
         fields[f"in_contact_{factor}"] = (
             ("direction", "offset", "normal_force", f"y_{factor}", f"x_{factor}"),
             touching,

@@ -19,6 +19,7 @@ SECTIONS = {
     "joint": "Joint",
     "closure": "Closure",
     "dilatancy": "Dilatancy and strength",
+    "flow": "Aperture and flow",
     "domains": "Contact domains",
     "size effect": "Size effect",
     "trust": "How far to trust it",

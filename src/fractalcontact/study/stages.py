@@ -98,6 +98,13 @@ _TABLE = (
     _of_states("branches", "closure of loading, unloading and reloading, at the reported offset"),
     _of_states("choices", "what was solved and how exactly, why, and the errors that makes"),
     _of_states("error_budget", "error of the published quantities, split by source"),
+    Stage(
+        "flow",
+        "aperture and transmissivity over loads, branches and offsets",
+        SPECIMEN,
+        "fractalcontact.stages.flow:flow_stages",
+        ("specimens", "joints", "closure", "branches", "error_budget"),
+    ),
     _of_report("windows", "closure, roughness and strength of sub-windows against their size"),
     _of_report("strength", "dilatancy and friction angles, shear strength", JOINT),
     Stage(

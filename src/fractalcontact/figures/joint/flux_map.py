@@ -1,0 +1,77 @@
+"""Contact map beside the map of the gap and that of the flow, under the reference load."""
+
+import numpy as np
+from matplotlib.colors import LogNorm
+from matplotlib.figure import Figure
+from xarray import DataTree
+
+from ...core.subject import Subject
+from ...core.window import window_sides
+from ..kit.caption import caption
+from ..kit.domains import contact_domain
+from ..kit.drawing import WIDTH, Drawing
+from ..kit.empty import say_empty
+from ..kit.maps import draw_domain, draw_map
+from ..kit.panel import Panel, table_of
+from ..kit.titles import headline
+from ..kit.words import place, pressure_label
+
+TITLE = "Contact, gap and flow"
+SUBJECT = "specimen"
+NEEDS = ("specimens", "closure", "contact", "flow")
+ORDER = 48
+SECTION = "flow"
+
+#: Smallest and largest flow per width that has a colour, over its mean.
+_LEAST, _MOST = 0.01, 10.0
+
+
+def draw(atlas: DataTree, name: str) -> Drawing:
+    """Contact domain, gap and flow along the sliding at the reported offset."""
+    subject = Subject.of(atlas, name)
+    flow, contact = subject.states("flow"), subject.states("contact")
+    reference, sides = subject.reported.reference, window_sides(subject["specimens"])
+    high = min(max(sides[0] / sides[1], 0.4), 2.0)
+    figure = Figure(figsize=(WIDTH, 1.4 + 2.1 * high))
+    titles = ("contact", "gap", "flow along the sliding")
+    a, b, c = (Panel(*one) for one in zip(figure.subplots(1, 3), "abc", titles, strict=True))
+    draw_domain(
+        a.axes, contact_domain(subject, subject.reported.resolution, reference), sides, ticks=3
+    )
+    gap = contact["map_gap"].isel(normal_force=reference).values
+    top = float(np.nanquantile(gap, 0.99)) or 1.0
+    drawn = draw_map(b.axes, gap, sides, ticks=3, cmap="viridis", vmin=0, vmax=top)
+    figure.colorbar(
+        drawn, ax=b.axes, location="bottom", label="gap $g$ (mm)", shrink=0.9, extend="max"
+    )
+    flux = flow["flux_map_along"].values
+    flows = bool((flux > 0).any())
+    if flows:
+        drawn = draw_map(
+            c.axes,
+            np.maximum(flux, _LEAST),
+            sides,
+            ticks=3,
+            cmap="cividis",
+            norm=LogNorm(_LEAST, _MOST),
+        )
+        label = "flow per width over its mean (1)"
+        figure.colorbar(drawn, ax=c.axes, location="bottom", label=label, shrink=0.9, extend="both")
+    else:
+        say_empty(c.axes, str(flow["flow_reason_along"].values[reference]), ticks=False)
+    for panel in (b, c):
+        panel.axes.set_ylabel("")
+    at = flow.isel(normal_force=reference)
+    c.keep(at, "channel_fraction_along", "critical_gap_along", "transmissivity_along", "gap_slope")
+    pressure = pressure_label(float(at["nominal_pressure"]))
+    headline(figure, subject.label, place(subject.direction, subject.offset), pressure)
+    words = {
+        "axis": subject["flow"].attrs["flow_axis_along"],
+        "flows": flows,
+        "channels": float(at["channel_fraction_along"]),
+        "narrowest": float(at["critical_gap_along"]),
+        "slope": float(at["gap_slope"]),
+        "gradient": 1e3 * float(at["reynolds_gradient_along"]),
+        "reason": str(at["flow_reason_along"].values),
+    }
+    return Drawing(figure, table_of(c), caption(__name__, **words))

@@ -1,0 +1,119 @@
+"""Hydraulic against mechanical aperture with the empirical laws, and transmissivity over load."""
+
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
+from xarray import DataTree
+
+from ...core.subject import Subject
+from ..kit.caption import caption
+from ..kit.drawing import WIDTH, Drawing, colour_of
+from ..kit.empty import say_empty
+from ..kit.legends import entries, legends_below
+from ..kit.panel import Panel, table_of
+from ..kit.titles import headline
+from ..kit.words import NOMINAL_PRESSURE, place
+
+TITLE = "Hydraulic aperture and transmissivity against load"
+SUBJECT = "specimen"
+NEEDS = ("specimens", "closure", "flow")
+ORDER = 46
+SECTION = "flow"
+
+#: Ways of the flow: words, colour, marker and what its points are filled with.
+_WAYS: dict[str, dict[str, Any]] = {
+    "along": {"color": colour_of(0), "marker": "o"},
+    "across": {"color": colour_of(1), "marker": "s", "mfc": "none"},
+}
+_LAWS: dict[str, tuple[str, dict[str, Any]]] = {
+    "zimmerman_aperture": ("Zimmerman and Bodvarsson", {"color": colour_of(2), "ls": "--"}),
+    "barton_aperture": ("Barton", {"color": colour_of(3), "ls": "-."}),
+}
+_NO_FLOW = "no load has a path of open gap from side to side"
+
+
+def draw(atlas: DataTree, name: str) -> Drawing:
+    """Apertures and transmissivities at the reported offset."""
+    subject = Subject.of(atlas, name)
+    flow, closure = subject.states("flow"), subject.states("closure")
+    states = flow.assign(mean_gap=closure["mean_gap"])
+    figure = Figure(figsize=(WIDTH, 4.0))
+    titles = ("hydraulic against mean aperture", "transmissivity against pressure")
+    a, b = (Panel(*one) for one in zip(figure.subplots(1, 2), "ab", titles, strict=True))
+    _draw_apertures(a, states)
+    _draw_branches(b, flow)
+    legends_below(figure, entries(a.axes), entries(b.axes))
+    headline(figure, subject.label, place(subject.direction, subject.offset))
+    return Drawing(figure, table_of(a, b), caption(__name__, **_words(subject, states)))
+
+
+def _draw_apertures(panel: Panel, states: xr.Dataset) -> None:
+    kept = ("nominal_pressure", "critical_gap_along", "channel_fraction_along")
+    for way, style in _WAYS.items():
+        panel.curve(
+            _positive(states, f"hydraulic_aperture_{way}"),
+            "mean_gap",
+            f"hydraulic_aperture_{way}",
+            keep=kept if way == "along" else (),
+            label=f"cubic law, {way}",
+            ls="none",
+            **style,
+        )
+    for law, (words, style) in _LAWS.items():
+        panel.curve(states, "mean_gap", law, label=words, marker="none", **style)
+    gaps = states["mean_gap"].values
+    gaps = gaps[gaps > 0]
+    if gaps.size:
+        ends = [gaps.min(), gaps.max()]
+        panel.axes.plot(ends, ends, color="0.6", lw=0.8, label="parallel plates")
+    panel.axes.set(xscale="log", yscale="log", xlabel=r"mean gap $\langle g\rangle$ (mm)")
+    panel.axes.set_ylabel("hydraulic aperture $h_h$ (mm)")
+
+
+def _draw_branches(panel: Panel, flow: xr.Dataset) -> None:
+    for way, style in _WAYS.items():
+        branches = _positive(flow, f"branch_transmissivity_{way}")
+        for branch, words, line in (
+            ("load", "loading", "-"),
+            ("reload", "unloading and reloading", ":"),
+        ):
+            panel.curve(
+                branches.sel(branch=branch),
+                "nominal_pressure",
+                f"branch_transmissivity_{way}",
+                keep=("branch",),
+                label=f"{words}, {way}",
+                ls=line,
+                **style,
+            )
+    if not (flow["transmissivity_along"] > 0).any():
+        say_empty(panel.axes, _NO_FLOW)
+    panel.axes.set(xscale="log", yscale="log", xlabel=f"{NOMINAL_PRESSURE} (MPa)")
+    panel.axes.set_ylabel("transmissivity $T$ (mm³)")
+
+
+def _positive(data: xr.Dataset, name: str) -> xr.Dataset:
+    """A logarithmic axis has no zero: states without a path are left out."""
+    return data.assign({name: data[name].where(data[name] > 0).assign_attrs(data[name].attrs)})
+
+
+def _words(subject: Subject, states: xr.Dataset) -> dict[str, Any]:
+    """Values of the caption."""
+    at = states.isel(normal_force=subject.reported.reference)
+    ratio = float(at["hydraulic_ratio_along"])
+    reload = at["branch_transmissivity_along"].sel(branch="reload")
+    grid = at["transmissivity_grid_error_along"] / at["transmissivity_along"]
+    closing = at["transmissivity_closure_error_along"] / at["transmissivity_along"]
+    return {
+        "pressure": float(at["nominal_pressure"]),
+        "transmissivity": float(at["transmissivity_along"]),
+        "ratio": ratio,
+        "reload": float(reload / at["transmissivity_along"]),
+        "closed": float(states["first_closed_pressure_along"]),
+        "opened": float(states["last_open_pressure_along"]),
+        "grid": float(grid),
+        "closing": float(closing),
+        "flows": bool(np.isfinite(ratio) and ratio > 0),
+    }

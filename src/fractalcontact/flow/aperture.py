@@ -1,0 +1,156 @@
+"""Statistics of an aperture map: distribution, correlation length, slopes, bounds of its flow."""
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+#: Quantiles of the aperture that are kept.
+QUANTILES = (0.05, 0.25, 0.5, 0.75, 0.95)
+
+
+def correlation_length(gap: np.ndarray, spacing: float, axis: int) -> float:
+    """Lag at which the autocorrelation of the gap along an axis falls to 1/e, mm.
+
+    Parameters
+    ----------
+    gap : (ny, nx) ndarray
+        mm.
+    spacing : float
+        Of the cells along that axis, mm.
+    axis : int
+
+    Returns
+    -------
+    float
+        Interpolated between lags; NaN where the gap is even, or correlated over half the window.
+    """
+    deviation = np.moveaxis(gap - gap.mean(), axis, -1)
+    n = deviation.shape[-1]
+    variance = float((deviation**2).mean())
+    if variance == 0:
+        return np.nan
+    # Padded with zeros: the window is not periodic.
+    power = np.abs(np.fft.rfft(deviation, 2 * n, axis=-1)) ** 2
+    sums = np.fft.irfft(power, axis=-1).mean(axis=0)[: n // 2]
+    correlation = sums / (n - np.arange(n // 2)) / variance
+    below = np.flatnonzero(correlation < np.exp(-1))
+    if not below.size:
+        return np.nan
+    last = int(below[0])
+    before, after = correlation[last - 1], correlation[last]
+    return spacing * (last - 1 + (before - np.exp(-1)) / (before - after))
+
+
+def rms_slope(gap: np.ndarray, spacing: tuple[float, float]) -> float:
+    """Rms slope of the open gap, over faces between two open cells; NaN without any."""
+    sums, faces = 0.0, 0
+    for axis, step in enumerate(spacing):
+        both = (np.minimum(*_neighbours(gap, axis)) > 0).ravel()
+        slopes = (np.diff(gap, axis=axis) / step).ravel()[both]
+        sums, faces = sums + float(slopes @ slopes), faces + slopes.size
+    # Each of both components has half of the faces.
+    return float(np.sqrt(2 * sums / faces)) if faces else np.nan
+
+
+def _neighbours(gap, axis):
+    turned = np.moveaxis(gap, axis, 0)
+    return np.moveaxis(turned[1:], 0, axis), np.moveaxis(turned[:-1], 0, axis)
+
+
+def transmissivity_bounds(gap: np.ndarray, axis: int) -> tuple[float, float]:
+    """Lower and upper bound of the transmissivity along an axis, mm3.
+
+    Parameters
+    ----------
+    gap : (ny, nx) ndarray
+        g, mm.
+    axis : int
+        Along which it flows.
+
+    Returns
+    -------
+    lower, upper : float
+        Strips along the flow, each its cells in series, side by side; and strips across the flow,
+        each its cells side by side, in series. More walls never let more pass, fewer never less.
+    """
+    cubed = np.moveaxis(gap, axis, -1) ** 3 / 12
+    lower = float(_harmonic_mean(cubed).mean())
+    return lower, float(_harmonic_mean(cubed.mean(axis=0)))
+
+
+def _harmonic_mean(values):
+    """Harmonic mean along the last axis; 0 where any is 0."""
+    with np.errstate(divide="ignore"):
+        return 1 / (1 / values).mean(axis=-1)
+
+
+def zimmerman_bodvarsson_aperture(
+    mean: ArrayLike, deviation: ArrayLike, contact: ArrayLike
+) -> np.ndarray:
+    """Hydraulic aperture by Zimmerman and Bodvarsson's law, mm.
+
+    h^3 = <g>^3 (1 - 1.5 s^2/<g>^2) (1 - 2 c), as quoted of Transp. Porous Media 23 (1996) 1.
+
+    Parameters
+    ----------
+    mean, deviation : array_like
+        <g> and standard deviation s of the gap over the nominal area, mm, contact counted as 0.
+        Others take both over the open part alone, which gives larger apertures.
+    contact : array_like
+        Contact fraction c.
+
+    Returns
+    -------
+    ndarray
+        NaN where the law has no positive value: s above 0.82 <g>, or half the area in contact.
+    """
+    mean, deviation, contact = (np.asarray(one, float) for one in (mean, deviation, contact))
+    with np.errstate(invalid="ignore", divide="ignore"):
+        spread, open_part = 1 - 1.5 * (deviation / mean) ** 2, 1 - 2 * contact
+        cubed = np.where((spread > 0) & (open_part > 0), spread * open_part, np.nan)
+    return mean * np.cbrt(cubed)
+
+
+def barton_aperture(mechanical: ArrayLike, jrc: float) -> np.ndarray:
+    """Hydraulic aperture by Barton's law, mm: e = E^2 / JRC^2.5, both in micrometres.
+
+    As quoted of Barton, Bandis and Bakhtar (Int. J. Rock Mech. Min. Sci. 22 (1985) 121).
+
+    Parameters
+    ----------
+    mechanical : array_like
+        Mechanical aperture E, mm.
+    jrc : float
+        Joint roughness coefficient.
+
+    Returns
+    -------
+    ndarray
+        NaN where the law does not hold: it would give more than the mechanical aperture.
+    """
+    micrometres = 1e3 * np.asarray(mechanical, float)
+    if not jrc > 0:
+        return np.full_like(micrometres, np.nan)
+    hydraulic = micrometres**2 / jrc**2.5
+    return np.where(hydraulic <= micrometres, hydraulic, np.nan) / 1e3
+
+
+#: Water at 20 degrees: viscosity, MPa s, and density, N s2/mm4.
+WATER_VISCOSITY, WATER_DENSITY = 1.002e-9, 9.982e-10
+
+
+def reynolds_gradient(transmissivity: ArrayLike, reynolds: float = 1.0) -> np.ndarray:
+    """Pressure gradient of water at 20 degrees that gives a Reynolds number, MPa/mm.
+
+    Re = rho Q/(mu W) with Q/W = T grad p/mu. The cubic law holds for Re well below 1 (Zimmerman
+    and Bodvarsson 1996).
+
+    Parameters
+    ----------
+    transmissivity : array_like
+        T, mm3.
+    reynolds : float, optional
+    """
+    transmissivity = np.asarray(transmissivity, float)
+    with np.errstate(divide="ignore"):
+        gradient = reynolds * WATER_VISCOSITY**2 / (WATER_DENSITY * transmissivity)
+    return np.where(transmissivity > 0, gradient, np.nan)

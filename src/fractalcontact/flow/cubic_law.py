@@ -1,0 +1,255 @@
+"""Transmissivity of a joint by the local cubic law: div(g^3 grad p) = 0 on the open gap.
+
+The aperture stands at the middles of the cells, contact is impermeable, and faces between cells
+have the harmonic mean of both. No flow leaves the sides of a window (it is not periodic).
+Zimmerman and Bodvarsson (Transp. Porous Media 23 (1996) 1) review the law and its limits.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from .network import Network, NetworkFlow, are_joined, harmonic_faces, solve_network
+
+#: Gaps below this fraction of the widest passage's narrowest gap are closed: what they carry, a
+#: part in 1e9 of that passage, is beyond the precision of the equations.
+CLOSED_BELOW = 1e-3
+#: Fraction of the flow that the flow channels are said to carry.
+CHANNEL_FLOW = 0.9
+#: Steps of the bisection for the critical gap.
+_BISECTIONS = 12
+
+
+@dataclass(frozen=True, eq=False)
+class Flow:
+    """Flow through a joint along one axis, per unit viscosity.
+
+    Attributes
+    ----------
+    transmissivity : float
+        T = h_h^3 / 12, mm3: flow per width, pressure gradient and inverse viscosity. 0 where the
+        gap does not percolate.
+    imbalance : float
+        Bound on its relative error by the mass balance of the cells.
+    critical_gap : float
+        The largest gap such that a path of gaps no smaller joins both ends, mm; 0 without a path.
+    flux : (ny, nx) ndarray
+        Flow per width in each cell over the mean flow per width of the window.
+    pressure : (ny, nx) ndarray
+        From 1 to 0; NaN where no path joins a cell to both ends.
+    """
+
+    transmissivity: float
+    imbalance: float
+    critical_gap: float
+    flux: np.ndarray
+    pressure: np.ndarray
+
+    @property
+    def hydraulic_aperture(self) -> float:
+        """h_h = (12 T)^(1/3), mm."""
+        return float(np.cbrt(12 * self.transmissivity))
+
+    @property
+    def channel_fraction(self) -> float:
+        """Smallest fraction of the window that carries :data:`CHANNEL_FLOW` of the flow."""
+        flux = np.sort(self.flux, axis=None)[::-1]
+        total = flux.sum()
+        if not total > 0:
+            return np.nan
+        return (int(np.searchsorted(flux.cumsum(), CHANNEL_FLOW * total)) + 1) / flux.size
+
+
+def plane_flow(
+    gap: ArrayLike, spacing: tuple[float, float], axis: str = "x", *, cholmod: bool | None = None
+) -> Flow:
+    """Flow through a rectangular window from one side to the opposite one.
+
+    Parameters
+    ----------
+    gap : (ny, nx) array_like
+        g, mm, at the middles of the cells; 0 in contact. NaN is outside of the joint: closed.
+    spacing : (float, float)
+        Sides (dy, dx) of a cell, mm.
+    axis : {"x", "y"}
+        Along which the pressure falls.
+    cholmod : bool, optional
+        As of :func:`flow.cholesky.solve_symmetric`.
+
+    Returns
+    -------
+    Flow
+
+    Raises
+    ------
+    FlowNotConverged
+        As :func:`flow.network.solve_network`.
+    ValueError
+        If a gap is negative or no gap of the window is known.
+    """
+    if axis == "y":
+        turned = plane_flow(np.transpose(gap), spacing[::-1], cholmod=cholmod)
+        return Flow(
+            turned.transmissivity,
+            turned.imbalance,
+            turned.critical_gap,
+            turned.flux.T,
+            turned.pressure.T,
+        )
+    opening = _checked(gap)
+    (ny, nx), (dy, dx) = opening.shape, spacing
+    at_ends = np.zeros((2, ny, nx), bool)
+    at_ends[0, :, 0] = at_ends[1, :, -1] = True
+    critical, conductivity = _conductivity(opening, *at_ends)
+    # From the middle of a cell to the end of the window is half a cell.
+    inlet, outlet = 2 * (dy / dx) * conductivity * at_ends
+    network = Network(*harmonic_faces(conductivity, spacing), inlet, outlet)
+    solved = solve_network(network, conductivity > 0, cholmod=cholmod)
+    length, width = nx * dx, ny * dy
+    transmissivity = solved.rate * length / width
+    flux = _cell_flux(network, solved, spacing, solved.rate / width)
+    return Flow(transmissivity, solved.imbalance, critical, flux, solved.pressure)
+
+
+def radial_flow(
+    gap: ArrayLike,
+    spacing: tuple[float, float],
+    hole: float,
+    rim: float,
+    *,
+    cholmod: bool | None = None,
+) -> Flow:
+    """Flow from a hole in the middle of a disc to its rim, as laboratories test cores.
+
+    Parameters
+    ----------
+    gap : (ny, nx) array_like
+        g, mm; 0 in contact, NaN closed. The disc is in the middle of the grid.
+    spacing : (float, float)
+        Sides (dy, dx) of a cell, mm.
+    hole, rim : float
+        Radii, mm.
+    cholmod : bool, optional
+        As of :func:`flow.cholesky.solve_symmetric`.
+
+    Returns
+    -------
+    Flow
+        Its transmissivity is that of the parallel plates which let the same flow pass between the
+        same radii, Q ln(rim/hole) / (2 pi); its ``flux`` is over the mean flow per width at the
+        hole.
+
+    Raises
+    ------
+    FlowNotConverged
+        As :func:`flow.network.solve_network`.
+    ValueError
+        As :func:`plane_flow`, or if the radii are not 0 < hole < rim within the grid.
+
+    Notes
+    -----
+    Between a cell and a circle that crosses the line to its neighbour the conductance is that of
+    the distance to the circle.
+    """
+    opening = _checked(gap)
+    (ny, nx), (dy, dx) = opening.shape, spacing
+    y, x = dy * (np.arange(ny) - (ny - 1) / 2), dx * (np.arange(nx) - (nx - 1) / 2)
+    if not 0 < hole < rim <= min(ny * dy, nx * dx) / 2:
+        raise ValueError(f"hole {hole:g} mm and rim {rim:g} mm: expected 0 < hole < rim in the gap")
+    radius = np.hypot(y[:, np.newaxis], x)
+    between = (radius > hole) & (radius < rim)
+    steps = _steps_to_circles(y, x, spacing, hole, rim)
+    at_ends = between & (steps > 0).any(axis=1)
+    critical, conductivity = _conductivity(np.where(between, opening, 0.0), *at_ends)
+    sides = np.array([dy / dx, dy / dx, dx / dy, dx / dy])[:, np.newaxis, np.newaxis]
+    over = np.divide(sides, steps, where=steps > 0, out=np.zeros_like(steps))
+    inlet, outlet = over.sum(axis=1) * conductivity
+    network = Network(*harmonic_faces(conductivity, spacing), inlet, outlet)
+    solved = solve_network(network, conductivity > 0, cholmod=cholmod)
+    transmissivity = solved.rate * np.log(rim / hole) / (2 * np.pi)
+    flux = _cell_flux(network, solved, spacing, solved.rate / (2 * np.pi * hole))
+    return Flow(transmissivity, solved.imbalance, critical, flux, solved.pressure)
+
+
+#: Smallest part of a cell that a circle cuts off: closer to it, a cell is on it.
+_MIN_STEP = 1e-3
+
+
+def _steps_to_circles(y, x, spacing, hole, rim):
+    """Cells to the circles along +x, -x, +y, -y, (circle, way, ny, nx), 0 where over one cell."""
+    dy, dx = spacing
+    steps = np.zeros((2, 4, y.size, x.size))
+    for way, (step, along, across) in enumerate(
+        (sign * step, *lines)
+        for step, *lines in ((dx, x, y[:, np.newaxis]), (dy, y[:, np.newaxis], x))
+        for sign in (1, -1)
+    ):
+        for circle, radius in enumerate((hole, rim)):
+            half = np.sqrt(np.maximum(radius**2 - across**2, 0.0))
+            # The hole lies towards the middle, the rim away from it.
+            end = np.sign(step) * half * (-1 if circle == 0 else 1)
+            part = (end - along) / step
+            crossed = (half > 0) & (part > 0) & (part <= 1)
+            steps[circle, way] = np.where(crossed, np.maximum(part, _MIN_STEP), 0.0)
+    return steps
+
+
+def _checked(gap: ArrayLike) -> np.ndarray:
+    """Gap with closed cells in place of missing ones."""
+    opening = np.asarray(gap, float)
+    known = opening[~np.isnan(opening)]
+    if opening.ndim != 2 or not known.size or not ((known >= 0) & (known < np.inf)).all():
+        raise ValueError("gap: expected (ny, nx) finite numbers of 0 (contact) and more, or NaN")
+    return np.nan_to_num(opening, nan=0.0)
+
+
+def critical_gap(gap: np.ndarray, inlet: np.ndarray, outlet: np.ndarray) -> float:
+    """The largest gap such that a path of gaps no smaller joins both ends; 0 without a path.
+
+    Parameters
+    ----------
+    gap : (ny, nx) ndarray
+        mm, 0 where closed.
+    inlet, outlet : (ny, nx) bool ndarray
+        Cells at the ends.
+
+    Returns
+    -------
+    float
+        mm, to a part in 2^12 of the number of cells, from below.
+    """
+    values = np.sort(gap[gap > 0], axis=None)
+    if not are_joined(gap > 0, inlet, outlet):
+        return 0.0
+    low, high = 0, values.size
+    for _ in range(_BISECTIONS):
+        middle = (low + high) // 2
+        if middle == low:
+            break
+        if are_joined(gap >= values[middle], inlet, outlet):
+            low = middle
+        else:
+            high = middle
+    return float(values[low])
+
+
+def _conductivity(gap, inlet, outlet):
+    """Critical gap, mm, and g^3/12 of the cells, mm3; 0 where closed."""
+    critical = critical_gap(gap, inlet, outlet)
+    return critical, np.where(gap >= CLOSED_BELOW * critical, gap, 0.0) ** 3 / 12
+
+
+def _cell_flux(network: Network, solved: NetworkFlow, spacing, mean):
+    """Flow per width in the cells over ``mean``: from the flows through their faces."""
+    dy, dx = spacing
+    p = np.nan_to_num(solved.pressure)
+    ny, nx = p.shape
+    through_x, through_y = np.zeros((ny, nx + 1)), np.zeros((ny + 1, nx))
+    through_x[:, 1:-1], through_y[1:-1] = solved.flux_x, solved.flux_y
+    middle_x = np.abs(through_x[:, 1:] + through_x[:, :-1]) / 2
+    middle_y = np.abs(through_y[1:] + through_y[:-1]) / 2
+    # A cell at an end has the flow of that end beside that of its face.
+    end = np.where(p > 0, network.inlet * (1 - p) + network.outlet * p, 0.0)
+    flux = np.hypot(middle_x / dy, middle_y / dx) + end / (2 * dy)
+    return flux / mean if mean > 0 else np.zeros_like(flux)

@@ -1,0 +1,299 @@
+"""Flow through a joint: transmissivity over loads, branches and offsets of the reported state."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from roughcontact.contact.solve import solve_contact
+
+from ..core.datasets import Dims, labelled_dataset
+from ..core.labels import cf_attrs
+from ..core.reported import Reported
+from ..core.settings import Solver, StateSettings
+from ..core.window import nominal_area
+from ..flow.aperture import (
+    QUANTILES,
+    barton_aperture,
+    reynolds_gradient,
+    zimmerman_bodvarsson_aperture,
+)
+from ..flow.curves import (
+    OF_APERTURE,
+    OF_WAY,
+    WAYS,
+    axes_of,
+    coarse_transmissivity,
+    numbers_of_aperture,
+    numbers_of_flow,
+    percolation_pressures,
+    transmissivity_of,
+)
+from ..mechanics.joint import sliding_axis
+from ..mechanics.jrc import profile_roughness
+from ..mechanics.loading import JointLoading
+from ..mechanics.state_scalars import aperture
+from ..mechanics.states import MAP_GAP, OFFSET_GAP, with_pressure
+
+_LOADS: Dims = "normal_force"
+_STATES: Dims = ("branch", "normal_force")
+_LOAD, _UNLOAD, _RELOAD = range(3)
+
+#: Why a load has no transmissivity.
+NOT_QUOTED = "solved under the reported loads alone"
+
+#: Numbers of each way of the flow beside those of :data:`flow.curves.OF_WAY`.
+_MORE_OF_WAY: dict[str, tuple[Dims, str, str]] = {
+    "hydraulic_ratio": (_LOADS, "1", "hydraulic aperture over the mean gap"),
+    "transmissivity_grid_error": (
+        _LOADS,
+        "mm3",
+        "change of T where every second cell is left out, no interval",
+    ),
+    "transmissivity_closure_error": (
+        _LOADS,
+        "mm3",
+        "change of T with the total error of the closure, no interval",
+    ),
+    "reynolds_gradient": (
+        _LOADS,
+        "MPa/mm",
+        "pressure gradient of water at 20 degrees at which the Reynolds number is 1",
+    ),
+    "branch_transmissivity": (_STATES, "mm3", "T on loading, unloading and reloading"),
+    "offset_transmissivity": ("offset", "mm3", "T under the reference load"),
+    "unloaded_transmissivity": ((), "mm3", "T at first touch, before any load"),
+    "last_open_pressure": ((), "MPa", "largest pressure on loading with a path through the gap"),
+    "first_closed_pressure": ((), "MPa", "smallest pressure on loading without such a path"),
+    "flux_map": (
+        ("flow_y", "flow_x"),
+        "1",
+        "flow per width over its mean, under the reference load",
+    ),
+}
+_TABLE: dict[str, tuple[Dims, str, str]] = {
+    **{
+        f"{name}_{way}": (dims, unit, f"{words}, {way} the sliding")
+        for way in WAYS
+        for name, (dims, unit, words) in (
+            {name: (_LOADS, *of) for name, of in OF_WAY.items()} | _MORE_OF_WAY
+        ).items()
+    },
+    **{name: (_LOADS, *words) for name, words in OF_APERTURE.items()},
+    "gap_quantile": (
+        ("gap_probability", "normal_force"),
+        "mm",
+        "quantile of the gap over the window",
+    ),
+    "zimmerman_aperture": (_LOADS, "mm", "hydraulic aperture by Zimmerman and Bodvarsson's law"),
+    "barton_aperture": (_LOADS, "mm", "hydraulic aperture by Barton's law"),
+    "effective_stress_coefficient": (_LOADS, "1", "effective-stress coefficient 1 - A_r/A_0"),
+    "branch_mean_gap": (_STATES, "mm", "mean gap on loading, unloading and reloading"),
+    "offset_mean_gap": ("offset", "mm", "mean gap under the reference load"),
+    "unloaded_mean_gap": ((), "mm", "mean gap at first touch, before any load"),
+}
+
+
+def flow_stages(
+    specimens: xr.Dataset,
+    joints: xr.Dataset,
+    closure: xr.Dataset,
+    branches: xr.Dataset,
+    error_budget: xr.Dataset,
+    parts: Sequence[xr.Dataset],
+    settings: StateSettings,
+    solver: Solver,
+) -> dict[str, xr.Dataset]:
+    """Stage of the flow through one specimen.
+
+    Parameters
+    ----------
+    specimens, joints : xr.Dataset
+        Of the stages of these names, from :func:`stages.specimen.specimen_stages`.
+    closure, branches, error_budget : xr.Dataset
+        Likewise, from :func:`stages.states.state_stages`.
+    parts : sequence of xr.Dataset
+        Contact states, from :func:`mechanics.sweep.joint_states`.
+    settings : StateSettings
+    solver : Solver
+
+    Returns
+    -------
+    dict of str to xr.Dataset
+        The stage flow. Of a surface against a plane, which does not slide, ``along`` is along x.
+
+    Raises
+    ------
+    NotConverged
+        If a state of unloading could not be verified.
+
+    Notes
+    -----
+    What a cycle has pressed in stays: unloading and reloading are elastic on the heights less the
+    permanent set of the stage ``branches``, and one curve. Where nothing yields, all branches are
+    that of loading.
+    """
+    reported = Reported.read(closure)
+    loading = JointLoading.of_joint(specimens, joints, reported.direction, settings, solver)
+    axis = "yx"[sliding_axis(reported.direction)] if loading.slides else "x"
+    dy, dx = loading.spacing * reported.resolution
+    place = _Place((float(dy), float(dx)), axes_of(axis))
+    states = reported.states(closure)
+    mapped = next(part for part in parts if MAP_GAP in part)[MAP_GAP]
+    values: dict[str, Any] = _over_loads(mapped.values.astype(float), place, reported)
+    values |= _laws(states, specimens, reported.direction, loading.slides)
+    gap = states["mean_gap"].values
+    total = error_budget["total"].sel(quantity="closure").values
+    for way in WAYS:
+        flow = values[f"transmissivity_{way}"]
+        values |= {
+            f"hydraulic_ratio_{way}": values[f"hydraulic_aperture_{way}"] / gap,
+            f"transmissivity_closure_error_{way}": _closure_error(states, flow, total),
+            f"reynolds_gradient_{way}": reynolds_gradient(flow),
+        }
+        ends = percolation_pressures(states["nominal_pressure"].values, flow)
+        values |= {
+            f"{name}_{way}": end
+            for name, end in zip(("last_open_pressure", "first_closed_pressure"), ends, strict=True)
+        }
+    (cells,) = loading.at_map_offset().cells
+    composite = loading.composite(int(cells))
+    values |= _of_branches(composite, loading, branches, states, place, values)
+    values |= place.both("unloaded", composite.max() - composite)
+    values |= _over_offsets(parts, closure, place, reported, values)
+    window = {f"flow_{axis}": mapped[f"{axis}_{reported.resolution}"].size for axis in "yx"}
+    coords: dict[str, Any] = {
+        "normal_force": closure["normal_force"],
+        "offset": closure["offset"],
+        "branch": branches["branch"].values,
+        "gap_probability": (
+            "gap_probability",
+            list(QUANTILES),
+            cf_attrs("1", "fraction of the window with a smaller gap"),
+        ),
+        **{
+            name: (
+                name,
+                _coordinate(joints, name[-1], reported.resolution),
+                cf_attrs("mm", name[-1]),
+            )
+            for name in window
+        },
+    }
+    attrs = {"flow_axis_along": place.axes["along"], "flow_axis_across": place.axes["across"]}
+    stage = labelled_dataset(_TABLE, values, coords, attrs)
+    return {"flow": with_pressure(stage, nominal_area(specimens))}
+
+
+class _Place:
+    """Spacing of the cells and the axes of both ways of the flow."""
+
+    def __init__(self, spacing: tuple[float, float], axes: Mapping[str, str]):
+        self.spacing, self.axes = spacing, axes
+
+    def both(self, prefix: str, gap: np.ndarray) -> dict[str, float]:
+        """Mean gap and transmissivities of a gap, their names after a prefix."""
+        flows = {
+            f"{prefix}_transmissivity_{way}": transmissivity_of(gap, self.spacing, axis)
+            for way, axis in self.axes.items()
+        }
+        return {f"{prefix}_mean_gap": float(gap.mean()), **flows}
+
+
+def _coordinate(joints, axis, factor):
+    return joints[f"window_{axis}"].values[::factor]
+
+
+def _over_loads(gaps: np.ndarray, place: _Place, reported: Reported) -> dict[str, Any]:
+    """Numbers of the states on loading, and the flux maps under the reference load."""
+    of_gaps = [numbers_of_aperture(gap, place.spacing) for gap in gaps]
+    values: dict[str, Any] = {name: [one[name] for one in of_gaps] for name in OF_APERTURE}
+    values["gap_quantile"] = np.transpose([one["quantiles"] for one in of_gaps])
+    for way, axis in place.axes.items():
+        # What does not slide has no across: a second direction, at the loads that are quoted.
+        every = way == WAYS[0] or reported.direction != "none"
+        rows = {
+            load: numbers_of_flow(gaps[load], place.spacing, axis)
+            for load in (range(len(gaps)) if every else reported.quoted)
+        }
+        for name in OF_WAY:
+            missing = NOT_QUOTED if name == "flow_reason" else np.nan
+            values[f"{name}_{way}"] = np.array(
+                [rows[load][name] if load in rows else missing for load in range(len(gaps))]
+            )
+        error = np.full(len(gaps), np.nan)
+        for load in reported.quoted:
+            coarse = coarse_transmissivity(gaps[load], place.spacing, axis)
+            error[load] = abs(coarse - rows[load]["transmissivity"])
+        values[f"transmissivity_grid_error_{way}"] = error
+        values[f"flux_map_{way}"] = rows[reported.reference]["flux"].astype(np.float32)
+    return values
+
+
+def _laws(states, specimens, direction, slides):
+    """Empirical laws and the effective-stress coefficient over loads."""
+    mean, contact = states["mean_gap"].values, states["area_share"].values
+    jrc = float(profile_roughness(specimens, direction)["jrc_used"]) if slides else np.nan
+    return {
+        "zimmerman_aperture": zimmerman_bodvarsson_aperture(
+            mean, states["gap_deviation"].values, contact
+        ),
+        "barton_aperture": barton_aperture(mean, jrc),
+        "effective_stress_coefficient": 1 - contact,
+    }
+
+
+def _closure_error(states, flow, total):
+    """Change of T over the total error of the closure, mm3, by the slope between loads."""
+    closure = states["closure"].values
+    known = np.isfinite(closure) & np.isfinite(flow)
+    error = np.full(flow.shape, np.nan)
+    if known.sum() > 1:
+        error[known] = np.abs(np.gradient(flow[known], closure[known])) * total[known]
+    return error
+
+
+def _of_branches(composite, loading, branches, states, place, on_loading):
+    """Mean gaps and transmissivities of all branches; NaN above their largest load."""
+    forces = states["normal_force"].values
+    shape = (branches.sizes["branch"], forces.size)
+    names = ["mean_gap", *(f"transmissivity_{way}" for way in WAYS)]
+    values = {f"branch_{name}": np.full(shape, np.nan) for name in names}
+    loaded = {"mean_gap": states["mean_gap"].values, **{n: on_loading[n] for n in names[1:]}}
+    held = branches["permanent_set"].values
+    top = branches["normal_force"].values[-1]
+    below = np.flatnonzero(forces <= top)
+    for name in names:
+        values[f"branch_{name}"][_LOAD] = loaded[name]
+        if not held.any():
+            values[f"branch_{name}"][_UNLOAD:, below] = loaded[name][below]
+    if held.any():
+        pressed = composite - held
+        space = loading.half_space(composite.shape)
+        state = None
+        for load in below[::-1]:
+            state = solve_contact(
+                pressed, space, force=float(forces[load]), start=state, rtol=loading.solver.rtol
+            )
+            for name, value in place.both("branch", aperture(state)).items():
+                values[name][_UNLOAD:, load] = value
+    return values
+
+
+def _over_offsets(parts, closure, place, reported, on_loading):
+    """Mean gaps and transmissivities over the offsets, under the reference load."""
+    names = ["mean_gap", *(f"transmissivity_{way}" for way in WAYS)]
+    values = {f"offset_{name}": np.full(closure.sizes["offset"], np.nan) for name in names}
+    offsets = closure["offset"].values
+    for part in (part for part in parts if OFFSET_GAP in part):
+        for gap, offset in zip(part[OFFSET_GAP].values, part["offset"].values, strict=True):
+            number = int(np.argmin(np.abs(offsets - offset)))
+            if offsets[number] == reported.offset:
+                found = {f"offset_{name}": on_loading[f"branch_{name}"] for name in names}
+                found = {name: of[_LOAD, reported.reference] for name, of in found.items()}
+            else:
+                found = place.both("offset", gap.astype(float))
+            for name, value in found.items():
+                values[name][number] = value
+    return values

@@ -1,0 +1,93 @@
+"""Statistics of apertures and the empirical laws of the hydraulic aperture."""
+
+import numpy as np
+import pytest
+from scipy import ndimage
+
+from fractalcontact.flow.aperture import (
+    barton_aperture,
+    correlation_length,
+    reynolds_gradient,
+    rms_slope,
+    transmissivity_bounds,
+    zimmerman_bodvarsson_aperture,
+)
+from fractalcontact.flow.curves import (
+    NO_PATH,
+    axes_of,
+    flow_of,
+    numbers_of_aperture,
+    percolation_pressures,
+)
+
+
+def test_the_correlation_length_of_filtered_noise_is_twice_its_filter():
+    # A Gaussian filter of sigma correlates as exp(-r^2 / (4 sigma^2)): 1/e at 2 sigma.
+    noise = np.random.default_rng(1).normal(size=(400, 400))
+    gap = ndimage.gaussian_filter(noise, (3, 6), mode="wrap")
+    assert correlation_length(gap, 0.1, 0) == pytest.approx(0.6, rel=0.1)
+    assert correlation_length(gap, 0.1, 1) == pytest.approx(1.2, rel=0.1)
+
+
+def test_an_even_gap_and_one_slope_have_no_correlation_length():
+    assert np.isnan(correlation_length(np.ones((5, 8)), 0.1, 1))
+
+
+def test_the_slope_of_a_plane_is_its_gradient_and_contact_counts_for_nothing():
+    y, x = np.mgrid[:20, :30]
+    gap = 1 + 0.3 * 0.1 * x + 0.4 * 0.2 * y
+    assert rms_slope(gap, (0.2, 0.1)) == pytest.approx(0.5, rel=0.02)
+    gap[5:15, 10:20] = 0
+    assert rms_slope(gap, (0.2, 0.1)) == pytest.approx(0.5, rel=0.02)
+    assert np.isnan(rms_slope(np.zeros((4, 4)), (1, 1)))
+
+
+def test_bounds_of_even_gaps_meet():
+    assert transmissivity_bounds(np.full((4, 5), 2.0), 0) == pytest.approx((8 / 12, 8 / 12))
+    assert transmissivity_bounds(np.zeros((4, 5)), 1) == (0, 0)
+
+
+def test_laws_of_smooth_plates_give_their_gap():
+    assert zimmerman_bodvarsson_aperture(0.1, 0.0, 0.0) == pytest.approx(0.1)
+    assert zimmerman_bodvarsson_aperture(0.1, 0.05, 0.1) == pytest.approx(
+        0.1 * np.cbrt(0.625 * 0.8)
+    )
+    assert np.isnan(
+        zimmerman_bodvarsson_aperture([0.1, 0.1, 0.0], [0.09, 0.0, 0.0], [0, 0.5, 1])
+    ).all()
+
+
+def test_barton_s_law_is_in_micrometres_and_ends_at_the_mechanical_aperture():
+    found = barton_aperture([0.1, 1.0], 10.0)
+    assert found[0] == pytest.approx(1e-3 * 100**2 / 10**2.5)
+    assert np.isnan(found[1])
+    assert np.isnan(barton_aperture([0.1], np.nan)).all()
+
+
+def test_water_reaches_a_reynolds_number_of_one_at_ten_kilopascals_a_metre():
+    # Parallel plates 0.1 mm apart: rho T grad p / mu^2 = 1.
+    gradient = reynolds_gradient(0.1**3 / 12)
+    assert 1e9 * gradient == pytest.approx(12.07e3, rel=1e-3)  # Pa/m
+    assert np.isnan(reynolds_gradient(0.0))
+
+
+def test_pressures_of_percolation_lie_between_loads():
+    pressure = np.array([1.0, 2.0, 5.0, 10.0])
+    assert percolation_pressures(pressure, [3.0, 1.0, 0.0, 0.0]) == (2.0, 5.0)
+    opened, closed = percolation_pressures(pressure, [3.0, 1.0, np.nan, 1e-9])
+    assert opened == 10
+    assert np.isnan(closed)
+
+
+def test_a_closed_gap_says_why_nothing_flows():
+    flow, reason = flow_of(np.zeros((4, 4)), (1.0, 1.0), "x")
+    assert flow.transmissivity == 0
+    assert reason == NO_PATH
+    assert axes_of("y") == {"along": "y", "across": "x"}
+
+
+def test_quantiles_count_contact_as_zero():
+    gap = np.concatenate([np.zeros((30, 10)), np.ones((70, 10))])
+    found = numbers_of_aperture(gap, (1.0, 1.0))
+    assert found["open_fraction"] == 0.7
+    np.testing.assert_array_equal(found["quantiles"], [0, 0, 1, 1, 1])

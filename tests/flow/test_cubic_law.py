@@ -1,0 +1,230 @@
+"""Transmissivity by the local cubic law: exact solutions, bounds, symmetries, hard geometries."""
+
+import pickle
+
+import numpy as np
+import pytest
+from ensembles import ensemble
+from scipy import ndimage, sparse
+
+from fractalcontact.flow import network
+from fractalcontact.flow.aperture import transmissivity_bounds
+from fractalcontact.flow.cholesky import cholmod_is_here, solve_symmetric
+from fractalcontact.flow.cubic_law import plane_flow, radial_flow
+from fractalcontact.flow.errors import FlowNotConverged
+
+SOLVERS = [
+    False,
+    pytest.param(True, marks=pytest.mark.skipif(not cholmod_is_here(), reason="no cvxopt")),
+]
+
+
+def contact_field(seed, shape=(24, 30), smooth=2.0, level=0.35):
+    """Filtered noise, 0 where it is below a level: gaps between contacts."""
+    noise = np.random.default_rng(seed).normal(size=shape)
+    heights = ndimage.gaussian_filter(noise, smooth, mode="wrap")
+    return np.clip(heights / heights.std() + level, 0, None)
+
+
+def by_dense_equations(gap, spacing):
+    """Transmissivity along x by equations written cell by cell, solved densely."""
+    (ny, nx), (dy, dx) = gap.shape, spacing
+    k = gap**3 / 12
+    matrix, right = np.zeros((gap.size, gap.size)), np.zeros(gap.size)
+    for row in range(ny):
+        for column in range(nx):
+            cell = row * nx + column
+            for i, j, ratio in (
+                (row, column + 1, dy / dx),
+                (row, column - 1, dy / dx),
+                (row + 1, column, dx / dy),
+                (row - 1, column, dx / dy),
+            ):
+                if not 0 <= i < ny:
+                    continue
+                if not 0 <= j < nx:
+                    matrix[cell, cell] += 2 * ratio * k[row, column]
+                    right[cell] += 2 * ratio * k[row, column] * (j < 0)
+                elif k[row, column] * k[i, j] > 0:
+                    face = 2 * ratio / (1 / k[row, column] + 1 / k[i, j])
+                    matrix[cell, cell] += face
+                    matrix[cell, i * nx + j] -= face
+    pressure = np.linalg.lstsq(matrix, right, rcond=None)[0].reshape(ny, nx)
+    return (2 * dy / dx * k[:, -1] * pressure[:, -1]).sum() * nx * dx / (ny * dy)
+
+
+# -- exact solutions -------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("cholmod", SOLVERS)
+@pytest.mark.parametrize("axis", "xy")
+def test_parallel_plates_have_their_own_gap_as_hydraulic_aperture(axis, cholmod):
+    flow = plane_flow(np.full((7, 9), 0.2), (0.1, 0.3), axis, cholmod=cholmod)
+    assert flow.hydraulic_aperture == pytest.approx(0.2, rel=1e-12)
+    assert flow.critical_gap == 0.2
+    np.testing.assert_allclose(flow.flux, 1.0, rtol=1e-12)
+
+
+def sinusoidal(n, periods):
+    return np.tile(1 + 0.5 * np.sin(2 * np.pi * periods * (np.arange(n) + 0.5) / n), (4, 1))
+
+
+def test_a_sinusoidal_channel_is_series_across_its_waves_and_parallel_along_them():
+    gap = sinusoidal(64, 1)
+    series = (1 - 0.5**2) ** 2.5 / (1 + 0.5**2 / 2)  # 1 / mean(g^-3)
+    parallel = 1 + 1.5 * 0.5**2  # mean(g^3)
+    assert 12 * plane_flow(gap, (1, 1)).transmissivity == pytest.approx(series, rel=1e-6)
+    assert 12 * plane_flow(gap, (1, 1), "y").transmissivity == pytest.approx(parallel, rel=1e-6)
+
+
+def test_the_error_of_part_of_a_wave_falls_by_four_where_the_spacing_halves():
+    exact = 1 / np.mean(sinusoidal(2**20, 0.7)[0] ** -3.0)
+    errors = [
+        12 * plane_flow(sinusoidal(n, 0.7), (1, 1)).transmissivity - exact for n in (32, 64, 128)
+    ]
+    orders = np.log2(np.abs(errors[:-1]) / np.abs(errors[1:]))
+    np.testing.assert_allclose(orders, 2, atol=0.05)
+
+
+def test_a_symmetric_log_normal_field_has_the_geometric_mean():
+    # Duality in two dimensions (Matheron 1967): k and 1/k alike make T the geometric mean of k.
+    logs = []
+    for seed in range(50):
+        noise = np.random.default_rng(seed).normal(size=(64, 64))
+        smooth = ndimage.gaussian_filter(noise, 3, mode="wrap")
+        cubed = np.exp(smooth / smooth.std())
+        both = [12 * plane_flow(np.cbrt(k), (1, 1)).transmissivity for k in (cubed, 1 / cubed)]
+        logs.append(np.log(both).mean())
+    half = 2.01 * np.std(logs, ddof=1) / np.sqrt(len(logs))
+    assert abs(np.mean(logs)) < half < 0.02
+
+
+def test_radial_flow_between_parallel_discs_follows_the_logarithm_of_the_radii():
+    errors = [
+        radial_flow(np.full((n, n), 0.1), (2 / n, 2 / n), 0.2, 0.95).transmissivity * 12e3 - 1
+        for n in (64, 128, 256)
+    ]
+    assert np.abs(errors[-1]) < 1e-4
+    assert np.all(np.abs(errors[1:]) < 0.4 * np.abs(errors[:-1]))
+
+
+def test_radial_flow_takes_oblong_cells():
+    flow = radial_flow(np.full((256, 128), 0.1), (2 / 256, 2 / 128), 0.2, 0.95)
+    assert 12e3 * flow.transmissivity == pytest.approx(1, rel=2e-3)
+
+
+# -- an independent solution, bounds and symmetries ------------------------------------------------
+
+
+@pytest.mark.parametrize("cholmod", SOLVERS)
+def test_random_fields_with_contact_agree_with_dense_equations(cholmod):
+    for seed in range(ensemble("fields solved densely")):
+        gap = contact_field(seed, (14, 17), level=0.8)
+        expected = by_dense_equations(gap, (0.3, 0.2))
+        found = plane_flow(gap, (0.3, 0.2), cholmod=cholmod)
+        assert found.transmissivity == pytest.approx(expected, rel=1e-8, abs=1e-14)
+        lower, upper = transmissivity_bounds(gap, 1)
+        assert lower * (1 - 1e-12) <= found.transmissivity <= upper * (1 + 1e-12)
+        assert found.imbalance < 1e-9
+
+
+def test_mirrored_and_scaled_fields_have_mirrored_and_scaled_flows():
+    gap = contact_field(3, level=1.0)
+    flow = plane_flow(gap, (0.3, 0.2))
+    for mirrored in (gap[::-1], gap[:, ::-1]):
+        assert plane_flow(mirrored, (0.3, 0.2)).transmissivity == pytest.approx(flow.transmissivity)
+    twice = plane_flow(2 * gap, (0.6, 0.4))
+    assert twice.transmissivity == pytest.approx(8 * flow.transmissivity, rel=1e-10)
+    assert twice.channel_fraction == pytest.approx(flow.channel_fraction)
+
+
+def test_the_mean_flux_of_every_section_is_that_of_the_window():
+    flow = plane_flow(sinusoidal(64, 1).T, (1, 1))
+    np.testing.assert_allclose(flow.flux.mean(axis=0), 1.0, rtol=1e-10)
+
+
+# -- hard geometries -------------------------------------------------------------------------------
+
+
+def test_all_contact_and_a_wall_let_nothing_pass():
+    for gap in (np.zeros((5, 6)), np.where(np.arange(6) == 3, 0.0, np.ones((5, 6)))):
+        flow = plane_flow(gap, (1, 1))
+        assert flow.transmissivity == flow.hydraulic_aperture == flow.critical_gap == 0
+        assert np.isnan(flow.channel_fraction)
+    assert plane_flow(gap, (1, 1), "y").transmissivity > 0
+
+
+def test_a_bridge_of_one_cell_carries_the_flow_of_the_bridge():
+    gap = np.ones((41, 41))
+    gap[:, 20] = 0
+    gap[17, 20] = 1e-2
+    flow = plane_flow(gap, (1, 1))
+    assert flow.critical_gap == 1e-2
+    # Both halves are wide open: the pressure falls within the bridge.
+    assert 12 * flow.transmissivity == pytest.approx(1e-6, rel=1e-4)
+
+
+@pytest.mark.parametrize("cholmod", SOLVERS)
+def test_gaps_a_million_times_narrower_are_solved(cholmod):
+    gap = np.ones((9, 12))
+    gap[:, 6] = 1e-6
+    flow = plane_flow(gap, (1, 1), cholmod=cholmod)
+    assert 12 * flow.transmissivity == pytest.approx(12e-18, rel=1e-9)
+
+
+def test_corners_let_nothing_pass():
+    assert plane_flow(np.eye(6), (1, 1)).transmissivity == 0
+
+
+def test_masked_cells_are_walls():
+    gap = np.full((30, 40), 0.5)
+    rows = np.arange(30)[:, np.newaxis]
+    masked = np.where((rows < 10) | (rows >= 20), np.nan, gap)
+    assert plane_flow(masked, (1, 1)).transmissivity == pytest.approx(0.5**3 / 12 / 3)
+
+
+@pytest.mark.full
+def test_a_long_strip_is_solved():
+    gap = 1 + 0.3 * contact_field(1, (16384, 64))
+    flow = plane_flow(gap, (1, 1), "y")
+    assert flow.imbalance < 1e-6
+    lower, upper = transmissivity_bounds(gap, 0)
+    assert lower < flow.transmissivity < upper
+
+
+@pytest.mark.parametrize(
+    "gap", [np.full((3, 3), np.nan), -np.ones((3, 3)), np.ones(3), np.full((3, 3), np.inf)]
+)
+def test_gaps_that_are_none_are_refused(gap):
+    with pytest.raises(ValueError, match="gap: expected"):
+        plane_flow(gap, (1, 1))
+
+
+@pytest.mark.parametrize(("hole", "rim"), [(0, 1), (1, 0.5), (0.1, 2)])
+def test_radii_that_do_not_fit_are_refused(hole, rim):
+    with pytest.raises(ValueError, match="expected 0 < hole < rim"):
+        radial_flow(np.ones((10, 10)), (0.2, 0.2), hole, rim)
+
+
+# -- the solver ------------------------------------------------------------------------------------
+
+
+def test_a_wrong_solution_is_refused(monkeypatch):
+    def spoilt(lower, right, **solving):
+        return 1.7 * solve_symmetric(lower, right, **solving)
+
+    monkeypatch.setattr(network, "solve_symmetric", spoilt)
+    with pytest.raises(FlowNotConverged, match="flow not solved") as refused:
+        plane_flow(np.ones((8, 8)), (1, 1))
+    again = pickle.loads(pickle.dumps(refused.value))
+    assert (again.reason, again.imbalance) == (refused.value.reason, refused.value.imbalance)
+
+
+@pytest.mark.parametrize("cholmod", SOLVERS)
+def test_singular_equations_are_refused(cholmod):
+    lower = sparse.coo_array(np.tril([[1.0, -1.0], [-1.0, 1.0]]))
+    try:
+        found = solve_symmetric(lower, np.ones((2, 1)), cholmod=cholmod)
+    except ArithmeticError:
+        return
+    assert not np.isfinite(found).all() or np.abs(found).max() > 1e12
