@@ -114,8 +114,8 @@ def test_a_room_imports_nothing_but_what_is_asked_of_it(room):
     assert [type(node) for node in body] == [ast.Expr]
 
 
-#: Figures, pages and cards read an atlas, and compute nothing of it. What they may import besides core and
-#: each other: tables of the study. Those of the laboratory may import its rooms.
+#: Figures, pages and cards read an atlas, and compute nothing of it. What they may import besides
+#: core and each other: tables of the study. Those of the laboratory may import its rooms.
 READERS = ("figures", "pages", "cards")
 TABLES = {("study", name) for name in ("atlas", "atlas_parts", "figure_list", "stages")}
 

@@ -5,8 +5,6 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-import numpy as np
-
 from ..core.estimate import Estimate
 from ..core.labels import printable
 from ..core.subject import Subject
@@ -123,11 +121,7 @@ def errors_of(subject: Subject) -> list[dict[str, Any]]:
             "value": rounded(one.value),
             "of_this_surface": rounded(one.errors["surface"]),
             "of_its_population": rounded(one.errors["population"]),
-            "sources": {
-                source: rounded(error)
-                for source, error in one.sources.items()
-                if np.isfinite(error)
-            },
+            "sources": {of: rounded(error) for of, error in one.sources.items() if error >= 0},
         }
         for one in quantities_at(subject, reference).values()
     ]

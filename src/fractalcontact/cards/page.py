@@ -1,4 +1,4 @@
-"""Printed page of a card: its entries in tables, one unit a column; nothing but the card is read."""
+"""Printed page of a card: its entries in tables, one unit a column, from the card alone."""
 
 from collections.abc import Mapping
 from typing import Any
