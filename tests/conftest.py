@@ -10,7 +10,7 @@ from ensembles import EVERYTHING
 from xdist.scheduler import LoadScopeScheduling
 
 #: Folders whose files share costly fixtures: one process runs all of such a folder.
-SHARING = ("tests/browser", "tests/figures", "tests/pages", "tests/workflow")
+SHARING = ("tests/browser", "tests/cards", "tests/figures", "tests/pages", "tests/workflow")
 
 
 class ByFile(LoadScopeScheduling):

@@ -20,9 +20,11 @@ FLOORS = (
     ("gridding",),
     ("roughness", "scan"),
     ("domain", "flow", "mechanics", "study"),
-    ("size_effect", "error_budget", "statements", "commands"),
+    ("size_effect", "error_budget", "statements"),
     ("ensemble",),
     ("figures", "pages", "stages"),
+    ("cards",),
+    ("commands",),
     ("contactlab.methods",),
     ("contactlab.accuracy", "contactlab.experiments"),
     ("contactlab.figures", "contactlab.commands", "contactlab"),
@@ -113,10 +115,10 @@ def test_a_room_imports_nothing_but_what_is_asked_of_it(room):
     assert [type(node) for node in body] == [ast.Expr]
 
 
-#: Figures and pages read an atlas, and compute nothing of it. What they may import besides core and
-#: each other: tables of the study. Those of the laboratory may import its rooms.
-READERS = ("figures", "pages")
-TABLES = {("study", name) for name in ("atlas", "figure_list", "stages")}
+#: Figures, pages and cards read an atlas, and compute nothing of it. What they may import besides
+#: core and each other: tables of the study. Those of the laboratory may import its rooms.
+READERS = ("figures", "pages", "cards")
+TABLES = {("study", name) for name in ("atlas", "atlas_parts", "figure_list", "stages")}
 
 
 def beyond_reading(module, others):

@@ -1,7 +1,15 @@
 """A study with a result page: a hostile label, and few nodes in contact at the smallest load."""
 
+from dataclasses import asdict
+
+from made_stages import scan, stages_of
 from materials import ROCK
 from spreadsheets import FORMULA
+
+from fractalcontact.stages.atlas import join_stages
+from fractalcontact.study.configuration import resolve_settings, solver_settings
+from fractalcontact.study.stages import STAGES
+from fractalcontact.surface.synthesis import self_affine
 
 HOSTILE = "</script><script>alert(1)</script><img src='https://x.example/a.png'> $\\alpha$ \"q\""
 STUDY = {
@@ -27,3 +35,26 @@ STUDY = {
         "flat.1": {"opposite": "flat", "label": FORMULA},
     },
 }
+
+
+def write_study(folder):
+    """Atlas in a folder, of two scanned faces and a surface against a plane; their settings."""
+
+    def surface(cells, seed):
+        return self_affine((cells, cells), 0.1, 0.8, rms=0.1, seed=seed, roll_off=1.5)
+
+    lower = surface(80, 1)
+    scans = {
+        "pair": (scan(lower, 0.1), scan(lower + 0.2 * surface(80, 2) + 0.02, 0.1)),
+        "flat.1": (scan(surface(48, 4), 0.1), None),
+    }
+    parts = {stage: {} for stage in STAGES}
+    settings = {name: resolve_settings(STUDY, name, {}, "tiny") for name in scans}
+    for name, faces in scans.items():
+        made = stages_of(name, faces, settings[name], solver_settings({}, "tiny"))
+        for stage, dataset in made.items():
+            parts[stage][name] = dataset
+    folder.mkdir(parents=True)
+    records = {name: asdict(stated) for name, stated in settings.items()}
+    join_stages(parts, folder / "atlas.nc", {"study": STUDY, "settings": records})
+    return settings

@@ -22,6 +22,29 @@ rule explorer:
         "../scripts/pages.py"
 
 
+# A card a specimen: constants with their intervals, which the page and other codes read.
+rule cards:
+    input:
+        rules.atlas.output[0],
+    output:
+        expand(
+            f"{RESULTS}/{page_files.CARD}", specimen=SPECIMENS, ending=page_files.CARD_ENDINGS
+        ),
+    log:
+        f"{RESULTS}/logs/cards.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/cards.tsv"
+    resources:
+        **fixed(1500, 10),
+    params:
+        code=code("cards", "fractalcontact/cards"),
+    message:
+        "the study: cards of its joints"
+    script:
+        "../scripts/cards.py"
+
+
+CARDS = list(rules.cards.output) if SPECIMENS and not IN_PARTS else []
 # Measured contact maps alone have no states to explore.
 EXPLORER = list(rules.explorer.output) if SPECIMENS and not IN_PARTS else []
 # The pages show specimens side by side, from an atlas that is one file.
@@ -32,6 +55,7 @@ RESULT_PAGE = (
         *(f"{RESULTS}/{name}" for name in page_files.FILES),
         *expand(f"{RESULTS}/{page_files.SPECIMEN_PAGE}", specimen=SPECIMENS),
         *EXPLORER,
+        *CARDS,
     ]
 )
 
@@ -42,8 +66,10 @@ rule result_page:
         lambda wildcards: all_figure_files(),
         # The index links to it where it is there.
         EXPLORER,
+        # Its first screen is that of the cards.
+        CARDS,
     output:
-        [path for path in RESULT_PAGE if path not in EXPLORER],
+        [path for path in RESULT_PAGE if path not in (*EXPLORER, *CARDS)],
     log:
         f"{RESULTS}/logs/result_page.log",
     benchmark:

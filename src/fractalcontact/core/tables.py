@@ -9,30 +9,31 @@ from .atomic import atomic_write
 from .labels import printable
 
 
-def write_table(path: Path | str, table: pd.DataFrame) -> None:
-    """CSV of a table without its index, numbers to eight digits, whole or not at all.
+def table_text(table: pd.DataFrame) -> str:
+    """CSV of a table without its index, numbers to eight digits.
 
     Labels, groups and names come from files of others. Control characters in a text are escaped,
     and one that a spreadsheet would run as a formula (OWASP, "CSV Injection") begins with an
     apostrophe.
+    """
+    inert = table.copy()
+    texts = table.select_dtypes(exclude=["number", "bool"])
+    inert[texts.columns] = texts.map(_inert)
+    return inert.rename(columns=_inert).to_csv(
+        index=False, float_format="%.8g", lineterminator="\n"
+    )
 
-    Parameters
-    ----------
-    path : path-like
-    table : pandas.DataFrame
+
+def write_table(path: Path | str, table: pd.DataFrame) -> None:
+    """Write a table as :func:`table_text` has it, whole or not at all.
 
     Raises
     ------
     OutputError
         If it cannot be written.
     """
-    inert = table.copy()
-    texts = table.select_dtypes(exclude=["number", "bool"])
-    inert[texts.columns] = texts.map(_inert)
     with atomic_write(path) as temporary:
-        inert.rename(columns=_inert).to_csv(
-            temporary, index=False, float_format="%.8g", lineterminator="\n"
-        )
+        temporary.write_text(table_text(table), encoding="utf-8", newline="")
 
 
 def _inert(cell: Any) -> Any:

@@ -7,3 +7,5 @@ SUMMARY, CURVES, TABLES, CONFIGURATION = "summary.csv", "curves.csv", "tables.zi
 FILES = (INDEX, SUMMARY, CURVES, TABLES, CONFIGURATION)
 #: Page of a specimen, below that folder.
 SPECIMEN_PAGE = "pages/{specimen}.html"
+#: Card of a specimen, and the endings that it has.
+CARD, CARD_ENDINGS = "cards/{specimen}.{ending}", ("yaml", "json", "html")

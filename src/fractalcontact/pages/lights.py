@@ -4,6 +4,7 @@ Each repeats what a stage of the atlas says; the limits are those that the stage
 """
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from ..core.limits import CORRECTED_NODES, NEARLY, RESOLVED_NODES
@@ -145,3 +146,28 @@ def _model(subject):
     if found.verdict in (IN_PART, POOR):
         helps = {HARDNESS: LIGHTER, STRENGTH: CRUSH, USUAL: STATE}[found.limits.criterion]
     return Light("model", "Validity of the model", found.verdict, reason, helps)
+
+
+#: How far the lights let a specimen be trusted, by the worst of them.
+_TRUST = {POOR: "low", IN_PART: "limited", GOOD: "good"}
+
+
+def trust_of(lights: Sequence[Light]) -> tuple[str, str, str]:
+    """How far to trust a specimen by its worst light, what decides that, and what would help.
+
+    Parameters
+    ----------
+    lights : sequence of Light
+
+    Returns
+    -------
+    word, reason, help : str
+        "low", "limited" or "good"; the reasons of the lights of that word, and what would help of
+        all that are not good.
+    """
+    worst = next((word for word in _TRUST if any(one.word == word for one in lights)), GOOD)
+    reasons = [f"{one.title.lower()}: {one.reason}" for one in lights if one.word == worst]
+    helps = dict.fromkeys(one.help for one in lights if one.help)
+    if worst == GOOD:
+        reasons = ["every light that applies is good"]
+    return _TRUST[worst], "; ".join(reasons), "; ".join(helps)

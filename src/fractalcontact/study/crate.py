@@ -58,6 +58,7 @@ _FILES = {
 _CONFIGURATION, _ATLASES = "study.yaml", ("atlas.nc", "accuracy.nc")
 _FOLDERS = {
     "pages": "page of the specimen {stem}",
+    "cards": "card of the specimen {stem}: constants with intervals",
     "atlas": "atlas of the specimen {stem} alone",
     "embedded": "synthetic scan {stem}",
     "size_effect_parts": "size effect, surfaces {stem}",

@@ -1,0 +1,1 @@
+"""Card of a joint: its constants with intervals, for people, programs and other codes."""

@@ -1,0 +1,127 @@
+"""Card of a joint: what a study found of one specimen, each number with its interval and model."""
+
+import json
+import math
+from collections.abc import Mapping
+from typing import Any
+
+from ..core.estimate import Estimate
+from ..core.labels import printable
+from ..core.subject import Subject
+from ..core.window import spacing_of, window_sides
+from ..pages.lights import lights_of, trust_of
+from ..pages.material import material_of, opposite_words
+from ..pages.summary import quantities_at
+from ..pages.words import with_unit
+from .entries import entries, number, read_entry, rounded
+from .methods import REFERENCES, methods_of
+
+#: Version of the form of a card; a change of ``card.schema.json`` that breaks readers raises it.
+FORM = 1
+#: Of numbers and sentences of a card.
+LICENCE = "CC0-1.0"
+#: Stages that a card reads, those that a specimen has.
+STAGES = (
+    "specimens",
+    "quality",
+    "surface_dimension",
+    "area",
+    "closure",
+    "branches",
+    "flow",
+    "strength",
+    "choices",
+    "error_budget",
+    "elastic_model",
+)
+
+
+def card_of(subject: Subject, study: Mapping[str, Any], made: Mapping[str, Any]) -> dict[str, Any]:
+    """Card of a specimen, as plain data of ``card.schema.json``.
+
+    Parameters
+    ----------
+    subject : Subject
+    study : mapping
+        As its user wrote it: embedded specimens are synthetic.
+    made : mapping
+        ``versions`` by library and ``scan_checksums`` by specimen, attributes of the atlas.
+    """
+    material, model = material_of(subject), model_of(subject)
+    lights = lights_of(subject)
+    card: dict[str, Any] = {
+        "form": FORM,
+        "name": subject.name,
+        "label": printable(subject.label),
+        "study": str(study.get("study", "")),
+        "kind": "joint",
+        "synthetic": is_synthetic(subject.name, study),
+        "faces": opposite_words(str(subject["specimens"].attrs["opposite"])),
+        "material": printable(material.name),
+        "model": model,
+        "direction": subject.direction,
+        "geometry": geometry_of(subject),
+        "entries": {one.key: read_entry(one, subject, model) for one in entries()},
+        "errors": errors_of(subject),
+        "lights": [
+            {key: getattr(light, key) for key in ("key", "title", "word", "reason", "help")}
+            for light in lights
+        ],
+        "trust": dict(zip(("word", "reason", "help"), trust_of(lights), strict=True)),
+        "references": list(REFERENCES),
+        "licence": LICENCE,
+        "versions": dict(made["versions"]),
+        "scan_checksums": dict(made["scan_checksums"].get(subject.name, {})),
+    }
+    return card | {"methods": methods_of(card)}
+
+
+def made_of(attributes: Mapping[str, Any]) -> dict[str, Any]:
+    """What made an atlas, of its attributes: versions and checksums of the scans."""
+    return {key: json.loads(attributes.get(key, "{}")) for key in ("versions", "scan_checksums")}
+
+
+def model_of(subject: Subject) -> str:
+    """What the contact was solved as: elastic, or with the pressure capped at the hardness."""
+    hardness = float(subject.settings["material"]["hardness"])
+    return f"crushing at H = {with_unit(hardness, 'MPa')}" if math.isfinite(hardness) else "elastic"
+
+
+def is_synthetic(name: str, study: Mapping[str, Any]) -> bool:
+    """Whether a specimen is made by the study and no scan: a twin, or a mathematical joint."""
+    return any(name == own or name.startswith(f"{own}_") for own in study.get("embedded", {}))
+
+
+def geometry_of(subject: Subject) -> dict[str, Any]:
+    """Spacing, window, offset and seat, without intervals: they are chosen, not measured."""
+    side_y, side_x = window_sides(subject["specimens"])
+    lengths = {
+        "spacing": max(spacing_of(subject["specimens"])),
+        "window_x": side_x,
+        "window_y": side_y,
+        "offset": subject.offset,
+    }
+    found = {name: {"value": rounded(one), "unit": "mm"} for name, one in lengths.items()}
+    seat = float(subject.states("closure")["seating_pressure"])
+    return found | {
+        "seat": number(Estimate(seat), "no resolved state at the seat") | {"unit": "MPa"}
+    }
+
+
+def errors_of(subject: Subject) -> list[dict[str, Any]]:
+    """Errors by source of what is published under the reference load, half-widths at 95 %."""
+    reference = subject.reported.reference
+    pressure = float(subject["closure"]["nominal_pressure"][reference])
+    return [
+        {
+            "quantity": one.name,
+            "title": one.meaning,
+            "unit": one.unit,
+            "pressure": rounded(pressure),
+            "value": rounded(one.value),
+            "of_this_surface": rounded(one.errors["surface"]),
+            "of_its_population": rounded(one.errors["population"]),
+            "sources": {of: rounded(error) for of, error in one.sources.items() if error >= 0},
+        }
+        for one in quantities_at(subject, reference).values()
+    ]

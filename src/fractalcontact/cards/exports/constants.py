@@ -1,0 +1,83 @@
+"""Constants that a code takes from a card, and those that it must be given from elsewhere."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from ...pages.words import short
+
+#: Pressures at which one stiffness is given where a code takes one, MPa, the first that is known.
+PREFERRED = (5.0, 1.0, 10.0)
+#: Factors from the units of a card to metres and pascals.
+TO_SI = {"MPa/mm": 1e9, "MPa": 1e6, "mm": 1e-3, "1": 1.0}
+UNITS_SI = {"MPa/mm": "Pa/m", "MPa": "Pa", "mm": "m", "1": "-"}
+
+
+@dataclass(frozen=True)
+class Constants:
+    """Constants under the keys of a code, in its units.
+
+    Attributes
+    ----------
+    values : dict of str to float
+    notes : dict of str to str
+        What each is, with its interval, as the card has it.
+    left_out : dict of str to str
+        Keys whose meaning no number of the card has, and why.
+    """
+
+    values: dict[str, float] = field(default_factory=dict)
+    notes: dict[str, str] = field(default_factory=dict)
+    left_out: dict[str, str] = field(default_factory=dict)
+
+    def add(self, key: str, entry: Mapping[str, Any], row: Mapping[str, Any], what: str) -> None:
+        """Add a number of a card in SI units; one that is missing or undetermined is left out."""
+        if "missing" in row:
+            self.left_out[key] = f"{what}: {row['missing']}"
+        elif not row.get("determined", True):
+            reason = row.get("note") or "its interval leaves nearly everything open"
+            self.left_out[key] = f"{what} is undetermined ({in_words(entry, row)}): {reason}"
+        else:
+            self.values[key] = row["value"] * TO_SI[entry["unit"]]
+            self.notes[key] = (
+                f"{UNITS_SI[entry['unit']]}; {what} = {in_words(entry, row)}, {entry['model']}"
+            )
+
+
+def in_words(entry: Mapping[str, Any], row: Mapping[str, Any]) -> str:
+    """A number with its interval and unit, in the units of the card."""
+    low, high = ("" if row[end] is None else short(row[end]) for end in ("low", "high"))
+    ends = f" [{low}, {high}]" if low != high else ""
+    unit = "" if entry["unit"] == "1" else f" {entry['unit']}"
+    return f"{short(row['value'])}{ends}{unit}"
+
+
+def at_preferred(entry: Mapping[str, Any]) -> dict[str, Any]:
+    """Row of a curve over pressure at the first of :data:`PREFERRED` where it has a number."""
+    known = {row["at"]["pressure"]: row for row in entry.get("values", ()) if "value" in row}
+    for pressure in PREFERRED:
+        if pressure in known:
+            return known[pressure]
+    return {"missing": "no resolved states around 1, 5 or 10 MPa"}
+
+
+def over_pressure(entry: Mapping[str, Any]) -> str:
+    """Numbers of a curve in words: "31.2 degree at 5 MPa, ..."; why there is none."""
+    known = [row for row in entry.get("values", ()) if "value" in row]
+    if not known:
+        rows = entry.get("values", [entry])
+        return str(rows[0]["missing"])
+    return ", ".join(
+        f"{short(row['value'])} {entry['unit']} at {short(row['at']['pressure'])} MPa"
+        for row in known
+    )
+
+
+def head_of(card: Mapping[str, Any], code: str) -> list[str]:
+    """First lines of an export: whose constants, of what model, how far to trust them."""
+    one_line = " ".join(str(card["trust"]["reason"]).split())
+    return [
+        f"Constants of the joint {card['name']} for {code}, from its card (study {card['study']}).",
+        f"Contact: {card['model']}. Trust: {card['trust']['word']} ({one_line}).",
+        f"{card['licence']}. Brackets hold 95 % intervals.",
+    ]

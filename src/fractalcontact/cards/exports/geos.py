@@ -1,0 +1,94 @@
+"""Constants for GEOS: hydraulic aperture models of a fracture, as XML, in SI units.
+
+``BartonBandis`` has h = a_0 / (1 + 9 sigma / sigma_ref), ``referenceAperture`` a_0 and
+``referenceNormalStress`` sigma_ref. The opening v_m - d of the hyperbola is this law with
+a_0 = v_m and sigma_ref = 9 k_ni v_m. A table of hydraulic against mechanical aperture comes first
+where the card has both.
+"""
+
+from collections.abc import Mapping
+from typing import Any
+from xml.etree import ElementTree as xml
+
+from .constants import Constants, head_of
+
+ENDING = "xml"
+
+
+def constants_of(card: Mapping[str, Any]) -> Constants:
+    """Attributes of ``BartonBandis`` that a card has a number for."""
+    entries, found = card["entries"], Constants()
+    k_ni, v_m = entries["k_ni"], entries["v_m"]
+    found.add("referenceAperture", v_m, v_m, "v_m of the hyperbola")
+    # Only to learn whether k_ni is one: the attribute is of both.
+    found.add("referenceNormalStress", k_ni, k_ni, "k_ni of the hyperbola")
+    if {"referenceAperture", "referenceNormalStress"} <= set(found.values):
+        found.values["referenceNormalStress"] = 9e6 * k_ni["value"] * v_m["value"]
+        found.notes["referenceNormalStress"] = "Pa; 9 k_ni v_m, at which 90 % of v_m is closed"
+        return found
+    left = {
+        key: found.left_out.get(key, "needs k_ni and v_m")
+        for key in ("referenceAperture", "referenceNormalStress")
+    }
+    return Constants(left_out=left)
+
+
+def apertures_of(card: Mapping[str, Any]) -> list[tuple[float, float]]:
+    """Mechanical and hydraulic aperture at the pressures where a card has both, m, ascending."""
+    mean, hydraulic = (
+        {
+            row["at"]["pressure"]: row["value"]
+            for row in card["entries"][key].get("values", ())
+            if "value" in row
+        }
+        for key in ("mean_gap", "hydraulic_aperture")
+    )
+    return sorted((1e-3 * mean[at], 1e-3 * hydraulic[at]) for at in mean if at in hydraulic)
+
+
+def text_of(card: Mapping[str, Any]) -> str:
+    """Parts of a problem file: the aperture law of a fracture and, where known, its table."""
+    root = xml.Element("Problem")
+    for line in head_of(card, "GEOS"):
+        root.append(xml.Comment(f" {_safe(line)} "))
+    laws, found = xml.SubElement(root, "Constitutive"), constants_of(card)
+    if rows := apertures_of(card):
+        name = f"{card['name']}_aperture_table"
+        laws.append(
+            xml.Element(
+                "HydraulicApertureTable", name=f"{card['name']}_table", apertureTableName=name
+            )
+        )
+        functions = xml.SubElement(root, "Functions")
+        columns = [
+            f"{{ {', '.join(f'{end:.6g}' for end in column)} }}"
+            for column in zip(*rows, strict=True)
+        ]
+        xml.SubElement(
+            functions, "TableFunction", name=name, coordinates=columns[0], values=columns[1]
+        )
+    else:
+        laws.append(
+            xml.Comment(
+                " no table of hydraulic against mechanical aperture: the card "
+                "has no mean gap and hydraulic aperture under one pressure "
+            )
+        )
+    if found.values:
+        attributes = {key: f"{value:.6g}" for key, value in found.values.items()}
+        laws.append(
+            xml.Comment(
+                " takes the mechanical for the hydraulic aperture, which is "
+                "smaller, and the joint to close at infinite pressure "
+            )
+        )
+        laws.append(xml.Element("BartonBandis", {"name": card["name"], **attributes}))
+    for key, words in (found.notes | found.left_out).items():
+        laws.append(xml.Comment(f" {key}: {_safe(words)} "))
+    xml.indent(root)
+    return xml.tostring(root, encoding="unicode") + "\n"
+
+
+def _safe(text: str) -> str:
+    """Text that may stand in a comment: two hyphens would end it."""
+    return " ".join(text.split()).replace("--", "- -").rstrip("-")

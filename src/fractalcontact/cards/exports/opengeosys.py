@@ -1,0 +1,65 @@
+"""Constants for OpenGeoSys: parts of a project file with ``fracture_model``, in SI units.
+
+Its normal stress is K_n w (1 + ln^2(a / a_0)): a logarithmic penalty and no hyperbola. K_n is the
+tangent stiffness at the initial aperture a_0, so one of the card's tangent stiffnesses is given,
+with the mean gap under the same pressure.
+"""
+
+from collections.abc import Mapping
+from typing import Any
+from xml.etree import ElementTree as xml
+
+from .constants import Constants, at_preferred, head_of, over_pressure
+from .geos import _safe
+
+ENDING = "xml"
+
+
+def constants_of(card: Mapping[str, Any]) -> Constants:
+    """Parameters of ``fracture_model`` and ``fracture_properties`` that a card has a number for."""
+    entries, found = card["entries"], Constants()
+    stiffness = entries["tangent_stiffness"]
+    row = at_preferred(stiffness)
+    pressure = row.get("at", {}).get("pressure")
+    at = "" if pressure is None else f" at {pressure:g} MPa"
+    found.add("normal_stiffness", stiffness, row, f"tangent stiffness{at}")
+    gap = entries["mean_gap"]
+    same = [
+        one for one in gap.get("values", ()) if "value" in one and one["at"]["pressure"] == pressure
+    ]
+    absent = {"missing": gap.get("missing", f"no state was solved{at}")}
+    found.add("initial_aperture", gap, same[0] if same else absent, f"mean gap{at}")
+    found.left_out.update(
+        shear_stiffness="no shear stiffness is computed",
+        friction_angle=f"one number there; peak strength here: "
+        f"{over_pressure(entries['peak_strength'])}",
+        dilatancy_angle=f"one number there; here: {over_pressure(entries['peak_dilatancy_angle'])}",
+        cohesion="none: the joint has none",
+        penalty_aperture_cutoff="a setting of the solution, no property of a joint",
+    )
+    return found
+
+
+def text_of(card: Mapping[str, Any]) -> str:
+    """Parts of a project file: a fracture model without tension, and the parameters it names."""
+    found = constants_of(card)
+    root = xml.Element("OpenGeoSysProject")
+    for line in head_of(card, "OpenGeoSys"):
+        root.append(xml.Comment(f" {_safe(line)} "))
+    model = xml.SubElement(root, "fracture_model")
+    xml.SubElement(model, "type").text = "LinearElasticIsotropic"
+    properties = xml.SubElement(root, "fracture_properties")
+    parameters = xml.SubElement(root, "parameters")
+    for key, value in found.values.items():
+        name = f"{card['name']}_{key}"
+        where = model if key == "normal_stiffness" else properties
+        xml.SubElement(where, key).text = name
+        parameter = xml.SubElement(parameters, "parameter")
+        parameter.append(xml.Comment(f" {_safe(found.notes[key])} "))
+        for tag, text in (("name", name), ("type", "Constant"), ("value", f"{value:.6g}")):
+            xml.SubElement(parameter, tag).text = text
+    xml.SubElement(model, "tension_cutoff").text = "1"
+    for key, why in found.left_out.items():
+        model.append(xml.Comment(f" {key}: {_safe(why)} "))
+    xml.indent(root)
+    return xml.tostring(root, encoding="unicode") + "\n"

@@ -1,0 +1,85 @@
+"""Methods paragraph: how the numbers of a card were found, with those of its run."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from ..pages.words import short, with_unit
+
+#: Sources that the paragraph names, each once.
+REFERENCES = (
+    "Borri-Brunetto, M., Carpinteri, A., Chiaia, B. (1999): Scaling phenomena due to fractal "
+    "contact in concrete and rock fractures. Int. J. Fracture 95, 221-238.",
+    "Bandis, S. C., Lumsden, A. C., Barton, N. R. (1983): Fundamentals of rock joint deformation. "
+    "Int. J. Rock Mech. Min. Sci. 20, 249-268.",
+    "Barton, N., Choubey, V. (1977): The shear strength of rock joints in theory and practice. "
+    "Rock Mech. 10, 1-54.",
+    "Tse, R., Cruden, D. M. (1979): Estimating joint roughness coefficients. "
+    "Int. J. Rock Mech. Min. Sci. 16, 303-307.",
+    "Yastrebov, V. A., Anciaux, G., Molinari, J.-F. (2017): On the accurate computation of the "
+    "true contact-area in mechanical contact of random rough surfaces. Tribol. Int. 114, 161-171.",
+)
+
+
+def methods_of(card: Mapping[str, Any]) -> str:
+    """Methods paragraph of a card, ready to be quoted.
+
+    Parameters
+    ----------
+    card : mapping
+        Of ``card.schema.json``, but for its ``methods``.
+    """
+    return " ".join(
+        (_faces(card), _contact(card), _laws(card), _strength(card), _versions(card["versions"]))
+    )
+
+
+def _faces(card):
+    where = {name: one.get("value") for name, one in card["geometry"].items()}
+    made = "synthetic surface" if card["synthetic"] else "scanned surface"
+    offset = with_unit(where["offset"], "mm") if where["offset"] else "zero"
+    slid = "" if card["direction"] == "none" else f" at a shear offset of {offset}"
+    return (
+        f"A window of {short(where['window_x'])} x {short(where['window_y'])} mm of the {made} "
+        f"({card['faces']}; spacing {with_unit(where['spacing'], 'mm')}) was compressed{slid}."
+    )
+
+
+def _contact(card):
+    stated = card["entries"]
+    modulus, poisson = (stated[key].get("value") for key in ("modulus", "poisson"))
+    capped = (
+        "without a bound on the pressure"
+        if card["model"] == "elastic"
+        else f"with the pressure bounded by the hardness, {card['model'].partition('= ')[2]}"
+    )
+    return (
+        f"Both blocks are elastic half-spaces (E = {with_unit(modulus, 'MPa')}, Poisson's ratio "
+        f"{short(poisson)}), {capped}; the frictionless normal contact problem was solved at every "
+        "node of the scan until the complementarity conditions held, after Borri-Brunetto et al. "
+        "(1999). Contact areas are corrected for their perimeter (Yastrebov et al. 2017)."
+    )
+
+
+def _laws(card):
+    found = card["entries"]["k_ni"].get("range")
+    if found is None or None in (found["low"], found["high"]):
+        return "No closure law was fitted: too few resolved states."
+    return (
+        f"Hyperbola and logarithm (Bandis et al. 1983) were fitted by least squares to the closure "
+        f"from a seat of {with_unit(found['low'], 'MPa')} to {with_unit(found['high'], 'MPa')}; "
+        "intervals are at 95 %."
+    )
+
+
+def _strength(card):
+    if "missing" in card["entries"]["jrc"]:
+        return "Against a plane nothing slides: no strength is stated."
+    return (
+        "Shear strength is sigma tan(phi_b + i) with the dilatancy angle i of the computed states; "
+        "beside it stands Barton's law (Barton and Choubey 1977) with JRC from Z2 "
+        "(Tse and Cruden 1979)."
+    )
+
+
+def _versions(versions):
+    return f"Computed with {', '.join(f'{name} {which}' for name, which in versions.items())}."

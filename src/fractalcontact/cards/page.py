@@ -1,0 +1,123 @@
+"""Printed page of a card: its entries in tables, one unit a column, from the card alone."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from ..pages.captions import symbols
+from ..pages.words import MISSING, measured, percent, short, with_unit
+
+#: Sections whose curves over pressure share a table.
+_AGAINST_PRESSURE = ("contact", "aperture", "strength")
+#: Heads of columns and units of that table.
+_HEADS = {
+    "seated_closure": "closure from the seat",
+    "interface_closure": "closure from first touch",
+    "contact_fraction": "contact A_r/A_0",
+    "mean_gap": "mean gap",
+    "hydraulic_aperture": "hydraulic aperture",
+    "peak_dilatancy_angle": "largest dilatancy angle",
+    "peak_strength": "peak tau, dilatancy",
+    "barton_strength": "tau, Barton",
+    "barton_scaled_strength": "tau, Barton-Bandis",
+}
+_UNITS = {"1": "%", "degree": "°"}
+
+
+def page_of(card: Mapping[str, Any]) -> dict[str, Any]:
+    """Values of the template ``card.html``.
+
+    Parameters
+    ----------
+    card : mapping
+        Of ``card.schema.json``.
+    """
+    entries = card["entries"]
+    printed = {key: one for key, one in entries.items() if one.get("print", True)}
+    curves = {
+        key: one
+        for key, one in printed.items()
+        if one["section"] in _AGAINST_PRESSURE and has_values(one)
+    }
+    stiffness = [entries[key] for key in ("tangent_stiffness", "reload_stiffness")]
+    return {
+        "card": card,
+        "stiffness": over_pressure(stiffness),
+        "columns": [
+            (_HEADS.get(key, one["title"]), _UNITS.get(one["unit"], one["unit"]))
+            for key, one in curves.items()
+        ],
+        "rows": over_pressure(list(curves.values())),
+        "jrc": jrc_table(entries["jrc"]),
+        # An elastic joint has no hardness to state.
+        "missing": missing_of({key: one for key, one in printed.items() if key != "hardness"}),
+        "errors": errors_of(card),
+        "number": lambda value: MISSING if value is None else short(value),
+        "words": in_words,
+        "ends": ends_in_words,
+        "short": short,
+        "with_unit": with_unit,
+        "symbols": symbols,
+    }
+
+
+def has_values(entry: Mapping[str, Any]) -> bool:
+    """Whether a curve has any number."""
+    return any("value" in row for row in entry.get("values", ()))
+
+
+def over_pressure(curves: list[Mapping[str, Any]]) -> list[tuple[float, list[dict[str, Any]]]]:
+    """Rows of a table: pressure, MPa, and a number of each curve there, with its unit."""
+    pressures = sorted({row["at"]["pressure"] for one in curves for row in one.get("values", ())})
+    return [
+        (at, [at_pressure(one, at) | {"unit": one["unit"]} for one in curves]) for at in pressures
+    ]
+
+
+def at_pressure(curve: Mapping[str, Any], pressure: float) -> dict[str, Any]:
+    """The number of a curve at a pressure, MPa; missing where it has none there."""
+    rows = [row for row in curve.get("values", ()) if row["at"].get("pressure") == pressure]
+    return dict(rows[0]) if rows else {"missing": curve.get("missing", "not solved there")}
+
+
+def jrc_table(entry: Mapping[str, Any]) -> dict[str, Any]:
+    """JRC by step (rows) and direction (columns); steps of directions may differ by a cell."""
+    rows: dict[str, dict[str, Any]] = {}
+    for row in entry.get("values", ()):
+        rows.setdefault(row["at"]["sampling"], {})[row["at"]["direction"]] = row
+    directions = sorted({name for row in rows.values() for name in row})
+    return {"directions": directions, "rows": rows}
+
+
+def missing_of(entries: Mapping[str, Any]) -> dict[str, list[str]]:
+    """Titles of what a card has no number of, or not everywhere, by the reason."""
+    found: dict[str, list[str]] = {}
+    for one in entries.values():
+        for row in (one, *one.get("values", ())):
+            titles = found.setdefault(row["missing"], []) if "missing" in row else None
+            if titles is not None and one["title"] not in titles:
+                titles.append(one["title"])
+    return found
+
+
+def errors_of(card: Mapping[str, Any]) -> dict[str, Any]:
+    """Rows of the table of errors, of quantities that have a value, and the sources of any."""
+    rows = [one for one in card["errors"] if one["value"] is not None]
+    sources = dict.fromkeys(source for one in rows for source, error in one["sources"].items())
+    return {"rows": rows, "sources": list(sources)}
+
+
+def in_words(number: Mapping[str, Any]) -> str:
+    """A number of a table, fractions in per cent; a dash where there is none."""
+    if "value" not in number:
+        return MISSING
+    value = number["value"]
+    return percent(value).removesuffix(" %") if number.get("unit") == "1" else short(value)
+
+
+def ends_in_words(number: Mapping[str, Any], factor: float = 1.0) -> str:
+    """Interval of a number in brackets; empty where it has none, or one narrower than it prints."""
+    low, high = number.get("low"), number.get("high")
+    if low is None or high is None or "value" not in number:
+        return ""
+    words = [measured(factor * end) for end in (low, high)]
+    return f"[{words[0]}, {words[1]}]" if words[0] != words[1] else ""

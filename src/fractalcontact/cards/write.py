@@ -1,0 +1,94 @@
+"""Files of the cards of a study: YAML and JSON for programs, one printed page for people."""
+
+import json
+from collections.abc import Collection, Mapping
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from ..core.atomic import atomic_write
+from ..core.errors import InputError
+from ..core.subject import Subject
+from ..pages.files import CARD
+from ..pages.templating import write_page
+from ..study.atlas_parts import Atlas, open_atlas
+from .card import FORM, STAGES, card_of, made_of
+from .page import page_of
+
+#: Description of a card, as JSON Schema.
+SCHEMA = Path(__file__).with_name("card.schema.json")
+
+
+def write_cards(path: Path | str, folder: Path | str) -> list[str]:
+    """Write the card of every specimen of a study: ``cards/NAME.yaml``, ``.json`` and ``.html``.
+
+    Parameters
+    ----------
+    path : path-like
+        The atlas, in one file or in parts.
+    folder : path-like
+        Of the results.
+
+    Returns
+    -------
+    list of str
+        Specimens that have one.
+    """
+    atlas = open_atlas(path)
+    configuration = json.loads(atlas.attrs["configuration"])
+    made = made_of(atlas.attrs)
+    for name in atlas.specimens:
+        stages = stages_of(atlas, name, STAGES)
+        subject = Subject(stages, configuration["settings"][name], name)
+        write_card(card_of(subject, configuration["study"], made), folder)
+    return list(atlas.specimens)
+
+
+def stages_of(atlas: Atlas, name: str, wanted: Collection[str]) -> dict[str, Any]:
+    """Stages of a specimen in memory, those of them that it has."""
+    found = {}
+    for stage in wanted:
+        try:
+            found[stage] = atlas[f"{stage}/{name}"]
+        except KeyError:
+            continue
+    return found
+
+
+def write_card(card: Mapping[str, Any], folder: Path | str) -> None:
+    """Write the three files of a card, each whole or not at all."""
+    texts = {
+        "yaml": yaml.safe_dump(dict(card), sort_keys=False, allow_unicode=True, width=100),
+        "json": json.dumps(card, indent=1, allow_nan=False, ensure_ascii=False) + "\n",
+    }
+    for ending, text in texts.items():
+        with atomic_write(Path(folder) / CARD.format(specimen=card["name"], ending=ending)) as file:
+            file.write_text(text, encoding="utf-8")
+    page = Path(folder) / CARD.format(specimen=card["name"], ending="html")
+    write_page(page, "card.html", page_of(card))
+
+
+def read_card(path: Path | str) -> dict[str, Any]:
+    """A card from its YAML or JSON.
+
+    Raises
+    ------
+    InputError
+        If the file is missing, is neither, or is no card of this form.
+    """
+    path = Path(path)
+    try:
+        # JSON is YAML.
+        found = yaml.safe_load(path.read_text(encoding="utf-8"))
+    except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
+        raise InputError(
+            f"{path}: cannot be read ({type(error).__name__}); expected a card, such as "
+            "results/paper/cards/sandstone_twin.yaml"
+        ) from None
+    if not isinstance(found, dict) or found.get("form") != FORM or "entries" not in found:
+        raise InputError(
+            f"{path}: no card of form {FORM}; expected 'form: {FORM}' and 'entries', as in "
+            "results/paper/cards/sandstone_twin.yaml"
+        )
+    return found

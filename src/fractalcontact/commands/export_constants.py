@@ -1,0 +1,57 @@
+"""Write the constants of a joint's card for another code.
+
+python -m fractalcontact.commands.export_constants CARD --to CODE [--out FILE]
+
+CODE is porepy, geos, opengeosys, ags4 or csv.
+"""
+
+import argparse
+import sys
+from collections.abc import Sequence
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+from ..cards.write import read_card
+from ..core.atomic import atomic_write
+from ..core.errors import InputError
+
+#: Codes that constants are written for: modules of ``cards.exports``.
+CODES = ("porepy", "geos", "opengeosys", "ags4", "csv")
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Print the constants, or write them to a file; 1 if there is no card, else 0."""
+    parser = argparse.ArgumentParser(prog="export_constants", description=__doc__)
+    parser.add_argument("card", help="YAML or JSON, such as results/paper/cards/NAME.yaml")
+    parser.add_argument("--to", choices=CODES, required=True)
+    parser.add_argument("--out", help="file to write; printed by default")
+    given = parser.parse_args(arguments)
+    try:
+        text = exported(read_card(given.card), given.to)
+    except InputError as error:
+        sys.stderr.write(f"error: {error}\n")
+        return 1
+    if not given.out:
+        sys.stdout.write(text)
+        return 0
+    with atomic_write(Path(given.out)) as temporary:
+        temporary.write_bytes(text.encode())
+    return 0
+
+
+def exported(card: dict[str, Any], code: str) -> str:
+    """Constants of a card as a code reads them.
+
+    Parameters
+    ----------
+    card : dict
+        Of ``card.schema.json``.
+    code : str
+        Of :data:`CODES`.
+    """
+    return import_module(f"fractalcontact.cards.exports.{code}").text_of(card)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,204 @@
+"""Cards of joints: of the stated form, the atlas's numbers, each with unit, interval and model."""
+
+import json
+import re
+from html.parser import HTMLParser
+
+import jsonschema
+import numpy as np
+import pytest
+from page_study import HOSTILE
+
+from fractalcontact.cards.entries import entries
+from fractalcontact.cards.page import page_of
+from fractalcontact.cards.write import SCHEMA, read_card, write_card
+from fractalcontact.core.errors import InputError
+from fractalcontact.core.labels import printable
+from fractalcontact.core.subject import Subject
+from fractalcontact.study.atlas import read_atlas
+
+NAMES = ("flat.1", "pair")
+
+
+@pytest.fixture(scope="module")
+def subjects(folder):
+    atlas = read_atlas(folder / "atlas.nc")
+    return {name: Subject.of(atlas, name) for name in NAMES}
+
+
+def numbers_of(card):
+    """Every number of a card with the entry that it stands in."""
+    for key, entry in card["entries"].items():
+        for row in entry.get("values", [entry]):
+            yield key, entry, row
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_card_is_of_the_stated_form_in_both_files(folder, cards, name):
+    schema = json.loads(SCHEMA.read_text())
+    jsonschema.Draft202012Validator.check_schema(schema)
+    jsonschema.Draft202012Validator(schema).validate(cards[name])
+    assert json.loads((folder / f"cards/{name}.json").read_text()) == cards[name]
+
+
+def test_the_form_refuses_a_number_without_unit_model_or_reason(cards):
+    validator = jsonschema.Draft202012Validator(json.loads(SCHEMA.read_text()))
+    for key in ("unit", "model", "title"):
+        broken = json.loads(json.dumps(cards["pair"]))
+        del broken["entries"]["delta_g"][key]
+        assert not validator.is_valid(broken)
+    broken = json.loads(json.dumps(cards["pair"]))
+    broken["entries"]["grasselli"]["missing"] = ""
+    assert not validator.is_valid(broken)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_every_number_has_a_unit_a_model_and_an_interval_around_it_or_a_reason(cards, name):
+    assert set(cards[name]["entries"]) == {entry.key for entry in entries()}
+    known = 0
+    for _, entry, row in numbers_of(cards[name]):
+        assert entry["unit"]
+        assert entry["model"]
+        if "missing" in row:
+            assert len(row["missing"]) > 8
+            continue
+        known += 1
+        assert np.isfinite(row["value"])
+        if row["low"] is not None:
+            assert row["low"] <= row["value"] <= row["high"]
+            assert entry["interval"]
+    assert known > 20
+
+
+def test_numbers_are_those_of_the_atlas_at_the_reported_state(cards, subjects):
+    for name, card in cards.items():
+        closure = subjects[name].states("closure")
+        found = card["entries"]
+        rows = found["tangent_stiffness"]["values"]
+        values = [row.get("value", np.nan) for row in rows]
+        np.testing.assert_allclose(values, closure["reference_stiffness"], rtol=1e-5)
+        assert [row["at"]["pressure"] for row in rows] == [1, 5, 10]
+        for row in found["seated_closure"]["values"]:
+            state = np.isclose(closure["nominal_pressure"], row["at"]["pressure"], rtol=1e-4)
+            (value,) = closure["seated_closure"].values[state]
+            np.testing.assert_allclose(row.get("value", np.nan), value, rtol=1e-5, atol=1e-12)
+        assert card["geometry"]["offset"]["value"] == pytest.approx(subjects[name].offset)
+
+
+def test_a_fit_has_its_range_and_says_whether_it_determines_its_number(cards, subjects):
+    for name, card in cards.items():
+        closure = subjects[name].states("closure")
+        for key in ("k_ni", "v_m"):
+            found = card["entries"][key]
+            assert found["range"]["low"] == pytest.approx(float(closure["seating_pressure"]))
+            if "value" in found:
+                says = bool(closure["seated_k_ni_determined"])
+                assert found["determined"] <= says
+                assert says or found["note"]
+
+
+def test_truncated_strengths_are_missing_with_the_word_for_it(cards, subjects):
+    strength = subjects["pair"].states("strength")
+    valid = strength["peak_strength_valid"].values.astype(bool)
+    rows = cards["pair"]["entries"]["peak_strength"]["values"]
+    assert ["value" in row for row in rows] == (
+        valid & np.isfinite(strength["peak_strength"].values)
+    ).tolist()
+    for row, value in zip(rows, strength["peak_strength"].values, strict=True):
+        if "missing" in row and np.isfinite(value):
+            assert "truncated at 70 degrees" in row["missing"]
+
+
+def test_what_does_not_slide_has_no_strength_and_says_so(cards):
+    for key in ("jrc", "peak_strength", "barton_strength"):
+        assert "values" not in cards["flat.1"]["entries"][key]
+        assert "slid" in cards["flat.1"]["entries"][key]["missing"]
+
+
+def test_numbers_of_contact_name_the_model_that_they_are_of(cards, subjects):
+    for name, card in cards.items():
+        hardness = subjects[name].settings["material"]["hardness"]
+        assert card["model"] == ("elastic" if np.isinf(hardness) else card["model"])
+        assert card["entries"]["k_ni"]["model"] == card["model"]
+        assert card["entries"]["delta_g"]["model"] == "geometry"
+
+
+def test_a_card_is_as_trusted_as_its_worst_light(cards):
+    words = {"poor": "low", "in part": "limited", "good": "good"}
+    for card in cards.values():
+        present = [light["word"] for light in card["lights"]]
+        assert card["trust"]["word"] == words[next(word for word in words if word in present)]
+        assert all(light["help"] in card["trust"]["help"] for light in card["lights"])
+
+
+class Cells(HTMLParser):
+    """Tags and texts of a page."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.tags, self.texts = [], []
+        self.feed(text)
+
+    def handle_starttag(self, tag, attrs):
+        self.tags.append((tag, dict(attrs)))
+
+    def handle_data(self, data):
+        self.texts.append(data)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_the_page_prints_the_numbers_of_the_card_and_asks_for_nothing(folder, cards, name):
+    page = Cells((folder / f"cards/{name}.html").read_text())
+    text = " ".join(page.texts)
+    assert not [tag for tag, _ in page.tags if tag in ("script", "img")]
+    assert "MPa/mm" in text
+    assert f"Trust: {cards[name]['trust']['word']}" in text
+    assert cards[name]["methods"] in text
+    for at, row in page_of(cards[name])["rows"]:
+        assert f"{at:g}" in text
+        assert all("value" in one or "missing" in one for one in row)
+
+
+def test_a_hostile_label_is_text_on_the_page_and_in_the_files(folder, cards):
+    assert cards["pair"]["label"] == printable(HOSTILE)
+    assert "<script>alert" not in (folder / "cards/pair.html").read_text()
+
+
+def test_methods_name_versions_and_references_of_what_they_say(cards):
+    for card in cards.values():
+        assert f"fractalcontact {card['versions']['fractalcontact']}" in card["methods"]
+        years = set(re.findall(r"\d{4}(?=\))", card["methods"]))
+        cited = " ".join(card["references"])
+        assert years
+        assert all(f"({year})" in cited for year in years)
+
+
+def test_what_is_no_card_is_refused_in_a_sentence(tmp_path):
+    for text in ("a: 1", "[1, 2]", "form: 2\nentries: {}", "a: [", "\x00"):
+        path = tmp_path / "card.yaml"
+        path.write_text(text)
+        with pytest.raises(InputError, match="card"):
+            read_card(path)
+    with pytest.raises(InputError, match="cannot be read"):
+        read_card(tmp_path / "none.yaml")
+
+
+def test_a_mean_gap_that_the_atlas_has_stands_on_the_card(folder, cards, subjects):
+    """Stages that other rooms add are read by their names."""
+    from fractalcontact.cards.entries import read_entry
+
+    subject = subjects["pair"]
+    closure = subject["closure"]
+    gap = (0 * closure["closure"] + 0.25).assign_attrs(units="mm", long_name="mean gap")
+    other = Subject(
+        dict(subject.stages) | {"closure": closure.assign(mean_gap=gap)}, subject.settings, "pair"
+    )
+    entry = next(one for one in entries() if one.key == "mean_gap")
+    assert "missing" in cards["pair"]["entries"]["mean_gap"]
+    found = read_entry(entry, other, "elastic")
+    assert {row["value"] for row in found["values"] if "value" in row} == {0.25}
+
+
+def test_a_card_is_written_whole(tmp_path, cards):
+    write_card(cards["pair"], tmp_path)
+    assert read_card(tmp_path / "cards/pair.json") == cards["pair"]
