@@ -110,8 +110,8 @@ def _require_past(scans):
     for path in sorted(scans.glob("*")):
         if path.is_file() and (ahead := path.stat().st_mtime - now) > 1:
             raise InputError(
-                f"{path}: dated {ahead:.0f} s ahead of this machine's clock, so that no result could "
-                f"be younger than it; set the clock, or date the file today: touch '{path}'"
+                f"{path}: dated {ahead:.0f} s ahead of this machine's clock, so that no result "
+                f"could be younger than it; set the clock, or date the file today: touch '{path}'"
             )
 
 

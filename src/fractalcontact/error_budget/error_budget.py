@@ -85,7 +85,10 @@ _TABLE = {
 
 _FROM = {1: "interpolated between loads", 2: "s and s/2", 4: "s, s/2 and s/4"}
 #: Why a source that may be none of a quantity is none.
-_NONE = {"estimator": "none: no estimator is chosen", "secant": "none: no slope of a yielding contact"}
+_NONE = {
+    "estimator": "none: no estimator is chosen",
+    "secant": "none: no slope of a yielding contact",
+}
 
 
 def map_curve(
@@ -415,7 +418,7 @@ def _reasons(curve, errors, found: Refinement, effective, registered: bool) -> n
     if scanned and registered:
         missing["registration"] = "not known of this quantity"
     reasons = np.full((len(BUDGET_QUANTITIES), len(SOURCES)), "", object)
-    for i, name in enumerate(BUDGET_QUANTITIES):
+    for i in range(len(BUDGET_QUANTITIES)):
         for j, source in enumerate(SOURCES):
             if not np.isfinite(errors[source][i]).any():
                 reasons[i, j] = missing[source]
