@@ -17,10 +17,8 @@ HOURS = "takes hours"
 #: Blocks that no test runs as they stand, by document and the words they begin with, and why.
 NOT_RUN = {
     ("README.md", "make            # environment"): INSTALLS,
-    ("README.md", ".venv/bin/snakemake --configfile"): "Snakemake's report of a finished study",
-    ("README.md", "conda env create"): "installs, from channels of conda",
     ("README.md", "label: granite"): "a sidecar: read in tests/test_documents.py",
-    ("README.md", ".venv/bin/python benchmarks/beside_peers.py"): f"{HOURS}, beside other programs",
+    ("docs/solver.md", ".venv/bin/python benchmarks/beside_peers.py"): f"{HOURS}, beside others",
     ("docs/cluster.md", "make slurm"): CLUSTER,
     ("docs/cluster.md", ".venv/bin/python workflow/run.py config/mine.yaml"): CLUSTER,
     ("docs/cluster.md", "cp -r workflow/profiles/slurm"): CLUSTER,
