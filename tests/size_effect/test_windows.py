@@ -103,7 +103,8 @@ def oblong():
 
 def test_states_of_sub_windows_are_in_the_units_that_they_state(oblong):
     first, other, _ = oblong
-    assert not differences(other, grown(first), rtol=1e-4)
+    # Solver errors may be rounding alone: then the largest of them counts.
+    assert not differences(other, grown(first), rtol=1e-4, atol=1e-4)
 
 
 def test_states_of_sub_windows_do_not_depend_on_which_axis_is_called_x(oblong):
