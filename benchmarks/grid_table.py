@@ -83,8 +83,8 @@ def specimen_of(study: Mapping, source: str, name: str) -> tuple[xr.Dataset, Set
     if name not in scans:
         raise InputError(str(refused.get(name, f"{source}: no specimen {name}, embedded or scan")))
     options, own = read_sidecar(scans[name].sidecar, read_study(SCHEMA))
-    settings = resolve_settings(study, name, own, source)
     scan = scans[name]
+    settings = resolve_settings(study, name, own, source, scan)
     return prepare_specimen(scan.lower, scan.upper, options, settings, name), settings
 
 

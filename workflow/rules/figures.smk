@@ -6,7 +6,11 @@ STUDY_FIGURES = study_figures_of(
         *config,
         *MAP_FILES,
         *([campaign.COMPARISON] if len(SPECIMENS) > 1 else []),
-        *([CAPPED_VARIANTS] if any(record["capped_variant"] for record in RECORDS.values()) else []),
+        *(
+            [CAPPED_VARIANTS]
+            if any(record["capped_variant"] for record in RECORDS.values())
+            else []
+        ),
     ]
 )
 if IN_PARTS:

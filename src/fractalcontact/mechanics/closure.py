@@ -237,8 +237,8 @@ def _add_interface(curves: xr.Dataset, settlement: np.ndarray, area: float) -> N
     )
     reason = stiffness_reason(curves["interface_stiffness"], curves["stiffness"], flush)
     # As bare values: labels that xr.where made have no units.
-    words = reason.where(curves["solved"], "").transpose(*order).values
-    curves["interface_stiffness_reason"] = (order, words, reason.attrs)
+    why = reason.where(curves["solved"], "").transpose(*order).values
+    curves["interface_stiffness_reason"] = (order, why, reason.attrs)
 
 
 def stiffness_reason(

@@ -9,7 +9,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from xarray import DataTree
 
-from ...core.estimate import Estimate
+from ...core.estimate import DIMENSION, Estimate
+from ...core.labels import printable
 from ...core.limits import RESOLVED_NODES
 from ...core.subject import Subject
 from ..kit.caption import caption
@@ -29,6 +30,8 @@ ORDER = 8
 
 _LETTERS = "abcdefghi"
 _SPACING = "closure from the seat; $s$: spacing of the scan"
+#: Letters of a label in the caption.
+_LONGEST = 40
 #: Pairs drawn: more have no room on a page.
 _MAX_PAIRS = 3
 
@@ -107,12 +110,11 @@ def _pressure_axis(axes: Axes) -> None:
 
 def _words(elastic: Subject, capped: Subject) -> dict[str, Any]:
     """Values of the caption of a pair."""
-    values = [
-        Estimate.read(one.states("domains"), "delta_sigma").value for one in (elastic, capped)
-    ]
-    changes = [float(one.states("closure")["seated_k_ni_change"]) for one in (elastic, capped)]
+    both = (elastic, capped)
+    states, curves = ([one.states(of) for one in both] for of in ("domains", "closure"))
     return {
-        "label": elastic.label,
-        "spans": [(float(np.nanmin(one)), float(np.nanmax(one))) for one in values],
-        "changes": changes,
+        "label": printable(elastic.label, _LONGEST),
+        "dimensions": [Estimate.read(one, "delta_sigma", scale=DIMENSION)[-1] for one in states],
+        "pressures": [float(curve["nominal_pressure"][-1]) for curve in curves],
+        "changes": [float(curve["seated_k_ni_change"]) for curve in curves],
     }

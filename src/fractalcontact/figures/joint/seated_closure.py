@@ -48,7 +48,8 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     branches = subject["branches"]
     crushed = bool(branches["yielded"].any())
     figure = Figure(figsize=(WIDTH, 7.0 if crushed else 4.2))
-    top, bottom = figure.subfigures(2, 1, height_ratios=[3.4, 2.4]) if crushed else (figure, None)
+    parts: Any = figure.subfigures(2, 1, height_ratios=[3.4, 2.4]) if crushed else [figure]
+    top = parts[0]
     seat = float(curve["seating_pressure"])
     since = f"from {pressure_label(seat)} on" if np.isfinite(seat) else "from no seat"
     titles = (f"closure {since}, {offset_words(subject, subject.offset)}", "tangent stiffness")
@@ -74,7 +75,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     legends_below(top, [*entries(a.axes), *remarks], entries(b.axes))
     headline(figure, subject.label, place(subject.direction))
     sides = window_sides(subject["specimens"])
-    below = draw_permanent_set(bottom, branches, sides) if crushed else []
+    below = draw_permanent_set(parts[1], branches, sides) if crushed else []
     table = table_of(a, b, *below)
     return Drawing(figure, table, caption(__name__, **_words(curve, seat, again)))
 
