@@ -96,6 +96,14 @@ def test_realisations_under_more_loads_are_solved_under_those_that_are_drawn(mad
     np.testing.assert_array_equal(again["normal_force"], found["normal_force"])
 
 
+def test_one_resolution_is_enough_but_for_what_compares_several(made):
+    _, of, light, found = made
+    alone = of(3, settings=replace(light, resolutions=[1]))
+    np.testing.assert_array_equal(alone["nodes"], found["nodes"][:3])
+    for name in ("delta_sigma_area", "area_bend", "difference", "delta_sigma_area_trend"):
+        assert alone[name].isnull().all()
+
+
 def test_closures_count_from_one_load_at_which_every_realisation_is_resolved(made):
     found = made[-1]
     closing = found["closure_from_common_seat"].transpose("realisation", ...).values

@@ -490,7 +490,7 @@ def test_the_page_opens_with_numbers_and_verdicts(results):
     ],
 )
 def test_verdicts_of_several_specimens_are_counted(verdicts, words):
-    cells = {str(i): Cell(one, "", "", "", "", "", "") for i, one in enumerate(verdicts)}
+    cells = {str(i): Cell(one, *[""] * 7) for i, one in enumerate(verdicts)}
     row = Row("size_effect_follows", "10", "", "", cells)
     sentences = opening_of([], CommonLoad("p0", 25.0, {}), [row])
     assert sentences[-1] == f"The size effect of eq. 6 {words} (windows within one joint)."

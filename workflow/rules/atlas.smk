@@ -17,7 +17,9 @@ def atlas_inputs():
         return {"rows": expand(SPECIMEN_ROW, specimen=SPECIMENS)}
     specimens = {stage: expand(path, specimen=SPECIMENS) for stage, path in STAGE_FILES.items()}
     sliding = {stage: expand(path, specimen=SLIDING) for stage, path in SLIDING_FILES.items()}
-    ensembles = {stage: expand(path, specimen=REALISATIONS) for stage, path in ENSEMBLE_FILES.items()}
+    ensembles = {
+        stage: expand(path, specimen=REALISATIONS) for stage, path in ENSEMBLE_FILES.items()
+    }
     return specimens | sliding | (ensembles if REALISATIONS else {})
 
 

@@ -20,8 +20,8 @@ BY_CONSTRUCTION = "A_r = F/H by construction: all that touches yields"
 class Finding(NamedTuple):
     """Verdict on one statement, the numbers that decide it, and what to know of them.
 
-    Captions quote the verdict and the numbers; the note, and what was judged (empty for all that
-    was asked), stand in the table alone.
+    Captions quote the verdict and the numbers; the note stands in the table alone, as what was
+    judged, which is empty where it is all that was asked.
     """
 
     verdict: str

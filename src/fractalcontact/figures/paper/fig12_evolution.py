@@ -132,7 +132,8 @@ def _draw_dimensions(panel, subject):
         label = rf"$\Delta_\sigma$ by {one.symbol}"
         axes.plot(places[sure], one.value[sure], **style, label=label)
     axes.errorbar([], [], [], ls="none", color="0.4", capsize=2, label="bars: 95 % interval")
-    faint = "faint: undetermined, not in the rise"
+    # The rise of a kind is that of its realisations.
+    faint = "faint: undetermined" + ("" if realisations_of(subject) else ", not in the rise")
     axes.plot([], [], "s", color="0.4", mfc="white", alpha=0.35, label=faint)
     if not any(one.known.any() for one in estimates):
         say_empty(axes, "\n".join(wrapped(one.reason[0]) for one in estimates))
