@@ -161,6 +161,7 @@ def main(arguments):
     options = parser.parse_args(arguments)
     seeds = range(options.first, options.first + options.seeds)
     names = ("set", "by", "range", "n", "mean", "sd", "stated / 1.96 sd", "coverage")
+    options.output.parent.mkdir(parents=True, exist_ok=True)
     with options.output.open("w", newline="") as file:
         table = csv.writer(file)
         table.writerow(names)

@@ -49,7 +49,7 @@ def settings(opposite="match", loads=("5 MPa", "25 MPa", "75 MPa"), **material):
             "opposite": opposite,
             "loads": list(loads),
             "dilatancy_loads": list(loads)[-2:],
-            "resolutions": [1, 2, 4],
+            "resolutions": [1, 2, 4, 8],
         },
     }
     return resolve_settings(study, "made", {}, "made")
@@ -62,7 +62,7 @@ def pressed_apart(heights, opposite, cells, upper=None, window=9.6, **material):
         opposite=opposite,
         window=window,
         name="made",
-        multiple=4,
+        multiple=8,
         reach=0.0 if opposite == "flat" else 1.6,
     )
     direction = "none" if opposite == "flat" else "W"

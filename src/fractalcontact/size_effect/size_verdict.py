@@ -40,7 +40,7 @@ ILL_CONDITIONED = f"sigma_0 is poorly known from sigma* (condition over {WORST_C
 SLOPE_TOO_WIDE = f"the measured slope is not known within {WIDEST_SLOPE:g}"
 SEVERAL = "one sigma* has several sigma_0"
 NO_SIZES = "too few sizes of window hold enough nodes"
-NO_PREDICTION = "Delta_sigma is unknown"
+NO_PREDICTION = "Delta_sigma has no interval"
 
 
 class Judgement(NamedTuple):

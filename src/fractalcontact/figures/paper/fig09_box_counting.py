@@ -12,7 +12,7 @@ from ...core.subject import Subject
 from ...core.window import window_sides
 from ..kit.axes import label_short_span
 from ..kit.caption import caption
-from ..kit.domains import contact_domain, estimates_of
+from ..kit.domains import contact_domain
 from ..kit.drawing import WEAK, WIDTH, Drawing
 from ..kit.legends import heading
 from ..kit.maps import draw_domain
@@ -24,7 +24,7 @@ from ._local_slopes import CUT, LAW, ORDINARY, RANDOM, band_of, draw_slopes
 
 TITLE = "Fig. 9: box counting of a contact domain"
 SUBJECT = "specimen"
-NEEDS = ("specimens", "contact", "closure", "domains", "scaling", "statements")
+NEEDS = ("specimens", "contact", "closure", "domains", "statements")
 ORDER = 140
 
 #: What each panel keeps, by the dimension of its sides.
@@ -65,7 +65,6 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     text = caption(
         __name__,
         reason=str(counts["reason"].item()),
-        area=estimates_of(subject.states("scaling"))[0].number(reported.reference),
         law=law,
         ordinary=ordinary,
         one_law=claim(atlas, name, "boxes_follow_one_law", numbers=False),

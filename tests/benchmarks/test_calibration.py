@@ -1,0 +1,37 @@
+"""What the calibration of Delta_sigma says of intervals that are right, and of random fractals."""
+
+import importlib.util
+
+import numpy as np
+import pytest
+from places import BENCHMARKS
+
+
+@pytest.fixture(scope="module")
+def measured():
+    spec = importlib.util.spec_from_file_location("calibration", BENCHMARKS / "calibration.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def test_right_intervals_are_calibrated_and_missing_ones_left_out(measured):
+    value = np.random.default_rng(0).normal(1.5, 0.1, 2000)
+    rows = np.stack([value, value - 0.196, value + 0.196], axis=1)
+    rows[:100, 1:] = np.nan
+    n, mean, sd, ratio, coverage = measured.calibration(rows, truth=1.5)
+    assert n == 1900
+    assert (mean, sd) == (pytest.approx(1.5, abs=0.01), pytest.approx(0.1, rel=0.05))
+    assert ratio == pytest.approx(1, rel=0.05)
+    assert coverage == pytest.approx(0.95, abs=0.02)
+
+
+@pytest.mark.parametrize("name", ["percolation 1.5", "random carpet", "random dust"])
+def test_random_fractals_have_their_dimension(measured, name):
+    parts, _, kept = measured.FRACTALS[name]
+    nodes = []
+    for seed in range(40):
+        cells, dimension = measured.random_fractal(parts, 4, kept, seed)
+        assert cells.shape == (parts**4,) * 2
+        nodes.append(cells.sum())
+    assert np.mean(nodes) == pytest.approx(parts ** (4 * dimension), rel=0.2)
