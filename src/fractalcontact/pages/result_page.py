@@ -52,6 +52,7 @@ NEEDS = (
     "surface_dimension",
     "joints",
     "closure",
+    "flow",
     "dilatancy",
     "area",
     "domains",
