@@ -28,7 +28,7 @@ def field(n, seed=1):
 
     noise = np.random.default_rng(seed).normal(size=(n, n))
     heights = ndimage.gaussian_filter(noise, n / 48, mode="wrap")
-    gap = np.clip(heights / heights.std() + 0.35, 0, None)
+    gap = np.clip(heights.T / heights.std() + 0.35, 0, None)
     gap[gap < 1e-3 * gap.mean()] = 0
     gap[:, 0] = 0
     return gap

@@ -51,10 +51,10 @@ _MORE_OF_WAY: dict[str, tuple[Dims, str, str]] = {
         "mm3",
         "change of T where every second cell is left out, no interval",
     ),
-    "transmissivity_closure_error": (
+    "transmissivity_separation_error": (
         _LOADS,
         "mm3",
-        "change of T with the total error of the closure, no interval",
+        "change of T with the total error of the separation, no interval",
     ),
     "reynolds_gradient": (
         _LOADS,
@@ -144,12 +144,12 @@ def flow_stages(
     values: dict[str, Any] = _over_loads(mapped.values.astype(float), place, reported)
     values |= _laws(states, specimens, reported.direction, loading.slides)
     gap = states["mean_gap"].values
-    total = error_budget["total"].sel(quantity="closure").values
+    total = error_budget["total"].sel(quantity="separation").values
     for way in WAYS:
         flow = values[f"transmissivity_{way}"]
         values |= {
             f"hydraulic_ratio_{way}": values[f"hydraulic_aperture_{way}"] / gap,
-            f"transmissivity_closure_error_{way}": _closure_error(states, flow, total),
+            f"transmissivity_separation_error_{way}": _separation_error(gap, flow, total),
             f"reynolds_gradient_{way}": reynolds_gradient(flow),
         }
         ends = percolation_pressures(states["nominal_pressure"].values, flow)
@@ -244,13 +244,15 @@ def _laws(states, specimens, direction, slides):
     }
 
 
-def _closure_error(states, flow, total):
-    """Change of T over the total error of the closure, mm3, by the slope between loads."""
-    closure = states["closure"].values
-    known = np.isfinite(closure) & np.isfinite(flow)
+def _separation_error(gap, flow, total):
+    """Change of T over the total error of the separation, mm3, by the slope between loads.
+
+    The mean gap is off by as much as the separation, whatever node touches first.
+    """
+    known = np.isfinite(gap) & np.isfinite(flow)
     error = np.full(flow.shape, np.nan)
     if known.sum() > 1:
-        error[known] = np.abs(np.gradient(flow[known], closure[known])) * total[known]
+        error[known] = np.abs(np.gradient(flow[known], gap[known])) * total[known]
     return error
 
 

@@ -13,6 +13,7 @@ from ..kit.drawing import WIDTH, Drawing, colour_of
 from ..kit.empty import say_empty
 from ..kit.legends import entries, legends_below
 from ..kit.panel import Panel, table_of
+from ..kit.sizes import plain_decades
 from ..kit.titles import headline
 from ..kit.words import NOMINAL_PRESSURE, place
 
@@ -70,6 +71,8 @@ def _draw_apertures(panel: Panel, states: xr.Dataset) -> None:
         panel.axes.plot(ends, ends, color="0.6", lw=0.8, label="parallel plates")
     panel.axes.set(xscale="log", yscale="log", xlabel=r"mean gap $\langle g\rangle$ (mm)")
     panel.axes.set_ylabel("hydraulic aperture $h_h$ (mm)")
+    for axis in (panel.axes.xaxis, panel.axes.yaxis):
+        plain_decades(axis)
 
 
 def _draw_branches(panel: Panel, flow: xr.Dataset) -> None:
@@ -91,6 +94,7 @@ def _draw_branches(panel: Panel, flow: xr.Dataset) -> None:
     if not (flow["transmissivity_along"] > 0).any():
         say_empty(panel.axes, _NO_FLOW)
     panel.axes.set(xscale="log", yscale="log", xlabel=f"{NOMINAL_PRESSURE} (MPa)")
+    plain_decades(panel.axes.xaxis)
     panel.axes.set_ylabel("transmissivity $T$ (mm³)")
 
 
@@ -105,7 +109,7 @@ def _words(subject: Subject, states: xr.Dataset) -> dict[str, Any]:
     ratio = float(at["hydraulic_ratio_along"])
     reload = at["branch_transmissivity_along"].sel(branch="reload")
     grid = at["transmissivity_grid_error_along"] / at["transmissivity_along"]
-    closing = at["transmissivity_closure_error_along"] / at["transmissivity_along"]
+    closing = at["transmissivity_separation_error_along"] / at["transmissivity_along"]
     return {
         "pressure": float(at["nominal_pressure"]),
         "transmissivity": float(at["transmissivity_along"]),
