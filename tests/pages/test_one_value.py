@@ -99,8 +99,8 @@ COLUMNS = {
     "Δσ by boxes": "delta_sigma_boxes",
     "Δσ by area": "delta_sigma_areas",
     "Contact nodes": "contact_nodes",
-    "Mean gap": "mean_gap_mm",
-    "Transmissivity": "transmissivity_along_mm3",
+    "Mean gap (mm)": "mean_gap_mm",
+    "Transmissivity (mm³)": "transmissivity_along_mm3",
 }
 #: Of these, what suspicious cells of the scans leave undetermined.
 BY_SCAN = {
