@@ -81,14 +81,8 @@ def harmonic_faces(
 
 
 def _harmonic(one, other):
-    both = (one > 0) & (other > 0)
     # The product would underflow where gaps are small: divide first.
-    return 2 * np.divide(
-        one,
-        1 + np.divide(one, other, where=both, out=np.ones_like(one)),
-        where=both,
-        out=np.zeros_like(one),
-    )
+    return 2 * one / (1 + np.divide(one, other, where=other > 0, out=np.full_like(one, np.inf)))
 
 
 def joined_cells(open_cells: np.ndarray, inlet: np.ndarray, outlet: np.ndarray) -> np.ndarray:

@@ -32,6 +32,7 @@ _LAWS: dict[str, tuple[str, dict[str, Any]]] = {
     "zimmerman_aperture": ("Zimmerman and Bodvarsson", {"color": colour_of(2), "ls": "--"}),
     "barton_aperture": ("Barton", {"color": colour_of(3), "ls": "-."}),
 }
+_BRANCHES = (("load", "loading", "-"), ("reload", "unloading and reloading", ":"))
 _NO_FLOW = "no load has a path of open gap from side to side"
 
 
@@ -58,12 +59,13 @@ def _draw_apertures(panel: Panel, states: xr.Dataset) -> None:
             "mean_gap",
             f"hydraulic_aperture_{way}",
             keep=kept if way == "along" else (),
-            label=f"cubic law, {way}",
+            label=f"cubic law, {way} ({states.attrs[f'flow_axis_{way}']})",
             ls="none",
             **style,
         )
     for law, (words, style) in _LAWS.items():
-        panel.curve(states, "mean_gap", law, label=words, marker="none", **style)
+        if states[law].notnull().any():
+            panel.curve(states, "mean_gap", law, label=words, marker="none", **style)
     gaps = states["mean_gap"].values
     gaps = gaps[gaps > 0]
     if gaps.size:
@@ -77,15 +79,16 @@ def _draw_apertures(panel: Panel, states: xr.Dataset) -> None:
 
 def _draw_branches(panel: Panel, flow: xr.Dataset) -> None:
     for way, style in _WAYS.items():
-        branches = _positive(flow, f"branch_transmissivity_{way}")
-        for branch, words, line in (
-            ("load", "loading", "-"),
-            ("reload", "unloading and reloading", ":"),
-        ):
+        variable = f"branch_transmissivity_{way}"
+        branches = _positive(flow, variable)
+        load, reload = (branches[variable].sel(branch=one) for one in ("load", "reload"))
+        # Where nothing yields, there is one curve.
+        crushed = bool((reload.notnull() & (reload != load)).any())
+        for branch, words, line in _BRANCHES[: 1 + crushed]:
             panel.curve(
                 branches.sel(branch=branch),
                 "nominal_pressure",
-                f"branch_transmissivity_{way}",
+                variable,
                 keep=("branch",),
                 label=f"{words}, {way}",
                 ls=line,
@@ -106,18 +109,19 @@ def _positive(data: xr.Dataset, name: str) -> xr.Dataset:
 def _words(subject: Subject, states: xr.Dataset) -> dict[str, Any]:
     """Values of the caption."""
     at = states.isel(normal_force=subject.reported.reference)
-    ratio = float(at["hydraulic_ratio_along"])
+    flow, ratio = float(at["transmissivity_along"]), float(at["hydraulic_ratio_along"])
     reload = at["branch_transmissivity_along"].sel(branch="reload")
-    grid = at["transmissivity_grid_error_along"] / at["transmissivity_along"]
-    closing = at["transmissivity_separation_error_along"] / at["transmissivity_along"]
+    parts = {"grid": "grid_error", "closing": "separation_error"}
     return {
         "pressure": float(at["nominal_pressure"]),
-        "transmissivity": float(at["transmissivity_along"]),
+        "transmissivity": flow,
         "ratio": ratio,
-        "reload": float(reload / at["transmissivity_along"]),
+        "flows": flow > 0,
+        "reload": float(reload / flow) if flow > 0 else np.nan,
         "closed": float(states["first_closed_pressure_along"]),
         "opened": float(states["last_open_pressure_along"]),
-        "grid": float(grid),
-        "closing": float(closing),
-        "flows": bool(np.isfinite(ratio) and ratio > 0),
+        **{
+            name: float(at[f"transmissivity_{part}_along"]) / flow if flow > 0 else np.nan
+            for name, part in parts.items()
+        },
     }
