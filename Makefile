@@ -23,6 +23,7 @@
 # make campaign SPECIMENS=1000   the scans and the study of that many small twins, in results/campaigns
 # make bench  the contact solver timed; with PEERS=1 also against other codes, installed for it
 # make grid-table   elastic and capped contact on four grids: the table of docs/verification.md
+# make bench-flow  the flow through gaps timed, with PEERS=1 also against reynoldsflow
 # make problems PROBLEMS=5000   PROBLEMS random contact problems, each state verified
 # make extremes   synthetic extremes and real scans through the whole chain, all figures: many minutes
 # make fuzz FILES=5000     FILES damaged scan files, each read or refused in one sentence
@@ -44,7 +45,7 @@ RUN = exec $(BIN)/python workflow/run.py "$$STUDY" $(if $(filter yes y true 1,$(
   $(if $(filter yes y true 1,$(VERBOSE)),--verbose)
 OPTIONS = -- --cores $(CORES)
 
-.PHONY: describe all study campaign report smoke size-effect-small keep-going slurm dry-run verify faults check-scans check-accuracy calibration keep same cost accuracy test test-all test-browser test-slurm test-slurm-accounting docs bench problems grid-table extremes fuzz fuzz-dialects lint format lock clean
+.PHONY: describe all study campaign report smoke size-effect-small keep-going slurm dry-run verify faults check-scans check-accuracy calibration keep same cost accuracy test test-all test-browser test-slurm test-slurm-accounting docs bench bench-flow problems grid-table extremes fuzz fuzz-dialects lint format lock clean
 # Two runs in one checkout would refuse each other.
 .NOTPARALLEL:
 all: study
@@ -148,6 +149,10 @@ test-slurm-accounting: $(VENV)/tests-installed $(VENV)/slurm-installed
 # Tables go to results/benchmarks. make bench BENCH=--quick, or --help, for other measurements.
 bench: $(VENV)/installed $(if $(PEERS),$(VENV)/peers-installed)
 	$(BIN)/python benchmarks/run.py $(BENCH)
+
+# The flow solvers that are installed; with PEERS=1 also CHOLMOD and reynoldsflow. FLOW='--sizes 512', or --help.
+bench-flow: $(VENV)/installed $(if $(PEERS),$(VENV)/peers-installed)
+	$(BIN)/python benchmarks/flow.py $(FLOW)
 
 # CAMPAIGN=--measure: what the workflow takes for that many (after SPECIMENS=6 CAMPAIGN=--run).
 SPECIMENS ?= 100

@@ -44,16 +44,11 @@ def rms_slope(gap: np.ndarray, spacing: tuple[float, float]) -> float:
     """Rms slope of the open gap, over faces between two open cells; NaN without any."""
     sums, faces = 0.0, 0
     for axis, step in enumerate(spacing):
-        both = (np.minimum(*_neighbours(gap, axis)) > 0).ravel()
-        slopes = (np.diff(gap, axis=axis) / step).ravel()[both]
+        turned = np.moveaxis(gap, axis, 0)
+        slopes = np.diff(turned, axis=0)[(turned[1:] > 0) & (turned[:-1] > 0)] / step
         sums, faces = sums + float(slopes @ slopes), faces + slopes.size
     # Each of both components has half of the faces.
     return float(np.sqrt(2 * sums / faces)) if faces else np.nan
-
-
-def _neighbours(gap, axis):
-    turned = np.moveaxis(gap, axis, 0)
-    return np.moveaxis(turned[1:], 0, axis), np.moveaxis(turned[:-1], 0, axis)
 
 
 def transmissivity_bounds(gap: np.ndarray, axis: int) -> tuple[float, float]:
@@ -147,10 +142,9 @@ def reynolds_gradient(transmissivity: ArrayLike, reynolds: float = 1.0) -> np.nd
     Parameters
     ----------
     transmissivity : array_like
-        T, mm3.
+        T, mm3; 0 has no gradient.
     reynolds : float, optional
     """
     transmissivity = np.asarray(transmissivity, float)
-    with np.errstate(divide="ignore"):
-        gradient = reynolds * WATER_VISCOSITY**2 / (WATER_DENSITY * transmissivity)
-    return np.where(transmissivity > 0, gradient, np.nan)
+    open_gap = np.where(transmissivity > 0, transmissivity, np.nan)
+    return reynolds * WATER_VISCOSITY**2 / (WATER_DENSITY * open_gap)

@@ -5,7 +5,7 @@ have the harmonic mean of both. No flow leaves the sides of a window (it is not 
 Zimmerman and Bodvarsson (Transp. Porous Media 23 (1996) 1) review the law and its limits.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -90,13 +90,7 @@ def plane_flow(
     """
     if axis == "y":
         turned = plane_flow(np.transpose(gap), spacing[::-1], cholmod=cholmod)
-        return Flow(
-            turned.transmissivity,
-            turned.imbalance,
-            turned.critical_gap,
-            turned.flux.T,
-            turned.pressure.T,
-        )
+        return replace(turned, flux=turned.flux.T, pressure=turned.pressure.T)
     opening = _checked(gap)
     (ny, nx), (dy, dx) = opening.shape, spacing
     at_ends = np.zeros((2, ny, nx), bool)

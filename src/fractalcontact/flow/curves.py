@@ -1,6 +1,5 @@
 """Flow and aperture statistics of a series of states, along and across the sliding."""
 
-from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
@@ -27,10 +26,7 @@ OF_WAY = {
     "gap_correlation_length": ("mm", "lag at which the correlation of the gap falls to 1/e"),
 }
 #: Numbers of a state: unit, long name.
-OF_APERTURE = {
-    "gap_slope": ("1", "rms slope of the open gap"),
-    "open_fraction": ("1", "fraction of the window that is open"),
-}
+OF_APERTURE = {"gap_slope": ("1", "rms slope of the open gap")}
 
 
 def axes_of(axis: str) -> dict[str, str]:
@@ -72,65 +68,38 @@ def coarse_transmissivity(gap: np.ndarray, spacing: tuple[float, float], axis: s
 
 
 def numbers_of_flow(gap: np.ndarray, spacing: tuple[float, float], axis: str) -> dict[str, Any]:
-    """The :data:`OF_WAY` of a gap, and its ``flux`` map.
-
-    Parameters
-    ----------
-    gap, spacing, axis
-        As of :func:`flow.cubic_law.plane_flow`.
-    """
+    """The :data:`OF_WAY` of a gap, and its ``flux`` map; as :func:`flow_of` takes it."""
     flow, reason = flow_of(gap, spacing, axis)
     number = "yx".index(axis)
     lower, upper = transmissivity_bounds(gap, number)
+    kept = ("transmissivity", "hydraulic_aperture", "critical_gap", "channel_fraction", "flux")
     return {
-        "transmissivity": flow.transmissivity,
-        "hydraulic_aperture": flow.hydraulic_aperture,
-        "critical_gap": flow.critical_gap,
-        "channel_fraction": flow.channel_fraction,
+        **{name: getattr(flow, name) for name in kept},
         "flow_imbalance": flow.imbalance,
         "flow_reason": reason,
         "series_bound": lower,
         "parallel_bound": upper,
         "gap_correlation_length": correlation_length(gap, spacing[number], number),
-        "flux": flow.flux,
     }
 
 
 def numbers_of_aperture(gap: np.ndarray, spacing: tuple[float, float]) -> dict[str, Any]:
-    """The :data:`OF_APERTURE` of a gap, and ``quantiles``, mm, at :data:`flow.aperture.QUANTILES`.
-
-    Parameters
-    ----------
-    gap, spacing
-        As of :func:`flow.cubic_law.plane_flow`.
-    """
-    return {
-        "gap_slope": rms_slope(gap, spacing),
-        "open_fraction": float((gap > 0).mean()),
-        "quantiles": np.quantile(gap, QUANTILES),
-    }
+    """The :data:`OF_APERTURE` of a gap, and its ``quantiles``, mm, at :data:`QUANTILES`."""
+    return {"gap_slope": rms_slope(gap, spacing), "quantiles": np.quantile(gap, QUANTILES)}
 
 
-def percolation_pressures(
-    pressure: np.ndarray, transmissivity: Iterable[float]
-) -> tuple[float, float]:
+def percolation_pressures(pressure: np.ndarray, flows: np.ndarray) -> tuple[float, float]:
     """Largest pressure with a path through the gap, and the smallest without one, MPa.
 
     Parameters
     ----------
-    pressure : (n,) ndarray
-        MPa, ascending.
-    transmissivity : iterable of n float
-        mm3; NaN is left out.
+    pressure, flows : (n,) ndarray
+        MPa, ascending, and transmissivity, mm3; where that is NaN, it is left out.
 
     Returns
     -------
     last_open, first_closed : float
         NaN where none is so.
     """
-    flows = np.asarray(list(transmissivity))
     opened, closed = pressure[flows > 0], pressure[flows == 0]
-    return (
-        float(opened.max()) if opened.size else np.nan,
-        float(closed.min()) if closed.size else np.nan,
-    )
+    return float(np.append(np.nan, opened)[-1]), float(np.append(closed, np.nan)[0])

@@ -81,14 +81,8 @@ def harmonic_faces(
 
 
 def _harmonic(one, other):
-    both = (one > 0) & (other > 0)
     # The product would underflow where gaps are small: divide first.
-    return 2 * np.divide(
-        one,
-        1 + np.divide(one, other, where=both, out=np.ones_like(one)),
-        where=both,
-        out=np.zeros_like(one),
-    )
+    return 2 * one / (1 + np.divide(one, other, where=other > 0, out=np.full_like(one, np.inf)))
 
 
 def joined_cells(open_cells: np.ndarray, inlet: np.ndarray, outlet: np.ndarray) -> np.ndarray:
@@ -106,13 +100,7 @@ def joined_cells(open_cells: np.ndarray, inlet: np.ndarray, outlet: np.ndarray) 
 
 
 def are_joined(open_cells: np.ndarray, inlet: np.ndarray, outlet: np.ndarray) -> bool:
-    """True if a path of open cells joins both ends.
-
-    Parameters
-    ----------
-    open_cells, inlet, outlet
-        As of :func:`joined_cells`.
-    """
+    """True if a path of open cells joins both ends, as :func:`joined_cells` takes them."""
     return bool(_at_both(ndimage.label(open_cells)[0], inlet, outlet).size)
 
 
@@ -165,7 +153,7 @@ def solve_network(
         solution = _complementary(solve_symmetric(lower, right, cholmod=cholmod))
         for step in range(REFINEMENTS + 1):
             balance, flows = _balance(faces, ends, solution)
-            error = _relative(float(np.abs(balance).sum()), min(flows))
+            error = float(np.abs(balance).sum()) / max(min(flows), np.finfo(float).tiny)
             if error <= MAX_IMBALANCE or step == REFINEMENTS:
                 break
             change = np.stack([balance, -balance], axis=1) * scale
@@ -182,10 +170,6 @@ def _complementary(solution):
     p, d = solution.T
     low = p < d
     return np.stack([np.where(low, p, 1 - d), np.where(low, 1 - p, d)], axis=1)
-
-
-def _relative(error, rate):
-    return error / rate if rate > 0 else np.inf
 
 
 def _faces_of(network, cells):
@@ -230,9 +214,11 @@ def _balance(faces, ends, solution):
 def _network_flow(network, cells, solution, rate, imbalance):
     p, d = np.full(cells.shape, np.nan), np.full(cells.shape, np.nan)
     p[cells], d[cells] = solution.T
-    with np.errstate(invalid="ignore"):
-        flux_x = network.along_x * np.where(
-            p[:, :-1] < d[:, :-1], p[:, :-1] - p[:, 1:], d[:, 1:] - d[:, :-1]
+    flux_x, flux_y = (
+        np.nan_to_num(conductance * np.where(p[one] < d[one], p[one] - p[other], d[other] - d[one]))
+        for conductance, one, other in (
+            (network.along_x, np.s_[:, :-1], np.s_[:, 1:]),
+            (network.along_y, np.s_[:-1], np.s_[1:]),
         )
-        flux_y = network.along_y * np.where(p[:-1] < d[:-1], p[:-1] - p[1:], d[1:] - d[:-1])
-    return NetworkFlow(rate, imbalance, p, np.nan_to_num(flux_x), np.nan_to_num(flux_y))
+    )
+    return NetworkFlow(rate, imbalance, p, flux_x, flux_y)

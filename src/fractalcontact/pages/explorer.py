@@ -24,6 +24,7 @@ NEEDS = (
     "specimens",
     "contact",
     "closure",
+    "flow",
     "dilatancy",
     "domains",
     "scaling",

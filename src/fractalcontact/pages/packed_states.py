@@ -32,6 +32,8 @@ ORDER = (
     "scale",
     "mean_scale",
 )
+#: Why a state has no flow.
+NO_FLOW = "computed at the reported offset alone, or has no path"
 #: What the curves need besides.
 CURVES = (
     ("closure", "solved"),
@@ -123,6 +125,7 @@ def packed_states(atlas: xr.DataTree, name: str) -> dict[str, Any]:
         {"direction": "rigid_direction", "contact_direction": "direction"}
     )
     closure = stages["closure"]
+    stages["flow"] = _of_all_states(subject)
     numbers = _Numbers([], {})
     rows = shown_quantities()
     for stage, variable in (*((one.stage, one.variable) for one in rows), *CURVES):
@@ -151,6 +154,18 @@ def packed_states(atlas: xr.DataTree, name: str) -> dict[str, Any]:
     }
 
 
+def _of_all_states(subject: Subject) -> xr.Dataset:
+    """Shown numbers of the flow over all states; missing but at the reported offset."""
+    reported, closure = subject.reported, subject["closure"]
+    shown = [one.variable for one in shown_quantities() if one.stage == "flow"]
+    flow = subject["flow"][shown].expand_dims(
+        direction=[reported.direction],
+        offset=[reported.offset],
+        resolution=[reported.resolution],
+    )
+    return flow.reindex({name: closure[name] for name in ("direction", "offset", "resolution")})
+
+
 def _add_with_bounds(numbers, dataset, stage, variable):
     numbers.add(stage, variable, dataset[variable])
     for ending in BOUNDS:
@@ -176,10 +191,11 @@ def _add_undetermined(numbers, stages):
 
 def _reasons(stages):
     """Why a number of a solved state is missing, in the words of the result page."""
-    missing = (
+    missing: tuple[tuple[str, str, str], ...] = (
         ("scaling", "sigma_n", NO_PRESSURE),
         ("scaling", "delta_sigma_area", TOO_FEW_RESOLUTIONS),
     )
+    missing += tuple(("flow", str(name), NO_FLOW) for name in stages["flow"].data_vars)
     words = {
         "domains/delta_sigma": stages["domains"]["reason"],
         "closure/stiffness": stages["closure"]["interface_stiffness_reason"],

@@ -52,6 +52,7 @@ NEEDS = (
     "surface_dimension",
     "joints",
     "closure",
+    "flow",
     "dilatancy",
     "area",
     "domains",
@@ -198,7 +199,8 @@ def _sort_value(state: AtLoad | None, of: Shown | str) -> float | str:
     found = _quoted(state, of)
     if isinstance(found, Estimate) and _of_dimension(of) and not found.determined:
         return ""
-    if isinstance(found, Quantity) and state.decided_by_scan:
+    by_scan = isinstance(of, Shown) and of.by_scan
+    if (isinstance(found, Quantity) or by_scan) and state.decided_by_scan:
         return ""
     return _shown(found.value if isinstance(found, Estimate | Quantity) else found)
 

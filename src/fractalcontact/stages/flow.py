@@ -30,7 +30,7 @@ from ..flow.curves import (
     percolation_pressures,
     transmissivity_of,
 )
-from ..mechanics.joint import sliding_axis
+from ..mechanics.joint import prefractal, sliding_axis
 from ..mechanics.jrc import profile_roughness
 from ..mechanics.loading import JointLoading
 from ..mechanics.state_scalars import aperture
@@ -38,7 +38,9 @@ from ..mechanics.states import MAP_GAP, OFFSET_GAP, with_pressure
 
 _LOADS: Dims = "normal_force"
 _STATES: Dims = ("branch", "normal_force")
-_LOAD, _UNLOAD, _RELOAD = range(3)
+_LOAD, _UNLOAD = 0, 1
+#: Numbers of a gap that branches and offsets have.
+NAMES = ("mean_gap", *(f"transmissivity_{way}" for way in WAYS))
 
 #: Why a load has no transmissivity.
 NOT_QUOTED = "solved under the reported loads alone"
@@ -51,10 +53,10 @@ _MORE_OF_WAY: dict[str, tuple[Dims, str, str]] = {
         "mm3",
         "change of T where every second cell is left out, no interval",
     ),
-    "transmissivity_closure_error": (
+    "transmissivity_separation_error": (
         _LOADS,
         "mm3",
-        "change of T with the total error of the closure, no interval",
+        "change of T with the total error of the separation, no interval",
     ),
     "reynolds_gradient": (
         _LOADS,
@@ -137,50 +139,40 @@ def flow_stages(
     reported = Reported.read(closure)
     loading = JointLoading.of_joint(specimens, joints, reported.direction, settings, solver)
     axis = "yx"[sliding_axis(reported.direction)] if loading.slides else "x"
-    dy, dx = loading.spacing * reported.resolution
-    place = _Place((float(dy), float(dx)), axes_of(axis))
+    whole = _Place(loading.spacing, axes_of(axis))
+    place = _Place(loading.spacing * reported.resolution, whole.axes)
     states = reported.states(closure)
     mapped = next(part for part in parts if MAP_GAP in part)[MAP_GAP]
     values: dict[str, Any] = _over_loads(mapped.values.astype(float), place, reported)
     values |= _laws(states, specimens, reported.direction, loading.slides)
     gap = states["mean_gap"].values
-    total = error_budget["total"].sel(quantity="closure").values
+    total = error_budget["total"].sel(quantity="separation").values
     for way in WAYS:
         flow = values[f"transmissivity_{way}"]
         values |= {
             f"hydraulic_ratio_{way}": values[f"hydraulic_aperture_{way}"] / gap,
-            f"transmissivity_closure_error_{way}": _closure_error(states, flow, total),
+            f"transmissivity_separation_error_{way}": _separation_error(gap, flow, total),
             f"reynolds_gradient_{way}": reynolds_gradient(flow),
         }
-        ends = percolation_pressures(states["nominal_pressure"].values, flow)
-        values |= {
-            f"{name}_{way}": end
-            for name, end in zip(("last_open_pressure", "first_closed_pressure"), ends, strict=True)
-        }
+        values[f"last_open_pressure_{way}"], values[f"first_closed_pressure_{way}"] = (
+            percolation_pressures(states["nominal_pressure"].values, flow)
+        )
     (cells,) = loading.at_map_offset().cells
     composite = loading.composite(int(cells))
-    values |= _of_branches(composite, loading, branches, states, place, values)
-    values |= place.both("unloaded", composite.max() - composite)
+    values |= _of_branches(composite, loading, branches, states, whole, values)
+    kept = prefractal(composite, reported.resolution)
+    values |= place.both("unloaded", kept.max() - kept)
     values |= _over_offsets(parts, closure, place, reported, values)
-    window = {f"flow_{axis}": mapped[f"{axis}_{reported.resolution}"].size for axis in "yx"}
+    probability = cf_attrs("1", "fraction of the window with a smaller gap")
     coords: dict[str, Any] = {
         "normal_force": closure["normal_force"],
         "offset": closure["offset"],
         "branch": branches["branch"].values,
-        "gap_probability": (
-            "gap_probability",
-            list(QUANTILES),
-            cf_attrs("1", "fraction of the window with a smaller gap"),
-        ),
-        **{
-            name: (
-                name,
-                _coordinate(joints, name[-1], reported.resolution),
-                cf_attrs("mm", name[-1]),
-            )
-            for name in window
-        },
+        "gap_probability": ("gap_probability", list(QUANTILES), probability),
     }
+    for one in "yx":
+        nodes = joints[f"window_{one}"].values[:: reported.resolution]
+        coords[f"flow_{one}"] = (f"flow_{one}", nodes, cf_attrs("mm", f"{one} of the node"))
     attrs = {"flow_axis_along": place.axes["along"], "flow_axis_across": place.axes["across"]}
     stage = labelled_dataset(_TABLE, values, coords, attrs)
     return {"flow": with_pressure(stage, nominal_area(specimens))}
@@ -189,8 +181,8 @@ def flow_stages(
 class _Place:
     """Spacing of the cells and the axes of both ways of the flow."""
 
-    def __init__(self, spacing: tuple[float, float], axes: Mapping[str, str]):
-        self.spacing, self.axes = spacing, axes
+    def __init__(self, spacing: np.ndarray, axes: Mapping[str, str]):
+        self.spacing, self.axes = (float(spacing[0]), float(spacing[1])), axes
 
     def both(self, prefix: str, gap: np.ndarray) -> dict[str, float]:
         """Mean gap and transmissivities of a gap, their names after a prefix."""
@@ -199,10 +191,6 @@ class _Place:
             for way, axis in self.axes.items()
         }
         return {f"{prefix}_mean_gap": float(gap.mean()), **flows}
-
-
-def _coordinate(joints, axis, factor):
-    return joints[f"window_{axis}"].values[::factor]
 
 
 def _over_loads(gaps: np.ndarray, place: _Place, reported: Reported) -> dict[str, Any]:
@@ -244,35 +232,32 @@ def _laws(states, specimens, direction, slides):
     }
 
 
-def _closure_error(states, flow, total):
-    """Change of T over the total error of the closure, mm3, by the slope between loads."""
-    closure = states["closure"].values
-    known = np.isfinite(closure) & np.isfinite(flow)
+def _separation_error(gap, flow, total):
+    """Change of T over the total error of the separation, mm3, by the slope between loads.
+
+    The mean gap is off by as much as the separation, whatever node touches first.
+    """
+    known = np.isfinite(gap) & np.isfinite(flow)
     error = np.full(flow.shape, np.nan)
-    if known.sum() > 1:
-        error[known] = np.abs(np.gradient(flow[known], closure[known])) * total[known]
+    # Faces that are flush have no gap under any load, and no slope over it.
+    if known.sum() > 1 and np.diff(gap[known]).all():
+        error[known] = np.abs(np.gradient(flow[known], gap[known])) * total[known]
     return error
 
 
 def _of_branches(composite, loading, branches, states, place, on_loading):
     """Mean gaps and transmissivities of all branches; NaN above their largest load."""
     forces = states["normal_force"].values
-    shape = (branches.sizes["branch"], forces.size)
-    names = ["mean_gap", *(f"transmissivity_{way}" for way in WAYS)]
-    values = {f"branch_{name}": np.full(shape, np.nan) for name in names}
-    loaded = {"mean_gap": states["mean_gap"].values, **{n: on_loading[n] for n in names[1:]}}
-    held = branches["permanent_set"].values
-    top = branches["normal_force"].values[-1]
-    below = np.flatnonzero(forces <= top)
-    for name in names:
-        values[f"branch_{name}"][_LOAD] = loaded[name]
-        if not held.any():
-            values[f"branch_{name}"][_UNLOAD:, below] = loaded[name][below]
+    loaded = {f"branch_{name}": on_loading[name] for name in NAMES[1:]}
+    loaded["branch_mean_gap"] = states["mean_gap"].values
+    # All branches on loading's values; what has crushed gets its own below.
+    values = {name: np.tile(one, (branches.sizes["branch"], 1)) for name, one in loaded.items()}
+    held, top = branches["permanent_set"].values, branches["normal_force"].values[-1]
+    for one in values.values():
+        one[_UNLOAD:, forces > top] = np.nan
     if held.any():
-        pressed = composite - held
-        space = loading.half_space(composite.shape)
-        state = None
-        for load in below[::-1]:
+        pressed, space, state = composite - held, loading.half_space(composite.shape), None
+        for load in np.flatnonzero(forces <= top)[::-1]:
             state = solve_contact(
                 pressed, space, force=float(forces[load]), start=state, rtol=loading.solver.rtol
             )
@@ -283,15 +268,14 @@ def _of_branches(composite, loading, branches, states, place, on_loading):
 
 def _over_offsets(parts, closure, place, reported, on_loading):
     """Mean gaps and transmissivities over the offsets, under the reference load."""
-    names = ["mean_gap", *(f"transmissivity_{way}" for way in WAYS)]
-    values = {f"offset_{name}": np.full(closure.sizes["offset"], np.nan) for name in names}
+    values = {f"offset_{name}": np.full(closure.sizes["offset"], np.nan) for name in NAMES}
     offsets = closure["offset"].values
     for part in (part for part in parts if OFFSET_GAP in part):
         for gap, offset in zip(part[OFFSET_GAP].values, part["offset"].values, strict=True):
             number = int(np.argmin(np.abs(offsets - offset)))
             if offsets[number] == reported.offset:
-                found = {f"offset_{name}": on_loading[f"branch_{name}"] for name in names}
-                found = {name: of[_LOAD, reported.reference] for name, of in found.items()}
+                at = _LOAD, reported.reference
+                found = {f"offset_{name}": on_loading[f"branch_{name}"][at] for name in NAMES}
             else:
                 found = place.both("offset", gap.astype(float))
             for name, value in found.items():

@@ -6,7 +6,7 @@ from matplotlib.figure import Figure
 from xarray import DataTree
 
 from ...core.subject import Subject
-from ..kit.axes import offset_axis
+from ..kit.axes import label_short_span, offset_axis
 from ..kit.caption import caption
 from ..kit.drawing import WIDTH, Drawing, colour_of
 from ..kit.empty import say_empty
@@ -39,10 +39,13 @@ def draw(atlas: DataTree, name: str) -> Drawing:
         open_states = flow[variable].where(flow[variable] > 0).assign_attrs(flow[variable].attrs)
         shown = flow.assign({variable: open_states})
         a.curve(shown, "offset", variable, label=f"{way} the sliding", ls="-", **style)
-    b.curve(flow, "offset", "offset_mean_gap", label="mean gap", color=colour_of(2), marker="^")
+    b.curve(
+        flow, "offset", "offset_mean_gap", label="mean gap", color=colour_of(2), marker="^", ls="-"
+    )
     if not (flow["offset_transmissivity_along"] > 0).any():
         say_empty(a.axes, "no offset has a path of open gap from side to side")
     a.axes.set(yscale="log", ylabel="transmissivity $T$ (mm³)")
+    label_short_span(a.axes.yaxis)
     b.axes.set_ylabel(r"mean gap $\langle g\rangle$ (mm)")
     for panel in (a, b):
         offset_axis(panel.axes, flow["offset"].values)

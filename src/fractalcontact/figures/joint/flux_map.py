@@ -1,5 +1,7 @@
 """Contact map beside the map of the gap and that of the flow, under the reference load."""
 
+from typing import Any
+
 import numpy as np
 from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
@@ -32,18 +34,19 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     flow, contact = subject.states("flow"), subject.states("contact")
     reference, sides = subject.reported.reference, window_sides(subject["specimens"])
     high = min(max(sides[0] / sides[1], 0.4), 2.0)
-    figure = Figure(figsize=(WIDTH, 1.4 + 2.1 * high))
+    figure = Figure(figsize=(WIDTH, 1.3 + 2.1 * high))
+    axes, bars = figure.subplots(2, 3, height_ratios=[1, 0.04])
+    bars[0].remove()
     titles = ("contact", "gap", "flow along the sliding")
-    a, b, c = (Panel(*one) for one in zip(figure.subplots(1, 3), "abc", titles, strict=True))
+    a, b, c = (Panel(*one) for one in zip(axes, "abc", titles, strict=True))
     draw_domain(
         a.axes, contact_domain(subject, subject.reported.resolution, reference), sides, ticks=3
     )
     gap = contact["map_gap"].isel(normal_force=reference).values
     top = float(np.nanquantile(gap, 0.99)) or 1.0
     drawn = draw_map(b.axes, gap, sides, ticks=3, cmap="viridis", vmin=0, vmax=top)
-    figure.colorbar(
-        drawn, ax=b.axes, location="bottom", label="gap $g$ (mm)", shrink=0.9, extend="max"
-    )
+    below: dict[str, Any] = {"orientation": "horizontal"}
+    figure.colorbar(drawn, cax=bars[1], label="gap $g$ (mm)", extend="max", **below)
     flux = flow["flux_map_along"].values
     flows = bool((flux > 0).any())
     if flows:
@@ -56,8 +59,9 @@ def draw(atlas: DataTree, name: str) -> Drawing:
             norm=LogNorm(_LEAST, _MOST),
         )
         label = "flow per width over its mean (1)"
-        figure.colorbar(drawn, ax=c.axes, location="bottom", label=label, shrink=0.9, extend="both")
+        figure.colorbar(drawn, cax=bars[2], label=label, extend="both", **below)
     else:
+        bars[2].remove()
         say_empty(c.axes, str(flow["flow_reason_along"].values[reference]), ticks=False)
     for panel in (b, c):
         panel.axes.set_ylabel("")
@@ -71,7 +75,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
         "channels": float(at["channel_fraction_along"]),
         "narrowest": float(at["critical_gap_along"]),
         "slope": float(at["gap_slope"]),
-        "gradient": 1e3 * float(at["reynolds_gradient_along"]),
+        "gradient": 1e6 * float(at["reynolds_gradient_along"]),
         "reason": str(at["flow_reason_along"].values),
     }
     return Drawing(figure, table_of(c), caption(__name__, **words))

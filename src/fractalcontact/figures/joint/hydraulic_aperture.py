@@ -13,6 +13,7 @@ from ..kit.drawing import WIDTH, Drawing, colour_of
 from ..kit.empty import say_empty
 from ..kit.legends import entries, legends_below
 from ..kit.panel import Panel, table_of
+from ..kit.sizes import plain_decades
 from ..kit.titles import headline
 from ..kit.words import NOMINAL_PRESSURE, place
 
@@ -31,6 +32,7 @@ _LAWS: dict[str, tuple[str, dict[str, Any]]] = {
     "zimmerman_aperture": ("Zimmerman and Bodvarsson", {"color": colour_of(2), "ls": "--"}),
     "barton_aperture": ("Barton", {"color": colour_of(3), "ls": "-."}),
 }
+_BRANCHES = (("load", "loading", "-"), ("reload", "unloading and reloading", ":"))
 _NO_FLOW = "no load has a path of open gap from side to side"
 
 
@@ -57,12 +59,13 @@ def _draw_apertures(panel: Panel, states: xr.Dataset) -> None:
             "mean_gap",
             f"hydraulic_aperture_{way}",
             keep=kept if way == "along" else (),
-            label=f"cubic law, {way}",
+            label=f"cubic law, {way} ({states.attrs[f'flow_axis_{way}']})",
             ls="none",
             **style,
         )
     for law, (words, style) in _LAWS.items():
-        panel.curve(states, "mean_gap", law, label=words, marker="none", **style)
+        if states[law].notnull().any():
+            panel.curve(states, "mean_gap", law, label=words, marker="none", **style)
     gaps = states["mean_gap"].values
     gaps = gaps[gaps > 0]
     if gaps.size:
@@ -70,19 +73,22 @@ def _draw_apertures(panel: Panel, states: xr.Dataset) -> None:
         panel.axes.plot(ends, ends, color="0.6", lw=0.8, label="parallel plates")
     panel.axes.set(xscale="log", yscale="log", xlabel=r"mean gap $\langle g\rangle$ (mm)")
     panel.axes.set_ylabel("hydraulic aperture $h_h$ (mm)")
+    for axis in (panel.axes.xaxis, panel.axes.yaxis):
+        plain_decades(axis)
 
 
 def _draw_branches(panel: Panel, flow: xr.Dataset) -> None:
     for way, style in _WAYS.items():
-        branches = _positive(flow, f"branch_transmissivity_{way}")
-        for branch, words, line in (
-            ("load", "loading", "-"),
-            ("reload", "unloading and reloading", ":"),
-        ):
+        variable = f"branch_transmissivity_{way}"
+        branches = _positive(flow, variable)
+        load, reload = (branches[variable].sel(branch=one) for one in ("load", "reload"))
+        # Where nothing yields, there is one curve.
+        crushed = bool((reload.notnull() & (reload != load)).any())
+        for branch, words, line in _BRANCHES[: 1 + crushed]:
             panel.curve(
                 branches.sel(branch=branch),
                 "nominal_pressure",
-                f"branch_transmissivity_{way}",
+                variable,
                 keep=("branch",),
                 label=f"{words}, {way}",
                 ls=line,
@@ -91,6 +97,7 @@ def _draw_branches(panel: Panel, flow: xr.Dataset) -> None:
     if not (flow["transmissivity_along"] > 0).any():
         say_empty(panel.axes, _NO_FLOW)
     panel.axes.set(xscale="log", yscale="log", xlabel=f"{NOMINAL_PRESSURE} (MPa)")
+    plain_decades(panel.axes.xaxis)
     panel.axes.set_ylabel("transmissivity $T$ (mm³)")
 
 
@@ -102,18 +109,19 @@ def _positive(data: xr.Dataset, name: str) -> xr.Dataset:
 def _words(subject: Subject, states: xr.Dataset) -> dict[str, Any]:
     """Values of the caption."""
     at = states.isel(normal_force=subject.reported.reference)
-    ratio = float(at["hydraulic_ratio_along"])
+    flow, ratio = float(at["transmissivity_along"]), float(at["hydraulic_ratio_along"])
     reload = at["branch_transmissivity_along"].sel(branch="reload")
-    grid = at["transmissivity_grid_error_along"] / at["transmissivity_along"]
-    closing = at["transmissivity_closure_error_along"] / at["transmissivity_along"]
+    parts = {"grid": "grid_error", "closing": "separation_error"}
     return {
         "pressure": float(at["nominal_pressure"]),
-        "transmissivity": float(at["transmissivity_along"]),
+        "transmissivity": flow,
         "ratio": ratio,
-        "reload": float(reload / at["transmissivity_along"]),
+        "flows": flow > 0,
+        "reload": float(reload / flow) if flow > 0 else np.nan,
         "closed": float(states["first_closed_pressure_along"]),
         "opened": float(states["last_open_pressure_along"]),
-        "grid": float(grid),
-        "closing": float(closing),
-        "flows": bool(np.isfinite(ratio) and ratio > 0),
+        **{
+            name: float(at[f"transmissivity_{part}_along"]) / flow if flow > 0 else np.nan
+            for name, part in parts.items()
+        },
     }
