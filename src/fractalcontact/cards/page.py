@@ -8,7 +8,7 @@ from ..pages.words import MISSING, measured, percent, short, with_unit
 
 #: Sections whose curves over pressure share a table.
 _AGAINST_PRESSURE = ("contact", "aperture", "strength")
-#: Heads of columns and units of that table.
+#: Heads of its columns, and signs of units there.
 _HEADS = {
     "seated_closure": "closure from the seat",
     "interface_closure": "closure from first touch",
@@ -16,9 +16,9 @@ _HEADS = {
     "mean_gap": "mean gap",
     "hydraulic_aperture": "hydraulic aperture",
     "peak_dilatancy_angle": "largest dilatancy angle",
-    "peak_strength": "peak tau, dilatancy",
-    "barton_strength": "tau, Barton",
-    "barton_scaled_strength": "tau, Barton-Bandis",
+    "peak_strength": "peak τ by dilatancy",
+    "barton_strength": "τ by Barton",
+    "barton_scaled_strength": "τ by Barton and Bandis",
 }
 _UNITS = {"1": "%", "degree": "°"}
 
