@@ -111,15 +111,21 @@ def _offset(card):
 
 def _nearest(curve):
     """Row of a curve whose pressure is nearest to the first one, of those with a number."""
-    known = [row for row in curve.get("values", ()) if "value" in row]
+    known = [row for row in _rows(curve) if "value" in row]
     return min(
         known, key=lambda row: abs(math.log(row["at"]["pressure"] / _PRESSURE)), default=None
     )
 
 
+def _rows(curve):
+    """Rows of a curve, each with what its interval holds."""
+    interval = curve.get("interval", "")
+    return [row | {"interval": interval} for row in curve.get("values", ())]
+
+
 def _at(curve, pressure):
     """Row of a curve at a pressure; why there is none."""
-    rows = [row for row in curve.get("values", ()) if row["at"]["pressure"] == pressure]
+    rows = [row for row in _rows(curve) if row["at"]["pressure"] == pressure]
     return rows[0] if rows else {"missing": curve.get("missing", "not solved there")}
 
 
@@ -140,5 +146,7 @@ def _fact(title, row, unit, beside=""):
     size, shown = (100.0, " %") if unit == "%" else (1.0, f" {unit}".removesuffix(" 1"))
     low, high = ("" if row[end] is None else measured(size * row[end]) for end in ("low", "high"))
     words = f"{short(size * row['value'])}{shown}"
-    ends = f"[{low}, {high}]" if low != high else ""
+    # An interval of the solver alone is far narrower than what is not known.
+    alone = " solver alone" if row.get("interval") == "solver" else ""
+    ends = f"[{low}, {high}]{alone}" if low != high else ""
     return Fact(title, words, "; ".join(filter(None, (ends, beside))))
