@@ -1,6 +1,7 @@
 """Joint roughness coefficient: Z2 of the faces and the JRC by Tse and Cruden's relation."""
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -22,7 +23,7 @@ JRC_SAMPLINGS = {"scan": None, "0.508 mm": 0.508, "1.27 mm": JRC_STEP}
 #: one number without step and fit means nothing. Tse & Cruden (1979), their step as enlarged; Yang,
 #: Lo & Di (2001) Rock Mech. Rock Eng. 34, 243; Yu & Vayssade (1991) Int. J. Rock Mech. 28, 333;
 #: Tatone & Grasselli (2010) Rock Mech. Rock Eng. 43, 451.
-FITS: dict[str, tuple[float, Callable[[float], float]]] = {
+FITS: dict[str, tuple[float, Callable[[Any], Any]]] = {
     "Tse and Cruden 1979, 0.5 mm": (0.5, joint_roughness),
     "Yang et al. 2001, 0.5 mm": (0.5, lambda z2: 32.69 + 32.98 * np.log10(z2)),
     "Yu and Vayssade 1991, 0.25 mm": (0.25, lambda z2: 60.32 * z2 - 4.51),
@@ -77,9 +78,21 @@ def profile_roughness(specimen: xr.Dataset, direction: str) -> xr.Dataset:
     within.
     """
     axis = sliding_axis(direction)
-    spacing = direction_spacing(specimen, direction)
     window = window_slices(specimen)
     levelled = [np.moveaxis(without_mean_plane(z[window]), axis, 0) for z in faces(specimen)]
+    return roughness_of_profiles(levelled, direction_spacing(specimen, direction))
+
+
+def roughness_of_profiles(levelled: list[np.ndarray], spacing: float) -> xr.Dataset:
+    """What :func:`profile_roughness` gives, of levelled profiles along the first axis of arrays.
+
+    Parameters
+    ----------
+    levelled : list of (n, m) ndarray
+        Heights, mm.
+    spacing : float
+        Along the first axis, mm.
+    """
     cells = len(levelled[0])
     lags = [1 if step is None else max(1, round(step / spacing)) for step in JRC_SAMPLINGS.values()]
     z2 = np.array([_rms_slope(levelled, lag, spacing) for lag in lags])
