@@ -7,6 +7,7 @@ from html.parser import HTMLParser
 import jsonschema
 import numpy as np
 import pytest
+from code_blocks import run_code
 from page_study import HOSTILE
 
 from fractalcontact.cards.entries import entries
@@ -197,6 +198,12 @@ def test_a_mean_gap_that_the_atlas_has_stands_on_the_card(folder, cards, subject
     assert "missing" in cards["pair"]["entries"]["mean_gap"]
     found = read_entry(entry, other, "elastic")
     assert {row["value"] for row in found["values"] if "value" in row} == {0.25}
+
+
+def test_the_documented_lines_read_a_card(tmp_path, cards, monkeypatch):
+    write_card(cards["pair"] | {"name": "small_twin"}, tmp_path / "results/smoke")
+    monkeypatch.chdir(tmp_path)
+    assert run_code("docs/card.md")["card"]["entries"] == cards["pair"]["entries"]
 
 
 def test_a_card_is_written_whole(tmp_path, cards):

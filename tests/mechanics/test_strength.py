@@ -12,7 +12,7 @@ from fractalcontact.core.settings import Friction, Solver
 from fractalcontact.core.window import nominal_area, window_sides
 from fractalcontact.mechanics.closure import closure_curves, elastic_dilatancy
 from fractalcontact.mechanics.joint import describe_joint
-from fractalcontact.mechanics.jrc import profile_roughness
+from fractalcontact.mechanics.jrc import FITS, profile_roughness
 from fractalcontact.mechanics.loading import JointLoading
 from fractalcontact.mechanics.states import combine
 from fractalcontact.mechanics.strength import (
@@ -152,6 +152,30 @@ def test_a_saw_climbs_its_own_slope_and_takes_its_own_roughness():
     assert float(z2) == pytest.approx(slope, rel=0.02)
     jrc = found["jrc"].sel(contact_direction="W", sampling="scan")
     assert float(jrc) == pytest.approx(32.2 + 32.47 * np.log10(float(z2)), rel=1e-12)
+
+
+def test_fits_to_the_same_profiles_agree_on_profiles_of_that_roughness():
+    """Seven regressions over Barton's ten profiles, whose Z2 lie between 0.1 and 0.45."""
+    for z2 in (0.15, 0.25, 0.35):
+        for step in (0.5, 1.0):
+            found = [fit(z2) for of, fit in FITS.values() if of == step]
+            assert np.ptp(found) < 2.0
+    assert FITS["Tatone and Grasselli 2010, 0.5 mm"][1](0.25) == pytest.approx(12.2, abs=0.01)
+
+
+def test_each_fit_of_the_roughness_takes_the_slope_over_its_own_step():
+    found = profile_roughness(
+        make_specimen(scan(saw(64, 0.3)), window=3.2, reach=0.7, name="saw"), "E"
+    )
+    for fit, (step, _) in FITS.items():
+        one = found.sel(fit=fit)
+        cells = round(step / 0.1)
+        assert float(one["fit_step"]) == pytest.approx(0.1 * max(cells, 1))
+        near = abs(max(cells, 1) * 0.1 / step - 1) <= 0.25
+        assert np.isfinite(one["jrc_by_fit"]) == near
+    half = found.sel(fit="Tse and Cruden 1979, 0.5 mm")
+    same = found.sel(sampling="0.508 mm")
+    assert float(half["jrc_by_fit"]) == pytest.approx(float(same["jrc"]))
 
 
 def test_no_slope_along_the_ridges_and_hence_no_roughness_there():

@@ -25,6 +25,7 @@ from fractalcontact.figures.draw import drawer_of
 from fractalcontact.figures.kit.drawing import print_style
 from fractalcontact.pages.common_loads import CommonLoad, common_loads, main_load
 from fractalcontact.pages.files import FILES
+from fractalcontact.pages.first_screen import block_of, blocks_of
 from fractalcontact.pages.lights import lights_of, validity_at
 from fractalcontact.pages.material import Material, opposite_words
 from fractalcontact.pages.matrix import (
@@ -38,7 +39,7 @@ from fractalcontact.pages.opening import opening_of
 from fractalcontact.pages.result_page import Place, write_result_page
 from fractalcontact.pages.spacing import Doubled, doubled_spacing, spacing_words
 from fractalcontact.pages.summary import summarised, why
-from fractalcontact.pages.words import with_unit
+from fractalcontact.pages.words import short, with_unit
 from fractalcontact.roughness.quality_words import overlap_words
 from fractalcontact.statements.comparison import compared_pressures
 from fractalcontact.statements.judge import rule_of
@@ -469,13 +470,42 @@ def test_the_page_opens_with_numbers_and_verdicts(results):
     opening = re.search(r'<div class="opening">(.*?)</div>', html, re.DOTALL)[1]
     sentences = re.findall("<p>(.*?)</p>", opening)
     assert 2 <= len(sentences) <= 5
-    assert html.index('opening">') < html.index('class="links"')
+    # Real joints come first; what the paper states stands behind its own heading.
+    assert html.index('id="joint-pair"') < html.index('id="statements"') < html.index('opening">')
     sure = at_maps[at_maps["suspect_load_share"] <= 0.5]
     column = sure["interface_closure_mm"]
     for closure in (column.min(), column.max()):
         assert with_unit(closure, "mm") in opening
     least = with_unit(at_maps["real_pressure_MPa"].min(), "MPa").split()[0]
     assert f"at a real mean pressure of {least}" in opening
+
+
+def test_the_first_screen_says_of_each_joint_what_its_card_says(results):
+    html = (results / "index.html").read_text(encoding="utf-8")
+    for name in NAMES:
+        card = json.loads((results / f"cards/{name}.json").read_text())
+        block = block_of(card)
+        shown = re.search(rf'id="joint-{re.escape(name)}">(.*?)</article>', html, re.DOTALL)[1]
+        assert f"Trust: {card['trust']['word']}." in shown
+        for fact in block.facts:
+            assert f"<dt>{fact.title}</dt><dd><strong>{fact.words}</strong>" in shown
+            assert fact.words != "–" or fact.note
+        for ending in ("html", "yaml", "json"):
+            assert f'href="cards/{name}.{ending}"' in shown
+        stiffness = card["entries"]["tangent_stiffness"]["values"][1]
+        words = block.facts[0].words
+        assert words == ("–" if "missing" in stiffness else f"{short(stiffness['value'])} MPa/mm")
+    assert "as scanned" in html
+
+
+def test_synthetic_joints_stand_behind_scanned_ones_under_their_own_heading(results, tmp_path):
+    (tmp_path / "cards").mkdir()
+    for name in NAMES:
+        card = json.loads((results / f"cards/{name}.json").read_text())
+        card["synthetic"] = name == "flat.1"
+        (tmp_path / f"cards/{name}.json").write_text(json.dumps(card))
+    assert [one.name for one in blocks_of(NAMES, tmp_path)] == ["pair", "flat.1"]
+    assert blocks_of(["none"], tmp_path) == []
 
 
 @pytest.mark.parametrize(

@@ -19,6 +19,10 @@ NOT_RUN = {
     ("README.md", "make            # environment"): INSTALLS,
     ("README.md", "label: granite"): "a sidecar: read in tests/test_documents.py",
     ("docs/solver.md", ".venv/bin/python benchmarks/beside_peers.py"): f"{HOURS}, beside others",
+    (
+        "docs/card.md",
+        "python -m fractalcontact.commands.export_constants",
+    ): "run with a card of a test in tests/cards/test_exports.py",
     ("docs/cluster.md", "make slurm"): CLUSTER,
     ("docs/cluster.md", ".venv/bin/python workflow/run.py config/mine.yaml"): CLUSTER,
     ("docs/cluster.md", "cp -r workflow/profiles/slurm"): CLUSTER,

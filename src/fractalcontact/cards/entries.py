@@ -22,6 +22,7 @@ _BESIDE = {
     "interval": ("offset", "interval", "mm"),
     "contact_direction": ("direction", "contact_direction", "1"),
     "sampling": ("sampling", "sampling", "1"),
+    "fit": ("fit", "fit", "1"),
 }
 #: Significant digits of the numbers of a card.
 _DIGITS = 6
@@ -102,7 +103,7 @@ def read_entry(entry: Entry, subject: Subject, model: str) -> dict[str, Any]:
         return found | {"missing": entry.missing}
     if len(rows) == 1 and not rows[0][0]:
         return found | rows[0][1]
-    units = {name: unit for name, _, unit in _BESIDE.values()} | {"step": "mm"}
+    units = {name: unit for name, _, unit in _BESIDE.values()} | {"step": "mm", "fit_step": "mm"}
     at = {name: units[name] for name in rows[0][0]}
     return found | {"at_units": at, "values": [{"at": at} | number for at, number in rows]}
 

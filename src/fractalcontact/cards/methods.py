@@ -61,13 +61,15 @@ def _contact(card):
 
 
 def _laws(card):
-    found = card["entries"]["k_ni"].get("range")
-    if found is None or None in (found["low"], found["high"]):
-        return "No closure law was fitted: too few resolved states."
+    laws = {"hyperbola": card["entries"]["k_ni"], "logarithm": card["entries"]["chi"]}
+    fitted = [name for name, one in laws.items() if "value" in one]
+    if not fitted:
+        return f"No closure law was fitted: {laws['hyperbola']['missing']}."
+    found = laws[fitted[0]]["range"]
     return (
-        f"Hyperbola and logarithm (Bandis et al. 1983) were fitted by least squares to the closure "
-        f"from a seat of {with_unit(found['low'], 'MPa')} to {with_unit(found['high'], 'MPa')}; "
-        "intervals are at 95 %."
+        f"A {' and a '.join(fitted)} (Bandis et al. 1983) {'was' if len(fitted) == 1 else 'were'} "
+        f"fitted by least squares to the closure from a seat of {with_unit(found['low'], 'MPa')} "
+        f"to {with_unit(found['high'], 'MPa')}; intervals are at 95 %."
     )
 
 

@@ -8,7 +8,7 @@ from ..pages.words import MISSING, measured, percent, short, with_unit
 
 #: Sections whose curves over pressure share a table.
 _AGAINST_PRESSURE = ("contact", "aperture", "strength")
-#: Heads of columns and units of that table.
+#: Heads of its columns, and signs of units there.
 _HEADS = {
     "seated_closure": "closure from the seat",
     "interface_closure": "closure from first touch",
@@ -16,9 +16,9 @@ _HEADS = {
     "mean_gap": "mean gap",
     "hydraulic_aperture": "hydraulic aperture",
     "peak_dilatancy_angle": "largest dilatancy angle",
-    "peak_strength": "peak tau, dilatancy",
-    "barton_strength": "tau, Barton",
-    "barton_scaled_strength": "tau, Barton-Bandis",
+    "peak_strength": "peak τ by dilatancy",
+    "barton_strength": "τ by Barton",
+    "barton_scaled_strength": "τ by Barton and Bandis",
 }
 _UNITS = {"1": "%", "degree": "°"}
 
@@ -47,7 +47,7 @@ def page_of(card: Mapping[str, Any]) -> dict[str, Any]:
             for key, one in curves.items()
         ],
         "rows": over_pressure(list(curves.values())),
-        "jrc": jrc_table(entries["jrc"]),
+        "jrc": jrc_table(entries["jrc"], entries["jrc_by_fit"]),
         # An elastic joint has no hardness to state.
         "missing": missing_of({key: one for key, one in printed.items() if key != "hardness"}),
         "errors": errors_of(card),
@@ -79,13 +79,16 @@ def at_pressure(curve: Mapping[str, Any], pressure: float) -> dict[str, Any]:
     return dict(rows[0]) if rows else {"missing": curve.get("missing", "not solved there")}
 
 
-def jrc_table(entry: Mapping[str, Any]) -> dict[str, Any]:
-    """JRC by step (rows) and direction (columns); steps of directions may differ by a cell."""
+def jrc_table(*entries: Mapping[str, Any]) -> dict[str, Any]:
+    """JRC by fit and step (rows) and direction (columns); rows without a number are left out."""
     rows: dict[str, dict[str, Any]] = {}
-    for row in entry.get("values", ()):
-        rows.setdefault(row["at"]["sampling"], {})[row["at"]["direction"]] = row
+    for row in (row for one in entries for row in one.get("values", ()) if "value" in row):
+        at = row["at"]
+        fit = at.get("fit", "Tse and Cruden 1979").partition(", ")[0]
+        head = f"{fit}, step {short(at.get('step', at.get('fit_step')))} mm"
+        rows.setdefault(head, {})[at["direction"]] = row
     directions = sorted({name for row in rows.values() for name in row})
-    return {"directions": directions, "rows": rows}
+    return {"directions": directions, "rows": dict(sorted(rows.items()))}
 
 
 def missing_of(entries: Mapping[str, Any]) -> dict[str, list[str]]:

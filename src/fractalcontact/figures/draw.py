@@ -7,9 +7,10 @@ a study the names of all its specimens; a :class:`figures.kit.drawing.Drawing` o
 
 import importlib
 import traceback
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 from xarray import DataTree
 
@@ -75,7 +76,12 @@ def drawer_of(name: str) -> Callable[..., Drawing]:
     return entitled
 
 
-def draw_figure(atlas: DataTree, name: str, subject: str | list[str]) -> Drawing:
+def draw_figure(
+    atlas: DataTree,
+    name: str,
+    subject: str | list[str],
+    style: Mapping[str, Any] | None = None,
+) -> Drawing:
     """Drawing of a figure in the style of print, laid out: ``.figure.savefig`` gives the picture.
 
     Parameters
@@ -86,6 +92,8 @@ def draw_figure(atlas: DataTree, name: str, subject: str | list[str]) -> Drawing
         Of the figure.
     subject : str or list of str
         The specimen; of a figure of a study the names of all its specimens.
+    style : mapping of str to value, optional
+        Settings of matplotlib over the style of print, such as ``{"font.family": "serif"}``.
 
     Returns
     -------
@@ -97,10 +105,10 @@ def draw_figure(atlas: DataTree, name: str, subject: str | list[str]) -> Drawing
     KeyError
         If no figure has this name.
     """
-    with print_style():
+    with print_style(style):
         drawing = drawer_of(name)(atlas, subject)
         lay_out(drawing.figure)
-    keep_style(drawing.figure)
+    keep_style(drawing.figure, style)
     return drawing
 
 

@@ -1,5 +1,8 @@
 """Joint roughness coefficient: Z2 of the faces and the JRC by Tse and Cruden's relation."""
 
+from collections.abc import Callable
+from typing import Any
+
 import numpy as np
 import xarray as xr
 
@@ -16,6 +19,21 @@ JRC_STEP = 1.27
 #: Cruden (1979) state 1.27 mm. Their profiles of 100 mm had 200 such steps, so that they must have
 #: been enlarged 2.5 times: a step of 0.508 mm on the rock, kept beside it.
 JRC_SAMPLINGS = {"scan": None, "0.508 mm": 0.508, "1.27 mm": JRC_STEP}
+#: Fits of the JRC to Z2 of Barton's ten profiles, each with the step they were digitised with, mm:
+#: one number without step and fit means nothing. Tse & Cruden (1979), their step as enlarged; Yang,
+#: Lo & Di (2001) Rock Mech. Rock Eng. 34, 243; Yu & Vayssade (1991) Int. J. Rock Mech. 28, 333;
+#: Tatone & Grasselli (2010) Rock Mech. Rock Eng. 43, 451.
+FITS: dict[str, tuple[float, Callable[[Any], Any]]] = {
+    "Tse and Cruden 1979, 0.5 mm": (0.5, joint_roughness),
+    "Yang et al. 2001, 0.5 mm": (0.5, lambda z2: 32.69 + 32.98 * np.log10(z2)),
+    "Yu and Vayssade 1991, 0.25 mm": (0.25, lambda z2: 60.32 * z2 - 4.51),
+    "Yu and Vayssade 1991, 0.5 mm": (0.5, lambda z2: 61.79 * z2 - 3.47),
+    "Yu and Vayssade 1991, 1 mm": (1.0, lambda z2: 64.22 * z2 - 2.31),
+    "Tatone and Grasselli 2010, 0.5 mm": (0.5, lambda z2: 51.85 * z2**0.60 - 10.37),
+    "Tatone and Grasselli 2010, 1 mm": (1.0, lambda z2: 55.03 * z2**0.74 - 6.10),
+}
+#: A step of whole cells that differs by more than this part from a fit's is not that fit's.
+_NEAR = 0.25
 #: A window with fewer steps than this along it is called small for its sampling.
 FEWEST_STEPS = 10
 
@@ -28,6 +46,8 @@ _TABLE = {
     "step": ("sampling", "mm", "step of Z2, whole cells"),
     "z2": ("sampling", "1", "rms slope Z2 of profiles along the sliding"),
     "jrc": ("sampling", "1", "JRC = 32.2 + 32.47 log10 Z2"),
+    "fit_step": ("fit", "mm", "step of Z2 of each published fit, whole cells"),
+    "jrc_by_fit": ("fit", "1", "JRC by each published fit; none where no step is near the fit's"),
     "jrc_used": ((), "1", f"JRC at {JRC_SAMPLING}, kept within {_range_words()}"),
     "jrc_note": ((), "1", "remarks on the JRC used"),
 }
@@ -46,8 +66,9 @@ def profile_roughness(specimen: xr.Dataset, direction: str) -> xr.Dataset:
     xr.Dataset
         Over `sampling` (:data:`JRC_SAMPLINGS`): the `step` in whole cells (mm), `z2` (rms slope
         over that step, with every place of the first sample; both faces if two were scanned) and
-        `jrc` as Tse & Cruden's relation gives it. `jrc_used`, the one of :data:`JRC_SAMPLING` kept
-        within :data:`JRC_RANGE`, and `jrc_note`, remarks on it.
+        `jrc` as Tse & Cruden's relation gives it. Over `fit` (:data:`FITS`) the `jrc_by_fit`, each
+        at its `fit_step`. `jrc_used`, the one of :data:`JRC_SAMPLING` kept within
+        :data:`JRC_RANGE`, and `jrc_note`, remarks on it.
 
     Notes
     -----
@@ -57,13 +78,26 @@ def profile_roughness(specimen: xr.Dataset, direction: str) -> xr.Dataset:
     within.
     """
     axis = sliding_axis(direction)
-    spacing = direction_spacing(specimen, direction)
     window = window_slices(specimen)
     levelled = [np.moveaxis(without_mean_plane(z[window]), axis, 0) for z in faces(specimen)]
+    return roughness_of_profiles(levelled, direction_spacing(specimen, direction))
+
+
+def roughness_of_profiles(levelled: list[np.ndarray], spacing: float) -> xr.Dataset:
+    """What :func:`profile_roughness` gives, of levelled profiles along the first axis of arrays.
+
+    Parameters
+    ----------
+    levelled : list of (n, m) ndarray
+        Heights, mm.
+    spacing : float
+        Along the first axis, mm.
+    """
     cells = len(levelled[0])
     lags = [1 if step is None else max(1, round(step / spacing)) for step in JRC_SAMPLINGS.values()]
     z2 = np.array([_rms_slope(levelled, lag, spacing) for lag in lags])
     jrc = np.array([joint_roughness(value) if value > 0 else np.nan for value in z2])
+    steps, by_fit = _by_fits(levelled, spacing)
     chosen = list(JRC_SAMPLINGS).index(JRC_SAMPLING)
     note = _sampling_note(lags[chosen] * spacing, cells * spacing)
     if not JRC_RANGE[0] <= jrc[chosen] <= JRC_RANGE[1]:
@@ -72,10 +106,14 @@ def profile_roughness(specimen: xr.Dataset, direction: str) -> xr.Dataset:
         "step": spacing * np.array(lags),
         "z2": z2,
         "jrc": jrc,
+        "fit_step": steps,
+        "jrc_by_fit": by_fit,
         "jrc_used": np.clip(jrc[chosen], *JRC_RANGE),
         "jrc_note": "; ".join(note),
     }
-    return labelled_dataset(_TABLE, values, coords={"sampling": list(JRC_SAMPLINGS)})
+    return labelled_dataset(
+        _TABLE, values, coords={"sampling": list(JRC_SAMPLINGS), "fit": list(FITS)}
+    )
 
 
 def _rms_slope(profiles: list[np.ndarray], lag: int, spacing: float) -> float:
@@ -84,6 +122,17 @@ def _rms_slope(profiles: list[np.ndarray], lag: int, spacing: float) -> float:
         return np.nan
     squares = [np.mean((z[lag:] - z[:-lag]) ** 2) for z in profiles]
     return np.sqrt(np.mean(squares)) / (lag * spacing)
+
+
+def _by_fits(profiles: list[np.ndarray], spacing: float) -> tuple[np.ndarray, np.ndarray]:
+    """Step, mm, and JRC of each of :data:`FITS`; no JRC where whole cells come near no step."""
+    lags = [max(1, round(step / spacing)) for step, _ in FITS.values()]
+    found = np.full(len(FITS), np.nan)
+    for i, (lag, (step, fit)) in enumerate(zip(lags, FITS.values(), strict=True)):
+        z2 = _rms_slope(profiles, lag, spacing)
+        if abs(lag * spacing / step - 1) <= _NEAR and z2 > 0:
+            found[i] = fit(z2)
+    return spacing * np.array(lags), found
 
 
 def _sampling_note(step: float, side: float) -> list[str]:

@@ -147,7 +147,8 @@ def redrawn(name: str, specimen: str, atlas: str, groups: Collection[str]) -> st
             f"atlas = xr.open_datatree({atlas!r})",
             *read,
             "",
-            f"drawing = draw_figure(atlas, {name!r}, {subject})",
+            "own = {}  # or your font and size: {'font.family': 'serif', 'font.size': 9}",
+            f"drawing = draw_figure(atlas, {name!r}, {subject}, style=own)",
             f"drawing.figure.savefig({name + '.pdf'!r})",
             "drawing.data  # the numbers, a table",
         ]

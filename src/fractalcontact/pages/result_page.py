@@ -36,6 +36,7 @@ from .cards import SECTIONS, cards_of, section_of
 from .common_loads import common_loads, main_load
 from .curves import curves_table
 from .files import CONFIGURATION, CURVES, EXPLORER, INDEX, SPECIMEN_PAGE, SUMMARY, TABLES
+from .first_screen import blocks_of
 from .material import opposite_words
 from .matrix import Row, counted, matrix_of, of_study
 from .opening import opening_of
@@ -123,8 +124,10 @@ def write_result_page(place: Place) -> list[str]:
     head = _head(place, atlas)
     groups = group_names(place.atlas)
     rows = matrix_of(atlas, [one.name for one in subjects])
+    blocks = {one.name: one for one in blocks_of([one.name for one in subjects], place.folder)}
     for one, specimen in zip(subjects, specimens, strict=True):
         values = _specimen_values(place, one, specimen, rows, groups)
+        values["block"] = blocks.get(one.name)
         path = place.folder / SPECIMEN_PAGE.format(specimen=one.name)
         write_page(path, "specimen.html", head | values)
     reliefs = {one.name: relief_thumbnail(one["specimens"]) for one in subjects}
@@ -133,6 +136,7 @@ def write_result_page(place: Place) -> list[str]:
         "reliefs": reliefs,
         "loads": loads,
         "first_load": first,
+        "blocks": list(blocks.values()),
         "opening": opening_of(specimens, first, rows),
         "over_spacing": spacing_words([one.doubled for one in specimens]),
     }

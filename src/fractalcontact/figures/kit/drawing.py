@@ -2,7 +2,7 @@
 
 import contextlib
 import gc
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -79,18 +79,18 @@ class Drawing:
 
 
 @contextlib.contextmanager
-def print_style() -> Iterator[None]:
-    """Style of every figure, whatever a user has set for his own."""
-    with matplotlib.style.context(["default", _STYLE]):
+def print_style(own: Mapping[str, Any] | None = None) -> Iterator[None]:
+    """Style of every figure, whatever a user has set, but for settings that he gives here."""
+    with matplotlib.style.context(["default", _STYLE, dict(own or {})]):
         yield
 
 
-def keep_style(figure: Figure) -> None:
+def keep_style(figure: Figure, own: Mapping[str, Any] | None = None) -> None:
     """Draw a figure in the style of print wherever that is done: some settings count only then."""
     draw = figure.draw
 
     def in_style(renderer: RendererBase) -> None:
-        with print_style():
+        with print_style(own):
             draw(renderer)
 
     vars(figure)["draw"] = in_style

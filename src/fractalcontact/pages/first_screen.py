@@ -1,0 +1,152 @@
+"""First screen of a result page: a block a joint with what its card says, in five numbers."""
+
+import json
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from ..core.limits import JRC_SAMPLING
+from .files import CARD
+from .words import measured, short, with_unit
+
+#: Nominal pressure that the first numbers are of, MPa; of what is solved under loads, the nearest.
+_PRESSURE = 5.0
+
+
+class Fact(NamedTuple):
+    """A number of a block: what it is, in words, and its interval or why there is none."""
+
+    title: str
+    words: str
+    note: str
+
+
+@dataclass(frozen=True)
+class Block:
+    """What the first screen says of one joint.
+
+    Attributes
+    ----------
+    name, label : str
+    state : str
+        Offset of what is quoted, and what the contact was solved as.
+    facts : list of Fact
+    trust : mapping
+        ``word``, ``reason`` and ``help``, of the card.
+    synthetic : bool
+        Made by the study, and no scan.
+    methods : str
+        Paragraph on how the numbers were found, of the card.
+    references : list of str
+        What it cites.
+    """
+
+    name: str
+    label: str
+    state: str
+    facts: list[Fact]
+    trust: Mapping[str, str]
+    synthetic: bool
+    methods: str
+    references: list[str]
+
+
+def blocks_of(names: Sequence[str], folder: Path) -> list[Block]:
+    """Blocks of the specimens whose card is there, those of scans first.
+
+    Parameters
+    ----------
+    names : sequence of str
+    folder : pathlib.Path
+        Of the results.
+    """
+    paths = [folder / CARD.format(specimen=name, ending="json") for name in names]
+    cards = [json.loads(path.read_text(encoding="utf-8")) for path in paths if path.is_file()]
+    return sorted((block_of(card) for card in cards), key=lambda one: one.synthetic)
+
+
+def block_of(card: Mapping[str, Any]) -> Block:
+    """Block of one card."""
+    entries = card["entries"]
+    closure = entries["seated_closure"]
+    if not (near := _nearest(closure)) or not near["value"]:
+        closure = entries["interface_closure"]
+        near = _nearest(closure)
+    pressure = near["at"]["pressure"] if near else _PRESSURE
+    at = f"at {short(pressure)} MPa"
+    stiffness = _at(entries["tangent_stiffness"], _PRESSURE)
+    strength, barton = (_at(entries[k], pressure) for k in ("peak_strength", "barton_strength"))
+    facts = [
+        _fact(f"normal stiffness at {short(_PRESSURE)} MPa", stiffness, "MPa/mm"),
+        _fact(f"closure {at}", near or {"missing": "no load was solved"}, "mm"),
+        _fact(f"mean gap {at}", _at(entries["mean_gap"], pressure), "mm"),
+        _fact(f"contact {at}", _at(entries["contact_fraction"], pressure), "%"),
+    ]
+    if card["direction"] != "none":
+        beside = f"Barton {with_unit(barton['value'], 'MPa')}" if "value" in barton else ""
+        facts.append(_fact("JRC", *_jrc(card)))
+        facts.append(_fact(f"peak shear strength {at}", strength, "MPa", beside))
+    return Block(
+        name=card["name"],
+        label=card["label"],
+        state=f"{_offset(card)}; contact {card['model']}",
+        facts=facts,
+        trust=card["trust"],
+        synthetic=card["synthetic"],
+        methods=card["methods"],
+        references=card["references"],
+    )
+
+
+def _offset(card):
+    offset = card["geometry"]["offset"]["value"]
+    if card["direction"] == "none":
+        return "against a rigid plane"
+    if offset:
+        return f"slid by {with_unit(offset, 'mm')} towards {card['direction']}"
+    return "in the mated position" if card["faces"].startswith("one") else "as scanned"
+
+
+def _nearest(curve):
+    """Row of a curve whose pressure is nearest to the first one, of those with a number."""
+    known = [row for row in _rows(curve) if "value" in row]
+    return min(
+        known, key=lambda row: abs(math.log(row["at"]["pressure"] / _PRESSURE)), default=None
+    )
+
+
+def _rows(curve):
+    """Rows of a curve, each with what its interval holds."""
+    interval = curve.get("interval", "")
+    return [row | {"interval": interval} for row in curve.get("values", ())]
+
+
+def _at(curve, pressure):
+    """Row of a curve at a pressure; why there is none."""
+    rows = [row for row in _rows(curve) if row["at"]["pressure"] == pressure]
+    return rows[0] if rows else {"missing": curve.get("missing", "not solved there")}
+
+
+def _jrc(card):
+    """Row of the JRC at the step of its law, in the reported direction, and its step in words."""
+    for row in card["entries"]["jrc"].get("values", ()):
+        at = row["at"]
+        if (at["sampling"], at["direction"]) == (JRC_SAMPLING, card["direction"]):
+            return row, "1", f"step {with_unit(at['step'], 'mm')}"
+    return {"missing": "no profile is long enough"}, "1", ""
+
+
+def _fact(title, row, unit, beside=""):
+    """A number in words, with its interval or the reason why there is none, and what is beside."""
+    if "missing" in row:
+        return Fact(title, "–", "; ".join(filter(None, (row["missing"], beside))))
+    # One unit for a number and its interval, the same in all blocks.
+    size, shown = (100.0, " %") if unit == "%" else (1.0, f" {unit}".removesuffix(" 1"))
+    low, high = ("" if row[end] is None else measured(size * row[end]) for end in ("low", "high"))
+    words = f"{short(size * row['value'])}{shown}"
+    # An interval of the solver alone is far narrower than what is not known.
+    alone = " solver alone" if row.get("interval") == "solver" else ""
+    ends = f"[{low}, {high}]{alone}" if low != high else ""
+    return Fact(title, words, "; ".join(filter(None, (ends, beside))))
