@@ -27,9 +27,7 @@ rule cards:
     input:
         rules.atlas.output[0],
     output:
-        expand(
-            f"{RESULTS}/{page_files.CARD}", specimen=SPECIMENS, ending=page_files.CARD_ENDINGS
-        ),
+        expand(f"{RESULTS}/{page_files.CARD}", specimen=SPECIMENS, ending=page_files.CARD_ENDINGS),
     log:
         f"{RESULTS}/logs/cards.log",
     benchmark:
