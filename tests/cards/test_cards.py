@@ -7,6 +7,7 @@ from html.parser import HTMLParser
 import jsonschema
 import numpy as np
 import pytest
+import xarray as xr
 from code_blocks import run_code
 from page_study import HOSTILE
 
@@ -194,10 +195,19 @@ def test_a_mean_gap_that_the_atlas_has_stands_on_the_card(folder, cards, subject
     other = Subject(
         dict(subject.stages) | {"closure": closure.assign(mean_gap=gap)}, subject.settings, "pair"
     )
-    entry = next(one for one in entries() if one.key == "mean_gap")
-    assert "missing" in cards["pair"]["entries"]["mean_gap"]
-    found = read_entry(entry, other, "elastic")
-    assert {row["value"] for row in found["values"] if "value" in row} == {0.25}
+    state = gap.isel(offset=0, resolution=0, drop=True).rename(direction="contact_direction")
+    flow = xr.Dataset(
+        {
+            "hydraulic_aperture_along": state,
+            "branch_mean_gap": state.expand_dims(branch=["load", "unload"]),
+        }
+    )
+    other = Subject(dict(other.stages) | {"flow": flow}, subject.settings, "pair")
+    for entry in entries():
+        if entry.key in ("mean_gap", "hydraulic_aperture", "branch_mean_gap"):
+            assert "missing" in cards["pair"]["entries"][entry.key] or entry.key == "mean_gap"
+            found = read_entry(entry, other, "elastic")
+            assert {row["value"] for row in found["values"] if "value" in row} == {0.25}
 
 
 def test_the_documented_lines_read_a_card(tmp_path, cards, monkeypatch):
