@@ -1,5 +1,7 @@
 # make        environment, then the default study (config/paper.yaml)
 # make STUDY=config/mine.yaml   another study; DROP=yes lets its atlas lose specimens that it had
+# make new      writes config/mine.yaml, a small study of the scans in scans/ alone, with drafts of the sidecars
+#   that they lack; SCANS=folder, NAME=other for config/other.yaml
 # make dry-run  says what would be done, and why; VERBOSE=yes for any of these shows all Snakemake says
 # make keep-going   one bad scan does not keep the others from their figures
 # make slurm    the same on a cluster
@@ -45,7 +47,7 @@ RUN = exec $(BIN)/python workflow/run.py "$$STUDY" $(if $(filter yes y true 1,$(
   $(if $(filter yes y true 1,$(VERBOSE)),--verbose)
 OPTIONS = -- --cores $(CORES)
 
-.PHONY: describe all study campaign report smoke size-effect-small keep-going slurm dry-run verify faults check-scans check-accuracy calibration keep same cost accuracy test test-all test-browser test-slurm test-slurm-accounting docs bench bench-flow problems grid-table extremes fuzz fuzz-dialects lint format lock clean
+.PHONY: new describe all study campaign report smoke size-effect-small keep-going slurm dry-run verify faults check-scans check-accuracy calibration keep same cost accuracy test test-all test-browser test-slurm test-slurm-accounting docs bench bench-flow problems grid-table extremes fuzz fuzz-dialects lint format lock clean
 # Two runs in one checkout would refuse each other.
 .NOTPARALLEL:
 all: study
@@ -81,6 +83,11 @@ size-effect-small: $(VENV)/installed
 # SCANS=folder for another one than the study's.
 check-scans: $(VENV)/installed
 	@$(BIN)/python -m fractalcontact.commands.check_scans $${SCANS:+"$$SCANS"} --study "$$STUDY"
+
+# NAME by the command line alone: Windows' WSL has one in the environment.
+new: $(VENV)/installed
+	@$(BIN)/python -m fractalcontact.commands.new_study $(if $(findstring command,$(origin NAME)),--name="$$NAME") \
+	  $${SCANS:+--scans "$$SCANS"}
 
 describe: $(VENV)/installed
 	@$(BIN)/python -m fractalcontact.commands.describe $${SCANS:+"$$SCANS"} $${FILE:+--file "$$FILE"} \

@@ -36,6 +36,7 @@ from fractalcontact.core import checksums
 from fractalcontact.core.atomic import sweep
 from fractalcontact.core.errors import InputError
 from fractalcontact.study.documents import read_study, study_name
+from fractalcontact.study.scan_files import list_scans
 
 #: Seconds that another run is waited for, which may only be beginning; and that jobs get to end
 #: when they are told to.
@@ -62,6 +63,7 @@ def main():
             for path, why in _spoilt(results):
                 _say(f"{path}: {why}; a run sets it aside, and makes it again if needed")
             sys.exit(_run([*_command(options, name), "--dry-run", *passed], options, results))
+        _name_own_study(study, options.study)
         _require_room(results)
         _clean(options, results)
         status = _run([*_command(options, name), *passed], options, results)
@@ -254,6 +256,16 @@ def _tell(child, number):
     except ProcessLookupError:
         return False
     return True
+
+
+def _name_own_study(study, source):
+    """Say how the user's scans are computed without the synthetic specimens of a study."""
+    folder = study.get("scans", "scans")
+    if not (folder and study.get("embedded") and list_scans(folder)[0]):
+        return
+    own = Path(source).with_name("mine.yaml")
+    first = f"make STUDY={own}" if own.is_file() else f"make new, then make STUDY={own}"
+    _say(f"{source} has synthetic specimens beside your scans; your scans alone: {first}")
 
 
 def _name_leftovers(results):
