@@ -12,6 +12,7 @@
 # make describe   drafts a sidecar for each scan that needs one, with a picture of what would be read;
 #   SCANS=folder, FILE=one of them, LIKE=sidecar that is to hold for all files of one instrument
 # make test   what the tests need, then the tests; make test-all takes larger ensembles
+# make examples   each study of config/examples, run once: some minutes
 # make test-slurm   the smoke study on a real SLURM of one node, started for it: root on Debian alone
 # make test-slurm-accounting   the same on one that keeps accounts, which says what jobs asked for and used
 # make test-browser   the pages in Debian's chromium, which it installs where it may
@@ -47,7 +48,7 @@ RUN = exec $(BIN)/python workflow/run.py "$$STUDY" $(if $(filter yes y true 1,$(
   $(if $(filter yes y true 1,$(VERBOSE)),--verbose)
 OPTIONS = -- --cores $(CORES)
 
-.PHONY: new describe all study campaign report smoke size-effect-small keep-going slurm dry-run verify faults check-scans check-accuracy calibration keep same cost accuracy test test-all test-browser test-slurm test-slurm-accounting docs bench bench-flow problems grid-table extremes fuzz fuzz-dialects lint format lock clean
+.PHONY: new describe all study campaign report smoke size-effect-small keep-going slurm dry-run verify faults check-scans check-accuracy calibration keep same cost accuracy test test-all examples test-browser test-slurm test-slurm-accounting docs bench bench-flow problems grid-table extremes fuzz fuzz-dialects lint format lock clean
 # Two runs in one checkout would refuse each other.
 .NOTPARALLEL:
 all: study
@@ -130,6 +131,9 @@ test: $(VENV)/tests-installed
 
 test-all: $(VENV)/tests-installed
 	TESTS=all $(PYTEST)
+
+examples: $(VENV)/tests-installed
+	EXAMPLES=yes $(BIN)/python -m pytest -q tests/workflow/test_examples.py
 
 # The pages of a small study, headless: screenshots, sizes and times go to results/browser.
 test-browser: $(VENV)/browser-installed

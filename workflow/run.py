@@ -58,12 +58,12 @@ def main():
         study = read_study(options.study)
         name = study_name(study, options.study)
         _require_past(Path(str(study.get("scans", "scans"))))
+        _name_own_study(study, options.study)
         results = Path("results") / (f"{name}_full" if options.full else name)
         if options.dry_run:
             for path, why in _spoilt(results):
                 _say(f"{path}: {why}; a run sets it aside, and makes it again if needed")
             sys.exit(_run([*_command(options, name), "--dry-run", *passed], options, results))
-        _name_own_study(study, options.study)
         _require_room(results)
         _clean(options, results)
         status = _run([*_command(options, name), *passed], options, results)
@@ -261,7 +261,7 @@ def _tell(child, number):
 def _name_own_study(study, source):
     """Say how the user's scans are computed without the synthetic specimens of a study."""
     folder = study.get("scans", "scans")
-    if not (folder and study.get("embedded") and list_scans(folder)[0]):
+    if not (study.get("embedded") and folder and Path(folder).is_dir() and list_scans(folder)[0]):
         return
     own = Path(source).with_name("mine.yaml")
     first = f"make STUDY={own}" if own.is_file() else f"make new, then make STUDY={own}"
