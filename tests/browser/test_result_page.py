@@ -1,5 +1,6 @@
 """The result page in a real browser: table, curves, statements and links."""
 
+import re
 import time
 from urllib.parse import unquote
 
@@ -261,3 +262,19 @@ def test_fits_a_phone(open_page, pages, shots, which):
         scroll, width = page.evaluate("[document.documentElement.scrollWidth, innerWidth]")
         assert scroll <= width
         page.screenshot(path=shots / f"{'specimen' if which else 'index'}_phone.png")
+
+
+def test_a_card_opens_from_the_first_screen_and_prints_on_one_page(open_page, results, shots):
+    with open_page("index.html") as page:
+        cards = page.locator(".joint a.first").evaluate_all("links => links.map((a) => a.href)")
+        assert len(cards) == page.locator(".joint").count() == len(names_of(page)) > 0
+    for address in cards:
+        name = f"cards/{address.rpartition('/')[2]}"
+        with open_page(name) as page:
+            assert "Trust:" in page.locator("body").inner_text()
+            printed = page.pdf(prefer_css_page_size=True)
+            assert len(re.findall(rb"/Type\s*/Page[^s]", printed)) == 1, name
+            page.screenshot(path=shots / "card_desktop.png", full_page=True)
+        with open_page(name, phone=True) as page:
+            scroll, width = page.evaluate("[document.documentElement.scrollWidth, innerWidth]")
+            assert scroll <= width

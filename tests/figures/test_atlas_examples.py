@@ -69,6 +69,12 @@ def names(project):
     left["atlas"].close()
 
 
+def test_the_page_on_flow_finds_what_it_names():
+    left = run_code("docs/flow.md", replaced=[JOINT])
+    assert np.isfinite(left["flow"]["transmissivity_along"]).all()
+    assert 0.08 < left["core"].hydraulic_aperture < left["along"].hydraulic_aperture * 1.05 < 0.11
+
+
 def test_examples_find_what_they_name(names):
     assert np.isfinite(float(names["roughness"]["recommended_dimension"]))
     assert names["touching"].sum() > 0

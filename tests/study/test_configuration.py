@@ -93,6 +93,7 @@ def broken(study, path, value):
         (("speed",), {"sizes": [8]}, r"missing key 'speed.hurst'"),
         (("solver", "rtol"), "1e-6", r"solver.rtol: '1e-6' is not right; expected a number"),
         (("embedded", "concrete_twin", "size"), "4 N", r"embedded.concrete_twin.size: '4 N'"),
+        (("embedded", "joint_2.1", "realisations"), 2, r"realisations: 2 is .* from 3 to 1000"),
         (("embedded", "concrete_twin", "dimension"), 3.2, r"embedded.concrete_twin.dimension: 3.2"),
     ],
 )

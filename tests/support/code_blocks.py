@@ -23,6 +23,10 @@ NOT_RUN = {
         "docs/card.md",
         "python -m fractalcontact.commands.export_constants",
     ): "run with a card of a test in tests/cards/test_exports.py",
+    (
+        "docs/card.md",
+        "python -m fractalcontact.commands.profile_card",
+    ): "run with a made profile in tests/cards/test_profiles.py",
     ("docs/cluster.md", "make slurm"): CLUSTER,
     ("docs/cluster.md", ".venv/bin/python workflow/run.py config/mine.yaml"): CLUSTER,
     ("docs/cluster.md", "cp -r workflow/profiles/slurm"): CLUSTER,

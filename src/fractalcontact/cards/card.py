@@ -78,7 +78,7 @@ def card_of(subject: Subject, study: Mapping[str, Any], made: Mapping[str, Any])
     return card | {"methods": methods_of(card)}
 
 
-def made_of(attributes: Mapping[str, Any]) -> dict[str, Any]:
+def made_of(attributes: Mapping[Any, Any]) -> dict[str, Any]:
     """What made an atlas, of its attributes: versions and checksums of the scans."""
     return {key: json.loads(attributes.get(key, "{}")) for key in ("versions", "scan_checksums")}
 

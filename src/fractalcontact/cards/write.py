@@ -1,7 +1,7 @@
 """Files of the cards of a study: YAML and JSON for programs, one printed page for people."""
 
 import json
-from collections.abc import Collection, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -9,10 +9,11 @@ import yaml
 
 from ..core.atomic import atomic_write
 from ..core.errors import InputError
-from ..core.subject import Subject
+from ..core.subject import Subject, configuration_of, specimens_of
 from ..pages.files import CARD
 from ..pages.templating import write_page
-from ..study.atlas_parts import Atlas, open_atlas
+from ..study.atlas import read_atlas
+from ..study.stages import STAGES as ALL_STAGES
 from .card import FORM, STAGES, card_of, made_of
 from .page import page_of
 
@@ -26,7 +27,7 @@ def write_cards(path: Path | str, folder: Path | str) -> list[str]:
     Parameters
     ----------
     path : path-like
-        The atlas, in one file or in parts.
+        The atlas, in one file.
     folder : path-like
         Of the results.
 
@@ -35,25 +36,12 @@ def write_cards(path: Path | str, folder: Path | str) -> list[str]:
     list of str
         Specimens that have one.
     """
-    atlas = open_atlas(path)
-    configuration = json.loads(atlas.attrs["configuration"])
-    made = made_of(atlas.attrs)
-    for name in atlas.specimens:
-        stages = stages_of(atlas, name, STAGES)
-        subject = Subject(stages, configuration["settings"][name], name)
-        write_card(card_of(subject, configuration["study"], made), folder)
-    return list(atlas.specimens)
-
-
-def stages_of(atlas: Atlas, name: str, wanted: Collection[str]) -> dict[str, Any]:
-    """Stages of a specimen in memory, those of them that it has."""
-    found = {}
-    for stage in wanted:
-        try:
-            found[stage] = atlas[f"{stage}/{name}"]
-        except KeyError:
-            continue
-    return found
+    atlas = read_atlas(path, without=ALL_STAGES.keys() - set(STAGES))
+    study, made = configuration_of(atlas)["study"], made_of(atlas.attrs)
+    names = specimens_of(atlas)
+    for name in names:
+        write_card(card_of(Subject.of(atlas, name), study, made), folder)
+    return names
 
 
 def write_card(card: Mapping[str, Any], folder: Path | str) -> None:

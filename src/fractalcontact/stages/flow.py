@@ -145,7 +145,7 @@ def flow_stages(
     mapped = next(part for part in parts if MAP_GAP in part)[MAP_GAP]
     values: dict[str, Any] = _over_loads(mapped.values.astype(float), place, reported)
     values |= _laws(states, specimens, reported.direction, loading.slides)
-    gap = states["mean_gap"].values
+    gap = states["mean_gap"].where(states["mean_gap"] > 0).values
     total = error_budget["total"].sel(quantity="separation").values
     for way in WAYS:
         flow = values[f"transmissivity_{way}"]
@@ -237,10 +237,9 @@ def _separation_error(gap, flow, total):
 
     The mean gap is off by as much as the separation, whatever node touches first.
     """
-    known = np.isfinite(gap) & np.isfinite(flow)
+    known = np.isfinite(gap + flow)
     error = np.full(flow.shape, np.nan)
-    # Faces that are flush have no gap under any load, and no slope over it.
-    if known.sum() > 1 and np.diff(gap[known]).all():
+    if known.sum() > 1:
         error[known] = np.abs(np.gradient(flow[known], gap[known])) * total[known]
     return error
 

@@ -176,6 +176,8 @@ def load_path(
     limit = np.inf if hardness is None else hardness
     path = _Path(height, space, limit, rtol)
     if loaded is not None:
+        if loaded.space != space:
+            raise ValueError("loaded: expected a state of this half-space")
         path.begin(loaded, loaded.closure if forces is None else loaded.force)
     return [path.next(float(load), by_force=forces is not None) for load in loads]
 

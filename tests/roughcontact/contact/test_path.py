@@ -241,3 +241,17 @@ def test_loads_that_are_no_path_are_refused(loads, message):
     height, space, hardness, _ = drawn(0)
     with pytest.raises(ValueError, match=message):
         load_path(height, space, hardness=hardness, **loads)
+
+
+def test_a_path_goes_on_from_a_state_that_is_solved():
+    height, space, hardness, force = drawn(0)
+    loads = [force, 0.4 * force, 0.0, 1.1 * force]
+    whole = load_path(height, space, forces=loads, hardness=hardness, rtol=1e-8)
+    going = {"hardness": hardness, "rtol": 1e-8, "loaded": whole[0].contact}
+    rest = load_path(height, space, forces=loads[1:], **going)
+    for one, other in zip(whole[1:], rest, strict=True):
+        assert other.branch == one.branch
+        assert other.closure == pytest.approx(one.closure, rel=1e-6)
+        assert other.dissipated_energy == pytest.approx(one.dissipated_energy, rel=1e-6)
+    with pytest.raises(ValueError, match="loaded: expected"):
+        load_path(height, HalfSpace(space.shape, 0.1, E_STAR), forces=loads, **going)

@@ -1,0 +1,85 @@
+"""Card of one profile: its roughness, and why it has no contact."""
+
+from typing import Any
+
+import xarray as xr
+
+from ..core.netcdf import versions
+from ..core.subject import Subject
+from .card import FORM, LICENCE
+from .entries import entries, read_entry, rounded
+
+_NO_CONTACT = "one profile has no contact: scan a face, or both"
+_METHODS = (
+    "The profile of {length:g} mm (spacing {spacing:g} mm) was levelled by its line. JRC is given "
+    "by published fits to Z2, the rms slope over the step of each fit; Delta_g = 3 - H is that of "
+    "an isotropic surface with such profiles, H by the roughness length (Malinverno 1990). "
+    "Computed with {versions}."
+)
+_REFERENCES = [
+    "Malinverno, A. (1990): A simple method to estimate the fractal dimension of a self-affine "
+    "series. Geophys. Res. Lett. 17, 1953-1956.",
+    "Tse, R., Cruden, D. M. (1979): Estimating joint roughness coefficients. "
+    "Int. J. Rock Mech. Min. Sci. 16, 303-307.",
+]
+
+
+class _Profile(Subject):
+    """A profile as a specimen whose only state is its roughness."""
+
+    def states(self, stage: str) -> xr.Dataset:
+        """The stage itself: nothing is selected of it."""
+        return self[stage]
+
+
+def card_of_profile(
+    name: str, found: xr.Dataset, cells: int, spacing: float, checksum: str
+) -> dict[str, Any]:
+    """Card of a profile, of ``card.schema.json``.
+
+    Parameters
+    ----------
+    name : str
+    found : xr.Dataset
+        From :func:`mechanics.profile.profile_coefficients`.
+    cells : int
+    spacing : float
+        mm.
+    checksum : str
+        SHA-256 of its file.
+    """
+    subject = _Profile({"surface_dimension": found, "strength": found}, {"material": {}}, name)
+    read = {one.key: read_entry(one, subject, "none") for one in entries()}
+    for key, one in read.items():
+        if key == "rms_slope" or one["section"] not in ("roughness", "material"):
+            one["missing"] = _NO_CONTACT
+    lengths = {"spacing": spacing, "length": cells * spacing}
+    used = versions()
+    return {
+        "form": FORM,
+        "name": name,
+        "label": name,
+        "study": "",
+        "kind": "profile",
+        "synthetic": False,
+        "faces": "one profile",
+        "material": "none",
+        "model": "none: no contact",
+        "direction": "none",
+        "geometry": {key: {"value": rounded(one), "unit": "mm"} for key, one in lengths.items()},
+        "entries": read,
+        "errors": [],
+        "lights": [],
+        "trust": {
+            "word": "limited",
+            "reason": "roughness along one line alone",
+            "help": "several profiles in the direction of sliding, or a scan of the face",
+        },
+        "methods": _METHODS.format(
+            **lengths, versions=", ".join(f"{of} {which}" for of, which in used.items())
+        ),
+        "references": _REFERENCES,
+        "licence": LICENCE,
+        "versions": used,
+        "scan_checksums": {"profile": checksum},
+    }
