@@ -42,6 +42,7 @@ NOT_RUN = {
     ("docs/gallery.md", ".venv/bin/python docs/gallery/"): "scripts: run by tests of the gallery",
     ("docs/size_effect.md", "make STUDY=config/size_effect.yaml"): HOURS,
     ("docs/solver.md", "0 <= p <= H;"): "mathematics",
+    ("docs/verification.md", "make grid-table"): BY_CI,
     ("docs/solver.md", "p, u, w <- a start"): "pseudo-code",
     ("docs/solver.md", "python benchmarks/solver_gains.py"): "takes minutes of a quiet machine",
     (
