@@ -38,7 +38,10 @@ NOT_RUN = {
     ("docs/first_hour.md", "make new"): BY_CI,
     ("docs/first_hour.md", "kind: face"): "a sidecar: read in tests/test_documents.py",
     ("docs/first_hour.md", "make check-scans"): BY_CI,
-    ("docs/first_hour.md", "make STUDY="): "the study of make new: tests/commands/test_new_study.py",
+    (
+        "docs/first_hour.md",
+        "make STUDY=",
+    ): "the study of make new: tests/commands/test_new_study.py",
     ("docs/gallery.md", ".venv/bin/python docs/gallery/"): "scripts: run by tests of the gallery",
     ("docs/size_effect.md", "make STUDY=config/size_effect.yaml"): HOURS,
     ("docs/solver.md", "0 <= p <= H;"): "mathematics",

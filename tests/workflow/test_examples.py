@@ -1,4 +1,4 @@
-"""Studies of `config/examples`: valid and short in `make test`, run once each by `make examples`."""
+"""Studies of `config/examples`: valid and short; `make examples` runs each of them once."""
 
 import os
 

@@ -45,7 +45,7 @@ def new_study(path: Path, scans: Path, schema: Mapping) -> list[Described]:
         If the file exists, or the folder holds no scan.
     """
     if path.exists():
-        raise InputError(f"{path} exists and stays as it is; write another one: make new NAME=other")
+        raise InputError(f"{path} exists and stays; for another study: make new NAME=other")
     found, refused = list_scans(scans)
     if not found and not refused:
         raise InputError(
