@@ -1,5 +1,7 @@
 # make        environment, then the default study (config/paper.yaml)
 # make STUDY=config/mine.yaml   another study; DROP=yes lets its atlas lose specimens that it had
+# make new      writes config/mine.yaml, a small study of the scans in scans/ alone, with drafts of the sidecars
+#   that they lack; SCANS=folder, NAME=other for config/other.yaml
 # make dry-run  says what would be done, and why; VERBOSE=yes for any of these shows all Snakemake says
 # make keep-going   one bad scan does not keep the others from their figures
 # make slurm    the same on a cluster
@@ -10,6 +12,7 @@
 # make describe   drafts a sidecar for each scan that needs one, with a picture of what would be read;
 #   SCANS=folder, FILE=one of them, LIKE=sidecar that is to hold for all files of one instrument
 # make test   what the tests need, then the tests; make test-all takes larger ensembles
+# make examples   each study of config/examples, run once: some minutes
 # make test-slurm   the smoke study on a real SLURM of one node, started for it: root on Debian alone
 # make test-slurm-accounting   the same on one that keeps accounts, which says what jobs asked for and used
 # make test-browser   the pages in Debian's chromium, which it installs where it may
@@ -45,7 +48,7 @@ RUN = exec $(BIN)/python workflow/run.py "$$STUDY" $(if $(filter yes y true 1,$(
   $(if $(filter yes y true 1,$(VERBOSE)),--verbose)
 OPTIONS = -- --cores $(CORES)
 
-.PHONY: describe all study campaign report smoke size-effect-small keep-going slurm dry-run verify faults check-scans check-accuracy calibration keep same cost accuracy test test-all test-browser test-slurm test-slurm-accounting docs bench bench-flow problems grid-table extremes fuzz fuzz-dialects lint format lock clean
+.PHONY: new describe all study campaign report smoke size-effect-small keep-going slurm dry-run verify faults check-scans check-accuracy calibration keep same cost accuracy test test-all examples test-browser test-slurm test-slurm-accounting docs bench bench-flow problems grid-table extremes fuzz fuzz-dialects lint format lock clean
 # Two runs in one checkout would refuse each other.
 .NOTPARALLEL:
 all: study
@@ -81,6 +84,11 @@ size-effect-small: $(VENV)/installed
 # SCANS=folder for another one than the study's.
 check-scans: $(VENV)/installed
 	@$(BIN)/python -m fractalcontact.commands.check_scans $${SCANS:+"$$SCANS"} --study "$$STUDY"
+
+# NAME by the command line alone: Windows' WSL has one in the environment.
+new: $(VENV)/installed
+	@$(BIN)/python -m fractalcontact.commands.new_study $(if $(findstring command,$(origin NAME)),--name="$$NAME") \
+	  $${SCANS:+--scans "$$SCANS"}
 
 describe: $(VENV)/installed
 	@$(BIN)/python -m fractalcontact.commands.describe $${SCANS:+"$$SCANS"} $${FILE:+--file "$$FILE"} \
@@ -123,6 +131,9 @@ test: $(VENV)/tests-installed
 
 test-all: $(VENV)/tests-installed
 	TESTS=all $(PYTEST)
+
+examples: $(VENV)/tests-installed
+	EXAMPLES=yes $(BIN)/python -m pytest -q tests/workflow/test_examples.py
 
 # The pages of a small study, headless: screenshots, sizes and times go to results/browser.
 test-browser: $(VENV)/browser-installed

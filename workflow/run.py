@@ -36,6 +36,7 @@ from fractalcontact.core import checksums
 from fractalcontact.core.atomic import sweep
 from fractalcontact.core.errors import InputError
 from fractalcontact.study.documents import read_study, study_name
+from fractalcontact.study.scan_files import list_scans
 
 #: Seconds that another run is waited for, which may only be beginning; and that jobs get to end
 #: when they are told to.
@@ -57,6 +58,7 @@ def main():
         study = read_study(options.study)
         name = study_name(study, options.study)
         _require_past(Path(str(study.get("scans", "scans"))))
+        _name_own_study(study, options.study)
         results = Path("results") / (f"{name}_full" if options.full else name)
         if options.dry_run:
             for path, why in _spoilt(results):
@@ -254,6 +256,16 @@ def _tell(child, number):
     except ProcessLookupError:
         return False
     return True
+
+
+def _name_own_study(study, source):
+    """Say how the user's scans are computed without the synthetic specimens of a study."""
+    folder = study.get("scans", "scans")
+    if not (study.get("embedded") and folder and Path(folder).is_dir() and list_scans(folder)[0]):
+        return
+    own = Path(source).with_name("mine.yaml")
+    first = f"make STUDY={own}" if own.is_file() else f"make new, then make STUDY={own}"
+    _say(f"{source} has synthetic specimens beside your scans; your scans alone: {first}")
 
 
 def _name_leftovers(results):

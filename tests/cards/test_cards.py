@@ -127,7 +127,7 @@ def test_numbers_of_contact_name_the_model_that_they_are_of(cards, subjects):
 
 
 def test_a_card_is_as_trusted_as_its_worst_light(cards):
-    words = {"poor": "low", "in part": "limited", "good": "good"}
+    words = {"poor": "low", "partly": "limited", "good": "good"}
     for card in cards.values():
         present = [light["word"] for light in card["lights"]]
         assert card["trust"]["word"] == words[next(word for word in words if word in present)]

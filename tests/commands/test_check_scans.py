@@ -104,7 +104,7 @@ def test_a_noisy_scan_is_warned_of(folder, check):
     write_scan(folder / "noisy.npy", surface(128, noise=0.05), 0.2, sidecar={})
     code, out = check()
     assert code == 0
-    assert "WARNING: resolutions s = 0.2" in out
+    assert "WARNING: spacings of 0.2" in out
     assert "0 ok, 1 with warnings" in out
 
 

@@ -89,7 +89,9 @@ def test_it_is_written_with_units_on_every_axis(atlas, name, tmp_path):
 
 def test_a_warning_stands_in_the_sheet_and_in_no_caption(atlas_file, atlas, tmp_path):
     changed = atlas.copy(deep=True)
-    changed["quality/sliding"].attrs["warning"] = "resolutions s = 0.1 mm lie below the noise"
+    changed["quality/sliding"].attrs["warning"] = (
+        "spacings of 0.1 mm are finer than the scan resolves"
+    )
     sheet = drawn(changed, "sliding")
     assert "WARNING: resolutions s = 0.1 mm" in words_of(sheet)
     assert "1 warning stands below the panels." in sheet.caption
@@ -105,7 +107,7 @@ def test_overlap_and_the_load_on_it_are_drawn_and_said(atlas):
     changed = atlas.copy(deep=True)
     closure = changed["closure/pair"].to_dataset()
     closure["suspect_load_share"][...] = 0.75
-    closure.attrs["warning"] = "suspicious cells of the scans carry up to 75% of the map load"
+    closure.attrs["warning"] = "suspicious cells of the scans carry up to 75% of the reference load"
     changed["closure/pair"] = xr.DataTree(closure)
 
     def change(specimen):
@@ -123,7 +125,7 @@ def test_overlap_and_the_load_on_it_are_drawn_and_said(atlas):
     assert int(quality["overlap_cells"].sel(region="scan")) == 1
     drawing = drawn(changed, "pair")
     words = " ".join(words_of(drawing).split())
-    assert "WARNING: suspicious cells of the scans carry up to 75% of the map load." in words
+    assert "WARNING: suspicious cells of the scans carry up to 75% of the reference load." in words
     assert "the faces overlap as scanned in 1 cell of the window" in words
     assert "warning" in drawing.caption
     table = drawing.data

@@ -138,9 +138,13 @@ def judged_as(atlas, verdict, reason):
 @pytest.mark.parametrize(
     ("verdict", "reason", "said"),
     [
-        ("agrees", "", "agrees at {n} of {n} deciding loads by A_r(s), agrees at {n} of {n}"),
-        ("measured flatter", "", "agrees at 0 of {n} deciding loads by A_r(s), agrees at 0 of {n}"),
-        ("undecided", "the cat ate it", "no load decides about eq. 6, mostly as the cat ate it"),
+        ("agrees", "", "agrees at {n} of {n} conclusive loads by A_r(s), agrees at {n} of {n}"),
+        (
+            "measured flatter",
+            "",
+            "agrees at 0 of {n} conclusive loads by A_r(s), agrees at 0 of {n}",
+        ),
+        ("undecided", "the cat ate it", "inconclusive: the cat ate it"),
     ],
 )
 def test_a_verdict_on_eq_6_carries_its_reason(atlas, verdict, reason, said):

@@ -263,7 +263,7 @@ def test_gentle_tilts_lattices_and_spikes_turn_nothing(tmp_path):
 def test_an_upright_cloud_is_turned_and_its_side_is_said_to_be_unknown(tmp_path):
     heights = read(tmp_path, level(cloud()) @ lean(90).T)
     assert heights.attrs["levelled_degrees"] == pytest.approx(90)
-    assert "which side is up cannot be told" in heights.attrs["notes"]
+    assert "do not determine which side is up" in heights.attrs["notes"]
 
 
 def test_an_upright_mesh_knows_its_upper_side(tmp_path):

@@ -44,7 +44,7 @@ def test_the_worse_of_pressure_and_slope_counts(material, pressure, slope, verdi
 def test_contacts_that_crush_are_judged_by_what_the_window_can_carry(nominal, verdict):
     found = elastic_model_validity(1000.0, 0.1, HARDNESS, nominal)
     assert found.verdict == verdict
-    assert found.sentence.endswith(f"model {'good in part' if verdict == IN_PART else verdict}.")
+    assert found.sentence.endswith(f"model {'partly good' if verdict == IN_PART else verdict}.")
     assert "elastic" not in found.sentence
     # Slopes count as of elastic contact, and a load nothing there.
     assert elastic_model_validity(1000.0, 0.8, HARDNESS, nominal).verdict == POOR
@@ -79,7 +79,7 @@ def test_a_stated_strength_within_the_assumed_range_is_judged_no_better_at_its_e
 def test_the_reason_names_the_limit_and_both_numbers():
     found = elastic_model_validity(4880.0, 1.11, STRENGTH)
     assert found.sentence == (
-        "sigma_n = 4880 MPa, beyond the joint wall strength (80 MPa); rms slope 1.11, not small: "
+        "sigma_n = 4880 MPa, beyond the joint wall strength (80 MPa); rms slope 1.11, steeper than the model assumes: "
         "elastic model poor."
     )
     assumed = elastic_model_validity(5.0, 0.1, NOTHING)

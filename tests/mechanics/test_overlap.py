@@ -132,10 +132,10 @@ def warned_of(curves):
 def test_a_warning_stands_where_more_than_half_of_a_deciding_load_rests_on_errors():
     assert warned_of(curves([[1, 0.4, 0.3], [1, 0, 0]])) == ""
     words = warned_of(curves([[1, 0.9, 0.8], [1, 0, 0]]))
-    assert "80% of the map load (v = 0 mm, the contact maps among them)" in words
+    assert "80% of the reference load (v = 0 mm, the reported offset among them)" in words
     assert "in the states fitted (v = 0 mm)" in words
     words = warned_of(curves([[0.9, 0.9, 0.1], [0, 0, 0]]))
-    assert "map load" not in words
+    assert "reference load" not in words
     assert "states fitted" in words
 
 

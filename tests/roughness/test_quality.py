@@ -139,8 +139,8 @@ def test_resolutions_below_the_noise_floor_are_named_with_their_wavelength(noisy
     assert 4 * SPACING < end < 16 * SPACING
     assert noisy["below_range"].values.tolist() == [True, True, False]
     warning = noisy.attrs["warning"]
-    assert warning.startswith("resolutions s = 0.1, 0.2 mm lie below")
-    assert "2 s = 0.2, 0.4 mm" in warning
+    assert warning.startswith("spacings of 0.1, 0.2 mm are finer than the scan resolves")
+    assert "waves, 0.2, 0.4 mm," in warning
     assert "noise floor along" in warning
 
 

@@ -75,6 +75,14 @@ def test_a_target_has_its_study(project, words, environment, study):
     assert calls[0].endswith(" accuracy") == (words[0] == "accuracy")
 
 
+def test_a_new_study_has_the_name_of_the_command_line_and_no_other(project):
+    """On Windows' WSL an environment has a NAME."""
+    _, calls = make(project, "new", NAME="desktop")
+    _, [*_, named] = make(project, "new", "NAME=a b", SCANS="my scans")
+    assert calls[-1].endswith("new_study")
+    assert named.endswith("new_study --name=a b --scans my scans")
+
+
 @pytest.mark.parametrize("target", ["study", "smoke", "report", "accuracy", "size-effect-small"])
 def test_below_the_words_of_a_run_that_failed_make_says_one_line_and_fails(project, target):
     done, _ = make(project, target, FAIL="yes")

@@ -10,6 +10,8 @@ import pytest
 import yaml
 from projects import command, made, project, run, small_study, write_scan
 
+from fractalcontact.study.sidecar import sidecar_of_matrix
+
 __all__ = ["project"]  # a fixture
 pytestmark = pytest.mark.workflow
 STUDY = "config/test.yaml"
@@ -233,6 +235,19 @@ def test_an_empty_folder_of_scans_is_a_warning_and_a_dry_run_a_table(project):
     )
     assert max(map(len, jobs)) <= 120
     assert not (project / "results").exists()
+
+
+def test_a_study_with_twins_says_how_the_scans_alone_are_computed(project):
+    study = yaml.safe_load((project / "config/smoke.yaml").read_text()) | {"scans": "scans"}
+    (project / STUDY).write_text(yaml.safe_dump(study))
+    (project / "scans/rock.npy").touch()
+    (project / "scans/rock.yaml").write_text(yaml.safe_dump(sidecar_of_matrix(0.1)))
+    told = f"{STUDY} has synthetic specimens beside your scans; your scans alone: "
+    own = "make STUDY=config/mine.yaml"
+    for first in (f"make new, then {own}", own):
+        done = made(project, STUDY, "--dry-run", targets=["results/smoke/specimens/rock.nc"])
+        assert done.stderr.splitlines() == [told + first]
+        (project / "config/mine.yaml").touch()
 
 
 @pytest.mark.full

@@ -1,4 +1,4 @@
-"""The page "What carries the size effect", written from the numbers of an atlas.
+"""The page on the size effect, written from the numbers of an atlas.
 
 python -m contactlab.commands.size_effect_page results/size_effect/atlas.nc docs/size_effect.md
 """
@@ -20,7 +20,7 @@ from ..experiments.size_tasks import ARMS
 
 
 def page(test: xr.Dataset, study: str, strength: xr.Dataset | None = None) -> str:
-    """The page in Markdown.
+    """Text of the page, in Markdown.
 
     Parameters
     ----------
@@ -31,7 +31,7 @@ def page(test: xr.Dataset, study: str, strength: xr.Dataset | None = None) -> st
     strength : xr.Dataset, optional
         Group ``size_strength/surfaces``, where the atlas has it.
     """
-    parts = (_head(test, study), _size(test), _stiffness(test), _resolution(test))
+    parts = (_head(test), _origin(test, study), _size(test), _stiffness(test), _resolution(test))
     of_strength = [] if strength is None else _strength(strength)
     rest = (_geometry(test), _constructions(test), of_strength, _questions(test), _surfaces(test))
     return "\n".join(line for part in (*parts, *rest) for line in part)
@@ -39,7 +39,7 @@ def page(test: xr.Dataset, study: str, strength: xr.Dataset | None = None) -> st
 
 def _prose(text: str) -> list[str]:
     """A paragraph, wrapped, and the line that ends it."""
-    return [*textwrap.wrap(" ".join(text.split()), 110, break_on_hyphens=False), ""]
+    return [*textwrap.wrap(" ".join(text.split()), 125, break_on_hyphens=False), ""]
 
 
 def _table(head: str, rows: Iterable[Sequence[str]]) -> list[str]:
@@ -49,33 +49,63 @@ def _table(head: str, rows: Iterable[Sequence[str]]) -> list[str]:
     return [f"| {head} |", "|" + "---|" * columns, *lines, ""]
 
 
-def _head(test: xr.Dataset, study: str) -> list[str]:
+def _loads(test: xr.Dataset) -> str:
+    """Loads as the heads of columns."""
+    return " | ".join(f"{load:g}" for load in test["reduced_pressure"].values)
+
+
+def _over_loads(one: xr.Dataset, *names: str, **less: float) -> list[str]:
+    """A cell for each load: the value of each name with its error."""
+    cells = [one.isel(reduced_pressure=i) for i in range(one.sizes["reduced_pressure"])]
+    return ["; ".join(_with_error(cell, name, **less) for name in names) for cell in cells]
+
+
+def _head(test: xr.Dataset) -> list[str]:
+    """The answer, and the exponents of one load that it rests on."""
     verdicts = test["overall"].values
-    counts = ", ".join(f"{n} {verdict}" for verdict, n in zip(*_counted(verdicts), strict=True))
+    counts = ", ".join(
+        f"{verdict} in {n} of {verdicts.size}"
+        for verdict, n in zip(*_counted(verdicts), strict=True)
+    )
     flat = test["no_size_effect"].sel(arm="S1")
-    text = f"""
-        Eq. 6 of the paper has one exponent, 2 - Δσ, for three things: how the contact area falls
-        with finer resolution, how sparse the contact domain is, and how the nominal pressure at one
-        σ\\* falls with the side. Here each is varied alone, on synthetic surfaces against a plane
-        whose spectrum has one prefactor, a shortest wave of {test.attrs["cut_off"]} nodes and a
-        roll-off that is set by itself."""
     answer = f"""
-        **Answer.** Of the {verdicts.size} classes (arm and H): {counts}. With the roll-off fixed
-        (arm S1) there is no size effect at all at {int(flat.sum())} of {flat.size} loads: the whole
-        99 % interval of the exponent lies within 0.02 of zero."""
-    origin = f"""
-        Written by `python -m contactlab.commands.size_effect_page` from the atlas of this
-        study: {test.sizes["surface"]} surfaces. Every number below is of that run; intervals are of
-        99 % and over surfaces."""
+        **Answer.** The verdicts over the classes (arm and H) are: {counts}. With the roll-off fixed
+        (arm S1) there is no size effect at {int(flat.sum())} of {flat.size} loads: the whole 99 %
+        interval of the exponent lies within 0.02 of zero."""
+    load = test["reduced_pressure"].values[min(1, test.sizes["reduced_pressure"] - 1)]
+    text = f"""
+        Eq. 6 has one exponent, Δσ - 2, for three things: how the contact area falls with finer
+        resolution, how sparse the contact domain is, and how the nominal pressure at one σ\\* falls
+        with the side. Varied alone, at p/(E\\* h'_rms) = {load:g}, they are three numbers:"""
+    rows = []
+    for hurst in test["hurst"].values:
+        one = test.sel(hurst=hurst, reduced_pressure=load)
+        rows.append(
+            [
+                f"{hurst:g}",
+                _with_error(one, "area_delta", less=2),
+                _with_error(one, "box_delta", less=2),
+                _with_error(one.sel(arm="S1"), "alpha"),
+            ]
+        )
+    head = "H | over resolution, A_r(s) | contact domain, boxes | over the side, measured (S1)"
     return [
         "# What carries the size effect",
         "",
-        *_prose(text.replace("\\\\", "\\")),
         *_prose(answer),
-        *_prose(origin),
-        f"    make STUDY=config/{study}.yaml",
-        "",
+        *_prose(text.replace("\\\\", "\\")),
+        *_table(head, rows),
     ]
+
+
+def _origin(test: xr.Dataset, study: str) -> list[str]:
+    text = f"""
+        The surfaces are synthetic, lie against a plane, and have one spectral prefactor, a shortest
+        wave of {test.attrs["cut_off"]} nodes and a roll-off that is set by itself. This page was
+        written by `python -m contactlab.commands.size_effect_page` from the atlas of
+        {test.sizes["surface"]} surfaces. Intervals are of 99 %, over surfaces; ± is one standard
+        error. Columns of the tables are loads p/(E\\* h'_rms)."""
+    return [*_prose(text.replace("\\\\", "\\")), f"    make STUDY=config/{study}.yaml", ""]
 
 
 def _counted(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -83,41 +113,39 @@ def _counted(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _size(test: xr.Dataset) -> list[str]:
-    """The arms of sizes: alpha, prediction, verdict."""
+    """Exponents over the side, one row a class, and those of eq. 6."""
     rows = []
-    for arm, hurst, load in _product(test, "arm", "hurst", "reduced_pressure"):
-        one = test.sel(arm=arm, hurst=hurst, reduced_pressure=load)
-        flat = ", no size effect" if bool(one["no_size_effect"]) else ""
-        rows.append(
-            [
-                f"{arm}: {ARMS[str(arm)]}",
-                f"{hurst:g}",
-                f"{load:g}",
-                _with_error(one, "alpha"),
-                _number(one["theory_alpha"], "+.3f"),
-                _with_error(one, "area_delta", less=2),
-                _with_error(one, "box_delta", less=2),
-                f"{one['verdict'].item()}{flat}",
-            ]
-        )
-    classes = [
-        f"{arm}, H = {hurst:g}: {test['overall'].sel(arm=arm, hurst=hurst).item()}"
-        for arm, hurst in _product(test, "arm", "hurst")
+    for arm, hurst in _product(test, "arm", "hurst"):
+        one = test.sel(arm=arm, hurst=hurst)
+        flat = one["no_size_effect"].values
+        cells = [
+            f"{cell}{' *' if is_flat else ''}"
+            for cell, is_flat in zip(_over_loads(one, "alpha"), flat, strict=True)
+        ]
+        rows.append([str(arm), f"{hurst:g}", *cells, str(one["overall"].item())])
+    predicted = [
+        [words, f"{hurst:g}", *_over_loads(test.sel(hurst=hurst), name, less=2)]
+        for words, name in (("A_r(s)", "area_delta"), ("boxes", "box_delta"))
+        for hurst in test["hurst"].values
     ]
+    arms = "; ".join(f"{arm}: {ARMS[str(arm)]}" for arm in test["arm"].values)
+    largest = float(abs(test["theory_alpha"]).max())
     text = f"""
         α = d ln(A_r/A_0) / d ln b at one nominal pressure, sides of {test.attrs["smallest_side"]}
-        nodes and more, corrected area, ± one standard error. *theory* is the same of Persson's
-        area, from the rms slopes alone. Eq. 6 is refuted for a class where α differs from both
-        predictions beyond their joint interval; a prediction wider than 0.4 decides nothing."""
+        nodes and more, corrected area. Persson's theory, from the rms slopes alone, expects no
+        more than {largest:.3f}. An asterisk marks no size effect: the 99 % interval lies within
+        0.02 of zero. Arms: {arms}."""
+    verdict = """
+        Eq. 6 predicts α from Δσ, by either estimator. It is refuted for a class where α differs
+        from both predictions beyond their joint interval; a prediction wider than 0.4 is
+        inconclusive."""
     return [
         "## Size",
         "",
         *_prose(text),
-        *_table(
-            "arm | H | p/(E\\* h'_rms) | α | theory | eq. 6 by A_r(s) | eq. 6 by boxes | verdict",
-            rows,
-        ),
-        *_prose("Over all loads: " + "; ".join(classes) + "."),
+        *_table(f"arm | H | {_loads(test)} | over all loads", rows),
+        *_prose(verdict),
+        *_table(f"eq. 6 by | H | {_loads(test)}", predicted),
     ]
 
 
@@ -136,95 +164,88 @@ def _number(value: xr.DataArray, form: str) -> str:
 
 def _stiffness(test: xr.Dataset) -> list[str]:
     """Compliance and separation over the side, and stiffness over the pressure."""
+    names = ("compliance_exponent", "separation_exponent")
     rows = [
-        [
-            f"{arm}",
-            f"{hurst:g}",
-            f"{load:g}",
-            _with_error(
-                test.sel(arm=arm, hurst=hurst, reduced_pressure=load), "compliance_exponent"
-            ),
-            _with_error(
-                test.sel(arm=arm, hurst=hurst, reduced_pressure=load), "separation_exponent"
-            ),
-        ]
-        for arm, hurst, load in _product(test, "arm", "hurst", "reduced_pressure")
+        [str(arm), f"{hurst:g}", *_over_loads(test.sel(arm=arm, hurst=hurst), *names)]
+        for arm, hurst in _product(test, "arm", "hurst")
     ]
     text = """
-        Compliance of the interface and mean gap at one nominal pressure, as powers of the side.
+        Compliance of the interface; mean gap, at one nominal pressure, as powers of the side.
         Without a roll-off they grow with the rms height, about as b^H: larger joints are more
         compliant because they are rougher, not because less of them touches."""
-    powers = []
     loads = test["reduced_pressure"].values
-    for arm, hurst in _product(test, "arm", "hurst"):
-        here = (test["of_arm"] == arm) & (test["of_hurst"] == hurst)
-        largest = here & (test["of_size"] == test["of_size"].where(here).max())
-        compliance = test["compliance"].isel(surface=largest.values).values
-        slopes = -np.diff(np.log(np.where(compliance > 0, compliance, np.nan))) / np.diff(
-            np.log(loads)
-        )
-        known = [column[np.isfinite(column)] for column in slopes.T]
-        cells = [f"{np.median(one):.2f}" if one.size else "not known" for one in known]
-        powers.append([str(arm), f"{hurst:g}", *cells, f"{1 / (1 + hurst):.2f}"])
-    between = " | ".join(f"{a:g} to {b:g}" for a, b in itertools.pairwise(loads))
-    law = """
-        Stiffness of the largest surfaces as a power of the pressure, between loads (medians).
-        Pastewka and others (2013) expect 1/(1 + H) where few hills carry, without a roll-off, and 1
-        above."""
+    between = ", ".join(f"{a:g} to {b:g}" for a, b in itertools.pairwise(loads))
+    law = f"""
+        Stiffness of the largest surfaces as a power of the pressure (medians), between loads of
+        {between}. Pastewka and others (2013) expect 1/(1 + H) where few hills carry, without a
+        roll-off, and 1 above."""
+    heads = [f"{hurst:g}" for hurst in test["hurst"].values]
+    theory = ["1/(1 + H)", *(f"{1 / (1 + hurst):.2f}" for hurst in test["hurst"].values)]
+    powers = [
+        [str(arm), *(_powers(test, arm, hurst) for hurst in test["hurst"].values)]
+        for arm in test["arm"].values
+    ]
     return [
         "## Compliance and separation",
         "",
         *_prose(text),
-        *_table("arm | H | p/(E\\* h'_rms) | compliance | mean gap", rows),
+        *_table(f"arm | H | {_loads(test)}", rows),
         *_prose(law),
-        *_table(f"arm | H | {between} | 1/(1 + H)", powers),
+        *_table(f"arm | H = {' | H = '.join(heads)}", [*powers, theory]),
     ]
+
+
+def _powers(test: xr.Dataset, arm: str, hurst: float) -> str:
+    """Powers of the stiffness over the pressure, between neighbouring loads."""
+    here = (test["of_arm"] == arm) & (test["of_hurst"] == hurst)
+    largest = here & (test["of_size"] == test["of_size"].where(here).max())
+    compliance = test["compliance"].isel(surface=largest.values).values
+    steps = np.diff(np.log(test["reduced_pressure"].values))
+    slopes = -np.diff(np.log(np.where(compliance > 0, compliance, np.nan))) / steps
+    known = [column[np.isfinite(column)] for column in slopes.T]
+    return ", ".join(f"{np.median(one):.2f}" if one.size else "–" for one in known)
 
 
 def _resolution(test: xr.Dataset) -> list[str]:
     rows = []
-    for hurst, load in _product(test, "hurst", "reduced_pressure"):
-        one = test.sel(hurst=hurst, reduced_pressure=load)
-        rows.append(
-            [
-                f"{hurst:g}",
-                f"{load:g}",
-                _with_error(one, "area_delta"),
-                _number(one["theory_delta"], ".3f"),
-                f"{1 + hurst:g}",
-            ]
-        )
+    for hurst in test["hurst"].values:
+        one = test.sel(hurst=hurst)
+        theory = [_number(value, ".3f") for value in one["theory_delta"]]
+        cells = zip(_over_loads(one, "area_delta"), theory, strict=True)
+        rows.append([f"{hurst:g}", *map("; ".join, cells), f"{1 + hurst:g}"])
     departure = float(np.nanmax(abs(test["area_delta"] - test["theory_delta"])))
     return [
         "## Resolution",
         "",
         *_prose(
-            """Δσ by A_r(s), the short cut-off varied on one surface, and what the rms slope alone
+            """Δσ by A_r(s), the short cut-off varied on one surface; then what the rms slope alone
             gives (Persson's theory):"""
         ),
-        *_table("H | p/(E\\* h'_rms) | by A_r(s) | from h'_rms | 1 + H", rows),
+        *_table(f"H | {_loads(test)} | 1 + H", rows),
         *_prose(
             f"""The two differ by at most {departure:.3f}: the exponent of A_r(s) is the surface's,
-            by its rms slope, and says nothing of the contact domain."""
+            by its rms slope, and is no property of the contact domain."""
         ),
     ]
 
 
 def _geometry(test: xr.Dataset) -> list[str]:
-    rows = []
-    for hurst, load in _product(test, "hurst", "reduced_pressure"):
-        one = test.sel(hurst=hurst, reduced_pressure=load)
-        cells = (_with_error(one, name) for name in ("band_delta", "cut_delta", "box_delta"))
-        rows.append([f"{hurst:g}", f"{load:g}", *cells])
+    names = {"contact": "band_delta", "bearing-area cut": "cut_delta"}
+    rows = [
+        [f"{hurst:g}", words, *_over_loads(test.sel(hurst=hurst), name)]
+        for hurst in test["hurst"].values
+        for words, name in names.items()
+    ]
     return [
         "## Geometry",
         "",
         *_prose(
             """Correlation dimension of the contact domain between cut-off and roll-off, and of the
-            bearing-area cut of as many nodes; random nodes have 2. A dimension that goes with the
-            load, as that of the cut does, is no property of the surface:"""
+            bearing-area cut of as many nodes; random nodes have 2. Box counts of the domain stand
+            under Size, less 2. A dimension that grows with the load, as that of the cut does, is no
+            property of the surface:"""
         ),
-        *_table("H | p/(E\\* h'_rms) | contact | bearing-area cut | boxes", rows),
+        *_table(f"H | set | {_loads(test)}", rows),
     ]
 
 
@@ -232,57 +253,80 @@ def _constructions(test: xr.Dataset) -> list[str]:
     """Arm G, where there is one."""
     if not test.sizes["construction"]:
         return []
-    rows = []
-    for name, hurst, load in _product(test, "construction", "hurst", "reduced_pressure"):
-        one = test.sel(construction=name, hurst=hurst, reduced_pressure=load)
-        cells = (_with_error(one, variable) for variable in ("geometry_delta", "geometry_cut"))
-        rows.append([str(name), f"{hurst:g}", f"{load:g}", *cells])
+    rows = [
+        [
+            str(name),
+            f"{hurst:g}",
+            *_over_loads(
+                test.sel(construction=name, hurst=hurst), "geometry_delta", "geometry_cut"
+            ),
+        ]
+        for name, hurst in _product(test, "construction", "hurst")
+    ]
     return [
-        *_prose("The same of other constructions of known dimension (arm G):"),
-        *_table("construction | H | p/(E\\* h'_rms) | contact | bearing-area cut", rows),
+        *_prose(
+            """The same of other constructions of known dimension (arm G), contact domain; cut:"""
+        ),
+        *_table(f"construction | H | {_loads(test)}", rows),
     ]
 
 
 def _strength(test: xr.Dataset) -> list[str]:
     """Strength of sliding joints at equal v and at equal v/b, elastic and capped."""
-    share = float(test["truncated_share"].mean())
-    lines = [
-        "## Strength",
-        "",
-        f"Mated joints ({test.sizes['surface']} surfaces, h'_rms {test.attrs['rms_slope']:g}, "
-        f"roll-off {test.attrs['roll_off']:g} nodes) that slide over their copies, sides of "
-        f"{test.attrs['smallest_side']} nodes and more: exponent over b of τ/σ₀ = tan(φ_b + i), "
-        f"φ_b = {test.attrs['basic_friction_angle']:g}°, i = atan(Δδ/Δv) between successive "
-        "displacements, not truncated. A bound of "
-        f"{test.attrs['largest_friction_angle']:g}° (and of 0°) would meet {100 * share:.2g} % of "
-        "the angles. At equal v all intervals are taken together; at equal v/b `by v alone` is "
-        "what the largest joints have at the same v, `S(v)` what the height-difference function "
-        "alone makes of it.",
-        "",
-        "| H | contact | p/(E\\* h'_rms) | held equal | exponent | by v alone | S(v) | verdict |",
-        "|---|---|---|---|---|---|---|---|",
-    ]
-    for hurst in test["hurst"].values:
-        for law in test["law"].values:
-            for load in test["reduced_pressure"].values:
-                one = test.sel(hurst=hurst, law=law, reduced_pressure=load)
-                lines += _strength_rows(one, f"| {hurst:g} | {law} | {load:g} |")
+    truncated = float(test["truncated_share"].mean())
+    text = f"""
+        Mated joints ({test.sizes["surface"]} surfaces, h'_rms {test.attrs["rms_slope"]:g}, roll-off
+        {test.attrs["roll_off"]:g} nodes) slide over their copies, with sides of
+        {test.attrs["smallest_side"]} nodes and more. The exponent over b is that of τ/σ₀ =
+        tan(φ_b + i), φ_b = {test.attrs["basic_friction_angle"]:g}°, i = atan(Δδ/Δv) between
+        successive displacements, not truncated: bounds of 0° and
+        {test.attrs["largest_friction_angle"]:g}° would meet {100 * truncated:.2g} % of the angles.
+        At equal v all intervals are taken together. At equal v/b the exponent is followed by that
+        of the largest joints at the same v, which no size enters, and by that of the
+        height-difference function S(v) alone. An asterisk marks no size effect, within
+        {test.attrs["bound"]:g} of zero, a question mark an undetermined one."""
+    ends = test.isel(hurst=0, law=0, reduced_pressure=0)
+    fractions = " | ".join(
+        f"v/b = {float(low):.3g} to {float(high):.3g}"
+        for low, high in zip(ends["fraction_low"], ends["fraction_high"], strict=True)
+    )
     rows = [
+        [f"{hurst:g}", str(law), f"{load:g}", *_strength_cells(one)]
+        for hurst, law, load in _product(test, "hurst", "law", "reduced_pressure")
+        for one in [test.sel(hurst=hurst, law=law, reduced_pressure=load)]
+    ]
+    classes = "; ".join(
         f"H = {hurst:g}, {law}: {test['overall'].sel(hurst=hurst, law=law).item()}"
-        for hurst in test["hurst"].values
-        for law in test["law"].values
-    ]
-    return [
-        *lines,
-        "",
-        f"An exponent within {test.attrs['bound']:g} of zero is no size effect. Over all loads: "
-        + "; ".join(rows)
-        + ". Contact area and separation at equal v, over all displacements: "
-        + "; ".join(_other_exponents(test, str(law)) for law in test["law"].values)
-        + ". A window alone on a half-space carries more at its rim as it grows, which makes the "
-        "mean separation rise a little with b; eq. 6 wants the strength to fall.",
-        "",
-    ]
+        for hurst, law in _product(test, "hurst", "law")
+    )
+    others = "; ".join(_other_exponents(test, str(law)) for law in test["law"].values)
+    rest = f"""
+        Over all loads: {classes}. Contact area and separation at equal v, over all displacements:
+        {others}. A window alone on a half-space carries more at its rim as it grows, which makes
+        the mean separation rise a little with b; eq. 6 wants the strength to fall."""
+    head = f"H | contact | p/(E\\* h'_rms) | equal v | {fractions}"
+    return ["## Strength", "", *_prose(text), *_table(head, rows), *_prose(rest)]
+
+
+#: Signs of the verdicts on an exponent of the strength.
+_SIGNS = {"no size effect": " *", "undetermined": " ?"}
+
+
+def _strength_cells(one: xr.Dataset) -> list[str]:
+    """Exponents of one class at one load: at equal v, then at equal v/b."""
+
+    def marked(of_one: xr.Dataset, name: str) -> str:
+        return _with_error(of_one, name) + _SIGNS.get(of_one[f"{name}_verdict"].item(), "")
+
+    cells = [marked(one, "pooled_exponent")]
+    for k in range(one.sizes["fraction"]):
+        of_one = one.isel(fraction=k)
+        predicted, theory = (
+            float(of_one[name]) for name in ("predicted_exponent", "theory_exponent")
+        )
+        own = marked(of_one, "scaled_strength_exponent")
+        cells.append(f"{own}; {predicted:+.3f}; {theory:+.3f}")
+    return cells
 
 
 def _other_exponents(test: xr.Dataset, law: str) -> str:
@@ -298,23 +342,6 @@ def _other_exponents(test: xr.Dataset, law: str) -> str:
             f"{float(errors.max()):.3f}; a size effect in {effects} of {verdicts.size})"
         )
     return f"{law}, " + ", ".join(texts)
-
-
-def _strength_rows(one: xr.Dataset, start: str) -> list[str]:
-    """Rows of one class at one load."""
-    verdict = one["pooled_exponent_verdict"].item()
-    rows = [f"{start} v | {_with_error(one, 'pooled_exponent')} | 0 | 0 | {verdict} |"]
-    for k in range(one.sizes["fraction"]):
-        of_one = one.isel(fraction=k)
-        cells = [
-            f"v/b = {float(of_one['fraction_low']):.4g} to {float(of_one['fraction_high']):.4g}",
-            _with_error(of_one, "scaled_strength_exponent"),
-            _with_error(of_one, "predicted_exponent"),
-            f"{float(of_one['theory_exponent']):+.3f}",
-            of_one["scaled_strength_exponent_verdict"].item(),
-        ]
-        rows.append(f"{start} " + " | ".join(cells) + " |")
-    return rows
 
 
 def _questions(test: xr.Dataset) -> list[str]:

@@ -28,6 +28,8 @@ STAGES = (
     "area",
     "closure",
     "branches",
+    "domains",
+    "scaling",
     "flow",
     "strength",
     "choices",

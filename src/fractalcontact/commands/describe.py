@@ -340,18 +340,18 @@ def _run(folder: Path, schema: Mapping, chosen: argparse.Namespace) -> int:
     if not chosen.file:
         rows = [Described(name, "refused", sentences=[str(why)]) for name, why in refused.items()]
     for row in rows:
-        sys.stdout.write("\n".join(_row(row)) + "\n")
+        sys.stdout.write("\n".join(row_lines(row)) + "\n")
     like = _like(chosen.like, scans) if chosen.like else None
     for name in names:
         scan = scans[name]
         if like is None:
-            row = _described(scan, schema, always=chosen.file is not None)
+            row = describe_or_refuse(scan, schema, always=chosen.file is not None)
         elif scan.sidecar is None and scan.lower.suffix == like[1].lower.suffix:
             row = write_alike(scan, like[0])
         else:
             continue
         rows.append(row)
-        sys.stdout.write("\n".join(_row(row)) + "\n")
+        sys.stdout.write("\n".join(row_lines(row)) + "\n")
         sys.stdout.flush()
     drawn = [row for row in rows if row.picture]
     if len(drawn) > 1:
@@ -363,15 +363,16 @@ def _run(folder: Path, schema: Mapping, chosen: argparse.Namespace) -> int:
     return int("refused" in counts)
 
 
-def _described(scan: ScanFiles, schema: Mapping, *, always: bool) -> Described:
+def describe_or_refuse(scan: ScanFiles, schema: Mapping, *, always: bool = False) -> Described:
+    """Report on a scan as of :func:`describe`, or the sentence by which it is refused."""
     try:
         return describe(scan, schema, always=always)
     except InputError as error:
         return Described(scan.name, "refused", sentences=[str(error)])
 
 
-def _row(row: Described) -> list[str]:
-    """Lines of the table for one specimen."""
+def row_lines(row: Described) -> list[str]:
+    """Lines of the table of drafts for one specimen."""
     fill = f"; fill in {', '.join(row.to_fill)}" if row.to_fill else ""
     first = f"{printable(row.name, 24):24} {row.state:9} {' | '.join(row.sizes)}{fill}"
     return [first, *(f"    {printable(sentence, 300)}" for sentence in row.sentences)]
@@ -381,7 +382,7 @@ def _page(rows: Sequence[Described]) -> str:
     """A page of all pictures, with what is to be done."""
     parts = ["<!doctype html><meta charset='utf-8'><title>scans as they would be read</title>"]
     for row in rows:
-        words = html.escape("\n".join(_row(row)))
+        words = html.escape("\n".join(row_lines(row)))
         image = f"<img src='{html.escape(row.picture.name)}' width='900'>" if row.picture else ""
         parts.append(f"<pre>{words}</pre>{image}")
     return "\n".join(parts)

@@ -67,7 +67,7 @@ def _moved_words(specimen):
         return ""
     return (
         f"the faces fit as scanned (correlation {motion['correlation_before']:.3f}), and "
-        f"registration moves the upper one by {length_words(shift)}, its error is "
+        f"registration moves the upper one by {length_words(shift)}, with an error of "
         f"{length_words(error)}: write 'registration: none' if the files share one frame"
     )
 

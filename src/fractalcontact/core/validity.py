@@ -74,7 +74,7 @@ class Validity(NamedTuple):
     @property
     def sentence(self) -> str:
         """Reason and verdict, for a caption."""
-        verdict = "good in part" if self.verdict == IN_PART else self.verdict
+        verdict = "partly good" if self.verdict == IN_PART else self.verdict
         model = "model" if self.capped else "elastic model"
         return f"{self.reason}: {model} {verdict}."
 

@@ -9,7 +9,7 @@ UNDETERMINED, ILL_POSED = "undetermined", "ill-posed"
 VERDICTS = (HOLDS, PARTLY, FAILS, UNDETERMINED, ILL_POSED)
 
 #: On the elastic model, best first; the last where there is no state to judge.
-GOOD, IN_PART, POOR, NOT_ASKED = "good", "in part", "poor", "not asked"
+GOOD, IN_PART, POOR, NOT_ASKED = "good", "partly", "poor", "not asked"
 #: What its pressure is judged by.
 HARDNESS, STRENGTH, USUAL = "hardness", "joint wall strength", "usual strengths"
 

@@ -17,8 +17,8 @@ from .measured import NOTE, Measured
 from .triangles import interpolate_mesh, interpolate_points, places_across
 
 _OVERHANG_OF_POINTS = (
-    "of the points lies beneath others and is kept, being so small",
-    "of the points lies beneath others and is left out, as an instrument above would not see it",
+    "of the points lies beneath others; so few are kept",
+    "of the points lies beneath others and is left out: an instrument above would not see it",
 )
 #: From this share of points that lie over another one on they are no repeats by chance.
 _MANY_STACKED = 0.05
@@ -216,7 +216,7 @@ def _turned(cloud: Cloud, scan, normal: np.ndarray, centre: np.ndarray) -> Cloud
         "level now; x, y and heights are those of the turned points"
     ]
     if degrees > levelling.UPRIGHT and cloud.mesh is None:
-        notes.append("NOTE: it stood upright, so which side is up cannot be told from its points")
+        notes.append("NOTE: it stood upright, so its points do not determine which side is up")
     if (missing := np.count_nonzero(~_finite(scan.values))) and cloud.mesh is None:
         notes.append(f"{missing} points without a height have no place after the turn")
     turned = _merge(replace(scan, values=values))
@@ -266,7 +266,7 @@ def _with_overhang(cloud: Cloud, share: float, what: str) -> Cloud:
     """The cloud with its share of overhangs, noted if there are any."""
     notes = cloud.notes
     if np.isnan(share):
-        notes += ("its triangles are not wound alike, so that overhangs cannot be told",)
+        notes += ("its triangles are not wound alike, so that overhangs are not found",)
     elif share > 0:
         notes += (f"overhangs: {percent(share)} {what}",)
     return replace(cloud, attrs=cloud.attrs | {"overhang_share": share}, notes=notes)

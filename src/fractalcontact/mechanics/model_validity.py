@@ -128,9 +128,9 @@ def elastic_model_validity(
         share = nominal_pressure / limits.good_to
         by_pressure = max(by_pressure, _graded(share, APART, FULL), key=_GRADES.index)
         verdict = max(by_pressure, by_slope, key=_GRADES.index)
-        reason += f", at which contacts crush; {percent(share)} of what the window can carry"
+        reason += f", at which contacts crush; the load is {percent(share)} of the largest possible"
     if np.isfinite(rms_slope):
-        size = "small" if by_slope == GOOD else "not small"
+        size = "small" if by_slope == GOOD else "steeper than the model assumes"
         reason += f"; rms slope {rms_slope:.3g}, {size}"
     return Validity(verdict, pressure, reason, limits)
 

@@ -166,8 +166,8 @@ def load_warning(curves: xr.Dataset, reported: Reported) -> str:
     Returns
     -------
     str
-        On the reported direction and resolution: the offsets at which suspicious cells carry
-        more than half of the map load, and those at which they do so in half of the states fitted.
+        On the reported direction and resolution: the offsets at which suspicious cells carry more
+        than half of the reference load, and those at which they do so in half of the states fitted.
     """
     finest = reported.curves(curves)
     mapped = finest["suspect_load_share"].isel(normal_force=reported.reference)
@@ -176,8 +176,8 @@ def load_warning(curves: xr.Dataset, reported: Reported) -> str:
     if decided_by_scan(worst):
         where = _offset_words(mapped["offset"].values[decided_by_scan(mapped.values)])
         at_maps = decided_by_scan(float(mapped.sel(offset=reported.offset)))
-        maps = ", the contact maps among them" if at_maps else ""
-        parts.append(f"up to {worst:.0%} of the map load (v = {where} mm{maps})")
+        maps = ", the reported offset among them" if at_maps else ""
+        parts.append(f"up to {worst:.0%} of the reference load (v = {where} mm{maps})")
     fitted = fits_undetermined(finest)
     if fitted.any():
         where = _offset_words(fitted["offset"].values[fitted.values])

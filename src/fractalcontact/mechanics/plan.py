@@ -146,7 +146,7 @@ def _limited_by(of_solver: float, of_grid: float) -> str:
 
 def _requested(accuracy: Mapping[str, float] | None) -> str:
     if accuracy is None:
-        return "everything: all states, whatever it costs"
+        return "all states, at any cost"
     closure = 100 * accuracy["closure"]
     return f"closure to {closure:.3g} %, Delta_sigma to {accuracy['delta_sigma']:.3g}"
 
@@ -161,8 +161,8 @@ def _of_tolerance(curves, solver: Solver, requested):
     reason = (
         "stated by the study"
         if requested is None or solver.rtol != tolerance(requested)
-        else f"{SHARE_OF_CLOSURE:g} of the error asked of the closure, {SHARE_OF_DIMENSION:g} of "
-        "that of Delta_sigma: ten times and more below them in trials"
+        else f"{SHARE_OF_CLOSURE:g} of the error requested of the closure, {SHARE_OF_DIMENSION:g} "
+        "of that of Delta_sigma; errors in trials were at least ten times smaller than requested"
     )
     error = abs(curves["closure_error"] / curves["interface_closure"].where(lambda w: w != 0))
     return "solver tolerance", f"{solver.rtol:.1g}", reason, _OF_SOLVER, _largest(error)
@@ -175,12 +175,12 @@ def _of_loads(curves, dilatancy, requested):
     known = errors.values[np.isfinite(errors.values)]
     value = f"{closure.sizes['normal_force']} in the first direction, none interpolated"
     if not known.size:
-        return "load steps", value, "too few to know what lies between them", "", np.nan
+        return "load steps", value, "too few to interpolate between", "", np.nan
     within = np.mean(known <= requested["closure"]) if requested else np.nan
     reason = (
         f"interpolated between its neighbours a closure would be off by "
         f"{100 * np.median(known):.1f} % (median) to {100 * known.max():.0f} %"
-        + (f"; {100 * within:.0f} % would be as exact as asked" if requested else "")
+        + (f"; {100 * within:.0f} % would be as exact as requested" if requested else "")
     )
     return "load steps", value, reason, "interface closure, if every second were left out", np.nan
 
@@ -190,14 +190,14 @@ def _of_directions(curves, settings: ContactSettings):
     if first == "none":
         return "directions", "none", "a surface against a plane does not slide", "", np.nan
     if not others:
-        return "directions", first, "the only one whose contact is asked for", "", np.nan
+        return "directions", first, "the only direction whose contact is requested", "", np.nan
     finest = curves["solved"].sel(resolution=curves["resolution"].min())
     loads = int(finest.sel(direction=others[0]).any("offset").sum())
     value = f"{first}: all loads; {', '.join(others)}: {loads}"
     reason = (
-        "the study asks for all"
+        "the study requests all"
         if loads == finest.sizes["normal_force"]
-        else "in the others only the dilatancy under its loads is shown"
+        else "the others show dilatancy alone, under its loads"
     )
     return "directions", value, reason, "", np.nan
 
@@ -211,8 +211,8 @@ def _of_resolutions(curves):
         for k, n in zip(curves["resolution"].values, counts.values, strict=True)
     )
     reason = (
-        "closure and contact are those of all nodes; how they change with the resolution is asked "
-        "at the offset of the maps alone"
+        "closure and contact are those of all nodes; their change with the resolution is solved "
+        "at the reported offset alone"
     )
     return (
         "resolutions",

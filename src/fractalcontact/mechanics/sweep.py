@@ -206,7 +206,7 @@ def contact_states(
             if looked_at and n == mapped:
                 fields |= map_fields(pressures, gaps, loading.offsets[i], direction, factor)
         if of_offsets is not None:
-            words = cf_attrs("mm", "gap g under the load of the contact maps")
+            words = cf_attrs("mm", "gap g under the reference load")
             fields[OFFSET_GAP] = ("offset", f"y_{factor}", f"x_{factor}"), of_offsets, words
         fields[f"in_contact_{factor}"] = (
             ("direction", "offset", "normal_force", f"y_{factor}", f"x_{factor}"),

@@ -16,7 +16,7 @@ from .words import with_unit
 #: What would make lights better.
 FINER_SCAN = "heights as measured, without the instrument's filter, or a scan finer than its noise"
 MARKS = "faces scanned with common marks; 'outliers: fill' where spikes or deep overlaps carry load"
-LIGHTER = "lighter loads where the window is nearly full; nothing makes steep slopes small"
+LIGHTER = "lighter loads where the window is nearly full; steep slopes stay steep under any load"
 CRUSH = "contacts that crush: 'hardness' in the material, such as the joint wall strength"
 STATE = "'joint_wall_strength' of the rock in its material, at which contacts then crush"
 
@@ -75,7 +75,7 @@ def _scan(subject):
         load = ""
     found = [text for text in (quality, load) if text]
     if not found:
-        reason = "all resolutions lie within the fractal range, suspicious cells carry little load"
+        reason = "all resolutions lie within the fractal range; suspicious cells carry little force"
         return Light("scan", "Scan", GOOD, reason)
     helps = "'outliers: mask' leaves suspicious cells out" if load else FINER_SCAN
     # The noise or the filter of the instrument decides at all resolutions, or at the finer ones.
@@ -87,7 +87,7 @@ def _scan(subject):
 def _faces(subject):
     key, title = "faces", "Fit of the faces"
     if not _is_pair(subject):
-        return Light(key, title, NOT_ASKED, "one face was scanned: there is nothing to fit")
+        return Light(key, title, NOT_ASKED, "only one face was scanned")
     overlap = str(subject["quality"].attrs["overlap"])
     load = str(subject["closure"].attrs.get("warning", ""))
     if load:
@@ -101,8 +101,8 @@ def _nodes(subject):
     # A state that was not solved has none: the comparison is then false, as it should be.
     word = GOOD if nodes >= CORRECTED_NODES else IN_PART if nodes >= RESOLVED_NODES else POOR
     reason = (
-        f"{nodes:.0f} nodes in contact under the load of the maps; from {RESOLVED_NODES} on a "
-        f"state is fitted, from {CORRECTED_NODES} on its area is corrected"
+        f"{nodes:.0f} nodes are in contact under the reference load; a fit takes "
+        f"{RESOLVED_NODES}, the correction of the area {CORRECTED_NODES}"
     )
     helps = ""
     if word != GOOD:
@@ -114,7 +114,7 @@ def _nodes(subject):
 
 
 def _grid(subject):
-    """Numerical error of the closure beside what the study asks for."""
+    """Numerical error of the closure beside the accuracy that the study requests."""
     key, title = "grid", "Converged in the grid"
     asked = float(subject["choices"]["closure_accuracy"])
     here = subject.state("error_budget").sel(quantity="closure")
@@ -124,8 +124,9 @@ def _grid(subject):
         return Light(key, title, NOT_ASKED, why)
     word = GOOD if error <= asked else IN_PART if error <= NEARLY else POOR
     reason = (
-        f"numerical error of the closure {100 * error:.2g} % under the load of the maps, asked "
-        f"{100 * asked:.2g} %, of use up to {100 * NEARLY:.0f} %"
+        f"{'the grid is too coarse: ' if word == POOR else ''}closure under the reference load is "
+        f"uncertain by {100 * error:.2g} % ({100 * asked:.2g} % requested, usable up to "
+        f"{100 * NEARLY:.0f} %)"
     )
     helps = "" if word == GOOD else _finer(subject, error / asked, float(here["observed_order"]))
     return Light(key, title, word, reason, helps)
@@ -141,7 +142,7 @@ def _finer(subject, excess, order):
 
 def _model(subject):
     found = validity_at(subject, subject.reported.reference)
-    reason = f"{found.reason}, under the load of the maps"
+    reason = f"{found.reason}, under the reference load"
     helps = ""
     if found.verdict in (IN_PART, POOR):
         helps = {HARDNESS: LIGHTER, STRENGTH: CRUSH, USUAL: STATE}[found.limits.criterion]

@@ -30,7 +30,7 @@ _VERDICTS = {
     UNDETERMINED: "is undetermined",
 }
 _ANSWERS = {HOLDS: "Yes", PARTLY: "Partly", FAILS: "No", UNDETERMINED: "Unknown"}
-_MODEL = {GOOD: "good", IN_PART: "good in part", POOR: "poor"}
+_MODEL = {GOOD: "good", IN_PART: "partly good", POOR: "poor"}
 _KINDS = {"level": "levels off", "rising": "keeps rising", "falling": "falls"}
 
 _At = Sequence[tuple[Specimen, AtLoad]]
@@ -136,7 +136,9 @@ def _tested(known: _At) -> str:
             f"the elastic model is {verdicts}{uncapped} ({_limits(tested)}{_slopes(slopes)})"
         )
     if capped:
-        parts.append(f"for {_listed(capped)}, of stated hardness, the pressure is not a test of it")
+        parts.append(
+            f"the hardness of {_listed(capped)} caps the pressure, which tests nothing there"
+        )
     return f"{'; '.join(parts)}."
 
 
@@ -184,7 +186,7 @@ def _dilatancy(specimens: Sequence[Specimen], rows: Sequence[Row]) -> Markup | N
         return None
     plateaus = [row.cells for row in rows if row.name in _PLATEAUS]
     chosen = sorted(name for cells in plateaus for name in cells if cells[name].circular)
-    note = f"; no finding for {_listed(chosen)}, chosen for it" if chosen else ""
+    note = f"; this proves nothing for {_listed(chosen)}, chosen to show it" if chosen else ""
     text = f"Over the second half of the offsets the rigid dilatancy {' and '.join(parts)}{note}."
     return Markup(escape(text))
 
@@ -209,8 +211,8 @@ def _listed(names: Sequence[str], most: int = _LISTED) -> str:
 
 #: What the paper's number is an exponent of, and what eq. 6 makes of it.
 _OF_THE_PAPER = (
-    "The paper's 1.39 is a box count, printed under a picture of areas A_r(s): with it, eq. 6 has "
-    "-0.61 in place of -(2 - Delta_sigma) by A_r(s)."
+    "The paper's 1.39 is a box count, printed under a picture of areas A_r(s). With it the "
+    "exponent of eq. 6 is -0.61; with areas it is -(2 - Delta_sigma) by A_r(s)."
 )
 
 

@@ -1,4 +1,4 @@
-"""What twice the spacing makes of the stiffness: whether k_ni rises or falls with finer scans."""
+"""Change of k_ni and tangent stiffness at twice the spacing."""
 
 import math
 from collections.abc import Sequence
@@ -20,7 +20,7 @@ class Doubled:
     k_ni : float
         Of k_ni, as a fraction of it; NaN where twice the spacing was not solved, or nothing fits.
     stiffness : float
-        Of the tangent stiffness under the load of the maps.
+        Of the tangent stiffness under the reference load.
     """
 
     k_ni: float
@@ -46,21 +46,21 @@ def spacing_words(found: Sequence[Doubled]) -> Markup:
         return Markup("")
     larger, smaller = sum(one > 0 for one in initial), sum(one < 0 for one in initial)
     text = (
-        f"At twice the spacing the k_ni fitted is larger for {larger or 'none'} and smaller for "
+        f"Twice the spacing makes k_ni larger for {larger or 'none'} and smaller for "
         f"{smaller or 'none'} of {len(initial)} specimen{'s' if len(initial) > 1 else ''} "
         f"({_range(initial)}): {_verdict(larger, smaller)}"
     )
     tangent = [one.stiffness for one in found if math.isfinite(one.stiffness)]
     if tangent:
-        text += f"; the tangent stiffness under the load of the maps changes by {_range(tangent)}"
+        text += f". The tangent stiffness under the reference load changes by {_range(tangent)}"
     return symbols(f"{text}.")
 
 
 def _verdict(larger, smaller):
-    """Which way k_ni goes with finer scans, if it goes one way."""
+    """Trend of k_ni with finer scans, if there is one."""
     if bool(larger) == bool(smaller):
-        return "it has no one direction with finer scans"
-    return "it falls with finer scans" if larger else "it rises with finer scans"
+        return "k_ni has no common trend with finer scans"
+    return f"the finer the scan, the {'smaller' if larger else 'larger'} k_ni"
 
 
 def _range(changes):

@@ -217,7 +217,7 @@ class Specimen:
 
     @property
     def of_maps(self) -> AtLoad:
-        """The load of the contact maps."""
+        """State under the reference load."""
         return next(load for load in self.loads if load.of_maps)
 
     def at(self, number: int | None) -> AtLoad | None:

@@ -362,7 +362,7 @@ def _warning(result) -> str:
     sides = [f"{s:.3g}" for s in result["resolution"].values[below]]
     waves = [f"{2 * s:.3g}" for s in result["resolution"].values[below]]
     return (
-        f"resolutions s = {', '.join(sides)} mm lie below the end of the fractal range: their "
-        f"shortest waves of 2 s = {', '.join(waves)} mm are shorter than "
+        f"spacings of {', '.join(sides)} mm are finer than the scan resolves: their shortest "
+        f"waves, {', '.join(waves)} mm, lie below the end of the fractal range at "
         f"{interval_words(result, 'range_end', 'mm')} ({result.attrs['ended_by']})"
     )

@@ -37,7 +37,7 @@ def noise_words(quality: xr.Dataset, face: str) -> str:
     """
     found = quality.sel(face=face)
     if not any(found["form"].values):
-        return "too small for a spectrum: nothing is known of its noise"
+        return "too small for a spectrum, so its noise is unknown"
     along = [_noise_along(axis, found.sel(axis=axis)) for axis in AXES]
     words = f"noise floor {', '.join(along)}"
     rms, limit = found["noise_rms"].values, found["noise_limit"].values
@@ -78,9 +78,7 @@ def range_words(quality: xr.Dataset, face: str) -> str:
                 f"rolls off along {axis} at {interval_words(of_axis, 'roll_off_wavelength', 'mm')}"
             )
         if of_axis["line_exponent"] < FLATTEST and np.isnan(of_axis["noise_rms"]):
-            words.append(
-                f"so flat a spectrum along {axis} that noise cannot be separated from relief"
-            )
+            words.append(f"spectrum along {axis} so flat that noise and relief cannot be separated")
         if of_axis["strips_left_out"] >= 0.5:
             words.append(
                 f"{of_axis['strips_left_out']:.0f} of {STRIPS} strips of profiles along {axis} "
@@ -89,7 +87,7 @@ def range_words(quality: xr.Dataset, face: str) -> str:
     step = found["height_step"].item()
     if math.isfinite(step):
         words.append(
-            f"heights are multiples of {length_words(step)}, by itself "
+            f"heights are multiples of {length_words(step)}, which alone adds "
             f"{length_words(step / math.sqrt(12))} rms of noise"
         )
     return "; ".join(words)
@@ -141,7 +139,7 @@ def overlap_words(specimen: xr.Dataset, quality: xr.Dataset) -> str:
         return ""
     record = json.loads(specimen.attrs.get("registration", "{}"))
     if record.get("gap_mean_before_mm", 0.0) is None:
-        return "overlap not judged, as the height of the upper face was not measured"
+        return "overlap is unknown, as the height of the upper face was not measured"
     window, scan = (quality.sel(region=region) for region in ("window", "scan"))
     elsewhere = f"{int(scan['overlap_cells'])} in the whole scan"
     if not window["overlap_cells"]:

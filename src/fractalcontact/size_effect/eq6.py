@@ -246,14 +246,14 @@ def _verdict_reason(result):
     of_study = of_study.sel(estimator=list(_QUOTED))
     if of_study["decides"].any():
         return ", ".join(
-            f"agrees at {int(of_study['agreeing_loads'][i])} of {int(count)} deciding loads by {by}"
-            if (count := of_study["deciding_loads"][i])
-            else f"no load decides by {by}"
+            f"agrees at {int(of_study['agreeing_loads'][i])} of {count} conclusive loads by {by}"
+            if (count := int(of_study["deciding_loads"][i]))
+            else f"no load is conclusive by {by}"
             for i, by in enumerate(_QUOTED.values())
         )
     tested = of_study["reason"].values[of_study["verdict"].values != NOT_TESTED].astype(str)
     if tested.size:
-        return f"no load decides about eq. 6, mostly as {Counter(tested).most_common(1)[0][0]}"
+        return f"inconclusive: {Counter(tested).most_common(1)[0][0]}"
     beyond = result["area_exponent"].notnull().any()
     return "what is drawn lies beyond the study's loads" if beyond else ""
 

@@ -18,13 +18,13 @@ from ..core.verdicts import AGREES, AMBIGUOUS, FLATTER, NOT_TESTED, STEEPER, UND
 
 #: Exponents that differ by no more than this differ by rounding alone.
 ROUNDING = 1e-9
-#: A prediction whose 95 % interval is wider than this, end to end, decides nothing.
+#: A prediction whose 95 % interval is wider than this, end to end, is inconclusive.
 WIDEST_PREDICTION = 0.4
 #: A prediction or an exponent smaller than this is no size effect.
 NO_EFFECT = 0.02
-#: A slope whose own 95 % interval is wider than this decides nothing.
+#: A slope whose own 95 % interval is wider than this is inconclusive.
 WIDEST_SLOPE = 1.0
-#: A larger condition number |d ln sigma_0 / d ln sigma*| decides nothing: what the area of 30 nodes
+#: A larger condition number |d ln sigma_0 / d ln sigma*| is inconclusive: what the area of 30 nodes
 #: leaves open, 4 %, is then 40 % of sigma_0, or 0.3 of a slope over two octaves.
 WORST_CONDITION = 10.0
 
@@ -32,12 +32,12 @@ WORST_CONDITION = 10.0
 VERDICTS = (AGREES, STEEPER, FLATTER, UNDECIDED, AMBIGUOUS, NOT_TESTED)
 
 #: Why nothing is decided, or on what grounds it is.
-TOO_WIDE = f"eq. 6 itself is not known within {WIDEST_PREDICTION:g}"
+TOO_WIDE = f"the predicted exponent is uncertain by more than {WIDEST_PREDICTION:g}"
 TOO_WIDE_MISSED = f"{TOO_WIDE}, though what is measured lies outside"
-NOTHING_PREDICTED = "eq. 6 has next to no size effect"
+NOTHING_PREDICTED = "eq. 6 predicts hardly any size effect"
 NEITHER = "eq. 6 and no size effect are both possible"
 ILL_CONDITIONED = f"sigma_0 is poorly known from sigma* (condition over {WORST_CONDITION:g})"
-SLOPE_TOO_WIDE = f"the measured slope is not known within {WIDEST_SLOPE:g}"
+SLOPE_TOO_WIDE = f"the measured slope is uncertain by more than {WIDEST_SLOPE:g}"
 SEVERAL = "one sigma* has several sigma_0"
 NO_SIZES = "too few sizes of window hold enough nodes"
 NO_PREDICTION = "Delta_sigma has no interval"

@@ -133,7 +133,7 @@ def area_is_linear(joint: Joint) -> Finding:
     return Finding(
         verdict,
         f"m = {ends}",
-        f"A_r ~ F^m, {near} of {value.size} within {NEARLY:g} of 1, {apart} beyond it by their "
+        f"A_r ~ F^m; {near} of {value.size} within {NEARLY:g} of 1, {apart} outside by their "
         "intervals",
     )
 
@@ -161,5 +161,5 @@ def refinement_changes_little(joint: Joint) -> Finding:
     return Finding(
         verdict,
         f"closure changes by {100 * change.min():.0f} to {100 * change.max():.0f} % from 2 s to s",
-        f"{change.size} states; it counts from the highest point, which moves",
+        f"{change.size} states; closure counts from the highest point, which moves",
     )

@@ -60,8 +60,8 @@ def estimates_agree(joint: Joint) -> Finding:
         both = int(np.isfinite(difference.width).sum())
         return Finding(
             UNDETERMINED,
-            f"{both} loads with both estimates, none with their difference within {LOOSELY:g} or "
-            "beyond zero",
+            f"{both} loads have both estimates; at none is their difference surely below "
+            f"{LOOSELY:g} or surely not zero",
         )
     agree = int(equal[known].sum())
     difference = difference.value[known]
@@ -98,8 +98,8 @@ def dimension_rises_by_boxes(joint: Joint) -> Finding:
         verdict,
         f"{_by_decade(trend.line)}, less that of as many random nodes "
         f"{trend.departure.slope:+z.2f}",
-        f"{trend.line.n} loads; more nodes fill more boxes wherever they lie: in part where it "
-        "rises, but no faster than that of random nodes",
+        f"{trend.line.n} loads; more nodes fill more boxes wherever they lie, so a rise no faster "
+        "than that of random nodes holds in part",
     )
 
 
@@ -154,9 +154,9 @@ def span_finding(delta: Estimate, random: np.ndarray, pressures: np.ndarray, not
 
 
 def by_design(joint: Joint) -> str:
-    """What a hardness makes of the upper end, in words; empty without one."""
+    """Note on the upper end where a hardness caps the pressure; empty without one."""
     capped = np.isfinite(joint.settings["material"]["hardness"])
-    return "; 2 at full yield is so by construction" if capped else ""
+    return "; at full yield it is 2 by construction" if capped else ""
 
 
 def size_effect_follows(joint: Joint) -> Finding:
@@ -169,7 +169,7 @@ def size_effect_follows(joint: Joint) -> Finding:
     exponents = Estimate.read(test, "area_exponent")
     known = np.isfinite(exponents.width)
     if not known.any():
-        return Finding(UNDETERMINED, "no load at which two sizes of window hold nodes enough")
+        return Finding(UNDETERMINED, "at no load do two sizes of window hold enough nodes")
     narrowest = int(np.nanargmin(exponents.width))
     best, exponent = test.isel(normal_force=narrowest), exponents[narrowest]
     wanted = zip(ESTIMATES.values(), best["predicted_slope"].values, strict=True)
@@ -180,14 +180,16 @@ def size_effect_follows(joint: Joint) -> Finding:
     )
     decided = test["decides"].values
     if not decided.any() and _beyond(exponent, Estimate.read(best, "predicted_slope")):
-        return Finding(FAILS, numbers, "the interval of x leaves out all that eq. 6's own allows")
+        return Finding(
+            FAILS, numbers, "the interval of x excludes every exponent that eq. 6 allows"
+        )
     if not decided.any():
         return Finding(UNDETERMINED, numbers, _why_open(test["reason"].values[:, known].ravel()))
     agree = (test["verdict"] == AGREES).values
     words = ", ".join(
         f"{agree[i].sum()} of {decided[i].sum()} loads {by}"
         if decided[i].any()
-        else f"no load says {by}"
+        else f"no load {by}"
         for i, by in enumerate(ESTIMATES.values())
     )
     alone = test["slope_verdict"]
@@ -198,8 +200,8 @@ def size_effect_follows(joint: Joint) -> Finding:
     return Finding(
         share(int(agree.sum()), int(decided.sum())),
         numbers,
-        f"x agrees with eq. 6 at {words} (loads with intervals narrow enough alone), on windows "
-        f"within one joint; where it does, sigma_0 over b at equal sigma* must agree, too; {own}",
+        f"x agrees with eq. 6 at {words}, of loads with narrow enough intervals, on windows within "
+        f"one joint; sigma_0 over b at equal sigma* must agree there, too; {own}",
     )
 
 
@@ -211,12 +213,10 @@ def _beyond(exponent: Estimate, predicted: Estimate) -> bool:
 
 
 def _why_open(reasons):
-    """Why no load decides about eq. 6; a reason a load and estimate, the most frequent first."""
+    """Reasons why no load is conclusive about eq. 6, the most frequent first."""
     counts = Counter(str(reason) for reason in reasons).most_common()
     why = "; ".join(f"{reason} ({n})" for reason, n in counts)
-    return (
-        f"at no load are the intervals narrow enough; {len(reasons)} cases (load, estimate): {why}"
-    )
+    return f"the intervals are too wide at every load; {len(reasons)} cases (load, estimate): {why}"
 
 
 def larger_domains_are_less_dense(joint: Joint) -> Finding:
@@ -249,12 +249,12 @@ def strength_falls_with_size(joint: Joint) -> Finding:
     )
     cases = sizes >= FEWEST_POINTS
     if not cases.any():
-        return Finding(UNDETERMINED, "no v/b at which three sizes of window could be compared")
+        return Finding(UNDETERMINED, "no v/b has three sizes of window to compare")
     known = cases & ~truncated & np.isfinite(value)
     exponents = _exponents(value, low, high, known)
     if 2 * known.sum() <= cases.sum():
         bounded = int((cases & truncated).sum())
-        bound = f"some strength at its bound in {bounded} of {cases.sum()} cases (v/b, F)"
+        bound = f"a strength lies at its bound in {bounded} of {cases.sum()} cases (v/b, F)"
         return Finding(UNDETERMINED, bound, exponents)
     falls, rises = int((high[known] < 0).sum()), int((low[known] > 0).sum())
     if falls == known.sum() or rises == known.sum():

@@ -45,7 +45,7 @@ def resolve_settings(
     source : str
         For errors.
     scan : ScanFiles, optional
-        Of a specimen that was scanned. With both faces ``opposite`` has nothing to say.
+        Of a specimen that was scanned. With both faces ``opposite`` has no effect.
 
     Raises
     ------

@@ -141,7 +141,7 @@ class LogHandler(LogHandlerBase):
             return "ended before it could write its log"
         if "error in the program" in lines:
             return f"a fault of the program, not of the input: {lines[-1]}"
-        unwritten = "ended without a word; it was killed, or the memory did not suffice"
+        unwritten = "ended without an error message: killed, or out of memory"
         return ended_by_cluster(lines) or unwritten
 
     def close(self):

@@ -45,7 +45,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     legends_below(figure, measured + others, laws)
     headline(figure, subject.label, place_of(test))
     judged = "by the size test, at equal sigma_0"
-    why = judged if test["decides"].any() else "no load decides by A_r/A_0 at equal sigma_0"
+    why = judged if test["decides"].any() else "no load is conclusive by A_r/A_0 at equal sigma_0"
     said = claim(atlas, name, "size_effect_follows", numbers=False, why=why)
     return Drawing(figure, _table(test), caption(__name__, claim=said, **_words(test)))
 

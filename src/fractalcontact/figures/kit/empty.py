@@ -15,8 +15,8 @@ from numpy.typing import ArrayLike
 
 #: Why there is nothing of the interface to draw.
 TOO_FULL = (
-    "contact so full, or faces so flush, that what the interface gives cannot be told from what "
-    "the blocks beside it give"
+    "contact so full, or faces so flush, that the closure of the interface cannot be separated "
+    "from that of the blocks"
 )
 #: Of the words in an empty panel.
 MARK = "nothing-to-draw"

@@ -1,0 +1,107 @@
+"""Small study of the scans in a folder, with drafts of the sidecars that they lack.
+
+python -m fractalcontact.commands.new_study [--name NAME] [--scans FOLDER]
+"""
+
+import argparse
+import math
+import string
+import sys
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+import yaml
+
+from ..core.atomic import atomic_write
+from ..core.errors import InputError, OutputError
+from ..core.labels import listed, natural_key
+from ..study.documents import read_study, study_name
+from ..study.scan_files import list_scans
+from .describe import Described, describe_or_refuse, row_lines
+
+TEMPLATE = Path(__file__).with_suffix(".yaml")
+
+
+def new_study(path: Path, scans: Path, schema: Mapping) -> list[Described]:
+    """Write the study of a folder's scans, and draft sidecars beside them.
+
+    Parameters
+    ----------
+    path : Path
+        The study's file; its stem is the study's name.
+    scans : Path
+        The folder.
+    schema : mapping
+        Of a study.
+
+    Returns
+    -------
+    list of Described
+        One a scan, and one a file that is refused by its name.
+
+    Raises
+    ------
+    InputError
+        If the file exists, or the folder holds no scan.
+    """
+    if path.exists():
+        raise InputError(f"{path} exists and stays; for another study: make new NAME=other")
+    found, refused = list_scans(scans)
+    if not found and not refused:
+        raise InputError(
+            f"{scans}: no scan in this folder; put a file there (scans/README.md names the "
+            "formats), then: make new"
+        )
+    rows = [Described(key, "refused", sentences=[str(why)]) for key, why in refused.items()]
+    rows += [describe_or_refuse(found[key], schema) for key in sorted(found, key=natural_key)]
+    text = string.Template(TEMPLATE.read_text(encoding="utf-8")).substitute(
+        name=path.stem,
+        scans=yaml.safe_dump({"scans": str(scans)}, width=math.inf).rstrip(),
+        specimens=listed(found) or "none",
+    )
+    with atomic_write(path) as temporary:
+        temporary.write_text(text, encoding="utf-8")
+    return rows
+
+
+def next_steps(path: Path, scans: Path, rows: Sequence[Described]) -> list[str]:
+    """Three lines on what is left to do after :func:`new_study`."""
+    drafts = [row.name for row in rows if row.state == "draft"]
+    first = f"enter your rock under materials in {path}"
+    if drafts:
+        first += (
+            f"; look at the picture and the draft of {listed(drafts, 3)} in {scans}, complete the "
+            "draft, and rename NAME.draft.yaml to NAME.yaml"
+        )
+    if "refused" in [row.state for row in rows]:
+        first += "; mend or remove the refused files"
+    return [
+        f"1. {first}",
+        f"2. make check-scans STUDY={path}   reads every scan and solves nothing",
+        f"3. make STUDY={path}   computes the study of your scans alone",
+    ]
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Write the study and print what is next; 1 if it cannot be written, else 0."""
+    parser = argparse.ArgumentParser(prog="new_study", description=__doc__.split("\n")[0])
+    parser.add_argument("--name", default="mine", help="name of the study")
+    parser.add_argument("--scans", type=Path, default=Path("scans"), help="folder of the scans")
+    parser.add_argument("--config", type=Path, default=Path("config"), help="folder of the studies")
+    parser.add_argument("--schema", default="config/schema/study.schema.yaml")
+    chosen = parser.parse_args(arguments)
+    sys.stdout.reconfigure(errors="backslashreplace")  # type: ignore[union-attr]  # a text file
+    try:
+        path = chosen.config / f"{study_name({'study': chosen.name}, 'NAME')}.yaml"
+        rows = new_study(path, chosen.scans, read_study(chosen.schema))
+    except (InputError, OutputError) as error:
+        sys.stderr.write(f"error: {error}\n")
+        return 1
+    lines = [line for row in rows for line in row_lines(row)]
+    lines += [f"{path}: written", *next_steps(path, chosen.scans, rows)]
+    sys.stdout.write("\n".join(lines) + "\n")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
