@@ -104,7 +104,7 @@ def load_cached() -> int:
 
 
 class KernelCache(FunctionCache):
-    """What one kernel was compiled to, a checked file for each set of types it is called with.
+    """Compiled forms of one kernel, a checked file for each set of types it is called with.
 
     Parameters
     ----------
@@ -185,7 +185,7 @@ class KernelCache(FunctionCache):
             self._warn(f"{self._cache_path}: {error.strerror or error}")
 
     def _key(self, sig, codegen):
-        """What distinguishes a compiled kernel from all others, processors included."""
+        """Key of a compiled kernel, processor included."""
         return self._stem, sig, codegen.magic_tuple(), self._digest, *_VERSIONS
 
     @cached_property
@@ -254,7 +254,7 @@ def _candidate_folders():
 
 
 def _is_safe(folder):
-    """Whether kernels can be kept in a folder, and nobody else can put any there."""
+    """True if kernels can be kept in a folder, and nobody else can put any there."""
     try:
         os.makedirs(folder, mode=0o777 if folder == PACKAGE_FOLDER else 0o700, exist_ok=True)
     except OSError:

@@ -20,7 +20,7 @@ from fractalcontact.mechanics.closure import closure_curves, elastic_dilatancy
 from fractalcontact.mechanics.joint import composite_topography, describe_joint
 from fractalcontact.mechanics.loading import JointLoading
 from fractalcontact.mechanics.plan import solve_plan
-from fractalcontact.mechanics.states import combine, domains_of
+from fractalcontact.mechanics.states import combine, contact_domains
 from fractalcontact.mechanics.subgrid import state_quantities, subgrid
 from fractalcontact.mechanics.sweep import joint_states
 from fractalcontact.study.configuration import resolve_settings, solver_settings, window_arguments
@@ -83,7 +83,7 @@ def budget_of(name, accuracy=None, **more):
     loading = JointLoading.of_joint(specimen, joint, directions[0], settings, solver)
     sides = tuple(np.array(loading.shape) * SPACING)
     curves = closure_curves(states, sides, settings.material.e_star)
-    domains = analyse_domains(domains_of(states), SPACING)
+    domains = analyse_domains(contact_domains(states), SPACING)
     budget = error_budget(loading.at_map_offset(), curves, domains, **more)
     plan = solve_plan(curves, elastic_dilatancy(curves, joint), settings, solver, budget)
     # Beside the curves, for what is compared with the domains.

@@ -93,7 +93,7 @@ def test_a_warning_stands_in_the_sheet_and_in_no_caption(atlas_file, atlas, tmp_
         "spacings of 0.1 mm are finer than the scan resolves"
     )
     sheet = drawn(changed, "sliding")
-    assert "WARNING: resolutions s = 0.1 mm" in words_of(sheet)
+    assert "WARNING: spacings of 0.1 mm" in words_of(sheet)
     assert "1 warning stands below the panels." in sheet.caption
     path = shutil.copy(atlas_file, tmp_path)
     with netCDF4.Dataset(path, "a") as file:

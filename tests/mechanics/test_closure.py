@@ -25,7 +25,7 @@ from fractalcontact.mechanics.joint import composite_topography, describe_joint
 from fractalcontact.mechanics.load_curve import closure_at_force
 from fractalcontact.mechanics.loading import JointLoading
 from fractalcontact.mechanics.separation import prefractal_openings
-from fractalcontact.mechanics.states import OF_STATES, OFFSETS, combine
+from fractalcontact.mechanics.states import OFFSETS, STATE_VARIABLES, combine
 from fractalcontact.mechanics.sweep import contact_states
 from fractalcontact.study.configuration import resolve_settings
 from fractalcontact.surface.specimen import make_specimen
@@ -287,7 +287,7 @@ def curves_of(heights, forces):
 
 def states_of(curves):
     """The states that curves were computed from."""
-    return curves[[*OF_STATES, *OFFSETS]]
+    return curves[[*STATE_VARIABLES, *OFFSETS]]
 
 
 def slid_joint(cells, loads, resolutions=(1,)):

@@ -10,7 +10,7 @@ from fractalcontact.core.window import nominal_area
 from fractalcontact.mechanics.contact_fields import NOT_SOLVED, contact_fields
 from fractalcontact.mechanics.joint import composite_topography, describe_joint, offsets_of
 from fractalcontact.mechanics.loading import JointLoading
-from fractalcontact.mechanics.states import combine, domains_of
+from fractalcontact.mechanics.states import combine, contact_domains
 from fractalcontact.mechanics.sweep import joint_states
 from fractalcontact.study.atlas import read_atlas, write_atlas
 from fractalcontact.study.configuration import solver_settings
@@ -44,7 +44,7 @@ def made():
         joint_states(specimen, joint, [direction], slice(None), SETTINGS, [1, 2], solver)
         for direction in SETTINGS.contact_directions
     ]
-    domains = domains_of(combine(parts))
+    domains = contact_domains(combine(parts))
     stage = contact_fields(domains, parts, joint, SETTINGS, nominal_area(specimen))
     return specimen, joint, domains, stage
 

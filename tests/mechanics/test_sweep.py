@@ -19,7 +19,13 @@ from fractalcontact.mechanics.joint import (
 )
 from fractalcontact.mechanics.loading import JointLoading
 from fractalcontact.mechanics.state_scalars import numbers_of, state_errors
-from fractalcontact.mechanics.states import MAP_PRESSURE, OFFSETS, combine, domains_of, map_states
+from fractalcontact.mechanics.states import (
+    MAP_PRESSURE,
+    OFFSETS,
+    combine,
+    contact_domains,
+    map_states,
+)
 from fractalcontact.mechanics.sweep import contact_states, joint_states, load_steps
 from fractalcontact.surface.specimen import make_specimen
 from fractalcontact.surface.synthesis import self_affine
@@ -120,9 +126,9 @@ def test_directions_keep_the_order_of_the_study(parts, joint):
     assert states.direction.values.tolist() == SETTINGS.contact_directions
     np.testing.assert_allclose(states.offset, joint.offset)
     np.testing.assert_allclose(states.offset, [0.4, 0.7])
-    made = states.offset_made.sel(direction="N")
+    made = states.offset_on_grid.sel(direction="N")
     np.testing.assert_allclose(made, [0.48, 0.72])
-    np.testing.assert_allclose(states.offset_made.sel(direction="W"), states.offset)
+    np.testing.assert_allclose(states.offset_on_grid.sel(direction="W"), states.offset)
 
 
 def test_parts_may_come_in_any_order_within_a_direction(parts):
@@ -180,7 +186,7 @@ def test_every_state_stands_at_its_own_place(parts):
     for part in parts:
         direction, resolution = part.direction.item(), part.resolution.item()
         row = states.sel(direction=direction, resolution=resolution)
-        i = int(np.argmin(np.abs(row.offset_made.values - part.offset_made.item())))
+        i = int(np.argmin(np.abs(row.offset_on_grid.values - part.offset_on_grid.item())))
         np.testing.assert_array_equal(row.closure[i], part.closure.squeeze())
         name = f"in_contact_{resolution}"
         np.testing.assert_array_equal(row[name][i], part[name].squeeze())
@@ -202,7 +208,7 @@ def test_elastic_dilatancy_opens_by_the_cells_that_were_solved(specimen, joint, 
             atol=1e-12,
         )
     assert {"units", "long_name"} <= set(result["elastic_dilatancy"].attrs)
-    assert {"units", "long_name"} <= set(result["offset_made"].attrs)
+    assert {"units", "long_name"} <= set(result["offset_on_grid"].attrs)
 
 
 def test_directions_with_different_numbers_of_offsets_are_refused(parts):
@@ -211,6 +217,6 @@ def test_directions_with_different_numbers_of_offsets_are_refused(parts):
 
 
 def test_domains_alone(parts):
-    fields = domains_of(combine(parts))
+    fields = contact_domains(combine(parts))
     assert set(fields.data_vars) == {"in_contact_1", "in_contact_2", "solved", "nodes_error"}
     assert not set(OFFSETS) & set(fields.variables)

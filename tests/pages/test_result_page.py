@@ -532,7 +532,7 @@ def test_verdicts_of_several_specimens_are_counted(verdicts, words):
     [
         (
             [0.5],
-            "larger for 1 and smaller for none of 1 specimen (+50 %): the finer the scan, the smaller",
+            "smaller for none of 1 specimen (+50 %): the finer the scan, the smaller",
         ),
         (
             [0.021, 2.8],
@@ -540,7 +540,7 @@ def test_verdicts_of_several_specimens_are_counted(verdicts, words):
         ),
         (
             [-0.1, -0.2, np.nan],
-            "none and smaller for 2 of 2 specimens (−20 % to −10 %): the finer the scan, the larger",
+            "smaller for 2 of 2 specimens (−20 % to −10 %): the finer the scan, the larger",
         ),
         (
             [-0.1, 0.2],

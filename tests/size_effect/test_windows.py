@@ -370,7 +370,7 @@ def test_strength_of_the_whole_window_is_that_of_the_joint(rock, states, laws):
         {
             "elastic_dilatancy": delta.expand_dims(contact_direction=["W"]),
             "elastic_dilatancy_error": 0 * delta.expand_dims(contact_direction=["W"]),
-            "offset_made": (("contact_direction", "offset"), [states["offset"].values]),
+            "offset_on_grid": (("contact_direction", "offset"), [states["offset"].values]),
         }
     )
     cells = (("contact_direction", "offset"), [[1, 2, 4, 8, 16, 32]])

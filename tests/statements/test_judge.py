@@ -220,7 +220,7 @@ def test_what_does_not_hold_is_said(name, changes, expected):
 def test_reasons_why_no_load_decides_on_eq_6_are_counted_the_most_frequent_first():
     found = scaling._why_open(["too wide", "unknown", "too wide"])
     counts = "3 cases (load, estimate): too wide (2); unknown (1)"
-    assert found == f"at no load are the intervals narrow enough; {counts}"
+    assert found == f"the intervals are too wide at every load; {counts}"
 
 
 def test_numbers_stand_with_every_verdict():

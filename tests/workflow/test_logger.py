@@ -113,7 +113,7 @@ def test_a_failed_job_says_its_own_sentence_and_where_its_log_is(said):
             "error in the program\nTraceback ...\nKeyError: 'x'\n",
             "error: a fault of the program, not of the input: KeyError: 'x'",
         ),
-        2: ("killed", "", "error: ended without a word; it was killed, or the memory did"),
+        2: ("killed", "", "error: ended without an error message: killed, or out of memory"),
     }
     for number, (name, text, expected) in cases.items():
         log = write_log(name, text)

@@ -55,7 +55,7 @@ rule speed:
     benchmark:
         f"{RESULTS}/benchmarks/speed/{{case}}.tsv"
     wildcard_constraints:
-        case=one_of(TIMED),
+        case=alternation(TIMED),
     threads: lambda wildcards: workflow.cores
     resources:
         **fixed(4000, 30),
@@ -97,7 +97,7 @@ rule measurement:
     benchmark:
         f"{RESULTS}/benchmarks/{{measured}}.tsv"
     wildcard_constraints:
-        measured=one_of(MEASURED),
+        measured=alternation(MEASURED),
     resources:
         **fixed(1500, 60),
     params:

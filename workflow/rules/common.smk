@@ -18,7 +18,7 @@ from fractalcontact.core import checksums
 from fractalcontact.core.code_digest import Code
 from fractalcontact.core.directions import AUTOMATIC_OFFSETS
 from fractalcontact.core.errors import InputError
-from fractalcontact.core.patterns import one_of
+from fractalcontact.core.patterns import alternation
 from fractalcontact.core.stage import ENSEMBLE, EXPERIMENT, GRAINS, JOINT, MAP, SPECIMEN
 from fractalcontact.study import campaign, plan, resources, stages
 from fractalcontact.study.checks import resolve_study
@@ -164,7 +164,7 @@ def scan_digests():
 # asks for a specimen that is none is told so by `known`.
 wildcard_constraints:
     specimen="[^/]+",
-    map=one_of(MAPS),
+    map=alternation(MAPS),
     directions=r"\d+",
     offsets=r"\d+",
     resolutions=r"\d+",
@@ -200,7 +200,7 @@ SLIDING_NAMES = set(SLIDING)
 
 def kind_of(some, others):
     """Pattern of the names of one kind of specimens; any name where there is no other kind."""
-    return one_of(some) if others else "[^/]+" if some else one_of([])
+    return alternation(some) if others else "[^/]+" if some else alternation([])
 
 
 #: Realisations of the embedded specimens of which the study wants an ensemble.

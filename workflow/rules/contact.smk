@@ -85,7 +85,7 @@ rule ensemble:
     benchmark:
         f"{RESULTS}/benchmarks/ensemble/{{specimen}}.tsv"
     wildcard_constraints:
-        specimen=one_of(REALISATIONS),
+        specimen=alternation(REALISATIONS),
     # As long as the sub-windows of a specimen, and the report waits for it.
     priority: 1
     resources:

@@ -26,7 +26,7 @@ rule long_experiment:
     benchmark:
         f"{RESULTS}/benchmarks/{{experiment}}.tsv"
     wildcard_constraints:
-        experiment=one_of([name for name in LONG if name in config]),
+        experiment=alternation([name for name in LONG if name in config]),
     priority: 1
     resources:
         mem_mb=doubled(4000),
@@ -43,5 +43,5 @@ rule long_experiment:
 
 use rule long_experiment as short_experiment with:
     wildcard_constraints:
-        experiment=one_of([name for name in SHORT if name in config]),
+        experiment=alternation([name for name in SHORT if name in config]),
     priority: -1

@@ -37,7 +37,7 @@ rule size_effect_part:
     benchmark:
         f"{RESULTS}/benchmarks/size_effect_parts/{{job}}.tsv"
     wildcard_constraints:
-        job=one_of(SIZE_JOBS),
+        job=alternation(SIZE_JOBS),
     # The longest first: begun last it would keep one core busy and the others idle.
     priority: 1
     resources:

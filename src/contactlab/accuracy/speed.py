@@ -109,7 +109,7 @@ def error_against_time(problem: ReferenceProblem, recipe: Mapping[str, Any]) -> 
         slowest run), ``runs``, ``memory`` (once per method), ``applications`` of the operator (of
         ours), ``said`` (of a failure), and ``on_front`` and ``on_pressure_front``: whether nothing
         else is both faster and closer. Attributes describe the problem, the reference and its
-        error; errors below ``told_apart_to``, the tightest tolerance, count as alike.
+        error; errors below ``resolvable_error``, the tightest tolerance, count as alike.
     """
     _warm_up(recipe)
     table, ways = _first_runs(problem, recipe)
@@ -129,7 +129,7 @@ def error_against_time(problem: ReferenceProblem, recipe: Mapping[str, Any]) -> 
     result = _labelled(table).assign_attrs(_about_problem(problem))
     # An error smaller than anyone was asked for is no merit, nor one below the reference's own.
     asked = min(recipe["tolerances"])
-    result.attrs["told_apart_to"] = max(result.attrs["reference_error"], asked)
+    result.attrs["resolvable_error"] = max(result.attrs["reference_error"], asked)
     for name, error in FRONTS.items():
         words = f"nothing is both faster and has less {ERRORS[error]}"
         result[name] = ("point", _front(result, error), cf_attrs("1", words))
@@ -236,7 +236,7 @@ def _press_peer(code: PublicCode, control: str, reference: Reference, rtol: floa
 
 
 def load_of(reference: Reference, control: str, start: np.ndarray | None = None) -> Load:
-    """What a public code is given for it to come to the state of a reference.
+    """Tolerance with which a public code reaches the state of a reference.
 
     Parameters
     ----------
@@ -319,8 +319,8 @@ def pareto_front(seconds: ArrayLike, error: ArrayLike) -> np.ndarray:
 
 
 def _front(points, quantity):
-    """The Pareto front of an error; below ``told_apart_to`` no point is the closer one."""
-    error = np.maximum(points[quantity].values, points.attrs["told_apart_to"])
+    """The Pareto front of an error; below ``resolvable_error`` no point is the closer one."""
+    error = np.maximum(points[quantity].values, points.attrs["resolvable_error"])
     return pareto_front(points["seconds"].values, error)
 
 

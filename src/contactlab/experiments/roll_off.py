@@ -1,4 +1,4 @@
-"""What a roll-off does to rigid dilatancy: many joints with one, and the same joints without.
+"""Effect of a roll-off on rigid dilatancy: many joints with one, and the same joints without.
 
 One joint decides nothing. The dilatancy is a largest height, which scatters from surface to
 surface by more than it grows over the second half of the offsets.

@@ -160,7 +160,7 @@ def paired_exponent(sides: np.ndarray, values: np.ndarray, surfaces: np.ndarray)
 
 
 class Decision(NamedTuple):
-    """What one class of surfaces, at one load, says of eq. 6."""
+    """Verdict of one class of surfaces, at one load, on eq. 6."""
 
     verdict: str
     no_size_effect: bool
@@ -205,7 +205,7 @@ def decide(alpha: Exponent, by_area: Exponent, by_boxes: Exponent) -> Decision:
 
 
 def differ(first: Exponent, second: Exponent) -> bool:
-    """Whether two exponents differ by more than their joint interval."""
+    """True if two exponents differ by more than their joint interval."""
     half = np.hypot(first.high - first.value, second.high - second.value)
     return bool(abs(first.value - second.value) > half)
 

@@ -389,7 +389,7 @@ def _overall(decisions: list[Decision], values: Mapping[str, np.ndarray], shape)
 
 
 def _follows(values: Mapping[str, np.ndarray], arm: int, shape) -> bool:
-    """Whether alpha changes with H as -(2 - Delta_sigma) by A_r(s) does, at every load."""
+    """True if alpha changes with H as -(2 - Delta_sigma) by A_r(s) does, at every load."""
     if shape[1] < 2:
         return False
     for load in range(shape[2]):

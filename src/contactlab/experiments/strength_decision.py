@@ -1,4 +1,4 @@
-"""Whether the strength of a sliding joint has a size effect: the rule of decision, nothing else.
+"""True if the strength of a sliding joint has a size effect: the rule of decision, nothing else.
 
 tau/sigma_0 = tan(phi_b + i), and i is atan(d delta/dv) unbounded: truncation at a largest angle
 would hide a size effect of steep joints. The strength of a class is that of its mean rate, as the
@@ -140,7 +140,7 @@ def equal_exponent(sides: np.ndarray, values: np.ndarray) -> Exponent:
 
 
 def beyond(found: Exponent, predicted: Exponent) -> Exponent:
-    """What remains of an exponent when a prediction is taken off, with the joint interval."""
+    """Exponent less a prediction, with the joint interval."""
     value = found.value - predicted.value
     half = float(np.hypot(found.high - found.value, predicted.high - predicted.value))
     error = float(np.hypot(found.error, predicted.error))
@@ -148,7 +148,7 @@ def beyond(found: Exponent, predicted: Exponent) -> Exponent:
 
 
 def size_verdict(exponent: Exponent, bound: float = NO_EFFECT) -> str:
-    """Whether an exponent over the side is a size effect.
+    """True if an exponent over the side is a size effect.
 
     Parameters
     ----------
@@ -175,7 +175,7 @@ def joint_verdict(
     predicted: Sequence[Exponent],
     bound: float = NO_EFFECT,
 ) -> str:
-    """Whether the strength of a class has a size effect, and of what.
+    """True if the strength of a class has a size effect, and of what.
 
     Parameters
     ----------

@@ -104,7 +104,7 @@ def dilatancy_rates(states: xr.Dataset) -> np.ndarray:
 
 
 def strength_exponents(states: xr.Dataset, recipe: Mapping[str, Any]) -> xr.Dataset:
-    """What states of sliding joints say of a size effect.
+    """Size effect from states of sliding joints.
 
     Parameters
     ----------

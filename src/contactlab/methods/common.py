@@ -1,4 +1,4 @@
-"""What the comparison solvers share: the problem, the matrix, sums without FFT, the final check."""
+"""Problem, matrix, sums without FFT and final check shared by the comparison solvers."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -21,7 +21,7 @@ class NotOffered(ValueError):
 
 
 def has_holes(composite: ArrayLike) -> bool:
-    """Whether a composite topography has cells without a height."""
+    """True if a composite topography has cells without a height."""
     return not np.isfinite(composite).all()
 
 

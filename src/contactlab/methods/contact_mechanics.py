@@ -115,7 +115,7 @@ class ContactMechanics(PublicCode):
         return pressure
 
     def _length(self, force):
-        """What gaps are compared with where the closure is not known, mm."""
+        """Scale of the gaps where the closure is not known, mm."""
         side = np.sqrt(np.prod(self.space.shape)) * self.space.cell
         return max(np.std(self.height), (force or 0.0) / (self.space.modulus * side))
 

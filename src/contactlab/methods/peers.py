@@ -1,4 +1,4 @@
-"""What public contact codes share behind the call of the comparison methods.
+"""Interface of public contact codes to the comparison methods.
 
 Each is set up in a file of its own, on the same free-space problem and with heights from the
 highest one down. What they return is not checked against the contact conditions: whether their own
@@ -35,7 +35,7 @@ class Failed(RuntimeError):
 
 @dataclass(frozen=True)
 class Load:
-    """What a public code is given besides the topography.
+    """Settings of a public code besides the topography.
 
     Attributes
     ----------

@@ -195,7 +195,7 @@ class Method:
         return import_module(f"{__package__}.{self.module}")
 
     def takes(self, space: "HalfSpace") -> bool:
-        """Whether the window of a half-space is one that the method knows.
+        """True if the window of a half-space is one that the method knows.
 
         Parameters
         ----------
@@ -214,7 +214,7 @@ class Method:
         force: float | None = None,
         hardness: float | None = None,
     ) -> bool:
-        """Whether the method was made for a load and a hardness; of what is None nothing is asked.
+        """True if the method was made for a load and a hardness; of what is None nothing is asked.
 
         Parameters
         ----------
@@ -224,7 +224,7 @@ class Method:
         return not self._lack(closure, force, hardness, "")
 
     def _lack(self, closure, force, hardness, kernel):
-        """What of a problem the method does not offer, as a sentence; empty if it offers all."""
+        """Missing capability of the method for a problem, as a sentence; empty if none."""
         title = self.title or self.name
         for other, value in (("closure", closure), ("force", force)):
             if value is not None and other not in self.loads:
@@ -273,7 +273,7 @@ def declared(path: Path | str) -> list[Method]:
 
 
 def _is_declaration(node):
-    """Whether a part of a file is a call of `Method` by that name."""
+    """True if a part of a file is a call of `Method` by that name."""
     is_call = isinstance(node, ast.Call) and isinstance(node.func, ast.Name)
     return is_call and node.func.id == Method.__name__
 

@@ -79,18 +79,18 @@ def card_of(subject: Subject, study: Mapping[str, Any], made: Mapping[str, Any])
 
 
 def made_of(attributes: Mapping[Any, Any]) -> dict[str, Any]:
-    """What made an atlas, of its attributes: versions and checksums of the scans."""
+    """Versions and scan checksums of an atlas."""
     return {key: json.loads(attributes.get(key, "{}")) for key in ("versions", "scan_checksums")}
 
 
 def model_of(subject: Subject) -> str:
-    """What the contact was solved as: elastic, or with the pressure capped at the hardness."""
+    """Contact model: elastic, or with the pressure capped at the hardness."""
     hardness = float(subject.settings["material"]["hardness"])
     return f"crushing at H = {with_unit(hardness, 'MPa')}" if math.isfinite(hardness) else "elastic"
 
 
 def is_synthetic(name: str, study: Mapping[str, Any]) -> bool:
-    """Whether a specimen is made by the study and no scan: a twin, or a mathematical joint."""
+    """True if a specimen is made by the study and no scan: a twin, or a mathematical joint."""
     return name in study.get("embedded", {})
 
 

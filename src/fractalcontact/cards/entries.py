@@ -163,7 +163,7 @@ def _range(entry, subject):
 
 
 def _rows(entry: Entry, subject: Subject) -> Iterator[tuple[dict[str, Any], dict[str, Any]]]:
-    """What stands beside each number, and the number."""
+    """Conditions of each number, and the number."""
     stage, _, variable = entry.source.partition("/")
     if stage == "settings":
         stated = subject.settings["material"].get(variable)

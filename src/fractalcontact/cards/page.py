@@ -63,7 +63,7 @@ def page_of(card: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def has_values(entry: Mapping[str, Any]) -> bool:
-    """Whether a curve has any number."""
+    """True if a curve has any number."""
     return any("value" in row for row in entry.get("values", ()))
 
 

@@ -20,7 +20,7 @@ _NO_FACE = re.compile(r"aperture|opening|(?<![a-z])(gap|depth)(?![a-z])", re.IGN
 
 
 def warnings_of_specimen(specimen: xr.Dataset, quality: xr.Dataset) -> list[str]:
-    """What a user should look at before a study is run."""
+    """Warnings to look at before a study is run."""
     attrs = specimen.attrs
     warnings = [quality.attrs["warning"]] if quality.attrs["warning"] else []
     if attrs.get("outlier_count") and attrs.get("outliers") == "keep":

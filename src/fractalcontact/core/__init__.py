@@ -1,1 +1,1 @@
-"""What every room uses: errors, units, intervals, line fits, files that appear whole."""
+"""Errors, units, intervals, line fits and atomic files, used by every room."""

@@ -15,7 +15,7 @@ class ChildFailed(RuntimeError):
 
 
 def in_child(call: Callable[[], T], *, seconds: float) -> T:
-    """What a call returns.
+    """Result of a call.
 
     Parameters
     ----------

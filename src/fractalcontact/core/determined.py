@@ -1,4 +1,4 @@
-"""Whether an estimate is known well enough that its number means anything."""
+"""True if an estimate is known well enough that its number means anything."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -23,7 +23,7 @@ def determined(
     span: float = 0.0,
     exact: Sequence[float] = (),
 ) -> bool:
-    """Whether an interval determines its quantity, so that the number may be printed.
+    """True if an interval determines its quantity, so that the number may be printed.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""What this package raises by names of its own, without what it takes to compute anything."""
+"""Exceptions of the package."""
 
 
 class InputError(ValueError):

@@ -141,12 +141,12 @@ class Estimate:
 
     @property
     def known(self) -> Any:
-        """Whether there is a value."""
+        """True if there is a value."""
         return np.isfinite(self.value)
 
     @property
     def determined(self) -> Any:
-        """Whether the interval determines a quantity of this kind; of a single number."""
+        """True if the interval determines a quantity of this kind; of a single number."""
         span, exact, _ = self.scale
         return determined(*self.ends, span=span, exact=exact)
 

@@ -1,4 +1,4 @@
-"""What every variable of the atlas says about itself, and how untrusted text is shown."""
+"""Attributes of atlas variables, and display of untrusted text."""
 
 import math
 import re

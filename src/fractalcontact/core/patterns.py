@@ -4,7 +4,7 @@ import re
 from collections.abc import Iterable
 
 
-def one_of(names: Iterable[str]) -> str:
+def alternation(names: Iterable[str]) -> str:
     """Pattern that matches these names and no others; none at all matches nothing.
 
     Parameters

@@ -94,8 +94,7 @@ def analyse_domains(
     ----------
     fields : xr.Dataset
         ``in_contact_k`` over (direction, offset, normal_force, y_k, x_k) and, of domains that were
-        not measured, ``solved`` and ``nodes_error``, as :func:`mechanics.states.domains_of` gives
-        them.
+        not measured, ``solved`` and ``nodes_error``: :func:`mechanics.states.contact_domains`.
     spacing : float
         Of the scan, mm; a domain at resolution k has k times this.
     fit_range : (float, float), optional
@@ -172,7 +171,7 @@ def analyse_domains(
 
 
 def _solver_state(fields, shape):
-    """Whether each domain was solved, and its ambiguous nodes; NaN of what was measured."""
+    """True if each domain was solved, and its ambiguous nodes; NaN of what was measured."""
     if "solved" not in fields:
         return np.ones(shape, bool), np.full(shape, np.nan)
     return tuple(fields[name].transpose(*_ORDER).values for name in ("solved", "nodes_error"))
@@ -195,7 +194,7 @@ def _empty_table(shape, n_scales, n_means, n_octaves) -> dict[str, np.ndarray]:
 
 
 def _row(domain, spacing, ambiguous, direction, **how) -> dict:
-    """What the table holds of one domain; ``how`` its dimension is to be found."""
+    """Row of the table for one domain; ``how`` chooses the estimator of its dimension."""
     box = dimension_of_domain(domain, spacing, **how)
     return {
         **box.columns("delta_sigma"),

@@ -60,7 +60,7 @@ def box_sizes(extent: int | tuple[int, int], largest: float | None = None) -> np
 
 
 def _overhang(sides: list[int], r: float) -> float:
-    """What boxes of side r cover over what there is; a side shorter than a box does not count."""
+    """Area of boxes of side r over that of the window; a side shorter than a box does not count."""
     return float(np.prod([float(boxes_along(n, r)) * r / n for n in sides if n >= r]))
 
 

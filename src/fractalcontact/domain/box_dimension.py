@@ -377,7 +377,7 @@ def _best_scales(cover: _Cover, sides: set[int]) -> np.ndarray:
 
 
 def _is_exact(cover: _Cover, used: np.ndarray) -> bool:
-    """Whether counts lie on a line but for rounding; False where they are all the same."""
+    """True if counts lie on a line but for rounding; False where they are all the same."""
     return _line(cover.sizes, cover.count, used).r2 > 1 - 1e-12
 
 

@@ -93,7 +93,7 @@ class CountedDomain:
 
     @property
     def counts_pairs(self) -> bool:
-        """Whether the window is wider than all lags."""
+        """True if the window is wider than all lags."""
         return bool(self.distances[-1] < min(self.nodes.shape))
 
     @cached_property
@@ -157,7 +157,7 @@ def _less(values):
 
 
 def _law_error(domains):
-    """Of dimensions by the law of the mean counts."""
+    """Estimator of dimensions by the law of the mean counts."""
     laws = [one.law for one in domains]
     if any(law is None for law in laws):
         return np.nan
@@ -165,7 +165,7 @@ def _law_error(domains):
 
 
 def _ordinary_error(domains):
-    """Of ordinary dimensions."""
+    """Estimator of ordinary dimensions."""
     sizes = [one.ordinary_sizes for one in domains]
     if any(used.size == 0 for used in sizes):
         return np.nan
@@ -176,7 +176,7 @@ def _ordinary_error(domains):
 
 
 def _stacked_error(parts, dimensions):
-    """Of dimensions, each a function of the counts of its own domain at its own sizes."""
+    """Estimator of dimensions, each from the counts of its own domain at its own sizes."""
     ends = np.cumsum([0, *(len(count) for count in parts)])
     slices = [slice(*pair) for pair in pairwise(ends)]
 
@@ -187,7 +187,7 @@ def _stacked_error(parts, dimensions):
 
 
 def _pairs_error(domains):
-    """Of correlation dimensions."""
+    """Estimator of correlation dimensions."""
     distances = domains[0].distances
     if not domains[0].counts_pairs:
         return np.nan
@@ -202,7 +202,7 @@ def _pairs_error(domains):
 
 
 def _morisita_error(domains):
-    """Of indices of Morisita, parts of quadrats left out."""
+    """Estimator of indices of Morisita, parts of quadrats left out."""
     cells = domains[0].quadrats[1]
     contact = [one.quadrats[0] for one in domains]
     if cells.size != QUADRATS**2:

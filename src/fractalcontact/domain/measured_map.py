@@ -184,7 +184,7 @@ def _analysed(
     sides: tuple[float, float],
     whole_cells: bool | None,
 ) -> xr.Dataset:
-    """What a map holds but its loads, of its domains above each threshold, of which one is main."""
+    """Variables of a map without its loads, for each threshold; one is the main one."""
     spacing = float(np.sqrt(np.prod(sides)))
     dims = ("direction", "offset", "normal_force", "y_1", "x_1")
     # To the analysis the thresholds are loads of one joint.

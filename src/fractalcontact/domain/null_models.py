@@ -220,7 +220,7 @@ def beside_domains(domains: xr.Dataset, nulls: xr.Dataset) -> xr.Dataset:
 
 
 def _row(domain, spacing, composite, fit_range, mask, how) -> dict[str, Any]:
-    """What :func:`null_models` stores of one domain."""
+    """Row of :func:`null_models` for one domain."""
 
     def counted(nodes):
         box = dimension_of_domain(

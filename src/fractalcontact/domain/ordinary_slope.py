@@ -101,5 +101,5 @@ def cover_used(
     shape: tuple[int, ...],
     limits: tuple[float, float] = (0, np.inf),
 ) -> np.ndarray:
-    """Whether each size lies between the cut-offs and within the range asked for."""
+    """True if each size lies between the cut-offs and within the range asked for."""
     return between_cut_offs(count, sizes, nodes, shape)[0] & within(sizes, *limits)

@@ -1,4 +1,4 @@
-"""Whether the dimension of measured contact maps goes with load, and otherwise than random cells.
+"""True if the dimension of measured contact maps goes with load, and otherwise than random cells.
 
 Of a map only the random null model can be had: the bearing-area cut needs heights.
 """
@@ -34,7 +34,7 @@ class Trend(NamedTuple):
 
     @property
     def beyond_random(self) -> str:
-        """Whether it goes otherwise than that of as many random cells."""
+        """True if it goes otherwise than that of as many random cells."""
         slope = self.departure.slope
         if not np.isfinite(slope.low):
             return UNDETERMINED

@@ -22,7 +22,7 @@ from ..domain.renormalisation import area_bend
 from ..mechanics.closure import interface_curves
 from ..mechanics.loading import JointLoading
 from ..mechanics.separation import ROUNDING
-from ..mechanics.states import MAP_GAP, domains_of, forces_of, with_pressure
+from ..mechanics.states import MAP_GAP, contact_domains, forces_of, with_pressure
 from ..mechanics.sweep import contact_states
 from ..size_effect.division import solvable_parts, spread_windows
 from ..size_effect.size_exponents import size_exponent, usable_sizes
@@ -182,7 +182,7 @@ def _realisation(loading: JointLoading[EnsembleSettings]) -> xr.Dataset:
     )
     finest = min(settings.resolutions)
     others = [f"in_contact_{k}" for k in settings.resolutions if k != finest]
-    fields = domains_of(states).drop_vars(others).sel(resolution=[finest])
+    fields = contact_domains(states).drop_vars(others).sel(resolution=[finest])
     domains = analyse_domains(fields, spacing, fit_range=settings.box_range)
     scaling = scaling_over_resolutions(curves, domains, spacing, fit_range=settings.scaling_range)
     touching = fields[f"in_contact_{finest}"].values[0, 0]

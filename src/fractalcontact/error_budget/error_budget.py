@@ -261,7 +261,7 @@ def over_loads(
 
 
 def _scale(curve: LoadCurve) -> np.ndarray:
-    """What errors are interpolated as fractions of: the values, and of separations their length."""
+    """Scale of interpolated errors: the values, and of separations their length."""
     scale = curve.values()
     names = list(BUDGET_QUANTITIES)
     # A separation may pass through zero, the length over which the pressure falls does not.

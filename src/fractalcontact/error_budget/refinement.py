@@ -74,7 +74,7 @@ class LoadCurve:
 
     @property
     def where(self) -> str:
-        """What is loaded, for errors."""
+        """Name of the loaded specimen, for errors."""
         return f"specimen {self.loading.specimen.attrs['name']}, errors"
 
     def values(self) -> np.ndarray:
@@ -106,7 +106,7 @@ class LoadCurve:
 
 @dataclass(frozen=True, eq=False)
 class Refinement:
-    """What finer grids say of a load curve.
+    """Numbers of a load curve on finer grids.
 
     Attributes
     ----------

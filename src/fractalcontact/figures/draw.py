@@ -33,7 +33,7 @@ ENDINGS = ("png", "svg", "csv", "txt")
 
 @dataclass(frozen=True)
 class Drawn:
-    """What became of some figures.
+    """Outcome of drawing some figures.
 
     Attributes
     ----------

@@ -49,7 +49,7 @@ class Density:
 
     @property
     def uneven(self) -> bool:
-        """Whether the points lie at random, much closer along one direction, or in clumps."""
+        """True if the points lie at random, much closer along one direction, or in clumps."""
         return np.sqrt(self.area) > UNEVEN * self.distance
 
     @property

@@ -49,7 +49,7 @@ def refuse_coordinates(heights: np.ndarray, path: object) -> None:
 
 
 def doubts(heights: np.ndarray) -> list[str]:
-    """What is suspicious about heights on a grid, one sentence each.
+    """Suspicions about heights on a grid, one sentence each.
 
     Parameters
     ----------

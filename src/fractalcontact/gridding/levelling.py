@@ -59,7 +59,7 @@ def tilt_degrees(normal: np.ndarray) -> float:
 
 
 def is_steep(normal: np.ndarray) -> bool:
-    """Whether heights over x and y would be distorted: above `STEEP_TILT`, or upside down."""
+    """True if heights over x and y would be distorted: above `STEEP_TILT`, or upside down."""
     return tilt_degrees(normal) > STEEP_TILT or normal[2] < 0
 
 

@@ -11,7 +11,7 @@ NOTE = "NOTE: "
 
 
 def warnings_of(notes: Iterable[str]) -> str:
-    """Those of the notes that a user should act on, one a line."""
+    """Notes that a user should act on, one a line."""
     return "\n".join(note.removeprefix(NOTE) for note in notes if note.startswith(NOTE))
 
 

@@ -109,7 +109,7 @@ def layered_share(points: np.ndarray, tree: cKDTree) -> float:
 
 
 def is_closed(triangles: np.ndarray) -> bool:
-    """Whether a mesh (m, 3) is the skin of a body: each edge has a triangle on either side."""
+    """True if a mesh (m, 3) is the skin of a body: each edge has a triangle on either side."""
     edges = np.sort(
         np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
     )
@@ -154,7 +154,7 @@ def triangle_normals(vertices: np.ndarray, triangles: np.ndarray) -> np.ndarray:
 
 
 def _wound_alike(triangles: np.ndarray) -> bool:
-    """Whether neighbouring triangles pass their common edge in opposite directions."""
+    """True if neighbouring triangles pass their common edge in opposite directions."""
     start, end = triangles.T.astype(np.int64), np.roll(triangles.T, -1, axis=0).astype(np.int64)
     edges = np.sort((start * (int(triangles.max()) + 1) + end).ravel())
     return bool(np.count_nonzero(edges[1:] == edges[:-1]) <= _WOUND_ALIKE * len(edges))

@@ -85,7 +85,7 @@ def merge_points(points: np.ndarray) -> tuple[np.ndarray, Repeats]:
 
 
 def _in_rows(points: np.ndarray) -> bool:
-    """Whether points already ascend in y and, at equal y, in x, no two at the same place."""
+    """True if points already ascend in y and, at equal y, in x, no two at the same place."""
     for part in blocks(len(points) - 1):
         x, y = points[part.start : part.stop + 1, :2].T
         along_y = np.diff(y)

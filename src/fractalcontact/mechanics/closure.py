@@ -16,7 +16,7 @@ from .conductance import add_conductance
 from .load_curve import left_out_misses
 from .seated_laws import add_seated_laws
 from .separation import add_seated_closure, add_separation
-from .states import OF_STATES, OFFSETS, WITH_SCATTER, error_attrs
+from .states import OFFSETS, STATE_VARIABLES, WITH_SCATTER, error_attrs
 from .theory import Numbers
 
 #: Why a state that was solved has no stiffness of the interface.
@@ -185,7 +185,7 @@ def interface_curves(
         That of :func:`closure_curves` without its fits.
     """
     area = window[0] * window[1]
-    result = states[[*OF_STATES, *OFFSETS]].copy()
+    result = states[[*STATE_VARIABLES, *OFFSETS]].copy()
     _add_interface(result, bulk_settlement(states["normal_force"].values, e_star, *window), area)
     add_conductance(result, e_star)
     _add_errors(result, area, e_star)
@@ -305,7 +305,7 @@ def _add_compliance(curves: xr.Dataset) -> None:
 
 
 def _spacing_error(closure: xr.DataArray) -> xr.DataArray:
-    """What halving the spacing has changed in the closure, mm; NaN where it was not solved twice.
+    """Change of the closure by halving the spacing, mm; NaN where it was not solved twice.
 
     It bounds what finer spacings would still change where closures approach their limit like s or
     faster, as that of Hertz does; elsewhere it says how far the last halving went.
@@ -353,7 +353,7 @@ def elastic_dilatancy(curves: xr.Dataset, joint: xr.Dataset) -> xr.Dataset:
         Rigid dilatancy over (direction, rigid_offset); ``elastic_dilatancy``, ``separation`` and
         ``left_out_error`` over (contact_direction, offset, normal_force), the latter what
         interpolating the closure curve at this force gives wrong when its own state is left out;
-        ``offset_made`` over (contact_direction, offset).
+        ``offset_on_grid`` over (contact_direction, offset).
 
     Notes
     -----
@@ -382,5 +382,5 @@ def elastic_dilatancy(curves: xr.Dataset, joint: xr.Dataset) -> xr.Dataset:
     error = finest["closure_error"].transpose(*result["elastic_dilatancy"].dims)
     result["elastic_dilatancy_error"] = error
     result["elastic_dilatancy_error"].attrs = error_attrs(cf_attrs("mm", "elastic dilatancy"))
-    result["offset_made"] = finest["offset_made"]
+    result["offset_on_grid"] = finest["offset_on_grid"]
     return result

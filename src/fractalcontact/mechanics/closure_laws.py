@@ -129,7 +129,7 @@ def fit_semi_logarithmic(pressure: ArrayLike, closure: ArrayLike) -> SemiLogarit
 
 
 class Law(NamedTuple):
-    """What a closure curve follows: one of :data:`LAWS`, or nothing; and why no law is named."""
+    """Law of a closure curve, one of :data:`LAWS` or none, with the reason for none."""
 
     name: str
     reason: str

@@ -25,7 +25,7 @@ def contact_fields(
     Parameters
     ----------
     domains : xr.Dataset
-        From :func:`mechanics.states.domains_of`.
+        From :func:`mechanics.states.contact_domains`.
     parts : sequence of xr.Dataset
         From :func:`mechanics.sweep.contact_states`.
     joint : xr.Dataset

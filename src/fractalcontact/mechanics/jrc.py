@@ -84,7 +84,7 @@ def profile_roughness(specimen: xr.Dataset, direction: str) -> xr.Dataset:
 
 
 def roughness_of_profiles(levelled: list[np.ndarray], spacing: float) -> xr.Dataset:
-    """What :func:`profile_roughness` gives, of levelled profiles along the first axis of arrays.
+    """Profile roughness of levelled profiles along the first axis of arrays.
 
     Parameters
     ----------

@@ -79,7 +79,7 @@ class JointLoading(Generic[P]):
 
     @property
     def slides(self) -> bool:
-        """Whether the joint can slide; a surface against a rigid plane cannot."""
+        """True if the joint can slide; a surface against a rigid plane cannot."""
         return self.direction != "none"
 
     @property

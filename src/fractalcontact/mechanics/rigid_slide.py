@@ -22,7 +22,7 @@ _LEFT = 1e-13
 
 
 class Slide(NamedTuple):
-    """What is known of each place (n,) of the lower face under the window."""
+    """Bounds at each place (n,) of the lower face under the window."""
 
     highest: np.ndarray
     """Largest h, mm."""

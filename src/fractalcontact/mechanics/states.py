@@ -1,4 +1,4 @@
-"""What is kept of contact states, under which loads they are, and how their parts are joined.
+"""Contact states: fields kept, loads, and the joining of their parts.
 
 Apart from the solving, which takes the solver: most jobs of a study only read states.
 """
@@ -47,11 +47,11 @@ WITH_SCATTER = f"{SOLVER_ERROR} and scatter"
 ERRORS["stiffness_error"] = ("N/mm", f"{SCALARS['stiffness'][1]}, {WITH_SCATTER}")
 
 #: All that is kept of a state but its contact domain.
-OF_STATES = [*SCALARS, *ERRORS, "solved"]
+STATE_VARIABLES = [*SCALARS, *ERRORS, "solved"]
 
 #: Numbers kept of every offset: name, unit, long name.
 OFFSETS = {
-    "offset_made": ("mm", "shear offset v, in whole cells of this direction"),
+    "offset_on_grid": ("mm", "shear offset v, in whole cells of this direction"),
     "rigid_opening": ("mm", "rigid dilatancy delta_r at that offset"),
     "composite_spread": ("mm", "standard deviation of the composite topography"),
 }
@@ -167,7 +167,7 @@ def combine(parts: Sequence[xr.Dataset]) -> xr.Dataset:
     -----
     The n-th offsets of all directions belong together, but each is a whole number of cells of its
     own direction. Where cells are not square they differ by less than a cell: ``offset`` is that
-    of the first direction, as in :func:`mechanics.joint.describe_joint`, and ``offset_made``
+    of the first direction, as in :func:`mechanics.joint.describe_joint`, and ``offset_on_grid``
     that of each.
 
     Raises
@@ -186,10 +186,10 @@ def combine(parts: Sequence[xr.Dataset]) -> xr.Dataset:
     for (direction, _), members in groups.items():
         whole = xr.concat(members, "offset", data_vars="minimal").sortby("offset")
         by_direction.setdefault(direction, []).append(whole)
-    return side_by_side([_join_resolutions(members) for members in by_direction.values()])
+    return concat_directions([_join_resolutions(members) for members in by_direction.values()])
 
 
-def side_by_side(directions: Sequence[xr.Dataset]) -> xr.Dataset:
+def concat_directions(directions: Sequence[xr.Dataset]) -> xr.Dataset:
     """One dataset of the states of several directions, at the offsets of the first."""
     states = [part.drop_vars(MAP_FIELDS, errors="ignore") for part in directions]
     joined = xr.concat(states, "direction", data_vars="minimal", join="override")
@@ -198,10 +198,10 @@ def side_by_side(directions: Sequence[xr.Dataset]) -> xr.Dataset:
     return joined
 
 
-def domains_of(states: xr.Dataset) -> xr.Dataset:
+def contact_domains(states: xr.Dataset) -> xr.Dataset:
     """The contact domains alone, with which of them were solved, and their error bounds."""
     kept = ("solved", "nodes_error")
-    return states.drop_vars([name for name in (*OF_STATES, *OFFSETS) if name not in kept])
+    return states.drop_vars([name for name in (*STATE_VARIABLES, *OFFSETS) if name not in kept])
 
 
 def map_fields(
@@ -269,6 +269,6 @@ def map_states(parts: Sequence[xr.Dataset]) -> xr.Dataset:
 
 def _join_resolutions(parts: Sequence[xr.Dataset]) -> xr.Dataset:
     """Parts that differ in resolution alone: scalars side by side, fields each their own."""
-    scalars = xr.concat([part[OF_STATES] for part in parts], "resolution")
-    fields = [part.drop_vars([*OF_STATES, "resolution"]) for part in parts]
+    scalars = xr.concat([part[STATE_VARIABLES] for part in parts], "resolution")
+    fields = [part.drop_vars([*STATE_VARIABLES, "resolution"]) for part in parts]
     return xr.merge([scalars, *fields], compat="identical", join="exact").sortby("resolution")

@@ -290,7 +290,7 @@ def _one_direction(
 ) -> xr.Dataset:
     """All of :func:`joint_strength` for one direction."""
     angle_b = material.basic_friction_angle
-    largest = dilatancy["offset_made"].sel(contact_direction=direction).values[-1]
+    largest = dilatancy["offset_on_grid"].sel(contact_direction=direction).values[-1]
     curves = _curves_with_rigid(dilatancy, joint, specimen, direction)
     midpoint, angles, angles_off = angles_with_errors(*curves)
     rigid_angle, angle, angle_off = angles[:, 0], angles[:, 1:], angles_off[:, 1:]
@@ -362,7 +362,7 @@ def _curves_with_rigid(
     curve = dilatancy.sel(contact_direction=direction)
     cells = joint["offset_cells"].sel(contact_direction=direction).values
     rigid, _ = rigid_dilatancy(specimen, direction, cells)
-    offset = curve["offset_made"].values
+    offset = curve["offset_on_grid"].values
     elastic, error = (
         curve[name].transpose("offset", "normal_force").values
         for name in ("elastic_dilatancy", "elastic_dilatancy_error")

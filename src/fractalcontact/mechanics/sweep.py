@@ -26,9 +26,9 @@ from .states import (
     OFFSETS,
     SCALARS,
     chosen_offset,
+    concat_directions,
     forces_of,
     map_fields,
-    side_by_side,
 )
 
 #: Tolerances are tightened by so much where that of the study leaves too large an error.
@@ -143,7 +143,7 @@ def joint_states(
         whole = JointLoading.of_joint(specimen, joint, direction, settings, solver)
         mapped = map_place(joint, settings, direction)
         states.append(contact_states(whole.at(whole.cells[offsets]), resolutions, mapped=mapped))
-    return side_by_side(states)
+    return concat_directions(states)
 
 
 def contact_states(
@@ -257,7 +257,7 @@ def _labelled_states(
     forces = loading.forces(loading.settings.loads)
     opened, spread = rigid_dilatancy(loading.specimen, loading.direction, loading.cells)
     of_offsets = {
-        "offset_made": loading.offsets,
+        "offset_on_grid": loading.offsets,
         "rigid_opening": opened,
         "composite_spread": spread,
     }

@@ -41,7 +41,7 @@ _PNG = b"\x89PNG\r\n\x1a\n"
 
 @dataclass(frozen=True)
 class Card:
-    """What a page shows of a figure; addresses are relative to the page."""
+    """Figure as a page shows it; addresses are relative to the page."""
 
     name: str
     title: str

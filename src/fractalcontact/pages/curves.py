@@ -66,7 +66,7 @@ def curves_table(study: str, subjects: list[Subject]) -> pd.DataFrame:
 
 
 def _says(found):
-    """Whether the interval of a dimension determines it; of other quantities it is an error."""
+    """True if the interval of a dimension determines it; of other quantities it is an error."""
     return found.scale != DIMENSION or found.determined
 
 

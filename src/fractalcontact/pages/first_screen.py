@@ -25,7 +25,7 @@ class Fact(NamedTuple):
 
 @dataclass(frozen=True)
 class Block:
-    """What the first screen says of one joint.
+    """Block of one joint on the first screen.
 
     Attributes
     ----------

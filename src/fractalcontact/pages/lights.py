@@ -67,7 +67,7 @@ def _is_pair(subject):
 
 
 def _scan(subject):
-    """Of one face, what suspicious cells carry belongs to its scan."""
+    """Light of the scan; of one face it includes the force on suspicious cells."""
     quality, load = (
         str(subject[stage].attrs.get("warning", "")) for stage in ("quality", "closure")
     )

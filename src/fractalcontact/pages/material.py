@@ -1,4 +1,4 @@
-"""What a specimen is taken to be made of, and what it is pressed against, in words."""
+"""Material and opposite face of a specimen, in words."""
 
 import math
 from dataclasses import dataclass
@@ -59,5 +59,5 @@ def material_of(subject: Subject) -> Material:
 
 
 def opposite_words(opposite: str) -> str:
-    """What stands for the other face: ``opposite`` is the attribute of the specimen."""
+    """Opposite face in words; ``opposite`` is the attribute of the specimen."""
     return _OPPOSITE[opposite]

@@ -143,7 +143,7 @@ def _tested(known: _At) -> str:
 
 
 def _limits(tested: _At) -> str:
-    """What the pressures are judged by: strengths that are stated, or usual ones."""
+    """Limits of the pressures: strengths that are stated, or usual ones."""
     stated = [at.model.limits.good_to for _, at in tested if at.model.stated]
     usual = [at.model.limits.good_to for _, at in tested if not at.model.stated]
     parts = [f"joint wall strength {_range(stated, _pressure)}"] if stated else []

@@ -40,7 +40,7 @@ CURVES = (
     ("closure", "resolved"),
     ("closure", "area_corrected"),
     ("closure", "area_corrected_resolved"),
-    ("closure", "offset_made"),
+    ("closure", "offset_on_grid"),
     ("dilatancy", "rigid_dilatancy"),
     ("domains", "box_side"),
     ("domains", "box_count"),

@@ -197,7 +197,7 @@ def _quoted(state: AtLoad, of: Shown | str) -> Quantity | Estimate | float:
 
 
 def _sort_value(state: AtLoad | None, of: Shown | str) -> float | str:
-    """What a column is sorted by: a number, empty where it is missing or undetermined."""
+    """Sort key of a column: a number, empty where it is missing or undetermined."""
     if state is None:
         return ""
     found = _quoted(state, of)

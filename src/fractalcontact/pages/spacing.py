@@ -28,7 +28,7 @@ class Doubled:
 
 
 def doubled_spacing(subject: Subject) -> Doubled:
-    """What twice the spacing of a specimen makes of both stiffnesses."""
+    """Changes of both stiffnesses of a specimen at twice the spacing."""
     state = subject.state("closure")
     return Doubled(*(float(state[f"{of}_change"]) for of in ("seated_k_ni", "interface_stiffness")))
 

@@ -96,7 +96,7 @@ class Quantity:
 
 @dataclass(frozen=True)
 class AtLoad:
-    """What is quoted of a specimen under one load.
+    """Quoted numbers of a specimen under one load.
 
     Attributes
     ----------
@@ -166,7 +166,7 @@ class AtLoad:
 
     @property
     def decided_by_scan(self) -> bool:
-        """Whether suspicious cells of the scans carry most of the load: its numbers are theirs."""
+        """True if suspicious cells of the scans carry most of the load: its numbers are theirs."""
         return bool(decided_by_scan(self.suspect_share))
 
 
@@ -221,7 +221,7 @@ class Specimen:
         return next(load for load in self.loads if load.of_maps)
 
     def at(self, number: int | None) -> AtLoad | None:
-        """What is quoted under the load of this number."""
+        """Quoted numbers under the load of this number."""
         return next((load for load in self.loads if load.number == number), None)
 
 
@@ -282,7 +282,7 @@ def _stated_stiffness(curve):
 
 
 def _at_load(subject, curve, number):
-    """What stands in the table under the load of this number."""
+    """Numbers of the table under the load of this number."""
     state = {"normal_force": number}
     return AtLoad(
         number=number,

@@ -63,7 +63,7 @@ def interval(value: float, low: float, high: float) -> str:
 
 
 def undetermined(value: str) -> str:
-    """What the data do not determine: the word, with the value and its error in brackets."""
+    """Undetermined number: the word, with the value and its error in brackets."""
     return f"undetermined ({value})"
 
 

@@ -271,7 +271,7 @@ def _tilted(heights, motion):
 
 
 def _lift(lower, moved, mean_gap) -> float:
-    """What brings the mean gap to what it was, or the faces to touch if it was not known."""
+    """Shift that restores the mean gap, or makes the faces touch where it is unknown."""
     lower, moved = _common_rectangle(lower, moved)
     gap = moved.values - lower.values
     if mean_gap is None:

@@ -103,7 +103,7 @@ def _refine(faces: list[xr.DataArray], motion: Motion, mode: str) -> tuple[Motio
 
 
 class _Problem(NamedTuple):
-    """What a search for a motion goes by."""
+    """Residuals and weights that a search for a motion uses."""
 
     lower: xr.DataArray
     surface: Surface

@@ -1,4 +1,4 @@
-"""What an estimator of the Hurst exponent declares of itself."""
+"""Declaration of an estimator of the Hurst exponent."""
 
 from collections.abc import Callable
 from typing import NamedTuple

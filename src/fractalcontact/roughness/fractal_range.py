@@ -62,7 +62,7 @@ class FractalRange(NamedTuple):
     noise_rms: Estimate
     """Standard deviation of independent errors of the nodes, mm."""
     noise_limit: float
-    """What it can be at most: the lowest level of the spectrum, mm."""
+    """Upper bound: the lowest level of the spectrum, mm."""
     noise_wavelength: Estimate
     """Where the self-affine line meets the noise floor, mm."""
     filter_wavelength: Estimate
@@ -154,7 +154,7 @@ def find_fractal_range(curve: Curve, spacing: float) -> FractalRange:
 
 
 def _too_short(level, limit, left_out) -> FractalRange:
-    """What is known of a spectrum with too few bins for a model."""
+    """Features of a spectrum with too few bins for a model."""
     return FractalRange(
         form=None,
         hurst=NO_ESTIMATE,
@@ -230,14 +230,14 @@ def _joined(values, others):
 
 
 def _is_determined(values) -> bool:
-    """Whether all wavelengths, and the noise's standard deviation, are known within `VAGUE`."""
+    """True if all wavelengths, and the noise's standard deviation, are known within `VAGUE`."""
     widths = {name: high - low for name, (_, low, high) in values.items() if np.isfinite(low)}
     widths["level"] = widths.get("level", 0.0) / 2  # of a variance
     return all(widths.get(name, 0.0) < 2 * np.log(VAGUE) for name in (*LENGTHS, "level"))
 
 
 def _is_sensible(form: Form, parameters: np.ndarray, x: np.ndarray) -> bool:
-    """Whether all features of a form lie where the spectrum shows them."""
+    """True if all features of a form lie where the spectrum shows them."""
     own = named(form, parameters)
     short_end = 0.0
     if form.filtering:

@@ -50,13 +50,13 @@ class Fit(NamedTuple):
     length: np.ndarray
     """(k,), cells."""
     side: float
-    """Of a square as large as the surface, cells."""
+    """Side of a square as large as the surface, cells."""
     axis: str
     """"both", "x" or "y"."""
     roll_off: float = np.inf
     """Wavelength above which the spectrum is flat, cells; infinite without one."""
     shape: str = SHARP
-    """Of `roll_off.SHAPES`."""
+    """Shape of the roll-off, of `roll_off.SHAPES`."""
 
 
 def slopes(x: np.ndarray, y: np.ndarray) -> np.ndarray:

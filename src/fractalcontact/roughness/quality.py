@@ -350,7 +350,7 @@ def _compared_with_range(end: Estimate, resolutions, side):
 
 
 def _cause(result, i, j):
-    """What ends the range along one axis of one face."""
+    """End of the fractal range along one axis of one face, and its cause."""
     filtered = result["filter_wavelength"][i, j]
     return "low-pass filter" if filtered == result["end"][i, j] else "noise floor"
 

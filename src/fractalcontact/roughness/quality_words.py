@@ -49,7 +49,7 @@ def noise_words(quality: xr.Dataset, face: str) -> str:
 
 
 def _noise_along(axis, of_axis) -> str:
-    """What is known of the noise along one axis."""
+    """Noise along one axis, in words."""
     if of_axis["noise_rms"].notnull():
         return f"{interval_words(of_axis, 'noise_rms')} rms along {axis}"
     limit = f"(at most {length_words(of_axis['noise_limit'].item())})"
@@ -94,7 +94,7 @@ def range_words(quality: xr.Dataset, face: str) -> str:
 
 
 def file_warnings(specimen: xr.Dataset) -> list[str]:
-    """What reading the files of a specimen found that its user should act on, a sentence each.
+    """Warnings from reading the files of a specimen, a sentence each.
 
     Parameters
     ----------

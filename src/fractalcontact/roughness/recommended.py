@@ -103,7 +103,7 @@ def variables_of_all(dimensions: xr.Dataset) -> dict[str, Any]:
 
 
 def beyond_roll_off(dimensions: xr.Dataset) -> bool:
-    """Whether the lags fitted reach beyond the part of a roll-off up to which its effect is known.
+    """True if the lags fitted reach beyond the part of a roll-off up to which its effect is known.
 
     Parameters
     ----------

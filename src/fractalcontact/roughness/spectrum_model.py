@@ -71,7 +71,7 @@ def named(form: Form, parameters: np.ndarray) -> dict[str, float]:
 
 
 def sampled(sampling: str, slope: float | np.ndarray, x: np.ndarray) -> Any:
-    """What the grid makes of a profile's spectrum x^-slope, as a factor.
+    """Factor of the grid on a profile's spectrum x^-slope.
 
     Parameters
     ----------

@@ -76,7 +76,7 @@ def read_confined(path: Path, options: ScanOptions) -> RawScan:
 
 
 def _how_it_ended(outcome: str, status: int, limits: dict) -> str:
-    """What became of a reader that sent no result."""
+    """Fate of a reader that sent no result, in words."""
     if outcome == "memory":
         return f"the reader ran out of memory ({limits['memory'] / 1024**3:.1f} GiB allowed)"
     if not os.WIFSIGNALED(status):

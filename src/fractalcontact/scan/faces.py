@@ -101,7 +101,7 @@ def _turned_over(scan: Measured, axis: str) -> Measured:
 
 
 def _keeps_lattice(scan: Measured, cloud: Cloud) -> bool:
-    """Whether the points stay on the lattice they lie on: the user wants no other spacing."""
+    """True if the points stay on the lattice they lie on: the user wants no other spacing."""
     lattice = cloud.lattice
     if lattice is None or scan.grid is None:
         return lattice is not None

@@ -36,7 +36,7 @@ def regular_file(path: Path) -> os.stat_result:
 
 
 def is_unchanged(before: os.stat_result, after: os.stat_result) -> bool:
-    """Whether a file was neither written to nor replaced between two looks at it."""
+    """True if a file was neither written to nor replaced between two looks at it."""
     same = ("st_dev", "st_ino", "st_size", "st_mtime_ns")
     return all(getattr(before, key) == getattr(after, key) for key in same)
 

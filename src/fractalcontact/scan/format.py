@@ -1,4 +1,4 @@
-"""What one scan format declares: its endings, its reader and what reading may take."""
+"""Declaration of a scan format: endings, reader, limits of reading."""
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""What every reader of a file format hands over, in the file's own units."""
+"""Raw scan as every reader returns it, in the file's own units."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager

@@ -47,7 +47,7 @@ STATUS = struct.Struct("!iqd")
 
 @dataclass(frozen=True)
 class Limits:
-    """What reading one file may take: bytes, seconds of processor time, seconds by the clock."""
+    """Limits of reading one file: bytes, seconds of processor time, seconds by the clock."""
 
     memory: int
     processor_seconds: int

@@ -20,7 +20,7 @@ def to_text(message: dict) -> bytes:
 
 
 def from_text(line: bytes) -> dict:
-    """What `to_text` made, lists as tuples: no dataclass here holds a list."""
+    """Inverse of `to_text`, lists as tuples: no dataclass here holds a list."""
     return _with_tuples(json.loads(line))
 
 

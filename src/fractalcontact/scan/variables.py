@@ -137,7 +137,7 @@ def _read_hdf5(dataset, path: Path) -> np.ndarray:
 
 
 def _attributes(stored) -> dict:
-    """Those we know, texts as str."""
+    """Known attributes, texts as str."""
     known = {name: stored[name] for name in _ATTRIBUTES if name in stored}
     return {name: _plain(value) for name, value in known.items()}
 

@@ -198,7 +198,7 @@ class _LoadedSize:
         self.solved = following.stop
 
     def _of_state(self, state: ContactState, window: int, step: int) -> dict[str, float]:
-        """What is kept of a state at the finest resolution."""
+        """Fields of a state kept at the finest resolution."""
         flush, settlement = self._flush[window], self._settlement[step]
         area, domain = self.sides.prod(), state.in_contact
         ny, nx = domain.shape

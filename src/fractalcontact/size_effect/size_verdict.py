@@ -52,7 +52,7 @@ class Judgement(NamedTuple):
 
 
 def judge_exponent(measured: Estimate, predicted: Estimate) -> Judgement:
-    """Whether a measured exponent is the one predicted: the rule of both forms.
+    """True if a measured exponent is the one predicted: the rule of both forms.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""What is known of a specimen before contact is solved: dimension, scan quality, sliding joint."""
+"""Stages of a specimen before contact: dimension, scan quality, sliding joint."""
 
 import xarray as xr
 

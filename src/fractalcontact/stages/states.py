@@ -1,4 +1,4 @@
-"""What follows from contact states of a specimen: curves, laws, domains, errors."""
+"""Results derived from contact states of a specimen: curves, laws, domains, errors."""
 
 from collections.abc import Sequence
 
@@ -20,7 +20,7 @@ from ..mechanics.separation import prefractal_openings
 from ..mechanics.states import (
     chosen_offset,
     combine,
-    domains_of,
+    contact_domains,
     force_range,
     forces_of,
     map_states,
@@ -80,7 +80,7 @@ def state_stages(
         best_dimension(surface_dimension).value,
         settings.map_offset,
     )
-    fields = domains_of(states)
+    fields = contact_domains(states)
     domains = analyse_domains(fields, spacing, fit_range=settings.box_range)
     nulls = nulls_of_map_states(mapped, spacing, joints["composite"], settings.box_range)
     domains = beside_domains(domains, nulls)

@@ -1,1 +1,1 @@
-"""What the paper states, compared with the atlas of a study."""
+"""Statements of the paper, compared with the atlas of a study."""

@@ -1,4 +1,4 @@
-"""What the paper says of closure and real contact area (sects. 4 and 5, Figs. 4 and 5)."""
+"""Statements of the paper on closure and contact area (sects. 4 and 5, Figs. 4 and 5)."""
 
 import numpy as np
 

@@ -45,7 +45,7 @@ def _table(prefix=(), names=QUANTITIES):
 
 
 def specimen_row(stages: Mapping[str, xr.Dataset], settings: Mapping) -> xr.Dataset:
-    """What of a specimen is compared with others: each quantity with its 95 % interval.
+    """Compared quantities of a specimen, each with its 95 % interval.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""What judges a statement: the joint's stages, verdicts, and rules that several share."""
+"""Judging of a statement: the joint's stages, verdicts, and rules that several share."""
 
 from collections.abc import Callable
 from functools import cached_property, wraps
@@ -84,7 +84,7 @@ class Joint(Subject):
 
     @cached_property
     def yields_everywhere(self) -> bool:
-        """Whether A_r = F/H within 1 %, so that the pressure is the hardness alone.
+        """True if A_r = F/H within 1 %, so that the pressure is the hardness alone.
 
         In every state at the scan's own resolution, and in most of the coarser ones.
         """
@@ -206,7 +206,7 @@ def beyond_margin(found: Estimate, name: str, *, rising: bool) -> str:
 
 
 def level(values: np.ndarray, symbol: str, v: np.ndarray) -> Finding:
-    """Whether values stay the same: their range over their mean."""
+    """True if values stay the same: their range over their mean."""
     known = np.isfinite(values)
     values, v = values[known], v[known]
     if len(values) < FEWEST_POINTS:

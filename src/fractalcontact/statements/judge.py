@@ -154,6 +154,6 @@ def table_of(
 
 
 def _note(finding: Finding, claim: Claim) -> str:
-    """What to know of a finding, ending with what would decide it where it is open."""
+    """Note on a finding, ending with what would decide it where it is open."""
     remedy = claim.decides if finding.verdict == UNDETERMINED else ""
     return "; ".join(filter(None, (finding.note, remedy)))

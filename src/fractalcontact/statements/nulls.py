@@ -1,4 +1,4 @@
-"""What is judged beside a rival: closure laws, null models of the contact domain, its isotropy."""
+"""Statements judged against a rival: closure laws, null models of the domain, isotropy."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""What the paper says of joints of a kind, judged on realisations of the kind.
+"""Statements of the paper on joints of a kind, judged on realisations of the kind.
 
 Each rule has the name of its statement, as in the modules that judge one specimen, and reads the
 stage ``ensemble``: means over the realisations with their 95 % intervals.
@@ -212,7 +212,7 @@ def _trend(joint: Joint, name: str, trend: str) -> Finding:
 
 @_of_realisations
 def dimension_spans_all(joint: Joint) -> Finding:
-    """Whether Delta_sigma by box counts begins near 0 and ends near 2, by the mean's intervals."""
+    """True if Delta_sigma by box counts begins near 0 and ends near 2, by the mean's intervals."""
     stage = joint["ensemble"]
     delta = _mean(stage, "delta_sigma")
     every = stage["delta_sigma_n"].values == stage.sizes["realisation"]

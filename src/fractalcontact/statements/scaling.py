@@ -1,4 +1,4 @@
-"""What the paper says of the contact domain and of size (sects. 6 and 7, Figs. 1b and 8 to 13)."""
+"""Statements of the paper on contact domain and size (sects. 6 and 7, Figs. 1b, 8 to 13)."""
 
 from collections import Counter
 from dataclasses import replace
@@ -48,7 +48,7 @@ def boxes_follow_one_law(joint: Joint) -> Finding:
 
 @of_the_area
 def estimates_agree(joint: Joint) -> Finding:
-    """Whether A_r(s) and box counting have one Delta_sigma, over all loads that decide it.
+    """True if A_r(s) and box counting have one Delta_sigma, over all loads that decide it.
 
     Equal is a difference whose whole interval is within a quarter, unequal one whose interval
     leaves out zero.
@@ -104,7 +104,7 @@ def dimension_rises_by_boxes(joint: Joint) -> Finding:
 
 
 def dimension_spans_all(joint: Joint) -> Finding:
-    """Whether Delta_sigma by box counts begins near 0 and ends near 2, by their intervals."""
+    """True if Delta_sigma by box counts begins near 0 and ends near 2, by their intervals."""
     states = joint.states("domains")
     nodes = joint.states("closure")["nodes"].values
     delta = Estimate.read(states, "delta_sigma")
@@ -206,7 +206,7 @@ def size_effect_follows(joint: Joint) -> Finding:
 
 
 def _beyond(exponent: Estimate, predicted: Estimate) -> bool:
-    """Whether an exponent lies outside every predicted one, by the intervals of both."""
+    """True if an exponent lies outside every predicted one, by the intervals of both."""
     apart = (exponent.low > predicted.high) | (exponent.high < predicted.low)
     known = np.isfinite(predicted.width)
     return bool(known.any() and apart[known].all())

@@ -1,4 +1,4 @@
-"""What the paper says of dilatancy and of contact domains as the joint slides (Figs. 6 and 7)."""
+"""Statements of the paper on dilatancy and contact domains under sliding (Figs. 6 and 7)."""
 
 from typing import NamedTuple
 
@@ -31,7 +31,7 @@ class Plateaus(NamedTuple):
 
     @classmethod
     def of(cls, joints: xr.Dataset) -> "Plateaus":
-        """Those of the stage ``joints``; directions without a line are left out."""
+        """Trends of the stage ``joints``; directions without a line are left out."""
         fitted = joints.sel(direction=np.isfinite(joints["plateau_slope"].values))
         return cls(
             [str(name) for name in fitted["direction"].values],
@@ -70,7 +70,7 @@ def dilatancy_flattens(joint: Joint) -> Finding:
 
 
 def dilatancy_flattens_in_two(joint: Joint) -> Finding:
-    """Whether two of four directions have a plateau and the others rise on."""
+    """True if two of four directions have a plateau and the others rise on."""
     plateaus = Plateaus.of(joint["joints"])
     if plateaus.change.size < DIRECTIONS:
         return Finding(UNDETERMINED, f"{DIRECTIONS} directions needed")

@@ -1,4 +1,4 @@
-"""What the paper says of several joints together, judged for a study."""
+"""Statements of the paper on several joints together, judged for a study."""
 
 from collections.abc import Mapping
 

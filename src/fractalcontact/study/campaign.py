@@ -21,7 +21,7 @@ COMPARISON = "comparison"
 
 
 def in_parts(config: Mapping[str, Any], specimens: Collection[str]) -> bool:
-    """Whether the atlas of a study has one file a specimen, and one more for all of them.
+    """True if the atlas of a study has one file a specimen, and one more for all of them.
 
     Parameters
     ----------

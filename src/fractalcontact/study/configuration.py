@@ -169,7 +169,7 @@ class _Stated(dict):
         return [pair for pair in chosen if pair in loads] or loads[-len(chosen) :]
 
     def _not_solved(self, key, text):
-        """What is wrong where a load is to be drawn that is not solved: the later file of both."""
+        """Error of a load that is drawn but not solved, in the later file of both."""
         if "loads" in self._own and key not in self._own:
             return InputError(
                 f"{self.where('loads')}: {self['loads']} lacks {text!r}, which {self.where(key)} "

@@ -302,7 +302,7 @@ def _file(results: Path, name: str, digest: str) -> dict[str, Any]:
 
 
 def _description(name: str) -> str:
-    """What a result is, from its place: that of a figure, of a stage, or of a file of its own."""
+    """Kind of a result by its place: that of a figure, of a stage, or of a file of its own."""
     path = Path(name)
     first = path.parts[0]
     if name in _FILES:

@@ -46,7 +46,7 @@ _CONSTANT = re.compile(
 
 @dataclass(frozen=True)
 class Figure:
-    """What a figure's module states.
+    """Statements of a figure's module.
 
     Attributes
     ----------
@@ -78,7 +78,7 @@ class Figure:
 
 
 def read_figure(path: Path | str) -> Figure:
-    """What the module of a figure states of itself, read without importing it.
+    """Statements of a figure's module, read without importing it.
 
     Parameters
     ----------

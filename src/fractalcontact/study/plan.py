@@ -1,4 +1,4 @@
-"""What a run was planned with: its jobs, which may read the study again later, must find the same.
+"""Plan of a run: its jobs, which may read the study again later, must find the same.
 
 On a cluster every job reads the study when it begins, hours after the run was planned. What is made
 of another scan, or with other settings, would be taken for what was planned: no later run would see
@@ -68,7 +68,7 @@ def read_plan(path: Path | str) -> Plan:
 
 
 def changed_since(plan: Plan, now: Plan, source: str) -> str:
-    """What is said otherwise than when the run was planned; empty if nothing.
+    """Differences from the plan of the run; empty if none.
 
     Specimens that came or went concern no job of the others. Scan files are left to the jobs that
     read them.

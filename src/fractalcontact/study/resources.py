@@ -27,7 +27,7 @@ ROOM, ROOM_OF_TIME = 1.6, 5.0
 
 @dataclass(frozen=True)
 class Cost:
-    """What the job of a rule takes.
+    """Resources of the job of a rule.
 
     Attributes
     ----------

@@ -147,7 +147,7 @@ def list_scans(
 
 
 def folder_notes(folder: Path | str) -> list[str]:
-    """What a user should know of the names in a folder: files passed over, pairs that are none.
+    """Notes on the names in a folder: files passed over, pairs that are none.
 
     Parameters
     ----------
@@ -177,7 +177,7 @@ def folder_notes(folder: Path | str) -> list[str]:
 
 
 def is_passed_over(name: str) -> bool:
-    """Whether a file or folder of this name is looked at: hidden ones and README* are not."""
+    """True if a file or folder of this name is looked at: hidden ones and README* are not."""
     hidden = name.startswith(".") or name.upper().startswith(_IGNORED)
     return hidden or _is_left_behind(name) or name.lower().endswith(DRAFTS)
 
@@ -210,7 +210,7 @@ def _turned(face: re.Match) -> str:
 
 
 def _is_named_like_a_scan(folder: Path) -> bool:
-    """Whether a folder is likely to be an archive that somebody unpacked."""
+    """True if a folder is likely to be an archive that somebody unpacked."""
     if not folder.suffix:
         return False
     from ..scan.formats import known_extensions  # takes a second, and is hardly ever needed
@@ -251,7 +251,7 @@ def refuse_unusable(name: str, path: Path) -> None:
 
 
 def case_alone(roles: dict[str, dict[str, Path]]) -> dict[str, InputError]:
-    """What is wrong with names that differ in upper and lower case alone, by name.
+    """Errors of names that differ in upper and lower case alone, by name.
 
     On many discs Rock.nc and rock.nc are one file: one result would overwrite the other.
     """

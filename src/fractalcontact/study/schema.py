@@ -1,4 +1,4 @@
-"""What a file must hold by its schema, and errors that say what to write instead."""
+"""Validation of a file by its schema, with errors that say what to write instead."""
 
 import difflib
 from collections.abc import Iterable, Mapping
@@ -47,7 +47,7 @@ def nearest(word: object, known: Iterable) -> str:
 
 
 def _is_integer(_checker, value):
-    """Whether a value is an integer; for JSON 512.0 is one, for numpy it is no number of nodes."""
+    """True if a value is an integer; for JSON 512.0 is one, for numpy it is no number of nodes."""
     return isinstance(value, int) and not isinstance(value, bool)
 
 

@@ -10,7 +10,7 @@ BESIDE_SURFACE = ("label", "chosen_for", "realisations")
 
 
 def is_capped_variant(study: Mapping[str, Any], name: str | None) -> bool:
-    """Whether an embedded specimen with a hardness stands in the study once more without one."""
+    """True if an embedded specimen with a hardness stands in the study once more without one."""
     embedded = study.get("embedded", {})
     if name not in embedded or not _has_hardness(study, name):
         return False
@@ -27,7 +27,7 @@ def _surface_of(recipe):
 
 
 def _has_hardness(study, name):
-    """Whether the study caps the pressure of a specimen."""
+    """True if the study caps the pressure of a specimen."""
     stated = {**study["defaults"], **study.get("specimens", {}).get(name, {})}["material"]
     # An unknown material is refused where it is resolved.
     definition = stated if isinstance(stated, Mapping) else study["materials"].get(stated, {})

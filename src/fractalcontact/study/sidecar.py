@@ -30,7 +30,7 @@ _WORDS = (
 
 
 def is_contact_map(scan_options: Mapping) -> bool:
-    """Whether a sidecar says that its file is a map of contact, not of heights."""
+    """True if a sidecar says that its file is a map of contact, not of heights."""
     return scan_options.get("kind") == CONTACT_MAP
 
 

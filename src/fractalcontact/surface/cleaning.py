@@ -137,7 +137,7 @@ def _sparse(scan: xr.DataArray) -> np.ndarray:
 
 
 def _in_words(attrs: dict, largest_hole: int, missing: int) -> str:
-    """What was done to the faces, and the key that would do otherwise."""
+    """Treatment of the faces, and the key that would change it."""
     count, spikes = attrs["outlier_count"], attrs["spike_count"]
     if count == 0:
         words = "no outliers"

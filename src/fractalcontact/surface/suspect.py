@@ -82,7 +82,7 @@ def find_suspects(scans: list[xr.DataArray]) -> Suspects:
 
 
 def height_is_known(upper: xr.DataArray) -> bool:
-    """Whether the mean gap was measured; else the upper face was set down until some cells touch.
+    """True if the mean gap was measured; else the upper face was set down until some cells touch.
 
     Parameters
     ----------

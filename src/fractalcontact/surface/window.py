@@ -127,7 +127,7 @@ def _stated(specimen, request) -> _Wanted:
 
 
 def _middle(shape) -> tuple[float, ...]:
-    """Of a grid, in cells."""
+    """Window of a grid, in cells."""
     return tuple((n - 1) / 2 for n in shape)
 
 
@@ -282,7 +282,7 @@ def hole_free_square(valid: np.ndarray, spacing: tuple[float, float]) -> tuple[s
 
 
 def _no_place(specimen, shape) -> InputError:
-    """What is in the way of a window, and what would fit."""
+    """Obstacle of a window, and the window that would fit."""
     valid, spacing = specimen["valid"].values, spacing_of(specimen)
     rows, columns = np.nonzero(~valid)
     y, x = specimen.y.values, specimen.x.values

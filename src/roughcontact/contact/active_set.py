@@ -74,7 +74,7 @@ class LinearSolve(Enum):
 
 @dataclass(frozen=True)
 class WorkingSet:
-    """What becomes of each node that moves in one iteration.
+    """New set of each node that moves in one iteration.
 
     Attributes
     ----------
@@ -133,7 +133,11 @@ class ActiveSetMethod:
         self._dtype = np.float64 if wide else dtype
 
     def solve(
-        self, pressure: np.ndarray, displacement: np.ndarray | None = None, *, at_least: int = 0
+        self,
+        pressure: np.ndarray,
+        displacement: np.ndarray | None = None,
+        *,
+        min_iterations: int = 0,
     ) -> Solution:
         """Iterate until a state is verified, or MAX_ITERATIONS; the caller checks the residual.
 
@@ -143,7 +147,7 @@ class ActiveSetMethod:
             Where to start; may violate the bounds. Overwritten, and so is the displacement.
         displacement : (n,) ndarray, optional
             K of it, where known.
-        at_least : int
+        min_iterations : int
             Fewest iterations, even of a start within tolerance; fewer only where violations are
             no larger than SINGLE_PRECISION_FLOOR.
 
@@ -162,8 +166,8 @@ class ActiveSetMethod:
             _check_on_nodes(displacement, "displacement", operator)
         # A displacement comes with states of this half-space at other loads. A start without one is
         # prolonged from a coarser grid, and its set nearly right, or from another half-space. On
-        # grids that only a start is made of (``at_least``) prediction gains nothing.
-        known = displacement is not None and not at_least
+        # grids that only a start is made of (``min_iterations``) prediction gains nothing.
+        known = displacement is not None and not min_iterations
         predictions = SET_PREDICTIONS if known and not operator.inverse.small else 0
         iterate = first_iterate(problem, operator, pressure, displacement)
         previous_active, violation = np.empty(0, np.int32), 0.0
@@ -176,7 +180,9 @@ class ActiveSetMethod:
                 start = verified(problem, operator, iterate)
                 return newton_on_closure(problem, rtol, operator, start, self._solve_closure)
             kkt = self._kkt_residual(iterate)
-            may_end = iteration >= at_least or kkt.holds_to(SINGLE_PRECISION_FLOOR, iterate.closure)
+            may_end = iteration >= min_iterations or kkt.holds_to(
+                SINGLE_PRECISION_FLOOR, iterate.closure
+            )
             if may_end and kkt.holds_to(rtol, iterate.closure):
                 iterate = solution = verified(problem, operator, iterate, self._dtype)
                 if solution.residual <= rtol:

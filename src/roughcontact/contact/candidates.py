@@ -191,12 +191,12 @@ class Restricted:
         return self.problem.nodes
 
     def holds(self, solution: Solution) -> bool:
-        """Whether no node that is not a candidate can touch, within the tolerance either."""
+        """True if no node that is not a candidate can touch, within the tolerance either."""
         return not self.problem.by_force or solution.closure * MARGIN <= self.bound
 
 
 def may_restrict(space: HalfSpace, rtol: float) -> bool:
-    """Whether the window is so large, and the tolerance such, that candidates may be worth while.
+    """True if the window is so large, and the tolerance such, that candidates may be worth while.
 
     Parameters
     ----------
@@ -296,7 +296,7 @@ def _start(case):
     coarse = _start(coarse_case)
     operator = None if coarse.restricted is None else coarse.restricted.operator
     method = ActiveSetMethod(coarse.problem, COARSE_RTOL, operator, np.float32)
-    solution = method.solve(coarse.pressure, at_least=COARSE_ITERATIONS)
+    solution = method.solve(coarse.pressure, min_iterations=COARSE_ITERATIONS)
     if coarse_case.space.shape[0] * coarse_case.space.shape[1] > KEPT_CELLS:
         forget_preconditioner(coarse_case.space)
     bound = _bound(case, solution.closure, coarse.coarse_closure)
@@ -327,7 +327,7 @@ def _start(case):
 
 
 def _bound(case, closure, coarser_closure):
-    """What the closure should not exceed, from those of the two next coarser grids."""
+    """Bound of the closure from those of the two next coarser grids."""
     if not case.by_force:
         return MARGIN * case.load
     growth = closure / coarser_closure - 1 if np.isfinite(coarser_closure) else FIRST_GROWTH

@@ -1,4 +1,4 @@
-"""What a process has spent on contact solves, for the log of its job. Nothing else reads it."""
+"""Effort of a process on contact solves, for the log of its job. Nothing else reads it."""
 
 import contextlib
 import os

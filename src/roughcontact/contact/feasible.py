@@ -79,7 +79,7 @@ def _scaled_to_force(problem, operator, pressure, displacement):
 
 
 def _energy_factor(problem, pressure, displacement):
-    """What a start under a given closure is to be multiplied with: its energy is least then.
+    """Energy-minimising scale of a start at given closure.
 
     On a coarse grid, of which each cell has its highest point, too much is carried.
     """

@@ -80,7 +80,7 @@ def _changed_pressure(problem, pressure, gap, closure):
         start = _changed_pressure(coarse, start, coarse_gap, closure)
         displacement = _displacement(space, start)
     method = ActiveSetMethod(coarse, CHANGE_RTOL, dtype=np.float32)
-    solution = method.solve(start, displacement, at_least=COARSE_ITERATIONS)
+    solution = method.solve(start, displacement, min_iterations=COARSE_ITERATIONS)
     if solution.pressure.size > KEPT_CELLS:
         forget_preconditioner(space)
     ny, nx = shape

@@ -125,7 +125,7 @@ class InverseCholesky:
         self._spare = representative, old[1], level, affected
 
     def _dense(self, nodes, fraction):
-        """Whether the nodes are, on all levels, more than a fraction of the window's cells."""
+        """True if the nodes are, on all levels, more than a fraction of the window's cells."""
         return nodes * len(self._shifts) > fraction * self._shape[0] * self._shape[1]
 
     def _empty_window(self):

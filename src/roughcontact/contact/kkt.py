@@ -160,7 +160,7 @@ class KKTResidual:
     largest: float
 
     def holds_to(self, tolerance: float, closure: float) -> bool:
-        """Whether no violation exceeds a fraction of the closure."""
+        """True if no violation exceeds a fraction of the closure."""
         return self.largest <= tolerance * abs(closure)
 
 

@@ -46,7 +46,7 @@ def nested_iteration_start(problem: Problem) -> np.ndarray:
         return problem.bounds.clip(np.ones(ny * nx))
     coarse = problem.coarser(restrict_minimum(problem.clearance.reshape(ny, nx)).ravel())
     method = ActiveSetMethod(coarse, COARSE_RTOL, dtype=np.float32)
-    solution = method.solve(nested_iteration_start(coarse), at_least=COARSE_ITERATIONS)
+    solution = method.solve(nested_iteration_start(coarse), min_iterations=COARSE_ITERATIONS)
     if coarse.clearance.size > KEPT_CELLS:
         forget_preconditioner(coarse.space)
     pressure = solution.pressure.reshape(coarse.space.shape) / 2

@@ -42,7 +42,7 @@ def check_on_set(values: np.ndarray, n: int) -> None:
 
 @njit(cache=True)
 def _ascending(nodes, cells):
-    """Whether these are numbers from 0 to cells - 1, each larger than the one before."""
+    """True if these are numbers from 0 to cells - 1, each larger than the one before."""
     before = -1
     for node in nodes:
         if node <= before or node >= cells:

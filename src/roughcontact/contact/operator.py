@@ -80,7 +80,7 @@ class Operator:
             self._between[values.dtype] = multipole
         return self._between[values.dtype](loaded, values)
 
-    def on(self, *pairs: tuple[np.ndarray, np.ndarray]) -> np.ndarray:
+    def apply_sparse(self, *pairs: tuple[np.ndarray, np.ndarray]) -> np.ndarray:
         """The same in single precision under (nodes, values) pairs alone.
 
         Raises
@@ -95,7 +95,7 @@ class Operator:
             return self._on_nodes(loaded, values)
         grid = self._grid.ravel()
         for nodes, values in pairs:
-            _put(grid, nodes, values)
+            _scatter(grid, nodes, values)
         image = self(grid)
         for nodes, _ in pairs:
             grid[nodes] = 0
@@ -103,7 +103,7 @@ class Operator:
 
 
 @njit(cache=True)
-def _put(grid, nodes, values):
+def _scatter(grid, nodes, values):
     """grid[nodes] = values."""
     if nodes.size != values.size:
         raise ValueError("expected as many values as nodes")

@@ -92,7 +92,7 @@ class ProjectedCG:
 
     def apply_step(self, fixed: np.ndarray, change: np.ndarray) -> None:
         """Apply K to the step, and to the ``change`` of ``fixed`` nodes that goes with it."""
-        self.image = self.operator.on((self.active, self.solution), (fixed, change))
+        self.image = self.operator.apply_sparse((self.active, self.solution), (fixed, change))
         self.residual *= self.unclipped
         _subtract(self.residual, np.float32(1), self.image, self.active, self.unclipped)
 
@@ -119,7 +119,7 @@ class ProjectedCG:
                 direction *= np.float32(slope / previous)
                 direction += search
             previous = slope
-            image = self.operator.on((self.active, direction))
+            image = self.operator.apply_sparse((self.active, direction))
             curvature = _curvature(direction, image, self.active, self.unclipped)
             length = np.float32(slope / curvature)
             add(self.solution, length, direction)
@@ -127,7 +127,7 @@ class ProjectedCG:
             _subtract(self.residual, length, image, self.active, self.unclipped)
 
     def _response_of_unclipped(self):
-        """What the preconditioner makes of 1 on the unclipped nodes, on these.
+        """Preconditioned vector of ones on the unclipped nodes.
 
         No other response will do, however few nodes were clipped: with that of the whole set the
         gradients are not conjugate, and were seen to diverge.

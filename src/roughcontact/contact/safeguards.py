@@ -35,12 +35,12 @@ CLOSURE_ROUNDING = 1e-12
 
 
 def many_iterations(iterations: int) -> bool:
-    """Whether more iterations were made than go without exact solves, under a given closure."""
+    """True if more iterations were made than go without exact solves, under a given closure."""
     return iterations > PATIENCE
 
 
 def many_iterations_under_force(iterations: int, violation: float, closure: float) -> bool:
-    """Whether more iterations were made than go without Newton's method, under a given force.
+    """True if more iterations were made than go without Newton's method, under a given force.
 
     Parameters
     ----------

@@ -227,7 +227,7 @@ def _check_start(start, space):
 
 
 def _within_double_precision(space, load, by_force, depth):
-    """Whether the state of a load has numbers that keep all their digits."""
+    """True if the state of a load has numbers that keep all their digits."""
     length, pressure = _load_units(space, load, by_force)
     sizes = length, pressure, pressure * space.cell_area
     if not LEAST_RESULT <= min(sizes) <= max(sizes) <= MOST_RESULT:
@@ -318,7 +318,7 @@ class _Units:
         return min(load / at, FURTHEST) if at > 0 else 1.0
 
     def _load_of(self, state):
-        """What is given of the load: the force or the closure of a state."""
+        """Given quantity of the load: the force or the closure of a state."""
         return state.force if self.by_force else state.closure
 
     def state(self, solution, topography, problem, start):

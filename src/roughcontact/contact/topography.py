@@ -104,7 +104,7 @@ class Topography:
 
 
 def _is_as_wanted(array, shape):
-    """Whether compiled code can read it as it is."""
+    """True if compiled code can read it as it is."""
     return array.dtype in _KEPT_TYPES and array.shape == shape and array.flags.c_contiguous
 
 

@@ -125,7 +125,7 @@ class MultipoleOperator:
 
 
 def multipole_suits(space: HalfSpace) -> bool:
-    """Whether cells are so nearly square that the errors stated hold."""
+    """True if cells are so nearly square that the errors stated hold."""
     return max(space.spacing) <= MOST_STRETCHED * min(space.spacing)
 
 

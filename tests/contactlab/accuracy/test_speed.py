@@ -80,11 +80,11 @@ def test_others_are_ahead_only_below_the_error_and_on_the_front():
             "force_error": ("point", [1e-5, 1e-3, 1e-1, 1e-4, 1e-3]),
             "seconds": ("point", [4.0, 3.0, 1.0, 5.0, 2.0]),
         },
-        attrs={"told_apart_to": 1e-9},
+        attrs={"resolvable_error": 1e-9},
     )
     assert ahead_of_ours(points)["method"].values.tolist() == ["d"]
     assert ahead_of_ours(points, models=False)["method"].values.tolist() == ["a"]
-    alike = points.assign_attrs(told_apart_to=1e-2)
+    alike = points.assign_attrs(resolvable_error=1e-2)
     assert ahead_of_ours(alike, below=1.0)["method"].values.tolist() == ["b", "d"]
     assert ahead_of_ours(points, below=1e-5).sizes["point"] == 0
 

@@ -1,4 +1,4 @@
-"""What the figures of accuracy and speed share: test problems, styles of methods, axes."""
+"""Test problems, styles of methods and axes shared by the figures of accuracy and speed."""
 
 from collections.abc import Iterable
 from typing import Any
@@ -46,7 +46,7 @@ def _place(attrs):
 
 
 def rough(scenes: dict[str, xr.Dataset]) -> dict[str, xr.Dataset]:
-    """Those on self-affine surfaces."""
+    """Test problems on self-affine surfaces."""
     return {name: scene for name, scene in scenes.items() if np.isfinite(scene.attrs["hurst"])}
 
 

@@ -1,4 +1,4 @@
-"""Whether dropping points alone reaches the right contact set, by kernel and by tolerance."""
+"""True if dropping points alone reaches the right contact set, by kernel and by tolerance."""
 
 from collections.abc import Sequence
 

@@ -77,6 +77,6 @@ def front(scenes: dict[str, xr.Dataset], quantity: str) -> dict[str, Any]:
         "problems": len(scenes),
         "leads": sum(not found.sizes["point"] for found in ahead),
         "models": sum(bool((found["kind"] == MODEL).any()) for found in with_models),
-        "alike": max(scene.attrs["told_apart_to"] for scene in scenes.values()),
+        "alike": max(scene.attrs["resolvable_error"] for scene in scenes.values()),
         "worst": max(scene.attrs["reference_error"] for scene in scenes.values()),
     }

@@ -112,7 +112,7 @@ def _draws(verdicts, code):
 
 
 def _unmeasured(said):
-    """What was said of a failure, without the residual, which is another every time."""
+    """Message of a failure without the residual, which differs every time."""
     return said.partition("; best residual")[0]
 
 

@@ -80,7 +80,7 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
 
 
 def _bars(test) -> Line2D:
-    """What bars and places of points are."""
+    """Legend of bars and places of points."""
     drawn = f"{_count(test)} surfaces of each $H$, side by side"
     return heading(f"{drawn}; bars: {100 * PROBABILITY:.0f} % intervals")
 

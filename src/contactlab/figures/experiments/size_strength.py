@@ -90,7 +90,7 @@ def _draw_strength(axes: Axes, test: xr.Dataset) -> None:
 
 
 def _apart(ticks: np.ndarray) -> list[float]:
-    """Of ticks along a logarithmic axis those whose labels stand clear of each other."""
+    """Ticks of a logarithmic axis whose labels stand clear of each other."""
     chosen: list[float] = []
     least = (ticks.max() / ticks.min()) ** _CLEAR
     for tick in np.sort(ticks):

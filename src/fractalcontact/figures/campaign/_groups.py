@@ -1,4 +1,4 @@
-"""What the figures over specimens and groups share: words, colours, the load they are drawn at."""
+"""Words, colours and load shared by the figures over specimens and groups."""
 
 from textwrap import fill
 
@@ -50,7 +50,7 @@ def group_labels(comparison: xr.Dataset) -> list[str]:
 
 
 def alone(comparison: xr.Dataset) -> bool:
-    """Whether every specimen stands for itself: few of them, and no group stated."""
+    """True if every specimen stands for itself: few of them, and no group stated."""
     few = comparison.sizes["specimen"] <= MAX_ALONE
     return few and list(comparison["group_name"].values) == [UNGROUPED]
 

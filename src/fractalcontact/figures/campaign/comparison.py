@@ -112,7 +112,7 @@ def _draw_strip(axes, name, under):
 
 
 def _draw_key(axes, under, *, by_specimen):
-    """What the signs are, in the last panel."""
+    """Legend of the signs, in the last panel."""
     axes.set_axis_off()
     axes.set(xlim=(0, 1.4), ylim=(0, 1))
     if by_specimen:

@@ -100,7 +100,7 @@ def _draw_no_effect(axes, name, *, drawn):
 
 
 def _marks(comparison, *, by_specimen):
-    """What else is drawn, for the legend."""
+    """Other entries of the legend."""
     no_effect = mark(color="0.4", lw=0.8, ls=(0, (1, 2)), label="(d) no size effect: 0")
     if by_specimen:
         return [heading("bars: 95 % intervals"), no_effect]

@@ -85,7 +85,7 @@ def _table(atlas, stage, name):
 
 
 def _whole(atlas):
-    """What is judged for the study as a whole; empty where it has one specimen."""
+    """Statements judged for the study as a whole; empty where it has one specimen."""
     if "study_statements" in atlas.children:
         return _table(atlas, "study_statements", WHOLE)
     return pd.DataFrame({key: [] for key in DATA})
@@ -126,7 +126,7 @@ def _counts(tables, whole):
 
 
 def _draw_key(axes, y, counts):
-    """What the signs say, and how often each stands above, below the table."""
+    """Legend of the signs with their counts, below the table."""
     style = {"va": "top", "fontsize": 7, "family": "DejaVu Sans"}
     for i, (verdict, (sign, colour)) in enumerate(SIGNS.items()):
         x = 0.01 + 0.2 * i

@@ -1,4 +1,4 @@
-"""What was done to the files of a specimen, in words."""
+"""History of the files of a specimen, in words."""
 
 import json
 from collections.abc import Sequence
@@ -71,7 +71,7 @@ def _faces_words(specimen):
 
 
 def _registration_words(text):
-    """What moved the upper face, and what became of the gap."""
+    """Motion of the upper face and its effect on the gap, in words."""
     if not text:
         return ""
     found = json.loads(text)

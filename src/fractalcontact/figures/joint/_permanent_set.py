@@ -1,4 +1,4 @@
-"""What a joint whose contacts crush leaves: yielded nodes and set over the load, map of the set."""
+"""Yielded nodes and permanent set over the load, and the map of the set."""
 
 from typing import Any
 

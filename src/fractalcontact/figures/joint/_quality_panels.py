@@ -30,7 +30,7 @@ GAUSSIAN = "0.6"
 def draw_mask(
     axes: Axes, specimen: xr.Dataset, faces: Sequence[str], sides: Sequence[float]
 ) -> list[Artist]:
-    """What of the scan is missing, filled or an outlier; the entries of a legend."""
+    """Mask of missing, filled and outlying cells, with the entries of its legend."""
     missing = np.isnan([specimen[face].values for face in faces]).any(axis=0)
     image = np.full((*missing.shape, 3), to_rgb(PRESENT))
     image[missing] = to_rgb(MISSING)

@@ -1,4 +1,4 @@
-"""What the figures of the size test share: loads, lines of eq. 6, axes."""
+"""Loads, lines of eq. 6 and axes shared by the figures of the size test."""
 
 from typing import Any
 

@@ -1,4 +1,4 @@
-"""What was solved and how exactly, and why."""
+"""Solve plan of a specimen: states solved, accuracy, reasons."""
 
 import numpy as np
 import pandas as pd

@@ -91,7 +91,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
 
 
 def _text_lines(specimen, quality, faces, warnings):
-    """What was done and found, broken into lines; the warnings first."""
+    """History and findings of a scan, broken into lines; the warnings first."""
     paragraphs = [f"WARNING: {warning}." for warning in warnings]
     paragraphs += [f"{face.capitalize()} face: {quality.attrs[f'{face}_face']}." for face in faces]
     paragraphs.append(f"{quality.attrs['cells']}.")

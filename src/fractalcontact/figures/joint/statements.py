@@ -1,4 +1,4 @@
-"""What the paper says, and whether it holds for this joint: a table."""
+"""Table of the paper's statements with their verdicts for one joint."""
 
 from textwrap import fill
 

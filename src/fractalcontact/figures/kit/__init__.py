@@ -1,1 +1,1 @@
-"""What figures share: the drawing and its files, ticks, words, maps, tables."""
+"""Tools shared by figures: the drawing and its files, ticks, words, maps, tables."""

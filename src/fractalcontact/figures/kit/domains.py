@@ -50,7 +50,7 @@ class DeltaSigma(Estimate):
 
     @property
     def determined(self) -> np.ndarray:
-        """Whether each value is determined."""
+        """True if each value is determined."""
         return np.array([self[i].determined for i in range(np.size(self.value))])
 
     def number(self, i: int) -> str:

@@ -1,4 +1,4 @@
-"""What the figures share: style, what a drawing is, how it is written, what the study asked for."""
+"""Style of the figures, the drawing, its files, and the figures a study requests."""
 
 import contextlib
 import gc

@@ -180,7 +180,7 @@ def _width(text: Text, words: str) -> float:
 
 
 def _renderer(figure):
-    """What the figure is measured by."""
+    """Renderer that measures the figure."""
     canvas: FigureCanvasAgg = figure.canvas
     return canvas.get_renderer()
 

@@ -62,7 +62,7 @@ def draw_points(
 
 
 def hollow_entry(axes: Axes, label: str, **style: Any) -> None:
-    """What hollow points are, for the legend of their axes.
+    """Legend entry of hollow points.
 
     Parameters
     ----------

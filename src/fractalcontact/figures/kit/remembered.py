@@ -1,4 +1,4 @@
-"""What matplotlib finds out about ticks and texts of a figure, remembered while nothing changes it.
+"""Cache of matplotlib's ticks and text sizes while a figure does not change.
 
 A figure is measured for its layout, and drawn into two files. Each time matplotlib asks every axis
 for its ticks from three sides, and lays every text out anew: the answers are the same, and so are

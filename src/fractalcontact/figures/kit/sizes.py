@@ -1,4 +1,4 @@
-"""What the figures of strength and of the size b share: axes, bars of intervals, exponents."""
+"""Axes, interval bars and exponents shared by the figures of strength and size."""
 
 from typing import Any
 

@@ -64,7 +64,7 @@ def draw(atlas: DataTree, specimens: list[str]) -> Drawing:
 
 
 def _key(maps):
-    """What black, white and grey are, of those that are drawn."""
+    """Legend of black, white and grey, of those that are drawn."""
     outline = {"edgecolor": "0.4", "lw": 0.5}
     handles = [
         Patch(facecolor="black", label="in contact", **outline),

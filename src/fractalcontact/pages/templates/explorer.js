@@ -100,7 +100,7 @@ function showControls(who) {
   const panel = panels[who];
   const { raw } = states;
   const offset = `${short(raw.offset[place.offset])} mm`;
-  const made = states.at("closure/offset_made", place);
+  const made = states.at("closure/offset_on_grid", place);
   const exactly = Math.abs(made - raw.offset[place.offset]) > 1e-9 ? ` (${short(made)} mm in whole cells)` : "";
   const force = raw.normal_force[place.normal_force];
   const load = `${forceWords(force)} = ${pressureWords(raw.nominal_pressure[place.normal_force])}`;

@@ -82,7 +82,7 @@ function dimensionSeries() {
 }
 
 function elasticPoint(states, place) {
-  const [x, y] = [states.at("closure/offset_made", place), states.at("dilatancy/elastic_dilatancy", place)];
+  const [x, y] = [states.at("closure/offset_on_grid", place), states.at("dilatancy/elastic_dilatancy", place)];
   return { x, y, words: `δ = ${short(y)} mm at v = ${short(x)} mm under ${forceWords(forceOf(states, place))}` };
 }
 
