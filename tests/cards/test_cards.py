@@ -7,10 +7,12 @@ from html.parser import HTMLParser
 import jsonschema
 import numpy as np
 import pytest
+import xarray as xr
 from code_blocks import run_code
 from page_study import HOSTILE
 
-from fractalcontact.cards.entries import entries
+from fractalcontact.cards.card import is_synthetic
+from fractalcontact.cards.entries import entries, read_entry
 from fractalcontact.cards.page import page_of
 from fractalcontact.cards.write import SCHEMA, read_card, write_card
 from fractalcontact.core.errors import InputError
@@ -186,24 +188,39 @@ def test_what_is_no_card_is_refused_in_a_sentence(tmp_path):
 
 def test_a_mean_gap_that_the_atlas_has_stands_on_the_card(folder, cards, subjects):
     """Stages that other rooms add are read by their names."""
-    from fractalcontact.cards.entries import read_entry
-
     subject = subjects["pair"]
     closure = subject["closure"]
     gap = (0 * closure["closure"] + 0.25).assign_attrs(units="mm", long_name="mean gap")
     other = Subject(
         dict(subject.stages) | {"closure": closure.assign(mean_gap=gap)}, subject.settings, "pair"
     )
-    entry = next(one for one in entries() if one.key == "mean_gap")
-    assert "missing" in cards["pair"]["entries"]["mean_gap"]
-    found = read_entry(entry, other, "elastic")
-    assert {row["value"] for row in found["values"] if "value" in row} == {0.25}
+    state = gap.isel(offset=0, resolution=0, drop=True).rename(direction="contact_direction")
+    flow = xr.Dataset(
+        {
+            "hydraulic_aperture_along": state,
+            "branch_mean_gap": state.expand_dims(branch=["load", "unload"]),
+        }
+    )
+    other = Subject(dict(other.stages) | {"flow": flow}, subject.settings, "pair")
+    for entry in entries():
+        if entry.key in ("mean_gap", "hydraulic_aperture", "branch_mean_gap"):
+            assert "missing" in cards["pair"]["entries"][entry.key] or entry.key == "mean_gap"
+            found = read_entry(entry, other, "elastic")
+            assert {row["value"] for row in found["values"] if "value" in row} == {0.25}
 
 
 def test_the_documented_lines_read_a_card(tmp_path, cards, monkeypatch):
     write_card(cards["pair"] | {"name": "small_twin"}, tmp_path / "results/smoke")
     monkeypatch.chdir(tmp_path)
     assert run_code("docs/card.md")["card"]["entries"] == cards["pair"]["entries"]
+
+
+def test_what_a_study_makes_itself_is_synthetic_and_a_scan_of_a_like_name_is_not(cards):
+    study = {"embedded": {"granite": {}}}
+    assert is_synthetic("granite", study)
+    assert not is_synthetic("granite_b", study)
+    assert not is_synthetic("granite", {})
+    assert not cards["pair"]["synthetic"]
 
 
 def test_a_card_is_written_whole(tmp_path, cards):

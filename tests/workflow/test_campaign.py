@@ -12,7 +12,7 @@ from fractalcontact import open_atlas
 __all__ = ["project"]  # a fixture
 pytestmark = pytest.mark.workflow
 #: Jobs of every specimen.
-OF_SPECIMEN = ("specimen", "contact", "windows", "analysis", "strength", "figures")
+OF_SPECIMEN = ("specimen", "contact", "windows", "analysis", "flow", "strength", "figures")
 
 
 def write_groups(project, names):

@@ -91,7 +91,7 @@ def model_of(subject: Subject) -> str:
 
 def is_synthetic(name: str, study: Mapping[str, Any]) -> bool:
     """True if a specimen is made by the study and no scan: a twin, or a mathematical joint."""
-    return any(name == own or name.startswith(f"{own}_") for own in study.get("embedded", {}))
+    return name in study.get("embedded", {})
 
 
 def geometry_of(subject: Subject) -> dict[str, Any]:

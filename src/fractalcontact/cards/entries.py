@@ -23,6 +23,7 @@ _BESIDE = {
     "contact_direction": ("direction", "contact_direction", "1"),
     "sampling": ("sampling", "sampling", "1"),
     "fit": ("fit", "fit", "1"),
+    "branch": ("branch", "branch", "1"),
 }
 #: Significant digits of the numbers of a card.
 _DIGITS = 6

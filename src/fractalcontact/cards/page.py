@@ -1,5 +1,6 @@
 """Printed page of a card: its entries in tables, one unit a column, from the card alone."""
 
+import math
 from collections.abc import Mapping
 from typing import Any
 
@@ -14,7 +15,8 @@ _HEADS = {
     "interface_closure": "closure from first touch",
     "contact_fraction": "contact A_r/A_0",
     "mean_gap": "mean gap",
-    "hydraulic_aperture": "hydraulic aperture",
+    "hydraulic_aperture": "hydraulic aperture, along",
+    "hydraulic_aperture_across": "hydraulic aperture, across",
     "peak_dilatancy_angle": "largest dilatancy angle",
     "peak_strength": "peak τ by dilatancy",
     "barton_strength": "τ by Barton",
@@ -51,7 +53,7 @@ def page_of(card: Mapping[str, Any]) -> dict[str, Any]:
         # An elastic joint has no hardness to state.
         "missing": missing_of({key: one for key, one in printed.items() if key != "hardness"}),
         "errors": errors_of(card),
-        "number": lambda value: MISSING if value is None else short(value),
+        "number": lambda value: MISSING if value is None else short(value, 2),
         "words": in_words,
         "ends": ends_in_words,
         "short": short,
@@ -80,15 +82,26 @@ def at_pressure(curve: Mapping[str, Any], pressure: float) -> dict[str, Any]:
 
 
 def jrc_table(*entries: Mapping[str, Any]) -> dict[str, Any]:
-    """JRC by fit and step (rows) and direction (columns); rows without a number are left out."""
-    rows: dict[str, dict[str, Any]] = {}
+    """JRC by step (rows, mm) and fit (columns), in each direction; nothing where no fit has one."""
+    found: dict[float, dict[str, dict[str, float]]] = {}
     for row in (row for one in entries for row in one.get("values", ()) if "value" in row):
         at = row["at"]
         fit = at.get("fit", "Tse and Cruden 1979").partition(", ")[0]
-        head = f"{fit}, step {short(at.get('step', at.get('fit_step')))} mm"
-        rows.setdefault(head, {})[at["direction"]] = row
-    directions = sorted({name for row in rows.values() for name in row})
-    return {"directions": directions, "rows": dict(sorted(rows.items()))}
+        step = at.get("step", at.get("fit_step"))
+        found.setdefault(step, {}).setdefault(fit, {})[at["direction"]] = row["value"]
+    each = [numbers for fits in found.values() for numbers in fits.values()]
+    directions = sorted({name for numbers in each for name in numbers})
+    return {
+        "directions": directions,
+        "fits": sorted({fit for fits in found.values() for fit in fits}),
+        "rows": {
+            short(step): {
+                fit: " / ".join(short(numbers.get(name, math.nan)) for name in directions)
+                for fit, numbers in found[step].items()
+            }
+            for step in sorted(found)
+        },
+    }
 
 
 def missing_of(entries: Mapping[str, Any]) -> dict[str, list[str]]:

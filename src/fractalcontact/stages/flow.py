@@ -11,7 +11,7 @@ from roughcontact.contact.solve import solve_contact
 from ..core.datasets import Dims, labelled_dataset
 from ..core.labels import cf_attrs
 from ..core.reported import Reported
-from ..core.settings import Solver, StateSettings
+from ..core.settings import JointSettings, Solver
 from ..core.window import nominal_area
 from ..flow.aperture import (
     QUANTILES,
@@ -104,7 +104,7 @@ def flow_stages(
     branches: xr.Dataset,
     error_budget: xr.Dataset,
     parts: Sequence[xr.Dataset],
-    settings: StateSettings,
+    settings: JointSettings,
     solver: Solver,
 ) -> dict[str, xr.Dataset]:
     """Stage of the flow through one specimen.
@@ -117,7 +117,7 @@ def flow_stages(
         Likewise, from :func:`stages.states.state_stages`.
     parts : sequence of xr.Dataset
         Contact states, from :func:`mechanics.sweep.joint_states`.
-    settings : StateSettings
+    settings : JointSettings
     solver : Solver
 
     Returns

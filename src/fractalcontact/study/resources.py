@@ -62,7 +62,7 @@ COSTS = {
     "specimen": Cost(270, 100, 4, 3.5),
     "contact": Cost(210, 380, 2.5, 2.5, 1, 0.2),
     "analysis": Cost(190, 450, 8, 9, 5, 0.3),
-    "flow": Cost(190, 900, 4, 5, 5, 1.5),
+    "flow": Cost(190, 1200, 4, 60, 5, 1),
     "windows": Cost(420, 620, 6, 55),
     "ensemble": Cost(420, 620, 5, 0, 0, 25),
     "strength": Cost(190, 10, 2.5, 0),
