@@ -133,5 +133,5 @@ def test_scenes_not_solved_are_named(atlas):
 
 def test_the_signs_of_the_inverse_depend_on_the_kernel(atlas):
     caption = drawn(atlas, "elimination").caption
-    assert "with Love's kernel, not with rigid square and equal-area disc, readings of" in caption
+    assert "Love's kernel has none; rigid square and equal-area disc, readings of" in caption
     assert "none of 4 per case" in caption

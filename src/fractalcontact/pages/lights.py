@@ -16,7 +16,7 @@ from .words import with_unit
 #: What would make lights better.
 FINER_SCAN = "heights as measured, without the instrument's filter, or a scan finer than its noise"
 MARKS = "faces scanned with common marks; 'outliers: fill' where spikes or deep overlaps carry load"
-LIGHTER = "lighter loads where the window is nearly full; steep slopes stay steep under any load"
+LIGHTER = "lighter loads where the window is nearly full; quote the rms slope beside a stiffness"
 CRUSH = "contacts that crush: 'hardness' in the material, such as the joint wall strength"
 STATE = "'joint_wall_strength' of the rock in its material, at which contacts then crush"
 
