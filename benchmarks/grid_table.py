@@ -35,10 +35,11 @@ from fractalcontact.study.configuration import (
     solver_settings,
 )
 from fractalcontact.study.documents import read_study
-from fractalcontact.study.embedded import embedded_surface, write_scan
+from fractalcontact.study.embedded import write_scan
 from fractalcontact.study.preparation import prepare_specimen
 from fractalcontact.study.scan_files import list_scans
 from fractalcontact.study.sidecar import sidecar_of_matrix
+from fractalcontact.surface.embedded import embedded_surface
 from roughcontact.contact.state import ContactState
 
 ROOT = Path(__file__).parents[1]

@@ -73,14 +73,14 @@ def test_a_stiffness_beside_yielded_nodes_is_that_of_its_closure_curve(curves):
 
 
 def test_the_scatter_of_a_secant_is_no_error_of_the_solver(atlas, curves):
-    """In the error budget it is of the estimator, and what the solver leaves is small beside it."""
+    """In the error budget it has a source of its own; what the solver leaves is small beside it."""
     scatter, error = curves["interface_stiffness_scatter"], curves["interface_stiffness_error"]
     known = curves["interface_stiffness"].notnull()
     assert (scatter <= error).where(known, True).all()
     errors = atlas["error_budget/specimen"].to_dataset()["error"].sel(quantity="stiffness")
-    yields = errors.sel(source="estimator") > 0
+    yields = errors.sel(source="secant") > 0
     assert yields.any()
-    assert (errors.sel(source="solver") < errors.sel(source="estimator")).where(yields, True).all()
+    assert (errors.sel(source="solver") < errors.sel(source="secant")).where(yields, True).all()
 
 
 def test_errors_of_the_closure_stay_known_beside_a_missing_stiffness(atlas, curves):

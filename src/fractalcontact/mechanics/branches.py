@@ -202,16 +202,19 @@ def _solved_states(
     mapped: xr.Dataset,
     hardness: float,
 ) -> list[ContactState]:
-    """States of a closure curve with their fields, which are stored in single precision."""
+    """States of a closure curve, from their pressures, which are stored in single precision.
+
+    The stored gap is 0 in contact; that of a node that yields lies below, by what is pressed in.
+    """
     clearance = composite.max() - composite
     states = []
     for force, closure, residual in zip(
         curve["normal_force"].values, curve["closure"].values, curve["residual"].values, strict=True
     ):
-        fields = mapped.sel(normal_force=force)
-        pressure, gap = (fields[name].values.astype(float) for name in ("pressure", "gap"))
-        pressure[fields["pressure"].values >= np.float32(hardness)] = hardness
-        displacement = gap + closure - clearance
+        stored = mapped["pressure"].sel(normal_force=force).values
+        pressure = np.where(stored >= np.float32(hardness), hardness, stored.astype(float))
+        displacement = space.displacement(pressure)
+        gap = clearance - closure + displacement
         known = float(closure), float(force), float(residual), 0, space, hardness
         states.append(ContactState(pressure, displacement, gap, *known))
     return states
