@@ -241,8 +241,8 @@ $(VENV)/peers-installed: pyproject.toml $(VENV)/installed
 
 COMPILE = uv pip compile --universal --generate-hashes --no-emit-index-url --no-header --python-version 3.11 --quiet
 lock:
-	$(COMPILE) pyproject.toml --extra study --extra install -o requirements.lock
-	$(COMPILE) pyproject.toml --extra study --extra install --extra test -c requirements.lock -o requirements-test.lock
+	$(COMPILE) pyproject.toml --extra study --extra flow --extra install -o requirements.lock
+	$(COMPILE) pyproject.toml --extra study --extra flow --extra install --extra test -c requirements.lock -o requirements-test.lock
 	$(COMPILE) --group browser -c requirements-test.lock -o requirements-browser.lock
 	$(COMPILE) --group docs -c requirements-test.lock -o requirements-docs.lock
 	grep -v '^ *--hash=' requirements.lock | sed 's/ *\\$$//' > requirements-conda.txt
