@@ -69,7 +69,7 @@ def test_a_click_on_a_heading_sorts_the_rows_both_ways(open_page):
         assert page.locator("#table thead th:visible").count() == 11
         page.locator("#all-columns").check()
         headings = page.locator("#table thead button")
-        assert page.locator("#table thead th:visible").count() == headings.count() == 15
+        assert page.locator("#table thead th:visible").count() == headings.count() == 17
         for i in range(headings.count()):
             if i == 1:  # lights: how many are good
                 continue
@@ -117,7 +117,7 @@ def test_the_table_shows_the_atlas_under_the_chosen_pressure(open_page, atlas):
             for row, name in zip(rows_of(page).all(), names_of(page), strict=True):
                 shown = {
                     column: row.locator(SHOWN.format(column=column, load=key))
-                    for column in (6, 7, 8, 9, 15)
+                    for column in (6, 7, 8, 9, 17)
                 }
                 assert all(cell.get_attribute("hidden") is None for cell in shown.values())
                 sorts = {i: cell.get_attribute("data-sort") for i, cell in shown.items()}
@@ -129,7 +129,7 @@ def test_the_table_shows_the_atlas_under_the_chosen_pressure(open_page, atlas):
                 for column, variable in (
                     (8, "interface_closure"),
                     (9, "interface_stiffness"),
-                    (15, "nodes"),
+                    (17, "nodes"),
                 ):
                     if sorts[column]:
                         expected = float(curves[variable].values[at])
