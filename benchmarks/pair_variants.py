@@ -55,7 +55,7 @@ from fractalcontact.surface.specimen import make_specimen
 #: Of the smaller window, to the automatic one; and how far the other window lies from it.
 SMALLER, ASIDE = 0.56, 0.35
 #: States of fewer nodes enter no fit.
-FEWEST_NODES = 10
+MIN_NODES = 10
 QUANTITIES = {
     "k_ni": "MPa/mm",
     "stiffness": "MPa/mm",
@@ -167,7 +167,7 @@ class Fit(NamedTuple):
 
 def fitted_hyperbola(curve, area: float) -> Fit:
     """The hyperbola through states of enough nodes."""
-    fitted = curve["nodes"].values >= FEWEST_NODES
+    fitted = curve["nodes"].values >= MIN_NODES
     closures = curve["interface_closure"].values[fitted]
     pressure = curve["normal_force"].values[fitted] / area
     found = fit_hyperbola(pressure, closures)

@@ -119,7 +119,7 @@ COLD = {
 #: The same of a step of a load sweep.
 STEPS = {
     "set prediction": [(active_set, "SET_PREDICTIONS", 0)],
-    "full approximation scheme": [(full_approximation, "LEAST_FINE_SIDE", np.inf)],
+    "full approximation scheme": [(full_approximation, "MIN_FINE_SIDE", np.inf)],
 }
 
 
@@ -192,7 +192,7 @@ def main() -> None:
 
 def _steps_of(size):
     """Parts that act on load steps in a window of a size."""
-    if size >= full_approximation.LEAST_FINE_SIDE:
+    if size >= full_approximation.MIN_FINE_SIDE:
         return STEPS
     return {name: how for name, how in STEPS.items() if name != "full approximation scheme"}
 

@@ -17,9 +17,9 @@ from solvers import Ours
 @pytest.fixture
 def problem(monkeypatch):
     """A window so small that candidates are looked for on it for the test alone."""
-    monkeypatch.setattr(candidates, "LEAST_WINDOW", 16)
-    monkeypatch.setattr(candidates, "LEAST_SIDE", 8)
-    monkeypatch.setattr(candidates, "MOST_CANDIDATES", 1.0)
+    monkeypatch.setattr(candidates, "MIN_WINDOW", 16)
+    monkeypatch.setattr(candidates, "MIN_SIDE", 8)
+    monkeypatch.setattr(candidates, "MAX_CANDIDATES", 1.0)
     monkeypatch.setattr(candidates, "BATCH", 0.0)
     shape = 48, 48
     height = self_affine(shape, 0.1, 0.8, rms=0.2, seed=3)
@@ -31,7 +31,7 @@ def problem(monkeypatch):
     [(10**9, 1e-6, "pair by pair"), (0, 1e-6, "multipole"), (0, 1e-9, "convolution")],
 )
 def test_the_path_names_the_operator_that_was_used(monkeypatch, problem, most_pairs, rtol, words):
-    monkeypatch.setattr(operator, "MOST_PAIRS", dict.fromkeys(operator.MOST_PAIRS, most_pairs))
+    monkeypatch.setattr(operator, "MAX_PAIRS", dict.fromkeys(operator.MAX_PAIRS, most_pairs))
     solver = Ours(problem, "closure")
     answer = solver.solve(SimpleNamespace(closure=0.1), rtol, None)
     said = solver.path()

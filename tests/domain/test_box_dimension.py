@@ -14,7 +14,7 @@ from fractalcontact.domain.mean_law import law_of_means
 from fractalcontact.surface.synthesis import self_affine
 
 #: Of flights, cells: with a quarter, boxes of one and two cells that a flight meets are missed.
-LEAST_STEP = 0.1
+MIN_STEP = 0.1
 
 CARPET = np.log(8) / np.log(3)
 DUST = np.log(4) / np.log(3)
@@ -60,12 +60,12 @@ def _mark_flight(domain, exact, rng):
     radius = n / np.sqrt(2)
     y = x = 0.0
     while np.hypot(y, x) < 1e6 * radius:
-        least = max(LEAST_STEP, np.hypot(y, x) - radius)
+        least = max(MIN_STEP, np.hypot(y, x) - radius)
         i, j = int(np.floor(y + n / 2)), int(np.floor(x + n / 2))
         if 0 <= i < n and 0 <= j < n:
             domain[i, j] = True
             to_edge = 0.5 - max(abs(y + n / 2 - i - 0.5), abs(x + n / 2 - j - 0.5))
-            least = max(LEAST_STEP, to_edge)
+            least = max(MIN_STEP, to_edge)
         length = least / np.sqrt(rng.beta(exact / 2, 1 - exact / 2))
         angle = 2 * np.pi * rng.random()
         y += length * np.sin(angle)
@@ -83,7 +83,7 @@ def levy_dust(n, exact, seed):
       place: the step's inverse square, in units of the circle's radius, is Beta(D/2, 1 - D/2)
       distributed (Blumenthal, Getoor & Ray, Trans. Am. Math. Soc. 99 (1961) 540), with the tail
       l^-D. All places are on the set; the circle lies in a cell that is marked, or it has the
-      radius `LEAST_STEP`, so that next to nothing of the set is lost below a cell;
+      radius `MIN_STEP`, so that next to nothing of the set is lost below a cell;
     - it is followed until it will not come back, not for this many steps;
     - the window is about one of its places, which has others before and after it: two flights.
     """

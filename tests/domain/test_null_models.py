@@ -141,7 +141,7 @@ def test_pairs_compared_are_those_transformed(monkeypatch):
     domain = scattered((48, 64), 300, 0)
     distances = pair_distances(domain.shape)
     compared, lags = pair_counts(domain, distances)
-    monkeypatch.setattr("fractalcontact.domain.correlation._MOST_COMPARED", 0)
+    monkeypatch.setattr("fractalcontact.domain.correlation._MAX_COMPARED", 0)
     transformed, same = pair_counts(domain, distances)
     np.testing.assert_allclose(compared, transformed)
     np.testing.assert_array_equal(lags, same)

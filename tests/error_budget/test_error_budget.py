@@ -10,7 +10,7 @@ from fractalcontact.domain.analysis import analyse_domains
 from fractalcontact.error_budget import refinement
 from fractalcontact.error_budget.error_budget import OF_SURFACE, error_budget, over_loads
 from fractalcontact.error_budget.other_windows import (
-    MOST_OVERLAP,
+    MAX_OVERLAP,
     other_composites,
     whole_composite,
     window_places,
@@ -246,7 +246,7 @@ def test_grids_at_a_quarter_of_the_spacing_have_16_times_the_cells(
 ):
     """Few cells are solved at all loads, more only where the closure changed, too many nowhere."""
     monkeypatch.setattr(refinement, "CHEAP_CELLS", most_cheap)
-    monkeypatch.setattr(refinement, "MOST_CELLS", most)
+    monkeypatch.setattr(refinement, "MAX_CELLS", most)
     curve = SimpleNamespace(composite=np.zeros((9, 16)))
     levels = np.ones((3, 5, 6))
     levels[1, 0] = [1.5, 1.005, 1.2, 1.3, 1.0, 1.0]
@@ -339,7 +339,7 @@ def test_windows_have_no_holes_and_overlap_little():
             shared = np.zeros(present.shape, int)
             shared[rows, columns] += 1
             shared[other] += 1
-            assert np.count_nonzero(shared == 2) <= MOST_OVERLAP * 600
+            assert np.count_nonzero(shared == 2) <= MAX_OVERLAP * 600
 
 
 def test_composite_of_the_whole_scan_is_that_of_its_windows(one):

@@ -17,7 +17,7 @@ from fractalcontact.study.figure_list import all_figures, figures_of, study_figu
 from fractalcontact.study.stages import paths_of
 
 #: A caption has fewer words than this; signs such as = and % are none.
-MOST_WORDS = 70
+MAX_WORDS = 70
 SUBJECTS = {"sliding": "match", "pair": "match", "flat": "flat"}
 SPECIMENS = [
     pytest.param(figure, name, marks=() if name == "sliding" else pytest.mark.full)
@@ -86,7 +86,7 @@ def caption_of(atlas, marked):
 @pytest.mark.parametrize(("figure", "subject"), [*SPECIMENS, *STUDY])
 def test_caption_is_short_and_quotes_its_verdicts(caption_of, figure, subject):
     caption = caption_of(figure, subject)
-    assert len(words_of(caption)) < MOST_WORDS, caption
+    assert len(words_of(caption)) < MAX_WORDS, caption
     assert caption.startswith(("After ", "Supplementary figure"))
     assert not re.search(PRIVATE, caption), caption
     assert "WARNING" not in caption  # the page states it once

@@ -438,7 +438,7 @@ def test_points_on_one_line_are_no_surface(tmp_path):
 
 def test_a_spot_with_far_too_many_points_is_refused(tmp_path, monkeypatch):
     monkeypatch.setattr(tri, "TILE_POINTS", 100)
-    monkeypatch.setattr(tri, "_MOST_IN_TILE", 1000)
+    monkeypatch.setattr(tri, "_MAX_IN_TILE", 1000)
     spot = cloud(3000)
     spot[:1400, :2] = 3.0 + spot[:1400, :2] / 1e4
     with pytest.raises(InputError, match=r"rock\.npy: 1\d\d\d points, more than 1000, lie around"):

@@ -73,7 +73,7 @@ def test_uncommon_methods_are_refused(tmp_path):
 
 
 def test_too_many_members_are_refused(tmp_path, monkeypatch):
-    monkeypatch.setattr(archives, "MOST_MEMBERS", 5)
+    monkeypatch.setattr(archives, "MAX_MEMBERS", 5)
     path = pack(tmp_path / "rock.npz", [(f"{i}.npy", b"") for i in range(6)])
     with pytest.raises(InputError, match="6 members"):
         check_archive(path)

@@ -34,14 +34,14 @@ def test_the_judge_sees_what_must_not_happen(monkeypatch):
             case ".writes":
                 (path.parent / "other").write_text("more")
             case ".eats":
-                np.ones(fuzzing.MOST_MEMORY // 4)
+                np.ones(fuzzing.MAX_MEMORY // 4)
 
     with fuzzing.own_folder() as folder:
         for seed in fuzzing.make_seeds(folder / "temporary", real=False):
             if seed.ending in SOUND:
                 assert fuzzing.judge(seed, seed.content, folder).was_read
         monkeypatch.setattr(fuzzing, "_read", misbehave)
-        monkeypatch.setattr(fuzzing, "MOST_MEMORY", 5 * 10**7)
+        monkeypatch.setattr(fuzzing, "MAX_MEMORY", 5 * 10**7)
         for ending, fault in {
             ".bug": "KeyError",
             ".nameless": "does not name the file",

@@ -21,7 +21,7 @@ from fractalcontact.mechanics.strength import joint_strength
 from fractalcontact.mechanics.sweep import contact_states
 from fractalcontact.mechanics.theory import scaled_joint
 from fractalcontact.roughness.estimators.roughness_length import roughness_length_curves
-from fractalcontact.size_effect.division import FEWEST_CELLS, PARTS, split, spread_windows
+from fractalcontact.size_effect.division import MIN_CELLS, PARTS, split, spread_windows
 from fractalcontact.size_effect.laws import size_laws
 from fractalcontact.size_effect.local_roughness import local_roughness, tilt_fraction
 from fractalcontact.size_effect.strength_laws import OFFSET_FRACTIONS
@@ -447,7 +447,7 @@ def test_larger_windows_close_more(laws):
 def test_windows_too_small_are_left_out(rock):
     states = states_of(rock, "W", [4], settings(["5 MPa"]), (1, 8, 9), most=1)
     assert states["part"].values.tolist() == [1, 8]  # 128 / 8 = 16 cells, 128 / 9 = 14
-    assert FEWEST_CELLS == 16
+    assert MIN_CELLS == 16
 
 
 @pytest.mark.parametrize("cells", [[2, 4], [2]])

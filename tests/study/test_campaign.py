@@ -6,11 +6,11 @@ import pytest
 import yaml
 
 from fractalcontact.core.errors import InputError
-from fractalcontact.study.campaign import MOST_WHOLE, drawn_of, in_parts, of_study_alone
+from fractalcontact.study.campaign import MAX_WHOLE, drawn_of, in_parts, of_study_alone
 from fractalcontact.study.checks import check_study
 from fractalcontact.study.figure_list import figures_of, study_figures_of
 
-FEW, MANY = range(MOST_WHOLE), range(MOST_WHOLE + 1)
+FEW, MANY = range(MAX_WHOLE), range(MAX_WHOLE + 1)
 
 
 @pytest.mark.parametrize(

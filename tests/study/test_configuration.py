@@ -13,7 +13,7 @@ from fractalcontact.core.errors import InputError
 from fractalcontact.study import scan_files
 from fractalcontact.study.checks import check_names, check_study, read_sidecar, resolve_study
 from fractalcontact.study.configuration import (
-    MOST_NODES,
+    MAX_NODES_PER_SIDE,
     resolve_embedded,
     resolve_roll_off,
     resolve_settings,
@@ -157,7 +157,7 @@ def test_a_surface_has_as_many_nodes_per_side_wherever_a_study_asks_for_one():
         sections["dimension_test"]["properties"]["capped_size"],
         sections["speed"]["properties"]["sizes"]["items"],
     ]
-    assert {limit["maximum"] for limit in limits} == {MOST_NODES}
+    assert {limit["maximum"] for limit in limits} == {MAX_NODES_PER_SIDE}
 
 
 def test_embedded_lengths_are_in_millimetres(study):

@@ -10,7 +10,7 @@ from samples import scan_of
 from fractalcontact.study.resources import (
     AROUND,
     COSTS,
-    LEAST_MEMORY,
+    MIN_MEMORY,
     memory,
     minutes,
     nodes_of_files,
@@ -123,7 +123,7 @@ def test_time_of_grids_that_no_model_was_fitted_to_is_within_a_factor(rule, side
 
 @pytest.mark.parametrize("rule", COSTS)
 def test_more_is_asked_for_larger_grids_and_twice_as_much_at_a_retry(rule):
-    assert memory(rule, 4096**2) >= memory(rule, 128**2) >= LEAST_MEMORY
+    assert memory(rule, 4096**2) >= memory(rule, 128**2) >= MIN_MEMORY
     assert minutes(rule, 4096**2, states=10) >= minutes(rule, 128**2, states=10)
     for asked in (memory, minutes):
         first = asked(rule, 10**6, states=3)

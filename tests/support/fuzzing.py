@@ -37,7 +37,7 @@ from fractalcontact.scan.read import read_scan
 from fractalcontact.study.checks import read_sidecar
 
 LONGEST_SECONDS = 10
-MOST_MEMORY = 2 * 1024**3
+MAX_MEMORY = 2 * 1024**3
 LONGEST_MESSAGE = 1000
 LONGEST_DRAFT = 6100  # what the reader cuts it to, and what it puts in place
 _LARGEST_SEED = 2_500_000  # bytes of a real file that is worth spoiling a hundred times
@@ -135,7 +135,7 @@ def judge(chosen: Seed, content: bytes, folder: Path) -> Verdict:
     seconds, peak = watch.stop()
     if seconds > LONGEST_SECONDS:
         fault += f"\ntook {seconds:.1f} s"
-    if peak > MOST_MEMORY:
+    if peak > MAX_MEMORY:
         fault += f"\ntook {peak / 1024**3:.1f} GiB"
     if _listing(folder) != before:
         fault += f"\nfiles created or changed: {sorted(set(_listing(folder)) ^ set(before))}"

@@ -14,7 +14,7 @@ from fractalcontact.study.atlas import read_atlas
 from fractalcontact.study.figure_list import all_figures, figures_of, study_figures_of
 
 #: Points that letters have at least, at the width that the figure is printed at.
-LEAST_SIZE = 6.0
+MIN_SIZE = 6.0
 #: Pixels that boxes around words may share: they are a little larger than the letters.
 _SLACK = 3.0
 
@@ -90,7 +90,7 @@ def faults(figure):
     }
     for text, box in boxes.items():
         words = text.get_text().replace("\n", " ")[:40]
-        if text.get_fontsize() < LEAST_SIZE:
+        if text.get_fontsize() < MIN_SIZE:
             found.append(f"{text.get_fontsize():g} pt: {words!r}")
         if not _inside(box, figure):
             found.append(f"cut off: {words!r}")

@@ -28,7 +28,7 @@ WIDEST_PREDICTION = 0.4
 SUPPORTING_LOADS = 3
 
 #: Sides from this number of roll-offs on hold enough hills to be compared.
-FEWEST_ROLL_OFFS = 4
+MIN_ROLL_OFFS = 4
 
 REFUTED, SUPPORTED, OPEN = "eq. 6 refuted", "eq. 6 agrees", "undetermined"
 #: What enough loads that agree are called together.

@@ -25,7 +25,7 @@ from fractalcontact.mechanics.theory import (
 )
 
 from .size_decision import (
-    FEWEST_ROLL_OFFS,
+    MIN_ROLL_OFFS,
     PROBABILITY,
     UNKNOWN,
     Decision,
@@ -91,7 +91,7 @@ def size_effect_test(parts: Sequence[xr.Dataset], recipe: Mapping[str, Any]) -> 
     samples["persson_share"] = _persson(samples)
     hursts, loads = np.unique(samples["of_hurst"]), samples["reduced_pressure"].values
     arms = [arm for arm in SIZE_ARMS if (samples["of_arm"] == arm).any()]
-    smallest = FEWEST_ROLL_OFFS * recipe["roll_off"]
+    smallest = MIN_ROLL_OFFS * recipe["roll_off"]
     values: dict[str, np.ndarray] = {}
     shape = len(hursts), len(loads)
     for name, found in _dimensions(samples, hursts).items():

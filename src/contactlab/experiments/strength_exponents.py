@@ -13,7 +13,7 @@ from fractalcontact.core.labels import cf_attrs
 from fractalcontact.core.limits import LARGEST_FRICTION_ANGLE
 
 from .size_decision import (
-    FEWEST_ROLL_OFFS,
+    MIN_ROLL_OFFS,
     NO_EFFECT,
     UNKNOWN,
     Exponent,
@@ -118,11 +118,11 @@ def strength_exponents(states: xr.Dataset, recipe: Mapping[str, Any]) -> xr.Data
     xr.Dataset
         The states; :data:`EXPONENTS` with ``_error``, ``_low`` and ``_high`` (99 % over surfaces),
         :data:`VERDICTS` after ``_verdict``; ``theory_strength`` and ``theory_exponent`` from S(v);
-        ``truncated_share``. Sides from :data:`FEWEST_ROLL_OFFS` roll-offs on enter exponents.
+        ``truncated_share``. Sides from :data:`MIN_ROLL_OFFS` roll-offs on enter exponents.
     """
     offsets = np.r_[0.0, states["offset"].values]
     sides = np.unique(states["of_size"].values)
-    smallest = FEWEST_ROLL_OFFS * recipe["roll_off"]
+    smallest = MIN_ROLL_OFFS * recipe["roll_off"]
     classes = equal_fractions(sides[sides >= smallest] * SPACING, offsets)
     sizes = dict(states.sizes) | {
         "side": len(sides),

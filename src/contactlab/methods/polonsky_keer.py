@@ -23,7 +23,7 @@ MAX_ITERATIONS = 5000
 # The iteration ends this far below the tolerance of the final check.
 SAFETY = 0.9
 # Closures, mm, between which the squares of gaps so much smaller still are numbers.
-LEAST_CLOSURE, MOST_CLOSURE = 1e-140, 1e140
+MIN_CLOSURE, MAX_CLOSURE = 1e-140, 1e140
 
 
 METHOD = Method(
@@ -58,10 +58,10 @@ def solve(problem: ContactProblem) -> ContactState:
         If the conditions are not met after `MAX_ITERATIONS`.
     """
     space, force = problem.space, problem.force
-    if force is None and not LEAST_CLOSURE <= problem.load <= MOST_CLOSURE:
+    if force is None and not MIN_CLOSURE <= problem.load <= MAX_CLOSURE:
         raise ValueError(
             f"closure {problem.load:g} mm: conjugate gradients square gaps; expected "
-            f"{LEAST_CLOSURE:g} to {MOST_CLOSURE:g} mm"
+            f"{MIN_CLOSURE:g} to {MAX_CLOSURE:g} mm"
         )
     # Pressure is counted in units of E*/s throughout, so that the operator gives mm.
     unit = space.modulus / space.cell

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from .peers import PublicCode
 
 #: Nodes along the smallest window of methods that know dyadic ones only.
-LEAST_DYADIC = 32
+MIN_DYADIC = 32
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -205,7 +205,7 @@ class Method:
             return True
         (ny, nx), (dy, dx) = space.shape, space.spacing
         square = ny == nx and abs(dy - dx) <= 1e-9 * dx
-        return square and nx >= LEAST_DYADIC and nx & (nx - 1) == 0
+        return square and nx >= MIN_DYADIC and nx & (nx - 1) == 0
 
     def offers(
         self,

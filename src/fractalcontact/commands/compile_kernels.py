@@ -5,11 +5,11 @@ python -m fractalcontact.commands.compile_kernels
 
 import numpy as np
 
-from roughcontact.contact.full_approximation import LEAST_FINE_SIDE
+from roughcontact.contact.full_approximation import MIN_FINE_SIDE
 from roughcontact.contact.solve import solve_contact
 from roughcontact.contact.state import ContactState
 from roughcontact.elastic.halfspace import HalfSpace
-from roughcontact.elastic.split_convolution import LEAST_SPLIT_SIDE
+from roughcontact.elastic.split_convolution import MIN_SPLIT_SIDE
 
 from ..domain.correlation import pair_counts
 from ..domain.measures import measures_of_states
@@ -72,7 +72,7 @@ def _light_states() -> list[ContactState]:
 
 def _large_states() -> list[ContactState]:
     """States of a window so large that convolutions are split, load steps begun on coarse grids."""
-    side = max(LEAST_FINE_SIDE, LEAST_SPLIT_SIDE)
+    side = max(MIN_FINE_SIDE, MIN_SPLIT_SIDE)
     surface = self_affine((side, side), 1.0, 0.8, seed=1, rms=1.0)
     space = HalfSpace(surface.shape, (1.0, 1.0), 1.0)
     state = solve_contact(surface, space, closure=2.0)

@@ -8,8 +8,8 @@ import numpy as np
 
 from ..core.labels import percent, printable
 
-_MOST_POINTS = 60_000
-_MOST_CELLS = 800  # along a side
+_MAX_POINTS = 60_000
+_MAX_CELLS = 800  # along a side
 _LINES, _WIDTH = 8, 110  # of text
 
 
@@ -48,13 +48,13 @@ def _draw_relief(figure, axes, face):
     if measured.layout == "matrix":
         z, (dx, dy) = measured.values, measured.spacing
         ny, nx = z.shape
-        step = max(1, -(-max(z.shape) // _MOST_CELLS))
+        step = max(1, -(-max(z.shape) // _MAX_CELLS))
         shown = np.ma.masked_invalid(z[::step, ::step])
         extent = (0, nx * dx, 0, ny * dy)
         image = axes.imshow(shown, origin="lower", extent=extent, cmap=_colours(), aspect="equal")
         title = f"{nx} x {ny} cells of {dx:.4g} x {dy:.4g} mm"
     else:
-        points = measured.values[:: max(1, len(measured.values) // _MOST_POINTS)]
+        points = measured.values[:: max(1, len(measured.values) // _MAX_POINTS)]
         x, y, z = points.T
         image = axes.scatter(x, y, c=z, s=2, cmap=_colours(), linewidths=0)
         axes.set_aspect("equal")

@@ -9,7 +9,7 @@ from .estimate import Estimate
 from .intervals import t_quantile
 
 #: Two points always lie on a line: from three on its error is known.
-FEWEST_POINTS = 3
+MIN_POINTS = 3
 
 
 class LineFit(NamedTuple):
@@ -48,7 +48,7 @@ def fit_line(x: ArrayLike, y: ArrayLike) -> LineFit:
 
 def _line_through(x: np.ndarray, y: np.ndarray) -> LineFit:
     n = x.size
-    if n < FEWEST_POINTS or np.ptp(x) == 0:
+    if n < MIN_POINTS or np.ptp(x) == 0:
         return LineFit(Estimate(n=n), Estimate(n=n), np.nan)
 
     dx, dy = x - x.mean(), y - y.mean()

@@ -20,7 +20,7 @@ from .intervals import jackknife_error
 BLOCKS = 4
 
 #: Points a slope needs, and each half of its range for the half's own slope.
-FEWEST_SCALES = 4
+MIN_SCALES = 4
 
 
 #: Degree of the smooth bend of a power law in logarithms.
@@ -75,13 +75,13 @@ def slope_of_sums(
     Returns
     -------
     Estimate
-        Over the scales used; NaN with fewer than `FEWEST_SCALES` of them.
+        Over the scales used; NaN with fewer than `MIN_SCALES` of them.
     """
     scales, parts = np.asarray(scales, float), np.asarray(parts, float)
     whole = parts.sum(axis=2)
     x, y = np.log(scales), _log(statistic(whole))
     positive = np.isfinite(y)
-    if positive.sum() < FEWEST_SCALES:
+    if positive.sum() < MIN_SCALES:
         return Estimate()
     x, y = x[positive], y[positive]
     line = fit_line(x, y)

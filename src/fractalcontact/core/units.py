@@ -8,7 +8,7 @@ from typing import Any
 
 import pint
 
-from roughcontact.arguments import LEAST_INPUT, MOST_INPUT
+from roughcontact.arguments import MAX_INPUT, MIN_INPUT
 
 from .errors import InputError
 
@@ -104,10 +104,10 @@ def _magnitude(text: str, kind: str) -> float:
     magnitude = float(value.to(unit).magnitude)
     if not math.isfinite(magnitude):
         raise _OutOfRange(f"{text!r} is not finite; {wanted}")
-    if magnitude and not LEAST_INPUT <= abs(magnitude) <= MOST_INPUT:
+    if magnitude and not MIN_INPUT <= abs(magnitude) <= MAX_INPUT:
         raise _OutOfRange(
-            f"{text!r} is beyond what can be computed with, {LEAST_INPUT:g} to "
-            f"{MOST_INPUT:g} {unit}; {wanted}"
+            f"{text!r} is beyond what can be computed with, {MIN_INPUT:g} to "
+            f"{MAX_INPUT:g} {unit}; {wanted}"
         )
     return magnitude
 

@@ -18,7 +18,7 @@ from .clusters import CLUSTER_FIELDS, cluster_statistics
 from .fitted_counts import fitted_counts
 from .isotropy import LAG_FIELDS, contact_at_lag
 from .mean_law import mean_sizes
-from .renormalisation import FEWEST_RESOLUTIONS, compare_dimensions, renormalisation
+from .renormalisation import MIN_RESOLUTIONS, compare_dimensions, renormalisation
 
 #: Numbers kept of every contact domain: name, unit, long name.
 DOMAIN_FIELDS = {
@@ -316,7 +316,7 @@ def _local_exponent(s, area):
 
 def _reasons(scaling, finest):
     """Why an estimate of Delta_sigma, or its interval, is missing; empty where both are there."""
-    too_few = f"of the {FEWEST_RESOLUTIONS} resolutions needed"
+    too_few = f"of the {MIN_RESOLUTIONS} resolutions needed"
     why = [f": A_r large enough at {n} {too_few}" for n in scaling["n"].values.flat]
     area = scaling["n"].copy(data=np.reshape(np.array(why, object), scaling["n"].shape))
     area = xr.where(scaling["delta_sigma"].isnull(), "no fit", "no interval") + area

@@ -15,20 +15,20 @@ SIZES_PER_OCTAVE = 4
 RATIOS = (2, 3, 4, 5)
 
 #: Compiled code counts nodes in four bytes.
-_MOST_CELLS = 2**31 - 1
+_MAX_CELLS = 2**31 - 1
 
 #: Largest q of box sides p / q cells that are tried at every grid origin.
-_MOST_PARTS = 4
+_MAX_PARTS = 4
 
 #: Boxes of no size cover more than this many times an oblong extent.
-MOST_OVERHANG = 1.1
+MAX_OVERHANG = 1.1
 
 
 def box_sizes(extent: int | tuple[int, int], largest: float | None = None) -> np.ndarray:
     """Box sides in cells whose grids fit an extent, about `SIZES_PER_OCTAVE` in each doubling.
 
     Each is a whole part of one of the sides: in every quarter of an octave the one whose boxes
-    overhang the extent least, if that is within `MOST_OVERHANG`. In a square they divide it
+    overhang the extent least, if that is within `MAX_OVERHANG`. In a square they divide it
     exactly, the powers of `RATIOS` among them. (Boxes of whole cells overhang most extents, and a
     filled square then seems to have a dimension other than 2.)
 
@@ -55,7 +55,7 @@ def box_sizes(extent: int | tuple[int, int], largest: float | None = None) -> np
         best[round(place)] = min(best.get(round(place), rank), rank)
     powers = {sides[-1] / ratio**k for ratio in RATIOS for k in range(1, sides[-1].bit_length())}
     exact = {r for r in powers & parts if _overhang(sides, r) < 1 + 1e-9}
-    fitting = {r for overhang, _, r in best.values() if overhang <= MOST_OVERHANG}
+    fitting = {r for overhang, _, r in best.values() if overhang <= MAX_OVERHANG}
     return np.array(sorted({1.0} | exact | fitting))
 
 
@@ -129,7 +129,7 @@ def box_count(domain: np.ndarray, sizes: np.ndarray, *, max_shifts: int = 16) ->
     origin costs no more than one look at every place.
     """
     sizes = _checked_sizes(sizes)
-    max_shifts = whole_number(max_shifts, "max_shifts", least=1, most=_MOST_CELLS)
+    max_shifts = whole_number(max_shifts, "max_shifts", least=1, most=_MAX_CELLS)
     extent = cropped(_checked_domain(domain))
     counts = np.ones(sizes.size, np.int64)  # by a box as large as the extent
     smaller = sizes < max(extent.shape)
@@ -144,7 +144,7 @@ def box_count(domain: np.ndarray, sizes: np.ndarray, *, max_shifts: int = 16) ->
 
 def _ratio(size: float) -> Fraction | None:
     """A box side as p / q with a small q, or None."""
-    ratio = Fraction(size).limit_denominator(_MOST_PARTS)
+    ratio = Fraction(size).limit_denominator(_MAX_PARTS)
     return ratio if abs(float(ratio) - size) < 1e-9 * size else None
 
 
@@ -198,10 +198,8 @@ def _checked_domain(domain):
         If the domain is not a (y, x) grid, or too large to count in four bytes.
     """
     domain = arguments.domain(domain, "a contact domain")
-    if domain.size > _MOST_CELLS:
-        raise ValueError(
-            f"a contact domain of {domain.shape}: expected {_MOST_CELLS} cells at most"
-        )
+    if domain.size > _MAX_CELLS:
+        raise ValueError(f"a contact domain of {domain.shape}: expected {_MAX_CELLS} cells at most")
     return domain
 
 
@@ -352,8 +350,8 @@ def mean_count(domain: np.ndarray, sizes: np.ndarray, *, blocks: int = 1) -> np.
     ValueError
         If a size is below 1, or not whole, or the domain is not a (y, x) grid.
     """
-    sizes = whole_numbers(_checked_sizes(sizes), "sizes of boxes", least=1, most=_MOST_CELLS)
-    blocks = whole_number(blocks, "blocks", least=1, most=_MOST_CELLS)
+    sizes = whole_numbers(_checked_sizes(sizes), "sizes of boxes", least=1, most=_MAX_CELLS)
+    blocks = whole_number(blocks, "blocks", least=1, most=_MAX_CELLS)
     nodes = _summed(_checked_domain(domain))
     counts = [_places(nodes, int(size), blocks) / size**2 for size in sizes]
     return np.array(counts).reshape(sizes.size, blocks, blocks)

@@ -10,10 +10,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..core.estimate import DIMENSION, Estimate, Scale
-from ..core.fitting import FEWEST_POINTS, LineFit, fit_line
+from ..core.fitting import MIN_POINTS, LineFit, fit_line
 from ..core.limits import MIN_NODES
 from ..core.ranges import within
-from ..core.slope_of_sums import BLOCKS, FEWEST_SCALES, halves, wave_error
+from ..core.slope_of_sums import BLOCKS, MIN_SCALES, halves, wave_error
 from .box_counts import RATIOS, box_count, box_sizes, cropped, mean_count, window_sizes
 from .count_law import NO_TERMS, LawTerms
 from .cut_offs import between_cut_offs
@@ -129,7 +129,7 @@ def box_dimension(
     -----
     A box size lies beyond a cut-off where all but `SATURATED` of the nodes are alone in their box,
     or of the boxes of the window occupied. Such sizes are left out, unless as much of the window
-    touches (then all sizes give dimension 2) or a single node does (0). Fewer than `FEWEST_SCALES`
+    touches (then all sizes give dimension 2) or a single node does (0). Fewer than `MIN_SCALES`
     sizes left, or different counts among them, are no dimension: a line through a staircase of two
     or three treads shows where their edges happen to be, and through a single tread it would claim
     0 without error.
@@ -165,7 +165,7 @@ def box_dimension(
     fewer.
 
     Figures apart, as two squares: once boxes are larger than a figure or than the gap, what is
-    counted is no outline any more. With more of it than `count_law.MOST_OUTLINE` allows they read
+    counted is no outline any more. With more of it than `count_law.MAX_OUTLINE` allows they read
     1.3 to 1.9, as a strip of 5 x 1 does, and where the gap is wide their intervals end short of 2:
     `small_boxes` and `large_boxes` show the bend. Without that limit they are exact, but cascades
     of 1.2 read 0.12 high. So with a set that is cut off so that copies of several sizes are left: a
@@ -268,14 +268,14 @@ def _used_sizes(domain, nodes, sizes, count, limits) -> tuple[np.ndarray, str]:
         return np.ones(sizes.size, dtype=bool), "no node is in contact"
     used, alone, full = between_cut_offs(count, sizes, nodes, domain.shape)
     used &= within(sizes, *limits)
-    if used.sum() < FEWEST_SCALES:
+    if used.sum() < MIN_SCALES:
         return used, (
-            f"{used.sum()} of {sizes.size} scales say something, {FEWEST_SCALES} are needed "
+            f"{used.sum()} of {sizes.size} scales say something, {MIN_SCALES} are needed "
             f"({alone.sum()} with every node alone, {full.sum()} with every box occupied)"
         )
     distinct = np.unique(count[used]).size
-    if nodes > 1 and distinct < FEWEST_SCALES:
-        return used, f"{nodes} nodes give {distinct} different counts, {FEWEST_SCALES} are needed"
+    if nodes > 1 and distinct < MIN_SCALES:
+        return used, f"{nodes} nodes give {distinct} different counts, {MIN_SCALES} are needed"
     return used, ""
 
 
@@ -340,7 +340,7 @@ def _of_cover(cover: _Cover, ladder, estimator, extent) -> BoxDimension:
     law = np.exp(intercept + slope * np.log(r[ladder]))
     small, large = (
         0.0 - _line(r, count, np.flatnonzero(ladder)[half]).slope.value
-        if line.n // 2 >= FEWEST_SCALES
+        if line.n // 2 >= MIN_SCALES
         else np.nan
         for half in halves(line.n)
     )
@@ -371,7 +371,7 @@ def _best_scales(cover: _Cover, sides: set[int]) -> np.ndarray:
     for side, ratio in itertools.product(sorted(sides), RATIOS):
         power = np.log(side / cover.sizes) / np.log(ratio)
         ladder = cover.used & (np.abs(power - np.round(power)) < 1e-9)
-        if ladder.sum() >= FEWEST_SCALES and _is_exact(cover, ladder):
+        if ladder.sum() >= MIN_SCALES and _is_exact(cover, ladder):
             return ladder
     return cover.used
 
@@ -383,7 +383,7 @@ def _is_exact(cover: _Cover, used: np.ndarray) -> bool:
 
 def _slopes_of_parts(x: np.ndarray, y: np.ndarray) -> np.ndarray:
     """Slopes of all runs of neighbouring points that cover half of the range of x or more."""
-    first, last = np.triu_indices(x.size, FEWEST_POINTS - 1)
+    first, last = np.triu_indices(x.size, MIN_POINTS - 1)
     wide = x[last] - x[first] >= (x[-1] - x[0]) / 2
     place = np.arange(x.size)
     inside = (place >= first[wide, np.newaxis]) & (place <= last[wide, np.newaxis])

@@ -35,8 +35,8 @@ QUADRATS = 8
 
 #: A power law is fitted to sizes over this many octaves that hold clusters, and this many clusters:
 #: Clauset et al. find estimates from fewer than about 50 untrustworthy.
-FEWEST_OCTAVES = 4
-FEWEST_CLUSTERS = 50
+MIN_OCTAVES = 4
+MIN_CLUSTERS = 50
 
 
 #: Nodes that touch over a side or a corner belong together.
@@ -118,7 +118,7 @@ def size_exponent(octaves: np.ndarray, sizes: np.ndarray, cell: float) -> dict[s
     -------
     dict
         The ``cluster_exponent`` and ``cluster_fit`` numbers of :data:`CLUSTER_FIELDS`; NaN, and no
-        clusters fitted, where no range has `FEWEST_OCTAVES` octaves and `FEWEST_CLUSTERS` clusters.
+        clusters fitted, where no range has `MIN_OCTAVES` octaves and `MIN_CLUSTERS` clusters.
 
     Notes
     -----
@@ -132,8 +132,8 @@ def size_exponent(octaves: np.ndarray, sizes: np.ndarray, cell: float) -> dict[s
     fits = [
         (distance, first, estimate)
         for first in range(len(octaves))
-        if np.count_nonzero(octaves[first:]) >= FEWEST_OCTAVES
-        and octaves[first:].sum() >= FEWEST_CLUSTERS
+        if np.count_nonzero(octaves[first:]) >= MIN_OCTAVES
+        and octaves[first:].sum() >= MIN_CLUSTERS
         for distance, estimate in [_geometric(octaves[first:])]
     ]
     if not fits:

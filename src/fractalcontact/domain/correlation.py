@@ -7,7 +7,7 @@ from roughcontact.kernel_cache import njit
 
 from ..core.estimate import Estimate
 from ..core.fitting import fit_line
-from ..core.slope_of_sums import BLOCKS, FEWEST_SCALES, slope_of_sums
+from ..core.slope_of_sums import BLOCKS, MIN_SCALES, slope_of_sums
 from .box_counts import geometric_sizes
 
 #: Smallest and largest distance of the fit: cells, and fraction of the window's shorter side.
@@ -15,7 +15,7 @@ SMALLEST_DISTANCE = 2
 LARGEST_DISTANCE = 1 / 8
 
 #: So many comparisons of two nodes cost no more than the Fourier transforms of a window.
-_MOST_COMPARED = 3e7
+_MAX_COMPARED = 3e7
 
 
 def pair_counts(domain: np.ndarray, distances: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -44,7 +44,7 @@ def pair_counts(domain: np.ndarray, distances: np.ndarray) -> tuple[np.ndarray, 
     ring = _rings(lag_y, lag_x, distances)
     rings, lags = len(distances) + 1, lags_of(distances)
     nodes = np.nonzero(domain)
-    if nodes[0].size ** 2 * min(reach / domain.shape[0], 1) < _MOST_COMPARED:
+    if nodes[0].size ** 2 * min(reach / domain.shape[0], 1) < _MAX_COMPARED:
         part = np.zeros(domain.shape, np.int64)
         for i, where in enumerate(_parts(domain.shape)):
             part[where] = i
@@ -182,7 +182,7 @@ def pairs_slope(distances: np.ndarray, pairs: np.ndarray, lags: np.ndarray) -> f
         NaN with too few distances that have a pair.
     """
     known = pairs > 0
-    if np.count_nonzero(known) < FEWEST_SCALES:
+    if np.count_nonzero(known) < MIN_SCALES:
         return np.nan
     return 2 + fit_line(np.log(distances[known]), np.log(pairs[known] / lags[known])).slope.value
 

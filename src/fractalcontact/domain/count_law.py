@@ -37,10 +37,10 @@ _FINE = np.linspace(-0.02, 0.02, 41)
 
 #: An outline adds at most this times what the inside counts, at boxes as large as the extent.
 #: (A filled square has 2, one turned by 45 degrees 4.)
-MOST_OUTLINE = 4.0
+MAX_OUTLINE = 4.0
 
 #: Sets of less than this dimension have no outline: a line of the plane misses them.
-LEAST_WITH_OUTLINE = 1.0
+MIN_WITH_OUTLINE = 1.0
 
 #: A further term of the outline has to make the misfit smaller by this ratio.
 TERM_GAIN = 1.5
@@ -259,9 +259,9 @@ def _misfits(rho, areas, side, terms, dimensions):
             for i in range(1, terms):
                 columns[k, i] = columns[k, i - 1] * (rho[k] / side)
         a = _factors(columns)
-        possible = a[0] > 0 and (terms == 1 or dimensions[d] >= LEAST_WITH_OUTLINE)
+        possible = a[0] > 0 and (terms == 1 or dimensions[d] >= MIN_WITH_OUTLINE)
         for i in range(1, terms):
-            possible &= -1e-9 * a[0] <= a[i] <= MOST_OUTLINE * a[0]
+            possible &= -1e-9 * a[0] <= a[i] <= MAX_OUTLINE * a[0]
         if possible:
             total = 0.0
             for k in range(rho.size):

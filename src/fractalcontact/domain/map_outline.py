@@ -19,7 +19,7 @@ from ..core.units import quantity
 HULL_SHARE = 0.8
 #: Fewer cells in contact leave so much of a rectangle empty by chance: their hull takes
 #: 1 - (8/3) ln N / N of a square on the average (Renyi and Sulanke, 1963), 0.88 for 100 cells.
-FEWEST_CELLS = 100
+MIN_CELLS = 100
 
 
 #: A disc without a stated centre may leave this fraction of the contact outside.
@@ -162,7 +162,7 @@ def outline_warning(
     if outside := _outside_words(values, touching, outline, threshold):
         return outside
     rim = np.concatenate([empty[0], empty[-1], empty[:, 0], empty[:, -1]])
-    if outline is not None or not rim.all() or touching.sum() < FEWEST_CELLS:
+    if outline is not None or not rim.all() or touching.sum() < MIN_CELLS:
         return ""
     share = _hull_share(touching)
     if share >= HULL_SHARE:

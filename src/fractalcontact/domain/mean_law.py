@@ -9,10 +9,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..core.fitting import FEWEST_POINTS
+from ..core.fitting import MIN_POINTS
 from ..core.intervals import jackknife_error
 from ..core.ranges import within
-from ..core.slope_of_sums import BLOCKS, FEWEST_SCALES, halves, wave_error
+from ..core.slope_of_sums import BLOCKS, MIN_SCALES, halves, wave_error
 from .box_counts import cover_and_mean, cropped, mean_count, whole_sizes
 from .count_law import (
     SMALLEST,
@@ -103,7 +103,7 @@ def law_of_means(
     waves = wave_error(sizes, np.log(count / law_count(sizes, law.dimension, terms)))
     half = float(np.hypot(error, waves))
     of_halves = (np.nan, np.nan)
-    if sizes.size // 2 >= FEWEST_SCALES:
+    if sizes.size // 2 >= MIN_SCALES:
         small, large = (
             law_dimension(law, sizes[part], count[part], side) for part in halves(sizes.size)
         )
@@ -117,7 +117,7 @@ def _fitted(means, extent, limits, whole_cells):
     sizes, count = means
     alone, full = _beyond_cut_offs(means, extent)
     between = ~alone & ~full & (sizes >= SMALLEST_SEPARATING) & within(sizes, *limits)
-    if np.count_nonzero(between & (sizes >= SMALLEST)) < FEWEST_SCALES:
+    if np.count_nonzero(between & (sizes >= SMALLEST)) < MIN_SCALES:
         return None
     law = best_law(sizes[between].astype(float), count[between], max(extent.shape), whole_cells)
     return None if law is None else (law, between)
@@ -213,7 +213,7 @@ def dimension_by_means(
     alone, full = (
         np.count_nonzero(beyond[sizes > 1]) for beyond in _beyond_cut_offs(means, extent)
     )
-    if max(alone, full) < FEWEST_SCALES:
+    if max(alone, full) < MIN_SCALES:
         return np.nan, cover
     return 2.0 if full >= alone else 0.0, cover
 
@@ -251,7 +251,7 @@ def _without_parts(parts, statistic, firsts):
 
 def count_slope(count: np.ndarray, sizes: np.ndarray) -> float:
     """Least-squares slope -d log N / d log r; NaN where a count is 0 or sizes are too few."""
-    if sizes.size < FEWEST_POINTS or not (count > 0).all():
+    if sizes.size < MIN_POINTS or not (count > 0).all():
         return np.nan
     x = np.log(sizes)
     x -= x.mean()

@@ -16,10 +16,10 @@ from ..core.slope_of_sums import wave_error
 RESOLUTION = "resolution"
 
 #: Resolutions that the interval of the area's exponent needs: three leave none beside their bend.
-FEWEST_RESOLUTIONS = 4
+MIN_RESOLUTIONS = 4
 
 #: Nodes that a contact domain needs at a resolution for its number N_n to count.
-FEWEST_NODES = 4
+MIN_NODES_PER_RESOLUTION = 4
 
 
 def renormalisation(
@@ -27,7 +27,7 @@ def renormalisation(
     area: xr.DataArray,
     force: xr.DataArray,
     nodes: xr.DataArray | None = None,
-    fewest: int = FEWEST_NODES,
+    fewest: int = MIN_NODES_PER_RESOLUTION,
 ) -> xr.Dataset:
     """Dimension and fractal measure of the contact domain from its area over resolutions.
 
@@ -56,13 +56,14 @@ def renormalisation(
         and `hausdorff_spread`, the geometric standard deviation about it (1 = no spread);
         `sigma_star` = F / H_D, N mm^-Delta. On (resolution, ...): `sigma_n` = F / A_n, MPa, at the
         resolutions that count. NaN where fewer than three resolutions can be;
-        no interval with fewer than `FEWEST_RESOLUTIONS`.
+        no interval with fewer than `MIN_RESOLUTIONS`.
 
     Notes
     -----
     N_n is a whole number. One node more or less of one, two or three would change the
     slope over a doubling of s by 1, 0.6 or 0.4: such domains are too small to have a dimension (a
-    single node at every resolution would give exactly 0). From `FEWEST_NODES` = 4 on it is 0.3.
+    single node at every resolution would give exactly 0). From
+    `MIN_NODES_PER_RESOLUTION` = 4 on it is 0.3.
 
     The interval is of sampling: N_n nodes vary as sqrt(N_n) (as Poisson's law has it for nodes that
     touch independently), and what waves about the smooth bend may tilt comes on top, in quadrature.
@@ -130,7 +131,7 @@ def _area_exponent(log_s: np.ndarray, log_area: np.ndarray, nodes: np.ndarray) -
     """Slope of log A over log s with its interval, resolutions fitted and r2."""
     line = fit_line(log_s, log_area)
     slope = line.slope.value
-    if line.n < FEWEST_RESOLUTIONS:
+    if line.n < MIN_RESOLUTIONS:
         return slope, np.nan, np.nan, float(line.n), line.r2
     fitted = np.isfinite(log_area)
     law = line.intercept.value + slope * log_s
@@ -299,7 +300,7 @@ _COMPARED = {
 
 
 def area_bend(
-    s: xr.DataArray, area: xr.DataArray, nodes: xr.DataArray, fewest: int = FEWEST_NODES
+    s: xr.DataArray, area: xr.DataArray, nodes: xr.DataArray, fewest: int = MIN_NODES_PER_RESOLUTION
 ) -> xr.DataArray:
     """Delta_sigma of the two finest resolutions less that of the two coarsest, from their areas.
 

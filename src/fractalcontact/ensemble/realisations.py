@@ -34,7 +34,7 @@ from ..surface.specimen import make_specimen
 from .statistics import add_statistics, add_trends
 
 #: Sub-windows along a side of the window, and how many of each size are solved.
-PARTS, MOST_WINDOWS = (1, 2, 4), 4
+PARTS, MAX_WINDOWS = (1, 2, 4), 4
 
 #: Of every realisation under every load, named as in the stages of the named specimen: unit, long
 #: name.
@@ -216,9 +216,9 @@ def _bend(curves: xr.Dataset, settings: EnsembleSettings, spacing: float) -> np.
 def _size_exponents(loading: JointLoading[EnsembleSettings]) -> dict:
     """Exponents of one realisation against the size of its sub-windows, as variables."""
     parts = solvable_parts(PARTS, loading.shape)
-    windows = window_states(loading, parts, MOST_WINDOWS).isel(offset=0, normal_force=0)
+    windows = window_states(loading, parts, MAX_WINDOWS).isel(offset=0, normal_force=0)
     windows = windows.transpose("part", "window", ...)
-    places = [spread_windows(n, MOST_WINDOWS) for n in parts]
+    places = [spread_windows(n, MAX_WINDOWS) for n in parts]
     table, values = {}, {}
     for exponent, (name, fewest, words) in EXPONENTS.items():
         each = windows[name].values

@@ -17,7 +17,7 @@ from ..mechanics.joint import prefractal
 from ..mechanics.loading import JointLoading
 from ..mechanics.subgrid import state_quantities
 from ..mechanics.sweep import load_steps
-from .other_windows import FEWEST_EFFECTIVE, TOO_SMALL, other_composites, window_spread
+from .other_windows import MIN_EFFECTIVE, TOO_SMALL, other_composites, window_spread
 from .refinement import (
     ABSOLUTE,
     BUDGET_QUANTITIES,
@@ -49,7 +49,7 @@ WIDENED = 2.0
 _LARGEST_SPREAD = np.pi / np.sqrt(6)
 
 #: Contacts are separate where no larger fraction of the window touches.
-MOST_TOUCHING = 0.5
+MAX_TOUCHING = 0.5
 
 _EACH, _ALL = ("quantity", "source", "normal_force"), ("quantity", "normal_force")
 _UNIT = "unit of the quantity"
@@ -325,7 +325,7 @@ def counting_error(curve: LoadCurve) -> np.ndarray:
     clusters = np.maximum(curve.domains["clusters"].values, 1.0)
     touching = curve.curve["area_share"].values
     fraction = t_quantile(np.inf) / np.sqrt(clusters)
-    length = np.where(touching > MOST_TOUCHING, np.nan, curve.decay_length())
+    length = np.where(touching > MAX_TOUCHING, np.nan, curve.decay_length())
     summit_spread = t_quantile(np.inf) * _LARGEST_SPREAD * length
     _, _, area, stiffness, _ = curve.values()
     value, low, high = Estimate.read(curve.domains, "delta_sigma").ends
@@ -334,7 +334,7 @@ def counting_error(curve: LoadCurve) -> np.ndarray:
             np.hypot(fraction * length, summit_spread),
             fraction * length,
             fraction * np.sqrt(np.clip(1 - touching, 0, 1)) * area,
-            np.where(touching > MOST_TOUCHING, np.nan, fraction * stiffness),
+            np.where(touching > MAX_TOUCHING, np.nan, fraction * stiffness),
             np.fmax(high - value, value - low),
         ]
     )
@@ -407,7 +407,7 @@ def _reasons(curve, errors, found: Refinement, effective, registered: bool) -> n
         "estimator": "no other estimate at any load",
         "counting": f"fewer than {MIN_NODES} nodes, or no stiffness, at any load",
         "window": TOO_SMALL
-        if effective < FEWEST_EFFECTIVE
+        if effective < MIN_EFFECTIVE
         else "no value in every window at any load",
         "registration": "no spread of registrations is known"
         if scanned

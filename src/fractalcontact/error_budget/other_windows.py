@@ -9,9 +9,9 @@ from ..mechanics.joint import DIRECTION_STEPS
 from ..mechanics.loading import JointLoading
 
 #: Windows compared, the specimen's own among them, and the largest overlap of any two.
-MOST_WINDOWS, MOST_OVERLAP = 5, 0.5
+MAX_WINDOWS, MAX_OVERLAP = 5, 0.5
 #: Windows' worth of area that they cover together: with less a spread says nothing.
-FEWEST_EFFECTIVE = 2.5
+MIN_EFFECTIVE = 2.5
 #: Places tried along a window's side.
 _PLACES = 16
 
@@ -59,7 +59,7 @@ def window_places(present: np.ndarray, own: tuple[slice, slice]) -> tuple[list, 
     Returns
     -------
     places : list of (slice, slice)
-        At most `MOST_WINDOWS`, no two of which share more than `MOST_OVERLAP` of their area: one
+        At most `MAX_WINDOWS`, no two of which share more than `MAX_OVERLAP` of their area: one
         after another that which overlaps least with those before.
     effective : float
         The area they cover together, in windows.
@@ -75,14 +75,14 @@ def window_places(present: np.ndarray, own: tuple[slice, slice]) -> tuple[list, 
     holes -= missing[top + rows, left] - missing[top, left]
     top, left = top[holes == 0], left[holes == 0]
     places, shared, most = [own], np.zeros(top.size), np.zeros(top.size)
-    while top.size and len(places) < MOST_WINDOWS:
+    while top.size and len(places) < MAX_WINDOWS:
         row, column = places[-1][0].start, places[-1][1].start
         overlap = np.clip(1 - abs(top - row) / rows, 0, 1)
         overlap *= np.clip(1 - abs(left - column) / columns, 0, 1)
         shared += overlap
         most = np.maximum(most, overlap)
-        best = int(np.argmin(shared + np.where(most > MOST_OVERLAP, np.inf, 0.0)))
-        if most[best] > MOST_OVERLAP:
+        best = int(np.argmin(shared + np.where(most > MAX_OVERLAP, np.inf, 0.0)))
+        if most[best] > MAX_OVERLAP:
             break
         places.append((slice(top[best], top[best] + rows), slice(left[best], left[best] + columns)))
     covered = np.zeros(present.shape, bool)
@@ -114,7 +114,7 @@ def other_composites(
     mated = whole_composite(specimen, direction, 0)
     present = np.isfinite(whole) & np.isfinite(mated)
     places, effective = window_places(present, window_slices(specimen))
-    if effective < FEWEST_EFFECTIVE:
+    if effective < MIN_EFFECTIVE:
         return [], effective
     datum = np.max if loading.slides else np.mean
     return [(whole[place], float(datum(mated[place]))) for place in places[1:]], effective

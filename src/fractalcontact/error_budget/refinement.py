@@ -21,7 +21,7 @@ from ..mechanics.states import forces_of
 from ..mechanics.subgrid import QUANTITIES, state_quantities, subgrid_states, summit
 
 #: Cells of the largest grid at s/2, and at s/4: of a study, and of one that asks for all states.
-MOST_CELLS_HALF, MOST_CELLS, MOST_CELLS_FULL = 2**22, 2**20, 2**22
+MAX_CELLS_HALF, MAX_CELLS, MAX_CELLS_FULL = 2**22, 2**20, 2**22
 #: Grids at s/4 of no more than this cost next to nothing and are solved at all loads chosen.
 CHEAP_CELLS = 2**18
 #: Tolerance of the refined states, in that of the study: their differences count.
@@ -137,7 +137,7 @@ def refined_loads(curve: LoadCurve, settings: ContactSettings, *, all_states: bo
     (n,) int ndarray
         Indices of its forces, ascending; none where the grid is too large or the faces are flush.
     """
-    too_many = FACTORS[1] ** 2 * curve.composite.size > MOST_CELLS_HALF
+    too_many = FACTORS[1] ** 2 * curve.composite.size > MAX_CELLS_HALF
     if np.ptp(curve.composite) == 0 or too_many:
         return np.empty(0, int)
     if all_states:
@@ -208,7 +208,7 @@ def _needing_more(curve, levels, places, asked) -> np.ndarray:
     cells = FACTORS[2] ** 2 * curve.composite.size
     if cells <= CHEAP_CELLS:
         return places
-    if cells > (MOST_CELLS_FULL if asked is None else MOST_CELLS):
+    if cells > (MAX_CELLS_FULL if asked is None else MAX_CELLS):
         return np.empty(0, int)
     change = np.abs(levels[1, 0] / levels[0, 0] - 1)
     return places if asked is None else places[change[places] > asked]

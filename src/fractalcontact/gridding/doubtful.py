@@ -19,7 +19,7 @@ _SEAM = 10.0
 #: ... and by this many times the next largest difference: relief has no single cut right across.
 _NEXT = 3.0
 #: Fewer cells in a row that both rows have say nothing of a seam.
-_FEWEST_IN_ROW = 8
+_MIN_IN_ROW = 8
 #: Cells of a row that are looked at for that, spread over it.
 _SAMPLE = 500
 
@@ -107,8 +107,8 @@ def _seam(z: np.ndarray) -> tuple[int, float] | None:
     """The row after which all heights change at once, and how much more than elsewhere."""
     z = z[:, :: max(1, z.shape[1] // _SAMPLE)]
     steps = np.abs(np.diff(z, axis=0))
-    known = np.isfinite(steps).sum(axis=1) >= _FEWEST_IN_ROW
-    if known.sum() < _FEWEST_IN_ROW:
+    known = np.isfinite(steps).sum(axis=1) >= _MIN_IN_ROW
+    if known.sum() < _MIN_IN_ROW:
         return None
     # The lower quartile along the row: nearly all cells must take part.
     size = np.zeros(len(steps))

@@ -12,7 +12,7 @@ LATTICE_TOLERANCE = 0.1
 #: Points rounded coarsely lie on a lattice too, but leave most of its nodes empty.
 LATTICE_MIN_FILL = 0.2
 #: Far above any profilometer; a stray point would otherwise ask for all memory.
-MOST_CELLS = 200_000_000
+MAX_CELLS = 200_000_000
 #: Nor does anybody interpolate so finely; a small file would still ask for gigabytes.
 CELLS_PER_POINT = 1000
 _FEW_CELLS = 10_000_000
@@ -201,7 +201,7 @@ def covering_lattice(points: np.ndarray, spacing: float, where: str) -> Lattice:
             f"{where}: the points span no area of at least one grid spacing ({spacing:.4g} mm); "
             "set a finer key 'grid'"
         )
-    most = min(MOST_CELLS, max(_FEW_CELLS, CELLS_PER_POINT * len(points)))
+    most = min(MAX_CELLS, max(_FEW_CELLS, CELLS_PER_POINT * len(points)))
     if count.prod() > most:
         raise InputError(
             f"{where}: a grid of {spacing:.4g} mm over {high[0] - low[0]:.4g} x "

@@ -6,7 +6,7 @@ import numpy as np
 from scipy.spatial import Delaunay, QhullError
 
 from ..core.errors import InputError
-from .points import MOST_CELLS, Lattice
+from .points import MAX_CELLS, Lattice
 
 #: Points triangulated at once: a few tens of thousands stay in the processor's cache.
 TILE_POINTS = 25_000
@@ -14,13 +14,13 @@ TILE_POINTS = 25_000
 TILE_PLACES = 2_000_000
 #: Qhull takes about 1 GB for this many points; more of them around one cell, or within the largest
 #: circle, are no scan of a surface.
-_MOST_IN_TILE = 1_000_000
+_MAX_IN_TILE = 1_000_000
 #: Points on one line: they stray from it by less than this share of its length (root of rounding).
 _LINE = 1e-7
 #: Grids are averaged over cells that hold this many points or more, else read at their centres.
-FEWEST_TO_AVERAGE = 4
+MIN_TO_AVERAGE = 4
 #: The triangles of a mesh may cover the grid this many times; no surface comes near it.
-_MOST_LAYERS = 200
+_MAX_LAYERS = 200
 
 
 def interpolate_points(
@@ -72,9 +72,9 @@ def interpolate_points(
         if on_one_line(near[:, :2]):
             continue
         part = _part(lattice, rows, columns)
-        if len(near) > _MOST_IN_TILE:
+        if len(near) > _MAX_IN_TILE:
             raise InputError(
-                f"{where}: {len(near)} points, more than {_MOST_IN_TILE}, lie around "
+                f"{where}: {len(near)} points, more than {_MAX_IN_TILE}, lie around "
                 f"x = {part.x0:.6g}, y = {part.y0:.6g} mm, "
                 "far more densely than the others or than the grid; thin them out, or set a finer "
                 "key 'grid'"
@@ -122,24 +122,24 @@ def interpolate_mesh(
     corners = vertices[:, :2][triangles]
     extent = np.ptp(corners, axis=1) / (lattice.dx, lattice.dy)
     extent = np.minimum(extent, (lattice.nx, lattice.ny)) + 1
-    if extent.prod(axis=1).sum() > _MOST_LAYERS * (lattice.nx * lattice.ny + len(triangles)):
+    if extent.prod(axis=1).sum() > _MAX_LAYERS * (lattice.nx * lattice.ny + len(triangles)):
         raise InputError(
-            f"{where}: the triangles of the mesh cover its area more than {_MOST_LAYERS} times; "
+            f"{where}: the triangles of the mesh cover its area more than {_MAX_LAYERS} times; "
             "export a surface, or a coarser mesh"
         )
-    finest = math.isqrt(MOST_CELLS // (lattice.nx * lattice.ny))
+    finest = math.isqrt(MAX_CELLS // (lattice.nx * lattice.ny))
     return _envelope(vertices, triangles, lattice, min(across, max(1, finest)))
 
 
 def places_across(lattice: Lattice, area_per_point: float) -> int:
     """Places along each side of a cell over which heights are averaged.
 
-    A cell's centre hears of three points only. Where a cell holds `FEWEST_TO_AVERAGE` points or
+    A cell's centre hears of three points only. Where a cell holds `MIN_TO_AVERAGE` points or
     more, what is finer than the grid would be aliased into it, so the surface is averaged over the
     cell, at about as many places as it holds points (the block mean of gridding).
     """
     per_cell = lattice.dx * lattice.dy / area_per_point
-    if per_cell < FEWEST_TO_AVERAGE * (1 - 1e-6):
+    if per_cell < MIN_TO_AVERAGE * (1 - 1e-6):
         return 1
     return math.ceil(math.sqrt(per_cell) - 1e-6)
 

@@ -5,7 +5,7 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from ..core.estimate import Estimate, rows_of
-from ..core.fitting import FEWEST_POINTS, fit_line
+from ..core.fitting import MIN_POINTS, fit_line
 from ..core.intervals import mean_interval
 from ..core.labels import cf_attrs
 from ..core.limits import CORRECTED_NODES, LIGHT_LOAD, RESOLVED_NODES
@@ -303,14 +303,14 @@ def _reasons_for_no_law(
     full = (curves["area_share"] > 0.5).all("normal_force") & ~result["fitted"].any("normal_force")
     n = result[f"{prefix}n"].values.astype(int)
     reasons = [
-        "" if loads >= FEWEST_POINTS else FULL_CONTACT if whole else _too_few(loads, fewest)
+        "" if loads >= MIN_POINTS else FULL_CONTACT if whole else _too_few(loads, fewest)
         for loads, whole in zip(n.ravel(), full.values.ravel(), strict=True)
     ]
     return np.array(reasons).reshape(n.shape)
 
 
 def _too_few(n: int, fewest: int) -> str:
-    return f"{n} of {FEWEST_POINTS} loads with {fewest} nodes in contact, but not all"
+    return f"{n} of {MIN_POINTS} loads with {fewest} nodes in contact, but not all"
 
 
 def _add_kappa(result: xr.Dataset, curves: xr.Dataset, e_star: float, node: xr.DataArray) -> None:

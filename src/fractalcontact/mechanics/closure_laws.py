@@ -20,7 +20,7 @@ from ..core.ranges import within
 from ..core.verdicts import HYPERBOLA, NEITHER, SEMI_LOGARITHMIC, UNDECIDED
 
 #: States a law of two parameters needs before its interval means anything.
-FEWEST_CLOSURE_POINTS = 4
+MIN_CLOSURE_POINTS = 4
 
 
 #: Logarithms of the parameters beyond which nothing is sought.
@@ -83,7 +83,7 @@ def fit_hyperbola(pressure: ArrayLike, closure: ArrayLike) -> Hyperbola:
     from scipy import optimize
 
     sigma, w = _usable(pressure, closure)
-    if sigma.size < FEWEST_CLOSURE_POINTS:
+    if sigma.size < MIN_CLOSURE_POINTS:
         return Hyperbola(n=sigma.size, reason=_too_few(sigma.size))
 
     def law(sigma, log_k, log_wm):
@@ -120,7 +120,7 @@ def fit_semi_logarithmic(pressure: ArrayLike, closure: ArrayLike) -> SemiLogarit
         a (the closure at 1 MPa) and b in mm; NaN, with a reason, where there are too few points.
     """
     sigma, w = _usable(pressure, closure)
-    if sigma.size < FEWEST_CLOSURE_POINTS:
+    if sigma.size < MIN_CLOSURE_POINTS:
         return SemiLogarithmic(n=sigma.size, reason=_too_few(sigma.size))
     line = fit_line(np.log(sigma), w)
     residual = w - (line.intercept.value + line.slope.value * np.log(sigma))
@@ -196,7 +196,7 @@ def _usable(pressure: ArrayLike, closure: ArrayLike) -> tuple[np.ndarray, np.nda
 
 
 def _too_few(n: int) -> str:
-    return f"{n} points with w_int > 0, {FEWEST_CLOSURE_POINTS} needed"
+    return f"{n} points with w_int > 0, {MIN_CLOSURE_POINTS} needed"
 
 
 #: Parameters of both laws by their prefix in the atlas: unit, long name.
@@ -256,7 +256,7 @@ def add_closure_laws(curves: xr.Dataset, fit_range: tuple[float, float] | None) 
     for place in np.ndindex(fits.shape):
         points = pressure[fitted[place]], closure[place][fitted[place]]
         hyperbola, semi_logarithmic = fit_hyperbola(*points), fit_semi_logarithmic(*points)
-        if fitted[place].sum() < FEWEST_CLOSURE_POINTS:
+        if fitted[place].sum() < MIN_CLOSURE_POINTS:
             few = _few_states(closure[place] > 0, resolved[place], fitted[place])
             hyperbola = hyperbola._replace(reason=few)
             semi_logarithmic = semi_logarithmic._replace(reason=few)
@@ -291,13 +291,13 @@ def _few_states(*states: np.ndarray) -> str:
     ``states`` says which have a closure above 0, which of them are resolved, and which are fitted.
     """
     closed, resolved, fitted = (int(those.sum()) for those in states)
-    if resolved >= FEWEST_CLOSURE_POINTS:
+    if resolved >= MIN_CLOSURE_POINTS:
         lie = f"{fitted} of {resolved} states lie in hyperbola_range"
-        return f"{lie}, {FEWEST_CLOSURE_POINTS} needed: widen it"
-    if closed >= FEWEST_CLOSURE_POINTS:
+        return f"{lie}, {MIN_CLOSURE_POINTS} needed: widen it"
+    if closed >= MIN_CLOSURE_POINTS:
         touch = f"{RESOLVED_NODES} nodes touch in {resolved} of {closed} states"
         more = "heavier loads or a larger or finer scan would help"
-        return f"{touch}, {FEWEST_CLOSURE_POINTS} needed: {more}"
+        return f"{touch}, {MIN_CLOSURE_POINTS} needed: {more}"
     return _too_few(closed)
 
 

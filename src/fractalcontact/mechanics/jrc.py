@@ -35,7 +35,7 @@ FITS: dict[str, tuple[float, Callable[[Any], Any]]] = {
 #: A step of whole cells that differs by more than this part from a fit's is not that fit's.
 _NEAR = 0.25
 #: A window with fewer steps than this along it is called small for its sampling.
-FEWEST_STEPS = 10
+MIN_STEPS = 10
 
 
 def _range_words() -> str:
@@ -142,6 +142,6 @@ def _sampling_note(step: float, side: float) -> list[str]:
         note.append(
             f"the scan's spacing of {step:.3g} mm is coarser than the {JRC_STEP:g} mm wanted"
         )
-    if side < FEWEST_STEPS * step:
-        note.append(f"the window of {side:.3g} mm holds fewer than {FEWEST_STEPS} steps")
+    if side < MIN_STEPS * step:
+        note.append(f"the window of {side:.3g} mm holds fewer than {MIN_STEPS} steps")
     return note

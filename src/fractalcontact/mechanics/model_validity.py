@@ -27,7 +27,7 @@ CONFINED = 3.0
 
 #: Young's modulus over uniaxial strength of rocks and concretes is between these (Deere and Miller
 #: 1966: most rocks 200 to 500; concrete up to 1000): bounds of a strength that is not stated.
-LEAST_RATIO, LARGEST_RATIO = 200.0, 1000.0
+MIN_RATIO, LARGEST_RATIO = 200.0, 1000.0
 
 
 #: Fractions F / (H A_0) of what a window can carry: up to the first its contacts are apart enough
@@ -161,5 +161,5 @@ def material_limits(material: Material) -> Limits:
     if np.isfinite(strength):
         return Limits(STRENGTH, strength, strength, strength, CONFINED * strength)
     modulus = float(material.modulus)
-    low, high = modulus / LARGEST_RATIO, modulus / LEAST_RATIO
+    low, high = modulus / LARGEST_RATIO, modulus / MIN_RATIO
     return Limits(USUAL, low, high, low, CONFINED * high)

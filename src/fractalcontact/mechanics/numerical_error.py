@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 #: Orders of convergence that are believed.
-LEAST_ORDER, MOST_ORDER = 0.5, 3.0
+MIN_ORDER, MAX_ORDER = 0.5, 3.0
 
 #: Fraction of the extrapolation, or of the last change, that is uncertain.
 UNCERTAIN = 0.5
@@ -53,7 +53,7 @@ def _extrapolated(values: ArrayLike) -> _Extrapolated:
     with np.errstate(all="ignore"):
         ratio = first / second
         monotone = three & (ratio > 1)
-        order = np.clip(np.log2(np.where(monotone, ratio, 2.0)), LEAST_ORDER, MOST_ORDER)
+        order = np.clip(np.log2(np.where(monotone, ratio, 2.0)), MIN_ORDER, MAX_ORDER)
     beyond = np.where(monotone, second / (2.0**order - 1), 0.0)
     last = np.where(three, second, first)
     change = np.where(three, first + second + beyond, first)

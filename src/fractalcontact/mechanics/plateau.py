@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 
 from ..core.datasets import labelled
 from ..core.estimate import rows_of
-from ..core.fitting import FEWEST_POINTS, LineFit, fit_line
+from ..core.fitting import MIN_POINTS, LineFit, fit_line
 from ..core.limits import LEVEL_CHANGE
 from ..core.verdicts import FALLING, LEVEL, RISING
 
@@ -116,4 +116,4 @@ def _trend(change: float, slope: float) -> str:
 def _reason(n: int, direction: str) -> str:
     if direction == "none":
         return "a surface against a plane does not slide"
-    return f"{n} offsets in the second half, {FEWEST_POINTS} needed"
+    return f"{n} offsets in the second half, {MIN_POINTS} needed"

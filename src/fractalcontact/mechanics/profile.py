@@ -8,7 +8,7 @@ from ..core.slope_of_sums import slope_of_sums
 from .jrc import roughness_of_profiles
 
 #: Cells of the shortest window, and windows that the longest one fits into the profile.
-_SHORTEST, _FEWEST_WINDOWS = 8, 8
+_SHORTEST, _MIN_WINDOWS = 8, 8
 _BLOCKS = 8
 _TABLE = {
     "range_min": ((), "mm", "shortest window of the roughness length"),
@@ -40,7 +40,7 @@ def profile_coefficients(heights: np.ndarray, spacing: float) -> xr.Dataset:
     """
     x = np.arange(heights.size)
     levelled = heights - np.polyval(np.polyfit(x, heights, 1), x)
-    longest = heights.size // _FEWEST_WINDOWS
+    longest = heights.size // _MIN_WINDOWS
     sides = np.unique(np.geomspace(_SHORTEST, max(longest, _SHORTEST), 12).astype(int))
     parts = np.array([_sums(levelled, side) for side in sides])
     exponent = slope_of_sums(sides * spacing, parts, lambda sums: sums[:, 0] / sums[:, 1])

@@ -12,7 +12,7 @@ from ..core.datasets import labelled
 from ..core.estimate import Estimate
 from ..core.labels import percent
 from ..core.limits import LARGEST_MISFIT, REFERENCE_PRESSURES, SEATED_SPAN
-from .closure_laws import FEWEST_CLOSURE_POINTS, at_twice, fit_hyperbola, fit_semi_logarithmic
+from .closure_laws import MIN_CLOSURE_POINTS, at_twice, fit_hyperbola, fit_semi_logarithmic
 from .separation import ROUNDING
 
 _DIMS = ("direction", "offset", "resolution")
@@ -98,10 +98,10 @@ class _Fit:
     def _reason(self, seat: float) -> str:
         if np.isnan(seat):
             return "no state is resolved from the seating pressure on: a finer scan would help"
-        if self.seated_fit_points < FEWEST_CLOSURE_POINTS:
+        if self.seated_fit_points < MIN_CLOSURE_POINTS:
             return (
                 f"{self.seated_fit_points} states above the seating pressure, "
-                f"{FEWEST_CLOSURE_POINTS} needed: more loads up to {SEATED_SPAN * seat:.3g} MPa "
+                f"{MIN_CLOSURE_POINTS} needed: more loads up to {SEATED_SPAN * seat:.3g} MPa "
                 "would help"
             )
         if not self.seated_k_ni.known:

@@ -31,7 +31,7 @@ _TOUCHING = 0.01
 #: A cloud is moved, gridded and matched again until no further tilt of this size is found: one of
 #: 0.2 degrees carries a peak sideways by 0.35 % of its height.
 _SMALL_TILT = math.tan(math.radians(0.2))
-_MOST_PASSES = 4
+_MAX_PASSES = 4
 #: What the upper face is, when a mirror image of it matches: by the signs of x, y and z.
 _IMAGES = {
     (-1, 1, -1): "was scanned on its back: its heights point down and its x runs the other way",
@@ -254,7 +254,7 @@ def _move_by_cells(upper, motion: Motion):
 def _move_points(lower, motion, mode, regrid):
     """Move the points and grid them; where a tilt carried peaks sideways, correct what is left."""
     motions, total = [motion], motion
-    for _ in range(_MOST_PASSES):
+    for _ in range(_MAX_PASSES):
         moved = regrid(motions)
         if math.hypot(*motion.slope) < _SMALL_TILT:
             break

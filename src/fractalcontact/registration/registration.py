@@ -17,8 +17,8 @@ from .surface_motion import Motion, Surface, grid_nodes
 _CLEARLY_BETTER = 0.05
 #: Cells along the longer side of the finest grid the motion is sought on; finer scans are averaged.
 _FINEST, _COARSEST = 512, 64
-_FEWEST_CELLS = 64  # common to both faces, to know a gap's spread
-_MOST_STEPS, _MOST_HALVINGS = 50, 8
+_MIN_CELLS = 64  # common to both faces, to know a gap's spread
+_MAX_STEPS, _MAX_HALVINGS = 50, 8
 _SMALL_STEP = 1e-3  # of a cell: a step that moves no cell further ends the search
 #: A cell whose gap is further than this many robust standard deviations from that of most does not
 #: count. The biweight with it is 95 % as efficient as least squares where errors are Gaussian
@@ -26,7 +26,7 @@ _SMALL_STEP = 1e-3  # of a cell: a step that moves no cell further ends the sear
 _BIWEIGHT = 4.685
 _NORMAL = 1.4826  # standard deviation of a normal distribution / its median absolute deviation
 #: The limit follows the gap until it changes by less than this part, this number of times at most.
-_SAME_LIMIT, _MOST_LIMITS = 0.02, 4
+_SAME_LIMIT, _MAX_LIMITS = 0.02, 4
 _ROUNDING = 1e-9  # relative: gaps that differ by less are one
 
 
@@ -72,7 +72,7 @@ def find_motion(
 
 def _have_common_cells(lower, upper) -> bool:
     both = np.isfinite(lower.values) & np.isfinite(Surface(upper)(*grid_nodes(lower)))
-    return both.sum() >= _FEWEST_CELLS
+    return both.sum() >= _MIN_CELLS
 
 
 def _factors(faces) -> list[int]:
@@ -92,7 +92,7 @@ def _refine(faces: list[xr.DataArray], motion: Motion, mode: str) -> tuple[Motio
     lower, upper = faces
     problem = _Problem(lower, Surface(upper), *grid_nodes(lower), mode)
     limit, converged = np.nan, False
-    for _ in range(_MOST_LIMITS):
+    for _ in range(_MAX_LIMITS):
         gap = problem.gap(motion)
         new_limit = biweight_limit(gap)
         if new_limit == limit or abs(new_limit - limit) <= _SAME_LIMIT * new_limit < np.inf:
@@ -126,13 +126,13 @@ def _descend(problem: _Problem, motion: Motion, limit: float) -> tuple[Motion, b
     if not np.isfinite(spread):  # no shift brings enough cells together: there is no start
         return motion, False
     enough = np.isfinite(gap).sum() / 2  # nor may a better gap be bought by parting the faces
-    for _ in range(_MOST_STEPS):
+    for _ in range(_MAX_STEPS):
         both = np.isfinite(gap)
         # About the centroid shift and rotation hardly interact.
         motion = motion.about(x[both].mean(), y[both].mean())
         step = _gauss_newton_step(lower, gap, motion, limit, problem.mode)
         size = np.hypot(*step[:2]) + abs(step[2]) * np.hypot(np.ptp(x[both]), np.ptp(y[both])) / 2
-        for halving in range(_MOST_HALVINGS):
+        for halving in range(_MAX_HALVINGS):
             tried = _stepped(motion, step / 2**halving)
             new_gap = problem.gap(tried)
             new_spread = biweight_spread(new_gap, limit)

@@ -16,9 +16,9 @@ from .surface_motion import Motion
 #: other, and from this number of blocks a standard deviation is known to about a sixth.
 MOTIONS, BLOCKS = 20, 6
 #: A block with fewer of its cells present is left out.
-_FEWEST_CELLS = 16
+_MIN_CELLS = 16
 #: Fewest blocks of which a draw makes sense.
-_FEWEST_BLOCKS = 8
+_MIN_BLOCKS = 8
 
 
 def scattered_motions(lower: xr.DataArray, upper: xr.DataArray) -> list[Motion]:
@@ -49,7 +49,7 @@ def scattered_motions(lower: xr.DataArray, upper: xr.DataArray) -> list[Motion]:
     motion = Motion(middle, middle)
     usable, terms, weights = linearised(lower, gap, motion, biweight_limit(gap), record["mode"])
     normal, right = _block_sums(usable, terms, weights, gap[usable])
-    if len(normal) < _FEWEST_BLOCKS:
+    if len(normal) < _MIN_BLOCKS:
         return []
     whole = _step(normal.sum(axis=0), right.sum(axis=0))
     rng = np.random.default_rng(0)
@@ -77,7 +77,7 @@ def _block_sums(usable, terms, weights, gap) -> tuple[np.ndarray, np.ndarray]:
     normal, right = [], []
     for label in np.unique(block):
         cells = block == label
-        if cells.sum() < _FEWEST_CELLS:
+        if cells.sum() < _MIN_CELLS:
             continue
         weighted = weights[cells] * terms[:, cells]
         normal.append(np.einsum("ik,jk->ij", weighted, terms[:, cells]))

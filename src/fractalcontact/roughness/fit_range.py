@@ -17,10 +17,10 @@ FIRST_CELLS, LAST_PART = 4, 1 / 8
 LAST_OF_ROLL_OFF = 1 / 4
 
 #: A range cut by a roll-off may begin at this number of cells to span this ratio.
-FEWEST_CELLS, LEAST_RATIO = 2, 3.0
+MIN_CELLS, MIN_RATIO = 2, 3.0
 
 #: Shortest offset (cells) below which four lags are left: 2 to 5 cells.
-LEAST_OFFSET = 10
+MIN_OFFSET = 10
 
 
 class FitRange(NamedTuple):
@@ -52,7 +52,7 @@ def choose_fit_range(
     -------
     FitRange
         By default from `FIRST_CELLS` cells to `LAST_PART` of the smaller side, or to
-        `LAST_OF_ROLL_OFF` of a roll-off, and then from `FEWEST_CELLS` cells if need be.
+        `LAST_OF_ROLL_OFF` of a roll-off, and then from `MIN_CELLS` cells if need be.
 
     Raises
     ------
@@ -72,7 +72,7 @@ def choose_fit_range(
     first, last = FIRST_CELLS * spacing, LAST_PART * min(heights.shape) * spacing
     if not end < last:
         return FitRange(first, last, roll_off, "4 cells to an eighth of the smaller side")
-    first = min(first, max(end / LEAST_RATIO, FEWEST_CELLS * spacing))
+    first = min(first, max(end / MIN_RATIO, MIN_CELLS * spacing))
     reason = f"up to a quarter of the roll-off at {_words(roll_off)}"
     return FitRange(first, end, roll_off, reason)
 
@@ -96,11 +96,11 @@ def below_offset(face: FitRange, offset: float, spacing: float) -> tuple[FitRang
         Why there is no such range; "" where there is.
     """
     end = min(face.longest, offset / 2)
-    first = min(face.shortest, max(end / LEAST_RATIO, FEWEST_CELLS * spacing))
+    first = min(face.shortest, max(end / MIN_RATIO, MIN_CELLS * spacing))
     reason = "lags up to half of v" if end < face.longest else face.reason
     fit_range = FitRange(first, end, face.roll_off, reason)
-    if offset < LEAST_OFFSET * spacing * (1 - 1e-6):
-        return fit_range, f"undetermined: v below {LEAST_OFFSET} cells"
+    if offset < MIN_OFFSET * spacing * (1 - 1e-6):
+        return fit_range, f"undetermined: v below {MIN_OFFSET} cells"
     return fit_range, ""
 
 

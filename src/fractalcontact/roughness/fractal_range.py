@@ -48,7 +48,7 @@ LENGTHS = ("noise", "filter", "roll_off")
 #: is no noise of the instrument: it is left out.
 SPIKY = 3.0
 #: Spectra of fewer bins are not fitted.
-FEWEST_BINS = 7
+MIN_BINS = 7
 
 
 class FractalRange(NamedTuple):
@@ -111,7 +111,7 @@ def find_fractal_range(curve: Curve, spacing: float) -> FractalRange:
     level = curve.measure()
     known = _above_leakage(curve.length, level)
     limit = float(np.sqrt(level[known].min() / spacing)) if known.any() else np.nan
-    if known.sum() < FEWEST_BINS:
+    if known.sum() < MIN_BINS:
         return _too_short(level, limit, left_out)
     x = 2 * spacing / curve.length[known]
     parts = np.log(curve.without_each_part()[:, known])

@@ -41,7 +41,7 @@ SYNTHETIC_HURST = np.array([0.1, 0.3, 0.5, 0.7, 0.8, 0.9, 0.95])
 #: which 16 of the surfaces of 256 x 256 were measured, too.
 DEFAULT_RANGE, SHORT_RANGE = 11.0, 5.0
 #: Least rise of a mean exponent with the true one.
-LEAST_RISE = 0.3
+MIN_RISE = 0.3
 
 
 class Fit(NamedTuple):
@@ -214,5 +214,5 @@ def tabulated_mean(
     of_roll_off = hurst_of_mean_square(fit, left) - HURST_GRID
     result = extended(HURST_GRID, SYNTHETIC_HURST, mean) + second_differences * of_roll_off
     # Below a short roll-off the slope says next to nothing of H: no sharper than this.
-    line = LEAST_RISE * HURST_GRID
+    line = MIN_RISE * HURST_GRID
     return np.maximum.accumulate(result - line) + line

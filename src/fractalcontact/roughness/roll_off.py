@@ -33,7 +33,7 @@ SHORTEST, STEPS_PER_OCTAVE = 8, 6
 LONGEST_PER_LAG = 4.0
 #: Neighbouring parts of one surface share its long waves (`estimator.Estimator.spread`), and no
 #: mean is trusted better than this (relative).
-SPREAD, LEAST_ERROR = 1.3, 0.03
+SPREAD, MIN_ERROR = 1.3, 0.03
 #: How much better than any power law a roll-off must describe the curve (chi-square).
 EVIDENCE = 20.0
 #: A roll-off that describes it by less than this worse than the best is not excluded.
@@ -246,7 +246,7 @@ def find_roll_off(curve: Curve, spacing: float, missing: np.ndarray) -> RollOff:
     if used.sum() < 5 or len(without) < 2:
         return RollOff(np.inf, SHORTEST * spacing, np.inf)
     lag, logs = lag[used], np.log(np.vstack([measure, without])[:, used])
-    error = np.hypot(SPREAD * jackknife_standard_error(logs[1:]), LEAST_ERROR)
+    error = np.hypot(SPREAD * jackknife_standard_error(logs[1:]), MIN_ERROR)
     steps = np.log2(LONGEST_PER_LAG * lag[-1] / SHORTEST) * STEPS_PER_OCTAVE
     tried = np.r_[SHORTEST * 2 ** (np.arange(max(steps, 0) + 1) / STEPS_PER_OCTAVE), np.inf]
     chi2 = np.stack([_chi_square(lag, logs, error, tried, missing, of) for of in SHAPES])

@@ -13,7 +13,7 @@ from xml.parsers import expat
 from ..core.errors import InputError
 from .raw import reading, refuse_larger
 
-MOST_MEMBERS = 10_000
+MAX_MEMBERS = 10_000
 #: No measured heights deflate better than this; a bomb does, up to 1 : 1032.
 LARGEST_RATIO = 200
 #: A few constant or empty members may: the ratio counts above this many bytes only.
@@ -50,9 +50,9 @@ def check_archive(path: Path) -> None:
 
 def _check_directory(members: list[zipfile.ZipInfo], path: Path) -> None:
     """Judge the archive by what its directory says."""
-    if len(members) > MOST_MEMBERS:
+    if len(members) > MAX_MEMBERS:
         raise InputError(
-            f"{path}: an archive of {len(members)} members, more than the {MOST_MEMBERS} allowed; "
+            f"{path}: an archive of {len(members)} members, more than the {MAX_MEMBERS} allowed; "
             "export the scan alone"
         )
     names = [member.filename for member in members]

@@ -10,7 +10,7 @@ from .text_hints import add_axes
 
 _HEIGHTS = re.compile(r"(?:^|[^a-z])(?:z|heights?|topo\w*|elev\w*|surf\w*|data)(?:[^a-z]|$)")
 #: A larger array is not looked into.
-_MOST_CELLS = 20_000_000
+_MAX_CELLS = 20_000_000
 _STEP = re.compile(r"(?:d|delta_?|pixel_?|step_?)([xy])?|spacing|pitch|resolution")
 
 
@@ -47,7 +47,7 @@ def array_hints(
     hints.add("variable", name, f"an array of {tables[name][0]} x {tables[name][1]}", others)
     _add_spacing(hints, small)
     add_words(hints, words or [])
-    if np.prod(tables[name]) > _MOST_CELLS:
+    if np.prod(tables[name]) > _MAX_CELLS:
         return hints
     values = np.asarray(read(name), dtype=float)
     if values.shape[1] < 8:

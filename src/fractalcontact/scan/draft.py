@@ -37,7 +37,7 @@ _DOWN = re.compile(r"\bdepths?\b|\bdown(?:wards?)?\b", re.IGNORECASE)
 _NO_FACE = re.compile(r"\b(apertures?|gap|opening)\b", re.IGNORECASE)
 #: Columns in which the comments of a draft begin.
 _COMMENT_AT = 26
-_MOST_OTHERS = 3
+_MAX_OTHERS = 3
 #: What to write where the file says nothing, by key.
 _TO_FILL = {
     "kind": "face, or contact-map",
@@ -124,7 +124,7 @@ def add_words(hints: Hints, lines: Iterable[tuple[str, str]]) -> None:
             seen("kind", "aperture", source)
     for key, values in found.items():
         others = [f"{written(value)} ({source})" for value, source in values[1:]]
-        hints.add(key, values[0][0], values[0][1], others[:_MOST_OTHERS])
+        hints.add(key, values[0][0], values[0][1], others[:_MAX_OTHERS])
 
 
 def _unit_key(before: str) -> str:

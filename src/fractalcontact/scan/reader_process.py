@@ -34,7 +34,7 @@ BASE_MEMORY = 1024**3
 BASE_SECONDS = 8
 #: A machine shared with others, or a slow disc, may take this many times as long by the clock.
 PATIENCE = 4
-_MOST_FILES = 64
+_MAX_FILES = 64
 #: Characters; sentences of this program are far shorter, whatever they quote.
 _LONGEST_MESSAGE = 1600
 _LONGEST_DRAFT = 6000
@@ -195,7 +195,7 @@ def _confine(limits: Limits, already: int) -> None:
     _lower(resource.RLIMIT_CPU, limits.processor_seconds)
     _lower(resource.RLIMIT_FSIZE, 0)
     _lower(resource.RLIMIT_CORE, 0)
-    _lower(resource.RLIMIT_NOFILE, _MOST_FILES)
+    _lower(resource.RLIMIT_NOFILE, _MAX_FILES)
     for number in (signal.SIGXCPU, signal.SIGALRM):
         signal.signal(number, signal.SIG_DFL)
     signal.alarm(limits.seconds)

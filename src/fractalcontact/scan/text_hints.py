@@ -12,10 +12,10 @@ from .draft import Hints, add_words
 from .options import DELIMITERS, ScanOptions
 from .text_lines import COMMENT_MARKS, cells_of, cleaned, is_number, open_text
 
-_MOST_LINES = 2_000
+_MAX_LINES = 2_000
 _LONGEST_LINE = 200_000
 #: Lines of words in front of the numbers that a table which describes itself may have.
-_MOST_ABOVE = 200
+_MAX_ABOVE = 200
 _NAMED = re.compile(r"([xyzXYZ])\s*[\[(]\s*([^\[\]()]+?)\s*[\])]")
 _GLUED = re.compile(r"[^\s\[(]+\s*[\[(][^\])]*[\])]")
 #: Numbers whose point may part thousands as well.
@@ -33,7 +33,7 @@ _NO_NUMBER = re.compile(r"[A-Za-z#*?-][\w#/.*? -]*")
 def first_lines(path: Path) -> list[str]:
     """Lines at the beginning of a text file."""
     with open_text(path) as stream:
-        lines = list(islice(iter(lambda: stream.readline(_LONGEST_LINE), ""), _MOST_LINES))
+        lines = list(islice(iter(lambda: stream.readline(_LONGEST_LINE), ""), _MAX_LINES))
     return [line.rstrip("\r\n\x1a") for line in lines]
 
 
@@ -49,7 +49,7 @@ def named_columns(path: Path) -> tuple[dict[str, Any], dict[str, Any]] | None:
         might mean two things.
     """
     lines = first_lines(path)
-    number = _first_numbers(lines[: _MOST_ABOVE + 1])
+    number = _first_numbers(lines[: _MAX_ABOVE + 1])
     if not number:
         return None
     line = lines[number - 1].lstrip("#%!/ ").rstrip()
@@ -113,7 +113,7 @@ def text_hints(path: Path) -> Hints:
     table = _numbers(rows, width, form)
     if hints.keys["layout"].value == "matrix":
         add_axes(hints, table)
-        if len(lines) < _MOST_LINES:
+        if len(lines) < _MAX_LINES:
             _add_field(hints, above, table.shape)
     if table.size:
         columns = hints.keys["columns"].value if "columns" in hints.keys else None

@@ -18,9 +18,9 @@ _REPEATED, _DOMINANT = 30, 10.0
 #: Cells looked at for that: a fixed draw, so that a large scan costs no more than a small one.
 _SAMPLE = 500_000
 #: Fewer different heights are those of a synthetic surface of a few levels.
-_FEWEST_LEVELS = 16
+_MIN_LEVELS = 16
 #: This many marks are looked for.
-_MOST_MARKS = 4
+_MAX_MARKS = 4
 #: A mark comes back from text and single precision not quite the same.
 _SAME = 1e-6
 
@@ -67,7 +67,7 @@ def find_marks(heights: np.ndarray) -> list[Mark]:
     present = np.isfinite(heights)
     total = int(present.sum())
     marks: list[Mark] = []
-    while len(marks) < _MOST_MARKS and present.any():
+    while len(marks) < _MAX_MARKS and present.any():
         found = _far_outside(heights, present)
         outside = found is not None
         if found is None:
@@ -151,7 +151,7 @@ def _far_outside(heights: np.ndarray, present: np.ndarray) -> float | None:
         drawn = _drawn(others)
         low, high = np.percentile(drawn, [25, 75])
         # Another mark among the others may be in a quarter of the cells: then its turn comes first.
-        if high > low and gap > _FAR * (high - low) and np.unique(drawn).size >= _FEWEST_LEVELS:
+        if high > low and gap > _FAR * (high - low) and np.unique(drawn).size >= _MIN_LEVELS:
             return extreme
     return None
 
@@ -166,7 +166,7 @@ def _repeated(heights: np.ndarray, present: np.ndarray) -> float | None:
     found = _dominant(drawn)
     if found is None and heights.ndim == 2:
         found = _dominant(heights[_flat(heights) & present], fewest=_REPEATED // 3)
-        if found is not None and np.unique(drawn).size < _FEWEST_LEVELS:
+        if found is not None and np.unique(drawn).size < _MIN_LEVELS:
             return None
     return found
 
@@ -179,7 +179,7 @@ def _dominant(values: np.ndarray, fewest: int = _REPEATED) -> float | None:
     first = int(np.argmax(counts))
     most = int(counts[first])
     next_most = int(np.delete(counts, first).max(initial=0))
-    few_levels = fewest == _REPEATED and levels.size < _FEWEST_LEVELS
+    few_levels = fewest == _REPEATED and levels.size < _MIN_LEVELS
     return None if few_levels or most < max(fewest, _DOMINANT * next_most) else float(levels[first])
 
 

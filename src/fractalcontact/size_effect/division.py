@@ -8,11 +8,11 @@ from numpy.typing import ArrayLike
 #: Sub-windows along each side of the window, by default: octaves and halves.
 PARTS = (1, 2, 3, 4, 6, 8)
 #: A sub-window that is solved has at least this many cells per side.
-FEWEST_CELLS = 16
+MIN_CELLS = 16
 
 
 def solvable_parts(parts: Sequence[int], shape: tuple[int, int]) -> list[int]:
-    """Divisions whose sub-windows are solved: the whole window, and those of `FEWEST_CELLS`.
+    """Divisions whose sub-windows are solved: the whole window, and those of `MIN_CELLS`.
 
     Parameters
     ----------
@@ -21,7 +21,7 @@ def solvable_parts(parts: Sequence[int], shape: tuple[int, int]) -> list[int]:
     shape : (int, int)
         Rows and columns of the window.
     """
-    return [n for n in parts if n == 1 or min(shape) // n >= FEWEST_CELLS]
+    return [n for n in parts if n == 1 or min(shape) // n >= MIN_CELLS]
 
 
 def split(heights: ArrayLike, parts: int) -> np.ndarray:

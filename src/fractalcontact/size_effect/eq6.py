@@ -38,7 +38,7 @@ from ..core.settings import WindowSettings
 from ..core.verdicts import AGREES, DECIDED, NOT_TESTED
 from ..core.window import cell_side
 from ..domain.box_dimension import dimension_of_domain
-from ..domain.renormalisation import FEWEST_NODES, renormalisation
+from ..domain.renormalisation import MIN_NODES_PER_RESOLUTION, renormalisation
 from ..mechanics.loading import JointLoading
 from .division import PARTS, split
 from .load_ladder import OF_WINDOWS, solve_sub_windows, whole_areas
@@ -90,12 +90,13 @@ def size_test(loading: JointLoading[WindowSettings], parts: Sequence[int] = PART
     Notes
     -----
     All windows of a size together have sigma_n = sum F / sum A_n. Windows one by one are what a
-    laboratory would test, but small ones hold few nodes: a window with fewer than `FEWEST_NODES` at
-    a resolution has no sigma* that means anything, and a mean over those that are left would be one
-    over the few whose contacts are many and soft. So their median is taken, with the windows whose
-    place is only known to lie below or above the loads solved. It is measured on all windows
-    together; a size counts where they hold `FEWEST_NODES` on the average. Without that rule the
-    lightest loads show the slope -2 exactly: one node in every window.
+    laboratory would test, but small ones hold few nodes: a window with fewer than
+    `MIN_NODES_PER_RESOLUTION` at a resolution has no sigma* that means anything, and a mean over
+    those that are left would be one over the few whose contacts are many and soft. So their median
+    is taken, with the windows whose place is only known to lie below or above the loads solved. It
+    is measured on all windows together; a size counts where they hold
+    `MIN_NODES_PER_RESOLUTION` on the average. Without that rule the lightest loads show the
+    slope -2 exactly: one node in every window.
 
     The interval of that slope is of a regression over sizes, which are pieces of one joint and not
     independent; that of the exponents at equal sigma_0 is over windows. Where a curve
@@ -119,7 +120,7 @@ def size_test(loading: JointLoading[WindowSettings], parts: Sequence[int] = PART
     result = states.drop_vars([*of_windows, *OF_WINDOWS]).merge(size_law(states))
     result = result.merge(slopes_at_equal_star(states, result.sizes["normal_force"]))
     result = result.merge(size_verdicts(result))
-    result = result.merge(predict_whole(states, result["delta_sigma"], FEWEST_NODES))
+    result = result.merge(predict_whole(states, result["delta_sigma"], MIN_NODES_PER_RESOLUTION))
     add_decisions(result)
     opposite = loading.specimen.attrs["opposite"]
     return result.assign_attrs(opposite=opposite, summary=summary(result))

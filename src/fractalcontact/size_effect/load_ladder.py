@@ -12,7 +12,7 @@ from ..core.labels import cf_attrs
 from ..core.limits import RESOLVED_NODES
 from ..core.ranges import within
 from ..core.settings import JointSettings
-from ..domain.renormalisation import FEWEST_NODES
+from ..domain.renormalisation import MIN_NODES_PER_RESOLUTION
 from ..mechanics.closure import bulk_settlement, interface_closure
 from ..mechanics.joint import prefractal
 from ..mechanics.loading import JointLoading
@@ -22,7 +22,7 @@ from ..mechanics.sweep import load_steps
 from .division import PARTS, solvable_parts, split
 
 #: A resolution is used if the smallest sub-windows keep this many nodes per side at it.
-FEWEST_NODES_PER_SIDE = 12
+MIN_NODES_PER_SIDE = 12
 #: The whole window is tested at the study's loads and at this many doublings of the largest: loads
 #: no rock would stand as an elastic body, but where small windows hold nodes enough.
 TESTED_DOUBLINGS = 3
@@ -85,7 +85,7 @@ def solve_sub_windows(
     composite = loading.composite(loading.cells.item())
     parts = solvable_parts(parts, loading.shape)
     smallest = min(loading.shape) // max(parts)
-    factors = [k for k in settings.resolutions if k == 1 or smallest // k >= FEWEST_NODES_PER_SIDE]
+    factors = [k for k in settings.resolutions if k == 1 or smallest // k >= MIN_NODES_PER_SIDE]
     of_study = loading.forces(settings.loads) / area
     pressures = _ladder(of_study, loading.solving["hardness"])
     # Stiffness costs a solve of its own: at the loads whose closure is looked at.
@@ -322,9 +322,9 @@ def real_pressure(force: np.ndarray, nodes: np.ndarray, spacing: np.ndarray) -> 
     Returns
     -------
     (..., step) ndarray
-        NaN where there are fewer than `FEWEST_NODES` nodes at a resolution.
+        NaN where there are fewer than `MIN_NODES_PER_RESOLUTION` nodes at a resolution.
     """
-    nodes = np.where(within(nodes, FEWEST_NODES, np.inf), nodes, np.nan)
+    nodes = np.where(within(nodes, MIN_NODES_PER_RESOLUTION, np.inf), nodes, np.nan)
     return np.exp(np.log(force[..., np.newaxis] / (nodes * spacing**2)).mean(axis=-1))
 
 

@@ -15,7 +15,7 @@ from ..mechanics.loading import JointLoading
 from .division import split
 
 #: A sub-window whose sigma_z is measured has at least this many cells per side.
-FEWEST_CELLS_ROUGHNESS = 4
+MIN_CELLS_ROUGHNESS = 4
 
 
 def local_roughness(windows: ArrayLike) -> np.ndarray:
@@ -64,7 +64,7 @@ def roughness_by_size(loading: JointLoading) -> xr.Dataset:
     """
     specimen = loading.specimen
     lower = faces(specimen)[0][window_slices(specimen)]
-    parts = _octaves_and_halves(min(lower.shape) // FEWEST_CELLS_ROUGHNESS)
+    parts = _octaves_and_halves(min(lower.shape) // MIN_CELLS_ROUGHNESS)
     composites = [loading.composite(n) for n in loading.cells]
     nodes = np.array([np.prod([n // p for n in lower.shape]) for p in parts])
     side = cell_side(specimen) * np.sqrt(nodes)

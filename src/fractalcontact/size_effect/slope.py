@@ -53,7 +53,7 @@ def real_pressures(states: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:
     -------
     together : (part, step) ndarray
         Of all windows of a size: sum of F over sum of A_n. NaN where they hold fewer than
-        `FEWEST_NODES` nodes on the average at a resolution.
+        `MIN_NODES_PER_RESOLUTION` nodes on the average at a resolution.
     single : (part, window, step) ndarray
         NaN where the window holds fewer at a resolution.
     """

@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 
 from ..core.datasets import labelled
 from ..core.estimate import Estimate
-from ..core.fitting import FEWEST_POINTS
+from ..core.fitting import MIN_POINTS
 from ..core.intervals import mean_interval
 from ..core.labels import cf_attrs
 from ..core.limits import JRC_RANGE, LARGEST_FRICTION_ANGLE, MOSTLY_TRUNCATED
@@ -184,7 +184,7 @@ def add_slope_trends(laws: xr.Dataset) -> None:
     slope = laws["slope_at_equal_v_over_b"]
     everywhere = slope.where((slope > 0).all("normal_force"))
     middle = xr.ufuncs.exp(xr.ufuncs.log(everywhere).mean("normal_force"))
-    middle = middle.where(middle.count("part") >= FEWEST_POINTS).assign_attrs(slope.attrs)
+    middle = middle.where(middle.count("part") >= MIN_POINTS).assign_attrs(slope.attrs)
     words = "slope d delta/dv at one v/b as a self-affine face has it, b^(H - 1)"
     laws["slope_at_equal_v_over_b_expected"] = power_through(
         middle, laws["side"], laws["expected_hurst"] - 1, words

@@ -25,7 +25,7 @@ from .division import PARTS, solvable_parts, split, spread_windows
 from .local_roughness import local_roughness, roughness_by_size, tilt_fraction
 
 #: Sub-windows solved of each size.
-MOST_WINDOWS = 16
+MAX_WINDOWS = 16
 
 #: Scalars of every state of a sub-window: unit, long name.
 STATES = {
@@ -70,7 +70,7 @@ _TABLE = {
 def window_states(
     loading: JointLoading[JointSettings],
     parts: Sequence[int] = PARTS,
-    most: int = MOST_WINDOWS,
+    most: int = MAX_WINDOWS,
     *,
     seated: bool = False,
 ) -> xr.Dataset:

@@ -7,7 +7,7 @@ from ..core.settings import StrengthSettings
 from ..core.window import cell_side, nominal_area
 from ..mechanics.states import with_pressure
 from ..mechanics.strength import joint_strength
-from ..roughness.fit_range import FEWEST_CELLS
+from ..roughness.fit_range import MIN_CELLS
 from ..roughness.recommended import best_dimension
 from ..size_effect.laws import joint_by_size
 from ..size_effect.prediction import predict_whole_strength
@@ -58,6 +58,6 @@ def _size_laws(
     """Size laws, fitted below a roll-off where there is one."""
     lags = settings.surface_range
     if lags is None and np.isfinite(surface_dimension["roll_off"]):
-        lags = FEWEST_CELLS * cell_side(specimens), float(surface_dimension["range_max"])
+        lags = MIN_CELLS * cell_side(specimens), float(surface_dimension["range_max"])
     dimension = best_dimension(surface_dimension)
     return joint_by_size(window_states, specimens, dimension, lags, settings.material)

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..core.claims import all_claims
 from ..core.estimate import Estimate
-from ..core.fitting import FEWEST_POINTS, fit_line
+from ..core.fitting import MIN_POINTS, fit_line
 from ..core.limits import LOOSELY, NEARLY, RESOLVED_NODES
 from ..core.subject import Subject
 from ..core.verdicts import FAILS, HOLDS, ILL_POSED, PARTLY, UNDETERMINED
@@ -209,7 +209,7 @@ def level(values: np.ndarray, symbol: str, v: np.ndarray) -> Finding:
     """True if values stay the same: their range over their mean."""
     known = np.isfinite(values)
     values, v = values[known], v[known]
-    if len(values) < FEWEST_POINTS:
+    if len(values) < MIN_POINTS:
         return Finding(UNDETERMINED, no_offsets("three"))
     spread = np.ptp(values) / np.mean(values)
     verdict = HOLDS if spread <= NEARLY else PARTLY if spread <= LOOSELY else FAILS

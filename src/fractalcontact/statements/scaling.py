@@ -6,11 +6,11 @@ from dataclasses import replace
 import numpy as np
 
 from ..core.estimate import Estimate
-from ..core.fitting import FEWEST_POINTS
+from ..core.fitting import MIN_POINTS
 from ..core.limits import LOOSELY
 from ..core.verdicts import AGREES, DECIDED, FAILS, HOLDS, PARTLY, UNDETERMINED
 from ..domain.pressure_trend import pressure_trend
-from ..domain.renormalisation import FEWEST_RESOLUTIONS
+from ..domain.renormalisation import MIN_RESOLUTIONS
 from .findings import Finding, Joint, beyond_margin, by_sign, of_the_area, share
 from .local_slopes import one_slope
 
@@ -27,7 +27,7 @@ def area_is_lacunar(joint: Joint) -> Finding:
     state = joint.state("scaling")
     delta = Estimate.read(state, "delta_sigma")
     if not np.isfinite(delta.width):
-        few = f"{int(state['n'])} of {FEWEST_RESOLUTIONS} resolutions needed"
+        few = f"{int(state['n'])} of {MIN_RESOLUTIONS} resolutions needed"
         return Finding(UNDETERMINED, few)
     # A_r ~ s^(2 - Delta_sigma): it falls with refinement where the exponent is positive.
     return Finding(
@@ -247,7 +247,7 @@ def strength_falls_with_size(joint: Joint) -> Finding:
     truncated = (
         (windows["truncated_fraction_at_equal_v_over_b"] > 0).any("part").transpose(*order).values
     )
-    cases = sizes >= FEWEST_POINTS
+    cases = sizes >= MIN_POINTS
     if not cases.any():
         return Finding(UNDETERMINED, "no v/b has three sizes of window to compare")
     known = cases & ~truncated & np.isfinite(value)
@@ -305,4 +305,4 @@ def _by_decade(line):
 
 def _too_few(line):
     """Why there is no line."""
-    return f"determined at {line.n} of the {FEWEST_POINTS} loads needed"
+    return f"determined at {line.n} of the {MIN_POINTS} loads needed"

@@ -9,7 +9,7 @@ from .stages import STAGES
 
 #: Specimens up to which an atlas is one file unless the study says otherwise. A file of many takes
 #: memory for all of them to write, and time for all of them to open.
-MOST_WHOLE = 30
+MAX_WHOLE = 30
 #: Whether the atlas is one file, or one a specimen.
 WHOLE, PARTS = "whole", "parts"
 #: Word for all figures, and for none.
@@ -29,7 +29,7 @@ def in_parts(config: Mapping[str, Any], specimens: Collection[str]) -> bool:
         A study that passed the schema.
     specimens : collection of str
     """
-    unsaid = WHOLE if len(specimens) <= MOST_WHOLE else PARTS
+    unsaid = WHOLE if len(specimens) <= MAX_WHOLE else PARTS
     return bool(config.get("atlas", unsaid) == PARTS)
 
 

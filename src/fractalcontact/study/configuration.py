@@ -12,7 +12,7 @@ from .schema import nearest
 from .selection import BESIDE_SURFACE, is_capped_variant
 
 #: Nodes per side of an embedded specimen: a surface of that many takes some 35 GB to make.
-FEWEST_NODES, MOST_NODES = 2, 16384
+MIN_NODES_PER_SIDE, MAX_NODES_PER_SIDE = 2, 16384
 
 #: What a study that does not mention it gets; everything else must be stated.
 SPECIMEN = {
@@ -230,11 +230,11 @@ def resolve_embedded(recipe: Mapping, where: str) -> dict:
             if numbers[key] <= 0:
                 raise InputError(f"{where}.{key}: {recipe[key]!r} must be positive")
     nodes = numbers["size"] / numbers["spacing"]
-    if not FEWEST_NODES <= round(nodes) <= MOST_NODES:
+    if not MIN_NODES_PER_SIDE <= round(nodes) <= MAX_NODES_PER_SIDE:
         raise InputError(
             f"{where}.size: {recipe['size']!r} at a spacing of {recipe['spacing']!r} are "
-            f"{nodes:.4g} nodes per side; expected from {FEWEST_NODES} to {MOST_NODES}, so change "
-            "size or spacing"
+            f"{nodes:.4g} nodes per side; expected from {MIN_NODES_PER_SIDE} to "
+            f"{MAX_NODES_PER_SIDE}, so change size or spacing"
         )
     numbers.setdefault("outline", "square")
     numbers.setdefault("roll_off", None)

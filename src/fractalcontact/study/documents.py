@@ -11,7 +11,7 @@ from .schema import shortened
 from .sidecar import unreadable
 
 _TEMPLATE = "__use_yte__"
-_MOST_VALUES = 100_000
+_MAX_VALUES = 100_000
 
 
 def read_study(path: Path | str) -> dict:
@@ -48,9 +48,9 @@ def read_study(path: Path | str) -> dict:
             f"{path}: the key '{_TEMPLATE}' makes Snakemake run what the file says as Python; a "
             "study is plain data, so remove it and write the values themselves"
         )
-    if _expanded(document) > _MOST_VALUES:
+    if _expanded(document) > _MAX_VALUES:
         raise InputError(
-            f"{path}: more than {_MOST_VALUES} values once its aliases (*) are written out; a "
+            f"{path}: more than {_MAX_VALUES} values once its aliases (*) are written out; a "
             "study is no longer than a few pages"
         )
     return document

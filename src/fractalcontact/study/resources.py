@@ -17,7 +17,7 @@ from ..core.units import quantity
 
 #: Megabytes and minutes below which no job asks: the interpreter and its libraries, and Snakemake
 #: twice before the first second of work, on a busy file system.
-LEAST_MEMORY, LEAST_TIME = 300, 5
+MIN_MEMORY, MIN_TIME = 300, 5
 #: Megabytes of the two processes of Snakemake around the script of a job on a cluster.
 AROUND = 280
 #: How much more is asked for than the models say, of memory and of time: other nodes are slower,
@@ -72,7 +72,7 @@ COSTS = {
 }
 #: The analysis solves some states again on finer grids: up to four times as fine, up to this many
 #: nodes, of this many bytes each.
-FINER, MOST_FINER, OF_FINER = 16, 1024**2, 320
+FINER, MAX_FINER, OF_FINER = 16, 1024**2, 320
 
 #: Bytes of memory for each byte of a file of plain numbers: 12 million points
 #: x, y, z (315 MB as text, 288 MB as they are) take some 2 GB, those of a scattered cloud more.
@@ -100,10 +100,10 @@ def memory(rule: str, nodes: float, *, states: int = 1, attempt: int = 1) -> int
         1 at first.
     """
     cost = COSTS[rule]
-    finer = OF_FINER * min(FINER * nodes, MOST_FINER) if rule == "analysis" else 0.0
+    finer = OF_FINER * min(FINER * nodes, MAX_FINER) if rule == "analysis" else 0.0
     of_grid = finer + nodes * (cost.bytes_per_node + cost.state * states)
     needed = AROUND + cost.start + of_grid / 1e6
-    return max(LEAST_MEMORY, round(ROOM * needed)) * 2 ** (attempt - 1)
+    return max(MIN_MEMORY, round(ROOM * needed)) * 2 ** (attempt - 1)
 
 
 def seconds(rule: str, nodes: float, *, states: int = 1) -> float:
@@ -133,7 +133,7 @@ def minutes(rule: str, nodes: float, *, states: int = 1, attempt: int = 1) -> in
         1 at first.
     """
     needed = seconds(rule, nodes, states=states) / 60
-    return max(LEAST_TIME, round(ROOM_OF_TIME * needed)) * 2 ** (attempt - 1)
+    return max(MIN_TIME, round(ROOM_OF_TIME * needed)) * 2 ** (attempt - 1)
 
 
 def reading_memory(files: Iterable[Path | str], attempt: int = 1) -> int:

@@ -20,7 +20,7 @@ CONFIRMED = 4.0
 #: gap, which neighbours share, makes it.
 DEEP = 3.0
 #: Fewer neighbours present, or cells around, and a cell is not judged.
-_FEWEST_NEIGHBOURS, _FEWEST_AROUND = 5, 12
+_MIN_NEIGHBOURS, _MIN_AROUND = 5, 12
 _HALF = 3  # cells around: 7 x 7 but the one in the middle
 _NORMAL = 1.4826  # standard deviation of a normal distribution / its median absolute deviation
 #: What arithmetic may add to equal heights, as a part of the largest.
@@ -124,7 +124,7 @@ def stand_off(heights: np.ndarray) -> np.ndarray:
         counts = np.isfinite(around).sum(axis=1)
         local = _NORMAL * _middle(around.T, counts)
         ratio = deviation[places] / np.maximum(local, typical)
-        result[places] = np.where(counts >= _FEWEST_AROUND, ratio, 0.0)
+        result[places] = np.where(counts >= _MIN_AROUND, ratio, 0.0)
     return result
 
 
@@ -156,7 +156,7 @@ def _deviation(z: np.ndarray) -> np.ndarray:
         around.sort(axis=0)
         counts = np.isfinite(around).sum(axis=0)
         middle = _middle(around, counts)
-        deviation[rows] = np.where(counts >= _FEWEST_NEIGHBOURS, z[rows] - middle, np.nan)
+        deviation[rows] = np.where(counts >= _MIN_NEIGHBOURS, z[rows] - middle, np.nan)
     return deviation
 
 

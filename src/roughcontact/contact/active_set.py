@@ -39,13 +39,13 @@ MAX_ITERATIONS = 200
 # this many times the fraction of the set that changed last, within these limits. The scale is the
 # largest of the gaps on the set, of the changes of nodes put at a bound, and of the force that is
 # lacking, per node. A solve against cycling goes on nearly to the end.
-REDUCTION, LEAST_REDUCTION, MOST_REDUCTION = 3.0, 0.03, 0.3
+REDUCTION, MIN_REDUCTION, MAX_REDUCTION = 3.0, 0.03, 0.3
 EXACT_REDUCTION = 1e-3
 # Iterations with set prediction (in all of them sets might cycle). Only on the way from another
 # state, in windows that are not small: after nested iteration it saves applications but no time.
 # No more than this fraction of the set is left out: where most nodes yield, the few others would
 # have to carry whatever a given force lacks.
-SET_PREDICTIONS, MOST_LEFT_OUT = 2, 0.5
+SET_PREDICTIONS, MAX_LEFT_OUT = 2, 0.5
 # Once, where the violation is no larger than this many tolerances, the preconditioned step is made
 # alone and verified in double precision at once: it is expected to be the last. Not so between
 # candidates, where double precision takes as long as several steps.
@@ -253,7 +253,7 @@ class ActiveSetMethod:
         working = WorkingSet(kkt.active, kkt.infeasible, bound)
         equations, change, scale = self._preconditioned_step(iterate, working, clipped)
         leaving = equations.at_lower | equations.at_upper
-        if predict and 0 < np.count_nonzero(leaving) <= MOST_LEFT_OUT * leaving.size:
+        if predict and 0 < np.count_nonzero(leaving) <= MAX_LEFT_OUT * leaving.size:
             left = self.problem.bounds.at(working.active[leaving])
             bound = np.where(equations.at_lower[leaving], left.lower, left.upper)
             working = working.without(leaving, bound)
@@ -296,7 +296,7 @@ def _reduction(linear_solve, previous_active, active):
     if linear_solve is LinearSolve.EXACT:
         return EXACT_REDUCTION
     changed = symmetric_difference(previous_active, active).size / max(active.size, 1)
-    return min(max(REDUCTION * changed, LEAST_REDUCTION), MOST_REDUCTION)
+    return min(max(REDUCTION * changed, MIN_REDUCTION), MAX_REDUCTION)
 
 
 def _check_on_nodes(values, name, operator):

@@ -39,10 +39,10 @@ from .topography import Topography
 
 #: On windows of fewer nodes along the shorter side a convolution takes no longer; on coarser grids
 #: of larger ones the few candidates of light contact take less than the kernel's spectrum.
-LEAST_WINDOW, LEAST_SIDE = 512, 64
+MIN_WINDOW, MIN_SIDE = 512, 64
 #: Tighter tolerances are left to the convolution: this is some hundred times the error of the
 #: operator between candidates.
-LEAST_RTOL = 1e-8
+MIN_RTOL = 1e-8
 #: Candidates are those whose clearance is below a given closure times this: nodes that may or may
 #: not touch within the tolerance are among them.
 MARGIN = 1.01
@@ -55,9 +55,9 @@ GROWTH, FIRST_GROWTH, FROM_LOAD, FURTHER = 1.5, 0.25, 1.02, 1.1
 #: application is this many times cheaper.
 STEP_GAIN = 2.0
 #: Where more of the nodes than this are candidates it is not asked what the operator would take.
-MOST_CANDIDATES = 0.15
+MAX_CANDIDATES = 0.15
 #: Nor where they are no more than this. Pairs of so few nodes are then summed one by one: in double
-#: precision always, in single precision up to the MOST_PAIRS of `elastic.direct`, which are reached
+#: precision always, in single precision up to the MAX_PAIRS of `elastic.direct`, which are reached
 #: by 387 nodes that are all loaded. Beyond these the multipole operator has few blocks.
 FEW = 500
 #: A batch of the operator takes as long as a convolution where nodes times their log2 is this many,
@@ -150,12 +150,12 @@ class LoadCase:
         Restricted or None
         """
         total = self.space.shape[0] * self.space.shape[1]
-        if self.load > MOST_CANDIDATES * total * self.bounds.upper and self.by_force:
+        if self.load > MAX_CANDIDATES * total * self.bounds.upper and self.by_force:
             return None
         if bound < MARGIN * self.least_closure:
             bound, cells = MARGIN * self.least_closure, None
         nodes = self.topography.below(bound * self.length, self.level, cells)
-        if nodes.size > MOST_CANDIDATES * total:
+        if nodes.size > MAX_CANDIDATES * total:
             return None
         levels = None
         if nodes.size > FEW:
@@ -203,8 +203,8 @@ def may_restrict(space: HalfSpace, rtol: float) -> bool:
     space : HalfSpace
     rtol : float
     """
-    large = min(space.shape) >= LEAST_WINDOW
-    return large and LEAST_RTOL <= rtol < MARGIN - 1 and multipole_suits(space)
+    large = min(space.shape) >= MIN_WINDOW
+    return large and MIN_RTOL <= rtol < MARGIN - 1 and multipole_suits(space)
 
 
 def solve_nested(case: LoadCase, rtol: float) -> tuple[Problem, Solution]:
@@ -289,7 +289,7 @@ class _Start:
 
 def _start(case):
     """The start on a grid: from the solution on the next coarser one, restricted likewise."""
-    if min(case.space.shape) < LEAST_SIDE:
+    if min(case.space.shape) < MIN_SIDE:
         problem = case.problem()
         return _Start(problem, None, nested_iteration_start(problem))
     coarse_case = case.coarser()

@@ -26,10 +26,10 @@ FINEST_STEP, COARSE = 8, 64
 #: Fine cells between coarse basis functions; the factor is right about what varies within them.
 BASIS_SPACING = 80
 #: Most basis functions along a side: their number squared is the size of a dense matrix.
-MOST_ALONG_SIDE = 17
+MAX_ALONG_SIDE = 17
 #: Added to the coarse matrix, fractions of each and of its largest diagonal: basis functions that
 #: hold few nodes may nearly coincide.
-RIDGE, LEAST_RIDGE = 1e-4, 1e-6
+RIDGE, MIN_RIDGE = 1e-4, 1e-6
 #: The coarse operator is made anew where more than this fraction of the nodes around any one basis
 #: function changed: out of date on a few nodes that stand alone it makes them cycle.
 LAG = 0.25
@@ -137,7 +137,7 @@ class CoarseCorrection:
 def _basis_counts(coarse, cells):
     """Basis functions along y and x, spread evenly along ``cells`` of the longer side."""
     sides = [n * d for n, d in zip(coarse.shape, coarse.spacing, strict=True)]
-    spacing = max(sides) / (min(round(cells / BASIS_SPACING) + 1, MOST_ALONG_SIDE) - 1)
+    spacing = max(sides) / (min(round(cells / BASIS_SPACING) + 1, MAX_ALONG_SIDE) - 1)
     return tuple(max(2, round(side / spacing) + 1) for side in sides)
 
 
@@ -264,7 +264,7 @@ def _ridged_inverse(matrix):
     inverse = (matrix + matrix.T) / 2
     largest = np.max(np.diag(inverse))
     for k in range(n):
-        inverse[k, k] += RIDGE * inverse[k, k] + LEAST_RIDGE * largest
+        inverse[k, k] += RIDGE * inverse[k, k] + MIN_RIDGE * largest
     inverse = inverted(inverse)
     return ((inverse + inverse.T) / 2).astype(np.float32)
 

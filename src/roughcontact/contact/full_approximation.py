@@ -23,9 +23,9 @@ from .restriction import restrict_minimum, restrict_sum
 
 # Least nodes along the shorter side: on smaller windows the coarse solves cost as much as the
 # applications they save.
-LEAST_FINE_SIDE = 768
+MIN_FINE_SIDE = 768
 # No coarser grid has fewer.
-LEAST_COARSE_SIDE = 96
+MIN_COARSE_SIDE = 96
 # Starts that violate the conditions by no more, as a fraction of the closure, are left as they are:
 # coarse solutions are hardly nearer.
 WORTHWHILE = 1e-2
@@ -53,7 +53,7 @@ def full_approximation_start(
         Within its bounds; None if the grid is too small, or the change, for this to be worth while,
         and where nodes yield: those of one cell then differ in gap, which restriction cannot keep.
     """
-    if min(problem.space.shape) < LEAST_FINE_SIDE:
+    if min(problem.space.shape) < MIN_FINE_SIDE:
         return None
     clearance, bounds = problem.clearance, problem.bounds
     mean = mean_closure(pressure, displacement, clearance, bounds)
@@ -76,7 +76,7 @@ def _changed_pressure(problem, pressure, gap, closure):
     clearance = (coarse_gap + closure).ravel() - displacement
     coarse = problem.coarser(clearance)
     start = coarse_before.ravel().copy()
-    if min(space.shape) >= 2 * LEAST_COARSE_SIDE:
+    if min(space.shape) >= 2 * MIN_COARSE_SIDE:
         start = _changed_pressure(coarse, start, coarse_gap, closure)
         displacement = _displacement(space, start)
     method = ActiveSetMethod(coarse, CHANGE_RTOL, dtype=np.float32)

@@ -28,16 +28,16 @@ WIDE_NEIGHBOURHOOD = np.array([2, 2, 1])
 #: a fifth less time under loads that double from step to step.
 NARROW_NEIGHBOURHOOD = np.array([1, 1])
 #: Size of the larger neighbourhood, and so the most nodes that can condition one.
-MOST_NEIGHBOURS = 20
+MAX_NEIGHBOURS = 20
 #: A thread takes no fewer nodes than this.
 CHUNK = 512
 #: Smallest conditional variance, as a fraction of a node's influence on itself: it is 0.8 on square
 #: cells, and falls slowly as they become longer than wide (0.1 where 1e8 times). A guard against a
 #: pivot that rounding in single precision would make zero or negative: its root is divided by.
-LEAST_CONDITIONAL_VARIANCE = np.float32(1e-3)
+MIN_CONDITIONAL_VARIANCE = np.float32(1e-3)
 #: Further away than this many cells a node is displaced as by a point load: no table is needed. On
-#: cells more than `MOST_STRETCHED` times as long as wide that is not far.
-TABLE_SIDE, MOST_STRETCHED = 512, 16
+#: cells more than `MAX_STRETCHED` times as long as wide that is not far.
+TABLE_SIDE, MAX_STRETCHED = 512, 16
 #: Where the nodes on all levels are more than this fraction of the window's cells, whole arrays are
 #: made anew rather than emptied at the places of these nodes alone; or, the nodes being those that
 #: changed, compared as a whole.
@@ -64,7 +64,7 @@ class InverseCholesky:
     def __init__(self, space: HalfSpace, neighbourhood: np.ndarray):
         self._shape = space.shape
         dy, dx = (side / space.cell for side in space.spacing)
-        side = TABLE_SIDE if max(dy / dx, dx / dy) <= MOST_STRETCHED else max(space.shape)
+        side = TABLE_SIDE if max(dy / dx, dx / dy) <= MAX_STRETCHED else max(space.shape)
         self.influence = space.near_influence(side).astype(np.float32)
         whole = self.influence.shape == self._shape
         #: For :func:`influence_between`: of any two nodes.
@@ -158,8 +158,8 @@ def _empty_factor(n):
     """Count of the nodes that condition each node, which, their weights, and its own weight."""
     return (
         np.empty(n, np.int8),
-        np.empty((n, MOST_NEIGHBOURS), np.int32),
-        np.empty((n, MOST_NEIGHBOURS), np.float32),
+        np.empty((n, MAX_NEIGHBOURS), np.int32),
+        np.empty((n, MAX_NEIGHBOURS), np.float32),
         np.empty(n, np.float32),
     )
 
@@ -267,12 +267,12 @@ def _factorise(start, stop, nodes, slot, blocks, grid, old, new):
     shifts, neighbourhood, nx, influence = grid
     old_nodes, old_slot, (old_count, old_neighbours, old_weight, old_diagonal) = old
     count, neighbours, weight, diagonal = new
-    members, far = np.empty(MOST_NEIGHBOURS + 1, np.int64), neighbourhood.size - 1
+    members, far = np.empty(MAX_NEIGHBOURS + 1, np.int64), neighbourhood.size - 1
     # Those solved side by side have equally many nodes, as far as present are enough such.
-    waiting = np.empty((MOST_NEIGHBOURS + 1, WIDTH), np.int64)
-    filled = np.zeros(MOST_NEIGHBOURS + 1, np.int64)
-    lower = np.empty((MOST_NEIGHBOURS + 1) * (MOST_NEIGHBOURS + 1) * WIDTH, np.float32)
-    column = np.empty((MOST_NEIGHBOURS + 1) * WIDTH, np.float32)
+    waiting = np.empty((MAX_NEIGHBOURS + 1, WIDTH), np.int64)
+    filled = np.zeros(MAX_NEIGHBOURS + 1, np.int64)
+    lower = np.empty((MAX_NEIGHBOURS + 1) * (MAX_NEIGHBOURS + 1) * WIDTH, np.float32)
+    column = np.empty((MAX_NEIGHBOURS + 1) * WIDTH, np.float32)
     for i in range(start, stop):
         node = nodes[i]
         y, x = node // nx, node % nx
@@ -326,10 +326,10 @@ def _fill_below_diagonal(places, nodes, nx, influence, factor, lower):
     n = 0
     for i in places:
         n = max(n, count[i])
-    side = (MOST_NEIGHBOURS + 1) * WIDTH
-    ys = np.zeros((MOST_NEIGHBOURS + 1, WIDTH), np.int32)
-    xs = np.zeros((MOST_NEIGHBOURS + 1, WIDTH), np.int32)
-    present = np.zeros((MOST_NEIGHBOURS + 1, WIDTH), np.float32)
+    side = (MAX_NEIGHBOURS + 1) * WIDTH
+    ys = np.zeros((MAX_NEIGHBOURS + 1, WIDTH), np.int32)
+    xs = np.zeros((MAX_NEIGHBOURS + 1, WIDTH), np.int32)
+    present = np.zeros((MAX_NEIGHBOURS + 1, WIDTH), np.float32)
     for lane in range(places.size):
         i = places[lane]
         for a in range(count[i]):
@@ -382,7 +382,7 @@ def _solve_columns(places, nodes, nx, influence, factor, lower, column):
     the bit. The diagonal of ``lower`` is kept inverted.
     """
     count, _, weight, diagonal = factor
-    side = (MOST_NEIGHBOURS + 1) * WIDTH
+    side = (MAX_NEIGHBOURS + 1) * WIDTH
     n = _fill_below_diagonal(places, nodes, nx, influence, factor, lower)
     for a in range(n + 1):
         for b in range(a):
@@ -399,7 +399,7 @@ def _solve_columns(places, nodes, nx, influence, factor, lower, column):
         store(lower, here, s)
         for lane in range(here, here + WIDTH):
             lower[lane] = np.float32(1) / np.sqrt(
-                max(lower[lane], LEAST_CONDITIONAL_VARIANCE * influence[0][0, 0])
+                max(lower[lane], MIN_CONDITIONAL_VARIANCE * influence[0][0, 0])
             )
     column[: n * WIDTH] = 0
     store(column, n * WIDTH, load(lower, n * (side + WIDTH)))

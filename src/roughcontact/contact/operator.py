@@ -7,7 +7,7 @@ the window it is a convolution.
 import numpy as np
 
 from ..elastic.block_pairs import MultipoleLevels
-from ..elastic.direct import MOST_PAIRS, DirectOperator
+from ..elastic.direct import MAX_PAIRS, DirectOperator
 from ..elastic.halfspace import HalfSpace
 from ..elastic.multipole import MultipoleOperator
 from ..kernel_cache import njit
@@ -71,7 +71,7 @@ class Operator:
 
         What it needs is made when it is first asked for.
         """
-        if loaded.size * self.size <= MOST_PAIRS[values.dtype]:
+        if loaded.size * self.size <= MAX_PAIRS[values.dtype]:
             self._direct = self._direct or DirectOperator(self.space, self.nodes)
             return self._direct(loaded, values)
         if values.dtype not in self._between:

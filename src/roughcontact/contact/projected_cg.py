@@ -19,7 +19,7 @@ MAX_INNER = 60
 # Passes in search of the closure that gives a clipped step its total.
 CLIPPING_PASSES = 20
 # In it, least effect of closure on a node's pressure, as a fraction of the mean.
-LEAST_RESPONSE = 1e-2
+MIN_RESPONSE = 1e-2
 # Stiffness: its error is of second order in this residual.
 TANGENT_RESIDUAL = 1e-4
 
@@ -263,7 +263,7 @@ def _multiplier_of_total(aim, response, low, high, total):
     """
     n = aim.size
     # Where the approximation is not positive, as K^-1 1 is, more closure still means more.
-    response = np.maximum(response.astype(np.float64), LEAST_RESPONSE * response.mean())
+    response = np.maximum(response.astype(np.float64), MIN_RESPONSE * response.mean())
     multiplier, least, most = 0.0, -np.inf, np.inf
     passes, bounded = 0, True
     for i in range(n):

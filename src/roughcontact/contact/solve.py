@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..arguments import LEAST_INPUT, LEAST_RESULT, MOST_INPUT, MOST_RESULT, field, number, quoted
+from ..arguments import MAX_INPUT, MAX_RESULT, MIN_INPUT, MIN_RESULT, field, number, quoted
 from ..elastic.halfspace import HalfSpace
 from ..errors import NotConverged
 from .active_set import ActiveSetMethod
@@ -128,8 +128,8 @@ def checked_hardness(hardness: float | None, space: HalfSpace, force: float | No
     if hardness is None:
         return np.inf
     hardness = number(hardness, "hardness", "MPa")
-    if not hardness >= LEAST_INPUT:
-        raise ValueError(f"hardness {hardness}: expected > 0 MPa, and at least {LEAST_INPUT:g}")
+    if not hardness >= MIN_INPUT:
+        raise ValueError(f"hardness {hardness}: expected > 0 MPa, and at least {MIN_INPUT:g}")
     ny, nx = space.shape
     most = hardness * space.cell_area * ny * nx
     if force is not None and not force < most:
@@ -144,8 +144,8 @@ def _hardness_of_nodes(hardness, space, force):
     if np.ndim(hardness) == 0:
         return checked_hardness(hardness, space, force)
     values = field(hardness, "hardness", space.shape)
-    if not (values >= LEAST_INPUT).all():
-        raise ValueError(f"hardness: expected > 0 MPa on each node, and at least {LEAST_INPUT:g}")
+    if not (values >= MIN_INPUT).all():
+        raise ValueError(f"hardness: expected > 0 MPa on each node, and at least {MIN_INPUT:g}")
     most = float(values.sum()) * space.cell_area
     if force is not None and not force < most:
         raise ValueError(f"force {force:g} N: at this hardness the window carries {most:g}")
@@ -199,13 +199,13 @@ def _checked(composite, space, closure, force, start, rtol):
     if not 0 < number(rtol, "rtol", "fractions of the closure") < 1:
         raise ValueError(f"rtol {rtol}: expected between 0 and 1")
     depth = topography.highest - topography.lowest
-    if not depth <= MOST_INPUT:
-        raise ValueError(f"composite topography {depth:g} mm deep: expected {MOST_INPUT:g} at most")
+    if not depth <= MAX_INPUT:
+        raise ValueError(f"composite topography {depth:g} mm deep: expected {MAX_INPUT:g} at most")
     if load > 0 and not _within_double_precision(space, load, force is not None, depth):
         raise ValueError(
             f"{name} {load:g} {unit}: too {'small' if load < 1 else 'large'} for double precision; "
             "expected such that closures, pressures and forces on this grid are of "
-            f"{LEAST_RESULT:g} to {MOST_RESULT:g} mm, MPa and N"
+            f"{MIN_RESULT:g} to {MAX_RESULT:g} mm, MPa and N"
         )
     return load, topography
 
@@ -230,9 +230,9 @@ def _within_double_precision(space, load, by_force, depth):
     """True if the state of a load has numbers that keep all their digits."""
     length, pressure = _load_units(space, load, by_force)
     sizes = length, pressure, pressure * space.cell_area
-    if not LEAST_RESULT <= min(sizes) <= max(sizes) <= MOST_RESULT:
+    if not MIN_RESULT <= min(sizes) <= max(sizes) <= MAX_RESULT:
         return False
-    return depth / length <= MOST_RESULT
+    return depth / length <= MAX_RESULT
 
 
 def _load_units(space, load, by_force):
@@ -260,7 +260,7 @@ class _Units:
 
     def case(self, topography, hardness):
         bounds = Bounds(0.0, hardness).over(self.pressure)
-        if np.min(bounds.upper) < LEAST_RESULT:
+        if np.min(bounds.upper) < MIN_RESULT:
             raise ValueError(
                 f"hardness {np.min(hardness):g}: too low for pressures of {self.pressure:g} MPa"
             )

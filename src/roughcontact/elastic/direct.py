@@ -13,7 +13,7 @@ from .influence import FAR, expansion
 
 #: By precision that is asked for: pairs up to which this takes less time than the multipole
 #: operator, with the set-up of that.
-MOST_PAIRS = {np.dtype(np.float32): 150_000, np.dtype(np.float64): 1_000_000}
+MAX_PAIRS = {np.dtype(np.float32): 150_000, np.dtype(np.float64): 1_000_000}
 
 
 class DirectOperator:

@@ -13,9 +13,9 @@ from numpy.typing import ArrayLike
 from scipy import fft
 
 from ..arguments import (
-    LEAST_INPUT,
-    MOST_INPUT,
-    MOST_RESULT,
+    MAX_INPUT,
+    MAX_RESULT,
+    MIN_INPUT,
     field,
     number,
     pair,
@@ -27,7 +27,7 @@ from ..arguments import (
 from ..threads import computed_once
 from .convolution import Convolution, cosine_transform, fast_length
 from .influence import influence_table, spread
-from .split_convolution import LEAST_SPLIT_SIDE, SplitConvolution
+from .split_convolution import MIN_SPLIT_SIDE, SplitConvolution
 
 #: Self-displacement of one node, E* s u / f, under the force f of a small contact patch, for the
 #: paper's "rigid plate" (its eq. 3 leaves the patch open). Square cells only.
@@ -37,11 +37,11 @@ RIGID_PLATE_SELF_TERMS = {
     "inscribed disc": 1.0,
 }
 #: Compiled code counts cells in four bytes.
-MOST_CELLS = 2**31 - 1
+MAX_CELLS = 2**31 - 1
 #: Cells more stretched than this are convolved as a whole in single precision, too: the coarse grid
 #: of the split convolution has too few nodes along their longer side. Under random pressures
 #: it errs by 1.5e-6 of the largest displacement on square cells, by 3e-6 at 1.5, by 1e-5 at 2.5.
-MOST_STRETCHED = 1.5
+MAX_STRETCHED = 1.5
 
 
 def rectangle_mean_displacement(a: float, b: float) -> float:
@@ -120,9 +120,9 @@ class HalfSpace:
         e_star: float | None = None,
     ):
         modulus = _one_modulus(modulus, e_star)
-        ny, nx = pair(shape, "shape", partial(whole_number, name="shape", least=1, most=MOST_CELLS))
-        if ny * nx > MOST_CELLS:
-            raise ValueError(f"shape {(ny, nx)}: expected no more than {MOST_CELLS} cells")
+        ny, nx = pair(shape, "shape", partial(whole_number, name="shape", least=1, most=MAX_CELLS))
+        if ny * nx > MAX_CELLS:
+            raise ValueError(f"shape {(ny, nx)}: expected no more than {MAX_CELLS} cells")
         sides = (spacing, spacing) if isinstance(spacing, float | Real) else spacing
         dy, dx = pair(sides, "spacing", partial(_size, name="spacing", unit="mm"))
         modulus = _size(modulus, "modulus", "MPa (10 GPa are 10e3)")
@@ -195,8 +195,8 @@ class HalfSpace:
         """
         values = field(pressure, "pressure", self.shape)
         # Not so of a NaN either, which would be everywhere at once.
-        if not np.abs(values).max() <= MOST_RESULT:
-            raise ValueError(f"pressure: expected finite numbers, none over {MOST_RESULT:g} MPa")
+        if not np.abs(values).max() <= MAX_RESULT:
+            raise ValueError(f"pressure: expected finite numbers, none over {MAX_RESULT:g} MPa")
         return self.convolve(values) * (self.cell / self.modulus)
 
     def influence(self) -> np.ndarray:
@@ -280,7 +280,7 @@ class HalfSpace:
         ValueError
             If the factor is no such number.
         """
-        factor = whole_number(factor, "factor", least=1, most=MOST_CELLS)
+        factor = whole_number(factor, "factor", least=1, most=MAX_CELLS)
         if factor in self._coarser:
             return self._coarser[factor]
         shape = -(-self.shape[0] // factor), -(-self.shape[1] // factor)
@@ -358,8 +358,8 @@ class HalfSpace:
     @computed_once
     def _split(self):
         """The convolution in single precision on large windows of nearly square cells, or None."""
-        stretched = max(self._sides) > MOST_STRETCHED * min(self._sides)
-        if min(self.shape) < LEAST_SPLIT_SIDE or stretched:
+        stretched = max(self._sides) > MAX_STRETCHED * min(self._sides)
+        if min(self.shape) < MIN_SPLIT_SIDE or stretched:
             return None
         return SplitConvolution(self.shape, self._sides, self._self_term)
 
@@ -386,8 +386,8 @@ class HalfSpace:
 def _size(value, name, unit):
     """A size that is neither zero nor such that the product or ratio of two would be."""
     size = number(value, name, unit)
-    if not LEAST_INPUT <= size <= MOST_INPUT:
+    if not MIN_INPUT <= size <= MAX_INPUT:
         raise ValueError(
-            f"{name} {size:g}: expected between {LEAST_INPUT:g} and {MOST_INPUT:g} {unit}"
+            f"{name} {size:g}: expected between {MIN_INPUT:g} and {MAX_INPUT:g} {unit}"
         )
     return size

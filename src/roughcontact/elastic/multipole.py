@@ -27,7 +27,7 @@ from .halfspace import HalfSpace
 from .simd import WIDTH, load, store
 
 #: Cells are at most this many times as long as wide: blocks are neighbours by number, not distance.
-MOST_STRETCHED = 1.25
+MAX_STRETCHED = 1.25
 #: Where loaded smallest blocks hold no more loaded cells than this in the mean, these are gone
 #: through one by one.
 FEW = 32
@@ -126,7 +126,7 @@ class MultipoleOperator:
 
 def multipole_suits(space: HalfSpace) -> bool:
     """True if cells are so nearly square that the errors stated hold."""
-    return max(space.spacing) <= MOST_STRETCHED * min(space.spacing)
+    return max(space.spacing) <= MAX_STRETCHED * min(space.spacing)
 
 
 @njit(cache=True)

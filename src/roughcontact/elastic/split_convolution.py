@@ -22,7 +22,7 @@ from .influence import influence_table
 #: over STEP and ORDER are written out below: change both places.
 STEP, ORDER, SMOOTH, NEAR = 8, 6, 42, 126
 #: On windows of fewer nodes along the shorter side it takes no less time.
-LEAST_SPLIT_SIDE = 768
+MIN_SPLIT_SIDE = 768
 #: Time that a pass of each radix takes, relative to that of 4: lengths are chosen by it.
 _PASSES = {4: 1.0, 2: 0.7, 3: 0.9, 5: 1.5}
 #: Lengths longer than needed by no more than this are compared.

@@ -22,12 +22,12 @@ def rough(shape, seed=1):
 
 def restricted_always(monkeypatch, most_pairs):
     """Candidates on all but the smallest windows, and up to this many pairs summed directly."""
-    monkeypatch.setattr(candidates, "LEAST_WINDOW", 16)
-    monkeypatch.setattr(candidates, "LEAST_SIDE", 8)
-    monkeypatch.setattr(candidates, "MOST_CANDIDATES", 1.0)
+    monkeypatch.setattr(candidates, "MIN_WINDOW", 16)
+    monkeypatch.setattr(candidates, "MIN_SIDE", 8)
+    monkeypatch.setattr(candidates, "MAX_CANDIDATES", 1.0)
     monkeypatch.setattr(candidates, "BATCH", 0.0)
-    everywhere = dict.fromkeys(operator.MOST_PAIRS, most_pairs)
-    monkeypatch.setattr(operator, "MOST_PAIRS", everywhere)
+    everywhere = dict.fromkeys(operator.MAX_PAIRS, most_pairs)
+    monkeypatch.setattr(operator, "MAX_PAIRS", everywhere)
 
 
 @pytest.fixture
@@ -40,7 +40,7 @@ def both(monkeypatch, height, space, **given):
     """State on candidates, and on the whole window."""
     on_candidates = solve_contact(height, space, **given)
     with monkeypatch.context() as patch:
-        patch.setattr(candidates, "LEAST_RTOL", 1.0)
+        patch.setattr(candidates, "MIN_RTOL", 1.0)
         whole = solve_contact(height, space, **given)
     assert not isinstance(whole, CandidateState)
     return on_candidates, whole
@@ -115,7 +115,7 @@ def test_load_steps(monkeypatch, control):
         assert isinstance(state, CandidateState)
         assert "displacement" not in vars(state)
         with monkeypatch.context() as patch:
-            patch.setattr(candidates, "LEAST_RTOL", 1.0)
+            patch.setattr(candidates, "MIN_RTOL", 1.0)
             whole = solve_contact(height, space, rtol=RTOL, **load)
             # A state of candidates is a start for the whole window, too.
             again = solve_contact(height, space, start=state, rtol=RTOL, **load)

@@ -11,7 +11,7 @@ from fractalcontact import HalfSpace, solve_contact
 from fractalcontact.surface.synthesis import self_affine
 from roughcontact.contact.active_set import ActiveSetMethod
 from roughcontact.contact.bounds import Bounds
-from roughcontact.contact.candidates import LEAST_WINDOW, LoadCase
+from roughcontact.contact.candidates import MIN_WINDOW, LoadCase
 from roughcontact.contact.kkt import Problem
 from roughcontact.contact.topography import Topography
 
@@ -118,7 +118,7 @@ def test_yielding_makes_a_problem_no_harder(hardness, share, control):
 # Seeds of 25, under forces and hardnesses that were given up, as candidates could not carry them.
 @pytest.mark.parametrize(("seed", "hardness", "share"), [(0, 30, 0.002), (2, 30, 0.02)])
 def test_candidates_can_carry_the_force(seed, hardness, share):
-    height, space = rough(LEAST_WINDOW, seed)
+    height, space = rough(MIN_WINDOW, seed)
     force = share * carried(space, hardness)
     state = solve_contact(height, space, force=force, hardness=hardness)
     assert state.force == pytest.approx(force, rel=1e-6)

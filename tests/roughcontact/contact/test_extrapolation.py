@@ -16,7 +16,7 @@ SPACE, STIFFER = (HalfSpace(SHAPE, (0.1, 0.1), modulus) for modulus in (1e4, 3e4
 @pytest.fixture(autouse=True)
 def always_candidates(monkeypatch):
     """Candidates are taken on any window, and however many."""
-    monkeypatch.setattr(candidates, "MOST_CANDIDATES", 1.0)
+    monkeypatch.setattr(candidates, "MAX_CANDIDATES", 1.0)
     monkeypatch.setattr(candidates, "BATCH", 0.0)
 
 

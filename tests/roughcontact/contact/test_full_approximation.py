@@ -15,8 +15,8 @@ CONTROLS = ["closure", "force"]
 
 @pytest.fixture
 def on_small_grids(monkeypatch):
-    monkeypatch.setattr(full_approximation, "LEAST_FINE_SIDE", 48)
-    monkeypatch.setattr(full_approximation, "LEAST_COARSE_SIDE", 24)
+    monkeypatch.setattr(full_approximation, "MIN_FINE_SIDE", 48)
+    monkeypatch.setattr(full_approximation, "MIN_COARSE_SIDE", 24)
 
 
 def rough(shape, seed=3):
@@ -87,9 +87,9 @@ def test_states_are_those_of_cold_starts(on_small_grids, monkeypatch, control, h
 
 @pytest.mark.parametrize("control", CONTROLS)
 def test_applications_are_saved_on_large_grids(monkeypatch, control):
-    n = full_approximation.LEAST_FINE_SIDE
+    n = full_approximation.MIN_FINE_SIDE
     # On candidates for contact there is no such scheme.
-    monkeypatch.setattr(candidates, "LEAST_WINDOW", n + 1)
+    monkeypatch.setattr(candidates, "MIN_WINDOW", n + 1)
     height, space = rough((n, n), seed=1)
     depth = np.ptp(height)
     loads = [{"closure": share * depth} for share in (0.16, 0.20)]
@@ -97,7 +97,7 @@ def test_applications_are_saved_on_large_grids(monkeypatch, control):
         loads = [{"force": solve_contact(height, space, **load).force} for load in loads]
     first, applications = solve_contact(height, space, **loads[0]), {}
     for smallest in (n, n + 1):
-        monkeypatch.setattr(full_approximation, "LEAST_FINE_SIDE", smallest)
+        monkeypatch.setattr(full_approximation, "MIN_FINE_SIDE", smallest)
         state = solve_contact(height, space, start=first, **loads[1])
         applications[smallest] = state.iterations
     assert applications[n] < applications[n + 1]

@@ -7,7 +7,7 @@ from ensembles import ensemble
 
 from fractalcontact import HalfSpace
 from fractalcontact.surface.synthesis import self_affine
-from roughcontact.contact.coarse_correction import LEAST_RIDGE, RIDGE, CoarseCorrection
+from roughcontact.contact.coarse_correction import MIN_RIDGE, RIDGE, CoarseCorrection
 from roughcontact.contact.inverse_cholesky import (
     NARROW_NEIGHBOURHOOD,
     WIDE_NEIGHBOURHOOD,
@@ -87,7 +87,7 @@ def test_coarse_correction_is_that_of_dense_matrices():
     basis = interpolation @ functions.T
     matrix = basis.T @ operator @ basis
     diagonal = np.diag(matrix)
-    ridge = np.diag(RIDGE * diagonal + LEAST_RIDGE * diagonal.max())
+    ridge = np.diag(RIDGE * diagonal + MIN_RIDGE * diagonal.max())
     approximate = np.diag(np.random.default_rng(8).uniform(0.5, 1, nodes.size))
     plain = plain_twins.balanced(approximate, operator, basis, np.linalg.inv(matrix + ridge))
     residual = np.random.default_rng(9).standard_normal(nodes.size).astype(np.float32)

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from fractalcontact import HalfSpace
-from roughcontact.elastic.direct import MOST_PAIRS, DirectOperator
+from roughcontact.elastic.direct import MAX_PAIRS, DirectOperator
 
 
-@pytest.mark.parametrize("dtype", list(MOST_PAIRS))
+@pytest.mark.parametrize("dtype", list(MAX_PAIRS))
 @pytest.mark.parametrize("spacing", [(1.0, 1.0), (1.25, 1.0), (0.1, 0.125)])
 @pytest.mark.parametrize("shape", [(1, 1), (8, 8), (1, 300), (97, 260), (301, 90)])
 @pytest.mark.parametrize("kernel", ["love", "equal-area disc"])

@@ -7,7 +7,7 @@ from fractalcontact import HalfSpace
 from roughcontact.elastic import multipole
 from roughcontact.elastic.block_influence import ERROR
 from roughcontact.elastic.block_pairs import MultipoleLevels
-from roughcontact.elastic.multipole import MOST_STRETCHED, MultipoleOperator, multipole_suits
+from roughcontact.elastic.multipole import MAX_STRETCHED, MultipoleOperator, multipole_suits
 
 #: Rounding in single precision of sums of thousands of terms, as a fraction of the largest.
 ROUNDING = {np.float32: 1e-5, np.float64: 1e-13}
@@ -47,7 +47,7 @@ def test_random_sets(monkeypatch, shape, kernel, dtype, few):
     assert error(space, nodes, positions, values) < allowed
 
 
-@pytest.mark.parametrize("spacing", [(1.0, 1.0), (1.0, MOST_STRETCHED), (MOST_STRETCHED, 1.0)])
+@pytest.mark.parametrize("spacing", [(1.0, 1.0), (1.0, MAX_STRETCHED), (MAX_STRETCHED, 1.0)])
 def test_each_influence(spacing):
     """One loaded node and one displaced: nothing averages the error of the interpolation."""
     n = 320

@@ -7,7 +7,7 @@ from fractalcontact import HalfSpace
 from roughcontact import threads
 from roughcontact.elastic import halfspace
 from roughcontact.elastic.influence import influence_table
-from roughcontact.elastic.split_convolution import LEAST_SPLIT_SIDE, SplitConvolution
+from roughcontact.elastic.split_convolution import MIN_SPLIT_SIDE, SplitConvolution
 
 #: Largest error over the largest displacement, of random pressures of either sign.
 ERROR = 4e-6
@@ -32,7 +32,7 @@ def test_any_window(shape, kernel):
     assert error(space, np.abs(values)) < ERROR
 
 
-@pytest.mark.parametrize("ratio", [1.0, halfspace.MOST_STRETCHED, 1 / halfspace.MOST_STRETCHED])
+@pytest.mark.parametrize("ratio", [1.0, halfspace.MAX_STRETCHED, 1 / halfspace.MAX_STRETCHED])
 def test_stretched_cells(ratio):
     rng = np.random.default_rng(3)
     space = HalfSpace((150, 210), (0.1, 0.1 * ratio), 1.0)
@@ -59,12 +59,10 @@ def test_symmetric():
 
 
 def test_used_in_single_precision_on_large_windows_of_nearly_square_cells():
-    large = (LEAST_SPLIT_SIDE, LEAST_SPLIT_SIDE + 10)
+    large = (MIN_SPLIT_SIDE, MIN_SPLIT_SIDE + 10)
     assert isinstance(HalfSpace(large, 1.0, 1.0)._single, SplitConvolution)
     assert not isinstance(HalfSpace(large, (1.0, 2.1), 1.0)._single, SplitConvolution)
-    assert not isinstance(
-        HalfSpace((LEAST_SPLIT_SIDE - 1, 900), 1.0, 1.0)._single, SplitConvolution
-    )
+    assert not isinstance(HalfSpace((MIN_SPLIT_SIDE - 1, 900), 1.0, 1.0)._single, SplitConvolution)
     rng = np.random.default_rng(7)
     space = HalfSpace(large, 1.0, 1.0)
     values = rng.random(large) * (rng.random(large) < 0.1)
