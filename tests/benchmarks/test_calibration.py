@@ -1,4 +1,4 @@
-"""What the calibration of Delta_sigma says of intervals that are right, and of random fractals."""
+"""Calibration of Delta_sigma on intervals that are right, and on random fractals."""
 
 import importlib.util
 

@@ -29,7 +29,7 @@ PAGE = "# A page\n\n{begin}\nold\n{end}\n\nWhat follows.\n"
 
 @pytest.fixture
 def table(monkeypatch, tmp_path):
-    """What the command does with some specimens of the study, and its two files."""
+    """Rows and both files of the command for some specimens of the study."""
     monkeypatch.syspath_prepend(BENCHMARKS)
     import grid_table
 

@@ -78,7 +78,7 @@ def card(cards):
 
 
 def solid_of(text):
-    """What the file for PorePy makes, by a class of its documented keywords."""
+    """Keywords that the file for PorePy passes to a class of its documented ones."""
 
     @dataclass(kw_only=True)
     class Solid:

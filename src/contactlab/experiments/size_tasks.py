@@ -48,7 +48,7 @@ class SizeTask(NamedTuple):
     whole: int | None = None
     """Nodes per side of the surface that windows of ``size`` are cut from; None without windows."""
     construction: str = ""
-    """Of :mod:`surface.embedded`; empty for a spectrum between the cut-offs."""
+    """Construction of :mod:`surface.embedded`; empty for a spectrum between the cut-offs."""
 
     @property
     def name(self) -> str:

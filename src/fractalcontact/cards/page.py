@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from ..pages.captions import symbols
+from ..pages.first_screen import row_at
 from ..pages.words import MISSING, measured, percent, short, with_unit
 
 #: Sections whose curves over pressure share a table.
@@ -70,15 +71,7 @@ def has_values(entry: Mapping[str, Any]) -> bool:
 def over_pressure(curves: list[Mapping[str, Any]]) -> list[tuple[float, list[dict[str, Any]]]]:
     """Rows of a table: pressure, MPa, and a number of each curve there, with its unit."""
     pressures = sorted({row["at"]["pressure"] for one in curves for row in one.get("values", ())})
-    return [
-        (at, [at_pressure(one, at) | {"unit": one["unit"]} for one in curves]) for at in pressures
-    ]
-
-
-def at_pressure(curve: Mapping[str, Any], pressure: float) -> dict[str, Any]:
-    """The number of a curve at a pressure, MPa; missing where it has none there."""
-    rows = [row for row in curve.get("values", ()) if row["at"].get("pressure") == pressure]
-    return dict(rows[0]) if rows else {"missing": curve.get("missing", "not solved there")}
+    return [(at, [row_at(one, at) | {"unit": one["unit"]} for one in curves]) for at in pressures]
 
 
 def jrc_table(*entries: Mapping[str, Any]) -> dict[str, Any]:

@@ -69,3 +69,22 @@ def _line_through(x: np.ndarray, y: np.ndarray) -> LineFit:
 
 def _around(value: float, half: float, n: int, over: tuple[float, float]) -> Estimate:
     return Estimate(float(value), float(value - half), float(value + half), n, over)
+
+
+def slope_error(x: np.ndarray, error: np.ndarray) -> float:
+    """Error of a least-squares slope by the errors of its values, which are independent.
+
+    Parameters
+    ----------
+    x, error : (n,) ndarray
+        Where the values stand, and the half-widths of their intervals.
+
+    Returns
+    -------
+    float
+        NaN of fewer than two.
+    """
+    if x.size < 2:
+        return np.nan
+    about = x - x.mean()
+    return float(np.sqrt(np.sum((about * error) ** 2)) / np.sum(about**2))

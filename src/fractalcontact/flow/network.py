@@ -195,16 +195,15 @@ def _assemble(faces, ends, scale):
     return sparse.coo_array((values, (rows, columns)), shape=(n, n))
 
 
-def _drop(one, other, solution):
-    """Pressure differences, of p or of its complement, whichever is known more closely."""
-    p, d = solution.T
+def _drop(one, other, p, d):
+    """Differences of the pressure p or of its complement d, whichever is known more closely."""
     return np.where(p[one] < d[one], p[one] - p[other], d[other] - d[one])
 
 
 def _balance(faces, ends, solution):
     """Net flow into each cell, and the flows in and out."""
     first, second, conductance = faces
-    flux = conductance * _drop(first, second, solution)
+    flux = conductance * _drop(first, second, *solution.T)
     entering, leaving = ends[:, 0] * solution[:, 1], ends[:, 1] * solution[:, 0]
     n = len(ends)
     net = entering - leaving - np.bincount(first, flux, n) + np.bincount(second, flux, n)
@@ -215,7 +214,7 @@ def _network_flow(network, cells, solution, rate, imbalance):
     p, d = np.full(cells.shape, np.nan), np.full(cells.shape, np.nan)
     p[cells], d[cells] = solution.T
     flux_x, flux_y = (
-        np.nan_to_num(conductance * np.where(p[one] < d[one], p[one] - p[other], d[other] - d[one]))
+        np.nan_to_num(conductance * _drop(one, other, p, d))
         for conductance, one, other in (
             (network.along_x, np.s_[:, :-1], np.s_[:, 1:]),
             (network.along_y, np.s_[:-1], np.s_[1:]),

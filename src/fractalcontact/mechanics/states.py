@@ -232,7 +232,7 @@ def map_fields(
 
 
 def map_states(parts: Sequence[xr.Dataset]) -> xr.Dataset:
-    """Pressures and gaps of the states that are looked at closely, under every load.
+    """Pressures of the states that are looked at closely, under every load.
 
     Parameters
     ----------
@@ -242,8 +242,8 @@ def map_states(parts: Sequence[xr.Dataset]) -> xr.Dataset:
     Returns
     -------
     xr.Dataset
-        ``pressure``, MPa, and ``gap``, mm, (normal_force, y, x), with the scalars ``direction``,
-        ``offset`` and ``resolution``, the multiple k of the scan's spacing.
+        ``pressure``, MPa, (normal_force, y, x), with the scalars ``direction``, ``offset`` and
+        ``resolution``, the multiple k of the scan's spacing.
     """
     part = next(part for part in parts if MAP_PRESSURE in part)
     pressure = part[MAP_PRESSURE]
@@ -252,7 +252,6 @@ def map_states(parts: Sequence[xr.Dataset]) -> xr.Dataset:
     return xr.Dataset(
         {
             "pressure": (dims, pressure.values, cf_attrs("MPa", "pressure p")),
-            "gap": (dims, part[MAP_GAP].values, cf_attrs("mm", "gap g")),
         },
         coords={
             "normal_force": part["normal_force"],

@@ -76,13 +76,13 @@ def block_of(card: Mapping[str, Any]) -> Block:
         near = _nearest(closure)
     pressure = near["at"]["pressure"] if near else _PRESSURE
     at = f"at {short(pressure)} MPa"
-    stiffness = _at(entries["tangent_stiffness"], _PRESSURE)
-    strength, barton = (_at(entries[k], pressure) for k in ("peak_strength", "barton_strength"))
+    stiffness = row_at(entries["tangent_stiffness"], _PRESSURE)
+    strength, barton = (row_at(entries[k], pressure) for k in ("peak_strength", "barton_strength"))
     facts = [
         _fact(f"normal stiffness at {short(_PRESSURE)} MPa", stiffness, "MPa/mm"),
         _fact(f"closure {at}", near or {"missing": "no load was solved"}, "mm"),
-        _fact(f"mean gap {at}", _at(entries["mean_gap"], pressure), "mm"),
-        _fact(f"contact {at}", _at(entries["contact_fraction"], pressure), "%"),
+        _fact(f"mean gap {at}", row_at(entries["mean_gap"], pressure), "mm"),
+        _fact(f"contact {at}", row_at(entries["contact_fraction"], pressure), "%"),
     ]
     if card["direction"] != "none":
         beside = f"Barton {with_unit(barton['value'], 'MPa')}" if "value" in barton else ""
@@ -123,9 +123,9 @@ def _rows(curve):
     return [row | {"interval": interval} for row in curve.get("values", ())]
 
 
-def _at(curve, pressure):
-    """Row of a curve at a pressure; why there is none."""
-    rows = [row for row in _rows(curve) if row["at"]["pressure"] == pressure]
+def row_at(curve: Mapping[str, Any], pressure: float) -> dict[str, Any]:
+    """Row of a curve of a card at a pressure, MPa; missing, with the reason, where it has none."""
+    rows = [row for row in _rows(curve) if row["at"].get("pressure") == pressure]
     return rows[0] if rows else {"missing": curve.get("missing", "not solved there")}
 
 

@@ -154,7 +154,7 @@ _TRUST = {POOR: "low", IN_PART: "limited", GOOD: "good"}
 
 
 def trust_of(lights: Sequence[Light]) -> tuple[str, str, str]:
-    """How far to trust a specimen by its worst light, what decides that, and what would help.
+    """Trust in a specimen by its worst light, the reason for it, and what would help.
 
     Parameters
     ----------

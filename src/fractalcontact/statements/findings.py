@@ -20,8 +20,8 @@ BY_CONSTRUCTION = "A_r = F/H by construction: all that touches yields"
 class Finding(NamedTuple):
     """Verdict on one statement, the numbers that decide it, and what to know of them.
 
-    Captions quote the verdict and the numbers; the note stands in the table alone, as what was
-    judged, which is empty where it is all that was asked.
+    Captions quote the verdict and the numbers. The note stands in the table alone, and so does
+    ``judged_on``, which is empty where the whole subject was judged.
     """
 
     verdict: str
@@ -206,7 +206,7 @@ def beyond_margin(found: Estimate, name: str, *, rising: bool) -> str:
 
 
 def level(values: np.ndarray, symbol: str, v: np.ndarray) -> Finding:
-    """True if values stay the same: their range over their mean."""
+    """Verdict on values that are to stay the same, by their range over their mean."""
     known = np.isfinite(values)
     values, v = values[known], v[known]
     if len(values) < MIN_POINTS:

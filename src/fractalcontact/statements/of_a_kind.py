@@ -212,7 +212,7 @@ def _trend(joint: Joint, name: str, trend: str) -> Finding:
 
 @_of_realisations
 def dimension_spans_all(joint: Joint) -> Finding:
-    """True if Delta_sigma by box counts begins near 0 and ends near 2, by the mean's intervals."""
+    """Smallest and largest mean of Delta_sigma by boxes, near 0 and near 2 by their intervals."""
     stage = joint["ensemble"]
     delta = _mean(stage, "delta_sigma")
     every = stage["delta_sigma_n"].values == stage.sizes["realisation"]

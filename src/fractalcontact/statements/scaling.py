@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from ..core.estimate import Estimate
-from ..core.fitting import MIN_POINTS
+from ..core.fitting import MIN_POINTS, slope_error
 from ..core.limits import LOOSELY
 from ..core.verdicts import AGREES, DECIDED, FAILS, HOLDS, PARTLY, UNDETERMINED
 from ..domain.pressure_trend import pressure_trend
@@ -48,7 +48,7 @@ def boxes_follow_one_law(joint: Joint) -> Finding:
 
 @of_the_area
 def estimates_agree(joint: Joint) -> Finding:
-    """True if A_r(s) and box counting have one Delta_sigma, over all loads that decide it.
+    """Difference of Delta_sigma by A_r(s) and by boxes, over all loads that decide it.
 
     Equal is a difference whose whole interval is within a quarter, unequal one whose interval
     leaves out zero.
@@ -104,7 +104,7 @@ def dimension_rises_by_boxes(joint: Joint) -> Finding:
 
 
 def dimension_spans_all(joint: Joint) -> Finding:
-    """True if Delta_sigma by box counts begins near 0 and ends near 2, by their intervals."""
+    """Smallest and largest Delta_sigma by box counts, near 0 and near 2 by their intervals."""
     states = joint.states("domains")
     nodes = joint.states("closure")["nodes"].values
     delta = Estimate.read(states, "delta_sigma")
@@ -275,17 +275,14 @@ def _exponents(value, low, high, known):
 
 
 def _over_load(states, random=np.nan):
-    """How Delta_sigma goes with log F, and that less the one of random nodes.
+    """Trend of Delta_sigma with log F, and that less the one of random nodes.
 
     The interval of each slope is that of the line and that of the values in quadrature.
     """
     delta = Estimate.read(states, "delta_sigma")
-    known = np.where(np.isfinite(delta.width), delta.value, np.nan)
-    forces = states["normal_force"].values
-    trend = pressure_trend(forces, known, random)
-    x = np.log10(forces[np.isfinite(known)])
-    x, half = x - x.mean() if x.size else x, delta.width[np.isfinite(known)] / 2
-    of_values = np.sqrt(np.sum((x * half) ** 2)) / np.sum(x**2) if x.size > 1 else np.nan
+    forces, known = states["normal_force"].values, np.isfinite(delta.width)
+    trend = pressure_trend(forces, np.where(known, delta.value, np.nan), random)
+    of_values = slope_error(np.log10(forces[known]), delta.width[known] / 2)
     return trend._replace(
         line=_widened(trend.line, of_values), departure=_widened(trend.departure, of_values)
     )

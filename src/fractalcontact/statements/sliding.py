@@ -70,7 +70,7 @@ def dilatancy_flattens(joint: Joint) -> Finding:
 
 
 def dilatancy_flattens_in_two(joint: Joint) -> Finding:
-    """True if two of four directions have a plateau and the others rise on."""
+    """Numbers of directions with a plateau and of those that rise on, two of four each."""
     plateaus = Plateaus.of(joint["joints"])
     if plateaus.change.size < DIRECTIONS:
         return Finding(UNDETERMINED, f"{DIRECTIONS} directions needed")

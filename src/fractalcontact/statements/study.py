@@ -7,7 +7,7 @@ import xarray as xr
 
 from ..core.claims import claims_of
 from ..core.estimate import Estimate
-from ..core.fitting import fit_line
+from ..core.fitting import fit_line, slope_error
 from ..core.verdicts import FAILS, HOLDS, UNDETERMINED
 from ..roughness.recommended import best_dimension
 from .findings import Finding, Joint, by_sign
@@ -74,10 +74,10 @@ def size_exponent_grows_with_dimension(joints: Mapping[str, Joint]) -> Finding:
 
 
 def _slope(x: np.ndarray, y: np.ndarray, error: np.ndarray) -> Estimate:
-    """Least-squares slope whose interval follows from those of y, half as wide as ``error``."""
-    lever = (x - x.mean()) / np.sum((x - x.mean()) ** 2)
-    slope, half = lever @ y, np.sqrt(np.sum((lever * error) ** 2))
-    return Estimate(float(slope), float(slope - half), float(slope + half), x.size)
+    """Least-squares slope whose interval follows from those of y, ``error`` to either side."""
+    about = x - x.mean()
+    slope, half = float(about @ y / (about @ about)), slope_error(x, error)
+    return Estimate(slope, slope - half, slope + half, x.size)
 
 
 def area_falls_more_in_concrete(joints: Mapping[str, Joint]) -> Finding:

@@ -10,7 +10,8 @@ from collections.abc import Mapping
 from typing import Any
 from xml.etree import ElementTree as xml
 
-from .constants import Constants, head_of
+from ._xml import comment, headed, text_of_element
+from .constants import Constants
 
 ENDING = "xml"
 
@@ -48,9 +49,7 @@ def apertures_of(card: Mapping[str, Any]) -> list[tuple[float, float]]:
 
 def text_of(card: Mapping[str, Any]) -> str:
     """Parts of a problem file: the aperture law of a fracture and, where known, its table."""
-    root = xml.Element("Problem")
-    for line in head_of(card, "GEOS"):
-        root.append(xml.Comment(f" {_safe(line)} "))
+    root = headed("Problem", card, "GEOS")
     laws, found = xml.SubElement(root, "Constitutive"), constants_of(card)
     if rows := apertures_of(card):
         name = f"{card['name']}_aperture_table"
@@ -69,26 +68,20 @@ def text_of(card: Mapping[str, Any]) -> str:
         )
     else:
         laws.append(
-            xml.Comment(
-                " no table of hydraulic against mechanical aperture: the card "
-                "has no mean gap and hydraulic aperture under one pressure "
+            comment(
+                "no table of hydraulic against mechanical aperture: the card "
+                "has no mean gap and hydraulic aperture under one pressure"
             )
         )
     if found.values:
         attributes = {key: f"{value:.6g}" for key, value in found.values.items()}
         laws.append(
-            xml.Comment(
-                " takes the mechanical for the hydraulic aperture, which is "
-                "smaller, and the joint to close at infinite pressure "
+            comment(
+                "takes the mechanical for the hydraulic aperture, which is "
+                "smaller, and the joint to close at infinite pressure"
             )
         )
         laws.append(xml.Element("BartonBandis", {"name": card["name"], **attributes}))
     for key, words in (found.notes | found.left_out).items():
-        laws.append(xml.Comment(f" {key}: {_safe(words)} "))
-    xml.indent(root)
-    return xml.tostring(root, encoding="unicode") + "\n"
-
-
-def _safe(text: str) -> str:
-    """Text that may stand in a comment: two hyphens would end it."""
-    return " ".join(text.split()).replace("--", "- -").rstrip("-")
+        laws.append(comment(f"{key}: {words}"))
+    return text_of_element(root)

@@ -9,8 +9,8 @@ from collections.abc import Mapping
 from typing import Any
 from xml.etree import ElementTree as xml
 
-from .constants import Constants, at_preferred, head_of, over_pressure
-from .geos import _safe
+from ._xml import comment, headed, text_of_element
+from .constants import Constants, at_preferred, over_pressure
 
 ENDING = "xml"
 
@@ -43,9 +43,7 @@ def constants_of(card: Mapping[str, Any]) -> Constants:
 def text_of(card: Mapping[str, Any]) -> str:
     """Parts of a project file: a fracture model without tension, and the parameters it names."""
     found = constants_of(card)
-    root = xml.Element("OpenGeoSysProject")
-    for line in head_of(card, "OpenGeoSys"):
-        root.append(xml.Comment(f" {_safe(line)} "))
+    root = headed("OpenGeoSysProject", card, "OpenGeoSys")
     model = xml.SubElement(root, "fracture_model")
     xml.SubElement(model, "type").text = "LinearElasticIsotropic"
     properties = xml.SubElement(root, "fracture_properties")
@@ -55,11 +53,10 @@ def text_of(card: Mapping[str, Any]) -> str:
         where = model if key == "normal_stiffness" else properties
         xml.SubElement(where, key).text = name
         parameter = xml.SubElement(parameters, "parameter")
-        parameter.append(xml.Comment(f" {_safe(found.notes[key])} "))
+        parameter.append(comment(found.notes[key]))
         for tag, text in (("name", name), ("type", "Constant"), ("value", f"{value:.6g}")):
             xml.SubElement(parameter, tag).text = text
     xml.SubElement(model, "tension_cutoff").text = "1"
     for key, why in found.left_out.items():
-        model.append(xml.Comment(f" {key}: {_safe(why)} "))
-    xml.indent(root)
-    return xml.tostring(root, encoding="unicode") + "\n"
+        model.append(comment(f"{key}: {why}"))
+    return text_of_element(root)

@@ -1,7 +1,5 @@
 """Transmissivity along and across the sliding, and mean gap, against the offset."""
 
-from typing import Any
-
 from matplotlib.figure import Figure
 from xarray import DataTree
 
@@ -14,17 +12,13 @@ from ..kit.legends import entries, legends_below
 from ..kit.panel import Panel, table_of
 from ..kit.titles import headline
 from ..kit.words import place, pressure_label
+from ._flow_ways import WAYS, open_states
 
 TITLE = "Transmissivity against the offset"
 SUBJECT = "joint"
 NEEDS = ("specimens", "closure", "flow")
 ORDER = 47
 SECTION = "flow"
-
-_WAYS: dict[str, dict[str, Any]] = {
-    "along": {"color": colour_of(0), "marker": "o"},
-    "across": {"color": colour_of(1), "marker": "s", "mfc": "none"},
-}
 
 
 def draw(atlas: DataTree, name: str) -> Drawing:
@@ -34,11 +28,16 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     figure = Figure(figsize=(WIDTH, 3.6))
     titles = ("transmissivity", "mean gap")
     a, b = (Panel(*one) for one in zip(figure.subplots(1, 2), "ab", titles, strict=True))
-    for way, style in _WAYS.items():
+    for way, style in WAYS.items():
         variable = f"offset_transmissivity_{way}"
-        open_states = flow[variable].where(flow[variable] > 0).assign_attrs(flow[variable].attrs)
-        shown = flow.assign({variable: open_states})
-        a.curve(shown, "offset", variable, label=f"{way} the sliding", ls="-", **style)
+        a.curve(
+            open_states(flow, variable),
+            "offset",
+            variable,
+            label=f"{way} the sliding",
+            ls="-",
+            **style,
+        )
     b.curve(
         flow, "offset", "offset_mean_gap", label="mean gap", color=colour_of(2), marker="^", ls="-"
     )
@@ -52,7 +51,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     legends_below(figure, entries(a.axes))
     at = float(flow["nominal_pressure"][subject.reported.reference])
     headline(figure, subject.label, place(subject.direction), pressure_label(at))
-    along, across = (flow[f"offset_transmissivity_{way}"].values for way in _WAYS)
+    along, across = (flow[f"offset_transmissivity_{way}"].values for way in WAYS)
     words = {
         "pressure": at,
         "offsets": int(flow.sizes["offset"]),

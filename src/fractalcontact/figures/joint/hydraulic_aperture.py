@@ -16,6 +16,7 @@ from ..kit.panel import Panel, table_of
 from ..kit.sizes import plain_decades
 from ..kit.titles import headline
 from ..kit.words import NOMINAL_PRESSURE, place
+from ._flow_ways import WAYS, open_states
 
 TITLE = "Hydraulic aperture and transmissivity against load"
 SUBJECT = "specimen"
@@ -23,11 +24,6 @@ NEEDS = ("specimens", "closure", "flow")
 ORDER = 46
 SECTION = "flow"
 
-#: Ways of the flow: words, colour, marker and what its points are filled with.
-_WAYS: dict[str, dict[str, Any]] = {
-    "along": {"color": colour_of(0), "marker": "o"},
-    "across": {"color": colour_of(1), "marker": "s", "mfc": "none"},
-}
 _LAWS: dict[str, tuple[str, dict[str, Any]]] = {
     "zimmerman_aperture": ("Zimmerman and Bodvarsson", {"color": colour_of(2), "ls": "--"}),
     "barton_aperture": ("Barton", {"color": colour_of(3), "ls": "-."}),
@@ -53,9 +49,9 @@ def draw(atlas: DataTree, name: str) -> Drawing:
 
 def _draw_apertures(panel: Panel, states: xr.Dataset) -> None:
     kept = ("nominal_pressure", "critical_gap_along", "channel_fraction_along")
-    for way, style in _WAYS.items():
+    for way, style in WAYS.items():
         panel.curve(
-            _positive(states, f"hydraulic_aperture_{way}"),
+            open_states(states, f"hydraulic_aperture_{way}"),
             "mean_gap",
             f"hydraulic_aperture_{way}",
             keep=kept if way == "along" else (),
@@ -78,9 +74,9 @@ def _draw_apertures(panel: Panel, states: xr.Dataset) -> None:
 
 
 def _draw_branches(panel: Panel, flow: xr.Dataset) -> None:
-    for way, style in _WAYS.items():
+    for way, style in WAYS.items():
         variable = f"branch_transmissivity_{way}"
-        branches = _positive(flow, variable)
+        branches = open_states(flow, variable)
         load, reload = (branches[variable].sel(branch=one) for one in ("load", "reload"))
         # Where nothing yields, there is one curve.
         crushed = bool((reload.notnull() & (reload != load)).any())
@@ -99,11 +95,6 @@ def _draw_branches(panel: Panel, flow: xr.Dataset) -> None:
     panel.axes.set(xscale="log", yscale="log", xlabel=f"{NOMINAL_PRESSURE} (MPa)")
     plain_decades(panel.axes.xaxis)
     panel.axes.set_ylabel("transmissivity $T$ (mm³)")
-
-
-def _positive(data: xr.Dataset, name: str) -> xr.Dataset:
-    """A logarithmic axis has no zero: states without a path are left out."""
-    return data.assign({name: data[name].where(data[name] > 0).assign_attrs(data[name].attrs)})
 
 
 def _words(subject: Subject, states: xr.Dataset) -> dict[str, Any]:
