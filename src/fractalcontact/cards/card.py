@@ -14,7 +14,7 @@ from ..pages.material import material_of, opposite_words
 from ..pages.summary import quantities_at
 from ..pages.words import with_unit
 from .entries import entries, number, read_entry, rounded
-from .methods import REFERENCES, methods_of
+from .methods import methods_of, references_of
 
 #: Version of the form of a card; a change of ``card.schema.json`` that breaks readers raises it.
 FORM = 1
@@ -70,12 +70,12 @@ def card_of(subject: Subject, study: Mapping[str, Any], made: Mapping[str, Any])
             for light in lights
         ],
         "trust": dict(zip(("word", "reason", "help"), trust_of(lights), strict=True)),
-        "references": list(REFERENCES),
         "licence": LICENCE,
         "versions": dict(made["versions"]),
         "scan_checksums": dict(made["scan_checksums"].get(subject.name, {})),
     }
-    return card | {"methods": methods_of(card)}
+    methods = methods_of(card)
+    return card | {"methods": methods, "references": references_of(methods)}
 
 
 def made_of(attributes: Mapping[Any, Any]) -> dict[str, Any]:

@@ -5,8 +5,8 @@ from typing import Any
 
 from ..pages.words import short, with_unit
 
-#: Sources that the paragraph names, each once.
-REFERENCES = (
+#: Sources that the paragraph may name.
+_SOURCES = (
     "Borri-Brunetto, M., Carpinteri, A., Chiaia, B. (1999): Scaling phenomena due to fractal "
     "contact in concrete and rock fractures. Int. J. Fracture 95, 221-238.",
     "Bandis, S. C., Lumsden, A. C., Barton, N. R. (1983): Fundamentals of rock joint deformation. "
@@ -31,6 +31,11 @@ def methods_of(card: Mapping[str, Any]) -> str:
     return " ".join(
         (_faces(card), _contact(card), _laws(card), _strength(card), _versions(card["versions"]))
     )
+
+
+def references_of(methods: str) -> list[str]:
+    """Sources that a methods paragraph names, each once, by their first author."""
+    return [source for source in _SOURCES if source.partition(",")[0] in methods]
 
 
 def _faces(card):

@@ -120,7 +120,9 @@ def in_words(number: Mapping[str, Any]) -> str:
     if "value" not in number:
         return MISSING
     value = number["value"]
-    return percent(value).removesuffix(" %") if number.get("unit") == "1" else short(value)
+    # As many digits as its interval has, if there is one: it would seem to lie outside.
+    digits = 2 if number.get("low") is None else 3
+    return percent(value, digits).removesuffix(" %") if number.get("unit") == "1" else short(value)
 
 
 def ends_in_words(number: Mapping[str, Any], factor: float = 1.0) -> str:

@@ -13,6 +13,8 @@ from .words import measured, short, with_unit
 
 #: Nominal pressure that the first numbers are of, MPa; of what is solved under loads, the nearest.
 _PRESSURE = 5.0
+#: Intervals that are far narrower than what is not known, as cards name them, in words.
+_ALONE = {"solver": " solver alone", "states beside the pressure": " reading between loads alone"}
 
 
 class Fact(NamedTuple):
@@ -146,7 +148,6 @@ def _fact(title, row, unit, beside=""):
     size, shown = (100.0, " %") if unit == "%" else (1.0, f" {unit}".removesuffix(" 1"))
     low, high = ("" if row[end] is None else measured(size * row[end]) for end in ("low", "high"))
     words = f"{short(size * row['value'])}{shown}"
-    # An interval of the solver alone is far narrower than what is not known.
-    alone = " solver alone" if row.get("interval") == "solver" else ""
+    alone = _ALONE.get(row.get("interval", ""), "")
     ends = f"[{low}, {high}]{alone}" if low != high else ""
     return Fact(title, words, "; ".join(filter(None, (ends, beside))))

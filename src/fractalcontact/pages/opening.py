@@ -211,8 +211,8 @@ def _listed(names: Sequence[str], most: int = _LISTED) -> str:
 
 #: What the paper's number is an exponent of, and what eq. 6 makes of it.
 _OF_THE_PAPER = (
-    "The paper's 1.39 is a box count, printed under a picture of areas A_r(s). With it the "
-    "exponent of eq. 6 is -0.61; with areas it is -(2 - Delta_sigma) by A_r(s)."
+    "The paper's 1.39 is a box count, printed under a picture of areas A_r(s). By that count the "
+    "exponent of eq. 6 is -0.61; by the areas it is Delta_sigma of A_r(s) less 2."
 )
 
 

@@ -265,8 +265,11 @@ def _of_branches(composite, loading, branches, states, place, on_loading):
     return values
 
 
-def _over_offsets(parts, closure, place, reported, on_loading):
-    """Mean gaps and transmissivities over the offsets, under the reference load."""
+def _over_offsets(parts, closure, place, reported, of_branches):
+    """Mean gaps and transmissivities over the offsets, under the reference load.
+
+    That of the reported offset is the state of its ``of_branches``.
+    """
     values = {f"offset_{name}": np.full(closure.sizes["offset"], np.nan) for name in NAMES}
     offsets = closure["offset"].values
     for part in (part for part in parts if OFFSET_GAP in part):
@@ -274,7 +277,7 @@ def _over_offsets(parts, closure, place, reported, on_loading):
             number = int(np.argmin(np.abs(offsets - offset)))
             if offsets[number] == reported.offset:
                 at = _LOAD, reported.reference
-                found = {f"offset_{name}": on_loading[f"branch_{name}"][at] for name in NAMES}
+                found = {f"offset_{name}": of_branches[f"branch_{name}"][at] for name in NAMES}
             else:
                 found = place.both("offset", gap.astype(float))
             for name, value in found.items():

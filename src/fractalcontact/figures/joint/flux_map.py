@@ -37,7 +37,9 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     figure = Figure(figsize=(WIDTH, 1.3 + 2.1 * high))
     axes, bars = figure.subplots(2, 3, height_ratios=[1, 0.04])
     bars[0].remove()
-    titles = ("contact", "gap", "flow along the sliding")
+    axis = subject["flow"].attrs["flow_axis_along"]
+    slides = subject.direction != "none"
+    titles = ("contact", "gap", "flow along the sliding" if slides else f"flow along {axis}")
     a, b, c = (Panel(*one) for one in zip(axes, "abc", titles, strict=True))
     draw_domain(
         a.axes, contact_domain(subject, subject.reported.resolution, reference), sides, ticks=3
@@ -70,7 +72,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     pressure = pressure_label(float(at["nominal_pressure"]))
     headline(figure, subject.label, place(subject.direction, subject.offset), pressure)
     words = {
-        "axis": subject["flow"].attrs["flow_axis_along"],
+        "axis": axis,
         "flows": flows,
         "channels": float(at["channel_fraction_along"]),
         "narrowest": float(at["critical_gap_along"]),

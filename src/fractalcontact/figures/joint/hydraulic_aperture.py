@@ -59,11 +59,13 @@ def _draw_apertures(panel: Panel, states: xr.Dataset) -> None:
             ls="none",
             **style,
         )
+    # Laws go on where no path is left: they are drawn beside what was computed.
+    flows = sum(states[f"transmissivity_{way}"].fillna(0) for way in WAYS)
+    beside = states.isel(normal_force=np.flatnonzero(flows > 0))
     for law, (words, style) in _LAWS.items():
-        if states[law].notnull().any():
-            panel.curve(states, "mean_gap", law, label=words, marker="none", **style)
-    gaps = states["mean_gap"].values
-    gaps = gaps[gaps > 0]
+        if beside[law].notnull().any():
+            panel.curve(beside, "mean_gap", law, label=words, marker="none", **style)
+    gaps = beside["mean_gap"].values
     if gaps.size:
         ends = [gaps.min(), gaps.max()]
         panel.axes.plot(ends, ends, color="0.6", lw=0.8, label="parallel plates")

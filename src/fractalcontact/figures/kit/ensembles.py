@@ -39,5 +39,7 @@ def draw_band(panel: Panel, subject: Subject, name: str, colour: str, words: str
     force, low, high = (shown[of] for of in ("normal_force", *(f"{name}_band_{e}" for e in _ENDS)))
     label = f"band of {realisations} realisations, {words}"
     panel.axes.fill_between(force, low, high, color=colour, alpha=0.2, lw=0, label=label)
-    panel.axes.plot(force, shown[f"{name}_mean"], color=colour, lw=0.8, ls=":")
+    panel.axes.plot(
+        force, shown[f"{name}_mean"], color=colour, lw=0.8, ls=":", label=f"their mean, {words}"
+    )
     panel.keep(shown, f"{name}_mean", *(f"{name}_band_{end}" for end in _ENDS), f"{name}_n")
