@@ -8,6 +8,7 @@ import xarray as xr
 
 from fractalcontact.domain.analysis import analyse_domains
 from fractalcontact.error_budget import refinement
+from fractalcontact.error_budget.derived import with_derived
 from fractalcontact.error_budget.error_budget import OF_SURFACE, error_budget, over_loads
 from fractalcontact.error_budget.other_windows import (
     MAX_OVERLAP,
@@ -170,18 +171,60 @@ def test_published_values_are_those_of_the_stages(one):
 
 
 def test_errors_cover_a_solve_at_an_eighth_of_the_spacing(one):
-    loading, _, budget, _ = one
+    loading, curves, budget, _ = one
     composite = loading.composite(int(loading.cells[0]))
     finer = subgrid(composite, 8)
     sides = (SPACING / 8, SPACING / 8)
     space = HalfSpace(finer.shape, sides, loading.settings.material.e_star)
-    within = []
+    within, separation = [], []
     for force in budget["normal_force"].values:
         state = solve_contact(finer, space, force=force, rtol=1e-5)
         for name, true in state_quantities(state, float(finer.max())).items():
             here = budget.sel(normal_force=force, quantity=name)
             within.append(abs(true - float(here["published"])) <= float(here["total"]))
+            separation += [true] if name == "separation" else []
     assert np.mean(within) >= 0.75
+    # Closure from the seat, to whose error first touch adds nothing.
+    curve = curves.sel(direction="E", resolution=1).isel(offset=1)
+    settled = (curve["closure"] - curve["interface_closure"]).values
+    seat = np.flatnonzero(curve["seated_closure"].values == 0)[0]
+    fallen = -np.array(separation) - settled
+    off = abs(fallen - fallen[seat] - curve["seated_closure"].values)[seat:]
+    total = budget["seated_closure_total"].values[seat:]
+    assert np.mean(off <= total) >= 0.75
+    assert (total < budget["total"].sel(quantity="closure").values[seat:]).all()
+
+
+def test_stiffness_at_a_pressure_has_the_relative_error_of_the_states_beside_it():
+    pressure, relative = np.array([1.0, 4.0, 6.25, 16.0]), np.array([np.nan, 0.1, 0.2, 0.2])
+    loads = {"normal_force": 2 * pressure}
+    curve = xr.Dataset(
+        {
+            "seated_closure": ("normal_force", [np.nan, 0.0, 0.1, 0.2]),
+            "seating_pressure": 4.0,
+            "reference_stiffness": ("reference_pressure", [np.nan, 50.0, 80.0]),
+        },
+        {"reference_pressure": [1.0, 5.0, 10.0], "nominal_pressure": ("normal_force", pressure)}
+        | loads,
+    )
+    errors = {"separation": [0.1, 0.03, 0.04, 0.0], "stiffness": [np.nan] * 4}
+    coords = {"quantity": list(errors)} | loads
+    dims = ("quantity", "normal_force")
+    both = {
+        "relative_total": (dims, [relative, relative]),
+        "relative_total_of_population": (dims, [2 * relative, 2 * relative]),
+    }
+    budget = xr.Dataset({"total": (dims, list(errors.values())), **both}, coords)
+    loading = SimpleNamespace(area=2.0)
+    found = with_derived(budget, SimpleNamespace(curve=curve, forces=2 * pressure, loading=loading))
+    # 5 MPa lies in the middle of 4 and 6.25, as the logarithm has it.
+    expected = [np.nan, 50 * np.sqrt(0.1 * 0.2), 80 * 0.2]
+    np.testing.assert_allclose(found["reference_stiffness_total"], expected)
+    of_population = found["reference_stiffness_total_of_population"]
+    np.testing.assert_allclose(of_population, 2 * np.array(expected))
+    np.testing.assert_allclose(
+        found["seated_closure_total"], [np.nan, np.hypot(0.03, 0.03), 0.05, 0.03]
+    )
 
 
 def test_resolution_is_the_change_from_twice_the_spacing_and_in_no_total(one):

@@ -109,7 +109,6 @@ def test_the_stiffness_at_a_pressure_is_read_off_a_power_law_exactly():
     found = laws_of(hyperbola(PRESSURE), stiffness=stiffness)
     expected = 12 * np.array(REFERENCE_PRESSURES) ** 0.9
     np.testing.assert_allclose(found["reference_stiffness"], expected, rtol=1e-12)
-    np.testing.assert_allclose(found["reference_stiffness_error"], 0.01 * expected, rtol=1e-12)
     light = laws_of(hyperbola(PRESSURE), stiffness=stiffness, resolved=PRESSURE < 8)
     assert np.isfinite(light["reference_stiffness"]).values.tolist() == [True, True, False]
     assert found["reference_pressure"].attrs["units"] == "MPa"

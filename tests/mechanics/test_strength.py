@@ -16,6 +16,8 @@ from fractalcontact.mechanics.jrc import FITS, profile_roughness
 from fractalcontact.mechanics.loading import JointLoading
 from fractalcontact.mechanics.states import combine
 from fractalcontact.mechanics.strength import (
+    FULL,
+    TRUNCATED,
     _by_barton,
     angles_with_errors,
     dilatancy_angle,
@@ -354,7 +356,8 @@ def test_everything_says_what_it_is(strength):
 def test_no_peak_of_a_joint_that_was_not_slid_was_held():
     none = np.full(2, np.nan)
     peaks = dict.fromkeys(("peak_offset", "peak_strength", "barton_strength"), none)
-    judged = judged_strengths({"midpoint": [], "friction_angle": np.empty((0, 2)), **peaks})
+    values = {"midpoint": [], "friction_angle": np.empty((0, 2)), **peaks}
+    judged = judged_strengths(values, np.zeros(2, bool))
     assert judged["peak_strength_valid"].all()
     assert judged["shear_strength_valid"].shape == (0, 2)
 
@@ -362,7 +365,22 @@ def test_no_peak_of_a_joint_that_was_not_slid_was_held():
 def test_a_peak_is_a_bound_only_where_its_own_angle_was_held():
     angle = np.array([[75.0, 75.0], [60.0, 60.0]])
     peaks = {"peak_offset": [1.0, 2.0], "peak_strength": [3.0, 2.0], "barton_strength": [2.0, 4.0]}
-    judged = judged_strengths({"midpoint": [1.0, 2.0], "friction_angle": angle, **peaks})
+    values = {"midpoint": [1.0, 2.0], "friction_angle": angle, **peaks}
+    judged = judged_strengths(values, np.zeros(2, bool))
     assert judged["peak_strength_valid"].tolist() == [False, True]
+    assert judged["peak_strength_reason"].tolist() == [TRUNCATED, ""]
     assert judged["shear_strength_valid"].tolist() == [[False, False], [True, True]]
     assert judged["peak_over_barton"].tolist() == [1.5, 0.5]
+    nearly_full = judged_strengths(values, np.array([False, True]))
+    assert not nearly_full["peak_strength_valid"].any()
+    assert nearly_full["peak_strength_reason"].tolist() == [TRUNCATED, FULL]
+
+
+def test_no_strength_by_dilatancy_where_half_of_the_window_touches():
+    """The faces close as they slide there: its peak would fall as the pressure rises."""
+    lower = self_affine((64, 64), SPACING, 0.8, rms=0.1, seed=3)
+    specimen = make_specimen(scan(lower), window=3.2, reach=1.6, name="one")
+    found = strength_of(specimen, settings([0.2, 0.4, 0.8], hardness=40.0))
+    np.testing.assert_allclose(found["nominal_pressure"], [0.5, 5, 25])
+    assert (found["peak_strength_reason"] == FULL).values.tolist() == [[False, False, True]]
+    assert not found["shear_strength_valid"].isel(normal_force=2).any()

@@ -34,7 +34,8 @@ ABSOLUTE = {
     *("barton_slope_angle", "peak_over_barton"),
     *("unit_area", "unit_area_low", "unit_area_high", "value"),
     *("unit_conductance", "unit_conductance_low", "unit_conductance_high"),
-    *("reference_pressure", "reference_stiffness", "reference_stiffness_error"),
+    *("reference_pressure", "reference_stiffness"),
+    *("reference_stiffness_total", "reference_stiffness_total_of_population"),
     *("seated_d_0", "seated_d_0_low", "seated_d_0_high"),
     *("barton_aperture", "reynolds_gradient_along", "reynolds_gradient_across"),
 }

@@ -48,6 +48,7 @@ class Entry:
     of: Mapping[str, str] = field(default_factory=dict)
     all: bool = False
     error: str = ""
+    population: str = ""
     interval: str = ""
     range: tuple[str, ...] = ()
     flag: str = ""
@@ -176,12 +177,15 @@ def _rows(entry: Entry, subject: Subject) -> Iterator[tuple[dict[str, Any], dict
         return
     data, array = found[0], found[0][variable]
     ends = _ends(entry, subject, data, array)
-    flags, reasons = (_values(entry, subject, key) for key in (entry.flag, entry.reason))
+    flags, reasons, population = (
+        _values(entry, subject, key) for key in (entry.flag, entry.reason, entry.population)
+    )
     for place in np.ndindex(array.shape):
         at = dict(zip(array.dims, place, strict=True))
         yield (
             _beside(entry, data, at),
-            _number(entry, [end[place] for end in ends], _at(flags, at), _at(reasons, at)),
+            _number(entry, [end[place] for end in ends], _at(flags, at), _at(reasons, at))
+            | _of_population(_at(population, at)),
         )
 
 
@@ -209,13 +213,19 @@ def _number(entry, ends, flag, reason):
     why = "" if reason is None else str(reason.item())
     estimate = Estimate(*ends, reason=why, scale=DIMENSION if entry.dimension else SIZE)
     valid = flag is None or bool(np.nan_to_num(flag.item()))
-    if not valid and reason is None:  # what is no result is not printed as one
-        return {"missing": entry.note if entry.note and estimate.known else entry.missing}
+    if not valid and not entry.range:  # what is no result, and no fit, is not printed as one
+        return {"missing": (estimate.known and (why or entry.note)) or entry.missing}
     found = number(estimate, entry.missing)
     if estimate.known and entry.range:  # of a fit
         found["determined"] = valid and bool(estimate.determined)
         found |= {"note": why} if why else {}
     return found
+
+
+def _of_population(error):
+    """Half-width of a number as one of its kind, where it is known."""
+    known = error is not None and math.isfinite(error.item())
+    return {"of_its_population": rounded(error.item())} if known else {}
 
 
 def _beside(entry, data, at):

@@ -26,6 +26,10 @@ LARGEST_FRICTION_ANGLE = 70.0
 #: mean strength is a bound and no result.
 MOSTLY_TRUNCATED = 0.5
 
+#: Contacts are separate, and the faces ride on asperities, where no larger fraction of the window
+#: touches.
+MAX_TOUCHING = 0.5
+
 #: A contact domain of fewer nodes is compared with no null model, and its dimension has no
 #: interval: one node more or less would change its pattern.
 MIN_NODES = CORRECTED_NODES

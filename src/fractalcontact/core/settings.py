@@ -108,7 +108,7 @@ class EnsembleSettings(SpecimenSettings, StateSettings):
 class StrengthSettings:
     """Settings of strength and size laws."""
 
-    material: Friction
+    material: Material
     surface_range: Range
 
 

@@ -6,6 +6,9 @@ import xarray as xr
 
 from .verdicts import HARDNESS, IN_PART, USUAL
 
+#: What decides a verdict that is not good, beside the pressure.
+SLOPE, LOAD = "slope", "load"
+
 
 class Limits(NamedTuple):
     """Pressures that bound the elastic model of a material, and what they follow from.
@@ -45,21 +48,24 @@ class Validity(NamedTuple):
     pressure : float
         Real mean pressure that is judged, MPa; NaN where there is none.
     reason : str
-        One line on pressure and slope.
+        One line on pressure and slope, that which decides first.
+    decided_by : str
+        Of a verdict that is not good :data:`SLOPE`, :data:`LOAD` or "pressure".
     limits : Limits
     """
 
     verdict: str
     pressure: float
     reason: str
+    decided_by: str
     limits: Limits
 
     @classmethod
     def of(cls, state: xr.Dataset) -> "Validity":
         """The verdict on one state of the stage ``elastic_model``."""
         limits = Limits(*(state[name].item() for name in Limits._fields))
-        verdict, pressure, reason = (state[name].item() for name in cls._fields[:-1])
-        return cls(verdict, pressure, reason, limits)
+        verdict, pressure, reason, by = (state[name].item() for name in cls._fields[:-1])
+        return cls(verdict, pressure, reason, by, limits)
 
     @property
     def capped(self) -> bool:

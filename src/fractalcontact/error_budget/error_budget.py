@@ -11,12 +11,13 @@ from ..core.datasets import labelled_dataset
 from ..core.estimate import Estimate
 from ..core.intervals import t_quantile
 from ..core.labels import cf_attrs
-from ..core.limits import MIN_NODES
+from ..core.limits import MAX_TOUCHING, MIN_NODES
 from ..core.settings import StateSettings
 from ..mechanics.joint import prefractal
 from ..mechanics.loading import JointLoading
 from ..mechanics.subgrid import state_quantities
 from ..mechanics.sweep import load_steps
+from .derived import with_derived
 from .other_windows import MIN_EFFECTIVE, TOO_SMALL, other_composites, window_spread
 from .refinement import (
     ABSOLUTE,
@@ -47,9 +48,6 @@ WIDENED = 2.0
 
 #: Standard deviation of the largest of many heights whose tail falls by e over a length: Gumbel's.
 _LARGEST_SPREAD = np.pi / np.sqrt(6)
-
-#: Contacts are separate where no larger fraction of the window touches.
-MAX_TOUCHING = 0.5
 
 _EACH, _ALL = ("quantity", "source", "normal_force"), ("quantity", "normal_force")
 _UNIT = "unit of the quantity"
@@ -137,7 +135,8 @@ def error_budget(
     Returns
     -------
     xr.Dataset
-        The variables of :data:`_TABLE` over (quantity, source, normal_force).
+        The variables of :data:`_TABLE` over (quantity, source, normal_force), and those of
+        :func:`derived.with_derived`.
 
     Raises
     ------
@@ -216,7 +215,7 @@ def _budget(curve, values, errors, found, reasons, windows) -> xr.Dataset:
     budget = labelled_dataset(_TABLE, table, coords, attrs)
     for name, words in (("quantity", "published quantity"), ("source", "source of error")):
         budget[name].attrs = cf_attrs("1", words)
-    return budget
+    return with_derived(budget, curve)
 
 
 def _largest(errors: Mapping[str, np.ndarray], sources: Sequence[str]) -> np.ndarray:

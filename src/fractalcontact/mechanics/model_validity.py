@@ -12,8 +12,9 @@ import xarray as xr
 
 from ..core.datasets import labelled_dataset
 from ..core.labels import percent
+from ..core.limits import MAX_TOUCHING
 from ..core.settings import Material
-from ..core.validity import Limits, Validity, pressure_words
+from ..core.validity import LOAD, SLOPE, Limits, Validity, pressure_words
 from ..core.verdicts import GOOD, HARDNESS, IN_PART, NO_PRESSURE, NOT_ASKED, POOR, STRENGTH, USUAL
 
 #: Rms slope of the composite topography up to which half-spaces are a fair model of its faces, and
@@ -30,9 +31,9 @@ CONFINED = 3.0
 MIN_RATIO, LARGEST_RATIO = 200.0, 1000.0
 
 
-#: Fractions F / (H A_0) of what a window can carry: up to the first its contacts are apart enough
-#: to crush one by one; beyond the second no domain is left whose dimension could be asked for.
-APART, FULL = 0.5, 0.87
+#: Fraction F / (H A_0) of what a window can carry beyond which no domain is left whose dimension
+#: could be asked for.
+FULL = 0.87
 
 #: The real mean pressure of a fully yielded contact is its hardness, to rounding.
 _ROUNDING = 1e-6
@@ -44,7 +45,8 @@ _GRADES = (GOOD, IN_PART, POOR)
 _OF_STATES = {
     "verdict": ("1", f"verdict on the elastic model: {GOOD}, {IN_PART}, {POOR} or {NOT_ASKED}"),
     "pressure": ("MPa", "real mean pressure sigma_n that is judged"),
-    "reason": ("1", "what decides the verdict"),
+    "reason": ("1", "pressure and slope, that which decides the verdict first"),
+    "decided_by": ("1", f"what a verdict that is not good is from: {SLOPE}, {LOAD} or pressure"),
 }
 #: Limits of the material: unit and long name.
 _OF_MATERIAL = {
@@ -68,8 +70,8 @@ def model_validity(area: xr.Dataset, scaling: xr.Dataset, material: Material) ->
     Returns
     -------
     xr.Dataset
-        ``verdict``, ``pressure`` and ``reason`` over (direction, offset, load), and the
-        :class:`Limits` of the material.
+        ``verdict``, ``pressure``, ``reason`` and ``decided_by`` over (direction, offset, load), and
+        the :class:`Limits` of the material.
     """
     dims = ("direction", "offset", "normal_force")
     finest = scaling["sigma_n"].sel(resolution=scaling["resolution"].min(), drop=True)
@@ -115,24 +117,24 @@ def elastic_model_validity(
     """
     limits = material_limits(material)
     if not np.isfinite(pressure):
-        return Validity(NOT_ASKED, pressure, NO_PRESSURE, limits)
+        return Validity(NOT_ASKED, pressure, NO_PRESSURE, "", limits)
     ends = (limits.good_to * (1 + _ROUNDING), limits.poor_from * (1 + _ROUNDING))
     by_pressure = _graded(pressure, *ends)
-    by_slope = GOOD
+    words = f"sigma_n = {pressure_words(pressure)}, {_place(pressure, by_pressure, limits)}"
+    found = [(by_pressure, "pressure", f"{words} the {limits.words}")]
+    if limits.criterion == HARDNESS and by_pressure == GOOD:
+        share = nominal_pressure / limits.good_to
+        words = f"the load is {percent(share)} of what contacts that crush at "
+        words += f"{pressure_words(limits.good_to)} can carry"
+        found = [(_graded(share, MAX_TOUCHING, FULL), LOAD, words)]
     if np.isfinite(rms_slope):
         by_slope = _graded(rms_slope, SMALL_SLOPE, MODERATE_SLOPE)
-    verdict = max(by_pressure, by_slope, key=_GRADES.index)
-    place = _place(pressure, by_pressure, limits)
-    reason = f"sigma_n = {pressure_words(pressure)}, {place} the {limits.words}"
-    if limits.criterion == HARDNESS:
-        share = nominal_pressure / limits.good_to
-        by_pressure = max(by_pressure, _graded(share, APART, FULL), key=_GRADES.index)
-        verdict = max(by_pressure, by_slope, key=_GRADES.index)
-        reason += f", at which contacts crush; the load is {percent(share)} of the largest possible"
-    if np.isfinite(rms_slope):
         size = "small" if by_slope == GOOD else "steeper than the model assumes"
-        reason += f"; rms slope {rms_slope:.3g}, {size}"
-    return Validity(verdict, pressure, reason, limits)
+        found.append((by_slope, SLOPE, f"rms slope {rms_slope:.3g}, {size}"))
+    found.sort(key=lambda one: -_GRADES.index(one[0]))  # the worst first
+    verdict, by, _ = found[0]
+    reason = "; ".join(words for _, _, words in found)
+    return Validity(verdict, pressure, reason, "" if verdict == GOOD else by, limits)
 
 
 def _graded(value, good_to, poor_from):

@@ -139,22 +139,15 @@ def reference_stiffness(pressure: np.ndarray, stiffness: np.ndarray) -> np.ndarr
 def _add_reference_stiffness(curves: xr.Dataset) -> None:
     """Tangent stiffness of the interface at set nominal pressures, into ``curves``."""
     order, dims = (*_DIMS, "normal_force"), (*_DIMS, "reference_pressure")
-    stiffness, error = (
-        curves[name].where(curves["resolved"]).transpose(*order).values
-        for name in ("interface_stiffness", "interface_stiffness_error")
-    )
+    stiffness = curves["interface_stiffness"].where(curves["resolved"]).transpose(*order).values
     pressure = curves["nominal_pressure"].values
-    value, upper = (
-        np.apply_along_axis(lambda curve: reference_stiffness(pressure, curve), -1, of)
-        for of in (stiffness, stiffness + error)
-    )
+    value = np.apply_along_axis(lambda curve: reference_stiffness(pressure, curve), -1, stiffness)
     table = {
         "reference_stiffness": (dims, "MPa/mm", "tangent stiffness of the interface at a pressure"),
-        "reference_stiffness_error": (dims, "MPa/mm", "error of it, from the states beside it"),
     }
     curves.coords["reference_pressure"] = (
         "reference_pressure",
         np.array(REFERENCE_PRESSURES),
         {"units": "MPa", "long_name": "nominal pressure at which the stiffness is stated"},
     )
-    curves.update(labelled(table, dict(zip(table, (value, upper - value), strict=True))))
+    curves.update(labelled(table, {"reference_stiffness": value}))

@@ -17,8 +17,8 @@ from ..core.datasets import labelled
 from ..core.estimate import Estimate, rows_of
 from ..core.intervals import mean_interval
 from ..core.labels import cf_attrs
-from ..core.limits import JRC_RANGE, LARGEST_FRICTION_ANGLE
-from ..core.settings import Friction, StrengthSettings
+from ..core.limits import JRC_RANGE, LARGEST_FRICTION_ANGLE, MAX_TOUCHING
+from ..core.settings import Friction, Material, StrengthSettings
 from ..core.window import nominal_area, window_sides
 from .joint import rigid_dilatancy, sliding_axis
 from .jrc import profile_roughness
@@ -250,8 +250,9 @@ _QUANTITIES = {
         f"intervals whose angle was truncated at {LARGEST_FRICTION_ANGLE:g} degrees",
     ),
     "truncated_low": ("1", "intervals whose angle was truncated at 0"),
-    "shear_strength_valid": ("1", "angle below its upper bound, so that the strength is a result"),
-    "peak_strength_valid": ("1", "angle of the peak below its upper bound"),
+    "shear_strength_valid": ("1", "the shear strength is a result"),
+    "peak_strength_valid": ("1", "the peak strength is a result"),
+    "peak_strength_reason": ("1", "why the peak strength is no result"),
     "peak_strength": ("MPa", "largest shear strength over the offsets"),
     "peak_offset": ("mm", "offset where it is first reached"),
     "peak_dilatancy_angle": ("degree", "largest dilatancy angle over the offsets"),
@@ -273,6 +274,10 @@ _SOLVED = (
     "peak_strength",
     "peak_dilatancy_angle",
 )
+#: Why a strength by dilatancy is no result.
+TRUNCATED = f"its angle passes the upper bound of {LARGEST_FRICTION_ANGLE:g} degrees"
+FULL = "half of the window touches, so that the faces no longer ride on asperities"
+
 #: Unit and long name of each quantity.
 FIELDS = _QUANTITIES | {
     f"{name}_error": (_QUANTITIES[name][0], f"{_QUANTITIES[name][1]}, {SOLVER_ERROR}")
@@ -284,7 +289,7 @@ def _one_direction(
     dilatancy: xr.Dataset,
     joint: xr.Dataset,
     specimen: xr.Dataset,
-    material: Friction,
+    material: Material,
     direction: str,
     pressure: np.ndarray,
 ) -> xr.Dataset:
@@ -320,14 +325,16 @@ def _one_direction(
     roughness = profile_roughness(specimen, direction)
     side = window_sides(specimen)[sliding_axis(direction)]
     values |= _by_barton(roughness["jrc_used"].item(), material, side, pressure)
-    values |= judged_strengths(values)
+    # Contacts that yield carry their hardness: the pressure says how much of the window touches.
+    full = pressure >= MAX_TOUCHING * material.hardness
+    values |= judged_strengths(values, full)
     table = {name: (_dims(name, of_name), *FIELDS[name]) for name, of_name in values.items()}
     result = roughness.assign(labelled(table, values))
     result["scaled_roughness"].attrs["laboratory_length_mm"] = LABORATORY_LENGTH
     return result
 
 
-def judged_strengths(values: Mapping[str, ArrayLike]) -> dict[str, np.ndarray]:
+def judged_strengths(values: Mapping[str, ArrayLike], full: np.ndarray) -> dict[str, np.ndarray]:
     """Validity of shear and peak strengths, and the peaks over Barton's.
 
     Parameters
@@ -335,6 +342,8 @@ def judged_strengths(values: Mapping[str, ArrayLike]) -> dict[str, np.ndarray]:
     values : mapping of str to array_like
         ``midpoint`` (n,), ``friction_angle`` (n, load), ``peak_strength``, ``peak_offset`` and
         ``barton_strength`` (load,) of one direction.
+    full : (load,) ndarray of bool
+        Where more than :data:`core.limits.MAX_TOUCHING` of the window touches.
     """
     midpoint, angle, peak_offset, peaks, barton = (
         np.asarray(values[name])
@@ -348,9 +357,11 @@ def judged_strengths(values: Mapping[str, ArrayLike]) -> dict[str, np.ndarray]:
     )
     truncated = angle > LARGEST_FRICTION_ANGLE
     at_peak = np.equal.outer(midpoint, peak_offset)
+    cut = (truncated & at_peak).any(axis=0)
     return {
-        "shear_strength_valid": ~truncated,
-        "peak_strength_valid": ~(truncated & at_peak).any(axis=0),
+        "shear_strength_valid": ~truncated & ~full,
+        "peak_strength_valid": ~cut & ~full,
+        "peak_strength_reason": np.where(full, FULL, np.where(cut, TRUNCATED, "")),
         "peak_over_barton": peaks / barton,
     }
 

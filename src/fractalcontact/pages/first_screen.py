@@ -13,8 +13,10 @@ from .words import measured, short, with_unit
 
 #: Nominal pressure that the first numbers are of, MPa; of what is solved under loads, the nearest.
 _PRESSURE = 5.0
-#: Intervals that are far narrower than what is not known, as cards name them, in words.
-_ALONE = {"solver": " solver alone", "states beside the pressure": " reading between loads alone"}
+#: Intervals as cards name them, in words.
+_ALONE = {"solver": " solver alone", "all errors of this surface": " this surface"}
+#: Where a card has the half-width of a number for other surfaces of its kind.
+_KIND = "of_its_population"
 
 
 class Fact(NamedTuple):
@@ -150,4 +152,5 @@ def _fact(title, row, unit, beside=""):
     words = f"{short(size * row['value'])}{shown}"
     alone = _ALONE.get(row.get("interval", ""), "")
     ends = f"[{low}, {high}]{alone}" if low != high else ""
-    return Fact(title, words, "; ".join(filter(None, (ends, beside))))
+    kind = f"± {short(size * row[_KIND], 2)} for its kind" if _KIND in row else ""
+    return Fact(title, words, "; ".join(filter(None, (ends, kind, beside))))

@@ -9,14 +9,15 @@ from dataclasses import dataclass
 
 from ..core.limits import CORRECTED_NODES, NEARLY, RESOLVED_NODES
 from ..core.subject import Subject
-from ..core.validity import Validity
+from ..core.validity import SLOPE, Validity
 from ..core.verdicts import GOOD, HARDNESS, IN_PART, NOT_ASKED, POOR, STRENGTH, USUAL
 from .words import with_unit
 
 #: What would make lights better.
 FINER_SCAN = "heights as measured, without the instrument's filter, or a scan finer than its noise"
 MARKS = "faces scanned with common marks; 'outliers: fill' where spikes or deep overlaps carry load"
-LIGHTER = "lighter loads where the window is nearly full; quote the rms slope beside a stiffness"
+LIGHTER = "lighter loads, under which less of the window touches"
+STEEP = "nothing in this study: state the rms slope beside every number"
 CRUSH = "contacts that crush: 'hardness' in the material, such as the joint wall strength"
 STATE = "'joint_wall_strength' of the rock in its material, at which contacts then crush"
 
@@ -114,19 +115,27 @@ def _nodes(subject):
 
 
 def _grid(subject):
-    """Numerical error of the closure beside the accuracy that the study requests."""
+    """Error of the closure beside the accuracy that the study requests.
+
+    Of the closure from the seat, which is published first; from first touch where there is none.
+    """
     key, title = "grid", "Converged in the grid"
     asked = float(subject["choices"]["closure_accuracy"])
-    here = subject.state("error_budget").sel(quantity="closure")
+    budget = subject.state("error_budget")
+    seated = float(subject.state("closure")["seated_closure"])
+    start = "the seat" if seated > 0 else "first touch"
+    here = budget.sel(quantity="separation" if seated > 0 else "closure")
     error = float(here["relative_error"].sel(source="numerical"))
+    if seated > 0:
+        error = float(budget["seated_closure_total"]) / seated
     if math.isnan(error):
         why = str(here["reason"].sel(source="numerical").item()) or "no finer grid was solved"
         return Light(key, title, NOT_ASKED, why)
     word = GOOD if error <= asked else IN_PART if error <= NEARLY else POOR
     reason = (
-        f"{'the grid is too coarse: ' if word == POOR else ''}closure under the reference load is "
-        f"uncertain by {100 * error:.2g} % ({100 * asked:.2g} % requested, usable up to "
-        f"{100 * NEARLY:.0f} %)"
+        f"{'the grid is too coarse: ' if word == POOR else ''}closure from {start} under the "
+        f"reference load is uncertain by {100 * error:.2g} % ({100 * asked:.2g} % requested, "
+        f"usable up to {100 * NEARLY:.0f} %)"
     )
     helps = "" if word == GOOD else _finer(subject, error / asked, float(here["observed_order"]))
     return Light(key, title, word, reason, helps)
@@ -143,9 +152,8 @@ def _finer(subject, excess, order):
 def _model(subject):
     found = validity_at(subject, subject.reported.reference)
     reason = f"{found.reason}, under the reference load"
-    helps = ""
-    if found.verdict in (IN_PART, POOR):
-        helps = {HARDNESS: LIGHTER, STRENGTH: CRUSH, USUAL: STATE}[found.limits.criterion]
+    by_pressure = {HARDNESS: LIGHTER, STRENGTH: CRUSH, USUAL: STATE}[found.limits.criterion]
+    helps = {"": "", SLOPE: STEEP}.get(found.decided_by, by_pressure)
     return Light("model", "Validity of the model", found.verdict, reason, helps)
 
 
@@ -164,11 +172,13 @@ def trust_of(lights: Sequence[Light]) -> tuple[str, str, str]:
     -------
     word, reason, help : str
         "low", "limited" or "good"; the reasons of the lights of that word, and what would help of
-        all that are not good.
+        these. Both begin with the model, which no better scan mends.
     """
     worst = next((word for word in _TRUST if any(one.word == word for one in lights)), GOOD)
-    reasons = [f"{one.title.lower()}: {one.reason}" for one in lights if one.word == worst]
-    helps = dict.fromkeys(one.help for one in lights if one.help)
+    of_worst = [one for one in lights if one.word == worst]
+    deciding = sorted(of_worst, key=lambda one: one.key != "model")
+    reasons = [f"{one.title.lower()}: {one.reason}" for one in deciding]
+    helps = [f"{one.title.lower()}: {one.help}" for one in deciding if one.help]
     if worst == GOOD:
         reasons = ["every light that applies is good"]
     return _TRUST[worst], "; ".join(reasons), "; ".join(helps)

@@ -208,7 +208,7 @@ class Specimen:
     v_m: Estimate
     chi: Estimate
     seat: float
-    stiffness: dict[float, tuple[float, float]]
+    stiffness: dict[float, tuple[float, float, float]]
     doubled: Doubled
     closure_law: str
     dilatancy: Dilatancy
@@ -256,7 +256,7 @@ def summarised(subject: Subject, common: Sequence[CommonLoad] = ()) -> Specimen:
         v_m=Estimate.read(curve, "seated_v_m"),
         chi=Estimate.read(curve, "seated_chi"),
         seat=float(curve["seating_pressure"]),
-        stiffness=_stated_stiffness(curve),
+        stiffness=_stated_stiffness(subject),
         doubled=doubled_spacing(subject),
         closure_law=str(curve["closure_law"].item()),
         dilatancy=dilatancy_of(subject),
@@ -274,11 +274,13 @@ def _initial_stiffness(curve):
     return Judged(*found.ends, reason=reason, says=bool(says))
 
 
-def _stated_stiffness(curve):
-    """Tangent stiffness and its error by nominal pressure, MPa/mm; NaN if unknown."""
-    stated, error = curve["reference_stiffness"], curve["reference_stiffness_error"]
-    pairs = zip(stated.values.tolist(), error.values.tolist(), strict=True)
-    return dict(zip(stated["reference_pressure"].values.tolist(), pairs, strict=True))
+def _stated_stiffness(subject):
+    """Tangent stiffness and its two errors by nominal pressure, MPa/mm; NaN if unknown."""
+    stated = subject.states("closure")["reference_stiffness"]
+    budget = subject["error_budget"]
+    errors = [budget[f"reference_stiffness_{total}"].values.tolist() for total in TOTALS.values()]
+    numbers = zip(stated.values.tolist(), *errors, strict=True)
+    return dict(zip(stated["reference_pressure"].values.tolist(), numbers, strict=True))
 
 
 def _at_load(subject, curve, number):
@@ -405,8 +407,8 @@ def _of_specimen(one):
         "seating_pressure_MPa": one.seat,
         **{
             f"stiffness_at_{pressure:g}_MPa_{of}MPa_per_mm": number
-            for pressure, pair in one.stiffness.items()
-            for of, number in zip(("", "error_"), pair, strict=True)
+            for pressure, numbers in one.stiffness.items()
+            for of, number in zip(("", *(f"error_{of}_" for of in TOTALS)), numbers, strict=True)
         },
         **_columns("k_ni_MPa_per_mm", one.k_ni),
         **_columns("v_m_mm", one.v_m),

@@ -37,7 +37,7 @@ _SUMMARY: dict[str, tuple[str, dict[str, Any]]] = {
 
 
 def draw_summary(panel: Panel, strength: xr.Dataset) -> None:
-    """Strengths by every law over sigma_0; hollow where the angle is truncated."""
+    """Strengths by every law over sigma_0; hollow where it is no result."""
     axes = panel.axes
     axes.set_xlabel(r"nominal pressure $\sigma_0$ (MPa)")
     axes.set_ylabel(r"shear strength $\tau$ (MPa)")
@@ -55,7 +55,7 @@ def draw_summary(panel: Panel, strength: xr.Dataset) -> None:
             label = None if truncated.all() else words
             draw_points(axes, sigma, known[name], ~truncated, label=label, **style)
             if truncated.any():
-                hollow_entry(axes, f"{words}: truncated, excluded", **style)
+                hollow_entry(axes, f"{words}: excluded", **style)
     bars = Estimate.read(strength, "residual_strength").ends
     draw_bars(axes, sigma, *bars, _SUMMARY["residual_strength"][1]["color"])
     axes.set(xscale="log")

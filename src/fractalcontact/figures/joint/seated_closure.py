@@ -24,7 +24,7 @@ from ._permanent_set import draw_permanent_set
 
 TITLE = "Closure from the seat, its laws, and tangent stiffness"
 SUBJECT = "specimen"
-NEEDS = ("specimens", "closure", "branches")
+NEEDS = ("specimens", "closure", "branches", "error_budget")
 ORDER = 45
 
 RELOAD, REFERENCE = "reload", "reference_pressure"
@@ -77,7 +77,8 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     sides = window_sides(subject["specimens"])
     below = draw_permanent_set(parts[1], branches, sides) if crushed else []
     table = table_of(a, b, *below)
-    return Drawing(figure, table, caption(__name__, **_words(curve, seat, again)))
+    total = subject["error_budget"]["reference_stiffness_total"]
+    return Drawing(figure, table, caption(__name__, **_words(curve, seat, again, total)))
 
 
 def _draw_laws(axes: Axes, curve: xr.Dataset) -> None:
@@ -120,10 +121,12 @@ def _draw_stiffness(panel: Panel, curve: xr.Dataset, style: dict[str, Any]) -> N
     axes.set_ylabel(r"$\mathrm{d}\sigma_0/\mathrm{d}w_\mathrm{int}$ (MPa/mm)")
 
 
-def _words(curve: xr.Dataset, seat: float, again: xr.Dataset) -> dict[str, Any]:
+def _words(
+    curve: xr.Dataset, seat: float, again: xr.Dataset, total: xr.DataArray
+) -> dict[str, Any]:
     """Values of the caption."""
     stiffness = curve["reference_stiffness"]
-    errors = curve["reference_stiffness_error"].where(np.isfinite(stiffness), drop=True)
+    errors = total.where(np.isfinite(stiffness), drop=True)
     known = stiffness[np.isfinite(stiffness)]
     on_reload = again["reference_stiffness"].sel(branch=RELOAD)
     middle = on_reload["reference_pressure"].values[len(on_reload) // 2]

@@ -26,7 +26,7 @@ ORDER = 110
 
 _OFFSET = "offset $v$, middle of the interval (mm)"
 #: Of strengths whose friction angle was truncated.
-_NO_RESULT = f"truncated at {LARGEST_FRICTION_ANGLE:g}°, excluded"
+_NO_RESULT = f"truncated at {LARGEST_FRICTION_ANGLE:g}°, or half of the window touches: excluded"
 #: Of curves over the offset: hollow points stand above the lines of the other pressures.
 _CURVES = {
     "hue": "normal_force",

@@ -1,0 +1,75 @@
+"""Errors of what is read from quantities of the budget: closure from the seat, stated stiffness."""
+
+import numpy as np
+import xarray as xr
+
+from ..core.datasets import labelled
+from .refinement import LoadCurve
+
+_AT = ("reference_pressure",)
+_TABLE = {
+    "seated_closure_total": (
+        ("normal_force",),
+        "mm",
+        "error of the closure from the seat as a property of this surface, half-width at 95 %",
+    ),
+    "reference_stiffness_total": (
+        _AT,
+        "MPa/mm",
+        "error of the stiffness at a pressure as a property of this surface, half-width at 95 %",
+    ),
+    "reference_stiffness_total_of_population": (
+        _AT,
+        "MPa/mm",
+        "error of it as that of the surface the window is cut from, half-width at 95 %",
+    ),
+}
+
+
+def with_derived(budget: xr.Dataset, curve: LoadCurve) -> xr.Dataset:
+    """The budget, with the errors of what is read from its quantities.
+
+    Parameters
+    ----------
+    budget : xr.Dataset
+        Of one load curve.
+    curve : LoadCurve
+
+    Returns
+    -------
+    xr.Dataset
+        With the variables of :data:`_TABLE`; NaN where an error is not known.
+
+    Notes
+    -----
+    Closure from the seat is the difference of two separations, less the settlement of the blocks,
+    which is exact: its error is the root sum of squares of theirs. First touch, which decides the
+    error of the closure from there, is in neither. The stiffness at a pressure has the relative
+    error of the states beside it.
+    """
+    states = curve.curve
+    separation = budget["total"].sel(quantity="separation").values
+    seat = float(states["seating_pressure"]) * curve.loading.area
+    at_seat = np.nan
+    if np.isfinite(seat):
+        at_seat = separation[np.argmin(np.abs(curve.forces - seat))]
+    seated = np.isfinite(states["seated_closure"].values)
+    stiffness = states["reference_stiffness"].values
+    totals = [
+        _fraction_at(states, budget[name].sel(quantity="stiffness")) * stiffness
+        for name in ("relative_total", "relative_total_of_population")
+    ]
+    found = [np.where(seated, np.hypot(separation, at_seat), np.nan), *totals]
+    coords = {"reference_pressure": states["reference_pressure"]}
+    table = labelled(_TABLE, dict(zip(_TABLE, found, strict=True)))
+    return budget.assign_coords(coords).assign(table)
+
+
+def _fraction_at(states, fraction):
+    """Relative error at the reference pressures, its logarithm straight between loads."""
+    known = np.isfinite(fraction.values) & (fraction.values > 0)
+    pressures = states["reference_pressure"].values
+    if not known.any():
+        return np.full(len(pressures), np.nan)
+    at = np.log(states["nominal_pressure"].values[known])
+    return np.exp(np.interp(np.log(pressures), at, np.log(fraction.values[known])))
