@@ -18,6 +18,8 @@ from .methods import methods_of, references_of
 
 #: Version of the form of a card; a change of ``card.schema.json`` that breaks readers raises it.
 FORM = 1
+#: Errors below this fraction of their quantity are rounding.
+_ROUNDING = 1e-9
 #: Of numbers and sentences of a card.
 LICENCE = "CC0-1.0"
 #: Stages that a card reads, those that a specimen has.
@@ -123,7 +125,11 @@ def errors_of(subject: Subject) -> list[dict[str, Any]]:
             "value": rounded(one.value),
             "of_this_surface": rounded(one.errors["surface"]),
             "of_its_population": rounded(one.errors["population"]),
-            "sources": {of: rounded(error) for of, error in one.sources.items() if error >= 0},
+            "sources": {
+                of: rounded(error if error > _ROUNDING * abs(one.value) else 0.0)
+                for of, error in one.sources.items()
+                if error >= 0
+            },
         }
         for one in quantities_at(subject, reference).values()
     ]

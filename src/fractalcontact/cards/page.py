@@ -8,8 +8,11 @@ from ..pages.captions import symbols
 from ..pages.first_screen import row_at
 from ..pages.words import MISSING, measured, percent, short, with_unit
 
-#: Sections whose curves over pressure share a table.
-_AGAINST_PRESSURE = ("contact", "aperture", "strength")
+#: Tables of curves over pressure, by title: the sections that share one.
+_AGAINST_PRESSURE = {
+    "Closure, contact and aperture": ("contact", "aperture"),
+    "Shear strength": ("strength",),
+}
 #: Heads of its columns, and signs of units there.
 _HEADS = {
     "seated_closure": "closure from the seat",
@@ -36,20 +39,11 @@ def page_of(card: Mapping[str, Any]) -> dict[str, Any]:
     """
     entries = card["entries"]
     printed = {key: one for key, one in entries.items() if one.get("print", True)}
-    curves = {
-        key: one
-        for key, one in printed.items()
-        if one["section"] in _AGAINST_PRESSURE and has_values(one)
-    }
     stiffness = [entries[key] for key in ("tangent_stiffness", "reload_stiffness")]
     return {
         "card": card,
         "stiffness": over_pressure(stiffness),
-        "columns": [
-            (_HEADS.get(key, one["title"]), _UNITS.get(one["unit"], one["unit"]))
-            for key, one in curves.items()
-        ],
-        "rows": over_pressure(list(curves.values())),
+        "tables": list(_tables(printed)),
         "jrc": jrc_table(entries["jrc"], entries["jrc_by_fit"]),
         # An elastic joint has no hardness to state.
         "missing": missing_of({key: one for key, one in printed.items() if key != "hardness"}),
@@ -61,6 +55,19 @@ def page_of(card: Mapping[str, Any]) -> dict[str, Any]:
         "with_unit": with_unit,
         "symbols": symbols,
     }
+
+
+def _tables(printed):
+    """Title, heads with units and rows of the tables over pressure that have any number."""
+    for title, sections in _AGAINST_PRESSURE.items():
+        curves = {
+            _HEADS.get(key, one["title"]): one
+            for key, one in printed.items()
+            if one["section"] in sections and has_values(one)
+        }
+        heads = [(head, _UNITS.get(one["unit"], one["unit"])) for head, one in curves.items()]
+        if curves:
+            yield title, heads, over_pressure(list(curves.values()))
 
 
 def has_values(entry: Mapping[str, Any]) -> bool:

@@ -44,22 +44,21 @@ def with_derived(budget: xr.Dataset, curve: LoadCurve) -> xr.Dataset:
     -----
     Closure from the seat is the difference of two separations, less the settlement of the blocks,
     which is exact: its error is the root sum of squares of theirs. First touch, which decides the
-    error of the closure from there, is in neither. The stiffness at a pressure has the relative
-    error of the states beside it.
+    error of the closure from there, is in neither. At the seat it is 0 by definition. The stiffness
+    at a pressure has the relative error of the states beside it.
     """
     states = curve.curve
     separation = budget["total"].sel(quantity="separation").values
-    seat = float(states["seating_pressure"]) * curve.loading.area
-    at_seat = np.nan
-    if np.isfinite(seat):
-        at_seat = separation[np.argmin(np.abs(curve.forces - seat))]
-    seated = np.isfinite(states["seated_closure"].values)
+    seated = states["seated_closure"].values
+    seat = seated == 0
+    at_seat = separation[seat][0] if seat.any() else np.nan
+    of_both = np.where(seat, 0.0, np.hypot(separation, at_seat))
     stiffness = states["reference_stiffness"].values
     totals = [
         _fraction_at(states, budget[name].sel(quantity="stiffness")) * stiffness
         for name in ("relative_total", "relative_total_of_population")
     ]
-    found = [np.where(seated, np.hypot(separation, at_seat), np.nan), *totals]
+    found = [np.where(np.isfinite(seated), of_both, np.nan), *totals]
     coords = {"reference_pressure": states["reference_pressure"]}
     table = labelled(_TABLE, dict(zip(_TABLE, found, strict=True)))
     return budget.assign_coords(coords).assign(table)

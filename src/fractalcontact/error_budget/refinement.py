@@ -135,14 +135,16 @@ def refined_loads(curve: LoadCurve, settings: ContactSettings, *, all_states: bo
     Returns
     -------
     (n,) int ndarray
-        Indices of its forces, ascending; none where the grid is too large or the faces are flush.
+        Indices of its forces, ascending, with that of the seat; none where the grid is too large or
+        the faces are flush.
     """
     too_many = FACTORS[1] ** 2 * curve.composite.size > MAX_CELLS_HALF
     if np.ptp(curve.composite) == 0 or too_many:
         return np.empty(0, int)
     if all_states:
         return np.flatnonzero(_solved_loads(curve))
-    return chosen_loads(curve, settings.drawn_loads)
+    at_seat = np.flatnonzero(curve.curve["seated_closure"].values == 0)[:1]
+    return np.union1d(chosen_loads(curve, settings.drawn_loads), at_seat)
 
 
 def chosen_loads(curve: LoadCurve, named: Sequence[Load]) -> np.ndarray:

@@ -152,5 +152,5 @@ def _fact(title, row, unit, beside=""):
     words = f"{short(size * row['value'])}{shown}"
     alone = _ALONE.get(row.get("interval", ""), "")
     ends = f"[{low}, {high}]{alone}" if low != high else ""
-    kind = f"± {short(size * row[_KIND], 2)} for its kind" if _KIND in row else ""
+    kind = f"± {short(size * row[_KIND], 2)} for the whole joint" if _KIND in row else ""
     return Fact(title, words, "; ".join(filter(None, (ends, kind, beside))))

@@ -17,7 +17,7 @@ from .words import with_unit
 FINER_SCAN = "heights as measured, without the instrument's filter, or a scan finer than its noise"
 MARKS = "faces scanned with common marks; 'outliers: fill' where spikes or deep overlaps carry load"
 LIGHTER = "lighter loads, under which less of the window touches"
-STEEP = "nothing in this study: state the rms slope beside every number"
+STEEP = "no scan makes it less steep: state the rms slope beside every number"
 CRUSH = "contacts that crush: 'hardness' in the material, such as the joint wall strength"
 STATE = "'joint_wall_strength' of the rock in its material, at which contacts then crush"
 
@@ -133,9 +133,8 @@ def _grid(subject):
         return Light(key, title, NOT_ASKED, why)
     word = GOOD if error <= asked else IN_PART if error <= NEARLY else POOR
     reason = (
-        f"{'the grid is too coarse: ' if word == POOR else ''}closure from {start} under the "
-        f"reference load is uncertain by {100 * error:.2g} % ({100 * asked:.2g} % requested, "
-        f"usable up to {100 * NEARLY:.0f} %)"
+        f"closure from {start} under the reference load is uncertain by {100 * error:.2g} % "
+        f"({100 * asked:.2g} % requested, usable up to {100 * NEARLY:.0f} %)"
     )
     helps = "" if word == GOOD else _finer(subject, error / asked, float(here["observed_order"]))
     return Light(key, title, word, reason, helps)
@@ -162,7 +161,7 @@ _TRUST = {POOR: "low", IN_PART: "limited", GOOD: "good"}
 
 
 def trust_of(lights: Sequence[Light]) -> tuple[str, str, str]:
-    """Trust in a specimen by its worst light, the reason for it, and what would help.
+    """Trust in a specimen by its worst light, why, and what would help.
 
     Parameters
     ----------
@@ -171,14 +170,17 @@ def trust_of(lights: Sequence[Light]) -> tuple[str, str, str]:
     Returns
     -------
     word, reason, help : str
-        "low", "limited" or "good"; the reasons of the lights of that word, and what would help of
-        these. Both begin with the model, which no better scan mends.
+        "low", "limited" or "good"; the reason of the first light of that word, the model's before
+        others, and which others there are; what would help of all these, what mends none last.
     """
     worst = next((word for word in _TRUST if any(one.word == word for one in lights)), GOOD)
     of_worst = [one for one in lights if one.word == worst]
     deciding = sorted(of_worst, key=lambda one: one.key != "model")
-    reasons = [f"{one.title.lower()}: {one.reason}" for one in deciding]
-    helps = [f"{one.title.lower()}: {one.help}" for one in deciding if one.help]
     if worst == GOOD:
-        reasons = ["every light that applies is good"]
-    return _TRUST[worst], "; ".join(reasons), "; ".join(helps)
+        return _TRUST[GOOD], "every light that applies is good", ""
+    first, *others = deciding
+    reason = f"{first.title}: {first.reason}"
+    if others:
+        reason += f". No better: {', '.join(one.key for one in others)}"
+    helped = sorted((one for one in deciding if one.help), key=lambda one: one.help == STEEP)
+    return _TRUST[worst], reason, "; ".join(f"{one.help} ({one.key})" for one in helped)
