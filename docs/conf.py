@@ -6,11 +6,12 @@ project = "fractalcontact"
 author = "The fractalcontact founders"
 version = release = fractalcontact.__version__
 
-extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon"]
+extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx.ext.mathjax"]
 source_suffix = {".md": "markdown"}
 exclude_patterns = ["_build"]
 # So that links to a heading are checked as those to a page are.
 myst_heading_anchors = 3
+myst_enable_extensions = ["dollarmath"]
 autodoc_member_order = "bysource"
 autodoc_typehints = "none"  # the docstrings state types, with shapes and units
 napoleon_use_rtype = False

@@ -44,7 +44,9 @@ def test_the_solver_agrees_with_elimination(tmp_path):
 
 
 def test_the_scan_format_reads_what_its_writer_writes(tmp_path):
-    module = run_code("docs/extending.md", "A scan format", package="fractalcontact.scan.readers")
+    module = run_code(
+        "docs/extending_stages.md", "A scan format", package="fractalcontact.scan.readers"
+    )
     heights = self_affine((12, 18), 0.1, 0.7, rms=0.1, seed=1)
     heights[3, 5] = np.nan
     said = module["_write_surfer"](tmp_path / "face.grd", heights, 0.1, 0.2)
@@ -55,7 +57,9 @@ def test_the_scan_format_reads_what_its_writer_writes(tmp_path):
 
 def test_the_stage_counts_summits():
     names = {"Stage": Stage, "SPECIMEN": SPECIMEN}
-    module = run_code("docs/extending.md", "A stage", package="fractalcontact.mechanics", **names)
+    module = run_code(
+        "docs/extending_stages.md", "A stage", package="fractalcontact.mechanics", **names
+    )
     y, x = np.meshgrid(*[np.linspace(0, 1, 41)] * 2, indexing="ij")
 
     def hills(*tops):

@@ -18,7 +18,10 @@ HOURS = "takes hours"
 NOT_RUN = {
     ("README.md", "make            # environment"): INSTALLS,
     ("README.md", "label: granite"): "a sidecar: read in tests/test_documents.py",
-    ("docs/solver.md", ".venv/bin/python benchmarks/beside_peers.py"): f"{HOURS}, beside others",
+    (
+        "docs/solver_speed.md",
+        ".venv/bin/python benchmarks/beside_peers.py",
+    ): f"{HOURS}, beside others",
     (
         "docs/card.md",
         "python -m fractalcontact.commands.export_constants",
@@ -34,7 +37,10 @@ NOT_RUN = {
         "docs/extending.md",
         "stiffness:",
     ): "a caption: tests/figures/test_atlas_examples.py",
-    ("docs/extending.md", "rule summits:"): "a rule: run in tests/workflow/test_added_stage.py",
+    (
+        "docs/extending_stages.md",
+        "rule summits:",
+    ): "a rule: run in tests/workflow/test_added_stage.py",
     ("docs/first_hour.md", "make new"): BY_CI,
     ("docs/first_hour.md", "kind: face"): "a sidecar: read in tests/test_documents.py",
     ("docs/first_hour.md", "make check-scans"): BY_CI,
@@ -44,15 +50,17 @@ NOT_RUN = {
     ): "the study of make new: tests/commands/test_new_study.py",
     ("docs/gallery.md", ".venv/bin/python docs/gallery/"): "scripts: run by tests of the gallery",
     ("docs/size_effect.md", "make STUDY=config/size_effect.yaml"): HOURS,
-    ("docs/solver.md", "0 <= p <= H;"): "mathematics",
     ("docs/verification.md", "make grid-table"): BY_CI,
     ("docs/solver.md", "p, u, w <- a start"): "pseudo-code",
-    ("docs/solver.md", "python benchmarks/solver_gains.py"): "takes minutes of a quiet machine",
     (
-        "docs/solver.md",
+        "docs/solver_parts.md",
+        "python benchmarks/solver_gains.py",
+    ): "takes minutes of a quiet machine",
+    (
+        "docs/solver_speed.md",
         "OMP_NUM_THREADS=1 python benchmarks/capped.py",
     ): "takes minutes of a quiet machine",
-    ("docs/solver.md", "OMP_NUM_THREADS=1 make bench"): f"{HOURS}, installs other programs",
+    ("docs/solver_speed.md", "OMP_NUM_THREADS=1 make bench"): f"{HOURS}, installs other programs",
 }
 
 

@@ -1,4 +1,4 @@
-"""A stage that is added as docs/extending.md says is made by the workflow, and by it alone."""
+"""A stage added as in docs/extending_stages.md is made by the workflow, and by it alone."""
 
 import pytest
 import xarray as xr
@@ -11,7 +11,7 @@ pytestmark = [pytest.mark.workflow, pytest.mark.full]
 
 def test_the_stage_of_the_recipe_is_made(project):
     entry, module, rule = (
-        block.text for block in blocks("docs/extending.md") if block.heading == "A stage"
+        block.text for block in blocks("docs/extending_stages.md") if block.heading == "A stage"
     )
     package = project / "src/fractalcontact"
     table = package / "study/stages.py"
