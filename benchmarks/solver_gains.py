@@ -8,8 +8,9 @@ Every problem is solved by the whole solver and once without each of its parts, 
 docs/solver_parts.md describes. All solves are to the same tolerance under a given closure: cold, or
 as the last step of a load sweep. Counted are applications of the elastic operator, on the grid
 itself, and on coarser grids as fractions of one there by area. They are exact; seconds are the
-median of the runs, and mean little where anything else runs on the machine. The table replaces that of the last run in
-``--output``. As many threads are used as OMP_NUM_THREADS says, or as there are cores.
+median of the runs, and mean little where anything else runs on the machine. The table replaces
+that of the last run in ``--output``. As many threads are used as OMP_NUM_THREADS says, or as there
+are cores.
 
 Problems of one hard kind, forces just below what a window carries at its hardness, are also solved
 without the closure of a projected step, without safeguards against cycling, and without either: how
