@@ -176,16 +176,20 @@ def test_errors_cover_a_solve_at_an_eighth_of_the_spacing(one):
     finer = subgrid(composite, 8)
     sides = (SPACING / 8, SPACING / 8)
     space = HalfSpace(finer.shape, sides, loading.settings.material.e_star)
-    within, separation = [], []
+    within, separation, gap = [], [], []
     for force in budget["normal_force"].values:
         state = solve_contact(finer, space, force=force, rtol=1e-5)
         for name, true in state_quantities(state, float(finer.max())).items():
             here = budget.sel(normal_force=force, quantity=name)
             within.append(abs(true - float(here["published"])) <= float(here["total"]))
             separation += [true] if name == "separation" else []
+        gap.append(state.gap.mean())
     assert np.mean(within) >= 0.75
     # Closure from the seat, to whose error first touch adds nothing.
     curve = curves.sel(direction="E", resolution=1).isel(offset=1)
+    # The mean gap, which is as wide as the mean planes are apart.
+    of_surface = budget["total"].sel(quantity="separation").values
+    assert np.mean(abs(gap - curve["mean_gap"].values) <= of_surface) >= 0.75
     settled = (curve["closure"] - curve["interface_closure"]).values
     seat = np.flatnonzero(curve["seated_closure"].values == 0)[0]
     fallen = -np.array(separation) - settled
