@@ -135,7 +135,7 @@ def _unit_key(before: str) -> str:
     return "unit_z" if up else "unit_xy"
 
 
-def drafted_options(options: ScanOptions, hints: Hints, arrays: Sequence[str] = ()) -> ScanOptions:
+def drafted_options(options: ScanOptions, hints: Hints) -> ScanOptions:
     """Options that the sidecar states, completed by what the file seems to say."""
     changes: dict[str, Any] = {}
     for key, suggestion in hints.keys.items():

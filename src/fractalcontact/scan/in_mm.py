@@ -10,10 +10,18 @@ from ..core.errors import InputError
 from ..core.file_names import split_file_name
 from ..core.units import length_factor
 from ..gridding.measured import NOTE, Measured, warnings_of
+from ..gridding.plausible import check_spacing
 from ..gridding.points import single_precision_note
 from .draft import draft_line
-from .options import MATRIX_KEYS, NO_MARK, POINT_KEYS, ScanOptions, length_mm, spacing_mm
-from .plausible import check_spacing
+from .options import (
+    MATRIX_KEYS,
+    NO_MARK,
+    POINT_KEYS,
+    ScanOptions,
+    has_own_units,
+    length_mm,
+    spacing_mm,
+)
 from .raw import IncompleteSidecar, RawScan
 from .undeclared import refuse_or_warn
 
@@ -67,7 +75,7 @@ def in_mm(file: ScanFile, options: ScanOptions, *, are_heights: bool = True) -> 
         if note := single_precision_note(raw.values):
             notes.append(note)
         assert unit_xy is not None  # points were required to have one
-        values = _own(raw.values)
+        values = np.require(raw.values, requirements="W")  # nobody else has them: changed in place
         values[:, 2] = heights
         values[:, :2] *= length_factor(unit_xy, f"{path}: unit_xy")
         spacing = None
@@ -87,11 +95,6 @@ def in_mm(file: ScanFile, options: ScanOptions, *, are_heights: bool = True) -> 
         "overrides": "; ".join(overrides),
     }
     return Measured(path, raw.layout, values, spacing, grid, provenance, raw.triangles, size)
-
-
-def _own(values: np.ndarray) -> np.ndarray:
-    """Numbers that were read, to be changed in place: nobody else has them."""
-    return values if values.flags.writeable else values.copy()
 
 
 def _refuse_enormous(values: np.ndarray, path: Path) -> None:
@@ -173,7 +176,7 @@ def _require_units(raw: RawScan, options: ScanOptions, unit_xy, unit_z, path: Pa
     stated_spacing = options.spacing if options.spacing is not None else raw.spacing
     lacks_spacing = raw.layout == "matrix" and stated_spacing is None
     needs_unit_xy = raw.layout != "matrix" or (
-        not lacks_spacing and not _has_units_of_its_own(options.spacing)
+        not lacks_spacing and not has_own_units(options.spacing)
     )
     lacks_unit = unit_z is None or (needs_unit_xy and unit_xy is None)
     if not (lacks_unit or lacks_spacing):
@@ -198,12 +201,6 @@ def _lacking_unit(unit_xy, unit_z, needs_unit_xy: bool) -> tuple[str, str]:
     if unit_z is not None and needs_unit_xy:
         return "unit of x and y", draft_line("unit_xy", None)
     return "unit", draft_line("unit", None)
-
-
-def _has_units_of_its_own(spacing) -> bool:
-    """True if a spacing, or each of a pair, is a text such as "0.1 mm"."""
-    pair = spacing if isinstance(spacing, tuple) else (spacing,)
-    return all(isinstance(step, str) for step in pair)
 
 
 def _choose_spacing(raw, options, unit_xy, path: Path, overrides: list) -> tuple[float, float]:

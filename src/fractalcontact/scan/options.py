@@ -57,19 +57,28 @@ class ScanOptions:
         return self.missing if isinstance(self.missing, tuple) else (self.missing,)
 
 
-#: What a file holds, by the key `kind`; the last three hold no face of a joint.
 CONTACT_MAP = "contact-map"
-KINDS = ("face", CONTACT_MAP, "aperture", "profile")
 #: Keys that say how the numbers of a text are written.
 WRITING_KEYS = ("delimiter", "decimal", "thousands", "header")
 #: What parts the numbers of a line, by the key `delimiter`; a blank is white space of any length.
 DELIMITERS = {"comma": ",", "semicolon": ";", "tab": "\t", "blank": " "}
-#: Which of the first row and column of a matrix hold coordinates or counts instead of heights.
-AXES = ("none", "both", "row", "column")
+#: Values of keys that have a few. Of `kind` the last three are no face of a joint, `axes` says
+#: which of the first row and column of a matrix hold coordinates or counts, `registration` how the
+#: upper face may be brought to the lower one.
+CHOICES = {
+    "kind": ("face", CONTACT_MAP, "aperture", "profile"),
+    "delimiter": tuple(DELIMITERS),
+    "decimal": (".", ","),
+    "thousands": (".", ",", "'"),
+    "layout": ("matrix", "points"),
+    "axes": ("none", "both", "row", "column"),
+    "first_row": ("bottom", "top"),
+    "heights": ("up", "down"),
+    "registration": ("rigid", "translation", "none"),
+    "mirror_upper": ("x", "y"),
+}
 #: What the key `missing` says where every number is a height, however it looks.
 NO_MARK = "none"
-#: How the upper face of a pair may be brought to the lower one.
-REGISTRATIONS = ("rigid", "translation", "none")
 #: Keys that say how two faces lie to each other.
 PAIR_KEYS = ("registration", "mirror_upper")
 #: Keys that hold what is stated of one face alone.
@@ -106,17 +115,10 @@ def parse_options(options: Mapping | None, where: str) -> ScanOptions:
         if (unit := options.get(key)) is not None:
             _require(isinstance(unit, str), where, key, unit, "a unit of length, such as 'mm'")
             length_factor(unit, f"{where}: {key}")
-    _one_of(options, "kind", KINDS, where)
-    _one_of(options, "delimiter", tuple(DELIMITERS), where)
-    _one_of(options, "decimal", (".", ","), where)
-    _one_of(options, "thousands", (".", ",", "'"), where)
-    _one_of(options, "layout", ("matrix", "points"), where)
-    _one_of(options, "axes", AXES, where)
-    _one_of(options, "first_row", ("bottom", "top"), where)
-    _one_of(options, "heights", ("up", "down"), where)
+    for key, allowed in CHOICES.items():
+        value = options.get(key)
+        _require(value is None or value in allowed, where, key, value, " or ".join(allowed))
     _check_text_keys(options, where)
-    _one_of(options, "registration", REGISTRATIONS, where)
-    _one_of(options, "mirror_upper", ("x", "y"), where)
     if (variable := options.get("variable")) is not None:
         _require(isinstance(variable, str), where, "variable", variable, "the name of an array")
     if (missing := options.get("missing")) is not None:
@@ -236,6 +238,12 @@ def spacing_mm(spacing: Any, unit_xy: str | None, where: str) -> tuple[float, fl
     return dx, dy
 
 
+def has_own_units(spacing: Any) -> bool:
+    """True if a spacing, or each of a pair, is a text such as "0.1 mm"."""
+    pair = spacing if isinstance(spacing, tuple) else (spacing,)
+    return all(isinstance(step, str) for step in pair)
+
+
 def _columns(columns, where: str) -> tuple:
     valid = (
         isinstance(columns, list | tuple)
@@ -244,11 +252,6 @@ def _columns(columns, where: str) -> tuple:
     )
     _require(valid, where, "columns", columns, "three names or numbers from 0: [x, y, z]")
     return tuple(columns)
-
-
-def _one_of(options: dict, key: str, allowed: tuple, where: str) -> None:
-    value = options.get(key)
-    _require(value is None or value in allowed, where, key, value, " or ".join(allowed))
 
 
 def _is_number(value) -> bool:

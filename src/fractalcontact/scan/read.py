@@ -7,9 +7,9 @@ import numpy as np
 import xarray as xr
 
 from ..core.errors import InputError
+from ..gridding.faces import grid_one, grid_pair
 from ..gridding.measured import Measured
 from .confined import read_confined
-from .faces import grid_one, grid_pair
 from .files import is_unchanged, regular_file, sha256
 from .in_mm import ScanFile, in_mm
 from .options import (

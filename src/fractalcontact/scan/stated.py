@@ -11,7 +11,7 @@ from pathlib import Path
 from ..core.errors import InputError
 from ..core.file_names import split_file_name
 from .draft import Hints, draft_lines, drafted_options
-from .options import CONTACT_MAP, ScanOptions
+from .options import CONTACT_MAP, ScanOptions, has_own_units
 from .raw import IncompleteSidecar
 from .tables import choose_array
 
@@ -121,10 +121,7 @@ def _units(options: ScanOptions, layout: str | None, is_map: bool) -> list[str]:
     """Which of the keys of units are needed: ``unit`` alone where it can be of all."""
     if options.unit is not None:
         return []
-    spacing = options.spacing
-    pair = spacing if isinstance(spacing, tuple) else (spacing,)
-    has_own = spacing is not None and all(isinstance(step, str) for step in pair)
-    by_unit_xy = options.unit_xy is None and not has_own
+    by_unit_xy = options.unit_xy is None and not has_own_units(options.spacing)
     by_unit_z = options.unit_z is None and not is_map
     if by_unit_xy and by_unit_z:
         return ["unit"]

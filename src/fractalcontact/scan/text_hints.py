@@ -102,7 +102,10 @@ def text_hints(path: Path) -> Hints:
     delimiter = DELIMITERS[name]
     hints.add("delimiter", name, f"between the numbers of line {start + 1}")
     hints.add("decimal", decimal, f"in the numbers of line {start + 1}")
-    hints.add("header", start, f"line {start + 1} is the first of numbers")
+    first = f"line {start + 1} is the first of numbers"
+    if _first_numbers(lines) is None:
+        first = "no line holds numbers alone: is this a scan?"
+    hints.add("header", start, first)
     form = ScanOptions(delimiter=name, decimal=decimal)
     rows = [cells_of(cleaned(line, delimiter).rstrip(" ;,\t"), delimiter) for line in data]
     width = int(np.median([len(row) for row in rows])) if rows else 0

@@ -145,7 +145,8 @@ def _far_outside(heights: np.ndarray, present: np.ndarray) -> float | None:
     for extreme, sign in ((float(z.min()), 1), (float(z.max()), -1)):
         alike = np.isclose(z, extreme, rtol=_SAME, atol=0)
         others = z[~alike]
-        if others.size < _FEWEST or (alike.sum() < _FEWEST and not _is_usual(extreme)):
+        is_usual = extreme in _USUAL or abs(extreme) >= 1e19
+        if others.size < _FEWEST or (alike.sum() < _FEWEST and not is_usual):
             continue
         gap = sign * (float(others.min() if sign > 0 else others.max()) - extreme)
         drawn = _drawn(others)
@@ -154,10 +155,6 @@ def _far_outside(heights: np.ndarray, present: np.ndarray) -> float | None:
         if high > low and gap > _FAR * (high - low) and np.unique(drawn).size >= _MIN_LEVELS:
             return extreme
     return None
-
-
-def _is_usual(value: float) -> bool:
-    return value in _USUAL or abs(value) >= 1e19
 
 
 def _repeated(heights: np.ndarray, present: np.ndarray) -> float | None:

@@ -9,14 +9,14 @@ import xarray as xr
 
 from ..core.errors import InputError
 from ..core.limits import SMALLEST_SIDE
-from ..gridding.clouds import Cloud, grid_cloud, moved_cloud, place_cloud, prepare_clouds
-from ..gridding.density import far_from_points, points_per_cell
-from ..gridding.doubtful import doubts, refuse_coordinates
-from ..gridding.measured import NOTE, Measured, warnings_of
-from ..gridding.points import Lattice, covering_lattice
 from ..registration.pairs import MIRRORS, register
 from ..registration.surface_motion import Motion
+from .clouds import Cloud, grid_cloud, moved_cloud, place_cloud, prepare_clouds
+from .density import far_from_points, points_per_cell
+from .doubtful import doubts, refuse_coordinates
+from .measured import NOTE, Measured, warnings_of
 from .plausible import check_relief, check_spacing
+from .points import Lattice, covering_lattice
 
 #: Two matrices are one grid when their spacings agree this well (relative).
 SAME_SPACING = 1e-6
