@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from fractalcontact.core.determined import determined
+from fractalcontact.core.determined import determined, differ_together
 
 
 @pytest.mark.parametrize(
@@ -51,3 +51,25 @@ def test_neither_sign_nor_unit_matter():
         if verdict:
             assert determined(value, low + 0.4 * part * width, high) or low * high < 0
     assert seen == {True, False}
+
+
+@pytest.mark.parametrize(
+    ("p", "expected"),
+    [
+        ([0.04], [True]),
+        # Two of 0.04: one of them is below 5 % by chance in 8 of 100 cases.
+        ([0.04, 0.04], [False, False]),
+        ([0.02, 0.04], [True, True]),
+        ([0.04, np.nan, 0.02], [True, False, True]),
+        # After the first that is not significant none is.
+        ([0.001, 0.03, 0.04], [True, False, False]),
+        ([], []),
+    ],
+)
+def test_departures_tested_together_by_holm(p, expected):
+    assert differ_together(p).tolist() == expected
+
+
+def test_holm_calls_one_of_many_different_in_five_of_a_hundred_cases():
+    p = np.random.default_rng(0).random((4000, 8))
+    assert np.mean([differ_together(row).any() for row in p]) == pytest.approx(0.05, abs=0.012)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from fractalcontact.core.intervals import mean_interval, t_quantile
+from fractalcontact.core.intervals import mean_difference, mean_interval, t_quantile
 from fractalcontact.core.limits import CONFIDENCE
 
 
@@ -41,3 +41,20 @@ def test_the_interval_holds_the_mean_as_often_as_it_says():
     values = np.random.default_rng(2).normal(size=(5, 4000))
     mean = mean_interval(values)
     assert np.mean((mean.low <= 0) & (mean.high >= 0)) == pytest.approx(CONFIDENCE, abs=0.015)
+
+
+def test_a_difference_of_means_has_student_s_interval():
+    found = mean_difference([1.0, 2.0, 3.0], [4.0, 7.0])
+    half = t_quantile(3) * np.sqrt((2 + 4.5) / 3 * (1 / 3 + 1 / 2))
+    assert found.value == pytest.approx(2 - 5.5)
+    assert found.ends[1:] == pytest.approx((-3.5 - half, -3.5 + half))
+    assert np.isnan(mean_difference([1.0], [2.0]).width)
+
+
+def test_the_interval_of_a_difference_holds_it_as_often_as_it_says():
+    rng = np.random.default_rng(1)
+    held = [
+        one.low <= 1 <= one.high
+        for one in (mean_difference(rng.normal(1, 1, 4), rng.normal(0, 1, 2)) for _ in range(3000))
+    ]
+    assert np.mean(held) == pytest.approx(0.95, abs=0.012)

@@ -26,6 +26,7 @@ from fractalcontact.domain.random_nodes import (
     random_bands,
     random_nodes,
 )
+from fractalcontact.domain.slope_curves import Departure
 from fractalcontact.surface.synthesis import self_affine
 
 
@@ -78,18 +79,22 @@ def test_band_is_that_of_one_more_normal_draw():
 
 
 DEPARTURES = [
-    (0.005, 0.05, True, BEYOND_BOTH),
-    (0.05, 0.06, True, LIKE_CUT),
-    (0.055, 0.001, True, LIKE_RANDOM),
-    (0.005, np.nan, True, UNDETERMINED),
-    (0.005, np.nan, False, BEYOND_RANDOM),
-    (np.nan, 0.001, True, UNDETERMINED),
+    ((0.005, 0.3), (0.05, 0.1), True, BEYOND_BOTH),
+    ((0.05, 0.3), (0.06, 0.3), True, LIKE_CUT),
+    # Significant differences that are too small to matter.
+    ((0.05, 0.3), (1e-9, 0.002), True, LIKE_CUT),
+    ((0.005, 0.01), (0.001, 0.3), True, LIKE_RANDOM),
+    ((0.055, 0.3), (0.001, 0.3), True, LIKE_RANDOM),
+    ((0.005, 0.3), (np.nan, np.nan), True, UNDETERMINED),
+    ((0.005, 0.3), (np.nan, np.nan), False, BEYOND_RANDOM),
+    ((np.nan, np.nan), (0.001, 0.3), True, UNDETERMINED),
 ]
 
 
 @pytest.mark.parametrize(("random", "cut", "surface", "expected"), DEPARTURES)
 def test_departure_is_what_both_nulls_say(random, cut, surface, expected):
-    assert departure_of(random, cut, surface=surface) == expected
+    departures = (Departure(p, 0, size) for p, size in (random, cut))
+    assert departure_of(*departures, surface=surface) == expected
 
 
 # -- independent -----------------------------------------------------------------------------------

@@ -6,6 +6,7 @@ import xarray as xr
 from judged_joints import RIGID, ROCK, SETTINGS, V, stages
 
 from fractalcontact.core.estimate import Estimate
+from fractalcontact.core.estimate import names_of as ends_of
 from fractalcontact.core.verdicts import (
     FAILS,
     HOLDS,
@@ -55,21 +56,29 @@ ALIKE = [1 - np.exp(-RIGID)] * 4
 @pytest.mark.parametrize(
     ("name", "changes", "expected"),
     [
-        ("refinement_changes_little", {"spacing_change": 0.3}, FAILS),
-        ("refinement_changes_little", {"spacing_change": np.nan}, UNDETERMINED),
-        ("refinement_changes_little", {"spacing_change": [0.05, 0.3, 0.3, np.nan]}, PARTLY),
+        ("refinement_changes_little", {"closure_change": 0.3, "area_change": -0.3}, FAILS),
+        ("refinement_changes_little", {"closure_change": -0.3, "area_change": 0.3}, FAILS),
+        ("refinement_changes_little", {"closure_change": np.nan}, UNDETERMINED),
+        # A closure that has converged holds in part where the area has not.
+        ("refinement_changes_little", {"area_change": -0.3}, PARTLY),
+        ("refinement_changes_little", {"closure_change": [0.0, 0.3, 0.05, 0.05]}, PARTLY),
         ("compliance_rises_at_first", {"compliance": [3, 3, 2, 1, 4, 5, 5], "length": 1.3}, FAILS),
         ("compliance_rises_at_first", {"compliance": [1, 9, 2, 4, 4, 5, 5]}, UNDETERMINED),
         ("compliance_rises_at_first", {"length": 0.15}, UNDETERMINED),
         ("compliance_rises_at_first", {"nodes": np.full(7, 9.0)}, UNDETERMINED),
-        ("curves_overlap", {"compliance": [1, 1.8, 3.2, 4, 4.8, 4.4, 5]}, PARTLY),
+        ("curves_overlap", {"compliance": [1, 1.8, 3.2, 4, 4.8, 4.4, 5]}, FAILS),
+        # Within the margin by their values, but not by what the solver leaves open.
+        ("curves_overlap", {"compliance_half": 0.3}, UNDETERMINED),
         ("curves_overlap", {"compliance": [1, 1.8, 3.2, 4, 8, 5, 5]}, FAILS),
         ("curves_overlap", {"length": 1.3}, UNDETERMINED),
         # Two offsets alone agree by chance.
         ("curves_overlap", {"compliance": [1, 1.8, 3.2, 4, 4.1, np.nan, 5]}, UNDETERMINED),
-        ("compliance_rises_again", {"compliance": [1, 1.8, 3.2, 4, 4, 4.2, 4.2]}, FAILS),
-        ("compliance_rises_again", {"compliance": [1, 1.8, 3.2, 4, 4, 3, 3]}, FAILS),
+        ("compliance_rises_again", {"compliance": [1, 1.8, 3.2, 4, 4, 4.05, 4.05]}, FAILS),
+        ("compliance_rises_again", {"compliance": [1, 1.8, 3.2, 4, 4, 3.9, 3]}, FAILS),
         ("compliance_rises_again", {"compliance": [1, 1.8, 3.2, 4, 4, 4, 4.5]}, HOLDS),
+        # More by a fifth on the average, but offsets before scatter by as much.
+        ("compliance_rises_again", {"compliance": [1, 1.8, 3.2, 3, 4, 5, 4.9]}, UNDETERMINED),
+        ("compliance_rises_again", {"compliance": [1, 1.8, 3.2, 4, 4.02, 4.04, 4.5]}, PARTLY),
         ("compliance_rises_again", {"uncorrelated": np.nan}, UNDETERMINED),
         # None between: the last offset within the correlation length, not a first one, is before.
         ("compliance_rises_again", WITHIN | {"compliance": [1, 1.8, 3.2, 4, 4, 4, 4]}, FAILS),
@@ -86,7 +95,7 @@ ALIKE = [1 - np.exp(-RIGID)] * 4
         ("area_is_linear", {"exponent": np.full(7, np.nan)}, UNDETERMINED),
         ("area_falls", {"area": [4, 5, 6, 7, 8, 9, 9]}, FAILS),
         ("area_falls", {"area": [9, 1, 9, 1, 9, 1, 8]}, UNDETERMINED),
-        ("area_settles", {"area": [9, 8, 7, 5, 5, 5, 4]}, PARTLY),
+        ("area_settles", {"area": [9, 8, 7, 5, 5, 5, 4]}, FAILS),
         ("area_settles", {"area": [9, 8, 7, 5, 5, 5, 2]}, FAILS),
         ("composite_dimension_rises", {"dimension": np.linspace(2.0, 2.8, 7)}, ILL_POSED),
         ("composite_dimension_rises", {"dimension": np.full(7, np.nan)}, ILL_POSED),
@@ -104,10 +113,14 @@ ALIKE = [1 - np.exp(-RIGID)] * 4
         ("dilatancy_is_anisotropic", {}, FAILS),
         ("dilatancy_is_anisotropic", {"dilatancy": RISING * 2}, HOLDS),
         ("domains_cluster", {"morisita": np.full(7, 2.0) - 0.1 * np.arange(7)}, FAILS),
-        ("area_is_lacunar", {"delta_sigma_area": np.full(4, 1.98)}, UNDETERMINED),
+        # An exponent below the margin is no fall.
+        ("area_is_lacunar", {"delta_sigma_area": np.full(4, 1.98)}, FAILS),
+        ("area_is_lacunar", {"delta_sigma_area": np.full(4, 1.98), "half": 0.1}, UNDETERMINED),
+        ("area_is_lacunar", {"bend": 0.3}, PARTLY),
+        # One power or not is open.
+        ("area_is_lacunar", {"bend_half": 0.3}, PARTLY),
         ("area_is_lacunar", {"delta_sigma_area": np.full(4, 2.1)}, FAILS),
-        # It falls, but its exponent is not determined.
-        # Wide, but beyond zero: that is what is claimed.
+        # Wide, but beyond the margin: that is what is claimed.
         ("area_is_lacunar", {"half": 0.3}, HOLDS),
         ("area_is_lacunar", {"delta_sigma_area": np.full(4, np.nan)}, UNDETERMINED),
         ("boxes_follow_one_law", {"local_slopes": [1.0, 1.1, 1.2, 1.3, 1.3]}, PARTLY),
@@ -116,8 +129,10 @@ ALIKE = [1 - np.exp(-RIGID)] * 4
         ("boxes_follow_one_law", {"half": 0.6}, HOLDS),
         ("boxes_follow_one_law", {"random_p": np.nan}, UNDETERMINED),
         ("estimates_agree", {"delta_sigma_box": np.array([0.2, 0.3, 0.9, 1.9])}, PARTLY),
+        # The margin is that of an ensemble, not a quarter.
+        ("estimates_agree", {"delta_sigma_box": np.array([0.05, 0.65, 1.25, 1.75])}, FAILS),
         ("estimates_agree", {"delta_sigma_box": np.array([-0.3, 0.3, 0.9, 1.4])}, FAILS),
-        # Neither the same within a quarter nor different.
+        # Neither the same within the margin nor different.
         ("estimates_agree", {"difference_half": 0.3}, UNDETERMINED),
         ("estimates_agree", {"delta_sigma_box": np.full(4, np.nan)}, UNDETERMINED),
         ("dimension_rises_by_area", {"delta_sigma_area": np.linspace(1.9, 1.2, 4)}, FAILS),
@@ -128,10 +143,24 @@ ALIKE = [1 - np.exp(-RIGID)] * 4
         ),
         ("dimension_rises_by_boxes", {"delta_sigma_box": np.full(4, np.nan)}, UNDETERMINED),
         ("dimension_rises_by_boxes", {"half": 1.5}, UNDETERMINED),
-        # As fast as, or faster than, what has no geometry.
-        ("dimension_rises_by_boxes", {"random": np.array([0.1, 0.7, 1.3, 1.8])}, PARTLY),
+        # As fast as, or faster than, what has no geometry; faster by less than the margin.
+        ("dimension_rises_by_boxes", {"random": np.array([0.1, 0.7, 1.3, 1.7])}, PARTLY),
+        ("dimension_rises_by_boxes", {"random": np.array([0.1, 0.65, 1.2, 1.7])}, PARTLY),
+        # Where random nodes are near 2 they cannot rise: the domain would seem to rise faster.
+        (
+            "dimension_rises_by_boxes",
+            {"random": np.array([0.5, 1.1, 1.7, 2.0]), "delta_sigma_box": [0.2, 0.8, 1.4, 2.0]},
+            PARTLY,
+        ),
         # Intervals of 1.2 leave a rise of 1.7 over three decades no doubt, intervals of 3 do.
         ("dimension_rises_by_area", {"half": 0.6}, HOLDS),
+        # Surely rising, but perhaps by less than the margin.
+        (
+            "dimension_rises_by_area",
+            {"delta_sigma_area": np.linspace(1.2, 1.65, 4), "half": 0.15},
+            PARTLY,
+        ),
+        ("dimension_rises_by_area", {"delta_sigma_area": np.linspace(1.2, 1.3, 4)}, FAILS),
         ("dimension_rises_by_area", {"half": 1.5}, UNDETERMINED),
         ("dimension_spans_all", {"delta_sigma_box": np.linspace(0.5, 1.9, 4)}, PARTLY),
         ("dimension_spans_all", {"delta_sigma_box": np.linspace(0.5, 1.5, 4)}, FAILS),
@@ -147,30 +176,20 @@ ALIKE = [1 - np.exp(-RIGID)] * 4
             {"delta_sigma_box": np.linspace(0.5, 1.2, 4), "random": np.linspace(0.4, 1.3, 4)},
             FAILS,
         ),
-        (
-            "size_effect_follows",
-            {"size_verdict": [["agrees"] * 2, ["measured flatter"] * 2]},
-            PARTLY,
-        ),
-        ("size_effect_follows", {"size_verdict": [["measured steeper"] * 2] * 2}, FAILS),
-        (
-            "size_effect_follows",
-            {"size_verdict": [["not tested", "undecided"]] * 2},
-            UNDETERMINED,
-        ),
+        ("size_effect_follows", {"eq6_less": [[0.0, 0.0], [0.4, 0.4]]}, PARTLY),
+        ("size_effect_follows", {"eq6_less": 0.4}, FAILS),
+        ("size_effect_follows", {"eq6_less": -0.4}, FAILS),
+        # Surely different, by less than the margin.
+        ("size_effect_follows", {"eq6_less": 0.05, "eq6_half": 0.04}, HOLDS),
+        ("size_effect_follows", {"eq6_less": 0.1, "eq6_half": 0.3}, UNDETERMINED),
+        ("size_effect_follows", {"eq6_less": np.nan}, UNDETERMINED),
         # Loads that no rock would stand decide nothing.
         (
             "size_effect_follows",
-            {"size_verdict": [["measured flatter", "agrees"]] * 2, "beyond": [False, True]},
+            {"eq6_less": [[0.4, 0.0], [0.4, 0.0]], "beyond": [False, True]},
             FAILS,
         ),
         ("size_effect_follows", {"beyond": [True, True]}, UNDETERMINED),
-        # Where no load decides, an exponent that eq. 6's interval leaves out does.
-        (
-            "size_effect_follows",
-            {"size_verdict": [["not tested", "undecided"]] * 2, "predicted": -0.9},
-            FAILS,
-        ),
         ("larger_domains_are_less_dense", {"density_exponent": -0.05}, UNDETERMINED),
         ("larger_domains_are_less_dense", {"density_exponent": 0.3}, FAILS),
         ("strength_falls_with_size", {"strength_exponent": np.array([[-0.3], [0.0]])}, PARTLY),
@@ -187,6 +206,10 @@ ALIKE = [1 - np.exp(-RIGID)] * 4
             PARTLY,
         ),
         ("domains_are_fractal", {"null": "undetermined"}, UNDETERMINED),
+        # A crossover to a filled plane is no power law, however little the slopes differ.
+        ("boxes_follow_one_law", {"local_slopes": [1.6, 1.9, 1.98, 2.0, 2.0]}, FAILS),
+        ("domains_are_fractal", {"local_slopes": [1.6, 1.9, 1.98, 2.0, 2.0]}, FAILS),
+        ("boxes_follow_one_law", {"local_slopes": [1.85, 1.85, 1.9, 1.92, 1.95]}, HOLDS),
         # Different from both nulls is no fractal yet: nor is what runs from points to full boxes.
         ("domains_are_fractal", {"local_slopes": [0.5, 0.5, 0.7, 1.2, 1.8]}, FAILS),
         ("domains_are_fractal", {"local_slopes": [1.0, 1.1, 1.2, 1.3, 1.3]}, PARTLY),
@@ -202,9 +225,14 @@ ALIKE = [1 - np.exp(-RIGID)] * 4
             UNDETERMINED,
         ),
         ("domains_differ_from_cuts", {"cut_less": 0.4}, FAILS),
-        ("domains_differ_from_cuts", {"cut_p": np.array([0.01, 0.2, 0.01, 0.01])}, PARTLY),
+        ("domains_differ_from_cuts", {"cut_p": np.array([0.01, 0.2, 0.01, 0.01])}, HOLDS),
         ("domains_differ_from_cuts", {"cut_p": np.array([0.01, np.nan, 0.01, 0.01])}, HOLDS),
+        # One of four tests is below 5 % by chance in nearly one of five cases.
+        ("domains_differ_from_cuts", {"cut_p": np.array([0.03, 0.2, 0.4, 0.6])}, UNDETERMINED),
         ("domains_differ_from_cuts", {"cut_p": 0.2}, UNDETERMINED),
+        # Significant, but too small to matter.
+        ("domains_differ_from_cuts", {"slope_cut_less": 0.02}, FAILS),
+        ("domains_differ_from_cuts", {"slope_cut_less": 0.09}, UNDETERMINED),
         ("domains_differ_from_cuts", {"cut_p": np.nan}, UNDETERMINED),
         ("domains_are_isotropic", {"along": 0.13}, PARTLY),
         ("domains_are_isotropic", {"along": 0.13, "lag_half": 0.1}, UNDETERMINED),
@@ -217,12 +245,6 @@ def test_what_does_not_hold_is_said(name, changes, expected):
     assert found_by(name, **changes).verdict == expected
 
 
-def test_reasons_why_no_load_decides_on_eq_6_are_counted_the_most_frequent_first():
-    found = scaling._why_open(["too wide", "unknown", "too wide"])
-    counts = "3 cases (load, estimate): too wide (2); unknown (1)"
-    assert found == f"the intervals are too wide at every load; {counts}"
-
-
 def test_numbers_stand_with_every_verdict():
     found = judge(stages(length=np.nan, uncorrelated=np.nan), SETTINGS)
     assert all(len(text) > 5 for text in found["numbers"].values)
@@ -231,15 +253,17 @@ def test_numbers_stand_with_every_verdict():
 
 def test_a_rule_with_a_limit_is_asked_at_every_load():
     found = stages()
-    compliance = found["closure"]["interface_compliance"].copy()
-    compliance.loc[{"offset": 1.6, "normal_force": 10.0}] *= 1.5
-    found["closure"]["interface_compliance"] = compliance
+    for end in ends_of("interface_compliance"):
+        compliance = found["closure"][end].copy()
+        compliance.loc[{"offset": 1.6, "normal_force": 10.0}] *= 1.5
+        found["closure"][end] = compliance
     overlap = closure.curves_overlap(Joint(found, SETTINGS))
     assert overlap.verdict == PARTLY
     assert overlap.numbers.endswith("at 10 MPa; so at 3 of 4 loads")
     again = closure.compliance_rises_again(Joint(found, SETTINGS))
-    assert again.verdict == PARTLY
-    assert again.numbers == "compliance +23 % at 10 MPa; so at 3 of 4 loads"
+    # There the offsets before scatter too much to decide.
+    assert again.verdict == HOLDS
+    assert again.numbers.endswith("so at 3 of 3 loads")
 
 
 def test_nothing_is_asked_of_the_area_where_all_that_touches_yields():

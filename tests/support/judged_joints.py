@@ -4,7 +4,6 @@ import numpy as np
 import xarray as xr
 
 from fractalcontact.core.reported import Reported
-from fractalcontact.core.verdicts import DECIDED
 from fractalcontact.domain.cluster_laws import localisation
 from fractalcontact.mechanics.plateau import rigid_plateaus
 
@@ -20,6 +19,7 @@ SETTINGS = {
     "opposite": "match",
     "chosen_for": {},
     "capped_variant": False,
+    "seating_pressure": 0.25,
 }
 
 
@@ -32,6 +32,9 @@ def local_slopes(values, over_boxes):
         "_high": slopes + values["local_slope_half"],
         "_random": np.linspace(0, 2, slopes.size),
         "_cut": slopes + 0.2,
+        "_cut_difference": np.full(slopes.size, -values["slope_cut_less"]),
+        "_cut_difference_low": np.full(slopes.size, -values["slope_cut_less"] - 0.05),
+        "_cut_difference_high": np.full(slopes.size, -values["slope_cut_less"] + 0.05),
     }
     ends = {"": np.sqrt(sides[1:] * sides[:-1]), "_min": sides[:-1], "_max": sides[1:]}
     return {
@@ -52,7 +55,12 @@ def stages(**changes):
     values = {
         "compliance": [1, 1.8, 3.2, 4, 4.1, 4.1, 5],
         "nodes": np.full(7, 100.0),
-        "spacing_change": 0.05,
+        "closure_change": 0.05,
+        "area_change": 0.05,
+        "compliance_half": 0.0,
+        "bend": 0.0,
+        "bend_half": 0.05,
+        "slope_cut_less": 0.2,
         "law": ["", *["hyperbola"] * 6],
         "null": "different from random nodes and from the bearing-area cut",
         "local_slopes": [1.06, 1.1, 1.0, 1.08, 1.15],
@@ -78,9 +86,9 @@ def stages(**changes):
         "half": 0.05,
         "difference_half": 0.1,
         "density_exponent": -0.3,
-        "size_verdict": [["agrees"] * 2, ["agrees", "undecided"]],
+        "eq6_less": 0.0,
+        "eq6_half": 0.05,
         "beyond": [False, False],
-        "predicted": -0.5,
         "strength_exponent": np.full((2, 1), -0.3),
         "held": np.zeros((2, 1)),
         "length": 0.5,
@@ -116,6 +124,9 @@ def stages(**changes):
         "difference_high": area - box + values["difference_half"],
         "n": np.full(4, 4),
         "r2": np.full(4, 0.99),
+        "area_bend": np.full(4, values["bend"]),
+        "area_bend_low": np.full(4, values["bend"] - values["bend_half"]),
+        "area_bend_high": np.full(4, values["bend"] + values["bend_half"]),
     }
     of_box = {"": box, "_low": box - half, "_high": box + half}
 
@@ -174,11 +185,16 @@ def stages(**changes):
                 "area_corrected": states("area"),
                 "nodes": states("nodes"),
                 "composite_spread": (("direction", "offset"), [np.linspace(1, 2, 7)]),
-                "closure": (dims, np.ones((1, len(V), 1, len(LOADS)))),
-                "closure_spacing_error": (
+                "interface_compliance_low": (
                     dims,
-                    np.broadcast_to(values["spacing_change"], (1, len(V), 1, len(LOADS))),
+                    states("compliance")[1] - values["compliance_half"],
                 ),
+                "interface_compliance_high": (
+                    dims,
+                    states("compliance")[1] + values["compliance_half"],
+                ),
+                "area_corrected_error": (dims, np.zeros((1, len(V), 1, len(LOADS)))),
+                "interface_closure": over_boxes([0.1, 0.2, 0.3, 0.4]),
                 "closure_law": (of_offsets, np.reshape(values["law"], (1, len(V), 1))),
                 "hyperbola_misfit": (of_offsets, np.full((1, len(V), 1), 0.01)),
                 "semi_logarithmic_misfit": (of_offsets, np.full((1, len(V), 1), 0.05)),
@@ -234,23 +250,14 @@ def stages(**changes):
         ),
         "size_test": xr.Dataset(
             {
-                "verdict": (("estimator", "normal_force"), values["size_verdict"]),
-                "slope_verdict": (("estimator", "normal_force"), values["size_verdict"]),
-                "decides": (
-                    ("estimator", "normal_force"),
-                    np.isin(values["size_verdict"], DECIDED) & ~np.asarray(values["beyond"]),
-                ),
-                "reason": (("estimator", "normal_force"), np.full((2, 2), "too wide")),
                 **{
-                    f"predicted_slope{end}": (
+                    f"area_difference{end}": (
                         ("estimator", "normal_force"),
-                        np.full((2, 2), values["predicted"] + 2 * by),
+                        np.broadcast_to(values["eq6_less"], (2, 2))
+                        + np.sign(by) * values["eq6_half"],
                     )
                     for end, by in ends.items()
                 },
-                "area_exponent": ("normal_force", [-0.6, -0.4]),
-                "area_exponent_low": ("normal_force", [-0.8, -0.5]),
-                "area_exponent_high": ("normal_force", [-0.4, -0.3]),
                 "beyond_study": ("normal_force", values["beyond"]),
             },
             {
@@ -260,6 +267,26 @@ def stages(**changes):
         ),
         "windows": xr.Dataset(windows, {"offset": V, "normal_force": [1000.0]}),
     }
-    nodes = made["closure"]["nodes"].values
+    made["closure"] = _with_coarse_states(made["closure"], values)
+    nodes = states("nodes")[1]
     made["domains"] = made["domains"].assign(localisation(made["domains"], nodes))
     return made
+
+
+def _with_coarse_states(curves, values):
+    """The closure stage with states at twice the spacing, of a larger closure and area."""
+    coarse = curves.assign_coords(resolution=[2])
+    seated = curves["interface_closure"] - curves["interface_closure"][..., 0]
+    return xr.concat(
+        [
+            curves,
+            coarse.assign(
+                interface_closure=coarse["interface_closure"].copy(
+                    data=0.1 + seated / (1 + np.asarray(values["closure_change"]))
+                ),
+                area_corrected=coarse["area_corrected"] / (1 + values["area_change"]),
+            ),
+        ],
+        "resolution",
+        data_vars="minimal",
+    )

@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
+from numpy.typing import ArrayLike
 
 from .limits import CONFIDENCE, DECISIVE, LARGEST_DISTANCE
 
@@ -65,6 +66,33 @@ def differs(p: float) -> bool:
     """
     # The small number keeps 10 of 200 at 5 %.
     return p <= 1 - CONFIDENCE + 1e-9
+
+
+def differ_together(p: ArrayLike) -> np.ndarray:
+    """Significance of several departures tested together, by Holm's correction.
+
+    Parameters
+    ----------
+    p : (n,) array_like
+        Probabilities; one that is NaN was not tested.
+
+    Returns
+    -------
+    (n,) bool ndarray
+
+    References
+    ----------
+    Holm, S. 1979: A simple sequentially rejective multiple test procedure. Scandinavian Journal
+    of Statistics 6, 65-70.
+    """
+    p = np.asarray(p, float)
+    found = np.zeros(p.shape, bool)
+    tested = [place for place in np.argsort(p) if np.isfinite(p[place])]
+    for rank, place in enumerate(tested):
+        if not differs(p[place] * (len(tested) - rank)):
+            break
+        found[place] = True
+    return found
 
 
 def decided_by_scan(share: float | np.ndarray | xr.DataArray) -> Any:

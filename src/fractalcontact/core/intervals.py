@@ -48,6 +48,28 @@ def mean_interval(values: ArrayLike, axis: int = 0) -> Estimate:
     return Estimate(mean, mean - half, mean + half, n)
 
 
+def mean_difference(first: ArrayLike, second: ArrayLike) -> Estimate:
+    """Mean of one sample less that of another, with Student's interval for one variance.
+
+    Parameters
+    ----------
+    first, second : (n,), (m,) array_like
+
+    Returns
+    -------
+    Estimate
+        Without an interval where n + m is below three.
+    """
+    samples = [np.asarray(values, float) for values in (first, second)]
+    difference = float(samples[0].mean() - samples[1].mean())
+    freedom = sum(values.size - 1 for values in samples)
+    if not freedom:
+        return Estimate(difference, n=2)
+    variance = sum(((values - values.mean()) ** 2).sum() for values in samples) / freedom
+    half = t_quantile(freedom) * np.sqrt(variance * sum(1 / values.size for values in samples))
+    return Estimate(difference, difference - half, difference + half, freedom + 2)
+
+
 def jackknife_error(*divisions: ArrayLike) -> float:
     """Half the t-interval of a value by the jackknife, which leaves out one part after another.
 

@@ -34,6 +34,10 @@ MAX_TOUCHING = 0.5
 #: interval: one node more or less would change its pattern.
 MIN_NODES = CORRECTED_NODES
 
+#: Delta_sigma by boxes up to here is near 0, and from here on near 2. Random nodes beyond it leave
+#: a domain no room for a dimension of its own: near full contact both tend to 2.
+NEAR_POINTS, NEAR_FULL = 0.25, 1.75
+
 #: Above this fraction of the load on suspicious cells, errors of the scans decide a number.
 DECISIVE = 0.5
 

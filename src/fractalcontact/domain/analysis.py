@@ -18,7 +18,7 @@ from .clusters import CLUSTER_FIELDS, cluster_statistics
 from .fitted_counts import fitted_counts
 from .isotropy import LAG_FIELDS, contact_at_lag
 from .mean_law import mean_sizes
-from .renormalisation import MIN_RESOLUTIONS, compare_dimensions, renormalisation
+from .renormalisation import MIN_RESOLUTIONS, area_bend, compare_dimensions, renormalisation
 
 #: Numbers kept of every contact domain: name, unit, long name.
 DOMAIN_FIELDS = {
@@ -265,7 +265,8 @@ def scaling_over_resolutions(
         ``sigma_n`` is F / A_r of the corrected area wherever `CORRECTED_NODES` touch,
         ``sigma_n_raw`` that of the raw one; ``area_used`` says which areas Delta_sigma is fitted
         to, ``fitted_area`` is their law. ``delta_sigma_area_reason`` and ``delta_sigma_box_reason``
-        say why there is no estimate, or no interval; ``area_local_exponent`` is that of the area
+        say why there is no estimate, or no interval; ``area_bend`` is how much more Delta_sigma the
+        two finest resolutions have than the two coarsest, ``area_local_exponent`` that of the area
         from each resolution to the next coarser one.
 
     Notes
@@ -298,6 +299,11 @@ def scaling_over_resolutions(
     finest = domains.sel(resolution=domains["resolution"].min())
     result = result.merge(compare_dimensions(result, finest), compat="override", join="exact")
     result.update(_reasons(result, finest))
+    words = "Delta_sigma from the area of the two finest resolutions less that of the two coarsest"
+    bend = area_bend(s, curves["area_corrected"], nodes, CORRECTED_NODES)
+    rows = rows_of("area_bend", "1", words)
+    for (name, row), value in zip(rows.items(), bend.ends, strict=True):
+        result[name] = value.assign_attrs(cf_attrs(*row))
     result["area_local_exponent"] = _local_exponent(s, curves["area_corrected"].where(enough))
     result["spacing"] = s
     for name in ("area", "area_corrected", "nodes"):

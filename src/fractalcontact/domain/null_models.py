@@ -55,6 +55,12 @@ def _rows(name: str, words: str, dims: Any, endings: Mapping[str, str]) -> dict[
 _CURVES = {"": "of the domain"} | {
     ending: words for ending, words in _ESTIMATES.items() if ending != "_random_difference"
 }
+#: Box sides of the local slopes: dimension, unit, long name.
+OCTAVES = {
+    "local_slope_side": ("null_octave", "mm", "geometric middle of two box sides r"),
+    "local_slope_side_min": ("null_octave", "mm", "smaller of the two box sides r"),
+    "local_slope_side_max": ("null_octave", "mm", "larger of the two box sides r"),
+}
 _TABLE: dict[str, tuple] = {
     **{
         of: row
@@ -62,9 +68,7 @@ _TABLE: dict[str, tuple] = {
         for of, row in _rows(name, words, "normal_force", _ESTIMATES).items()
     },
     **_rows("local_slope", "local slope of the mean box counts", _BY_OCTAVE, _CURVES),
-    "local_slope_side": ("null_octave", "mm", "geometric middle of two box sides r"),
-    "local_slope_side_min": ("null_octave", "mm", "smaller of the two box sides r"),
-    "local_slope_side_max": ("null_octave", "mm", "larger of the two box sides r"),
+    **OCTAVES,
     **{
         f"local_slope_{null}_{name}": ("normal_force", units, f"{words} {of}")
         for null, of in (("random", "as many random nodes"), ("cut", "the bearing-area cut"))
@@ -148,7 +152,7 @@ def null_models(
     values: dict[str, Any] = {name: [row[name] for row in rows] for name in rows[0]}
     values["null_side"] = dyadic_sizes(shape) * float(spacing)
     values["null_mean_side"] = mean_sizes(shape) * float(spacing)
-    values |= _octaves(shape, spacing)
+    values |= octaves_of(shape, spacing)
     return labelled_dataset(_TABLE, values)
 
 
@@ -255,7 +259,7 @@ def _row(domain, spacing, composite, fit_range, mask, how) -> dict[str, Any]:
     return row
 
 
-def _octaves(shape, spacing):
+def octaves_of(shape: tuple[int, ...], spacing: float) -> dict[str, np.ndarray]:
     """Box sides of the local slopes, mm; a missing one in a window too small for any."""
     sides = np.append(curve_sizes(shape), np.full(2, np.nan))[: max(curve_sizes(shape).size, 2)]
     low, high = sides[:-1] * float(spacing), sides[1:] * float(spacing)
@@ -268,7 +272,7 @@ def _octaves(shape, spacing):
 
 def _compared_slopes(domain, cut, mask, spacing):
     """Local slopes of one domain and its null models, and what :func:`null_models` says of them."""
-    sides = _octaves(domain.shape, spacing)["local_slope_side"]
+    sides = octaves_of(domain.shape, spacing)["local_slope_side"]
     nodes = int(np.count_nonzero(domain))
     curve = SlopeCurve(domain, mask)
     none = np.full(sides.size, np.nan)
@@ -290,12 +294,13 @@ def _compared_slopes(domain, cut, mask, spacing):
         row |= of.columns(f"local_slope{ending}")
     # A window too small for any slope has one that is missing.
     row = {name: values if np.size(values) else none for name, values in row.items()}
-    for null, (p, place) in departures.items():
-        known = np.isfinite(p) and nodes >= MIN_NODES
-        row[f"local_slope_{null}_p"] = p if known else np.nan
-        row[f"local_slope_{null}_side"] = sides[place] if known else np.nan
-    random, cut_p = (row[f"local_slope_{null}_p"] for null in departures)
-    verdict = departure_of(random, cut_p, surface=cut is not None)
+    if nodes < MIN_NODES:
+        departures = dict.fromkeys(departures, NOT_COMPARED)
+    for null, departure in departures.items():
+        known = np.isfinite(departure.p)
+        row[f"local_slope_{null}_p"] = departure.p
+        row[f"local_slope_{null}_side"] = sides[departure.place] if known else np.nan
+    verdict = departure_of(*departures.values(), surface=cut is not None)
     return row | {"null_verdict": verdict, "null_reason": reason}
 
 

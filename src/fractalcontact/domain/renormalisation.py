@@ -301,10 +301,11 @@ _COMPARED = {
 
 def area_bend(
     s: xr.DataArray, area: xr.DataArray, nodes: xr.DataArray, fewest: int = MIN_NODES_PER_RESOLUTION
-) -> xr.DataArray:
+) -> Estimate:
     """Delta_sigma of the two finest resolutions less that of the two coarsest, from their areas.
 
-    It is zero for one power law A_n ~ s_n^(2 - Delta_sigma).
+    It is zero for one power law A_n ~ s_n^(2 - Delta_sigma). The interval is of sampling, as that
+    of :func:`renormalisation`: N_n nodes vary as sqrt(N_n).
 
     Parameters
     ----------
@@ -313,13 +314,33 @@ def area_bend(
 
     Returns
     -------
-    DataArray
-        On the other dimensions of `area`; NaN where fewer than three resolutions count.
+    Estimate
+        Of DataArrays on the other dimensions of `area`; NaN where fewer than three resolutions
+        count.
     """
-    log_area, log_s = (xr.apply_ufunc(np.log, one) for one in (area.where(nodes >= fewest), s))
-    local = 2 - log_area.diff(RESOLUTION) / log_s.diff(RESOLUTION)
-    known = local.notnull()
-    finest = local.where(known & (known.cumsum(RESOLUTION) == 1)).sum(RESOLUTION)
-    counted = known.sum(RESOLUTION)
-    coarsest = local.where(known & (known.cumsum(RESOLUTION) == counted)).sum(RESOLUTION)
-    return (finest - coarsest).where(counted > 1)
+    log_area = np.log(area.where(nodes >= fewest))
+    value, half = xr.apply_ufunc(
+        _bend,
+        np.log(s),
+        log_area,
+        nodes,
+        input_core_dims=[[RESOLUTION]] * 3,
+        output_core_dims=[[]] * 2,
+        vectorize=True,
+    )
+    return Estimate(value, value - half, value + half)
+
+
+def _bend(log_s: np.ndarray, log_area: np.ndarray, nodes: np.ndarray) -> tuple[float, float]:
+    """Difference of two slopes of log A over log s, and half of its interval."""
+    counted = np.flatnonzero(np.isfinite(log_area))
+    if counted.size < 3:
+        return np.nan, np.nan
+    weights = np.zeros(log_s.size)
+    for (fine, coarse), sign in ((counted[:2], -1), (counted[-2:], 1)):
+        step = sign / (log_s[coarse] - log_s[fine])
+        weights[coarse] += step
+        weights[fine] -= step
+    of_counts = np.sum(weights[counted] ** 2 / nodes[counted])
+    half = special.ndtri((1 + CONFIDENCE) / 2) * np.sqrt(of_counts)
+    return float(weights[counted] @ log_area[counted]), float(half)

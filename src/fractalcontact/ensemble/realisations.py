@@ -17,6 +17,7 @@ from ..core.ranges import within
 from ..core.settings import EnsembleSettings, Solver
 from ..core.window import cell_side, window_sides
 from ..domain.analysis import analyse_domains, scaling_over_resolutions
+from ..domain.null_models import OCTAVES
 from ..domain.random_nodes import expected_dimension
 from ..domain.renormalisation import area_bend
 from ..mechanics.closure import interface_curves
@@ -31,6 +32,7 @@ from ..size_effect.windows import window_states
 from ..study.configuration import window_arguments
 from ..surface.embedded import embedded_surface
 from ..surface.specimen import make_specimen
+from .null_slopes import NULL_SLOPES, null_slopes
 from .statistics import add_statistics, add_trends
 
 #: Sub-windows along a side of the window, and how many of each size are solved.
@@ -94,7 +96,8 @@ def ensemble(
     Returns
     -------
     xr.Dataset
-        :data:`STATES` and ``closure_from_common_seat`` over (realisation, normal_force): under the
+        :data:`STATES`, ``closure_from_common_seat`` and
+        :data:`ensemble.null_slopes.NULL_SLOPES` over (realisation, normal_force): under the
         first load at the seat, the loads that figures draw and the heaviest. Over (realisation,):
         :data:`EXPONENTS` under the reference load and the trends of
         :func:`ensemble.statistics.add_trends`; over both, by how much eq. 6 is missed, ``eq6_area``
@@ -118,11 +121,13 @@ def ensemble(
     result = xr.concat(rows, "realisation")
     for name in result.data_vars:
         result[name].attrs = rows[0][name].attrs
+    for name in OCTAVES:
+        result[name] = rows[0][name]
     _add_seated_closure(result, settings.seating_pressure * whole.area)
     result["seed"] = ("realisation", seeds, cf_attrs("1", "seed of the synthesis"))
     _add_eq6(result)
     add_trends(result)
-    add_statistics(result, [*STATES, _SEATED, *EXPONENTS, *_EQ6])
+    add_statistics(result, [*STATES, *NULL_SLOPES, _SEATED, *EXPONENTS, *_EQ6])
     return with_pressure(result, whole.area).assign_attrs(
         direction=loading.direction,
         offset=float(loading.offsets[0]),
@@ -201,7 +206,9 @@ def _realisation(loading: JointLoading[EnsembleSettings]) -> xr.Dataset:
         )
     table = {name: ("normal_force", *words) for name, words in STATES.items()}
     result = labelled_dataset(table, values, coords={"normal_force": curves["normal_force"]})
-    return result.assign(_size_exponents(loading))
+    composite = loading.composite(int(loading.cells[0]))[::finest, ::finest]
+    slopes = null_slopes(touching, composite, spacing * finest, fit_range=settings.box_range)
+    return result.merge(slopes).assign(_size_exponents(loading))
 
 
 def _bend(curves: xr.Dataset, settings: EnsembleSettings, spacing: float) -> np.ndarray:
@@ -210,7 +217,7 @@ def _bend(curves: xr.Dataset, settings: EnsembleSettings, spacing: float) -> np.
     if settings.scaling_range is not None:
         at = at.where(within(at["resolution"] * spacing, *settings.scaling_range))
     s = at["resolution"] * spacing
-    return area_bend(s, at["area_corrected"], at["nodes"], CORRECTED_NODES).values
+    return area_bend(s, at["area_corrected"], at["nodes"], CORRECTED_NODES).value.values
 
 
 def _size_exponents(loading: JointLoading[EnsembleSettings]) -> dict:

@@ -7,6 +7,7 @@ import xarray as xr
 
 from ..core.intervals import mean_interval
 from ..core.labels import cf_attrs
+from ..core.limits import NEAR_FULL
 from ..domain.random_nodes import band_of
 
 #: Trends with the load: quantity, and what is taken from it or None; what the trend is of.
@@ -33,12 +34,15 @@ def add_trends(result: xr.Dataset) -> None:
     Notes
     -----
     Loads at which a realisation has no value are left out of all: realisations would else be
-    compared over different loads. Two loads are enough for a slope, for its error is that of the
-    mean over the realisations.
+    compared over different loads. What is compared with random nodes is so where these are no
+    more than near 2: beyond, both tend to 2, and what began lower would seem to rise faster. Two
+    loads are enough for a slope, for its error is that of the mean over the realisations.
     """
     decades = np.log10(result["normal_force"].values)
     for name, (quantity, less, words) in TRENDS.items():
-        values = result[quantity] if less is None else result[quantity] - result[less]
+        values = result[quantity]
+        if less is not None:
+            values = values - result[less].where(result[less] <= NEAR_FULL)
         rows = values.transpose("realisation", "normal_force").values
         used = np.isfinite(rows).all(axis=0)
         slopes = np.full(len(rows), np.nan)

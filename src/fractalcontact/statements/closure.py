@@ -2,19 +2,28 @@
 
 import numpy as np
 
+from ..core.claims import all_claims
 from ..core.estimate import Estimate
-from ..core.limits import NEARLY
+from ..core.intervals import mean_difference
+from ..core.labels import loads_of
+from ..core.limits import NEARLY, RESOLVED_NODES
 from ..core.verdicts import FAILS, HOLDS, ILL_POSED, PARTLY, UNDETERMINED
+from .evidence import Evidence, of_a_kind
 from .findings import (
     Finding,
     Joint,
     beyond_margin,
     level,
+    margin_words,
     no_offsets,
     of_the_area,
+    share,
     trend,
     under_every_load,
 )
+
+#: Relative difference between two pressures that are one.
+ROUNDING = 1e-9
 
 #: Closure from first contact is an extreme of the sample; compliance is a property of the joint.
 _COMPLIANCE = "compliance"
@@ -26,11 +35,15 @@ def compliance_rises_at_first(joint: Joint) -> Finding:
 
 
 def curves_overlap(joint: Joint) -> Finding:
-    """Spread of the compliance of the interface beyond the correlation length, at every load."""
-    v = joint.offsets[joint.between]
+    """Range of the compliance of the interface beyond the correlation length, at every load.
+
+    With the bounds that the solver's error leaves of each compliance, and a margin.
+    """
+    v, margin = joint.offsets[joint.between], all_claims()["curves_overlap"].margin
 
     def spread(force):
-        return level(joint.compliance_under(force)[joint.between], _COMPLIANCE, v)
+        compliance = joint.estimate_at_load("closure", "interface_compliance", force)
+        return level(compliance[joint.between], _COMPLIANCE, v, margin)
 
     return under_every_load(joint, spread)
 
@@ -38,6 +51,7 @@ def curves_overlap(joint: Joint) -> Finding:
 def compliance_rises_again(joint: Joint) -> Finding:
     """Compliance where the faces no longer correlate, against that just before, at every load.
 
+    The mean of its logarithm over the offsets, whose scatter gives the interval, with a margin.
     Before are the offsets beyond the correlation length or, if none was solved there, the last
     within.
     """
@@ -56,14 +70,17 @@ def _rise(joint, force, before):
         return Finding(UNDETERMINED, no_offsets("both before and after the faces lose correlation"))
     spread = joint.along("closure")["composite_spread"].values
     change, of_spread = (
-        values[after].mean() / values[before].mean() - 1 for values in (compliance, spread)
+        mean_difference(np.log(values[after]), np.log(values[before])).mapped(np.expm1)
+        for values in (compliance, spread)
     )
+    name = "compliance_rises_again"
     ends = joint.offsets[before].max(), joint.offsets[after].min()
+    percent = change.mapped(lambda end: 100 * end)
     return Finding(
-        HOLDS if change > NEARLY else FAILS,
-        f"compliance {100 * change:+.0f} %",
-        f"from v <= {ends[0]:.3g} to >= {ends[1]:.3g} mm; sigma_z of the composite topography "
-        f"{100 * of_spread:+.0f} %",
+        beyond_margin(change, all_claims()[name].margin, rising=True),
+        f"compliance {percent:+.0f} %",
+        f"from v <= {ends[0]:.3g} to >= {ends[1]:.3g} mm, {margin_words(name)}; sigma_z of the "
+        f"composite topography {100 * of_spread.value:+.0f} %",
     )
 
 
@@ -101,18 +118,22 @@ def compliance_goes_with_dimension(joint: Joint) -> Finding:
     )
 
 
-def larger_samples_close_more(joint: Joint) -> Finding:
-    """Exponent of the compliance of the interface against the size of sub-windows."""
-    windows = joint.state("windows")
-    exponent = Estimate.read(windows, "compliance_exponent")
+@of_a_kind
+def larger_samples_close_more(joint: Joint, evidence: Evidence) -> Finding:
+    """Exponent of the compliance of the interface against the size of sub-windows, with a margin.
+
+    An exponent whose interval stays below the margin is none.
+    """
+    name = "larger_samples_close_more"
+    exponent = evidence.size_exponent("compliance_exponent")
     if not exponent.known:
-        return Finding(UNDETERMINED, "fewer than two sizes of window with ten nodes in contact")
-    closure = float(windows["closure_exponent"])
+        return Finding(UNDETERMINED, "too few nodes in contact in sub-windows of two sizes")
+    closure = float(joint.state("windows")["closure_exponent"])
     return Finding(
-        beyond_margin(exponent, "larger_samples_close_more", rising=True),
+        beyond_margin(exponent, all_claims()[name].margin, rising=True),
         f"x = {exponent:z.2f}",
-        f"compliance ~ b^x at {float(windows['nominal_pressure']):.3g} MPa; closure from first "
-        f"contact, b^{closure:.2f}, grows as any largest value does",
+        f"compliance ~ b^x {evidence.reference}; {margin_words(name)}; closure from first "
+        f"contact, b^{closure:.2f} in this specimen, grows as any largest value does",
     )
 
 
@@ -144,22 +165,62 @@ def area_falls(joint: Joint) -> Finding:
 
 
 def area_settles(joint: Joint) -> Finding:
-    """Spread of the contact area beyond the correlation length."""
+    """Range of the contact area beyond the correlation length, with a margin.
+
+    With the solver's error of each area.
+    """
     beyond = joint.between | joint.unrelated
-    return level(joint.area_fraction[beyond], "A_r", joint.offsets[beyond])
+    area, error = (
+        joint.at_load("closure", name)[beyond]
+        for name in ("area_corrected", "area_corrected_error")
+    )
+    areas = Estimate(area, area - error, area + error)
+    return level(areas, "A_r", joint.offsets[beyond], all_claims()["area_settles"].margin)
 
 
 def refinement_changes_little(joint: Joint) -> Finding:
-    """Change of the closure from twice the scan's spacing to the spacing itself."""
-    curves = joint.along("closure")
-    curves = curves.sel(resolution=curves["resolution"].min())
-    change = np.abs((curves["closure_spacing_error"] / curves["closure"]).values)
-    change = change[np.isfinite(change)]
-    if not change.size:
-        return Finding(UNDETERMINED, "no state solved at two spacings")
-    verdict = HOLDS if change.max() <= NEARLY else PARTLY if change.min() <= NEARLY else FAILS
-    return Finding(
-        verdict,
-        f"closure changes by {100 * change.min():.0f} to {100 * change.max():.0f} % from 2 s to s",
-        f"{change.size} states; closure counts from the highest point, which moves",
+    """Change of closure and contact area from twice the scan's spacing to the spacing itself.
+
+    Closure counts from a seat, the lightest load from the stated seating pressure on under which
+    both have ten nodes in contact: from first touch it would change with the highest point, which
+    any finer scan moves. Judged under every load above the seat, with a margin; in part where one
+    of the two changes by no more, or some loads.
+    """
+    margin = all_claims()["refinement_changes_little"].margin
+    curves = joint.along("closure").sel(offset=joint.offset)
+    finest = int(curves["resolution"].min())
+    grids = [
+        curves.sel(resolution=k) for k in (2 * finest, finest) if k in curves["resolution"].values
+    ]
+    pressures = joint.forces / joint.area
+    counts = pressures >= joint.settings["seating_pressure"] * (1 - ROUNDING)
+    for grid in grids:
+        closed, touching = grid["interface_closure"].values, grid["nodes"].values
+        counts = counts & np.isfinite(closed) & (touching >= RESOLVED_NODES)
+    if len(grids) < 2 or counts.sum() < 2:
+        return Finding(UNDETERMINED, "no two loads with ten nodes in contact at both spacings")
+    closures, areas = (
+        [grid[name].values[counts] for grid in grids]
+        for name in ("interface_closure", "area_corrected")
     )
+    changes = {
+        "closure from the seat": _change(*(closure[1:] - closure[0] for closure in closures)),
+        "A_r": _change(*(area[1:] for area in areas)),
+    }
+    little = {name: int((np.abs(change) <= margin).sum()) for name, change in changes.items()}
+    n = int(counts.sum()) - 1
+    words = (
+        f"{name} by {100 * change.min():+.0f} to {100 * change.max():+.0f} %, up to "
+        f"{100 * margin:g} % at {loads_of(little[name], n)}"
+        for name, change in changes.items()
+    )
+    return Finding(
+        share(sum(little.values()), 2 * n),
+        f"from 2 s to s: {'; '.join(words)}",
+        f"from a seat of {pressures[counts][0]:.3g} MPa",
+    )
+
+
+def _change(coarse: np.ndarray, fine: np.ndarray) -> np.ndarray:
+    """Change from a coarse grid to a fine one, a fraction."""
+    return fine / coarse - 1

@@ -7,9 +7,9 @@ from typing import NamedTuple
 import numpy as np
 
 from ..core.claims import all_claims
-from ..core.estimate import Estimate
+from ..core.estimate import Estimate, names_of
 from ..core.fitting import MIN_POINTS, fit_line
-from ..core.limits import LOOSELY, NEARLY, RESOLVED_NODES
+from ..core.limits import RESOLVED_NODES
 from ..core.subject import Subject
 from ..core.verdicts import FAILS, HOLDS, ILL_POSED, PARTLY, UNDETERMINED
 
@@ -64,6 +64,11 @@ class Joint(Subject):
     def compliance(self) -> np.ndarray:
         """Compliance of the interface over offsets at the reference load, mm/MPa."""
         return self.compliance_under(self.force)
+
+    def estimate_at_load(self, stage: str, name: str, force: float) -> Estimate:
+        """As :meth:`at_load`, with the ends of the interval."""
+        value, low, high = (self.at_load(stage, end, force) for end in names_of(name))
+        return Estimate(value, low, high)
 
     def compliance_under(self, force: float) -> np.ndarray:
         """Compliance d w_int / d sigma_0 of the interface over offsets, mm/MPa; NaN where flush."""
@@ -171,6 +176,8 @@ def under_every_load(joint: Joint, rule: Callable[[float], Finding]) -> Finding:
     verdicts = [one.verdict for one in decided.values()]
     pressure = force / joint.area
     share_of = f"so at {verdicts.count(HOLDS)} of {len(decided)} loads"
+    if PARTLY in verdicts:
+        share_of += f", in part at {verdicts.count(PARTLY)}"
     return decided[force]._replace(
         verdict=verdicts[0] if len(set(verdicts)) == 1 else PARTLY,
         numbers=f"{decided[force].numbers} at {pressure:.3g} MPa; {share_of}",
@@ -184,39 +191,63 @@ def by_sign(found: Estimate, *, rising: bool) -> str:
     return HOLDS if above else FAILS if below else UNDETERMINED
 
 
-def beyond_margin(found: Estimate, name: str, *, rising: bool) -> str:
-    """Verdict on a claim of a sign, with the equivalence margin of the claim.
+def beyond_margin(found: Estimate, margin: float, *, rising: bool) -> str:
+    """Verdict on a claim of a sign, with an equivalence margin.
 
-    It holds where the whole interval has the sign and some of it lies beyond the margin, and fails
-    where none does: a change smaller than the margin is called none.
+    It holds where the whole interval lies beyond the margin, in part where all of it has the sign
+    and some lies beyond, and fails where none does: a change smaller than the margin is called
+    none.
 
     Parameters
     ----------
     found : Estimate
         What is to have the sign.
-    name : str
-        Of the claim.
+    margin : float
     rising : bool
         Whether the sign is to be positive.
     """
     gain = found if rising else found.mapped(np.negative, falling=True)
-    if gain.high <= all_claims()[name].margin:
+    if gain.high <= margin:
         return FAILS
-    return HOLDS if gain.low > 0 else UNDETERMINED
+    if gain.low > 0:
+        return HOLDS if gain.low > margin else PARTLY
+    return UNDETERMINED
 
 
-def level(values: np.ndarray, symbol: str, v: np.ndarray) -> Finding:
-    """Verdict on values that are to stay the same, by their range over their mean."""
-    known = np.isfinite(values)
+def within_margin(difference: Estimate, margin: float) -> str:
+    """Verdict on a difference that is to be none.
+
+    It is none where the whole interval lies within the margin, and fails where the interval leaves
+    out zero and some of it lies beyond.
+    """
+    if max(abs(difference.low), abs(difference.high)) <= margin:
+        return HOLDS
+    return FAILS if difference.low > 0 or difference.high < 0 else UNDETERMINED
+
+
+def margin_words(name: str) -> str:
+    """The equivalence margin of a claim, in words."""
+    return f"less than {all_claims()[name].margin:g} is called no change"
+
+
+def level(values: Estimate, symbol: str, v: np.ndarray, margin: float) -> Finding:
+    """Verdict on values over offsets that are to stay the same, by their range over their mean.
+
+    The ends of its interval are the least and the largest range that the intervals of the values
+    allow.
+    """
+    known = np.isfinite(values.value)
     values, v = values[known], v[known]
-    if len(values) < MIN_POINTS:
+    if len(v) < MIN_POINTS:
         return Finding(UNDETERMINED, no_offsets("three"))
-    spread = np.ptp(values) / np.mean(values)
-    verdict = HOLDS if spread <= NEARLY else PARTLY if spread <= LOOSELY else FAILS
+    least = max(values.low.max() - values.high.min(), 0.0)
+    spread = Estimate(np.ptp(values.value), least, values.high.max() - values.low.min())
+    spread = spread.mapped(lambda end: end / values.value.mean())
+    verdict = HOLDS if spread.high <= margin else FAILS if spread.low > margin else UNDETERMINED
     return Finding(
         verdict,
-        f"{symbol} varies by {100 * spread:.0f} % of its mean",
-        f"v = {v[0]:.3g} to {v[-1]:.3g} mm",
+        f"{symbol} varies by {spread.mapped(lambda end: 100 * end):.0f} % of its mean",
+        f"v = {v[0]:.3g} to {v[-1]:.3g} mm, the same within {100 * margin:g} %",
     )
 
 

@@ -16,7 +16,7 @@ import xarray as xr
 from ..core.claims import Claim, all_claims, claims_of
 from ..core.labels import cf_attrs
 from ..core.verdicts import UNDETERMINED
-from . import closure, nulls, of_a_kind, scaling, sliding
+from . import closure, nulls, scaling, sliding
 from .findings import Finding, Joint
 
 #: Which of its two materials the paper would take a study's for, by words in its name.
@@ -35,15 +35,6 @@ def rule_of(name: str) -> Callable[..., Finding]:
         if hasattr(room, name):
             return getattr(room, name)
     raise KeyError(f"no rule is called {name!r}")
-
-
-def rule_for(name: str, joint: Joint) -> Callable[..., Finding]:
-    """Function that judges a statement: on the ensemble of a joint where one can be asked.
-
-    What the paper says of joints of a kind is judged on realisations of the kind.
-    """
-    on_specimen = rule_of(name)
-    return getattr(of_a_kind, name, on_specimen) if "ensemble" in joint.stages else on_specimen
 
 
 def material_of(settings: Mapping) -> str:
@@ -90,7 +81,7 @@ def judge(stages: Mapping[str, xr.Dataset], settings: Mapping) -> xr.Dataset:
         As :func:`table_of` makes it; attributes ``direction`` and ``force``, N.
     """
     joint = Joint(dict(stages), dict(settings))
-    rules = {name: rule_for(name, joint) for name in statements_for(settings)}
+    rules = {name: rule_of(name) for name in statements_for(settings)}
     return table_of(rules, joint, settings["chosen_for"]).assign_attrs(
         direction=joint.direction, force=joint.force
     )

@@ -8,6 +8,9 @@ from ..core.limits import LOOSELY, NEARLY
 from ..core.verdicts import FAILS, HOLDS, PARTLY, UNDETERMINED
 from .findings import Finding
 
+#: A local slope from here on is of boxes that are all occupied.
+FULL = 1.98
+
 #: Box sides whose ends have a smaller ratio show no power law.
 MIN_RATIO = 10.0
 
@@ -16,7 +19,9 @@ def one_slope(state: xr.Dataset) -> Finding:
     """Verdict on one local slope at all box sides, with the slopes in words.
 
     Within ±0.1 of each other local slopes are one, within ±0.25 partly. They are not where no band
-    of ±0.25 meets the interval of each: what differs by its scatter alone is no curvature.
+    of ±0.25 meets the interval of each: what differs by its scatter alone is no curvature. Nor are
+    they where large boxes are all occupied, with a slope of 2, and small ones surely have less, by
+    more than 0.1: that is the crossover to a filled plane, which any domain of many nodes has.
 
     Parameters
     ----------
@@ -31,6 +36,8 @@ def one_slope(state: xr.Dataset) -> Finding:
     words = f"local slopes {ends} for boxes of {first[0]:.2g} to {last[-1]:.2g} mm"
     if np.max(low) - np.min(high) > 2 * LOOSELY:
         return Finding(FAILS, words)
+    if slopes.max() >= FULL and np.max(low) - np.min(high) > NEARLY:
+        return Finding(FAILS, f"{words}, a crossover to a filled plane")
     spread = np.ptp(slopes)
     if spread > 2 * LOOSELY:
         return Finding(UNDETERMINED, f"{words}, their intervals overlap")

@@ -1,10 +1,13 @@
 """Statements judged against a rival: closure laws, null models of the domain, isotropy."""
 
 import numpy as np
+from scipy import special
 
+from ..core.claims import all_claims
+from ..core.determined import differ_together
 from ..core.estimate import Estimate
 from ..core.labels import loads_of
-from ..core.limits import LOOSELY, NEARLY
+from ..core.limits import CONFIDENCE, LOOSELY, NEARLY
 from ..core.verdicts import (
     FAILS,
     HOLDS,
@@ -16,6 +19,7 @@ from ..core.verdicts import (
     UNDETERMINED,
 )
 from ..domain import departure
+from .evidence import Evidence, at_reference, of_a_kind
 from .findings import Finding, Joint, share
 from .local_slopes import one_slope
 
@@ -23,6 +27,9 @@ _OF_SLIDING = ("along sliding", "across")
 
 #: Dimensions whose difference from the bearing-area cut's shows whether the two are related.
 _DIMENSIONS = ("delta_sigma", "correlation_dimension")
+
+#: Probabilities below this are not written.
+_LEAST_P = 1e-6
 
 #: Null models of a contact domain, in words.
 _NULLS = {"random": "random nodes", "cut": "bearing-area cut"}
@@ -49,13 +56,14 @@ def closure_is_hyperbolic(joint: Joint) -> Finding:
     )
 
 
-def domains_are_fractal(joint: Joint) -> Finding:
+@of_a_kind
+def domains_are_fractal(joint: Joint, evidence: Evidence) -> Finding:
     """Local slopes of the box counts, compared with random nodes, the cut and each other.
 
     A fractal set differs from random nodes, and has one slope over a decade of box sides or more.
     One that differs from the bearing-area cut as well is no mere cut at one height.
     """
-    state = joint.state("domains")
+    state = at_reference(joint, evidence)
     verdict = str(state["null_verdict"].item())
     if verdict == departure.UNDETERMINED:
         return Finding(UNDETERMINED, str(state["null_reason"].item()))
@@ -80,33 +88,66 @@ def _departure_words(state, null, words):
     slope, other = (float(state[name][place]) for name in ("local_slope", f"local_slope_{null}"))
     return (
         f"{words}: largest departure at r = {side:.2g} mm, local slope {slope:.2f} against "
-        f"{other:.2f}, p = {p:.2g}"
+        f"{other:.2f}, p {f'= {p:.2g}' if p >= _LEAST_P else f'< {_LEAST_P:g}'}"
     )
 
 
-def domains_differ_from_cuts(joint: Joint) -> Finding:
+@of_a_kind
+def domains_differ_from_cuts(joint: Joint, evidence: Evidence) -> Finding:
     """Elastic contact domain compared with the cut of the composite topography, over the loads.
 
-    Not coincident where local slopes of the box counts differ; not related where the interval of
-    the difference of the box-counting or correlation dimension lies beyond a quarter.
+    Coincident where the intervals of all differences of local slopes lie within the margin; not
+    coincident where one differs by the margin or more, significantly among all loads and box sides
+    (Holm). Not related where the interval of the difference of a box-counting or correlation
+    dimension, corrected for the number of loads, lies beyond a quarter.
     """
-    states = joint.states("domains")
-    p = states["local_slope_cut_p"].values
-    compared = np.isfinite(p)
-    if not compared.any():
+    margin = all_claims()["domains_differ_from_cuts"].margin
+    states = evidence.slopes()
+    states = states.isel(normal_force=np.isfinite(states["local_slope_cut_p"].values))
+    total = states.sizes["normal_force"]
+    if not total:
         return Finding(UNDETERMINED, "no load at which domain and cut have local slopes to compare")
-    beyond = [Estimate.read(states, f"{name}_cut_difference")[compared] for name in _DIMENSIONS]
-    unrelated = any(((one.low > LOOSELY) | (one.high < -LOOSELY)).any() for one in beyond)
-    different, total = sum(map(departure.differs, p[compared])), int(compared.sum())
-    verdict = FAILS if unrelated else share(different, total) if different else UNDETERMINED
-    less = states["delta_sigma_cut_difference"].values[compared]
+    apart, alike = _apart_and_alike(states, margin)
+    beyond = [
+        Estimate.read(states, f"{name}_cut_difference")
+        for name in _DIMENSIONS
+        if f"{name}_cut_difference" in states
+    ]
+    different = int(apart.sum())
+    decided = different + int(alike.sum())
+    verdict = share(different, decided) if decided else UNDETERMINED
+    if any(_any_beyond(one, total) for one in beyond):
+        verdict = FAILS
+    less = states["delta_sigma_cut_difference"].values
     less = less[np.isfinite(less)]
     ends = dict.fromkeys(f"{end:+.2f}" for end in (less.min(), less.max())) if less.size else "-"
     return Finding(
         verdict,
         f"local slopes differ from those of the cut at {loads_of(different, total)}",
-        f"{total} loads compared; Delta_sigma less that of the cut {' to '.join(ends)}",
+        f"{int(alike.sum())} coincide, a difference below {margin:g} is called none; Delta_sigma "
+        f"less that of the cut {' to '.join(ends)}",
     )
+
+
+def _apart_and_alike(states, margin):
+    """Loads at which local slopes surely differ from the cut's, and at which all are its own."""
+    difference = Estimate.read(states.transpose("normal_force", ...), "local_slope_cut_difference")
+    departs = differ_together(states["local_slope_cut_p"].values)
+    middle = states["local_slope_side"].values
+    places = np.argmin(
+        np.abs(middle - states["local_slope_cut_side"].values[:, np.newaxis]), axis=1
+    )
+    largest = np.abs(difference.value[np.arange(places.size), places])
+    alike = np.fmax(np.abs(difference.low), np.abs(difference.high)).max(axis=1) <= margin
+    return departs & (largest >= margin), alike
+
+
+def _any_beyond(difference, loads):
+    """True if a difference of dimensions is surely beyond a quarter, among so many loads."""
+    wider = special.ndtri((1 - CONFIDENCE) / 2 / loads) / special.ndtri((1 - CONFIDENCE) / 2)
+    value, low, high = difference.ends
+    low, high = value - wider * (value - low), value + wider * (high - value)
+    return bool(((low > LOOSELY) | (high < -LOOSELY)).any())
 
 
 def domains_are_isotropic(joint: Joint) -> Finding:

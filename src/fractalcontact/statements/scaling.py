@@ -1,124 +1,129 @@
 """Statements of the paper on contact domain and size (sects. 6 and 7, Figs. 1b, 8 to 13)."""
 
-from collections import Counter
-from dataclasses import replace
-
 import numpy as np
 
+from ..core.claims import all_claims
 from ..core.estimate import Estimate
-from ..core.fitting import MIN_POINTS, slope_error
-from ..core.limits import LOOSELY
-from ..core.verdicts import AGREES, DECIDED, FAILS, HOLDS, PARTLY, UNDETERMINED
-from ..domain.pressure_trend import pressure_trend
+from ..core.fitting import MIN_POINTS
+from ..core.labels import loads_of
+from ..core.limits import CORRECTED_NODES, NEAR_FULL, NEAR_POINTS
+from ..core.verdicts import FAILS, HOLDS, PARTLY, UNDETERMINED
 from ..domain.renormalisation import MIN_RESOLUTIONS
-from .findings import Finding, Joint, beyond_margin, by_sign, of_the_area, share
+from .evidence import ESTIMATES, Evidence, Trend, at_reference, of_a_kind
+from .findings import (
+    Finding,
+    Joint,
+    beyond_margin,
+    margin_words,
+    of_the_area,
+    share,
+    within_margin,
+)
 from .local_slopes import one_slope
-
-#: Delta_sigma up to here is near 0, and from here on near 2, the ends of the paper's Fig. 12.
-NEAR_POINTS, NEAR_FULL = 0.25, 1.75
-
-#: The two estimates of Delta_sigma, as their variables and in words.
-ESTIMATES = {"area": "by A_r(s)", "box": "by boxes"}
 
 
 @of_the_area
-def area_is_lacunar(joint: Joint) -> Finding:
-    """Exponent of A_r over the resolutions, at the reference load."""
-    state = joint.state("scaling")
-    delta = Estimate.read(state, "delta_sigma")
+@of_a_kind
+def area_is_lacunar(joint: Joint, evidence: Evidence) -> Finding:
+    """Exponent of A_r over the resolutions, and whether it is one, at the reference load.
+
+    With a margin. It is one power law where Delta_sigma between the two finest resolutions is,
+    within the margin, that between the two coarsest; where that is not so, or open, the claim
+    holds in part.
+    """
+    name = "area_is_lacunar"
+    margin = all_claims()[name].margin
+    delta, bend = evidence.area_dimension(), evidence.area_bend()
     if not np.isfinite(delta.width):
-        few = f"{int(state['n'])} of {MIN_RESOLUTIONS} resolutions needed"
+        few = f"fewer than {MIN_RESOLUTIONS} resolutions with {CORRECTED_NODES} nodes in contact"
         return Finding(UNDETERMINED, few)
     # A_r ~ s^(2 - Delta_sigma): it falls with refinement where the exponent is positive.
+    falls = beyond_margin(delta.mapped(lambda value: 2 - value, falling=True), margin, rising=True)
+    one_power = within_margin(bend, margin)
+    words = {HOLDS: "one power", FAILS: "not one power"}.get(one_power, "one power or not is open")
     return Finding(
-        by_sign(delta.mapped(lambda value: 2 - value, falling=True), rising=True),
+        falls if one_power == HOLDS or falls != HOLDS else PARTLY,
         f"A_r ~ s^(2 - Delta_sigma), Delta_sigma = {delta:.2f}",
-        f"over {int(state['n'])} resolutions, r2 = {float(state['r2']):.3f}; at light load the "
-        "exponent is that of the slopes h'_rms(s) of the surface",
+        f"{evidence.reference}; {words}: from the coarsest to the finest resolutions Delta_sigma "
+        f"changes by {bend:+z.2f}; {margin_words(name)}; at light load the exponent is that of the "
+        "slopes h'_rms(s) of the surface",
     )
 
 
-def boxes_follow_one_law(joint: Joint) -> Finding:
+@of_a_kind
+def boxes_follow_one_law(joint: Joint, evidence: Evidence) -> Finding:
     """Local slopes of the box counts at the reference load.
 
     They show the curvature of the counts; how well one slope is known says nothing of it.
     """
-    return one_slope(joint.state("domains"))
+    found = one_slope(at_reference(joint, evidence))
+    return found if found.verdict == UNDETERMINED else found._replace(note=evidence.reference)
 
 
 @of_the_area
-def estimates_agree(joint: Joint) -> Finding:
-    """Difference of Delta_sigma by A_r(s) and by boxes, over all loads that decide it.
-
-    Equal is a difference whose whole interval is within a quarter, unequal one whose interval
-    leaves out zero.
-    """
-    difference = Estimate.read(joint.states("scaling"), "difference")
-    equal = (difference.low >= -LOOSELY) & (difference.high <= LOOSELY)
-    known = equal | (difference.low > 0) | (difference.high < 0)
-    if not known.any():
-        both = int(np.isfinite(difference.width).sum())
-        return Finding(
-            UNDETERMINED,
-            f"{both} loads have both estimates; at none is their difference surely below "
-            f"{LOOSELY:g} or surely not zero",
-        )
-    agree = int(equal[known].sum())
-    difference = difference.value[known]
-    ends = " to ".join(dict.fromkeys(f"{d:+.2f}" for d in (difference.min(), difference.max())))
+@of_a_kind
+def estimates_agree(joint: Joint, evidence: Evidence) -> Finding:
+    """Delta_sigma by A_r(s) less that by boxes under every load, with a margin."""
+    name = "estimates_agree"
+    difference, pressures = evidence.difference()
+    if not pressures.size:
+        return Finding(UNDETERMINED, "no load has both estimates with their intervals")
+    each = _each_within(difference, name)
+    decided = [verdict for verdict in each if verdict != UNDETERMINED]
+    ends = " to ".join(dict.fromkeys(f"{d:+.2f}" for d in difference.value[[0, -1]]))
     return Finding(
-        share(agree, known.sum()),
-        f"they agree at {agree} of {known.sum()} loads, A_r(s) less boxes {ends}",
+        share(decided.count(HOLDS), len(decided)) if decided else UNDETERMINED,
+        f"A_r(s) less boxes {ends}, no zero in the interval at "
+        f"{loads_of(each.count(FAILS), len(each))}",
+        f"{_between(pressures)}; {margin_words(name)}",
     )
 
 
 @of_the_area
-def dimension_rises_by_area(joint: Joint) -> Finding:
-    """Delta_sigma from A_r(s) against the logarithm of F, where it is determined."""
-    line = _over_load(joint.states("scaling")).line
-    if not line.slope.known:
-        return Finding(UNDETERMINED, _too_few(line))
-    return Finding(by_sign(line.slope, rising=True), _by_decade(line), f"{line.n} loads")
+@of_a_kind
+def dimension_rises_by_area(joint: Joint, evidence: Evidence) -> Finding:
+    """Slope of Delta_sigma from A_r(s) over the decades of F, with a margin."""
+    return _rise(evidence.trend("area"), "dimension_rises_by_area")
 
 
-def dimension_rises_by_boxes(joint: Joint) -> Finding:
-    """Delta_sigma from box counts against the logarithm of F, beside as many random nodes.
+@of_a_kind
+def dimension_rises_by_boxes(joint: Joint, evidence: Evidence) -> Finding:
+    """Slope of Delta_sigma by boxes over the decades of F, beside that of as many random nodes.
 
-    More nodes fill more boxes wherever they lie: a rise that random nodes have too is no change of
-    geometry.
+    More nodes fill more boxes wherever they lie: in part where it rises, but less random nodes by
+    no more than the margin. Where random nodes are near 2 they leave no room to rise less, and
+    these loads are not compared.
     """
-    states = joint.states("domains")
-    trend = _over_load(states, states["delta_sigma_random"].values)
-    if not trend.line.slope.known:
-        return Finding(UNDETERMINED, _too_few(trend.line))
-    verdict = by_sign(trend.line.slope, rising=True)
-    if verdict == HOLDS and not trend.departure.slope.low > 0:
-        verdict = PARTLY
-    return Finding(
-        verdict,
-        f"{_by_decade(trend.line)}, less that of as many random nodes "
-        f"{trend.departure.slope:+z.2f}",
-        f"{trend.line.n} loads; more nodes fill more boxes wherever they lie, so a rise no faster "
-        "than that of random nodes holds in part",
+    name, trend = "dimension_rises_by_boxes", evidence.trend("box")
+    found = _rise(trend, name)
+    if found.verdict not in (HOLDS, PARTLY):
+        return found
+    faster = beyond_margin(trend.departure, all_claims()[name].margin, rising=True)
+    return found._replace(
+        verdict=found.verdict if faster == HOLDS else PARTLY,
+        numbers=f"{found.numbers}, less that of as many random nodes {trend.departure:+z.2f}",
     )
 
 
-def dimension_spans_all(joint: Joint) -> Finding:
+def _rise(trend: Trend, name: str) -> Finding:
+    """Verdict on a slope over the decades of F."""
+    if not trend.slope.known:
+        return Finding(UNDETERMINED, f"{trend.pressures.size} loads with a dimension, too few")
+    return Finding(
+        beyond_margin(trend.slope, all_claims()[name].margin, rising=True),
+        f"{trend.slope:+z.2f} a decade of F",
+        f"{_between(trend.pressures)}; {margin_words(name)}",
+    )
+
+
+@of_a_kind
+def dimension_spans_all(joint: Joint, evidence: Evidence) -> Finding:
     """Smallest and largest Delta_sigma by box counts, near 0 and near 2 by their intervals."""
-    states = joint.states("domains")
-    nodes = joint.states("closure")["nodes"].values
-    delta = Estimate.read(states, "delta_sigma")
-    known = np.flatnonzero(delta.known)
-    if not known.size:
+    (delta, pressures), random = evidence.box_dimension()
+    if not pressures.size:
         return Finding(UNDETERMINED, "no load with a dimension by boxes")
-    touching = nodes[known[[np.argmin(delta.value[known]), np.argmax(delta.value[known])]]]
-    return span_finding(
-        delta[known],
-        states["delta_sigma_random"].values[known],
-        joint.forces[known] / joint.area,
-        f"{int(touching[0])} to {int(touching[1])} nodes: near the lower end one more changes the "
-        f"answer{by_design(joint)}",
-    )
+    note = f"{_between(pressures)}; near the lower end one node more changes the answer"
+    return span_finding(delta, random, pressures, note + by_design(joint))
 
 
 def span_finding(delta: Estimate, random: np.ndarray, pressures: np.ndarray, note: str) -> Finding:
@@ -159,77 +164,63 @@ def by_design(joint: Joint) -> str:
     return "; at full yield it is 2 by construction" if capped else ""
 
 
-def size_effect_follows(joint: Joint) -> Finding:
-    """Verdicts of the size test under the study's loads, with either estimate of Delta_sigma.
+@of_a_kind
+def size_effect_follows(joint: Joint, evidence: Evidence) -> Finding:
+    """Exponent of corrected A_r/A_0 less that of eq. 6, Delta_sigma - 2, with a margin.
 
-    They are of both forms together: A_r/A_0 over b at equal sigma_0 first, then eq. 6's own form.
+    By both estimates of Delta_sigma, of the window itself. Eq. 6 fails where the interval of the
+    difference leaves out zero and some of it lies beyond the margin, and holds where all of it lies
+    within.
     """
-    test = joint["size_test"].sel(estimator=list(ESTIMATES))
-    test = test.isel(normal_force=~test["beyond_study"].values.astype(bool))
-    exponents = Estimate.read(test, "area_exponent")
-    known = np.isfinite(exponents.width)
-    if not known.any():
-        return Finding(UNDETERMINED, "at no load do two sizes of window hold enough nodes")
-    narrowest = int(np.nanargmin(exponents.width))
-    best, exponent = test.isel(normal_force=narrowest), exponents[narrowest]
-    wanted = zip(ESTIMATES.values(), best["predicted_slope"].values, strict=True)
-    numbers = (
-        f"A_r/A_0 ~ b^x, x = {exponent:z.2f} at "
-        f"{float(best['nominal_pressure']):.3g} MPa, eq. 6 has "
-        + ", ".join(f"{slope:.2f} {by}" for by, slope in wanted if np.isfinite(slope))
-    )
-    decided = test["decides"].values
-    if not decided.any() and _beyond(exponent, Estimate.read(best, "predicted_slope")):
-        return Finding(
-            FAILS, numbers, "the interval of x excludes every exponent that eq. 6 allows"
-        )
-    if not decided.any():
-        return Finding(UNDETERMINED, numbers, _why_open(test["reason"].values[:, known].ravel()))
-    agree = (test["verdict"] == AGREES).values
-    words = ", ".join(
-        f"{agree[i].sum()} of {decided[i].sum()} loads {by}"
-        if decided[i].any()
-        else f"no load {by}"
-        for i, by in enumerate(ESTIMATES.values())
-    )
-    alone = test["slope_verdict"]
-    own = (
-        f"that form alone agrees in {int((alone == AGREES).sum())} of "
-        f"{int(alone.isin(DECIDED).sum())} cases"
-    )
+    name = "size_effect_follows"
+    found = {words: evidence.beyond_eq6(by) for by, words in ESTIMATES.items()}
+    found = {words: one for words, one in found.items() if one.pressures.size}
+    if not found:
+        return Finding(UNDETERMINED, "no exponent beside a Delta_sigma of its own window")
+    each = [verdict for one in found.values() for verdict in _each_within(one.estimate, name)]
+    decided = [verdict for verdict in each if verdict != UNDETERMINED]
+    reference = joint.force / joint.area
+    nearest = {
+        words: one.estimate[int(np.argmin(np.abs(np.log(one.pressures / reference))))]
+        for words, one in found.items()
+    }
+    pressures = np.unique(np.concatenate([one.pressures for one in found.values()]))
+    less = ", ".join(f"{one:+z.2f} {words}" for words, one in nearest.items())
     return Finding(
-        share(int(agree.sum()), int(decided.sum())),
-        numbers,
-        f"x agrees with eq. 6 at {words}, of loads with narrow enough intervals, on windows within "
-        f"one joint; sigma_0 over b at equal sigma* must agree there, too; {own}",
+        share(decided.count(HOLDS), len(decided)) if decided else UNDETERMINED,
+        f"A_r/A_0 ~ b^x, x = {evidence.size_exponent('area_exponent'):z.2f}, x less eq. 6's "
+        f"exponent {less}",
+        f"{_between(pressures)}, {decided.count(HOLDS)} of {len(decided)} cases (load, estimate) "
+        f"that decide agree, on windows within one joint; {margin_words(name)}",
     )
 
 
-def _beyond(exponent: Estimate, predicted: Estimate) -> bool:
-    """True if an exponent lies outside every predicted one, by the intervals of both."""
-    apart = (exponent.low > predicted.high) | (exponent.high < predicted.low)
-    known = np.isfinite(predicted.width)
-    return bool(known.any() and apart[known].all())
+def _each_within(differences: Estimate, name: str) -> list[str]:
+    """Verdicts on differences that are to be none, with the margin of a claim."""
+    margin = all_claims()[name].margin
+    return [within_margin(differences[i], margin) for i in range(np.size(differences.value))]
 
 
-def _why_open(reasons):
-    """Reasons why no load is conclusive about eq. 6, the most frequent first."""
-    counts = Counter(str(reason) for reason in reasons).most_common()
-    why = "; ".join(f"{reason} ({n})" for reason, n in counts)
-    return f"the intervals are too wide at every load; {len(reasons)} cases (load, estimate): {why}"
+def _between(pressures: np.ndarray) -> str:
+    """A range of nominal pressures in words; ascending."""
+    ends = dict.fromkeys(f"{end:.3g}" for end in (pressures[0], pressures[-1]))
+    return f"{' to '.join(ends)} MPa"
 
 
-def larger_domains_are_less_dense(joint: Joint) -> Finding:
-    """Exponent of corrected A_r/A_0 against window size at one nominal pressure."""
-    windows = joint.state("windows")
-    exponent = Estimate.read(windows, "area_exponent")
+@of_a_kind
+def larger_domains_are_less_dense(joint: Joint, evidence: Evidence) -> Finding:
+    """Exponent of corrected A_r/A_0 against the size of sub-windows, with a margin.
+
+    An exponent whose interval stays below the margin is none.
+    """
+    name = "larger_domains_are_less_dense"
+    exponent = evidence.size_exponent("area_exponent")
     if not exponent.known:
-        return Finding(UNDETERMINED, "fewer than two sizes of window with 30 nodes in contact")
-    pressure = float(windows["nominal_pressure"])
+        return Finding(UNDETERMINED, "too few nodes in contact in sub-windows of two sizes")
     return Finding(
-        beyond_margin(exponent, "larger_domains_are_less_dense", rising=False),
+        beyond_margin(exponent, all_claims()[name].margin, rising=False),
         f"x = {exponent:z.2f}",
-        f"A_r/A_0 ~ b^x at {pressure:.3g} MPa",
+        f"A_r/A_0 ~ b^x {evidence.reference}; {margin_words(name)}",
     )
 
 
@@ -272,34 +263,3 @@ def _exponents(value, low, high, known):
         f"tau ~ b^x at equal v/b, x = {ends}, falls beyond its interval in {falls} of "
         f"{known.sum()} cases, rises in {rises}"
     )
-
-
-def _over_load(states, random=np.nan):
-    """Trend of Delta_sigma with log F, and that less the one of random nodes.
-
-    The interval of each slope is that of the line and that of the values in quadrature.
-    """
-    delta = Estimate.read(states, "delta_sigma")
-    forces, known = states["normal_force"].values, np.isfinite(delta.width)
-    trend = pressure_trend(forces, np.where(known, delta.value, np.nan), random)
-    of_values = slope_error(np.log10(forces[known]), delta.width[known] / 2)
-    return trend._replace(
-        line=_widened(trend.line, of_values), departure=_widened(trend.departure, of_values)
-    )
-
-
-def _widened(line, half):
-    """A line with the interval of its slope widened by another error."""
-    slope = line.slope
-    whole = np.hypot(slope.high - slope.value, half)
-    return line._replace(slope=replace(slope, low=slope.value - whole, high=slope.value + whole))
-
-
-def _by_decade(line):
-    """The slope of a line over the decades of F, with its interval."""
-    return f"{line.slope:+z.2f} a decade of F"
-
-
-def _too_few(line):
-    """Why there is no line."""
-    return f"determined at {line.n} of the {MIN_POINTS} loads needed"

@@ -10,9 +10,9 @@ from ..core.estimate import Estimate
 from ..core.fitting import fit_line, slope_error
 from ..core.verdicts import FAILS, HOLDS, UNDETERMINED
 from ..roughness.recommended import best_dimension
+from .evidence import evidence_of
 from .findings import Finding, Joint, by_sign
 from .judge import material_of, table_of
-from .of_a_kind import delta_sigma_by_area
 
 
 def judge_study(
@@ -54,7 +54,7 @@ def size_exponent_grows_with_dimension(joints: Mapping[str, Joint]) -> Finding:
     dimension = np.array([best_dimension(j["surface_dimension"]).value for j in flat])
     of_kinds = all("ensemble" in joint.stages for joint in flat)
     if of_kinds:
-        delta = Estimate.stack(map(delta_sigma_by_area, flat))
+        delta = Estimate.stack(evidence_of(joint).area_dimension() for joint in flat)
         effect, error = 2 - delta.value, delta.width / 2
         slope = _slope(dimension, effect, error)
     else:

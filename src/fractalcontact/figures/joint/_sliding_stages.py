@@ -8,7 +8,7 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from xarray import DataTree
 
-from ...core.limits import LOOSELY, NEARLY
+from ...core.claims import all_claims
 from ...core.verdicts import UNDETERMINED
 from ..kit.legends import heading
 from ..kit.verdicts import row_of, verdict_words
@@ -17,8 +17,11 @@ from ..kit.words import force_label, percent
 #: The paper's stages of sliding: what each is said to do, and what decides about it.
 STAGES = {
     "compliance_rises_at_first": ("rising as v^x", ""),
-    "curves_overlap": ("the same", f"limit {percent(NEARLY)}, in part {percent(LOOSELY)}"),
-    "compliance_rises_again": ("rising again on average", f"limit {percent(NEARLY, '+')}"),
+    "curves_overlap": ("the same", f"margin {percent(all_claims()['curves_overlap'].margin)}"),
+    "compliance_rises_again": (
+        "rising again on average",
+        f"margin {percent(all_claims()['compliance_rises_again'].margin, '+')}",
+    ),
 }
 #: Letters of a line of the stages in the legend.
 _LINE = 50

@@ -9,16 +9,31 @@ from fractalcontact.core.claims import all_claims
 from fractalcontact.core.estimate import Estimate
 from fractalcontact.core.verdicts import FAILS, HOLDS, PARTLY, UNDETERMINED
 from fractalcontact.ensemble.statistics import add_statistics, add_trends
-from fractalcontact.statements import of_a_kind
 from fractalcontact.statements.findings import Joint
-from fractalcontact.statements.judge import judge, rule_for
+from fractalcontact.statements.judge import judge, rule_of
 from fractalcontact.statements.study import judge_study
 
 FORCES = np.array([10.0, 100.0, 1000.0, 10000.0])
 REALISATIONS = 12
 #: Values over realisations scatter about their mean by so much, over loads independently.
 SCATTER = 0.02
-NAMES = [name for name in all_claims() if hasattr(of_a_kind, name)]
+#: Statements on joints of a kind.
+NAMES = [
+    "larger_samples_close_more",
+    "area_is_lacunar",
+    "boxes_follow_one_law",
+    "estimates_agree",
+    "dimension_rises_by_area",
+    "dimension_rises_by_boxes",
+    "dimension_spans_all",
+    "size_effect_follows",
+    "larger_domains_are_less_dense",
+    "domains_are_fractal",
+    "domains_differ_from_cuts",
+]
+#: Box sides of local slopes, mm.
+SIDES = 0.1 * 2.0 ** np.arange(6)
+OCTAVES = ("normal_force", "null_octave")
 
 
 def made(seed=0, **changes):
@@ -33,14 +48,25 @@ def made(seed=0, **changes):
         "eq6_box": np.zeros(4),
         "area_exponent": -0.6,
         "compliance_exponent": 0.6,
+        "nodes": np.full(4, 1000.0),
+        "local_slope": [1.06, 1.1, 1.0, 1.08, 1.15],
+        "local_slope_random": np.linspace(0, 2, 5),
+        "local_slope_cut_difference": np.full(5, 0.2),
+        "delta_sigma_cut_difference": np.full(4, 0.05),
     } | changes
+    for name in ("local_slope", "local_slope_random", "local_slope_cut_difference"):
+        means[name] = np.broadcast_to(means[name], (len(FORCES), 5))
+    means["local_slope_random_difference"] = means["local_slope"] - means["local_slope_random"]
+    means["local_slope_cut"] = means["local_slope"] - means["local_slope_cut_difference"]
     rng = np.random.default_rng(seed)
     result = xr.Dataset(coords={"normal_force": FORCES})
     for name, mean in means.items():
         mean = np.asarray(mean, float)
-        dims = ("realisation", "normal_force")[: 1 + mean.ndim]
+        dims = ("realisation", *OCTAVES)[: 1 + mean.ndim]
         values = mean + SCATTER * rng.standard_normal((REALISATIONS, *mean.shape))
         result[name] = (dims, values, {"units": "1", "long_name": name})
+    for ending, sides in (("", SIDES[1:]), ("_min", SIDES[:-1]), ("_max", SIDES[1:])):
+        result[f"local_slope_side{ending}"] = "null_octave", sides
     add_trends(result)
     add_statistics(result, list(means))
     pressure = FORCES / 100.0
@@ -53,7 +79,7 @@ def verdict(name, **changes):
 
 def found(name, **changes):
     joint = Joint({**stages(), "ensemble": made(**changes)}, SETTINGS)
-    return rule_for(name, joint)(joint)
+    return rule_of(name)(joint)
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -90,7 +116,28 @@ def test_an_ensemble_as_the_paper_has_it(name):
         ("dimension_rises_by_area", {"delta_sigma_area": np.full(4, 1.4)}, FAILS),
         ("dimension_rises_by_area", {"delta_sigma_area": [1.9, 1.4, 0.8, 0.2]}, FAILS),
         ("dimension_rises_by_area", {"delta_sigma_area": [np.nan] * 3 + [1.4]}, UNDETERMINED),
-        ("dimension_rises_by_boxes", {"delta_sigma_random": [0.1, 0.8, 1.4, 1.9]}, PARTLY),
+        ("dimension_rises_by_area", {"delta_sigma_area": [1.2, 1.3, 1.4, 1.5]}, PARTLY),
+        ("dimension_rises_by_boxes", {"delta_sigma_random": [0.1, 0.8, 1.4, 1.7]}, PARTLY),
+        # Random nodes near 2 cannot rise: a domain that reaches 2 as well rises no faster.
+        (
+            "dimension_rises_by_boxes",
+            {"delta_sigma": [0.6, 1.0, 1.4, 2.0], "delta_sigma_random": [1.1, 1.55, 2.0, 2.0]},
+            PARTLY,
+        ),
+        # Faster than random nodes, by less than the margin.
+        ("dimension_rises_by_boxes", {"delta_sigma_random": [0.2, 0.72, 1.25, 1.7]}, PARTLY),
+        ("boxes_follow_one_law", {"local_slope": [1.0, 1.1, 1.2, 1.3, 1.3]}, PARTLY),
+        ("boxes_follow_one_law", {"local_slope": [0.5, 0.5, 0.7, 1.2, 1.8]}, FAILS),
+        ("boxes_follow_one_law", {"local_slope": [1.6, 1.8, 1.9, 2.0, 2.0]}, FAILS),
+        ("boxes_follow_one_law", {"nodes": np.full(4, 20.0)}, UNDETERMINED),
+        ("domains_are_fractal", {"local_slope": [0.1, 0.5, 1.0, 1.5, 1.9]}, FAILS),
+        ("domains_are_fractal", {"local_slope_random": [1.06, 1.1, 1.0, 1.08, 1.15]}, FAILS),
+        # Surely like the cut: no more than a cut at one height.
+        ("domains_are_fractal", {"local_slope_cut_difference": np.full(5, 0.05)}, PARTLY),
+        ("domains_differ_from_cuts", {"local_slope_cut_difference": np.zeros(5)}, FAILS),
+        ("domains_differ_from_cuts", {"local_slope_cut_difference": np.full(5, 0.05)}, FAILS),
+        ("domains_differ_from_cuts", {"delta_sigma_cut_difference": np.full(4, 0.4)}, FAILS),
+        ("domains_differ_from_cuts", {"nodes": np.full(4, 20.0)}, UNDETERMINED),
         ("dimension_rises_by_boxes", {"delta_sigma": np.full(4, 1.4)}, FAILS),
         ("dimension_spans_all", {"delta_sigma": [0.2, 0.5, 0.8, 1.2]}, FAILS),
         ("dimension_spans_all", {"delta_sigma": [0.8, 0.9, 1.1, 1.9]}, PARTLY),
@@ -107,7 +154,7 @@ def test_a_wide_interval_under_the_heaviest_load_leaves_the_upper_end_open():
     wide["delta_sigma_mean_high"][-1] = 1.9
     joint = Joint({**stages(), "ensemble": wide}, SETTINGS)
     wide["delta_sigma_random_mean"][:] = 0.6
-    assert of_a_kind.dimension_spans_all(joint).verdict == UNDETERMINED
+    assert rule_of("dimension_spans_all")(joint).verdict == UNDETERMINED
 
 
 def test_what_the_interval_leaves_open_is_undetermined_with_what_would_decide_it():

@@ -1,0 +1,293 @@
+"""Numbers that statements on joints of a kind are judged by: of realisations, or of one specimen.
+
+What the paper says of joints of a kind is judged on realisations of the kind, where the study has
+them, and else on the specimen. The rule and its margin are the same: they ask for these numbers.
+"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from functools import wraps
+from typing import Any, NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from ..core.estimate import Estimate
+from ..core.fitting import slope_error
+from ..core.limits import MIN_NODES, NEAR_FULL
+from ..core.verdicts import UNDETERMINED
+from ..domain.departure import departure_of
+from ..domain.pressure_trend import pressure_trend
+from ..domain.slope_curves import largest_departure
+from .findings import Finding, Joint
+
+#: The two estimates of Delta_sigma, as their variables and in words.
+ESTIMATES = {"area": "by A_r(s)", "box": "by boxes"}
+
+#: Null models; estimates and box sides beside them.
+_NULLS = ("random", "cut")
+_ESTIMATED = ("local_slope", "local_slope_cut_difference", "delta_sigma_cut_difference")
+_SIDES = ("local_slope_side", "local_slope_side_min", "local_slope_side_max")
+
+
+class OverLoads(NamedTuple):
+    """An estimate over nominal pressures, MPa, ascending."""
+
+    estimate: Estimate
+    pressures: np.ndarray
+
+
+@dataclass(frozen=True)
+class Trend:
+    """Slope of Delta_sigma over the decades of load.
+
+    Attributes
+    ----------
+    slope, departure : Estimate
+        Of Delta_sigma, and of what it has more than random nodes where these are not near 2.
+    pressures : (n,) ndarray
+        Nominal pressures of the fit, MPa.
+    """
+
+    slope: Estimate
+    departure: Estimate
+    pressures: np.ndarray
+
+
+class Evidence:
+    """Numbers of one specimen.
+
+    Parameters
+    ----------
+    joint : Joint
+    """
+
+    #: Of what the numbers are, in words; empty of the specimen itself.
+    judged_on = ""
+
+    def __init__(self, joint: Joint) -> None:
+        self.joint = joint
+
+    def of(self, finding: Finding) -> Finding:
+        """A finding that says what it was judged on."""
+        return finding
+
+    @property
+    def reference(self) -> str:
+        """The reference pressure in words."""
+        return f"at {self.joint.force / self.joint.area:.3g} MPa"
+
+    def size_exponent(self, name: str) -> Estimate:
+        """Exponent against the side b of sub-windows under the reference load."""
+        return Estimate.read(self.joint.state("windows"), name)
+
+    def beyond_eq6(self, by: str) -> OverLoads:
+        """Exponent of A_r/A_0 over b less that of eq. 6, of one of :data:`ESTIMATES`."""
+        test = self.joint["size_test"].sel(estimator=by)
+        test = test.isel(normal_force=~test["beyond_study"].values.astype(bool))
+        return _known(Estimate.read(test, "area_difference"), test["nominal_pressure"].values)
+
+    def area_dimension(self) -> Estimate:
+        """Delta_sigma by A_r(s) under the reference load."""
+        return Estimate.read(self.joint.state("scaling"), "delta_sigma")
+
+    def area_bend(self) -> Estimate:
+        """Delta_sigma by the two finest resolutions less that by the two coarsest."""
+        return Estimate.read(self.joint.state("scaling"), "area_bend")
+
+    def difference(self) -> OverLoads:
+        """Delta_sigma by A_r(s) less that by boxes."""
+        return _known(Estimate.read(self.joint.states("scaling"), "difference"), self._pressures)
+
+    def box_dimension(self) -> tuple[OverLoads, np.ndarray]:
+        """Delta_sigma by boxes, and that of as many random nodes at these loads."""
+        states = self.joint.states("domains")
+        delta = Estimate.read(states, "delta_sigma")
+        random = states["delta_sigma_random"].values
+        return OverLoads(delta[delta.known], self._pressures[delta.known]), random[delta.known]
+
+    def trend(self, by: str) -> Trend:
+        """Trend with the load of one of :data:`ESTIMATES`.
+
+        The interval of a slope is that of the line and that of the values in quadrature.
+        """
+        states = self.joint.states({"area": "scaling", "box": "domains"}[by])
+        delta = Estimate.read(states, "delta_sigma")
+        random = np.full(delta.value.shape, np.nan)
+        if by == "box":
+            of_random = states["delta_sigma_random"].values
+            random = np.where(of_random <= NEAR_FULL, of_random, np.nan)
+        forces, known = states["normal_force"].values, np.isfinite(delta.width)
+        trend = pressure_trend(forces, np.where(known, delta.value, np.nan), random)
+        of_values = slope_error(np.log10(forces[known]), delta.width[known] / 2)
+        line, departure = (_widened(one.slope, of_values) for one in (trend.line, trend.departure))
+        return Trend(line, departure, self._pressures[known])
+
+    def slopes(self) -> xr.Dataset:
+        """Local slopes of box counts and departures from null models under all loads.
+
+        Those of the stage ``domains``: ``local_slope`` and ``local_slope_cut_difference`` with
+        their ends, ``local_slope_random``, ``local_slope_cut``, ``local_slope_side`` and its ends,
+        ``local_slope_random_p``, ``local_slope_random_side``, those of the cut, ``null_verdict``
+        and ``null_reason``.
+        """
+        return self.joint.states("domains")
+
+    @property
+    def _pressures(self) -> np.ndarray:
+        return self.joint.forces / self.joint.area
+
+
+class OfRealisations(Evidence):
+    """Means over the realisations of an ensemble, with their intervals."""
+
+    def __init__(self, joint: Joint) -> None:
+        super().__init__(joint)
+        self.stage = joint["ensemble"]
+        self.judged_on = f"{self.realisations} realisations"
+
+    @property
+    def realisations(self) -> int:
+        """How many there are."""
+        return int(self.stage.sizes["realisation"])
+
+    def of(self, finding: Finding) -> Finding:
+        """A finding that says how many realisations it was judged on."""
+        # A finding without a note has no number, but the reason why there is none.
+        of = "mean of" if finding.note else "in"
+        return finding._replace(
+            numbers=f"{finding.numbers}, {of} {self.judged_on}", judged_on=self.judged_on
+        )
+
+    def size_exponent(self, name: str) -> Estimate:
+        """Exponent against the side b of sub-windows under the reference load."""
+        return self._mean(name)
+
+    def beyond_eq6(self, by: str) -> OverLoads:
+        """Exponent of A_r/A_0 over b less that of eq. 6, under the reference load."""
+        at = self._at_reference
+        return _known(self._mean(f"eq6_{by}", at), at["nominal_pressure"].values)
+
+    def area_dimension(self) -> Estimate:
+        """Delta_sigma by A_r(s) under the reference load."""
+        return self._mean("delta_sigma_area", self._at_reference)[0]
+
+    def area_bend(self) -> Estimate:
+        """Delta_sigma by the two finest resolutions less that by the two coarsest."""
+        return self._mean("area_bend", self._at_reference)[0]
+
+    def difference(self) -> OverLoads:
+        """Delta_sigma by A_r(s) less that by boxes."""
+        every = self._every("difference")
+        return OverLoads(self._mean("difference")[every], self._pressures[every])
+
+    def box_dimension(self) -> tuple[OverLoads, np.ndarray]:
+        """Delta_sigma by boxes, and that of as many random nodes at these loads."""
+        every = self._every("delta_sigma")
+        delta = OverLoads(self._mean("delta_sigma")[every], self._pressures[every])
+        return delta, self.stage["delta_sigma_random_mean"].values[every]
+
+    def trend(self, by: str) -> Trend:
+        """Trend with the load of one of :data:`ESTIMATES`."""
+        name = {"area": "delta_sigma_area_trend", "box": "delta_sigma_trend"}[by]
+        used = self.stage[f"{name}_used"].values.astype(bool)
+        departure = self._mean("departure_trend") if by == "box" else Estimate()
+        return Trend(self._mean(name), departure, self._pressures[used])
+
+    def slopes(self) -> xr.Dataset:
+        """Local slopes, as :meth:`Evidence.slopes` has them, of the mean over the realisations.
+
+        Departures are of the mean difference, by Student's t of the realisations times the number
+        of local slopes. A load under which a realisation holds fewer than ``MIN_NODES`` nodes has
+        none.
+        """
+        stage = self.stage
+        names = [
+            *(f"{name}{end}" for name in _ESTIMATED for end in ("", "_low", "_high")),
+            *(f"local_slope_{null}" for null in _NULLS),
+        ]
+        means = {name: stage[_of_mean(name)] for name in names}
+        sides = {name: stage[name] for name in _SIDES}
+        less = {null: self._mean(f"local_slope_{null}_difference") for null in _NULLS}
+        enough = (stage["nodes"] >= MIN_NODES).all("realisation").values
+        rows = [self._departures(less, load) if many else {} for load, many in enumerate(enough)]
+        few = f"fewer than {MIN_NODES} nodes in contact in a realisation"
+        missing = {"null_verdict": UNDETERMINED, "null_reason": few}
+        columns = ("p", "side")
+        names = [f"local_slope_{null}_{column}" for null in _NULLS for column in columns]
+        table = {
+            name: ("normal_force", [row.get(name, missing.get(name, np.nan)) for row in rows])
+            for name in (*names, *missing)
+        }
+        return xr.Dataset({**means, **sides, **table})
+
+    def _departures(self, less: Mapping[str, Estimate], load: int) -> dict[str, Any]:
+        """Departures of the mean local slopes from those of the null models under one load."""
+        freedom, middles = self.realisations - 1, self.stage["local_slope_side"].values
+        found = {null: largest_departure(less[null][load], freedom) for null in _NULLS}
+        row: dict[str, Any] = {"null_verdict": departure_of(**found, surface=True)}
+        row["null_reason"] = ""
+        for null, departure in found.items():
+            known = np.isfinite(departure.p)
+            row[f"local_slope_{null}_p"] = departure.p
+            row[f"local_slope_{null}_side"] = middles[departure.place] if known else np.nan
+        return row
+
+    def _mean(self, name: str, stage: xr.Dataset | None = None) -> Estimate:
+        return Estimate.read(self.stage if stage is None else stage, f"{name}_mean")
+
+    def _every(self, name: str) -> np.ndarray:
+        """Loads at which every realisation has a value: else it were that of those with most."""
+        return self.stage[f"{name}_n"].values == self.realisations
+
+    @property
+    def _at_reference(self) -> xr.Dataset:
+        """The ensemble under the reference load alone."""
+        force = self.stage["normal_force"].values
+        return self.stage.isel(normal_force=[int(np.argmin(np.abs(force - self.joint.force)))])
+
+    @property
+    def _pressures(self) -> np.ndarray:
+        return self.stage["nominal_pressure"].values
+
+
+def evidence_of(joint: Joint) -> Evidence:
+    """Numbers that a statement on joints of a kind is judged by."""
+    return OfRealisations(joint) if "ensemble" in joint.stages else Evidence(joint)
+
+
+def at_reference(joint: Joint, evidence: Evidence) -> xr.Dataset:
+    """Local slopes and their departures under the reference load."""
+    return evidence.slopes().sel(normal_force=joint.force, method="nearest")
+
+
+def of_a_kind(rule: Callable[[Joint, Evidence], Finding]) -> Callable[[Joint], Finding]:
+    """A rule on joints of a kind, whose finding says what it was judged on."""
+
+    @wraps(rule)
+    def judged(joint: Joint) -> Finding:
+        evidence = evidence_of(joint)
+        return evidence.of(rule(joint, evidence))
+
+    return judged
+
+
+def _of_mean(name: str) -> str:
+    """Variable of an ensemble that holds the mean of a quantity, or an end of its interval."""
+    quantity, end = name, ""
+    for ending in ("_low", "_high"):
+        if name.endswith(ending):
+            quantity, end = name.removesuffix(ending), ending
+    return f"{quantity}_mean{end}"
+
+
+def _known(estimate: Estimate, pressures: np.ndarray) -> OverLoads:
+    """An estimate at the loads at which it has an interval."""
+    known = np.isfinite(estimate.width)
+    return OverLoads(estimate[known], pressures[known])
+
+
+def _widened(slope: Estimate, half: float) -> Estimate:
+    """A slope whose interval is widened by another error."""
+    whole = np.hypot(slope.high - slope.value, half)
+    return replace(slope, low=slope.value - whole, high=slope.value + whole)
