@@ -19,7 +19,6 @@ SETTINGS = {
     "opposite": "match",
     "chosen_for": {},
     "capped_variant": False,
-    "seating_pressure": 0.25,
 }
 
 
@@ -195,6 +194,7 @@ def stages(**changes):
                 ),
                 "area_corrected_error": (dims, np.zeros((1, len(V), 1, len(LOADS)))),
                 "interface_closure": over_boxes([0.1, 0.2, 0.3, 0.4]),
+                "seating_pressure": (of_offsets, np.full((1, len(V), 1), 0.1)),
                 "closure_law": (of_offsets, np.reshape(values["law"], (1, len(V), 1))),
                 "hyperbola_misfit": (of_offsets, np.full((1, len(V), 1), 0.01)),
                 "semi_logarithmic_misfit": (of_offsets, np.full((1, len(V), 1), 0.05)),

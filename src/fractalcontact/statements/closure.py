@@ -6,7 +6,7 @@ from ..core.claims import all_claims
 from ..core.estimate import Estimate
 from ..core.intervals import mean_difference
 from ..core.labels import loads_of
-from ..core.limits import NEARLY, RESOLVED_NODES
+from ..core.limits import NEARLY
 from ..core.verdicts import FAILS, HOLDS, ILL_POSED, PARTLY, UNDETERMINED
 from .evidence import Evidence, of_a_kind
 from .findings import (
@@ -181,10 +181,9 @@ def area_settles(joint: Joint) -> Finding:
 def refinement_changes_little(joint: Joint) -> Finding:
     """Change of closure and contact area from twice the scan's spacing to the spacing itself.
 
-    Closure counts from a seat, the lightest load from the stated seating pressure on under which
-    both have ten nodes in contact: from first touch it would change with the highest point, which
-    any finer scan moves. Judged under every load above the seat, with a margin; in part where one
-    of the two changes by no more, or some loads.
+    Closure counts from a seat, the lightest load that seats both: from first touch it would change
+    with the highest point, which any finer scan moves. Judged under every load above the seat, with
+    a margin; in part where one of the two changes by no more, or under some loads.
     """
     margin = all_claims()["refinement_changes_little"].margin
     curves = joint.along("closure").sel(offset=joint.offset)
@@ -193,10 +192,10 @@ def refinement_changes_little(joint: Joint) -> Finding:
         curves.sel(resolution=k) for k in (2 * finest, finest) if k in curves["resolution"].values
     ]
     pressures = joint.forces / joint.area
-    counts = pressures >= joint.settings["seating_pressure"] * (1 - ROUNDING)
+    seat = max(float(grid["seating_pressure"]) for grid in grids)
+    counts = pressures >= seat * (1 - ROUNDING)
     for grid in grids:
-        closed, touching = grid["interface_closure"].values, grid["nodes"].values
-        counts = counts & np.isfinite(closed) & (touching >= RESOLVED_NODES)
+        counts = counts & np.isfinite(grid["interface_closure"].values)
     if len(grids) < 2 or counts.sum() < 2:
         return Finding(UNDETERMINED, "no two loads with ten nodes in contact at both spacings")
     closures, areas = (
