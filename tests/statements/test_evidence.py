@@ -124,6 +124,11 @@ def test_an_ensemble_as_the_paper_has_it(name):
             {"delta_sigma": [0.6, 1.0, 1.4, 2.0], "delta_sigma_random": [1.1, 1.55, 2.0, 2.0]},
             PARTLY,
         ),
+        (
+            "dimension_rises_by_boxes",
+            {"delta_sigma": [0.9, 1.3, 1.7, 2.0], "delta_sigma_random": [1.1, 1.9, 2.0, 2.0]},
+            PARTLY,
+        ),
         # Faster than random nodes, by less than the margin.
         ("dimension_rises_by_boxes", {"delta_sigma_random": [0.2, 0.72, 1.25, 1.7]}, PARTLY),
         ("boxes_follow_one_law", {"local_slope": [1.0, 1.1, 1.2, 1.3, 1.3]}, PARTLY),

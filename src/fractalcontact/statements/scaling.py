@@ -98,9 +98,10 @@ def dimension_rises_by_boxes(joint: Joint, evidence: Evidence) -> Finding:
     if found.verdict not in (HOLDS, PARTLY):
         return found
     faster = beyond_margin(trend.departure, all_claims()[name].margin, rising=True)
+    less = f"less that of as many random nodes {trend.departure:+z.2f}"
     return found._replace(
         verdict=found.verdict if faster == HOLDS else PARTLY,
-        numbers=f"{found.numbers}, less that of as many random nodes {trend.departure:+z.2f}",
+        numbers=f"{found.numbers}, {less if trend.departure.known else 'random nodes near 2'}",
     )
 
 
