@@ -150,7 +150,7 @@ def box_dimension(
     small. A bend of the counts is no error of the value but a finding: `small_boxes` and
     `large_boxes` are the slopes of both halves of the range. Fewer than `MIN_NODES` nodes have a
     value and no interval. An exact value has the slopes of every run of sizes over half of the
-    range or more instead. How often intervals hold the truth: docs/verification.md.
+    range or more instead. How often intervals hold the truth: docs/calibration.md.
 
     Known bias: percolation clusters of 512 and 1024 read 0.016 to 0.02 low in the mean. Sets marked
     by whole cells read up to 0.1 high where their waves hide that: state `whole_cells`. Levy dusts
