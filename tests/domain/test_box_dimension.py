@@ -391,6 +391,20 @@ def test_more_load_makes_a_denser_domain():
     assert 0 < dimensions[0] < dimensions[-1] < 2
 
 
+@pytest.mark.parametrize("seed", range(3))
+def test_no_estimator_takes_over_where_boxes_fill(seed):
+    """Cuts of a surface with a roll-off, up to half of the window: each denser one has more."""
+    heights = self_affine((250, 250), 0.08, 0.5, rms=0.4, seed=seed, roll_off=1.0)
+    found = [
+        dimension_of_domain(heights > np.quantile(heights, 1 - fraction), 0.08)
+        for fraction in (0.06, 0.12, 0.25, 0.4, 0.5, 0.75)
+    ]
+    values = np.array([one.value for one in found])
+    assert {one.estimator for one in found} == {"mean", ""}
+    assert (np.diff(values[np.isfinite(values)]) > 0).all()
+    assert all(one.reason for one in found if not one.known)
+
+
 def test_scales_that_say_nothing_are_left_out():
     rng = np.random.default_rng(0)
     sparse = box_dimension(rng.random((512, 512)) < 5e-4, 1.0)

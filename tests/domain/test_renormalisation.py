@@ -55,6 +55,13 @@ def test_interval_of_an_exact_fractal_is_that_of_counting_its_nodes():
     np.testing.assert_allclose(many.delta_sigma_low, DELTA, atol=1e-4)
 
 
+def test_no_interval_goes_beyond_a_plane_but_that_of_an_area_that_grows_with_refinement():
+    for delta, bounded in ((1.95, True), (2.0, True), (2.1, False)):
+        found = renormalisation(S, 4.0 * S ** (2 - delta) + 0 * FORCE, FORCE)
+        assert (found.delta_sigma_high >= found.delta_sigma).all()
+        assert ((found.delta_sigma_high == 2) == bounded).all()
+
+
 def test_sigma_star_does_not_depend_on_resolution_though_sigma_n_does():
     whole, finer = (renormalisation(S[i], AREA[:, i], FORCE) for i in (slice(4), slice(3)))
     np.testing.assert_allclose(whole.sigma_star, finer.sigma_star)

@@ -134,6 +134,19 @@ def _beyond_cut_offs(means, extent):
     return alone, (count >= (1 - SATURATED) * all_boxes) & (not filled)
 
 
+def is_crowded(means: MeanCounts, extent: np.ndarray) -> bool:
+    """True if box sizes are too few for a law since most others find all boxes occupied.
+
+    Parameters
+    ----------
+    means : MeanCounts
+    extent : (ny, nx) bool ndarray
+        The domain, without empty rows and columns about it.
+    """
+    alone, full = _beyond_cut_offs(means, extent)
+    return bool(np.count_nonzero(full) > len(means.sizes) / 2 > np.count_nonzero(alone))
+
+
 class FoundLaw(NamedTuple):
     """A law found, without the interval of its dimension."""
 

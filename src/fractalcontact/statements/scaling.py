@@ -160,8 +160,13 @@ def span_finding(delta: Estimate, random: np.ndarray, pressures: np.ndarray, not
 
 def by_design(joint: Joint) -> str:
     """Note on the upper end where a hardness caps the pressure; empty without one."""
-    capped = np.isfinite(joint.settings["material"]["hardness"])
-    return "; at full yield it is 2 by construction" if capped else ""
+    if not np.isfinite(joint.settings["material"]["hardness"]):
+        return ""
+    largest = joint.states("domains")["fit_max"].values
+    return (
+        f"; as boxes fill, the largest one fitted falls from {np.nanmax(largest):.2g} to "
+        f"{np.nanmin(largest):.2g} mm in this specimen; at full yield it is 2 by construction"
+    )
 
 
 @of_a_kind
