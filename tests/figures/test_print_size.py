@@ -12,7 +12,7 @@ from print_size import faults, faults_of_study
 
 from fractalcontact.figures.draw import draw_figure, drawer_of
 from fractalcontact.figures.kit.drawing import print_style
-from fractalcontact.figures.kit.maps import MAX_BLACK, MIN_DOT, enlarged
+from fractalcontact.figures.kit.maps import MAX_BLACK, MIN_DOT, enlarged, enlargement
 from fractalcontact.study.figure_list import accuracy_figures_of, all_figures, figures_of
 
 #: Those that changed last, or are crowded, come first: the quick suite draws them alone.
@@ -137,5 +137,9 @@ def test_nodes_are_enlarged_for_print_alone():
     full = np.random.default_rng(1).random((200, 200)) < 0.2
     drawn = enlarged(full, 0.1)
     assert drawn is full or drawn.mean() <= MAX_BLACK
+    # Maps that are compared: where one would fill, all are drawn at their true size.
+    assert enlargement([domain], 0.3) == 3
+    assert enlargement([domain], 0.3, 2) == 2
+    assert enlargement([domain, np.random.default_rng(1).random((50, 50)) < 0.31], 0.3) == 1
     empty = np.zeros((8, 8), bool)
     assert not enlarged(empty, 0.1).any()

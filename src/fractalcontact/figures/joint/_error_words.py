@@ -11,9 +11,9 @@ from ..kit.words import length_unit, percent, short
 QUANTITIES = {
     "closure": ("interface closure", "closure"),
     "separation": ("separation", "separation"),
-    "area_corrected": ("real contact area, corrected", "area"),
+    "area_corrected": ("contact area", "area"),
     "stiffness": ("tangent stiffness", "stiffness"),
-    "delta_sigma": ("$\\Delta_\\sigma$ by box counting", "Δσ"),
+    "delta_sigma": ("$\\Delta_\\sigma$ by boxes", "Δσ"),
 }
 SOURCES = {
     "solver": "solver",
@@ -49,7 +49,13 @@ def _error_words(errors, error):
 
 
 def totals_words(errors: xr.Dataset) -> str:
-    """Both totals at the reference load, for the title of a panel."""
+    """Both totals at the reference load, for the title of a panel, and the model's error."""
+    model = float(errors["error"].sel(source="model"))
+    beside = f", model {_error_words(errors, model)}" if np.isfinite(model) else ""
+    return _both_totals(errors) + beside
+
+
+def _both_totals(errors):
     own, kind = (float(errors[key]) for key in TOTALS)
     if not np.isfinite(own):
         return "total not known"

@@ -141,7 +141,7 @@ def draw_domain(
     if times is None:
         drawn = enlarged(domain, _node_points(axes, domain.shape, sides))
     else:
-        drawn = domain if times < 2 else maximum_filter(domain, times, mode="constant", cval=0)
+        drawn = _enlarged(domain, times)
     draw_map(axes, drawn, sides, ticks=ticks, **grey)
     nodes = np.argwhere(domain)
     if len(nodes) < FEW_NODES and max(domain.shape) > FINE_NODES:
@@ -169,11 +169,32 @@ def enlarged(domain: np.ndarray, points: float) -> np.ndarray:
     (ny, nx) bool ndarray
         The domain itself where its nodes can be seen, or would fill the map.
     """
-    for times in range(int(np.ceil(MIN_DOT / points)), 1, -1):
-        drawn = maximum_filter(domain, size=times, mode="constant", cval=0)
-        if drawn.mean() <= MAX_BLACK:
-            return drawn
-    return domain
+    return _enlarged(domain, enlargement([domain], points))
+
+
+def enlargement(domains: Sequence[np.ndarray], points: float, most: float = np.inf) -> int:
+    """How many times as wide as they are domains can draw their nodes; once where they fill a map.
+
+    One number for all: with one for each, finer domains would look fuller than coarser ones.
+
+    Parameters
+    ----------
+    domains : sequence of (ny, nx) bool ndarray
+        Of one window at one resolution or several.
+    points : float
+        How wide the smallest node is in print, points.
+    most : float, optional
+    """
+    wanted = int(min(np.ceil(MIN_DOT / points), most))
+    for times in range(wanted, 1, -1):
+        if all(_enlarged(domain, times).mean() <= MAX_BLACK for domain in domains):
+            return times
+    return 1
+
+
+def _enlarged(domain, times):
+    """A domain whose nodes are squares of so many nodes a side."""
+    return domain if times < 2 else maximum_filter(domain, times, mode="constant", cval=0)
 
 
 def _node_points(axes, shape, sides):

@@ -1,6 +1,5 @@
 """Fig. 8: the contact domain at coarser and coarser resolution, and its real mean pressure."""
 
-import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator
 from xarray import DataTree
@@ -12,7 +11,7 @@ from ..kit.axes import label_short_span
 from ..kit.caption import caption
 from ..kit.domains import contact_domain, estimates_of, prefractals
 from ..kit.drawing import COLOURS, WIDTH, Drawing
-from ..kit.maps import MIN_DOT, draw_domain
+from ..kit.maps import draw_domain, enlargement
 from ..kit.panel import Panel, table_of
 from ..kit.titles import headline, letter
 from ..kit.verdicts import claim
@@ -41,7 +40,8 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     top, bottom = figure.subfigures(2, 1, height_ratios=[height, 2.0])  # type: ignore[misc]  # an array
     maps = top.subplots(rows, columns, squeeze=False, sharey=True).ravel()
     domains = [contact_domain(subject, k, load) for k in states["resolution"].values]
-    times = _times(max(domains[0].shape), columns)
+    points = 72 * 0.85 * WIDTH / columns / max(domains[0].shape)
+    times = enlargement(domains, points, _WIDEST)
     for i, domain in enumerate(domains):
         draw_domain(maps[i], domain, sides, ticks=4, times=times)
         letter(maps[i], _LETTERS[i], _area_words(states.isel(resolution=i)))
@@ -75,15 +75,6 @@ def _states(subject):
     kept = closure[["nodes", "area", "area_share", "area_corrected_resolved"]].assign(corrected)
     kept = kept.assign(scaling[["spacing", "sigma_n", "sigma_n_raw"]].data_vars)
     return kept.assign(rms_slope=subject.states("area")["rms_slope"])
-
-
-def _times(nodes, columns):
-    """How many times as wide as they are all maps draw their nodes, so that print shows the finest.
-
-    One number for all: with one for each, finer domains would look fuller than coarser ones.
-    """
-    points = 72 * 0.85 * WIDTH / columns / nodes
-    return int(np.clip(np.ceil(MIN_DOT / points), 1, _WIDEST))
 
 
 def _area_words(state):

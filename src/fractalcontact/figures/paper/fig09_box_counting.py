@@ -47,9 +47,8 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     figure = Figure(figsize=(WIDTH, 3.7))
     axes = figure.subplots(1, 3)
     domain = contact_domain(subject, reported.resolution, reported.reference)
-    letter(axes[0], "a", "contact domain")
-    if draw_domain(axes[0], domain, window_sides(subject["specimens"])):
-        axes[0].set_title("nodes enlarged", loc="right", fontsize=7)
+    larger = draw_domain(axes[0], domain, window_sides(subject["specimens"]))
+    letter(axes[0], "a", "contact, nodes enlarged" if larger else "contact domain")
     b, c = Panel(axes[1], "b", "box counts"), Panel(axes[2], "c")
     _draw_counts(b, counts, rf"count law: $\Delta_\sigma$ {law.text()}", ordinary)
     draw_slopes(c, counts)
@@ -105,13 +104,14 @@ def _draw_counts(panel, counts, law, ordinary):
 
 
 def _law_form(counts):
-    """The count law as a formula: its curve in (b), its level in (c)."""
+    """The count law in words: its curve in (b), its level in (c)."""
     width = float(counts["law_node_width"])
-    outlines = [float(counts[f"law_outline{end}"]) for end in ("", "_square")]
-    # An index within an exponent would be too small to read in print.
-    power, exponent, node = "r^{-x}", r"\Delta_\sigma", ""
-    if width:
-        node = f"; node width $c$ = {short(width)} mm"
-        power, exponent = "(r-c)^x/r^2", r"2-\Delta_\sigma"
-    outline = r"\,[1+\ldots]" if any(outlines) else ""
-    return f"(b) $N \\sim {power}{outline}$, $x = {exponent}$\n(c) level{node}"
+    outline = any(float(counts[f"law_outline{end}"]) for end in ("", "_square"))
+    grows = f"$r$ less {short(width)} mm, a node's width," if width else "$r$"
+    return "\n".join(
+        [
+            "Count law in (b): the area $N r^2$ of all",
+            f"boxes grows as {grows}",
+            r"to the power $2-\Delta_\sigma$" + (", and with the outline" if outline else ""),
+        ]
+    )
