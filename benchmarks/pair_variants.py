@@ -24,6 +24,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from fractalcontact.core.directions import slides
 from fractalcontact.core.errors import InputError
 from fractalcontact.core.estimate import Estimate
 from fractalcontact.core.limits import DECISIVE
@@ -188,7 +189,7 @@ def table(study: Mapping, name: str, source: str, offset: float) -> Iterator[dic
     def prepared(of_scan: Mapping, of_study: Mapping):
         settings = resolve_settings(study, name, own | of_study, source)
         settings = replace(settings, resolutions=[1, 2])
-        if settings.opposite != "flat":  # this offset, and in the first direction alone
+        if slides(settings.opposite):  # this offset, and in the first direction alone
             first = settings.contact_directions[:1]
             settings = replace(
                 settings, offsets=[offset], directions=first, contact_directions=first

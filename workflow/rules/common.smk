@@ -16,7 +16,7 @@ sys.path[:0] = [str(ROOT / "src"), str(ROOT / "workflow/scripts")]
 # Light modules, without xarray, numba or matplotlib: on a cluster every job reads the workflow.
 from fractalcontact.core import checksums
 from fractalcontact.core.code_digest import Code
-from fractalcontact.core.directions import AUTOMATIC_OFFSETS
+from fractalcontact.core.directions import AUTOMATIC_OFFSETS, slides
 from fractalcontact.core.errors import InputError
 from fractalcontact.core.patterns import alternation
 from fractalcontact.core.stage import ENSEMBLE, EXPERIMENT, GRAINS, JOINT, MAP, SPECIMEN
@@ -193,7 +193,7 @@ def is_pair(specimen):
 
 
 #: Surfaces against a plane, which cannot slide, and all others.
-FLAT = [name for name in SPECIMENS if SETTINGS[name].opposite == "flat" and not is_pair(name)]
+FLAT = [name for name in SPECIMENS if not slides(SETTINGS[name].opposite) and not is_pair(name)]
 SLIDING = sorted(set(SPECIMENS) - set(FLAT))
 SLIDING_NAMES = set(SLIDING)
 

@@ -15,7 +15,6 @@ from pathlib import Path
 from ..core.errors import InputError
 from ..core.labels import length_words, natural_key, percent, plain, printable
 from ..core.window import spacing_of, window_sides
-from ..domain.map_outline import outline_words
 from ..domain.measured_map import read_contact_map
 from ..mechanics.joint import choose_offsets
 from ..mechanics.states import hardness_of
@@ -23,6 +22,7 @@ from ..roughness.dimension import surface_dimension
 from ..roughness.quality import scan_quality
 from ..roughness.quality_words import overlap_words, suspect_words
 from ..roughness.recommended import beyond_roll_off, dimension_words
+from ..scan.outline import outline_words
 from ..study.checks import check_study, read_scans
 from ..study.configuration import resolve_settings
 from ..study.documents import read_study

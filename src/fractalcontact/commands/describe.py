@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 import yaml
 
+from ..core.directions import APERTURE
 from ..core.errors import InputError
 from ..core.file_names import split_file_name
 from ..core.labels import natural_key, percent, printable
@@ -156,8 +157,8 @@ def _read_as_drafted(path: Path, stated: Mapping, face: str, draft: Mapping[str,
     shown = Face(path, options)
     shown.notes = [f"NOT STATED: {key}, shown as {_SHOWN.get(key, 'nothing')}" for key in blanks]
     kind = options.get("kind")
-    if kind in ("aperture", "profile"):
-        shown.notes.append(f"the file seems to hold no face, but: {kind}")
+    if kind == "profile":
+        shown.notes.append("the file seems to hold no face, but a profile")
         options["kind"] = "face"
     try:
         shown.measured = measure(path, options, are_heights=False)
@@ -184,7 +185,7 @@ def _marks(face: Face) -> dict[float, bool]:
         return {}
     heights = values if face.measured.layout == "matrix" else values[:, 2]
     unit = options.get("unit_z") or options.get("unit") or "mm"
-    sign = -1 if options.get("heights") == "down" else 1
+    sign = -1 if options.get("heights") == "down" or options.get("kind") == APERTURE else 1
     factor = sign * length_factor(str(unit), str(face.path))
     marks = find_marks(heights)
     return {float(f"{mark.value / factor:.7g}"): mark.outside for mark in marks}

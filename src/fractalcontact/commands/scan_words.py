@@ -6,9 +6,11 @@ import re
 import numpy as np
 import xarray as xr
 
+from ..core.directions import APERTURE
 from ..core.labels import length_words
 from ..core.limits import STEEP_TILT
 from ..roughness.quality_words import overlap_words
+from ..scan.draft import OPENING
 
 #: Outliers this many reliefs away are hardly spikes of an instrument.
 FAR_OUT = 3.0
@@ -16,7 +18,7 @@ FAR_OUT = 3.0
 REGISTERED = 0.9
 #: Registration may move such faces by this many of its standard errors.
 MAX_ERRORS = 3.0
-_NO_FACE = re.compile(r"aperture|opening|(?<![a-z])(gap|depth)(?![a-z])", re.IGNORECASE)
+_NO_FACE = re.compile(rf"{OPENING.pattern}|(?<![a-z])depth(?![a-z])", re.IGNORECASE)
 
 
 def warnings_of_specimen(specimen: xr.Dataset, quality: xr.Dataset) -> list[str]:
@@ -28,7 +30,8 @@ def warnings_of_specimen(specimen: xr.Dataset, quality: xr.Dataset) -> list[str]
     if attrs["tilt_degrees"] > STEEP_TILT:
         warnings.append(f"tilted by {attrs['tilt_degrees']:.1f} degrees; heights stay vertical")
     warnings += filter(None, (_same_file_words(specimen), _moved_words(specimen)))
-    if _NO_FACE.search(str(attrs.get("specimen", attrs.get("name", "")))):
+    name = str(attrs.get("specimen", attrs.get("name", "")))
+    if attrs["opposite"] != APERTURE and _NO_FACE.search(name):
         warnings.append(
             "its name says that it holds the opening of a joint or depths: if it does, write "
             "'kind: aperture', or 'heights: down', into the sidecar"

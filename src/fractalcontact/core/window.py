@@ -3,6 +3,8 @@
 import numpy as np
 import xarray as xr
 
+from .directions import slides
+
 
 def spacing_of(grid: xr.Dataset | xr.DataArray) -> tuple[float, float]:
     """Distances (dy, dx) of neighbouring nodes, mm.
@@ -18,12 +20,13 @@ def spacing_of(grid: xr.Dataset | xr.DataArray) -> tuple[float, float]:
 def faces(specimen: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:
     """Heights of the lower and upper face (ny, nx) in mm, NaN where missing.
 
-    A face that was not scanned is the lower face itself ("match") or the plane z = 0 ("flat").
+    A face that was not scanned is the lower face itself ("match") or the plane z = 0
+    ("flat"), as beside the negative of an aperture map ("aperture").
     """
     z_l = specimen["lower"].values.astype(np.float64)
     if specimen.attrs["opposite"] == "scanned":
         return z_l, specimen["upper"].values.astype(np.float64)
-    if specimen.attrs["opposite"] == "flat":
+    if not slides(specimen.attrs["opposite"]):
         return z_l, np.zeros_like(z_l)
     return z_l, z_l
 

@@ -94,7 +94,7 @@ def prepare_clouds(scans: Sequence[Measured]) -> list[Cloud]:
         If a scan has too few points, or all on one line.
     """
     clouds = [_merge(scan) for scan in scans]
-    if any(cloud.lattice is None for cloud in clouds):
+    if scans[0].level and any(cloud.lattice is None for cloud in clouds):
         clouds = _turn_level(clouds, scans)
     return [_look_beneath(cloud) for cloud in clouds]
 

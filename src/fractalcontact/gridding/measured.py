@@ -33,6 +33,8 @@ class Measured:
         Attributes for the result.
     triangles : (m, 3) int ndarray or None
         Of a mesh, between the points.
+    level : bool
+        False of an aperture map, whose tilt is a wedge of the joint: a cloud is not turned level.
     size : dict
         Rows and columns or points, and relief in the numbers of the file: what an owner confirms.
     """
@@ -44,4 +46,5 @@ class Measured:
     grid: float | None
     provenance: dict
     triangles: np.ndarray | None = None
+    level: bool = True
     size: dict = field(default_factory=dict)

@@ -14,6 +14,7 @@ _OPPOSITE = {
     "scanned": "both faces scanned",
     "match": "one face given, the other taken as its perfect match",
     "flat": "one face given, against a rigid plane",
+    "aperture": "aperture map: the opening between both faces",
 }
 
 

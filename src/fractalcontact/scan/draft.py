@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from ..core.directions import APERTURE
 from ..core.labels import listed, printable
 from ..core.units import length_unit
 from .options import NO_MARK, ScanOptions
@@ -34,13 +35,14 @@ _UP = re.compile(r"\b(z|heights?|values?|data|elevations?|depths?|vertical)\b", 
 _LATERAL = re.compile(r"\b(x|y|xy|lateral|coordinates?|positions?|width)\b", re.IGNORECASE)
 _ROWS = re.compile(r"\b(?:first row|origin)\b.*\b(top|upper|bottom|lower)\b", re.IGNORECASE)
 _DOWN = re.compile(r"\bdepths?\b|\bdown(?:wards?)?\b", re.IGNORECASE)
-_NO_FACE = re.compile(r"\b(apertures?|gap|opening)\b", re.IGNORECASE)
+#: Words for an opening and no face.
+OPENING = re.compile(r"apertures?|(?<![a-z])(gaps?|openings?)(?![a-z])", re.IGNORECASE)
 #: Columns in which the comments of a draft begin.
 _COMMENT_AT = 26
 _MAX_OTHERS = 3
 #: What to write where the file says nothing, by key.
 _TO_FILL = {
-    "kind": "face, or contact-map",
+    "kind": "face, aperture or contact-map",
     "delimiter": "comma, semicolon, tab or blank",
     "decimal": "'.' or ','",
     "header": "lines above the first number",
@@ -120,8 +122,8 @@ def add_words(hints: Hints, lines: Iterable[tuple[str, str]]) -> None:
             seen("first_row", "top" if rows[1].lower() in ("top", "upper") else "bottom", source)
         if _DOWN.search(text):
             seen("heights", "down", source)
-        if _NO_FACE.search(text):
-            seen("kind", "aperture", source)
+        if OPENING.search(text):
+            seen("kind", APERTURE, source)
     for key, values in found.items():
         others = [f"{written(value)} ({source})" for value, source in values[1:]]
         hints.add(key, values[0][0], values[0][1], others[:_MAX_OTHERS])

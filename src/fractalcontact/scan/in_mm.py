@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..core.directions import APERTURE
 from ..core.errors import InputError
 from ..core.file_names import split_file_name
 from ..core.units import length_factor
@@ -60,11 +61,20 @@ def in_mm(file: ScanFile, options: ScanOptions, *, are_heights: bool = True) -> 
     missing = options.missing
     is_matrix = raw.layout == "matrix"
     heights = _without_missing(raw.values if is_matrix else raw.values[:, 2], options.marks)
+    is_aperture = options.kind == APERTURE
     size = size_and_relief(heights, raw.layout)
     _refuse_unconfirmed(size, raw, options, path)
-    if are_heights and missing != NO_MARK and (doubt := refuse_or_warn(heights, path)):
+    if (
+        are_heights
+        and missing != NO_MARK
+        and (
+            # Zeros of an aperture map are contact, however many there are.
+            doubt := refuse_or_warn(heights[heights != 0] if is_aperture else heights, path)
+        )
+    ):
         notes.append(f"{NOTE}{doubt}")
-    sign = -1 if _choose("heights", raw.heights, options, overrides) == "down" else 1
+    down = _choose("heights", raw.heights, options, overrides) == "down"
+    sign = -1 if down or is_aperture else 1
     heights *= sign * length_factor(unit_z, f"{path}: unit_z")
     if is_matrix:
         values = heights
@@ -94,7 +104,8 @@ def in_mm(file: ScanFile, options: ScanOptions, *, are_heights: bool = True) -> 
         "warnings": warnings_of(notes),
         "overrides": "; ".join(overrides),
     }
-    return Measured(path, raw.layout, values, spacing, grid, provenance, raw.triangles, size)
+    kind = {"triangles": raw.triangles, "level": not is_aperture, "size": size}
+    return Measured(path, raw.layout, values, spacing, grid, provenance, **kind)
 
 
 def _refuse_enormous(values: np.ndarray, path: Path) -> None:

@@ -6,6 +6,7 @@ from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any
 
+from ..core.directions import APERTURE
 from ..core.errors import InputError
 from ..core.units import length_factor, quantity
 
@@ -35,14 +36,21 @@ class ScanOptions:
     heights: str | None = None
     missing: float | tuple | str | None = None
     grid: float | str | None = None
+    outline: str | dict | None = None
     registration: str | None = None
     mirror_upper: str | None = None
     confirmed: dict | None = None
 
     @property
     def marks(self) -> tuple[float, ...]:
-        """Numbers stated to mark missing cells."""
-        return tuple(mark for mark in self._missing if not isinstance(mark, str))
+        """Numbers stated to mark missing cells, and those outside an outline."""
+        outside = (self.outline["mask"],) if self.masks else ()
+        return (*(mark for mark in self._missing if not isinstance(mark, str)), *outside)
+
+    @property
+    def masks(self) -> bool:
+        """True if the outline is stated by the number of the cells outside."""
+        return isinstance(self.outline, dict) and "mask" in self.outline
 
     @property
     def missing_words(self) -> tuple[str, ...]:
@@ -62,11 +70,11 @@ CONTACT_MAP = "contact-map"
 WRITING_KEYS = ("delimiter", "decimal", "thousands", "header")
 #: What parts the numbers of a line, by the key `delimiter`; a blank is white space of any length.
 DELIMITERS = {"comma": ",", "semicolon": ";", "tab": "\t", "blank": " "}
-#: Values of keys that have a few. Of `kind` the last three are no face of a joint, `axes` says
+#: Values of keys that have a few. Of `kind` the last three are no face, `axes` says
 #: which of the first row and column of a matrix hold coordinates or counts, `registration` how the
 #: upper face may be brought to the lower one.
 CHOICES = {
-    "kind": ("face", CONTACT_MAP, "aperture", "profile"),
+    "kind": ("face", CONTACT_MAP, APERTURE, "profile"),
     "delimiter": tuple(DELIMITERS),
     "decimal": (".", ","),
     "thousands": (".", ",", "'"),

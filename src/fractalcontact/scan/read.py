@@ -6,10 +6,13 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
+from ..core.directions import APERTURE
 from ..core.errors import InputError
+from ..core.file_names import split_file_name
 from ..gridding.faces import grid_one, grid_pair
 from ..gridding.measured import Measured
 from .confined import read_confined
+from .draft import OPENING, draft_line
 from .files import is_unchanged, regular_file, sha256
 from .in_mm import ScanFile, in_mm
 from .options import (
@@ -19,6 +22,8 @@ from .options import (
     of_face,
     parse_options,
 )
+from .outline import within_outline
+from .raw import IncompleteSidecar, RawScan
 
 __all__ = ["measure", "read_faces", "read_matrix", "read_scan"]
 
@@ -39,6 +44,7 @@ def read_scan(path: Path | str, options: Mapping | None = None) -> xr.DataArray:
     DataArray
         ``height`` (y, x) in mm, NaN where missing; x and y in mm, ascending, cell centres. A tilt
         is left in, but scattered points and meshes steeper than 5 degrees are turned level first.
+        Of an aperture map its negative, not turned, without the cells outside its outline.
 
     Raises
     ------
@@ -46,7 +52,11 @@ def read_scan(path: Path | str, options: Mapping | None = None) -> xr.DataArray:
         If the file is damaged, does not describe itself and the options do not say all
         (:class:`scan.raw.IncompleteSidecar`), or cannot be the scan of a rough surface.
     """
-    return grid_one(measure(Path(path), options))
+    given = parse_options(options, str(path))
+    scan = grid_one(in_mm(_read(Path(path), given), given))
+    if given.kind != APERTURE:
+        return scan
+    return within_outline(scan, None if given.masks else given.outline, f"sidecar of {path}")
 
 
 def read_faces(
@@ -158,7 +168,19 @@ def _read(path: Path, options: ScanOptions) -> ScanFile:
             f"{path}: the file changed while it was read; wait until the copy or export has "
             "finished, then run again"
         )
+    _refuse_unsaid_aperture(path, raw, options)
     return ScanFile(path, raw, checksum)
+
+
+def _refuse_unsaid_aperture(path: Path, raw: RawScan, options: ScanOptions) -> None:
+    """Refuse a file that describes itself, and by its name or variable not as a face."""
+    if options.kind is None and (word := OPENING.search(" ".join((path.stem, *raw.notes)))):
+        name, _ = split_file_name(path.name)
+        raise IncompleteSidecar(
+            f"{path}: its name or its variable says {word[0]!r}, and no sidecar what it holds; "
+            f"write into {path.with_name(f'{name}.yaml')} 'kind: face' or",
+            draft_line("kind", APERTURE, "the opening between both faces"),
+        )
 
 
 def _require_one_layout(lower: ScanFile, upper: ScanFile) -> None:

@@ -8,17 +8,13 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from ..core.directions import APERTURE
 from ..core.errors import InputError
 from ..core.file_names import split_file_name
-from .draft import Hints, draft_lines, drafted_options
+from .draft import OPENING, Hints, draft_lines, drafted_options
 from .options import CONTACT_MAP, ScanOptions, has_own_units
 from .raw import IncompleteSidecar
 from .tables import choose_array
-
-_NO_FACE = {
-    "aperture": "the opening between two faces and no face; scan or export the faces themselves",
-    "profile": "a profile and no surface; export the whole surface",
-}
 
 
 @dataclass(frozen=True)
@@ -61,15 +57,20 @@ def require_stated(
     IncompleteSidecar
         With the sidecar to write.
     InputError
-        If the sidecar says that the file holds no face.
+        If the sidecar says that the file holds a profile.
     """
-    if options.kind in _NO_FACE:
-        raise InputError(f"{path}: its sidecar says that it holds {_NO_FACE[options.kind]}")
+    if options.kind == "profile":
+        raise InputError(
+            f"{path}: its sidecar says that it holds a profile and no surface; export the whole "
+            "surface"
+        )
     if needs.table and not needs.text and (options.variable is not None or not needs.arrays):
         choose_array(list(needs.arrays), options.variable, path)
     if not (lacks := lacking(options, needs)):
         return
     found = hints()
+    if word := OPENING.search(path.stem):
+        found.add("kind", APERTURE, f"its name says {word[0]!r}")
     complete = drafted_options(options, found)
     required = set(required_keys(complete, needs))
     # A layout that only the draft knows asks for keys of its own.
@@ -112,7 +113,7 @@ def required_keys(options: ScanOptions, needs: Needs) -> list[str]:
         keys += ["spacing", "first_row"]
     if layout == "points" and options.spacing is not None:
         keys += ["first_row"]
-    if not is_map:
+    if not is_map and options.kind != APERTURE:
         keys += ["heights"]
     return keys if needs.grid else [*keys, "missing"]
 

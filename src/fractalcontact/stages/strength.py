@@ -3,6 +3,7 @@
 import numpy as np
 import xarray as xr
 
+from ..core.directions import slides
 from ..core.settings import StrengthSettings
 from ..core.window import cell_side, nominal_area
 from ..mechanics.states import with_pressure
@@ -42,7 +43,7 @@ def strength_stages(
     """
     laws = _size_laws(specimens, surface_dimension, window_states, settings)
     stages = {"windows": laws}
-    if specimens.attrs["opposite"] != "flat":
+    if slides(specimens.attrs["opposite"]):
         stages["windows"] = laws.merge(predict_whole_strength(laws, size_test["delta_sigma"]))
         stages["strength"] = joint_strength(dilatancy, joints, specimens, settings)
     area = nominal_area(specimens)

@@ -14,6 +14,7 @@ import numpy as np
 import xarray as xr
 
 from ..core.claims import Claim, all_claims, claims_of
+from ..core.directions import slides
 from ..core.labels import cf_attrs
 from ..core.verdicts import UNDETERMINED
 from . import closure, nulls, scaling, sliding
@@ -54,12 +55,12 @@ def statements_for(settings: Mapping) -> tuple[str, ...]:
         in its study once more without a hardness: what a hardness cannot change is answered there.
     """
     material = material_of(settings)
-    slides = settings["opposite"] != "flat"
+    sliding = slides(settings["opposite"])
     return tuple(
         name
         for name, claim in claims_of("one").items()
         if claim.material in ("", material)
-        and (slides or not claim.slides)
+        and (sliding or not claim.slides)
         and (claim.plastic or not settings["capped_variant"])
     )
 

@@ -5,6 +5,7 @@ from scipy import special
 
 from ..core.claims import all_claims
 from ..core.determined import differ_together
+from ..core.directions import slides
 from ..core.estimate import Estimate
 from ..core.labels import loads_of
 from ..core.limits import CONFIDENCE, LOOSELY, NEARLY
@@ -161,7 +162,7 @@ def domains_are_isotropic(joint: Joint) -> Finding:
     )
     if not (along.known and across.known) or along.value + across.value == 0:
         return Finding(UNDETERMINED, "no contact at that lag from another")
-    ways = ("along x", "along y") if joint.settings["opposite"] == "flat" else _OF_SLIDING
+    ways = _OF_SLIDING if slides(joint.settings["opposite"]) else ("along x", "along y")
     numbers = f"contact at a lag {along:.2f} {ways[0]}, {across:.2f} {ways[1]}"
     apart = max(along.low, across.low) > min(along.high, across.high)
     difference = abs(across.value - along.value) / (across.value + along.value)

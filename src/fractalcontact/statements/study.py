@@ -6,6 +6,7 @@ import numpy as np
 import xarray as xr
 
 from ..core.claims import claims_of
+from ..core.directions import slides
 from ..core.estimate import Estimate
 from ..core.fitting import fit_line, slope_error
 from ..core.verdicts import FAILS, HOLDS, UNDETERMINED
@@ -48,7 +49,7 @@ def size_exponent_grows_with_dimension(joints: Mapping[str, Joint]) -> Finding:
     composite topography is the face, and one study loads them alike. Where each has an ensemble the
     mean over its realisations, whose errors are those of the slope.
     """
-    flat = [joint for joint in joints.values() if joint.settings["opposite"] == "flat"]
+    flat = [joint for joint in joints.values() if not slides(joint.settings["opposite"])]
     if len(flat) < 3:
         return Finding(UNDETERMINED, f"{len(flat)} surfaces against a plane, three needed")
     dimension = np.array([best_dimension(j["surface_dimension"]).value for j in flat])
@@ -103,7 +104,7 @@ def _by_material(joints, exponent_of):
     found: dict[str, Estimate] = {}
     for joint in joints.values():
         material = material_of(joint.settings)
-        if joint.settings["opposite"] == "flat" or material in found or not material:
+        if not slides(joint.settings["opposite"]) or material in found or not material:
             continue
         exponent = exponent_of(joint)
         if exponent.known:

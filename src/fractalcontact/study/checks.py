@@ -6,6 +6,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from ..core.claims import claims_of
+from ..core.directions import APERTURE
 from ..core.errors import InputError
 from ..core.file_names import specimen_name
 from ..core.settings import Settings, Solver
@@ -138,7 +139,9 @@ def _stated_of(scan: ScanFiles, of_group: tuple[dict, dict], schema: Mapping) ->
     of_row = _split(dict(scan.row), schema, scan.row_of) if scan.row else ({}, {})
     own = ({**of_file[0], **of_row[0]}, {**of_file[1], **of_row[1]})
     refuse_idle_keys(scan, *own)
-    return {**of_group[0], **own[0]}, {**of_group[1], **own[1]}
+    keys, settings = {**of_group[0], **own[0]}, {**of_group[1], **own[1]}
+    # An aperture map is pressed as its negative is against a plane.
+    return keys, settings | ({"opposite": APERTURE} if keys.get("kind") == APERTURE else {})
 
 
 @contextmanager

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Mapping
 
+from ..core.directions import slides
 from ..core.errors import InputError
 from ..core.settings import Material, Settings, Solver, SpecimenSettings
 from ..core.tolerance import ACCURACY, tolerance
@@ -54,7 +55,7 @@ def resolve_settings(
     """
     stated = _Stated(config, name, own, source, scan)
     opposite = "match" if scan and scan.upper else stated["opposite"]
-    flat = opposite == "flat"
+    flat = not slides(opposite)
     directions = ["none"] if flat else stated["directions"]
     where = stated.where("material")
     material = _material(config, stated["material"], where, source, scanned=scan is not None)
@@ -210,7 +211,7 @@ def window_arguments(settings: SpecimenSettings) -> dict:
         "window": settings.window,
         "window_centre": None if centre is None else (centre[1], centre[0]),
         "multiple": math.lcm(*settings.resolutions),
-        "reach": 0.0 if settings.opposite == "flat" else dict.fromkeys(settings.directions, reach),
+        "reach": dict.fromkeys(settings.directions, reach) if slides(settings.opposite) else 0.0,
     }
 
 

@@ -28,6 +28,7 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
+from ..core.directions import slides
 from ..core.packages import SOURCES, installed
 
 #: Folders of the figures, one folder a group; what they share is in :mod:`figures.kit`.
@@ -139,9 +140,9 @@ def figures_of(opposite: str) -> list[str]:
     Parameters
     ----------
     opposite : str
-        "flat" for a surface against a plane; anything else slides.
+        Of :func:`core.directions.slides`.
     """
-    subjects = {SPECIMEN} if opposite == "flat" else {SPECIMEN, JOINT}
+    subjects = {SPECIMEN, JOINT} if slides(opposite) else {SPECIMEN}
     return [name for name, figure in all_figures().items() if figure.subject in subjects]
 
 

@@ -2,7 +2,9 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 
+from ..core.directions import APERTURE, slides
 from ..core.errors import InputError
+from ..scan.options import CONTACT_MAP
 from .scan_files import ScanFiles
 from .sidecar import is_contact_map
 
@@ -24,10 +26,11 @@ def refuse_idle_keys(scan: ScanFiles, keys: Mapping, settings: Mapping) -> None:
     InputError
         For the first of them.
     """
-    if is_contact_map(keys) and scan.upper is not None:
+    kind = keys.get("kind")
+    if kind in (CONTACT_MAP, APERTURE) and scan.upper is not None:
         raise InputError(
-            f"{scan.said_in}: a contact map is one file, here are two faces; remove "
-            "'kind: contact-map', or one of the files"
+            f"{scan.said_in}: a map of contact or aperture is one file, here are two faces; remove "
+            f"'kind: {kind}', or one of the files"
         )
     for idle, why in _idle(scan, keys, settings):
         for key in idle:
@@ -43,16 +46,23 @@ def _idle(scan: ScanFiles, keys: Mapping, settings: Mapping) -> Iterator[tuple[S
         yield [*how_faces_lie, *solved], "for a contact map, of which nothing is solved"
         return
     yield ["load"], "but for a contact map (did you mean 'loads'?)"
-    of_maps = ["threshold", "outline", "series", "x", "y", "cells"]
+    of_maps = ["threshold", "series", "x", "y", "cells"]
     yield of_maps, "but for a contact map (or write 'kind: contact-map')"
+    if keys.get("kind") == APERTURE:
+        yield ["opposite", "heights"], "for an aperture map, the opening between both faces"
+    else:
+        yield (
+            ["outline"],
+            "but for a map of contact or aperture (write its 'kind')",
+        )
     if scan.upper is not None:
         yield ["opposite"], "where both faces were scanned"
     else:
         of_pairs = ["registration", "mirror_upper", "lower", "upper"]
         yield of_pairs, "for one face, without an upper one"
-    if settings.get("opposite") == "flat":
+    if not slides(settings.get("opposite", keys.get("kind"))):
         sliding = ["directions", "contact_directions", "offsets", "map_offset"]
-        yield sliding, "against a rigid plane, on which nothing slides"
+        yield sliding, "for an aperture map or against a rigid plane: neither slides"
     if {"unit", "unit_xy", "unit_z"} <= set(keys):
         yield ["unit"], "beside both 'unit_xy' and 'unit_z'"
     if all(path.suffix.lower() in _UNNAMED for path in scan.files):

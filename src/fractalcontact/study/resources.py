@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from ..core.directions import slides
 from ..core.settings import JointSettings, SpecimenSettings
 from ..core.units import quantity
 
@@ -181,7 +182,7 @@ def nodes_of_window(settings: SpecimenSettings, spacing: object, of_face: float)
     window = settings.window
     if window is None:
         # Half the side of the largest hole-free square, so that it can slide; all against a plane.
-        return of_face if settings.opposite == "flat" else of_face / 4
+        return of_face / 4 if slides(settings.opposite) else of_face
     if spacing is None:
         return of_face
     length = quantity(spacing, "length", "spacing") if isinstance(spacing, str) else spacing

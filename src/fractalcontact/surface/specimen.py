@@ -8,14 +8,14 @@ import numpy as np
 import xarray as xr
 
 from ..core.datasets import labelled_dataset
-from ..core.directions import axis_and_sign
+from ..core.directions import APERTURE, axis_and_sign, slides
 from ..core.errors import InputError
 from ..core.limits import STEEP_TILT
 from ..core.window import spacing_of, window_slices
 from .cleaning import clean_faces
 from .window import WindowRequest, place_window
 
-OPPOSITES = ("match", "flat")
+OPPOSITES = ("match", "flat", APERTURE)
 
 
 #: Variables of a specimen: dimensions, unit, long name.
@@ -50,8 +50,9 @@ def make_specimen(
     lower, upper : DataArray (y, x)
         Heights in mm on one grid, as `scan.read_faces` gives them; ``upper`` is None if one face
         was scanned.
-    opposite : {"match", "flat"}
-        What faces a single scanned face: its perfect match, or a rigid plane.
+    opposite : {"match", "flat", "aperture"}
+        What faces a single scanned face: its perfect match, or a rigid plane; of an aperture map,
+        whose negative ``lower`` is, the plane too, and no tilt is taken off.
     outliers : {"keep", "mask", "fill"}
         Whether outlying cells stay as they are, become missing, or are filled with lone spikes and
         deep overlaps, see `cleaning.clean_faces`.
@@ -88,7 +89,7 @@ def make_specimen(
     valid = np.logical_and.reduce([np.isfinite(scan.values) for scan in cleaned])
     if valid.sum() < 3:
         raise InputError(f"{name}: the faces have no cells in common; they must share one frame")
-    plane, levelling = _mean_plane(cleaned, valid)
+    plane, levelling = _mean_plane(cleaned, valid, level=opposite != APERTURE)
     heights = {face: scan.values - plane for face, scan in zip(scans, cleaned, strict=True)}
     values = {**heights, "valid": valid, **cells}
     specimen = labelled_dataset(
@@ -135,7 +136,7 @@ def largest_offset(specimen: xr.Dataset, direction: str) -> int:
         0 against a flat face, on which sliding changes nothing.
     """
     axis, sign = axis_and_sign(direction)
-    if specimen.attrs["opposite"] == "flat":
+    if not slides(specimen.attrs["opposite"]):
         return 0
     rows, columns = window_slices(specimen)
     lower = specimen["lower"].values
@@ -147,16 +148,20 @@ def largest_offset(specimen: xr.Dataset, direction: str) -> int:
     return int(np.argmin(np.r_[ahead, False]))  # the first line with a hole, or the edge
 
 
-def _mean_plane(scans, valid: np.ndarray) -> tuple[np.ndarray, dict]:
+def _mean_plane(scans, valid: np.ndarray, *, level: bool) -> tuple[np.ndarray, dict]:
     """Least-squares plane of the (mean) face, and what was done, as attributes.
 
-    One plane for both faces: the gap between them is a measurement and stays.
+    One plane for both faces: the gap between them is a measurement and stays. So does the wedge of
+    an aperture map, of which the mean alone is taken off (not ``level``).
     """
     x, y = np.meshgrid(scans[0].x.values, scans[0].y.values)
     mean_face = np.mean([scan.values[valid] for scan in scans], axis=0)
     x_mean, y_mean = x[valid].mean(), y[valid].mean()  # centred: coordinates may be far from 0
     terms = np.column_stack([x[valid] - x_mean, y[valid] - y_mean, np.ones(len(mean_face))])
     (slope_x, slope_y, height), *_ = np.linalg.lstsq(terms, mean_face, rcond=None)
+    if not level:
+        slope_x = slope_y = 0.0
+        height = mean_face.mean()
     offset = height - slope_x * x_mean - slope_y * y_mean
     tilt = math.degrees(math.atan(math.hypot(slope_x, slope_y)))
     of = "the scanned face" if len(scans) == 1 else "the mean of both faces, subtracted from both"
@@ -167,6 +172,8 @@ def _mean_plane(scans, valid: np.ndarray) -> tuple[np.ndarray, dict]:
         sentence += (
             f". NOTE: above {STEEP_TILT:g} degrees; heights stay vertical, not normal to the plane"
         )
+    if not level:
+        sentence = "the mean of the aperture map; its tilt is a wedge of the joint and stays"
     attrs = {
         "levelling": sentence,
         "plane_slope_x": float(slope_x),

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from ..core.directions import DIRECTIONS, axis_and_sign
+from ..core.directions import DIRECTIONS, axis_and_sign, slides
 from ..core.errors import InputError
 from ..core.labels import percent
 from ..core.window import spacing_of
@@ -105,7 +105,7 @@ def _half_of_largest_square(specimen) -> _Wanted:
     square = _largest_square(valid, spacing)
     corner = _nearest(_free_places(valid, square), square, _middle(valid.shape), spacing)
     middle = tuple(c + (n - 1) / 2 for c, n in zip(corner, square, strict=True))
-    part = 1 if specimen.attrs["opposite"] == "flat" else 2
+    part = 2 if slides(specimen.attrs["opposite"]) else 1
     cells = tuple(n // part for n in square)
     sides = tuple(n * s for n, s in zip(cells, spacing, strict=True))
     return _Wanted(cells, sides, middle, 0.0)  # the half square has its quarter all around
@@ -206,7 +206,7 @@ def _reachable_places(specimen, shape, reach) -> np.ndarray:
     spacing = spacing_of(specimen)
     present = np.isfinite(specimen["lower"].values)
     places = np.ones([total - n + 1 for total, n in zip(present.shape, shape, strict=True)], bool)
-    if specimen.attrs["opposite"] == "flat":
+    if not slides(specimen.attrs["opposite"]):
         return places
     reaches = reach if isinstance(reach, Mapping) else dict.fromkeys(DIRECTIONS, reach)
     for direction, distance in reaches.items():

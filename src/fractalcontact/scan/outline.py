@@ -1,13 +1,15 @@
-"""Outline of a measured contact map: which of its cells belong to the nominal area.
+"""Outline of a measured map of contact or aperture: which of its cells belong to the nominal area.
 
-A film or cast is seldom a rectangle, its file always is: cells outside that hold zeros would count
-as nominal area without contact. The sidecar says where the outline runs.
+A film, cast or core is seldom a rectangle, its file always is: cells outside that hold zeros would
+count as nominal area without contact, or as contact. The sidecar says where the outline runs.
 """
 
 from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
+import xarray as xr
+from scipy.ndimage import label
 from scipy.spatial import ConvexHull, QhullError
 
 from ..core.errors import InputError
@@ -22,6 +24,8 @@ HULL_SHARE = 0.8
 MIN_CELLS = 100
 
 
+#: Larger patches of zeros at the corners of an aperture map lie outside a specimen, most likely.
+MAX_CORNER_ZEROS = 0.005
 #: A disc without a stated centre may leave this fraction of the contact outside.
 MAX_OUTSIDE = 0.01
 
@@ -75,6 +79,40 @@ def outline_mask(
             f"{_ends(y)} mm in y"
         )
     return inside
+
+
+def within_outline(
+    apertures: xr.DataArray, outline: str | Mapping[str, Any] | None, where: str
+) -> xr.DataArray:
+    """Aperture map without the cells outside its outline.
+
+    Parameters
+    ----------
+    apertures : xr.DataArray
+        The map, or its negative, (y, x) in mm.
+    outline : str, mapping or None
+        As of :func:`outline_mask`.
+    where : str
+        For errors.
+
+    Raises
+    ------
+    InputError
+        If no outline is stated and zeros reach in from the corners: they would count as contact.
+    """
+    values = apertures.values
+    inside = outline_mask(outline, values, apertures.y.values, apertures.x.values, where)
+    patches, _ = label(values == 0)
+    at_corners = np.unique(patches[[0, 0, -1, -1], [0, -1, 0, -1]])
+    share = np.isin(patches, at_corners[at_corners > 0]).mean()
+    if outline is None and share > MAX_CORNER_ZEROS:
+        raise InputError(
+            f"{where}: {percent(share)} of the aperture map are zeros that reach in from its "
+            "corners: if they lie outside the specimen, write 'outline: disc' (or a polygon, or "
+            "'mask: 0'), if the faces touch there, 'outline: rectangle'"
+        )
+    attrs = {"missing_share": float(np.isnan(values)[inside].mean())}
+    return apertures.where(inside).assign_attrs(apertures.attrs | attrs)
 
 
 def outline_words(outline: str | Mapping[str, Any]) -> str:
