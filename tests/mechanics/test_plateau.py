@@ -70,7 +70,7 @@ def test_units_and_order_of_the_directions_change_no_trend():
 def test_too_few_offsets_and_planes_have_a_reason_and_no_numbers():
     found = plateaus([0.0], [0.0], v=V[:1], directions=["none", "W"])
     assert found["no_plateau"].values.tolist() == [
-        "a surface against a plane does not slide",
+        "an aperture map, or a surface against a plane, does not slide",
         "1 offsets in the second half, 3 needed",
     ]
     for name, values in found.data_vars.items():

@@ -132,12 +132,11 @@ def test_what_was_confirmed_is_compared(tmp_path):
         read_scan(path, keys)
 
 
-@pytest.mark.parametrize("kind", ["aperture", "profile"])
-def test_what_holds_no_face_is_refused_in_a_sentence(tmp_path, kind):
+def test_a_profile_is_refused_in_a_sentence(tmp_path):
     path = tmp_path / "rock.npy"
     keys = write(path, surface(), DX, DY)
-    with pytest.raises(InputError, match=r"its sidecar says that it holds .*no (face|surface)"):
-        read_scan(path, keys | {"kind": kind})
+    with pytest.raises(InputError, match=r"a profile and no surface"):
+        read_scan(path, keys | {"kind": "profile"})
 
 
 def test_what_is_said_of_one_face_holds_for_it_alone(tmp_path):

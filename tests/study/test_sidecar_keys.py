@@ -30,12 +30,12 @@ def scans(folder, sidecar, *names):
 ONE, TWO = ("rock.npz",), ("rock.lower.npy", "rock.upper.npy")
 IDLE = [
     (ONE, "threshold: 5", "threshold", "but for a contact map"),
-    (ONE, "outline: disc", "outline", "but for a contact map"),
+    (ONE, "outline: disc", "outline", "but for a map of contact or aperture"),
     (ONE, "load: 5 kN", "load", "did you mean 'loads'"),
     (ONE, "registration: rigid", "registration", "for one face"),
     (ONE, "mirror_upper: x", "mirror_upper", "for one face"),
-    (ONE, "opposite: flat\noffsets: [1 mm]", "offsets", "against a rigid plane"),
-    (ONE, "opposite: flat\ndirections: [E]", "directions", "against a rigid plane"),
+    (ONE, "opposite: flat\noffsets: [1 mm]", "offsets", "or against a rigid plane"),
+    (ONE, "opposite: flat\ndirections: [E]", "directions", "or against a rigid plane"),
     (ONE, "unit: mm\nunit_xy: mm\nunit_z: um", "unit", "beside both"),
     (("rock.csv",), "variable: Z", "variable", r"for a \.csv file"),
     (("rock.stl",), "variable: Z", "variable", r"for a \.stl file"),

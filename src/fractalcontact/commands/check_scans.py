@@ -14,7 +14,7 @@ from pathlib import Path
 
 from ..core.errors import InputError
 from ..core.labels import length_words, natural_key, percent, plain, printable
-from ..core.window import spacing_of, window_sides
+from ..core.window import face_words, spacing_of, window_sides
 from ..domain.measured_map import read_contact_map
 from ..mechanics.joint import choose_offsets
 from ..mechanics.states import hardness_of
@@ -159,10 +159,11 @@ def _specimen_row(scan, specimen, quality):
     }
     lines = [_file_names(scan)]
     for face, file in zip(faces, files, strict=True):
-        stated = f"{face} face: {file['reader']}, {file['layout']}, unit {file['file_unit']}"
+        words = face_words(specimen, face)
+        stated = f"{words}: {file['reader']}, {file['layout']}, unit {file['file_unit']}"
         lines.append("; ".join(filter(None, (stated, file["notes"]))))
         if file.get("overrides"):
-            lines.append(f"{face} face, the sidecar overrides: {file['overrides']}")
+            lines.append(f"{words}, the sidecar overrides: {file['overrides']}")
     if len(faces) == 2:
         lines.append(f"{gap_words(specimen)}; {overlap_words(specimen, quality)}")
     if suspicious := suspect_words(specimen):

@@ -8,6 +8,9 @@ DIRECTIONS = {"E": ("x", 1), "N": ("y", 1), "W": ("x", -1), "S": ("y", -1)}
 #: Kind of a file, and of a specimen, that holds the opening between two faces in place of a face.
 APERTURE = "aperture"
 
+#: What does not slide, in words.
+NO_SLIDING = "an aperture map, or a surface against a plane,"
+
 #: Offsets that "auto" places between one cell and the largest possible, in geometric steps.
 AUTOMATIC_OFFSETS = 8
 

@@ -3,7 +3,7 @@
 import numpy as np
 import xarray as xr
 
-from .directions import slides
+from .directions import APERTURE, slides
 
 
 def spacing_of(grid: xr.Dataset | xr.DataArray) -> tuple[float, float]:
@@ -29,6 +29,12 @@ def faces(specimen: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:
     if not slides(specimen.attrs["opposite"]):
         return z_l, np.zeros_like(z_l)
     return z_l, z_l
+
+
+def face_words(specimen: xr.Dataset, face: str) -> str:
+    """Face in words; the negative of an aperture map stands where others have the lower one."""
+    is_face = specimen.attrs["opposite"] != APERTURE
+    return f"{face} face" if is_face else "negative of the aperture"
 
 
 def window_slices(specimen: xr.Dataset) -> tuple[slice, slice]:

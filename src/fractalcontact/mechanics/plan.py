@@ -11,6 +11,7 @@ import numpy as np
 import xarray as xr
 
 from ..core.datasets import Dims, labelled_dataset
+from ..core.directions import NO_SLIDING
 from ..core.settings import ContactSettings, Solver
 from ..core.tolerance import SHARE_OF_CLOSURE, SHARE_OF_DIMENSION, tolerance
 from .states import SOLVER_ERROR, forces_of
@@ -188,7 +189,13 @@ def _of_loads(curves, dilatancy, requested):
 def _of_directions(curves, settings: ContactSettings):
     first, *others = settings.contact_directions
     if first == "none":
-        return "directions", "none", "a surface against a plane does not slide", "", np.nan
+        return (
+            "directions",
+            "none",
+            f"{NO_SLIDING} does not slide",
+            "",
+            np.nan,
+        )
     if not others:
         return "directions", first, "the only direction whose contact is requested", "", np.nan
     finest = curves["solved"].sel(resolution=curves["resolution"].min())

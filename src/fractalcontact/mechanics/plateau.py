@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..core.datasets import labelled
+from ..core.directions import NO_SLIDING
 from ..core.estimate import rows_of
 from ..core.fitting import MIN_POINTS, LineFit, fit_line
 from ..core.limits import LEVEL_CHANGE
@@ -115,5 +116,5 @@ def _trend(change: float, slope: float) -> str:
 
 def _reason(n: int, direction: str) -> str:
     if direction == "none":
-        return "a surface against a plane does not slide"
+        return f"{NO_SLIDING} does not slide"
     return f"{n} offsets in the second half, {MIN_POINTS} needed"

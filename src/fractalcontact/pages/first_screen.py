@@ -107,7 +107,7 @@ def block_of(card: Mapping[str, Any]) -> Block:
 def _offset(card):
     offset = card["geometry"]["offset"]["value"]
     if card["direction"] == "none":
-        return "against a rigid plane"
+        return "without sliding"
     if offset:
         return f"slid by {with_unit(offset, 'mm')} towards {card['direction']}"
     return "in the mated position" if card["faces"].startswith("one") else "as scanned"

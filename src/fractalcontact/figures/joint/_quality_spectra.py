@@ -1,6 +1,6 @@
 """Spectra of the quality sheet: profiles and radial ones, floors, fractal range."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -86,10 +86,10 @@ def draw_radial(axes: Axes, quality: xr.Dataset, faces: Sequence[str]) -> None:
     label_short_span(axes.xaxis)
 
 
-def spectrum_entries(quality: xr.Dataset, faces: Sequence[str]) -> list[Artist]:
+def spectrum_entries(quality: xr.Dataset, faces: Mapping[str, str]) -> list[Artist]:
     """Entries of the legend for what stands in the lower panels."""
     entries: list[Artist] = [
-        mark(color=FACE_COLOURS[face], lw=1, label=f"{face} face") for face in faces
+        mark(color=FACE_COLOURS[face], lw=1, label=words) for face, words in faces.items()
     ]
     entries += [
         mark(

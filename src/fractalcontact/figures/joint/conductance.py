@@ -71,7 +71,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
 def _label(curve):
     """Offset and exponent of a curve."""
     offset = f"$v$ = {short(float(curve['offset']))} mm"
-    state = "against a plane" if curve["direction"] == "none" else offset
+    state = "without sliding" if curve["direction"] == "none" else offset
     if not np.isfinite(curve["conductance"]).any():
         return f"{state}: no stiffness of the interface"
     exponent = Estimate.read(curve, "conductance_exponent", scale=EXPONENT)

@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from xarray import DataTree
 
 from ...core.subject import Subject
+from ...core.window import face_words
 from ..kit.caption import caption
 from ..kit.drawing import WIDTH, Drawing
 from ..kit.maps import scan_extent
@@ -75,12 +76,13 @@ def draw(atlas: DataTree, name: str) -> Drawing:
         draw_load_share(shares, subject.curves())
         table.append(rows(quality, "gap", "gap_cells", panel="gap").drop(columns="gap_bin"))
         table += [record.assign(panel="load share") for record in shares.records]
-    titles = [*(f"{face} face" for face in faces), "mask", "heights", "along $x$", "along $y$"]
-    titles += [*(f"spectra, {face} face" for face in faces), "radial spectrum"]
+    named = {face: face_words(specimen, face) for face in faces}
+    titles = [*named.values(), "mask", "heights", "along $x$", "along $y$"]
+    titles += [*(f"spectra, {words}" for words in named.values()), "radial spectrum"]
     titles += ["gap", "distribution of the gap", "load on suspicious cells"][: len(pair)]
     for which, (axes, title) in enumerate(zip([*top, *middle, *last, *pair], titles, strict=True)):
         letter(axes, "abcdefghijkl"[which], title)
-    entries = [outline, *marks, *spectrum_entries(quality, faces)]
+    entries = [outline, *marks, *spectrum_entries(quality, named)]
     panels.legend(handles=entries, loc="outside lower center", ncols=4)
     headline(panels, subject.label)
     style = {"va": "top", "fontsize": 7, "linespacing": 1.2, "parse_math": False}
@@ -93,7 +95,10 @@ def draw(atlas: DataTree, name: str) -> Drawing:
 def _text_lines(specimen, quality, faces, warnings):
     """History and findings of a scan, broken into lines; the warnings first."""
     paragraphs = [f"WARNING: {warning}." for warning in warnings]
-    paragraphs += [f"{face.capitalize()} face: {quality.attrs[f'{face}_face']}." for face in faces]
+    paragraphs += [
+        f"{face_words(specimen, face).capitalize()}: {quality.attrs[f'{face}_face']}."
+        for face in faces
+    ]
     paragraphs.append(f"{quality.attrs['cells']}.")
     if overlap := quality.attrs["overlap"]:
         mean, sd = (float(quality[f"gap_{key}"].sel(region="window")) for key in ("mean", "sd"))

@@ -12,6 +12,7 @@ from matplotlib.figure import FigureBase
 from matplotlib.patches import Rectangle
 from scipy.ndimage import distance_transform_edt
 
+from ...core.directions import APERTURE
 from ...core.window import spacing_of
 from .maps import MISSING, draw_map, window_outline
 from .words import length_unit
@@ -35,6 +36,8 @@ def draw_faces(
     low, high = np.nanquantile(heights, [CLIPPED, 1 - CLIPPED])
     _, size = length_unit(max(sides))
     unit_of_height = length_unit(high - low)
+    of_map = specimen.attrs["opposite"] == APERTURE
+    of_heights = "mean less aperture" if of_map else "height above the mean plane"
     norm = Normalize(low / unit_of_height[1], high / unit_of_height[1])
     for panel, face in zip(panels, faces, strict=True):
         image = shaded(specimen[face].values, spacing_of(specimen), low, high)
@@ -48,7 +51,7 @@ def draw_faces(
         fraction=0.05,
         aspect=40,
         extend="both",
-        label=f"height above the mean plane ({unit_of_height[0]})",
+        label=f"{of_heights} ({unit_of_height[0]})",
     )
     return outline
 

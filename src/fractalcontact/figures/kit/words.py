@@ -52,7 +52,7 @@ def formulas(text: str) -> str:
 def place(direction: str, offset: float | None = None) -> str:
     """Where the contact is, at one ``offset`` in mm or at any."""
     if direction == "none":
-        return "against a rigid plane"
+        return "without sliding"
     if offset is None:
         return f"sliding towards {TOWARDS[direction]}"
     return f"slid {short(offset)} mm towards {TOWARDS[direction]}"

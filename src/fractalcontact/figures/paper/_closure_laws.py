@@ -129,7 +129,7 @@ def no_law(curve: xr.Dataset) -> str:
 
 def offset_words(subject: Subject, offset: float) -> str:
     """One of the states of a legend."""
-    return "against a plane" if subject.direction == "none" else f"$v$ = {short(offset)} mm"
+    return "without sliding" if subject.direction == "none" else f"$v$ = {short(offset)} mm"
 
 
 def second_axis(axes: Axes, factor: float, label: str) -> None:

@@ -8,7 +8,7 @@ from xarray import DataTree
 
 from ...core.estimate import DIMENSION, Estimate
 from ...core.subject import Subject
-from ...core.window import spacing_of
+from ...core.window import face_words, spacing_of
 from ..kit.caption import caption
 from ..kit.drawing import COLOURS, WIDTH, Drawing
 from ..kit.empty import say_empty
@@ -50,7 +50,8 @@ def draw(atlas: DataTree, name: str) -> Drawing:
         handles.append(missing_patch())
     handles += _draw_dimensions(axes, dimension)
     handles += map(heading, _range_words(dimension))
-    titles = [*(f"{face} face" for face in faces), r"$\Delta_g$ of the lower face"]
+    titles = [*(face_words(specimen, face) for face in faces)]
+    titles.append(rf"$\Delta_g$ of the {titles[0]}")
     for panel, which, title in zip((*maps, axes), "abc", titles, strict=False):
         letter(panel, which, title)
     figure.legend(handles=handles, loc="outside lower left", ncols=3, columnspacing=1)

@@ -1,5 +1,5 @@
 // Numbers, units and places in words.
-const TOWARDS = { E: "East →", N: "North ↑", W: "West ←", S: "South ↓", none: "against a plane" };
+const TOWARDS = { E: "East →", N: "North ↑", W: "West ←", S: "South ↓", none: "without sliding" };
 const FORCE_UNITS = [["GN", 1e9], ["MN", 1e6], ["kN", 1e3], ["N", 1], ["mN", 1e-3], ["µN", 1e-6]];
 const RAISED = { "-": "⁻", 0: "⁰", 1: "¹", 2: "²", 3: "³", 4: "⁴", 5: "⁵", 6: "⁶", 7: "⁷", 8: "⁸", 9: "⁹" };
 
