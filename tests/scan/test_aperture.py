@@ -59,7 +59,8 @@ def test_an_aperture_map_is_the_joint_of_the_faces_it_lies_between(tmp_path):
     opening = np.nan_to_num(apertures(), nan=0.1)
     face = np.random.default_rng(4).normal(0, 0.5, opening.shape)
     paths = {name: tmp_path / f"{name}.npy" for name in ("map", "lower", "upper")}
-    keys = [write(paths[n], z, STEP, STEP) for n, z in zip(paths, (opening, face, face + opening))]
+    heights = {"map": opening, "lower": face, "upper": face + opening}
+    keys = [write(paths[name], z, STEP, STEP) for name, z in heights.items()]
     of_map = {k: v for k, v in keys[0].items() if k != "heights"} | {"kind": "aperture"}
     pair = read_faces(paths["lower"], paths["upper"], keys[1] | {"registration": "none"})
     one = make_specimen(read_scan(paths["map"], of_map), opposite="aperture", window=2.0)

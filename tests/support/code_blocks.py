@@ -41,6 +41,14 @@ NOT_RUN = {
         "docs/extending_stages.md",
         "rule summits:",
     ): "a rule: run in tests/workflow/test_added_stage.py",
+    (
+        "docs/flow.md",
+        "python -m fractalcontact.commands.export_aperture",
+    ): "run with the atlas of a test in tests/cards/test_apertures.py",
+    (
+        "docs/flow.md",
+        "import numpy as np\nimport porepy",
+    ): "a model of another program",
     ("docs/first_hour.md", "make new"): BY_CI,
     ("docs/first_hour.md", "kind: face"): "a sidecar: read in tests/test_documents.py",
     ("docs/first_hour.md", "make check-scans"): BY_CI,

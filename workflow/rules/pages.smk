@@ -22,12 +22,18 @@ rule explorer:
         "../scripts/pages.py"
 
 
-# A card a specimen: constants with their intervals, which the page and other codes read.
+# A card a specimen: constants with their intervals, which the page and other codes read; and its
+# aperture map for other programs.
 rule cards:
     input:
         rules.atlas.output[0],
     output:
         expand(f"{RESULTS}/{page_files.CARD}", specimen=SPECIMENS, ending=page_files.CARD_ENDINGS),
+        expand(
+            f"{RESULTS}/{page_files.APERTURE}",
+            specimen=SPECIMENS,
+            ending=page_files.APERTURE_ENDINGS,
+        ),
     log:
         f"{RESULTS}/logs/cards.log",
     benchmark:

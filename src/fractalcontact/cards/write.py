@@ -10,10 +10,12 @@ import yaml
 from ..core.atomic import atomic_write
 from ..core.errors import InputError
 from ..core.subject import Subject, configuration_of, specimens_of
-from ..pages.files import CARD
+from ..pages.files import APERTURE, APERTURE_ENDINGS, CARD
 from ..pages.templating import write_page
 from ..study.atlas import read_atlas
+from ..study.atlas_parts import open_atlas
 from ..study.stages import STAGES as ALL_STAGES
+from .apertures import aperture_at, write_aperture
 from .card import FORM, STAGES, card_of, made_of
 from .page import page_of
 
@@ -23,6 +25,8 @@ SCHEMA = Path(__file__).with_name("card.schema.json")
 
 def write_cards(path: Path | str, folder: Path | str) -> list[str]:
     """Write the card of every specimen of a study: ``cards/NAME.yaml``, ``.json`` and ``.html``.
+
+    And its aperture map under the reference load: ``apertures/NAME.csv``, ``.nc`` and ``.vtk``.
 
     Parameters
     ----------
@@ -38,9 +42,12 @@ def write_cards(path: Path | str, folder: Path | str) -> list[str]:
     """
     atlas = read_atlas(path, without=ALL_STAGES.keys() - set(STAGES))
     study, made = configuration_of(atlas)["study"], made_of(atlas.attrs)
-    names = specimens_of(atlas)
+    names, maps = specimens_of(atlas), open_atlas(path)
     for name in names:
         write_card(card_of(Subject.of(atlas, name), study, made), folder)
+        aperture = aperture_at(maps[f"contact/{name}"], None, name)
+        for ending in APERTURE_ENDINGS:
+            write_aperture(aperture, Path(folder) / APERTURE.format(specimen=name, ending=ending))
     return names
 
 

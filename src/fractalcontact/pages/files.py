@@ -7,5 +7,7 @@ SUMMARY, CURVES, TABLES, CONFIGURATION = "summary.csv", "curves.csv", "tables.zi
 FILES = (INDEX, SUMMARY, CURVES, TABLES, CONFIGURATION)
 #: Page of a specimen, below that folder.
 SPECIMEN_PAGE = "pages/{specimen}.html"
-#: Card of a specimen, and the endings that it has.
+#: Aperture map of a specimen under the reference load, and the endings that it has.
+APERTURE, APERTURE_ENDINGS = "apertures/{specimen}.{ending}", ("csv", "nc", "vtk")
+#: Card of a specimen, likewise.
 CARD, CARD_ENDINGS = "cards/{specimen}.{ending}", ("yaml", "json", "html")

@@ -1,0 +1,47 @@
+"""Write the aperture of a joint at a pressure, as CSV, netCDF or VTK.
+
+python -m fractalcontact.commands.export_aperture RESULTS SPECIMEN --out FILE
+    [--pressure "5 MPa"] [--points POINTS.csv]
+
+The ending of FILE says the form: .csv, .nc or .vtk. POINTS.csv has the columns x and y, in mm.
+"""
+
+import argparse
+import sys
+from collections.abc import Sequence
+
+from ..cards.apertures import aperture_at, aperture_at_points, write_aperture
+from ..core.errors import InputError
+from ..core.units import quantity
+from ..study.atlas_parts import open_atlas
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Write the file; 1 if something is wrong with what was asked for, else 0."""
+    parser = argparse.ArgumentParser(prog="export_aperture", description=__doc__)
+    parser.add_argument("results", help="folder of the results of a study, such as results/paper")
+    parser.add_argument("specimen")
+    parser.add_argument("--out", required=True, help="file to write: .csv, .nc or .vtk")
+    parser.add_argument("--pressure", help="such as '5 MPa'; the reference load by default")
+    parser.add_argument("--points", help="CSV file with columns x and y in mm; the grid by default")
+    given = parser.parse_args(arguments)
+    try:
+        pressure = given.pressure and quantity(given.pressure, "pressure", "--pressure")
+        atlas = open_atlas(given.results)
+        if given.specimen not in atlas.specimens:
+            raise InputError(
+                f"{given.results}: no specimen {given.specimen!r}; it has "
+                f"{', '.join(atlas.specimens) or 'none'}"
+            )
+        aperture = aperture_at(atlas[f"contact/{given.specimen}"], pressure, given.specimen)
+        points = given.points and aperture_at_points(aperture, given.points)
+        write_aperture(points if given.points else aperture, given.out)
+    except InputError as error:
+        sys.stderr.write(f"error: {error}\n")
+        return 1
+    sys.stdout.write(f"{given.out}: aperture in mm, {aperture.attrs['source']}\n")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,110 @@
+"""Aperture maps written for other programs, and read back."""
+
+import re
+
+import numpy as np
+import pandas as pd
+import pytest
+import xarray as xr
+
+from fractalcontact.cards.apertures import aperture_at, write_aperture
+from fractalcontact.commands.export_aperture import main
+from fractalcontact.core.errors import InputError
+from fractalcontact.scan.read import read_scan
+from fractalcontact.study.atlas_parts import open_atlas
+
+
+def read_vtk(path):
+    """Values (ny, nx), x and y of structured points in the legacy format of VTK."""
+    raw = path.read_bytes()
+    header, _, data = raw.partition(b"LOOKUP_TABLE default\n")
+    lines = header.decode().splitlines()
+    assert lines[0] == "# vtk DataFile Version 3.0"
+    assert lines[2:4] == ["BINARY", "DATASET STRUCTURED_POINTS"]
+    stated = {words[0]: words[1:] for words in map(str.split, lines[4:])}
+    nx, ny, _ = map(int, stated["DIMENSIONS"])
+    assert stated["POINT_DATA"] == [str(nx * ny)]
+    assert stated["SCALARS"] == ["aperture", "float", "1"]
+    x, y = (
+        float(start) + float(step) * np.arange(n)
+        for start, step, n in zip(stated["ORIGIN"], stated["SPACING"], (nx, ny), strict=False)
+    )
+    return np.frombuffer(data[: 4 * nx * ny], ">f4").reshape(ny, nx), x, y
+
+
+@pytest.fixture(scope="module")
+def contact(folder):
+    return open_atlas(folder)["contact/pair"]
+
+
+def test_every_card_has_its_aperture_in_three_forms_that_agree(folder, contact):
+    reference = contact["map_gap"].sel(normal_force=contact.attrs["map_load"], method="nearest")
+    table = pd.read_csv(folder / "apertures/pair.csv")
+    assert list(table) == ["x", "y", "aperture"]
+    of_table = table.pivot(index="y", columns="x", values="aperture")
+    np.testing.assert_allclose(of_table, reference, rtol=1e-6)
+    with xr.open_dataset(folder / "apertures/pair.nc") as of_netcdf:
+        assert of_netcdf["aperture"].attrs["units"] == of_netcdf["x"].attrs["units"] == "mm"
+        assert "computed at 125 MPa" in of_netcdf["aperture"].attrs["source"]
+        np.testing.assert_array_equal(of_netcdf["aperture"], reference)
+    values, x, y = read_vtk(folder / "apertures/pair.vtk")
+    np.testing.assert_array_equal(values, reference)
+    np.testing.assert_allclose(x, reference["x_1"], rtol=1e-6)
+    np.testing.assert_allclose(y, reference["y_1"], rtol=1e-6)
+    assert (values >= 0).all()
+
+
+def test_an_exported_map_is_read_again_as_an_aperture_map(folder, contact):
+    again = -read_scan(folder / "apertures/pair.nc", {"kind": "aperture", "outline": "rectangle"})
+    exported = aperture_at(contact, None, "pair")
+    np.testing.assert_array_equal(again, exported)
+    assert float(again.x[1] - again.x[0]) == pytest.approx(0.1)
+
+
+def test_between_two_loads_the_aperture_is_interpolated_in_the_logarithm(contact):
+    low, high = (aperture_at(contact, p, "pair") for p in (125, 250))
+    middle = aperture_at(contact, np.sqrt(125 * 250), "pair")
+    np.testing.assert_allclose(middle, (low + high) / 2, rtol=1e-5, atol=1e-9)
+    assert middle.attrs["source"] == "interpolated in ln(pressure) between 125 and 250 MPa"
+    with pytest.raises(InputError, match=r"no aperture at 0\.5 MPa; its maps are kept at 1, 125"):
+        aperture_at(contact, 0.5, "pair")
+
+
+def test_apertures_at_ones_own_points(folder, contact, tmp_path, capsys):
+    grid = aperture_at(contact, 125, "pair")
+    x, y = grid.x.values, grid.y.values
+    points = pd.DataFrame({"x": [x[3], (x[3] + x[4]) / 2, x[-1] + 5], "y": [y[2], y[2], y[0]]})
+    points.to_csv(tmp_path / "points.csv", index=False)
+    asked = ["--points", str(tmp_path / "points.csv"), "--pressure", "125 MPa"]
+    out = tmp_path / "apertures.csv"
+    assert main([str(folder), "pair", "--out", str(out), *asked]) == 0
+    assert capsys.readouterr().out.endswith("aperture in mm, computed at 125 MPa\n")
+    found = pd.read_csv(out)["aperture"].values
+    at = grid.values[2]
+    np.testing.assert_allclose(found, [at[3], (at[3] + at[4]) / 2, np.nan], rtol=1e-5, atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("words", "error"),
+    [
+        (["pear", "--out", "a.csv"], "no specimen 'pear'; it has flat.1, pair"),
+        (["pair", "--out", "a.txt"], r"a\.txt: .*ends in \.csv or \.nc or \.vtk"),
+        (["pair", "--out", "a.vtk", "--points", "{points}"], r"ends in \.csv"),
+        (["pair", "--out", "a.csv", "--points", "none.csv"], "none.csv: cannot be read as points"),
+        (["pair", "--out", "a.csv", "--pressure", "5 mm"], "pressure"),
+        (["pair", "--out", "a.csv", "--pressure", "900 MPa"], "no aperture at 900 MPa"),
+    ],
+)
+def test_what_cannot_be_written_is_refused_in_a_sentence(folder, tmp_path, capsys, words, error):
+    points = tmp_path / "points.csv"
+    points.write_text("x,y\n1,1\n")
+    words = [word.format(points=points) for word in words]
+    assert main([str(folder), *words]) == 1
+    said = capsys.readouterr().err
+    assert said.startswith("error: ")
+    assert re.search(error, said)
+
+
+def test_a_map_at_points_has_no_other_form_than_csv(tmp_path):
+    with pytest.raises(InputError, match=r"apertures at points: write a file that ends in \.csv"):
+        write_aperture(pd.DataFrame({"x": [0], "y": [0], "aperture": [0]}), tmp_path / "a.nc")
