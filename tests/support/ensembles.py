@@ -47,6 +47,7 @@ ENSEMBLES: dict[str, tuple] = {
     "surfaces of every dimension": (2, 3),
     # flow
     "fields solved densely": (100, 400),
+    "windows of one field": (60, 300),
     # domain
     "maps at random": (4, 100),
     "carpet sizes": ((81, 243, 500), (81, 200, 300, 400, 243, 256, 500, 512, 729, 1000)),

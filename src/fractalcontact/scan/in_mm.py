@@ -104,8 +104,9 @@ def in_mm(file: ScanFile, options: ScanOptions, *, are_heights: bool = True) -> 
         "warnings": warnings_of(notes),
         "overrides": "; ".join(overrides),
     }
-    kind = {"triangles": raw.triangles, "level": not is_aperture, "size": size}
-    return Measured(path, raw.layout, values, spacing, grid, provenance, **kind)
+    return Measured(
+        path, raw.layout, values, spacing, grid, provenance, raw.triangles, not is_aperture, size
+    )
 
 
 def _refuse_enormous(values: np.ndarray, path: Path) -> None:

@@ -44,13 +44,9 @@ class ScanOptions:
     @property
     def marks(self) -> tuple[float, ...]:
         """Numbers stated to mark missing cells, and those outside an outline."""
-        outside = (self.outline["mask"],) if self.masks else ()
-        return (*(mark for mark in self._missing if not isinstance(mark, str)), *outside)
-
-    @property
-    def masks(self) -> bool:
-        """True if the outline is stated by the number of the cells outside."""
-        return isinstance(self.outline, dict) and "mask" in self.outline
+        outside = self.outline.get("mask") if isinstance(self.outline, dict) else None
+        every = self._missing if outside is None else (*self._missing, outside)
+        return tuple(mark for mark in every if not isinstance(mark, str))
 
     @property
     def missing_words(self) -> tuple[str, ...]:

@@ -9,6 +9,7 @@ import xarray as xr
 from roughcontact.contact.solve import solve_contact
 
 from ..core.datasets import Dims, labelled_dataset
+from ..core.estimate import names_of, rows_of
 from ..core.labels import cf_attrs
 from ..core.reported import Reported
 from ..core.settings import JointSettings, Solver
@@ -29,6 +30,7 @@ from ..flow.curves import (
     numbers_of_flow,
     percolation_pressures,
     transmissivity_of,
+    window_interval,
 )
 from ..mechanics.joint import prefractal, sliding_axis
 from ..mechanics.jrc import profile_roughness
@@ -45,6 +47,8 @@ NAMES = ("mean_gap", *(f"transmissivity_{way}" for way in WAYS))
 #: Why a load has no transmissivity.
 NOT_QUOTED = "solved under the reported loads alone"
 
+#: Numbers of each way with an interval, that of the window.
+_WITH_INTERVAL = ("transmissivity", "hydraulic_aperture")
 #: Numbers of each way of the flow beside those of :data:`flow.curves.OF_WAY`.
 _MORE_OF_WAY: dict[str, tuple[Dims, str, str]] = {
     "hydraulic_ratio": (_LOADS, "1", "hydraulic aperture over the mean gap"),
@@ -80,6 +84,14 @@ _TABLE: dict[str, tuple[Dims, str, str]] = {
         for way in WAYS
         for name, (dims, unit, words) in (
             {name: (_LOADS, *of) for name, of in OF_WAY.items()} | _MORE_OF_WAY
+        ).items()
+    },
+    **{
+        row: (_LOADS, *words)
+        for way in WAYS
+        for name in _WITH_INTERVAL
+        for row, words in rows_of(
+            f"{name}_{way}", OF_WAY[name][0], f"{OF_WAY[name][1]}, {way} the sliding"
         ).items()
     },
     **{name: (_LOADS, *words) for name, words in OF_APERTURE.items()},
@@ -208,13 +220,20 @@ def _over_loads(gaps: np.ndarray, place: _Place, reported: Reported) -> dict[str
         for name in OF_WAY:
             missing = NOT_QUOTED if name == "flow_reason" else np.nan
             values[f"{name}_{way}"] = np.array(
-                [rows[load][name] if load in rows else missing for load in range(len(gaps))]
+                [rows.get(load, {}).get(name, missing) for load in range(len(gaps))]
             )
-        error = np.full(len(gaps), np.nan)
+        of_flow, of_aperture = (names_of(f"{name}_{way}")[1:] for name in _WITH_INTERVAL)
+        grid_error = f"transmissivity_grid_error_{way}"
+        values |= {
+            name: np.full(len(gaps), np.nan) for name in (*of_flow, *of_aperture, grid_error)
+        }
         for load in reported.quoted:
+            whole = rows[load]["transmissivity"]
             coarse = coarse_transmissivity(gaps[load], place.spacing, axis)
-            error[load] = abs(coarse - rows[load]["transmissivity"])
-        values[f"transmissivity_grid_error_{way}"] = error
+            values[grid_error][load] = abs(coarse - whole)
+            ends = window_interval(gaps[load], place.spacing, axis, whole)
+            for name, other, end in zip(of_flow, of_aperture, ends, strict=True):
+                values[name][load], values[other][load] = end, np.cbrt(12 * end)
         values[f"flux_map_{way}"] = rows[reported.reference]["flux"].astype(np.float32)
     return values
 

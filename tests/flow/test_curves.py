@@ -1,0 +1,40 @@
+"""Window interval of the transmissivity: coverage, and what leaves it undetermined."""
+
+import numpy as np
+import pytest
+from ensembles import ensemble
+from scipy import ndimage
+
+from fractalcontact.flow.curves import transmissivity_of, window_interval
+
+STEP = (1.0, 1.0)
+
+
+def gap_of(seed, n=64, smooth=1.5, mean=1.5):
+    """One window of a field of filtered noise, in contact over 7 %."""
+    noise = np.random.default_rng(seed).normal(size=(n, n))
+    heights = ndimage.gaussian_filter(noise, smooth, mode="wrap")
+    return np.clip(heights * 2 * smooth * np.sqrt(np.pi) + mean, 0, None)
+
+
+def test_the_interval_over_windows_holds_their_mean_as_often_as_it_says():
+    gaps = [gap_of(seed) for seed in range(ensemble("windows of one field"))]
+    flows = [transmissivity_of(gap, STEP, "x") for gap in gaps]
+    mean = np.exp(np.log(flows).mean())
+    ends = [window_interval(gap, STEP, "x", flow) for gap, flow in zip(gaps, flows, strict=True)]
+    low, high = np.transpose(ends)
+    share = ((low <= mean) & (mean <= high)).mean()
+    assert 0.95 - 3 * np.sqrt(0.95 * 0.05 / len(gaps)) <= share
+
+
+def test_an_even_gap_is_alike_in_all_windows():
+    flow = transmissivity_of(np.full((9, 12), 0.3), STEP, "y")
+    assert window_interval(np.full((9, 12), 0.3), STEP, "y", flow) == pytest.approx((flow, flow))
+
+
+def test_a_closed_quarter_leaves_the_interval_undetermined():
+    gap = gap_of(1)
+    gap[:32, 10] = 0  # a wall across two quarters
+    whole = transmissivity_of(gap, STEP, "x")
+    assert whole > 0
+    assert np.isnan(window_interval(gap, STEP, "x", whole)).all()
