@@ -71,7 +71,7 @@ def coarse_transmissivity(gap: np.ndarray, spacing: tuple[float, float], axis: s
 def window_interval(
     gap: np.ndarray, spacing: tuple[float, float], axis: str, whole: float
 ) -> tuple[float, float]:
-    """95 % interval of the transmissivity over windows of this size, mm3.
+    """95 % interval of the geometric mean of T over windows of this size, mm3.
 
     T is taken for the geometric mean of the four quarters: Student's t of their ln T, as of four
     independent parts. They are that where the gap correlates over far less than a quarter.

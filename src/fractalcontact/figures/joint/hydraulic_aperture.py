@@ -7,6 +7,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 from xarray import DataTree
 
+from ...core.estimate import Estimate, names_of
 from ...core.subject import Subject
 from ..kit.caption import caption
 from ..kit.drawing import WIDTH, Drawing, colour_of
@@ -59,6 +60,8 @@ def _draw_apertures(panel: Panel, states: xr.Dataset) -> None:
             ls="none",
             **style,
         )
+    if states[names_of("hydraulic_aperture_along")[1]].notnull().any():
+        panel.axes.plot([], [], "|", color="0.4", ms=10, label="bars: 95 %, mean over windows")
     # Laws go on where no path is left: they are drawn beside what was computed.
     flows = sum(states[f"transmissivity_{way}"].fillna(0) for way in WAYS)
     beside = states.isel(normal_force=np.flatnonzero(flows > 0))
@@ -104,12 +107,14 @@ def _words(subject: Subject, states: xr.Dataset) -> dict[str, Any]:
     at = states.isel(normal_force=subject.reported.reference)
     flow, ratio = float(at["transmissivity_along"]), float(at["hydraulic_ratio_along"])
     reload = at["branch_transmissivity_along"].sel(branch="reload")
+    window = Estimate.read(at, "transmissivity_along")
     parts = {"grid": "grid_error", "closing": "separation_error"}
     return {
         "pressure": float(at["nominal_pressure"]),
         "transmissivity": flow,
         "ratio": ratio,
         "flows": flow > 0,
+        "window": [window.low, window.high],
         "reload": float(reload / flow) if flow > 0 else np.nan,
         "closed": float(states["first_closed_pressure_along"]),
         "opened": float(states["last_open_pressure_along"]),
