@@ -167,6 +167,11 @@ def test_fields_are_the_atlas_s_where_it_has_them(atlas):
         assert stored.any()
     for text, load in zip(fields["pressure"]["data"], fields["pressure"]["loads"], strict=True):
         assert np.array_equal(unpacked(text, "<f4"), pressure[load].ravel())
+    flux = atlas["flow/pair"]["flux_map_along"].values
+    (text,), (load,) = fields["flow"]["data"], fields["flow"]["loads"]
+    assert contact["normal_force"].values[load] == pytest.approx(contact.attrs["map_load"])
+    packed = unpacked(text, "<f4").reshape(flux.shape)
+    np.testing.assert_allclose(packed, flux, rtol=2**-8)
     for text, load in zip(fields["gap"]["data"], fields["gap"]["loads"], strict=True):
         changes = unpacked(text, "<u2").reshape(gap[load].shape)
         steps = np.cumsum(changes, axis=1, dtype="<u2")

@@ -80,7 +80,7 @@ def _laws(card):
 
 def _strength(card):
     if "missing" in card["entries"]["jrc"]:
-        return "Against a plane nothing slides: no strength is stated."
+        return "Nothing slides here: no strength is stated."
     return (
         "Shear strength is sigma tan(phi_b + i) with the dilatancy angle i of the computed states; "
         "beside it stands Barton's law (Barton and Choubey 1977) with JRC from Z2 "

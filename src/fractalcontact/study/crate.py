@@ -58,6 +58,7 @@ _FILES = {
 _CONFIGURATION, _ATLASES = "study.yaml", ("atlas.nc", "accuracy.nc")
 _FOLDERS = {
     "pages": "page of the specimen {stem}",
+    "apertures": "aperture map of the specimen {stem} under the reference load",
     "cards": "card of the specimen {stem}: constants with intervals",
     "atlas": "atlas of the specimen {stem} alone",
     "embedded": "synthetic scan {stem}",

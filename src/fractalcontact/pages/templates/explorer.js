@@ -86,7 +86,7 @@ function move(who, change) {
   show();
 }
 
-/** The nearest state whose pressure, or gap, is stored. */
+/** The nearest state whose pressure, gap or flow is stored. */
 function goToStored(who) {
   const { states, place } = state[who];
   const home = states.home();
@@ -344,7 +344,7 @@ async function restore() {
   byId("compare").checked = view.has("b");
   byId("logarithmic").checked = view.get("log") === "1";
   byId("marks").checked = view.get("marks") !== "0";
-  const field = document.querySelector(`input[name=field][value="${view.get("map") === "pressure" || view.get("map") === "gap" ? view.get("map") : "contact"}"]`);
+  const field = document.querySelector(`input[name=field][value="${["pressure", "gap", "flow"].includes(view.get("map")) ? view.get("map") : "contact"}"]`);
   field.checked = true;
   fillControls("a");
   fillControls("b");

@@ -1,4 +1,4 @@
-// Maps of the contact, the pressure or the gap of one state on a canvas. Marked nodes are hatched
+// Maps of the contact, the pressure, the gap or the flow of one state on a canvas. Marked nodes are hatched
 // over their colour, so that one sees both. Colours are Okabe and Ito's.
 // Pressures stand on black: few nodes touch, and the colours of most are light.
 const INK = { contact: [0, 0, 0], free: [255, 255, 255], missing: [205, 205, 205], dark: [0, 0, 0] };
@@ -19,7 +19,7 @@ async function mapOf(states, place, field, marked) {
   map.domain = await states.domain(place);
   if (marked)
     for (const kind of Object.keys(MARKS)) map.marks[kind] = await states.marks(kind, place);
-  for (const one of ["pressure", "gap"])
+  for (const one of ["pressure", "gap", "flow"])
     if (map.domain && states.stores(one, place)) map[one] = await states.field(one, place);
   if (field !== "contact" && map[field]) map.values = map[field];
   return map;
@@ -69,7 +69,7 @@ function nodeColour(map, row, column, colour) {
   return colour(map.values && map.values[row * map.columns + column], touching) || (touching ? INK.contact : INK.free);
 }
 
-/** Colour of a pressure, on a logarithmic scale of three decades, or of a gap, on a linear one. */
+/** Colour of a pressure or a flow, on a logarithmic scale of three decades, or of a gap, on a linear one. */
 function valueColour(map, colours) {
   const { largest } = map.states.raw.fields[map.field];
   if (map.field === "gap")
@@ -104,24 +104,24 @@ function mapLegend(map, colours) {
   if (!map.domain) return entries;
   if (map.values) entries.push(colourBar(map, colours));
   const shown = map.values ? map.field : "contact";
-  if (shown !== "pressure") swatch(INK.contact, "in contact");
-  if (shown !== "gap") swatch(shown === "pressure" ? INK.dark : INK.free, "free");
+  if (shown === "contact" || shown === "gap") swatch(INK.contact, "in contact");
+  if (shown !== "gap") swatch(shown === "contact" ? INK.free : INK.dark, shown === "flow" ? "no flow" : "free");
   for (const [kind, bits] of Object.entries(map.marks)) if (bits) swatch(MARKS[kind].colour, MARKS[kind].words, MARKS[kind].rising ? "135deg" : "45deg");
   return entries;
 }
 
 function colourBar(map, colours) {
-  const { largest } = map.states.raw.fields[map.field];
+  const { largest, units } = map.states.raw.fields[map.field];
   const bar = document.createElement("span");
   bar.className = "colours";
   const strip = document.createElement("i");
-  const first = map.field === "pressure" ? pressurePart(1, 0) : 0;
+  const first = map.field === "gap" ? 0 : pressurePart(1, 0);
   const parts = Array.from({ length: 17 }, (_, i) => first + ((1 - first) * i) / 16);
   const stops = parts.map((part) => `rgb(${mixed(colours, part).map(Math.round).join(" ")})`);
   strip.style.background = `linear-gradient(to right, ${stops.join(", ")})`;
-  const [least, unit] = map.field === "gap" ? ["0", "mm"] : [`≤ ${short(largest / 10 ** DECADES_OF_PRESSURE, 2)}`, "MPa"];
+  const least = map.field === "gap" ? "0" : `≤ ${short(largest / 10 ** DECADES_OF_PRESSURE, 2)}`;
   const scale = map.field === "gap" ? "" : ", logarithmic";
-  bar.append(least, strip, `${short(largest, 3)} ${unit}${scale}`);
+  bar.append(least, strip, `${short(largest, 3)} ${units}${scale}`);
   return bar;
 }
 
@@ -136,6 +136,7 @@ function nodeWords(map, row, column) {
   const i = row * map.columns + column;
   if (map.pressure && map.pressure[i] > 0) words.push(`p = ${short(map.pressure[i])} MPa`);
   if (map.gap && Number.isFinite(map.gap[i])) words.push(`g = ${short(map.gap[i], 3)} mm`);
+  if (map.flow && map.flow[i] > 0) words.push(`flow ${short(map.flow[i], 2)} of its mean`);
   const mark = markOf(map, row, column);
   if (mark) words.push(MARKS[mark].words);
   return words.join(", ");

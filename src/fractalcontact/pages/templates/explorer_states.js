@@ -113,7 +113,7 @@ class States {
     const key = `${kind} ${place.direction} ${place.offset}`;
     return new Bits(await this.once(key, () => inflated(text)), this.raw.window.shape);
   }
-  /** Whether pressure or gap ("field") is stored at a place. */
+  /** Whether pressure, gap or flow ("field") is stored at a place. */
   stores(field, place) {
     const fields = this.raw.fields;
     return Boolean(
@@ -124,13 +124,13 @@ class States {
         fields[field].loads.includes(place.normal_force)
     );
   }
-  /** Pressure (MPa) or gap (mm) of every node, NaN where missing. */
+  /** Pressure (MPa), gap (mm) or flow over its mean of every node, NaN where missing. */
   async field(field, place) {
     const stored = this.raw.fields[field];
     const i = stored.loads.indexOf(place.normal_force);
     return this.once(`${field} ${i}`, async () => {
       const bytes = await inflated(stored.data[i]);
-      if (field === "pressure") return new Float32Array(joined(bytes, 4));
+      if (field !== "gap") return new Float32Array(joined(bytes, 4));
       return this.gaps(new Uint16Array(joined(bytes, 2)), stored);
     });
   }
