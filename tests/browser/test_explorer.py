@@ -390,7 +390,7 @@ def test_pressure_and_gap_are_the_atlas_s_and_said_to_be_missing_elsewhere(open_
     row, column = (int(i) for i in touching[len(touching) // 2])
     with open_page(f"explorer.html#a={name}") as page:
         explorer = Explorer(page)
-        for field in ("pressure", "gap"):
+        for field in ("pressure", "gap", "flow"):
             explorer.field(field)
             assert explorer.panel().locator(".stored").is_hidden()
             assert explorer.panel().locator(".colour-key .colours").is_visible()

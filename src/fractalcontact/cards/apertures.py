@@ -10,6 +10,7 @@ from ..core.atomic import atomic_write
 from ..core.errors import InputError
 from ..core.labels import cf_attrs
 from ..core.netcdf import write
+from ..core.tables import write_table
 
 #: Relative difference of two pressures that are one.
 SAME = 1e-6
@@ -120,13 +121,12 @@ def write_aperture(aperture: xr.DataArray | pd.DataFrame, path: Path | str) -> N
     if path.suffix == ".nc":
         write(aperture.to_dataset().assign_attrs(Conventions="CF-1.8"), path)
         return
+    if path.suffix == ".csv":
+        table = aperture if of_points else aperture.to_dataframe().reset_index()
+        write_table(path, table[["x", "y", "aperture"]])
+        return
     with atomic_write(path) as file:
-        if path.suffix == ".vtk":
-            file.write_bytes(_vtk(aperture))
-        else:
-            table = aperture if of_points else aperture.to_dataframe().reset_index()
-            table = table[["x", "y", "aperture"]]
-            table.to_csv(file, index=False, float_format="%.7g", lineterminator="\n")
+        file.write_bytes(_vtk(aperture))
 
 
 def _vtk(aperture: xr.DataArray) -> bytes:

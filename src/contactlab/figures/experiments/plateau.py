@@ -7,7 +7,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 from xarray import DataTree
 
-from fractalcontact.core.directions import slides
+from fractalcontact.core import directions
 from fractalcontact.core.subject import configuration_of
 from fractalcontact.figures.kit.caption import caption
 from fractalcontact.figures.kit.drawing import LINES, WIDTH, Drawing, colour_of
@@ -45,7 +45,7 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
     joints = atlas["roll_off/surfaces"].to_dataset()
     synthetic = [Slide.synthetic(joints.sel(surface=s)) for s in joints["surface"].values]
     settings = configuration_of(atlas)["settings"]
-    sliding = [name for name in names if slides(settings[name]["opposite"])]
+    sliding = [name for name in names if directions.slides(settings[name]["opposite"])]
     slides = synthetic + [Slide.of(atlas, name) for name in sliding]
     figure = Figure(figsize=(WIDTH, 3.6 + 0.15 * len(slides)))
     panels = figure.subplots(1, 2, sharex=True)
