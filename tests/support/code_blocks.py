@@ -45,7 +45,7 @@ NOT_RUN = {
         "docs/flow.md",
         "python -m fractalcontact.commands.export_aperture",
     ): "run with the atlas of a test in tests/cards/test_apertures.py",
-    ("docs/flow.md", "kind: aperture"): "a sidecar: its keys are read in tests/scan/test_aperture.py",
+    ("docs/flow.md", "kind: aperture"): "a sidecar: tests/scan/test_aperture.py reads its keys",
     (
         "docs/flow.md",
         "import numpy as np\nimport porepy",
