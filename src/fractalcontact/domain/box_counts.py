@@ -169,7 +169,7 @@ def cropped(domain: np.ndarray) -> np.ndarray:
 def cover_and_mean(
     domain: np.ndarray, cover_sizes: np.ndarray, mean_sizes: np.ndarray | None = None
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Minimal cover and mean number of boxes over all grid origins, in one pass over the domain.
+    """Minimal cover and mean number of boxes over all grid origins.
 
     Parameters
     ----------
@@ -184,9 +184,11 @@ def cover_and_mean(
     mean : (m,) float64
         Of all origins, as :func:`mean_count`.
     """
-    mean_sizes = np.empty(0, np.int64) if mean_sizes is None else mean_sizes
-    cover, places = _over_origins(np.ascontiguousarray(domain), cover_sizes, mean_sizes)
-    return cover, places / mean_sizes.astype(float) ** 2
+    domain = np.ascontiguousarray(domain)
+    cover = _over_origins(domain, cover_sizes)
+    if mean_sizes is None:
+        return cover, np.empty(0)
+    return cover, _places_of(domain, mean_sizes, 1).ravel() / mean_sizes.astype(float) ** 2
 
 
 def _checked_domain(domain):
@@ -233,42 +235,37 @@ def _summed(domain):
 
 
 @njit(cache=True)
-def _over_origins(domain, cover_sizes, mean_sizes):
-    """Minimal cover, and places of a gliding box that meets the domain, for each size.
+def _over_origins(domain, sizes):
+    """Minimal cover for each size.
 
     A box whose lowest cell is p meets the domain if its side is at least d(p): 1 at a node, else
     one more than the least of the upper neighbours'. One grid has the places alike modulo r.
     """
     ny, nx = domain.shape
     reach = 1
-    for size in np.concatenate((cover_sizes, mean_sizes)):
+    for size in sizes:
         reach = max(reach, size)
-    starts = np.zeros(cover_sizes.size + 1, np.int64)
-    starts[1:] = np.cumsum(cover_sizes**2)
+    starts = np.zeros(sizes.size + 1, np.int64)
+    starts[1:] = np.cumsum(sizes**2)
     counts = np.zeros(starts[-1], np.int32)
-    places = np.zeros(reach + 1, np.int64)
     smallest = np.full(nx + reach, reach + 1, np.int32)  # place x stands at x + reach - 1
-    for y in range(ny - 1, -reach, -1):
+    for y in range(ny - 1 if sizes.size else -reach, -reach, -1):
         nearest = _next_row(domain, y, smallest, reach)
         if nearest > reach:
             continue
-        if mean_sizes.size:
-            for i in range(nx + reach - 1):
-                if smallest[i] <= reach:
-                    places[smallest[i]] += 1
-        for k in range(cover_sizes.size):
-            size = cover_sizes[k]
+        for k in range(sizes.size):
+            size, least = sizes[k], np.int32(sizes[k])
             if nearest > size or y <= -size:
                 continue
             row = counts[starts[k] + (y + size - 1) % size * size :][:size]
             for first in range(reach - size, nx + reach - 1, size):
                 part = smallest[first : min(first + size, nx + reach - 1)]
                 for i in range(part.size):
-                    row[i] += part[i] <= size
-    cover = np.empty(cover_sizes.size, np.int64)
-    for k in range(cover_sizes.size):
+                    row[i] += part[i] <= least
+    cover = np.empty(sizes.size, np.int64)
+    for k in range(sizes.size):
         cover[k] = counts[starts[k] : starts[k + 1]].min()
-    return cover, np.cumsum(places)[mean_sizes]
+    return cover
 
 
 @njit(cache=True)
@@ -352,34 +349,100 @@ def mean_count(domain: np.ndarray, sizes: np.ndarray, *, blocks: int = 1) -> np.
     """
     sizes = whole_numbers(_checked_sizes(sizes), "sizes of boxes", least=1, most=_MAX_CELLS)
     blocks = whole_number(blocks, "blocks", least=1, most=_MAX_CELLS)
-    nodes = _summed(_checked_domain(domain))
-    counts = [_places(nodes, int(size), blocks) / size**2 for size in sizes]
-    return np.array(counts).reshape(sizes.size, blocks, blocks)
+    domain = np.ascontiguousarray(_checked_domain(domain))
+    return _places_of(domain, sizes, blocks) / (sizes**2)[:, np.newaxis, np.newaxis]
+
+
+def _places_of(domain, sizes, blocks):
+    """Places of gliding boxes that meet a domain, (k, blocks, blocks), sizes in any order."""
+    ascending, place = np.unique(sizes, return_inverse=True)
+    return _places(domain, ascending, blocks)[place]
 
 
 @njit(cache=True)
-def _places(nodes, size, blocks):
-    """Places of a gliding box that meets the domain, by the part that holds its middle."""
-    ny, nx = nodes.shape[0] - 1, nodes.shape[1] - 1
-    places = np.zeros((blocks, blocks), np.int64)
-    for y in range(1 - size, ny):
-        bottom, top = nodes[max(y, 0)], nodes[min(y + size, ny)]
-        part_y = min(max((2 * y + size) * blocks // (2 * ny), 0), blocks - 1)
-        for part_x in range(blocks):
-            # First place whose middle is in this part; the outer parts take what hangs over.
-            start = 1 - size if part_x == 0 else -((size * blocks - 2 * nx * part_x) // 2 // blocks)
-            end = -((size * blocks - 2 * nx * (part_x + 1)) // 2 // blocks)
-            end = nx if part_x == blocks - 1 else end
-            # Boxes that hang over the left, lie inside, and hang over the right.
-            inside = min(max(start, 0), end)
-            over = max(min(end, nx - size + 1), inside)
-            hit = 0
-            for x in range(start, inside):
-                right = min(x + size, nx)
-                hit += top[right] != bottom[right]
-            for x in range(inside, over):
-                hit += top[x + size] - top[x] != bottom[x + size] - bottom[x]
-            for x in range(over, end):
-                hit += top[nx] - top[x] != bottom[nx] - bottom[x]
-            places[part_y, part_x] += hit
+def _places(domain, sizes, blocks):
+    """Places of gliding boxes that meet the domain, by the part that holds their middle.
+
+    Each bit says whether the box whose lowest cell is there meets the domain: 64 places at a time.
+    A box of side r is made of four of side r', whose lowest cells are r - r' apart.
+    """
+    ny, nx = domain.shape
+    reach = sizes[-1] if sizes.size else 1
+    # Cell 0 stands at the first word that leaves room for boxes which hang over. Behind the last
+    # word stand zeros, for those on the other side.
+    before = (reach + 62) // 64
+    rows, words = ny + reach - 1, before + (nx + 63) // 64
+    meets = np.zeros((rows, words + reach // 64 + 2), np.uint64)
+    for y in range(ny):
+        for i in range(words - before):
+            word = np.uint64(0)
+            for x in range(64 * i, min(64 * i + 64, nx)):
+                word |= np.uint64(domain[y, x]) << np.uint64(x & 63)
+            meets[y + reach - 1, before + i] = word
+    places = np.zeros((sizes.size, blocks, blocks), np.int64)
+    side = 1
+    for k in range(sizes.size):
+        size = sizes[k]
+        while side < size:
+            step = min(side, size - side)
+            _widen(meets, words, reach - side, step)
+            side += step
+        for row in range(reach - size, rows):
+            y = row - reach + 1
+            part_y = min(max((2 * y + size) * blocks // (2 * ny), 0), blocks - 1)
+            first = 64 * before + 1 - size
+            for part_x in range(blocks):
+                # Beyond the last place whose middle is in this part; the outer ones overhang.
+                end = -((size * blocks - 2 * nx * (part_x + 1)) // 2 // blocks)
+                end = 64 * before + (nx if part_x == blocks - 1 else end)
+                places[k, part_y, part_x] += _ones(meets[row], first, end)
+                first = end
     return places
+
+
+@njit(cache=True)
+def _widen(meets, words, first, step):
+    """Make boxes wider by some cells, at most by their side; row ``first`` is the first not empty.
+
+    In place from below: what is read lies further up.
+    """
+    whole, bits = step // 64, np.uint64(step % 64)
+    row = np.empty(words, np.uint64)
+    for y in range(first, meets.shape[0]):
+        lower, upper = meets[y, whole : whole + words], meets[y, whole + 1 : whole + 1 + words]
+        for i in range(words):
+            # In two shifts to the left: one of 64 is none.
+            row[i] = lower[i] >> bits | upper[i] << np.uint64(1) << (np.uint64(63) - bits)
+        for i in range(words):
+            meets[y, i] |= row[i]
+    for y in range(first - step, meets.shape[0] - step):
+        for i in range(words):
+            meets[y, i] |= meets[y + step, i]
+
+
+@njit(cache=True)
+def _ones(row, first, end):
+    """Bits that are set from ``first`` to before ``end``."""
+    if end <= first:
+        return 0
+    last = (end - 1) >> 6
+    n = 0
+    for i in range(first >> 6, last + 1):
+        word = row[i]
+        if i == first >> 6:
+            word = word >> np.uint64(first & 63) << np.uint64(first & 63)
+        if i == last:
+            word = word << np.uint64(63 - ((end - 1) & 63))
+        n += _bits_of(word)
+    return n
+
+
+@njit(cache=True)
+def _bits_of(word):
+    """Bits that are set in a word of 64: sums of two, four and eight of them side by side."""
+    word -= (word >> np.uint64(1)) & np.uint64(0x5555555555555555)
+    word = (word & np.uint64(0x3333333333333333)) + (
+        (word >> np.uint64(2)) & np.uint64(0x3333333333333333)
+    )
+    word = (word + (word >> np.uint64(4))) & np.uint64(0x0F0F0F0F0F0F0F0F)
+    return np.int64((word * np.uint64(0x0101010101010101)) >> np.uint64(56))
