@@ -30,6 +30,7 @@ remake_without_record()
 
 
 onstart:
+    without_rate_limit()
     begin()
 
 
