@@ -5,6 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import ndimage, sparse
 
+from roughcontact.kernel_cache import njit
+
 from .cholesky import solve_symmetric
 from .errors import FlowNotConverged
 
@@ -101,7 +103,29 @@ def joined_cells(open_cells: np.ndarray, inlet: np.ndarray, outlet: np.ndarray) 
 
 def are_joined(open_cells: np.ndarray, inlet: np.ndarray, outlet: np.ndarray) -> bool:
     """True if a path of open cells joins both ends, as :func:`joined_cells` takes them."""
-    return bool(_at_both(ndimage.label(open_cells)[0], inlet, outlet).size)
+    # A rim of closed cells: then each cell has four neighbours.
+    rimmed = (np.pad(cells, 1).ravel() for cells in (open_cells, inlet, outlet))
+    return _reached(*rimmed, open_cells.shape[1] + 2)
+
+
+@njit(cache=True)
+def _reached(unseen, inlet, outlet, width):
+    """True if a path of cells, which become seen, leads from the inlet to the outlet."""
+    waiting = np.empty(unseen.size, np.int64)
+    for start in range(unseen.size):
+        n = 0
+        if unseen[start] and inlet[start]:
+            unseen[start], waiting[0], n = False, start, 1
+        while n:
+            n -= 1
+            cell = waiting[n]
+            if outlet[cell]:
+                return True
+            for other in (cell - width, cell - 1, cell + 1, cell + width):
+                if unseen[other]:
+                    unseen[other], waiting[n] = False, other
+                    n += 1
+    return False
 
 
 def _at_both(labels, inlet, outlet):
