@@ -20,7 +20,7 @@ from ..domain.analysis import analyse_domains, scaling_over_resolutions
 from ..domain.null_models import OCTAVES
 from ..domain.random_nodes import expected_dimension
 from ..domain.renormalisation import area_bend
-from ..mechanics.closure import interface_curves
+from ..mechanics.closure import interface_states
 from ..mechanics.loading import JointLoading
 from ..mechanics.separation import ROUNDING
 from ..mechanics.states import MAP_GAP, contact_domains, forces_of, with_pressure
@@ -28,7 +28,7 @@ from ..mechanics.sweep import contact_states
 from ..size_effect.division import solvable_parts, spread_windows
 from ..size_effect.size_exponents import size_exponent, usable_sizes
 from ..size_effect.size_law import QUANTITIES
-from ..size_effect.windows import window_states
+from ..size_effect.windows import solved_windows
 from ..study.configuration import window_arguments
 from ..surface.embedded import embedded_surface
 from ..surface.specimen import make_specimen
@@ -172,19 +172,14 @@ def _realised(specimens: xr.Dataset, recipe: Mapping, settings: EnsembleSettings
     spacing = {key: specimens.attrs[key] for key in ("spacing_y", "spacing_x")}
     lower = specimens["lower"].copy(data=embedded_surface(recipe)).assign_attrs(spacing)
     name = f"{specimens.attrs['name']}, realisation of seed {recipe['seed']}"
-    return make_specimen(lower, name=name, **window_arguments(settings))
+    return make_specimen(lower, name=name, judged=False, **window_arguments(settings))
 
 
 def _realisation(loading: JointLoading[EnsembleSettings]) -> xr.Dataset:
     """:data:`STATES` over the loads, and :data:`EXPONENTS`, of one realisation."""
     settings, spacing = loading.settings, cell_side(loading.specimen)
     states = contact_states(loading, settings.resolutions, mapped=int(loading.cells[0]))
-    curves = interface_curves(
-        states,
-        window_sides(loading.specimen),
-        settings.material.e_star,
-        seating_pressure=settings.seating_pressure,
-    )
+    curves = interface_states(states, window_sides(loading.specimen), settings.material.e_star)
     finest = min(settings.resolutions)
     others = [f"in_contact_{k}" for k in settings.resolutions if k != finest]
     fields = contact_domains(states).drop_vars(others).sel(resolution=[finest])
@@ -223,7 +218,7 @@ def _bend(curves: xr.Dataset, settings: EnsembleSettings, spacing: float) -> np.
 def _size_exponents(loading: JointLoading[EnsembleSettings]) -> dict:
     """Exponents of one realisation against the size of its sub-windows, as variables."""
     parts = solvable_parts(PARTS, loading.shape)
-    windows = window_states(loading, parts, MAX_WINDOWS).isel(offset=0, normal_force=0)
+    windows = solved_windows(loading, parts, MAX_WINDOWS).isel(offset=0, normal_force=0)
     windows = windows.transpose("part", "window", ...)
     places = [spread_windows(n, MAX_WINDOWS) for n in parts]
     table, values = {}, {}

@@ -184,13 +184,30 @@ def interface_curves(
     xr.Dataset
         That of :func:`closure_curves` without its fits.
     """
-    area = window[0] * window[1]
-    result = states[[*STATE_VARIABLES, *OFFSETS]].copy()
-    _add_interface(result, bulk_settlement(states["normal_force"].values, e_star, *window), area)
+    result = interface_states(states, window, e_star)
     add_conductance(result, e_star)
-    _add_errors(result, area, e_star)
+    _add_errors(result, window[0] * window[1], e_star)
     add_separation(result, openings)
     add_seated_closure(result, seating_pressure)
+    return result
+
+
+def interface_states(states: xr.Dataset, window: tuple[float, float], e_star: float) -> xr.Dataset:
+    """Closure, stiffness and contact of the interface alone: no errors, no separation, no seat.
+
+    Parameters
+    ----------
+    states, window, e_star
+        As of :func:`closure_curves`.
+
+    Returns
+    -------
+    xr.Dataset
+        Of what :func:`interface_curves` gives, that which follows from each state for itself.
+    """
+    result = states[[*STATE_VARIABLES, *OFFSETS]].copy()
+    settlement = bulk_settlement(states["normal_force"].values, e_star, *window)
+    _add_interface(result, settlement, window[0] * window[1])
     return result
 
 

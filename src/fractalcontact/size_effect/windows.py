@@ -74,6 +74,36 @@ def window_states(
     *,
     seated: bool = False,
 ) -> xr.Dataset:
+    """Contact states of sub-windows of several sizes, and how rough those of many more are.
+
+    Parameters
+    ----------
+    loading, parts, most, seated
+        As of :func:`solved_windows`.
+
+    Returns
+    -------
+    xr.Dataset
+        That of :func:`solved_windows`, and ``face_sigma_z`` (scale) and ``sigma_z_all`` (offset,
+        scale) with the interval of their mean over all sub-windows of many more sizes
+        (``scale_side``), see :func:`size_effect.local_roughness.roughness_by_size`.
+
+    Raises
+    ------
+    NotConverged
+        As :func:`solved_windows`.
+    """
+    solved = solved_windows(loading, parts, most, seated=seated)
+    return solved.merge(roughness_by_size(loading))
+
+
+def solved_windows(
+    loading: JointLoading[JointSettings],
+    parts: Sequence[int] = PARTS,
+    most: int = MAX_WINDOWS,
+    *,
+    seated: bool = False,
+) -> xr.Dataset:
     """Contact states of sub-windows of several sizes, under the study's dilatancy loads.
 
     Parameters
@@ -93,9 +123,7 @@ def window_states(
     xr.Dataset
         :data:`STATES` over (part, window, offset, normal_force) and :data:`SHAPES` over (part,
         window, offset), NaN where there are fewer sub-windows; ``side`` b (part), the square root
-        of their area. And ``face_sigma_z`` (scale) and ``sigma_z_all`` (offset, scale) with the
-        interval of their mean over all sub-windows of many more sizes (``scale_side``), see
-        :func:`size_effect.local_roughness.roughness_by_size`.
+        of their area.
 
     Raises
     ------
@@ -138,7 +166,7 @@ def window_states(
         "bulk_settlement": settlement,
         "nominal_pressure": pressures,
     }
-    result = labelled_dataset(
+    return labelled_dataset(
         _TABLE,
         values,
         coords={
@@ -153,7 +181,6 @@ def window_states(
         },
         attrs={"opposite": loading.specimen.attrs["opposite"], "seated": int(seated)},
     )
-    return result.merge(roughness_by_size(loading))
 
 
 class _SubWindows:

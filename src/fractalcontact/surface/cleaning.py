@@ -31,6 +31,7 @@ def clean_faces(
     *,
     outliers: str = "keep",
     largest_hole: int = 0,
+    judged: bool = True,
     name: str = "specimen",
 ) -> tuple[list[xr.DataArray], dict[str, np.ndarray], dict]:
     """Suspicious cells of the scanned faces counted, masked or filled, and small holes filled.
@@ -45,6 +46,9 @@ def clean_faces(
         more), see `surface.suspect`.
     largest_hole : int
         Rows and columns of the largest hole that is filled; 0 fills none.
+    judged : bool
+        False looks for no suspicious cells where they would be kept: of a surface that was made,
+        none was measured wrong.
     name : str
         The specimen, for errors.
 
@@ -71,8 +75,11 @@ def clean_faces(
         raise InputError(
             f"{name}: key 'fill_holes' is {largest_hole!r}; expected a number of cells, or 0"
         )
-    outlying = [find_outliers(scan.values) for scan in scans]
-    suspects = find_suspects(scans)
+    if judged or outliers != "keep":
+        outlying, suspects = [find_outliers(scan.values) for scan in scans], find_suspects(scans)
+    else:
+        none = np.zeros(scans[0].shape, dtype=bool)
+        outlying, suspects = [none] * len(scans), Suspects([none] * len(scans), none, none, [])
     removed = _removed(outlying, suspects, outliers)
     faces, filled = _refilled(scans, removed, outliers, largest_hole)
     overlap, deep = suspects.overlap, suspects.deep

@@ -40,6 +40,7 @@ def make_specimen(
     opposite: str = "match",
     outliers: str = "keep",
     fill_holes: int = 0,
+    judged: bool = True,
     name: str = "specimen",
     **window: Any,
 ) -> xr.Dataset:
@@ -58,6 +59,8 @@ def make_specimen(
         deep overlaps, see `cleaning.clean_faces`.
     fill_holes : int
         Rows and columns of the largest hole that is filled, see `cleaning.fill_holes`; 0 for none.
+    judged : bool
+        False looks for no suspicious cells where they would be kept, see `cleaning.clean_faces`.
     name : str
         For errors and attributes.
     **window
@@ -84,7 +87,11 @@ def make_specimen(
         raise InputError(f"{name}: the two faces are not on one grid; read them together")
     scans = {"lower": lower} if upper is None else {"lower": lower, "upper": upper}
     cleaned, cells, cleaning = clean_faces(
-        list(scans.values()), outliers=outliers, largest_hole=fill_holes, name=name
+        list(scans.values()),
+        outliers=outliers,
+        largest_hole=fill_holes,
+        judged=judged,
+        name=name,
     )
     valid = np.logical_and.reduce([np.isfinite(scan.values) for scan in cleaned])
     if valid.sum() < 3:
