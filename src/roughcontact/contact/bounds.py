@@ -1,10 +1,21 @@
 """Bounds of the pressure: on all nodes the same, or on each its own."""
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
 from .restriction import restrict_sum
+
+
+def _on_nodes(bound, n):
+    return np.broadcast_to(bound, (n,)) if np.ndim(bound) else _on_all(bound, n)
+
+
+@lru_cache(maxsize=64)
+def _on_all(bound, n):
+    """One number on n nodes. In small windows to make it takes as long as to read it."""
+    return np.broadcast_to(bound, (n,))
 
 
 @dataclass(frozen=True)
@@ -60,7 +71,7 @@ class Bounds:
 
     def on(self, n: int) -> tuple[np.ndarray, np.ndarray]:
         """Both on each of n nodes, as compiled code reads them; one number takes no memory."""
-        return np.broadcast_to(self.lower, (n,)), np.broadcast_to(self.upper, (n,))
+        return _on_nodes(self.lower, n), _on_nodes(self.upper, n)
 
     def coarser(self, shape: tuple[int, int]) -> "Bounds":
         """Bounds on the grid twice as coarse as one of a shape.
