@@ -9,7 +9,12 @@ from .restriction import restrict_sum
 
 
 def _on_nodes(bound, n):
-    return np.broadcast_to(bound, (n,)) if np.ndim(bound) else _on_all(bound, n)
+    return _on_all(bound, n) if _is_one(bound) else np.broadcast_to(bound, (n,))
+
+
+def _is_one(bound):
+    # Of a plain number `np.ndim` makes an array first.
+    return isinstance(bound, float) or np.ndim(bound) == 0
 
 
 @lru_cache(maxsize=64)
@@ -34,7 +39,7 @@ class Bounds:
     @property
     def uniform(self) -> bool:
         """True if they are the same on all nodes."""
-        return np.ndim(self.lower) == np.ndim(self.upper) == 0
+        return _is_one(self.lower) and _is_one(self.upper)
 
     @property
     def elastic(self) -> bool:
