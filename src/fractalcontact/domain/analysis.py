@@ -276,10 +276,9 @@ def scaling_over_resolutions(
     Delta_sigma. Mixing both would put a step into the line where one takes over from the other. The
     raw areas that are fitted are those of `RESOLVED_NODES` or more.
     """
-    s = (curves["resolution"] * spacing).assign_attrs(cf_attrs("mm", "spacing s"))
-    inside = True if fit_range is None else within(s, *fit_range)
-    nodes, force = curves["nodes"].where(inside), curves["normal_force"]
-    result = renormalisation(s, curves["area_corrected"], force, nodes, CORRECTED_NODES)
+    s, nodes = _spacings(curves, spacing), _nodes_between(curves, spacing, fit_range)
+    force = curves["normal_force"]
+    result = corrected_scaling(curves, spacing, fit_range=fit_range)
     used = result["sigma_n"].notnull() & result["delta_sigma"].notnull()
     result["area_used"] = used.assign_attrs(cf_attrs("1", "resolution in the fit of delta_sigma"))
     # The pressure does not depend on which spacings are fitted.
@@ -309,6 +308,36 @@ def scaling_over_resolutions(
     for name in ("area", "area_corrected", "nodes"):
         result[name] = curves[name]
     return result.drop_vars([n for n in result.coords if n not in result.dims])
+
+
+def corrected_scaling(
+    curves: xr.Dataset, spacing: float, *, fit_range: tuple[float, float] | None = None
+) -> xr.Dataset:
+    """Renormalisation of the corrected areas alone.
+
+    Parameters
+    ----------
+    curves, spacing, fit_range
+        As of :func:`scaling_over_resolutions`.
+
+    Returns
+    -------
+    xr.Dataset
+        As of :func:`domain.renormalisation.renormalisation`.
+    """
+    s, nodes = _spacings(curves, spacing), _nodes_between(curves, spacing, fit_range)
+    force = curves["normal_force"]
+    return renormalisation(s, curves["area_corrected"], force, nodes, CORRECTED_NODES)
+
+
+def _spacings(curves, spacing):
+    return (curves["resolution"] * spacing).assign_attrs(cf_attrs("mm", "spacing s"))
+
+
+def _nodes_between(curves, spacing, fit_range):
+    """Nodes in contact at the spacings that are fitted, else missing."""
+    inside = True if fit_range is None else within(_spacings(curves, spacing), *fit_range)
+    return curves["nodes"].where(inside)
 
 
 def _local_exponent(s, area):

@@ -16,14 +16,15 @@ from ..core.limits import CORRECTED_NODES, RESOLVED_NODES
 from ..core.ranges import within
 from ..core.settings import EnsembleSettings, Solver
 from ..core.window import cell_side, window_sides
-from ..domain.analysis import analyse_domains, scaling_over_resolutions
+from ..domain.analysis import corrected_scaling
+from ..domain.box_dimension import dimension_of_domain
 from ..domain.null_models import OCTAVES
 from ..domain.random_nodes import expected_dimension
 from ..domain.renormalisation import area_bend
 from ..mechanics.closure import interface_states
 from ..mechanics.loading import JointLoading
 from ..mechanics.separation import ROUNDING
-from ..mechanics.states import MAP_GAP, contact_domains, forces_of, with_pressure
+from ..mechanics.states import MAP_GAP, forces_of, with_pressure
 from ..mechanics.sweep import contact_states
 from ..size_effect.division import solvable_parts, spread_windows
 from ..size_effect.size_exponents import size_exponent, usable_sizes
@@ -181,24 +182,27 @@ def _realisation(loading: JointLoading[EnsembleSettings]) -> xr.Dataset:
     states = contact_states(loading, settings.resolutions, mapped=int(loading.cells[0]))
     curves = interface_states(states, window_sides(loading.specimen), settings.material.e_star)
     finest = min(settings.resolutions)
-    others = [f"in_contact_{k}" for k in settings.resolutions if k != finest]
-    fields = contact_domains(states).drop_vars(others).sel(resolution=[finest])
-    domains = analyse_domains(fields, spacing, fit_range=settings.box_range)
-    scaling = scaling_over_resolutions(curves, domains, spacing, fit_range=settings.scaling_range)
-    touching = fields[f"in_contact_{finest}"].values[0, 0]
+    at = {"direction": loading.direction, "offset": loading.offsets[0], "resolution": finest}
+    touching = states[f"in_contact_{finest}"].sel(direction=loading.direction).values[0]
+    solved = states["solved"].sel(at).values
+    boxes = [
+        dimension_of_domain(domain, spacing, fit_range=settings.box_range).value if one else np.nan
+        for domain, one in zip(touching, solved, strict=True)
+    ]
+    scaling = corrected_scaling(curves, spacing, fit_range=settings.scaling_range)
+    by_area = scaling["delta_sigma"].sel({dim: at[dim] for dim in ("direction", "offset")}).values
     values = {
         "mean_gap": states[MAP_GAP].mean(states[MAP_GAP].dims[1:]).values,
+        "delta_sigma": boxes,
         "delta_sigma_random": [
             expected_dimension(domain, spacing, fit_range=settings.box_range) for domain in touching
         ],
+        "delta_sigma_area": by_area,
         "area_bend": _bend(curves, settings, spacing),
+        "difference": by_area - np.array(boxes),
     }
     for name in STATES.keys() - values.keys():
-        at = {"direction": loading.direction, "offset": loading.offsets[0], "resolution": finest}
-        stage = next(one for one in (curves, domains, scaling) if name in one)
-        values[name] = (
-            stage[name].sel({dim: at[dim] for dim in at if dim in stage[name].dims}).values
-        )
+        values[name] = curves[name].sel(at).values
     table = {name: ("normal_force", *words) for name, words in STATES.items()}
     result = labelled_dataset(table, values, coords={"normal_force": curves["normal_force"]})
     composite = loading.composite(int(loading.cells[0]))[::finest, ::finest]
