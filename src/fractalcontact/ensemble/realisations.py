@@ -185,8 +185,9 @@ def _realisation(loading: JointLoading[EnsembleSettings]) -> xr.Dataset:
     at = {"direction": loading.direction, "offset": loading.offsets[0], "resolution": finest}
     touching = states[f"in_contact_{finest}"].sel(direction=loading.direction).values[0]
     solved = states["solved"].sel(at).values
+    cell, fitted = spacing * finest, settings.box_range
     boxes = [
-        dimension_of_domain(domain, spacing, fit_range=settings.box_range).value if one else np.nan
+        dimension_of_domain(domain, cell, fit_range=fitted).value if one else np.nan
         for domain, one in zip(touching, solved, strict=True)
     ]
     scaling = corrected_scaling(curves, spacing, fit_range=settings.scaling_range)
@@ -195,7 +196,7 @@ def _realisation(loading: JointLoading[EnsembleSettings]) -> xr.Dataset:
         "mean_gap": states[MAP_GAP].mean(states[MAP_GAP].dims[1:]).values,
         "delta_sigma": boxes,
         "delta_sigma_random": [
-            expected_dimension(domain, spacing, fit_range=settings.box_range) for domain in touching
+            expected_dimension(domain, cell, fit_range=fitted) for domain in touching
         ],
         "delta_sigma_area": by_area,
         "area_bend": _bend(curves, settings, spacing),
@@ -206,7 +207,7 @@ def _realisation(loading: JointLoading[EnsembleSettings]) -> xr.Dataset:
     table = {name: ("normal_force", *words) for name, words in STATES.items()}
     result = labelled_dataset(table, values, coords={"normal_force": curves["normal_force"]})
     composite = loading.composite(int(loading.cells[0]))[::finest, ::finest]
-    slopes = null_slopes(touching, composite, spacing * finest, fit_range=settings.box_range)
+    slopes = null_slopes(touching, composite, cell, fit_range=fitted)
     return result.merge(slopes).assign(_size_exponents(loading))
 
 
