@@ -228,3 +228,14 @@ def test_singular_equations_are_refused(cholmod):
     except ArithmeticError:
         return
     assert not np.isfinite(found).all() or np.abs(found).max() > 1e12
+
+
+def test_a_path_is_found_where_labels_join_both_ends():
+    for seed in range(ensemble("fields solved densely")):
+        rng = np.random.default_rng(seed)
+        shape = tuple(rng.integers(2, 40, 2))
+        opened = rng.random(shape) < rng.choice([0.4, 0.55, 0.6, 0.65, 0.9])
+        ends = rng.random((2, *shape)) < 0.02
+        ends[0, :, 0] = ends[1, :, -1] = True
+        joined = network.joined_cells(opened, *ends).any()
+        assert network.are_joined(opened, *ends) == joined

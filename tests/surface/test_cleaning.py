@@ -168,6 +168,15 @@ def test_outliers_are_kept_until_the_study_masks_them():
     assert "9 cells stay missing" in filled.attrs["cleaning"]
 
 
+def test_what_is_not_judged_is_kept_as_it_is():
+    scan = scan_of(spikes(self_affine((60, 60), 0.5, 0.7, rms=1.0, seed=7), 60.0)[0])
+    judged, as_it_is = (make_specimen(scan, judged=one) for one in (True, False))
+    assert judged.attrs["outlier_count"] > as_it_is.attrs["outlier_count"] == 0
+    np.testing.assert_array_equal(judged.lower.values, as_it_is.lower.values)
+    masked = make_specimen(scan, outliers="mask", judged=False)
+    assert masked.attrs["outlier_count"] == judged.attrs["outlier_count"]
+
+
 def test_the_window_may_lie_over_filled_cells_of_either_face():
     z = self_affine((60, 60), 0.5, 0.7, rms=1.0, seed=8)
     lower, upper = scan_of(with_hole(z, 30, 30)), scan_of(with_hole(z + 1, 40, slice(20, 22)))

@@ -53,3 +53,11 @@ def test_the_report_begins_with_a_page_of_its_own():
     text = (ROOT / "Snakefile").read_text()
     (start,) = re.findall(r'^report: "(.+)"$', text, re.MULTILINE)
     assert '{{ snakemake.config["study"] }}' in (ROOT / start).read_text()
+
+
+def test_snakemake_has_the_limit_of_jobs_a_second_that_a_local_run_takes_off():
+    from snakemake.scheduling.job_scheduler import JobScheduler
+
+    assert "scheduler.job_rate_limiter = None" in (ROOT / "workflow/rules/records.smk").read_text()
+    for method in (JobScheduler.schedule, JobScheduler.job_selector):
+        assert "job_rate_limiter" in method.__code__.co_names
