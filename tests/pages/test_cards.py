@@ -13,7 +13,7 @@ from PIL import Image
 
 from fractalcontact.figures.draw import draw_figures, draw_study_figures
 from fractalcontact.pages.cards import redrawn
-from fractalcontact.study.atlas import group_names, read_atlas
+from fractalcontact.study.atlas import read_atlas, read_named_atlas
 from fractalcontact.study.figure_list import figures_of
 
 #: Settings that a user may have, in a file of matplotlib's or in his notebook.
@@ -32,7 +32,7 @@ open_once = functools.cache(xr.open_datatree)
 @pytest.fixture(scope="module")
 def groups(results):
     """Names of the groups of the atlas."""
-    return group_names(results / "atlas.nc")
+    return read_named_atlas(results / "atlas.nc")[1]
 
 
 def words_of(results, specimen):

@@ -27,7 +27,7 @@ from ..core.quantities import Shown, shown_in
 from ..core.stage import JOINT, SPECIMEN
 from ..core.subject import Subject, configuration_of, specimens_of
 from ..core.tables import write_table
-from ..study.atlas import group_names, read_atlas
+from ..study.atlas import read_named_atlas
 from ..study.figure_list import STUDY, all_figures
 from ..study.stages import STAGES
 from .budget import bars_of
@@ -110,7 +110,7 @@ def write_result_page(place: Place) -> list[str]:
     list of str
         Specimens that have a page, ``pages/NAME.html``.
     """
-    atlas = read_atlas(place.atlas, without=STAGES.keys() - set(NEEDS))
+    atlas, groups = read_named_atlas(place.atlas, without=STAGES.keys() - set(NEEDS))
     subjects = [Subject.of(atlas, name) for name in specimens_of(atlas)]
     loads = common_loads(subjects, _comparison(atlas))
     specimens = [summarised(one, loads) for one in subjects]
@@ -122,7 +122,6 @@ def write_result_page(place: Place) -> list[str]:
     _write_configuration(place.folder / CONFIGURATION, atlas)
     _write_tables(place)
     head = _head(place, atlas)
-    groups = group_names(place.atlas)
     rows = matrix_of(atlas, [one.name for one in subjects])
     blocks = {one.name: one for one in blocks_of([one.name for one in subjects], place.folder)}
     for one, specimen in zip(subjects, specimens, strict=True):

@@ -202,37 +202,40 @@ def read_atlas(path: Path | str, without: Collection[str] = ()) -> xr.DataTree:
     a quarter of a second each, because all the others are gone through. What the process has
     opened before, with this or with xarray's ``open_datatree``, makes no difference.
     """
-    import netCDF4
-
-    with netCDF4.Dataset(path) as file:
-        groups = {"/": file}
-        for name, stage in file.groups.items():
-            if name not in without:
-                groups |= {group.path: group for group in (stage, *stage.groups.values())}
-        loaded = {
-            name: xr.open_dataset(xr.backends.NetCDF4DataStore(group)).load()
-            for name, group in groups.items()
-        }
-    return xr.DataTree.from_dict(loaded)
+    return read_named_atlas(path, without)[0]
 
 
-def group_names(path: Path | str) -> frozenset[str]:
-    """Names of the groups of an atlas that hold anything: "STAGE" and "STAGE/SPECIMEN".
+def read_named_atlas(
+    path: Path | str, without: Collection[str] = ()
+) -> tuple[xr.DataTree, frozenset[str]]:
+    """Atlas as :func:`read_atlas` gives it, and the names of all groups that hold anything.
 
     Parameters
     ----------
-    path : path-like
+    path, without
+        As of :func:`read_atlas`.
 
     Returns
     -------
-    frozenset of str
+    atlas : xr.DataTree
+    groups : frozenset of str
+        "STAGE" and "STAGE/SPECIMEN", those left out too.
     """
     import netCDF4
 
     with netCDF4.Dataset(path) as file:
-        members = (group for stage in file.groups.values() for group in stage.groups.values())
-        groups = (*file.groups.values(), *members)
-        return frozenset(one.path.strip("/") for one in groups if one.variables or one.groups)
+        held: set[str] = set()
+        groups = {"/": file}
+        for name, stage in file.groups.items():
+            members = {group.path: group for group in (stage, *stage.groups.values())}
+            held |= {at.strip("/") for at, one in members.items() if one.variables or one.groups}
+            if name not in without:
+                groups |= members
+        loaded = {
+            name: xr.open_dataset(xr.backends.NetCDF4DataStore(group)).load()
+            for name, group in groups.items()
+        }
+    return xr.DataTree.from_dict(loaded), frozenset(held)
 
 
 def _checksums(specimens):
