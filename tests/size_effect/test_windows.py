@@ -12,7 +12,7 @@ from symmetries import LENGTH, STRESS, differences, grown, with_axes_exchanged
 
 from fractalcontact.core.estimate import Estimate
 from fractalcontact.core.mean_plane import without_mean_plane
-from fractalcontact.core.settings import Friction, Solver, StrengthSettings
+from fractalcontact.core.settings import Friction, Material, Solver, StrengthSettings
 from fractalcontact.core.window import window_sides
 from fractalcontact.mechanics.closure import closure_curves
 from fractalcontact.mechanics.loading import JointLoading
@@ -375,7 +375,9 @@ def test_strength_of_the_whole_window_is_that_of_the_joint(rock, states, laws):
     )
     cells = (("contact_direction", "offset"), [[1, 2, 4, 8, 16, 32]])
     joint = xr.Dataset({"offset_cells": cells}, {"contact_direction": ["W"]})
-    strength = joint_strength(dilatancy, joint, rock, StrengthSettings(ROCK, None))
+    elastic = {"name": "rock", "modulus": 9600.0, "poisson": 0.2, "e_star": 1e4, "hardness": np.inf}
+    material = Material(**vars(ROCK), **elastic)
+    strength = joint_strength(dilatancy, joint, rock, StrengthSettings(material, None))
     strength = strength.sel(contact_direction="W")
     one = laws.sel(part=1)
     for name in ("peak_strength", "peak_dilatancy_angle", "residual_strength", "shear_strength"):
