@@ -10,6 +10,7 @@ from contactlab.figures.experiments import (
     resolution_law,
     size_effect,
     size_strength,
+    three_exponents,
 )
 from fractalcontact.core.errors import InputError
 from fractalcontact.figures.kit.drawing import print_style
@@ -27,7 +28,9 @@ def drawn(module, atlas):
     return drawing
 
 
-@pytest.mark.parametrize("module", [size_effect, resolution_law, contact_geometry, size_strength])
+@pytest.mark.parametrize(
+    "module", [three_exponents, size_effect, resolution_law, contact_geometry, size_strength]
+)
 def test_labels_and_caption(atlas, module):
     drawing = drawn(module, atlas)
     assert len(drawing.caption.split()) < 70
@@ -65,6 +68,16 @@ def test_resolution_law_drawn_is_that_of_the_atlas(atlas, test_of):
     np.testing.assert_allclose(finest["resolved_pressure"], finest["reduced_pressure"])
     coarse = table[table["of_cut_off"] == table["of_cut_off"].max()]
     assert (coarse["resolved_pressure"] > coarse["reduced_pressure"]).all()
+
+
+def test_exponents_drawn_are_those_of_the_atlas(atlas, test_of):
+    table = drawn(three_exponents, atlas).data
+    found = table.set_index(["exponent", "hurst", "reduced_pressure"])["value"]
+    for (name, hurst, load), value in found.items():
+        one = test_of.sel(hurst=hurst, reduced_pressure=load)
+        of_arm = one[name].sel(arm="S1") if "arm" in one[name].dims else one[name]
+        np.testing.assert_allclose(value, of_arm)
+    assert set(table["exponent"]) >= {"area_delta", "box_delta", "alpha", "random_delta"}
 
 
 def test_geometry_drawn_is_that_of_the_atlas(atlas, test_of):

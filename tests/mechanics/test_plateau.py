@@ -5,7 +5,12 @@ import pytest
 import xarray as xr
 
 from fractalcontact.core.verdicts import FALLING, LEVEL, RISING
-from fractalcontact.mechanics.plateau import relative_change, rigid_plateaus, second_half
+from fractalcontact.mechanics.plateau import (
+    opposite_parts,
+    relative_change,
+    rigid_plateaus,
+    second_half,
+)
 
 V = np.linspace(0, 8, 41)
 
@@ -85,3 +90,27 @@ def test_faces_that_stay_flush_are_level():
     assert (found["plateau_trend"].item(), found["plateau_level"].item()) == (LEVEL, 0)
     assert np.isnan(found["plateau_change"])
     assert np.isnan(relative_change(0.1, V, 0.0))
+
+
+def parts_of(v, rows, names):
+    return xr.Dataset(opposite_parts(v, np.array(rows), names), coords={"rigid_offset": v})
+
+
+@pytest.mark.parametrize("tilt", [-0.1, 0.0, 0.03])
+def test_a_tilt_is_in_the_odd_part_alone(tilt):
+    v = np.linspace(0, 10, 41)
+    grown = 0.4 * (1 - np.exp(-v))
+    rows = [grown + tilt * v, 2 * grown, grown - tilt * v, 2 * grown]
+    found = parts_of(v, rows, [*"ENWS"])
+    assert found["axis"].values.tolist() == ["E-W", "N-S"]
+    np.testing.assert_allclose(found["even_dilatancy"], [grown, 2 * grown])
+    np.testing.assert_allclose(found["odd_dilatancy"], [tilt * v, 0 * v], atol=1e-15)
+    np.testing.assert_allclose(found["odd_slope"], [tilt, 0], atol=1e-12)
+    np.testing.assert_allclose(found["even_change"], 0, atol=0.02)
+
+
+def test_directions_without_their_opposite_have_no_parts():
+    v = np.linspace(0, 1, 11)
+    found = parts_of(v, [v, v, v], ["E", "N", "S"])
+    assert found["axis"].values.tolist() == ["N-S"]
+    assert parts_of(v, [v], ["none"]).sizes["axis"] == 0

@@ -50,6 +50,9 @@ def verdicts_of(found):
 
 
 RISING = [1 - np.exp(-RIGID), 0.2 * RIGID]
+#: West, East, North, South.
+STEEP_NS = [1 - np.exp(-RIGID)] * 2 + [0.2 * RIGID] * 2
+TILTED = [1 + 0.0 * RIGID, 1 + 0.4 * RIGID] * 2
 ALIKE = [1 - np.exp(-RIGID)] * 4
 
 
@@ -111,7 +114,9 @@ ALIKE = [1 - np.exp(-RIGID)] * 4
         ("dilatancy_is_anisotropic", {"dilatancy": ALIKE}, FAILS),
         # Of other levels, but none rises: the claim is of slopes.
         ("dilatancy_is_anisotropic", {}, FAILS),
-        ("dilatancy_is_anisotropic", {"dilatancy": RISING * 2}, HOLDS),
+        ("dilatancy_is_anisotropic", {"dilatancy": STEEP_NS}, HOLDS),
+        # Opposite directions that rise and level by a tilt: the roughness opens both axes alike.
+        ("dilatancy_is_anisotropic", {"dilatancy": TILTED}, PARTLY),
         ("domains_cluster", {"morisita": np.full(7, 2.0) - 0.1 * np.arange(7)}, FAILS),
         # An exponent below the margin is no fall.
         ("area_is_lacunar", {"delta_sigma_area": np.full(4, 1.98)}, FAILS),

@@ -5,7 +5,7 @@ import xarray as xr
 
 from fractalcontact.core.reported import Reported
 from fractalcontact.domain.cluster_laws import localisation
-from fractalcontact.mechanics.plateau import rigid_plateaus
+from fractalcontact.mechanics.plateau import opposite_parts, rigid_plateaus
 
 V = np.array([0.1, 0.2, 0.4, 1.2, 1.4, 1.6, 10.0])
 # Correlated up to 0.5 mm by 1/e, not at all from 2 mm on.
@@ -164,6 +164,7 @@ def stages(**changes):
         np.repeat(np.asarray(values["held"])[:, np.newaxis], 3, 1),
     )
     slid = slid.assign(rigid_plateaus(RIGID, values["dilatancy"], [*"WENS"]))
+    slid = slid.assign(opposite_parts(RIGID, values["dilatancy"], [*"WENS"]))
     specimen = xr.Dataset(
         attrs={"window_ny": 10, "window_nx": 10, "spacing_y": 1.0, "spacing_x": 1.0}
     )

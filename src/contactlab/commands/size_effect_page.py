@@ -60,6 +60,13 @@ def _over_loads(one: xr.Dataset, *names: str, **less: float) -> list[str]:
     return ["; ".join(_with_error(cell, name, **less) for name in names) for cell in cells]
 
 
+#: The picture of the page: that of the small part of the experiment in config/paper.yaml.
+_PICTURE = (
+    "![Exponents of the contact area over the resolution, of the contact domain by boxes, and of "
+    "the area over the side, over load for H = 0.5 and 0.8, with null models](three_exponents.png)"
+)
+
+
 def _head(test: xr.Dataset) -> list[str]:
     """The answer, and the exponents of one load that it rests on."""
     verdicts = test["overall"].values
@@ -93,6 +100,8 @@ def _head(test: xr.Dataset) -> list[str]:
         "# What carries the size effect",
         "",
         *_prose(answer),
+        _PICTURE,
+        "",
         *_prose(text.replace("\\\\", "\\")),
         *_table(head, rows),
     ]

@@ -56,6 +56,8 @@ DIMENSIONS = {
     "area_delta": "Delta_sigma by A_r(s), from the short cut-off",
     "theory_delta": "the same from h'_rms of the surfaces alone, by Persson",
     "box_delta": "Delta_sigma by box counts, largest surfaces of arm S1",
+    "random_delta": "the same expected of as many random nodes over the boxes of each domain",
+    "box_cut_delta": "the same of the bearing-area cut",
     "band_delta": "correlation dimension between cut-off and roll-off, finest surfaces of arm R",
     "cut_delta": "the same of the bearing-area cut",
 }
@@ -327,6 +329,8 @@ def _dimensions(samples, hursts) -> dict[str, list[Exponent]]:
         largest = largest.isel(surface=largest["of_size"].values == largest["of_size"].values.max())
         for name, one, column in (
             ("box_delta", largest, "box_dimension"),
+            ("random_delta", largest, "random_dimension"),
+            ("box_cut_delta", largest, "cut_box_dimension"),
             ("band_delta", finest, "band_dimension"),
             ("cut_delta", finest, "cut_dimension"),
         ):

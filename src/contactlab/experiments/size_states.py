@@ -17,6 +17,7 @@ from fractalcontact.core.mean_plane import without_mean_plane
 from fractalcontact.domain.box_dimension import dimension_of_domain
 from fractalcontact.domain.correlation import correlation_dimension
 from fractalcontact.domain.null_models import bearing_area_cut
+from fractalcontact.domain.random_nodes import expected_dimension
 from fractalcontact.mechanics.area import corrected_area
 from fractalcontact.mechanics.closure import bulk_settlement
 from fractalcontact.mechanics.sweep import load_steps
@@ -45,6 +46,8 @@ STATES: dict[str, tuple] = {
     "central_share": (_STATE, "1", "corrected A_r / A_0 of the central half"),
     "central_pressure": (_STATE, "1", "p / (E* h'_rms) of the central half"),
     "box_dimension": (_STATE, "1", "Delta_sigma of the contact domain by box counting"),
+    "random_dimension": (_STATE, "1", "the same expected of as many random nodes"),
+    "cut_box_dimension": (_STATE, "1", "the same of the bearing-area cut of as many nodes"),
     "correlation_dimension": (_STATE, "1", "correlation dimension D_2 of the contact domain"),
     "band_dimension": (_STATE, "1", "D_2 between the cut-off and the roll-off"),
     "cut_dimension": (_STATE, "1", "the same of the bearing-area cut of as many nodes"),
@@ -226,6 +229,8 @@ def _numbers_of(
         "central_share": corrected_area(central, space.spacing) / (central.size * SPACING**2),
         "central_pressure": float(state.pressure[centre, centre].mean()) / (E_STAR * slope),
         "box_dimension": dimension_of_domain(domain, SPACING).dimension,
+        "random_dimension": expected_dimension(domain, SPACING),
+        "cut_box_dimension": dimension_of_domain(cut, SPACING).dimension,
         "correlation_dimension": correlation_dimension(domain, SPACING).value,
         "band_dimension": correlation_dimension(domain, SPACING, band).value,
         "cut_dimension": correlation_dimension(cut, SPACING, band).value,

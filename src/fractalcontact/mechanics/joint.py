@@ -19,7 +19,7 @@ from ..core.settings import SpecimenSettings
 from ..core.window import faces, nominal_area, window_slices
 from ..surface.specimen import largest_offset
 from .composite_dimension import composite_dimensions
-from .plateau import rigid_plateaus
+from .plateau import opposite_parts, rigid_plateaus
 from .rigid_slide import Slide, slide
 
 #: Steps (y, x) of one cell towards East, North, West and South; "none" for a joint that cannot
@@ -264,7 +264,8 @@ def describe_joint(specimen: xr.Dataset, settings: SpecimenSettings) -> xr.Datas
     xr.Dataset
         ``rigid_dilatancy``, ``composite_rms`` and ``face_correlation`` (direction, rigid_offset)
         at every cell up to the largest offset; the plateaus of :func:`mechanics.plateau
-        .rigid_plateaus`, ``correlation_length`` and ``uncorrelated_offset`` (direction),
+        .rigid_plateaus` and the parts over opposite directions of :func:`mechanics.plateau
+        .opposite_parts`, ``correlation_length`` and ``uncorrelated_offset`` (direction),
         ``correlation_limit``; ``offset_cells`` (direction, offset) of the contact solves; for the
         first direction whose contact is solved ``composite`` (offset, window_y, window_x), the node
         ``first_touch_y``, ``first_touch_x`` (offset) where it is highest, and its dimension Delta_g
@@ -343,6 +344,7 @@ def _describe_slide(
         },
     )
     result = result.assign(rigid_plateaus(offsets, dilatancy, directions))
+    result = result.assign(opposite_parts(offsets, dilatancy, directions))
     return with_spreads(result, specimen)
 
 

@@ -8,8 +8,9 @@ from numpy.typing import ArrayLike
 
 from ..core.datasets import labelled
 from ..core.directions import NO_SLIDING
-from ..core.estimate import rows_of
+from ..core.estimate import Estimate, rows_of
 from ..core.fitting import MIN_POINTS, LineFit, fit_line
+from ..core.labels import cf_attrs
 from ..core.limits import LEVEL_CHANGE
 from ..core.verdicts import FALLING, LEVEL, RISING
 
@@ -24,6 +25,23 @@ _WORDS = {
     "plateau_offset_max": ("mm", "largest offset of that line"),
     "plateau_trend": ("1", f"trend of the {_HALF}: {LEVEL}, {RISING} or {FALLING}"),
     "no_plateau": ("1", "why it has no line"),
+}
+#: Opposite directions, by the axis that they lie on.
+AXES = {"E-W": ("E", "W"), "N-S": ("N", "S")}
+_EVEN = "half the sum of the rigid dilatancies in opposite directions, the part of the roughness"
+_ODD = "half their difference, the part of a tilt"
+_PART_DIMS = ("axis", "rigid_offset")
+#: Parts of the rigid dilatancy over opposite directions: dimensions, unit, long name.
+_PARTS = {
+    "even_dilatancy": (_PART_DIMS, "mm", _EVEN),
+    "odd_dilatancy": (_PART_DIMS, "mm", _ODD),
+    **{
+        name: ("axis", *words)
+        for name, words in (
+            rows_of("even_change", "1", f"change of its line, a fraction of its mean: {_EVEN}")
+            | rows_of("odd_slope", "1", f"slope over the second half of the offsets: {_ODD}")
+        ).items()
+    },
 }
 
 
@@ -87,6 +105,45 @@ def rigid_plateaus(
     ]
     table = {name: ("direction", *words) for name, words in _WORDS.items()}
     return labelled(table, {name: np.array([row[name] for row in rows]) for name in _WORDS})
+
+
+def opposite_parts(
+    offset: np.ndarray, opened: ArrayLike, directions: Sequence[str]
+) -> dict[str, tuple]:
+    """Even and odd part of the rigid dilatancy over opposite directions.
+
+    A tilt a of the window against the plane that was removed from the face adds a v in one
+    direction and - a v in the opposite one: it is in the odd part alone, and what the roughness
+    opens in both is the even part.
+
+    Parameters
+    ----------
+    offset, opened, directions
+        As :func:`rigid_plateaus` takes them.
+
+    Returns
+    -------
+    dict
+        Coordinate ``axis``, of those both of whose directions are there, and variables as
+        ``xr.Dataset`` takes them: ``even_dilatancy`` and ``odd_dilatancy`` (axis, rigid_offset),
+        mm; ``even_change`` and ``odd_slope`` (axis), with the 95 % intervals of the line through
+        the second half of the offsets.
+    """
+    of = dict(zip(directions, np.asarray(opened, float), strict=True))
+    pairs = {axis: pair for axis, pair in AXES.items() if set(pair) <= of.keys()}
+    even, odd = (
+        np.reshape([(of[a] + sign * of[b]) / 2 for a, b in pairs.values()], (-1, offset.size))
+        for sign in (1, -1)
+    )
+    half = second_half(offset)
+    v = offset[half]
+    rows = [_plateau(fit_line(v, row), row.mean(), v, NO_SLIDING) for row in even[:, half]]
+    changes = Estimate.stack(Estimate.read(row, "plateau_change") for row in rows)
+    slopes = Estimate.stack(fit_line(v, row).slope for row in odd[:, half])
+    values = {"even_dilatancy": even, "odd_dilatancy": odd}
+    values |= changes.columns("even_change") | slopes.columns("odd_slope")
+    axis = ("axis", np.array(list(pairs), "U3"), cf_attrs("1", "axis of two opposite directions"))
+    return labelled(_PARTS, values) | {"axis": axis}
 
 
 def _plateau(line: LineFit, mean: float, v: np.ndarray, direction: str) -> dict[str, Any]:

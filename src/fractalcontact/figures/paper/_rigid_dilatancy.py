@@ -17,6 +17,10 @@ from ..kit.words import TOWARDS, percent, short
 _FITTED: dict[str, Any] = {"lw": 2.2, "alpha": 0.7}
 
 
+#: Lines of the parts over opposite directions.
+_DOTS = (":", (0, (1, 3)))
+
+
 def draw_rigid(panel: Panel, dilatancy: xr.Dataset, plateaus: xr.Dataset) -> list[Artist]:
     """Rigid dilatancy of every direction with the line fitted to its end; the legend."""
     for n, direction in enumerate(dilatancy["direction"].values):
@@ -27,6 +31,7 @@ def draw_rigid(panel: Panel, dilatancy: xr.Dataset, plateaus: xr.Dataset) -> lis
         ends = np.array([float(plateau[f"plateau_offset_{end}"]) for end in ("min", "max")])
         line = float(plateau["plateau_intercept"]) + float(plateau["plateau_slope"]) * ends
         panel.axes.plot(ends, line, color=style["color"], **_FITTED)
+    parts = _draw_parts(panel, plateaus)
     lowest = float(dilatancy["rigid_dilatancy"].min())
     panel.axes.set(xlabel="offset $v$ (mm)", ylabel=r"rigid dilatancy $\delta_r$ (mm)")
     panel.axes.set_ylim(bottom=min(0, lowest))
@@ -35,7 +40,22 @@ def draw_rigid(panel: Panel, dilatancy: xr.Dataset, plateaus: xr.Dataset) -> lis
     change = rf"change of fitted $\delta_r$ [95 %] in % of its mean, $v \geq$ {half} mm"
     level = f"fitted lines; level: change within {percent(LEVEL_CHANGE)}"
     fitted = mark(color="0.4", label=level, **_FITTED)
-    return [heading(change), *entries(panel.axes), fitted]
+    return [heading(change), *entries(panel.axes), fitted, *parts]
+
+
+def _draw_parts(panel: Panel, plateaus: xr.Dataset) -> list[Artist]:
+    """Even part over opposite directions, of each axis; entries that state the odd one."""
+    drawn: list[Artist] = []
+    for axis, dots in zip(plateaus["axis"].values, _DOTS, strict=False):
+        one = plateaus[["even_dilatancy", "odd_dilatancy"]].sel(axis=axis)
+        panel.keep(one, "even_dilatancy", "odd_dilatancy")
+        style: dict[str, Any] = {"color": "0.35", "lw": 1.1, "ls": dots}
+        panel.axes.plot(one["rigid_offset"], one["even_dilatancy"], **style, zorder=1)
+        of_axis = plateaus.sel(axis=axis)
+        change, tilt = float(of_axis["even_change"]), float(of_axis["odd_slope"])
+        label = f"mean of {axis}: {100 * change:+z.0f} %; half the difference {tilt:+z.3f} $v$"
+        drawn.append(mark(**style, label=label))
+    return drawn
 
 
 def direction_style(n: int) -> dict[str, Any]:

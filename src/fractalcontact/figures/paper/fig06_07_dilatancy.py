@@ -24,6 +24,8 @@ SUBJECT = "joint"
 NEEDS = ("specimens", "joints", "dilatancy", "closure", "contact", "statements")
 ORDER = 100
 
+#: Height of the curves and their legend, inches.
+_TOP = 3.7
 #: Letters of the contact domains, and how many stand side by side.
 LETTERS, COLUMNS = "ABCDEF", 3
 #: What the table has of the states besides.
@@ -46,8 +48,8 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     points = spread(curves.sizes["offset"], len(LETTERS))
 
     height = 2.5 * -(-len(points) // COLUMNS)
-    figure = Figure(figsize=(WIDTH, 3.2 + height))
-    top, bottom = figure.subfigures(2, 1, height_ratios=[3.2, height])  # type: ignore[misc]  # an array
+    figure = Figure(figsize=(WIDTH, _TOP + height))
+    top, bottom = figure.subfigures(2, 1, height_ratios=[_TOP, height])  # type: ignore[misc]  # an array
     left, right = top.subplots(1, 2)
     a = Panel(left, "a", "rigid dilatancy")
     b = Panel(right, "b", f"elastic dilatancy, {place(subject.direction)}")
