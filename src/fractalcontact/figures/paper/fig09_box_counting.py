@@ -3,6 +3,7 @@
 from typing import Any
 
 import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 from xarray import DataTree
@@ -13,7 +14,8 @@ from ...core.window import window_sides
 from ..kit.axes import label_short_span
 from ..kit.caption import caption
 from ..kit.domains import contact_domain
-from ..kit.drawing import WEAK, WIDTH, Drawing
+from ..kit.drawing import COLOURS, WEAK, WIDTH, Drawing
+from ..kit.ensembles import realisations_of
 from ..kit.legends import heading
 from ..kit.maps import draw_domain
 from ..kit.panel import Panel, table_of
@@ -24,7 +26,7 @@ from ._local_slopes import CUT, LAW, ORDINARY, RANDOM, band_of, draw_slopes
 
 TITLE = "Fig. 9: box counting of a contact domain"
 SUBJECT = "specimen"
-NEEDS = ("specimens", "contact", "closure", "domains", "statements")
+NEEDS = ("specimens", "contact", "closure", "domains", "statements", "ensemble")
 ORDER = 140
 
 #: What each panel keeps, by the dimension of its sides.
@@ -52,11 +54,13 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     b, c = Panel(axes[1], "b", "box counts"), Panel(axes[2], "c")
     _draw_counts(b, counts, rf"count law: $\Delta_\sigma$ {law.text()}", ordinary)
     draw_slopes(c, counts)
+    realised = _draw_realisations(c, subject)
     handles, _ = axes[1].get_legend_handles_labels()
     if np.isfinite(counts["law_count"]).any():
         handles.append(heading(_law_form(counts)))
     handles.append(Patch(**band_of(LAW), label="(c) 95 % of the count law"))
     handles.append(Patch(**band_of(ORDINARY), label="(c) 95 % of the ordinary slope"))
+    handles += realised
     narrow = {"columnspacing": 1.2, "handlelength": 1.8}
     figure.legend(handles=handles, loc="outside lower center", ncols=3, **narrow)
     where = place(subject.direction, subject.offset)
@@ -70,6 +74,20 @@ def draw(atlas: DataTree, name: str) -> Drawing:
         fractal=claim(atlas, name, "domains_are_fractal"),
     )
     return Drawing(figure, table_of(b, c), text)
+
+
+def _draw_realisations(panel: Panel, subject: Subject) -> list[Artist]:
+    """Band in which the local slopes of 95 % of the realisations lie; its entry, if there are."""
+    if not (realisations := realisations_of(subject)):
+        return []
+    stage = subject["ensemble"].sel(normal_force=subject.reported.force, method="nearest")
+    band = Estimate(
+        *(stage[f"local_slope_{of}"].values for of in ("mean", "band_low", "band_high"))
+    )
+    style: dict[str, Any] = {"color": COLOURS[1], "alpha": 0.2, "lw": 0}
+    panel.axes.fill_between(stage["local_slope_side"], band.low, band.high, **style, zorder=0)
+    panel.keep(stage, *(f"local_slope_{of}" for of in ("mean", "band_low", "band_high")))
+    return [Patch(**style, label=f"(c) 95 % of {realisations} realisations")]
 
 
 def _draw_counts(panel, counts, law, ordinary):
