@@ -137,7 +137,7 @@ def opposite_parts(
     )
     half = second_half(offset)
     v = offset[half]
-    rows = [_plateau(fit_line(v, row), row.mean(), v, NO_SLIDING) for row in even[:, half]]
+    rows = [_plateau(fit_line(v, row), row.mean(), v, "none") for row in even[:, half]]
     changes = Estimate.stack(Estimate.read(row, "plateau_change") for row in rows)
     slopes = Estimate.stack(fit_line(v, row).slope for row in odd[:, half])
     values = {"even_dilatancy": even, "odd_dilatancy": odd}

@@ -125,4 +125,6 @@ def _words(test: xr.Dataset) -> dict[str, Any]:
     one = test.sel(reduced_pressure=_QUOTED, method="nearest")
     three = [one[name].values - less for name, less, *_ in _EXPONENTS]
     classes = list(zip(test["hurst"].values.tolist(), zip(*three, strict=True), strict=True))
-    return {"load": float(one["reduced_pressure"]), "classes": classes}
+    # The lowest and the highest H alone: a caption is short.
+    ends = dict.fromkeys((classes[0], classes[-1]))
+    return {"load": float(one["reduced_pressure"]), "classes": list(ends)}

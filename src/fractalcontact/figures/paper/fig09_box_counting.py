@@ -81,11 +81,9 @@ def _draw_realisations(panel: Panel, subject: Subject) -> list[Artist]:
     if not (realisations := realisations_of(subject)):
         return []
     stage = subject["ensemble"].sel(normal_force=subject.reported.force, method="nearest")
-    band = Estimate(
-        *(stage[f"local_slope_{of}"].values for of in ("mean", "band_low", "band_high"))
-    )
+    low, high = (stage[f"local_slope_band_{end}"].values for end in ("low", "high"))
     style: dict[str, Any] = {"color": COLOURS[1], "alpha": 0.2, "lw": 0}
-    panel.axes.fill_between(stage["local_slope_side"], band.low, band.high, **style, zorder=0)
+    panel.axes.fill_between(stage["local_slope_side"], low, high, **style, zorder=0)
     panel.keep(stage, *(f"local_slope_{of}" for of in ("mean", "band_low", "band_high")))
     return [Patch(**style, label=f"(c) 95 % of {realisations} realisations")]
 
