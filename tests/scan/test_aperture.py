@@ -83,6 +83,10 @@ def test_zeros_outside_a_round_specimen_are_refused_or_outlined_but_never_contac
     np.testing.assert_allclose(-disc.values[inside], round_core()[inside])
     assert np.isnan(read_scan(path, keys | {"outline": {"mask": 0}}).values[0, 0])
     assert read_scan(path, keys | {"outline": "rectangle"}).values[0, 0] == 0
+    np.save(path, np.pad(round_core(), 5))  # a margin: the largest disc in the map is too wide
+    with pytest.raises(InputError, match=r"'outline' runs through zeros over 100 % of its length"):
+        read_scan(path, keys | {"outline": "disc"})
+    np.save(path, round_core())
     corners = {"polygon": [[1, 1], [3, 1], [3, 3], [1, 3]]}
     assert np.isfinite(read_scan(path, keys | {"outline": corners}).values).sum() == 400
 

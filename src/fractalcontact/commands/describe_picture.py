@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from ..core.directions import APERTURE
 from ..core.labels import percent, printable
 
 _MAX_POINTS = 60_000
@@ -37,12 +38,14 @@ def draw_faces(faces: Sequence[Any], path: Path) -> None:
             beside.set_axis_off()
             histogram.set_axis_off()
             continue
-        z = _draw_relief(figure, beside, face)
-        _draw_histogram(histogram, z)
+        of_map = face.options.get("kind") == APERTURE
+        label = "negative of the aperture (mm)" if of_map else "height (mm)"
+        z = _draw_relief(figure, beside, face, label)
+        _draw_histogram(histogram, z, label)
     figure.savefig(path, dpi=90)
 
 
-def _draw_relief(figure, axes, face):
+def _draw_relief(figure, axes, face, label):
     """The relief over x and y, missing cells in red; its heights in mm."""
     measured = face.measured
     if measured.layout == "matrix":
@@ -63,7 +66,7 @@ def _draw_relief(figure, axes, face):
     present = z[np.isfinite(z)]
     if present.size:  # a few spikes must not hide the relief
         image.set_clim(*np.percentile(present, [0.5, 99.5]))
-    figure.colorbar(image, ax=axes, label="height (mm)", extend="both")
+    figure.colorbar(image, ax=axes, label=label, extend="both")
     axes.set(xlabel="x (mm)", ylabel="y (mm)", title=f"{printable(face.path.name, 60)}: {title}")
     return z
 
@@ -74,7 +77,7 @@ def _colours():
     return colormaps["viridis"].with_extremes(bad="red")
 
 
-def _draw_histogram(axes, z):
+def _draw_histogram(axes, z, label):
     present = z[np.isfinite(z)]
     if present.size:
         axes.hist(present, bins=60, color="0.4")
@@ -83,7 +86,7 @@ def _draw_histogram(axes, z):
             f"missing {percent(1 - present.size / z.size)} (red)",
             fontsize=9,
         )
-    axes.set(xlabel="height (mm)", ylabel="cells")
+    axes.set(xlabel=label, ylabel="cells")
 
 
 def _write_lines(axes, face):

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from scipy.ndimage import label
+from scipy.ndimage import binary_erosion, label
 from scipy.spatial import ConvexHull, QhullError
 
 from ..core.errors import InputError
@@ -26,6 +26,8 @@ MIN_CELLS = 100
 
 #: Larger patches of zeros at the corners of an aperture map lie outside a specimen, most likely.
 MAX_CORNER_ZEROS = 0.005
+#: So does what lies along this fraction of an outline.
+MAX_RIM_ZEROS = 0.5
 #: A disc without a stated centre may leave this fraction of the contact outside.
 MAX_OUTSIDE = 0.01
 
@@ -98,10 +100,19 @@ def within_outline(
     Raises
     ------
     InputError
-        If no outline is stated and zeros reach in from the corners: they would count as contact.
+        If no outline is stated and zeros reach in from the corners, or the outline runs through
+        zeros: they would count as contact.
     """
     values = apertures.values
     inside = outline_mask(outline, values, apertures.y.values, apertures.x.values, where)
+    if outline not in (None, "rectangle"):
+        rim = inside & ~binary_erosion(inside)
+        if (share := float((values[rim] == 0).mean())) > MAX_RIM_ZEROS:
+            raise InputError(
+                f"{where}: 'outline' runs through zeros over {percent(share)} of its length, so it "
+                "is wider than the specimen; write where that lies, 'outline: {disc: {centre: "
+                "[x, y], diameter: d}}' or a polygon, or 'mask: 0'"
+            )
     patches, _ = label(values == 0)
     corners = patches[[0, 0, -1, -1], [0, -1, 0, -1]]
     share = np.isin(patches, corners[corners > 0]).mean()

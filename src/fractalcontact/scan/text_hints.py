@@ -23,7 +23,7 @@ _MAYBE_GROUPED = re.compile(r"[-+]?[1-9]\d{0,2}(\.\d{3})+")
 _WORDS_OF = {
     "x": ("x", "east"),
     "y": ("y", "north"),
-    "z": ("z", "height", "elev", "topo", "h"),
+    "z": ("z", "height", "elev", "topo", "h", "aperture", "gap", "opening"),
 }
 #: The width or height of a field, as programs write it in a line of its own.
 _FIELD = re.compile(r"#?\s*[^:=]+:\s*([-+]?\d+(?:[.,]\d+)?(?:[eE][-+]?\d+)?)\s*([^\W\d]+)")
