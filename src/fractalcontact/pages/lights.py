@@ -88,7 +88,7 @@ def _scan(subject):
 def _faces(subject):
     key, title = "faces", "Fit of the faces"
     if not _is_pair(subject):
-        return Light(key, title, NOT_ASKED, "only one face was scanned")
+        return Light(key, title, NOT_ASKED, "no second face was scanned")
     overlap = str(subject["quality"].attrs["overlap"])
     load = str(subject["closure"].attrs.get("warning", ""))
     if load:

@@ -15,7 +15,7 @@ from ..core.arrays import padded
 from ..core.datasets import labelled
 from ..core.estimate import NO_ESTIMATE, Estimate
 from ..core.labels import cf_attrs
-from ..core.window import cell_side, spacing_of
+from ..core.window import cell_side, face_words, spacing_of
 from .face_gap import REGIONS, gap_statistics
 from .fractal_range import FractalRange, find_fractal_range
 from .quality_words import AXES, file_warnings, interval_words, statements
@@ -88,7 +88,7 @@ def scan_quality(specimen: xr.Dataset, resolutions: Sequence[int]) -> xr.Dataset
     if len(faces) == 2:
         result = result.assign(gap_statistics(specimen)).assign_coords(region=list(REGIONS))
     side = cell_side(specimen)
-    end = _range_end(result, side)
+    end = _range_end(result, specimen)
     result = result.assign(_compared_with_range(end, np.array(resolutions), side))
     result.attrs = {"ended_by": end.reason}
     warnings = [*file_warnings(specimen), *scan_line_warnings(result), _warning(result)]
@@ -318,21 +318,22 @@ _RANGE = {
 }
 
 
-def _range_end(result, side) -> Estimate:
+def _range_end(result, specimen) -> Estimate:
     """Shortest wavelength of the fractal range, mm, over faces and axes, and what ends it there.
 
     Points farther apart than the nodes end it too.
     """
     seen = Estimate.read(result, "end")
+    words = [face_words(specimen, face) for face in result["face"].values]
     ends = [
-        replace(seen[i, j], reason=f"{_cause(result, i, j)} along {axis}, {face} face")
-        for i, face in enumerate(result["face"].values)
+        replace(seen[i, j], reason=f"{_cause(result, i, j)} along {axis}, {face}")
+        for i, face in enumerate(words)
         for j, axis in enumerate(AXES)
     ]
     ends += [
-        Estimate(2 * float(pitch), reason=f"distance of the points, {face} face")
-        for face, pitch in zip(result["face"].values, result["point_pitch"], strict=True)
-        if pitch > side
+        Estimate(2 * float(pitch), reason=f"distance of the points, {face}")
+        for face, pitch in zip(words, result["point_pitch"], strict=True)
+        if pitch > cell_side(specimen)
     ]
     known = [end for end in ends if end.known]
     return max(known, key=lambda end: (*end.ends, end.reason), default=NO_ESTIMATE)

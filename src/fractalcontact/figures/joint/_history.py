@@ -7,7 +7,7 @@ import xarray as xr
 
 from ...core.labels import printable
 from ...core.limits import STEEP_TILT
-from ...core.window import window_sides
+from ...core.window import face_words, window_sides
 
 #: Longest file name and note that stand in a figure whole; of longer ones both ends are shown.
 MAX_NAME, MAX_NOTE = 60, 400
@@ -34,7 +34,7 @@ def _file_words(specimen, face):
     attrs = json.loads(specimen.attrs[f"{face}_scan"])
     spacing = " × ".join(f"{specimen.attrs[f'spacing_{axis}']:.5g}" for axis in "xy")
     words = [
-        f"{face.capitalize()} face: {printable(attrs['source'], MAX_NAME)} "
+        f"{face_words(specimen, face).capitalize()}: {printable(attrs['source'], MAX_NAME)} "
         f"(SHA-256 {attrs['sha256'][:12]}…), "
         f"read by {attrs.get('reader', 'nothing stated')}, {attrs.get('layout', 'matrix')}, "
         f"unit {attrs.get('file_unit', 'mm')}; "
