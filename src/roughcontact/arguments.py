@@ -250,7 +250,7 @@ def real_array(values: ArrayLike, name: str, kinds: str = _REAL) -> np.ndarray:
 
 
 def refuse_masked(values: Any, name: str) -> None:
-    """Refuse masked cells: what stands in them is no number, though numpy takes it for one.
+    """Refuse masked cells, whose values numpy would take as numbers.
 
     Raises
     ------

@@ -83,7 +83,7 @@ _CACHED: list[Any] = []
 
 
 def load_cached() -> int:
-    """Load from disk what the kernels of all imported modules were compiled to.
+    """Load the compiled kernels of all imported modules from disk.
 
     A process that forks does so beforehand: each of its forks would else load them again.
 
@@ -125,7 +125,7 @@ class KernelCache(FunctionCache):
         self.enable()
 
     def flush(self) -> None:
-        """Forget what this kernel was compiled to."""
+        """Discard the compiled code of this kernel."""
         if self._cache_path is not None:
             for path in self._cache_path.glob(f"{self._stem}-*"):
                 path.unlink(missing_ok=True)
@@ -160,7 +160,7 @@ class KernelCache(FunctionCache):
         return None
 
     def _announce(self):
-        """Say why nothing seems to happen: compiling all of them takes up to a minute.
+        """Report that kernels are compiled, which takes up to a minute.
 
         Not of a kernel for other types, or one that was damaged, where the rest is on disk.
         """
@@ -228,7 +228,7 @@ class _Serialised(CompileResultCacheImpl):
 
 @cache
 def _folders():
-    """Where kernels are written, or None, and where they are looked for."""
+    """Folder for writing kernels, or None, and folders for reading them."""
     writable = next(filter(_is_safe, _candidate_folders()), None)
     wanted = next(_candidate_folders())
     if numba.config.CACHE_DIR and writable not in (wanted, None):
@@ -268,7 +268,7 @@ def _is_safe(folder):
 
 
 def _intact(path):
-    """Content of a file as it was written, or None of one that is missing or damaged."""
+    """Content of a file as it was written; None if it is missing or damaged."""
     try:
         content = path.read_bytes()
     except OSError:  # what cannot be read is compiled anew

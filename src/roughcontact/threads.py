@@ -1,4 +1,4 @@
-"""Threads: how many the solver uses, set here and nowhere else, and what several may share.
+"""Number of threads of the solver, and objects shared between threads.
 
 What is kept for later is kept without a lock, so that neither a thread nor a fork of the process
 ever waits for one: two threads may make the same thing at once, and all go on with the first.
@@ -58,7 +58,7 @@ def in_parts(function: Callable[[int, int], object], n: int, *, smallest: int) -
 
 
 class computed_once:
-    """A property made when first asked for, and kept in the object.
+    """Property computed at its first use and kept in the object.
 
     `functools.cached_property` holds a lock meanwhile, one for all objects (up to Python 3.11): a
     process forked at that moment would wait for it for ever.

@@ -180,7 +180,7 @@ def _case(kernel, ratio, draws):
 
 
 def _error_of_elimination(height, space, closure):
-    """Relative error of the force where elimination ends on a wrong set; None where it is right."""
+    """Relative error of the force where elimination ends on a wrong set; None on the right set."""
     try:
         METHODS["paper"](height, space, closure=closure, rtol=RTOL)
     except NotConverged as error:

@@ -98,7 +98,7 @@ def _surface(problem):
 
 
 def _fastest(problem, solver, error):
-    """The fastest point of a solver with no more than an error; None if it has none."""
+    """Fastest point of a solver within an error; None if no point is."""
     good = (problem["method"] == solver) & (problem["force_error"] <= error)
     if not good.any():
         return None

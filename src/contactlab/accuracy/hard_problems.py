@@ -101,7 +101,7 @@ def _single_precision(kind, generator):
 
 
 def _start(make):
-    """A warm start from a state that is not near the one asked for."""
+    """Warm start from a state far from the requested one."""
 
     def problem(kind, generator):
         shape = draw_shape(generator)

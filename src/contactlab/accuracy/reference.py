@@ -238,7 +238,7 @@ class PunchProblem(ReferenceProblem):
 
 
 def problems_of(recipe: Mapping[str, Any]) -> dict[str, ReferenceProblem]:
-    """The test problems a study asks for, by name; none is computed before it is used.
+    """Test problems of a study by name, computed when they are used.
 
     Parameters
     ----------

@@ -20,7 +20,7 @@ def timed(call: Callable[[], Any]) -> tuple[Any, float]:
 def repeated(
     calls: Sequence[Callable[[], Any]], first: Sequence[float], *, runs: int, longest: float
 ) -> list[list[float]]:
-    """Seconds of calls that were each made once already, made again in turn.
+    """Seconds of repeated calls, in turn; each was made once before.
 
     All once, then all again: what disturbs the machine for a while disturbs all alike.
 
@@ -83,7 +83,7 @@ def _report_memory(call, memory):
 
 
 def _largest_resident():
-    """Largest resident memory of this process, bytes. A child starts at what it was forked with."""
+    """Largest resident memory of this process, bytes; a child starts with that of its parent."""
     # Linux counts in KiB, the BSDs in bytes.
     unit = 1 if sys.platform == "darwin" else 1024
     return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * unit

@@ -138,7 +138,7 @@ def _judged(estimates: np.ndarray, seen: np.ndarray, coords: Mapping[str, Any]) 
 
 
 def _mean(values: np.ndarray) -> np.ndarray:
-    """Means over the seeds that gave a value; NaN where none did."""
+    """Means over the seeds with a value; NaN without any."""
     known = np.isfinite(values)
     return ratio(np.where(known, values, 0.0).sum(axis=-1), known.sum(axis=-1))
 

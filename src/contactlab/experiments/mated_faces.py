@@ -47,7 +47,7 @@ def face_class(hurst: float, recipe: Mapping[str, Any]) -> FaceClass:
 
 
 def sliding_face(faces: FaceClass, size: int, reach: int, number: int) -> np.ndarray:
-    """Heights of one face, mm, (size, size + reach): what a window meets that slides so far."""
+    """Heights of one face, mm, (size, size + reach): all cells that a sliding window reaches."""
     entropy = (_STREAM, round(1000 * faces.hurst), size, number)
     seed = int(np.random.SeedSequence(entropy).generate_state(1)[0])
     return band_limited(

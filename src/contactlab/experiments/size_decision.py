@@ -75,7 +75,7 @@ def quantile(freedom: float) -> float:
 
 
 def mean_exponent(values: np.ndarray) -> Exponent:
-    """Mean of exponents that were found on single surfaces, and its interval over them.
+    """Mean exponent over single surfaces, with its interval.
 
     Parameters
     ----------

@@ -69,7 +69,7 @@ GEOMETRY = {
 
 
 def size_effect_test(parts: Sequence[xr.Dataset], recipe: Mapping[str, Any]) -> xr.Dataset:
-    """Exponents of every class of surfaces, and what they say of eq. 6.
+    """Exponents of every class of surfaces, and the verdict on eq. 6.
 
     Parameters
     ----------
@@ -414,7 +414,7 @@ def _change(first: Exponent, second: Exponent) -> Exponent:
 
 
 def summary(result: xr.Dataset) -> str:
-    """In words, by arm and Hurst exponent: alpha, what eq. 6 wants, and the verdict.
+    """Alpha, the prediction of eq. 6 and the verdict in words, by arm and Hurst exponent.
 
     Parameters
     ----------

@@ -204,7 +204,7 @@ def _one_surface(task: SizeTask, number: int, pressures: np.ndarray, rtol: float
 
 
 def _known_mean(values: np.ndarray) -> np.ndarray:
-    """Mean over the first axis of what is known, NaN where nothing is."""
+    """Mean of the known values over the first axis; NaN without any."""
     known = np.isfinite(values)
     with np.errstate(invalid="ignore"):
         return np.where(known, values, 0.0).sum(axis=0) / known.sum(axis=0)

@@ -257,7 +257,7 @@ def _empty(sizes: Mapping[Any, int]) -> dict[str, np.ndarray]:
 def _fill(
     values: dict[str, np.ndarray], at: tuple[int, int], load: int, found: Mapping[str, Any]
 ) -> None:
-    """Put what one class has at one load where it belongs."""
+    """Store the values of one class at one load."""
     for name, one in found.items():
         where = (*at, ..., load)
         if name not in EXPONENTS:

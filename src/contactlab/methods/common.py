@@ -17,7 +17,7 @@ LARGEST_SUM = 3_000_000
 
 
 class NotOffered(ValueError):
-    """A method was given a problem of a kind that it was not made for; the text says which."""
+    """Error of a method on a kind of problem that it does not solve; the text names the kind."""
 
 
 def has_holes(composite: ArrayLike) -> bool:

@@ -86,7 +86,7 @@ def relieve(
     change: float,
     left: np.ndarray,
 ) -> None:
-    """Take from ``left`` at all points what a change of pressure at point s displaces them by."""
+    """Subtract from ``left`` the displacements by a change of pressure at point s."""
     for r in range(rows.size):
         left[r] -= influence[abs(rows[r] - rows[s]), abs(columns[r] - columns[s])] * change
 

@@ -26,7 +26,7 @@ PATIENT_ITERATIONS, PATIENCE = 2000, 60.0
 
 
 class Failed(RuntimeError):
-    """The code itself says that it did not converge; ``pressure`` is what it left, in MPa."""
+    """Failure to converge reported by the code itself; ``pressure`` is its last one, MPa."""
 
     def __init__(self, message: str, pressure: np.ndarray):
         super().__init__(message)
@@ -111,7 +111,7 @@ class PublicCode:
 
     @property
     def applications(self) -> int | None:
-        """Applications of the operator counted since then; None of a code that cannot count."""
+        """Applications of the operator since then; None for a code that does not count them."""
         return None
 
     @property
@@ -171,7 +171,7 @@ def solve_in_child(
 
 
 def _pressed(set_up, composite, space, load, rtol):
-    """Pressure, and what a code says if it did not converge."""
+    """Pressure, and the code's message if it did not converge."""
     code = set_up(composite, space)
     code.max_iterations = PATIENT_ITERATIONS
     try:

@@ -214,7 +214,7 @@ class Method:
         force: float | None = None,
         hardness: float | None = None,
     ) -> bool:
-        """True if the method was made for a load and a hardness; of what is None nothing is asked.
+        """True if the method takes a load and a hardness; None matches any.
 
         Parameters
         ----------
@@ -224,7 +224,7 @@ class Method:
         return not self._lack(closure, force, hardness, "")
 
     def _lack(self, closure, force, hardness, kernel):
-        """Missing capability of the method for a problem, as a sentence; empty if none."""
+        """Missing capability of the method for a problem, as a sentence; empty without one."""
         title = self.title or self.name
         for other, value in (("closure", closure), ("force", force)):
             if value is not None and other not in self.loads:

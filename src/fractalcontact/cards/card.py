@@ -1,4 +1,4 @@
-"""Card of a joint: what a study found of one specimen, each number with its interval and model."""
+"""Card of a joint: the numbers of one specimen, each with its interval and model."""
 
 import json
 import math

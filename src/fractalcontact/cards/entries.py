@@ -1,4 +1,4 @@
-"""Entries of a card, read from the atlas as ``entries.yaml`` says; nothing is computed here."""
+"""Entries of a card, read from the atlas by ``entries.yaml`` without any computation."""
 
 import math
 from collections.abc import Iterator, Mapping
@@ -144,7 +144,7 @@ def _stage(entry: Entry, subject: Subject, key: str) -> tuple[xr.Dataset, str] |
 
 
 def _values(entry, subject, key):
-    """Array of a "STAGE/VARIABLE"; None where the atlas has none."""
+    """Array of a "STAGE/VARIABLE"; None if the atlas lacks it."""
     found = _stage(entry, subject, key) if key else None
     return None if found is None else found[0][found[1]]
 
@@ -190,7 +190,7 @@ def _rows(entry: Entry, subject: Subject) -> Iterator[tuple[dict[str, Any], dict
 
 
 def _ends(entry, subject, data, array):
-    """Value, lower and upper end: of an interval, of an error, or none."""
+    """Value with lower and upper end, from an interval or an error; missing without either."""
     value = np.asarray(array.values, float)
     low, high = names_of(str(array.name))[1:]
     if low in data and high in data:
@@ -229,7 +229,7 @@ def _of_population(error):
 
 
 def _beside(entry, data, at):
-    """Coordinates of a row, and the variables that stand beside it."""
+    """Coordinates of a row, and the variables of its `with`."""
     found: dict[str, Any] = {}
     for dim, index in at.items():
         name, coordinate, _ = _BESIDE[str(dim)]

@@ -1,4 +1,4 @@
-"""Methods paragraph: how the numbers of a card were found, with those of its run."""
+"""Methods paragraph of a card, with the numbers of its run."""
 
 from collections.abc import Mapping
 from typing import Any

@@ -105,7 +105,7 @@ def jrc_table(*entries: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def missing_of(entries: Mapping[str, Any]) -> dict[str, list[str]]:
-    """Titles of what a card has no number of, or not everywhere, by the reason."""
+    """Titles of quantities without a number, or without one at some places, by the reason."""
     found: dict[str, list[str]] = {}
     for one in entries.values():
         for row in (one, *one.get("values", ())):
@@ -133,7 +133,7 @@ def in_words(number: Mapping[str, Any]) -> str:
 
 
 def ends_in_words(number: Mapping[str, Any], factor: float = 1.0) -> str:
-    """Interval of a number in brackets; empty where it has none, or one narrower than it prints."""
+    """Interval of a number in brackets; empty without one, or if it is narrower than it prints."""
     low, high = number.get("low"), number.get("high")
     if low is None or high is None or "value" not in number:
         return ""

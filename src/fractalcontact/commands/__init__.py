@@ -1,1 +1,1 @@
-"""Commands: check scans, verify results, compile kernels."""
+"""Commands: check scans, draft studies and sidecars, verify results, export, compile kernels."""

@@ -1,4 +1,4 @@
-"""Read every scan of a folder, as a study would, and say what it holds; nothing is solved.
+"""Check of the scans of a folder: each is read as by a study and described, without a solve.
 
 python -m fractalcontact.commands.check_scans [FOLDER] [--study config/paper.yaml]
 """
@@ -172,7 +172,7 @@ def _specimen_row(scan, specimen, quality):
 
 
 def _noise(quality):
-    """The largest noise floor seen, or below what it must be where none is seen."""
+    """Largest noise floor seen, or its upper bound where none is seen."""
     seen = quality["noise_rms"].max().item()
     if math.isfinite(seen):
         return length_words(seen)
@@ -230,7 +230,7 @@ def _pair(lengths):
 
 
 def _file_names(scan):
-    """Files of a specimen and who says what of it, with the folder of its group."""
+    """Files of a specimen and the source of its settings, with the folder of its group."""
     names = [path.name for path in (*scan.files, scan.sidecar, scan.shared) if path]
     within = f"group {printable(scan.group)}: " if scan.group else ""
     stated = f", {printable(scan.row_of)}" if scan.row_of else ""
@@ -278,7 +278,7 @@ def _row(cells):
 
 
 def _wrapped(sentence):
-    """A sentence in lines; those it has itself (what to write into a sidecar) stay."""
+    """Sentence broken into lines; its own line breaks (text of a sidecar) are kept."""
     lines = []
     for line in sentence.split("\n"):
         lead = INDENT + " " * (len(line) - len(line.lstrip()))
@@ -313,7 +313,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _print_table(folder, study, schema, source):
-    """Print what each file of a folder holds; 1 if one was refused."""
+    """Print the content of each file of a folder; 1 if one was refused."""
     counts = {"ok": 0, "with warnings": 0, "refused": 0}
     _write([_row({key: key for key in COLUMNS}), "-" * WIDTH])
     for checked in check_scans(folder, study, schema, source):

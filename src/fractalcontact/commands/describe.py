@@ -137,7 +137,7 @@ def _stated(scan: ScanFiles, schema: Mapping) -> dict[str, Any]:
 
 
 def _draft_of(path: Path, options: Mapping[str, Any]) -> tuple[list[str], dict[str, Any]]:
-    """Lines of the draft for one file, and their values; none if nothing is lacking."""
+    """Lines of the draft for one file, and their values; empty if the sidecar is complete."""
     try:
         measure(path, options, are_heights=not is_contact_map(options))
     except IncompleteSidecar as error:
@@ -192,7 +192,7 @@ def _marks(face: Face) -> dict[float, bool]:
 
 
 def _draft_text(scan: ScanFiles, lines: list[str], drafts: Mapping, shown: Mapping) -> str:
-    """The draft of a sidecar: what holds for both faces, then what holds for one of them."""
+    """Draft of a sidecar: keys of both faces, then keys of one face."""
     files = " and ".join(printable(path.name) for path in scan.files)
     name = split_file_name(scan.lower.name)[0]
     text = _HEAD.format(files=files, picture=f"{name}{DRAFT}.png", sidecar=f"{name}.yaml")
@@ -296,7 +296,7 @@ def _scan_keys(document: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _like(path: Path, scans: Mapping[str, ScanFiles]) -> tuple[dict, ScanFiles]:
-    """Statement of a sidecar or a draft, and the scan that it is of."""
+    """Content of a sidecar or a draft, and its scan."""
     document = read_yaml(path)
     if empty := [key for key, value in document.items() if value is None]:
         raise InputError(f"{path}: key '{empty[0]}' is empty; fill it in")

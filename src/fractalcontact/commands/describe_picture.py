@@ -98,7 +98,7 @@ def _write_lines(axes, face):
 
 
 def first_lines(path: Path) -> list[str]:
-    """First lines of a text file as they stand; none of a binary one."""
+    """First lines of a text file; none for a binary file."""
     with open(path, "rb") as stream:
         head = stream.read(4000)
     wide = head.startswith((b"\xff\xfe", b"\xfe\xff"))

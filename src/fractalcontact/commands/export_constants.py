@@ -21,7 +21,7 @@ CODES = ("porepy", "geos", "opengeosys", "ags4", "csv")
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Print the constants, or write them to a file; 1 if there is no card, else 0."""
+    """Print the constants, or write them to a file; exit code 1 without a card, else 0."""
     parser = argparse.ArgumentParser(prog="export_constants", description=__doc__)
     parser.add_argument("card", help="YAML or JSON, such as results/paper/cards/NAME.yaml")
     parser.add_argument("--to", choices=CODES, required=True)

@@ -83,7 +83,7 @@ def next_steps(path: Path, scans: Path, rows: Sequence[Described]) -> list[str]:
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Write the study and print what is next; 1 if it cannot be written, else 0."""
+    """Write the study and print the next steps; exit code 1 if it cannot be written, else 0."""
     parser = argparse.ArgumentParser(prog="new_study", description=__doc__.split("\n")[0])
     parser.add_argument("--name", default="mine", help="name of the study")
     parser.add_argument("--scans", type=Path, default=Path("scans"), help="folder of the scans")

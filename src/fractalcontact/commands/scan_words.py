@@ -1,4 +1,4 @@
-"""Sentences on a specimen that was read: its gap, and what its user should look at."""
+"""Sentences on a specimen that was read: its gap, and what to check."""
 
 import json
 import re
@@ -76,7 +76,7 @@ def _moved_words(specimen):
 
 
 def _outlier_words(specimen):
-    """Outliers that are kept: how many, how far they reach, and what they may be."""
+    """Sentence on the outliers kept: number, largest distance, likely cause."""
     count, cells = specimen.attrs["outlier_count"], specimen["outlier"].values
     heights = [specimen[face].values for face in ("lower", "upper") if face in specimen]
     highest = max(np.nanmax(abs(z[cells])) for z in heights)

@@ -13,7 +13,7 @@ from ..study.documents import read_study, study_name
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Print what is damaged or missing; 1 if anything is, or there are no checksums, else 0."""
+    """Print damaged or missing files; exit code 1 for any, or without checksums, else 0."""
     (given,) = sys.argv[1:] if arguments is None else arguments
     try:
         results = results_of(given)

@@ -79,7 +79,7 @@ def reach_disk(folders: Iterable[Path | str]) -> None:
 
 
 def sweep(folder: Path | str) -> list[Path]:
-    """Remove what killed runs left half written; only while nothing writes there.
+    """Remove half-written files of killed runs, while nothing writes there.
 
     Parameters
     ----------
@@ -106,7 +106,7 @@ _NO_SPACE = "no space left on its disk; make room there"
 
 
 def _explained(path, error):
-    """The error of one that says itself what is wrong."""
+    """Error of a failed write, with its cause in words."""
     if error.errno in (errno.ENOSPC, errno.EDQUOT):
         return _unwritten(path, _NO_SPACE)
     why = "no permission" if isinstance(error, PermissionError) else error.strerror or str(error)

@@ -1,4 +1,4 @@
-"""Checksums of what a study made: so that a file damaged later is noticed and never read as data.
+"""Checksums of the results of a study, by which damaged files are detected and never read.
 
 Every job leaves, beside its results, the SHA-256 of each file it made:
 ``results/NAME/checksums/STAGE/SPECIMEN.sha256`` for ``results/NAME/STAGE/SPECIMEN.nc``; files of
@@ -76,7 +76,7 @@ class Digests:
         return digest
 
     def save(self) -> None:
-        """Keep what was computed; without a place for it, it is computed again next time."""
+        """Store the checksums computed; if they cannot be stored, they are computed again."""
         if self._new:
             text = json.dumps(self._known)
             checksum = hashlib.sha256(text.encode()).hexdigest()
@@ -227,7 +227,7 @@ def _record_of(results, file):
 
 
 def _recorded_in(results, path):
-    """The files whose checksums a record holds, identified by their names: those that are there."""
+    """Existing files whose checksums a record holds, by name."""
     folder = (results / path.relative_to(results / FOLDER)).parent
     stem = path.name.removesuffix(ENDING)
     found = (f for f in folder.glob("*") if f.stem == stem and f.suffix in RESULT_ENDINGS)
@@ -235,7 +235,7 @@ def _recorded_in(results, path):
 
 
 def _lines(path):
-    """Checksum by name in a record; none of a record that is missing or damaged."""
+    """Checksums by name in a record; empty if it is missing or damaged."""
     try:
         text = path.read_text(encoding="utf-8")
     except (FileNotFoundError, UnicodeDecodeError):

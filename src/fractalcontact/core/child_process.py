@@ -11,7 +11,7 @@ T = TypeVar("T")
 
 
 class ChildFailed(RuntimeError):
-    """A call in a child process raised an error, crashed or took too long; the text says which."""
+    """Failure of a call in a child process: an error, a crash or a timeout, as the text says."""
 
 
 def in_child(call: Callable[[], T], *, seconds: float) -> T:

@@ -61,5 +61,5 @@ def all_claims() -> dict[str, Claim]:
 
 
 def claims_of(joints: str = "one") -> dict[str, Claim]:
-    """Statements that one joint can be asked, or those that need several."""
+    """Statements on one joint, or on several joints together."""
     return {name: claim for name, claim in all_claims().items() if claim.joints == joints}

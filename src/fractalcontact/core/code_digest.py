@@ -1,4 +1,4 @@
-"""Digest of the code that a job runs: a change of it makes again what was made with it.
+"""Digest of the code of a job: a changed digest makes its results again.
 
 Code counts by rooms, the folders of a package: a job's own modules, file by file, and every room
 that they import from, whole, with all rooms below those. So a change in a room concerns the jobs of
@@ -122,7 +122,7 @@ class Code:
                 yield from (its, package)
 
     def _room_of(self, path: str) -> str | None:
-        """The room that a path is in, or its package; None outside all of them."""
+        """Room of a path, or its package; None outside all of them."""
         if not path.startswith(f"{self.folder}/"):
             return None
         package, room, *_ = [*path[len(self.folder) + 1 :].split("/"), ""]

@@ -57,7 +57,7 @@ def determined(
 
 
 def differs(p: float) -> bool:
-    """Significance of a departure of this probability; one that is not known has none.
+    """Significance of a departure with this probability; not significant if it is unknown.
 
     Parameters
     ----------

@@ -27,7 +27,7 @@ def slides(opposite: str) -> bool:
 
 
 def axis_and_sign(direction: str) -> tuple[str, int]:
-    """Axis, "x" or "y", along which a direction goes, and its sign there.
+    """Axis, "x" or "y", of a direction, and its sign.
 
     Raises
     ------

@@ -117,7 +117,7 @@ class Estimate:
         return cls(value, low, high, n, over, reason, each[0].scale if each else SIZE)
 
     def __getitem__(self, index: Any) -> "Estimate":
-        """The estimates at an index of the arrays; what all have in common stays."""
+        """Estimates at an index of the arrays; scalars shared by all are kept."""
         value, low, high, n, first, last, reason = (
             part[index] if np.ndim(part) else part
             for part in (*self.ends, self.n, *self.over, self.reason)

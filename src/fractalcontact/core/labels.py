@@ -40,7 +40,7 @@ def printable(text: object, longest: int | None = None) -> str:
 
 
 def on_one_line(text: object, longest: int = 200) -> str:
-    """Untrusted text on one line, whole words up to a length; what is left out shows as "…"."""
+    """Untrusted text on one line, cut to whole words with "…"."""
     text = " ".join(printable(text).split())
     if len(text) <= longest:
         return text
@@ -49,13 +49,13 @@ def on_one_line(text: object, longest: int = 200) -> str:
 
 
 def natural_key(name: str) -> list[tuple[int, int, str]]:
-    """Key by which names are sorted with the numbers in them as numbers: 3, 12, 24, 120."""
+    """Sort key of names that orders their numbers by value: 3, 12, 24, 120."""
     parts = re.findall(r"[0-9]+|[^0-9]+", name)
     return [(0, int(part), "") if part[0] in "0123456789" else (1, 0, part) for part in parts]
 
 
 def listed(names: Iterable[object], most: int = 15) -> str:
-    """Names in a sentence; of very many the first and how many more there are."""
+    """Names in a sentence; a long list ends with the number of further names."""
     shown = [printable(name, 60) for name in names]
     more = len(shown) - most
     return ", ".join(shown[:most]) + (f" and {more} more" if more > 0 else "")

@@ -1,4 +1,4 @@
-"""Fixed limits behind verdicts, each once: rules apply them, figures and pages quote them."""
+"""Fixed limits of verdicts, which rules apply and figures and pages quote."""
 
 from roughcontact.limits import RESOLVED_NODES as RESOLVED_NODES
 

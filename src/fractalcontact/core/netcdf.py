@@ -1,4 +1,4 @@
-"""Datasets as netCDF-4 files, whole or not at all, with the versions they were made with.
+"""Datasets as netCDF-4 files, written atomically, with the versions of their libraries.
 
 Nothing that differs between two runs of one study (times, host names, paths) is written, so that
 the same configuration, scans, versions and machine give the same bytes.

@@ -1,4 +1,4 @@
-"""Packages whose stages and figures a study may ask for: the chain, and the laboratory."""
+"""Packages with stages and figures: the chain and the laboratory."""
 
 from pathlib import Path
 
@@ -8,5 +8,5 @@ CHAIN, LABORATORY = "fractalcontact", "contactlab"
 
 
 def installed() -> list[str]:
-    """Names of those that there are: the chain goes without the laboratory."""
+    """Names of the installed packages; the chain also runs without the laboratory."""
     return [name for name in (CHAIN, LABORATORY) if (SOURCES / name).is_dir()]

@@ -5,7 +5,7 @@ from collections.abc import Iterable
 
 
 def alternation(names: Iterable[str]) -> str:
-    """Pattern that matches these names and no others; none at all matches nothing.
+    """Pattern that matches these names only; without names it matches nothing.
 
     Parameters
     ----------

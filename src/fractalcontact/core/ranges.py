@@ -1,4 +1,4 @@
-"""Ranges whose ends belong to them, but for rounding."""
+"""Closed ranges, with a tolerance for rounding."""
 
 from typing import Any
 

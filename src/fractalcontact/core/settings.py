@@ -25,7 +25,7 @@ class Elastic:
 
 @dataclass(frozen=True)
 class Friction:
-    """Friction angle and wall strength of a material; NaN if the study states none."""
+    """Friction angle and wall strength of a material; NaN if not stated."""
 
     basic_friction_angle: float
     joint_wall_strength: float
@@ -133,7 +133,7 @@ class Settings(SpecimenSettings, StateSettings, WindowSettings, ReportSettings):
 
 @dataclass(frozen=True)
 class Solver:
-    """Settings of the contact solver; no accuracy if a study asks for all states."""
+    """Settings of the contact solver; accuracy None for a study of all states."""
 
     rtol: float
     kernel: str
@@ -160,6 +160,6 @@ def read(section: type[S], stated: Mapping[str, Any]) -> S:
 
 
 def arguments(function: object, stated: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
-    """Arguments of a function that are settings, from what a job is given by parameter."""
+    """Settings among the arguments of a function, built from the parameters of a job."""
     types = get_type_hints(function)
     return {parameter: read(types[parameter], part) for parameter, part in stated.items()}

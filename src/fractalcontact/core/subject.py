@@ -110,5 +110,5 @@ def configuration_of(atlas: xr.DataTree) -> dict[str, Any]:
 
 
 def specimens_of(atlas: xr.DataTree) -> list[str]:
-    """Names of the specimens, sorted; measured contact maps are none."""
+    """Names of the specimens, sorted, without measured contact maps."""
     return sorted(atlas["specimens"].children) if "specimens" in atlas.children else []

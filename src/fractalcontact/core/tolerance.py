@@ -1,4 +1,4 @@
-"""The tolerance of the solver that follows from the accuracy a study asks for."""
+"""Tolerance of the solver from the requested accuracy of a study."""
 
 from collections.abc import Mapping
 
@@ -14,7 +14,7 @@ LOOSEST = 1e-2
 
 
 def tolerance(accuracy: Mapping[str, float]) -> float:
-    """Tolerance of the solver that an accuracy asks for.
+    """Tolerance of the solver for a requested accuracy.
 
     Parameters
     ----------

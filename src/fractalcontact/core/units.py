@@ -47,7 +47,7 @@ _KNOWN_LENGTHS = "nm, um, mm, cm, m, inch or foot"
 
 
 class _OutOfRange(InputError):
-    """A quantity of the right kind whose value cannot be computed with."""
+    """Error of a quantity of the right kind whose value is out of range."""
 
 
 @cache
@@ -117,7 +117,7 @@ def _wanted(kind: str) -> str:
 
 
 def length_unit(text: str) -> str | None:
-    """Name of a unit of length for the library of units, None if it is none we know.
+    """Name of a unit of length for the library of units; None if unknown.
 
     Only lengths of the SI and their usual multiples, angstrom, inch and foot: what other units are
     called may mean another thing, as "point" and "px" do.

@@ -11,7 +11,7 @@ SLOPE, LOAD = "slope", "load"
 
 
 class Limits(NamedTuple):
-    """Pressures that bound the elastic model of a material, and what they follow from.
+    """Pressure limits of the elastic model of a material, and their source.
 
     Attributes
     ----------

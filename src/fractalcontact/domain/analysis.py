@@ -171,7 +171,7 @@ def analyse_domains(
 
 
 def _solver_state(fields, shape):
-    """True if each domain was solved, and its ambiguous nodes; NaN of what was measured."""
+    """True for each solved domain, and its ambiguous nodes; NaN for measured maps."""
     if "solved" not in fields:
         return np.ones(shape, bool), np.full(shape, np.nan)
     return tuple(fields[name].transpose(*_ORDER).values for name in ("solved", "nodes_error"))

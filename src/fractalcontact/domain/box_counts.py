@@ -270,7 +270,7 @@ def _over_origins(domain, sizes):
 
 @njit(cache=True)
 def _next_row(domain, y, smallest, reach):
-    """Smallest box sides of one row from those of the row above, in place; their least."""
+    """Smallest box sides of one row, from those of the row above in place; returns the least."""
     nx = domain.shape[1]
     least = reach + 1
     above = right = np.int32(reach + 1)

@@ -81,7 +81,7 @@ def cluster_statistics(domain: ArrayLike, spacing: float) -> dict[str, Any]:
 
 
 def cluster_sizes(domain: ArrayLike) -> np.ndarray:
-    """Nodes in each cluster of a domain; those that share a side or a corner are in one.
+    """Nodes in each cluster of a domain, where neighbours by side or corner belong together.
 
     Parameters
     ----------

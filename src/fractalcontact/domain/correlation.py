@@ -19,7 +19,7 @@ _MAX_COMPARED = 3e7
 
 
 def pair_counts(domain: np.ndarray, distances: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Pairs of nodes no farther apart than some distances, by the part that holds the first.
+    """Pairs of nodes within some distances, by the part of the window of the first node.
 
     Exact: pair by pair where nodes are few, else by fast Fourier transform.
 
@@ -63,7 +63,7 @@ def lags_of(distances: np.ndarray) -> np.ndarray:
 
 
 def _rings(lag_y, lag_x, distances):
-    """Place of each lag's distance among the distances; beyond them what is no pair."""
+    """Bin of each lag's distance among the distances; lags that are no pair lie beyond."""
     lag = np.hypot(lag_y, lag_x)
     # The small number keeps a lag at its own distance.
     ring = np.searchsorted(np.asarray(distances) + 1e-9, lag)

@@ -176,7 +176,7 @@ def _simplest(laws):
 
 
 def law_dimension(law: Law, sizes: np.ndarray, count: np.ndarray, side: float) -> float:
-    """D of a law of the same form fitted to other counts; NaN if none fits.
+    """D of a law of the same form fitted to other counts; NaN without a fit.
 
     Parameters
     ----------
@@ -230,7 +230,7 @@ def _checked(sizes, count):
 
 
 def _fit(law, sizes, count, side):
-    """The law of this form with the least misfit; None if its factors cannot be."""
+    """Law of this form with the least misfit; None if its factors are not admissible."""
     if sizes.size <= law.outline + 2:
         return None
     at = 0.0
@@ -246,7 +246,7 @@ def _fit(law, sizes, count, side):
 
 @njit(cache=True)
 def _misfits(rho, areas, side, terms, dimensions):
-    """Relative misfit at each D, the factors a by least squares; infinite where they are none."""
+    """Relative misfit at each D with least-squares factors a; infinite for invalid factors."""
     misfits = np.full(dimensions.size, np.inf)
     columns = np.empty((rho.size, terms))
     for d in range(dimensions.size):
@@ -275,7 +275,7 @@ def _misfits(rho, areas, side, terms, dimensions):
 
 @njit(cache=True)
 def _factors(columns):
-    """Least squares of columns a = 1, by the normal equations; zeros where they have none."""
+    """Least-squares factors a of columns a = 1 by the normal equations; zeros if singular."""
     n = columns.shape[1]
     normal = np.zeros((n, n + 1))
     for k in range(columns.shape[0]):

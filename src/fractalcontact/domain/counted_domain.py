@@ -1,4 +1,4 @@
-"""A contact domain and its counts by part of the window: what compared quantities err by."""
+"""Contact domain with its counts by part of the window, for errors of compared quantities."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -66,18 +66,18 @@ class CountedDomain:
 
     @cached_property
     def law(self) -> FoundLaw | None:
-        """Law of the mean counts over the boxes that separate."""
+        """Law of the mean counts over the boxes between the cut-offs."""
         return find_law(self.nodes, limits=self.limits, whole_cells=self.whole_cells)
 
     @cached_property
     def law_parts(self) -> np.ndarray:
-        """Mean counts at the sizes of the law, (k, blocks, blocks); none where it has none."""
+        """Mean counts at the sizes of the law, (k, blocks, blocks); empty without a law."""
         sizes = np.array([], int) if self.law is None else self.law.sizes
         return mean_count(self.nodes, sizes, blocks=BLOCKS)
 
     @cached_property
     def ordinary_sizes(self) -> np.ndarray:
-        """Box sides of the ordinary slope, cells; none where it has none."""
+        """Box sides of the ordinary slope, cells; empty without a slope."""
         slope = self.box.ordinary
         return np.array([], int) if slope is None else slope.sizes[slope.used]
 
@@ -108,7 +108,7 @@ class CountedDomain:
 
     @cached_property
     def cluster_parts(self) -> np.ndarray:
-        """Clusters by the part that holds their middle, (1, blocks, blocks)."""
+        """Clusters by the part of the window that contains their middle, (1, blocks, blocks)."""
         label, number = self.clusters
         y, x = np.nonzero(label)
         of_node = label[y, x] - 1

@@ -113,7 +113,7 @@ def law_of_means(
 
 
 def _fitted(means, extent, limits, whole_cells):
-    """Law and the sizes between the cut-offs, where they are enough; else None."""
+    """Law and the sizes between the cut-offs; None if they are too few."""
     sizes, count = means
     alone, full = _beyond_cut_offs(means, extent)
     between = ~alone & ~full & (sizes >= SMALLEST_SEPARATING) & within(sizes, *limits)
@@ -124,7 +124,7 @@ def _fitted(means, extent, limits, whole_cells):
 
 
 def _beyond_cut_offs(means, extent):
-    """Sizes at which the mean counts are those of lone nodes, and those of occupied boxes."""
+    """Sizes saturated by lone nodes, and sizes saturated by occupied boxes."""
     sizes, count = means
     all_boxes = np.prod([(n - 1) / sizes + 1 for n in extent.shape], axis=0)
     # What fills its own extent is dense at every scale: then no scale is saturated.
@@ -159,7 +159,7 @@ class FoundLaw(NamedTuple):
     """Extent of the domain, cells."""
 
     def refound(self, count: np.ndarray, whole_cells: bool | None) -> float:
-        """Dimension of the best law of other counts at `separating`; NaN where none fits."""
+        """Dimension of the best law of other counts at `separating`; NaN without a fit."""
         law = best_law(self.separating.astype(float), count, self.side, whole_cells)
         return np.nan if law is None else law.dimension
 
@@ -173,7 +173,7 @@ class FoundLaw(NamedTuple):
 def find_law(
     domain: np.ndarray, limits: tuple[float, float], whole_cells: bool | None
 ) -> FoundLaw | None:
-    """The law that the mean counts of a domain follow; None where too few sizes are between.
+    """Law of the mean counts of a domain; None with too few sizes between the cut-offs.
 
     Parameters
     ----------

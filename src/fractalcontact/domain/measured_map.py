@@ -148,7 +148,7 @@ def read_contact_map(path: Path | str, options: Mapping[str, Any], *, label: str
 def _read(
     path: Path, options: Mapping[str, Any]
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, dict]:
-    """Values (ny, nx) of a map as they stand, its coordinates y and x in mm, and its source."""
+    """Values (ny, nx) of a map, its coordinates y and x in mm, and its source."""
     reading = {key: value for key, value in options.items() if key not in MAP_KEYS}
     files = coordinate_files(path, options)
     written = {key: reading[key] for key in WRITING_KEYS if key in reading}
@@ -217,7 +217,7 @@ def _analysed(
 def _thresholds(
     values: np.ndarray, stated: float | Sequence[float] | None, path: Path | str
 ) -> np.ndarray:
-    """Above what a cell is in contact, ascending; between the 0 and 1 of a binary map."""
+    """Thresholds above which a cell is in contact, ascending; 0.5 for a binary map."""
     if stated is not None:
         return np.sort(np.atleast_1d(np.asarray(stated, float)))
     if _is_binary(values):

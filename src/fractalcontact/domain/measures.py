@@ -177,7 +177,7 @@ def measures_of_states(
 
 
 def _dimensions_fall(measures):
-    """Fall of the dimensions of the pressure with their order; those of a monofractal are equal."""
+    """Fall of the dimensions of the pressure with their order; none for a monofractal."""
     first, last = (
         Estimate.read(measures.sel(order=q), "generalised_dimension") for q in _COMPARED_ORDERS
     )

@@ -80,7 +80,7 @@ def gliding_moments(
 
 
 def _checked(mass):
-    """Masses as (ny, nx) float64, none of them negative."""
+    """Masses as (ny, nx) float64, all non-negative."""
     refuse_masked(mass, "masses")
     mass = real_array(mass, "masses", "biuf").astype(float, copy=False)
     if mass.ndim != 2:
@@ -205,7 +205,7 @@ def generalised_dimensions(
 
 
 def _normalised(q):
-    """The statistic whose slope gives D_q, of sums of p, of p^q (or p ln p), and of 1."""
+    """Statistic whose slope gives D_q, from sums of p, of p^q (or p ln p), and of 1."""
 
     def statistic(sums):
         first, moment, places = sums.T

@@ -271,7 +271,7 @@ def octaves_of(shape: tuple[int, ...], spacing: float) -> dict[str, np.ndarray]:
 
 
 def _compared_slopes(domain, cut, mask, spacing):
-    """Local slopes of one domain and its null models, and what :func:`null_models` says of them."""
+    """Local slopes of one domain and its null models, with the result of :func:`null_models`."""
     sides = octaves_of(domain.shape, spacing)["local_slope_side"]
     nodes = int(np.count_nonzero(domain))
     curve = SlopeCurve(domain, mask)

@@ -101,5 +101,5 @@ def cover_used(
     shape: tuple[int, ...],
     limits: tuple[float, float] = (0, np.inf),
 ) -> np.ndarray:
-    """True if each size lies between the cut-offs and within the range asked for."""
+    """True for sizes between the cut-offs and within the requested range."""
     return between_cut_offs(count, sizes, nodes, shape)[0] & within(sizes, *limits)

@@ -45,7 +45,7 @@ def band_of(draws: np.ndarray) -> Estimate:
 
 
 def _quantiles(draws: np.ndarray) -> Estimate:
-    """Mean of many draws and the band that holds 95 % of them; NaN where half have no value."""
+    """Mean of many draws and the band of 95 % of them; NaN where half have no value."""
     known = draws[np.isfinite(draws)]
     if known.size < max(draws.size / 2, 2):
         return NO_ESTIMATE

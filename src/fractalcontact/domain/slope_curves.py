@@ -95,7 +95,7 @@ class SlopeCurve:
 
     @property
     def occupied(self) -> np.ndarray:
-        """Parts of the window with a box of the smallest size; none where there is no size."""
+        """Parts of the window with a box of the smallest size; none without a size."""
         return np.flatnonzero(self.parts[:1].sum(axis=0))
 
     def without(self, parts: np.ndarray) -> np.ndarray:

@@ -169,7 +169,7 @@ def _add_eq6(result: xr.Dataset) -> None:
 
 
 def _realised(specimens: xr.Dataset, recipe: Mapping, settings: EnsembleSettings) -> xr.Dataset:
-    """A specimen made of a recipe as the named one is of its scan."""
+    """Specimen made from a recipe in the same way as the named one from its scan."""
     spacing = {key: specimens.attrs[key] for key in ("spacing_y", "spacing_x")}
     lower = specimens["lower"].copy(data=embedded_surface(recipe)).assign_attrs(spacing)
     name = f"{specimens.attrs['name']}, realisation of seed {recipe['seed']}"

@@ -219,7 +219,7 @@ def _budget(curve, values, errors, found, reasons, windows) -> xr.Dataset:
 
 
 def _largest(errors: Mapping[str, np.ndarray], sources: Sequence[str]) -> np.ndarray:
-    """Name of the source of the largest error (quantity, normal_force); empty where none is known.
+    """Source of the largest error (quantity, normal_force); empty where no error is known.
 
     The first of equal ones.
     """
@@ -379,7 +379,7 @@ def _resolution(loading, curves, domains, curve: LoadCurve) -> np.ndarray:
 
 
 def _model(curve: LoadCurve) -> np.ndarray:
-    """Change from the hardness to the largest that contacts may have; none where none yields."""
+    """Change from the hardness to the largest possible one; none where nothing yields."""
     changes = np.full((len(BUDGET_QUANTITIES), len(curve.forces)), np.nan)
     solving = curve.loading.solving
     if not np.isfinite(solving["hardness"]):
@@ -395,7 +395,7 @@ def _model(curve: LoadCurve) -> np.ndarray:
 
 
 def _reasons(curve, errors, found: Refinement, effective, registered: bool) -> np.ndarray:
-    """Why sources have no value, or are none, (quantity, source)."""
+    """Reason why a source has no value, (quantity, source)."""
     scanned = curve.loading.specimen.attrs["opposite"] == "scanned"
     missing = {
         "solver": "not stated for these states",

@@ -1,4 +1,4 @@
-"""States of a load curve solved again on finer grids, where they change a digit that is asked for.
+"""States of a load curve on finer grids, solved where the requested accuracy needs them.
 
 At s/2 a few loads are solved, at s/4 those of them whose closure changed by more than the study
 asks for; what lies between is interpolated.
@@ -40,7 +40,7 @@ ABSOLUTE = ("separation", "delta_sigma")
 
 @dataclass(frozen=True, eq=False)
 class LoadCurve:
-    """The load curve of one offset at the finest resolution, whose errors are asked for.
+    """Load curve of one offset at the finest resolution, whose errors are requested.
 
     Attributes
     ----------
@@ -148,7 +148,7 @@ def refined_loads(curve: LoadCurve, settings: ContactSettings, *, all_states: bo
 
 
 def chosen_loads(curve: LoadCurve, named: Sequence[Load]) -> np.ndarray:
-    """Loads by name, and with them the smallest and the largest, as far as they are solved.
+    """Solved loads among the named ones, the smallest and the largest.
 
     Parameters
     ----------

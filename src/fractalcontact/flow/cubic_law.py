@@ -199,7 +199,7 @@ def _checked(gap: ArrayLike) -> np.ndarray:
 
 
 def critical_gap(gap: np.ndarray, inlet: np.ndarray, outlet: np.ndarray) -> float:
-    """The largest gap such that a path of gaps no smaller joins both ends; 0 without a path.
+    """Narrowest gap of the widest passage between both ends; 0 without a passage.
 
     Parameters
     ----------

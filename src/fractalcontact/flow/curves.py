@@ -58,7 +58,7 @@ def flow_of(gap: np.ndarray, spacing: tuple[float, float], axis: str) -> tuple[F
 
 
 def transmissivity_of(gap: np.ndarray, spacing: tuple[float, float], axis: str) -> float:
-    """Transmissivity along an axis, mm3; NaN where the solver gives none that balances."""
+    """Transmissivity along an axis, mm3; NaN where the mass balance is not closed."""
     return flow_of(gap, spacing, axis)[0].transmissivity
 
 

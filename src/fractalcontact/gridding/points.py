@@ -1,4 +1,4 @@
-"""Points x, y, z: repeats, regular grids they lie on, the grid that covers them."""
+"""Points x, y, z: repeated points, regular grids, the grid that covers them."""
 
 from dataclasses import dataclass
 
@@ -168,7 +168,7 @@ def _find_levels(coordinate: np.ndarray, tolerance: float) -> tuple[float, float
 
 
 def place_on_lattice(points: np.ndarray, lattice: Lattice) -> np.ndarray:
-    """Put each height on its node; nodes without a point are missing.
+    """Heights on the nodes of a grid; nodes without a point are missing.
 
     Returns
     -------

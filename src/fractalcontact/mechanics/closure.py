@@ -261,7 +261,7 @@ def _add_interface(curves: xr.Dataset, settlement: np.ndarray, area: float) -> N
 def stiffness_reason(
     interface: xr.DataArray, total: xr.DataArray, flush: xr.DataArray | bool
 ) -> xr.DataArray:
-    """Why states have no stiffness of the interface; "" of those that have one.
+    """Reason why states have no stiffness of the interface; "" if they have one.
 
     Parameters
     ----------

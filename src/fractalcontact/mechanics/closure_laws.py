@@ -129,7 +129,7 @@ def fit_semi_logarithmic(pressure: ArrayLike, closure: ArrayLike) -> SemiLogarit
 
 
 class Law(NamedTuple):
-    """Law of a closure curve, one of :data:`LAWS` or none, with the reason for none."""
+    """Law of a closure curve, one of :data:`LAWS`, or the reason for none."""
 
     name: str
     reason: str
@@ -302,7 +302,7 @@ def _few_states(*states: np.ndarray) -> str:
 
 
 def _extreme(which: np.ufunc, forces: np.ndarray) -> np.ndarray:
-    """Smallest or largest force of each curve; NaN where none was fitted."""
+    """Smallest or largest force of each curve; NaN without a fit."""
     return which.reduce(forces, axis=-1)
 
 

@@ -70,7 +70,7 @@ def _composite_dimension(
     fit_range: FitRange | tuple[float, float] | None,
     refusal: str,
 ) -> xr.Dataset:
-    """Estimate of one composite topography; NaN with the reason where it has none."""
+    """Dimension of one composite topography; NaN with the reason if it has none."""
     measured = surface_dimension(
         composite,
         (spacing[0], spacing[1]),

@@ -1,4 +1,4 @@
-"""Conductance of the interface and its power of the pressure, beside those of theory."""
+"""Conductance of the interface and its exponent over pressure, beside theory."""
 
 import numpy as np
 import xarray as xr
@@ -57,7 +57,7 @@ def add_conductance(curves: xr.Dataset, e_star: float) -> None:
 
 
 def beside_theory(exponent: Estimate) -> np.ndarray:
-    """Words on where intervals of exponents lie beside those of theory; empty without a fit."""
+    """Position of intervals of exponents relative to theory, in words; empty without a fit."""
     low, high = CONDUCTANCE_EXPONENTS
     places = [~exponent.known, exponent.high < low, exponent.low > high]
     return np.select(places, ["", BELOW, ABOVE], WITHIN)

@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 
 
 class InterpolatedClosure(NamedTuple):
-    """Closure at a force between those that were solved, and its interpolation error; mm."""
+    """Closure at a force between solved ones, and its interpolation error; mm."""
 
     closure: float
     error: float

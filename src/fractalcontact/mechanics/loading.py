@@ -1,4 +1,4 @@
-"""The loading of a joint: how far it is slid, what presses on it, what its contact is solved with.
+"""Loading of a joint: offsets, loads, resolutions and half-space.
 
 These five travel together through every solve of a study, and what follows from them (lengths,
 forces, half-spaces) is computed here and nowhere else.
@@ -126,7 +126,7 @@ class JointLoading(Generic[P]):
         return composite_topography(self.specimen, self.direction, cells)
 
     def suspect_nodes(self, cells: int) -> np.ndarray:
-        """Nodes (ny, nx) bool of that topography that suspicious cells of the scans are part of."""
+        """Nodes (ny, nx) bool of that topography with suspicious cells of the scans in them."""
         return suspect_nodes(self.specimen, self.direction, cells)
 
     def half_space(self, shape: Iterable[int], factor: int = 1) -> HalfSpace:

@@ -142,7 +142,7 @@ def _graded(value, good_to, poor_from):
 
 
 def _place(pressure, verdict, limits):
-    """Where a pressure lies, as the limit's words go on; a strength not stated is a range."""
+    """Position of a pressure relative to the limit, in words; assumed strengths are a range."""
     if limits.criterion != USUAL:
         return "within" if verdict == GOOD else "beyond"
     if verdict == GOOD:

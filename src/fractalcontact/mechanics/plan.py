@@ -139,7 +139,7 @@ _LIMITS: dict[str, tuple[Dims, str, str]] = {
 
 
 def _limited_by(of_solver: float, of_grid: float) -> str:
-    """Source of the larger error; empty where one is not known."""
+    """Source of the larger error; empty if one is unknown."""
     if not np.isfinite([of_solver, of_grid]).all():
         return ""
     return "grid" if of_grid > of_solver else "solver"

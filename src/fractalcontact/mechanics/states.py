@@ -113,7 +113,7 @@ def force_range(loads: Sequence[Load] | None, specimen: xr.Dataset) -> tuple[flo
 
 
 def chosen_offset(wanted: float | None, offsets: ArrayLike) -> float:
-    """The offset whose contact domains are looked at: the study's, else the third; mm.
+    """Offset of the contact maps: the study's, else the third; mm.
 
     Parameters
     ----------
@@ -207,7 +207,7 @@ def contact_domains(states: xr.Dataset) -> xr.Dataset:
 def map_fields(
     pressures: ArrayLike, gaps: ArrayLike, offset: float, direction: str, factor: int
 ) -> dict[str, tuple]:
-    """The variables :data:`MAP_PRESSURE` and :data:`MAP_GAP`; their attributes say where they are.
+    """Variables :data:`MAP_PRESSURE` and :data:`MAP_GAP`, with their state in attributes.
 
     Parameters
     ----------

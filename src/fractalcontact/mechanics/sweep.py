@@ -81,7 +81,7 @@ def _solved(
     solving: Mapping[str, Any],
     where: str,
 ) -> ContactState:
-    """The state of a force; a failure names what is loaded."""
+    """State under a force; a failure names the specimen and state."""
     try:
         return solve_contact(composite, space, force=force, start=start, **solving)
     except NotConverged as error:

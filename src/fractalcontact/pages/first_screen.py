@@ -1,4 +1,4 @@
-"""First screen of a result page: a block a joint with what its card says, in five numbers."""
+"""First screen of a result page: one block of five numbers for each joint, from its card."""
 
 import json
 import math
@@ -20,7 +20,7 @@ _KIND = "of_its_population"
 
 
 class Fact(NamedTuple):
-    """A number of a block: what it is, in words, and its interval or why there is none."""
+    """Number of a block: its title, its value in words, and its interval or why it is missing."""
 
     title: str
     words: str
@@ -58,7 +58,7 @@ class Block:
 
 
 def blocks_of(names: Sequence[str], folder: Path) -> list[Block]:
-    """Blocks of the specimens whose card is there, those of scans first.
+    """Blocks of the specimens with a card, scans first.
 
     Parameters
     ----------
@@ -114,7 +114,7 @@ def _offset(card):
 
 
 def _nearest(curve):
-    """Row of a curve whose pressure is nearest to the first one, of those with a number."""
+    """Row of a curve with a number whose pressure is nearest to the reference."""
     known = [row for row in _rows(curve) if "value" in row]
     return min(
         known, key=lambda row: abs(math.log(row["at"]["pressure"] / _PRESSURE)), default=None
@@ -122,13 +122,13 @@ def _nearest(curve):
 
 
 def _rows(curve):
-    """Rows of a curve, each with what its interval holds."""
+    """Rows of a curve, each with the errors that its interval contains."""
     interval = curve.get("interval", "")
     return [row | {"interval": interval} for row in curve.get("values", ())]
 
 
 def row_at(curve: Mapping[str, Any], pressure: float) -> dict[str, Any]:
-    """Row of a curve of a card at a pressure, MPa; missing, with the reason, where it has none."""
+    """Row of a curve of a card at a pressure, MPa, or its absence with the reason."""
     rows = [row for row in _rows(curve) if row["at"].get("pressure") == pressure]
     return rows[0] if rows else {"missing": curve.get("missing", "not solved there")}
 
@@ -143,7 +143,7 @@ def _jrc(card):
 
 
 def _fact(title, row, unit, beside=""):
-    """A number in words, with its interval or the reason why there is none, and what is beside."""
+    """Number in words with its interval, or the reason why it is missing, and a remark."""
     if "missing" in row:
         return Fact(title, "–", "; ".join(filter(None, (row["missing"], beside))))
     # One unit for a number and its interval, the same in all blocks.

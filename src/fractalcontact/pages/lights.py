@@ -141,7 +141,7 @@ def _grid(subject):
 
 
 def _finer(subject, excess, order):
-    """Spacing at which the numerical error would be what the study asks for, by its own order."""
+    """Spacing at which the numerical error reaches the requested one, by its observed order."""
     if not order > 0:
         return "a finer scan"
     spacing = float(subject["specimens"].attrs["spacing_x"]) / excess ** (1 / order)

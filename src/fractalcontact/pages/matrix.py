@@ -75,7 +75,7 @@ def matrix_of(atlas: xr.DataTree, specimens: Sequence[str]) -> list[Row]:
 
 
 def counted(rows: Iterable[Row]) -> dict[str, int]:
-    """How often each verdict was given, in the order of :data:`SIGNS`; those never given not."""
+    """Counts of the verdicts that were given, in the order of :data:`SIGNS`."""
     given = [cell.verdict for row in rows for cell in row.cells.values()]
     return {verdict: given.count(verdict) for verdict in SIGNS if verdict in given}
 

@@ -1,4 +1,4 @@
-"""The sentences that a result page opens with: what the study found, in numbers and verdicts.
+"""Opening sentences of a result page: findings of the study in numbers and verdicts.
 
 Numbers are those of the summary, verdicts those of the statements and of the elastic model.
 """
@@ -39,7 +39,7 @@ _At = Sequence[tuple[Specimen, AtLoad]]
 def opening_of(
     specimens: Sequence[Specimen], load: CommonLoad | None, rows: Sequence[Row]
 ) -> list[Markup]:
-    """Up to five sentences on what the study found; those with nothing to report are left out.
+    """Up to five sentences on the findings of the study.
 
     Parameters
     ----------
@@ -64,7 +64,7 @@ def opening_of(
 
 
 def _closure(found: _At, under: str, total: int) -> Markup | None:
-    """Closure and tangent stiffness; what suspicious cells of a scan decide is not quoted."""
+    """Closure and tangent stiffness, without specimens decided by suspicious cells."""
     sure = [(one, at) for one, at in found if not at.decided_by_scan]
     closure = _ends(sure, lambda at: at.quantities["closure"].value)
     if not closure:
@@ -93,7 +93,7 @@ def _error(at):
 
 
 def _ends(found, value_of):
-    """Least and largest value with their specimens; one where there is one, none where none."""
+    """Least and largest known value with their specimens; one entry if only one is known."""
     known = [(value_of(at), one, at) for one, at in found if math.isfinite(value_of(at))]
     if not known:
         return []
@@ -102,7 +102,7 @@ def _ends(found, value_of):
 
 
 def _range(values: Sequence[float], words: Callable[[float], str]) -> str:
-    """Least to largest value in words; a unit that both have stands once."""
+    """Least to largest value in words, with a common unit written once."""
     low, high = words(min(values)), words(max(values))
     if low == high:
         return low
@@ -111,7 +111,7 @@ def _range(values: Sequence[float], words: Callable[[float], str]) -> str:
 
 
 def _model(found: _At, under: str) -> Markup | None:
-    """How much of the window touches, at which real pressure, and what the elastic model bears."""
+    """Contact fraction, real pressure, and the verdict on the elastic model."""
     known = [(one, at) for one, at in found if at.model.verdict in _MODEL]
     if not known:
         return None
@@ -124,7 +124,7 @@ def _model(found: _At, under: str) -> Markup | None:
 
 
 def _tested(known: _At) -> str:
-    """Verdicts of those whose pressure can exceed what the model bears, then those it is capped."""
+    """Verdicts on specimens without a hardness, then the names of those with one."""
     tested = [(one, at) for one, at in known if not at.model.capped]
     capped = [one.name for one, at in known if at.model.capped]
     parts = []
@@ -171,7 +171,7 @@ def _counted(verdicts: Sequence[str], words: Mapping[str, str]) -> str:
 
 
 def _dilatancy(specimens: Sequence[Specimen], rows: Sequence[Row]) -> Markup | None:
-    """Which joints level off; those that repeat another with a hardness are asked nothing new."""
+    """Trends of the dilatancy, without joints that repeat another with a hardness."""
     asked = {name for row in rows if row.name in _of_the_surface() for name in row.cells}
     parts = []
     for kind, words in _KINDS.items():

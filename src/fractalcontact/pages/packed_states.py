@@ -247,7 +247,7 @@ def _window(contact, specimen):
 
 
 def _domains(contact):
-    """Contact domains under all loads as bits, by resolution, direction and offset; "" if none."""
+    """Contact domains under all loads as bits, by resolution, direction and offset, or ""."""
     domains = {}
     for factor in contact["resolution"].values.tolist():
         field = contact[f"in_contact_{factor}"]

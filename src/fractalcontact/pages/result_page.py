@@ -147,7 +147,7 @@ def write_result_page(place: Place) -> list[str]:
 
 
 def _head(place, atlas):
-    """Study, date, versions, duration; the functions that put numbers into words."""
+    """Context of the templates: study, date, versions, duration, formatting functions."""
     seconds, jobs = _work(place.benchmarks)
     made = datetime.datetime.fromtimestamp(place.atlas.stat().st_mtime, datetime.UTC)
     return {
@@ -224,7 +224,7 @@ def _of_dimension(of):
 
 
 def _columns() -> dict[str, list[Shown]]:
-    """Columns of the table of specimens that follow from the register, by what their cells say."""
+    """Columns of the table of specimens from the register, by the kind of their cells."""
     columns: dict[str, list[Shown]] = {"dimension": [], "budget": [], "number": []}
     for one in shown_in("index"):
         kind = "dimension" if one.dimension else "budget" if one.budget else "number"
@@ -286,7 +286,7 @@ def _index_values(
 
 
 def _comparison(atlas):
-    """Specimens side by side; None where there is one."""
+    """Specimens side by side; None for a single one."""
     several = "study_comparison" in atlas.children
     return atlas["study_comparison/study"].to_dataset() if several else None
 
@@ -297,12 +297,12 @@ def _finite(table: pd.DataFrame) -> pd.DataFrame:
 
 
 def _records(table: pd.DataFrame) -> list[dict[str, Any]]:
-    """Rows of a table for a script; missing numbers are None."""
+    """Rows of a table for a script; None for missing numbers."""
     return table.astype(object).where(table.notna(), None).to_dict("records")
 
 
 def _pictures(rows: Iterable[Row], place: Place) -> set[tuple[str, str]]:
-    """Specimens and figures that statements are shown by, those whose picture is there."""
+    """Specimens and figures of statements whose picture exists."""
     shown = {(name, cell.figure) for row in rows for name, cell in row.cells.items()}
     return {
         (name, figure)

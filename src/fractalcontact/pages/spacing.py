@@ -34,7 +34,7 @@ def doubled_spacing(subject: Subject) -> Doubled:
 
 
 def spacing_words(found: Sequence[Doubled]) -> Markup:
-    """A sentence on k_ni and the tangent stiffness over the spacing; empty where none is known.
+    """Sentence on the change of k_ni and tangent stiffness with the spacing; empty if unknown.
 
     Parameters
     ----------

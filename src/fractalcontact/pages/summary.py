@@ -63,7 +63,7 @@ class Quantity:
         Whether its errors are stated in the unit alone, never as fractions of the value.
     value : float
     errors : dict of str to float
-        Half-widths at 95 %, in the unit: of this surface, of its population.
+        Half-widths at 95 %, in the unit: for this surface, for the whole joint.
     sources : dict of str to float
         By source.
     reasons : dict of str to str
@@ -303,7 +303,7 @@ def _at_load(subject, curve, number):
 
 
 def _dimension(subject, stage, state):
-    """Delta_sigma of a stage, with why there is none where the stage says it."""
+    """Delta_sigma of a stage, with the stage's reason where it is missing."""
     found = subject.states(stage).isel(state)
     note = str(found["reason"].item()) if "reason" in found else ""
     if not note and np.isnan(float(found["delta_sigma"])):

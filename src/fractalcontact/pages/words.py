@@ -23,7 +23,7 @@ def short(value: float, digits: int = 3) -> str:
 
 
 def measured(value: float, digits: int = 3) -> str:
-    """Some digits of a number, all of them: 2.20; a dash where it is missing."""
+    """Number with a fixed count of digits, 2.20; a dash if it is missing."""
     return _number(value, digits, True)
 
 

@@ -55,7 +55,7 @@ def register(
     mirrored: str | None = None,
     regrid: Callable[[Sequence[Motion]], xr.DataArray] | None = None,
 ) -> tuple[xr.DataArray, xr.DataArray]:
-    """Move the upper face to where the spread of the gap is least; crop both to what they share.
+    """Registration of the upper face by the least spread of the gap; both faces are cropped.
 
     The spread is the biweight one of :mod:`registration.registration`, to which spikes and places
     where rock is lost do not count. Nothing is moved if it would fall by less than 1 %, or if the
@@ -181,14 +181,14 @@ def gap_statistics(lower: xr.DataArray, upper: xr.DataArray) -> dict:
 
 
 def _common_gap(lower, upper) -> np.ndarray | None:
-    """Gap over the rectangle that both faces cover; None where too few cells have one."""
+    """Gap over the rectangle that both faces cover; None with too few cells."""
     pair = _common_rectangle(lower, upper)
     gap = None if pair is None else pair[1].values - pair[0].values
     return None if gap is None or np.isfinite(gap).sum() < SMALLEST_SIDE**2 else gap
 
 
 def _spreads(lower, first, second) -> list[float | None]:
-    """Biweight spreads of two gaps by one limit, mm; None where there is no gap to speak of."""
+    """Biweight spreads of two gaps by one limit, mm; None without a gap."""
     gaps = [_common_gap(lower, face) for face in (first, second)]
     limit = max((biweight_limit(gap) for gap in gaps if gap is not None), default=np.inf)
     return [None if gap is None else biweight_spread(gap, limit) for gap in gaps]
@@ -226,7 +226,7 @@ def _common_rectangle(lower, upper):
 
 
 def _moved(lower, upper, motion, mode, regrid):
-    """The upper face after the motion, but for its height; the motion made; how, in words."""
+    """Upper face after the motion except for its height, the motion, and its description."""
     if regrid is not None:
         moved, motion = _move_points(lower, motion, mode, regrid)
         return moved, motion, "before its points were gridded"
@@ -252,7 +252,7 @@ def _move_by_cells(upper, motion: Motion):
 
 
 def _move_points(lower, motion, mode, regrid):
-    """Move the points and grid them; where a tilt carried peaks sideways, correct what is left."""
+    """Move the points and grid them, with a second pass where a tilt moved peaks sideways."""
     motions, total = [motion], motion
     for _ in range(_MAX_PASSES):
         moved = regrid(motions)

@@ -1,4 +1,4 @@
-"""Motions of two registered faces that are statistically as good as the one that was found.
+"""Motions of two registered faces that are statistically equivalent to the best one.
 
 Blocks of the faces are drawn anew with replacement (bootstrap), and the fit is made again from
 them: how far it then moves is how well the faces determine their registration.

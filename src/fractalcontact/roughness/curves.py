@@ -39,7 +39,7 @@ class Curve(NamedTuple):
         return ratio(self.total.sum(axis=1), self.weight.sum(axis=1))
 
     def without_each_part(self) -> np.ndarray:
-        """Means (parts, k) over all parts but one; parts that hold nothing are passed over."""
+        """Means (parts, k) over all parts but one, without empty parts."""
         held = self.weight.any(axis=0)
         total, weight = self.total[:, held], self.weight[:, held]
         left = weight.sum(axis=1, keepdims=True) - weight

@@ -255,7 +255,7 @@ def _estimate(
 def _corrected(
     estimator: Estimator, fit: Fit, slope: float, half: float, roll_off: RollOff
 ) -> Estimate:
-    """H without known bias; an interval for whatever the nodes stand for, and every roll-off."""
+    """H without known bias; its interval covers both kinds of nodes and every roll-off."""
     ends = np.array([slope, slope - half, slope + half])
     of_each = {
         (nodes, of): extended(
@@ -290,7 +290,7 @@ def _hurst_of_slope(estimator: Estimator, curve: Curve, used: np.ndarray) -> tup
 
 
 def _mean_square(differences) -> float:
-    """Mean square of all finite values in several arrays; NaN where there is none."""
+    """Mean square of all finite values in several arrays; NaN without any."""
     total, count = 0.0, 0
     for values in differences:
         known = values[np.isfinite(values)]

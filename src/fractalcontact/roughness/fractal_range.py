@@ -173,7 +173,7 @@ def _too_short(level, limit, left_out) -> FractalRange:
 
 
 def _without_spiky_strips(curve: Curve) -> tuple[Curve, float]:
-    """The curve without strips far above the median of all, and how many those are in a bin."""
+    """Curve without strips far above the median, and the number of strips left out in a bin."""
     strips = ratio(curve.total, curve.weight)
     if not np.isfinite(strips).any():
         return curve, np.nan

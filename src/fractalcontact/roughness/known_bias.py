@@ -72,7 +72,7 @@ def slopes(x: np.ndarray, y: np.ndarray) -> np.ndarray:
 
 
 def extended(x: np.ndarray, known: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """Linear interpolation that goes straight on beyond both ends of the rising `known`."""
+    """Linear interpolation, extrapolated beyond both ends of the rising `known`."""
     interval = np.clip(np.searchsorted(known, x), 1, len(known) - 1)
     left, right = known[interval - 1], known[interval]
     part = (x - left) / (right - left)

@@ -267,7 +267,7 @@ def _profile_spectra(heights, spacing):
 
 
 def _form_words(found: FractalRange) -> str:
-    """The model of a spectrum in words; "" if there is none."""
+    """Model of a spectrum in words; "" without one."""
     if found.form is None:
         return ""
     form = found.form

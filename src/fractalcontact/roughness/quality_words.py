@@ -27,7 +27,7 @@ def interval_words(values: xr.Dataset, name: str, unit: str | None = None) -> st
 
 
 def noise_words(quality: xr.Dataset, face: str) -> str:
-    """The noise floor of a face in a sentence, with what it may come from.
+    """Sentence on the noise floor of a face, with its possible origin.
 
     Parameters
     ----------
@@ -63,7 +63,7 @@ def _noise_along(axis, of_axis) -> str:
 
 
 def range_words(quality: xr.Dataset, face: str) -> str:
-    """Filter, roll-off, steps and misfit of a face in a sentence; "" if there are none."""
+    """Sentence on filter, roll-off, steps and misfit of a face; "" without any."""
     found = quality.sel(face=face)
     words = []
     for axis in AXES:
@@ -114,7 +114,7 @@ def file_warnings(specimen: xr.Dataset) -> list[str]:
 
 
 def suspect_words(specimen: xr.Dataset) -> str:
-    """Lone spikes and cells far from any point, counted; "" if there are none.
+    """Counts of lone spikes and of cells far from any point; "" without any.
 
     Parameters
     ----------

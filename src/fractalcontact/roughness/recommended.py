@@ -115,7 +115,7 @@ def beyond_roll_off(dimensions: xr.Dataset) -> bool:
 
 
 def dimension_words(dimensions: xr.Dataset) -> str:
-    """The recommended estimate in one sentence, with its lags and why these; or why there is none.
+    """Sentence on the recommended estimate with the reason for its lags, or why there is none.
 
     Parameters
     ----------

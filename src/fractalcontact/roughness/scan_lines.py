@@ -23,7 +23,7 @@ _BY_CHANCE = 1e-4
 
 
 def line_alternation(heights: np.ndarray) -> tuple[float, float]:
-    """How far alternate columns differ: the difference, and the noise beside it.
+    """Difference of alternate columns, and the noise.
 
     Parameters
     ----------

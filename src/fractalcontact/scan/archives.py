@@ -27,7 +27,7 @@ _DRIVE = re.compile("[A-Za-z]:")
 
 
 def check_archive(path: Path) -> None:
-    """Refuse a zip archive that could do harm; a file that is none passes.
+    """Refuse a harmful zip archive; other files pass.
 
     Every member is inflated once, piece by piece, since the directory of an archive can promise
     less than its members hold.
@@ -49,7 +49,7 @@ def check_archive(path: Path) -> None:
 
 
 def _check_directory(members: list[zipfile.ZipInfo], path: Path) -> None:
-    """Judge the archive by what its directory says."""
+    """Check of an archive by its directory."""
     if len(members) > MAX_MEMBERS:
         raise InputError(
             f"{path}: an archive of {len(members)} members, more than the {MAX_MEMBERS} allowed; "
@@ -91,7 +91,7 @@ def _check_member(member: zipfile.ZipInfo, path: Path) -> None:
 
 
 def _check_content(archive: zipfile.ZipFile, member: zipfile.ZipInfo, path: Path) -> None:
-    """Inflate a member once, to see that it holds what the directory promises."""
+    """Inflate a member once and compare its size with the directory."""
     honest = copy.copy(member)
     honest.file_size += 2 * _CHUNK  # zipfile would cut off what comes after the promise
     xml = _XmlCheck(path, member) if member.filename.lower().endswith(".xml") else None

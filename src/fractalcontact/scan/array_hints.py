@@ -1,4 +1,4 @@
-"""Arrays of a file without units: which of them seem to be heights, and what others say of them."""
+"""Hints from the arrays of a file without units: likely heights, and remarks in other arrays."""
 
 import re
 from collections.abc import Callable, Mapping

@@ -34,7 +34,7 @@ _server = None
 
 
 class ReaderBug(RuntimeError):
-    """The reader raised what no file should make it raise; its traceback is in the notes."""
+    """Unexpected error of a reader, with its traceback in the notes."""
 
 
 def read_confined(path: Path, options: ScanOptions) -> RawScan:
@@ -158,7 +158,7 @@ class _Server:
 
 
 def _read_answer(stream):
-    """Lines up to the scan or the end; the scan, or None."""
+    """Read lines up to the scan or the end; returns the scan or None."""
     lines, raw = [], None
     while line := stream.readline():
         if not line.endswith(b"\n"):  # the reader broke off

@@ -1,4 +1,4 @@
-"""Drafts of sidecars: what a file seems to say, each line with its source, for its owner to judge.
+"""Drafts of sidecars from the hints in a file, each line with its source, for the owner to check.
 
 Nothing here is ever believed: a draft is shown, with the relief it would give, and read by nobody.
 """
@@ -62,7 +62,7 @@ _TO_FILL = {
 
 @dataclass(frozen=True)
 class Suggestion:
-    """Value of a key that a file seems to state, where it stands, and what else might be meant."""
+    """Likely value of a key in a file, its place, and the alternatives."""
 
     value: Any
     source: str
@@ -71,7 +71,7 @@ class Suggestion:
 
 @dataclass
 class Hints:
-    """Hints that a file gives.
+    """Hints in a file on the keys of its sidecar.
 
     Attributes
     ----------
@@ -84,12 +84,12 @@ class Hints:
     heights: np.ndarray | None = None
 
     def add(self, key: str, value: Any, source: str, others: Sequence[str] = ()) -> None:
-        """Suggest a value, where none was found before."""
+        """Suggest a value for a key without one."""
         self.keys.setdefault(key, Suggestion(value, source, tuple(others)))
 
 
 def add_words(hints: Hints, lines: Iterable[tuple[str, str]]) -> None:
-    """Suggest what words say of units, spacing, rows, heights and missing cells.
+    """Suggest units, spacing, rows, heights and missing cells from words in the file.
 
     Parameters
     ----------
@@ -138,7 +138,7 @@ def _unit_key(before: str) -> str:
 
 
 def drafted_options(options: ScanOptions, hints: Hints) -> ScanOptions:
-    """Options that the sidecar states, completed by what the file seems to say."""
+    """Options of the sidecar, completed by hints in the file."""
     changes: dict[str, Any] = {}
     for key, suggestion in hints.keys.items():
         if key in _TO_FILL and getattr(options, key) is None and suggestion.value is not None:
@@ -223,7 +223,7 @@ def _marks(heights: np.ndarray | None) -> tuple[Any, str]:
 
 
 def draft_line(key: str, value: Any, comment: str = "") -> str:
-    """One line of a draft; without a value it is to be filled in."""
+    """One line of a draft; the user fills in a missing value."""
     comment = comment or f"FILL IN: {_TO_FILL[key]}"
     text = f"{key}: {written(value)}" if value is not None else f"{key}:"
     return f"{text:<{_COMMENT_AT - 1}} # {printable(comment)}"

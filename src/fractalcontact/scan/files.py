@@ -42,7 +42,7 @@ def is_unchanged(before: os.stat_result, after: os.stat_result) -> bool:
 
 
 def inflated_size(path: Path) -> int:
-    """Bytes of a file, or of all that it says it inflates to.
+    """Size of a file, or its stated inflated size, bytes.
 
     Raises
     ------
@@ -73,5 +73,5 @@ def sha256(path: Path) -> str:
 
 
 def _without_waiting(name, flags: int) -> int:
-    """Open what may have become a pipe since it was looked at."""
+    """Open a file safely, even if it was replaced by a pipe meanwhile."""
     return os.open(name, flags | os.O_NONBLOCK)

@@ -52,5 +52,5 @@ class Format:
     seconds_per_megabyte: int = SECONDS_PER_MEGABYTE
 
     def learned_endings(self) -> tuple[str, ...]:
-        """Endings that only a library knows; to ask for them may import it."""
+        """Extensions known to a library only, which may import it."""
         return () if self.more_endings is None else tuple(self.more_endings())

@@ -1,4 +1,4 @@
-"""All scan formats, as their readers declare them, and which of them takes a file.
+"""All scan formats declared by readers, and the choice of one for a file.
 
 A format is one module in `readers` that declares its `Format`; nothing else names it.
 """

@@ -1,4 +1,4 @@
-"""Numbers of a file converted to mm, with what its sidecar says; checks of what was confirmed."""
+"""Numbers of a file converted to mm by its sidecar; checks of `confirmed`."""
 
 import math
 from pathlib import Path
@@ -136,7 +136,7 @@ def _refuse_idle_keys(raw: RawScan, options: ScanOptions, path: Path) -> None:
 
 
 def _refuse_known_rows(raw: RawScan, options: ScanOptions, path: Path) -> None:
-    """Refuse ``first_row`` where coordinates beside a matrix say it."""
+    """Refuse ``first_row`` where the coordinates of a matrix determine it."""
     if options.axes == "both" and options.spacing is None and options.first_row is not None:
         raise InputError(
             f"{path}: the coordinates beside its rows say where the first row lies ({raw.first_row}"

@@ -13,7 +13,7 @@ from ..core.units import length_factor, quantity
 
 @dataclass(frozen=True)
 class ScanOptions:
-    """Statements of the owner about a scan file; None where not stated.
+    """Statements of a sidecar about a scan file; None where not stated.
 
     A file that describes itself needs none of them, any other is read only as they say: see
     :mod:`scan.stated`.
@@ -180,7 +180,7 @@ def _check_text_keys(options: dict, where: str) -> None:
 
 
 def coordinate_files(path: Path, options: Mapping[str, Any]) -> dict[str, Path]:
-    """Files of the coordinates of a matrix, by key: none where its sidecar names none.
+    """Files of the coordinates of a matrix, by key; empty if its sidecar names none.
 
     Parameters
     ----------

@@ -52,7 +52,7 @@ class RawScan:
 
 
 class IncompleteSidecar(InputError):
-    """A file that is read only as its sidecar says, and the sidecar does not say all.
+    """Error of a file that needs a sidecar, and whose sidecar is incomplete.
 
     Attributes
     ----------
@@ -96,6 +96,6 @@ def reading(path: Path | str, kind: str) -> Iterator[None]:
 
 
 def stated_unit(text: object) -> str | None:
-    """Take the unit of length a file states; None if it states none, or of something else."""
+    """Unit of length that a file states; None for no unit or another quantity."""
     text = str(text or "").strip()
     return text if length_unit(text) else None

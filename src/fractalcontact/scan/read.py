@@ -113,7 +113,7 @@ def read_faces(
 def read_matrix(
     path: Path | str, options: Mapping | None = None
 ) -> tuple[np.ndarray, tuple[float, float], dict]:
-    """Read a file that holds a matrix, whatever its numbers mean.
+    """Read a file that holds a matrix of any quantity.
 
     Parameters
     ----------
@@ -186,7 +186,7 @@ def _refuse_unsaid_aperture(path: Path, raw: RawScan, options: ScanOptions) -> N
 
 
 def _require_one_layout(lower: ScanFile, upper: ScanFile) -> None:
-    """Refuse a matrix beside points before either asks for keys that the other has no use for."""
+    """Refuse a matrix and points as two faces, before their keys are checked."""
     if (lower.raw.layout == "matrix") != (upper.raw.layout == "matrix"):
         matrix, cloud = (lower, upper) if lower.raw.layout == "matrix" else (upper, lower)
         what = "a mesh" if cloud.raw.layout == "mesh" else "points x, y, z"

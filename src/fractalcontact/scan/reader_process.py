@@ -100,7 +100,7 @@ def _receive(control: socket.socket) -> dict | None:
 
 
 def _import_libraries(extension: str) -> None:
-    """Import what reading such a file takes, once here and not again in every fork."""
+    """Import the libraries of a format once, before the forks."""
     from .formats import likely_formats
 
     for form in likely_formats(extension):
@@ -190,7 +190,7 @@ def _is_from_memory(error: BaseException | None) -> bool:
 
 
 def _confine(limits: Limits, already: int) -> None:
-    """Bound memory, time and files of this process; the system ends it where it goes beyond."""
+    """Bound memory, time and files of this process; the system ends it beyond these bounds."""
     _lower(resource.RLIMIT_AS, already + limits.memory)
     _lower(resource.RLIMIT_CPU, limits.processor_seconds)
     _lower(resource.RLIMIT_FSIZE, 0)

@@ -1,4 +1,4 @@
-"""Tables of numbers as heights or points, as the sidecar says what their rows and columns are."""
+"""Tables of numbers as heights or points, by the layout and axes of the sidecar."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""First lines of a text file: columns that name themselves, and what the rest seems to say."""
+"""Hints in the first lines of a text file: named columns, and remarks in other lines."""
 
 import re
 from itertools import islice, pairwise
@@ -83,7 +83,7 @@ def _is_plain(cells: list[str]) -> bool:
 
 
 def _first_numbers(lines: list[str]) -> int | None:
-    """Number of the first line, from 0, that holds nothing but numbers and their delimiters."""
+    """Index of the first line with only numbers and delimiters."""
     for number, line in enumerate(lines):
         words = re.sub(r"(?i)\bnan\b|(?<=\d)[ed](?=[-+]?\d)", "", line)
         if re.search(r"\d", line) and not re.search(r"[^\W\d_]|[#%!:=]", words):

@@ -85,7 +85,7 @@ def find_marks(heights: np.ndarray) -> list[Mark]:
 
 
 def refuse_or_warn(heights: np.ndarray, path: object) -> str:
-    """Refuse heights far outside the others; a sentence on a number that repeats among them.
+    """Refuse heights far outside the others; returns a sentence on a number that repeats.
 
     Parameters
     ----------
@@ -169,7 +169,7 @@ def _repeated(heights: np.ndarray, present: np.ndarray) -> float | None:
 
 
 def _dominant(values: np.ndarray, fewest: int = _REPEATED) -> float | None:
-    """The value that stands there far more often than the next, None if there is no such."""
+    """Value that occurs far more often than the next; None without one."""
     if values.size == 0:
         return None
     levels, counts = np.unique(values, return_counts=True)

@@ -12,7 +12,7 @@ MIN_CELLS = 16
 
 
 def solvable_parts(parts: Sequence[int], shape: tuple[int, int]) -> list[int]:
-    """Divisions whose sub-windows are solved: the whole window, and those of `MIN_CELLS`.
+    """Divisions whose sub-windows are solved: the whole window, and those with `MIN_CELLS`.
 
     Parameters
     ----------

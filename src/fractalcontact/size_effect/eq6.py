@@ -242,7 +242,7 @@ def add_decisions(result: xr.Dataset) -> None:
 
 
 def _verdict_reason(result):
-    """Loads that decide about eq. 6, or what keeps them from it; empty without any."""
+    """Loads that decide about eq. 6, or the reason why none does; empty without loads."""
     of_study = result.isel(normal_force=~result["beyond_study"].values.astype(bool))
     of_study = of_study.sel(estimator=list(_QUOTED))
     if of_study["decides"].any():

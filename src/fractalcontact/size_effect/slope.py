@@ -121,7 +121,7 @@ def _places(
 def _at_end(
     curves: tuple[np.ndarray, ...], errors: tuple[np.ndarray, ...], sign: int
 ) -> list[np.ndarray]:
-    """Curves of parts as high, and of the whole as low, as errors let them be; -1 for the reverse.
+    """Curves of parts at their upper and of the whole at its lower error; -1 for the reverse.
 
     NaN where an error has no bound.
     """
@@ -134,7 +134,7 @@ def _at_end(
 
 
 def _error_bound(pressures: np.ndarray, ends: list[np.ndarray]) -> np.ndarray:
-    """Error bound of pressures: to the farther of those at both ends of what is certain.
+    """Error bound of pressures: the larger distance to both ends of the certain range.
 
     Infinite where the value is not reached at one of them.
     """
@@ -233,7 +233,7 @@ def _reached(pressures: np.ndarray) -> np.ndarray:
 
 
 def _median(pressures: np.ndarray) -> np.ndarray:
-    """Median over the last axis, in which what lies below or above counts; NaN if it lies there."""
+    """Median over the last axis, counting values below or above range; NaN if it is one of them."""
     ordered = np.sort(pressures, axis=-1)  # NaN last
     n = np.isfinite(np.where(ordered == np.inf, 0.0, ordered)).sum(axis=-1)
     middle = np.stack([np.maximum(n - 1, 0) // 2, n // 2], axis=-1)

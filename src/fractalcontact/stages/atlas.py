@@ -24,7 +24,7 @@ def join_stages(
     configuration: Mapping,
     made_with: Mapping[str, Mapping[str, dict]] | None = None,
 ) -> dict[str, list[str]]:
-    """Write stages into one atlas, and with them what is judged of several specimens together.
+    """Write stages into one atlas, with the verdicts and comparison over specimens.
 
     Parameters
     ----------
@@ -84,7 +84,7 @@ def join_rows(
     configuration: Mapping,
     made_with: Mapping[str, Mapping[str, dict]] | None = None,
 ) -> dict[str, list[str]]:
-    """Write what specimens whose atlases are files of their own have together.
+    """Write the common part of an atlas in parts.
 
     Parameters
     ----------
@@ -147,7 +147,7 @@ def _maps(stages):
 
 
 def _together(stages, settings):
-    """Verdicts and comparison of several specimens; none of one, as its own atlas has them."""
+    """Verdicts and comparison of several specimens; empty for a single one."""
     if len(stages.get("comparison", {})) < 2:
         return {}
     together = {"study_comparison": {WHOLE: compare_specimens(stages["comparison"])}}

@@ -1,4 +1,4 @@
-"""Report of a specimen: strength, size laws, and what is judged of it; nothing is solved here."""
+"""Report of a specimen: strength, size laws and verdicts, without a solve."""
 
 from dataclasses import asdict
 

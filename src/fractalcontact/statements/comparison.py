@@ -1,4 +1,4 @@
-"""Specimens and groups of them compared: what each gives with its error, and how groups spread.
+"""Comparison of specimens and groups: values with errors, and spread of groups.
 
 Of every specimen one row is kept, small whatever its scan: the comparison of a thousand specimens
 reads a thousand rows and none of their fields.
@@ -93,7 +93,7 @@ def _stiffness(budget, n_loads):
 
 
 def _dilatancy(dilatancy, direction, n_loads):
-    """Elastic dilatancy at the largest offset; what stands against a plane does not slide."""
+    """Elastic dilatancy at the largest offset; missing against a plane."""
     if direction == "none":
         return _around("dilatancy", *np.full((2, n_loads), np.nan))
     last = dilatancy.sel(contact_direction=direction).isel(offset=-1)
@@ -192,7 +192,7 @@ def with_common_pressure(comparison: xr.Dataset) -> xr.Dataset:
 
 
 def _filled(values, n):
-    """Values over loads with NaN behind the last; a number is handed back as it is."""
+    """Values over loads, padded with NaN; a scalar is returned unchanged."""
     values = np.asarray(values, float)
     return (
         values if values.ndim == 0 else np.pad(values, (0, n - values.size), constant_values=np.nan)

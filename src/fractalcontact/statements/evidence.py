@@ -69,7 +69,7 @@ class Evidence:
         self.joint = joint
 
     def of(self, finding: Finding) -> Finding:
-        """A finding that says what it was judged on."""
+        """Finding with the evidence that it was judged on."""
         return finding
 
     @property
@@ -152,7 +152,7 @@ class OfRealisations(Evidence):
         return int(self.stage.sizes["realisation"])
 
     def of(self, finding: Finding) -> Finding:
-        """A finding that says how many realisations it was judged on."""
+        """Finding with the number of realisations that it was judged on."""
         # A finding without a note has no number, but the reason why there is none.
         of = "mean of" if finding.note else "in"
         return finding._replace(
@@ -262,7 +262,7 @@ def at_reference(joint: Joint, evidence: Evidence) -> xr.Dataset:
 
 
 def of_a_kind(rule: Callable[[Joint, Evidence], Finding]) -> Callable[[Joint], Finding]:
-    """A rule on joints of a kind, whose finding says what it was judged on."""
+    """Rule on joints of a kind, whose finding states its evidence."""
 
     @wraps(rule)
     def judged(joint: Joint) -> Finding:

@@ -18,7 +18,7 @@ BY_CONSTRUCTION = "A_r = F/H by construction: all that touches yields"
 
 
 class Finding(NamedTuple):
-    """Verdict on one statement, the numbers that decide it, and what to know of them.
+    """Verdict on one statement, its numbers, and a remark.
 
     Captions quote the verdict and the numbers. The note stands in the table alone, and so does
     ``judged_on``, which is empty where the whole subject was judged.

@@ -39,7 +39,7 @@ def rule_of(name: str) -> Callable[..., Finding]:
 
 
 def material_of(settings: Mapping) -> str:
-    """The paper's material that a specimen is of, "rock" or "concrete"; empty if neither."""
+    """Material of a specimen in the paper's terms, "rock" or "concrete"; empty if neither."""
     words = str(settings["material"]["name"]).replace("_", " ").split()
     return next((MATERIALS[word] for word in words if word in MATERIALS), "")
 

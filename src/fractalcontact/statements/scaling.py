@@ -259,7 +259,7 @@ def strength_falls_with_size(joint: Joint) -> Finding:
 
 
 def _exponents(value, low, high, known):
-    """The exponents of strength in words; none where there is none."""
+    """Exponents of strength in words; empty without any."""
     if not known.any():
         return ""
     ends = " to ".join(dict.fromkeys(f"{e:.2f}" for e in (value[known].min(), value[known].max())))

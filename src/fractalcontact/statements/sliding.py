@@ -50,7 +50,7 @@ class Plateaus(NamedTuple):
         return self.trend == RISING
 
     def finding(self, verdict: str) -> Finding:
-        """A verdict with how many directions are flat, and by how much they change."""
+        """Verdict with the number of level directions and their change."""
         rising = [self.directions[i] for i in np.flatnonzero(self.rising)]
         more = f"; rising {', '.join(rising)}" if rising else ""
         return Finding(

@@ -75,7 +75,7 @@ def size_exponent_grows_with_dimension(joints: Mapping[str, Joint]) -> Finding:
 
 
 def _slope(x: np.ndarray, y: np.ndarray, error: np.ndarray) -> Estimate:
-    """Least-squares slope whose interval follows from those of y, ``error`` to either side."""
+    """Least-squares slope, with its interval from those of y (half-widths ``error``)."""
     about = x - x.mean()
     slope, half = float(about @ y / (about @ about)), slope_error(x, error)
     return Estimate(slope, slope - half, slope + half, x.size)

@@ -89,7 +89,7 @@ def write_atlas(
 
 
 def _by_versions(made_with):
-    """Names of parts by the versions they were made with; none if all are those in use."""
+    """Names of parts by their versions; empty if all are those in use."""
     parts: dict[str, list[str]] = {}
     for stage, specimens in made_with.items():
         for name, used in specimens.items():

@@ -1,4 +1,4 @@
-"""Atlas of many specimens, in parts: a file a specimen, of which each is read when asked for."""
+"""Atlas in parts: one file for each specimen, read at its first use."""
 
 import json
 from collections.abc import Iterator, Mapping
@@ -12,7 +12,7 @@ from .stages import STAGES
 
 
 def open_atlas(path: Path | str) -> "Atlas":
-    """Open the atlas of a study of any number of specimens; nothing of them is read yet.
+    """Open the atlas of a study without reading its specimens.
 
     Parameters
     ----------
@@ -39,7 +39,7 @@ def open_atlas(path: Path | str) -> "Atlas":
 
 
 class Atlas:
-    """An atlas whose stages are read one by one, each when it is asked for.
+    """Atlas whose stages are read one by one, at their first use.
 
     ``atlas["closure/NAME"]`` is a dataset in memory, which nobody but its user keeps, and
     ``atlas.stage("closure")`` goes from specimen to specimen: a thousand specimens take the memory

@@ -101,7 +101,7 @@ def resolve_study(
 def read_scans(
     config: Mapping, schema: Mapping
 ) -> tuple[dict[str, ScanFiles], dict[str, tuple[dict, dict]], dict[str, InputError]]:
-    """Scan files of a study, and what is said of them.
+    """Scan files of a study with their settings.
 
     Parameters
     ----------
@@ -134,7 +134,7 @@ def read_scans(
 
 
 def _stated_of(scan: ScanFiles, of_group: tuple[dict, dict], schema: Mapping) -> tuple[dict, dict]:
-    """Keys stated of one specimen; those of its group may have no meaning for all its members."""
+    """Keys stated for one specimen; keys of its group need not apply to every member."""
     of_file = read_sidecar(scan.sidecar, schema)
     of_row = _split(dict(scan.row), schema, scan.row_of) if scan.row else ({}, {})
     own = ({**of_file[0], **of_row[0]}, {**of_file[1], **of_row[1]})
@@ -146,7 +146,7 @@ def _stated_of(scan: ScanFiles, of_group: tuple[dict, dict], schema: Mapping) ->
 
 @contextmanager
 def _refusing(refused: dict[str, InputError], name: str) -> Iterator[None]:
-    """Keep what is wrong with one scan, beside the others."""
+    """Collect the error of one scan and continue with the others."""
     try:
         yield
     except InputError as error:
@@ -303,7 +303,7 @@ def read_sidecar(path: Path | None, schema: Mapping) -> tuple[dict, dict]:
 
 
 def _split(document: dict, schema: Mapping, source: str) -> tuple[dict, dict]:
-    """Scan keys and settings of what a sidecar, or a row of a table, says."""
+    """Scan keys and settings from a sidecar or a row of a table."""
     definitions = schema["$defs"]
     scan_keys = definitions["scan"]["properties"]
     properties = {**scan_keys, **definitions["settings"]["properties"]}

@@ -142,7 +142,7 @@ class _Stated(dict):
         return [*map(resolved, value)] if isinstance(value, list) else resolved(value)
 
     def solved_loads(self, hardness):
-        """Loads that are solved; of the study's defaults those that the hardness can carry."""
+        """Loads that are solved; of the defaults only those that the hardness can carry."""
         loads = self.loads("loads")
         if "loads" in self._own or "loads" in self._study:
             return loads
@@ -156,7 +156,7 @@ class _Stated(dict):
         return 0.0 if as_scanned and "map_offset" not in self else self.lengths("map_offset")
 
     def chosen_loads(self, key, loads):
-        """Loads picked for a figure: those named, which must be solved, or the largest three.
+        """Loads of a figure: the named ones, which must be solved, or the largest three.
 
         Of those that the study's defaults name, the ones that the hardness of a specimen can carry.
         """

@@ -1,4 +1,4 @@
-"""Research Object Crate of a study: what was made, by which workflow, of what, in linked data.
+"""Research Object Crate of a study: results, workflow and inputs as linked data.
 
 RO-Crate 1.1 with the profile Workflow Run Crate 0.5, as one file of JSON-LD beside the atlas. The
 files listed are those of the manifest, with their checksums.
@@ -272,7 +272,7 @@ def _scan_id(path: str) -> str:
 
 
 def _scans(inputs: Mapping[str, str]) -> list[dict[str, Any]]:
-    """The scans, which belong to whoever measured them: named, with their checksums, not packed."""
+    """Entities of the scans by name and checksum; the files of their owners are not packed."""
     return [
         {
             "@id": _scan_id(path),

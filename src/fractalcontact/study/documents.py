@@ -81,7 +81,7 @@ def study_name(document: Mapping, source: Path | str) -> str:
 
 
 def _expanded(value, counts=None):
-    """How many values a document has once every alias is written out."""
+    """Number of values of a document with every alias written out."""
     counts = {} if counts is None else counts
     if not isinstance(value, (dict, list)):
         return 1

@@ -1,4 +1,4 @@
-"""Register of the figures: what the workflow must know of them before anything is drawn.
+"""Register of the figures, which the workflow reads before anything is drawn.
 
 A figure registers itself: its module ``PACKAGE/figures/GROUP/NAME.py`` states, each in a line that
 begins with the constant's name and holds literals alone,

@@ -44,7 +44,7 @@ def refuse_loss(results: Path | str, names: Iterable[str]) -> None:
 
 
 def refuse_damage(results: Path | str, digest_of: Callable) -> None:
-    """Refuse a damaged file before it is read, or what is good is removed to be made from it again.
+    """Refuse a damaged file before it is read, or results are removed to be remade from it.
 
     Parameters
     ----------

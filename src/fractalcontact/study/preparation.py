@@ -1,4 +1,4 @@
-"""From scan files to a specimen: what the study does and what `check_scans` tries."""
+"""Preparation of a specimen from scan files, for studies and for `check_scans`."""
 
 from collections.abc import Mapping
 from pathlib import Path

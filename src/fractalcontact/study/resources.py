@@ -1,4 +1,4 @@
-"""Memory and time that jobs ask for, by the nodes of their grids: models of what was measured.
+"""Memory and time requested by jobs, from models over the nodes of their grids.
 
 A job asks for :data:`ROOM` times what the model says, and for twice as much at every further
 attempt. ``docs/scaling.md`` has the measurements beside what is asked for.
@@ -87,7 +87,7 @@ _PLAIN_NODE, _PACKED_NODE = 6, 4
 
 
 def memory(rule: str, nodes: float, *, states: int = 1, attempt: int = 1) -> int:
-    """Megabytes that a job asks for.
+    """Requested memory of a job, MB.
 
     Parameters
     ----------
@@ -124,7 +124,7 @@ def seconds(rule: str, nodes: float, *, states: int = 1) -> float:
 
 
 def minutes(rule: str, nodes: float, *, states: int = 1, attempt: int = 1) -> int:
-    """Minutes that a job asks for.
+    """Requested time of a job, minutes.
 
     Parameters
     ----------
@@ -138,7 +138,7 @@ def minutes(rule: str, nodes: float, *, states: int = 1, attempt: int = 1) -> in
 
 
 def reading_memory(files: Iterable[Path | str], attempt: int = 1) -> int:
-    """Megabytes to ask for, to read the faces of a specimen, grid, clean and describe them.
+    """Requested memory, MB, to read, grid, clean and describe the faces of a specimen.
 
     Parameters
     ----------

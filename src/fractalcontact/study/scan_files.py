@@ -65,12 +65,12 @@ class ScanFiles:
 
     @property
     def said_in(self) -> Path | str | None:
-        """The last of what says something of it, for errors: a table, its sidecar, its group's."""
+        """Source to name in errors: a table, its sidecar, or that of its group."""
         return self.row_of or self.sidecar or self.shared
 
     @property
     def files(self) -> tuple[Path, ...]:
-        """All that is measured: what its results are made of, beside the sidecar."""
+        """All measured files of a specimen, without the sidecar."""
         return tuple(path for path in (self.lower, self.upper, *self.coordinates) if path)
 
 

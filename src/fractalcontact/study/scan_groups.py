@@ -35,7 +35,7 @@ Listed = tuple[dict[str, ScanFiles], dict[str, InputError]]
 
 
 def list_grouped(folder: Path | str, groups: str | None) -> Listed:
-    """List the specimens of a study, and what is wrong with those that have none.
+    """Specimens of a study, and the errors of files that give none.
 
     Parameters
     ----------
@@ -113,7 +113,7 @@ def _list_folders(folder: Path) -> Listed:
 
 
 def _sidecar_beside(folder: Path, stem: str) -> Path | None:
-    """The sidecar NAME.yaml (or .yml) of a folder; one that leads elsewhere is refused."""
+    """Sidecar NAME.yaml (or .yml) of a folder; a link out of the folder is refused."""
     found = [path for ending in SIDECAR_SUFFIXES if (path := folder / f"{stem}{ending}").exists()]
     if len(found) > 1:
         raise InputError(f"{found[0]} and {found[1].name}: two sidecars of {stem}; remove one")

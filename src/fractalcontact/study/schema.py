@@ -1,4 +1,4 @@
-"""Validation of a file by its schema, with errors that say what to write instead."""
+"""Validation of a file by its schema, with errors that tell the user what to write."""
 
 import difflib
 from collections.abc import Iterable, Mapping
@@ -41,7 +41,7 @@ def shortened(text: object) -> str:
 
 
 def nearest(word: object, known: Iterable) -> str:
-    """A hint at the nearest known word, or at all of them where none is near."""
+    """Hint at the nearest known word, or at all words if none is near."""
     near = difflib.get_close_matches(str(word), [str(k) for k in known], n=1)
     return f"; did you mean '{near[0]}'?" if near else f"; known: {', '.join(map(str, known))}"
 
@@ -58,7 +58,7 @@ _Validator = jsonschema.validators.extend(
 
 
 def _explain(error):
-    """One sentence for one schema error: the key, what was expected, the nearest known key."""
+    """Sentence for one schema error: the key, the expected value, the nearest known key."""
     key = ".".join(str(part) for part in error.absolute_path)
     if error.validator == "additionalProperties":
         known = error.schema["properties"]

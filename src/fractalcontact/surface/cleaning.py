@@ -125,7 +125,7 @@ def _removed(outlying, suspects: Suspects, outliers: str) -> list[np.ndarray]:
 
 
 def _refilled(scans, removed, outliers, largest_hole):
-    """Faces without the cells removed, their holes filled as the study asks; what was filled."""
+    """Faces without removed cells and with holes filled; the mask of filled cells."""
     faces, filled = [], []
     for scan, cells in zip(scans, removed, strict=True):
         heights = np.where(cells, np.nan, scan.values)
@@ -137,7 +137,7 @@ def _refilled(scans, removed, outliers, largest_hole):
 
 
 def _sparse(scan: xr.DataArray) -> np.ndarray:
-    """Cells of a gridded cloud that lie far from any point; of other scans none."""
+    """Cells of a gridded cloud far from any point; none for other scans."""
     if "sparse" not in scan.coords:
         return np.zeros(scan.shape, dtype=bool)
     return scan["sparse"].values.astype(bool) & np.isfinite(scan.values)

@@ -95,7 +95,7 @@ def height_is_known(upper: xr.DataArray) -> bool:
 
 
 def stand_off(heights: np.ndarray) -> np.ndarray:
-    """How far each cell stands off its neighbours, in multiples of what is typical around it.
+    """Deviation of each cell from its neighbours, in multiples of the typical one around it.
 
     Parameters
     ----------

@@ -150,7 +150,7 @@ def band_slope(
 
 
 def check_surface(shape: tuple[int, int], hurst: float, spacing: float, rms: float) -> None:
-    """Refuse what no surface can be made of.
+    """Refuse parameters from which no surface can be made.
 
     Raises
     ------

@@ -39,7 +39,7 @@ class WindowRequest:
 
 
 class _Wanted(NamedTuple):
-    """A window before it is rounded and has found its place; lengths in cells, (y, x)."""
+    """Requested window before rounding and placement; lengths in cells, (y, x)."""
 
     cells: tuple[int, ...]
     sides: tuple[float, ...]

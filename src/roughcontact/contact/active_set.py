@@ -91,7 +91,7 @@ class WorkingSet:
     bound: np.ndarray
 
     def without(self, left_out: np.ndarray, bound: np.ndarray) -> "WorkingSet":
-        """The same with some of the active nodes, (n,) bool, put at a bound each."""
+        """The same state with some active nodes, (n,) bool, moved to a bound."""
         return WorkingSet(
             self.active[~left_out],
             np.concatenate([self.fixed, self.active[left_out]]),
@@ -206,7 +206,7 @@ class ActiveSetMethod:
         return verified(problem, operator, iterate, self._dtype)
 
     def _linear_solve(self, kkt, closure, exact, single_step):
-        """How far to solve: ``exact`` as a safeguard, or, where one is left, a ``single_step``."""
+        """Kind of linear solve: ``exact`` as a safeguard, else ``single_step`` while one is left."""
         if exact:
             return LinearSolve.EXACT
         if single_step and kkt.holds_to(SINGLE_STEP_BELOW * self.rtol, closure):
@@ -273,10 +273,10 @@ class ActiveSetMethod:
         iterate.closure += scale * equations.multiplier
 
     def _preconditioned_step(self, iterate, working, clipped):
-        """The equations on a set after their first step; and what goes with them.
+        """Equations on a set after their first step, with changes at bounds and their scale.
 
-        That is by how much the pressures of the nodes put at a bound change, and the scale of all
-        numbers in the equations, of these too.
+        The changes are those of the pressures of nodes put at a bound; all numbers are divided by
+        the scale.
         """
         problem = self.problem
         gap = iterate.displacement[working.active] + problem.clearance[working.active]
@@ -308,7 +308,7 @@ def _check_on_nodes(values, name, operator):
 
 @njit(cache=True)
 def _scaled(pressure, gap, active, fixed, bound, load):
-    """Numbers near one for the equations on a set: a scale, and what they are made of, over it.
+    """Scale of the equations on a set, and their values divided by it.
 
     Returns
     -------

@@ -47,15 +47,15 @@ class Bounds:
         return bool(np.isinf(self.upper).all())
 
     def clip(self, pressure: np.ndarray) -> np.ndarray:
-        """The pressure, (n,), put at a bound wherever it is beyond it."""
+        """Pressure, (n,), clipped to the bounds."""
         return np.clip(pressure, self.lower, self.upper)
 
     def violation(self, pressure: np.ndarray) -> float:
-        """By how much a pressure, (n,), is beyond its bounds where it is most."""
+        """Largest violation of the bounds by a pressure, (n,)."""
         return float(np.abs(self.clip(pressure) - pressure).max(initial=0.0))
 
     def between(self, pressure: np.ndarray) -> np.ndarray:
-        """Nodes at which neither bound is active, (k,) int32: those whose gap stays 0."""
+        """Nodes with both bounds inactive, (k,) int32, whose gap stays 0."""
         inside = (pressure > self.lower) & (pressure < self.upper)
         return np.flatnonzero(inside).astype(np.int32)
 

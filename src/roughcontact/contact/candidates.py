@@ -235,7 +235,7 @@ def solve_restricted(
     displacement: np.ndarray | None,
     rtol: float,
 ) -> tuple[Problem, Solution]:
-    """Solve on candidates; on more of them while the closure is found to be beyond their bound.
+    """Solve on candidates, and on more of them while the closure exceeds their bound.
 
     Parameters
     ----------

@@ -62,7 +62,7 @@ class CoarseCorrection:
         self._made_for = np.empty(0, np.int32)
 
     def update(self, nodes: np.ndarray, fresh: bool) -> None:
-        """Take another contact set; the operator is made anew if it lags behind.
+        """Take another contact set; the operator is rebuilt if it differs too much.
 
         Parameters
         ----------
@@ -224,7 +224,7 @@ def _mass_matrices(cells, weights, missing, coarse_y, coarse_x):
 
 @njit(cache=True, fastmath=True)
 def _nine_point_products(stencil, basis, extents):
-    """Such a matrix, by its stencils, times the basis, (functions, coarse_y, coarse_x)."""
+    """Product of a stencil matrix with the basis, (functions, coarse_y, coarse_x)."""
     out = np.zeros_like(basis)
     ny, nx = basis.shape[1:]
     for f in range(basis.shape[0]):

@@ -21,12 +21,12 @@ class Effort:
         self.renew_lock()
 
     def renew_lock(self) -> None:
-        """Make the lock anew: one that another thread holds is never released in a fork."""
+        """Make a new lock in a fork, where a lock of another thread is never released."""
         self._lock = threading.Lock()
 
     @contextlib.contextmanager
     def counted(self, problems: int) -> Iterator[None]:
-        """Add what the block takes, and the problems it solves."""
+        """Count the problems and seconds of a block."""
         begin = time.perf_counter()
         try:
             yield

@@ -1,4 +1,4 @@
-"""Full approximation scheme (FAS): what a new load changes in a known state, on coarser grids.
+"""Full approximation scheme (FAS): change of a known state under a new load, on coarser grids.
 
 A coarse grid resolves how contact spreads over distances for which iterations on the fine one take
 several applications of K. What it does not resolve is the state itself. So its problem is such that
@@ -67,7 +67,7 @@ def full_approximation_start(
 
 
 def _changed_pressure(problem, pressure, gap, closure):
-    """The same for a state whose ``gap`` at a ``closure`` is known."""
+    """The same for a state with known ``gap`` at a ``closure``."""
     shape, space = problem.space.shape, problem.space.coarser(2)
     before, gap = problem.bounds.clip(pressure).reshape(shape), gap.reshape(shape)
     # Twice the mean of four is what a pressure is there: `coarser_load`.
@@ -99,7 +99,7 @@ def _displacement(space: HalfSpace, pressure: np.ndarray) -> np.ndarray:
 
 @njit(cache=True)
 def _in_proportion(before, old, new, padded):
-    """Change of a fine pressure in proportion to that of its cells; even where there was none.
+    """Change of a fine pressure in proportion to its cells; uniform where it was zero.
 
     It is put into an array of zeros with two nodes more on each side. What stays zero is not
     written: of an array as large as this that takes as long as all the rest.

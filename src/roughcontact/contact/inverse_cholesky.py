@@ -321,7 +321,7 @@ def _joined(lists, lengths):
 
 @njit(cache=True)
 def _fill_below_diagonal(places, nodes, nx, influence, factor, lower):
-    """Influence of the nodes of each lane on each other; returns how many condition one at most."""
+    """Influence of the nodes of each lane on each other; returns the largest neighbourhood."""
     count, neighbours, _, _ = factor
     n = 0
     for i in places:

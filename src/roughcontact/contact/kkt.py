@@ -1,4 +1,4 @@
-"""The contact problem and its complementarity (KKT) conditions: how far a pressure is from them.
+"""Contact problem, its complementarity (KKT) conditions, and the residual of a pressure.
 
 With the gap g = K p + c - w at the nodes (c the clearance at first touch, w the closure, H a bound
 on the pressure) a state of contact has 0 <= p <= H, and g = 0 where p lies between, g >= 0 where

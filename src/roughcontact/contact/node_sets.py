@@ -9,7 +9,7 @@ _INT32, _FLOAT32 = np.dtype(np.int32), np.dtype(np.float32)
 
 
 def check_nodes(nodes: np.ndarray, shape: tuple[int, int]) -> None:
-    """Refuse what is no set of nodes: compiled code looks up whatever it is given.
+    """Refuse an invalid set of nodes, since compiled code does not check indices.
 
     Parameters
     ----------

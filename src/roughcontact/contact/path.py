@@ -79,7 +79,7 @@ class BranchState:
 
     @property
     def gap(self) -> np.ndarray:
-        """Opening above the nodes as they have been pressed in, mm, (ny, nx); nowhere negative."""
+        """Gap above the permanently deformed surface, mm, (ny, nx), nowhere negative."""
         return np.maximum(self.contact.gap, 0.0)
 
     @property
@@ -102,7 +102,7 @@ class BranchState:
 
     @computed_once
     def dissipated_energy(self) -> float:
-        """Energy spent since the path began, sum of H s^2 times the permanent set, N mm.
+        """Dissipated energy since the path began, sum of H s^2 times the permanent set, N mm.
 
         A node is pressed in under the pressure H alone. With the elastic energy this is the work
         of the force, the integral of F dw: over a cycle, the area between its branches.
@@ -113,7 +113,7 @@ class BranchState:
 
 
 def loaded_state(contact: ContactState) -> BranchState:
-    """State on the loading branch, with what it presses in.
+    """State on the loading branch, with its permanent set.
 
     Parameters
     ----------
@@ -193,7 +193,7 @@ class _Path:
         self.state: BranchState | None = None
 
     def begin(self, contact, load):
-        """Go on from a state of loading, whose force or closure is given."""
+        """Continue the path to a given force or closure, from a loading state."""
         self.state, self.load, self.largest = loaded_state(contact), load, load
 
     def next(self, load, *, by_force):
@@ -213,7 +213,7 @@ class _Path:
         return self.state
 
     def _turn(self):
-        """Hold the set of the last state: its heights are those of what follows."""
+        """Keep the permanent set of the last state in the heights of the following ones."""
         self.held, self.yielded = self.state.permanent_set, self.state.yielded
         self.height = self.first - self.held
         self.lowered = float(self.first.max() - self.height.max())
@@ -232,7 +232,7 @@ class _Path:
 
 
 def _branch_state(branch, contact, closure, held, yielded, hardness):
-    """A state with what was held before it and what it presses in itself."""
+    """State with the permanent set before it and its own."""
     at_limit = contact.pressure >= contact.hardness
     return BranchState(
         branch=branch,

@@ -246,12 +246,12 @@ def _load_units(space, load, by_force):
 
 
 def _on_grid(values, shape):
-    """Values of nodes, (n,), on their grid; one for all of them stays one."""
+    """Values of nodes, (n,), on their grid; a scalar is returned unchanged."""
     return values if np.ndim(values) == 0 else values.reshape(shape)
 
 
 class _Units:
-    """Units in which the closure, or under a force the mean pressure, is one: no mm, no MPa."""
+    """Dimensionless units: the closure, or under a given force the mean pressure, is 1."""
 
     def __init__(self, space, load, by_force):
         self.space, self.by_force = space, by_force
@@ -267,7 +267,7 @@ class _Units:
         return LoadCase(self.space, topography, self.length, self.load, self.by_force, bounds)
 
     def candidates(self, case, start, load):
-        """The candidates at a load, a pressure on them, and its displacement; None if too many.
+        """Candidates at a load, a start pressure and its displacement; None if too many.
 
         As `extrapolated`; the bound on the closure goes with the force.
         """

@@ -1,4 +1,4 @@
-"""A state of contact: pressures, displacements, gaps, and what follows from them."""
+"""State of contact: pressures, displacements, gaps and derived quantities."""
 
 import copy
 import dataclasses
@@ -163,7 +163,7 @@ class ContactState:
         return Operator(self.space), between
 
     def without_before(self) -> "ContactState":
-        """The same state without those that it was extrapolated from.
+        """The same state without the earlier states of its extrapolation.
 
         Returns
         -------

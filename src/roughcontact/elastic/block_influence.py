@@ -55,7 +55,7 @@ class BlockInfluence:
 
 
 def reach(separation: int) -> int:
-    """How far apart blocks of one level can be whose parents are neighbours.
+    """Largest distance of blocks of one level whose parents are neighbours.
 
     Parameters
     ----------

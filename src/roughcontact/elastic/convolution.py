@@ -65,7 +65,7 @@ def fast_length(least: int) -> int:
 
 
 def _radices(n):
-    """Factors 4, 2, 3 and 5 of a length, or None if there are others."""
+    """Factors 4, 2, 3 and 5 of a length; None if it has others."""
     factors = []
     for radix in (4, 2, 3, 5):
         while n % radix == 0:

@@ -233,7 +233,7 @@ class HalfSpace:
         return {}
 
     def influence_within(self, shape: tuple[int, int]) -> np.ndarray:
-        """The same at some cell distances, whether in the window or not; made anew each time.
+        """The same at given cell distances, also outside the window, recomputed at each call.
 
         Parameters
         ----------
@@ -348,7 +348,7 @@ class HalfSpace:
 
     @computed_once
     def _single_alone(self):
-        """On coarser grids double precision is hardly ever asked for."""
+        """Operator on coarser grids, where double precision is rarely needed."""
         return Convolution(self._spectrum(), self.shape, self._padded, np.float32)
 
     @computed_once

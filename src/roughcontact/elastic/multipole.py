@@ -140,7 +140,7 @@ def _scatter(positions, values, place, sources, loaded):
 
 @njit(cache=True)
 def _to_parents(parents, weights, side, parent_side, values, loaded, above, loaded_above):
-    """Add what each block holds to its parent: by the transposed interpolation."""
+    """Add the values of each block to its parent by the transposed interpolation."""
     part = np.empty((side, parent_side), values.dtype)
     for block in range(parents.shape[0]):
         if not loaded[block]:

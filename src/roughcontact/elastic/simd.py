@@ -52,7 +52,7 @@ def load(typing_context: Any, array: Any, start: Any) -> Any:
 
 @intrinsic
 def store(typing_context: Any, array: Any, start: Any, values: Any) -> Any:
-    """Put them there."""
+    """Store SIMD vectors."""
     if not isinstance(values, Vector):
         return None
 

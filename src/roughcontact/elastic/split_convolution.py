@@ -137,7 +137,7 @@ def _interpolation():
 
 @njit(cache=True, nogil=True, fastmath=True)
 def _columns_to_coarse(start, stop, values, weights, coarse):
-    """Coarse nodes that stand for those of each column, along it, from ``start`` to ``stop``."""
+    """Restriction of each column to coarse nodes, from ``start`` to ``stop``."""
     ny, nx = values.shape
     for cell in range(max(start - ORDER + 1, 0), min(stop, (ny + STEP - 1) // STEP)):
         first = cell * STEP

@@ -106,7 +106,7 @@ def draw_points(axes: Axes, scene: xr.Dataset, quantity: str, looks: dict[str, d
 
 
 def legend_of(figure: FigureBase, panels: Iterable[Axes], ncols: int = 4) -> None:
-    """One legend below a figure with what stands in any of its panels."""
+    """One legend below a figure with the entries of all its panels."""
     handles = {handle.get_label(): handle for axes in panels for handle in entries(axes)}
     figure.legend(handles=list(handles.values()), loc="outside lower center", ncols=ncols)
 

@@ -97,7 +97,7 @@ class Slide:
 
     @property
     def ratios(self) -> np.ndarray:
-        """delta_r / sigma_z (n,), mean of directions or seeds; none where faces are flush."""
+        """delta_r / sigma_z (n,), mean of directions or seeds; missing where faces are flush."""
         means = self.data["dilatancy_over_rms"].mean("direction_or_seed", skipna=False).values
         return means[(self.v > 0) & np.isfinite(means)]
 
@@ -118,7 +118,7 @@ class Slide:
 
 
 def _roll_off(atlas, name):
-    """Roll-off of an embedded surface, mm: None if it has none, NaN for a scan."""
+    """Roll-off of an embedded surface, mm; None without one, NaN for a scan."""
     embedded = configuration_of(atlas)["study"].get("embedded", {})
     if name not in embedded:
         return np.nan
@@ -132,7 +132,7 @@ def _over_rows(data, rows):
 
 
 def without_repeats(slides: Sequence[Slide]) -> list[Slide]:
-    """Slides that differ; one whose faces are another's, of another material, is named with it."""
+    """Different slides; specimens with the same faces but another material share one."""
     found: list[Slide] = []
     for slide in slides:
         for n, other in enumerate(found):

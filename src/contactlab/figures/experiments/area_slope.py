@@ -60,7 +60,7 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
 
 
 def _draw_surfaces(axes, chosen):
-    """A line a surface; what is corrected is filled, what is raw hollow."""
+    """One line for each surface: corrected areas filled, raw areas open."""
     styles = (
         {"color": colour_of(1), "marker": MARKERS[0]},
         {"color": colour_of(2), "marker": MARKERS[1], "mfc": "white", "ls": "--"},

@@ -92,7 +92,7 @@ def _legends(test):
 
 
 def _words(test):
-    """The paper's value beside what is found at its dimension, at the largest size."""
+    """The paper's value beside the results at its dimension and the largest size."""
     paper = test.attrs["paper_dimension"]
     words = {
         "surfaces": test.sizes["seed"],

@@ -85,7 +85,7 @@ def _surface_words(size, roll_off):
 
 
 def _beside(bias, n):
-    """Places of the n-th estimator's points, beside those of the others."""
+    """Positions of the n-th estimator's points, shifted from those of the others."""
     step = 0.65 / bias.sizes["estimator"]
     return np.arange(bias.sizes["hurst"]) + (n - (bias.sizes["estimator"] - 1) / 2) * step
 

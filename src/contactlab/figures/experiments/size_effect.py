@@ -106,7 +106,7 @@ def _classes(test: xr.Dataset) -> list:
 
 
 def _class_words(test: xr.Dataset, hurst: float) -> str:
-    """A Hurst exponent, and what was decided of eq. 6 where all arms say the same."""
+    """Hurst exponent, with the verdict on eq. 6 where all arms agree."""
     decided = np.unique(test["overall"].sel(hurst=hurst).values)
     words = f": {decided[0]}" if len(decided) == 1 else ""
     return f"$H$ = {hurst:g}{words}"

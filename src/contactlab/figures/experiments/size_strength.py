@@ -35,7 +35,7 @@ _CLEAR = 0.15
 
 
 def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
-    """Strength over v by side, and its exponents over the side with what v alone makes of them."""
+    """Strength over v by side; its exponents over the side, beside those that v alone predicts."""
     test = atlas["size_strength/surfaces"].to_dataset()
     hursts = test["hurst"].values
     figure = Figure(figsize=(WIDTH, 7.4))
@@ -68,7 +68,7 @@ def _table(test: xr.Dataset) -> pd.DataFrame:
 
 
 def _draw_strength(axes: Axes, test: xr.Dataset) -> None:
-    """Strength over v at the lightest load; points of one v stand side by side."""
+    """Strength over v at the lightest load; points at one v are shifted sideways."""
     test = test.isel(reduced_pressure=0)
     low, high = test["interval_low"].values, test["interval_high"].values
     middles = np.sqrt(np.maximum(low, high / 4) * high)
@@ -90,7 +90,7 @@ def _draw_strength(axes: Axes, test: xr.Dataset) -> None:
 
 
 def _apart(ticks: np.ndarray) -> list[float]:
-    """Ticks of a logarithmic axis whose labels stand clear of each other."""
+    """Ticks of a logarithmic axis whose labels do not overlap."""
     chosen: list[float] = []
     least = (ticks.max() / ticks.min()) ** _CLEAR
     for tick in np.sort(ticks):

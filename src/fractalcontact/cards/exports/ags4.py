@@ -92,6 +92,6 @@ def _list(name: str, headings: Sequence[str], rows: Sequence[Sequence[str]]) -> 
 
 
 def _line(fields: Sequence[str]) -> str:
-    """Fields in quotes, of ASCII alone, as the format has it; a quote within stands twice."""
+    """Fields in quotes, ASCII only; a quote within a field is doubled."""
     plain = (" ".join(one.split()).encode("ascii", "replace").decode() for one in fields)
     return ",".join('"' + one.replace('"', '""') + '"' for one in plain)

@@ -31,7 +31,7 @@ class Constants:
     left_out: dict[str, str] = field(default_factory=dict)
 
     def add(self, key: str, entry: Mapping[str, Any], row: Mapping[str, Any], what: str) -> None:
-        """Add a number of a card in SI units; one that is missing or undetermined is left out."""
+        """Add a number of a card in SI units, unless it is missing or undetermined."""
         if "missing" in row:
             self.left_out[key] = f"{what}: {row['missing']}"
         elif not row.get("determined", True):
@@ -62,7 +62,7 @@ def at_preferred(entry: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def over_pressure(entry: Mapping[str, Any]) -> str:
-    """Numbers of a curve in words: "31.2 degree at 5 MPa, ..."; why there is none."""
+    """Numbers of a curve in words, "31.2 degree at 5 MPa, ...", or why there are none."""
     known = [row for row in entry.get("values", ()) if "value" in row]
     if not known:
         rows = entry.get("values", [entry])
@@ -74,7 +74,7 @@ def over_pressure(entry: Mapping[str, Any]) -> str:
 
 
 def head_of(card: Mapping[str, Any], code: str) -> list[str]:
-    """First lines of an export: whose constants, of what model, how far to trust them."""
+    """First lines of an export: specimen, contact model, trust."""
     one_line = " ".join(str(card["trust"]["reason"]).split())
     return [
         f"Constants of the joint {card['name']} for {code}, from its card (study {card['study']}).",

@@ -50,13 +50,13 @@ def group_labels(comparison: xr.Dataset) -> list[str]:
 
 
 def alone(comparison: xr.Dataset) -> bool:
-    """True if every specimen stands for itself: few of them, and no group stated."""
+    """True if specimens are drawn one by one: few specimens and no groups."""
     few = comparison.sizes["specimen"] <= MAX_ALONE
     return few and list(comparison["group_name"].values) == [UNGROUPED]
 
 
 def specimen_labels(comparison: xr.Dataset, width: int) -> list[str]:
-    """Labels of the specimens, in lines of ``width`` letters; their names where they have none."""
+    """Labels of the specimens, in lines of ``width`` letters; names for those without a label."""
     shown = (printable(label, 2 * width) for label in comparison["label"].values)
     return [fill(label, width).replace("$", r"\$") for label in shown]
 
@@ -85,7 +85,7 @@ def settle_axis(axes: Axes, name: str, *, drawn: bool) -> None:
 
 
 def under_common_pressure(comparison: xr.Dataset) -> xr.Dataset:
-    """Quantities of specimens and groups under the pressure that most are loaded by."""
+    """Quantities of specimens and groups at the most common pressure."""
     under = comparison.sel(pressure=float(comparison["common_pressure"]))
     for name in AXES:
         of = f"{name}_at_common_pressure"
@@ -107,7 +107,7 @@ def means_of_groups(under: xr.Dataset, name: str, unit: str = "") -> list[str]:
 
 
 def values_range(values: np.ndarray, unit: str = "") -> str:
-    """Least and largest of values as the captions round them; empty where none is known."""
+    """Least and largest of the known values, rounded for captions."""
     known = values[np.isfinite(values)]
     ends = dict.fromkeys(short(end) for end in (known.min(), known.max())) if known.size else ()
     return " to ".join(ends) + unit if ends else ""

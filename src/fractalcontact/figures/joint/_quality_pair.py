@@ -48,7 +48,7 @@ def draw_gap(
 
 
 def draw_gap_heights(axes: Axes, quality: xr.Dataset) -> None:
-    """Distribution of the gap; what lies left of zero overlaps."""
+    """Distribution of the gap; negative gaps are overlaps."""
     counts, edges = quality["gap_cells"].values, quality["gap_edge"].values
     unit, size = length_unit(np.ptp(edges))
     edges = edges / size

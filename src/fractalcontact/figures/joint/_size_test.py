@@ -32,7 +32,7 @@ def place_of(test: xr.Dataset) -> str:
 
 
 def first_loads(test: xr.Dataset, name: str) -> np.ndarray:
-    """Indices of loads with a value: those of the study, or where it has none those beyond."""
+    """Indices of loads with a value: of the study, or else those beyond it."""
     known = np.isfinite(test[name].values)
     of_study = known & ~test["beyond_study"].values.astype(bool)
     return np.flatnonzero(of_study if of_study.any() else known)

@@ -43,7 +43,7 @@ def stages_of_sliding(
 
 
 def stage_column(stages: list, force: float) -> list[list[Artist]]:
-    """Column of a legend with the stages, in lines that fit; none without stages."""
+    """Column of a legend with the stages, in lines that fit; empty without stages."""
     if not stages:
         return []
     words = [f"(c): the paper's stages, 1 judged at $F$ = {force_label(force)}"]

@@ -41,7 +41,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
 
 
 def _table(plan):
-    """Rows of the table, all as text; the first says what was requested and what that left out."""
+    """Rows of the table as text; the first states the requested accuracy and what it leaves out."""
     table = plan[["choice", "value", "reason"]].to_dataframe().reset_index().astype(str)
     table["error"] = [
         f"{percent(error)} of the {of}" if np.isfinite(error) else NO_ERROR

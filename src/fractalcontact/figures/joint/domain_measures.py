@@ -85,7 +85,7 @@ def _draw_loads(panel, shown, x, y, banded=None):
 
 
 def _finish(slopes, lacunarity, spectrum, shown):
-    """Axes, and what the curves are compared with."""
+    """Axes and null models of the curves."""
     slopes.set_xscale("log")
     for level, style in ((1, _LINE), (2, _PLANE)):
         slopes.axhline(level, **style)

@@ -85,7 +85,7 @@ def _table(errors):
 
 
 def _draw_errors(axes, errors, size):
-    """Errors of a quantity, none below the bottom; whether some are.
+    """Errors of a quantity, clipped at the bottom; True if some were clipped.
 
     Fractions are drawn in per cent of the value, other errors in the unit of the quantity.
     """

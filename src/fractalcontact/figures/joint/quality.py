@@ -1,4 +1,4 @@
-"""Quality sheet of a scan: relief, mask, histogram, profiles, spectra and what was done to it.
+"""Quality sheet of a scan: relief, mask, histogram, profiles, spectra and processing.
 
 Of two faces also their gap, where they overlap, and how much of the load rests on such cells.
 """

@@ -101,7 +101,7 @@ def _draw_errors(axes, test, quantity, which, load):
 
 
 def _table(test, laws):
-    """Predictions for the whole window, and what was solved; of strength where it slides."""
+    """Predictions for the whole window beside the solved values; strength where it slides."""
     tables = [
         rows_of_loads(test, f"predicted_{name}", f"direct_{name}", quantity=name)
         for name in _QUANTITIES

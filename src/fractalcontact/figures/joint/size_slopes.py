@@ -90,7 +90,7 @@ def _table(test):
 
 
 def _words(test):
-    """Best known slope of the study's loads beside eq. 6's; how many are well conditioned."""
+    """Best-known slope among the study's loads beside eq. 6's; number of well-conditioned ones."""
     known = np.isfinite(test["slope"].values)
     sure = known & test["well_conditioned"].values.astype(bool)
     counts = {"known": int(known.sum()), "hollow": int(known.sum() - sure.sum())}

@@ -50,7 +50,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
 
 
 def _draw_area(axes, test, loads):
-    """A_r/A_0 over b at some sigma_0 with intervals, and what eq. 6 wants; legend entries."""
+    """A_r/A_0 over b at some sigma_0 with intervals, and eq. 6's prediction; legend entries."""
     handles = draw_over_side(axes, test, "area_fraction", "area_exponent", loads)
     axes.set_ylabel(r"real contact area $A_r/A_0$ (1)")
     letter(axes, "a", "contact area at equal pressure")

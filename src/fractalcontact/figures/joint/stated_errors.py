@@ -73,7 +73,7 @@ def _draw_errors(axes, plan, errors, size):
 
 
 def _write_ends(axes, solver, spacing, size):
-    """The largest solver error, and both ends of those by the spacing, beside their points.
+    """Labels of the largest solver error and of the extremes by the spacing.
 
     They stand above their points, that by the solver at the heaviest load at the right of its own:
     there those by the spacing may be near.

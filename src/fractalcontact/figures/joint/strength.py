@@ -97,7 +97,7 @@ def _draw_strength(panel, strength):
 
 
 def _offset_axis(axes, strength):
-    """Offsets along x; drawn last, because its ticks follow the range of what was drawn."""
+    """Axis of offsets, drawn last because its ticks follow the range drawn."""
     offset_axis(axes, strength["midpoint"].values)
     if axes.get_xscale() == "log":
         plain_decades(axes.xaxis)

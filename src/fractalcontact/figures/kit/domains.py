@@ -121,7 +121,7 @@ def spread_loads(n: int, most: int, including: int | None = None) -> np.ndarray:
 
 
 def departures(counts: xr.Dataset) -> dict[str, str]:
-    """Loads at which domains differ from each null model, in words; empty where none is compared.
+    """Loads at which domains differ from each null model, in words; empty without a comparison.
 
     Parameters
     ----------

@@ -40,7 +40,7 @@ def different_reasons(reasons: ArrayLike) -> list[str]:
 
 
 def missing_lines(reasons: ArrayLike, panel: str = "") -> list[str]:
-    """Lines of a legend that say why points are missing; none where none is.
+    """Lines of a legend that say why points are missing; empty if none is.
 
     Parameters
     ----------

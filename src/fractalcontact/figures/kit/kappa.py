@@ -1,4 +1,4 @@
-"""Area slopes kappa of the theories, which two figures draw beside what they compute."""
+"""Area slopes kappa of the theories, shared by two figures."""
 
 from collections.abc import Mapping
 

@@ -1,4 +1,4 @@
-"""Layout of a figure: what is where, found once and kept for every file that it is written to."""
+"""Layout of a figure, computed once and reused for every file format."""
 
 import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg

@@ -1,4 +1,4 @@
-"""Legends below a figure, and what stands in them."""
+"""Legends below a figure, and their entries."""
 
 from typing import Any
 

@@ -118,7 +118,7 @@ def _narrow(legend: Legend, figure: Figure) -> bool:
 
 
 def _excess(legend: Legend, figure: Figure) -> float:
-    """By how many pixels a legend is wider than the figure; 0 where by less than one."""
+    """Excess width of a legend over the figure, pixels; 0 below one pixel."""
     room = figure.bbox.width - 2 * _pixels(figure, _EDGE)
     excess = legend.get_window_extent(_renderer(figure)).width - room
     return excess if excess > 1 else 0.0

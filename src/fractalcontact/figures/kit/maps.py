@@ -117,7 +117,7 @@ def draw_domain(
     ticks: int = 5,
     times: int | None = None,
 ) -> bool:
-    """A contact domain in black, its nodes enlarged where print would lose them; rings round few.
+    """Contact domain in black, with nodes enlarged for print and rings around the few.
 
     Parameters
     ----------

@@ -60,7 +60,7 @@ class Series:
 
     @property
     def style(self) -> dict:
-        """Colour and marker; beside the three of what is computed."""
+        """Colour and marker of measured maps, distinct from those of computed domains."""
         n = self.number + 3
         return {"color": COLOURS[n % (len(COLOURS) - 1)], "marker": MARKERS[n % len(MARKERS)]}
 

@@ -151,7 +151,7 @@ class Panel:
             self.curve(data.isel({hue: n}), x, y, **{**style, **of_curve})
 
     def keep(self, data: xr.Dataset, *names: str, **constants: Any) -> None:
-        """Add rows of what is drawn otherwise, as :func:`rows` makes them."""
+        """Add rows from :func:`rows` of what is drawn by other means."""
         which = {"panel": self.which} if self.which else {}
         self.records.append(rows(data, *names, **which, **constants))
 

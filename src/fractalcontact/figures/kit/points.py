@@ -1,4 +1,4 @@
-"""Points of figures: how far their bars reach; filled where they are trusted, hollow elsewhere."""
+"""Points of figures with error bars, filled where they are trusted and open elsewhere."""
 
 from collections.abc import Mapping
 from typing import Any

@@ -68,7 +68,7 @@ def layouts_remembered() -> Iterator[None]:
 
 
 def _state_of(text):
-    """All that the layout of a text depends on, its place is not; None of one that wraps."""
+    """Properties that determine the layout of a text, without its place; None if it wraps."""
     if text.get_wrap():
         return None
     return (

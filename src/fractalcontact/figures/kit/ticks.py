@@ -1,4 +1,4 @@
-"""Ticks as matplotlib sets them, without what it measures and draws over and over in vain.
+"""Ticks of matplotlib without its repeated measuring and drawing.
 
 Half of the time of a figure goes into its ticks: each is made, measured twice for the layout, and
 measured and drawn once more for either file.
@@ -32,7 +32,7 @@ def plain_ticks(figure: FigureBase) -> None:
 
 
 def keep_labels(figure: FigureBase) -> None:
-    """Leave the labels of all axes where the last drawing has put them, clear of the numbers."""
+    """Keep the labels of all axes where the last drawing placed them, clear of the numbers."""
     for panel, axis in axes_of(figure):
         place = axis.label.get_transform().transform(axis.label.get_position())
         axis.set_label_coords(*panel.transAxes.inverted().transform(place))

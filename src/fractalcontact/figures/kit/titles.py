@@ -42,7 +42,7 @@ def headline(figure: Figure | SubFigure, label: str, *where: str, below: str = "
 
 
 def entitle(figure: Figure, title: str) -> None:
-    """Say above the headline of a figure what it shows; the figure becomes so much higher.
+    """Write the title above the headline of a figure and make the figure higher for it.
 
     Parameters
     ----------

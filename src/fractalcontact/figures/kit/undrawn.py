@@ -13,7 +13,7 @@ _LONGEST, _LINE = 300, 90
 
 
 def undrawn(title: str, subject: str | list[str], error: BaseException) -> Drawing:
-    """Drawing that says in words that a figure failed, and of what.
+    """Drawing that replaces a failed figure by the reason.
 
     Parameters
     ----------

@@ -60,7 +60,7 @@ def claim(
     numbers: bool = True,
     why: str = "",
 ) -> str:
-    """A sentence on what the paper says and whether it holds; empty where it is not asked.
+    """Sentence with a statement of the paper and its verdict; empty where it does not apply.
 
     Parameters
     ----------
@@ -96,7 +96,7 @@ def labels_by_verdict(
 
 
 def row_of(atlas: DataTree, stage: str, name: str, statement: str) -> xr.Dataset | None:
-    """One statement of a table of statements; None where it is not asked.
+    """One statement of a table of statements; None where it does not apply.
 
     Raises
     ------
@@ -112,5 +112,5 @@ def row_of(atlas: DataTree, stage: str, name: str, statement: str) -> xr.Dataset
 
 
 def sentences(*parts: str) -> str:
-    """Sentences in one line, without those that say nothing."""
+    """Sentences on one line, without empty ones."""
     return " ".join(part for part in parts if part)

@@ -112,7 +112,7 @@ def hyperbola(pressure: np.ndarray, k_ni: xr.DataArray, largest: xr.DataArray) -
 
 
 def _law_words(curve):
-    """Misfits of both laws, and k_ni with its interval, as the legend's heading says."""
+    """Legend text with the misfits of both laws and k_ni with its interval."""
     misfits = [float(curve[f"{law}_misfit"]) for law in ("semi_logarithmic", "hyperbola")]
     if not np.isfinite(misfits).any():
         return f"no fit: {no_law(curve)}"

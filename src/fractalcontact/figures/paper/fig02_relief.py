@@ -100,7 +100,7 @@ def _draw_dimensions(axes, dimension):
 
 
 def _impossible(axes):
-    """Shade what no surface has for a dimension, where the axis reaches it; entry of a legend."""
+    """Shade impossible dimensions where the axis reaches them; returns the legend entry."""
     low, high = axes.get_xlim()
     beyond = [(low, min(high, 2)), (max(low, 3), high)]
     style = {"color": "0.88", "lw": 0, "zorder": 0, "label": "no dimension of a surface"}

@@ -60,7 +60,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
 
 
 def _draw_heights(figure, axes, heights, sides, label, cmap):
-    """A map of heights with its colours; how many mm the unit of its axes is."""
+    """Map of heights with its colours; returns the unit of its axes in mm."""
     unit, size = length_unit(np.nanmax(heights) - np.nanmin(heights))
     image = draw_map(axes, heights / size, sides, cmap=cmap)
     figure.colorbar(image, ax=axes, shrink=0.8, label=f"{label} ({unit})")

@@ -119,7 +119,7 @@ def _draw_area(axes, drawn, subject):
 
 
 def _keyed(head, axes, drawn, *lines):
-    """Entries of axes with a heading, and what their lines are; where none is fitted, no more."""
+    """Legend entries of axes with a heading and, if laws are fitted, the meaning of lines."""
     known = [LINES[line] for line in lines if is_known(drawn, LINES[line][2])]
     style = {"color": "0.3", "lw": 0.9}
     named = [mark(ls=line, label=words, **style) for line, words, _ in known]

@@ -47,7 +47,7 @@ def read_npy(path: Path, options: ScanOptions) -> RawScan:
 
 
 def read_npz(path: Path, options: ScanOptions) -> RawScan:
-    """Read one array of a ``.npz`` file; of the others only the header is looked at.
+    """Read one array of a ``.npz`` file, and only the headers of the others.
 
     Raises
     ------
@@ -101,7 +101,7 @@ def _single_numbers(path: Path) -> dict[str, float]:
 
 
 def _refuse_pickled(path: Path) -> None:
-    """Say in our own words what numpy would advise to open unsafely."""
+    """Refuse pickled objects with a message of our own; numpy's advises an unsafe way."""
     with open(path, "rb") as stream:
         read_header = _HEADER_READERS.get(np.lib.format.read_magic(stream))
         if read_header and read_header(stream)[2].hasobject:

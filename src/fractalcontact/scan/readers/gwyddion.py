@@ -83,7 +83,7 @@ def _units(field: dict) -> list[str]:
 
 
 def _array(path: Path, field: dict, shaped_like: dict) -> np.ndarray:
-    """The numbers of a field, read where SurfaceTopography found them."""
+    """Numbers of a field, read at the position found by SurfaceTopography."""
     shape = shaped_like["yres"], shaped_like["xres"]
     refuse_larger(math.prod(shape) * 8, path)
     values = np.fromfile(path, "<f8", math.prod(shape), offset=field["data"]["offset"] + _COUNT)

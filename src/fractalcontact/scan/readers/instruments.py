@@ -54,7 +54,7 @@ def instrument_formats() -> dict[str, tuple[str, ...]]:
 
 
 def read_instrument(path: Path, options: ScanOptions) -> RawScan:
-    """Read an instrument's file; the extension says which format, the content must confirm it.
+    """Read an instrument's file; its content must confirm the format of the extension.
 
     A size the file states is that of all cells, n dx, so the spacing is size / n.
     SurfaceTopography indexes heights [x, y] with both ascending, so they are transposed.
@@ -147,7 +147,7 @@ def _choose_channel(reader, wanted: str | None, path: Path):
 
 
 def _length(unit, path: Path) -> str | None:
-    """The unit of a topography; a pair of units is one of x and y and one that is no length."""
+    """Unit of a topography; a pair of units means that the second is no length."""
     if unit is None or isinstance(unit, str):
         return stated_unit(unit)
     raise InputError(f"{path}: its values are in {unit[1]}, no heights; export the height channel")

@@ -160,7 +160,7 @@ def _unit(variable: Variable) -> str | None:
 
 
 def _coordinates(variable: Variable | None, variables: dict, path: Path) -> list[Axis] | None:
-    """Axes of a variable in units of length, as are its numbers; None if they do not say all."""
+    """Axes of a variable of lengths with coordinates in units of length; None if incomplete."""
     if variable is None or _unit(variable) is None:
         return None
     axes = [_axis(dimension, variables, path) for dimension in variable.dimensions]
@@ -169,7 +169,7 @@ def _coordinates(variable: Variable | None, variables: dict, path: Path) -> list
 
 
 def _axis(dimension: str, variables: dict, path: Path) -> Axis | None:
-    """Which axis a dimension is, the step and unit of its coordinates; None if it does not say."""
+    """Axis of a dimension, step and unit of its coordinates; None if not stated."""
     name = dimension.rpartition("/")[2]
     coordinate = variables.get(dimension)
     if coordinate is None or len(coordinate.shape) != 1 or coordinate.dtype.kind not in "fiu":

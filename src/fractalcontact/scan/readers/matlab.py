@@ -21,7 +21,7 @@ _HDF5_HEADER = b"MATLAB 7.3 MAT-file"
 
 
 def read_mat(path: Path, options: ScanOptions) -> RawScan:
-    """Read one matrix of a ``.mat`` file; of the others only the header is looked at.
+    """Read one matrix of a ``.mat`` file, and only the headers of the others.
 
     Raises
     ------

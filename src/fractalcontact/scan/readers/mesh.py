@@ -45,7 +45,7 @@ def read_mesh(path: Path, options: ScanOptions) -> RawScan:
 
 
 def _refuse_wrong_count(path: Path) -> None:
-    """Refuse a binary STL file that holds more or fewer triangles than it says."""
+    """Refuse a binary STL file whose number of triangles contradicts its header."""
     with open(path, "rb") as stream:
         head = stream.read(84)
     held, rest = divmod(path.stat().st_size - 84, 50)

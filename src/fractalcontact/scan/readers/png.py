@@ -1,4 +1,4 @@
-"""Grey PNG images, whose sidecar says what a grey level means."""
+"""Grey PNG images; the sidecar states the height of a grey level."""
 
 from pathlib import Path
 

@@ -77,7 +77,7 @@ def is_text(path: Path) -> bool:
 
 
 class _Reading:
-    """The numbers of a text file, taken up block by block; a block holds whole lines."""
+    """Numbers of a text file, collected by blocks of whole lines."""
 
     def __init__(self, path: Path, options: ScanOptions):
         self.path, self.options = path, options
@@ -111,7 +111,7 @@ class _Reading:
         self._lines += block.count("\n")
 
     def finish(self) -> tuple[np.ndarray, TextParts, tuple[str, ...]]:
-        """The table (rows, columns), what stands around it, and the notes."""
+        """Table (rows, columns), the text around it, and the notes."""
         notes: tuple[str, ...] = ()
         if self._short:
             number, line, fault = self._short
@@ -155,7 +155,7 @@ class _Reading:
         return [cell.strip().strip("\"'") for cell in cells]
 
     def _coordinates(self, cells: list[str]) -> np.ndarray:
-        """Numbers of the first row; a word may stand in its corner, or nothing."""
+        """Numbers of the first row, whose corner may be a word or empty."""
         if len(cells) > self._width and not cells[-1].strip():
             cells = cells[:-1]
         if self.options.axes == "both" and len(cells) == self._width:
@@ -190,7 +190,7 @@ class _Reading:
             self._width = len(cells[0]) - self._trailing
 
     def _data_lines(self, lines: list[str]) -> list[tuple[int, str]]:
-        """Number and text of the lines of numbers; of others it is kept where they stand."""
+        """Number and text of the lines of numbers; the places of all other lines are kept."""
         data: list[tuple[int, str]] = []
         words = self.options.missing_words
         header = set(self.header)
@@ -285,7 +285,7 @@ class _Reading:
 
 
 def _plain_block(block: str, delimiter: str, width: int, trailing: bool) -> bytes | None:
-    """The block as it is if it holds nothing but numbers, as many in each line; else None."""
+    """Block of numbers with equal counts in each line, unchanged; else None."""
     if not (block.isascii() and block.endswith("\n")):
         return None
     content = block.encode("ascii")

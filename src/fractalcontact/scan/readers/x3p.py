@@ -65,7 +65,7 @@ def read_x3p(path: Path, options: ScanOptions) -> RawScan:
 
 
 def _open(path: Path):
-    """What x3pio is to read, where the first row lies ("NW", ...; "" where not stated), and notes.
+    """Input of x3pio, place of the first row ("NW", ...; "" if not stated), and notes.
 
     x3pio knows no files of the standard's first edition. Their root element is renamed in memory.
     """
