@@ -182,7 +182,7 @@ def domain(values: ArrayLike, name: str) -> np.ndarray:
     if array.ndim != 2:
         raise ValueError(f"{name} is a (y, x) grid, not of shape {array.shape}")
     if np.isnan(array).any():
-        raise ValueError(f"{name} has missing nodes; say of each whether it belongs to it")
+        raise ValueError(f"{name} has missing nodes; give each node True or False")
     return array.astype(bool, copy=False)
 
 

@@ -166,7 +166,7 @@ class KernelCache(FunctionCache):
         """
         if not KernelCache._announced and not any(self._files(f"{self._digest[:16]}-*.nbc")):
             KernelCache._announced = True
-            LOG.warning("compiling kernels for this processor, which are kept: up to a minute")
+            LOG.warning("compiling kernels for this processor, once; this takes up to a minute")
         LOG.info("compiling %s", self._stem)
 
     def _save_overload(self, sig, data):
@@ -233,8 +233,8 @@ def _folders():
     wanted = next(_candidate_folders())
     if numba.config.CACHE_DIR and writable not in (wanted, None):
         warnings.warn(
-            f"{wanted}: not a folder that this user alone can use, so compiled kernels go to "
-            f"{writable}; set NUMBA_CACHE_DIR to another one, or remove this",
+            f"{wanted}: not a private folder of this user, so compiled kernels go to {writable}; "
+            "set NUMBA_CACHE_DIR to another one, or remove this",
             stacklevel=2,
         )
     # What was compiled with the installation serves those who may only read it.

@@ -70,7 +70,7 @@ def _parts(value: Any, seen: set[int]) -> Iterator[str]:
 def _written(value: Any) -> str:
     text = repr(value)
     if " at 0x" in text:
-        raise TypeError(f"a kernel uses {text}, of which nothing but its address is known")
+        raise TypeError(f"a kernel uses {text}, which has no value but an address")
     return text
 
 

@@ -89,7 +89,7 @@ def test_one_bad_file_keeps_no_other_from_being_read(folder, check):
     assert code == 1
     assert "2 ok, 0 with warnings, 6 refused" in out
     for words in (
-        "is read only as its sidecar says, and it has no sidecar",
+        "is read only with a complete sidecar, and it has no sidecar",
         "unit: # FILL IN: of x, y and z",
         "empty",
         "this sidecar has no scan",
@@ -277,7 +277,7 @@ def test_real_scans_are_read_with_the_sidecars_their_readme_asks_for(folder, che
             "cannot slide by even one cell",
             marks=pytest.mark.full,
         ),
-        ({"window_centre": ["50 mm", "5 mm"]}, "beside the scan, which reaches from x = 0.1"),
+        ({"window_centre": ["50 mm", "5 mm"]}, "outside the scan, which covers x = 0.1"),
         pytest.param({"offsets": ["-1 mm"]}, "is negative", marks=pytest.mark.full),
         pytest.param(
             {"loads": ["1 kN"]}, "slab.yaml: loads: ['1 kN'] lacks", marks=pytest.mark.full
@@ -307,7 +307,7 @@ def test_outliers_are_not_the_only_word_on_a_misread_file(folder, check):
     assert (
         "2 outliers kept, up to 500 mm from the mean plane where the relief of all other" in misread
     )
-    assert "likely to be marks of missing cells or a misread file" in misread
+    assert "probably mark missing cells, or the file is misread" in misread
     assert "1 outlier kept, up to" in spiked
     assert "misread" not in spiked
 
@@ -449,7 +449,7 @@ def test_a_name_that_speaks_of_no_face_is_warned_of(folder, check):
     for name in ("granite_aperture", "gap-3", "stopgap"):
         write_scan(folder / f"{name}.npy", surface(), 0.2, sidecar={})
     _, out = check()
-    assert " ".join(out.split()).count("its name says that it holds the opening") == 2
+    assert " ".join(out.split()).count("its name suggests the opening") == 2
     assert "1 ok, 2 with warnings" in out
 
 

@@ -88,7 +88,7 @@ def test_a_damaged_record_counts_as_damage_of_its_files(results, how):
 def test_a_file_without_a_record_is_not_read(results):
     stray = results / "closure/stray.nc"
     stray.write_bytes(b"from elsewhere")
-    with pytest.raises(InputError, match=r"stray\.nc: nothing says how it was made"):
+    with pytest.raises(InputError, match=r"stray\.nc: the record of its making is missing"):
         require_intact(results, stray)
     assert check(results).unrecorded == [stray]
     assert verify([str(results)]) == 1

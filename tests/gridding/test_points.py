@@ -493,9 +493,9 @@ def test_blocks_of_text_read_like_the_whole(tmp_path, monkeypatch, lines, end):
 @pytest.mark.parametrize(
     ("line", "message"),
     [
-        ("1 2 3 4", "line 30 has 4 values, those before have 3"),
-        ("1 2", "line 30 has 2 values, those before have 3"),
-        ("1 2 broken", "line 30 holds 'broken', no number"),
+        ("1 2 3 4", "line 30 has 4 values, earlier lines have 3"),
+        ("1 2", "line 30 has 2 values, earlier lines have 3"),
+        ("1 2 broken", "line 30 holds 'broken', which is no number"),
     ],
 )
 def test_a_bad_line_in_a_later_block_is_named(tmp_path, monkeypatch, line, message):

@@ -335,7 +335,7 @@ def test_a_named_folder_that_others_can_write_to_is_refused_aloud(project):
     output, errors = project.run(NUMBA_CACHE_DIR=folder.parent)
     assert output == "21.0 0"
     assert errors.count("Warning") == 1
-    assert f"{folder}: not a folder that this user alone can use" in errors
+    assert f"{folder}: not a private folder of this user" in errors
     assert project.run(NUMBA_CACHE_DIR=folder.parent)[0] == "21.0 1"
     assert not project.files(folder)
 

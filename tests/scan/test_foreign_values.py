@@ -154,7 +154,7 @@ COORDINATES = {
 @pytest.mark.parametrize("kind", COORDINATES)
 def test_coordinates_are_refused(tmp_path, kind):
     path = saved(tmp_path / "grid.npy", COORDINATES[kind])
-    with pytest.raises(InputError, match=r"grid\.npy: every height is the same .*'variable'"):
+    with pytest.raises(InputError, match=r"grid\.npy: all heights are equal .*'variable'"):
         read_scan(path, MATRIX)
 
 

@@ -160,7 +160,7 @@ def test_a_header_line_of_numbers_is_no_header(tmp_path):
     path = save_text(tmp_path / "rock.xyz", points)
     keys = POINTS | {"delimiter": "blank"}
     np.testing.assert_array_equal(read.read_scan(path, keys).values, surface())
-    with pytest.raises(InputError, match=r"line 2, .* numbers .*'header: 0'"):
+    with pytest.raises(InputError, match=r"line 2, .* numbers; .*'header: 0'"):
         read.read_scan(path, keys | {"header": 2})
 
 
@@ -477,11 +477,11 @@ def test_a_truncated_npy_is_named(tmp_path):
 def test_unreadable_text_is_named_with_its_line(tmp_path):
     path = save_text(tmp_path / "rock.txt", surface())
     path.write_text(path.read_text() + "and then it broke\n")
-    with pytest.raises(InputError, match=r"rock\.txt: line 13 holds 'and', no number"):
+    with pytest.raises(InputError, match=r"rock\.txt: line 13 holds 'and', which is no number"):
         read_scan(path, {"unit": "mm", "spacing": 0.1, "missing": "none"})
     lines = save_text(path, surface()).read_text().splitlines()
     path.write_text("\n".join([*lines[:5], lines[5] + " 1.0", *lines[6:]]))
-    with pytest.raises(InputError, match="line 6 has 16 values, those before have 15"):
+    with pytest.raises(InputError, match="line 6 has 16 values, earlier lines have 15"):
         read_scan(path, {"unit": "mm", "spacing": 0.1})
 
 

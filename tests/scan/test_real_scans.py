@@ -48,7 +48,7 @@ READ = [
     ("../x3p/surface_irregular_xml.x3p", {}, (72, 96), (0.002, 0.002), "m", None),
 ]
 REFUSED = [
-    ("corona_fault/PaperStats.csv", {}, "such a file is read only as its sidecar says"),
+    ("corona_fault/PaperStats.csv", {}, "such a file is read only with a complete sidecar"),
     ("nanovea/test1.txt", {}, "its sidecar lacks unit"),
     ("di_corrupted.di", {}, "not large enough to contain all data buffers"),
     ("gwyddion-export-english.txt", {}, "its sidecar lacks unit_xy"),

@@ -20,7 +20,7 @@ STUDY = "config/test.yaml"
 HOSTILE = {
     "template": (
         '__use_yte__: true\nstudy: \'?__import__("os").system("touch pwned")\'\n',
-        "makes Snakemake run what the file says as Python",
+        "makes Snakemake run text of the file as Python",
     ),
     "tag": ("study: !!python/object/apply:os.system ['touch pwned']\n", "not readable as YAML"),
     "shell": ("study: x; touch pwned\n", "key 'study': found 'x; touch pwned', expected"),

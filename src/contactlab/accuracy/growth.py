@@ -17,7 +17,7 @@ FITTED = {"seconds": "wall time", "memory": "peak memory"}
 _DIMS = ("surface", "solver", "size")
 #: Variables of `growth`: dimensions, unit, long name.
 _GROWTH = {
-    "seconds": (_DIMS, "s", "wall time at the error asked for"),
+    "seconds": (_DIMS, "s", "wall time at the requested error"),
     "memory": (_DIMS, "B", "peak memory of a solve"),
     "reached": (_DIMS, "1", "error of the force, relative"),
     "bound": (("surface", "size"), "s", f"applications of the operator by {OURS}, alone"),

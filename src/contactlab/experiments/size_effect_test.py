@@ -235,10 +235,10 @@ def _table() -> dict[str, tuple]:
         for name, long_name in words.items():
             table |= {of: (dims, *row) for of, row in exponent_rows(name, long_name).items()}
     return table | {
-        "verdict": (of_class, "1", "what alpha says of eq. 6"),
+        "verdict": (of_class, "1", "verdict of alpha on eq. 6"),
         "reason": (of_class, "1", "why"),
         "no_size_effect": (of_class, "1", "the interval of alpha lies within 0.02 of zero"),
-        "overall": (of_class[:2], "1", "what all loads together say of eq. 6"),
+        "overall": (of_class[:2], "1", "verdict of all loads together on eq. 6"),
         "published_pressure": ("published", "1", "p / (E* h'_rms) of published periodic areas"),
         "published_share": ("published", "1", "published A_r / A_0 of periodic surfaces, H = 0.8"),
     }

@@ -67,9 +67,9 @@ SURFACES: dict[str, tuple] = {
     "of_roll_off": (
         "surface",
         "1",
-        "longest self-affine wavelength, nodes; none without a roll-off",
+        "longest self-affine wavelength, nodes; missing without a roll-off",
     ),
-    "of_construction": ("surface", "1", "construction of the surface; none of a spectrum"),
+    "of_construction": ("surface", "1", "construction of the surface; empty for a spectrum"),
     "number": ("surface", "1", "number of the surface in its class"),
     "rms_slope": (
         "surface",

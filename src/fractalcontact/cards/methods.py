@@ -59,9 +59,9 @@ def _contact(card):
     )
     return (
         f"Both blocks are elastic half-spaces (E = {with_unit(modulus, 'MPa')}, Poisson's ratio "
-        f"{short(poisson)}), {capped}; the frictionless normal contact problem was solved at every "
-        "node of the scan until the complementarity conditions held, after Borri-Brunetto et al. "
-        "(1999). Contact areas are corrected for their perimeter (Yastrebov et al. 2017)."
+        f"{short(poisson)}), {capped}. The frictionless normal contact problem was solved at "
+        "every node of the scan until the complementarity conditions held, after Borri-Brunetto "
+        "et al. (1999). Contact areas are corrected for their perimeter (Yastrebov et al. 2017)."
     )
 
 
@@ -82,9 +82,9 @@ def _strength(card):
     if "missing" in card["entries"]["jrc"]:
         return "Nothing slides here: no strength is stated."
     return (
-        "Shear strength is sigma tan(phi_b + i) with the dilatancy angle i of the computed states; "
-        "beside it stands Barton's law (Barton and Choubey 1977) with JRC from Z2 "
-        "(Tse and Cruden 1979)."
+        "Shear strength is sigma tan(phi_b + i) with the dilatancy angle i of the computed "
+        "states. It is compared with Barton's law (Barton and Choubey 1977) with JRC from Z2 (Tse "
+        "and Cruden 1979)."
     )
 
 

@@ -12,8 +12,8 @@ from .entries import entries, read_entry, rounded
 _NO_CONTACT = "one profile has no contact: scan a face, or both"
 _METHODS = (
     "The profile of {length:g} mm (spacing {spacing:g} mm) was levelled by its line. JRC is given "
-    "by published fits to Z2, the rms slope over the step of each fit; Delta_g = 3 - H is that of "
-    "an isotropic surface with such profiles, H by the roughness length (Malinverno 1990). "
+    "by published fits to Z2, the rms slope over the step of each fit; Delta_g = 3 - H holds for "
+    "an isotropic surface with such profiles, with H by the roughness length (Malinverno 1990). "
     "Computed with {versions}."
 )
 _REFERENCES = [

@@ -33,8 +33,8 @@ def warnings_of_specimen(specimen: xr.Dataset, quality: xr.Dataset) -> list[str]
     name = str(attrs.get("specimen", attrs.get("name", "")))
     if attrs["opposite"] != APERTURE and _NO_FACE.search(name):
         warnings.append(
-            "its name says that it holds the opening of a joint or depths: if it does, write "
-            "'kind: aperture', or 'heights: down', into the sidecar"
+            "its name suggests the opening of a joint, or depths: if this is right, write 'kind: "
+            "aperture', or 'heights: down', into the sidecar"
         )
     if "overlap_cells" in quality and quality["overlap_cells"].sel(region="window"):
         filled = attrs["outliers"] == "fill"
@@ -52,8 +52,8 @@ def _same_file_words(specimen):
     if None in files or len({json.loads(file)["sha256"] for file in files}) > 1:
         return ""
     return (
-        "both faces are one file, byte for byte: the gap is the same everywhere; if one face was "
-        "scanned, keep one file, and the other is taken as its match"
+        "both faces are one file, byte for byte: the gap is the same everywhere; if only one face "
+        "was scanned, keep one file; the other face is then its match"
     )
 
 
@@ -88,8 +88,8 @@ def _outlier_words(specimen):
     )
     if highest > FAR_OUT * relief:
         words += (
-            "so far out that they are likely to be marks of missing cells or a misread file: look "
-            "at it, and write 'missing' into the sidecar; "
+            "so far out that they probably mark missing cells, or the file is misread: check it, "
+            "and write 'missing' into the sidecar; "
         )
     return words + "'outliers: mask' in the sidecar makes them missing"
 

@@ -29,7 +29,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     words = ("intact", "damaged", "unrecorded", "missing")
     counts = [f"{len(getattr(checked, word))} {word}" for word in words]
     wrong = not checked.intact or any(getattr(checked, word) for word in words[1:])
-    advice = "; 'make' makes again what the study still asks for" if wrong else ""
+    advice = "; 'make' makes again all files that the study needs" if wrong else ""
     sys.stdout.write(f"{results}: {', '.join(counts)}{advice}\n")
     return int(wrong)
 

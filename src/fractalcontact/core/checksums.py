@@ -123,8 +123,8 @@ def require_intact(results: Path | str, file: Path | str) -> None:
     path = _record_of(results, file)
     if not path.is_file():
         raise InputError(
-            f"{file}: nothing says how it was made (no {path}); 'make' sets it aside and makes it "
-            "again"
+            f"{file}: the record of its making is missing ({path}); 'make' sets it aside and "
+            "makes it again"
         )
     if sha256(file) != _lines(path).get(file.relative_to(results).as_posix()):
         raise InputError(

@@ -106,8 +106,7 @@ def _magnitude(text: str, kind: str) -> float:
         raise _OutOfRange(f"{text!r} is not finite; {wanted}")
     if magnitude and not MIN_INPUT <= abs(magnitude) <= MAX_INPUT:
         raise _OutOfRange(
-            f"{text!r} is beyond what can be computed with, {MIN_INPUT:g} to "
-            f"{MAX_INPUT:g} {unit}; {wanted}"
+            f"{text!r} is out of range, {MIN_INPUT:g} to {MAX_INPUT:g} {unit}; {wanted}"
         )
     return magnitude
 
@@ -223,8 +222,8 @@ def length_factor(unit: str, where: str) -> float:
     factor = quantity(unit if counts else f"1 {unit}", "length", where)
     if factor <= 0:
         raise InputError(
-            f"{where}: {unit!r} is not above zero; write the unit alone, such as 'um', or what one "
-            "count is, such as '0.1 um' (an upper face that was scanned on its back has the key "
-            "'mirror_upper')"
+            f"{where}: {unit!r} is not above zero; write the unit alone, such as 'um', or the "
+            "height of one count, such as '0.1 um' (an upper face that was scanned on its back "
+            "has the key 'mirror_upper')"
         )
     return factor

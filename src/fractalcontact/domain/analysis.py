@@ -33,7 +33,7 @@ DOMAIN_FIELDS = {
     "law_amplitude": ("1", "A of the count law: boxes as large as the domain's extent"),
     "law_outline": ("1", "b_1 of the count law: outline of the domain"),
     "law_outline_square": ("1", "b_2 of the count law: outline of the domain"),
-    "law_node_width": ("mm", "c of the count law: what a node stands for"),
+    "law_node_width": ("mm", "c of the count law: width that a node stands for"),
     "law_extent": ("mm", "L of the count law: longer side of the domain's extent"),
     **rows_of(
         "delta_sigma_ordinary",
@@ -284,12 +284,12 @@ def scaling_over_resolutions(
     # The pressure does not depend on which spacings are fitted.
     enough = curves["nodes"] >= CORRECTED_NODES
     result["sigma_n"] = force / curves["area_corrected"].where(enough)
-    words = f"real mean pressure F / A_r; none below {CORRECTED_NODES} nodes in contact"
+    words = f"real mean pressure F / A_r; missing below {CORRECTED_NODES} nodes in contact"
     result["sigma_n"].attrs = cf_attrs("MPa", words)
     result["sigma_n_raw"] = force / curves["area"].where(curves["area"] > 0)
     result["sigma_n_raw"].attrs = cf_attrs("MPa", "F / A_r of the area not corrected for its edge")
     result["fitted_area"] = result["hausdorff_measure"] * s ** (2 - result["delta_sigma"])
-    result["fitted_area"].attrs = cf_attrs("mm2", "contact area by the law that delta_sigma is of")
+    result["fitted_area"].attrs = cf_attrs("mm2", "contact area by the law of delta_sigma")
     raw = renormalisation(s, curves["area"], force, nodes, RESOLVED_NODES)
     for name, raw_name in zip(names_of("delta_sigma"), names_of("delta_sigma_raw"), strict=True):
         result[raw_name] = raw[name]

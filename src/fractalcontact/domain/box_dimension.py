@@ -40,7 +40,7 @@ ESTIMATORS = {
 }
 
 #: Why the contact domain of one node has no dimension.
-ONE_NODE = "one node is in contact, and what touches within its cell is not known"
+ONE_NODE = "one node is in contact, and the contact within its cell is not known"
 
 #: Why a dense domain has no dimension.
 CROWDED = "nearly all boxes are occupied but the smallest: too few sizes are left for a dimension"

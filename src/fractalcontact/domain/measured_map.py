@@ -223,8 +223,8 @@ def _thresholds(
     if _is_binary(values):
         return np.array([0.5])
     raise InputError(
-        f"{path}: this contact map holds other numbers than 0 and 1; write above which of them a "
-        "cell is in contact, for example 'threshold: 5', in its sidecar"
+        f"{path}: this contact map holds other numbers than 0 and 1; write the number above which "
+        "a cell is in contact into its sidecar, for example 'threshold: 5'"
     )
 
 

@@ -73,8 +73,13 @@ _TABLE: dict[str, tuple] = {
         f"local_slope_{null}_{name}": ("normal_force", units, f"{words} {of}")
         for null, of in (("random", "as many random nodes"), ("cut", "the bearing-area cut"))
         for name, units, words in (
-            ("p", "1", "probability of local slopes so far, without a difference, from those of"),
-            ("side", "mm", "box side r where local slopes depart most from those of"),
+            (
+                "p",
+                "1",
+                "probability (p-value) of such a departure of local slopes by chance, from "
+                "those of",
+            ),
+            ("side", "mm", "box side r of the largest departure of local slopes from those of"),
         )
     },
     "null_verdict": ("normal_force", "1", "null models from which the local slopes differ"),

@@ -83,5 +83,5 @@ def add_statistics(result: xr.Dataset, names: Sequence[str]) -> None:
             result[f"{name}_band_{end}"] = (dims, of_band, attrs)
         attrs = cf_attrs(units, f"{words}, standard deviation over realisations")
         result[f"{name}_spread"] = values.std("realisation", ddof=1).assign_attrs(attrs)
-        attrs = cf_attrs("1", f"{words}, realisations that have a value")
+        attrs = cf_attrs("1", f"{words}, number of realisations with a value")
         result[f"{name}_n"] = (dims, mean.n, attrs)

@@ -67,12 +67,16 @@ _TABLE = {
     "largest_source_of_population": (
         _ALL,
         "1",
-        "source of the larger error from the window: its contacts counted, or other windows",
+        "source of the larger error of the window: count of its contacts, or other windows",
     ),
     "limit": (_ALL, _UNIT, "value extrapolated to zero spacing of the same surface"),
     "observed_order": (_ALL, "1", "observed order of convergence of the same surface"),
     "finest_spacing": ("normal_force", "mm", "finest spacing solved; NaN where interpolated"),
-    "numerical_from": ("normal_force", "1", "what the numerical error is from"),
+    "numerical_from": (
+        "normal_force",
+        "1",
+        "source of the numerical error: spacings solved, or interpolation",
+    ),
     "unit": ("quantity", "1", "unit of the quantity"),
     "meaning": ("quantity", "1", "quantity"),
     "absolute": ("quantity", "1", "its errors are in its unit alone: it may be zero or negative"),

@@ -212,8 +212,8 @@ def _turned(cloud: Cloud, scan, normal: np.ndarray, centre: np.ndarray) -> Cloud
     values = levelling.turn_level(scan.values, normal, centre)
     degrees = levelling.tilt_degrees(normal)
     notes = [
-        f"turned by {degrees:.3g} degrees about the horizontal line of its mean plane, which is "
-        "level now; x, y and heights are those of the turned points"
+        f"turned by {degrees:.3g} degrees about the horizontal line of its mean plane, to make "
+        "that plane level; x, y and heights are those of the turned points"
     ]
     if degrees > levelling.UPRIGHT and cloud.mesh is None:
         notes.append("NOTE: it stood upright, so its points do not determine which side is up")
@@ -244,9 +244,9 @@ def _look_beneath(cloud: Cloud) -> Cloud:
     notes = cloud.notes
     if density.uneven:
         notes += (
-            f"the points lie unevenly: the nearest is {density.distance:.4g} mm away, but each has "
-            f"{density.area:.4g} mm2 to itself (random, lines, clumps); the root of it is the "
-            "spacing, and much between them is interpolated",
+            f"the points lie unevenly: the nearest is {density.distance:.4g} mm away, but each "
+            f"has {density.area:.4g} mm2 on average (random points, lines, clumps); the spacing "
+            "is the root of this area, and much between the points is interpolated",
         )
     return replace(cloud, points=points, density=density, notes=notes)
 

@@ -42,7 +42,7 @@ def refuse_coordinates(heights: np.ndarray, path: object) -> None:
         profile = _common_profile(z)
         if profile is not None and _goes_one_way(profile):
             raise InputError(
-                f"{path}: every height is the same all along {along} and goes one way along "
+                f"{path}: all heights are equal along {along} and rise or fall steadily along "
                 f"{across}: these are coordinates or a bare slope, no rough surface; name the "
                 "array or the columns of the heights in the sidecar ('variable', 'columns')"
             )
@@ -74,8 +74,8 @@ def doubts(heights: np.ndarray) -> list[str]:
     present = np.isfinite(levelled)
     if present.any() and np.ptp(levelled[present]) <= _PLANE * np.ptp(heights[present]):
         found.append(
-            "all heights lie on one plane to within rounding: there is no roughness in this file, "
-            "and what a study says of it is rounding"
+            "all heights lie on one plane to within rounding: this file has no roughness, and "
+            "results on it would be rounding errors"
         )
         return found
     for line, z in (("rows", heights), ("columns", heights.T)):

@@ -274,7 +274,7 @@ def _add_laws(result: xr.Dataset, curves: xr.Dataset) -> None:
             result[prefix + key] = (dims, values[key], cf_attrs(units, words + kind))
     _add_departure(result, curves)
     for prefix, name, fewest, _ in _AREAS:
-        words = f"why there is no law of the {name.replace('_', ', ')}"
+        words = f"reason why there is no law of the {name.replace('_', ', ')}"
         reasons = _reasons_for_no_law(result, curves, prefix, fewest)
         result[f"no_{prefix}law"] = dims, reasons, cf_attrs("1", words)
 

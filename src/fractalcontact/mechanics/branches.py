@@ -34,7 +34,7 @@ OF_BRANCHES = {
 OF_CYCLE = {
     "branch_maximum": ("N", "largest load of the branches, from which they unload"),
     "residual_closure": ("mm", "closure at which contact is lost after unloading"),
-    "dissipated_energy": ("N mm", "energy spent on what is pressed in"),
+    "dissipated_energy": ("N mm", "energy dissipated by the permanent set"),
     "recovered_energy": ("N mm", "elastic energy that unloading gives back"),
 }
 _TABLE: dict[str, tuple[Any, str, str]] = {

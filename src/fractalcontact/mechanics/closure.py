@@ -107,9 +107,9 @@ def full_contact_warning(curves: xr.Dataset) -> str:
     if not full:
         return ""
     return (
-        f"contact is so full in {full} of {int(solved.sum())} states that the interface closes by "
-        "less than the settlement of the blocks is known to: closure, dilatancy and stiffness of "
-        "the interface are undetermined there"
+        f"contact is so full in {full} of {int(solved.sum())} states that the closure of the "
+        "interface is smaller than the uncertainty of the settlement of the blocks: closure, "
+        "dilatancy and stiffness of the interface are undetermined there"
     )
 
 
@@ -226,7 +226,7 @@ def _add_interface(curves: xr.Dataset, settlement: np.ndarray, area: float) -> N
     curves["interface_closure"] = determined_closure(closing, flush).transpose(*order)
     curves["interface_closure"].attrs = cf_attrs(
         "mm",
-        "interface closure w_int = w - w_b; none where contact is too full for one",
+        "interface closure w_int = w - w_b; missing where contact is too full",
     )
     for name, words in (
         ("area", "real contact area A_r / A_0"),
@@ -250,7 +250,7 @@ def _add_interface(curves: xr.Dataset, settlement: np.ndarray, area: float) -> N
     curves["interface_stiffness"] = stiffness.transpose(*order)
     curves["interface_stiffness"].attrs = cf_attrs(
         "MPa/mm",
-        "tangent stiffness d sigma_0 / d w_int of the interface; none if flush",
+        "tangent stiffness d sigma_0 / d w_int of the interface; missing if flush",
     )
     reason = stiffness_reason(curves["interface_stiffness"], curves["stiffness"], flush)
     # As bare values: labels that xr.where made have no units.

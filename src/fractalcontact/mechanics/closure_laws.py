@@ -223,12 +223,12 @@ _DIMS = ("direction", "offset", "resolution")
 _OF_CURVES = {
     "hyperbola_k_ni_change": (
         "1",
-        "k_ni at twice the spacing over that at this one, less one; none where it was not solved",
+        "relative change of k_ni at twice the spacing; missing where it was not solved",
     ),
     "hyperbola_k_ni_determined": ("1", "whether the hyperbola is the law, and k_ni is determined"),
     "hyperbola_k_ni_reason": ("1", "why k_ni is undetermined"),
     "softer_than_k_ni": ("1", "whether the curve is softer than its k_ni under any load"),
-    "closure_law": ("1", "the law that fits better: hyperbola, semi-logarithmic, or none of them"),
+    "closure_law": ("1", "the law that fits better: hyperbola, semi-logarithmic, or neither"),
     "closure_law_reason": ("1", "why no law is named"),
     "closure_fit_min": ("N", "smallest force fitted"),
     "closure_fit_max": ("N", "largest force fitted"),

@@ -47,7 +47,11 @@ _TABLE = {
     "z2": ("sampling", "1", "rms slope Z2 of profiles along the sliding"),
     "jrc": ("sampling", "1", "JRC = 32.2 + 32.47 log10 Z2"),
     "fit_step": ("fit", "mm", "step of Z2 of each published fit, whole cells"),
-    "jrc_by_fit": ("fit", "1", "JRC by each published fit; none where no step is near the fit's"),
+    "jrc_by_fit": (
+        "fit",
+        "1",
+        "JRC by each published fit; missing where no step is near the fit's",
+    ),
     "jrc_used": ((), "1", f"JRC at {JRC_SAMPLING}, kept within {_range_words()}"),
     "jrc_note": ((), "1", "remarks on the JRC used"),
 }

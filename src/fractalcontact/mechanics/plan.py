@@ -125,7 +125,7 @@ _COLUMNS: dict[str, tuple[Dims, str, str]] = {
     "choice": ("choice", "1", "quantity"),
     "value": ("choice", "1", "value"),
     "reason": ("choice", "1", "reason"),
-    "error_of": ("choice", "1", "quantity that the error is of"),
+    "error_of": ("choice", "1", "quantity of the error"),
     "error": ("choice", "1", "largest error it is estimated to make, a fraction"),
 }
 
@@ -162,8 +162,9 @@ def _of_tolerance(curves, solver: Solver, requested):
     reason = (
         "stated by the study"
         if requested is None or solver.rtol != tolerance(requested)
-        else f"{SHARE_OF_CLOSURE:g} of the error requested of the closure, {SHARE_OF_DIMENSION:g} "
-        "of that of Delta_sigma; errors in trials were at least ten times smaller than requested"
+        else f"{SHARE_OF_CLOSURE:g} of the requested error of the closure, {SHARE_OF_DIMENSION:g} "
+        "of that of Delta_sigma; errors in trials were at least ten times smaller than "
+        "requested"
     )
     error = abs(curves["closure_error"] / curves["interface_closure"].where(lambda w: w != 0))
     return "solver tolerance", f"{solver.rtol:.1g}", reason, _OF_SOLVER, _largest(error)
@@ -266,6 +267,7 @@ def _of_spacing(budget, requested):
         reason += f", asked {100 * asked:g} %: " + (
             "reached"
             if reached == known.sum()
-            else f"cannot be had at this spacing at {known.sum() - reached} of {known.sum()} loads"
+            else f"cannot be reached at this spacing at {known.sum() - reached} of {known.sum()} "
+            "loads"
         )
     return name, value, reason, _OF_GRID, float(of_known.max())

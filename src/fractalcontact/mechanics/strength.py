@@ -261,7 +261,7 @@ _QUANTITIES = {
     "residual_n": ("1", "intervals beyond half of the largest offset"),
     "barton_strength": ("MPa", "peak strength by Barton's law"),
     "peak_over_barton": ("1", "largest shear strength over the peak by Barton's law"),
-    "scaled_roughness": ("1", "JRC_n for the window's length; none above 20"),
+    "scaled_roughness": ("1", "JRC_n for the window's length; missing above 20"),
     "scaled_wall_strength": ("MPa", "JCS_n for the window's length"),
     "barton_scaled_strength": ("MPa", "peak strength by Barton's law with JRC_n and JCS_n"),
 }

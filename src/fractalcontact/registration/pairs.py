@@ -110,7 +110,7 @@ def register(
         _refuse_mirror_image(lower, upper, mirrored, where)
         return as_given(
             f"NOTE: the faces do not match (correlation without long waves {match:.2f}, below "
-            f"{POOR_MATCH:g}) and are left as they are; faces of one joint do, unless one is "
+            f"{POOR_MATCH:g}) and are left as they are; faces of one joint match, unless one is "
             f"turned by more than {LARGEST_ROTATION} degrees",
             match,
         )
@@ -127,7 +127,7 @@ def register(
         )
     note = f"upper face moved {how}"
     if before["gap_mean"] is None:
-        note += "; its height is not known: set down until 1 % of the cells touch"
+        note += "; its height is not known, so it is lowered until 1 % of the cells touch"
     if not found["converged"]:
         note += "; NOTE: the search had not come to rest"
     moved.attrs = upper.attrs
@@ -152,13 +152,13 @@ def _upside_down(lower, upper, before: dict, mode: str, where: str) -> str:
     )
     if mode == "none":
         raise InputError(
-            f"{where}: {found}, so they are in the wrong order, or not in the one frame that "
-            "'registration: none' says they are in; exchange 'lower' and 'upper' in the names of "
-            "the files, or remove that key"
+            f"{where}: {found}, so they are in the wrong order, or not in one frame as "
+            "'registration: none' states; exchange 'lower' and 'upper' in the names of the files, "
+            "or remove that key"
         )
     return (
         f"; NOTE: as given {found}: if the files are in the wrong order, exchange 'lower' and "
-        "'upper' in their names, if their heights merely have no common zero, nothing is wrong"
+        "'upper' in their names; if only their heights have no common zero, ignore this note"
     )
 
 

@@ -161,7 +161,7 @@ _DIMENSIONS = {
     "range_min": ((), "mm", "shortest lag of the fits"),
     "range_max": ((), "mm", "longest lag of the fits"),
     "range_reason": ((), "1", "why this range"),
-    "known_dimension": ((), "1", "Delta_g a synthetic surface was made with"),
+    "known_dimension": ((), "1", "known Delta_g of a synthetic surface"),
 }
 
 

@@ -21,7 +21,7 @@ RECOMMENDED = "roughness_length"
 #: half its interval 0.12 (0.13, 0.22, 0.14).
 REASON = (
     "least rms error and narrowest 95 % interval of all estimators on synthetic surfaces of known "
-    "dimension, with a roll-off and without, and the interval holds the known value on more than "
+    "dimension, with and without a roll-off; the interval contains the known value on more than "
     "90 % of every kind"
 )
 

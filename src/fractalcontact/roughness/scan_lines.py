@@ -73,7 +73,7 @@ ALTERNATION = {
     "alternation": (
         ("face", "axis"),
         "mm",
-        "difference of alternate scan lines, neighbours along the axis; missing if none is seen",
+        "difference between neighbouring scan lines along the axis; missing if none is seen",
     ),
     "alternation_noise": (("face", "axis"), "mm", "noise of the nodes beside that difference"),
 }
@@ -95,7 +95,7 @@ def scan_line_warnings(quality: xr.Dataset) -> list[str]:
             if difference > noise:
                 found.append(
                     f"alternate {line} of the {face} face differ by {length_words(difference)}, "
-                    f"more than the noise of {length_words(noise)}: a scanner whose ways to and "
-                    "fro disagree; correct it in the instrument's program"
+                    f"more than the noise of {length_words(noise)}: the two scan directions of "
+                    "the instrument disagree; correct this in the instrument's program"
                 )
     return found

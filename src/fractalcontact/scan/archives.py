@@ -77,7 +77,8 @@ def _check_member(member: zipfile.ZipInfo, path: Path) -> None:
     name = PurePosixPath(member.filename.replace("\\", "/"))
     if name.is_absolute() or ".." in name.parts or _DRIVE.match(member.filename):
         raise InputError(
-            f"{path}: its member {member.filename!r} points out of the archive; do not use it"
+            f"{path}: its member {member.filename!r} points to a path outside the archive; do not "
+            "use the file"
         )
     if stat.S_ISLNK(member.external_attr >> 16):
         raise InputError(f"{path}: its member {member.filename!r} is a link; export the scan again")

@@ -52,7 +52,7 @@ def array_hints(
     values = np.asarray(read(name), dtype=float)
     if values.shape[1] < 8:
         hints.add("layout", "points", f"{values.shape[1]} columns")
-        hints.add("columns", [0, 1, 2], "in the order in which they stand; it may be another")
+        hints.add("columns", [0, 1, 2], "in the order of the file; check the order")
         hints.heights = values[:, min(2, values.shape[1] - 1)]
     else:
         hints.add("layout", "matrix", f"{values.shape[1]} columns")

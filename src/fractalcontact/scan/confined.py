@@ -141,7 +141,7 @@ class _Server:
         self.control.sendall(reader_process.REQUEST_LENGTH.pack(len(message)) + message)
         _, descriptors, _, _ = socket.recv_fds(self.control, 1, 1)
         if not descriptors:
-            raise RuntimeError(f"{path}: the reader process ended; its error is above")
+            raise RuntimeError(f"{path}: the reader process ended; its error message is above")
         with open(descriptors[0], "rb") as stream:
             lines, raw = _read_answer(stream)
         size = reader_process.STATUS.size

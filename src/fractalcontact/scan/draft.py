@@ -49,7 +49,7 @@ _TO_FILL = {
     "layout": "matrix (rows of heights) or points (x, y, z in columns)",
     "variable": "the array of the heights",
     "columns": "those of x, y and z, counted from 0",
-    "axes": "none, or both, row, column: which hold coordinates instead of heights",
+    "axes": "none, both, row or column: where coordinates stand instead of heights",
     "unit": "of x, y and z: m, mm, um, ...; or unit_xy and unit_z",
     "unit_xy": "of x and y: m, mm, um, ...",
     "unit_z": "of the heights: m, mm, um, or of one count, 0.01 um",
@@ -216,7 +216,7 @@ def _marks(heights: np.ndarray | None) -> tuple[Any, str]:
         return NO_MARK, "every number is a height"
     marks = find_marks(heights)
     if not marks:
-        return NO_MARK, "no number stands out in what was looked at"
+        return NO_MARK, "no unusual number in the part that was read"
     values = [float(mark.value) for mark in marks]
     where = "; ".join(f"{mark.cells} cells hold {number(mark.value)}" for mark in marks)
     return values if len(values) > 1 else values[0], where

@@ -116,9 +116,9 @@ def _refuse_enormous(values: np.ndarray, path: Path) -> None:
     largest = max(low, high, key=abs) if finite.any() else 0.0
     if abs(largest) > LARGEST_NUMBER:
         raise InputError(
-            f"{path}: it holds {largest:g} mm, which no instrument measures; if that marks missing "
-            "cells, say so in the sidecar ('missing: -9999', in the file's own unit), else export "
-            "the file again"
+            f"{path}: it holds {largest:g} mm, which no instrument measures; if this number marks "
+            "missing cells, write it into the sidecar ('missing: -9999', in the file's own unit), "
+            "else export the file again"
         )
 
 
@@ -139,8 +139,8 @@ def _refuse_known_rows(raw: RawScan, options: ScanOptions, path: Path) -> None:
     """Refuse ``first_row`` where the coordinates of a matrix determine it."""
     if options.axes == "both" and options.spacing is None and options.first_row is not None:
         raise InputError(
-            f"{path}: the coordinates beside its rows say where the first row lies ({raw.first_row}"
-            "); remove 'first_row'"
+            f"{path}: its coordinates determine where the first row lies ({raw.first_row}); "
+            "remove 'first_row'"
         )
 
 
@@ -257,9 +257,9 @@ def _refuse_unconfirmed(found: dict, raw: RawScan, options: ScanOptions, path: P
         if not np.allclose(value, found[key], rtol=SAME_RELIEF, atol=0):
             raise InputError(
                 f"{path}: its sidecar confirms {key} {_plain(value)}, the file holds "
-                f"{_plain(found[key])}: it is another file, or is read otherwise than when it was "
-                f"looked at; 'make describe FILE={path}' draws it, then write '{key}: "
-                f"{_plain(found[key])}' under 'confirmed'"
+                f"{_plain(found[key])}: this is another file, or its sidecar was changed; 'make "
+                f"describe FILE={path}' draws it, then write '{key}: {_plain(found[key])}' under "
+                "'confirmed'"
             )
 
 

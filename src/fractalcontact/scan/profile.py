@@ -47,8 +47,8 @@ def read_profile(path: Path | str) -> tuple[np.ndarray, float]:
     axes = [match[1].lower() if match else "" for match in named]
     if sorted(axes) != ["x", "z"]:
         raise InputError(
-            f"{path}: the first line names no profile; expected the columns with their units, such "
-            "as 'x [mm], z [um]', and below it two numbers a line"
+            f"{path}: the first line does not name two columns; expected their names and units, "
+            "such as 'x [mm], z [um]', and two numbers in every other line"
         )
     factors = [length_factor(m[2], f"{path}: column {m[1]}") for m in named if m]
     try:
@@ -56,8 +56,8 @@ def read_profile(path: Path | str) -> tuple[np.ndarray, float]:
         numbers = table.reshape(-1, 2) * factors
     except ValueError:
         raise InputError(
-            f"{path}: a line holds other things than two numbers; write numbers with a point, "
-            "between them what the first line has between its names"
+            f"{path}: a line does not hold two numbers; write numbers with a decimal point and "
+            "the same delimiter as in the first line"
         ) from None
     x, z = numbers[:, axes.index("x")], numbers[:, axes.index("z")]
     steps = np.diff(x)

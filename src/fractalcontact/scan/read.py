@@ -191,7 +191,7 @@ def _require_one_layout(lower: ScanFile, upper: ScanFile) -> None:
         matrix, cloud = (lower, upper) if lower.raw.layout == "matrix" else (upper, lower)
         what = "a mesh" if cloud.raw.layout == "mesh" else "points x, y, z"
         raise InputError(
-            f"{matrix.path} is a matrix of heights and {cloud.path} holds {what}; two faces are "
-            f"read alike, so export {matrix.path.name} as points x, y, z too (or both as matrices "
-            "of one spacing)"
+            f"{matrix.path} is a matrix of heights and {cloud.path} holds {what}; both faces need "
+            f"one kind of file, so export {matrix.path.name} as points x, y, z too (or both as "
+            "matrices of one spacing)"
         )

@@ -81,8 +81,8 @@ def require_stated(
     sidecar = path.with_name(f"{name}.yaml")
     what = f"its sidecar lacks {', '.join(lacks)}" if states_some else "it has no sidecar"
     raise IncompleteSidecar(
-        f"{path}: such a file is read only as its sidecar says, and {what}. Write into {sidecar} "
-        f"and look at each line ('make describe FILE={path}' draws what would be read):",
+        f"{path}: such a file is read only with a complete sidecar, and {what}. Write into "
+        f"{sidecar} and look at each line ('make describe FILE={path}' draws what would be read):",
         draft,
     )
 

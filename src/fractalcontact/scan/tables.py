@@ -139,8 +139,8 @@ def _matrix(
     for name, numbers in (("row", above), ("column", beside)):
         if numbers is not None and len(np.unique(numbers)) < len(numbers):
             raise InputError(
-                f"{where}: its first {name} holds a number twice, so that it counts nothing and "
-                "holds no coordinates; write another 'axes' into the sidecar, and tables under one "
+                f"{where}: its first {name} holds a number twice, so that it holds neither counts "
+                "nor coordinates; write another 'axes' into the sidecar, and tables under one "
                 "another into files of their own"
             )
         if numbers is not None:
@@ -172,14 +172,14 @@ def _by_cell(points: np.ndarray, where: str) -> np.ndarray:
     low, high = lateral.min(axis=0), lateral.max(axis=0)
     if not (np.isfinite(lateral).all() and np.all(lateral == np.round(lateral))):
         raise InputError(
-            f"{where}: with 'spacing' x and y of its points count cells, but they are no whole "
+            f"{where}: with 'spacing' its x and y are numbers of cells, but they are no whole "
             "numbers; remove 'spacing' if they are lengths"
         )
     nx, ny = (int(count) for count in high - low + 1)
     if nx * ny > MAX_EMPTY_PER_POINT * len(points):
         raise InputError(
-            f"{where}: {len(points)} heights for {nx} columns and {ny} rows; remove what is no "
-            "height, or export x, y, z"
+            f"{where}: {len(points)} heights for {nx} columns and {ny} rows; remove the other "
+            "numbers, or export x, y, z"
         )
     x, y = (lateral - low).astype(np.intp).T
     if len(np.unique(y * nx + x)) < len(points):

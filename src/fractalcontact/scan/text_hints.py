@@ -173,7 +173,7 @@ def _layout(hints: Hints, names: list[str], rows: list[list[str]], width: int, s
         hints.add("layout", "points", source)
     elif width < 8:
         hints.add("layout", "points", source)
-        hints.add("columns", [0, 1, 2], "in the order in which they stand; it may be another")
+        hints.add("columns", [0, 1, 2], "in the order of the file; check the order")
     else:
         hints.add("layout", "matrix", source)
 

@@ -234,7 +234,7 @@ _TRUNCATED = {
 }
 
 _BARTON = {
-    "barton_roughness": ("part", "1", "JRC_n by Barton and Bandis' scale law; none above 20"),
+    "barton_roughness": ("part", "1", "JRC_n by Barton and Bandis' scale law; missing above 20"),
     "barton_scaled_strength": (
         ("part", "normal_force"),
         "MPa",

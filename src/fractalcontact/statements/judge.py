@@ -124,7 +124,7 @@ def table_of(
         "numbers": ([finding.numbers for finding in found], "the numbers that decide it"),
         "note": (
             [_note(finding, claim) for finding, claim in zip(found, claims, strict=True)],
-            "what to know of these numbers, and what would decide it where they do not",
+            "remark on these numbers, and what would decide the statement if they do not",
         ),
         "judged_on": ([finding.judged_on or asked for finding in found], "what was judged"),
         "circular": (

@@ -257,7 +257,7 @@ def _action(
         "@id": "#run",
         "@type": "CreateAction",
         "name": f"Making of the study {study}",
-        "description": "what was made, of the configuration and the scans, by the workflow",
+        "description": "run of the workflow: from configuration and scans to the results",
         "agent": _refer(agents),
         "endTime": date,
         "actionStatus": "http://schema.org/CompletedActionStatus",

@@ -45,8 +45,8 @@ def read_study(path: Path | str) -> dict:
         raise InputError(f"{path}: expected 'key: value' lines, found {type(document).__name__}")
     if _TEMPLATE in document:
         raise InputError(
-            f"{path}: the key '{_TEMPLATE}' makes Snakemake run what the file says as Python; a "
-            "study is plain data, so remove it and write the values themselves"
+            f"{path}: the key '{_TEMPLATE}' makes Snakemake run text of the file as Python; a "
+            "study is plain data, so remove the key and write the values"
         )
     if _expanded(document) > _MAX_VALUES:
         raise InputError(

@@ -105,7 +105,7 @@ def read_figure(path: Path | str) -> Figure:
     if missing:
         raise ValueError(f"{path}: a figure states {', '.join(missing)}")
     if stated["subject"] not in (SPECIMEN, JOINT, *_ASKED_FOR):
-        raise ValueError(f"{path}: SUBJECT {stated['subject']!r} is none of those known")
+        raise ValueError(f"{path}: SUBJECT {stated['subject']!r} is unknown")
     module = "/".join((*path.parts[-4:-1], path.stem))
     return Figure(path.stem, module, **stated)
 

@@ -62,8 +62,8 @@ def read_plan(path: Path | str) -> Plan:
         return dict(json.loads(Path(path).read_text(encoding="utf-8")))
     except (OSError, ValueError) as error:
         raise InputError(
-            f"{path}: cannot be read ({error}); it says what the run was planned with, and is "
-            "written again by the next run"
+            f"{path}: cannot be read ({error}); this file holds the plan of the run, and the next "
+            "run writes it again"
         ) from error
 
 

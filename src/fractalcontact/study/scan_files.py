@@ -231,7 +231,7 @@ def refuse_misleading(path: Path) -> None:
             "breaks, control or direction marks); rename the file"
         )
     if set("{}") & set(path.name):
-        raise InputError(f"{path}: a study fills in what stands in braces; rename the file")
+        raise InputError(f"{path}: a file name must not contain braces; rename the file")
 
 
 def refuse_unusable(name: str, path: Path) -> None:

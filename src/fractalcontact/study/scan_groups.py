@@ -134,8 +134,8 @@ def _one_name(name, first, second):
 def _list_table(folder: Path, table: Path) -> Listed:
     if not folder.is_dir():
         raise InputError(
-            f"{folder}: no such folder (not mounted?); the files that {table} names are looked for "
-            "there, so name it under 'scans' in the study"
+            f"{folder}: no such folder (not mounted?); it must hold the files of {table}: correct "
+            "'scans' in the study"
         )
     scans: dict[str, ScanFiles] = {}
     refused: dict[str, InputError] = {}
@@ -184,8 +184,8 @@ def _rows(table: Path) -> list[tuple[int, dict[str, str]]]:
                 continue
             if len(cells) != len(head):
                 raise InputError(
-                    f"{table}: line {reader.line_num}: {len(cells)} cells, expected {len(head)} as "
-                    "in its first line; put what holds the delimiter between quotes"
+                    f"{table}: line {reader.line_num}: {len(cells)} cells, expected {len(head)} "
+                    "as in its first line; put cells that contain the delimiter between quotes"
                 )
             stripped = (cell.strip() for cell in cells)
             rows.append((reader.line_num, dict(zip(head, stripped, strict=True))))

@@ -118,10 +118,10 @@ _TABLE = (
         "elastic_model",
         "verdict on the elastic model: real mean pressure against strength, slope of the faces",
     ),
-    _of_report("statements", "what the paper says, and whether it holds here"),
+    _of_report("statements", "the paper's statements, and their verdicts"),
     Stage(
         "study_statements",
-        "what the paper says of several joints together, and whether it holds here",
+        "the paper's statements on several joints together, and their verdicts",
         STUDY,
         "fractalcontact.statements.study:judge_study",
         member="study",

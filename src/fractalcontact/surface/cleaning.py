@@ -159,7 +159,7 @@ def _in_words(attrs: dict, largest_hole: int, missing: int) -> str:
     elif spikes:
         words += f"; {spikes} lone spikes kept ('outliers: fill' fills them and deep overlaps)"
     if attrs["outliers"] == "fill":
-        words += f"; {attrs['filled_count']} cells filled harmonically in place of them"
+        words += f"; {attrs['filled_count']} cells filled in their place"
         words += " and of deep overlaps" + (", and in small holes" if largest_hole else "")
     elif largest_hole:
         words += f"; {attrs['filled_count']} cells filled harmonically, in holes of up to "

@@ -146,9 +146,9 @@ def _require_inside(specimen, centre, middle) -> None:
     y, x = specimen.y.values, specimen.x.values
     y_0, x_0 = _pair(centre, specimen.attrs["name"], "window_centre")
     raise InputError(
-        f"{specimen.attrs['name']}: key 'window_centre' is x = {x_0:g}, y = {y_0:g} mm, beside the "
-        f"scan, which reaches from x = {x[0]:.4g} to {x[-1]:.4g} and y = {y[0]:.4g} to "
-        f"{y[-1]:.4g} mm; write a place in it"
+        f"{specimen.attrs['name']}: key 'window_centre' is x = {x_0:g}, y = {y_0:g} mm, outside "
+        f"the scan, which covers x = {x[0]:.4g} to {x[-1]:.4g} and y = {y[0]:.4g} to {y[-1]:.4g} "
+        "mm; write a point inside it"
     )
 
 

@@ -206,7 +206,7 @@ class ActiveSetMethod:
         return verified(problem, operator, iterate, self._dtype)
 
     def _linear_solve(self, kkt, closure, exact, single_step):
-        """Kind of linear solve: ``exact`` as a safeguard, else ``single_step`` while one is left."""
+        """Kind of linear solve: ``exact`` as a safeguard, or ``single_step`` while one is left."""
         if exact:
             return LinearSolve.EXACT
         if single_step and kkt.holds_to(SINGLE_STEP_BELOW * self.rtol, closure):

@@ -104,8 +104,8 @@ def _read_format(path: Path, format_name: str, wanted: str | None) -> RawScan:
     if format_name in LENGTH_UNCLEAR:
         steps = " x ".join(f"{n / (n - 1):.6g}" for n in heights.shape)
         notes += (
-            "the file states lengths, taken as those of all cells; if they reach from the first "
-            f"point to the last, the spacing is {steps} times as large",
+            "the file states lengths, which are taken as those of all cells; if they are from the "
+            f"first point to the last, the spacing is {steps} times as large",
         )
     if format_name in FIRST_ROW_UNCLEAR:
         notes += (

@@ -123,7 +123,7 @@ class _Reading:
             notes = (f"the last line ({number}) was cut short and is left out",)
         if not self._parts:
             raise InputError(
-                f"{self.path}: no line of numbers behind its header of {self.options.header} "
+                f"{self.path}: no line of numbers after its header of {self.options.header} "
                 "lines; write the number of lines above the first number, 'header: 1'"
             )
         table = stacked(self._parts)
@@ -139,8 +139,8 @@ class _Reading:
         if len(cells) >= max(2, self._width) and all(is_number(c, self.options) for c in cells):
             number = len(self.header)
             raise InputError(
-                f"{self.path}: line {number}, the last of its header, holds numbers as the points "
-                "do; write a smaller number, 'header: 0' (for one of two faces below 'upper:')"
+                f"{self.path}: line {number}, the last of its header, already holds numbers; "
+                "write a smaller number, 'header: 0' (for one of two faces below 'upper:')"
             )
 
     def _take(self, part: np.ndarray) -> None:
@@ -242,17 +242,18 @@ class _Reading:
             cell = cell.strip()
             if cell not in known and not is_number(cell, self.options):
                 raise InputError(
-                    f"{self.path}: line {number} holds {cell[:40]!r}, no number as its sidecar "
-                    f"says numbers are written; write 'header: {number}' if the line stands above "
-                    f"the numbers, 'missing: {cell[:20]}' if the word marks a missing cell"
+                    f"{self.path}: line {number} holds {cell[:40]!r}, which is no number by its "
+                    f"sidecar; write 'header: {number}' if the line stands above the numbers, "
+                    f"'missing: {cell[:20]}' if the word marks a missing cell"
                 )
 
     def _wrong_width(self, number: int, line: str) -> InputError:
         found = len(cells_of(line, self.delimiter))
         return InputError(
-            f"{self.path}: line {number} has {found} values, those before have {self._width}: is "
-            f"'delimiter: {self.options.delimiter}' right, and is each row in one line? Mend the "
-            "line, or export the file again with a mark such as nan in each missing cell"
+            f"{self.path}: line {number} has {found} values, earlier lines have {self._width}: "
+            f"is 'delimiter: {self.options.delimiter}' right, and is each row in one line? "
+            "Correct the line, or export the file again with a mark such as nan in each missing "
+            "cell"
         )
 
     def _parse(self, content: str | bytes, width: int) -> np.ndarray:
@@ -277,9 +278,9 @@ class _Reading:
             )
         except (ValueError, pd.errors.ParserError) as error:
             raise InputError(
-                f"{self.path}: its numbers are not written as its sidecar says, delimiter "
-                f"{options.delimiter} and decimal {options.decimal!r} ({error}); mend the sidecar, "
-                "with 'thousands' if their digits are grouped"
+                f"{self.path}: its numbers do not fit its sidecar, delimiter {options.delimiter} "
+                f"and decimal {options.decimal!r} ({error}); correct the sidecar, and write "
+                "'thousands' if digits are grouped"
             ) from error
         return frame.to_numpy()[:, : self._width or width]
 

@@ -84,7 +84,7 @@ def _refuse_images(page, options: ScanOptions, path: Path) -> None:
     if page.bitspersample == 8 and options.unit_z is None:
         raise InputError(
             f"{path}: a grey image of 8 bits, a picture rather than heights; export 32-bit TIFF, "
-            "or write what a grey level is in the sidecar: 'unit_z: um'"
+            "or write the height of a grey level into the sidecar: 'unit_z: um'"
         )
     orientation = page.tags.valueof("Orientation", _UPRIGHT)
     if orientation != _UPRIGHT:

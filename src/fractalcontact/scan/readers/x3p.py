@@ -17,8 +17,8 @@ from ..tables import choose_array
 
 _INDEX = "main.xml"
 _CHANGED = (
-    ": it was changed after it was written, or written with a wrong checksum; it was read as it "
-    "is, so compare it with its source"
+    ": the file was changed, or was written with a wrong checksum; it was read nevertheless, so "
+    "compare it with its source"
 )
 #: Root element of main.xml in ISO 5436-2 of 2000, which R's x3ptools still writes.
 _OLD_ROOT, _ROOT = "ISO5436", "ISO5436_2"
@@ -115,7 +115,7 @@ def _regular(layer, origin: str, stated: dict) -> RawScan:
     heights = layer.z[:: 1 if dy > 0 else -1, :: 1 if dx > 0 else -1]
     heights = heights + layer.placement.offset[2]
     if layer.placement.has_rotation:
-        note = "the file's rotation into global coordinates is left out"
+        note = "the file's rotation into global coordinates is ignored"
         stated["notes"] = (*stated["notes"], note)
     return RawScan(
         np.ascontiguousarray(heights),
