@@ -32,7 +32,9 @@ def npy_bytes():
 )
 def test_members_outside_the_archive_are_refused(tmp_path, name):
     path = pack(tmp_path / "rock.npz", [("z.npy", npy_bytes()), (name, b"1")])
-    with pytest.raises(InputError, match=r"rock\.npz: its member .* points to a path outside the archive"):
+    with pytest.raises(
+        InputError, match=r"rock\.npz: its member .* points to a path outside the archive"
+    ):
         read_scan(path, {"unit": "mm", "spacing": 1})
 
 

@@ -211,7 +211,11 @@ DIGITS = int("9" * 400)
         (("defaults", "resolutions"), [DIGITS], r"resolutions.0: 9{80}\.\.\. is not right; "),
         (("defaults", "fill_holes"), DIGITS, "fill_holes: 9.* is not right; expected rows and col"),
         (("defaults", "loads"), ["5e-324 N"], "loads: '5e-324 N' is out of range"),
-        (("defaults", "loads"), ["1e200 MPa"], r"'1e200 MPa' is out of range, 1e-150 to 1e\+150 MPa"),
+        (
+            ("defaults", "loads"),
+            ["1e200 MPa"],
+            r"'1e200 MPa' is out of range, 1e-150 to 1e\+150 MPa",
+        ),
         (("materials", "concrete", "modulus"), "1e300 GPa", "'1e300 GPa' is out of range"),
     ],
     ids=lambda value: "digits" if value is DIGITS else None,

@@ -75,7 +75,7 @@ class Bounds:
         return Bounds(lower[nodes], upper[nodes])
 
     def on(self, n: int) -> tuple[np.ndarray, np.ndarray]:
-        """Both on each of n nodes, as compiled code reads them; one number takes no memory."""
+        """Both bounds on each of n nodes for compiled code; a scalar takes no memory."""
         return _on_nodes(self.lower, n), _on_nodes(self.upper, n)
 
     def coarser(self, shape: tuple[int, int]) -> "Bounds":

@@ -87,7 +87,7 @@ def draw_radial(axes: Axes, quality: xr.Dataset, faces: Sequence[str]) -> None:
 
 
 def spectrum_entries(quality: xr.Dataset, faces: Mapping[str, str]) -> list[Artist]:
-    """Entries of the legend for what stands in the lower panels."""
+    """Entries of the legend for the lower panels."""
     entries: list[Artist] = [
         mark(color=FACE_COLOURS[face], lw=1, label=words) for face, words in faces.items()
     ]
