@@ -40,7 +40,7 @@ def test_stresses_above_the_threshold_are_in_contact(carpet, tmp_path):
     same = read_contact_map(carpet, OPTIONS, label="film")
     found = read_contact_map(stresses, OPTIONS | COMMAS | {"threshold": 5}, label="film")
     np.testing.assert_array_equal(found["in_contact"], same["in_contact"])
-    with pytest.raises(InputError, match=r"film.csv: .*'threshold: 5', in its sidecar"):
+    with pytest.raises(InputError, match=r"film.csv: .*sidecar, for example 'threshold: 5'"):
         read_contact_map(stresses, OPTIONS | COMMAS, label="film")
     with pytest.raises(InputError, match="no cell lies above the threshold of 50"):
         read_contact_map(stresses, OPTIONS | COMMAS | {"threshold": 50}, label="film")
