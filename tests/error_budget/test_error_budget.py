@@ -341,7 +341,7 @@ def test_counting_falls_as_contacts_grow_more(one):
 def test_the_plan_says_whether_the_accuracy_can_be_had(one):
     _, _, budget, plan = one
     row = plan.set_index(choice="choice").sel(choice="numerical error of the closure")
-    assert "cannot be had at this spacing" in str(row["reason"].values)
+    assert "cannot be reached at this spacing" in str(row["reason"].values)
     assert "asked 1 %" in str(row["reason"].values)
     numerical = budget["relative_error"].sel(quantity="closure", source="numerical")
     refined = np.isfinite(budget["finest_spacing"])
