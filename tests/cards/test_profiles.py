@@ -59,13 +59,13 @@ def test_a_saw_has_the_roughness_of_its_slope_whatever_its_units(tmp_path):
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        ("1,2\n3,4\n", "expected the columns"),
-        ("x,z\n1,2\n2,3\n", "expected the columns"),
+        ("1,2\n3,4\n", "expected their names and units"),
+        ("x,z\n1,2\n2,3\n", "expected their names and units"),
         ("x [mm], z [MPa]\n1,2\n2,3\n", "z"),
-        ("x [mm], z [um]\n1,2\n2,b\n", "other things"),
+        ("x [mm], z [um]\n1,2\n2,b\n", "does not hold two numbers"),
         ("x [mm], z [um]\n1,2\n2,3\n4,4\n", "even steps"),
         ("x [mm], z [um]\n1,2\n2,nan\n3,4\n", "not finite"),
-        ("", "expected the columns"),
+        ("", "expected their names and units"),
     ],
 )
 def test_what_is_no_profile_is_refused_in_a_sentence(tmp_path, capsys, text, words):

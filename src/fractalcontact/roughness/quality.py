@@ -319,7 +319,7 @@ _RANGE = {
 
 
 def _range_end(result, specimen) -> Estimate:
-    """Shortest wavelength of the fractal range, mm, over faces and axes, and what ends it there.
+    """Shortest wavelength of the fractal range, mm, over faces and axes, and its cause.
 
     Points farther apart than the nodes end it too.
     """
