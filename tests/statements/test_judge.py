@@ -281,6 +281,10 @@ def test_nothing_is_asked_of_the_area_where_all_that_touches_yields():
     joint = Joint(yielding, {**SETTINGS, "material": material})
     for check in (
         closure.area_is_linear,
+        closure.area_falls,
+        closure.area_settles,
+        scaling.larger_domains_are_less_dense,
+        scaling.size_effect_follows,
         scaling.area_is_lacunar,
         scaling.estimates_agree,
         scaling.dimension_rises_by_area,

@@ -159,11 +159,13 @@ def area_is_linear(joint: Joint) -> Finding:
     )
 
 
+@of_the_area
 def area_falls(joint: Joint) -> Finding:
     """Contact area against offset, as a power of v."""
     return trend(joint.offsets, joint.area_fraction, joint.offsets > 0, "A_r", rising=False)
 
 
+@of_the_area
 def area_settles(joint: Joint) -> Finding:
     """Range of the contact area beyond the correlation length, with a margin.
 
@@ -209,7 +211,7 @@ def refinement_changes_little(joint: Joint) -> Finding:
     little = {name: int((np.abs(change) <= margin).sum()) for name, change in changes.items()}
     n = int(counts.sum()) - 1
     words = (
-        f"{name} by {100 * change.min():+.0f} to {100 * change.max():+.0f} %, up to "
+        f"{name} by {100 * change.min():+z.0f} to {100 * change.max():+z.0f} %, up to "
         f"{100 * margin:g} % at {loads_of(little[name], n)}"
         for name, change in changes.items()
     )

@@ -153,9 +153,15 @@ def span_finding(delta: Estimate, random: np.ndarray, pressures: np.ndarray, not
         verdict = FAILS
     return Finding(
         verdict,
-        f"by boxes {lower:.2f} to {upper:.2f} up to {pressures[-1]:.3g} MPa",
+        f"by boxes {_of_a_set(lower)} to {_of_a_set(upper)} up to {pressures[-1]:.3g} MPa",
         note,
     )
+
+
+def _of_a_set(dimension: Estimate) -> str:
+    """A dimension with its interval, if it has one."""
+    known = np.isfinite(dimension.width)
+    return f"{dimension:.2f}" if known else f"{dimension.value:.2f} (no interval)"
 
 
 def by_design(joint: Joint) -> str:
@@ -163,12 +169,17 @@ def by_design(joint: Joint) -> str:
     if not np.isfinite(joint.settings["material"]["hardness"]):
         return ""
     largest = joint.states("domains")["fit_max"].values
+    largest = largest[np.isfinite(largest)]
+    full = "; at full yield it is 2 by construction"
+    if not largest.size or largest.min() > largest.max() / 2:
+        return full
     return (
-        f"; as boxes fill, the largest one fitted falls from {np.nanmax(largest):.2g} to "
-        f"{np.nanmin(largest):.2g} mm in this specimen; at full yield it is 2 by construction"
+        f"; as boxes fill, the largest one fitted falls from {largest.max():.2g} to "
+        f"{largest.min():.2g} mm in this specimen{full}"
     )
 
 
+@of_the_area
 @of_a_kind
 def size_effect_follows(joint: Joint, evidence: Evidence) -> Finding:
     """Exponent of corrected A_r/A_0 less that of eq. 6, Delta_sigma - 2, with a margin.
@@ -191,10 +202,11 @@ def size_effect_follows(joint: Joint, evidence: Evidence) -> Finding:
     }
     pressures = np.unique(np.concatenate([one.pressures for one in found.values()]))
     less = ", ".join(f"{one:+z.2f} {words}" for words, one in nearest.items())
+    exponent = evidence.size_exponent("area_exponent")
+    law = f"A_r/A_0 ~ b^x, x = {exponent:z.2f}" if exponent.known else "A_r/A_0 ~ b^x"
     return Finding(
         share(decided.count(HOLDS), len(decided)) if decided else UNDETERMINED,
-        f"A_r/A_0 ~ b^x, x = {evidence.size_exponent('area_exponent'):z.2f}, x less eq. 6's "
-        f"exponent {less}",
+        f"{law}, x less eq. 6's exponent {less}",
         f"{_between(pressures)}, {decided.count(HOLDS)} of {len(decided)} cases (load, estimate) "
         f"that decide agree, on windows within one joint; {margin_words(name)}",
     )
@@ -212,6 +224,7 @@ def _between(pressures: np.ndarray) -> str:
     return f"{' to '.join(ends)} MPa"
 
 
+@of_the_area
 @of_a_kind
 def larger_domains_are_less_dense(joint: Joint, evidence: Evidence) -> Finding:
     """Exponent of corrected A_r/A_0 against the size of sub-windows, with a margin.
