@@ -7,7 +7,7 @@ from stated import COMMAS, MAP
 
 from fractalcontact.core.errors import InputError
 from fractalcontact.domain.measured_map import CELLS, read_contact_map
-from fractalcontact.scan.outline import outline_words
+from fractalcontact.gridding.outline import outline_words
 from fractalcontact.study.sidecar import is_contact_map
 
 OPTIONS = {**MAP, "unit": "mm", "spacing": 0.5}

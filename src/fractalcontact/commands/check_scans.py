@@ -16,13 +16,13 @@ from ..core.errors import InputError
 from ..core.labels import length_words, natural_key, percent, plain, printable
 from ..core.window import face_words, spacing_of, window_sides
 from ..domain.measured_map import read_contact_map
+from ..gridding.outline import outline_words
 from ..mechanics.joint import choose_offsets
 from ..mechanics.states import hardness_of
 from ..roughness.dimension import surface_dimension
 from ..roughness.quality import scan_quality
 from ..roughness.quality_words import overlap_words, suspect_words
 from ..roughness.recommended import beyond_roll_off, dimension_words
-from ..scan.outline import outline_words
 from ..study.checks import check_study, read_scans
 from ..study.configuration import resolve_settings
 from ..study.documents import read_study

@@ -18,9 +18,9 @@ from ..core.errors import InputError
 from ..core.estimate import names_of, rows_of
 from ..core.labels import cf_attrs
 from ..core.units import load as read_load
+from ..gridding.outline import outline_mask, outline_warning
 from ..scan.coordinates import read_coordinates
 from ..scan.options import CONTACT_MAP, WRITING_KEYS, coordinate_files, parse_options
-from ..scan.outline import outline_mask, outline_warning
 from ..scan.read import read_matrix
 from .analysis import DOMAIN_FIELDS, analyse_domains
 from .null_models import null_models
@@ -92,7 +92,7 @@ def read_contact_map(path: Path | str, options: Mapping[str, Any], *, label: str
         the force on the whole map or its nominal pressure, ``cells``: what a cell in contact
         stands for (:data:`CELLS`), else its counts decide, see
         :func:`domain.box_dimension.box_dimension`; ``outline``, see
-        :func:`scan.outline.outline_mask`; ``series``: maps of one name belong together.
+        :func:`gridding.outline.outline_mask`; ``series``: maps of one name belong together.
     label : str
         What it is, in words.
 

@@ -11,6 +11,7 @@ from ..core.errors import InputError
 from ..core.file_names import split_file_name
 from ..gridding.faces import grid_one, grid_pair
 from ..gridding.measured import Measured
+from ..gridding.outline import within_outline
 from .confined import read_confined
 from .draft import OPENING, draft_line
 from .files import is_unchanged, regular_file, sha256
@@ -22,7 +23,6 @@ from .options import (
     of_face,
     parse_options,
 )
-from .outline import within_outline
 from .raw import IncompleteSidecar, RawScan
 
 __all__ = ["measure", "read_faces", "read_matrix", "read_scan"]
