@@ -5,14 +5,14 @@ from collections.abc import Mapping
 import numpy as np
 import xarray as xr
 
-from ..core.claims import claims_of
+from ..core.claims import all_claims, claims_of
 from ..core.directions import slides
 from ..core.estimate import Estimate
 from ..core.fitting import fit_line, slope_error
-from ..core.verdicts import FAILS, HOLDS, UNDETERMINED
+from ..core.verdicts import UNDETERMINED
 from ..roughness.recommended import best_dimension
 from .evidence import evidence_of
-from .findings import Finding, Joint, by_sign
+from .findings import Finding, Joint, beyond_margin, by_sign, margin_words
 from .judge import material_of, table_of
 
 
@@ -82,15 +82,20 @@ def _slope(x: np.ndarray, y: np.ndarray, error: np.ndarray) -> Estimate:
 
 
 def area_falls_more_in_concrete(joints: Mapping[str, Joint]) -> Finding:
-    """Exponents of A_r against v, concrete beside rock."""
+    """Exponents of A_r against v, concrete's less rock's, with a margin."""
     exponents = _by_material(joints, _area_exponent)
-    return _compared(exponents, "A_r ~ v^x", steeper=-1)
+    return _compared(exponents, "area_falls_more_in_concrete", "A_r ~ v^x", rising=False)
 
 
 def contact_localises_more_in_concrete(joints: Mapping[str, Joint]) -> Finding:
-    """Exponents of Morisita's index against v, concrete beside rock."""
-    exponents = _by_material(joints, lambda joint: joint.localisation[0])
-    return _compared(exponents, "Morisita's index ~ v^x", steeper=1)
+    """Exponents of Morisita's index against v, concrete's less rock's, with a margin."""
+    exponents, name = _by_material(joints, _localisation), "contact_localises_more_in_concrete"
+    return _compared(exponents, name, "Morisita's index ~ v^x", rising=True)
+
+
+def _localisation(joint):
+    """Exponent of Morisita's index over v at the reference load."""
+    return joint.localisation[0]
 
 
 def _area_exponent(joint):
@@ -112,16 +117,20 @@ def _by_material(joints, exponent_of):
     return found
 
 
-def _compared(exponents, law, steeper):
-    """Verdict on concrete's exponent beside rock's, by the sign of the paper's claim."""
+def _compared(exponents, name, law, *, rising):
+    """Verdict on concrete's exponent less rock's, whose errors are independent."""
     if exponents.keys() != {"rock", "concrete"}:
         return Finding(UNDETERMINED, "a joint of each material needed")
     rock, concrete = exponents["rock"], exponents["concrete"]
-    words = f"concrete {concrete:.2f}, rock {rock:.2f}"
-    low, high = concrete.low - rock.high, concrete.high - rock.low
-    sure, opposite = (low > 0, high < 0) if steeper > 0 else (high < 0, low > 0)
-    verdict = HOLDS if sure else FAILS if opposite else UNDETERMINED
-    return Finding(verdict, f"{law}, x = {words}")
+    value = concrete.value - rock.value
+    below = np.hypot(concrete.value - concrete.low, rock.high - rock.value)
+    above = np.hypot(concrete.high - concrete.value, rock.value - rock.low)
+    less = Estimate(value, value - below, value + above)
+    return Finding(
+        beyond_margin(less, all_claims()[name].margin, rising=rising),
+        f"{law}, x = concrete {concrete:.2f}, rock {rock:.2f}",
+        f"concrete's less rock's {less:+z.2f}; {margin_words(name)}",
+    )
 
 
 #: Rules by the names of their statements.
