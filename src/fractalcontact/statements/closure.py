@@ -211,7 +211,7 @@ def refinement_changes_little(joint: Joint) -> Finding:
     little = {name: int((np.abs(change) <= margin).sum()) for name, change in changes.items()}
     n = int(counts.sum()) - 1
     words = (
-        f"{name} by {100 * change.min():+z.0f} to {100 * change.max():+z.0f} %, up to "
+        f"{name} by {100 * change.min():+z.0f} to {100 * change.max():+z.0f} %, within "
         f"{100 * margin:g} % at {loads_of(little[name], n)}"
         for name, change in changes.items()
     )
