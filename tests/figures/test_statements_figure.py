@@ -42,6 +42,7 @@ def test_no_row_is_cut_off(atlas):
 def test_figures_of_a_study(atlas_file, atlas, tmp_path):
     names = study_figures_of(paths_of(EXPERIMENT))
     assert names == [
+        "three_exponents",
         "size_effect",
         "resolution_law",
         "contact_geometry",
