@@ -5,7 +5,15 @@ import pandas as pd
 import pytest
 import xarray as xr
 
-from fractalcontact.core.estimate import DIMENSION, EXPONENT, SIZE, Estimate, names_of, rows_of
+from fractalcontact.core.estimate import (
+    DIMENSION,
+    EXPONENT,
+    SIZE,
+    Estimate,
+    OverWindows,
+    names_of,
+    rows_of,
+)
 from fractalcontact.core.limits import CONFIDENCE
 
 SEVERAL = Estimate(
@@ -129,3 +137,10 @@ def test_error_has_two_digits_however_small_or_large():
 )
 def test_an_estimate_in_words(ends, scale, unit, words):
     assert Estimate(*ends, scale=scale).text(unit) == words
+
+
+def test_a_number_over_windows_is_known_whatever_its_interval():
+    assert OverWindows(2.0, 0.01, 500.0).determined
+    assert OverWindows(2.0).determined
+    assert not OverWindows().determined
+    assert OverWindows(2.0, 0.01, 500.0).text("mm3") == "2 [0.01, 500] mm3"

@@ -216,6 +216,16 @@ class Estimate:
         }
 
 
+@dataclass(frozen=True)
+class OverWindows(Estimate):
+    """A number of this window, known whatever its interval, which is one over other windows."""
+
+    @property
+    def determined(self) -> bool:
+        """True if there is a number."""
+        return bool(self.known)
+
+
 def _decimals(value: float, digits: int) -> str:
     """A number to some decimals, never a negative zero."""
     return f"{round(float(value), digits) + 0.0:.{digits}f}"

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import yaml
 
-from .estimate import Estimate, names_of
+from .estimate import Estimate, OverWindows, names_of
 from .subject import Subject
 
 _FILE = Path(__file__).with_suffix(".yaml")
@@ -27,6 +27,8 @@ class Shown:
         Whether suspicious cells of the scans leave it undetermined.
     dimension : bool
         Whether it is a dimension, which its interval determines.
+    over_windows : bool
+        Whether its interval is one over other windows, which leaves the number itself determined.
     summary : str
         Its column in ``summary.csv``, without the unit; empty where it has none.
     page : str
@@ -41,6 +43,7 @@ class Shown:
     budget: str = ""
     by_scan: bool = False
     dimension: bool = False
+    over_windows: bool = False
     summary: str = ""
     page: str = ""
     index: str = ""
@@ -63,7 +66,8 @@ class Shown:
         unit = str(states[self.variable].attrs["units"])
         has_interval = all(end in state for end in names_of(self.variable))
         if has_interval:
-            found = Estimate.read(state, self.variable)
+            kind = OverWindows if self.over_windows else Estimate
+            found = kind.read(state, self.variable)
         else:
             found = Estimate(state[self.variable].item())
         return Value(found, "" if unit == "1" else unit, has_interval)
