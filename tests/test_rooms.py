@@ -20,7 +20,7 @@ FLOORS = (
     ("gridding",),
     ("roughness", "scan"),
     ("domain", "flow", "mechanics", "study"),
-    ("size_effect", "error_budget", "statements"),
+    ("size_effect", "error_budget", "measured", "statements"),
     ("ensemble",),
     ("figures", "pages", "stages"),
     ("cards",),

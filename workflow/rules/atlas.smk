@@ -8,7 +8,8 @@ def stages_of(wildcards):
     """Files of all stages that an atlas of one specimen has."""
     maps = {} if IN_PARTS else MAP_FILES
     sliding = SLIDING_FILES if wildcards.specimen in SLIDING_NAMES else {}
-    return STAGE_FILES | maps | sliding | ensemble_of(wildcards)
+    tests = TESTED_FILES if wildcards.specimen in TESTED_NAMES else {}
+    return STAGE_FILES | maps | sliding | tests | ensemble_of(wildcards)
 
 
 def atlas_inputs():
@@ -20,7 +21,9 @@ def atlas_inputs():
     ensembles = {
         stage: expand(path, specimen=REALISATIONS) for stage, path in ENSEMBLE_FILES.items()
     }
-    return specimens | sliding | (ensembles if REALISATIONS else {})
+    tests = {stage: expand(path, specimen=TESTED_NAMES) for stage, path in TESTED_FILES.items()}
+    optional = (ensembles if REALISATIONS else {}) | (tests if TESTED_NAMES else {})
+    return specimens | sliding | optional
 
 
 # All stages, and what the paper says compared with them.

@@ -19,7 +19,7 @@ from fractalcontact.core.code_digest import Code
 from fractalcontact.core.directions import AUTOMATIC_OFFSETS, slides
 from fractalcontact.core.errors import InputError
 from fractalcontact.core.patterns import alternation
-from fractalcontact.core.stage import ENSEMBLE, EXPERIMENT, GRAINS, JOINT, MAP, SPECIMEN
+from fractalcontact.core.stage import ENSEMBLE, EXPERIMENT, GRAINS, JOINT, MAP, SPECIMEN, TESTED
 from fractalcontact.study import campaign, plan, resources, stages
 from fractalcontact.study.checks import resolve_study
 from fractalcontact.study.configuration import resolve_embedded, resolve_roll_off
@@ -155,9 +155,17 @@ def digests_of(scan):
     return {str(path): digest_of(str(path)) for path in scan.files}
 
 
+def test_digests(specimen):
+    """The same of the laboratory tests of a specimen."""
+    return {test.file: digest_of(test.file) for test in SETTINGS[specimen].measured}
+
+
 def scan_digests():
-    """The same of all scan files of the study."""
-    return {path: digest for scan in SCANS.values() for path, digest in digests_of(scan).items()}
+    """The same of all scan files and tests of the study."""
+    tests = {path: digest for name in SETTINGS for path, digest in test_digests(name).items()}
+    return tests | {
+        path: digest for scan in SCANS.values() for path, digest in digests_of(scan).items()
+    }
 
 
 # Any name without a slash: to look for each file among ten thousand names takes minutes. Whoever
@@ -211,6 +219,10 @@ REALISATIONS = {
 }
 
 
+#: Specimens with laboratory tests.
+TESTED_NAMES = [name for name in SPECIMENS if SETTINGS[name].measured]
+
+
 #: Whether the atlas has a file a specimen: then nothing asks for all that was made of each of them.
 IN_PARTS = campaign.in_parts(config, SPECIMENS)
 
@@ -241,11 +253,12 @@ def calling(stage):
     }
 
 
-#: Files of the stages that every specimen has, of those that only joints that slide have, and of
-#: those of an ensemble.
+#: Files of the stages that every specimen has, of those that only joints that slide have, of those
+#: of an ensemble, and of laboratory tests.
 STAGE_FILES = files_of(stages.paths_of(SPECIMEN))
 SLIDING_FILES = files_of(stages.paths_of(JOINT))
 ENSEMBLE_FILES = files_of(stages.paths_of(ENSEMBLE))
+TESTED_FILES = files_of(stages.paths_of(TESTED))
 
 
 def ensemble_of(wildcards):

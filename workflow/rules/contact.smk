@@ -159,6 +159,35 @@ use rule strength as size_laws_against_plane with:
         "{wildcards.specimen}: size laws and the paper's statements"
 
 
+def strength_of(wildcards):
+    """Strength of a joint that slides; none of a surface against a plane."""
+    sliding = wildcards.specimen in SLIDING_NAMES
+    return {"strength": SLIDING_FILES["strength"]} if sliding else {}
+
+
+# Laboratory tests beside the computed curves. Little is solved: another hardness, or what has
+# crushed under the largest pressure of a test.
+rule measured:
+    input:
+        unpack(strength_of),
+        **inputs_of("measured"),
+    output:
+        **outputs_of("measured"),
+    log:
+        f"{RESULTS}/logs/measured/{{specimen}}.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/measured/{{specimen}}.tsv"
+    resources:
+        **asked_for("analysis"),
+    params:
+        **calling("measured"),
+        digests=lambda wc: test_digests(known(wc)),
+    message:
+        "{wildcards.specimen}: laboratory tests beside computed curves"
+    script:
+        "../scripts/stage.py"
+
+
 # A measured map of contact goes straight to the analysis of domains.
 rule contact_map:
     input:

@@ -6,7 +6,7 @@ gives are written to the outputs of their names.
 
 from importlib import import_module
 
-from _job import job
+from _job import job, require_unchanged
 
 from fractalcontact.core import netcdf, settings
 
@@ -16,6 +16,7 @@ module, _, name = arguments.pop("function").partition(":")
 function = getattr(import_module(module), name)
 for key in ("code", "peers"):  # they only say when it is to be made again
     arguments.pop(key, None)
+digests = arguments.pop("digests", {})
 arguments |= settings.arguments(function, arguments.pop("settings", {}))
 arguments |= arguments.pop("arguments", {})
 
@@ -24,6 +25,7 @@ with job(snakemake) as log:
         one = isinstance(paths, str)
         arguments[key] = netcdf.read(paths) if one else [netcdf.read(path) for path in paths]
     result = function(**arguments)
+    require_unchanged(digests)
     made = dict(snakemake.output.items()) or {"": snakemake.output[0]}
     for stage, path in made.items():
         dataset = result[stage] if isinstance(result, dict) else result

@@ -6,7 +6,7 @@ N, pressures in MPa, angles in degrees, and None stands for "auto".
 
 from collections.abc import Mapping
 from dataclasses import dataclass, fields, is_dataclass
-from typing import Any, TypeVar, get_type_hints
+from typing import Any, TypeVar, get_args, get_origin, get_type_hints
 
 #: Value and kind, "force" (N) or "pressure" (MPa).
 Load = tuple[float, str]
@@ -113,6 +113,60 @@ class StrengthSettings:
 
 
 @dataclass(frozen=True)
+class MeasuredTest:
+    """A laboratory test; what has no meaning for its kind is NaN or empty.
+
+    Attributes
+    ----------
+    kind : {"closure", "flow", "dilatancy", "shear", "strength"}
+    file : str
+    columns : dict of str to str
+        Heading in the file by column; that of the curve's axis comes first.
+    branch : {"load", "unload", "reload", ""}
+    cycle : int
+    way : {"along", "across", ""}
+        Of the flow.
+    direction : str
+        Of sliding.
+    seat, pressure, largest_pressure : float
+        That the displacement counts from, that is held, and that the joint has carried, MPa.
+    compliance : float
+        Of the rock between the gauge points, mm/MPa.
+    error : float
+        Half-width of the interval of a reading, 95 %, mm or MPa.
+    calibrate : {"modulus", "hardness", ""}
+    """
+
+    kind: str
+    file: str
+    columns: dict[str, str]
+    branch: str
+    cycle: int
+    way: str
+    direction: str
+    seat: float
+    pressure: float
+    largest_pressure: float
+    compliance: float
+    error: float
+    calibrate: str
+
+    @property
+    def label(self) -> str:
+        """What is measured, among the tests of a kind: "load, cycle 1"."""
+        held = f"{self.pressure:g} MPa" if self.pressure > 0 else ""
+        of_cycle = f"{self.branch}, cycle {self.cycle}" if self.branch else ""
+        return ", ".join(filter(None, (self.way, of_cycle, self.direction, held)))
+
+
+@dataclass(frozen=True)
+class MeasuredSettings(JointSettings):
+    """Settings of the comparison with laboratory tests."""
+
+    measured: list[MeasuredTest]
+
+
+@dataclass(frozen=True)
 class ReportSettings(StrengthSettings):
     """Settings of the report: strength, size laws, and what is judged of a specimen."""
 
@@ -125,7 +179,7 @@ class ReportSettings(StrengthSettings):
 
 
 @dataclass(frozen=True)
-class Settings(SpecimenSettings, StateSettings, WindowSettings, ReportSettings):
+class Settings(SpecimenSettings, StateSettings, WindowSettings, MeasuredSettings, ReportSettings):
     """All settings of a specimen, as the atlas keeps them."""
 
     material: Material
@@ -153,10 +207,17 @@ def read(section: type[S], stated: Mapping[str, Any]) -> S:
     types = get_type_hints(section)
     return section(
         **{
-            key: read(types[key], stated[key]) if is_dataclass(types[key]) else stated[key]
+            key: _read(types[key], stated[key])
             for key in (field.name for field in fields(section))  # type: ignore[arg-type]
         }
     )
+
+
+def _read(kind: Any, value: Any) -> Any:
+    """A value, or each of a list, as its class where it has one."""
+    if get_origin(kind) is list and is_dataclass(of := get_args(kind)[0]):
+        return [read(of, one) for one in value]  # type: ignore[arg-type]
+    return read(kind, value) if is_dataclass(kind) else value
 
 
 def arguments(function: object, stated: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:

@@ -14,6 +14,7 @@ from ..scan.options import CONTACT_MAP, coordinate_files
 from .configuration import resolve_embedded, resolve_roll_off, resolve_settings, solver_settings
 from .figure_list import figures_of
 from .idle_keys import refuse_idle_keys
+from .measured import require_files, test_files
 from .scan_files import ScanFiles
 from .scan_groups import list_grouped
 from .schema import nearest, shortened, validate
@@ -89,12 +90,14 @@ def resolve_study(
                 labels[name] = own.get("label", name)
             else:
                 settings[name] = resolve_settings(config, name, own, source, scans[name])
+                require_files(settings[name].measured)
             options[name] = keys
     if refused and not leave_out:
         raise refused[min(refused)]
     scans = {name: scan for name, scan in scans.items() if name in options}
     for name in config.get("embedded", {}):
         settings[name] = resolve_settings(config, name, {}, source)
+        require_files(settings[name].measured)
     return Study(scans, settings, options, labels, solver_settings(config, source), refused)
 
 
@@ -130,6 +133,7 @@ def read_scans(
             with_coordinates(scans, {name: said[0]})
             stated[name] = said
     scans = with_coordinates(scans, {name: keys for name, (keys, _) in stated.items()})
+    scans = without_tests(scans, {name: own for name, (_, own) in stated.items()}, config)
     return scans, {name: stated[name] for name in stated if name in scans}, refused
 
 
@@ -186,6 +190,28 @@ def with_coordinates(
                 raise InputError(f"{scan.said_in}: {key}: no file {path.name} beside it")
         found[name] = replace(scan, coordinates=tuple(files.values()))
     return {name: scan for name, scan in found.items() if name not in taken}
+
+
+def without_tests(
+    scans: Mapping[str, ScanFiles], own: Mapping[str, Mapping], config: Mapping
+) -> dict[str, ScanFiles]:
+    """Scans without the files of laboratory tests, which sidecars or the study name.
+
+    Parameters
+    ----------
+    scans : mapping of str to ScanFiles
+        Every file that no sidecar has claimed so far.
+    own : mapping of str to mapping
+        Settings of their sidecars.
+    config : mapping
+        A study that passed the schema.
+    """
+    files: set[Path] = set()
+    for name, stated in {**dict.fromkeys(config.get("embedded", {}), {}), **own}.items():
+        folder = scans[name].lower.parent if name in scans else Path(config.get("scans") or ".")
+        for said in (stated, config.get("specimens", {}).get(name, {})):
+            files |= {*test_files(said.get("measured", {}), folder)}
+    return {name: scan for name, scan in scans.items() if scan.lower not in files}
 
 
 def check_study(config: Mapping, schema: Mapping, source: str) -> None:

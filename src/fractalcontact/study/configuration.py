@@ -2,12 +2,14 @@
 
 import math
 from collections.abc import Mapping
+from pathlib import Path
 
 from ..core.directions import slides
 from ..core.errors import InputError
 from ..core.settings import Material, Settings, Solver, SpecimenSettings
 from ..core.tolerance import ACCURACY, tolerance
 from ..core.units import load, quantity, share
+from .measured import resolve_tests
 from .scan_files import ScanFiles
 from .schema import nearest
 from .selection import BESIDE_SURFACE, is_capped_variant
@@ -86,6 +88,11 @@ def resolve_settings(
         surface_range=stated.range("surface_range"),
         box_range=stated.range("box_range"),
         scaling_range=stated.range("scaling_range"),
+        measured=resolve_tests(
+            stated.get("measured", {}),
+            stated.where("measured"),
+            scan.lower.parent if scan else Path(config.get("scans") or "."),
+        ),
     )
     _refuse_contradictions(settings, stated.where)
     return settings

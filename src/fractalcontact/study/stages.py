@@ -18,7 +18,7 @@ from typing import Any
 
 from ..core import settings
 from ..core.packages import CHAIN, SOURCES, installed
-from ..core.stage import ENSEMBLE, GRAINS, JOINT, MAP, SPECIMEN, STUDY, Stage
+from ..core.stage import ENSEMBLE, GRAINS, JOINT, MAP, SPECIMEN, STUDY, TESTED, Stage
 
 _SPECIMEN_STAGES = "fractalcontact.stages.specimen:specimen_stages"
 _STATE_STAGES = "fractalcontact.stages.states:state_stages"
@@ -107,6 +107,13 @@ _TABLE = (
     ),
     _of_report("windows", "closure, roughness and strength of sub-windows against their size"),
     _of_report("strength", "dilatancy and friction angles, shear strength", JOINT),
+    Stage(
+        "measured",
+        "laboratory tests beside computed closure, flow, dilatancy and strength",
+        TESTED,
+        "fractalcontact.measured.stage:measured_stage",
+        ("specimens", "joints", "closure", "dilatancy", "error_budget", "flow"),
+    ),
     Stage(
         "contact_maps",
         "measured contact maps, one group per map",

@@ -1,0 +1,1 @@
+"""Laboratory tests of a joint beside its computed curves."""

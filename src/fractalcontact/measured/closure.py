@@ -1,0 +1,234 @@
+"""Closure tests beside computed closure: from one datum, by the same laws, with one constant."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from scipy.interpolate import PchipInterpolator
+
+from ..core.errors import InputError
+from ..core.estimate import NO_ESTIMATE, Estimate
+from ..core.limits import SEATED_SPAN
+from ..core.settings import MeasuredTest
+from ..mechanics.closure_laws import fit_hyperbola, fit_semi_logarithmic
+from .calibration import Calibration, fit_factor
+from .computed import Joint
+from .curve import Curve, ratio
+
+#: How the computed curve beside a test came about.
+COMPUTED, FITTED, PREDICTED = "computed", "fitted", "predicted"
+#: Hardnesses that are solved to fit one, as factors of that stated.
+_HARDNESSES = (1 / 3, 3**-0.5, 1.0, 3**0.5, 3.0)
+
+_PARAMETERS = {
+    "k_ni": ("MPa/mm", "initial normal stiffness k_ni of the hyperbola"),
+    "v_m": ("mm", "largest closure v_m of the hyperbola"),
+    "chi": ("mm", "closure per e-fold of pressure chi"),
+}
+#: Numbers of a closure test: unit, long name.
+OF_CLOSURE = {
+    **{
+        f"closure_{name}_{of}": ("1" if of == "ratio" else unit, f"{words}, {of}")
+        for name, (unit, words) in _PARAMETERS.items()
+        for of in ("measured", "computed", "ratio")
+    },
+    "closure_datum": ("MPa", "pressure from which both closures count"),
+    "closure_largest": ("MPa", "pressure that the joint had carried before"),
+    "closure_rock": ("mm/MPa", "displacement of the rock that was taken off"),
+    "closure_status": ("1", "how the calibrated curve came about: computed, fitted or predicted"),
+    "closure_ratio_calibrated": ("1", "calibrated over measured closure at the last state"),
+}
+#: The calibrated constant: unit, long name.
+OF_CALIBRATION = {
+    "calibrated_constant": ("1", "constant that is fitted to a test; empty without"),
+    "calibrated_test": ("1", "test that it is fitted to"),
+    "calibrated_value": ("MPa", "constant as fitted"),
+    "calibrated_factor": ("1", "constant as fitted over that stated"),
+    "calibration_reason": ("1", "why there is none, or what to know of it"),
+}
+
+
+def compare_closure(
+    joint: Joint, tests: Sequence[MeasuredTest], readings: Sequence[Curve]
+) -> tuple[list[dict[str, Any]], dict[str, Any]]:
+    """Closure tests of a joint beside its computed closure.
+
+    Parameters
+    ----------
+    joint : Joint
+    tests : sequence of MeasuredTest
+    readings : sequence of Curve
+        Of each.
+
+    Returns
+    -------
+    rows : list of dict
+        Of each test: ``readings``, ``laid`` (on the axis of the stage ``closure``), ``at``,
+        ``measured``, ``computed``, ``ratio`` and :data:`OF_CLOSURE`.
+    calibration : dict
+        :data:`OF_CALIBRATION`.
+
+    Raises
+    ------
+    InputError
+        If a closure exceeds the relief of the faces, or no computed state lies within a test.
+    NotConverged
+    """
+    for test, one in zip(tests, readings, strict=True):
+        if (closed := float(np.ptp(one.y))) > joint.relief:
+            raise InputError(
+                f"{test.file}: the joint closes by {closed:.3g} mm, more than the relief of its "
+                f"faces, {joint.relief:.3g} mm; check the unit of the displacement"
+            )
+    calibrated = _Calibrated(joint, tests, readings)
+    rows = [
+        _row(joint, test, one, calibrated) for test, one in zip(tests, readings, strict=True)
+    ]
+    return rows, calibrated.described()
+
+
+def largest_of(test: MeasuredTest, readings: Curve) -> float:
+    """Pressure that a joint has carried, MPa: as stated, else the largest reading."""
+    stated = test.largest_pressure
+    return max(stated, readings.x[-1]) if np.isfinite(stated) else float(readings.x[-1])
+
+
+class _Calibrated:
+    """The constant that one of the tests calibrates, and closures with it."""
+
+    def __init__(self, joint, tests, readings):
+        self.joint, self.test = joint, next((test for test in tests if test.calibrate), None)
+        self.found = Calibration(NO_ESTIMATE)
+        if self.test is None:
+            return
+        one = readings[tests.index(self.test)]
+        if self.test.calibrate == "hardness" and not np.isfinite(joint.hardness):
+            raise InputError(
+                f"{self.test.file}: 'calibrate: hardness', but the joint is elastic; state a "
+                "hardness in the material, or calibrate the modulus"
+            )
+        from_datum = Curve(*(part[one.x >= self.test.seat] for part in (one.x, one.y, one.error)))
+        family = self._ladder(one) if self.test.calibrate == "hardness" else self._scaled(one)
+        largest = max(_HARDNESSES) if self.test.calibrate == "hardness" else 4.0
+        self.found = fit_factor(from_datum, family, largest)
+
+    @property
+    def factor(self) -> Estimate:
+        return self.found.factor
+
+    def at(self, test: MeasuredTest, largest: float, factor: float) -> Curve:
+        """Computed closure on the branch of a test at a factor of the constant."""
+        if self.test.calibrate == "hardness":
+            return self.joint.with_hardness(test, largest, factor * self.joint.hardness)
+        return self.joint.on_branch(test, largest, factor)
+
+    def _scaled(self, readings):
+        largest = largest_of(self.test, readings)
+        return lambda factor: self.joint.on_branch(self.test, largest, factor)
+
+    def _ladder(self, readings):
+        """Closures between those at a few hardnesses, over the logarithm of the hardness."""
+        largest = largest_of(self.test, readings)
+        solved = [self.at(self.test, largest, factor) for factor in _HARDNESSES]
+        curves = PchipInterpolator(np.log(_HARDNESSES), np.array([one.y for one in solved]))
+        first = solved[0]
+        return lambda factor: Curve(first.x, curves(np.log(factor)), first.error)
+
+    def described(self) -> dict[str, Any]:
+        """:data:`OF_CALIBRATION`."""
+        constant = self.test.calibrate if self.test else ""
+        settings = self.joint.loading.settings.material
+        stated = self.joint.hardness if constant == "hardness" else settings.e_star
+        reason = self.found.reason
+        if constant == "modulus" and not reason:
+            reason = "the value is E*"
+            if np.isfinite(self.joint.hardness):
+                reason += "; the hardness is multiplied by the same factor"
+        return {
+            "calibrated_constant": constant,
+            "calibrated_test": self.test.label if self.test else "",
+            "calibrated_value": self.factor.mapped(lambda one: one * stated),
+            "calibrated_factor": self.factor,
+            "calibration_reason": reason,
+        }
+
+
+def _row(
+    joint: Joint, test: MeasuredTest, readings: Curve, calibrated: _Calibrated
+) -> dict[str, Any]:
+    """One test beside the computed closure on its branch."""
+    largest = largest_of(test, readings)
+    curve = joint.on_branch(test, largest)
+    datum = max(test.seat, curve.x[0] if curve.x.size else np.nan, readings.x[0])
+    measured, computed = readings.since(datum), curve.since(datum)
+    inside = (computed.x > datum) & (computed.x <= readings.x[-1] * (1 + 1e-9))
+    at = computed.x[inside]
+    if not at.size:
+        raise InputError(
+            f"{test.file}: no computed state lies between its datum of {datum:.3g} MPa and "
+            f"{readings.x[-1]:.3g} MPa; add loads to the study"
+        )
+    y, error = computed.y[inside], computed.error[inside]
+    of_computed, of_measured = Estimate(y, y - error, y + error), measured.at(at)
+    span = Curve(*(part[computed.x <= readings.x[-1]] for part in _parts(computed)))
+    row = {
+        "readings": readings,
+        "laid": readings.y - readings.at(datum).value + _datum_closure(joint, datum),
+        "at": at,
+        "measured": of_measured,
+        "computed": of_computed,
+        "ratio": ratio(of_computed, of_measured),
+        "closure_datum": datum,
+        "closure_largest": largest,
+        "closure_rock": test.compliance,
+        "closure_status": COMPUTED,
+        "closure_ratio_calibrated": NO_ESTIMATE,
+    }
+    row |= _laws(measured, span, datum)
+    if calibrated.factor.known:
+        row["closure_status"] = FITTED if test is calibrated.test else PREDICTED
+        row["closure_ratio_calibrated"] = _with_constant(calibrated, test, largest, datum, measured)
+    return row
+
+
+def _parts(curve: Curve):
+    return curve.x, curve.y, curve.error
+
+
+def _datum_closure(joint: Joint, datum: float) -> float:
+    """Closure on loading at a datum, on the axis of the stage ``closure``: from its seat on."""
+    return float(joint.curve.at(datum).value - joint.seat_closure)
+
+
+def _with_constant(calibrated, test, largest, datum, measured) -> Estimate:
+    """Calibrated over measured closure at the largest pressure of the test.
+
+    The error holds the interval of the constant, of the computed closure and of the readings.
+    """
+    top = measured.x[-1]
+    value, low, high = (
+        calibrated.at(test, largest, factor).since(datum).at(top)
+        for factor in calibrated.factor.ends
+    )
+    apart = np.nanmax(np.abs([low.value - value.value, high.value - value.value]))
+    half = np.hypot(apart, value.high - value.value)
+    computed = Estimate(value.value, value.value - half, value.value + half)
+    return ratio(computed, measured.at(top))
+
+
+def _laws(measured: Curve, computed: Curve, datum: float) -> Mapping[str, Estimate]:
+    """Parameters of both laws, fitted to both curves over the same pressures."""
+    found: dict[str, dict[str, Estimate]] = {}
+    for name, curve in (("measured", measured), ("computed", computed)):
+        fitted = (curve.x <= SEATED_SPAN * datum) & (curve.y > 0)
+        bent = fit_hyperbola(curve.x[fitted], curve.y[fitted])
+        logarithm = fit_semi_logarithmic(curve.x[fitted], curve.y[fitted])
+        found[name] = {"k_ni": bent.k_ni, "v_m": bent.w_m, "chi": logarithm.b}
+    return {
+        f"closure_{parameter}_{of}": value
+        for parameter in _PARAMETERS
+        for of, value in (
+            *((name, found[name][parameter]) for name in found),
+            ("ratio", ratio(found["computed"][parameter], found["measured"][parameter])),
+        )
+    }

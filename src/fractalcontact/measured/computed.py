@@ -1,0 +1,127 @@
+"""Computed closure of a joint on the branch of a test, and with other constants."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import xarray as xr
+
+from roughcontact.contact.path import LOAD, load_path
+from roughcontact.errors import NotConverged
+
+from ..core.reported import Reported
+from ..core.settings import MeasuredSettings, MeasuredTest
+from ..mechanics.closure import bulk_settlement
+from ..mechanics.joint import prefractal
+from ..mechanics.loading import JointLoading
+from .curve import Curve
+
+#: States of a branch that is solved, evenly over the logarithm of the pressure.
+_STATES = 8
+
+
+@dataclass(frozen=True, eq=False)
+class Joint:
+    """The joint at its reported offset: loading as it was solved, and what other branches need.
+
+    ``loading`` is at that offset alone; ``curve`` is the interface closure, mm, of resolved states
+    on loading over the nominal pressure, MPa; ``seat_closure`` that at the seat of the study.
+    """
+
+    loading: JointLoading[MeasuredSettings]
+    factor: int
+    curve: Curve
+    seat_closure: float
+
+    @classmethod
+    def of(
+        cls, loading: JointLoading[MeasuredSettings], closure: xr.Dataset, budget: xr.Dataset
+    ) -> "Joint":
+        """The joint of a closure stage and its error budget.
+
+        The error of a closure between two pressures is that of the separation at both, for this
+        surface: no sampling error enters, the window stands for the joint that was tested.
+        """
+        reported = Reported.read(closure)
+        states = reported.states(closure)
+        total = budget["total"].sel(quantity="separation").values
+        error = np.fmax(total, states["separation_error"].values)
+        resolved = states["interface_closure"].where(states["resolved"]).values
+        curve = Curve.of(states["nominal_pressure"].values, resolved, error)
+        seat = (states["interface_closure"] - states["seated_closure"]).values
+        seat = seat[np.isfinite(seat)]
+        at_seat = float(seat[0]) if seat.size else np.nan
+        return cls(loading.at_map_offset(), reported.resolution, curve, at_seat)
+
+    @property
+    def hardness(self) -> float:
+        """H, MPa, or infinity."""
+        return float(self.loading.solving["hardness"])
+
+    @property
+    def relief(self) -> float:
+        """Range of the composite topography, mm: no closure is larger."""
+        return float(np.ptp(self._composite()))
+
+    def on_branch(self, test: MeasuredTest, largest: float, modulus: float = 1.0) -> Curve:
+        """Interface closure on the branch of a test, with the modulus and H multiplied.
+
+        In a half-space all pressures scale with E*, where the hardness does too.
+
+        Parameters
+        ----------
+        test : MeasuredTest
+        largest : float
+            Pressure that the joint has carried before, MPa: what has crushed under it stays so.
+        modulus : float, optional
+            Factor of E* and H.
+
+        Raises
+        ------
+        NotConverged
+            If a state on unloading could not be verified.
+        """
+        curve = self.curve
+        if test.branch != LOAD and np.isfinite(self.hardness):
+            lightest = max(test.seat / modulus, curve.x[0])
+            curve = self.solved(test, lightest, largest / modulus, self.hardness)
+        return replace(curve, x=curve.x * modulus)
+
+    def with_hardness(self, test: MeasuredTest, largest: float, hardness: float) -> Curve:
+        """Interface closure on the branch of a test at another hardness, MPa; solved anew.
+
+        Raises
+        ------
+        NotConverged
+        """
+        lightest = max(test.seat, self.curve.x[0])
+        return self.solved(test, lightest, largest, hardness)
+
+    def solved(
+        self, test: MeasuredTest, lightest: float, largest: float, hardness: float
+    ) -> Curve:
+        """Interface closure on loading up to a pressure or, after it, on unloading from there."""
+        composite, area = self._composite(), self.loading.area
+        space = self.loading.half_space(composite.shape, self.factor)
+        pressure = np.geomspace(lightest, largest, _STATES)
+        up = pressure if test.branch == LOAD else pressure[-1:]
+        down = [] if test.branch == LOAD else pressure[-2::-1]
+        forces = [*(up * area), *(np.asarray(down) * area)]
+        try:
+            path = load_path(
+                composite, space, forces=forces, hardness=hardness, rtol=self.loading.solver.rtol
+            )
+        except NotConverged as error:
+            name = self.loading.specimen.attrs["name"]
+            error.add_note(f"specimen {name}, test '{test.label}' at H = {hardness:g} MPa")
+            raise
+        sides = np.multiply(space.shape, space.spacing)
+        force = np.array([state.force for state in path])
+        closure = np.array([state.closure for state in path])
+        closure -= bulk_settlement(force, space.modulus, *sides)
+        # Between the loads of the study, and beyond them, the grid is as coarse as there.
+        error = np.interp(np.log(force / area), np.log(self.curve.x), self.curve.error)
+        return Curve.of(force / area, closure, error)
+
+    def _composite(self) -> np.ndarray:
+        (cells,) = self.loading.cells
+        return prefractal(self.loading.composite(int(cells)), self.factor)

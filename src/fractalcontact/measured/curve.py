@@ -1,0 +1,96 @@
+"""Curves with errors, measured or computed, and their ratio."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.interpolate import PchipInterpolator
+
+from ..core.estimate import Estimate
+from ..core.intervals import t_quantile
+
+#: Points that a curve needs, and readings that their scatter is estimated from.
+MIN_POINTS, MIN_READINGS = 2, 5
+_ROUNDING = 1e-9
+
+
+@dataclass(frozen=True, eq=False)
+class Curve:
+    """Values ``y`` (n,) over ascending ``x`` (n,), with the half-widths of their intervals.
+
+    ``log_x`` says that it is interpolated over the logarithm of x: those over a pressure are.
+    """
+
+    x: np.ndarray
+    y: np.ndarray
+    error: np.ndarray
+    log_x: bool = True
+
+    @classmethod
+    def of(cls, x, y, error, *, log_x: bool = True) -> "Curve":
+        """Curve of those points that are known; an unknown error is none."""
+        x, y, error = (np.asarray(one, float) for one in np.broadcast_arrays(x, y, error))
+        known = np.isfinite(x) & np.isfinite(y) & ((x > 0) | (not log_x))
+        order = np.argsort(x[known], kind="stable")
+        return cls(x[known][order], y[known][order], np.nan_to_num(error[known][order]), log_x)
+
+    def at(self, x: np.ndarray | float) -> Estimate:
+        """Values between the points, NaN outside; the error is the larger of those beside."""
+        x = np.asarray(x, float)
+        if self.x.size < MIN_POINTS:
+            return Estimate(*(np.full(x.shape, np.nan) for _ in range(3)))
+        places, (knots, first) = self._scale(x), np.unique(self._scale(self.x), return_index=True)
+        for end in (knots[0], knots[-1]):  # the same pressure, but for rounding
+            places = np.where(np.isclose(places, end, rtol=0, atol=_ROUNDING), end, places)
+        y = PchipInterpolator(knots, self.y[first], extrapolate=False)(places)
+        index = np.clip(np.searchsorted(self.x, x), 1, self.x.size - 1)
+        error = np.maximum(self.error[index - 1], self.error[index])
+        return Estimate(y, y - error, y + error)
+
+    def since(self, x: float) -> "Curve":
+        """The curve from a point on, its values counted from there; both ends are uncertain."""
+        start = self.at(x)
+        error = np.hypot(self.error, start.high - start.value)
+        beyond = self.x >= x * (1 - _ROUNDING)
+        return Curve(
+            self.x[beyond], (self.y - start.value)[beyond], error[beyond], log_x=self.log_x
+        )
+
+    def _scale(self, x: np.ndarray) -> np.ndarray:
+        return np.log(x) if self.log_x else x
+
+
+def scatter(x: np.ndarray, y: np.ndarray) -> float:
+    """Half-width of the interval of one reading, from what neighbours leave unexplained.
+
+    Each reading is compared with the straight line through those on both sides (Gasser, Sroka &
+    Jennen-Steinmetz, Biometrika 73 (1986) 625).
+
+    Parameters
+    ----------
+    x, y : (n,) ndarray
+        x ascending; equal ones are passed over.
+    """
+    left, right = x[1:-1] - x[:-2], x[2:] - x[1:-1]
+    span = left + right
+    apart = span > 0
+    if y.size < MIN_READINGS or not apart.any():
+        return 0.0
+    left, right = left[apart] / span[apart], right[apart] / span[apart]
+    residual = right * y[:-2][apart] + left * y[2:][apart] - y[1:-1][apart]
+    variance = np.mean(residual**2 / (1 + left**2 + right**2))
+    return float(t_quantile(apart.sum()) * np.sqrt(variance))
+
+
+def ratio(first: Estimate, second: Estimate) -> Estimate:
+    """Ratio of two positive quantities; the errors of their logarithms add up by squares."""
+    with np.errstate(all="ignore"):
+        value = np.where((first.value > 0) & (second.value > 0), first.value / second.value, np.nan)
+        low, high = (
+            np.hypot(np.log(a / first.value), np.log(b / second.value))
+            for a, b in (
+                (np.maximum(first.low, 0), second.high),
+                (first.high, np.maximum(second.low, 0)),
+            )
+        )
+        ends = value * np.exp(-low), np.where(np.isfinite(high), value * np.exp(high), np.inf)
+    return Estimate(value, *ends)

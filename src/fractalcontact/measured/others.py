@@ -1,0 +1,112 @@
+"""Computed flow, dilatancy and strength under the conditions of a test."""
+
+from collections.abc import Mapping
+
+import numpy as np
+import xarray as xr
+
+from ..core.errors import InputError
+from ..core.reported import Reported
+from ..core.settings import MeasuredTest
+from .curve import Curve
+
+#: Pressures this near to each other, as a fraction, are one.
+_NEAR = 0.01
+
+
+def computed_curve(
+    test: MeasuredTest, stages: Mapping[str, xr.Dataset | None], reported: Reported
+) -> Curve:
+    """Computed curve of a test that is not of closure.
+
+    Parameters
+    ----------
+    test : MeasuredTest
+    stages : mapping of str to xr.Dataset
+        ``flow``, ``dilatancy`` and ``strength``, the last None of what does not slide.
+    reported : Reported
+
+    Raises
+    ------
+    InputError
+        If the direction or the pressure was not computed, or no strength without a friction angle.
+    """
+    if test.kind == "flow":
+        return _flow(test, stages["flow"], reported)
+    dilatancy, strength = stages["dilatancy"], stages["strength"]
+    if strength is None:
+        raise InputError(f"{test.file}: a surface against a plane does not slide; remove the test")
+    known = [str(one) for one in strength["contact_direction"].values]
+    if test.direction not in known:
+        raise InputError(
+            f"{test.file}: sliding towards {test.direction} was not computed, only towards "
+            f"{', '.join(known)}; add it to 'contact_directions'"
+        )
+    if test.kind == "dilatancy":
+        along = dilatancy.sel(contact_direction=test.direction)
+        curve = _under(test, along, "elastic_dilatancy", "offset_on_grid")
+        # A test counts its dilation from where sliding begins, under load already.
+        return curve.since(0.0) if curve.x.size and curve.x[0] == 0 else curve
+    along = strength.sel(contact_direction=test.direction)
+    if test.kind == "shear":
+        valid = along["shear_strength_valid"].astype(bool)
+        curve = _under(test, along.where(valid), "shear_strength", "midpoint")
+    else:
+        valid = along["peak_strength_valid"].astype(bool)
+        peaks = along["peak_strength"].where(valid)
+        pressure = along["nominal_pressure"].values
+        curve = Curve.of(pressure, peaks.values, along["peak_strength_error"].values)
+    if not curve.x.size:
+        raise InputError(
+            f"{test.file}: no shear strength was computed; state 'basic_friction_angle' in the "
+            "material, or heavier loads where all angles were truncated"
+        )
+    return curve
+
+
+def _flow(test: MeasuredTest, flow: xr.Dataset | None, reported: Reported) -> Curve:
+    assert flow is not None
+    states = reported.states(flow)
+    at = states.sel(branch=test.branch)
+    name = f"transmissivity_{test.way}"
+    error = np.hypot(
+        *(
+            np.nan_to_num(states[f"transmissivity_{of}_error_{test.way}"].values)
+            for of in ("grid", "separation")
+        )
+    )
+    values = at[f"branch_{name}"].where(at[f"branch_{name}"] > 0).values
+    curve = Curve.of(states["nominal_pressure"].values, values, error)
+    if not curve.x.size:
+        raise InputError(
+            f"{test.file}: no transmissivity {test.way} the sliding was computed on the branch "
+            f"'{test.branch}'; solve more loads, or remove the test"
+        )
+    return curve
+
+
+def _under(test: MeasuredTest, along: xr.Dataset, name: str, x: str) -> Curve:
+    """A curve over the offsets, straight over the logarithm of the pressure between loads."""
+    values = along[name].transpose(..., "normal_force")
+    # Other loads are solved at the reported offset alone.
+    offsets = np.isfinite(values).sum(values.dims[0]).values
+    solved = (offsets > 0) & (2 * offsets > offsets.max())
+    pressure = along["nominal_pressure"].values[solved]
+    if not pressure.size or not (
+        pressure[0] * (1 - _NEAR) <= test.pressure <= pressure[-1] * (1 + _NEAR)
+    ):
+        ends = ", ".join(f"{one:.3g}" for one in pressure) or "none"
+        raise InputError(
+            f"{test.file}: {test.pressure:g} MPa lies outside of the pressures at which "
+            f"{test.kind} was computed ({ends} MPa); add it to 'loads' and 'dilatancy_loads'"
+        )
+    of = along[[name, f"{name}_error"]].isel(normal_force=solved)
+    place = float(np.interp(np.log(test.pressure), np.log(pressure), range(pressure.size)))
+    low, part = int(np.floor(place)), place % 1
+    high = min(low + 1, pressure.size - 1)
+
+    def between(each: xr.DataArray) -> np.ndarray:
+        first, second = (each.isel(normal_force=one).values for one in (low, high))
+        return first if part < _NEAR else (1 - part) * first + part * second
+
+    return Curve.of(along[x].values, between(of[name]), between(of[f"{name}_error"]), log_x=False)

@@ -1,0 +1,183 @@
+"""The stage ``measured``: laboratory tests beside the computed curves of a specimen."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from ..core.errors import InputError
+from ..core.estimate import Estimate
+from ..core.labels import cf_attrs
+from ..core.reported import Reported
+from ..core.settings import MeasuredSettings, MeasuredTest, Solver
+from ..mechanics.loading import JointLoading
+from .closure import OF_CALIBRATION, OF_CLOSURE, compare_closure
+from .computed import Joint
+from .curve import Curve, ratio
+from .others import computed_curve
+from .readings import read_test
+
+#: Axis and quantity of each kind of test: name and unit of x, unit of y, what y is.
+KINDS = {
+    "closure": ("pressure", "MPa", "mm", "closure of the joint"),
+    "flow": ("pressure", "MPa", "mm3", "transmissivity"),
+    "dilatancy": ("displacement", "mm", "mm", "dilation under constant pressure"),
+    "shear": ("displacement", "mm", "MPa", "shear stress"),
+    "strength": ("pressure", "MPa", "MPa", "peak shear strength"),
+}
+
+
+def measured_stage(
+    specimens: xr.Dataset,
+    joints: xr.Dataset,
+    closure: xr.Dataset,
+    dilatancy: xr.Dataset,
+    error_budget: xr.Dataset,
+    flow: xr.Dataset,
+    settings: MeasuredSettings,
+    solver: Solver,
+    strength: xr.Dataset | None = None,
+) -> dict[str, xr.Dataset]:
+    """Readings of all tests of a specimen, computed values there, and their ratios.
+
+    Parameters
+    ----------
+    specimens, joints, closure, dilatancy, error_budget, flow : xr.Dataset
+        Stages of these names.
+    settings : MeasuredSettings
+    solver : Solver
+    strength : xr.Dataset, optional
+        Of a joint that slides.
+
+    Returns
+    -------
+    dict of str to xr.Dataset
+        The stage measured. Of each kind of test K the readings over (K_test, K_reading) and, over
+        (K_test, K_point), the computed curve within them: ``K_at``, ``K_measured``, ``K_computed``
+        and ``K_ratio``, with intervals; of closure also the laws and what is calibrated.
+
+    Raises
+    ------
+    InputError
+        If a file, or what is said of it, does not fit the computed curves.
+    NotConverged
+        If a state of another branch or hardness could not be verified.
+    """
+    reported = Reported.read(closure)
+    whole = JointLoading.of_joint(specimens, joints, reported.direction, settings, solver)
+    joint = Joint.of(whole, closure, error_budget)
+    stages = {"dilatancy": dilatancy, "flow": flow, "strength": strength}
+    found = xr.Dataset()
+    for kind in KINDS:
+        tests = [test for test in settings.measured if test.kind == kind]
+        if not tests:
+            continue
+        readings = [read_test(test) for test in tests]
+        if kind == "closure":
+            rows, calibration = compare_closure(joint, tests, readings)
+            found.update(_labelled(calibration, OF_CALIBRATION, ()))
+        else:
+            rows = [
+                _beside(test, one, computed_curve(test, stages, reported))
+                for test, one in zip(tests, readings, strict=True)
+            ]
+        found = found.merge(_of_kind(kind, tests, rows))
+    return {"measured": found}
+
+
+def _beside(test: MeasuredTest, readings: Curve, computed: Curve) -> dict[str, Any]:
+    """Readings, and the computed curve at its own points within them."""
+    inside = (computed.x >= readings.x[0]) & (computed.x <= readings.x[-1])
+    at = computed.x[inside]
+    if not at.size:
+        ends = ("computed from {:.3g} to {:.3g}, measured from {:.3g} to {:.3g}").format(
+            *(one.x[place] for one in (computed, readings) for place in (0, -1))
+        )
+        raise InputError(
+            f"{test.file}: no computed {test.kind} lies within the readings ({ends}); add loads "
+            "or offsets to the study"
+        )
+    y, error = computed.y[inside], computed.error[inside]
+    of_computed, of_measured = Estimate(y, y - error, y + error), readings.at(at)
+    return {
+        "readings": readings,
+        "laid": readings.y,
+        "at": at,
+        "measured": of_measured,
+        "computed": of_computed,
+        "ratio": ratio(of_computed, of_measured),
+    }
+
+
+def _of_kind(kind: str, tests: Sequence[MeasuredTest], rows: Sequence[Mapping]) -> xr.Dataset:
+    """Variables of the tests of a kind, rows of unequal length filled with NaN."""
+    of_x, unit_x, unit, words = KINDS[kind]
+    test, reading, point = (f"{kind}_{name}" for name in ("test", "reading", "point"))
+    x_words = "nominal pressure" if of_x == "pressure" else "shear displacement"
+    variables: dict[str, Any] = {
+        f"{kind}_{of_x}": (
+            (test, reading),
+            _filled([row["readings"].x for row in rows]),
+            cf_attrs(unit_x, f"{x_words} of a reading"),
+        ),
+        f"{kind}_at": (
+            (test, point),
+            _filled([row["at"] for row in rows]),
+            cf_attrs(unit_x, f"{x_words} of a computed state"),
+        ),
+    }
+    read = [Estimate(row["laid"], row["laid"] - e, row["laid"] + e) for row, e in _errors(rows)]
+    for name, dim, of, each in (
+        ("read", reading, unit, read),
+        ("measured", point, unit, [row["measured"] for row in rows]),
+        ("computed", point, unit, [row["computed"] for row in rows]),
+        ("ratio", point, "1", [row["ratio"] for row in rows]),
+    ):
+        whole = Estimate(*(_filled(ends) for ends in zip(*(one.ends for one in each), strict=True)))
+        what = {
+            "read": f"{words}, a reading",
+            "ratio": f"{words}, computed over measured",
+        }.get(name, f"{words}, {name}")
+        variables |= whole.variables(f"{kind}_{name}", (test, dim), of, what)
+    last = [row["ratio"][_last(row["ratio"])] for row in rows]
+    variables |= Estimate.stack(last).variables(
+        f"{kind}_ratio_at_last", test, "1", f"{words}, computed over measured at the last state"
+    )
+    data = xr.Dataset(variables, {test: [one.label for one in tests]})
+    if kind == "closure":
+        for name in OF_CLOSURE:
+            data.update(_labelled({name: [row[name] for row in rows]}, OF_CLOSURE, (test,)))
+    return data
+
+
+def _errors(rows):
+    return [(row, row["readings"].error) for row in rows]
+
+
+def _last(of: Estimate) -> int:
+    """Number of the last point that has a ratio."""
+    known = np.flatnonzero(np.isfinite(of.value))
+    return int(known[-1]) if known.size else -1
+
+
+def _labelled(values: Mapping[str, Any], table: Mapping[str, tuple], dims: tuple) -> dict:
+    """Numbers, texts and estimates of a table as variables."""
+    found: dict[str, Any] = {}
+    for name, value in values.items():
+        unit, words = table[name]
+        first = value[0] if dims else value
+        if isinstance(first, Estimate):
+            whole = Estimate.stack(value) if dims else value
+            found |= whole.variables(name, dims, unit, words)
+        else:
+            found[name] = (dims, np.array(value), cf_attrs(unit, words))
+    return found
+
+
+def _filled(rows: Sequence[np.ndarray]) -> np.ndarray:
+    longest = max(len(row) for row in rows)
+    filled = np.full((len(rows), longest), np.nan)
+    for into, row in zip(filled, rows, strict=True):
+        into[: len(row)] = row
+    return filled
