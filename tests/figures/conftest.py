@@ -5,6 +5,7 @@ from dataclasses import asdict
 import numpy as np
 import pytest
 from made_stages import scan, stages_of
+from made_tests import with_tests
 from materials import ROCK
 
 from contactlab.experiments.area_slope import area_slope
@@ -130,14 +131,16 @@ def atlas_file(tmp_path_factory):
     """Path of an atlas with the specimens sliding, flat and pair."""
     parts = {stage: {} for stage in STAGES}
     settings = {name: resolve_settings(STUDY, name, {}, "tiny") for name in STUDY["specimens"]}
+    folder = tmp_path_factory.mktemp("atlas")
     for name, faces in _scans().items():
-        for stage, dataset in stages_of(
-            name, faces, settings[name], solver_settings({}, "tiny")
-        ).items():
+        made = stages_of(name, faces, settings[name], SOLVER)
+        if name == "sliding":
+            settings[name], made = with_tests(made, settings[name], SOLVER, folder)
+        for stage, dataset in made.items():
             parts[stage][name] = dataset
     for stage, dataset in _experiments().items():
         parts[stage]["surfaces"] = dataset
-    path = tmp_path_factory.mktemp("atlas") / "atlas.nc"
+    path = folder / "atlas.nc"
     records = {name: asdict(stated) for name, stated in settings.items()}
     join_stages(parts, path, {"study": STUDY, "settings": records})
     return path

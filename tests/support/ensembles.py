@@ -38,6 +38,7 @@ ENSEMBLES: dict[str, tuple] = {
     "joints of known truth": ((8, 24), (40, 48)),
     # mechanics, size effect, experiments
     "fitted hyperbolas": (300, 1000),
+    "calibrations": (4, 20),
     "side of a flat face": (64, 96),
     "joints whose size exponent is known": (200, 1000),
     "faces of one exponent": (4, 8),

@@ -34,6 +34,7 @@ STAGES = (
     "scaling",
     "flow",
     "strength",
+    "measured",
     "choices",
     "error_budget",
     "elastic_model",

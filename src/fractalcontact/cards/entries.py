@@ -24,6 +24,10 @@ _BESIDE = {
     "sampling": ("sampling", "sampling", "1"),
     "fit": ("fit", "fit", "1"),
     "branch": ("branch", "branch", "1"),
+    **{
+        f"{kind}_test": ("test", f"{kind}_test", "1")
+        for kind in ("closure", "flow", "dilatancy", "shear", "strength")
+    },
 }
 #: Significant digits of the numbers of a card.
 _DIGITS = 6

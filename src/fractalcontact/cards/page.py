@@ -44,6 +44,7 @@ def page_of(card: Mapping[str, Any]) -> dict[str, Any]:
         "card": card,
         "stiffness": over_pressure(stiffness),
         "tables": list(_tables(printed)),
+        "tests": tests_of(entries),
         "jrc": jrc_table(entries["jrc"], entries["jrc_by_fit"]),
         # An elastic joint has no hardness to state.
         "missing": missing_of({key: one for key, one in printed.items() if key != "hardness"}),
@@ -68,6 +69,17 @@ def _tables(printed):
         heads = [(head, _UNITS.get(one["unit"], one["unit"])) for head, one in curves.items()]
         if curves:
             yield title, heads, over_pressure(list(curves.values()))
+
+
+def tests_of(entries: Mapping[str, Any]) -> list[tuple[str, str, Mapping[str, Any]]]:
+    """Quantity, test and computed over measured value of each laboratory test."""
+    return [
+        (one["title"], row["at"]["test"], row | {"unit": ""})
+        for one in entries.values()
+        if one["section"] == "tests"
+        for row in one.get("values", ())
+        if "value" in row
+    ]
 
 
 def has_values(entry: Mapping[str, Any]) -> bool:

@@ -3,9 +3,9 @@
 from dataclasses import dataclass
 
 #: How often a stage is made: for every specimen, for those that slide, for those with an ensemble,
-#: for those with laboratory tests, for every measured contact map; once, of all specimens together (in the atlas, without a file);
-#: once, on synthetic surfaces, where the study has the stage's key; and of studies of accuracy for
-#: every test problem, or once.
+#: for those with laboratory tests, for every measured contact map; once, of all specimens together
+#: (in the atlas, without a file); once, on synthetic surfaces, where the study has the stage's key;
+#: and of studies of accuracy for every test problem, or once.
 SPECIMEN, JOINT, ENSEMBLE, MAP, STUDY = "specimen", "joint", "ensemble", "map", "study"
 EXPERIMENT, PROBLEM, ACCURACY = "experiment", "problem", "accuracy"
 TESTED = "tested"

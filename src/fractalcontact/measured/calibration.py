@@ -8,13 +8,14 @@ from scipy import optimize
 
 from ..core.estimate import Estimate
 from ..core.intervals import t_quantile
-from .curve import Curve
+from .curve import MIN_READINGS, Curve
 
-#: Factors of the constant that are tried, and how many readings have to lie on a computed curve.
+#: Factors of the constant that are tried, and how many of them.
 LARGEST_FACTOR, _TRIED = 4.0, 81
-_MIN_READINGS = 5
 #: Fraction of the readings that the computed curve has to reach at a factor.
-_REACHED = 0.9
+_REACHED = 0.5
+#: Logarithm of the factors that are searched closely about the best, and what is their edge.
+NEAR, _EDGE = 0.25, 0.005
 
 #: Closure over the pressure at a factor of the constant.
 Family = Callable[[float], Curve]
@@ -22,7 +23,7 @@ Family = Callable[[float], Curve]
 
 @dataclass(frozen=True)
 class Calibration:
-    """Factor of a constant with its interval; ``reason`` says why there is none."""
+    """Factor of a constant with its interval; ``reason`` says why there is none, or little."""
 
     factor: Estimate
     reason: str = ""
@@ -38,7 +39,7 @@ def fit_factor(readings: Curve, family: Family, largest: float = LARGEST_FACTOR)
     family : callable
         Computed closure at a factor.
     largest : float, optional
-        Factors from its reciprocal to it are tried.
+        Factors from its reciprocal to it are tried; no interval leaves them.
 
     Returns
     -------
@@ -52,42 +53,57 @@ def fit_factor(readings: Curve, family: Family, largest: float = LARGEST_FACTOR)
     seat scatters as all others do.
     """
 
-    def misfit(log_factor: float) -> float:
-        computed = family(float(np.exp(log_factor))).at(readings.x).value
-        known = np.isfinite(computed)
-        if known.mean() < _REACHED or known.sum() < _MIN_READINGS:
-            return np.inf
-        apart = readings.y[known] - computed[known]
-        return float(np.mean((apart - apart.mean()) ** 2))
-
     tried = np.linspace(-np.log(largest), np.log(largest), _TRIED)
-    values = np.array([misfit(one) for one in tried])
+    values = np.array([_misfit(readings, family, one, _REACHED) for one in tried])
     best = int(values.argmin())
     if not np.isfinite(values[best]):
-        return Calibration(
-            Estimate(),
-            "the loads of the study do not reach the pressures of the test: widen 'loads'",
-        )
-    if best in (0, tried.size - 1) or not np.isfinite(values[[best - 1, best + 1]]).all():
-        return Calibration(
-            Estimate(),
+        why = "the loads of the study do not reach the pressures of the test: widen 'loads'"
+        return Calibration(Estimate(), why)
+    # Then the same readings at every factor: those that the computed loads reach at all of them.
+    near = np.clip(tried[best] + np.array([-NEAR, NEAR]), tried[0], tried[-1])
+    reached = np.all([np.isfinite(family(np.exp(one)).at(readings.x).value) for one in near], 0)
+    readings = Curve(readings.x[reached], readings.y[reached], readings.error[reached])
+    if readings.x.size < MIN_READINGS:
+        why = f"fewer than {MIN_READINGS} readings lie within the computed loads: widen 'loads'"
+        return Calibration(Estimate(), why)
+
+    def misfit(log_factor: float) -> float:
+        return _misfit(readings, family, log_factor, 1.0)
+
+    inside = optimize.minimize_scalar(misfit, bounds=tuple(near), method="bounded")
+    log_factor, least = float(inside.x), max(float(inside.fun), 1e-18)
+    if min(abs(log_factor - near)) < _EDGE:
+        why = (
             f"no factor between {1 / largest:.2g} and {largest:.2g} that the computed loads reach "
-            "fits best: widen 'loads', or correct the constant that is stated",
+            "fits best: widen 'loads', or correct the constant that is stated"
         )
-    inside = optimize.minimize_scalar(
-        misfit, bounds=(tried[best - 1], tried[best + 1]), method="bounded"
-    )
-    log_factor, least = float(inside.x), float(inside.fun)
+        return Calibration(Estimate(), why)
     freedom = readings.x.size - 2
-    least = max(least, 1e-18)
     limit = least * (1 + t_quantile(freedom) ** 2 / freedom)
-    ends = [_crossing(misfit, log_factor, way * np.log(largest), limit) for way in (-1, 1)]
+    ends = [_crossing(misfit, log_factor, end, limit) for end in near]
     error = _of_computed(family, readings, log_factor)
-    half = [np.hypot(end - log_factor, error) for end in ends]
-    value = np.exp(log_factor)
-    return Calibration(
-        Estimate(value, value * np.exp(-half[0]), value * np.exp(half[1]), n=readings.x.size)
+    halves = [np.hypot(end - log_factor, error) for end in ends]
+    low, high = (
+        np.clip(log_factor + way * half, -np.log(largest), np.log(largest))
+        for way, half in zip((-1, 1), halves, strict=True)
     )
+    why = ""
+    if max(halves) > np.log(largest) / 2:
+        why = (
+            "hardly determined: a closure that is straight over the logarithm of the pressure has "
+            "one shape at every modulus"
+        )
+    return Calibration(Estimate(*np.exp([log_factor, low, high]), n=readings.x.size), why)
+
+
+def _misfit(readings: Curve, family: Family, log_factor: float, reached: float) -> float:
+    """Mean square of what the computed closure leaves; infinite where it reaches too few."""
+    computed = family(float(np.exp(log_factor))).at(readings.x).value
+    known = np.isfinite(computed)
+    if known.mean() < reached or known.sum() < MIN_READINGS:
+        return np.inf
+    apart = readings.y[known] - computed[known]
+    return float(np.mean((apart - apart.mean()) ** 2))
 
 
 def _crossing(misfit, start: float, end: float, limit: float) -> float:
@@ -111,4 +127,4 @@ def _of_computed(family: Family, readings: Curve, log_factor: float) -> float:
     )
     slope = (np.diff(upper.value) - np.diff(lower.value)) / (2 * step)
     error = np.hypot(*(here.high - here.value))
-    return float(error / abs(slope[0])) if np.isfinite(slope[0]) and slope[0] else 0.0
+    return float(error / abs(slope[0])) if slope[0] else np.inf

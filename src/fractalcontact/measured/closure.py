@@ -11,7 +11,7 @@ from ..core.estimate import NO_ESTIMATE, Estimate
 from ..core.limits import SEATED_SPAN
 from ..core.settings import MeasuredTest
 from ..mechanics.closure_laws import fit_hyperbola, fit_semi_logarithmic
-from .calibration import Calibration, fit_factor
+from .calibration import LARGEST_FACTOR, NEAR, Calibration, fit_factor
 from .computed import Joint
 from .curve import Curve, ratio
 
@@ -36,7 +36,7 @@ OF_CLOSURE = {
     "closure_largest": ("MPa", "pressure that the joint had carried before"),
     "closure_rock": ("mm/MPa", "displacement of the rock that was taken off"),
     "closure_status": ("1", "how the calibrated curve came about: computed, fitted or predicted"),
-    "closure_ratio_calibrated": ("1", "calibrated over measured closure at the last state"),
+    "closure_ratio_calibrated": ("1", "calibrated over measured closure at the end"),
 }
 #: The calibrated constant: unit, long name.
 OF_CALIBRATION = {
@@ -81,9 +81,7 @@ def compare_closure(
                 f"faces, {joint.relief:.3g} mm; check the unit of the displacement"
             )
     calibrated = _Calibrated(joint, tests, readings)
-    rows = [
-        _row(joint, test, one, calibrated) for test, one in zip(tests, readings, strict=True)
-    ]
+    rows = [_row(joint, test, one, calibrated) for test, one in zip(tests, readings, strict=True)]
     return rows, calibrated.described()
 
 
@@ -109,7 +107,7 @@ class _Calibrated:
             )
         from_datum = Curve(*(part[one.x >= self.test.seat] for part in (one.x, one.y, one.error)))
         family = self._ladder(one) if self.test.calibrate == "hardness" else self._scaled(one)
-        largest = max(_HARDNESSES) if self.test.calibrate == "hardness" else 4.0
+        largest = max(_HARDNESSES) if self.test.calibrate == "hardness" else LARGEST_FACTOR
         self.found = fit_factor(from_datum, family, largest)
 
     @property
@@ -187,7 +185,7 @@ def _row(
     row |= _laws(measured, span, datum)
     if calibrated.factor.known:
         row["closure_status"] = FITTED if test is calibrated.test else PREDICTED
-        row["closure_ratio_calibrated"] = _with_constant(calibrated, test, largest, datum, measured)
+        row["closure_ratio_calibrated"] = _with_constant(calibrated, test, largest, datum, readings)
     return row
 
 
@@ -200,20 +198,27 @@ def _datum_closure(joint: Joint, datum: float) -> float:
     return float(joint.curve.at(datum).value - joint.seat_closure)
 
 
-def _with_constant(calibrated, test, largest, datum, measured) -> Estimate:
-    """Calibrated over measured closure at the largest pressure of the test.
+def _with_constant(calibrated: _Calibrated, test, largest, datum, readings) -> Estimate:
+    """Calibrated over measured closure at the largest pressure that both have, from a datum.
 
-    The error holds the interval of the constant, of the computed closure and of the readings.
+    The error holds the interval of the constant, of the computed closure and of the readings. That
+    of the constant is carried over by the slope nearby: far from it the loads may not reach.
     """
-    top = measured.x[-1]
-    value, low, high = (
-        calibrated.at(test, largest, factor).since(datum).at(top)
-        for factor in calibrated.factor.ends
+    best, *ends = np.log(calibrated.factor.ends)
+    nearby = [best + np.clip(end - best, -NEAR, NEAR) for end in ends]
+    curves = [calibrated.at(test, largest, float(np.exp(one))) for one in (best, *nearby)]
+    datum = max(datum, *(one.x[0] for one in curves))
+    top = min(readings.x[-1], *(one.x[-1] for one in curves))
+    if top <= datum:
+        return NO_ESTIMATE
+    value, *beside = (one.since(datum).at(top) for one in curves)
+    apart = max(
+        abs(one.value - value.value) * (end - best) / (near - best)
+        for one, end, near in zip(beside, ends, nearby, strict=True)
     )
-    apart = np.nanmax(np.abs([low.value - value.value, high.value - value.value]))
     half = np.hypot(apart, value.high - value.value)
     computed = Estimate(value.value, value.value - half, value.value + half)
-    return ratio(computed, measured.at(top))
+    return ratio(computed, readings.since(datum).at(top))
 
 
 def _laws(measured: Curve, computed: Curve, datum: float) -> Mapping[str, Estimate]:

@@ -96,9 +96,7 @@ class Joint:
         lightest = max(test.seat, self.curve.x[0])
         return self.solved(test, lightest, largest, hardness)
 
-    def solved(
-        self, test: MeasuredTest, lightest: float, largest: float, hardness: float
-    ) -> Curve:
+    def solved(self, test: MeasuredTest, lightest: float, largest: float, hardness: float) -> Curve:
         """Interface closure on loading up to a pressure or, after it, on unloading from there."""
         composite, area = self._composite(), self.loading.area
         space = self.loading.half_space(composite.shape, self.factor)

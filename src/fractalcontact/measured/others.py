@@ -10,6 +10,16 @@ from ..core.reported import Reported
 from ..core.settings import MeasuredTest
 from .curve import Curve
 
+#: Why a kind of test has no computed value to compare with.
+WHY_NONE = {
+    "closure": "",
+    "flow": "no computed state has a path through the gap on this branch",
+    "dilatancy": "no dilatancy was computed",
+    "shear": "the study states no basic friction angle, or every angle was truncated",
+    "strength": "the study states no basic friction angle, or every angle was truncated",
+}
+NOTHING = Curve.of([], [], [])
+
 #: Pressures this near to each other, as a fraction, are one.
 _NEAR = 0.01
 
@@ -17,7 +27,7 @@ _NEAR = 0.01
 def computed_curve(
     test: MeasuredTest, stages: Mapping[str, xr.Dataset | None], reported: Reported
 ) -> Curve:
-    """Computed curve of a test that is not of closure.
+    """Computed curve of a test that is not of closure; without points where there is none.
 
     Parameters
     ----------
@@ -29,7 +39,7 @@ def computed_curve(
     Raises
     ------
     InputError
-        If the direction or the pressure was not computed, or no strength without a friction angle.
+        If the direction or the pressure was not computed.
     """
     if test.kind == "flow":
         return _flow(test, stages["flow"], reported)
@@ -50,18 +60,14 @@ def computed_curve(
     along = strength.sel(contact_direction=test.direction)
     if test.kind == "shear":
         valid = along["shear_strength_valid"].astype(bool)
-        curve = _under(test, along.where(valid), "shear_strength", "midpoint")
-    else:
-        valid = along["peak_strength_valid"].astype(bool)
-        peaks = along["peak_strength"].where(valid)
-        pressure = along["nominal_pressure"].values
-        curve = Curve.of(pressure, peaks.values, along["peak_strength_error"].values)
-    if not curve.x.size:
-        raise InputError(
-            f"{test.file}: no shear strength was computed; state 'basic_friction_angle' in the "
-            "material, or heavier loads where all angles were truncated"
-        )
-    return curve
+        below = along.assign(shear_strength=along["shear_strength"].where(valid))
+        if not valid.any():
+            return NOTHING
+        return _under(test, below, "shear_strength", "midpoint")
+    valid = along["peak_strength_valid"].astype(bool)
+    peaks = along["peak_strength"].where(valid)
+    pressure = along["nominal_pressure"].values
+    return Curve.of(pressure, peaks.values, along["peak_strength_error"].values)
 
 
 def _flow(test: MeasuredTest, flow: xr.Dataset | None, reported: Reported) -> Curve:
@@ -76,13 +82,7 @@ def _flow(test: MeasuredTest, flow: xr.Dataset | None, reported: Reported) -> Cu
         )
     )
     values = at[f"branch_{name}"].where(at[f"branch_{name}"] > 0).values
-    curve = Curve.of(states["nominal_pressure"].values, values, error)
-    if not curve.x.size:
-        raise InputError(
-            f"{test.file}: no transmissivity {test.way} the sliding was computed on the branch "
-            f"'{test.branch}'; solve more loads, or remove the test"
-        )
-    return curve
+    return Curve.of(states["nominal_pressure"].values, values, error)
 
 
 def _under(test: MeasuredTest, along: xr.Dataset, name: str, x: str) -> Curve:

@@ -7,7 +7,7 @@ import numpy as np
 import xarray as xr
 
 from ..core.errors import InputError
-from ..core.estimate import Estimate
+from ..core.estimate import NO_ESTIMATE, Estimate
 from ..core.labels import cf_attrs
 from ..core.reported import Reported
 from ..core.settings import MeasuredSettings, MeasuredTest, Solver
@@ -15,7 +15,7 @@ from ..mechanics.loading import JointLoading
 from .closure import OF_CALIBRATION, OF_CLOSURE, compare_closure
 from .computed import Joint
 from .curve import Curve, ratio
-from .others import computed_curve
+from .others import WHY_NONE, computed_curve
 from .readings import read_test
 
 #: Axis and quantity of each kind of test: name and unit of x, unit of y, what y is.
@@ -25,6 +25,16 @@ KINDS = {
     "dilatancy": ("displacement", "mm", "mm", "dilation under constant pressure"),
     "shear": ("displacement", "mm", "MPa", "shear stress"),
     "strength": ("pressure", "MPa", "MPa", "peak shear strength"),
+}
+
+
+#: What is kept of every test: field, unit, long name.
+_OF_TESTS = {
+    "branch": ("branch", "1", "branch of the test"),
+    "cycle": ("cycle", "1", "number of the cycle"),
+    "way": ("way", "1", "way of the flow"),
+    "direction": ("direction", "1", "direction of sliding"),
+    "held_pressure": ("pressure", "MPa", "nominal pressure that is held"),
 }
 
 
@@ -90,7 +100,7 @@ def _beside(test: MeasuredTest, readings: Curve, computed: Curve) -> dict[str, A
     """Readings, and the computed curve at its own points within them."""
     inside = (computed.x >= readings.x[0]) & (computed.x <= readings.x[-1])
     at = computed.x[inside]
-    if not at.size:
+    if not at.size and computed.x.size:
         ends = ("computed from {:.3g} to {:.3g}, measured from {:.3g} to {:.3g}").format(
             *(one.x[place] for one in (computed, readings) for place in (0, -1))
         )
@@ -107,6 +117,7 @@ def _beside(test: MeasuredTest, readings: Curve, computed: Curve) -> dict[str, A
         "measured": of_measured,
         "computed": of_computed,
         "ratio": ratio(of_computed, of_measured),
+        "reason": "" if at.size else WHY_NONE[test.kind],
     }
 
 
@@ -140,11 +151,19 @@ def _of_kind(kind: str, tests: Sequence[MeasuredTest], rows: Sequence[Mapping]) 
             "ratio": f"{words}, computed over measured",
         }.get(name, f"{words}, {name}")
         variables |= whole.variables(f"{kind}_{name}", (test, dim), of, what)
-    last = [row["ratio"][_last(row["ratio"])] for row in rows]
+    last = [_last(row["ratio"]) for row in rows]
     variables |= Estimate.stack(last).variables(
         f"{kind}_ratio_at_last", test, "1", f"{words}, computed over measured at the last state"
     )
+    why = [row.get("reason", "") for row in rows]
+    variables[f"{kind}_reason"] = (test, why, cf_attrs("1", "why nothing is compared"))
     data = xr.Dataset(variables, {test: [one.label for one in tests]})
+    data.update(
+        {
+            f"{kind}_{name}": (test, [getattr(one, field) for one in tests], cf_attrs(unit, said))
+            for name, (field, unit, said) in _OF_TESTS.items()
+        }
+    )
     if kind == "closure":
         for name in OF_CLOSURE:
             data.update(_labelled({name: [row[name] for row in rows]}, OF_CLOSURE, (test,)))
@@ -155,10 +174,10 @@ def _errors(rows):
     return [(row, row["readings"].error) for row in rows]
 
 
-def _last(of: Estimate) -> int:
-    """Number of the last point that has a ratio."""
+def _last(of: Estimate) -> Estimate:
+    """Ratio at the last point that has one."""
     known = np.flatnonzero(np.isfinite(of.value))
-    return int(known[-1]) if known.size else -1
+    return of[int(known[-1])] if known.size else NO_ESTIMATE
 
 
 def _labelled(values: Mapping[str, Any], table: Mapping[str, tuple], dims: tuple) -> dict:
@@ -176,7 +195,7 @@ def _labelled(values: Mapping[str, Any], table: Mapping[str, tuple], dims: tuple
 
 
 def _filled(rows: Sequence[np.ndarray]) -> np.ndarray:
-    longest = max(len(row) for row in rows)
+    longest = max(1, *(len(row) for row in rows))
     filled = np.full((len(rows), longest), np.nan)
     for into, row in zip(filled, rows, strict=True):
         into[: len(row)] = row

@@ -55,6 +55,7 @@ NEEDS = (
     "closure",
     "flow",
     "dilatancy",
+    "measured",
     "area",
     "domains",
     "scaling",

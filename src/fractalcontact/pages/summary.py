@@ -17,6 +17,7 @@ from ..core.validity import Validity
 from ..core.verdicts import NO_PRESSURE, TOO_FEW_RESOLUTIONS
 from ..core.window import spacing_of, window_sides
 from .common_loads import CommonLoad
+from .laboratory import Test, calibration_of, tests_of
 from .lights import Light, lights_of, validity_at
 from .material import Material, material_of
 from .spacing import Doubled, doubled_spacing
@@ -214,6 +215,8 @@ class Specimen:
     dilatancy: Dilatancy
     loads: list[AtLoad]
     lights: list[Light]
+    tests: list[Test]
+    calibration: tuple[str, Estimate, str]
 
     @property
     def of_maps(self) -> AtLoad:
@@ -264,6 +267,8 @@ def summarised(subject: Subject, common: Sequence[CommonLoad] = ()) -> Specimen:
             _at_load(subject, curve, i) for i in sorted(compared.union(subject.reported.quoted))
         ],
         lights=lights_of(subject),
+        tests=tests_of(subject),
+        calibration=calibration_of(subject),
     )
 
 
@@ -422,6 +427,7 @@ def _of_specimen(one):
         "dilatancy_slope": one.dilatancy.slope,
     }
     lights = {f"light_{light.key}": light.word for light in one.lights}
+    row |= {name: value for test in one.tests for name, value in test.columns.items()}
     return row | lights | {f"help_{light.key}": light.help for light in one.lights}
 
 

@@ -207,7 +207,7 @@ def without_tests(
         A study that passed the schema.
     """
     files: set[Path] = set()
-    for name, stated in {**dict.fromkeys(config.get("embedded", {}), {}), **own}.items():
+    for name, stated in ({name: {} for name in config.get("embedded", {})} | dict(own)).items():
         folder = scans[name].lower.parent if name in scans else Path(config.get("scans") or ".")
         for said in (stated, config.get("specimens", {}).get(name, {})):
             files |= {*test_files(said.get("measured", {}), folder)}

@@ -84,9 +84,7 @@ def resolve_tests(stated: Mapping[str, Any], where: str, folder: Path) -> list[M
     InputError
         If a key is missing, has no meaning for its test, or contradicts another one.
     """
-    tests = [
-        _resolved(kind, test, f"{where}.{kind}", folder) for kind, test in tests_of(stated)
-    ]
+    tests = [_resolved(kind, test, f"{where}.{kind}", folder) for kind, test in tests_of(stated)]
     labels = [(test.kind, test.label) for test in tests]
     if twice := next((one for one in labels if labels.count(one) > 1), None):
         raise InputError(

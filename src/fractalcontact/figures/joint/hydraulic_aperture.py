@@ -12,6 +12,7 @@ from ...core.subject import Subject
 from ..kit.caption import caption
 from ..kit.drawing import WIDTH, Drawing, colour_of
 from ..kit.empty import say_empty
+from ..kit.laboratory import draw_tests, test_words
 from ..kit.legends import entries, legends_below
 from ..kit.panel import Panel, table_of
 from ..kit.sizes import plain_decades
@@ -21,7 +22,7 @@ from ._flow_ways import WAYS, open_states
 
 TITLE = "Hydraulic aperture and transmissivity against load"
 SUBJECT = "specimen"
-NEEDS = ("specimens", "closure", "flow")
+NEEDS = ("specimens", "closure", "flow", "measured")
 ORDER = 46
 SECTION = "flow"
 
@@ -43,9 +44,11 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     a, b = (Panel(*one) for one in zip(figure.subplots(1, 2), "ab", titles, strict=True))
     _draw_apertures(a, states)
     _draw_branches(b, flow)
+    draw_tests(b, subject, "flow")
     legends_below(figure, entries(a.axes), entries(b.axes))
     headline(figure, subject.label, place(subject.direction, subject.offset))
-    return Drawing(figure, table_of(a, b), caption(__name__, **_words(subject, states)))
+    words = {"tests": test_words(subject, "flow"), **_words(subject, states)}
+    return Drawing(figure, table_of(a, b), caption(__name__, **words))
 
 
 def _draw_apertures(panel: Panel, states: xr.Dataset) -> None:

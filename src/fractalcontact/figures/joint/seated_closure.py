@@ -15,6 +15,7 @@ from ...core.window import window_sides
 from ..kit.caption import caption
 from ..kit.drawing import WIDTH, Drawing, colour_of
 from ..kit.empty import TOO_FULL, say_empty
+from ..kit.laboratory import draw_tests, test_words
 from ..kit.legends import entries, heading, legends_below
 from ..kit.panel import Panel, table_of
 from ..kit.titles import headline
@@ -24,7 +25,7 @@ from ._permanent_set import draw_permanent_set
 
 TITLE = "Closure from the seat, its laws, and tangent stiffness"
 SUBJECT = "specimen"
-NEEDS = ("specimens", "closure", "branches", "error_budget")
+NEEDS = ("specimens", "closure", "branches", "error_budget", "measured")
 ORDER = 45
 
 RELOAD, REFERENCE = "reload", "reference_pressure"
@@ -64,6 +65,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     again = branches.sel(branch=[RELOAD])
     a.curves(again, "seated_closure", "nominal_pressure", hue="branch", **_AGAIN)
     _draw_laws(a.axes, curve)
+    draw_tests(a, subject, "closure", turned=True)
     _draw_stiffness(b, curve, style)
     b.curves(again, "nominal_pressure", "interface_stiffness", hue="branch", **_AGAIN)
     if not np.isfinite(curve["seated_closure"]).any():
@@ -78,7 +80,8 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     below = draw_permanent_set(parts[1], branches, sides) if crushed else []
     table = table_of(a, b, *below)
     total = subject["error_budget"]["reference_stiffness_total"]
-    return Drawing(figure, table, caption(__name__, **_words(curve, seat, again, total)))
+    words = {"tests": test_words(subject, "closure"), **_words(curve, seat, again, total)}
+    return Drawing(figure, table, caption(__name__, **words))
 
 
 def _draw_laws(axes: Axes, curve: xr.Dataset) -> None:

@@ -11,6 +11,7 @@ from ..kit.axes import offset_axis
 from ..kit.caption import caption
 from ..kit.drawing import WIDTH, Drawing
 from ..kit.empty import say_empty
+from ..kit.laboratory import draw_tests, test_words
 from ..kit.legends import entries, heading
 from ..kit.panel import Panel, table_of
 from ..kit.points import hollow_entry
@@ -21,7 +22,7 @@ from ._peak_strength import draw_summary, scan_entries, why_none
 
 TITLE = "Dilatancy angle, friction angle and shear strength, with Barton's criterion"
 SUBJECT = "joint"
-NEEDS = ("closure", "strength")
+NEEDS = ("closure", "strength", "measured")
 ORDER = 110
 
 _OFFSET = "offset $v$, middle of the interval (mm)"
@@ -50,7 +51,9 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     c = Panel(summary, "c", "peak and residual shear strength")
     _draw_angles(a, shown)
     _draw_strength(b, shown)
+    draw_tests(b, subject, "shear")
     draw_summary(c, strength)
+    draw_tests(c, subject, "strength")
     legends.axis("off")
     style = {"labelspacing": 0.25}  # between the lines, in letters
     shared = [*entries(angles), *entries(curves), *_residual_note(shown)]
@@ -58,7 +61,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     if of_peaks := [*entries(summary), *scan_entries(strength)]:
         legends.legend(handles=of_peaks, loc="lower left", title="(c)", **style)
     headline(figure, subject.label, place(subject.direction))
-    return Drawing(figure, table_of(a, b, c), caption(__name__, **_words(strength, shown)))
+    return Drawing(figure, table_of(a, b, c), caption(__name__, **_words(subject, strength, shown)))
 
 
 def _draw_angles(panel, strength):
@@ -116,10 +119,11 @@ def _residual_note(strength):
     return [heading(rf"residual $i$ at {short(one['nominal_pressure'])} MPa:" + f"\n{words}")]
 
 
-def _words(strength, shown):
+def _words(subject, strength, shown):
     """Values of the caption: angles and strengths."""
     valid = strength["peak_strength_valid"] & (strength["peak_strength"] > 0)
     return {
+        "tests": [*test_words(subject, "shear"), *test_words(subject, "strength")],
         "intervals": strength.sizes["interval"],
         "stated": bool(np.isfinite(strength["basic_friction_angle"])),
         "peaks": shown["peak_dilatancy_angle"].values.tolist(),

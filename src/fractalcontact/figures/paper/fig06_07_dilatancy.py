@@ -10,6 +10,7 @@ from ...core.window import window_sides
 from ..kit.axes import label_short_span, offset_axis
 from ..kit.caption import caption
 from ..kit.drawing import WIDTH, Drawing, spread
+from ..kit.laboratory import draw_tests, test_words
 from ..kit.legends import entries, legends_below
 from ..kit.maps import HALO, draw_domain
 from ..kit.panel import Panel, table_of
@@ -21,7 +22,7 @@ from ._rigid_dilatancy import direction_style, draw_rigid
 
 TITLE = "Figs. 6 and 7: rigid and elastic dilatancy, and contact domains along the curve"
 SUBJECT = "joint"
-NEEDS = ("specimens", "joints", "dilatancy", "closure", "contact", "statements")
+NEEDS = ("specimens", "joints", "dilatancy", "closure", "contact", "statements", "measured")
 ORDER = 100
 
 #: Height of the curves and their legend, inches.
@@ -55,6 +56,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     b = Panel(right, "b", f"elastic dilatancy, {place(subject.direction)}")
     key = draw_rigid(a, subject["dilatancy"], plateaus)
     _draw_elastic(b, subject, curves, points)
+    draw_tests(b, subject, "dilatancy")
     legends_below(top, key, entries(b.axes))
     larger = _draw_domains(bottom, subject, curves, points)
     title = f"(c) contact domains at $F$ = {force_label(subject.reported.force)}"
@@ -63,6 +65,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     headline(figure, subject.label)
     trends = dict(zip(plateaus["direction"].values, plateaus["plateau_trend"].values, strict=True))
     words = {
+        "tests": test_words(subject, "dilatancy"),
         "force": subject.reported.force,
         "fitted": sum(map(bool, trends.values())),
         "level": list(trends.values()).count(LEVEL),

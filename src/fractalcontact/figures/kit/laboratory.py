@@ -1,0 +1,70 @@
+"""Readings of laboratory tests in the panels of the computed curves."""
+
+from typing import Any
+
+import numpy as np
+
+from ...core.estimate import Estimate
+from ...core.subject import Subject
+from .drawing import COLOURS, MARKERS
+from .panel import Panel
+from .words import short
+
+#: Axis of each kind of test.
+_AXES = {
+    "closure": "pressure",
+    "flow": "pressure",
+    "dilatancy": "displacement",
+    "shear": "displacement",
+    "strength": "pressure",
+}
+
+
+def draw_tests(panel: Panel, subject: Subject, kind: str, *, turned: bool = False) -> None:
+    """Readings of the tests of a kind, those of sliding in the reported direction alone.
+
+    Parameters
+    ----------
+    panel : Panel
+    subject : Subject
+        Nothing is drawn of one without such tests.
+    kind : str
+    turned : bool, optional
+        Whether the quantity goes along x.
+    """
+    for number, label in enumerate(labels_of(subject, kind)):
+        test = subject["measured"].sel({f"{kind}_test": label})
+        # Without its ends: bars of hundreds of readings would hide them.
+        data = test[[f"{kind}_{_AXES[kind]}", f"{kind}_read"]].dropna(f"{kind}_reading")
+        axes = (f"{kind}_{_AXES[kind]}", f"{kind}_read")
+        style: dict[str, Any] = {
+            "ls": "none",
+            "marker": MARKERS[(3 + number) % len(MARKERS)],
+            "ms": 2.2,
+            "mew": 0.6,
+            "mfc": "none",
+            "color": COLOURS[(3 + 2 * number) % len(COLOURS)],
+            "zorder": 1,
+        }
+        panel.curve(data, *(axes[::-1] if turned else axes), label=f"test: {label}", **style)
+
+
+def labels_of(subject: Subject, kind: str) -> list[str]:
+    """Tests of a kind that the figures of a specimen show."""
+    if "measured" not in subject.stages or f"{kind}_test" not in subject["measured"]:
+        return []
+    stage = subject["measured"]
+    pairs = zip(stage[f"{kind}_test"].values, stage[f"{kind}_direction"].values, strict=True)
+    return [str(label) for label, towards in pairs if towards in ("", subject.direction)]
+
+
+def test_words(subject: Subject, kind: str) -> list[str]:
+    """What each test of a kind is beside the computed curve, for a caption."""
+    found = []
+    for label in labels_of(subject, kind):
+        test = subject["measured"].sel({f"{kind}_test": label})
+        last = Estimate.read(test, f"{kind}_ratio_at_last")
+        if np.isfinite(last.value):
+            ends = f"{short(last.value)} [{short(last.low)}, {short(last.high)}]"
+            found.append(f"{label}: {ends}")
+    return found

@@ -1,0 +1,74 @@
+"""Laboratory tests as sidecars and studies state them."""
+
+import numpy as np
+import pytest
+import yaml
+from code_blocks import blocks
+from places import ROOT
+
+from fractalcontact.core.errors import InputError
+from fractalcontact.study.checks import resolve_study
+
+SCHEMA = yaml.safe_load((ROOT / "config/schema/study.schema.yaml").read_text())
+STUDY = {
+    "study": "made",
+    "materials": {"rock": {"modulus": "20 GPa", "poisson": 0.2}},
+    "defaults": {"material": "rock", "loads": ["1 MPa"], "resolutions": [1]},
+}
+TEST = {"file": "load.csv", "gauge": "joint", "seat": "0.25 MPa", "branch": "load", "cycle": 1}
+SCAN = {
+    **{"kind": "face", "layout": "matrix", "axes": "none", "unit": "mm", "spacing": "0.1 mm"},
+    **{"first_row": "bottom", "heights": "up", "missing": "none"},
+}
+
+
+def study_in(folder, sidecar, files=("load.csv",), **more):
+    np.save(folder / "granite.npy", np.zeros((8, 8)))
+    (folder / "granite.yaml").write_text(yaml.safe_dump(SCAN | sidecar))
+    for name in files:
+        (folder / name).write_text("pressure [MPa], displacement [um]\n")
+    return resolve_study(STUDY | {"scans": str(folder)} | more, SCHEMA, "study.yaml")
+
+
+def test_the_sidecar_of_the_document_is_read(tmp_path):
+    (block,) = (one for one in blocks(ROOT / "docs/laboratory.md") if "measured:" in one.text)
+    stated = yaml.safe_load(block.text)
+    names = ("granite_load.csv", "granite_reload.csv", "granite_flow.csv")
+    study = study_in(tmp_path, stated, names)
+    tests = study.settings["granite"].measured
+    assert [test.label for test in tests] == [
+        *("load, cycle 1", "reload, cycle 2", "along, load, cycle 1"),
+    ]
+    assert tests[0].compliance == 0.004
+    # No table of a test is taken for a scan.
+    assert list(study.scans) == ["granite"]
+
+
+def test_a_study_states_them_too(tmp_path):
+    study = study_in(tmp_path, {}, specimens={"granite": {"measured": {"closure": TEST}}})
+    assert study.settings["granite"].measured[0].file == str(tmp_path / "load.csv")
+    assert list(study.scans) == ["granite"]
+
+
+def test_rock_is_stated_by_length_and_modulus(tmp_path):
+    rock = {"gauge": {"length": "100 mm", "modulus": "50 GPa"}}
+    study = study_in(tmp_path, {"measured": {"closure": TEST | rock}})
+    assert study.settings["granite"].measured[0].compliance == pytest.approx(2e-3)
+
+
+@pytest.mark.parametrize(
+    ("measured", "words"),
+    [
+        ({"closure": TEST | {"file": "none.csv"}}, "no such file, which 'measured' names"),
+        ({"closure": TEST | {"file": "../load.csv"}}, "measured.closure.file"),
+        ({"closures": TEST}, "did you mean 'closure'"),
+        ({"closure": TEST | {"branches": "load"}}, "did you mean 'branch'"),
+        ({"closure": [TEST, TEST]}, "two tests are 'load, cycle 1'"),
+        ({"flow": {"file": "load.csv", "branch": "load", "cycle": 1}}, "'way' is not stated"),
+        ({"shear": {"file": "load.csv", "direction": "E"}}, "'pressure' is not stated"),
+        ({"strength": {"file": "load.csv"}}, "'direction' is not stated"),
+    ],
+)
+def test_what_is_wrong_is_said_before_anything_runs(tmp_path, measured, words):
+    with pytest.raises(InputError, match=words):
+        study_in(tmp_path, {"measured": measured})
