@@ -1,5 +1,7 @@
 """Laboratory tests as sidecars and studies state them."""
 
+import json
+
 import numpy as np
 import pytest
 import yaml
@@ -24,7 +26,7 @@ SCAN = {
 
 def study_in(folder, sidecar, files=("load.csv",), **more):
     np.save(folder / "granite.npy", np.zeros((8, 8)))
-    (folder / "granite.yaml").write_text(yaml.safe_dump(SCAN | sidecar))
+    (folder / "granite.yaml").write_text(json.dumps(SCAN | sidecar))
     for name in files:
         (folder / name).write_text("pressure [MPa], displacement [um]\n")
     return resolve_study(STUDY | {"scans": str(folder)} | more, SCHEMA, "study.yaml")
@@ -63,7 +65,7 @@ def test_rock_is_stated_by_length_and_modulus(tmp_path):
         ({"closure": TEST | {"file": "../load.csv"}}, "measured.closure.file"),
         ({"closures": TEST}, "did you mean 'closure'"),
         ({"closure": TEST | {"branches": "load"}}, "did you mean 'branch'"),
-        ({"closure": [TEST, TEST]}, "two tests are 'load, cycle 1'"),
+        ({"closure": [dict(TEST), dict(TEST)]}, "two tests are 'load, cycle 1'"),
         ({"flow": {"file": "load.csv", "branch": "load", "cycle": 1}}, "'way' is not stated"),
         ({"shear": {"file": "load.csv", "direction": "E"}}, "'pressure' is not stated"),
         ({"strength": {"file": "load.csv"}}, "'direction' is not stated"),

@@ -13,11 +13,11 @@ from fractalcontact.study.configuration import solver_settings
 from fractalcontact.study.stages import CONTACT, STAGES, read_by, sections_of
 
 SOLVER = solver_settings({}, "study")
-SPECIMEN, STATES, FLOW, WINDOWS, REPORT, ENSEMBLE = (
+SPECIMEN, STATES, FLOW, WINDOWS, REPORT, ENSEMBLE, TESTS = (
     STAGES[name].function
-    for name in ("joints", "closure", "flow", "size_test", "strength", "ensemble")
+    for name in ("joints", "closure", "flow", "size_test", "strength", "ensemble", "measured")
 )
-JOBS = (SPECIMEN, CONTACT, STATES, FLOW, WINDOWS, REPORT, ENSEMBLE)
+JOBS = (SPECIMEN, CONTACT, STATES, FLOW, WINDOWS, REPORT, ENSEMBLE, TESTS)
 
 
 def taken_by(function):
@@ -60,7 +60,7 @@ def _material(**stated):
         ({"label": "another"}, (REPORT,)),
         (_material(basic_friction_angle=35.0), (REPORT,)),
         (_material(joint_wall_strength=60.0), (REPORT,)),
-        (_material(hardness=900.0), (CONTACT, STATES, FLOW, WINDOWS, REPORT, ENSEMBLE)),
+        (_material(hardness=900.0), (CONTACT, STATES, FLOW, WINDOWS, REPORT, ENSEMBLE, TESTS)),
         (_material(name="another", modulus=1.0, poisson=0.3), (REPORT,)),
         ({"box_range": (0.2, 1.0)}, (STATES, WINDOWS, ENSEMBLE)),
         ({"seating_pressure": 1.0}, (STATES, ENSEMBLE)),

@@ -20,6 +20,7 @@ _BESIDE = {
     "normal_force": ("pressure", "nominal_pressure", "MPa"),
     "reference_pressure": ("pressure", "reference_pressure", "MPa"),
     "interval": ("offset", "interval", "mm"),
+    "offset": ("offset", "offset", "mm"),
     "contact_direction": ("direction", "contact_direction", "1"),
     "sampling": ("sampling", "sampling", "1"),
     "fit": ("fit", "fit", "1"),

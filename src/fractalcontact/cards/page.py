@@ -23,6 +23,7 @@ _HEADS = {
     "hydraulic_aperture_across": "hydraulic aperture, across",
     "peak_dilatancy_angle": "largest dilatancy angle",
     "peak_strength": "peak τ by dilatancy",
+    "contact_strength": "peak τ from contact",
     "barton_strength": "τ by Barton",
     "barton_scaled_strength": "τ by Barton and Bandis",
 }

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import ArrayLike
 from scipy.interpolate import PchipInterpolator
 
 from ..core.estimate import Estimate
@@ -26,7 +27,7 @@ class Curve:
     log_x: bool = True
 
     @classmethod
-    def of(cls, x, y, error, *, log_x: bool = True) -> "Curve":
+    def of(cls, x: ArrayLike, y: ArrayLike, error: ArrayLike, *, log_x: bool = True) -> "Curve":
         """Curve of those points that are known; an unknown error is none."""
         x, y, error = (np.asarray(one, float) for one in np.broadcast_arrays(x, y, error))
         known = np.isfinite(x) & np.isfinite(y) & ((x > 0) | (not log_x))

@@ -16,6 +16,7 @@ from roughcontact.elastic.halfspace import HalfSpace
 
 from ..core.settings import JointSettings, Load, Solver
 from ..core.window import nominal_area
+from .contact_strength import STEPS, contact_dips
 from .joint import composite_topography, direction_spacing, offsets_of
 from .overlap import suspect_nodes
 from .states import chosen_offset, forces_of, hardness_of
@@ -128,6 +129,11 @@ class JointLoading(Generic[P]):
     def suspect_nodes(self, cells: int) -> np.ndarray:
         """Nodes (ny, nx) bool of that topography with suspicious cells of the scans in them."""
         return suspect_nodes(self.specimen, self.direction, cells)
+
+    def contact_dips(self, cells: int, factor: int) -> list[np.ndarray]:
+        """Apparent dips of the pre-fractal's nodes along the sliding, by step; none on a plane."""
+        place = self.specimen, self.direction, cells, factor
+        return [contact_dips(*place, step) for step in STEPS] if self.slides else []
 
     def half_space(self, shape: Iterable[int], factor: int = 1) -> HalfSpace:
         """The elastic half-space under a grid of ``factor`` times the scan's spacing."""

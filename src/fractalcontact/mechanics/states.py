@@ -57,6 +57,9 @@ OFFSETS = {
 }
 
 
+#: Mean apparent dip of equal parts of the force, of states that slide.
+DIP = "apparent_dip"
+
 #: Pressures of the states that are looked at closely: those of the contact maps, in the first
 #: direction and at the finest resolution, under every load. They are in one part of several.
 MAP_PRESSURE = "map_pressure"
@@ -201,7 +204,8 @@ def concat_directions(directions: Sequence[xr.Dataset]) -> xr.Dataset:
 def contact_domains(states: xr.Dataset) -> xr.Dataset:
     """The contact domains alone, with which of them were solved, and their error bounds."""
     kept = ("solved", "nodes_error")
-    return states.drop_vars([name for name in (*STATE_VARIABLES, *OFFSETS) if name not in kept])
+    other = [name for name in (*STATE_VARIABLES, *OFFSETS) if name not in kept]
+    return states.drop_vars(other).drop_vars(DIP, errors="ignore")
 
 
 def map_fields(
@@ -268,6 +272,7 @@ def map_states(parts: Sequence[xr.Dataset]) -> xr.Dataset:
 
 def _join_resolutions(parts: Sequence[xr.Dataset]) -> xr.Dataset:
     """Parts that differ in resolution alone: scalars side by side, fields each their own."""
-    scalars = xr.concat([part[STATE_VARIABLES] for part in parts], "resolution")
-    fields = [part.drop_vars([*STATE_VARIABLES, "resolution"]) for part in parts]
+    kept = [*STATE_VARIABLES, *(DIP for part in parts[:1] if DIP in part)]
+    scalars = xr.concat([part[kept] for part in parts], "resolution")
+    fields = [part.drop_vars([*kept, "resolution"]) for part in parts]
     return xr.merge([scalars, *fields], compat="identical", join="exact").sortby("resolution")

@@ -20,9 +20,10 @@ from ..core.labels import cf_attrs
 from ..core.limits import JRC_RANGE, LARGEST_FRICTION_ANGLE, MAX_TOUCHING
 from ..core.settings import Friction, Material, StrengthSettings
 from ..core.window import nominal_area, window_sides
+from .contact_strength import contact_strength
 from .joint import rigid_dilatancy, sliding_axis
 from .jrc import profile_roughness
-from .states import SOLVER_ERROR
+from .states import DIP, SOLVER_ERROR
 from .theory import LABORATORY_LENGTH, barton_strength, scaled_joint
 
 #: Residual strength is the mean over the intervals beyond this fraction of the largest offset.
@@ -224,6 +225,7 @@ def joint_strength(
     result = result.assign_coords(
         contact_direction=directions,
         normal_force=dilatancy["normal_force"],
+        offset=dilatancy["offset"],
         interval=("interval", result["midpoint"].values[0], cf_attrs("mm", FIELDS["midpoint"][1])),
     )
     result["nominal_pressure"] = (
@@ -330,6 +332,9 @@ def _one_direction(
     values |= judged_strengths(values, full)
     table = {name: (_dims(name, of_name), *FIELDS[name]) for name, of_name in values.items()}
     result = roughness.assign(labelled(table, values))
+    if DIP in dilatancy:
+        dips = dilatancy[DIP].sel(contact_direction=direction)
+        result = result.assign(contact_strength(dips, pressure, angle_b))
     result["scaled_roughness"].attrs["laboratory_length_mm"] = LABORATORY_LENGTH
     return result
 

@@ -16,11 +16,13 @@ from ..core.datasets import labelled_dataset
 from ..core.labels import cf_attrs
 from ..core.settings import ContactSettings, Solver
 from .closure import bulk_settlement, interface_closure
+from .contact_strength import PARTS, STEPS, dips_by_force
 from .joint import prefractal, rigid_dilatancy
 from .loading import JointLoading
 from .plan import solved_loads
 from .state_scalars import aperture, numbers_of
 from .states import (
+    DIP,
     ERRORS,
     OFFSET_GAP,
     OFFSETS,
@@ -183,6 +185,7 @@ def contact_states(
     shape = (1, len(cells), len(resolutions), len(forces))
     scalars = {name: np.full(shape, np.nan) for name in SCALARS | ERRORS}
     solved = np.zeros(shape, bool)
+    dips = np.full((*shape, len(STEPS), PARTS), np.nan, np.float32)
     fields: dict[str, tuple] = {}
     reference = int(np.argmin(np.abs(forces - forces_of([settings.map_load], loading.area)[0])))
     for k, factor in enumerate(resolutions):
@@ -194,12 +197,15 @@ def contact_states(
         for i, n in enumerate(cells):
             pressures, gaps = [], []
             suspicious = prefractal(loading.suspect_nodes(n), factor)
+            slopes = loading.contact_dips(n, factor)
             for j, state in _load_curve(loading, n, factor, space, mapped=n == mapped):
                 pressures.append(state.pressure.astype(np.float32))
                 gaps.append(aperture(state).astype(np.float32))
                 if of_offsets is not None and j == reference:
                     of_offsets[i] = gaps[-1]
                 solved[0, i, k, j] = True
+                for one, of_step in enumerate(slopes):
+                    dips[0, i, k, j, one] = dips_by_force(state.pressure, of_step)
                 touching[0, i, j] = state.in_contact
                 for name, value in numbers_of(state, suspicious).items():
                     scalars[name][0, i, k, j] = value
@@ -213,6 +219,10 @@ def contact_states(
             touching,
             cf_attrs("1", f"contact domain at {factor} times the scan's spacing"),
         )
+    if loading.slides:
+        words = cf_attrs("degree", "apparent dip along the sliding, by equal parts of the force")
+        dims = ("direction", "offset", "resolution", "normal_force", "dip_step", "force_part")
+        fields[DIP] = dims, dips, words
     return _labelled_states(loading, resolutions, scalars | {"solved": solved}).assign(fields)
 
 

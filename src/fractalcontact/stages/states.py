@@ -18,6 +18,7 @@ from ..mechanics.contact_fields import contact_fields
 from ..mechanics.overlap import load_warning, node_marks
 from ..mechanics.separation import prefractal_openings
 from ..mechanics.states import (
+    DIP,
     chosen_offset,
     combine,
     contact_domains,
@@ -73,6 +74,11 @@ def state_stages(
     curves.attrs["warning"] = "; ".join(filter(None, warnings))
     curves.update(reported.variables())
     dilatancy = elastic_dilatancy(curves, joints)
+    if DIP in states:
+        finest = {"resolution": states["resolution"].min()}
+        dips = states[DIP].where(curves["resolved"]).sel(finest, drop=True)
+        dips = dips.assign_attrs(states[DIP].attrs)
+        dilatancy[DIP] = dips.rename(direction="contact_direction")
     laws = area_laws(
         curves,
         joint_statistics(specimens, joints),

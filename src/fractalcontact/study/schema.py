@@ -72,8 +72,10 @@ def _explain(error):
         return f"missing key '{full}'{_expected(expected)}"
     if error.validator == "anyOf" and isinstance(error.instance, dict):
         # What is wrong within a mapping says more than that it is none of the forms.
-        inner = max(error.context, key=lambda found: len(found.absolute_path))
-        if len(inner.absolute_path) > len(error.absolute_path):
+        of_mappings = [found for found in error.context if found.validator not in ("type", "const")]
+        inner = max(of_mappings, key=lambda found: len(found.absolute_path), default=error)
+        deeper = len(inner.absolute_path) > len(error.absolute_path)
+        if deeper or inner.validator == "additionalProperties":
             return _explain(inner)
     return f"{key}: {shortened(repr(error.instance))} is not right{_expected(error.schema)}"
 

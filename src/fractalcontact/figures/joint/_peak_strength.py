@@ -21,6 +21,10 @@ _SUMMARY: dict[str, tuple[str, dict[str, Any]]] = {
         "peak over the offsets",
         {"ls": "none", "marker": "o", "ms": 6, "color": "k"},
     ),
+    "peak_contact_strength": (
+        "peak from the contact itself",
+        {"ls": "none", "marker": "^", "ms": 4, "color": COLOURS[1]},
+    ),
     "residual_strength": (
         "residual; bar: 95 % interval, if known",
         {"ls": "none", "marker": "D", "ms": 3.5, "color": COLOURS[4]},
