@@ -217,7 +217,7 @@ def _read(kind: Any, value: Any) -> Any:
     """A value, or each of a list, as its class where it has one."""
     if get_origin(kind) is list and is_dataclass(of := get_args(kind)[0]):
         return [read(of, one) for one in value]  # type: ignore[arg-type]
-    return read(kind, value) if is_dataclass(kind) else value
+    return read(kind, value) if is_dataclass(kind) else value  # type: ignore[arg-type]
 
 
 def arguments(function: object, stated: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:

@@ -93,7 +93,8 @@ def fit_factor(readings: Curve, family: Family, largest: float = LARGEST_FACTOR)
             "hardly determined: a closure that is straight over the logarithm of the pressure has "
             "one shape at every modulus"
         )
-    return Calibration(Estimate(*np.exp([log_factor, low, high]), n=readings.x.size), why)
+    value, low, high = np.exp([log_factor, low, high])
+    return Calibration(Estimate(value, low, high, readings.x.size), why)
 
 
 def _misfit(readings: Curve, family: Family, log_factor: float, reached: float) -> float:

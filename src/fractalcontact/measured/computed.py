@@ -102,15 +102,15 @@ class Joint:
         space = self.loading.half_space(composite.shape, self.factor)
         pressure = np.geomspace(lightest, largest, _STATES)
         up = pressure if test.branch == LOAD else pressure[-1:]
-        down = [] if test.branch == LOAD else pressure[-2::-1]
-        forces = [*(up * area), *(np.asarray(down) * area)]
+        down = pressure[:0] if test.branch == LOAD else pressure[-2::-1]
+        forces = (area * np.concatenate([up, down])).tolist()
         try:
             path = load_path(
                 composite, space, forces=forces, hardness=hardness, rtol=self.loading.solver.rtol
             )
-        except NotConverged as error:
+        except NotConverged as failure:
             name = self.loading.specimen.attrs["name"]
-            error.add_note(f"specimen {name}, test '{test.label}' at H = {hardness:g} MPa")
+            failure.add_note(f"specimen {name}, test '{test.label}' at H = {hardness:g} MPa")
             raise
         sides = np.multiply(space.shape, space.spacing)
         force = np.array([state.force for state in path])

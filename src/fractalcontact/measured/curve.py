@@ -38,7 +38,8 @@ class Curve:
         """Values between the points, NaN outside; the error is the larger of those beside."""
         x = np.asarray(x, float)
         if self.x.size < MIN_POINTS:
-            return Estimate(*(np.full(x.shape, np.nan) for _ in range(3)))
+            nothing = np.full(x.shape, np.nan)
+            return Estimate(nothing, nothing, nothing)
         places, (knots, first) = self._scale(x), np.unique(self._scale(self.x), return_index=True)
         for end in (knots[0], knots[-1]):  # the same pressure, but for rounding
             places = np.where(np.isclose(places, end, rtol=0, atol=_ROUNDING), end, places)

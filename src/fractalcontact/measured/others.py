@@ -44,7 +44,7 @@ def computed_curve(
     if test.kind == "flow":
         return _flow(test, stages["flow"], reported)
     dilatancy, strength = stages["dilatancy"], stages["strength"]
-    if strength is None:
+    if strength is None or dilatancy is None:
         raise InputError(f"{test.file}: a surface against a plane does not slide; remove the test")
     known = [str(one) for one in strength["contact_direction"].values]
     if test.direction not in known:
@@ -89,7 +89,7 @@ def _under(test: MeasuredTest, along: xr.Dataset, name: str, x: str) -> Curve:
     """A curve over the offsets, straight over the logarithm of the pressure between loads."""
     values = along[name].transpose(..., "normal_force")
     # Other loads are solved at the reported offset alone.
-    offsets = np.isfinite(values).sum(values.dims[0]).values
+    offsets = np.isfinite(values.values).sum(axis=0)
     solved = (offsets > 0) & (2 * offsets > offsets.max())
     pressure = along["nominal_pressure"].values[solved]
     if not pressure.size or not (

@@ -78,7 +78,8 @@ def _in_program_units(name: str, column: Column) -> np.ndarray:
 
 def _require_branch(test: MeasuredTest, pressure: np.ndarray) -> None:
     steps = np.diff(pressure)
-    rising = np.count_nonzero(steps > 0) / max(np.count_nonzero(steps), 1)
+    moved = steps[steps != 0]
+    rising = float(np.mean(moved > 0)) if moved.size else 0.0
     falls = test.branch == "unload"
     if (1 - rising if falls else rising) < _STEPS:
         way = "falls" if falls else "rises"

@@ -145,7 +145,8 @@ def _of_kind(kind: str, tests: Sequence[MeasuredTest], rows: Sequence[Mapping]) 
         ("computed", point, unit, [row["computed"] for row in rows]),
         ("ratio", point, "1", [row["ratio"] for row in rows]),
     ):
-        whole = Estimate(*(_filled(ends) for ends in zip(*(one.ends for one in each), strict=True)))
+        value, low, high = (_filled([one.ends[k] for one in each]) for k in range(3))
+        whole = Estimate(value, low, high)
         what = {
             "read": f"{words}, a reading",
             "ratio": f"{words}, computed over measured",
