@@ -46,6 +46,7 @@ def page_of(card: Mapping[str, Any]) -> dict[str, Any]:
         "stiffness": over_pressure(stiffness),
         "tables": list(_tables(printed)),
         "tests": tests_of(entries),
+        "grasselli": grasselli_rows(entries),
         "jrc": jrc_table(entries["jrc"], entries["jrc_by_fit"]),
         # An elastic joint has no hardness to state.
         "missing": missing_of({key: one for key, one in printed.items() if key != "hardness"}),
@@ -81,6 +82,17 @@ def tests_of(entries: Mapping[str, Any]) -> list[tuple[str, str, Mapping[str, An
         for row in one.get("values", ())
         if "value" in row
     ]
+
+
+def grasselli_rows(entries: Mapping[str, Any]) -> list[dict[str, str]]:
+    """Direction, theta*_max, C, A_0 and roughness of Grasselli's law, in words."""
+    names = ("grasselli_theta_max", "grasselli_c", "grasselli_a_0", "grasselli")
+    found: dict[str, dict[str, str]] = {}
+    for name in names:
+        for row in entries.get(name, {}).get("values", ()):
+            if "value" in row:
+                found.setdefault(row["at"]["direction"], {})[name] = short(row["value"])
+    return [{"direction": direction} | values for direction, values in found.items()]
 
 
 def has_values(entry: Mapping[str, Any]) -> bool:

@@ -6,10 +6,11 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from ..core.datasets import labelled_dataset
+from ..core.datasets import labelled, labelled_dataset
 from ..core.limits import JRC_RANGE, JRC_SAMPLING
 from ..core.mean_plane import without_mean_plane
-from ..core.window import faces, window_slices
+from ..core.window import faces, spacing_of, window_slices
+from ..roughness.grasselli import grasselli
 from .joint import direction_spacing, sliding_axis
 from .theory import joint_roughness
 
@@ -57,6 +58,18 @@ _TABLE = {
 }
 
 
+#: Grasselli's parameters of the lower face at the scan's spacing.
+_GRASSELLI = {
+    f"grasselli_{name}": ((), unit, f"{words} of Grasselli's law, lower face, along the sliding")
+    for name, unit, words in (
+        ("theta_max", "degree", "largest apparent dip theta*_max"),
+        ("c", "1", "exponent C"),
+        ("a_0", "1", "fraction A_0 of the area that faces the sliding"),
+        ("roughness", "degree", "roughness theta*_max / (C + 1)"),
+    )
+}
+
+
 def profile_roughness(specimen: xr.Dataset, direction: str) -> xr.Dataset:
     """Z2 and joint roughness coefficient of the faces under the window, along the sliding.
 
@@ -72,7 +85,8 @@ def profile_roughness(specimen: xr.Dataset, direction: str) -> xr.Dataset:
         over that step, with every place of the first sample; both faces if two were scanned) and
         `jrc` as Tse & Cruden's relation gives it. Over `fit` (:data:`FITS`) the `jrc_by_fit`, each
         at its `fit_step`. `jrc_used`, the one of :data:`JRC_SAMPLING` kept within
-        :data:`JRC_RANGE`, and `jrc_note`, remarks on it.
+        :data:`JRC_RANGE`, and `jrc_note`, remarks on it. `grasselli_theta_max`, `_c`, `_a_0` and
+        `_roughness` of :func:`roughness.grasselli.grasselli`.
 
     Notes
     -----
@@ -84,7 +98,14 @@ def profile_roughness(specimen: xr.Dataset, direction: str) -> xr.Dataset:
     axis = sliding_axis(direction)
     window = window_slices(specimen)
     levelled = [np.moveaxis(without_mean_plane(z[window]), axis, 0) for z in faces(specimen)]
-    return roughness_of_profiles(levelled, direction_spacing(specimen, direction))
+    found = roughness_of_profiles(levelled, direction_spacing(specimen, direction))
+    spacing_y, spacing_x = spacing_of(specimen)
+    # The lower face, which the upper block climbs.
+    lower = without_mean_plane(faces(specimen)[0][window])
+    law = grasselli(lower, (spacing_y, spacing_x), direction)
+    return found.assign(
+        labelled(_GRASSELLI, {f"grasselli_{name}": value for name, value in law._asdict().items()})
+    )
 
 
 def roughness_of_profiles(levelled: list[np.ndarray], spacing: float) -> xr.Dataset:

@@ -1,0 +1,95 @@
+"""Grasselli's directional roughness of a face: how much of it is steeper than an apparent dip.
+
+The part of the area that faces the sliding with an apparent dip of theta* or more follows
+A = A_0 (1 - theta*/theta*_max)^C (Grasselli, Wirth & Egger, Int. J. Rock Mech. Min. Sci. 39 (2002)
+789); theta*_max / (C + 1) is its measure of roughness (Tatone & Grasselli, Rev. Sci. Instrum. 80
+(2009) 125110).
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ..core.directions import axis_and_sign
+
+#: Bins of the apparent dip, degrees, over which the law is fitted.
+_BIN = 2.0
+#: Triangles that face the sliding, below which there is no law.
+_MIN_TRIANGLES = 200
+
+
+class Grasselli(NamedTuple):
+    """theta*_max in degrees, C, A_0, and theta*_max / (C + 1) in degrees; NaN without a law."""
+
+    theta_max: float = np.nan
+    c: float = np.nan
+    a_0: float = np.nan
+    roughness: float = np.nan
+
+
+def grasselli(heights: np.ndarray, spacing: tuple[float, float], direction: str) -> Grasselli:
+    """Grasselli's parameters of a face along a direction of sliding.
+
+    Parameters
+    ----------
+    heights : (ny, nx) ndarray
+        mm, without the mean plane; NaN where missing.
+    spacing : (float, float)
+        Of y and x, mm.
+    direction : {"E", "N", "W", "S"}
+        Where the upper block slides: what rises that way faces it.
+
+    Returns
+    -------
+    Grasselli
+
+    Notes
+    -----
+    Two triangles a cell, of both diagonals half a weight each, so that no diagonal is preferred.
+    Areas are those of the triangles themselves. C is fitted by least squares to the cumulative area
+    over bins of 2 degrees, as the authors' program does.
+    """
+    dips, areas = (np.concatenate(one) for one in _triangles(heights, spacing, direction))
+    facing = dips >= 0
+    total = areas.sum()
+    if np.count_nonzero(dips > 0) < _MIN_TRIANGLES:
+        return Grasselli()
+    dip, area = dips[facing], areas[facing]
+    theta_max, a_0 = float(dip.max()), float(area.sum() / total)
+    edges = np.append(np.arange(0.0, theta_max, _BIN), theta_max)
+    order = np.argsort(dip)
+    above = np.append(np.cumsum(area[order][::-1])[::-1], 0.0) / area.sum()
+    share = above[np.searchsorted(dip[order], edges)]
+    share[-1] = 0.0
+    c = _exponent(1 - edges / theta_max, share)
+    return Grasselli(theta_max, c, a_0, theta_max / (c + 1))
+
+
+def _triangles(heights, spacing, direction):
+    """Apparent dips, degrees, and areas of the triangles of all cells, of both diagonals."""
+    dy, dx = spacing
+    axis, sign = axis_and_sign(direction)
+    a, b, c, d = heights[:-1, :-1], heights[:-1, 1:], heights[1:, :-1], heights[1:, 1:]
+    dips, areas = [], []
+    # Slopes along x and y of each half of a cell, as either diagonal cuts it.
+    for rise_x, rise_y in ((b - a, d - b), (d - c, c - a), (b - a, c - a), (d - c, d - b)):
+        slope_x, slope_y = rise_x / dx, rise_y / dy
+        known = np.isfinite(slope_x + slope_y)
+        along = sign * (slope_x if axis == "x" else slope_y)
+        dips.append(np.degrees(np.arctan(along[known])))
+        areas.append(np.sqrt(1 + slope_x**2 + slope_y**2)[known])
+    return dips, areas
+
+
+def _exponent(x: np.ndarray, y: np.ndarray) -> float:
+    """Exponent of y = x^C by least squares."""
+    from scipy import optimize
+
+    inner = (x > 0) & (x < 1)
+
+    def misfit(log_c: float) -> float:
+        return float(np.sum((x[inner] ** np.exp(log_c) - y[inner]) ** 2))
+
+    if not inner.any():
+        return np.nan
+    return float(np.exp(optimize.minimize_scalar(misfit, bounds=(-5, 5), method="bounded").x))
