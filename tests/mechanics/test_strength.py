@@ -185,7 +185,10 @@ def test_no_slope_along_the_ridges_and_hence_no_roughness_there():
     along, across = (profile_roughness(flat_along_y, d) for d in "NE")
     assert (along["z2"] < 1e-12).all()
     assert float(across["z2"].sel(sampling="scan")) > 0.25
-    xr.testing.assert_identical(across, profile_roughness(flat_along_y, "W"))
+    back = profile_roughness(flat_along_y, "W")
+    # A flank more lies on one side of the window: only what faces the sliding differs.
+    profiles = [name for name in across if "grasselli" not in str(name)]
+    xr.testing.assert_identical(across[profiles], back[profiles])
 
 
 def test_peak_is_the_first_largest_and_passes_over_what_is_missing():

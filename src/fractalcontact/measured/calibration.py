@@ -74,8 +74,8 @@ def fit_factor(readings: Curve, family: Family, largest: float = LARGEST_FACTOR)
     log_factor, least = float(inside.x), max(float(inside.fun), 1e-18)
     if min(abs(log_factor - near)) < _EDGE:
         why = (
-            f"no factor between {1 / largest:.2g} and {largest:.2g} that the computed loads reach "
-            "fits best: widen 'loads', or correct the constant that is stated"
+            f"no factor from {1 / largest:.2g} to {largest:.2g} that the computed loads reach fits "
+            "better than those beside it: the test is not of such a joint, or widen 'loads'"
         )
         return Calibration(Estimate(), why)
     freedom = readings.x.size - 2

@@ -171,7 +171,8 @@ def _row(
     span = Curve(*(part[computed.x <= readings.x[-1]] for part in _parts(computed)))
     row = {
         "readings": readings,
-        "laid": readings.y - readings.at(datum).value + _datum_closure(joint, datum),
+        # On its branch, on the axis of the stage ``closure``: from the seat of the study on.
+        "laid": readings.y - readings.at(datum).value + curve.at(datum).value - joint.seat_closure,
         "at": at,
         "measured": of_measured,
         "computed": of_computed,
@@ -191,11 +192,6 @@ def _row(
 
 def _parts(curve: Curve):
     return curve.x, curve.y, curve.error
-
-
-def _datum_closure(joint: Joint, datum: float) -> float:
-    """Closure on loading at a datum, on the axis of the stage ``closure``: from its seat on."""
-    return float(joint.curve.at(datum).value - joint.seat_closure)
 
 
 def _with_constant(calibrated: _Calibrated, test, largest, datum, readings) -> Estimate:

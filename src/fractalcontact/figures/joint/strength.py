@@ -27,7 +27,7 @@ ORDER = 110
 
 _OFFSET = "offset $v$, middle of the interval (mm)"
 #: Of strengths whose friction angle was truncated.
-_NO_RESULT = f"truncated at {LARGEST_FRICTION_ANGLE:g}°, or half of the window touches: excluded"
+_NO_RESULT = f"excluded: truncated at {LARGEST_FRICTION_ANGLE:g}°,\nor half of the window touches"
 #: Of curves over the offset: hollow points stand above the lines of the other pressures.
 _CURVES = {
     "hue": "normal_force",
@@ -44,7 +44,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     strength = subject.along("strength").transpose("interval", "normal_force", ...)
     shown = strength.isel(normal_force=list(subject.reported.loads))
 
-    figure = Figure(figsize=(WIDTH, 6.2))
+    figure = Figure(figsize=(WIDTH, 6.9))
     (angles, curves), (summary, legends) = figure.subplots(2, 2)
     a = Panel(angles, "a", "dilatancy and friction angle")
     b = Panel(curves, "b", "shear strength")
