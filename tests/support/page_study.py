@@ -3,6 +3,7 @@
 from dataclasses import asdict
 
 from made_stages import scan, stages_of
+from made_tests import with_tests
 from materials import ROCK
 from spreadsheets import FORMULA
 
@@ -48,13 +49,16 @@ def write_study(folder):
         "pair": (scan(lower, 0.1), scan(lower + 0.2 * surface(80, 2) + 0.02, 0.1)),
         "flat.1": (scan(surface(48, 4), 0.1), None),
     }
+    folder.mkdir(parents=True)
     parts = {stage: {} for stage in STAGES}
     settings = {name: resolve_settings(STUDY, name, {}, "tiny") for name in scans}
     for name, faces in scans.items():
-        made = stages_of(name, faces, settings[name], solver_settings({}, "tiny"))
+        solver = solver_settings({}, "tiny")
+        made = stages_of(name, faces, settings[name], solver)
+        if name == "pair":
+            settings[name], made = with_tests(made, settings[name], solver, folder)
         for stage, dataset in made.items():
             parts[stage][name] = dataset
-    folder.mkdir(parents=True)
     records = {name: asdict(stated) for name, stated in settings.items()}
     join_stages(parts, folder / "atlas.nc", {"study": STUDY, "settings": records})
     return settings
