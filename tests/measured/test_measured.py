@@ -183,6 +183,12 @@ REFUSED = [
     ({"columns": {"displacement": "displacement [MPa]"}}, "expected the columns"),
     ({"calibrate": "hardness"}, "the joint is elastic; state a hardness"),
 ]
+#: The same of a joint that crushes at 100 MPa.
+REFUSED_OF_CRUSHING = [
+    ({"branch": "reload", "cycle": 2, "calibrate": "modulus"}, "calibrate it on loading"),
+    ({"largest_pressure": "96 MPa", "branch": "reload", "cycle": 2}, "more than it can at a"),
+    ({"largest_pressure": "96 MPa", "calibrate": "hardness"}, "too near to the hardness of 100"),
+]
 
 
 @pytest.mark.parametrize("made", [np.inf], indirect=True, ids=["elastic"])
@@ -194,6 +200,15 @@ def test_what_is_unsaid_or_wrong_is_refused_in_a_sentence(made, tmp_path, said, 
     with pytest.raises(InputError, match=re.escape(words)) as refusal:
         compared(settings, stages, {"closure": load}, tmp_path)
     assert "\n" not in str(refusal.value)
+
+
+@pytest.mark.parametrize("made", [100.0], indirect=True, ids=["crushing"])
+@pytest.mark.parametrize(("said", "words"), REFUSED_OF_CRUSHING)
+def test_what_a_joint_that_crushes_cannot_carry_or_tell_is_refused(made, tmp_path, said, words):
+    settings, stages, tests = made
+    load = written(tmp_path, tests)[0] | said
+    with pytest.raises(InputError, match=re.escape(words)):
+        compared(settings, stages, {"closure": load}, tmp_path)
 
 
 @pytest.mark.parametrize("made", [np.inf], indirect=True, ids=["elastic"])

@@ -10,8 +10,8 @@ from ..core.estimate import Estimate
 from ..core.intervals import t_quantile
 from .curve import MIN_READINGS, Curve
 
-#: Factors of the constant that are tried, and how many of them.
-LARGEST_FACTOR, _TRIED = 4.0, 81
+#: How many factors of the constant are tried.
+_TRIED = 81
 #: Fraction of the readings that the computed curve has to reach at a factor.
 _REACHED = 0.5
 #: Logarithm of the factors that are searched closely about the best, and what is their edge.
@@ -29,7 +29,7 @@ class Calibration:
     reason: str = ""
 
 
-def fit_factor(readings: Curve, family: Family, largest: float = LARGEST_FACTOR) -> Calibration:
+def fit_factor(readings: Curve, family: Family, between: tuple[float, float]) -> Calibration:
     """Factor of a constant at which the computed closure comes nearest to the measured one.
 
     Parameters
@@ -38,8 +38,8 @@ def fit_factor(readings: Curve, family: Family, largest: float = LARGEST_FACTOR)
         Measured closure, from any datum.
     family : callable
         Computed closure at a factor.
-    largest : float, optional
-        Factors from its reciprocal to it are tried; no interval leaves them.
+    between : (float, float)
+        Smallest and largest factor that are tried; no interval leaves them.
 
     Returns
     -------
@@ -52,8 +52,7 @@ def fit_factor(readings: Curve, family: Family, largest: float = LARGEST_FACTOR)
     Least squares in the closure; the datum of the readings is fitted too, as the reading at the
     seat scatters as all others do.
     """
-
-    tried = np.linspace(-np.log(largest), np.log(largest), _TRIED)
+    tried = np.linspace(np.log(between[0]), np.log(between[1]), _TRIED)
     values = np.array([_misfit(readings, family, one, _REACHED) for one in tried])
     best = int(values.argmin())
     if not np.isfinite(values[best]):
@@ -74,8 +73,8 @@ def fit_factor(readings: Curve, family: Family, largest: float = LARGEST_FACTOR)
     log_factor, least = float(inside.x), max(float(inside.fun), 1e-18)
     if min(abs(log_factor - near)) < _EDGE:
         why = (
-            f"no factor from {1 / largest:.2g} to {largest:.2g} that the computed loads reach fits "
-            "better than those beside it: the test is not of such a joint, or widen 'loads'"
+            "no factor from {:.2g} to {:.2g} that the computed loads reach fits better than those "
+            "beside it: the test is not of such a joint, or widen 'loads'".format(*between)
         )
         return Calibration(Estimate(), why)
     freedom = readings.x.size - 2
@@ -84,14 +83,14 @@ def fit_factor(readings: Curve, family: Family, largest: float = LARGEST_FACTOR)
     error = _of_computed(family, readings, log_factor)
     halves = [np.hypot(end - log_factor, error) for end in ends]
     low, high = (
-        np.clip(log_factor + way * half, -np.log(largest), np.log(largest))
+        np.clip(log_factor + way * half, tried[0], tried[-1])
         for way, half in zip((-1, 1), halves, strict=True)
     )
     why = ""
-    if max(halves) > np.log(largest) / 2:
+    if high - low > (tried[-1] - tried[0]) / 2:
         why = (
-            "hardly determined: a closure that is straight over the logarithm of the pressure has "
-            "one shape at every modulus"
+            "hardly determined: its interval holds half of the factors that were tried, from "
+            "{:.2g} to {:.2g}".format(*between)
         )
     value, low, high = np.exp([log_factor, low, high])
     return Calibration(Estimate(value, low, high, readings.x.size), why)

@@ -6,19 +6,24 @@ from typing import Any
 import numpy as np
 from scipy.interpolate import PchipInterpolator
 
+from roughcontact.contact.path import LOAD
+
 from ..core.errors import InputError
 from ..core.estimate import NO_ESTIMATE, Estimate
 from ..core.limits import SEATED_SPAN
 from ..core.settings import MeasuredTest
 from ..mechanics.closure_laws import fit_hyperbola, fit_semi_logarithmic
-from .calibration import LARGEST_FACTOR, NEAR, Calibration, fit_factor
-from .computed import Joint
+from .calibration import NEAR, Calibration, fit_factor
+from .computed import CARRIED, Joint
 from .curve import Curve, ratio
 
 #: How the computed curve beside a test came about.
 COMPUTED, FITTED, PREDICTED = "computed", "fitted", "predicted"
-#: Hardnesses that are solved to fit one, as factors of that stated.
-_HARDNESSES = (1 / 3, 3**-0.5, 1.0, 3**0.5, 3.0)
+#: Hardnesses that are solved to fit one, and the ends of moduli, as factors of those stated.
+_HARDNESSES = np.array([1 / 3, 3**-0.5, 1.0, 3**0.5, 3.0])
+_MODULI = (0.25, 4.0)
+#: Hardnesses that a fit needs.
+_MIN_HARDNESSES = 3
 
 _PARAMETERS = {
     "k_ni": ("MPa/mm", "initial normal stiffness k_ni of the hyperbola"),
@@ -100,15 +105,20 @@ class _Calibrated:
         if self.test is None:
             return
         one = readings[tests.index(self.test)]
-        if self.test.calibrate == "hardness" and not np.isfinite(joint.hardness):
+        crushes = np.isfinite(joint.hardness)
+        if self.test.calibrate == "hardness" and not crushes:
             raise InputError(
                 f"{self.test.file}: 'calibrate: hardness', but the joint is elastic; state a "
                 "hardness in the material, or calibrate the modulus"
             )
+        if self.test.calibrate == "modulus" and crushes and self.test.branch != LOAD:
+            raise InputError(
+                f"{self.test.file}: 'calibrate: modulus' on the branch '{self.test.branch}' of a "
+                "joint that crushes; calibrate it on loading, or calibrate the hardness"
+            )
         from_datum = Curve(*(part[one.x >= self.test.seat] for part in (one.x, one.y, one.error)))
-        family = self._ladder(one) if self.test.calibrate == "hardness" else self._scaled(one)
-        largest = max(_HARDNESSES) if self.test.calibrate == "hardness" else LARGEST_FACTOR
-        self.found = fit_factor(from_datum, family, largest)
+        fitted = self._ladder(one) if self.test.calibrate == "hardness" else self._scaled(one)
+        self.found = fit_factor(from_datum, *fitted)
 
     @property
     def factor(self) -> Estimate:
@@ -122,15 +132,25 @@ class _Calibrated:
 
     def _scaled(self, readings):
         largest = largest_of(self.test, readings)
-        return lambda factor: self.joint.on_branch(self.test, largest, factor)
+        return lambda factor: self.joint.on_branch(self.test, largest, factor), _MODULI
 
     def _ladder(self, readings):
         """Closures between those at a few hardnesses, over the logarithm of the hardness."""
         largest = largest_of(self.test, readings)
-        solved = [self.at(self.test, largest, factor) for factor in _HARDNESSES]
-        curves = PchipInterpolator(np.log(_HARDNESSES), np.array([one.y for one in solved]))
+        carry = _HARDNESSES[largest < CARRIED * self.joint.hardness * _HARDNESSES]
+        if carry.size < _MIN_HARDNESSES:
+            raise InputError(
+                f"{self.test.file}: {largest:.3g} MPa are too near to the hardness of "
+                f"{self.joint.hardness:.3g} MPa to fit that; state a larger one in the material"
+            )
+        solved = [self.at(self.test, largest, factor) for factor in carry]
+        curves = PchipInterpolator(np.log(carry), np.array([one.y for one in solved]))
         first = solved[0]
-        return lambda factor: Curve(first.x, curves(np.log(factor)), first.error)
+
+        def family(factor: float) -> Curve:
+            return Curve(first.x, curves(np.log(factor)), first.error)
+
+        return family, (carry[0], carry[-1])
 
     def described(self) -> dict[str, Any]:
         """:data:`OF_CALIBRATION`."""

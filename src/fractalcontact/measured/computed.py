@@ -8,6 +8,7 @@ import xarray as xr
 from roughcontact.contact.path import LOAD, load_path
 from roughcontact.errors import NotConverged
 
+from ..core.errors import InputError
 from ..core.reported import Reported
 from ..core.settings import MeasuredSettings, MeasuredTest
 from ..mechanics.closure import bulk_settlement
@@ -15,6 +16,8 @@ from ..mechanics.joint import prefractal
 from ..mechanics.loading import JointLoading
 from .curve import Curve
 
+#: Of its hardness, up to which a joint is loaded.
+CARRIED = 0.95
 #: States of a branch that is solved, evenly over the logarithm of the pressure.
 _STATES = 8
 
@@ -98,6 +101,11 @@ class Joint:
 
     def solved(self, test: MeasuredTest, lightest: float, largest: float, hardness: float) -> Curve:
         """Interface closure on loading up to a pressure or, after it, on unloading from there."""
+        if largest >= CARRIED * hardness:
+            raise InputError(
+                f"{test.file}: the joint has carried {largest:.3g} MPa, more than it can at a "
+                f"hardness of {hardness:.3g} MPa; state a larger one in the material"
+            )
         composite, area = self._composite(), self.loading.area
         space = self.loading.half_space(composite.shape, self.factor)
         pressure = np.geomspace(lightest, largest, _STATES)
