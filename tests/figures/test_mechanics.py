@@ -8,6 +8,7 @@ import pandas as pd
 import pytest
 import xarray as xr
 from cases import representative
+from made_tests import PART, computed_and_read
 from matplotlib.colors import to_rgb
 from matplotlib.text import Text
 
@@ -245,7 +246,7 @@ def test_few_nodes_are_hollow(atlas):
 
 @pytest.mark.parametrize("specimen", ["sliding", "pair"])
 def test_elastic_dilatancy_is_rigid_dilatancy_less_closure(atlas, specimen):
-    table = drawn(atlas, specimen, "fig06_07_dilatancy").data
+    table, _ = computed_and_read(drawn(atlas, specimen, "fig06_07_dilatancy").data)
     curves = atlas[f"closure/{specimen}"].to_dataset().isel(direction=0, resolution=0)
     direction = str(curves["direction"].values)
     elastic = table[table["panel"] == "b"]
@@ -261,6 +262,30 @@ def test_elastic_dilatancy_is_rigid_dilatancy_less_closure(atlas, specimen):
         expected = opened - float(state["interface_closure"])
         assert point["elastic_dilatancy_mm"] == pytest.approx(expected, abs=1e-12)
         assert point["area_share"] == float(state["area_share"])
+
+
+@pytest.mark.parametrize(
+    ("figure", "kind", "x", "unit"),
+    [
+        ("seated_closure", "closure", "pressure_MPa", "mm"),
+        ("hydraulic_aperture", "flow", "pressure_MPa", "mm3"),
+        ("fig06_07_dilatancy", "dilatancy", "displacement_mm", "mm"),
+        ("strength", "shear", "displacement_mm", "MPa"),
+        ("strength", "strength", "pressure_MPa", "MPa"),
+    ],
+)
+def test_laboratory_tests_stand_in_the_panels_of_the_computed_curves(atlas, figure, kind, x, unit):
+    """Every reading, as the atlas has it; the ratio stands in the caption."""
+    drawing = drawn(atlas, "sliding", figure)
+    _, table = computed_and_read(drawing.data)
+    table = table[table[f"{kind}_test"].notna()]
+    stage = atlas["measured/sliding"].to_dataset().isel({f"{kind}_test": 0})
+    stored = stage[f"{kind}_read"].dropna(f"{kind}_reading")
+    np.testing.assert_array_equal(table[f"{kind}_read_{unit}"], stored)
+    assert table[f"{kind}_{x}"].is_monotonic_increasing
+    if kind != "strength":  # every peak of this joint is truncated
+        assert float(stage[f"{kind}_ratio_at_last"]) == pytest.approx(1 / PART, rel=0.05)
+        assert "Computed over measured" in drawing.caption
 
 
 def test_contact_domains_drawn_hold_the_area_of_the_atlas(atlas):

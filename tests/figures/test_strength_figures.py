@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from cases import representative
+from made_tests import computed_and_read
 from matplotlib.figure import Figure
 
 from fractalcontact.core.estimate import names_of
@@ -74,7 +75,7 @@ def test_series_stand_apart_about_the_size_itself():
 
 @pytest.mark.parametrize("specimen", ["sliding", "pair"])
 def test_strength_drawn_is_that_of_the_atlas(atlas, specimen):
-    table = drawn(atlas, specimen, "strength").data
+    table, _ = computed_and_read(drawn(atlas, specimen, "strength").data)
     stored = atlas[f"strength/{specimen}"].to_dataset().isel(contact_direction=0)
     panels = {which: table[table["panel"] == which] for which in "abc"}
     rigid = panels["a"][panels["a"]["normal_force_N"].isna()]
@@ -188,7 +189,7 @@ def test_drawn_twice_the_files_are_the_same(atlas, specimen, figure, tmp_path):
 
 def test_strengths_of_truncated_angles_are_marked_and_compared_with_nothing(atlas):
     strength = atlas["strength/sliding"].to_dataset().isel(contact_direction=0)
-    table = drawn(atlas, "sliding", "strength").data
+    table, _ = computed_and_read(drawn(atlas, "sliding", "strength").data)
     over = table[(table["panel"] == "a") & table["normal_force_N"].notna()]
     held = over["friction_angle_degree"] > LARGEST_FRICTION_ANGLE
     assert (over["shear_strength_valid"].astype(bool) == ~held).all()

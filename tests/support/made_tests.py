@@ -14,6 +14,12 @@ from fractalcontact.study.stages import STAGES, read_by
 PART = 0.9
 
 
+def computed_and_read(table):
+    """Rows of a figure's table that are computed, and those of laboratory tests."""
+    read = table.filter(regex="_test$").notna().any(axis=1)
+    return table[~read], table[read]
+
+
 def with_tests(stages, settings, solver, folder):
     """Settings and stages of a specimen that slides, with a test of each kind in a folder."""
     direction = settings.contact_directions[0]

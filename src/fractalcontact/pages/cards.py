@@ -8,7 +8,7 @@ from urllib.parse import quote
 
 from markupsafe import Markup
 
-from ..core.stage import JOINT, SPECIMEN
+from ..core.stage import ENSEMBLE, JOINT, SPECIMEN, TESTED
 from ..study.figure_list import Figure, all_figures
 from ..study.stages import STAGES
 from .captions import symbols, take_apart
@@ -157,7 +157,7 @@ def redrawn(name: str, specimen: str, atlas: str, groups: Collection[str]) -> st
 
 def _group_of(stage, specimen):
     """Group of a stage: the specimen's, where the stage has one of each; maps have their own."""
-    each = bool(specimen) and STAGES[stage].grain in (SPECIMEN, JOINT)
+    each = bool(specimen) and STAGES[stage].grain in (SPECIMEN, JOINT, ENSEMBLE, TESTED)
     return f"{stage}/{specimen}" if each else stage
 
 
