@@ -285,7 +285,7 @@ def test_laboratory_tests_stand_in_the_panels_of_the_computed_curves(atlas, figu
     assert table[f"{kind}_{x}"].is_monotonic_increasing
     if kind != "strength":  # every peak of this joint is truncated
         assert float(stage[f"{kind}_ratio_at_last"]) == pytest.approx(1 / PART, rel=0.05)
-        assert "Computed over measured" in drawing.caption
+        assert "Computed/measured" in drawing.caption
 
 
 def test_contact_domains_drawn_hold_the_area_of_the_atlas(atlas):

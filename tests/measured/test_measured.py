@@ -179,8 +179,8 @@ REFUSED = [
     ({"branch": "unload"}, "the pressure falls in only 0%"),
     ({"way": "along"}, "'way' has no meaning for a closure test"),
     ({"columns": {"force": "F [kN]"}}, "no column 'force' of a closure test"),
-    ({"columns": {"pressure": "sn [MPa]"}}, "expected the columns with their units"),
-    ({"columns": {"displacement": "displacement [MPa]"}}, "expected the columns"),
+    ({"columns": {"pressure": "sn [MPa]"}}, "expected their names and units"),
+    ({"columns": {"displacement": "displacement [MPa]"}}, "expected their names"),
     ({"calibrate": "hardness"}, "the joint is elastic; state a hardness"),
 ]
 #: The same of a joint that crushes at 100 MPa.
@@ -218,7 +218,7 @@ def test_what_a_joint_that_crushes_cannot_carry_or_tell_is_refused(made, tmp_pat
         ("pressure [mm], displacement [um]", "is not a pressure"),
         ("pressure [MPa], displacement [MPa]", "is not a length"),
         ("pressure [MPa], displacement [m]", "more than the relief of its faces"),
-        ("pressure [MPa], displacement", "expected the columns with their units"),
+        ("pressure [MPa], displacement", "expected their names and units"),
     ],
 )
 def test_units_that_cannot_be_are_refused(made, tmp_path, heading, words):

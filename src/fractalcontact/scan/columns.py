@@ -89,7 +89,9 @@ def _place(stated: str, headings: list[str]) -> tuple[int, str] | None:
 
 
 def _with_unit(stated: str) -> str:
-    return stated if _NAMED.fullmatch(stated) else f"{stated} [mm]"
+    """Heading with its unit, or one as an example."""
+    unit = "MPa" if "pressure" in stated or "str" in stated else "mm"
+    return stated if _NAMED.fullmatch(stated) else f"{stated} [{unit}]"
 
 
 def _numbers(cells, number: int, delimiter: str, path: Path) -> np.ndarray:
