@@ -517,6 +517,7 @@ def test_synthetic_joints_stand_behind_scanned_ones_under_their_own_heading(resu
             ["undetermined", "does not hold", "does not hold", "holds"],
             "holds for 1, does not hold for 2 and is undetermined for 1 of 4 specimens",
         ),
+        (["ill-posed", "holds"], "holds for the specimen"),
     ],
 )
 def test_verdicts_of_several_specimens_are_counted(verdicts, words):
@@ -525,6 +526,13 @@ def test_verdicts_of_several_specimens_are_counted(verdicts, words):
     sentences = opening_of([], CommonLoad("p0", 25.0, {}), [row])
     assert sentences[-1] == f"The size effect of eq. 6 {words} (windows within one joint)."
     assert opening_of([], None, [row]) == []
+
+
+def test_a_study_of_contacts_that_crush_alone_has_an_opening():
+    """Of which eq. 6 asks nothing, so that no verdict is counted."""
+    row = Row("size_effect_follows", "10", "", "", {"one": Cell("ill-posed", *[""] * 7)})
+    sentence = opening_of([], CommonLoad("p0", 25.0, {}), [row])[-1]
+    assert sentence == "Eq. 6 predicts nothing here: contacts crush, and their area is F/H."
 
 
 @pytest.mark.parametrize(

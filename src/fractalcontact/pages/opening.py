@@ -226,7 +226,7 @@ def _dimensions(found: _At, under: str, rows: Sequence[Row]) -> Markup:
     by_boxes = _determined([at.delta_sigma_boxes for _, at in found])
     by_areas = _determined([at.delta_sigma_areas for _, at in asked])
     text = f"{under} Delta_sigma is {by_boxes} by box counting and {by_areas} by A_r(s)"
-    beside = list(verdicts.get(_FRACTAL, {}).values())
+    beside = [one for one in verdicts.get(_FRACTAL, {}).values() if one in _ANSWERS]
     question = ""
     if beside:
         answer = _counted(beside, _ANSWERS)
@@ -249,8 +249,13 @@ def _determined(estimates):
 
 
 def _size_effect(rows: Sequence[Row]) -> Markup | None:
-    cells = [cell for row in rows if row.name == _EQ6 for cell in row.cells.values()]
-    if not cells:
-        return None
-    verdicts = _counted([cell.verdict for cell in cells], _VERDICTS)
+    found = [cell.verdict for row in rows if row.name == _EQ6 for cell in row.cells.values()]
+    asked = [verdict for verdict in found if verdict in _VERDICTS]
+    if not asked:
+        return (
+            Markup("Eq. 6 predicts nothing here: contacts crush, and their area is F/H.")
+            if found
+            else None
+        )
+    verdicts = _counted(asked, _VERDICTS)
     return symbols(f"The size effect of eq. 6 {verdicts} (windows within one joint).")
