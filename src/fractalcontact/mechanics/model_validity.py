@@ -133,7 +133,9 @@ def elastic_model_validity(
         found.append((by_slope, SLOPE, f"rms slope {rms_slope:.3g}, {size}"))
     found.sort(key=lambda one: -_GRADES.index(one[0]))  # the worst first
     verdict, by, _ = found[0]
-    reason = "; ".join(words for _, _, words in found)
+    # A load that the window carries with ease is no reason.
+    told = [words for grade, of, words in found if of != LOAD or grade == verdict]
+    reason = "; ".join(told)
     return Validity(verdict, pressure, reason, "" if verdict == GOOD else by, limits)
 
 

@@ -82,10 +82,12 @@ def block_of(card: Mapping[str, Any]) -> Block:
     at = f"at {short(pressure)} MPa"
     stiffness = row_at(entries["tangent_stiffness"], _PRESSURE)
     strength, barton = (row_at(entries[k], pressure) for k in ("peak_strength", "barton_strength"))
+    hydraulic = row_at(entries["hydraulic_aperture"], pressure)
+    flowing = f"hydraulic {with_unit(hydraulic['value'], 'mm')}" if "value" in hydraulic else ""
     facts = [
         _fact(f"normal stiffness at {short(_PRESSURE)} MPa", stiffness, "MPa/mm"),
         _fact(f"closure {at}", near or {"missing": "no load was solved"}, "mm"),
-        _fact(f"mean gap {at}", row_at(entries["mean_gap"], pressure), "mm"),
+        _fact(f"mean gap {at}", row_at(entries["mean_gap"], pressure), "mm", flowing),
         _fact(f"contact {at}", row_at(entries["contact_fraction"], pressure), "%"),
     ]
     if card["direction"] != "none":
@@ -138,7 +140,7 @@ def _jrc(card):
     for row in card["entries"]["jrc"].get("values", ()):
         at = row["at"]
         if (at["sampling"], at["direction"]) == (JRC_SAMPLING, card["direction"]):
-            return row, "1", f"step {with_unit(at['step'], 'mm')}"
+            return row, "1", f"step {with_unit(at['step'], 'mm')}, its fit {JRC_SAMPLING}"
     return {"missing": "no profile is long enough"}, "1", ""
 
 

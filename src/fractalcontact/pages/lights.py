@@ -14,8 +14,11 @@ from ..core.verdicts import GOOD, HARDNESS, IN_PART, NOT_ASKED, POOR, STRENGTH, 
 from .words import with_unit
 
 #: What would make lights better.
-FINER_SCAN = "heights as measured, without the instrument's filter, or a scan finer than its noise"
-MARKS = "faces scanned with common marks; 'outliers: fill' where spikes or deep overlaps carry load"
+FINER_SCAN = "heights without the instrument's filter, or an instrument with less noise"
+MARKS = (
+    "faces scanned with common marks, and the same joint with 'outliers: fill' in its sidecar: how "
+    "far the numbers move is the error of the scans"
+)
 LIGHTER = "lighter loads, under which less of the window touches"
 STEEP = "no scan makes it less steep: state the rms slope beside every number"
 CRUSH = "contacts that crush: 'hardness' in the material, such as the joint wall strength"
@@ -171,7 +174,7 @@ def trust_of(lights: Sequence[Light]) -> tuple[str, str, str]:
     -------
     word, reason, help : str
         "low", "limited" or "good"; the reason of the first light of that word, the model's before
-        others, and which others there are; what would help of all these, what mends none last.
+        others, and which others there are; what would help of all these.
     """
     worst = next((word for word in _TRUST if any(one.word == word for one in lights)), GOOD)
     of_worst = [one for one in lights if one.word == worst]
@@ -181,6 +184,7 @@ def trust_of(lights: Sequence[Light]) -> tuple[str, str, str]:
     first, *others = deciding
     reason = f"{first.title}: {first.reason}"
     if others:
-        reason += f". No better: {', '.join(one.key for one in others)}"
-    helped = sorted((one for one in deciding if one.help), key=lambda one: one.help == STEEP)
-    return _TRUST[worst], reason, "; ".join(f"{one.help} ({one.key})" for one in helped)
+        alike = "partly good" if worst == IN_PART else worst
+        reason += f". Also {alike}: {', '.join(one.key for one in others)}"
+    helps = [f"{one.help} ({one.key})" for one in deciding if one.help not in ("", STEEP)]
+    return _TRUST[worst], reason, "; ".join(helps) or first.help
