@@ -308,7 +308,7 @@ def _add_trends(result: xr.Dataset) -> None:
 
 
 def summary(result: xr.Dataset) -> str:
-    """In words, by dimension: whether the two estimators agree, and where they tend.
+    """Agreement and trend of the two estimators in words, by dimension.
 
     Parameters
     ----------

@@ -86,10 +86,10 @@ _TABLE = {
 }
 
 _FROM = {1: "interpolated between loads", 2: "s and s/2", 4: "s, s/2 and s/4"}
-#: Why a source that may be none of a quantity is none.
+#: Why a source does not apply to a quantity.
 _NONE = {
-    "estimator": "none: no estimator is chosen",
-    "secant": "none: no slope of a yielding contact",
+    "estimator": "applies to Delta_sigma alone",
+    "secant": "applies to stiffness where contacts yield",
 }
 
 
@@ -414,9 +414,9 @@ def _reasons(curve, errors, found: Refinement, effective, registered: bool) -> n
         else "no value in every window at any load",
         "registration": "no spread of registrations is known"
         if scanned
-        else "one face was scanned: there is nothing to register",
+        else "only one face was scanned",
         "resolution": "twice the spacing is not solved",
-        "model": "no hardness is stated: nothing yields",
+        "model": "elastic contact: no hardness is stated",
     }
     if scanned and registered:
         missing["registration"] = "not known of this quantity"

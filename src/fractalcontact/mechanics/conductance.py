@@ -52,7 +52,9 @@ def add_conductance(curves: xr.Dataset, e_star: float) -> None:
     for name, end in zip(("low", "high"), np.exp(exponent.over), strict=True):
         attrs = cf_attrs("MPa", f"{name}est pressure of that fit")
         curves[f"conductance_pressure_{name}"] = _CURVES, end, attrs
-    attrs = cf_attrs("1", "where the exponent's interval lies beside theory's exponents")
+    attrs = cf_attrs(
+        "1", "position of the exponent's interval: within, below or above those of theory"
+    )
     curves["conductance_beside_theory"] = _CURVES, beside_theory(exponent), attrs
 
 

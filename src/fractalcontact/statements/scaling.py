@@ -192,7 +192,9 @@ def size_effect_follows(joint: Joint, evidence: Evidence) -> Finding:
     found = {words: evidence.beyond_eq6(by) for by, words in ESTIMATES.items()}
     found = {words: one for words, one in found.items() if one.pressures.size}
     if not found:
-        return Finding(UNDETERMINED, "no exponent beside a Delta_sigma of its own window")
+        return Finding(
+            UNDETERMINED, "no load has both the exponent and Delta_sigma of the same window"
+        )
     each = [verdict for one in found.values() for verdict in _each_within(one.estimate, name)]
     decided = [verdict for verdict in each if verdict != UNDETERMINED]
     reference = joint.force / joint.area

@@ -34,7 +34,7 @@ def constants_of(card: Mapping[str, Any]) -> Constants:
         friction_angle=f"one number there; peak strength here: "
         f"{over_pressure(entries['peak_strength'])}",
         dilatancy_angle=f"one number there; here: {over_pressure(entries['peak_dilatancy_angle'])}",
-        cohesion="none: the joint has none",
+        cohesion="the joint has no cohesion",
         penalty_aperture_cutoff="a setting of the solution, no property of a joint",
     )
     return found
