@@ -194,7 +194,7 @@ class KernelCache(FunctionCache):
         return kernel_digest(self._kernel)
 
     def _remove_old(self):
-        """Keep the newest of this kernel's files."""
+        """Remove all but the newest files of this kernel."""
         with contextlib.suppress(FileNotFoundError):  # removed by another process meanwhile
             files = list(self._cache_path.glob(f"{self._stem}-*.nbc"))
             files.sort(key=lambda path: path.stat().st_mtime, reverse=True)

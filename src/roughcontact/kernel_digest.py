@@ -14,7 +14,7 @@ _OWN = __name__.partition(".")[0]
 
 
 def kernel_digest(kernel: Dispatcher) -> str:
-    """Hexadecimal digits that change with whatever would change the machine code of a kernel.
+    """Hexadecimal digest of everything that determines the machine code of a kernel.
 
     Parameters
     ----------

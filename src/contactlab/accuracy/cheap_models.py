@@ -53,7 +53,7 @@ def bearing_area(
     force: float | None = None,
     hardness: float | None = None,
 ) -> CheapState:
-    """Contact without elasticity: what lies above a plane (Abbott and Firestone 1933).
+    """Contact without elasticity: the bearing area above a plane (Abbott and Firestone 1933).
 
     Parameters
     ----------

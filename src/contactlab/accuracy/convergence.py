@@ -151,7 +151,7 @@ _TRIALS: dict[str, tuple[str | tuple[str, ...], str, str]] = {
 def richardson_trials(
     cases: int, cells: tuple[float, float], *, seed: int = 0, rtol: float = 1e-7
 ) -> xr.Dataset:
-    """How often Richardson's value lies within its own error bar of the exact one.
+    """Trials of Richardson's extrapolation: values within their own error bar of the exact one.
 
     Every case has its own place of the centre among the nodes and its own, not whole, number of
     cells across the radius, and is solved at the spacings s, 2 s and 4 s.

@@ -111,7 +111,7 @@ _ELIMINATION = {
 
 
 def elimination(draws: int = 200) -> xr.Dataset:
-    """How often the paper's algorithm ends on a wrong set, kernel by kernel.
+    """Frequency of wrong sets by the paper's algorithm, for each kernel.
 
     Parameters
     ----------

@@ -98,7 +98,7 @@ class ReferenceProblem(ABC):
     @property
     @abstractmethod
     def name(self) -> str:
-        """Its name in messages."""
+        """Name of the problem in messages."""
 
     @property
     @abstractmethod
@@ -175,7 +175,7 @@ class RoughProblem(ReferenceProblem):
 
     @property
     def name(self) -> str:
-        """Its name in messages."""
+        """Name of the problem in messages."""
         return f"{self.size}, H = {self.hurst:g}, {100 * self.fraction:g} %"
 
     @cached_property
@@ -199,7 +199,7 @@ class HertzProblem(ReferenceProblem):
 
     @property
     def name(self) -> str:
-        """Its name in messages."""
+        """Name of the problem in messages."""
         return f"{self.size}, Hertz"
 
     @cached_property
@@ -222,7 +222,7 @@ class PunchProblem(ReferenceProblem):
 
     @property
     def name(self) -> str:
-        """Its name in messages."""
+        """Name of the problem in messages."""
         return f"{self.size}, flat punch"
 
     @cached_property

@@ -214,7 +214,7 @@ def _of_peer(name, peer, problem, tolerances):
 
 
 def _cold(press, height, space, closure, rtol):
-    """A state from nothing: what is kept of the last contact set is dropped."""
+    """Cold solve, without anything kept of the last contact set."""
     forget_preconditioner(space)
     options = {} if np.isnan(rtol) else {"rtol": rtol}
     return press(height, space, closure=closure, **options)
@@ -367,7 +367,7 @@ def _labelled(rows: Sequence[Mapping[str, Any]]) -> xr.Dataset:
 
 
 def _about_problem(problem):
-    """Attributes: the problem, its reference, and what one application of the operator costs.
+    """Attributes: the problem, its reference, and the cost of one operator application.
 
     It is one in single precision, as all of ours are but one or two.
     """

@@ -1,4 +1,4 @@
-"""Violation of the contact conditions by a state, whatever solved it."""
+"""Violation of the contact conditions by a state of any solver."""
 
 import numpy as np
 from scipy.signal import fftconvolve

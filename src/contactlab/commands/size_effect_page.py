@@ -392,7 +392,7 @@ def _questions(test: xr.Dataset) -> list[str]:
 
 
 def _surfaces(test: xr.Dataset) -> list[str]:
-    """How many surfaces of each class the run has."""
+    """Number of surfaces of each class in the run."""
     rows = []
     for arm in np.unique(test["of_arm"].values):
         one = test.isel(surface=(test["of_arm"] == arm).values)

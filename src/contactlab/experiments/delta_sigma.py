@@ -286,7 +286,7 @@ def add_agreement(result: xr.Dataset) -> None:
 
 
 def _add_trends(result: xr.Dataset) -> None:
-    """How the difference goes with size and with load, over all surfaces, into ``result``."""
+    """Trend of the difference with size and load over all surfaces, stored in ``result``."""
     values = result["difference"]
     doubling, decade = np.log2(result["size"].values), np.log10(result["reduced_pressure"].values)
     by_size = values.transpose("dimension", "reduced_pressure", "size", "seed").values

@@ -1,4 +1,4 @@
-"""Which exponent, if any, carries the size effect: the rule of decision, and nothing else.
+"""Decision rule on the exponent of the size effect.
 
 Eq. 6 wants the nominal pressure at one sigma*, and so the part of the nominal area that touches at
 one nominal pressure, to go with the side as b^-(2 - Delta_sigma), whichever way Delta_sigma is

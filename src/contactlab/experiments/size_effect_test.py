@@ -382,7 +382,7 @@ def _decisions(alphas: list[Exponent], values: Mapping[str, np.ndarray], shape) 
 
 
 def _overall(decisions: list[Decision], values: Mapping[str, np.ndarray], shape) -> np.ndarray:
-    """Verdict on every (arm, hurst), and whether alpha follows what eq. 6 has change with H."""
+    """Verdict on every (arm, hurst), and on the change of alpha with H by eq. 6."""
     table = np.empty(shape[:2], object)
     rows = np.reshape(np.arange(len(decisions)), shape)
     for i in range(shape[0]):

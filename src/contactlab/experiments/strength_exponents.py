@@ -304,7 +304,7 @@ def _scaled(
     classes: Mapping[tuple[float, float], Mapping[float, int]],
     basic: float,
 ) -> dict[str, list[Exponent]]:
-    """Exponents at equal v/b, and what v alone makes of the strength of the largest joints."""
+    """Exponents at equal v/b, and the prediction from v alone for the largest joints."""
     found: dict[str, list[Exponent]] = {
         name: [] for name, (dims, _) in EXPONENTS.items() if dims == _AT_FRACTION
     }

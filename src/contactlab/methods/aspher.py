@@ -111,12 +111,12 @@ class Aspher(PublicCode):
 
     @property
     def applications(self) -> int | None:
-        """Applications of its operator on the finest grid, whatever part of it they reach."""
+        """Applications of its operator on the finest grid, whole or in part."""
         return None if self._result is None else self._result.matvec_count
 
     @property
     def path(self) -> str:
-        """What proves which way the last call went, as it counts it itself."""
+        """Path of the last call by the code's own counters."""
         found = self._result
         if found is None:
             return ""

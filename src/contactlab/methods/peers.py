@@ -116,7 +116,7 @@ class PublicCode:
 
     @property
     def path(self) -> str:
-        """Which way the last call went, where the code has several: its operator and counters."""
+        """Path of the last call in a code with several: its operator and counters."""
         return ""
 
 

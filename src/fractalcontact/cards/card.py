@@ -114,7 +114,7 @@ def geometry_of(subject: Subject) -> dict[str, Any]:
 
 
 def errors_of(subject: Subject) -> list[dict[str, Any]]:
-    """Errors by source of what is published under the reference load, half-widths at 95 %."""
+    """Errors by source of the quantities under the reference load, half-widths at 95 %."""
     reference = subject.reported.reference
     pressure = float(subject["closure"]["nominal_pressure"][reference])
     return [

@@ -80,7 +80,7 @@ def entries() -> tuple[Entry, ...]:
 
 
 def read_entry(entry: Entry, subject: Subject, model: str) -> dict[str, Any]:
-    """An entry with its values, as the card has it.
+    """Entry of a card with its values.
 
     Parameters
     ----------

@@ -380,7 +380,7 @@ def row_lines(row: Described) -> list[str]:
 
 
 def _page(rows: Sequence[Described]) -> str:
-    """A page of all pictures, with what is to be done."""
+    """Page of all pictures, with the next steps."""
     parts = ["<!doctype html><meta charset='utf-8'><title>scans as they would be read</title>"]
     for row in rows:
         words = html.escape("\n".join(row_lines(row)))

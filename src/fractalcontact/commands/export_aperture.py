@@ -17,7 +17,7 @@ from ..study.atlas_parts import open_atlas
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Write the file; 1 if something is wrong with what was asked for, else 0."""
+    """Write the file; exit code 1 for a wrong request, else 0."""
     parser = argparse.ArgumentParser(prog="export_aperture", description=__doc__)
     parser.add_argument("results", help="folder of the results of a study, such as results/paper")
     parser.add_argument("specimen")

@@ -65,7 +65,7 @@ def new_study(path: Path, scans: Path, schema: Mapping) -> list[Described]:
 
 
 def next_steps(path: Path, scans: Path, rows: Sequence[Described]) -> list[str]:
-    """Three lines on what is left to do after :func:`new_study`."""
+    """Next steps after :func:`new_study` in three lines."""
     drafts = [row.name for row in rows if row.state == "draft"]
     first = f"enter your rock under materials in {path}"
     if drafts:

@@ -90,7 +90,7 @@ def _identity(path):
 
 
 def record(results: Path | str, files: Iterable[Path | str]) -> None:
-    """Keep the checksums of files that a job has made.
+    """Store the checksums of the files made by a job.
 
     Parameters
     ----------

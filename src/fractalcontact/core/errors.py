@@ -10,4 +10,4 @@ class InputError(ValueError):
 
 
 class OutputError(OSError):
-    """A result that could not be written, with the file's name and what to do."""
+    """Error of a result that could not be written, with the file's name and a remedy."""

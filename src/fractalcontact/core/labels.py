@@ -62,7 +62,7 @@ def listed(names: Iterable[object], most: int = 15) -> str:
 
 
 def percent(fraction: float) -> str:
-    """A fraction in per cent as a person writes it: 0.05 %, 3.2 %, 62 %, 99.4 %, 100 %."""
+    """Fraction in per cent with sensible digits: 0.05 %, 3.2 %, 62 %, 99.4 %, 100 %."""
     value = 100 * float(fraction)
     if value == 0 or abs(value) >= 99.995:
         return f"{value:.0f} %"

@@ -1,4 +1,4 @@
-"""Heights less their mean plane: what is left of a scan that was not mounted level."""
+"""Heights less their mean plane, to level a tilted scan."""
 
 import numpy as np
 from numpy.typing import ArrayLike

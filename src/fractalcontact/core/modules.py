@@ -1,4 +1,4 @@
-"""Modules that are found by listing the folder of their package: to add one is to add its file."""
+"""Modules found by listing the folder of their package; a new file adds a module."""
 
 from importlib import import_module
 from pkgutil import iter_modules

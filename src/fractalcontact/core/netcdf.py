@@ -64,7 +64,7 @@ def versions() -> dict[str, str]:
 
 
 def encoding(dataset: xr.Dataset, digits: int | None = None) -> dict[Any, dict[str, Any]]:
-    """How the variables of a dataset are kept: large numbers compressed, small ones as they are.
+    """Encoding of the variables of a dataset: large arrays compressed, small ones plain.
 
     Parameters
     ----------

@@ -21,7 +21,7 @@ def alternation(names: Iterable[str]) -> str:
 
 
 def _branches(words: list[str]) -> str:
-    """Sorted, different words behind what they have in common."""
+    """Pattern of sorted, distinct words, branching after their common prefix."""
     first, last = words[0], words[-1]
     same = next(
         (i for i, (a, b) in enumerate(zip(first, last, strict=False)) if a != b),

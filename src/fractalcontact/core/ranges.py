@@ -9,7 +9,7 @@ RELATIVE_ROUNDING = 1e-9
 
 
 def within(values: Any, low: Any, high: Any) -> Any:
-    """Which of some positive values lie in a range, its ends included whatever their last digits.
+    """Mask of positive values in a range, ends included within rounding.
 
     Parameters
     ----------

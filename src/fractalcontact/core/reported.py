@@ -61,7 +61,7 @@ class Reported:
         loads: Sequence[float] | np.ndarray,
         reference: float,
     ) -> "Reported":
-        """States nearest to what a study asks for, at the finest resolution.
+        """States nearest to those requested by a study, at the finest resolution.
 
         Parameters
         ----------

@@ -168,7 +168,7 @@ class MeasuredSettings(JointSettings):
 
 @dataclass(frozen=True)
 class ReportSettings(StrengthSettings):
-    """Settings of the report: strength, size laws, and what is judged of a specimen."""
+    """Settings of the report: strength, size laws and verdicts."""
 
     material: Material
     opposite: str

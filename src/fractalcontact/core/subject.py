@@ -15,7 +15,7 @@ from .window import nominal_area
 
 @dataclass(frozen=True, eq=False)
 class Subject:
-    """A specimen: its stages, what the study states of it, and which states are reported.
+    """Specimen: its stages, its settings, and the states that are reported.
 
     Attributes
     ----------

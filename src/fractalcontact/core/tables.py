@@ -25,7 +25,7 @@ def table_text(table: pd.DataFrame) -> str:
 
 
 def write_table(path: Path | str, table: pd.DataFrame) -> None:
-    """Write a table as :func:`table_text` has it, whole or not at all.
+    """Write a table in the form of :func:`table_text`, atomically.
 
     Raises
     ------

@@ -39,7 +39,7 @@ class Limits(NamedTuple):
 
 
 class Validity(NamedTuple):
-    """A verdict on the model, elastic or of contacts that crush, and what decides it.
+    """Verdict on the contact model, elastic or crushing, and its reason.
 
     Attributes
     ----------

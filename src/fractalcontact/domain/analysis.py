@@ -350,7 +350,7 @@ def _local_exponent(s, area):
 
 
 def _reasons(scaling, finest):
-    """Why an estimate of Delta_sigma, or its interval, is missing; empty where both are there."""
+    """Reason why Delta_sigma or its interval is missing; empty if neither is."""
     too_few = f"of the {MIN_RESOLUTIONS} resolutions needed"
     why = [f": A_r large enough at {n} {too_few}" for n in scaling["n"].values.flat]
     area = scaling["n"].copy(data=np.reshape(np.array(why, object), scaling["n"].shape))

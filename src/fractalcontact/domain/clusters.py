@@ -212,7 +212,7 @@ def morisita_index(contact: ArrayLike, cells: ArrayLike) -> tuple[float, float]:
         return np.nan, np.nan
 
     def chance(k):
-        """That k given nodes are all in contact."""
+        """Probability that k given nodes are all in contact."""
         return np.prod((n - np.arange(k)) / np.maximum(all_cells - np.arange(k), 1))
 
     mean = chance(2) * pairs

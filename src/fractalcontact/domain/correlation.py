@@ -55,7 +55,7 @@ def pair_counts(domain: np.ndarray, distances: np.ndarray) -> tuple[np.ndarray, 
 
 
 def lags_of(distances: np.ndarray) -> np.ndarray:
-    """How many lags of the grid but 0 are no longer than each distance, (k,) int64."""
+    """Number of non-zero lags of the grid within each distance, (k,) int64."""
     reach = int(distances[-1])
     lag_y, lag_x = np.mgrid[-reach : reach + 1, -reach : reach + 1]
     ring = _rings(lag_y, lag_x, distances)

@@ -61,7 +61,7 @@ _WHOLE, _CENTRE = 0, 1
 
 
 class LawTerms(NamedTuple):
-    """Terms of a count law, all lengths in one unit: what draws its curve."""
+    """Terms of a count law, all lengths in one unit, for its curve."""
 
     amplitude: float
     """A, boxes as large as the extent."""

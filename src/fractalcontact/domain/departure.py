@@ -15,7 +15,7 @@ DEPARTURES = (BEYOND_BOTH, BEYOND_RANDOM, LIKE_RANDOM, LIKE_CUT, UNDETERMINED)
 
 
 def departs(departure: Departure) -> bool:
-    """Whether a domain departs from a null model: significantly, and by enough to matter.
+    """Departure of a domain from a null model, by significance and by margin.
 
     With thousands of nodes in contact local slopes that differ by 0.002 do so significantly.
 

@@ -310,7 +310,7 @@ def _compared_slopes(domain, cut, mask, spacing):
 
 
 def _why_not_compared(nodes, slopes):
-    """Why local slopes are compared with no null model; empty where they are."""
+    """Reason why local slopes are not compared with null models; empty where they are."""
     if nodes < MIN_NODES:
         return f"fewer than {MIN_NODES} nodes in contact ({nodes})"
     return "" if slopes else "the window is too small for local slopes"

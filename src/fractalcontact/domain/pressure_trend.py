@@ -16,7 +16,7 @@ RISES, FALLS = "rises", "falls"
 
 
 class Trend(NamedTuple):
-    """How a dimension goes with the load over a series of maps.
+    """Trend of a dimension with load over a series of maps.
 
     Attributes
     ----------

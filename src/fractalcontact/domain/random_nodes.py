@@ -64,7 +64,7 @@ def random_bands(
     used: np.ndarray | None = None,
     draws: int = DRAWS,
 ) -> tuple[dict[str, Estimate], Estimate]:
-    """Bands of what as many nodes drawn at random in a window have, by the same estimators.
+    """Bands of the same estimators for as many random nodes in a window.
 
     Parameters
     ----------

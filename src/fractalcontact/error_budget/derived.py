@@ -1,4 +1,4 @@
-"""Errors of what is read from quantities of the budget: closure from the seat, stated stiffness."""
+"""Errors of quantities derived from the budget: closure from the seat, stated stiffness."""
 
 import numpy as np
 import xarray as xr
@@ -27,7 +27,7 @@ _TABLE = {
 
 
 def with_derived(budget: xr.Dataset, curve: LoadCurve) -> xr.Dataset:
-    """The budget, with the errors of what is read from its quantities.
+    """Error budget with the errors of derived quantities.
 
     Parameters
     ----------

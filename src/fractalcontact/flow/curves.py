@@ -63,7 +63,7 @@ def transmissivity_of(gap: np.ndarray, spacing: tuple[float, float], axis: str) 
 
 
 def coarse_transmissivity(gap: np.ndarray, spacing: tuple[float, float], axis: str) -> float:
-    """The same of every second cell: what twice the spacing makes of it."""
+    """The same from every second cell, for the error of the grid."""
     dy, dx = spacing
     return transmissivity_of(gap[::2, ::2], (2 * dy, 2 * dx), axis)
 

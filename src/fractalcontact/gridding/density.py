@@ -1,4 +1,4 @@
-"""How densely points lie: their distance, the area of one, the largest circle that is no hole."""
+"""Density of points: their distance, the area of one, the largest circle that is no hole."""
 
 from dataclasses import dataclass
 
@@ -31,7 +31,7 @@ FAR = 1.5
 
 @dataclass(frozen=True)
 class Density:
-    """How densely the points of one cloud lie.
+    """Density of the points of one cloud.
 
     Attributes
     ----------
@@ -126,7 +126,7 @@ def _circles(xy: np.ndarray, reach: float) -> tuple[np.ndarray, np.ndarray]:
 
 
 def points_per_cell(points: np.ndarray, heights: np.ndarray, lattice: Lattice) -> float:
-    """Median number of points in a measured cell, NaN if none is measured.
+    """Median number of points in a measured cell; NaN without measured cells.
 
     Parameters
     ----------

@@ -26,7 +26,7 @@ CONSTANT = 1e-12  # relative: what interpolating a constant surface leaves
 
 
 def grid_one(scan: Measured) -> xr.DataArray:
-    """Put one scan on its grid."""
+    """One scan on its grid."""
     if scan.layout == "matrix":
         return _matrix_heights(scan)
     (cloud,) = prepare_clouds([scan])
@@ -43,7 +43,7 @@ def grid_pair(
     registration: str = "rigid",
     mirror_upper: str | None = None,
 ) -> tuple[xr.DataArray, xr.DataArray]:
-    """Put two faces on one common grid, registered, cropped to the area both cover.
+    """Two faces on one common grid, registered and cropped to their common area.
 
     Parameters
     ----------

@@ -69,7 +69,7 @@ def find_hidden(points: np.ndarray, tree: cKDTree) -> tuple[float, np.ndarray | 
 
 
 def _hidden(some: np.ndarray, points: np.ndarray, tree: cKDTree, noise: float) -> np.ndarray:
-    """Which of some points are hidden by others of the cloud."""
+    """Mask of points hidden by others of the cloud."""
     hidden = np.zeros(len(some), dtype=bool)
     k = min(_NEIGHBOURS + 1, len(points))
     for start in range(0, len(some), _BLOCK):

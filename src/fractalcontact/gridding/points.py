@@ -95,7 +95,7 @@ def _in_rows(points: np.ndarray) -> bool:
 
 
 def single_precision_note(points: np.ndarray) -> str:
-    """Say how coarsely single precision rounds x and y, "" if they are finer or it is harmless.
+    """Sentence on the rounding of x and y by single precision; "" if it is harmless.
 
     Parameters
     ----------

@@ -58,7 +58,7 @@ def contact_perimeter(in_contact: ArrayLike, spacing: ArrayLike) -> np.ndarray:
 
 
 def corrected_area(in_contact: ArrayLike, spacing: ArrayLike) -> np.ndarray:
-    """Real contact area without what the grid adds along its edge, mm2.
+    """Real contact area corrected for its edge, mm2.
 
     Parameters
     ----------
@@ -167,7 +167,7 @@ def area_laws(
     dimension: float,
     map_offset: float | None = None,
 ) -> xr.Dataset:
-    """How the real contact area grows with the force, and what the theories make of the surface.
+    """Growth of the real contact area with the force, beside the theories for the surface.
 
     Parameters
     ----------
@@ -299,7 +299,7 @@ def _add_departure(result: xr.Dataset, curves: xr.Dataset) -> None:
 def _reasons_for_no_law(
     result: xr.Dataset, curves: xr.Dataset, prefix: str, fewest: int
 ) -> np.ndarray:
-    """Why a curve has no law of the area, (direction, offset); empty where it has one."""
+    """Reason why a curve has no law of the area, (direction, offset); empty if it has one."""
     full = (curves["area_share"] > 0.5).all("normal_force") & ~result["fitted"].any("normal_force")
     n = result[f"{prefix}n"].values.astype(int)
     reasons = [

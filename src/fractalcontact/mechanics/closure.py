@@ -277,7 +277,7 @@ def stiffness_reason(
 
 
 def _add_errors(curves: xr.Dataset, area: float, e_star: float) -> None:
-    """Solver error bounds of what follows from the states, and the closures' by the spacing."""
+    """Solver error bounds of derived quantities, and the error of the closures by the spacing."""
     fraction = (curves["interface_stiffness"] * area / curves["stiffness"]) ** 2
     stiffness = curves["stiffness_error"] / area * fraction
     errors = {
@@ -303,7 +303,7 @@ def _add_errors(curves: xr.Dataset, area: float, e_star: float) -> None:
 
 
 def _add_compliance(curves: xr.Dataset) -> None:
-    """Compliance of the interface with what the solver leaves open, into ``curves``.
+    """Compliance of the interface with its solver error, stored in ``curves``.
 
     A stiffness whose error is as large as itself leaves the compliance unbounded.
     """

@@ -286,7 +286,7 @@ def add_closure_laws(curves: xr.Dataset, fit_range: tuple[float, float] | None) 
 
 
 def _few_states(*states: np.ndarray) -> str:
-    """Why too few states of a curve are left to be fitted and, after a colon, what would help.
+    """Reason why too few states of a curve can be fitted and, after a colon, the remedy.
 
     ``states`` says which have a closure above 0, which of them are resolved, and which are fitted.
     """

@@ -161,7 +161,7 @@ def _by_fits(profiles: list[np.ndarray], spacing: float) -> tuple[np.ndarray, np
 
 
 def _sampling_note(step: float, side: float) -> list[str]:
-    """Where the step differs from what it should be, or the window is small for it."""
+    """Notes on a step coarser than the nominal one, or on a small window."""
     note = []
     if step > 1.25 * JRC_STEP:
         note.append(

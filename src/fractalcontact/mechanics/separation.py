@@ -1,4 +1,4 @@
-"""Separation of the faces and closure from a seating load: what no single asperity decides.
+"""Separation of the faces and closure from a seat, which depend on no single asperity.
 
 Closure from first touch is an extreme: the highest node of the composite topography alone decides
 where it begins, and that node changes with the spacing and the window. The separation of the mean

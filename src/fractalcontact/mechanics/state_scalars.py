@@ -21,7 +21,7 @@ def aperture(state: ContactState) -> np.ndarray:
 
 
 def numbers_of(state: ContactState, suspicious: np.ndarray | None = None) -> dict[str, Any]:
-    """Scalars of a contact state: what is kept of it but its fields.
+    """Scalars of a contact state, stored without its fields.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Contact states over offsets, loads and resolutions: what one job of a study computes."""
+"""Contact states over offsets, loads and resolutions, the work of one job."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any

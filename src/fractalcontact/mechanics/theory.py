@@ -185,7 +185,7 @@ def greenwood_williamson_area(
 
 
 def no_majumdar_bhushan(dimension: float) -> str:
-    """Why Majumdar and Bhushan's law does not apply to profiles of a dimension; "" where it does.
+    """Reason why Majumdar and Bhushan's law does not apply to a dimension; "" if it does.
 
     Parameters
     ----------

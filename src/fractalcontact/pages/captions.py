@@ -44,7 +44,7 @@ class Caption(NamedTuple):
 
 
 def take_apart(caption: str) -> Caption:
-    """A caption in the parts that its file has: a heading, an empty line, a line each.
+    """Parts of a caption file: heading, empty line, one sentence a line.
 
     Parameters
     ----------

@@ -52,7 +52,7 @@ class Light:
 
     @property
     def sign(self) -> str:
-        """Its sign."""
+        """Sign of the light."""
         return SIGNS[self.word]
 
 

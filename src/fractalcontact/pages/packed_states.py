@@ -175,7 +175,7 @@ def _add_with_bounds(numbers, dataset, stage, variable):
 
 
 def _add_undetermined(numbers, stages):
-    """Where the result page calls a number undetermined: by the scan, or by its interval."""
+    """Add masks of undetermined numbers: by the scan, or by the interval."""
     by_scan = decided_by_scan(stages["closure"]["suspect_load_share"])
     attrs = cf_attrs("1", "whether suspicious cells of the scans decide what follows from contact")
     numbers.add("closure", "", by_scan.assign_attrs(attrs), key="undetermined/by_scan")
@@ -190,7 +190,7 @@ def _add_undetermined(numbers, stages):
 
 
 def _reasons(stages):
-    """Why a number of a solved state is missing, in the words of the result page."""
+    """Reason why a number of a solved state is missing, as on the result page."""
     missing: tuple[tuple[str, str, str], ...] = (
         ("scaling", "sigma_n", NO_PRESSURE),
         ("scaling", "delta_sigma_area", TOO_FEW_RESOLUTIONS),

@@ -75,7 +75,7 @@ _LONGEST = 120
 
 @dataclass(frozen=True)
 class Place:
-    """Where the files of a study are.
+    """Paths of the files of a study.
 
     Attributes
     ----------
@@ -215,7 +215,7 @@ def _shown(value: float) -> float | str:
 
 
 def _note_of(state: AtLoad | None, of: Shown | str) -> str:
-    """Why a dimension is missing, or what to know of it."""
+    """Reason why a dimension is missing, or a remark on it."""
     found = None if state is None else _quoted(state, of)
     return why(found) if isinstance(found, Estimate) and _of_dimension(of) else ""
 
@@ -234,7 +234,7 @@ def _columns() -> dict[str, list[Shown]]:
 
 
 def _in_paper(figures):
-    """Where a statement stands in the paper: "Figs. 4, 5" or "sect. 7"."""
+    """Place of a statement in the paper: "Figs. 4, 5" or "sect. 7"."""
     if figures.startswith("sect"):
         return figures
     return f"Figs. {figures}" if len(re.findall(r"\d+", figures)) > 1 else f"Fig. {figures}"
@@ -293,7 +293,7 @@ def _comparison(atlas):
 
 
 def _finite(table: pd.DataFrame) -> pd.DataFrame:
-    """A table in which what is infinite is missing: spreadsheets and scripts know no infinity."""
+    """Table with infinite values as missing ones, for spreadsheets and scripts."""
     return table.mask(table.isin([np.inf, -np.inf]))
 
 

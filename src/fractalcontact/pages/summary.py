@@ -1,4 +1,4 @@
-"""The summary of a study: what each specimen is and does, one row a specimen and pressure."""
+"""Summary of a study: one row for each specimen and pressure."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -45,7 +45,7 @@ class Judged(Estimate):
 
 
 def why(found: Estimate) -> str:
-    """Why an estimate is missing or undetermined, or what to know of it."""
+    """Reason why an estimate is missing or undetermined, or a remark on it."""
     if found.reason or found.determined or not found.known:
         return str(found.reason)
     return _WIDE if np.isfinite(found.low) else "its error is not known"
@@ -128,7 +128,7 @@ class AtLoad:
 
     @property
     def no_real_pressure(self) -> str:
-        """Why there is no real mean pressure; empty where there is one."""
+        """Reason for a missing real mean pressure; empty if there is one."""
         return "" if math.isfinite(self.real_pressure) else NO_PRESSURE
 
     @property
@@ -162,7 +162,7 @@ class AtLoad:
 
     @property
     def rows(self) -> list[tuple[str, Value]]:
-        """Rows of the specimen's page: what they are called, and value."""
+        """Rows of the specimen's page: title and value."""
         return [(one.page, self.shown[one.key]) for one in shown_in("page")]
 
     @property

@@ -1,4 +1,4 @@
-"""How well two faces match, and where: the coarse start of their registration."""
+"""Coarse match of two faces: correlation and shift, the start of their registration."""
 
 import itertools
 from collections.abc import Sequence
@@ -145,7 +145,7 @@ def _masked_correlations(a: np.ndarray, b: np.ndarray) -> tuple[np.ndarray, np.n
 
 
 def mirror_images(lower: xr.DataArray, upper: xr.DataArray) -> dict:
-    """How well mirror images of the upper face match, at best.
+    """Best correlation of mirror images of the upper face.
 
     Parameters
     ----------

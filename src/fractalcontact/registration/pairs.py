@@ -1,4 +1,4 @@
-"""Two gridded faces brought together, and what was done to the upper one in numbers and words."""
+"""Two gridded faces brought together, with the motion of the upper one in numbers and words."""
 
 import json
 import math
@@ -197,7 +197,7 @@ def _spreads(lower, first, second) -> list[float | None]:
 def crop_to_common(
     lower: xr.DataArray, upper: xr.DataArray, where: str
 ) -> tuple[xr.DataArray, xr.DataArray]:
-    """Keep the rectangle both faces cover; their cells are known to coincide.
+    """Crop both faces to their common rectangle; their cells coincide.
 
     Raises
     ------

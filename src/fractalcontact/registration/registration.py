@@ -222,7 +222,7 @@ PARAMETERS = ("end_x", "end_y", "rotation", "slope_x", "slope_y")
 def linearised(
     lower: xr.DataArray, gap: np.ndarray, motion: Motion, limit: float, mode: str
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """How the gap changes with the motion, to first order, and what each cell counts.
+    """First-order change of the gap with the motion, and the weight of each cell.
 
     Parameters
     ----------

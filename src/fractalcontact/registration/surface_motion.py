@@ -27,15 +27,15 @@ class Motion:
         return self.end[0] - self.start[0], self.end[1] - self.start[1]
 
     def forth(self, x: ArrayLike, y: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
-        """Where the cells at x, y come to lie."""
+        """Positions of the cells at x, y after the motion."""
         return _turned(x, y, self.start, self.end, self.rotation)
 
     def back(self, x: ArrayLike, y: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
-        """Where the cells that come to lie at x, y were before."""
+        """Positions before the motion of cells at x, y after it."""
         return _turned(x, y, self.end, self.start, -self.rotation)
 
     def rise(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
-        """How far the tilt lifts the face at x, y (after the motion)."""
+        """Lift of the face by the tilt at x, y (after the motion)."""
         return self.slope[0] * (x - self.end[0]) + self.slope[1] * (y - self.end[1])
 
     def about(self, x: float, y: float) -> "Motion":

@@ -272,7 +272,7 @@ def _corrected(
 
 
 def _hurst_of_slope(estimator: Estimator, curve: Curve, used: np.ndarray) -> tuple[float, float]:
-    """H as the slope has it, and half of its 95 % interval."""
+    """H from the slope, and half of its 95 % interval."""
     measures = np.vstack([curve.measure(), curve.without_each_part()])[:, used]
     x, y = np.log(curve.length[used]), np.log(np.where(measures > 0, measures, np.nan))
     slope = fit_line(x, y[0]).slope

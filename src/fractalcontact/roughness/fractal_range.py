@@ -1,4 +1,4 @@
-"""Where the self-affine range of a measured surface ends: noise floor, low-pass filter, roll-off.
+"""Ends of the self-affine range of a measured surface: noise floor, low-pass filter, roll-off.
 
 What an instrument adds shows in the spectrum of profiles at short wavelengths. Independent errors
 of the nodes make it flat, and with N the level of that floor their standard deviation is the root

@@ -45,7 +45,7 @@ MIN_RISE = 0.3
 
 
 class Fit(NamedTuple):
-    """Where the slope of a curve was taken."""
+    """Fit of the slope of a curve: lengths, size of the surface, axis and spectrum."""
 
     length: np.ndarray
     """(k,), cells."""

@@ -154,7 +154,7 @@ def _moment(centred, order):
 
 
 def _removed_plane(specimen):
-    """Plane (ny, nx) that levelling took off, mm: the step of a converter lies in what it left."""
+    """Plane (ny, nx) removed by levelling, mm; added back to find the step of a converter."""
     attrs = specimen.attrs
     slopes = attrs["plane_slope_y"] * specimen.y + attrs["plane_slope_x"] * specimen.x
     return (slopes + attrs["plane_offset_mm"]).transpose("y", "x").values

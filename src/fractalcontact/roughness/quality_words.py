@@ -19,7 +19,7 @@ FLATTEST = 1.5
 
 
 def interval_words(values: xr.Dataset, name: str, unit: str | None = None) -> str:
-    """A scalar length with its 95 % interval, if it has one: three digits, in mm or what suits."""
+    """Scalar length with its 95 % interval if known: three digits, in mm or a suitable unit."""
     value, low, high = Estimate.read(values, name).ends
     unit, size = (unit, 1.0) if unit == "mm" else height_unit(value)
     interval = f" [{plain(low / size)}, {plain(high / size)}]" if math.isfinite(low) else ""
@@ -129,7 +129,7 @@ def suspect_words(specimen: xr.Dataset) -> str:
 
 
 def overlap_words(specimen: xr.Dataset, quality: xr.Dataset) -> str:
-    """Where two faces overlap as scanned, in a clause; "" of one face.
+    """Clause on the overlap of two faces as scanned; "" for one face.
 
     Parameters
     ----------

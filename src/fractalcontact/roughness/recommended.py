@@ -1,4 +1,4 @@
-"""The recommended surface dimension Delta_g: which of the estimates to use, and when none is to be.
+"""Recommended surface dimension Delta_g: the choice among the estimates, or of none.
 
 Estimators that look at the same heights do not err independently, so that their mean is no better
 than the best of them, and worse where a roll-off or the edges of the scan bend some of the curves.

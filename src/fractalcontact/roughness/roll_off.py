@@ -1,4 +1,4 @@
-"""Roll-off of a surface: what it takes from each measure, and whether one is seen.
+"""Roll-off of a surface: its effect on each measure, and its detection.
 
 A surface whose spectrum is flat above a wavelength lacks long waves. Mean squares then grow more
 slowly than h^(2H), and do so long before that wavelength: the variogram loses a part that grows as

@@ -1,4 +1,4 @@
-"""The spectrum of a measured profile: a self-affine surface, and what grid and instrument add.
+"""Model spectrum of a measured profile: self-affine surface, grid and instrument.
 
 The model, with x the wave number over that of the shortest wave (two spacings):
 
@@ -23,7 +23,7 @@ IDEAL, ALIASED, BAND_LIMITED = SAMPLINGS = ("ideal", "aliased", "band-limited")
 
 
 class Form(NamedTuple):
-    """Which parts a model of the spectrum has."""
+    """Parts of a model of the spectrum."""
 
     sampling: str
     filtering: str
@@ -32,7 +32,7 @@ class Form(NamedTuple):
 
     @property
     def features(self) -> int:
-        """How many parts it has beyond the self-affine one."""
+        """Number of parts beyond the self-affine one."""
         return bool(self.filtering) + self.rolls_off + self.noisy
 
 
@@ -108,7 +108,7 @@ def _filtered(filtering: str, log_ratio: np.ndarray) -> np.ndarray:
 
 
 def features_of(form: Form, parameters: np.ndarray, x: np.ndarray) -> dict[str, float]:
-    """H, and the logarithms of what the form has, noise as the x where the line meets it."""
+    """Parameters: H, and logarithms of the others; the noise as the x where it meets the line."""
     own = named(form, parameters)
     found = {"hurst": (own["slope"] - 1) / 2}
     found |= {name: own[name] for name in ("roll_off", "filter", "level") if name in own}

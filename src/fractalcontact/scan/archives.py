@@ -111,7 +111,7 @@ def _check_content(archive: zipfile.ZipFile, member: zipfile.ZipInfo, path: Path
 
 
 class _XmlCheck:
-    """Reads XML without building anything, to refuse what would make a parser run away."""
+    """Scan of XML without building a tree, to refuse documents that overload a parser."""
 
     def __init__(self, path: Path, member: zipfile.ZipInfo):
         self.where = f"{path}: its {member.filename}"

@@ -90,12 +90,12 @@ def _how_it_ended(outcome: str, status: int, limits: dict) -> str:
 
 
 def _folder_for(path: Path) -> str:
-    """Where a relative path starts; the reader process may have been started elsewhere."""
+    """Base folder of relative paths; the reader process may have another one."""
     return "/" if path.is_absolute() else os.getcwd()
 
 
 def _ask(request: dict, path: Path):
-    """Let the reader process read; start it if there is none."""
+    """Read in the reader process, which is started if needed."""
     global _server
     with _lock:
         if _server is None or not _server.is_alive():

@@ -230,7 +230,7 @@ def draft_line(key: str, value: Any, comment: str = "") -> str:
 
 
 def written(value: Any) -> str:
-    """A value as YAML has it."""
+    """Value in YAML."""
     if isinstance(value, list | tuple):
         return f"[{', '.join(map(written, value))}]"
     if isinstance(value, float):

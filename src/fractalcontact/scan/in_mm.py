@@ -184,7 +184,7 @@ def _refuse_one_unit_for_two(raw: RawScan, options: ScanOptions, path: Path) -> 
 
 
 def _require_units(raw: RawScan, options: ScanOptions, unit_xy, unit_z, path: Path) -> None:
-    """Ask for everything the file lacks in one message, ready to be copied."""
+    """Request all missing keys in one message, ready to be copied."""
     stated_spacing = options.spacing if options.spacing is not None else raw.spacing
     lacks_spacing = raw.layout == "matrix" and stated_spacing is None
     needs_unit_xy = raw.layout != "matrix" or (

@@ -1,4 +1,4 @@
-"""The keys of a sidecar that say how a scan file is to be read."""
+"""Keys of a sidecar that determine how a scan file is read."""
 
 import math
 from collections.abc import Mapping

@@ -67,7 +67,7 @@ class IncompleteSidecar(InputError):
 
 
 def refuse_larger(n_bytes: int, path: Path | str) -> None:
-    """Refuse what would need more than `LARGEST_FILE`, before anything is allocated."""
+    """Refuse files that need more than `LARGEST_FILE`, before anything is allocated."""
     if n_bytes > LARGEST_FILE:
         raise InputError(
             f"{path}: {n_bytes / 1024**3:.1f} GiB to read, more than the "
@@ -77,7 +77,7 @@ def refuse_larger(n_bytes: int, path: Path | str) -> None:
 
 @contextmanager
 def reading(path: Path | str, kind: str) -> Iterator[None]:
-    """Turn whatever a library raises over a damaged file into one clean `InputError`.
+    """Turn any error of a library on a damaged file into one clean `InputError`.
 
     Parameters
     ----------

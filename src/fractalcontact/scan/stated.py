@@ -119,7 +119,7 @@ def required_keys(options: ScanOptions, needs: Needs) -> list[str]:
 
 
 def _units(options: ScanOptions, layout: str | None, is_map: bool) -> list[str]:
-    """Which of the keys of units are needed: ``unit`` alone where it can be of all."""
+    """Required keys of units: ``unit`` alone where it can hold for all axes."""
     if options.unit is not None:
         return []
     by_unit_xy = options.unit_xy is None and not has_own_units(options.spacing)

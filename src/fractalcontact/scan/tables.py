@@ -54,7 +54,7 @@ def choose_array(names: list[str], wanted: str | None, path: Path) -> str:
 
 
 def is_table(shape: tuple, dtype: np.dtype) -> bool:
-    """Tell a 2-D array of real numbers from everything else."""
+    """True for a 2-D array of real numbers."""
     return len(shape) == 2 and dtype.kind in "fiu"
 
 

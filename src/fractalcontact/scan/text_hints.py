@@ -92,7 +92,7 @@ def _first_numbers(lines: list[str]) -> int | None:
 
 
 def text_hints(path: Path) -> Hints:
-    """Hints of the first lines of a text on how it is to be read."""
+    """Hints in the first lines of a text on its layout."""
     lines, hints = first_lines(path), Hints()
     start = _table_start(lines)
     above, data = lines[:start], [line for line in lines[start:] if line.strip()]

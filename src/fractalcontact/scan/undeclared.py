@@ -126,7 +126,7 @@ def refuse_or_warn(heights: np.ndarray, path: object) -> str:
 
 
 def number(value: float) -> str:
-    """A number as a person writes it: whole numbers whole, others to seven digits."""
+    """Number in plain digits: whole numbers whole, others to seven digits."""
     if value == round(value) and abs(value) < 1e15:
         return str(round(value))
     return f"{value:.7g}"

@@ -1,4 +1,4 @@
-"""How sigma_z, closure, compliance and strength go with the side b of a joint (eq. 2, sect. 5)."""
+"""Laws of sigma_z, closure, compliance and strength over the side b (eq. 2, sect. 5)."""
 
 from collections.abc import Sequence
 
@@ -198,7 +198,7 @@ def _add_hurst(
     dimension: Estimate,
     fit_range: Sequence[float] | None,
 ) -> None:
-    """Eq. 2 of the composite topography and of the face, and what it expects, into ``result``."""
+    """Eq. 2 of composite topography and face, and its expectation, stored in ``result``."""
     side = states["scale_side"]
     if fit_range is None:
         cell = side.values[0] / np.sqrt(states["scale_cells"].values[0])

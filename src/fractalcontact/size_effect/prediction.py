@@ -1,4 +1,4 @@
-"""The reverse of the test of eq. 6: what small windows predict for the largest."""
+"""Prediction of the largest window from small ones, the reverse of the test of eq. 6."""
 
 from collections.abc import Sequence
 

@@ -1,4 +1,4 @@
-"""Where windows of all sizes have the same sigma*, and the slope of that over their side b."""
+"""Pressures at which windows of all sizes have the same sigma*, and their slope over b."""
 
 from collections.abc import Sequence
 
@@ -88,7 +88,7 @@ def real_pressure_errors(states: xr.Dataset) -> tuple[np.ndarray, ...]:
 def _places(
     states: xr.Dataset, curves: Sequence[np.ndarray], n_loads: int
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Where every size and every window has the real pressure of the whole under each load.
+    """Pressures at which every window has the real pressure of the whole, under each load.
 
     Parameters
     ----------
@@ -174,7 +174,7 @@ _SLOPES = {
 
 
 def slopes_at_equal_star(states: xr.Dataset, n_loads: int) -> xr.Dataset:
-    """Pressures at equal sigma*, their slope over b, and what explains it.
+    """Pressures at equal sigma*, their slope over b, and its explanation.
 
     Parameters
     ----------

@@ -165,7 +165,7 @@ def with_slope_angles(laws: xr.Dataset, pressure: np.ndarray) -> xr.Dataset:
 
 
 def add_slope_trends(laws: xr.Dataset) -> None:
-    """Slope of the dilatancy over b at one v/b, and as a self-affine face has it.
+    """Slope of the dilatancy over b at one v/b, and that of a self-affine face.
 
     Parameters
     ----------

@@ -1,1 +1,1 @@
-"""Stages: what the jobs of a study compute, each from the stages before it."""
+"""Stages: the computations of the jobs of a study, each from earlier stages."""

@@ -1,4 +1,4 @@
-"""The atlas of a study from its stages, with what is judged of its specimens together."""
+"""Atlas of a study from its stages, with the verdicts over specimens."""
 
 import json
 from collections.abc import Mapping
@@ -141,7 +141,7 @@ def _without_remade_fields(stages):
 
 
 def _maps(stages):
-    """Measured contact maps with what they are in their series."""
+    """Measured contact maps with their place in their series."""
     maps = stages.get("contact_maps", {})
     return {"contact_maps": with_series(maps)} if maps else {}
 

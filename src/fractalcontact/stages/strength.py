@@ -1,4 +1,4 @@
-"""Strength of a specimen, and what the side of its sub-windows does: nothing is solved here."""
+"""Strength of a specimen, and the effect of the side of its sub-windows, without a solve."""
 
 import numpy as np
 import xarray as xr

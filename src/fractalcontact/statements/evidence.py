@@ -148,7 +148,7 @@ class OfRealisations(Evidence):
 
     @property
     def realisations(self) -> int:
-        """How many there are."""
+        """Number of realisations."""
         return int(self.stage.sizes["realisation"])
 
     def of(self, finding: Finding) -> Finding:

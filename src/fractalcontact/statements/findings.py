@@ -31,7 +31,7 @@ class Finding(NamedTuple):
 
 
 class Joint(Subject):
-    """A joint, and what several statements ask of it.
+    """Joint, with quantities that several statements use.
 
     It has the stages ``specimens``, ``joints``, ``closure``, ``dilatancy``, ``area``, ``windows``,
     ``domains``, ``scaling``, ``domain_measures`` and ``size_test``, and ``ensemble`` if the study
@@ -140,7 +140,7 @@ def of_the_area(check: Callable[[Joint], Finding]) -> Callable[[Joint], Finding]
 def trend(
     v: np.ndarray, values: np.ndarray, chosen: np.ndarray, symbol: str, *, rising: bool
 ) -> Finding:
-    """Verdict on values that are to go with v as a power of the sign wanted."""
+    """Verdict on a claim of a power of v with a stated sign."""
     chosen = chosen & (values > 0)
     line = fit_line(np.log(v[chosen]), np.log(values[chosen]))
     return power_of_offset(line.slope, v[chosen], symbol, rising=rising)
@@ -185,7 +185,7 @@ def under_every_load(joint: Joint, rule: Callable[[float], Finding]) -> Finding:
 
 
 def by_sign(found: Estimate, *, rising: bool) -> str:
-    """Verdict on a claim of a sign, from the interval of what is to have it."""
+    """Verdict on a claim of a sign, from the interval of the quantity."""
     above, below = found.low > 0, found.high < 0
     above, below = (above, below) if rising else (below, above)
     return HOLDS if above else FAILS if below else UNDETERMINED
@@ -215,7 +215,7 @@ def beyond_margin(found: Estimate, margin: float, *, rising: bool) -> str:
 
 
 def within_margin(difference: Estimate, margin: float) -> str:
-    """Verdict on a difference that is to be none.
+    """Verdict on a claim that there is no difference.
 
     It is none where the whole interval lies within the margin, and fails where the interval leaves
     out zero and some of it lies beyond.
@@ -231,7 +231,7 @@ def margin_words(name: str) -> str:
 
 
 def level(values: Estimate, symbol: str, v: np.ndarray, margin: float) -> Finding:
-    """Verdict on values over offsets that are to stay the same, by their range over their mean.
+    """Verdict on a claim of constancy over offsets, by the range over the mean.
 
     The ends of its interval are the least and the largest range that the intervals of the values
     allow.
@@ -257,5 +257,5 @@ def share(good: int, total: int) -> str:
 
 
 def no_offsets(needed: str) -> str:
-    """Why a claim is undetermined."""
+    """Reason why a claim is undetermined."""
     return f"too few offsets: {needed} needed"

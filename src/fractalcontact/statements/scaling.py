@@ -127,7 +127,7 @@ def dimension_spans_all(joint: Joint, evidence: Evidence) -> Finding:
 
 
 def span_finding(delta: Estimate, random: np.ndarray, pressures: np.ndarray, note: str) -> Finding:
-    """Verdict on a Delta_sigma that is to go from near 0 to near 2 as the load grows.
+    """Verdict on a Delta_sigma that is claimed to go from 0 to 2 as the load grows.
 
     It does not where it stays below the upper end, by the intervals of its largest value and of
     that under the heaviest load. Where random nodes are not near 0 at the lower end the loads are
@@ -215,7 +215,7 @@ def size_effect_follows(joint: Joint, evidence: Evidence) -> Finding:
 
 
 def _each_within(differences: Estimate, name: str) -> list[str]:
-    """Verdicts on differences that are to be none, with the margin of a claim."""
+    """Verdicts on a claim of no differences, with its margin."""
     margin = all_claims()[name].margin
     return [within_margin(differences[i], margin) for i in range(np.size(differences.value))]
 

@@ -41,12 +41,12 @@ class Plateaus(NamedTuple):
 
     @property
     def flat(self) -> np.ndarray:
-        """Which directions have a plateau."""
+        """Directions with a plateau."""
         return self.trend == LEVEL
 
     @property
     def rising(self) -> np.ndarray:
-        """Which directions open on."""
+        """Directions in which dilatancy keeps rising."""
         return self.trend == RISING
 
     def finding(self, verdict: str) -> Finding:
@@ -109,7 +109,7 @@ def dilatancy_is_anisotropic(joint: Joint) -> Finding:
 
 
 def _differs(spread: float) -> str:
-    """Verdict on changes that are to differ by much."""
+    """Verdict on a claim of markedly different changes."""
     return HOLDS if spread > LOOSELY else PARTLY if spread > NEARLY else FAILS
 
 

@@ -103,7 +103,7 @@ def words_of(used: Mapping[str, str]) -> str:
 
 
 class _DeferredWriter:
-    """Keeps what is to be written, and writes once every variable of a file is declared.
+    """Buffer of variables, written once every variable of a file is declared.
 
     Each change from declaring to writing makes the netCDF library go through the whole file: with
     two thousand variables that was nine tenths of the time.
@@ -141,7 +141,7 @@ def _write_groups(groups, path):
 
 
 def _in_steps(dataset: xr.Dataset) -> dict[Hashable, dict]:
-    """How heights are kept: in equal steps between the lowest and the highest, of :data:`HEIGHTS`.
+    """Encoding of heights: equal steps of :data:`HEIGHTS` between the lowest and the highest.
 
     Of the 64 bits of a height most are noise that no compression removes.
     """
@@ -165,7 +165,7 @@ def _in_steps(dataset: xr.Dataset) -> dict[Hashable, dict]:
 
 
 def _as_characters(dataset: xr.Dataset) -> dict[Hashable, dict]:
-    """How words are kept: as arrays of characters, which every reader may open again and again.
+    """Encoding of words: arrays of characters, which every reader can open repeatedly.
 
     As strings of variable length, netCDF's usual way, they end a process with a segmentation fault
     that opens the file, or any group of it, while it holds the file open already, closes one of the

@@ -1,4 +1,4 @@
-"""Campaigns, studies of many specimens: how their atlas is kept, and what is drawn of each."""
+"""Campaigns, studies of many specimens: form of the atlas, and figures of each specimen."""
 
 from collections.abc import Collection, Mapping
 from typing import Any

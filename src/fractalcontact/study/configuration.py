@@ -116,7 +116,7 @@ class _Stated(dict):
                 raise InputError(f"{source}: missing key 'defaults.{key}'")
 
     def where(self, key):
-        """Where a setting stands, for errors."""
+        """Place of a setting, for errors."""
         if key in self._own:
             said_in = self._scan.said_in if self._scan else f"sidecar of {self._name}"
             return f"{said_in}: {key}"
@@ -204,7 +204,7 @@ def _refuse_contradictions(settings, where):
 
 
 def window_arguments(settings: SpecimenSettings) -> dict:
-    """How :func:`surface.specimen.make_specimen` is to clean faces and place the window.
+    """Settings of cleaning and window for :func:`surface.specimen.make_specimen`.
 
     The window is cut to whole cells of the coarsest pre-fractal, so that all resolutions cover the
     same area, and placed where the offsets of the study can slide it.
@@ -223,7 +223,7 @@ def window_arguments(settings: SpecimenSettings) -> dict:
 
 
 def resolve_embedded(recipe: Mapping, where: str) -> dict:
-    """Recipe of an embedded specimen with its lengths in mm, without what is only words.
+    """Recipe of an embedded specimen with its lengths in mm, without labels.
 
     Raises
     ------
@@ -308,7 +308,7 @@ def solver_settings(config: Mapping, source: str) -> Solver:
 
 
 def _material(config, material, where, source, *, scanned: bool) -> Material:
-    """A material with E* of two like bodies, and what may be stated.
+    """Material with E* of two like bodies and its optional properties.
 
     The contacts of a scanned rock crush at the joint wall strength, unless its hardness is stated.
     """
@@ -343,7 +343,7 @@ def _material(config, material, where, source, *, scanned: bool) -> Material:
 
 
 def _if_stated(definition, key, kind, where, otherwise=math.nan):
-    """A quantity that not every study needs; NaN, or something else, where it is not stated."""
+    """Optional quantity; NaN or another default if it is not stated."""
     if key not in definition:
         return otherwise
     value = quantity(definition[key], kind, f"{where}.{key}")

@@ -298,7 +298,7 @@ def _described(results: Path, name: str) -> dict[str, Any]:
 
 
 def _file(results: Path, name: str, digest: str) -> dict[str, Any]:
-    """A result, with its checksum and what it is."""
+    """Entity of a result, with checksum and description."""
     return _described(results, name) | {"description": _description(name), "sha256": digest}
 
 

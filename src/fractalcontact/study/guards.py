@@ -1,4 +1,4 @@
-"""Guards of the results of a study: what is refused before a run reads, loses or replaces any."""
+"""Guards of the results of a study, checked before a run reads or replaces any."""
 
 from collections.abc import Callable, Iterable
 from pathlib import Path
@@ -8,7 +8,7 @@ from ..core.errors import InputError
 
 
 def refuse_loss(results: Path | str, names: Iterable[str]) -> None:
-    """Keep an atlas from losing specimens without a word.
+    """Refuse to remove specimens from an atlas unless the user asks for it.
 
     A folder that is not mounted, or half copied, looks like one from which scans were removed.
 

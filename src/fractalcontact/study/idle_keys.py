@@ -13,7 +13,7 @@ _UNNAMED = (".npy", ".csv", ".tsv", ".xyz", ".stl", ".ply", ".obj")
 
 
 def refuse_idle_keys(scan: ScanFiles, keys: Mapping, settings: Mapping) -> None:
-    """Refuse keys that have no meaning for what the files of a specimen are.
+    """Refuse keys without meaning for the files of a specimen.
 
     Parameters
     ----------
@@ -39,7 +39,7 @@ def refuse_idle_keys(scan: ScanFiles, keys: Mapping, settings: Mapping) -> None:
 
 
 def _idle(scan: ScanFiles, keys: Mapping, settings: Mapping) -> Iterator[tuple[Sequence[str], str]]:
-    """Keys that have no meaning for what the files are, and why."""
+    """Keys without meaning for the kind of files, and the reason."""
     if is_contact_map(keys):
         solved = [key for key in settings if key != "label"]
         how_faces_lie = ["registration", "mirror_upper", "grid", "columns", "unit_z", "heights"]

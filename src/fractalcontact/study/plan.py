@@ -39,7 +39,7 @@ def plan_of(
 
 
 def write_plan(path: Path | str, plan: Plan) -> None:
-    """Keep a plan for the jobs of the run.
+    """Store the plan for the jobs of the run.
 
     Raises
     ------

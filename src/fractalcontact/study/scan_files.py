@@ -1,4 +1,4 @@
-"""Which files of a folder make which specimen: by their names alone, nothing is opened."""
+"""Specimens from the names of files in a folder, without opening any."""
 
 import re
 import unicodedata
@@ -77,7 +77,7 @@ class ScanFiles:
 def list_scans(
     folder: Path | str, group_folders: Collection[str] = ()
 ) -> tuple[dict[str, ScanFiles], dict[str, InputError]]:
-    """List the specimens of a folder, and what is wrong with its other files.
+    """Specimens of a folder, and errors of its other files.
 
     ``NAME.ext`` is one face, ``NAME.lower.ext`` and ``NAME.upper.ext`` are two, ``NAME.yaml`` is
     the sidecar of either. Hidden files, README*, LICENSE*, sub-folders and what systems and editors
@@ -188,7 +188,7 @@ def _is_left_behind(name: str) -> bool:
 
 
 def _likely_pairs(names: list[str]) -> Iterator[tuple[str, str, str, str]]:
-    """Two files called as faces of one joint, but not as this program has it; how they should be.
+    """Two files named like faces of one joint but in another form, and their right names.
 
     Such as ``rock_lower.xyz`` and ``rock_upper.xyz``, or ``rock-bottom.x3p`` and ``rock-top.x3p``.
     """
@@ -204,7 +204,7 @@ def _likely_pairs(names: list[str]) -> Iterator[tuple[str, str, str, str]]:
 
 
 def _turned(face: re.Match) -> str:
-    """The word for the other face, with what parts it from the name."""
+    """Word for the other face, with its separator."""
     word = face[0].lstrip("_ -")
     return face[0].removesuffix(word) + _OTHER_FACE[word.lower()]
 

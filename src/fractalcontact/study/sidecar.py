@@ -1,4 +1,4 @@
-"""Text of a sidecar: YAML reduced to what a few keys need, since it is untrusted input.
+"""Text of a sidecar: a reduced YAML, since it is untrusted input.
 
 Words and numbers mean what they look like: ``1e-3`` is a number, ``no``, ``1:30`` and
 ``2020-01-01`` are words, ``010`` is ten. Anchors, tags, keys written twice and nesting without end
@@ -113,7 +113,7 @@ def plain_value(text: str, where: str) -> Any:
 
 
 def unreadable(path: Path | str, error: yaml.YAMLError) -> InputError:
-    """One sentence for what a file has that is not YAML.
+    """Sentence on an error in YAML.
 
     Parameters
     ----------
@@ -133,7 +133,7 @@ def unreadable(path: Path | str, error: yaml.YAMLError) -> InputError:
 
 
 class _Loader(yaml.SafeLoader):
-    """PyYAML's safe loader without what a sidecar does not need."""
+    """PyYAML's safe loader, reduced to the needs of a sidecar."""
 
     yaml_implicit_resolvers: ClassVar[dict] = {}
     yaml_constructors: ClassVar[dict] = {}

@@ -118,7 +118,7 @@ def make_specimen(
 
 
 def _provenance(scans) -> dict:
-    """Where the faces came from and how they were registered, as attributes of the specimen."""
+    """Source and registration of the faces, as attributes of the specimen."""
     provenance = {}
     for face, scan in scans.items():
         attrs = dict(scan.attrs)
@@ -156,7 +156,7 @@ def largest_offset(specimen: xr.Dataset, direction: str) -> int:
 
 
 def _mean_plane(scans, valid: np.ndarray, *, level: bool) -> tuple[np.ndarray, dict]:
-    """Least-squares plane of the (mean) face, and what was done, as attributes.
+    """Least-squares plane of the (mean) face, and its record as attributes.
 
     One plane for both faces: the gap between them is a measurement and stays. So does the wedge of
     an aperture map, of which the mean alone is taken off (not ``level``).

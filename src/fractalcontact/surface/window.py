@@ -1,4 +1,4 @@
-"""Where the window of a specimen lies: hole-free, central, with room to slide."""
+"""Placement of the window of a specimen: hole-free, central, with room to slide."""
 
 import json
 import math
@@ -306,7 +306,7 @@ def _no_place(specimen, shape) -> InputError:
 
 
 def _rounded_down(length: float) -> float:
-    """A length as a user may copy it: to 4 digits, and not above what is there."""
+    """Length for the user to copy: 4 digits, rounded down."""
     unit = 10.0 ** (math.floor(math.log10(length)) - 3)
     return math.floor(length / unit + _ROUNDING) * unit
 

@@ -62,7 +62,7 @@ _FLOAT64 = np.dtype(np.float64)
 
 
 class LinearSolve(Enum):
-    """How far the linear equations on an active set are solved."""
+    """Accuracy of the linear solve on an active set."""
 
     #: As far as the set is known: the usual case.
     INEXACT = auto()
@@ -300,7 +300,7 @@ def _reduction(linear_solve, previous_active, active):
 
 
 def _check_on_nodes(values, name, operator):
-    """Refuse what are not as many numbers as there are nodes."""
+    """Refuse arrays without one number for each node."""
     nodes = (operator.size,)
     if values.shape != nodes or values.dtype != _FLOAT64:
         raise ValueError(f"{name} {values.shape} of {values.dtype}: expected {nodes} of float64")

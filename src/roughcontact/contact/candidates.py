@@ -352,7 +352,7 @@ def _prolonged(case, cells, pressure, nodes):
 
 @njit(cache=True)
 def _redistribute_cells(cells, coarse, padded, height, highest, length, influence):
-    """Share the pressure of each cell among its nodes so that they have even gaps, in place."""
+    """Distribute the pressure of each cell over its nodes for even gaps, in place."""
     ny, nx = height.shape
     width = (nx + 1) // 2
     for cell in range(cells.size):

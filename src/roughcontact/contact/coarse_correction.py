@@ -182,7 +182,7 @@ def _interpolation(nodes, nx, step, coarse_y, coarse_x):
 
 @njit(cache=True)
 def _missing(weights, near, own):
-    """D: a node's displacement under its own load, less what the coarse grid has of it."""
+    """D: displacement of a node under its own load, less that on the coarse grid."""
     missing = np.empty(weights.shape[0], np.float32)
     for i in range(missing.size):
         a, b, c, d = weights[i]
@@ -321,7 +321,7 @@ def _most_changed(first, second, shape, counts):
 
 @njit(cache=True)
 def _around_functions(nodes, shape, counts):
-    """How many nodes lie nearest to the centre of each basis function."""
+    """Number of nodes nearest to the centre of each basis function."""
     count = np.zeros(counts)
     per_y, per_x = (counts[0] - 1) / shape[0], (counts[1] - 1) / shape[1]
     for node in nodes:

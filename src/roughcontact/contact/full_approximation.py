@@ -39,7 +39,7 @@ CAP_ROUNDING = 1e-9
 def full_approximation_start(
     problem: Problem, pressure: np.ndarray, displacement: np.ndarray
 ) -> np.ndarray | None:
-    """Where to start from a known state: its pressure, changed for the load on coarser grids.
+    """Start from a known state: its pressure, changed for the load on coarser grids.
 
     Parameters
     ----------

@@ -177,7 +177,7 @@ def block_shifts(space: HalfSpace) -> np.ndarray:
 
 
 def _block_grid(ny, nx, shifts):
-    """Where the blocks of every level begin, and how many there are along y and x."""
+    """First index of the blocks of every level, and their numbers along y and x."""
     widths = np.stack([((ny - 1) >> shifts[:, 0]) + 1, ((nx - 1) >> shifts[:, 1]) + 1], axis=1)
     return np.concatenate([[0], np.cumsum(widths[:, 0] * widths[:, 1])]), widths
 

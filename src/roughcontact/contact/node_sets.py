@@ -30,7 +30,7 @@ def check_nodes(nodes: np.ndarray, shape: tuple[int, int]) -> None:
 
 
 def check_on_set(values: np.ndarray, n: int) -> None:
-    """Refuse what are no float32 numbers, one for each node of a contact set of n.
+    """Refuse anything but float32 values of the n nodes of a contact set.
 
     Raises
     ------

@@ -157,7 +157,7 @@ def preconditioner(space: HalfSpace) -> Preconditioner:
 
 
 def forget_preconditioner(space: HalfSpace) -> None:
-    """Drop what this thread keeps for a half-space, to save the memory or to start anew."""
+    """Drop this thread's cache for a half-space, to save memory or to start anew."""
     _drop(_THREAD.kept, id(space))
 
 

@@ -97,7 +97,7 @@ class ProjectedCG:
         _subtract(self.residual, np.float32(1), self.image, self.active, self.unclipped)
 
     def iterate(self, goal: float, *, by_force: bool) -> None:
-        """Go on by conjugate gradients until no residual exceeds ``goal``."""
+        """Iterate conjugate gradients until no residual exceeds ``goal``."""
         response, total = self.unclipped, 0.0
         if by_force:
             response = self._response_of_unclipped()

@@ -23,7 +23,7 @@ from .kkt import FORCE_ROUNDING, Iterate, Problem
 
 
 def closure_of_step(problem: Problem, iterate: Iterate) -> float:
-    """Closure at which the active set of an iterate is to be judged.
+    """Closure for judging the active set of an iterate.
 
     Parameters
     ----------

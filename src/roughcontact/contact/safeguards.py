@@ -1,4 +1,4 @@
-"""Safeguards against cycling: what the active-set iteration does after many iterations.
+"""Safeguards against cycling, after many iterations of the active-set method.
 
 It has no proof of convergence with inexact, clipped steps, and on combs, checkerboards and single
 spikes its sets do cycle. No cycle is detected, iterations are counted. Under a given closure, once

@@ -211,7 +211,7 @@ def _checked(composite, space, closure, force, start, rtol):
 
 
 def _check_start(start, space):
-    """Refuse what is no state of this grid."""
+    """Refuse a start that is no state of this grid."""
     if not isinstance(start, ContactState):
         raise ValueError(f"start {quoted(start)}: expected a ContactState, as solve_contact gives")
     # A state of candidates was made by this solver, and its displacement need not be computed.
@@ -313,7 +313,7 @@ class _Units:
         return (1 + along) * field_of(start) - along * field_of(before)
 
     def _proportion(self, start, load):
-        """How many times that of a state a load is, to no more than FURTHEST."""
+        """Ratio of a load to that of a state, at most FURTHEST."""
         at = self._load_of(start)
         return min(load / at, FURTHEST) if at > 0 else 1.0
 

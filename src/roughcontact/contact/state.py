@@ -176,7 +176,7 @@ class ContactState:
 
 @dataclass(frozen=True)
 class Candidates:
-    """The nodes of a state that could touch: all others have a gap, whatever the pressures.
+    """Candidates of a state; all other nodes have a gap, whatever the pressures.
 
     Attributes
     ----------
@@ -268,7 +268,7 @@ class CandidateState(ContactState):
 
     @property
     def candidates(self) -> int:
-        """How many nodes could touch."""
+        """Number of candidates."""
         return self._candidates.nodes.size
 
     @property

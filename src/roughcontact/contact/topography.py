@@ -110,7 +110,7 @@ def _is_as_wanted(array, shape):
 
 @njit(cache=True)
 def _extent(height):
-    """How many heights are not finite, and the least and largest of the others."""
+    """Number of heights that are not finite, and least and largest of the others."""
     missing, lowest, highest = 0, np.inf, -np.inf
     for value in height:
         if np.isfinite(value):

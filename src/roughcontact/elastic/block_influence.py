@@ -82,7 +82,7 @@ _KEPT: dict[tuple, BlockInfluence] = {}
 
 
 def forget_matrices() -> None:
-    """Keep nothing of any level: for benchmarks of the set-up."""
+    """Clear the cache of all levels, for benchmarks of the set-up."""
     _KEPT.clear()
 
 
@@ -114,7 +114,7 @@ def block_influence(space: HalfSpace, levels: int, dtype: np.dtype) -> list[Bloc
 
 
 def interpolation_nodes(level: int, order: int) -> np.ndarray:
-    """Where the numbers of a block stand along one side of it.
+    """Positions of the Chebyshev nodes of a block along one side.
 
     Parameters
     ----------

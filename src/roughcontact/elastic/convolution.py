@@ -28,7 +28,7 @@ LINES = 64
 
 
 def cosine_transform(half: np.ndarray, axis: int) -> np.ndarray:
-    """Transform of what is even along an axis, from its first half, in its place (DCT-I).
+    """Transform of even data along an axis, from its first half, in place (DCT-I).
 
     By threads of our own: scipy's are shut down while the process forks, and whoever transforms
     then gets an error.

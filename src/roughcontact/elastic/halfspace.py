@@ -248,7 +248,7 @@ class HalfSpace:
 
     @property
     def spread(self) -> tuple[float, float, float]:
-        """Sides of what a load is spread over, in units of `cell`, and area: of `expansion`."""
+        """Sides of the loaded area, in units of `cell`, and its area, for `expansion`."""
         return spread(self._sides, self._self_term)
 
     @property

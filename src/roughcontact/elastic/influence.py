@@ -107,7 +107,7 @@ def spread(sides: tuple[float, float], self_term: float | None) -> tuple[float, 
 
 @njit(cache=True)
 def _fill_near(near_y, near_x, dy, dx, table):
-    """Love's displacement: what is at the corners is shared by four cells."""
+    """Love's displacement, with terms at corners shared by four cells."""
     above, below = np.empty(near_x + 1), np.empty(near_x + 1)
     for i in range(near_y + 1):
         y = (i - 0.5) * dy

@@ -163,7 +163,7 @@ def _to_parents(parents, weights, side, parent_side, values, loaded, above, load
 
 @njit(cache=True)
 def _to_children(parents, weights, side, parent_side, length, length_above, values, above):
-    """Add to each block what its parent is displaced, interpolated."""
+    """Add to each block the displacement of its parent, interpolated."""
     part = np.empty((side, parent_side), values.dtype)
     for block in range(parents.shape[0]):
         parent, quarter = parents[block, 0], parents[block, 1]
@@ -276,7 +276,7 @@ def _multiply_one(matrices, row, numbers, length, sources, source, images, targe
 
 @njit(cache=True)
 def _listed(sources, loaded):
-    """How many cells of each smallest block are loaded, and which."""
+    """Number and list of the loaded cells of each smallest block."""
     counts = np.zeros(loaded.size, np.int64)
     cells = np.empty(loaded.size * LEAF * LEAF, np.int32)
     for block in range(loaded.size):

@@ -174,7 +174,7 @@ def _rows_to_coarse(values, weights, coarse):
 
 @njit(cache=True, nogil=True, fastmath=True)
 def _add_from_coarse(start, stop, coarse, weights, transposed, values):
-    """Add what the coarse nodes are displaced, interpolated, to some rows."""
+    """Add the interpolated displacement of the coarse nodes to some rows."""
     nx = values.shape[1]
     row = np.empty(coarse.shape[1], np.float32)
     for y in range(start, stop):

@@ -19,7 +19,7 @@ ORDER = 110
 
 
 def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
-    """Sign of the inverse influence matrix, wrong sets, and what inexact solves lose."""
+    """Sign of the inverse influence matrix, wrong sets, and nodes lost by inexact solves."""
     elimination = group(atlas, "elimination", "scenes")
     figure = Figure(figsize=(WIDTH, 3.0))
     left, right = figure.subplots(1, 2, width_ratios=[1.2, 1])

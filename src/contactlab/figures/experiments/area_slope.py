@@ -86,7 +86,7 @@ def _table(slopes):
 
 
 def _counts(slopes):
-    """Ranges of the corrected kappa, and how many values lie between the theories and others'."""
+    """Ranges of the corrected kappa, and counts between theories and in the literature."""
     found = {"ranges": {}, "between": {}}
     for kind in _TITLES:
         chosen = slopes.sel(surface=kind)

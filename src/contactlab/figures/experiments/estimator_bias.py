@@ -63,7 +63,7 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
 
 
 def _legends(of_bias, of_coverage, start):
-    """Estimators with their errors, in two columns, and what else is drawn."""
+    """Legend entries in two columns: estimators with their errors, then all others."""
     estimators = [one for one in entries(of_bias) if not isinstance(one, Patch | Line2D)]
     half = -(-len(estimators) // 2)
     hollow = mark(color="0.3", marker="o", mfc="none", ls="none")

@@ -98,7 +98,7 @@ def _draw_slopes(axes: Axes, table: pd.DataFrame, light: tuple[float, float]) ->
 
 
 def _colour(i: int) -> str:
-    """Colour of the i-th Hurst exponent: any but that of what others computed."""
+    """Colour of the i-th Hurst exponent, different from that of the literature."""
     return colour_of(i + 1 if i < 2 else i + 2)
 
 

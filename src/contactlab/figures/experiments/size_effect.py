@@ -44,7 +44,7 @@ _COLUMNS = (
 
 
 def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
-    """alpha of every class and load against what eq. 6 wants by both estimators."""
+    """Alpha of every class and load against the prediction of eq. 6 by both estimators."""
     test = atlas["size_effect/surfaces"].to_dataset()
     arms = test["arm"].values
     columns = min(len(arms), 2)

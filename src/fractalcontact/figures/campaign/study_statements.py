@@ -37,7 +37,7 @@ WHOLE = "study"
 
 
 def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
-    """A sign for each verdict, specimen by specimen, and below what needs several specimens."""
+    """Signs of the verdicts by specimen, and below them statements on several specimens."""
     if not len(names):  # measured contact maps alone
         words = caption(__name__, **_counted({}, _whole(atlas)))
         return Drawing(Figure(figsize=(WIDTH, 1)), pd.DataFrame(), words)
@@ -121,7 +121,7 @@ def _head(label, most):
 
 
 def _counts(tables, whole):
-    """How often each verdict was given."""
+    """Count of each verdict."""
     return pd.concat([*tables.values(), whole])["verdict"].value_counts()
 
 

@@ -14,7 +14,7 @@ MAX_NAME, MAX_NOTE = 60, 400
 
 
 def history(specimen: xr.Dataset, faces: Sequence[str]) -> list[str]:
-    """One paragraph a face on its file, and one on what was done to the faces.
+    """Paragraphs on the file of each face, and on the processing of both.
 
     Parameters
     ----------

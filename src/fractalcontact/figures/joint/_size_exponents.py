@@ -95,7 +95,7 @@ def draw_measured(
 
 
 def size_legends(axes: Axes) -> tuple[list[Artist], list[Artist]]:
-    """Entries of a panel of exponents in two columns: what is measured, and all else."""
+    """Legend entries of exponents in two columns: measured ones, then all others."""
     every, points = entries(axes), ("measured", "faint", "hollow")
     measured = [one for one in every if str(one.get_label()).startswith(points)]
     return measured, [one for one in every if one not in measured]

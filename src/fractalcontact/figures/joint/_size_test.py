@@ -27,7 +27,7 @@ JUDGED = ("area_verdict", "area_reason", "slope_verdict", "slope_reason", "verdi
 
 
 def place_of(test: xr.Dataset) -> str:
-    """Where the contact is, in words."""
+    """Place of the contact in words."""
     return place(str(test["direction"].values), float(test["offset"]))
 
 
@@ -47,7 +47,7 @@ def shown_loads(test: xr.Dataset, name: str) -> np.ndarray:
 def draw_over_side(
     axes: Axes, test: xr.Dataset, name: str, exponent: str, loads: np.ndarray
 ) -> list[Line2D]:
-    """Values over b under some loads, with what eq. 6 makes of the whole window's.
+    """Values over b under some loads, with the prediction of eq. 6 from the whole window.
 
     Parameters
     ----------

@@ -98,7 +98,7 @@ def _draw_states(panel, states, quantity):
 
 
 def _finish(panels, states):
-    """Axes of what is drawn over the offsets, and the bands of random nodes."""
+    """Axes over the offsets, and the bands of random nodes."""
     number, share, localised = panels
     ends = (states[f"morisita_by_chance_{end}"] for end in ("low", "high"))
     low, high = (one.transpose("normal_force", "offset").values for one in ends)

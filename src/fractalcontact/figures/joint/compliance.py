@@ -120,7 +120,7 @@ def _seat(curves):
 
 
 def _bars(curves):
-    """Title of the compliances: what their bars are, where they can be seen."""
+    """Title of the compliances, with the meaning of visible bars."""
     most = float((curves["interface_compliance_high"] / curves["interface_compliance"]).max()) - 1
     words = (
         f"up to {percent(most)}" if np.isfinite(most) else "unbounded where they leave the frame"

@@ -104,7 +104,7 @@ def _finish(slopes, lacunarity, spectrum, shown):
 
 
 def _greys():
-    """Entries of a legend for what is no curve of a load."""
+    """Legend entries except the curves of loads."""
     words = (
         (_LINE, "(a) 1: as of a line"),
         (_PLANE, "(a), (c) 2: as of a filled plane"),

@@ -49,7 +49,7 @@ class Caption(str):
 
     @property
     def text(self) -> str:
-        """As the caption's file has it: the heading, an empty line, each part in its own line."""
+        """Text of the caption's file: the heading, an empty line, one line for each part."""
         return "\n".join((self.heading, "", self.shows, *self.finds))
 
 

@@ -80,7 +80,7 @@ class Drawing:
 
 @contextlib.contextmanager
 def print_style(own: Mapping[str, Any] | None = None) -> Iterator[None]:
-    """Style of every figure, whatever a user has set, but for settings that he gives here."""
+    """Style of every figure, independent of matplotlib's settings except those given here."""
     with matplotlib.style.context(["default", _STYLE, dict(own or {})]):
         yield
 

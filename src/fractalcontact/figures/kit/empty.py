@@ -57,7 +57,7 @@ def missing_lines(reasons: ArrayLike, panel: str = "") -> list[str]:
 
 
 def say_empty(axes: Axes, reason: str, *, ticks: bool = True) -> None:
-    """Say in the middle of a panel why nothing is drawn in it.
+    """Write into the middle of a panel why it is empty.
 
     Parameters
     ----------

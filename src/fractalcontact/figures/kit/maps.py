@@ -173,7 +173,7 @@ def enlarged(domain: np.ndarray, points: float) -> np.ndarray:
 
 
 def enlargement(domains: Sequence[np.ndarray], points: float, most: float = np.inf) -> int:
-    """How many times as wide as they are domains can draw their nodes; once where they fill a map.
+    """Enlargement of the nodes of domains in print; 1 where they fill a map.
 
     One number for all: with one for each, finer domains would look fuller than coarser ones.
 
@@ -198,7 +198,7 @@ def _enlarged(domain, times):
 
 
 def _node_points(axes, shape, sides):
-    """How wide a node will be in print, points; the layout moves the map a little after that."""
+    """Estimated width of a node in print, points, before the final layout."""
     box = axes.get_window_extent()
     scale = min(box.width / sides[1], box.height / sides[0])
     return 72 / axes.figure.dpi * scale * sides[0] / shape[0]

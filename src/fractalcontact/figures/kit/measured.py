@@ -54,7 +54,7 @@ class Series:
 
     @property
     def legend(self) -> str:
-        """Its label for a legend, with the number of its maps where there are several."""
+        """Label of a series for a legend, with the number of its maps."""
         label = self.label if len(self.label) <= _LONGEST else f"{self.label[: _LONGEST - 1]}…"
         return f"{label} ({len(self.maps)})" if len(self.maps) > 1 else label
 

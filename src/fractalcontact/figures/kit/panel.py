@@ -1,4 +1,4 @@
-"""A panel draws curves from a dataset and keeps what it drew: its rows are the figure's table."""
+"""Panel that draws curves from a dataset and records them as rows of the figure's table."""
 
 from collections.abc import Hashable, Sequence
 from typing import Any
@@ -53,7 +53,7 @@ def rows(data: xr.Dataset, *names: str, **constants: Any) -> pd.DataFrame:
 
 
 class Panel:
-    """Axes of one panel, and the rows of what is drawn in it.
+    """Axes of one panel, and the rows of its table.
 
     Parameters
     ----------

@@ -12,7 +12,7 @@ _ANY = {"color": "0.4", "marker": "o"}
 
 
 def reach(value: ArrayLike, low: ArrayLike, high: ArrayLike) -> np.ndarray:
-    """How far error bars reach below and above values, as matplotlib's ``xerr`` and ``yerr``.
+    """Lengths of error bars below and above values, as matplotlib's ``xerr`` and ``yerr``.
 
     Parameters
     ----------

@@ -104,7 +104,7 @@ def series(j: int) -> dict[str, Any]:
 
 
 def name_exponents(axes: Axes, laws: xr.Dataset, name: str, of: str) -> None:
-    """Entries of a legend: the power of b under each pressure, "of" what it is."""
+    """Legend entries: the power of b of a quantity ``of`` under each pressure."""
     truncated = (laws["truncated_fraction_at_equal_v_over_b"] > 0).any("part").values & (
         "strength" in name
     )

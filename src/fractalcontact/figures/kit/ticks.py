@@ -18,7 +18,7 @@ _UNLABELLED = {f"label{side}": False for side in ("bottom", "top", "left", "righ
 
 
 def plain_ticks(figure: FigureBase) -> None:
-    """Spare what cannot be seen of the ticks of a figure on which everything is drawn.
+    """Remove invisible parts of the ticks of a finished figure.
 
     Powers of ten become plain text, ticks between them are made within the axes alone, and nothing
     is measured for labels that are empty.

@@ -17,7 +17,7 @@ MAX_LABEL = 300
 
 
 def letter(axes: Axes, which: str, title: str) -> None:
-    """Letter of a panel as the paper has it, at its upper left, before a title."""
+    """Letter of a panel at its upper left, before a title."""
     axes.set_title(f"({which}) {title}", loc="left")
 
 
@@ -68,7 +68,7 @@ def entitle(figure: Figure, title: str) -> None:
 
 
 def label_in_lines(label: str, *where: str, width: float) -> str:
-    """A label and what follows it, as :func:`headline` has it, in lines of ``width`` inches."""
+    """Label and further words of :func:`headline`, in lines of ``width`` inches."""
     # Dollar signs of a label make no formula.
     label = printable(label, MAX_LABEL).replace("$", r"\$")
     return in_lines(", ".join((label, *where)), TITLE_SIZE, width - 2 * _EDGE)

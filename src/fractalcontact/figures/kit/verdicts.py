@@ -1,4 +1,4 @@
-"""How captions quote the verdicts on the paper's statements, which :mod:`statements` decides."""
+"""Verdicts on the paper's statements, as captions quote them from :mod:`statements`."""
 
 from collections.abc import Sequence
 

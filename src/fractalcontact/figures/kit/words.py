@@ -1,4 +1,4 @@
-"""How the figures put numbers, units and places into words."""
+"""Numbers, units and places in the words of the figures."""
 
 import textwrap
 
@@ -50,7 +50,7 @@ def formulas(text: str) -> str:
 
 
 def place(direction: str, offset: float | None = None) -> str:
-    """Where the contact is, at one ``offset`` in mm or at any."""
+    """Place of the contact in words, at one ``offset`` in mm or at any."""
     if direction == "none":
         return "without sliding"
     if offset is None:
@@ -69,7 +69,7 @@ def short(value: float, digits: int = 3, sign: str = "") -> str:
 
 
 def percent(share: float, sign: str = "") -> str:
-    """A share in per cent: two digits, three of what is nearly all."""
+    """Fraction in per cent: two digits, three near 100 %."""
     return f"{short(100 * share, 3 if 0.99 < abs(share) < 1 else 2, sign)} %"
 
 

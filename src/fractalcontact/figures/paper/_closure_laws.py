@@ -123,7 +123,7 @@ def _law_words(curve):
 
 
 def no_law(curve: xr.Dataset) -> str:
-    """Why no law could be fitted to a curve, without what would help."""
+    """Reason why no law could be fitted to a curve, without the remedy."""
     return str(curve["closure_law_reason"].values).split(":")[0]
 
 

@@ -64,7 +64,7 @@ def direction_style(n: int) -> dict[str, Any]:
 
 
 def _change_words(plateau):
-    """Change of the fitted line in per cent of the mean, and what it is called."""
+    """Change of the fitted line in per cent of the mean, and its name."""
     change = Estimate.read(plateau, "plateau_change").mapped(lambda fraction: 100 * fraction)
     if not change.known:
         return "no fit"

@@ -1,4 +1,4 @@
-"""Fig. 13: what eq. 6 makes of the size of the joint, for growing load."""
+"""Fig. 13: size effect of a joint by eq. 6, for growing load."""
 
 from typing import Any
 

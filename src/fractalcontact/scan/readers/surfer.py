@@ -48,7 +48,7 @@ def read_surfer(path: Path, options: ScanOptions) -> RawScan:
 
 
 def is_surfer(path: Path) -> bool:
-    """Tell Surfer's text grids by their first word."""
+    """Recognise Surfer's text grids by their first word."""
     with open(path, "rb") as stream:
         return stream.read(len(_MARK)) == _MARK
 

@@ -69,7 +69,7 @@ def read_text(path: Path, options: ScanOptions) -> RawScan:
 
 
 def is_text(path: Path) -> bool:
-    """Tell a text file from a binary one by its first bytes."""
+    """Distinguish a text file from a binary one by its first bytes."""
     with open(path, "rb") as stream:
         head = stream.read(4096)
     is_marked = head.startswith((b"\xff\xfe", b"\xfe\xff"))

@@ -63,7 +63,7 @@ def read_tiff(path: Path, options: ScanOptions) -> RawScan:
 
 
 def is_plain_tiff(path: Path) -> bool:
-    """Tell plain TIFF from the files of Park Systems' microscopes."""
+    """Distinguish plain TIFF from the files of Park Systems' microscopes."""
     import tifffile
 
     with reading(path, "TIFF file"), tifffile.TiffFile(path) as file:
@@ -71,7 +71,7 @@ def is_plain_tiff(path: Path) -> bool:
 
 
 def _refuse_images(page, options: ScanOptions, path: Path) -> None:
-    """Refuse what is a picture and no map of heights."""
+    """Refuse pictures that are no map of heights."""
     if page.samplesperpixel != 1 or page.colormap is not None or len(page.shape) != 2:
         raise InputError(
             f"{path}: a colour image, no heights; export the heights themselves, for example as "
