@@ -200,7 +200,7 @@ def richardson_trials(
         _TRIALS,
         values,
         coords={
-            "quantity": ("quantity", names, cf_attrs("1", "what is extrapolated")),
+            "quantity": ("quantity", names, cf_attrs("1", "quantity extrapolated")),
             "cells": ("case", ratios, cf_attrs("1", "cells across the radius, finest spacing")),
         },
     )

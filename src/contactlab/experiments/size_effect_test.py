@@ -168,7 +168,7 @@ def with_comparisons(result: xr.Dataset) -> xr.Dataset:
     }
     values |= {"domain_determined": determined, "domain_beyond_cut": beyond}
     result = result.assign(labelled(table, values))
-    attrs = cf_attrs("1", "what gives Delta_sigma: the areas A_r(s), or box counts")
+    attrs = cf_attrs("1", "source of Delta_sigma: the areas A_r(s), or box counts")
     return result.assign_coords(delta_estimator=("delta_estimator", list(_ESTIMATORS), attrs))
 
 

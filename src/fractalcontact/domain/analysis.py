@@ -61,7 +61,7 @@ _TABLE = {
         "contact clusters of 2^k to 2^(k+1) - 1 nodes, by octave k",
     ),
     "reason": (_ORDER, "1", "why there is no dimension, or none with an interval"),
-    "estimator": (_ORDER, "1", "what delta_sigma is estimated by"),
+    "estimator": (_ORDER, "1", "estimator of delta_sigma"),
     "determined": (_ORDER, "1", "whether delta_sigma has an interval"),
     "ordinary_determined": (_ORDER, "1", "whether delta_sigma_ordinary has an interval"),
     "box_count": (

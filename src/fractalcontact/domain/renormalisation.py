@@ -246,7 +246,7 @@ def extrapolated_pressure(scaling: xr.Dataset, side: float) -> xr.Dataset:
     pressure = Estimate(value, np.fmin(*ends), np.fmax(*ends))
     values = {"eq6_sigma_star": stars[0], **pressure.columns("eq6_pressure")}
     coords = {
-        "estimator": ("estimator", list(ESTIMATORS), cf_attrs("1", "what gives Delta_sigma")),
+        "estimator": ("estimator", list(ESTIMATORS), cf_attrs("1", "source of Delta_sigma")),
         "eq6_side": ("eq6_side", sides.values, cf_attrs("mm", "side b of a joint in eq. 6")),
     }
     result = _described(values, _EXTRAPOLATED).assign_coords(coords)

@@ -182,10 +182,11 @@ def _merge(scan: Measured) -> Cloud:
     attrs |= {"stacked_points": repeats.stacked, "overhang_share": 0.0, "levelled_degrees": 0.0}
     notes = []
     if repeats.duplicated:
-        notes.append(f"{repeats.duplicated} points are there twice; each counts once")
+        notes.append(f"{repeats.duplicated} points are repeated; each counts once")
     if repeats.stacked:
         what = "averaged" if mesh is None else "upright parts of the mesh"
-        note = f"{repeats.stacked} points share x and y with one of another height: {what}"
+        note = f"{repeats.stacked} points have the x and y of another point but another height: "
+               f"{what}"
         if mesh is None and repeats.stacked > _MANY_STACKED * len(points):
             note = f"{NOTE}{note}; two faces or scans in one file? Cut them apart"
         notes.append(note)

@@ -46,11 +46,11 @@ _OF_STATES = {
     "verdict": ("1", f"verdict on the elastic model: {GOOD}, {IN_PART}, {POOR} or {NOT_ASKED}"),
     "pressure": ("MPa", "real mean pressure sigma_n that is judged"),
     "reason": ("1", "pressure and slope, that which decides the verdict first"),
-    "decided_by": ("1", f"what a verdict that is not good is from: {SLOPE}, {LOAD} or pressure"),
+    "decided_by": ("1", f"cause of a verdict that is not good: {SLOPE}, {LOAD} or pressure"),
 }
 #: Limits of the material: unit and long name.
 _OF_MATERIAL = {
-    "criterion": ("1", f"what the pressure is judged by: {HARDNESS}, {STRENGTH} or {USUAL}"),
+    "criterion": ("1", f"limit of the pressure: {HARDNESS}, {STRENGTH} or {USUAL}"),
     "strength_low": ("MPa", "lower end of that strength"),
     "strength_high": ("MPa", "upper end of that strength"),
     "good_to": ("MPa", "real mean pressure up to which the elastic model is good"),
@@ -124,7 +124,7 @@ def elastic_model_validity(
     found = [(by_pressure, "pressure", f"{words} the {limits.words}")]
     if limits.criterion == HARDNESS and by_pressure == GOOD:
         share = nominal_pressure / limits.good_to
-        words = f"the load is {percent(share)} of what contacts that crush at "
+        words = f"the load is {percent(share)} of the most that contacts with a hardness of "
         words += f"{pressure_words(limits.good_to)} can carry"
         found = [(_graded(share, MAX_TOUCHING, FULL), LOAD, words)]
     if np.isfinite(rms_slope):

@@ -210,7 +210,7 @@ _ESTIMATES = {
 }
 
 _NUMBERS = {
-    "noise_limit": (_AXIS, "mm", "what the noise floor can be at most"),
+    "noise_limit": (_AXIS, "mm", "upper bound of the noise floor"),
     "strips_left_out": (
         _AXIS,
         "1",

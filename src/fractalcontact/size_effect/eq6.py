@@ -256,7 +256,7 @@ def _verdict_reason(result):
     if tested.size:
         return f"inconclusive: {Counter(tested).most_common(1)[0][0]}"
     beyond = result["area_exponent"].notnull().any()
-    return "what is drawn lies beyond the study's loads" if beyond else ""
+    return "the loads drawn lie beyond those of the study" if beyond else ""
 
 
 def summary(result: xr.Dataset) -> str:

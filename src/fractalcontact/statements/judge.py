@@ -117,7 +117,7 @@ def table_of(
     claims = [all_claims()[name] for name in rules]
     columns = {
         "figure": ([claim.figure for claim in claims], "figures of the paper"),
-        "claim": ([claim.claim for claim in claims], "what the paper says"),
+        "claim": ([claim.claim for claim in claims], "statement of the paper"),
         "short": ([claim.short for claim in claims], "how captions call it"),
         "rule": ([inspect.getdoc(rule) or "" for rule in rules.values()], "the rule that judges"),
         "verdict": ([finding.verdict for finding in found], "whether it holds here"),
@@ -126,7 +126,7 @@ def table_of(
             [_note(finding, claim) for finding, claim in zip(found, claims, strict=True)],
             "remark on these numbers, and what would decide the statement if they do not",
         ),
-        "judged_on": ([finding.judged_on or asked for finding in found], "what was judged"),
+        "judged_on": ([finding.judged_on or asked for finding in found], "evidence judged"),
         "circular": (
             np.array([name in circular for name in rules], bool),
             "whether the specimen was chosen for it",

@@ -96,7 +96,7 @@ _TABLE = (
         "lacunarity and generalised dimensions of the contact at the map offset",
     ),
     _of_states("branches", "closure of loading, unloading and reloading, at the reported offset"),
-    _of_states("choices", "what was solved and how exactly, why, and the errors that makes"),
+    _of_states("choices", "solve plan: states solved, accuracy, reasons, and resulting errors"),
     _of_states("error_budget", "error of the published quantities, split by source"),
     Stage(
         "flow",
@@ -133,7 +133,9 @@ _TABLE = (
         "fractalcontact.statements.study:judge_study",
         member="study",
     ),
-    _of_report("comparison", "what of a specimen is compared with others, with its errors"),
+    _of_report(
+        "comparison", "quantities of a specimen for comparison with others, with their errors"
+    ),
     Stage(
         "study_comparison",
         "specimens side by side, and how groups of them spread",
