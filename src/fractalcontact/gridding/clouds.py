@@ -185,8 +185,7 @@ def _merge(scan: Measured) -> Cloud:
         notes.append(f"{repeats.duplicated} points are repeated; each counts once")
     if repeats.stacked:
         what = "averaged" if mesh is None else "upright parts of the mesh"
-        note = f"{repeats.stacked} points have the x and y of another point but another height: "
-               f"{what}"
+        note = f"{repeats.stacked} points lie above or below another point: {what}"
         if mesh is None and repeats.stacked > _MANY_STACKED * len(points):
             note = f"{NOTE}{note}; two faces or scans in one file? Cut them apart"
         notes.append(note)

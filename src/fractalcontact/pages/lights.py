@@ -21,8 +21,7 @@ MARKS = (
 )
 LIGHTER = "lighter loads, under which less of the window touches"
 STEEP = "no scan makes it less steep: state the rms slope beside every number"
-CRUSH = "write a 'hardness' into the material, such as the joint wall strength, so that contacts "
-        "crush"
+CRUSH = "a 'hardness' in the material, such as the joint wall strength, at which contacts crush"
 STATE = "'joint_wall_strength' of the rock in its material, at which contacts then crush"
 
 #: A sign for each, so that no colour is needed.
