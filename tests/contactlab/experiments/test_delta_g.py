@@ -141,14 +141,14 @@ def test_verdict_follows_the_numbers(bias):
     good["rough_coverage"] = xr.full_like(least, 0.95)
     words = drawn(good).caption
     assert "has an rms error of 0.010, the least" in words
-    assert "hold H in 95 % or more, those of the worst estimator in 95 %" in words
+    assert "contain H in 95 % or more, those of the worst estimator in 95 %" in words
     bad = bias.assign(overall_error=xr.where(errors["estimator"] == "variogram", 0.01, 0.2))
     bad["min_coverage"] = xr.full_like(least, 0.5)
     bad["rough_coverage"] = xr.full_like(least, 0.5)
     words = drawn(bad).caption
     assert "On rougher surfaces 7 fall to 50 %" in words
     assert "has an rms error of 0.200, variogram 0.010" in words
-    assert "hold H in 50 % or more" in words
+    assert "contain H in 50 % or more" in words
 
 
 def test_each_roll_off_has_its_panels(rolled):
