@@ -279,7 +279,7 @@ def _add_means(result: xr.Dataset) -> None:
 
 
 def add_agreement(result: xr.Dataset) -> None:
-    """Add ``difference_agrees``: whether zero lies in the interval of the mean difference."""
+    """Add ``difference_agrees``: True if zero lies in the interval of the mean difference."""
     low, high = result["mean_difference_low"], result["mean_difference_high"]
     attrs = cf_attrs("1", "whether both estimates may be one: zero lies in the interval")
     result["difference_agrees"] = ((low <= 0) & (high >= 0)).assign_attrs(attrs)

@@ -40,7 +40,7 @@ def without_mean_plane(heights: ArrayLike) -> np.ndarray:
 
 
 def without_mean_planes(heights: ArrayLike) -> np.ndarray:
-    """Complete grids, each less its own mean plane: their rows are orthogonal to their columns.
+    """Complete grids, each less its own mean plane.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""The process that reads scan files, apart from the one that uses them.
+"""Process that reads scan files, separate from the one that uses them.
 
 It waits for requests on a socket and forks once for each file. The fork limits itself, reads and
 ends; whatever a file does to it, this process and the one that asked stay as they were.

@@ -152,7 +152,7 @@ def _all_below(height, highest, clearance):
 
 @njit(cache=True)
 def _children_below(cells, height, highest, clearance):
-    """Nodes of some coarse cells, row by row, that lie less than a clearance below the highest."""
+    """Nodes of some coarse cells within a clearance of the highest, row by row."""
     ny, nx = height.shape
     width = (nx + 1) // 2
     nodes = np.empty(4 * cells.size, np.int32)

@@ -64,7 +64,7 @@ class DirectOperator:
 
 @njit(cache=True)
 def _sum(positions, values, rows, columns, y, x, table, dy, dx, area, image):
-    """Add the displacement under one node after the other to that of all."""
+    """Add the displacements of all nodes by one loaded node after the other."""
     for k in range(positions.size):
         at = positions[k]
         # Nodes in near rows follow each other.
