@@ -83,7 +83,7 @@ def block_of(card: Mapping[str, Any]) -> Block:
     stiffness = row_at(entries["tangent_stiffness"], _PRESSURE)
     strength, barton = (row_at(entries[k], pressure) for k in ("peak_strength", "barton_strength"))
     hydraulic = row_at(entries["hydraulic_aperture"], pressure)
-    flowing = f"hydraulic {with_unit(hydraulic['value'], 'mm')}" if "value" in hydraulic else ""
+    flowing = f"hydraulic {short(hydraulic['value'])} mm" if "value" in hydraulic else ""
     facts = [
         _fact(f"normal stiffness at {short(_PRESSURE)} MPa", stiffness, "MPa/mm"),
         _fact(f"closure {at}", near or {"missing": "no load was solved"}, "mm"),
