@@ -164,3 +164,13 @@ def test_depths_are_turned_over_and_x_and_y_are_not(tmp_path):
 def test_texts_of_sidecars_are_yaml():
     assert yaml.safe_load(array_sidecar(0.1, missing=-1))["missing"] == -1
     assert yaml.safe_load(sidecar(POINTS))["decimal"] == "."
+
+
+def test_a_cell_of_a_thousand_signs_does_not_fill_the_message(tmp_path):
+    path = tmp_path / "rock.xyz"
+    path.write_text("0 0 0.1\n1 0 0.2\n2 0 " + "0.3" + "," * 1000 + "\n")
+    keys = {"kind": "face", "unit": "mm", "heights": "up", "missing": "none", "layout": "points"}
+    keys |= {"delimiter": "blank", "decimal": ".", "header": 0, "columns": [0, 1, 2]}
+    with pytest.raises(InputError, match="do not fit its sidecar") as caught:
+        read_scan(path, keys)
+    assert len(str(caught.value)) < 500

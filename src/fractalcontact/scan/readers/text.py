@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from ...core.errors import InputError
+from ...core.labels import printable
 from ...core.strips import stacked
 from ..format import Format
 from ..options import DELIMITERS, ScanOptions
@@ -279,8 +280,8 @@ class _Reading:
         except (ValueError, pd.errors.ParserError) as error:
             raise InputError(
                 f"{self.path}: its numbers do not fit its sidecar, delimiter {options.delimiter} "
-                f"and decimal {options.decimal!r} ({error}); correct the sidecar, and write "
-                "'thousands' if digits are grouped"
+                f"and decimal {options.decimal!r} ({printable(error, 80)}); correct the sidecar, "
+                "and write 'thousands' if digits are grouped"
             ) from error
         return frame.to_numpy()[:, : self._width or width]
 
