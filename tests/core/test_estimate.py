@@ -10,7 +10,7 @@ from fractalcontact.core.estimate import (
     EXPONENT,
     SIZE,
     Estimate,
-    OverWindows,
+    Judged,
     names_of,
     rows_of,
 )
@@ -139,8 +139,8 @@ def test_an_estimate_in_words(ends, scale, unit, words):
     assert Estimate(*ends, scale=scale).text(unit) == words
 
 
-def test_a_number_over_windows_is_known_whatever_its_interval():
-    assert OverWindows(2.0, 0.01, 500.0).determined
-    assert OverWindows(2.0).determined
-    assert not OverWindows().determined
-    assert OverWindows(2.0, 0.01, 500.0).text("mm3") == "2 [0.01, 500] mm3"
+def test_a_number_that_something_else_determines_is_known_whatever_its_interval():
+    assert Judged(2.0, 0.01, 500.0, says=True).determined
+    assert Judged(2.0, says=True).determined
+    assert not Judged().determined
+    assert Judged(2.0, 0.01, 500.0, says=True).text("mm3") == "2 [0.01, 500] mm3"

@@ -217,13 +217,15 @@ class Estimate:
 
 
 @dataclass(frozen=True)
-class OverWindows(Estimate):
-    """A number of this window, known whatever its interval, which is one over other windows."""
+class Judged(Estimate):
+    """An estimate that something else than its interval determines."""
+
+    says: bool = False
 
     @property
     def determined(self) -> bool:
-        """True if there is a number."""
-        return bool(self.known)
+        """As it is said."""
+        return self.says
 
 
 def _decimals(value: float, digits: int) -> str:

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import yaml
 
-from .estimate import Estimate, OverWindows, names_of
+from .estimate import Estimate, Judged, names_of
 from .subject import Subject
 
 _FILE = Path(__file__).with_suffix(".yaml")
@@ -66,8 +66,9 @@ class Shown:
         unit = str(states[self.variable].attrs["units"])
         has_interval = all(end in state for end in names_of(self.variable))
         if has_interval:
-            kind = OverWindows if self.over_windows else Estimate
-            found = kind.read(state, self.variable)
+            found = Estimate.read(state, self.variable)
+            if self.over_windows:
+                found = Judged(*found.ends, says=bool(found.known))
         else:
             found = Estimate(state[self.variable].item())
         return Value(found, "" if unit == "1" else unit, has_interval)

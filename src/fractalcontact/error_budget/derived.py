@@ -4,6 +4,7 @@ import numpy as np
 import xarray as xr
 
 from ..core.datasets import labelled
+from ..mechanics.seated_laws import at_reference_pressures
 from .refinement import LoadCurve
 
 _AT = ("reference_pressure",)
@@ -54,21 +55,12 @@ def with_derived(budget: xr.Dataset, curve: LoadCurve) -> xr.Dataset:
     at_seat = separation[seat][0] if seat.any() else np.nan
     of_both = np.where(seat, 0.0, np.hypot(separation, at_seat))
     stiffness = states["reference_stiffness"].values
+    pressure = states["nominal_pressure"].values
     totals = [
-        _fraction_at(states, budget[name].sel(quantity="stiffness")) * stiffness
+        at_reference_pressures(pressure, budget[name].sel(quantity="stiffness").values) * stiffness
         for name in ("relative_total", "relative_total_of_population")
     ]
     found = [np.where(np.isfinite(seated), of_both, np.nan), *totals]
     coords = {"reference_pressure": states["reference_pressure"]}
     table = labelled(_TABLE, dict(zip(_TABLE, found, strict=True)))
     return budget.assign_coords(coords).assign(table)
-
-
-def _fraction_at(states, fraction):
-    """Relative error at the reference pressures, its logarithm straight between loads."""
-    known = np.isfinite(fraction.values) & (fraction.values > 0)
-    pressures = states["reference_pressure"].values
-    if not known.any():
-        return np.full(len(pressures), np.nan)
-    at = np.log(states["nominal_pressure"].values[known])
-    return np.exp(np.interp(np.log(pressures), at, np.log(fraction.values[known])))

@@ -16,7 +16,7 @@ from ..core.labels import cf_attrs
 from .closure import bulk_settlement, interface_stiffness, stiffness_reason
 from .joint import prefractal
 from .loading import JointLoading
-from .seated_laws import reference_stiffness, within_span
+from .seated_laws import at_reference_pressures, within_span
 from .separation import ROUNDING
 
 _STATES = ("branch", "normal_force")
@@ -187,7 +187,7 @@ def joint_branches(loading: JointLoading, curves: xr.Dataset, mapped: xr.Dataset
         "seated_closure": (closure - seat).where(xr.DataArray(beyond, dims="normal_force")).values,
         "interface_stiffness": stiffness.values,
         "interface_stiffness_reason": reason.values,
-        "reference_stiffness": [reference_stiffness(pressure, row) for row in stiffness.values],
+        "reference_stiffness": [at_reference_pressures(pressure, row) for row in stiffness.values],
     }
     data.coords["reference_pressure"] = curve["reference_pressure"]
     return data.assign(labelled(_OF_INTERFACE, values)).assign_coords(

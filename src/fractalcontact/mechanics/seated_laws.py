@@ -5,6 +5,8 @@ stress, and closure counts from there (Bandis, Lumsden & Barton, Int. J. Rock Me
 (1983) 249). Both laws are fitted by least squares in the closure to the same states.
 """
 
+from functools import partial
+
 import numpy as np
 import xarray as xr
 
@@ -114,26 +116,26 @@ class _Fit:
         return ""
 
 
-def reference_stiffness(pressure: np.ndarray, stiffness: np.ndarray) -> np.ndarray:
-    """Stiffness at :data:`core.limits.REFERENCE_PRESSURES`, straight in logarithms between states.
+def at_reference_pressures(pressure: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """Values at :data:`core.limits.REFERENCE_PRESSURES`, straight in logarithms between states.
 
     Parameters
     ----------
     pressure : (n,) ndarray
         Nominal, MPa, ascending.
-    stiffness : (n,) ndarray
-        MPa/mm; NaN where unknown.
+    values : (n,) ndarray
+        Above zero, such as stiffnesses; NaN where unknown.
 
     Returns
     -------
     (k,) ndarray
-        MPa/mm; NaN outside the states that are known.
+        NaN outside the states that are known.
     """
-    known = np.isfinite(stiffness) & (stiffness > 0)
+    known = np.isfinite(values) & (values > 0)
     if known.sum() < 2:
         return np.full(len(REFERENCE_PRESSURES), np.nan)
     wanted, x = np.log(REFERENCE_PRESSURES), np.log(pressure[known])
-    return np.exp(np.interp(wanted, x, np.log(stiffness[known]), left=np.nan, right=np.nan))
+    return np.exp(np.interp(wanted, x, np.log(values[known]), left=np.nan, right=np.nan))
 
 
 def _add_reference_stiffness(curves: xr.Dataset) -> None:
@@ -141,7 +143,7 @@ def _add_reference_stiffness(curves: xr.Dataset) -> None:
     order, dims = (*_DIMS, "normal_force"), (*_DIMS, "reference_pressure")
     stiffness = curves["interface_stiffness"].where(curves["resolved"]).transpose(*order).values
     pressure = curves["nominal_pressure"].values
-    value = np.apply_along_axis(lambda curve: reference_stiffness(pressure, curve), -1, stiffness)
+    value = np.apply_along_axis(partial(at_reference_pressures, pressure), -1, stiffness)
     table = {
         "reference_stiffness": (dims, "MPa/mm", "tangent stiffness of the interface at a pressure"),
     }

@@ -9,7 +9,7 @@ import pandas as pd
 import xarray as xr
 
 from ..core.determined import decided_by_scan
-from ..core.estimate import DIMENSION, Estimate
+from ..core.estimate import DIMENSION, Estimate, Judged
 from ..core.measured_maps import map_table
 from ..core.quantities import Shown, Value, shown_in
 from ..core.subject import Subject
@@ -30,18 +30,6 @@ _COLUMNS = {"closure": "interface_closure"}
 
 #: Why a number is undetermined where its stage gives no other reason.
 _WIDE = "its 95 % interval leaves nearly everything open"
-
-
-@dataclass(frozen=True)
-class Judged(Estimate):
-    """An estimate of which its stage says whether it is determined."""
-
-    says: bool = False
-
-    @property
-    def determined(self) -> bool:
-        """As the stage says."""
-        return self.says
 
 
 def why(found: Estimate) -> str:
