@@ -153,7 +153,7 @@ class MeasuredTest:
 
     @property
     def label(self) -> str:
-        """What is measured, among the tests of a kind: "load, cycle 1"."""
+        """Name of the test among those of its kind: "load, cycle 1"."""
         held = f"{self.pressure:g} MPa" if self.pressure > 0 else ""
         of_cycle = f"{self.branch}, cycle {self.cycle}" if self.branch else ""
         return ", ".join(filter(None, (self.way, of_cycle, self.direction, held)))

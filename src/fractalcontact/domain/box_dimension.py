@@ -285,8 +285,8 @@ def _used_sizes(domain, nodes, sizes, count, limits) -> tuple[np.ndarray, str]:
     used &= within(sizes, *limits)
     if used.sum() < MIN_SCALES:
         return used, (
-            f"{used.sum()} of {sizes.size} scales say something, {MIN_SCALES} are needed "
-            f"({alone.sum()} with every node alone, {full.sum()} with every box occupied)"
+            f"{used.sum()} of {sizes.size} box sizes lie between the cut-offs, {MIN_SCALES} are "
+            f"needed ({alone.sum()} with every node alone, {full.sum()} with every box occupied)"
         )
     distinct = np.unique(count[used]).size
     if nodes > 1 and distinct < MIN_SCALES:

@@ -107,7 +107,7 @@ def _misfit(readings: Curve, family: Family, log_factor: float, reached: float) 
 
 
 def _crossing(misfit, start: float, end: float, limit: float) -> float:
-    """Where the misfit passes its limit; the end where it does not."""
+    """Constant at which the misfit passes its limit; the end where it does not."""
     if misfit(end) <= limit:
         return end
 

@@ -144,7 +144,7 @@ def _apart_and_alike(states, margin):
 
 
 def _any_beyond(difference, loads):
-    """True if a difference of dimensions is surely beyond a quarter, among so many loads."""
+    """True if a difference of dimensions is surely beyond a quarter, among this number of loads."""
     wider = special.ndtri((1 - CONFIDENCE) / 2 / loads) / special.ndtri((1 - CONFIDENCE) / 2)
     value, low, high = difference.ends
     low, high = value - wider * (value - low), value + wider * (high - value)

@@ -59,7 +59,7 @@ def labels_of(subject: Subject, kind: str) -> list[str]:
 
 
 def test_words(subject: Subject, kind: str) -> list[str]:
-    """What each test of a kind is beside the computed curve, for a caption."""
+    """Sentences of a caption on the tests of a kind beside the computed curve."""
     found = []
     for label in labels_of(subject, kind):
         test = subject["measured"].sel({f"{kind}_test": label})

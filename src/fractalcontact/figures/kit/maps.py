@@ -193,7 +193,7 @@ def enlargement(domains: Sequence[np.ndarray], points: float, most: float = np.i
 
 
 def _enlarged(domain, times):
-    """A domain whose nodes are squares of so many nodes a side."""
+    """Contact domain whose nodes are drawn as squares of several cells per side."""
     return domain if times < 2 else maximum_filter(domain, times, mode="constant", cval=0)
 
 
