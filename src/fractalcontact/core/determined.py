@@ -1,4 +1,4 @@
-"""True if an estimate is known well enough that its number means anything."""
+"""Rule that an estimate is known well enough to be printed."""
 
 from collections.abc import Sequence
 from typing import Any

@@ -298,11 +298,6 @@ def scaling_over_resolutions(
     finest = domains.sel(resolution=domains["resolution"].min())
     result = result.merge(compare_dimensions(result, finest), compat="override", join="exact")
     result.update(_reasons(result, finest))
-    words = "Delta_sigma from the area of the two finest resolutions less that of the two coarsest"
-    bend = area_bend(s, curves["area_corrected"], nodes, CORRECTED_NODES)
-    rows = rows_of("area_bend", "1", words)
-    for (name, row), value in zip(rows.items(), bend.ends, strict=True):
-        result[name] = value.assign_attrs(cf_attrs(*row))
     result["area_local_exponent"] = _local_exponent(s, curves["area_corrected"].where(enough))
     result["spacing"] = s
     for name in ("area", "area_corrected", "nodes"):
@@ -313,7 +308,7 @@ def scaling_over_resolutions(
 def corrected_scaling(
     curves: xr.Dataset, spacing: float, *, fit_range: tuple[float, float] | None = None
 ) -> xr.Dataset:
-    """Renormalisation of the corrected areas alone.
+    """Renormalisation of the corrected areas alone, with the bend of their law.
 
     Parameters
     ----------
@@ -323,11 +318,16 @@ def corrected_scaling(
     Returns
     -------
     xr.Dataset
-        As of :func:`domain.renormalisation.renormalisation`.
+        As of :func:`domain.renormalisation.renormalisation`, and ``area_bend`` with its interval.
     """
     s, nodes = _spacings(curves, spacing), _nodes_between(curves, spacing, fit_range)
-    force = curves["normal_force"]
-    return renormalisation(s, curves["area_corrected"], force, nodes, CORRECTED_NODES)
+    area = curves["area_corrected"]
+    result = renormalisation(s, area, curves["normal_force"], nodes, CORRECTED_NODES)
+    words = "Delta_sigma from the area of the two finest resolutions less that of the two coarsest"
+    bend = area_bend(s, area, nodes, CORRECTED_NODES)
+    for (name, row), value in zip(rows_of("area_bend", "1", words).items(), bend.ends, strict=True):
+        result[name] = value.assign_attrs(cf_attrs(*row))
+    return result
 
 
 def _spacings(curves, spacing):

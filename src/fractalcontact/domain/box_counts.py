@@ -134,7 +134,7 @@ def box_count(domain: np.ndarray, sizes: np.ndarray, *, max_shifts: int = 16) ->
     counts = np.ones(sizes.size, np.int64)  # by a box as large as the extent
     smaller = sizes < max(extent.shape)
     whole = smaller & (sizes == np.round(sizes))
-    counts[whole] = cover_and_mean(extent, sizes[whole].astype(np.int64))[0]
+    counts[whole] = minimal_cover(extent, sizes[whole].astype(np.int64))
     nodes = _summed(extent) if (smaller & ~whole).any() else None
     for k in np.flatnonzero(smaller & ~whole):
         origins = _origins(sizes[k], max_shifts)
@@ -166,29 +166,20 @@ def cropped(domain: np.ndarray) -> np.ndarray:
     return domain[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]
 
 
-def cover_and_mean(
-    domain: np.ndarray, cover_sizes: np.ndarray, mean_sizes: np.ndarray | None = None
-) -> tuple[np.ndarray, np.ndarray]:
-    """Minimal cover and mean number of boxes over all grid origins.
+def minimal_cover(domain: np.ndarray, sizes: np.ndarray) -> np.ndarray:
+    """Minimal cover by boxes of whole sides, over every grid origin.
 
     Parameters
     ----------
     domain : (ny, nx) bool ndarray
-    cover_sizes, mean_sizes : (k,) and (m,) int64 ndarray
+    sizes : (k,) int64 ndarray
         Box sides in cells, at least 1.
 
     Returns
     -------
-    cover : (k,) int64
-        Minimum over all origins.
-    mean : (m,) float64
-        Of all origins, as :func:`mean_count`.
+    (k,) int64
     """
-    domain = np.ascontiguousarray(domain)
-    cover = _over_origins(domain, cover_sizes)
-    if mean_sizes is None:
-        return cover, np.empty(0)
-    return cover, _places_of(domain, mean_sizes, 1).ravel() / mean_sizes.astype(float) ** 2
+    return _over_origins(np.ascontiguousarray(domain), sizes)
 
 
 def _checked_domain(domain):

@@ -13,7 +13,7 @@ from ..core.fitting import MIN_POINTS
 from ..core.intervals import jackknife_error
 from ..core.ranges import within
 from ..core.slope_of_sums import BLOCKS, MIN_SCALES, halves, wave_error
-from .box_counts import cover_and_mean, cropped, mean_count, whole_sizes
+from .box_counts import cropped, mean_count, minimal_cover, whole_sizes
 from .count_law import (
     SMALLEST,
     SMALLEST_SEPARATING,
@@ -183,7 +183,7 @@ def find_law(
     """
     extent = cropped(domain)
     sizes = mean_sizes(extent.shape)
-    means = MeanCounts(sizes, cover_and_mean(extent, np.empty(0, np.int64), sizes)[1])
+    means = MeanCounts(sizes, mean_count(extent, sizes).ravel())
     found = _fitted(means, extent, limits, whole_cells)
     if found is None:
         return None
@@ -218,7 +218,7 @@ def dimension_by_means(
     """
     extent = cropped(domain)
     sizes = mean_sizes(extent.shape)
-    cover, count = cover_and_mean(extent, cover_sizes, sizes)
+    cover, count = minimal_cover(extent, cover_sizes), mean_count(extent, sizes).ravel()
     means = MeanCounts(sizes, count)
     found = _fitted(means, extent, limits, whole_cells)
     if found is not None:

@@ -10,7 +10,7 @@ from ..core.arrays import padded
 from ..core.datasets import labelled
 from ..core.estimate import Estimate, rows_of
 from ..core.labels import cf_attrs
-from .box_counts import cover_and_mean, window_sizes
+from .box_counts import mean_count, window_sizes
 from .box_dimension import dimension_of_domain, local_slopes
 from .correlation import correlation_dimension
 from .isotropy import LAG_FIELDS, contact_at_lag
@@ -234,7 +234,7 @@ def _local_slopes(domains, spacing):
     r, whole = sizes * float(spacing), window_counts(domains.shape[1:], sizes)
     rows = []
     for domain in domains:
-        count = cover_and_mean(domain, np.empty(0, np.int64), sizes)[1]
+        count = mean_count(domain, sizes).ravel()
         middle, slope = local_slopes(r, np.where(count > 0, count / whole, np.nan))
         rows.append(2 + slope)
     return middle, padded(rows)

@@ -55,6 +55,9 @@ def _rows(name: str, words: str, dims: Any, endings: Mapping[str, str]) -> dict[
 _CURVES = {"": "of the domain"} | {
     ending: words for ending, words in _ESTIMATES.items() if ending != "_random_difference"
 }
+#: Reason of a window with no local slope.
+TOO_SMALL = "the window is too small for local slopes"
+
 #: Box sides of the local slopes: dimension, unit, long name.
 OCTAVES = {
     "local_slope_side": ("null_octave", "mm", "geometric middle of two box sides r"),
@@ -313,7 +316,7 @@ def _why_not_compared(nodes, slopes):
     """Reason why local slopes are not compared with null models; empty where they are."""
     if nodes < MIN_NODES:
         return f"fewer than {MIN_NODES} nodes in contact ({nodes})"
-    return "" if slopes else "the window is too small for local slopes"
+    return "" if slopes else TOO_SMALL
 
 
 def _less_random(domain, bands) -> dict[str, Estimate]:

@@ -1,4 +1,4 @@
-"""True if the dimension of measured contact maps goes with load, and otherwise than random cells.
+"""Trend of the dimension of measured contact maps with load, beside that of random cells.
 
 Of a map only the random null model can be had: the bearing-area cut needs heights.
 """
@@ -34,7 +34,7 @@ class Trend(NamedTuple):
 
     @property
     def beyond_random(self) -> str:
-        """True if it goes otherwise than that of as many random cells."""
+        """Verdict on a trend other than that of as many random cells."""
         slope = self.departure.slope
         if not np.isfinite(slope.low):
             return UNDETERMINED

@@ -6,7 +6,7 @@ import scipy.ndimage
 from ..core.estimate import NO_ESTIMATE, Estimate
 from ..core.intervals import t_quantile
 from ..core.limits import CONFIDENCE
-from .box_counts import cover_and_mean
+from .box_counts import mean_count, minimal_cover
 from .clusters import NEIGHBOURS, morisita_index, quadrat_counts
 from .correlation import expected_pairs, lags_of, pair_distances, pairs_slope
 from .mean_law import FoundLaw, count_slope, dimension_by_means, find_law
@@ -113,7 +113,8 @@ def random_bands(
                 domain, sizes, limits=limits, whole_cells=whole_cells
             )
         else:
-            cover, mean = cover_and_mean(domain, sizes, law.separating)
+            cover = minimal_cover(domain, sizes)
+            mean = mean_count(domain, law.separating).ravel()
             dimension = law.refound(mean, whole_cells)
         covers.append(cover)
         rows["delta_sigma"].append(dimension)

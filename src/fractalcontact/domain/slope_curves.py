@@ -22,7 +22,7 @@ from ..core.estimate import Estimate
 from ..core.intervals import t_quantile
 from ..core.limits import CONFIDENCE
 from ..core.slope_of_sums import BLOCKS
-from .box_counts import cover_and_mean, mean_count
+from .box_counts import mean_count
 from .count_law import SMALLEST
 from .mean_law import LARGEST_BOX
 from .random_nodes import random_nodes
@@ -121,7 +121,7 @@ def window_counts(
 ) -> np.ndarray:
     """Mean box counts N_w(r) of a whole window, or of the cells of a mask, (k,)."""
     window = np.ones(shape, bool) if mask is None else mask
-    return cover_and_mean(window, np.empty(0, np.int64), sizes)[1]
+    return mean_count(window, sizes).ravel()
 
 
 def slope_curve(relative: np.ndarray, sizes: np.ndarray) -> np.ndarray:
@@ -161,8 +161,7 @@ def random_curves(
     sizes = curve_sizes(shape)
     cells = np.arange(np.prod(shape)) if mask is None else np.flatnonzero(mask)
     counts = [
-        cover_and_mean(random_nodes(shape, nodes, cells, seed), np.empty(0, np.int64), sizes)[1]
-        for seed in range(draws)
+        mean_count(random_nodes(shape, nodes, cells, seed), sizes).ravel() for seed in range(draws)
     ]
     return slope_curve(np.array(counts) / window_counts(shape, sizes, mask), sizes)
 

@@ -4,7 +4,7 @@ import numpy as np
 import xarray as xr
 
 from ..core.datasets import labelled_dataset
-from ..domain.box_counts import cover_and_mean
+from ..domain.box_counts import mean_count
 from ..domain.mean_law import find_law
 from ..domain.null_models import OCTAVES, bearing_area_cut, octaves_of
 from ..domain.random_nodes import expected_mean_counts
@@ -90,5 +90,5 @@ def _less_cut(domain, cut, limits):
     law = find_law(domain, limits, False) if domain.any() else None
     if law is None:
         return np.nan
-    counts = cover_and_mean(cut, np.empty(0, np.int64), law.separating)[1]
+    counts = mean_count(cut, law.separating).ravel()
     return law.law.dimension - law.refound(counts, False)

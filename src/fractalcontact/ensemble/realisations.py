@@ -12,15 +12,13 @@ import xarray as xr
 
 from ..core.datasets import labelled, labelled_dataset
 from ..core.labels import cf_attrs
-from ..core.limits import CORRECTED_NODES, RESOLVED_NODES
-from ..core.ranges import within
+from ..core.limits import RESOLVED_NODES
 from ..core.settings import EnsembleSettings, Solver
 from ..core.window import cell_side, window_sides
 from ..domain.analysis import corrected_scaling
 from ..domain.box_dimension import dimension_of_domain
 from ..domain.null_models import OCTAVES
 from ..domain.random_nodes import expected_dimension
-from ..domain.renormalisation import area_bend
 from ..mechanics.closure import interface_states
 from ..mechanics.loading import JointLoading
 from ..mechanics.separation import ROUNDING
@@ -191,7 +189,8 @@ def _realisation(loading: JointLoading[EnsembleSettings]) -> xr.Dataset:
         for domain, one in zip(touching, solved, strict=True)
     ]
     scaling = corrected_scaling(curves, spacing, fit_range=settings.scaling_range)
-    by_area = scaling["delta_sigma"].sel({dim: at[dim] for dim in ("direction", "offset")}).values
+    scaling = scaling.sel({dim: at[dim] for dim in ("direction", "offset")})
+    by_area = scaling["delta_sigma"].values
     values = {
         "mean_gap": states[MAP_GAP].mean(states[MAP_GAP].dims[1:]).values,
         "delta_sigma": boxes,
@@ -199,7 +198,7 @@ def _realisation(loading: JointLoading[EnsembleSettings]) -> xr.Dataset:
             expected_dimension(domain, cell, fit_range=fitted) for domain in touching
         ],
         "delta_sigma_area": by_area,
-        "area_bend": _bend(curves, settings, spacing),
+        "area_bend": scaling["area_bend"].values,
         "difference": by_area - np.array(boxes),
     }
     for name in STATES.keys() - values.keys():
@@ -209,15 +208,6 @@ def _realisation(loading: JointLoading[EnsembleSettings]) -> xr.Dataset:
     composite = loading.composite(int(loading.cells[0]))[::finest, ::finest]
     slopes = null_slopes(touching, composite, cell, fit_range=fitted)
     return result.merge(slopes).assign(_size_exponents(loading))
-
-
-def _bend(curves: xr.Dataset, settings: EnsembleSettings, spacing: float) -> np.ndarray:
-    """``area_bend`` over the loads, of the areas that Delta_sigma is fitted to."""
-    at = curves.isel(direction=0, offset=0)
-    if settings.scaling_range is not None:
-        at = at.where(within(at["resolution"] * spacing, *settings.scaling_range))
-    s = at["resolution"] * spacing
-    return area_bend(s, at["area_corrected"], at["nodes"], CORRECTED_NODES).value.values
 
 
 def _size_exponents(loading: JointLoading[EnsembleSettings]) -> dict:

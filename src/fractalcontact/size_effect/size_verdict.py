@@ -52,7 +52,7 @@ class Judgement(NamedTuple):
 
 
 def judge_exponent(measured: Estimate, predicted: Estimate) -> Judgement:
-    """True if a measured exponent is the one predicted: the rule of both forms.
+    """Judgement of a measured exponent beside the predicted one: the rule of both forms.
 
     Parameters
     ----------

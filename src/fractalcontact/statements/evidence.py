@@ -17,6 +17,7 @@ from ..core.fitting import slope_error
 from ..core.limits import MIN_NODES, NEAR_FULL
 from ..core.verdicts import UNDETERMINED
 from ..domain.departure import departure_of
+from ..domain.null_models import TOO_SMALL
 from ..domain.pressure_trend import pressure_trend
 from ..domain.slope_curves import largest_departure
 from .findings import Finding, Joint
@@ -61,9 +62,6 @@ class Evidence:
     ----------
     joint : Joint
     """
-
-    #: Of what the numbers are, in words; empty of the specimen itself.
-    judged_on = ""
 
     def __init__(self, joint: Joint) -> None:
         self.joint = joint
@@ -144,7 +142,6 @@ class OfRealisations(Evidence):
     def __init__(self, joint: Joint) -> None:
         super().__init__(joint)
         self.stage = joint["ensemble"]
-        self.judged_on = f"{self.realisations} realisations"
 
     @property
     def realisations(self) -> int:
@@ -155,9 +152,8 @@ class OfRealisations(Evidence):
         """Finding with the number of realisations that it was judged on."""
         # A finding without a note has no number, but the reason why there is none.
         of = "mean of" if finding.note else "in"
-        return finding._replace(
-            numbers=f"{finding.numbers}, {of} {self.judged_on}", judged_on=self.judged_on
-        )
+        judged_on = f"{self.realisations} realisations"
+        return finding._replace(numbers=f"{finding.numbers}, {of} {judged_on}", judged_on=judged_on)
 
     def size_exponent(self, name: str) -> Estimate:
         """Exponent against the side b of sub-windows under the reference load."""
@@ -226,7 +222,7 @@ class OfRealisations(Evidence):
         freedom, middles = self.realisations - 1, self.stage["local_slope_side"].values
         found = {null: largest_departure(less[null][load], freedom) for null in _NULLS}
         row: dict[str, Any] = {"null_verdict": departure_of(**found, surface=True)}
-        row["null_reason"] = ""
+        row["null_reason"] = "" if np.isfinite(found["random"].p) else TOO_SMALL
         for null, departure in found.items():
             known = np.isfinite(departure.p)
             row[f"local_slope_{null}_p"] = departure.p

@@ -25,11 +25,11 @@ from .local_slopes import one_slope
 @of_the_area
 @of_a_kind
 def area_is_lacunar(joint: Joint, evidence: Evidence) -> Finding:
-    """Exponent of A_r over the resolutions, and whether it is one, at the reference load.
+    """Exponent of A_r over the resolutions at the reference load, and its change over them.
 
-    With a margin. It is one power law where Delta_sigma between the two finest resolutions is,
-    within the margin, that between the two coarsest; where that is not so, or open, the claim
-    holds in part.
+    The area falls with refinement where 2 - Delta_sigma lies beyond the margin. If it falls, the
+    claim holds in part unless Delta_sigma of the two finest resolutions is, within the margin, that
+    of the two coarsest: one power law.
     """
     name = "area_is_lacunar"
     margin = all_claims()[name].margin
@@ -39,7 +39,9 @@ def area_is_lacunar(joint: Joint, evidence: Evidence) -> Finding:
     # A_r ~ s^(2 - Delta_sigma): it falls with refinement where the exponent is positive.
     falls = beyond_margin(delta.mapped(lambda value: 2 - value, falling=True), margin, rising=True)
     one_power = within_margin(bend, margin)
-    words = {HOLDS: "one power", FAILS: "not one power"}.get(one_power, "one power or not is open")
+    words = {HOLDS: "one power", FAILS: "not one power"}.get(
+        one_power, "undetermined whether one power"
+    )
     return Finding(
         falls if one_power == HOLDS or falls != HOLDS else PARTLY,
         f"A_r ~ s^(2 - Delta_sigma), Delta_sigma = {delta:.2f}",
@@ -72,8 +74,7 @@ def estimates_agree(joint: Joint, evidence: Evidence) -> Finding:
     ends = " to ".join(dict.fromkeys(f"{d:+.2f}" for d in difference.value[[0, -1]]))
     return Finding(
         share(decided.count(HOLDS), len(decided)) if decided else UNDETERMINED,
-        f"A_r(s) less boxes {ends}, no zero in the interval at "
-        f"{loads_of(each.count(FAILS), len(each))}",
+        f"A_r(s) less boxes {ends}, different at {loads_of(each.count(FAILS), len(each))}",
         f"{_between(pressures)}; {margin_words(name)}",
     )
 
@@ -89,9 +90,9 @@ def dimension_rises_by_area(joint: Joint, evidence: Evidence) -> Finding:
 def dimension_rises_by_boxes(joint: Joint, evidence: Evidence) -> Finding:
     """Slope of Delta_sigma by boxes over the decades of F, beside that of as many random nodes.
 
-    More nodes fill more boxes wherever they lie: in part where it rises, but less random nodes by
-    no more than the margin. Where random nodes are near 2 they leave no room to rise less, and
-    these loads are not compared.
+    More nodes fill more boxes wherever they lie. The claim holds in part where the dimension rises,
+    but after subtraction of that of random nodes by no more than the margin. Where random nodes
+    are near 2 they leave no room to rise less, and these loads are not compared.
     """
     name, trend = "dimension_rises_by_boxes", evidence.trend("box")
     found = _rise(trend, name)
@@ -206,11 +207,13 @@ def size_effect_follows(joint: Joint, evidence: Evidence) -> Finding:
     less = ", ".join(f"{one:+z.2f} {words}" for words, one in nearest.items())
     exponent = evidence.size_exponent("area_exponent")
     law = f"A_r/A_0 ~ b^x, x = {exponent:z.2f}" if exponent.known else "A_r/A_0 ~ b^x"
+    agree = "no case (load, estimate) is decisive"
+    if decided:
+        agree = f"{decided.count(HOLDS)} of {len(decided)} decisive cases (load, estimate) agree"
     return Finding(
         share(decided.count(HOLDS), len(decided)) if decided else UNDETERMINED,
         f"{law}, x less eq. 6's exponent {less}",
-        f"{_between(pressures)}, {decided.count(HOLDS)} of {len(decided)} cases (load, estimate) "
-        f"that decide agree, on windows within one joint; {margin_words(name)}",
+        f"{_between(pressures)}, {agree}, on windows within one joint; {margin_words(name)}",
     )
 
 
