@@ -12,7 +12,7 @@ from ..core.errors import InputError
 from ..core.subject import Subject, configuration_of, specimens_of
 from ..pages.files import APERTURE, APERTURE_ENDINGS, CARD
 from ..pages.templating import write_page
-from ..study.atlas import read_atlas
+from ..study.atlas import read_atlas, read_variables
 from ..study.stages import STAGES as ALL_STAGES
 from .apertures import aperture_at, write_aperture
 from .card import FORM, STAGES, card_of, made_of
@@ -39,13 +39,13 @@ def write_cards(path: Path | str, folder: Path | str) -> list[str]:
     list of str
         Specimens that have one.
     """
-    atlas = read_atlas(path, without=ALL_STAGES.keys() - {*STAGES, "contact"})
+    atlas = read_atlas(path, without=ALL_STAGES.keys() - set(STAGES))
     study, made = configuration_of(atlas)["study"], made_of(atlas.attrs)
     names = specimens_of(atlas)
     for name in names:
-        subject = Subject.of(atlas, name)
-        write_card(card_of(subject, study, made), folder)
-        aperture = aperture_at(subject["contact"], None, name)
+        write_card(card_of(Subject.of(atlas, name), study, made), folder)
+    for name, contact in read_variables(path, "contact", ["map_gap"]):
+        aperture = aperture_at(contact, None, name)
         for ending in APERTURE_ENDINGS:
             write_aperture(aperture, Path(folder) / APERTURE.format(specimen=name, ending=ending))
     return names

@@ -1,7 +1,6 @@
 """One constant of the material fitted to one measured closure curve."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
 
 import numpy as np
 from scipy import optimize
@@ -21,15 +20,7 @@ NEAR, _EDGE = 0.25, 0.005
 Family = Callable[[float], Curve]
 
 
-@dataclass(frozen=True)
-class Calibration:
-    """Factor of a constant with its interval; ``reason`` says why there is none, or little."""
-
-    factor: Estimate
-    reason: str = ""
-
-
-def fit_factor(readings: Curve, family: Family, between: tuple[float, float]) -> Calibration:
+def fit_factor(readings: Curve, family: Family, between: tuple[float, float]) -> Estimate:
     """Factor of a constant at which the computed closure comes nearest to the measured one.
 
     Parameters
@@ -43,9 +34,10 @@ def fit_factor(readings: Curve, family: Family, between: tuple[float, float]) ->
 
     Returns
     -------
-    Calibration
-        The interval holds the scatter of the readings (the sum of squares as large as an F test
-        allows) and the error of the computed closure.
+    Estimate
+        With the reason why there is none, or little is known of it. The interval holds the scatter
+        of the readings (the sum of squares as large as an F test allows) and the error of the
+        computed closure.
 
     Notes
     -----
@@ -57,14 +49,14 @@ def fit_factor(readings: Curve, family: Family, between: tuple[float, float]) ->
     best = int(values.argmin())
     if not np.isfinite(values[best]):
         why = "the loads of the study do not reach the pressures of the test: widen 'loads'"
-        return Calibration(Estimate(), why)
+        return Estimate(reason=why)
     # Then the same readings at every factor: those that the computed loads reach at all of them.
     near = np.clip(tried[best] + np.array([-NEAR, NEAR]), tried[0], tried[-1])
     reached = np.all([np.isfinite(family(np.exp(one)).at(readings.x).value) for one in near], 0)
-    readings = Curve(readings.x[reached], readings.y[reached], readings.error[reached])
+    readings = readings.where(reached)
     if readings.x.size < MIN_READINGS:
         why = f"fewer than {MIN_READINGS} readings lie within the computed loads: widen 'loads'"
-        return Calibration(Estimate(), why)
+        return Estimate(reason=why)
 
     def misfit(log_factor: float) -> float:
         return _misfit(readings, family, log_factor, 1.0)
@@ -76,7 +68,7 @@ def fit_factor(readings: Curve, family: Family, between: tuple[float, float]) ->
             "no factor from {:.2g} to {:.2g} that the computed loads reach fits better than those "
             "beside it: the test is not of such a joint, or widen 'loads'".format(*between)
         )
-        return Calibration(Estimate(), why)
+        return Estimate(reason=why)
     freedom = readings.x.size - 2
     limit = least * (1 + t_quantile(freedom) ** 2 / freedom)
     ends = [_crossing(misfit, log_factor, end, limit) for end in near]
@@ -93,7 +85,7 @@ def fit_factor(readings: Curve, family: Family, between: tuple[float, float]) ->
             "{:.2g} to {:.2g}".format(*between)
         )
     value, low, high = np.exp([log_factor, low, high])
-    return Calibration(Estimate(value, low, high, readings.x.size), why)
+    return Estimate(value, low, high, readings.x.size, reason=why)
 
 
 def _misfit(readings: Curve, family: Family, log_factor: float, reached: float) -> float:

@@ -13,9 +13,9 @@ from ..core.estimate import NO_ESTIMATE, Estimate
 from ..core.limits import SEATED_SPAN
 from ..core.settings import MeasuredTest
 from ..mechanics.closure_laws import fit_hyperbola, fit_semi_logarithmic
-from .calibration import NEAR, Calibration, fit_factor
+from .calibration import NEAR, fit_factor
 from .computed import CARRIED, Joint
-from .curve import Curve, ratio
+from .curve import Curve, compared, ratio
 
 #: How the computed curve beside a test came about.
 COMPUTED, FITTED, PREDICTED = "computed", "fitted", "predicted"
@@ -101,7 +101,7 @@ class _Calibrated:
 
     def __init__(self, joint, tests, readings):
         self.joint, self.test = joint, next((test for test in tests if test.calibrate), None)
-        self.found = Calibration(NO_ESTIMATE)
+        self.factor = NO_ESTIMATE
         if self.test is None:
             return
         one = readings[tests.index(self.test)]
@@ -116,13 +116,8 @@ class _Calibrated:
                 f"{self.test.file}: 'calibrate: modulus' on the branch '{self.test.branch}' of a "
                 "joint that crushes; calibrate it on loading, or calibrate the hardness"
             )
-        from_datum = Curve(*(part[one.x >= self.test.seat] for part in (one.x, one.y, one.error)))
         fitted = self._ladder(one) if self.test.calibrate == "hardness" else self._scaled(one)
-        self.found = fit_factor(from_datum, *fitted)
-
-    @property
-    def factor(self) -> Estimate:
-        return self.found.factor
+        self.factor = fit_factor(one.where(one.x >= self.test.seat), *fitted)
 
     def at(self, test: MeasuredTest, largest: float, factor: float) -> Curve:
         """Computed closure on the branch of a test at a factor of the constant."""
@@ -157,7 +152,7 @@ class _Calibrated:
         constant = self.test.calibrate if self.test else ""
         settings = self.joint.loading.settings.material
         stated = self.joint.hardness if constant == "hardness" else settings.e_star
-        reason = self.found.reason
+        reason = self.factor.reason
         if constant == "modulus" and not reason:
             reason = "the value is E*"
             if np.isfinite(self.joint.hardness):
@@ -180,23 +175,17 @@ def _row(
     datum = max(test.seat, curve.x[0] if curve.x.size else np.nan, readings.x[0])
     measured, computed = readings.since(datum), curve.since(datum)
     inside = (computed.x > datum) & (computed.x <= readings.x[-1] * (1 + 1e-9))
-    at = computed.x[inside]
-    if not at.size:
+    if not inside.any():
         raise InputError(
             f"{test.file}: no computed state lies between its datum of {datum:.3g} MPa and "
             f"{readings.x[-1]:.3g} MPa; add loads to the study"
         )
-    y, error = computed.y[inside], computed.error[inside]
-    of_computed, of_measured = Estimate(y, y - error, y + error), measured.at(at)
-    span = Curve(*(part[computed.x <= readings.x[-1]] for part in _parts(computed)))
+    span = computed.where(computed.x <= readings.x[-1])
     row = {
         "readings": readings,
         # On its branch, on the axis of the stage ``closure``: from the seat of the study on.
         "laid": readings.y - readings.at(datum).value + curve.at(datum).value - joint.seat_closure,
-        "at": at,
-        "measured": of_measured,
-        "computed": of_computed,
-        "ratio": ratio(of_computed, of_measured),
+        **compared(computed.where(inside), measured),
         "closure_datum": datum,
         "closure_largest": largest,
         "closure_rock": test.compliance,
@@ -208,10 +197,6 @@ def _row(
         row["closure_status"] = FITTED if test is calibrated.test else PREDICTED
         row["closure_ratio_calibrated"] = _with_constant(calibrated, test, largest, datum, readings)
     return row
-
-
-def _parts(curve: Curve):
-    return curve.x, curve.y, curve.error
 
 
 def _with_constant(calibrated: _Calibrated, test, largest, datum, readings) -> Estimate:

@@ -1,6 +1,7 @@
 """Curves with errors, measured or computed, and their ratio."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -48,14 +49,21 @@ class Curve:
         error = np.maximum(self.error[index - 1], self.error[index])
         return Estimate(y, y - error, y + error)
 
+    def where(self, kept: np.ndarray) -> "Curve":
+        """Curve at those of its points that are kept, (n,) bool."""
+        return replace(self, x=self.x[kept], y=self.y[kept], error=self.error[kept])
+
+    @property
+    def values(self) -> Estimate:
+        """Values at the points, with their intervals."""
+        return Estimate(self.y, self.y - self.error, self.y + self.error)
+
     def since(self, x: float) -> "Curve":
         """The curve from a point on, its values counted from there; both ends are uncertain."""
         start = self.at(x)
         error = np.hypot(self.error, start.high - start.value)
-        beyond = self.x >= x * (1 - _ROUNDING)
-        return Curve(
-            self.x[beyond], (self.y - start.value)[beyond], error[beyond], log_x=self.log_x
-        )
+        counted = replace(self, y=self.y - start.value, error=error)
+        return counted.where(self.x >= x * (1 - _ROUNDING))
 
     def _scale(self, x: np.ndarray) -> np.ndarray:
         return np.log(x) if self.log_x else x
@@ -96,3 +104,9 @@ def ratio(first: Estimate, second: Estimate) -> Estimate:
         )
         ends = value * np.exp(-low), np.where(np.isfinite(high), value * np.exp(high), np.inf)
     return Estimate(value, *ends)
+
+
+def compared(computed: Curve, measured: Curve) -> dict[str, Any]:
+    """Computed curve at its own points, the measured one there, and their ratio."""
+    found, read = computed.values, measured.at(computed.x)
+    return {"at": computed.x, "measured": read, "computed": found, "ratio": ratio(found, read)}

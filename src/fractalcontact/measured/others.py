@@ -1,7 +1,5 @@
 """Computed flow, dilatancy and strength under the conditions of a test."""
 
-from collections.abc import Mapping
-
 import numpy as np
 import xarray as xr
 
@@ -25,15 +23,21 @@ _NEAR = 0.01
 
 
 def computed_curve(
-    test: MeasuredTest, stages: Mapping[str, xr.Dataset | None], reported: Reported
+    test: MeasuredTest,
+    flow: xr.Dataset,
+    dilatancy: xr.Dataset,
+    strength: xr.Dataset | None,
+    reported: Reported,
 ) -> Curve:
     """Computed curve of a test that is not of closure; without points where there is none.
 
     Parameters
     ----------
     test : MeasuredTest
-    stages : mapping of str to xr.Dataset
-        ``flow``, ``dilatancy`` and ``strength``, the last None of what does not slide.
+    flow, dilatancy : xr.Dataset
+        Stages of these names.
+    strength : xr.Dataset or None
+        Stage ``strength``; None of what does not slide.
     reported : Reported
 
     Raises
@@ -42,9 +46,8 @@ def computed_curve(
         If the direction or the pressure was not computed.
     """
     if test.kind == "flow":
-        return _flow(test, stages["flow"], reported)
-    dilatancy, strength = stages["dilatancy"], stages["strength"]
-    if strength is None or dilatancy is None:
+        return _flow(test, flow, reported)
+    if strength is None:
         raise InputError(f"{test.file}: a surface against a plane does not slide; remove the test")
     known = [str(one) for one in strength["contact_direction"].values]
     if test.direction not in known:
@@ -70,8 +73,7 @@ def computed_curve(
     return Curve.of(pressure, peaks.values, along["peak_strength_error"].values)
 
 
-def _flow(test: MeasuredTest, flow: xr.Dataset | None, reported: Reported) -> Curve:
-    assert flow is not None
+def _flow(test: MeasuredTest, flow: xr.Dataset, reported: Reported) -> Curve:
     states = reported.states(flow)
     at = states.sel(branch=test.branch)
     name = f"transmissivity_{test.way}"

@@ -81,11 +81,12 @@ def _require_branch(test: MeasuredTest, pressure: np.ndarray) -> None:
     moved = steps[steps != 0]
     rising = float(np.mean(moved > 0)) if moved.size else 0.0
     falls = test.branch == "unload"
-    if (1 - rising if falls else rising) < _STEPS:
+    went = 1 - rising if falls else rising
+    if went < _STEPS:
         way = "falls" if falls else "rises"
         raise InputError(
             f"{test.file}: 'branch: {test.branch}', but the pressure {way} in only "
-            f"{(1 - rising if falls else rising):.0%} of its steps; give each branch a file of its "
+            f"{went:.0%} of its steps; give each branch a file of its "
             "own with its readings in their order, or name the branch that this one is"
         )
 

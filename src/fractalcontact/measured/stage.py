@@ -1,11 +1,13 @@
 """The stage ``measured``: laboratory tests beside the computed curves of a specimen."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
+from ..core.arrays import padded
 from ..core.errors import InputError
 from ..core.estimate import NO_ESTIMATE, Estimate
 from ..core.labels import cf_attrs
@@ -14,7 +16,7 @@ from ..core.settings import MeasuredSettings, MeasuredTest, Solver
 from ..mechanics.loading import JointLoading
 from .closure import OF_CALIBRATION, OF_CLOSURE, compare_closure
 from .computed import Joint
-from .curve import Curve, ratio
+from .curve import Curve, compared
 from .others import WHY_NONE, computed_curve
 from .readings import read_test
 
@@ -77,7 +79,6 @@ def measured_stage(
     reported = Reported.read(closure)
     whole = JointLoading.of_joint(specimens, joints, reported.direction, settings, solver)
     joint = Joint.of(whole, closure, error_budget)
-    stages = {"dilatancy": dilatancy, "flow": flow, "strength": strength}
     found = xr.Dataset()
     for kind in KINDS:
         tests = [test for test in settings.measured if test.kind == kind]
@@ -89,7 +90,7 @@ def measured_stage(
             found.update(_labelled(calibration, OF_CALIBRATION, ()))
         else:
             rows = [
-                _beside(test, one, computed_curve(test, stages, reported))
+                _beside(test, one, computed_curve(test, flow, dilatancy, strength, reported))
                 for test, one in zip(tests, readings, strict=True)
             ]
         found = found.merge(_of_kind(kind, tests, rows))
@@ -99,8 +100,8 @@ def measured_stage(
 def _beside(test: MeasuredTest, readings: Curve, computed: Curve) -> dict[str, Any]:
     """Readings, and the computed curve at its own points within them."""
     inside = (computed.x >= readings.x[0]) & (computed.x <= readings.x[-1])
-    at = computed.x[inside]
-    if not at.size and computed.x.size:
+    within = computed.where(inside)
+    if not within.x.size and computed.x.size:
         ends = ("computed from {:.3g} to {:.3g}, measured from {:.3g} to {:.3g}").format(
             *(one.x[place] for one in (computed, readings) for place in (0, -1))
         )
@@ -108,16 +109,11 @@ def _beside(test: MeasuredTest, readings: Curve, computed: Curve) -> dict[str, A
             f"{test.file}: no computed {test.kind} lies within the readings ({ends}); add loads "
             "or offsets to the study"
         )
-    y, error = computed.y[inside], computed.error[inside]
-    of_computed, of_measured = Estimate(y, y - error, y + error), readings.at(at)
     return {
         "readings": readings,
         "laid": readings.y,
-        "at": at,
-        "measured": of_measured,
-        "computed": of_computed,
-        "ratio": ratio(of_computed, of_measured),
-        "reason": "" if at.size else WHY_NONE[test.kind],
+        **compared(within, readings),
+        "reason": "" if within.x.size else WHY_NONE[test.kind],
     }
 
 
@@ -138,7 +134,7 @@ def _of_kind(kind: str, tests: Sequence[MeasuredTest], rows: Sequence[Mapping]) 
             cf_attrs(unit_x, f"{x_words} of a computed state"),
         ),
     }
-    read = [Estimate(row["laid"], row["laid"] - e, row["laid"] + e) for row, e in _errors(rows)]
+    read = [replace(row["readings"], y=row["laid"]).values for row in rows]
     for name, dim, of, each in (
         ("read", reading, unit, read),
         ("measured", point, unit, [row["measured"] for row in rows]),
@@ -166,13 +162,9 @@ def _of_kind(kind: str, tests: Sequence[MeasuredTest], rows: Sequence[Mapping]) 
         }
     )
     if kind == "closure":
-        for name in OF_CLOSURE:
-            data.update(_labelled({name: [row[name] for row in rows]}, OF_CLOSURE, (test,)))
+        of_tests = {name: [row[name] for row in rows] for name in OF_CLOSURE}
+        data.update(_labelled(of_tests, OF_CLOSURE, (test,)))
     return data
-
-
-def _errors(rows):
-    return [(row, row["readings"].error) for row in rows]
 
 
 def _last(of: Estimate) -> Estimate:
@@ -196,8 +188,4 @@ def _labelled(values: Mapping[str, Any], table: Mapping[str, tuple], dims: tuple
 
 
 def _filled(rows: Sequence[np.ndarray]) -> np.ndarray:
-    longest = max(1, *(len(row) for row in rows))
-    filled = np.full((len(rows), longest), np.nan)
-    for into, row in zip(filled, rows, strict=True):
-        into[: len(row)] = row
-    return filled
+    return padded(rows, max(1, *map(len, rows)))

@@ -93,9 +93,7 @@ def contact_dips(
             beside[inside] = across[rows[inside], other]
             slopes.append(np.moveaxis((beside - here) / np.copysign(spacing, way), 0, axis))
     kept = np.array([one[::factor, ::factor] for one in slopes])
-    with np.errstate(invalid="ignore"):
-        middle = _nanmedian(kept)
-    return np.degrees(np.arctan(sign * middle))
+    return np.degrees(np.arctan(sign * _nanmedian(kept)))
 
 
 def _nanmedian(values: np.ndarray) -> np.ndarray:

@@ -97,12 +97,11 @@ def profile_roughness(specimen: xr.Dataset, direction: str) -> xr.Dataset:
     """
     axis = sliding_axis(direction)
     window = window_slices(specimen)
-    levelled = [np.moveaxis(without_mean_plane(z[window]), axis, 0) for z in faces(specimen)]
-    found = roughness_of_profiles(levelled, direction_spacing(specimen, direction))
-    spacing_y, spacing_x = spacing_of(specimen)
-    # The lower face, which the upper block climbs.
-    lower = without_mean_plane(faces(specimen)[0][window])
-    law = grasselli(lower, (spacing_y, spacing_x), direction)
+    levelled = [without_mean_plane(z[window]) for z in faces(specimen)]
+    profiles = [np.moveaxis(z, axis, 0) for z in levelled]
+    found = roughness_of_profiles(profiles, direction_spacing(specimen, direction))
+    # Grasselli's law is of the lower face, which the upper block climbs.
+    law = grasselli(levelled[0], spacing_of(specimen), direction)
     return found.assign(
         labelled(_GRASSELLI, {f"grasselli_{name}": value for name, value in law._asdict().items()})
     )

@@ -31,7 +31,7 @@ _NEEDS = {
 }
 _MAY = {
     "closure": ("columns", "error", "largest_pressure", "calibrate"),
-    "flow": ("columns", "error", "largest_pressure"),
+    "flow": ("columns", "largest_pressure"),
     "dilatancy": ("columns", "error"),
     "shear": ("columns", "error"),
     "strength": ("columns", "error"),
@@ -88,7 +88,7 @@ def resolve_tests(stated: Mapping[str, Any], where: str, folder: Path) -> list[M
     labels = [(test.kind, test.label) for test in tests]
     if twice := next((one for one in labels if labels.count(one) > 1), None):
         raise InputError(
-            f"{where}.{twice[0]}: two tests are '{twice[1]}'; keep one, or say of another cycle"
+            f"{where}.{twice[0]}: two tests are '{twice[1]}'; keep one, or state another 'cycle'"
         )
     if sum(bool(test.calibrate) for test in tests) > 1:
         raise InputError(
@@ -140,8 +140,6 @@ def _resolved(kind: str, test: Mapping[str, Any], where: str, folder: Path) -> M
             f"{where}.columns: no column '{odd[0]}' of a {kind} test; expected {', '.join(wanted)}"
         )
     error_of = {"closure": "length", "dilatancy": "length"}.get(kind, "pressure")
-    if kind == "flow" and "error" in test:
-        raise InputError(f"{where}: key 'error' has no meaning for a flow test; remove it")
     return MeasuredTest(
         kind=kind,
         file=str(folder / test["file"]),
