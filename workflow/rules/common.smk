@@ -195,13 +195,8 @@ def settings_read_by(function):
     return lambda wildcards: stages.read_by(function, SETTINGS[known(wildcards)], SOLVER)
 
 
-def is_pair(specimen):
-    """Whether both faces of a specimen were scanned."""
-    return specimen in SCANS and SCANS[specimen].upper is not None
-
-
 #: Surfaces against a plane, which cannot slide, and all others.
-FLAT = [name for name in SPECIMENS if not slides(SETTINGS[name].opposite) and not is_pair(name)]
+FLAT = [name for name in SPECIMENS if not slides(SETTINGS[name].opposite)]
 SLIDING = sorted(set(SPECIMENS) - set(FLAT))
 SLIDING_NAMES = set(SLIDING)
 

@@ -1,4 +1,4 @@
-"""True if the two estimators of Delta_sigma agree, on synthetic surfaces against a plane.
+"""Agreement of the two estimators of Delta_sigma, on synthetic surfaces against a plane.
 
 Eq. 5 takes Delta_sigma from the real area over resolutions, A_r ~ s^(2 - Delta_sigma), and from box
 counts of the contact domain, as if they were one. At light load A_r = kappa F / (E* h'_rms(s)) with

@@ -1,4 +1,4 @@
-"""True if the strength of a sliding joint has a size effect: the rule of decision, nothing else.
+"""Decision rule on a size effect of the strength of a sliding joint.
 
 tau/sigma_0 = tan(phi_b + i), and i is atan(d delta/dv) unbounded: truncation at a largest angle
 would hide a size effect of steep joints. The strength of a class is that of its mean rate, as the
@@ -148,7 +148,7 @@ def beyond(found: Exponent, predicted: Exponent) -> Exponent:
 
 
 def size_verdict(exponent: Exponent, bound: float = NO_EFFECT) -> str:
-    """True if an exponent over the side is a size effect.
+    """Verdict on an exponent over the side as a size effect.
 
     Parameters
     ----------
@@ -175,7 +175,7 @@ def joint_verdict(
     predicted: Sequence[Exponent],
     bound: float = NO_EFFECT,
 ) -> str:
-    """True if the strength of a class has a size effect, and of what.
+    """Verdict on the strength of a class: its size effect, and of what.
 
     Parameters
     ----------

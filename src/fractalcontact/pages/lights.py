@@ -16,8 +16,8 @@ from .words import with_unit
 #: What would make lights better.
 FINER_SCAN = "heights without the instrument's filter, or an instrument with less noise"
 MARKS = (
-    "faces scanned with common marks, and the same joint with 'outliers: fill' in its sidecar: how "
-    "far the numbers move is the error of the scans"
+    "faces scanned with common marks, and the same joint with 'outliers: fill' in its sidecar: "
+    "the change of the numbers is the error of the scans"
 )
 LIGHTER = "lighter loads, under which less of the window touches"
 STEEP = "no scan makes it less steep: state the rms slope beside every number"
@@ -177,11 +177,10 @@ def trust_of(lights: Sequence[Light]) -> tuple[str, str, str]:
         others, and which others there are; what would help of all these.
     """
     worst = next((word for word in _TRUST if any(one.word == word for one in lights)), GOOD)
-    of_worst = [one for one in lights if one.word == worst]
-    deciding = sorted(of_worst, key=lambda one: one.key != "model")
     if worst == GOOD:
         return _TRUST[GOOD], "every light that applies is good", ""
-    first, *others = deciding
+    of_worst = [one for one in lights if one.word == worst]
+    first, *others = deciding = sorted(of_worst, key=lambda one: one.key != "model")
     reason = f"{first.title}: {first.reason}"
     if others:
         alike = "partly good" if worst == IN_PART else worst

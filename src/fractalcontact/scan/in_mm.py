@@ -64,14 +64,9 @@ def in_mm(file: ScanFile, options: ScanOptions, *, are_heights: bool = True) -> 
     is_aperture = options.kind == APERTURE
     size = size_and_relief(heights, raw.layout)
     _refuse_unconfirmed(size, raw, options, path)
-    if (
-        are_heights
-        and missing != NO_MARK
-        and (
-            # Zeros of an aperture map are contact, however many there are.
-            doubt := refuse_or_warn(heights[heights != 0] if is_aperture else heights, path)
-        )
-    ):
+    # Zeros of an aperture map are contact, however many there are.
+    judged = heights[heights != 0] if is_aperture else heights
+    if are_heights and missing != NO_MARK and (doubt := refuse_or_warn(judged, path)):
         notes.append(f"{NOTE}{doubt}")
     down = _choose("heights", raw.heights, options, overrides) == "down"
     sign = -1 if down or is_aperture else 1

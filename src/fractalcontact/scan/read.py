@@ -179,7 +179,7 @@ def _refuse_unsaid_aperture(path: Path, raw: RawScan, options: ScanOptions) -> N
     if options.kind is None and (word := OPENING.search(" ".join((path.stem, *raw.notes)))):
         name, _ = split_file_name(path.name)
         raise IncompleteSidecar(
-            f"{path}: its name or its variable says {word[0]!r}, and no sidecar what it holds; "
+            f"{path}: its name or a variable contains {word[0]!r}, but no sidecar states its kind; "
             f"write into {path.with_name(f'{name}.yaml')} 'kind: face' or",
             draft_line("kind", APERTURE, "the opening between both faces"),
         )

@@ -1,4 +1,4 @@
-"""True if dropping points alone reaches the right contact set, by kernel and by tolerance."""
+"""Elimination: contact sets reached by dropping points alone, by kernel and by tolerance."""
 
 from collections.abc import Sequence
 

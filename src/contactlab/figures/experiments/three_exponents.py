@@ -76,10 +76,11 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
     panels[0].set_ylabel("exponent (1)")
     legends_below(figure, *_legend())
     tables = [
-        rows(test, name, exponent=words).rename(
+        rows(test, name, exponent=name).rename(
             columns=lambda column, name=name: str(column).replace(name, "value")
         )
-        for name, words in _written()
+        for first, *_, nulls in _EXPONENTS
+        for name in (first, *nulls)
     ]
     return Drawing(figure, pd.concat(tables, ignore_index=True), caption(__name__, **_words(test)))
 
@@ -109,21 +110,17 @@ def _legend() -> list[list[Artist]]:
         column += [mark(color=colour, lw=1, ls=ls, label=of) for ls, of in nulls.values()]
         columns.append(column)
     limit = {"color": colour_of(1), "lw": 0.8, "ls": "-."}
-    columns[0].append(mark(**limit, label="$H-1$, its limit at light load"))
+    columns[0].append(mark(**limit, label="$H-1$, for cut-offs far below the roll-off"))
     columns[2].append(Patch(color="0.88", label=f"no size effect: within {NO_EFFECT:g} of 0"))
     columns[2].append(heading(f"bars: {100 * PROBABILITY:.0f} % intervals"))
     return columns
 
 
-def _written() -> list[tuple[str, str]]:
-    """Variables of the table, in words."""
-    return [(name, name) for first, *_, nulls in _EXPONENTS for name in (first, *nulls)]
-
-
 def _words(test: xr.Dataset) -> dict[str, Any]:
-    """The three of every class at one load."""
+    """The three of every class at one load, and the first by the slopes alone."""
     one = test.sel(reduced_pressure=_QUOTED, method="nearest")
     three = [one[name].values - less for name, less, *_ in _EXPONENTS]
+    three.append(one["theory_delta"].values - 2)
     classes = list(zip(test["hurst"].values.tolist(), zip(*three, strict=True), strict=True))
     # The lowest and the highest H alone: a caption is short.
     ends = dict.fromkeys((classes[0], classes[-1]))
