@@ -12,6 +12,7 @@ import xarray as xr
 import yaml
 
 from ..core.estimate import DIMENSION, SIZE, Estimate, names_of
+from ..core.settings import TEST_COLUMNS
 from ..core.subject import Subject
 
 _FILE = Path(__file__).with_name("entries.yaml")
@@ -25,10 +26,7 @@ _BESIDE = {
     "sampling": ("sampling", "sampling", "1"),
     "fit": ("fit", "fit", "1"),
     "branch": ("branch", "branch", "1"),
-    **{
-        f"{kind}_test": ("test", f"{kind}_test", "1")
-        for kind in ("closure", "flow", "dilatancy", "shear", "strength")
-    },
+    **{f"{kind}_test": ("test", f"{kind}_test", "1") for kind in TEST_COLUMNS},
 }
 #: Significant digits of the numbers of a card.
 _DIGITS = 6

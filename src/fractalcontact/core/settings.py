@@ -13,6 +13,14 @@ Load = tuple[float, str]
 #: Smallest and largest length, mm.
 Range = tuple[float, float] | None
 S = TypeVar("S")
+#: Columns of each kind of laboratory test: that of the curve's axis, then what is measured over it.
+TEST_COLUMNS = {
+    "closure": ("pressure", "displacement"),
+    "flow": ("pressure", "transmissivity"),
+    "dilatancy": ("displacement", "dilation"),
+    "shear": ("displacement", "shear_stress"),
+    "strength": ("pressure", "shear_strength"),
+}
 
 
 @dataclass(frozen=True)
@@ -118,7 +126,8 @@ class MeasuredTest:
 
     Attributes
     ----------
-    kind : {"closure", "flow", "dilatancy", "shear", "strength"}
+    kind : str
+        Key of `TEST_COLUMNS`.
     file : str
     columns : dict of str to str
         Heading in the file by column; that of the curve's axis comes first.

@@ -12,7 +12,7 @@ from ..core.errors import InputError
 from ..core.estimate import NO_ESTIMATE, Estimate
 from ..core.labels import cf_attrs
 from ..core.reported import Reported
-from ..core.settings import MeasuredSettings, MeasuredTest, Solver
+from ..core.settings import TEST_COLUMNS, MeasuredSettings, MeasuredTest, Solver
 from ..mechanics.loading import JointLoading
 from .closure import OF_CALIBRATION, OF_CLOSURE, compare_closure
 from .computed import Joint
@@ -20,16 +20,15 @@ from .curve import Curve, compared
 from .others import WHY_NONE, computed_curve
 from .readings import read_test
 
-#: Axis and quantity of each kind of test: name and unit of x, unit of y, what y is.
-KINDS = {
-    "closure": ("pressure", "MPa", "mm", "closure of the joint"),
-    "flow": ("pressure", "MPa", "mm3", "transmissivity"),
-    "dilatancy": ("displacement", "mm", "mm", "dilation under constant pressure"),
-    "shear": ("displacement", "mm", "MPa", "shear stress"),
-    "strength": ("pressure", "MPa", "MPa", "peak shear strength"),
+#: Unit and long name of what each kind of test measures, and of the axes that it is read over.
+_MEASURED = {
+    "closure": ("mm", "closure of the joint"),
+    "flow": ("mm3", "transmissivity"),
+    "dilatancy": ("mm", "dilation under constant pressure"),
+    "shear": ("MPa", "shear stress"),
+    "strength": ("MPa", "peak shear strength"),
 }
-
-
+_AXES = {"pressure": ("MPa", "nominal pressure"), "displacement": ("mm", "shear displacement")}
 #: What is kept of every test: field, unit, long name.
 _OF_TESTS = {
     "branch": ("branch", "1", "branch of the test"),
@@ -80,7 +79,7 @@ def measured_stage(
     whole = JointLoading.of_joint(specimens, joints, reported.direction, settings, solver)
     joint = Joint.of(whole, closure, error_budget)
     found = xr.Dataset()
-    for kind in KINDS:
+    for kind in TEST_COLUMNS:
         tests = [test for test in settings.measured if test.kind == kind]
         if not tests:
             continue
@@ -119,9 +118,10 @@ def _beside(test: MeasuredTest, readings: Curve, computed: Curve) -> dict[str, A
 
 def _of_kind(kind: str, tests: Sequence[MeasuredTest], rows: Sequence[Mapping]) -> xr.Dataset:
     """Variables of the tests of a kind, rows of unequal length filled with NaN."""
-    of_x, unit_x, unit, words = KINDS[kind]
+    unit, words = _MEASURED[kind]
+    of_x = TEST_COLUMNS[kind][0]
+    unit_x, x_words = _AXES[of_x]
     test, reading, point = (f"{kind}_{name}" for name in ("test", "reading", "point"))
-    x_words = "nominal pressure" if of_x == "pressure" else "shear displacement"
     variables: dict[str, Any] = {
         f"{kind}_{of_x}": (
             (test, reading),

@@ -10,18 +10,11 @@ from pathlib import Path
 from typing import Any
 
 from ..core.errors import InputError
-from ..core.settings import MeasuredTest
+from ..core.settings import TEST_COLUMNS, MeasuredTest
 from ..core.units import length_factor, quantity
 from .scan_files import refuse_outside_link
 
-#: Columns of each kind of test, and what its sidecar must say beside the file.
-COLUMNS = {
-    "closure": ("pressure", "displacement"),
-    "flow": ("pressure", "transmissivity"),
-    "dilatancy": ("displacement", "dilation"),
-    "shear": ("displacement", "shear_stress"),
-    "strength": ("pressure", "shear_strength"),
-}
+#: What the sidecar must say of each kind of test, and what it may.
 _NEEDS = {
     "closure": ("file", "gauge", "seat", "branch", "cycle"),
     "flow": ("file", "way", "branch", "cycle"),
@@ -131,7 +124,7 @@ def _resolved(kind: str, test: Mapping[str, Any], where: str, folder: Path) -> M
             raise InputError(f"{where}.{key}: {test[key]!r} must be above 0")
         return value
 
-    wanted = COLUMNS[kind]
+    wanted = TEST_COLUMNS[kind]
     columns = dict(test.get("columns", {}))
     if kind == "flow" and "hydraulic_aperture" in columns:
         wanted = (wanted[0], "hydraulic_aperture")

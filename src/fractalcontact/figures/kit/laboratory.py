@@ -5,19 +5,11 @@ from typing import Any
 import numpy as np
 
 from ...core.estimate import Estimate
+from ...core.settings import TEST_COLUMNS
 from ...core.subject import Subject
 from .drawing import COLOURS, MARKERS
 from .panel import Panel
 from .words import short
-
-#: Axis of each kind of test.
-_AXES = {
-    "closure": "pressure",
-    "flow": "pressure",
-    "dilatancy": "displacement",
-    "shear": "displacement",
-    "strength": "pressure",
-}
 
 
 def draw_tests(panel: Panel, subject: Subject, kind: str, *, turned: bool = False) -> None:
@@ -35,8 +27,8 @@ def draw_tests(panel: Panel, subject: Subject, kind: str, *, turned: bool = Fals
     for number, label in enumerate(labels_of(subject, kind)):
         test = subject["measured"].sel({f"{kind}_test": label})
         # Without its ends: bars of hundreds of readings would hide them.
-        data = test[[f"{kind}_{_AXES[kind]}", f"{kind}_read"]].dropna(f"{kind}_reading")
-        axes = (f"{kind}_{_AXES[kind]}", f"{kind}_read")
+        axes = (f"{kind}_{TEST_COLUMNS[kind][0]}", f"{kind}_read")
+        data = test[list(axes)].dropna(f"{kind}_reading")
         style: dict[str, Any] = {
             "ls": "none",
             "marker": MARKERS[(3 + number) % len(MARKERS)],
