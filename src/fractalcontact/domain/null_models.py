@@ -305,9 +305,7 @@ def _compared_slopes(domain, cut, mask, spacing):
     if nodes < MIN_NODES:
         departures = dict.fromkeys(departures, NOT_COMPARED)
     for null, departure in departures.items():
-        known = np.isfinite(departure.p)
-        row[f"local_slope_{null}_p"] = departure.p
-        row[f"local_slope_{null}_side"] = sides[departure.place] if known else np.nan
+        row |= departure.columns(null, sides)
     verdict = departure_of(*departures.values(), surface=cut is not None)
     return row | {"null_verdict": verdict, "null_reason": reason}
 

@@ -52,6 +52,11 @@ class Departure(NamedTuple):
     size: float
     """By how much that local slope departs."""
 
+    def columns(self, null: str, sides: np.ndarray) -> dict[str, float]:
+        """Columns of the stage ``domains`` for a null model: probability, and box side, mm."""
+        side = sides[self.place] if np.isfinite(self.p) else np.nan
+        return {f"local_slope_{null}_p": self.p, f"local_slope_{null}_side": side}
+
 
 NOT_COMPARED = Departure(np.nan, 0, np.nan)
 

@@ -224,9 +224,7 @@ class OfRealisations(Evidence):
         row: dict[str, Any] = {"null_verdict": departure_of(**found, surface=True)}
         row["null_reason"] = "" if np.isfinite(found["random"].p) else TOO_SMALL
         for null, departure in found.items():
-            known = np.isfinite(departure.p)
-            row[f"local_slope_{null}_p"] = departure.p
-            row[f"local_slope_{null}_side"] = middles[departure.place] if known else np.nan
+            row |= departure.columns(null, middles)
         return row
 
     def _mean(self, name: str, stage: xr.Dataset | None = None) -> Estimate:
