@@ -8,6 +8,19 @@ import numpy as np
 RELATIVE_ROUNDING = 1e-9
 
 
+def in_cells(lengths: tuple[float, float] | None, spacing: float) -> tuple[float, float]:
+    """Range of lengths in cells; without one, all lengths.
+
+    Parameters
+    ----------
+    lengths : (float, float) or None
+        mm.
+    spacing : float
+        Of the cells, mm.
+    """
+    return (0.0, np.inf) if lengths is None else (lengths[0] / spacing, lengths[1] / spacing)
+
+
 def within(values: Any, low: Any, high: Any) -> Any:
     """Mask of positive values in a range, ends included within rounding.
 

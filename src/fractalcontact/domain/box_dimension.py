@@ -12,7 +12,7 @@ import numpy as np
 from ..core.estimate import DIMENSION, Estimate, Scale
 from ..core.fitting import MIN_POINTS, LineFit, fit_line
 from ..core.limits import MIN_NODES
-from ..core.ranges import within
+from ..core.ranges import in_cells, within
 from ..core.slope_of_sums import BLOCKS, MIN_SCALES, halves, wave_error
 from .box_counts import RATIOS, box_count, box_sizes, cropped, mean_count, window_sizes
 from .count_law import NO_TERMS, LawTerms
@@ -190,7 +190,7 @@ def box_dimension(
     shape = extent.shape if extent.size > 1 else domain.shape
     fitting = sizes is None
     sizes = box_sizes(shape, min(domain.shape)) if sizes is None else np.asarray(sizes, dtype=float)
-    limits = (0, np.inf) if fit_range is None else tuple(np.asarray(fit_range) / spacing)
+    limits = in_cells(fit_range, spacing)
     count, ordinary = _minimal_covers(domain, extent, sizes, limits)
     r = sizes * float(spacing)
     nodes = int(extent.sum())

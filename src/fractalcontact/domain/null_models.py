@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike
 from ..core.datasets import labelled_dataset
 from ..core.estimate import NO_ESTIMATE, Estimate, rows_of
 from ..core.limits import MIN_NODES
+from ..core.ranges import in_cells
 from .box_dimension import dimension_of_domain
 from .counted_domain import QUANTITIES, CountedDomain, errors_of
 from .departure import departure_of
@@ -153,7 +154,7 @@ def null_models(
     so that what the choice of these changes is common and in neither.
     """
     domains = np.asarray(domains, bool)
-    limits = (0.0, np.inf) if fit_range is None else tuple(np.asarray(fit_range) / spacing)
+    limits = in_cells(fit_range, spacing)
     how = {"limits": limits, "whole_cells": whole_cells}
     rows = [_row(domain, spacing, composite, fit_range, mask, how) for domain in domains]
     shape = domains.shape[1:]

@@ -6,6 +6,7 @@ import scipy.ndimage
 from ..core.estimate import NO_ESTIMATE, Estimate
 from ..core.intervals import t_quantile
 from ..core.limits import CONFIDENCE
+from ..core.ranges import in_cells
 from .box_counts import mean_count, minimal_cover
 from .clusters import NEIGHBOURS, morisita_index, quadrat_counts
 from .correlation import expected_pairs, lags_of, pair_distances, pairs_slope
@@ -228,7 +229,7 @@ def expected_dimension(
     float
         NaN where the domain, or random nodes at its boxes, follow no law.
     """
-    limits = (0.0, np.inf) if fit_range is None else tuple(np.asarray(fit_range) / spacing)
+    limits = in_cells(fit_range, spacing)
     law = find_law(domain, limits, False)
     if law is None:
         return np.nan

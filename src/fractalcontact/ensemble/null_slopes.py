@@ -4,6 +4,7 @@ import numpy as np
 import xarray as xr
 
 from ..core.datasets import labelled_dataset
+from ..core.ranges import in_cells
 from ..domain.box_counts import mean_count
 from ..domain.mean_law import find_law
 from ..domain.null_models import OCTAVES, bearing_area_cut, octaves_of
@@ -61,7 +62,7 @@ def null_slopes(
     shape, sizes = composite.shape, curve_sizes(composite.shape)
     octaves = octaves_of(shape, spacing)
     whole = window_counts(shape, sizes)
-    limits = (0.0, np.inf) if fit_range is None else tuple(np.asarray(fit_range) / spacing)
+    limits = in_cells(fit_range, spacing)
     rows = []
     for domain in domains:
         nodes = int(np.count_nonzero(domain))

@@ -33,8 +33,7 @@ def grid_one(scan: Measured) -> xr.DataArray:
     if _keeps_lattice(scan, cloud):
         return _placed_heights(scan, cloud)
     spacing = scan.grid or cloud.spacing
-    lattice = covering_lattice(cloud.points, spacing, str(scan.path))
-    return _interpolated_heights(scan, cloud, lattice)
+    return _interpolated_heights(scan, cloud, spacing)
 
 
 def grid_pair(
@@ -76,14 +75,10 @@ def grid_pair(
     # One sidecar serves both faces, so `grid` is the same for both.
     spacing = lower.grid or max(cloud.spacing for cloud in clouds)
 
-    def gridded(scan: Measured, cloud: Cloud) -> xr.DataArray:
-        lattice = covering_lattice(cloud.points, spacing, str(scan.path))
-        return _interpolated_heights(scan, cloud, lattice)
-
     def regrid(motions: Sequence[Motion]) -> xr.DataArray:
-        return gridded(upper, moved_cloud(clouds[1], motions))
+        return _interpolated_heights(upper, moved_cloud(clouds[1], motions), spacing)
 
-    z_l, z_u = gridded(lower, clouds[0]), regrid([])
+    z_l, z_u = _interpolated_heights(lower, clouds[0], spacing), regrid([])
     return register(z_l, z_u, registration, where, mirrored=mirror_upper, regrid=regrid)
 
 
@@ -121,7 +116,8 @@ def _placed_heights(scan: Measured, cloud: Cloud) -> xr.DataArray:
     return _label(heights, cloud.lattice, scan, gridding, cloud)
 
 
-def _interpolated_heights(scan: Measured, cloud: Cloud, lattice: Lattice) -> xr.DataArray:
+def _interpolated_heights(scan: Measured, cloud: Cloud, spacing: float) -> xr.DataArray:
+    lattice = covering_lattice(cloud.points, spacing, str(scan.path))
     heights, gridding = grid_cloud(cloud, lattice)
     sparse = far_from_points(cloud.points, lattice, cloud.area_per_point)
     labelled = _label(heights, lattice, scan, gridding, cloud)
