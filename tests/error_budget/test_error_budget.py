@@ -225,6 +225,7 @@ def test_stiffness_at_a_pressure_has_the_relative_error_of_the_states_beside_it(
     of_population = found["reference_stiffness_total_of_population"]
     np.testing.assert_allclose(of_population, 2 * np.array(expected))
     np.testing.assert_allclose(found["seated_closure_total"], [np.nan, 0.0, 0.05, 0.03])
+    np.testing.assert_allclose(found["seated_closure_relative"], [np.nan, np.nan, 0.5, 0.15])
 
 
 def test_resolution_is_the_change_from_twice_the_spacing_and_in_no_total(one):

@@ -14,6 +14,7 @@ _TABLE = {
         "mm",
         "error of the closure from the seat as a property of this surface, half-width at 95 %",
     ),
+    "seated_closure_relative": (("normal_force",), "1", "the same over the closure from the seat"),
     "reference_stiffness_total": (
         _AT,
         "MPa/mm",
@@ -61,7 +62,8 @@ def with_derived(budget: xr.Dataset, curve: LoadCurve) -> xr.Dataset:
         at_reference_pressures(pressure, budget[name].sel(quantity="stiffness").values) * stiffness
         for name in ("relative_total", "relative_total_of_population")
     ]
-    found = [np.where(np.isfinite(seated), of_both, np.nan), *totals]
+    of_seated = np.where(np.isfinite(seated), of_both, np.nan)
+    relative = of_seated / np.where(seated > 0, seated, np.nan)
     coords = {"reference_pressure": states["reference_pressure"]}
-    table = labelled(_TABLE, dict(zip(_TABLE, found, strict=True)))
+    table = labelled(_TABLE, dict(zip(_TABLE, [of_seated, relative, *totals], strict=True)))
     return budget.assign_coords(coords).assign(table)

@@ -21,6 +21,11 @@ CHANNEL_FLOW = 0.9
 _BISECTIONS = 12
 
 
+def hydraulic_aperture(transmissivity: ArrayLike) -> np.ndarray:
+    """Hydraulic aperture h_h = (12 T)^(1/3), mm, of a transmissivity T, mm3."""
+    return np.cbrt(12 * np.asarray(transmissivity))
+
+
 @dataclass(frozen=True, eq=False)
 class Flow:
     """Flow through a joint along one axis, per unit viscosity.
@@ -48,8 +53,8 @@ class Flow:
 
     @property
     def hydraulic_aperture(self) -> float:
-        """h_h = (12 T)^(1/3), mm."""
-        return float(np.cbrt(12 * self.transmissivity))
+        """h_h of the transmissivity, mm."""
+        return float(hydraulic_aperture(self.transmissivity))
 
     @property
     def channel_fraction(self) -> float:

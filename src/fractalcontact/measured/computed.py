@@ -1,6 +1,7 @@
 """Computed closure of a joint on the branch of a test, and with other constants."""
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 import xarray as xr
@@ -60,10 +61,10 @@ class Joint:
         """H, MPa, or infinity."""
         return float(self.loading.solving["hardness"])
 
-    @property
+    @cached_property
     def relief(self) -> float:
         """Range of the composite topography, mm: no closure is larger."""
-        return float(np.ptp(self._composite()))
+        return float(np.ptp(self._composite))
 
     def on_branch(self, test: MeasuredTest, largest: float, modulus: float = 1.0) -> Curve:
         """Interface closure on the branch of a test, with the modulus and H multiplied.
@@ -106,7 +107,7 @@ class Joint:
                 f"{test.file}: the joint has carried {largest:.3g} MPa, more than it can at a "
                 f"hardness of {hardness:.3g} MPa; state a larger one in the material"
             )
-        composite, area = self._composite(), self.loading.area
+        composite, area = self._composite, self.loading.area
         space = self.loading.half_space(composite.shape, self.factor)
         pressure = np.geomspace(lightest, largest, _STATES)
         up = pressure if test.branch == LOAD else pressure[-1:]
@@ -128,6 +129,7 @@ class Joint:
         error = np.interp(np.log(force / area), np.log(self.curve.x), self.curve.error)
         return Curve.of(force / area, closure, error)
 
+    @cached_property
     def _composite(self) -> np.ndarray:
         (cells,) = self.loading.cells
         return prefractal(self.loading.composite(int(cells)), self.factor)

@@ -125,12 +125,12 @@ def _grid(subject):
     key, title = "grid", "Converged in the grid"
     asked = float(subject["choices"]["closure_accuracy"])
     budget = subject.state("error_budget")
-    seated = float(subject.state("closure")["seated_closure"])
-    start = "the seat" if seated > 0 else "first touch"
-    here = budget.sel(quantity="separation" if seated > 0 else "closure")
+    seated = float(subject.state("closure")["seated_closure"]) > 0
+    start = "the seat" if seated else "first touch"
+    here = budget.sel(quantity="separation" if seated else "closure")
     error = float(here["relative_error"].sel(source="numerical"))
-    if seated > 0:
-        error = float(budget["seated_closure_total"]) / seated
+    if seated:
+        error = float(budget["seated_closure_relative"])
     if math.isnan(error):
         why = str(here["reason"].sel(source="numerical").item()) or "no finer grid was solved"
         return Light(key, title, NOT_ASKED, why)

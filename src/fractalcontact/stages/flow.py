@@ -20,6 +20,7 @@ from ..flow.aperture import (
     reynolds_gradient,
     zimmerman_bodvarsson_aperture,
 )
+from ..flow.cubic_law import hydraulic_aperture
 from ..flow.curves import (
     OF_APERTURE,
     OF_WAY,
@@ -233,7 +234,7 @@ def _over_loads(gaps: np.ndarray, place: _Place, reported: Reported) -> dict[str
             values[grid_error][load] = abs(coarse - whole)
             ends = window_interval(gaps[load], place.spacing, axis, whole)
             for name, other, end in zip(of_flow, of_aperture, ends, strict=True):
-                values[name][load], values[other][load] = end, np.cbrt(12 * end)
+                values[name][load], values[other][load] = end, hydraulic_aperture(end)
         values[f"flux_map_{way}"] = rows[reported.reference]["flux"].astype(np.float32)
     return values
 

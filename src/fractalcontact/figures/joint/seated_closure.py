@@ -28,7 +28,6 @@ SUBJECT = "specimen"
 NEEDS = ("specimens", "closure", "branches", "error_budget", "measured")
 ORDER = 45
 
-RELOAD, REFERENCE = "reload", "reference_pressure"
 _AGAIN: dict[str, Any] = {
     "labels": ["unloading and reloading"],
     "color": colour_of(4),
@@ -62,7 +61,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
         "marker": "o",
     }
     a.curve(curve, "seated_closure", "nominal_pressure", keep=_KEPT, label="states", **style)
-    again = branches.sel(branch=[RELOAD])
+    again = branches.sel(branch=["reload"])
     a.curves(again, "seated_closure", "nominal_pressure", hue="branch", **_AGAIN)
     _draw_laws(a.axes, curve)
     draw_tests(a, subject, "closure", turned=True)
@@ -131,7 +130,7 @@ def _words(
     stiffness = curve["reference_stiffness"]
     errors = total.where(np.isfinite(stiffness), drop=True)
     known = stiffness[np.isfinite(stiffness)]
-    on_reload = again["reference_stiffness"].sel(branch=RELOAD)
+    on_reload = again["reference_stiffness"].sel(branch="reload")
     middle = on_reload["reference_pressure"].values[len(on_reload) // 2]
     return {
         "residual": float(again["residual_closure"]),

@@ -17,15 +17,9 @@ TOWARDS = {"E": "East", "N": "North", "W": "West", "S": "South"}
 #: Below and above these a number has an exponent.
 _PLAIN = (1e-4, 1e6)
 
-#: Intervals up to this wide are narrow whatever the value: exponents and slopes, and angles.
-_SPANS = {"": 1.0, "mm/mm": 1.0, "degrees": 30.0}
-
 #: Units of force and how many N they are, the largest first.
 _FORCE_UNITS = (("GN", 1e9), ("MN", 1e6), ("kN", 1e3), ("N", 1.0), ("mN", 1e-3), ("µN", 1e-6))
 
-
-#: First words of the caption of a figure that the paper does not have.
-SUPPLEMENTARY = "Supplementary figure."
 
 #: Symbols of titles, as the captions write them and as formulas.
 _FORMULAS = {
