@@ -77,10 +77,16 @@ def draw(atlas: DataTree, name: str) -> Drawing:
 
 
 def _draw_realisations(panel: Panel, subject: Subject) -> list[Artist]:
-    """Band in which the local slopes of 95 % of the realisations lie; its entry, if there are."""
+    """Band in which the local slopes of 95 % of the realisations lie; its entry, if there are.
+
+    Where a realisation has no slope, the band would be that of the others alone.
+    """
     if not (realisations := realisations_of(subject)):
         return []
     stage = subject["ensemble"].sel(normal_force=subject.reported.force, method="nearest")
+    stage = stage.isel(null_octave=np.flatnonzero(stage["local_slope_n"] == realisations))
+    if not stage.sizes["null_octave"]:
+        return []
     low, high = (stage[f"local_slope_band_{end}"].values for end in ("low", "high"))
     style: dict[str, Any] = {"color": COLOURS[1], "alpha": 0.2, "lw": 0}
     panel.axes.fill_between(stage["local_slope_side"], low, high, **style, zorder=0)
