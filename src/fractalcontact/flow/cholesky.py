@@ -4,6 +4,7 @@ CHOLMOD comes with `cvxopt`, which is under the GPL and therefore an optional de
 ``flow``); without it SuperLU of scipy solves the same equations.
 """
 
+from collections.abc import Callable
 from importlib import import_module
 
 import numpy as np
@@ -20,23 +21,22 @@ def cholmod_is_here() -> bool:
     return True
 
 
-def solve_symmetric(
-    lower: sparse.coo_array, right: np.ndarray, *, cholmod: bool | None = None
-) -> np.ndarray:
-    """Solution of A x = b, A symmetric and positive definite.
+def factorised(
+    lower: sparse.csc_array, *, cholmod: bool | None = None
+) -> Callable[[np.ndarray], np.ndarray]:
+    """Solver of A x = b, A symmetric and positive definite.
 
     Parameters
     ----------
-    lower : (n, n) sparse.coo_array
+    lower : (n, n) sparse.csc_array
         Lower triangle of A with its diagonal, each entry once.
-    right : (n, k) ndarray
-        b.
     cholmod : bool, optional
         True solves with CHOLMOD, False with SuperLU; unsaid, CHOLMOD where it is installed.
 
     Returns
     -------
-    (n, k) ndarray
+    callable
+        Gives x (n, k) for b (n, k).
 
     Raises
     ------
@@ -44,31 +44,43 @@ def solve_symmetric(
         If a pivot is not positive: A is singular to the precision of the numbers.
     """
     if cholmod_is_here() if cholmod is None else cholmod:
-        return _by_cholmod(lower, right)
-    return _by_superlu(lower, right)
+        return _by_cholmod(lower)
+    return _by_superlu(lower)
 
 
-def _by_cholmod(lower: sparse.coo_array, right: np.ndarray) -> np.ndarray:
+def _by_cholmod(lower: sparse.csc_array) -> Callable[[np.ndarray], np.ndarray]:
     cvxopt, cholmod = import_module("cvxopt"), import_module("cvxopt.cholmod")
-    values, rows, columns = (
-        cvxopt.matrix(np.ascontiguousarray(one)[:, np.newaxis].astype(kind))
-        for one, kind in ((lower.data, float), (lower.row, np.int64), (lower.col, np.int64))
+    triplets = lower.tocoo()
+    matrix = cvxopt.spmatrix(
+        *(
+            cvxopt.matrix(one[:, np.newaxis].astype(kind))
+            for one, kind in (
+                (triplets.data, float),
+                (triplets.row, np.int64),
+                (triplets.col, np.int64),
+            )
+        ),
+        lower.shape,
     )
-    solution = cvxopt.matrix(np.asfortranarray(right))
-    cholmod.linsolve(cvxopt.spmatrix(values, rows, columns, lower.shape), solution)
-    return np.array(solution)
+    factor = cholmod.symbolic(matrix)
+    cholmod.numeric(matrix, factor)
+
+    def solve(right: np.ndarray) -> np.ndarray:
+        solution = cvxopt.matrix(np.asfortranarray(right))
+        cholmod.solve(factor, solution)
+        return np.array(solution)
+
+    return solve
 
 
-def _by_superlu(lower: sparse.coo_array, right: np.ndarray) -> np.ndarray:
-    triangle = lower.tocsc()
-    matrix = triangle + sparse.tril(triangle, -1, format="csc").T
+def _by_superlu(lower: sparse.csc_array) -> Callable[[np.ndarray], np.ndarray]:
+    matrix = lower + sparse.tril(lower, -1, format="csc").T
     try:
-        factor = splu(
+        return splu(
             matrix.tocsc(),
             permc_spec="MMD_AT_PLUS_A",
             diag_pivot_thresh=0.0,
             options={"SymmetricMode": True},
-        )
+        ).solve
     except RuntimeError as error:
         raise ArithmeticError(str(error)) from error
-    return factor.solve(right)

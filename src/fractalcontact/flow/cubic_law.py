@@ -80,7 +80,7 @@ def plane_flow(
     axis : {"x", "y"}
         Along which the pressure falls.
     cholmod : bool, optional
-        As of :func:`flow.cholesky.solve_symmetric`.
+        As of :func:`flow.cholesky.factorised`.
 
     Returns
     -------
@@ -130,7 +130,7 @@ def radial_flow(
     hole, rim : float
         Radii, mm.
     cholmod : bool, optional
-        As of :func:`flow.cholesky.solve_symmetric`.
+        As of :func:`flow.cholesky.factorised`.
 
     Returns
     -------

@@ -3,12 +3,12 @@
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import ndimage, sparse
+from scipy import ndimage
 
 from roughcontact.kernel_cache import njit
 
-from .cholesky import solve_symmetric
 from .errors import FlowNotConverged
+from .red_black import RedBlack
 
 #: Largest error of a flow that the imbalance of its cells may make, a fraction of the flow.
 MAX_IMBALANCE = 1e-6
@@ -144,7 +144,7 @@ def solve_network(
     network : Network
     open_cells : (ny, nx) bool ndarray
     cholmod : bool, optional
-        As of :func:`flow.cholesky.solve_symmetric`.
+        As of :func:`flow.cholesky.factorised`.
 
     Returns
     -------
@@ -167,81 +167,52 @@ def solve_network(
     if not cells.any():
         zero_x, zero_y = np.zeros_like(network.along_x), np.zeros_like(network.along_y)
         return NetworkFlow(0.0, 0.0, np.full(shape, np.nan), zero_x, zero_y)
-    ends = np.stack([network.inlet[cells], network.outlet[cells]], axis=1)
     # Numbers of the order of one: aperture cubed in mm would leave the range of the factors.
+    ends = np.stack([network.inlet, network.outlet]) * cells
     scale = 1 / max(network.along_x.max(initial=0), network.along_y.max(initial=0), ends.max())
-    faces = _faces_of(network, cells)
-    lower = _assemble(faces, ends, scale)
-    right = ends * scale
+    faces = network.along_x * scale, network.along_y * scale
     try:
-        solution = _complementary(solve_symmetric(lower, right, cholmod=cholmod))
+        equations = RedBlack(*faces, ends.sum(axis=0) * scale, cells, cholmod)
+        solution = _complementary(equations.solve(ends * scale), cells)
         for step in range(REFINEMENTS + 1):
-            balance, flows = _balance(faces, ends, solution)
+            balance, flows, fluxes = _balance(network, *solution)
             error = float(np.abs(balance).sum()) / max(min(flows), np.finfo(float).tiny)
             if error <= MAX_IMBALANCE or step == REFINEMENTS:
                 break
-            change = np.stack([balance, -balance], axis=1) * scale
-            solution = _complementary(solution + solve_symmetric(lower, change, cholmod=cholmod))
+            change = equations.solve(np.stack([balance, -balance]) * scale)
+            solution = _complementary(solution + change, cells)
     except ArithmeticError as failed:
         raise FlowNotConverged(f"the equations are singular ({failed})", np.inf) from failed
     if not error <= MAX_IMBALANCE:
         raise FlowNotConverged("the passages differ too much in width", error)
-    return _network_flow(network, cells, solution, float(np.mean(flows)), error)
+    pressure = np.where(cells, solution[0], np.nan)
+    return NetworkFlow(float(np.mean(flows)), error, pressure, *fluxes)
 
 
-def _complementary(solution):
-    """Pressure and its complement, the larger of both computed from the smaller."""
-    p, d = solution.T
+def _complementary(solution, cells):
+    """Pressure and its complement, the larger of both computed from the smaller; 0 elsewhere."""
+    p, d = solution
     low = p < d
-    return np.stack([np.where(low, p, 1 - d), np.where(low, 1 - p, d)], axis=1)
+    return np.stack([np.where(low, p, 1 - d), np.where(low, 1 - p, d)]) * cells
 
 
-def _faces_of(network, cells):
-    """Cell numbers at both sides of the faces between joined cells, and their conductances."""
-    number = np.cumsum(cells.ravel()).reshape(cells.shape) - 1
-    in_x, in_y = cells[:, :-1] & cells[:, 1:], cells[:-1] & cells[1:]
-    first = np.concatenate([number[:, :-1][in_x], number[:-1][in_y]])
-    second = np.concatenate([number[:, 1:][in_x], number[1:][in_y]])
-    return first, second, np.concatenate([network.along_x[in_x], network.along_y[in_y]])
+def _balance(network, p, d):
+    """Net flow into each cell, the flows in and out, and those through the faces in x and y.
 
-
-def _assemble(faces, ends, scale):
-    """Lower triangle of the equations of mass balance."""
-    first, second, conductance = faces
-    n = len(ends)
-    diagonal = ends.sum(axis=1)
-    for side in (first, second):
-        diagonal += np.bincount(side, conductance, n)
-    each = np.arange(n)
-    values = np.concatenate([diagonal, -conductance]) * scale
-    # The second cell of a face has the larger number.
-    rows, columns = np.concatenate([each, second]), np.concatenate([each, first])
-    return sparse.coo_array((values, (rows, columns)), shape=(n, n))
-
-
-def _drop(one, other, p, d):
-    """Differences of the pressure p or of its complement d, whichever is known more closely."""
-    return np.where(p[one] < d[one], p[one] - p[other], d[other] - d[one])
-
-
-def _balance(faces, ends, solution):
-    """Net flow into each cell, and the flows in and out."""
-    first, second, conductance = faces
-    flux = conductance * _drop(first, second, *solution.T)
-    entering, leaving = ends[:, 0] * solution[:, 1], ends[:, 1] * solution[:, 0]
-    n = len(ends)
-    net = entering - leaving - np.bincount(first, flux, n) + np.bincount(second, flux, n)
-    return net, (float(entering.sum()), float(leaving.sum()))
-
-
-def _network_flow(network, cells, solution, rate, imbalance):
-    p, d = np.full(cells.shape, np.nan), np.full(cells.shape, np.nan)
-    p[cells], d[cells] = solution.T
+    Differences are those of the pressure p or of its complement d, whichever is more exact.
+    """
+    low = p < d
     flux_x, flux_y = (
-        np.nan_to_num(conductance * _drop(one, other, p, d))
+        conductance * np.where(low[one], p[one] - p[other], d[other] - d[one])
         for conductance, one, other in (
             (network.along_x, np.s_[:, :-1], np.s_[:, 1:]),
             (network.along_y, np.s_[:-1], np.s_[1:]),
         )
     )
-    return NetworkFlow(rate, imbalance, p, flux_x, flux_y)
+    entering, leaving = network.inlet * d, network.outlet * p
+    net = entering - leaving
+    net[:, :-1] -= flux_x
+    net[:, 1:] += flux_x
+    net[:-1] -= flux_y
+    net[1:] += flux_y
+    return net, (float(entering.sum()), float(leaving.sum())), (flux_x, flux_y)

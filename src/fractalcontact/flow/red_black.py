@@ -1,0 +1,119 @@
+"""Equations of a network of cells, the black cells of a chessboard eliminated by hand.
+
+The star-mesh transform joins the four neighbours of an eliminated cell by conductances a b / sum.
+Equations of half the size remain, and no difference of nearly equal numbers is taken.
+"""
+
+import numpy as np
+from scipy import sparse
+
+from roughcontact.kernel_cache import njit
+
+from .cholesky import factorised
+
+#: Entry of the lower triangle where two steps (up, left, right, down) lead, -1 above it.
+_ENTRIES = ((-1, -1, -1, -1), (-1, -1, -1, 1), (-1, -1, 0, 2), (-1, 1, 2, 3))
+
+
+class RedBlack:
+    """Factorised mass balance of cells in a grid.
+
+    Parameters
+    ----------
+    along_x, along_y : (ny, nx - 1), (ny - 1, nx) ndarray
+        Conductances as of :class:`flow.network.Network`.
+    ends : (ny, nx) ndarray
+        Conductance to both ends together.
+    cells : (ny, nx) bool ndarray
+        Cells with an equation, each with a path to an end.
+    cholmod : bool, optional
+        As of :func:`flow.cholesky.factorised`.
+
+    Raises
+    ------
+    ArithmeticError
+        As :func:`flow.cholesky.factorised`.
+    """
+
+    def __init__(
+        self,
+        along_x: np.ndarray,
+        along_y: np.ndarray,
+        ends: np.ndarray,
+        cells: np.ndarray,
+        cholmod: bool | None,
+    ):
+        ny, nx = self._shape = cells.shape
+        # A rim of closed cells: then each cell has four neighbours.
+        stars = np.zeros((4, ny + 2, nx + 2))
+        stars[0, 2:-1, 1:-1] = stars[3, 1:-2, 1:-1] = along_y
+        stars[1, 1:-1, 2:-1] = stars[2, 1:-1, 1:-2] = along_x
+        self._stars = stars.reshape(4, -1)
+        ends, equations = np.pad(ends, 1).ravel(), np.pad(cells, 1).ravel()
+        red = equations & (np.add.outer(np.arange(ny + 2), np.arange(nx + 2)) % 2 == 0).ravel()
+        self._red, black = np.flatnonzero(red), equations & ~red
+        total = self._stars.sum(axis=0) + ends
+        self._over = np.divide(1.0, total, where=black, out=np.zeros_like(total))
+        number = np.where(red, np.cumsum(red) - 1, -1)
+        starts, rows, values = _mesh(self._stars, ends, self._over, number, nx + 2)
+        n = self._red.size
+        lower = sparse.csc_array((values, rows, starts), shape=(n, n))
+        self._solve = factorised(lower, cholmod=cholmod) if n else np.copy
+
+    def solve(self, right: np.ndarray) -> np.ndarray:
+        """Solutions (k, ny, nx) of right sides (k, ny, nx); 0 in cells without an equation."""
+        width = self._shape[1] + 2
+        padded = np.pad(right, ((0, 0), (1, 1), (1, 1))).reshape(len(right), -1)
+        solution = padded * self._over
+        of_red = (padded + _inflow(self._stars, solution, width))[:, self._red]
+        values = np.zeros_like(padded)
+        values[:, self._red] = self._solve(of_red.T).T
+        solution += _inflow(self._stars, values, width) * self._over + values
+        return solution.reshape(len(right), -1, width)[:, 1:-1, 1:-1]
+
+
+@njit(cache=True)
+def _mesh(stars, ends, over, number, width):
+    """Lower triangle of the equations of the red cells, in compressed columns."""
+    n = number.max() + 1
+    starts, rows, values = np.zeros(n + 1, np.int64), np.empty(5 * n, np.int64), np.empty(5 * n)
+    steps, places = (-width, -1, 1, width), (2, width - 1, width + 1, 2 * width)
+    lower, count = np.empty(4), 0
+    for cell in range(number.size):
+        if number[cell] < 0:
+            continue
+        lower[:], diagonal = 0, ends[cell]
+        for one in range(4):
+            if stars[one, cell] == 0:
+                continue
+            black = cell + steps[one]
+            part, onward = stars[one, cell] * over[black], ends[black]
+            for other in range(4):
+                if one + other != 3:
+                    onward += stars[other, black]
+                    if _ENTRIES[one][other] >= 0:
+                        lower[_ENTRIES[one][other]] += part * stars[other, black]
+            diagonal += part * onward
+        rows[count], values[count] = number[cell], diagonal
+        count += 1
+        for entry in range(4):
+            if lower[entry] > 0:
+                rows[count], values[count] = number[cell + places[entry]], -lower[entry]
+                count += 1
+        starts[number[cell] + 1] = count
+    return starts, rows[:count], values[:count]
+
+
+@njit(cache=True)
+def _inflow(stars, values, width):
+    """Sum over the four neighbours of conductance times value."""
+    result = np.zeros_like(values)
+    for field in range(len(values)):
+        for cell in range(width, values.shape[1] - width):
+            result[field, cell] = (
+                stars[0, cell] * values[field, cell - width]
+                + stars[1, cell] * values[field, cell - 1]
+                + stars[2, cell] * values[field, cell + 1]
+                + stars[3, cell] * values[field, cell + width]
+            )
+    return result
