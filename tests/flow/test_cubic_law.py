@@ -210,8 +210,8 @@ def test_radii_that_do_not_fit_are_refused(hole, rim):
 
 
 def test_a_wrong_solution_is_refused(monkeypatch):
-    def spoilt(lower, **solving):
-        return lambda right: 1.7 * factorised(lower, **solving)(right)
+    def spoilt(*equations, **solving):
+        return lambda right: 1.7 * factorised(*equations, **solving)(right)
 
     monkeypatch.setattr(red_black, "factorised", spoilt)
     with pytest.raises(FlowNotConverged, match="flow not solved") as refused:
@@ -224,7 +224,7 @@ def test_a_wrong_solution_is_refused(monkeypatch):
 def test_singular_equations_are_refused(cholmod):
     lower = sparse.csc_array(np.tril([[1.0, -1.0], [-1.0, 1.0]]))
     try:
-        found = factorised(lower, cholmod=cholmod)(np.ones((2, 1)))
+        found = factorised(lower, np.arange(2), cholmod=cholmod)(np.ones((2, 1)))
     except ArithmeticError:
         return
     assert not np.isfinite(found).all() or np.abs(found).max() > 1e12

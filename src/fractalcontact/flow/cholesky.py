@@ -22,7 +22,7 @@ def cholmod_is_here() -> bool:
 
 
 def factorised(
-    lower: sparse.csc_array, *, cholmod: bool | None = None
+    lower: sparse.csc_array, order: np.ndarray, *, cholmod: bool | None = None
 ) -> Callable[[np.ndarray], np.ndarray]:
     """Solver of A x = b, A symmetric and positive definite.
 
@@ -30,6 +30,8 @@ def factorised(
     ----------
     lower : (n, n) sparse.csc_array
         Lower triangle of A with its diagonal, each entry once.
+    order : (n,) ndarray
+        Order of elimination of the unknowns, one that leaves little fill-in.
     cholmod : bool, optional
         True solves with CHOLMOD, False with SuperLU; unsaid, CHOLMOD where it is installed.
 
@@ -44,25 +46,28 @@ def factorised(
         If a pivot is not positive: A is singular to the precision of the numbers.
     """
     if cholmod_is_here() if cholmod is None else cholmod:
-        return _by_cholmod(lower)
-    return _by_superlu(lower)
+        return _by_cholmod(lower, order)
+    return _by_superlu(lower, order)
 
 
-def _by_cholmod(lower: sparse.csc_array) -> Callable[[np.ndarray], np.ndarray]:
+def _by_cholmod(lower, order):
     cvxopt, cholmod = import_module("cvxopt"), import_module("cvxopt.cholmod")
     triplets = lower.tocoo()
-    matrix = cvxopt.spmatrix(
-        *(
-            cvxopt.matrix(one[:, np.newaxis].astype(kind))
-            for one, kind in (
-                (triplets.data, float),
-                (triplets.row, np.int64),
-                (triplets.col, np.int64),
-            )
-        ),
-        lower.shape,
+    values, rows, columns, order = (
+        cvxopt.matrix(one[:, np.newaxis].astype(kind))
+        for one, kind in (
+            (triplets.data, float),
+            *((one, np.int64) for one in (triplets.row, triplets.col, order)),
+        )
     )
-    factor = cholmod.symbolic(matrix)
+    matrix = cvxopt.spmatrix(values, rows, columns, lower.shape)
+    # Else it would compare the order with that of AMD, which takes as long as the factor.
+    stated = cholmod.options
+    cholmod.options = {**stated, "nmethods": 1}
+    try:
+        factor = cholmod.symbolic(matrix, p=order)
+    finally:
+        cholmod.options = stated
     cholmod.numeric(matrix, factor)
 
     def solve(right: np.ndarray) -> np.ndarray:
@@ -73,14 +78,21 @@ def _by_cholmod(lower: sparse.csc_array) -> Callable[[np.ndarray], np.ndarray]:
     return solve
 
 
-def _by_superlu(lower: sparse.csc_array) -> Callable[[np.ndarray], np.ndarray]:
-    matrix = lower + sparse.tril(lower, -1, format="csc").T
+def _by_superlu(lower, order):
+    matrix = (lower + sparse.tril(lower, -1, format="csc").T).tocsc()
     try:
-        return splu(
-            matrix.tocsc(),
-            permc_spec="MMD_AT_PLUS_A",
+        factor = splu(
+            matrix[order][:, order],
+            permc_spec="NATURAL",
             diag_pivot_thresh=0.0,
             options={"SymmetricMode": True},
-        ).solve
+        )
     except RuntimeError as error:
         raise ArithmeticError(str(error)) from error
+
+    def solve(right: np.ndarray) -> np.ndarray:
+        solution = np.empty_like(right)
+        solution[order] = factor.solve(right[order])
+        return solution
+
+    return solve

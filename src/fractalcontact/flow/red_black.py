@@ -14,6 +14,9 @@ from .cholesky import factorised
 #: Entry of the lower triangle where two steps (up, left, right, down) lead, -1 above it.
 _ENTRIES = ((-1, -1, -1, -1), (-1, -1, -1, 1), (-1, -1, 0, 2), (-1, 1, 2, 3))
 
+#: Cells of a box that is not dissected further.
+MAX_LEAF = 4
+
 
 class RedBlack:
     """Factorised mass balance of cells in a grid.
@@ -58,7 +61,8 @@ class RedBlack:
         starts, rows, values = _mesh(self._stars, ends, self._over, number, nx + 2)
         n = self._red.size
         lower = sparse.csc_array((values, rows, starts), shape=(n, n))
-        self._solve = factorised(lower, cholmod=cholmod) if n else np.copy
+        order = _dissection(_diamonds(*np.divmod(self._red, nx + 2)))
+        self._solve = factorised(lower, order, cholmod=cholmod) if n else np.copy
 
     def solve(self, right: np.ndarray) -> np.ndarray:
         """Solutions (k, ny, nx) of right sides (k, ny, nx); 0 in cells without an equation."""
@@ -70,6 +74,42 @@ class RedBlack:
         values[:, self._red] = self._solve(of_red.T).T
         solution += _inflow(self._stars, values, width) * self._over + values
         return solution.reshape(len(right), -1, width)[:, 1:-1, 1:-1]
+
+
+def _diamonds(rows, columns):
+    """Numbers of red cells on the grid of their two diagonals, -1 where there is none."""
+    down, up = (rows + columns) // 2, (rows - columns) // 2
+    down, up = down - down.min(initial=0), up - up.min(initial=0)
+    numbers = np.full((down.max(initial=0) + 1, up.max(initial=0) + 1), -1)
+    numbers[down, up] = np.arange(rows.size)
+    return numbers
+
+
+@njit(cache=True)
+def _dissection(numbers):
+    """Nested dissection (George 1973): numbers of both halves of a grid, then of the line between.
+
+    Eliminated cells are neighbours on the diagonals as well as across them: one line separates.
+    """
+    order = np.empty((numbers >= 0).sum(), np.int64)
+    place, boxes = order.size, [(0, numbers.shape[0], 0, numbers.shape[1])]
+    while boxes:
+        top, bottom, left, right = boxes.pop()
+        height, width = bottom - top, right - left
+        if height * width > MAX_LEAF and height >= width:
+            middle = (top + bottom) // 2
+            boxes += [(top, middle, left, right), (middle + 1, bottom, left, right)]
+            top, bottom = middle, middle + 1
+        elif height * width > MAX_LEAF:
+            middle = (left + right) // 2
+            boxes += [(top, bottom, left, middle), (top, bottom, middle + 1, right)]
+            left, right = middle, middle + 1
+        for row in range(top, bottom):
+            for column in range(left, right):
+                if numbers[row, column] >= 0:
+                    place -= 1
+                    order[place] = numbers[row, column]
+    return order
 
 
 @njit(cache=True)
