@@ -183,6 +183,16 @@ def test_masked_cells_are_walls():
     assert plane_flow(masked, (1, 1)).transmissivity == pytest.approx(0.5**3 / 12 / 3)
 
 
+@pytest.mark.parametrize("shape", [(1, 1), (1, 6), (6, 1), (2, 3)])
+def test_windows_of_few_cells_are_solved_whichever_cells_are_eliminated(shape):
+    gap = np.full(shape, 0.3)
+    assert plane_flow(gap, (1, 2)).hydraulic_aperture == pytest.approx(0.3)
+    gap[np.add.outer(*map(np.arange, shape)) % 2 == 0] = 0
+    # A window as long as a cell: each open cell joins both ends.
+    through = 0.3**3 / 2 if shape == (6, 1) else 0
+    assert 12 * plane_flow(gap, (1, 2)).transmissivity == pytest.approx(through)
+
+
 @pytest.mark.full
 def test_a_long_strip_is_solved():
     gap = 1 + 0.3 * contact_field(1, (16384, 64))
