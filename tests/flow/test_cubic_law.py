@@ -248,4 +248,4 @@ def test_a_path_is_found_where_labels_join_both_ends():
         ends = rng.random((2, *shape)) < 0.02
         ends[0, :, 0] = ends[1, :, -1] = True
         joined = network.joined_cells(opened, *ends).any()
-        assert network.are_joined(opened, *ends) == joined
+        assert network.are_joined(opened, True, *ends) == joined

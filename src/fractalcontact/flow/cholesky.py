@@ -52,20 +52,14 @@ def factorised(
 
 def _by_cholmod(lower, order):
     cvxopt, cholmod = import_module("cvxopt"), import_module("cvxopt.cholmod")
-    triplets = lower.tocoo()
-    values, rows, columns, order = (
-        cvxopt.matrix(one[:, np.newaxis].astype(kind))
-        for one, kind in (
-            (triplets.data, float),
-            *((one, np.int64) for one in (triplets.row, triplets.col, order)),
-        )
-    )
-    matrix = cvxopt.spmatrix(values, rows, columns, lower.shape)
+    rows, starts = (one.astype(np.int64, copy=False) for one in (lower.indices, lower.indptr))
+    columns = np.repeat(np.arange(order.size), np.diff(starts))
+    matrix = cvxopt.spmatrix(lower.data, rows, columns, lower.shape)
     # Else it would compare the order with that of AMD, which takes as long as the factor.
     stated = cholmod.options
     cholmod.options = {**stated, "nmethods": 1}
     try:
-        factor = cholmod.symbolic(matrix, p=order)
+        factor = cholmod.symbolic(matrix, p=cvxopt.matrix(order))
     finally:
         cholmod.options = stated
     cholmod.numeric(matrix, factor)

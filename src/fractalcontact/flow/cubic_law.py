@@ -196,7 +196,7 @@ def _steps_to_circles(y, x, spacing, hole, rim):
 
 def _checked(gap: ArrayLike) -> np.ndarray:
     """Gap with closed cells in place of missing ones."""
-    opening = np.asarray(gap, float)
+    opening = np.ascontiguousarray(gap, float)
     known = opening[~np.isnan(opening)]
     if opening.ndim != 2 or not known.size or not ((known >= 0) & (known < np.inf)).all():
         raise ValueError("gap: expected (ny, nx) finite numbers of 0 (contact) and more, or NaN")
@@ -218,19 +218,17 @@ def critical_gap(gap: np.ndarray, inlet: np.ndarray, outlet: np.ndarray) -> floa
     float
         mm, to a part in 2^12 of the number of cells, from below.
     """
-    values = np.sort(gap[gap > 0], axis=None)
-    if not are_joined(gap > 0, inlet, outlet):
+    values = gap[gap > 0]
+    if not values.size or not are_joined(gap, values.min(), inlet, outlet):
         return 0.0
-    low, high = 0, values.size
     for _ in range(_BISECTIONS):
-        middle = (low + high) // 2
-        if middle == low:
+        middle = values.size // 2
+        if middle == 0:
             break
-        if are_joined(gap >= values[middle], inlet, outlet):
-            low = middle
-        else:
-            high = middle
-    return float(values[low])
+        values.partition(middle)
+        joined = are_joined(gap, values[middle], inlet, outlet)
+        values = values[middle:] if joined else values[:middle]
+    return float(values.min())
 
 
 def _conductivity(gap, inlet, outlet):

@@ -101,30 +101,38 @@ def joined_cells(open_cells: np.ndarray, inlet: np.ndarray, outlet: np.ndarray) 
     return joined[labels]
 
 
-def are_joined(open_cells: np.ndarray, inlet: np.ndarray, outlet: np.ndarray) -> bool:
-    """True if a path of open cells joins both ends, as :func:`joined_cells` takes them."""
-    # A rim of closed cells: then each cell has four neighbours.
-    rimmed = (np.pad(cells, 1).ravel() for cells in (open_cells, inlet, outlet))
-    return _reached(*rimmed, open_cells.shape[1] + 2)
-
-
 @njit(cache=True)
-def _reached(unseen, inlet, outlet, width):
-    """True if a path of cells, which become seen, leads from the inlet to the outlet."""
-    waiting = np.empty(unseen.size, np.int64)
-    for start in range(unseen.size):
-        n = 0
-        if unseen[start] and inlet[start]:
-            unseen[start], waiting[0], n = False, start, 1
-        while n:
-            n -= 1
-            cell = waiting[n]
-            if outlet[cell]:
-                return True
-            for other in (cell - width, cell - 1, cell + 1, cell + width):
-                if unseen[other]:
-                    unseen[other], waiting[n] = False, other
+def are_joined(opening: np.ndarray, level: float, inlet: np.ndarray, outlet: np.ndarray) -> bool:
+    """True if a path of cells no lower than a level joins both ends.
+
+    Parameters
+    ----------
+    opening : (ny, nx) ndarray
+    level : float
+    inlet, outlet : (ny, nx) bool ndarray
+        Cells at each end.
+    """
+    ny, width = opening.shape[0], opening.shape[1] + 2
+    # A rim of closed cells: then each cell has four neighbours.
+    unseen = np.zeros((ny + 2) * width, np.bool_)
+    waiting, n = np.empty(opening.size, np.int64), 0
+    for row in range(ny):
+        for column in range(width - 2):
+            if opening[row, column] >= level:
+                cell = (row + 1) * width + column + 1
+                unseen[cell] = not inlet[row, column]
+                if inlet[row, column]:
+                    waiting[n] = cell
                     n += 1
+    while n:
+        n -= 1
+        cell = waiting[n]
+        if outlet[cell // width - 1, cell % width - 1]:
+            return True
+        for other in (cell - width, cell - 1, cell + 1, cell + width):
+            if unseen[other]:
+                unseen[other], waiting[n] = False, other
+                n += 1
     return False
 
 

@@ -66,14 +66,12 @@ class RedBlack:
 
     def solve(self, right: np.ndarray) -> np.ndarray:
         """Solutions (k, ny, nx) of right sides (k, ny, nx); 0 in cells without an equation."""
-        width = self._shape[1] + 2
-        padded = np.pad(right, ((0, 0), (1, 1), (1, 1))).reshape(len(right), -1)
-        solution = padded * self._over
-        of_red = (padded + _inflow(self._stars, solution, width))[:, self._red]
-        values = np.zeros_like(padded)
-        values[:, self._red] = self._solve(of_red.T).T
-        solution += _inflow(self._stars, values, width) * self._over + values
-        return solution.reshape(len(right), -1, width)[:, 1:-1, 1:-1]
+        padded = np.pad(right, ((0, 0), (1, 1), (1, 1)))
+        values = padded.reshape(len(right), -1)
+        _spread(self._stars, self._over, values, self._shape[1] + 2)
+        values[:, self._red] = self._solve(values[:, self._red].T).T
+        _recover(self._stars, self._over, values, self._shape[1] + 2)
+        return padded[:, 1:-1, 1:-1]
 
 
 def _diamonds(rows, columns):
@@ -145,15 +143,26 @@ def _mesh(stars, ends, over, number, width):
 
 
 @njit(cache=True)
-def _inflow(stars, values, width):
-    """Sum over the four neighbours of conductance times value."""
-    result = np.zeros_like(values)
-    for field in range(len(values)):
-        for cell in range(width, values.shape[1] - width):
-            result[field, cell] = (
-                stars[0, cell] * values[field, cell - width]
-                + stars[1, cell] * values[field, cell - 1]
-                + stars[2, cell] * values[field, cell + 1]
-                + stars[3, cell] * values[field, cell + width]
+def _spread(stars, over, values, width):
+    """Add the right side of each black cell to those of its neighbours, by the star-mesh transform."""
+    for field in values:
+        for cell in np.flatnonzero(over):
+            part = over[cell] * field[cell]
+            field[cell - width] += stars[0, cell] * part
+            field[cell - 1] += stars[1, cell] * part
+            field[cell + 1] += stars[2, cell] * part
+            field[cell + width] += stars[3, cell] * part
+
+
+@njit(cache=True)
+def _recover(stars, over, values, width):
+    """Solution of each black cell, in place of its right side, from those of its neighbours."""
+    for field in values:
+        for cell in np.flatnonzero(over):
+            field[cell] = over[cell] * (
+                field[cell]
+                + stars[0, cell] * field[cell - width]
+                + stars[1, cell] * field[cell - 1]
+                + stars[2, cell] * field[cell + 1]
+                + stars[3, cell] * field[cell + width]
             )
-    return result
