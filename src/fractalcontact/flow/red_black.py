@@ -144,7 +144,7 @@ def _mesh(stars, ends, over, number, width):
 
 @njit(cache=True)
 def _spread(stars, over, values, width):
-    """Add the right side of each black cell to those of its neighbours, by the star-mesh transform."""
+    """Add the right sides of the black cells, as the star-mesh transform does, to those around."""
     for field in values:
         for cell in np.flatnonzero(over):
             part = over[cell] * field[cell]
