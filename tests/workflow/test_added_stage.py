@@ -10,7 +10,7 @@ pytestmark = [pytest.mark.workflow, pytest.mark.full]
 
 
 def test_the_stage_of_the_recipe_is_made(project):
-    entry, module, rule = (
+    entry, module, row = (
         block.text for block in blocks("docs/extending_stages.md") if block.heading == "A stage"
     )
     package = project / "src/fractalcontact"
@@ -20,8 +20,10 @@ def test_the_stage_of_the_recipe_is_made(project):
     assert text.count(before) == 1
     table.write_text(text.replace(before, f"    {entry.strip()}\n{before}"), encoding="utf-8")
     (package / "mechanics/summits.py").write_text(module, encoding="utf-8")
-    with open(project / "workflow/rules/contact.smk", "a", encoding="utf-8") as file:
-        file.write(f"\n\n{rule}")
+    rules = project / "workflow/rules/contact.smk"
+    jobs = rules.read_text(encoding="utf-8")
+    assert jobs.count("STAGE_JOBS = {") == 1
+    rules.write_text(jobs.replace("STAGE_JOBS = {", f"STAGE_JOBS = {{\n{row}"), encoding="utf-8")
     study = small_study(project)
     write_scan(project, "rock")
     target = "results/test/summits/rock.nc"

@@ -1,5 +1,7 @@
 # How fast and how exact the solver, other solvers and cheaper models are: `snakemake accuracy`, a
 # study of its own (config/accuracy.yaml), no part of `all`.
+from typing import NamedTuple
+
 from contactlab.methods import registry
 from fractalcontact.study.figure_list import accuracy_figures_of
 
@@ -20,30 +22,47 @@ if "stability" in config:
     from contactlab.accuracy.hard_problems import KINDS
 PARTS = list(range(0, len(KINDS), KINDS_A_JOB))
 ACCURACY_FIGURES = accuracy_figures_of(config)
-ACCURACY_FILES = {}
-#: What is measured job by job, by the file that it gives: a function and its arguments.
-MEASURED = {
-    **{
-        f"convergence/{problem}": (
-            "contactlab.accuracy.stage:convergence",
-            {"problem": problem, "recipe": config["convergence"]},
-        )
-        for problem in PROBLEMS
-    },
-    **{
-        f"stability/{part}": (
-            "contactlab.accuracy.stability:stability",
-            {
-                "kinds": list(KINDS)[part : part + KINDS_A_JOB],
-                "draws": config["stability"]["draws"],
-            },
-        )
-        for part in PARTS
-    },
+
+
+class Measurement(NamedTuple):
+    """Function, what it is given, and the files of others that it takes."""
+
+    function: str
+    arguments: dict
+    inputs: dict = {}
+
+
+#: By the file that is made. Of hard problems a job judges some kinds, another all together.
+STABILITY = {
+    f"stability/{part}": Measurement(
+        "contactlab.accuracy.stability:stability",
+        {"kinds": list(KINDS)[part : part + KINDS_A_JOB], "draws": config["stability"]["draws"]},
+    )
+    for part in PARTS
+}
+MEASURED = STABILITY | {
+    f"convergence/{problem}": Measurement(
+        "contactlab.accuracy.stage:convergence",
+        {"problem": problem, "recipe": config["convergence"]},
+    )
+    for problem in PROBLEMS
 }
 if PARTS:
-    draws = {"draws": config["stability"]["elimination"]}
-    MEASURED["elimination/scenes"] = ("contactlab.accuracy.elimination:elimination", draws)
+    MEASURED["stability/scenes"] = Measurement(
+        stages.STAGES["stability"].function,
+        {},
+        {"parts": [f"{RESULTS}/{part}.nc" for part in STABILITY]},
+    )
+    MEASURED["elimination/scenes"] = Measurement(
+        stages.STAGES["elimination"].function,
+        {"draws": config["stability"]["elimination"]},
+    )
+if TIMED:
+    MEASURED["speed_growth/surfaces"] = Measurement(
+        stages.STAGES["speed_growth"].function,
+        {"error": config["speed"]["error"]},
+        {"problems": expand(f"{RESULTS}/speed/{{case}}.nc", case=TIMED)},
+    )
 
 
 # A clock is running: the job takes all cores, so that no other runs beside it.
@@ -69,27 +88,9 @@ rule speed:
         "../scripts/speed.py"
 
 
-rule speed_growth:
-    input:
-        problems=expand(rules.speed.output[0], case=TIMED),
-    output:
-        f"{RESULTS}/speed_growth/surfaces.nc",
-    log:
-        f"{RESULTS}/logs/speed_growth.log",
-    benchmark:
-        f"{RESULTS}/benchmarks/speed_growth.tsv"
-    resources:
-        **fixed(1000, 10),
-    params:
-        **calling("speed_growth"),
-        error=config.get("speed", {}).get("error"),
-    message:
-        "speed: time over the size of surfaces"
-    script:
-        "../scripts/stage.py"
-
-
 rule measurement:
+    input:
+        unpack(lambda wc: MEASURED[wc.measured].inputs),
     output:
         f"{RESULTS}/{{measured}}.nc",
     log:
@@ -101,8 +102,8 @@ rule measurement:
     resources:
         **fixed(1500, 60),
     params:
-        function=lambda wc: MEASURED[wc.measured][0],
-        arguments=lambda wc: MEASURED[wc.measured][1],
+        function=lambda wc: MEASURED[wc.measured].function,
+        arguments=lambda wc: MEASURED[wc.measured].arguments,
         peers=lambda wc: PEERS if "stability" in wc.measured else [],
         code=code("stage", "contactlab/accuracy", "contactlab/methods"),
     message:
@@ -111,33 +112,11 @@ rule measurement:
         "../scripts/stage.py"
 
 
-rule stability:
-    input:
-        parts=expand(rules.measurement.output[0], measured=[f"stability/{part}" for part in PARTS]),
-    output:
-        f"{RESULTS}/stability/scenes.nc",
-    log:
-        f"{RESULTS}/logs/stability.log",
-    benchmark:
-        f"{RESULTS}/benchmarks/stability.tsv"
-    resources:
-        **fixed(1000, 10),
-    params:
-        **calling("stability"),
-    message:
-        "stability: verdicts over all hard test problems"
-    script:
-        "../scripts/stage.py"
-
-
-if TIMED:
-    ACCURACY_FILES["speed"] = expand(rules.speed.output[0], case=TIMED)
-    ACCURACY_FILES["speed_growth"] = rules.speed_growth.output[0]
-if PROBLEMS:
-    ACCURACY_FILES["convergence"] = [f"{RESULTS}/convergence/{problem}.nc" for problem in PROBLEMS]
-if PARTS:
-    ACCURACY_FILES["stability"] = rules.stability.output[0]
-    ACCURACY_FILES["elimination"] = f"{RESULTS}/elimination/scenes.nc"
+ACCURACY_FILES = {"speed": expand(rules.speed.output[0], case=TIMED)} if TIMED else {}
+for measured in MEASURED:
+    if measured not in STABILITY:
+        stage = measured.partition("/")[0]
+        ACCURACY_FILES.setdefault(stage, []).append(f"{RESULTS}/{measured}.nc")
 
 
 rule accuracy_atlas:
@@ -165,12 +144,7 @@ use rule study_figures as accuracy_figures with:
     input:
         rules.accuracy_atlas.output[0],
     output:
-        *[picture(name, folder="", category="accuracy") for name in ACCURACY_FIGURES],
-        *expand(
-            f"{RESULTS}/figures/{{name}}.{{ending}}",
-            name=ACCURACY_FIGURES,
-            ending=("svg", "csv", "txt"),
-        ),
+        *drawings(ACCURACY_FIGURES, folder="", category="accuracy"),
         undrawn=f"{RESULTS}/undrawn_of_accuracy.txt",
     log:
         f"{RESULTS}/logs/accuracy_figures.log",
@@ -209,7 +183,7 @@ def accuracy_pictures(wildcards):
         *rules.accuracy_drawn.output,
         *rules.accuracy_atlas.output,
         *rules.accuracy_atlas.input,
-        *rules.stability.input,
+        *(f"{RESULTS}/{part}.nc" for part in STABILITY),
     ]
 
 

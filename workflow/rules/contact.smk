@@ -1,5 +1,7 @@
 # Contact solves, the costly part. One job takes one specimen, and as many directions, offsets and
-# resolutions as the study's `grain` says, with all their loads.
+# resolutions as the study's `grain` says, with all their loads. And what follows from the states.
+from collections.abc import Callable, Collection
+from typing import NamedTuple
 
 
 def parts_of(specimen):
@@ -20,8 +22,8 @@ def part_of(wildcards, key):
 
 rule contact:
     input:
-        specimens=rules.specimen.output.specimens,
-        joints=rules.specimen.output.joints,
+        specimen=rules.specimen.output.specimens,
+        joint=rules.specimen.output.joints,
     output:
         f"{RESULTS}/contact/{{specimen}}/{{directions}}.{{offsets}}.{{resolutions}}.nc",
     log:
@@ -31,17 +33,18 @@ rule contact:
     resources:
         **asked_for("contact"),
     params:
+        function=stages.CONTACT,
         settings=settings_read_by(stages.CONTACT),
         directions=lambda wc: SETTINGS[wc.specimen].contact_directions[
             slice(*part_of(wc, "directions"))
         ],
-        offsets=lambda wc: part_of(wc, "offsets"),
+        offsets=lambda wc: slice(*part_of(wc, "offsets")),
         resolutions=lambda wc: SETTINGS[wc.specimen].resolutions[slice(*part_of(wc, "resolutions"))],
-        code=code("contact"),
+        code=code("stage", "fractalcontact/mechanics/sweep.py"),
     message:
         "{wildcards.specimen}: contact states, part {wildcards.directions}.{wildcards.offsets}.{wildcards.resolutions}"
     script:
-        "../scripts/contact.py"
+        "../scripts/stage.py"
 
 
 def contact_parts_of(specimen):
@@ -50,113 +53,9 @@ def contact_parts_of(specimen):
     return expand(rules.contact.output, specimen=specimen, **counts)
 
 
-# What follows from the states of a specimen: closure curves and laws of area; box counts, dimension
-# and clusters of every contact domain, what changes with resolution, lacunarity and generalised
-# dimensions of the domains that are drawn; and the error of what is published, by source, for which
-# some states are solved again on finer grids and in other windows. Seconds of work, so one job.
-rule analysis:
-    input:
-        **inputs_of("closure"),
-        parts=lambda wc: contact_parts_of(wc.specimen),
-    output:
-        **outputs_of("closure"),
-    log:
-        f"{RESULTS}/logs/analysis/{{specimen}}.log",
-    benchmark:
-        f"{RESULTS}/benchmarks/analysis/{{specimen}}.tsv"
-    resources:
-        **asked_for("analysis"),
-    params:
-        **calling("closure"),
-    message:
-        "{wildcards.specimen}: closure, contact domains and their errors"
-    script:
-        "../scripts/stage.py"
-
-
-# Realisations of an embedded specimen, its seed and those that follow, under a few loads.
-rule ensemble:
-    input:
-        **inputs_of("ensemble"),
-    output:
-        **outputs_of("ensemble"),
-    log:
-        f"{RESULTS}/logs/ensemble/{{specimen}}.log",
-    benchmark:
-        f"{RESULTS}/benchmarks/ensemble/{{specimen}}.tsv"
-    wildcard_constraints:
-        specimen=alternation(REALISATIONS),
-    # As long as the sub-windows of a specimen, and the report waits for it.
-    priority: 1
-    resources:
-        **asked_for("ensemble", states=lambda wc: REALISATIONS[wc.specimen]),
-    params:
-        **calling("ensemble"),
-        recipe=lambda wc: recipe_named(known(wc)),
-        realisations=lambda wc: REALISATIONS[wc.specimen],
-    message:
-        "{wildcards.specimen}: its ensemble"
-    script:
-        "../scripts/stage.py"
-
-
-# Flow through the gaps of the solved states: sparse equations of all open cells, so a job of its own.
-rule flow:
-    input:
-        **inputs_of("flow"),
-        parts=lambda wc: contact_parts_of(wc.specimen),
-    output:
-        **outputs_of("flow"),
-    log:
-        f"{RESULTS}/logs/flow/{{specimen}}.log",
-    benchmark:
-        f"{RESULTS}/benchmarks/flow/{{specimen}}.tsv"
-    resources:
-        **asked_for("flow"),
-    params:
-        **calling("flow"),
-    message:
-        "{wildcards.specimen}: aperture and transmissivity"
-    script:
-        "../scripts/stage.py"
-
-
-# The report: strength, size laws, and what the paper says compared with what was found. They alone
-# read friction angles, wall strengths and labels, and solve nothing.
-rule strength:
-    input:
-        unpack(ensemble_of),
-        **inputs_of("windows"),
-    output:
-        **outputs_of("windows"),
-    log:
-        f"{RESULTS}/logs/strength/{{specimen}}.log",
-    benchmark:
-        f"{RESULTS}/benchmarks/strength/{{specimen}}.tsv"
-    wildcard_constraints:
-        specimen=kind_of(SLIDING, FLAT),
-    resources:
-        **asked_for("strength"),
-    params:
-        **calling("windows"),
-    message:
-        "{wildcards.specimen}: strength, size laws and the paper's statements"
-    script:
-        "../scripts/stage.py"
-
-
-# Strength needs sliding.
-use rule strength as size_laws_against_plane with:
-    output:
-        **outputs_of("windows", [SPECIMEN]),
-    log:
-        f"{RESULTS}/logs/strength/{{specimen}}.log",
-    benchmark:
-        f"{RESULTS}/benchmarks/strength/{{specimen}}.tsv"
-    wildcard_constraints:
-        specimen=kind_of(FLAT, SLIDING),
-    message:
-        "{wildcards.specimen}: size laws and the paper's statements"
+def contact_parts(wildcards):
+    """Files of the contact jobs of a specimen, as an input of stages that go through them."""
+    return {"parts": contact_parts_of(wildcards.specimen)}
 
 
 def strength_of(wildcards):
@@ -165,27 +64,106 @@ def strength_of(wildcards):
     return {"strength": SLIDING_FILES["strength"]} if sliding else {}
 
 
-# Laboratory tests beside the computed curves. Little is solved: another hardness, or what has
-# crushed under the largest pressure of a test.
-rule measured:
-    input:
-        unpack(strength_of),
-        **inputs_of("measured"),
-    output:
-        **outputs_of("measured"),
-    log:
-        f"{RESULTS}/logs/measured/{{specimen}}.log",
-    benchmark:
-        f"{RESULTS}/benchmarks/measured/{{specimen}}.tsv"
-    resources:
-        **asked_for("analysis"),
-    params:
-        **calling("measured"),
-        digests=lambda wc: test_digests(known(wc)),
-    message:
-        "{wildcards.specimen}: laboratory tests beside computed curves"
-    script:
-        "../scripts/stage.py"
+class StageJob(NamedTuple):
+    """Job that calls the function of stages of a specimen, and what it has beside their entries."""
+
+    #: One of its stages, and what the terminal says of it.
+    stage: str
+    words: str
+    resources: dict
+    #: Pattern of the specimens that have it, further inputs and parameters, stages that it makes.
+    specimens: str = "[^/]+"
+    inputs: Callable = lambda wildcards: {}
+    extra: dict = {}
+    grains: Collection = GRAINS
+    priority: int = 0
+
+
+#: By the name of their rule.
+STAGE_JOBS = {
+    # Closure curves and laws of area; box counts, dimension and clusters of every contact domain;
+    # and the error of what is published, by source, for which some states are solved again on finer
+    # grids and in other windows. Seconds of work, so one job.
+    "analysis": StageJob(
+        "closure",
+        "closure, contact domains and their errors",
+        asked_for("analysis"),
+        inputs=contact_parts,
+    ),
+    # Sparse equations of all open cells, so a job of its own.
+    "flow": StageJob(
+        "flow", "aperture and transmissivity", asked_for("flow"), inputs=contact_parts
+    ),
+    # The longest of a specimen, and the others wait for it.
+    "windows": StageJob(
+        "window_states",
+        "contact states of sub-windows, and eq. 6",
+        asked_for("windows"),
+        priority=1,
+    ),
+    # Its seed and those that follow. As long as the sub-windows, and the report waits for it.
+    "ensemble": StageJob(
+        "ensemble",
+        "its ensemble",
+        asked_for("ensemble", states=lambda wc: REALISATIONS[wc.specimen]),
+        specimens=alternation(REALISATIONS),
+        extra={
+            "recipe": lambda wc: recipe_named(known(wc)),
+            "realisations": lambda wc: REALISATIONS[wc.specimen],
+        },
+        priority=1,
+    ),
+    # The report. These two alone read friction angles, wall strengths and labels, and solve nothing.
+    "strength": StageJob(
+        "windows",
+        "strength, size laws and the paper's statements",
+        asked_for("strength"),
+        specimens=kind_of(SLIDING, FLAT),
+        inputs=ensemble_of,
+    ),
+    "size_laws_against_plane": StageJob(
+        "windows",
+        "size laws and the paper's statements",
+        asked_for("strength"),
+        specimens=kind_of(FLAT, SLIDING),
+        inputs=ensemble_of,
+        grains=[SPECIMEN],
+    ),
+    # Little is solved: another hardness, or what has crushed under the largest pressure of a test.
+    "measured": StageJob(
+        "measured",
+        "laboratory tests beside computed curves",
+        asked_for("analysis"),
+        inputs=strength_of,
+        extra={"digests": lambda wc: test_digests(known(wc))},
+    ),
+}
+for NAME, JOB in STAGE_JOBS.items():
+
+    rule:
+        name:
+            NAME
+        input:
+            unpack(JOB.inputs),
+            **inputs_of(JOB.stage),
+        output:
+            **outputs_of(JOB.stage, JOB.grains),
+        log:
+            f"{RESULTS}/logs/{NAME}/{{specimen}}.log",
+        benchmark:
+            f"{RESULTS}/benchmarks/{NAME}/{{specimen}}.tsv"
+        wildcard_constraints:
+            specimen=JOB.specimens,
+        priority: JOB.priority
+        resources:
+            **JOB.resources,
+        params:
+            **calling(JOB.stage),
+            **JOB.extra,
+        message:
+            f"{{wildcards.specimen}}: {JOB.words}"
+        script:
+            "../scripts/stage.py"
 
 
 # A measured map of contact goes straight to the analysis of domains.

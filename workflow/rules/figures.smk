@@ -22,25 +22,15 @@ def drawn_of(opposite):
     return campaign.drawn_of(config, SPECIMENS, opposite)
 
 
-def pictures(opposite):
-    """The PNG files of a specimen, each with its place in the report."""
-    return [picture(name) for name in drawn_of(opposite)]
-
-
-def picture(name, folder="{specimen}/", category="{specimen}"):
-    """The PNG file of a figure, with its title for the report."""
-    labels = {"figure": name, "title": all_figures()[name].title}
-    # On a line of its own, `report` would be read as the directive.
-    return report(f"{RESULTS}/figures/{folder}{name}.png", category=category, labels=labels)
-
-
-def beside(opposite):
-    """Vector drawings, numbers and captions that go with the pictures."""
-    return expand(
-        f"{RESULTS}/figures/{{{{specimen}}}}/{{name}}.{{ending}}",
-        name=drawn_of(opposite),
-        ending=("svg", "csv", "txt"),
-    )
+def drawings(names, folder="{specimen}/", category="{specimen}"):
+    """Files of figures: each PNG with its title for the report, and what goes with it."""
+    files = {name: f"{RESULTS}/figures/{folder}{name}" for name in names}
+    found = [f"{file}.{ending}" for file in files.values() for ending in ("svg", "csv", "txt")]
+    for name, file in files.items():
+        labels = {"figure": name, "title": all_figures()[name].title}
+        # At the beginning of a line, `report` would be read as the directive.
+        found.append(report(f"{file}.png", category=category, labels=labels))
+    return found
 
 
 def configuration_of(wildcards):
@@ -59,57 +49,43 @@ UNDRAWN = f"{RESULTS}/undrawn/{{specimen}}.txt"
 
 # The figures of a specimen are drawn from an atlas of its own, made just before: so a new scan draws
 # only its own, one bad scan does not keep the others from theirs, and the atlas of the study and
-# these are made side by side.
-rule figures:
-    input:
-        unpack(stages_of),
-    output:
-        *pictures("match"),
-        *beside("match"),
-        **({"row": SPECIMEN_ROW} if IN_PARTS else {}),
-        atlas=SPECIMEN_ATLAS,
-        undrawn=UNDRAWN,
-    log:
-        f"{RESULTS}/logs/figures/{{specimen}}.log",
-    benchmark:
-        f"{RESULTS}/benchmarks/figures/{{specimen}}.tsv"
-    wildcard_constraints:
-        specimen=kind_of(SLIDING, FLAT),
-    # After what the atlas of the study waits for: else, at the end, one core joins it and draws from
-    # it alone while the others have nothing to do. Of a campaign nobody wants to wait that long.
-    priority: 0 if IN_PARTS else -2
-    resources:
-        **asked_for("figures" if drawn_of("match") else "atlas_part"),
-    params:
-        names=drawn_of("match"),
-        folder=lambda wildcards: f"{RESULTS}/figures/{wildcards.specimen}",
-        configuration=configuration_of,
-        code=code("figures", "fractalcontact/figures"),
-    message:
-        "{wildcards.specimen}: figures"
-    script:
-        "../scripts/figures.py"
+# these are made side by side. A surface against a plane does not slide: it has fewer figures.
+for NAME, OPPOSITE, HERE, OTHERS in (
+    ("figures", "match", SLIDING, FLAT),
+    ("figures_against_plane", "flat", FLAT, SLIDING),
+):
 
-
-# A surface against a plane does not slide: fewer figures, else the same.
-use rule figures as figures_against_plane with:
-    output:
-        *pictures("flat"),
-        *beside("flat"),
-        **({"row": SPECIMEN_ROW} if IN_PARTS else {}),
-        atlas=SPECIMEN_ATLAS,
-        undrawn=UNDRAWN,
-    log:
-        f"{RESULTS}/logs/figures/{{specimen}}.log",
-    benchmark:
-        f"{RESULTS}/benchmarks/figures/{{specimen}}.tsv"
-    wildcard_constraints:
-        specimen=kind_of(FLAT, SLIDING),
-    params:
-        names=drawn_of("flat"),
-        folder=lambda wildcards: f"{RESULTS}/figures/{wildcards.specimen}",
-        configuration=configuration_of,
-        code=code("figures", "fractalcontact/figures"),
+    rule:
+        name:
+            NAME
+        input:
+            unpack(stages_of),
+        output:
+            *drawings(drawn_of(OPPOSITE)),
+            **({"row": SPECIMEN_ROW} if IN_PARTS else {}),
+            atlas=SPECIMEN_ATLAS,
+            undrawn=UNDRAWN,
+        log:
+            f"{RESULTS}/logs/figures/{{specimen}}.log",
+        benchmark:
+            f"{RESULTS}/benchmarks/figures/{{specimen}}.tsv"
+        wildcard_constraints:
+            specimen=kind_of(HERE, OTHERS),
+        # After what the atlas of the study waits for: else, at the end, one core joins it and draws
+        # from it alone while the others have nothing to do. Of a campaign nobody wants to wait that
+        # long.
+        priority: 0 if IN_PARTS else -2
+        resources:
+            **asked_for("figures" if drawn_of("match") else "atlas_part"),
+        params:
+            names=drawn_of(OPPOSITE),
+            folder=lambda wildcards: f"{RESULTS}/figures/{wildcards.specimen}",
+            configuration=configuration_of,
+            code=code("figures", "fractalcontact/figures"),
+        message:
+            "{wildcards.specimen}: figures"
+        script:
+            "../scripts/figures.py"
 
 
 # What only the whole study shows.
@@ -117,12 +93,7 @@ rule study_figures:
     input:
         rules.atlas.output[0],
     output:
-        *[picture(name, folder="", category="study") for name in STUDY_FIGURES],
-        *expand(
-            f"{RESULTS}/figures/{{name}}.{{ending}}",
-            name=STUDY_FIGURES,
-            ending=("svg", "csv", "txt"),
-        ),
+        *drawings(STUDY_FIGURES, folder="", category="study"),
         undrawn=f"{RESULTS}/undrawn_of_study.txt",
     log:
         f"{RESULTS}/logs/study_figures.log",

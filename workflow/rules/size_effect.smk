@@ -1,29 +1,3 @@
-# The size effect of a specimen.
-
-
-# States of sub-windows, and the direct test of eq. 6. Laws of size are made of them by the rule
-# `strength`, so that a friction angle solves nothing again.
-rule windows:
-    input:
-        **inputs_of("window_states"),
-    output:
-        **outputs_of("window_states"),
-    log:
-        f"{RESULTS}/logs/windows/{{specimen}}.log",
-    benchmark:
-        f"{RESULTS}/benchmarks/windows/{{specimen}}.tsv"
-    # The longest of a specimen, and the others wait for it.
-    priority: 1
-    resources:
-        **asked_for("windows"),
-    params:
-        **calling("window_states"),
-    message:
-        "{wildcards.specimen}: contact states of sub-windows, and eq. 6"
-    script:
-        "../scripts/stage.py"
-
-
 # The decisive experiment: surfaces of one class a job, minutes each, in any order; small classes
 # share a job.
 SIZE_JOBS = size_jobs(config["size_effect"]) if "size_effect" in config else {}
