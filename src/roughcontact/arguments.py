@@ -86,10 +86,6 @@ def whole_number(value: Any, name: str, *, least: int, most: int) -> int:
     least, most : int
         The smallest and the largest allowed.
 
-    Returns
-    -------
-    int
-
     Raises
     ------
     ValueError

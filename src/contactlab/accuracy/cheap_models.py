@@ -68,10 +68,6 @@ def bearing_area(
     hardness : float, optional
         MPa: every node in contact carries it. Without it the force is not defined: NaN.
 
-    Returns
-    -------
-    CheapState
-
     Raises
     ------
     ValueError
@@ -129,10 +125,6 @@ def winkler(
         w, mm, from first touch. Either this or ``force``.
     force : float, optional
         N.
-
-    Returns
-    -------
-    CheapState
 
     Raises
     ------

@@ -39,10 +39,6 @@ _NEARLY = 0.9
 def largest_off_diagonal(space: HalfSpace) -> float:
     """Largest entry of K^-1 off its diagonal, relative to the diagonal entry of its row.
 
-    Parameters
-    ----------
-    space : HalfSpace
-
     Returns
     -------
     float

@@ -39,10 +39,6 @@ def hard_problem(kind: str, draw: int) -> HardProblem:
     kind : str
         A key of `KINDS`.
     draw : int
-
-    Returns
-    -------
-    HardProblem
     """
     number = list(KINDS).index(kind)
     generator = np.random.default_rng([number, draw])

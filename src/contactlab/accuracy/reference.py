@@ -244,10 +244,6 @@ def problems_of(recipe: Mapping[str, Any]) -> dict[str, ReferenceProblem]:
     ----------
     recipe : mapping
         ``sizes`` (nodes per side), ``hurst``, ``contact`` (fractions of the nodes) and ``seed``.
-
-    Returns
-    -------
-    dict
     """
     problems: dict[str, ReferenceProblem] = {}
     for size in sorted(recipe["sizes"]):

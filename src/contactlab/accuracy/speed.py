@@ -281,10 +281,6 @@ def errors_of(
     reference : Reference
     dimension : float
         Delta_sigma of the reference's contact domain.
-
-    Returns
-    -------
-    dict
     """
     exact = reference.state
     same = np.array_equal(state.in_contact, exact.in_contact)

@@ -113,10 +113,6 @@ def join(parts: Sequence[xr.Dataset]) -> xr.Dataset:
     ----------
     parts : sequence of xr.Dataset
         From `stability`, of different kinds.
-
-    Returns
-    -------
-    xr.Dataset
     """
     whole = xr.concat(parts, "kind", data_vars="minimal")
     return whole.sel(kind=[kind for kind in KINDS if kind in whole["kind"]])

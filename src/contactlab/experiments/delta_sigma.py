@@ -314,10 +314,6 @@ def summary(result: xr.Dataset) -> str:
     ----------
     result : xr.Dataset
         From :func:`dimension_test`.
-
-    Returns
-    -------
-    str
     """
     rows = []
     for dimension in result["dimension"].values:

@@ -201,10 +201,6 @@ def measured_state(
         What the method counts as its work.
     hardness : float
         Largest pressure, MPa: where it is reached the surfaces may overlap, but not part.
-
-    Returns
-    -------
-    ContactState
     """
     if np.count_nonzero(pressure) * pressure.size <= LARGEST_SUM:
         displacement = sum_displacement(space, pressure)

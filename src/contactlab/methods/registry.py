@@ -183,10 +183,6 @@ class Method:
         height : (ny, nx) array_like
             mm.
         space : HalfSpace
-
-        Returns
-        -------
-        PublicCode
         """
         return self._module.set_up(height, space, **self.options)
 
@@ -195,12 +191,7 @@ class Method:
         return import_module(f"{__package__}.{self.module}")
 
     def takes(self, space: "HalfSpace") -> bool:
-        """True if the window of a half-space is one that the method knows.
-
-        Parameters
-        ----------
-        space : HalfSpace
-        """
+        """True if the window of a half-space is one that the method knows."""
         if self.windows == "any":
             return True
         (ny, nx), (dy, dx) = space.shape, space.spacing
@@ -242,10 +233,6 @@ class Method:
 
 def declared(path: Path | str) -> list[Method]:
     """The methods that a file declares, read from its text.
-
-    Parameters
-    ----------
-    path : path-like
 
     Returns
     -------

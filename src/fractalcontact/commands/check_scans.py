@@ -252,10 +252,6 @@ def _shown(error, scan):
 def table_lines(checked: Checked) -> list[str]:
     """Lines of the table for one specimen.
 
-    Parameters
-    ----------
-    checked : Checked
-
     Returns
     -------
     list of str

@@ -81,10 +81,6 @@ def reach_disk(folders: Iterable[Path | str]) -> None:
 def sweep(folder: Path | str) -> list[Path]:
     """Remove half-written files of killed runs, while nothing writes there.
 
-    Parameters
-    ----------
-    folder : path-like
-
     Returns
     -------
     list of pathlib.Path

@@ -159,10 +159,6 @@ def check(results: Path | str, digest: Callable[[Path], str] = sha256) -> Checke
     results : path-like
     digest : callable
         From a path to its SHA-256: that of a :class:`Digests` to save time.
-
-    Returns
-    -------
-    Checked
     """
     results = Path(results)
     checked = Checked([], [], [], [])

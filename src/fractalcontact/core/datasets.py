@@ -56,9 +56,5 @@ def labelled_dataset(
     coords : mapping, optional
         As ``xr.Dataset`` takes them.
     attrs : mapping, optional
-
-    Returns
-    -------
-    xr.Dataset
     """
     return xr.Dataset(labelled(table, values), coords=coords, attrs=attrs)

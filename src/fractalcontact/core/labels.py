@@ -6,16 +6,7 @@ from collections.abc import Iterable
 
 
 def cf_attrs(units: str, long_name: str) -> dict[str, str]:
-    """Attributes of a variable, named as the CF conventions have them.
-
-    Parameters
-    ----------
-    units, long_name : str
-
-    Returns
-    -------
-    dict
-    """
+    """Attributes of a variable, named as the CF conventions have them."""
     return {"units": units, "long_name": long_name}
 
 
@@ -27,10 +18,6 @@ def printable(text: object, longest: int | None = None) -> str:
     text : str
     longest : int, optional
         Characters.
-
-    Returns
-    -------
-    str
     """
     text = "".join(c if c.isprintable() else ascii(c)[1:-1] for c in str(text))
     if longest is None or len(text) <= longest:
@@ -94,12 +81,7 @@ def plain(
 
 
 def loads_of(some: int, total: int) -> str:
-    """Number of loads at which something is so, in words: "no load", "3 of 7 loads", "every load".
-
-    Parameters
-    ----------
-    some, total : int
-    """
+    """Loads at which something is so, in words: "no load", "3 of 7 loads", "every load"."""
     if some in (0, total):
         return "every load" if some else "no load"
     return f"{some} of {total} loads"

@@ -25,13 +25,7 @@ _VERSIONS = "made_with"
 
 
 def write(dataset: xr.Dataset, path: Path | str) -> None:
-    """Write a dataset as netCDF-4, compressed, whole or not at all, with the versions in use.
-
-    Parameters
-    ----------
-    dataset : xr.Dataset
-    path : path-like
-    """
+    """Write a dataset as netCDF-4, compressed, whole or not at all, with the versions in use."""
     marked = dataset.assign_attrs({_VERSIONS: json.dumps(versions())})
     with atomic_write(path) as temporary:
         marked.to_netcdf(temporary, engine="netcdf4", encoding=encoding(dataset))
@@ -73,10 +67,6 @@ def encoding(dataset: xr.Dataset, digits: int | None = None) -> dict[Any, dict[s
         Significant decimal digits that are kept of floats in single precision; all by default. The
         netCDF library rounds the bits behind them (granular bit rounding) and says so in an
         attribute of the variable.
-
-    Returns
-    -------
-    dict
 
     Notes
     -----

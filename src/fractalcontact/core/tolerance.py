@@ -20,10 +20,6 @@ def tolerance(accuracy: Mapping[str, float]) -> float:
     ----------
     accuracy : dict
         ``closure`` as a share of it, ``delta_sigma`` as it is.
-
-    Returns
-    -------
-    float
     """
     return min(
         SHARE_OF_CLOSURE * accuracy["closure"],

@@ -18,10 +18,6 @@ def departs(departure: Departure) -> bool:
     """Departure of a domain from a null model, by significance and by margin.
 
     With thousands of nodes in contact local slopes that differ by 0.002 do so significantly.
-
-    Parameters
-    ----------
-    departure : Departure
     """
     return differs(departure.p) and departure.size >= NEARLY
 

@@ -201,10 +201,6 @@ def departure_from_draws(curve: np.ndarray, draws: np.ndarray) -> Departure:
 def paired_departure(domain: SlopeCurve, other: SlopeCurve) -> tuple[Estimate, Departure]:
     """Local slopes of a domain less those of another one of as many nodes in the same window.
 
-    Parameters
-    ----------
-    domain, other : SlopeCurve
-
     Returns
     -------
     difference : Estimate

@@ -305,10 +305,6 @@ def _secant(curve: LoadCurve) -> np.ndarray:
 def counting_error(curve: LoadCurve) -> np.ndarray:
     """Error from the number of contacts, half-width at 95 %.
 
-    Parameters
-    ----------
-    curve : LoadCurve
-
     Returns
     -------
     (quantity, normal_force) ndarray

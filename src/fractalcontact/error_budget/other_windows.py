@@ -96,11 +96,6 @@ def other_composites(
 ) -> tuple[list[tuple[np.ndarray, float]], float]:
     """Composite topographies of other windows at an offset, with their heights at zero offset.
 
-    Parameters
-    ----------
-    loading : JointLoading
-    cells : int
-
     Returns
     -------
     composites : list of ((ny, nx) ndarray, float)

@@ -182,10 +182,6 @@ def refine(curve: LoadCurve, settings: ContactSettings, asked: float | None) -> 
     asked : float or None
         Error of a closure that the study asks for, a fraction; None where it requests all states.
 
-    Returns
-    -------
-    Refinement
-
     Raises
     ------
     NotConverged

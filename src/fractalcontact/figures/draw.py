@@ -127,10 +127,6 @@ def draw_figures(
     folder : path-like
     names : sequence of str
         From :func:`study.figure_list.figures_of`.
-
-    Returns
-    -------
-    Drawn
     """
     return _draw(read_atlas(atlas_path), specimen, folder, names)
 
@@ -147,10 +143,6 @@ def draw_study_figures(
     folder : path-like
     names : sequence of str
         From :func:`study.figure_list.study_figures_of`.
-
-    Returns
-    -------
-    Drawn
     """
     # To read the stages that none of them draws takes long.
     needs = {stage for name in names for stage in all_figures()[name].needs}

@@ -17,10 +17,6 @@ _STEPS = 0.75
 def read_test(test: MeasuredTest) -> Curve:
     """Readings of a test.
 
-    Parameters
-    ----------
-    test : MeasuredTest
-
     Returns
     -------
     Curve

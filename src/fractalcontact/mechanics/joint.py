@@ -254,11 +254,6 @@ _CORRELATION = {
 def describe_joint(specimen: xr.Dataset, settings: SpecimenSettings) -> xr.Dataset:
     """Offsets, rigid dilatancy and composite topographies of a specimen.
 
-    Parameters
-    ----------
-    specimen : xr.Dataset
-    settings : SpecimenSettings
-
     Returns
     -------
     xr.Dataset

@@ -153,12 +153,7 @@ def _place(pressure, verdict, limits):
 
 
 def material_limits(material: Material) -> Limits:
-    """Limits of the elastic model of a material: its hardness, its strength, or usual strengths.
-
-    Parameters
-    ----------
-    material : Material
-    """
+    """Limits of the elastic model of a material: its hardness, its strength, or usual strengths."""
     hardness, strength = float(material.hardness), float(material.joint_wall_strength)
     if np.isfinite(hardness):
         return Limits(HARDNESS, hardness, hardness, hardness, hardness)

@@ -77,10 +77,6 @@ def numerical_error(quantity: str, values: ArrayLike, edge: ArrayLike = 0.0) -> 
     edge : (...) array_like
         The values' part that depends on the cells at the edge of contact: see Notes.
 
-    Returns
-    -------
-    NumericalError
-
     Notes
     -----
     Where the changes from s to s/2 and from s/2 to s/4 have one sign and the second is smaller,
@@ -116,10 +112,6 @@ def closure_error(
         As for :func:`numerical_error`, mm.
     rise : (...) array_like
         By how much the summit of the surface is above the highest node at s, mm.
-
-    Returns
-    -------
-    NumericalError
 
     Notes
     -----

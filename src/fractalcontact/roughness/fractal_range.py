@@ -91,10 +91,6 @@ def find_fractal_range(curve: Curve, spacing: float) -> FractalRange:
     spacing : float
         Between the nodes of the profiles, mm.
 
-    Returns
-    -------
-    FractalRange
-
     Notes
     -----
     Strips of profiles that stand out from the others (`SPIKY`) are left out first. Least squares of

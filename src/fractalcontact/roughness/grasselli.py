@@ -39,10 +39,6 @@ def grasselli(heights: np.ndarray, spacing: tuple[float, float], direction: str)
     direction : {"E", "N", "W", "S"}
         Where the upper block slides: what rises that way faces it.
 
-    Returns
-    -------
-    Grasselli
-
     Notes
     -----
     Two triangles a cell, of both diagonals half a weight each, so that no diagonal is preferred.

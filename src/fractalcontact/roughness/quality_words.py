@@ -129,12 +129,7 @@ def suspect_words(specimen: xr.Dataset) -> str:
 
 
 def overlap_words(specimen: xr.Dataset, quality: xr.Dataset) -> str:
-    """Clause on the overlap of two faces as scanned; "" for one face.
-
-    Parameters
-    ----------
-    specimen, quality : Dataset
-    """
+    """Clause on the overlap of two faces as scanned; "" for one face."""
     if "overlap_cells" not in quality:
         return ""
     record = json.loads(specimen.attrs.get("registration", "{}"))
@@ -153,12 +148,7 @@ def overlap_words(specimen: xr.Dataset, quality: xr.Dataset) -> str:
 
 
 def cells_words(specimen: xr.Dataset, quality: xr.Dataset) -> str:
-    """A clause on cells missing, outlying, filled and suspicious.
-
-    Parameters
-    ----------
-    specimen, quality : Dataset
-    """
+    """A clause on cells missing, outlying, filled and suspicious."""
     missing = [f"{plain(100 * share, 2)} %" for share in quality["missing_share"].values]
     words = [f"{', '.join(missing)} of the cells missing"]
     if "outlier_count" in specimen.attrs:
@@ -172,10 +162,6 @@ def cells_words(specimen: xr.Dataset, quality: xr.Dataset) -> str:
 
 def statements(specimen: xr.Dataset, quality: xr.Dataset) -> dict[str, str]:
     """Clauses on a scan, as attributes of the stage ``quality``.
-
-    Parameters
-    ----------
-    specimen, quality : Dataset
 
     Returns
     -------

@@ -46,10 +46,6 @@ def read_confined(path: Path, options: ScanOptions) -> RawScan:
         A regular file.
     options : ScanOptions
 
-    Returns
-    -------
-    RawScan
-
     Raises
     ------
     InputError

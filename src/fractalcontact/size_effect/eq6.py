@@ -266,10 +266,6 @@ def summary(result: xr.Dataset) -> str:
     ----------
     result : xr.Dataset
         From :func:`size_test`.
-
-    Returns
-    -------
-    str
     """
     measured = np.isfinite(Estimate.read(result, "area_exponent").low)
     if not measured.any():

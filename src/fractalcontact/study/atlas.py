@@ -210,12 +210,6 @@ def read_variables(
 ) -> Iterator[tuple[str, xr.Dataset]]:
     """Some variables of a stage, of one specimen after the other.
 
-    Parameters
-    ----------
-    path : path-like
-    stage : str
-    names : list of str
-
     Yields
     ------
     str

@@ -17,14 +17,6 @@ _MAX_VALUES = 100_000
 def read_study(path: Path | str) -> dict:
     """A study's own file, or its schema: all of YAML, since its user wrote it.
 
-    Parameters
-    ----------
-    path : path-like
-
-    Returns
-    -------
-    dict
-
     Raises
     ------
     InputError

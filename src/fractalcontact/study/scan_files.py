@@ -149,10 +149,6 @@ def list_scans(
 def folder_notes(folder: Path | str) -> list[str]:
     """Notes on the names in a folder: files passed over, pairs that are none.
 
-    Parameters
-    ----------
-    folder : path-like
-
     Returns
     -------
     list of str

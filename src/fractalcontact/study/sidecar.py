@@ -57,10 +57,6 @@ def sidecar_of_matrix(spacing: float) -> dict[str, str]:
 def read_yaml(path: Path | str) -> dict:
     """Mapping in a YAML file.
 
-    Parameters
-    ----------
-    path : path-like
-
     Returns
     -------
     dict
@@ -119,10 +115,6 @@ def unreadable(path: Path | str, error: yaml.YAMLError) -> InputError:
     ----------
     path : path-like
     error : yaml.YAMLError
-
-    Returns
-    -------
-    InputError
     """
     if isinstance(error, yaml.MarkedYAMLError):
         line = f"line {error.problem_mark.line + 1}: " if error.problem_mark else ""

@@ -4,9 +4,10 @@ The rules of the workflow, the atlas and the tests read this table. It names fun
 so that reading it imports none of them: on a cluster every job reads the workflow.
 
 To add a stage: an entry here; its function, which takes its settings and, by their names, the
-datasets of the stages it needs; a row of STAGE_JOBS; a test. Its dataset then stands in the atlas. In a module
-of its own in `stages` it makes no other stage out of date. It gets the settings that the class in
-its signature names, and no others: a change of one that it does not read makes nothing of it again.
+datasets of the stages it needs; a row of ``STAGE_JOBS`` in workflow/rules/contact.smk; a test. Its
+dataset then stands in the atlas. In a module of its own in `stages` it makes no other stage out of
+date. It gets the settings that the class in its signature names, and no others: a change of one
+that it does not read makes nothing of it again.
 """
 
 import ast

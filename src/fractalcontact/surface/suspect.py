@@ -49,10 +49,6 @@ def find_suspects(scans: list[xr.DataArray]) -> Suspects:
     scans : list of DataArray (y, x)
         Heights on one grid, the lower face first, as `scan.read_faces` gives them.
 
-    Returns
-    -------
-    Suspects
-
     Notes
     -----
     A cell of one face is a spike where it stands off the median of its eight neighbours by more

@@ -151,10 +151,6 @@ class ActiveSetMethod:
             Fewest iterations, even of a start within tolerance; fewer only where violations are
             no larger than SINGLE_PRECISION_FLOOR.
 
-        Returns
-        -------
-        Solution
-
         Raises
         ------
         ValueError

@@ -95,12 +95,7 @@ class LoadCase:
     level: int = 0
 
     def coarser(self) -> "LoadCase":
-        """The same on a grid twice as coarse.
-
-        Returns
-        -------
-        LoadCase
-        """
+        """The same on a grid twice as coarse."""
         return replace(
             self,
             space=self.space.coarser(2),
@@ -110,12 +105,7 @@ class LoadCase:
         )
 
     def problem(self) -> Problem:
-        """The problem on the whole window.
-
-        Returns
-        -------
-        Problem
-        """
+        """The problem on the whole window."""
         clearance = self.topography.clearance(self.level).ravel() / self.length
         return Problem(self.space, clearance, self.load, self.by_force, self.bounds)
 
@@ -196,24 +186,13 @@ class Restricted:
 
 
 def may_restrict(space: HalfSpace, rtol: float) -> bool:
-    """True if the window is so large, and the tolerance such, that candidates may be worth while.
-
-    Parameters
-    ----------
-    space : HalfSpace
-    rtol : float
-    """
+    """True if the window is so large, and the tolerance such, that candidates may pay."""
     large = min(space.shape) >= MIN_WINDOW
     return large and MIN_RTOL <= rtol < MARGIN - 1 and multipole_suits(space)
 
 
 def solve_nested(case: LoadCase, rtol: float) -> tuple[Problem, Solution]:
     """Cold solve by nested iteration, on candidates wherever that takes less time.
-
-    Parameters
-    ----------
-    case : LoadCase
-    rtol : float
 
     Returns
     -------

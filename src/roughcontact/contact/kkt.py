@@ -96,10 +96,6 @@ def coarser_load(load: float, by_force: bool) -> float:
     ----------
     load, by_force
         As of `Problem`.
-
-    Returns
-    -------
-    float
     """
     return load / 2 if by_force else load
 
@@ -179,10 +175,6 @@ def kkt_residual(
         p, K p and c at every node.
     closure : float
     bounds : Bounds
-
-    Returns
-    -------
-    KKTResidual
 
     Raises
     ------

@@ -31,10 +31,6 @@ COARSE_RTOL, COARSE_ITERATIONS = 2e-2, 1
 def nested_iteration_start(problem: Problem) -> np.ndarray:
     """Pressure to start from: the solution on the grid twice as coarse, prolonged.
 
-    Parameters
-    ----------
-    problem : Problem
-
     Returns
     -------
     (n,) ndarray

@@ -119,10 +119,6 @@ def loaded_state(contact: ContactState) -> BranchState:
     ----------
     contact : ContactState
         On heights that nothing has pressed in before, under its largest load so far.
-
-    Returns
-    -------
-    BranchState
     """
     held, yielded = np.zeros(contact.space.shape), np.zeros(contact.space.shape, bool)
     return _branch_state(LOAD, contact, contact.closure, held, yielded, contact.hardness)

@@ -142,10 +142,6 @@ def preconditioner(space: HalfSpace) -> Preconditioner:
     ----------
     space : HalfSpace
         This very object, not one equal to it.
-
-    Returns
-    -------
-    Preconditioner
     """
     kept, key = _THREAD.kept, id(space)
     of, inverse = kept.get(key, (None, None))

@@ -25,11 +25,6 @@ from .kkt import FORCE_ROUNDING, Iterate, Problem
 def closure_of_step(problem: Problem, iterate: Iterate) -> float:
     """Closure for judging the active set of an iterate.
 
-    Parameters
-    ----------
-    problem : Problem
-    iterate : Iterate
-
     Returns
     -------
     float

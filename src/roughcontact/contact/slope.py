@@ -51,10 +51,6 @@ def secant_slope(state: Any, solve_contact: Callable[..., Any] | None) -> Slope:
     solve_contact : callable or None
         The solver that it is of; no value without.
 
-    Returns
-    -------
-    Slope
-
     Raises
     ------
     NotConverged

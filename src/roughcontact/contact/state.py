@@ -163,12 +163,7 @@ class ContactState:
         return Operator(self.space), between
 
     def without_before(self) -> "ContactState":
-        """The same state without the earlier states of its extrapolation.
-
-        Returns
-        -------
-        ContactState
-        """
+        """The same state without the earlier states of its extrapolation."""
         state = copy.copy(self)
         vars(state)["_before"] = None
         return state

@@ -49,10 +49,6 @@ class Topography:
     def height(self, level: int = 0) -> np.ndarray:
         """Heights of the highest of each 2^level x 2^level nodes, mm, in their own precision.
 
-        Parameters
-        ----------
-        level : int
-
         Returns
         -------
         (my, mx) ndarray

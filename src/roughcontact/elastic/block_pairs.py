@@ -66,10 +66,6 @@ class MultipoleLevels:
     def pairs(self, separation: int) -> list[tuple[np.ndarray, np.ndarray]]:
         """Pairs of blocks that act on each other, for every level.
 
-        Parameters
-        ----------
-        separation : int
-
         Returns
         -------
         list of (batches, chunks)

@@ -214,10 +214,6 @@ class HalfSpace:
 
         Made once and kept; read only.
 
-        Parameters
-        ----------
-        side : int
-
         Returns
         -------
         (my, mx) ndarray
@@ -270,10 +266,6 @@ class HalfSpace:
         ----------
         factor : int
             From 1.
-
-        Returns
-        -------
-        HalfSpace
 
         Raises
         ------

@@ -14,17 +14,7 @@ MAX_NAME, MAX_NOTE = 60, 400
 
 
 def history(specimen: xr.Dataset, faces: Sequence[str]) -> list[str]:
-    """Paragraphs on the file of each face, and on the processing of both.
-
-    Parameters
-    ----------
-    specimen : xr.Dataset
-    faces : sequence of str
-
-    Returns
-    -------
-    list of str
-    """
+    """Paragraphs on the file of each face, and on the processing of both."""
     paragraphs = [_file_words(specimen, face) for face in faces]
     return [*paragraphs, _faces_words(specimen)]
 
