@@ -148,9 +148,11 @@ _TRIALS: dict[str, tuple[str | tuple[str, ...], str, str]] = {
 }
 
 
-def richardson_trials(
-    cases: int, cells: tuple[float, float], *, seed: int = 0, rtol: float = 1e-7
-) -> xr.Dataset:
+#: Tolerance of the solves, far below the errors of the grid.
+_RTOL = 1e-7
+
+
+def richardson_trials(cases: int, cells: tuple[float, float], *, seed: int = 0) -> xr.Dataset:
     """Trials of Richardson's extrapolation: values within their own error bar of the exact one.
 
     Every case has its own place of the centre among the nodes and its own, not whole, number of
@@ -162,7 +164,6 @@ def richardson_trials(
     cells : (float, float)
         Fewest and most cells of the finest spacing across the contact radius.
     seed : int
-    rtol : float
 
     Returns
     -------
@@ -179,7 +180,7 @@ def richardson_trials(
         # The centre is a place, the same on every grid.
         errors = np.array(
             [
-                [_ERRORS[problem](ratio / k, centre / k, rtol) for k in (1, 2, 4)]
+                [_ERRORS[problem](ratio / k, centre / k, _RTOL) for k in (1, 2, 4)]
                 for ratio, centre in zip(ratios, centres, strict=True)
             ]
         )

@@ -147,24 +147,22 @@ def beyond(found: Exponent, predicted: Exponent) -> Exponent:
     return Exponent.about(value, error, half)
 
 
-def size_verdict(exponent: Exponent, bound: float = NO_EFFECT) -> str:
+def size_verdict(exponent: Exponent) -> str:
     """Verdict on an exponent over the side as a size effect.
 
     Parameters
     ----------
     exponent : Exponent
-    bound : float, optional
-        Exponents smaller than this are of no consequence.
 
     Returns
     -------
     str
-        No size effect where the whole interval lies within the bound, a size effect where it
+        No size effect where the whole interval lies within `NO_EFFECT`, a size effect where it
         excludes zero and is not within the bound, else undetermined.
     """
     if not np.isfinite(exponent.error):
         return OPEN
-    if max(abs(exponent.low), abs(exponent.high)) < bound:
+    if max(abs(exponent.low), abs(exponent.high)) < NO_EFFECT:
         return FLAT
     return EFFECT if exponent.low > 0 or exponent.high < 0 else OPEN
 
@@ -173,7 +171,6 @@ def joint_verdict(
     at_v: Sequence[Exponent],
     at_fraction: Sequence[Exponent],
     predicted: Sequence[Exponent],
-    bound: float = NO_EFFECT,
 ) -> str:
     """Verdict on the strength of a class: its size effect, and of what.
 
@@ -183,8 +180,6 @@ def joint_verdict(
         Of tau/sigma_0 over the side at equal v, one a load.
     at_fraction, predicted : sequence of Exponent
         At equal v/b, and what v alone makes of it, one a load and fraction.
-    bound : float, optional
-        As of :func:`size_verdict`.
 
     Returns
     -------
@@ -195,14 +190,14 @@ def joint_verdict(
         undetermined.
     """
     rest = [beyond(*pair) for pair in zip(at_fraction, predicted, strict=True)]
-    verdicts = [size_verdict(one, bound) for one in at_v]
-    scaled = [size_verdict(one, bound) for one in at_fraction]
-    if EFFECT in verdicts or EFFECT in [size_verdict(one, bound) for one in rest]:
+    verdicts = [size_verdict(one) for one in at_v]
+    scaled = [size_verdict(one) for one in at_fraction]
+    if EFFECT in verdicts or EFFECT in [size_verdict(one) for one in rest]:
         return OF_B
     if not verdicts or set(verdicts) != {FLAT}:
         return OPEN
     if scaled and set(scaled) == {FLAT}:
         return FLAT
-    by_v = [size_verdict(one, bound) for one in predicted]
+    by_v = [size_verdict(one) for one in predicted]
     explained = [pair == (EFFECT, EFFECT) for pair in zip(scaled, by_v, strict=True)]
     return OF_V if any(explained) else OPEN

@@ -78,17 +78,13 @@ class Estimate:
     scale: Scale = SIZE
 
     @classmethod
-    def read(
-        cls, table: Any, name: str, *, unit: str = "", reason: Any = "", scale: Scale = SIZE
-    ) -> Self:
+    def read(cls, table: Any, name: str, *, reason: Any = "", scale: Scale = SIZE) -> Self:
         """Estimate of this name in a dataset, a table or one row of a table.
 
         Parameters
         ----------
         table : xr.Dataset, pd.DataFrame, pd.Series or mapping of str to array_like
         name : str
-        unit : str, optional
-            That its columns end in.
         reason : str or array_like of str, optional
         scale : Scale, optional
 
@@ -97,7 +93,7 @@ class Estimate:
         KeyError
             Where the value or an end is missing.
         """
-        value, low, high = (np.asarray(table[of])[()] for of in names_of(name, unit))
+        value, low, high = (np.asarray(table[of])[()] for of in names_of(name))
         return cls(value, low, high, reason=reason, scale=scale)
 
     @classmethod

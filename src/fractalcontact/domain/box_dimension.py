@@ -406,17 +406,15 @@ def _slopes_of_parts(x: np.ndarray, y: np.ndarray) -> np.ndarray:
     return np.sum(dx * dy, axis=1) / np.sum(dx * dx, axis=1)
 
 
-def local_slopes(
-    r: np.ndarray, count: np.ndarray, octaves: float = 1.0
-) -> tuple[np.ndarray, np.ndarray]:
-    """Local slope -d log N / d log r of box counts, over this many octaves.
+def local_slopes(r: np.ndarray, count: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Local slope -d log N / d log r of box counts, over an octave.
+
+    Neighbouring sizes are so close that whole counts make their slopes jump.
 
     Parameters
     ----------
     r, count : (k,) array_like
         Ascending box sides and N(r).
-    octaves : float
-        Neighbouring sizes are so close that whole counts make their slopes jump.
 
     Returns
     -------
@@ -424,16 +422,10 @@ def local_slopes(
         Geometric middle of each pair of sides, and the slope between them.
     """
     r, count = np.asarray(r, float), np.asarray(count, float)
-    start, end = spans(r, octaves)
+    start = np.flatnonzero(2 * r <= r[-1] * (1 + 1e-9)) if r.size else np.empty(0, int)
+    end = np.searchsorted(r, 2 * r[start] * (1 - 1e-9))
     slope = -np.log(count[end] / count[start]) / np.log(r[end] / r[start])
     return np.sqrt(r[start] * r[end]), slope
-
-
-def spans(r: np.ndarray, octaves: float = 1.0) -> tuple[np.ndarray, np.ndarray]:
-    """Places (start, end) of the box sides between which :func:`local_slopes` are taken."""
-    step = 2.0**octaves
-    start = np.flatnonzero(step * r <= r[-1] * (1 + 1e-9)) if r.size else np.empty(0, int)
-    return start, np.searchsorted(r, step * r[start] * (1 - 1e-9))
 
 
 def no_dimension(r: np.ndarray, count: np.ndarray, reason: str) -> BoxDimension:

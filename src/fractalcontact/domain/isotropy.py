@@ -25,8 +25,8 @@ LAG_FIELDS = {
 }
 
 
-def contact_at_lag(domain: np.ndarray, direction: str, lag: int = LAG) -> dict[str, float]:
-    """Probability that a node has contact where another at a lag of `lag` nodes has, by direction.
+def contact_at_lag(domain: np.ndarray, direction: str) -> dict[str, float]:
+    """Probability that a node has contact where another at a lag of `LAG` nodes has, by direction.
 
     Parameters
     ----------
@@ -34,8 +34,6 @@ def contact_at_lag(domain: np.ndarray, direction: str, lag: int = LAG) -> dict[s
         Nodes in contact.
     direction : str
         Where the upper block slides: E or W along x, N or S along y; anything else counts as x.
-    lag : int
-        Nodes between them.
 
     Returns
     -------
@@ -47,7 +45,7 @@ def contact_at_lag(domain: np.ndarray, direction: str, lag: int = LAG) -> dict[s
     along = 0 if direction in ("N", "S") else 1
     found: dict[str, float] = {}
     for way, axis in (("along", along), ("across", 1 - along)):
-        found |= _conditional(domain, axis, lag).columns(f"contact_at_lag_{way}")
+        found |= _conditional(domain, axis, LAG).columns(f"contact_at_lag_{way}")
     return found
 
 

@@ -60,16 +60,13 @@ DELTA_SIGMA_ESTIMATORS = {
 _QUOTED = {name: DELTA_SIGMA_ESTIMATORS[name] for name in ("area", "box")}
 
 
-def size_test(loading: JointLoading[WindowSettings], parts: Sequence[int] = PARTS) -> xr.Dataset:
+def size_test(loading: JointLoading[WindowSettings]) -> xr.Dataset:
     """Size test of a joint: contact against b at equal sigma_0 and at equal sigma*, and eq. 6.
 
     Parameters
     ----------
     loading : JointLoading
         Offsets ascending. Contact is tested at the study's map offset (without one the third).
-    parts : sequence of int
-        Sub-windows along each side; all of those are solved that
-        :func:`size_effect.division.solvable_parts` takes.
 
     Returns
     -------
@@ -115,7 +112,7 @@ def size_test(loading: JointLoading[WindowSettings], parts: Sequence[int] = PART
     def estimate(whole: xr.Dataset, domains: np.ndarray, parts: Sequence[int]) -> xr.Dataset:
         return _dimensions(mapped, whole, domains, parts)
 
-    states, _ = solve_sub_windows(mapped, parts, estimate)
+    states, _ = solve_sub_windows(mapped, PARTS, estimate)
     of_windows = ["nodes", "nodes_error", "interface_closure", "whole_area", "bulk_compliance"]
     result = states.drop_vars([*of_windows, *OF_WINDOWS]).merge(size_law(states))
     result = result.merge(slopes_at_equal_star(states, result.sizes["normal_force"]))
