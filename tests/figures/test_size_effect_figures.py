@@ -78,6 +78,13 @@ def test_exponents_drawn_are_those_of_the_atlas(atlas, test_of):
         of_arm = one[name].sel(arm="S1") if "arm" in one[name].dims else one[name]
         np.testing.assert_allclose(value, of_arm)
     assert set(table["exponent"]) >= {"area_delta", "box_delta", "alpha", "random_delta"}
+    # The bars are those of 95 %, inside the 99 % of the decision.
+    alpha = table[table["exponent"] == "alpha"].set_index(["hurst", "reduced_pressure"])
+    for (hurst, load), row in alpha.iterrows():
+        one = test_of.sel(arm="S1", hurst=hurst, reduced_pressure=load)
+        assert row["value_half_width"] == one["alpha_half_width"]
+        assert 0 < row["value_half_width"] < one["alpha_high"] - one["alpha"]
+    assert "95 % intervals" in drawn(three_exponents, atlas).caption
 
 
 def test_geometry_drawn_is_that_of_the_atlas(atlas, test_of):

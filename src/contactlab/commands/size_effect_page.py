@@ -113,8 +113,8 @@ def _origin(test: xr.Dataset, study: str) -> list[str]:
         wave of {test.attrs["cut_off"]} nodes and a roll-off that is set by itself. This page was
         written by `python -m contactlab.commands.size_effect_page` from the atlas of
         {test.sizes["surface"]} surfaces, the picture from that of its small part in
-        `config/paper.yaml`. Intervals are of 99 %, over surfaces; ± is one standard error. Columns
-        of the tables are loads p/(E\\* h'_rms)."""
+        `config/paper.yaml`. Intervals are of 99 %, over surfaces, those of the picture of 95 %;
+        ± is one standard error. Columns of the tables are loads p/(E\\* h'_rms)."""
     return [*_prose(text.replace("\\\\", "\\")), f"    make STUDY=config/{study}.yaml", ""]
 
 

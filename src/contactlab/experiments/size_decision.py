@@ -15,8 +15,8 @@ from scipy import special
 
 from fractalcontact.core.estimate import Estimate, rows_of
 
-#: Probability covered by the intervals of this experiment.
-PROBABILITY = 0.99
+#: Probability covered by the intervals that decide, and by those that are only shown.
+PROBABILITY, USUAL = 0.99, 0.95
 
 #: An exponent whose whole interval is smaller than this is no size effect.
 NO_EFFECT = 0.02
@@ -37,18 +37,34 @@ UPHELD = "eq. 6 supported"
 
 @dataclass(frozen=True)
 class Exponent(Estimate):
-    """An exponent with its interval over surfaces, of :data:`PROBABILITY`, and standard error."""
+    """An exponent with its interval over surfaces, of :data:`PROBABILITY`.
+
+    ``error`` is its standard error, ``half_width`` half of the interval of :data:`USUAL`.
+    """
 
     error: Any = np.nan
+    half_width: Any = np.nan
 
     @classmethod
-    def about(cls, value: float, error: float, half: float) -> "Exponent":
-        """From half the width of the interval."""
-        return cls(value, value - half, value + half, error=error)
+    def scattered(cls, value: float, error: float, freedom: float) -> "Exponent":
+        """From the standard error and its degrees of freedom, by Student's t."""
+        half, usual = (quantile(freedom, level) * error for level in (PROBABILITY, USUAL))
+        return cls(value, value - half, value + half, error=error, half_width=usual)
+
+    def less(self, other: "Exponent") -> "Exponent":
+        """Difference from an independent one, with the joint interval."""
+        value = self.value - other.value
+        half = float(np.hypot(self.high - self.value, other.high - other.value))
+        error, usual = (
+            float(np.hypot(*(getattr(one, name) for one in (self, other))))
+            for name in ("error", "half_width")
+        )
+        return Exponent(value, value - half, value + half, error=error, half_width=usual)
 
     def columns(self, name: str, unit: str = "") -> dict[str, Any]:
-        """As those of an estimate, and ``NAME_error``."""
-        return {f"{name}_error": self.error} | super().columns(name, unit)
+        """As those of an estimate, ``NAME_error`` and ``NAME_half_width``."""
+        beside = {f"{name}_{of}": getattr(self, of) for of in ("error", "half_width")}
+        return beside | super().columns(name, unit)
 
 
 UNKNOWN = Exponent()
@@ -65,13 +81,14 @@ def columns_of(
 def exponent_rows(name: str, words: str) -> dict[str, tuple[str, str]]:
     """Unit and long name of the variables of an exponent, by their names."""
     level = f"{100 * PROBABILITY:g} %"
-    error = {f"{name}_error": ("1", f"{words}, standard error")}
+    usual = f"{words}, half-width of the {100 * USUAL:g} % interval"
+    error = {f"{name}_error": ("1", f"{words}, standard error"), f"{name}_half_width": ("1", usual)}
     return error | rows_of(name, "1", words, level)
 
 
-def quantile(freedom: float) -> float:
-    """Half the width of an interval of :data:`PROBABILITY` in standard errors, Student's t."""
-    return float(special.stdtrit(max(freedom, 1.0), (1 + PROBABILITY) / 2))
+def quantile(freedom: float, probability: float = PROBABILITY) -> float:
+    """Half the width of an interval in standard errors, Student's t."""
+    return float(special.stdtrit(max(freedom, 1.0), (1 + probability) / 2))
 
 
 def mean_exponent(values: np.ndarray) -> Exponent:
@@ -87,9 +104,7 @@ def mean_exponent(values: np.ndarray) -> Exponent:
     if values.size < 2:
         return UNKNOWN
     error = float(np.std(values, ddof=1) / np.sqrt(values.size))
-    half = quantile(values.size - 1) * error
-    mean = float(values.mean())
-    return Exponent.about(mean, error, half)
+    return Exponent.scattered(float(values.mean()), error, values.size - 1)
 
 
 def size_exponent(sides: np.ndarray, values: np.ndarray) -> Exponent:
@@ -130,8 +145,7 @@ def size_exponent(sides: np.ndarray, values: np.ndarray) -> Exponent:
     of_sides = parts**2 * variance
     error = float(np.sqrt(of_sides.sum()))
     freedom = of_sides.sum() ** 2 / np.sum(of_sides**2 / [group.size - 1 for group in groups])
-    half = quantile(float(freedom)) * error
-    return Exponent.about(value, error, half)
+    return Exponent.scattered(value, error, float(freedom))
 
 
 def paired_exponent(sides: np.ndarray, values: np.ndarray, surfaces: np.ndarray) -> Exponent:

@@ -401,16 +401,9 @@ def _follows(values: Mapping[str, np.ndarray], arm: int, shape) -> bool:
         wanted = [_prediction(values, "area_delta", (j, load)) for j in (0, -1)]
         if not all(np.isfinite(one.error) for one in (*ends, *wanted)):
             return False
-        if not differ(*wanted) or differ(_change(*ends), _change(*wanted)):
+        if not differ(*wanted) or differ(*(of[1].less(of[0]) for of in (ends, wanted))):
             return False
     return True
-
-
-def _change(first: Exponent, second: Exponent) -> Exponent:
-    """Difference of two exponents with its joint interval."""
-    value = second.value - first.value
-    half = float(np.hypot(first.high - first.value, second.high - second.value))
-    return Exponent.about(value, float(np.hypot(first.error, second.error)), half)
 
 
 def summary(result: xr.Dataset) -> str:

@@ -15,7 +15,6 @@ from .size_decision import (
     UNKNOWN,
     Exponent,
     mean_exponent,
-    quantile,
     size_exponent,
 )
 
@@ -59,8 +58,9 @@ def mean_strength(rates: np.ndarray, basic_angle: float) -> Exponent:
     """
     mean = mean_exponent(rates)
     value, low, high = friction_ratio(np.array([mean.value, mean.low, mean.high]), basic_angle)
-    error = float(abs(_slope(mean.value, basic_angle)) * mean.error)
-    return Exponent(float(value), low, high, error=error)
+    lever = abs(_slope(mean.value, basic_angle))
+    error, usual = float(lever * mean.error), float(lever * mean.half_width)
+    return Exponent(float(value), low, high, error=error, half_width=usual)
 
 
 def _slope(rate: float, basic_angle: float) -> float:
@@ -135,16 +135,7 @@ def equal_exponent(sides: np.ndarray, values: np.ndarray) -> Exponent:
     freedom = np.array([group.size - 1 for group in groups.values()])
     # Welch and Satterthwaite; surfaces that are all alike have no scatter and any freedom.
     joint = variance**2 / np.sum(of_sides**2 / freedom) if variance > 0 else freedom.sum()
-    half = quantile(float(joint)) * float(np.sqrt(variance))
-    return Exponent.about(value, float(np.sqrt(variance)), half)
-
-
-def beyond(found: Exponent, predicted: Exponent) -> Exponent:
-    """Exponent less a prediction, with the joint interval."""
-    value = found.value - predicted.value
-    half = float(np.hypot(found.high - found.value, predicted.high - predicted.value))
-    error = float(np.hypot(found.error, predicted.error))
-    return Exponent.about(value, error, half)
+    return Exponent.scattered(value, float(np.sqrt(variance)), float(joint))
 
 
 def size_verdict(exponent: Exponent) -> str:
@@ -189,7 +180,7 @@ def joint_verdict(
         makes a size effect are one, and no other. None where no exponent of either kind is. Else
         undetermined.
     """
-    rest = [beyond(*pair) for pair in zip(at_fraction, predicted, strict=True)]
+    rest = [one.less(of) for one, of in zip(at_fraction, predicted, strict=True)]
     verdicts = [size_verdict(one) for one in at_v]
     scaled = [size_verdict(one) for one in at_fraction]
     if EFFECT in verdicts or EFFECT in [size_verdict(one) for one in rest]:

@@ -23,7 +23,6 @@ from .size_decision import (
     size_exponent,
 )
 from .strength_decision import (
-    beyond,
     equal_exponent,
     friction_ratio,
     joint_verdict,
@@ -320,8 +319,8 @@ def _scaled(
                 one.rates[largest], one.numbers[largest], intervals, basic
             ),
         }
-        exponents["beyond_exponent"] = beyond(
-            exponents["scaled_strength_exponent"], exponents["predicted_exponent"]
+        exponents["beyond_exponent"] = exponents["scaled_strength_exponent"].less(
+            exponents["predicted_exponent"]
         )
         for name, exponent in exponents.items():
             found[name].append(exponent)

@@ -27,7 +27,7 @@ def _world(exponent, seed, scatter=0.05):
 
 
 def _known(value, error=0.01):
-    return Exponent.about(value, error, 3 * error)
+    return Exponent(value, value - 3 * error, value + 3 * error, error=error)
 
 
 @pytest.mark.parametrize("delta", DELTA)
@@ -105,6 +105,21 @@ def test_mean_exponents_have_the_interval_of_student():
     # From a table: t of 0.995 with two degrees of freedom.
     assert found.high - found.value == pytest.approx(9.925 / np.sqrt(3), rel=1e-3)
     assert quantile(1e9) == pytest.approx(2.5758, abs=1e-4)
+    # And t of 0.975 for the half-width that figures show.
+    assert found.half_width == pytest.approx(4.3027 / np.sqrt(3), rel=1e-4)
+
+
+def test_the_difference_of_exponents_has_the_joint_error():
+    first, second = mean_exponent([1.0, 2.0, 3.0]), mean_exponent([0.0, 4.0, 5.0, 7.0])
+    found = first.less(second)
+    assert found.value == first.value - second.value
+    for name in ("error", "half_width"):
+        assert getattr(found, name) ** 2 == pytest.approx(
+            getattr(first, name) ** 2 + getattr(second, name) ** 2
+        )
+    assert found.high - found.value == pytest.approx(
+        np.hypot(first.high - first.value, second.high - second.value)
+    )
 
 
 def test_overall_needs_three_loads_and_the_change_with_h():

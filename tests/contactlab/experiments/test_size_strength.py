@@ -273,7 +273,7 @@ def test_equal_weights_give_the_ordinary_line():
 
 
 def _exponent(value, half):
-    return Exponent.about(value, half / 3, half)
+    return Exponent(value, value - half, value + half, error=half / 3)
 
 
 @pytest.mark.parametrize(

@@ -12,15 +12,13 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 from xarray import DataTree
 
-from fractalcontact.core.estimate import Estimate
 from fractalcontact.figures.kit.caption import caption
 from fractalcontact.figures.kit.drawing import WIDTH, Drawing, colour_of
 from fractalcontact.figures.kit.legends import heading, legends_below, mark
 from fractalcontact.figures.kit.panel import rows
-from fractalcontact.figures.kit.points import reach
 from fractalcontact.figures.kit.titles import letter
 
-from ...experiments.size_decision import NO_EFFECT, PROBABILITY
+from ...experiments.size_decision import NO_EFFECT, USUAL
 from ._reduced_pressure import load_axis
 
 TITLE = "Three exponents that one symbol carried"
@@ -76,7 +74,7 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
     panels[0].set_ylabel("exponent (1)")
     legends_below(figure, *_legend())
     tables = [
-        rows(test, name, exponent=name).rename(
+        rows(test[[name, f"{name}_half_width"]], name, f"{name}_half_width", exponent=name).rename(
             columns=lambda column, name=name: str(column).replace(name, "value")
         )
         for first, *_, nulls in _EXPONENTS
@@ -92,9 +90,9 @@ def _draw_hurst(axes: Axes, one: xr.Dataset) -> None:
     limit = float(one["hurst"]) - 1
     axes.axhline(limit, color=colour_of(1), lw=0.8, ls="-.", zorder=1)
     for i, (name, less, marker, _, nulls) in enumerate(_EXPONENTS):
-        value, low, high = (end - less for end in Estimate.read(one, name).ends)
         style: dict[str, Any] = {"marker": marker, "color": colour_of(i + 1), "zorder": 3}
-        axes.errorbar(load, value, yerr=reach(value, low, high), **style)
+        half = one[f"{name}_half_width"].values
+        axes.errorbar(load, one[name].values - less, yerr=half, **style)
         for null, (line, _) in nulls.items():
             axes.plot(load, one[null].values - less, ls=line, lw=1, color=colour_of(i + 1))
     load_axis(axes, load)
@@ -110,9 +108,9 @@ def _legend() -> list[list[Artist]]:
         column += [mark(color=colour, lw=1, ls=ls, label=of) for ls, of in nulls.values()]
         columns.append(column)
     limit = {"color": colour_of(1), "lw": 0.8, "ls": "-."}
-    columns[0].append(mark(**limit, label="$H-1$, for cut-offs far below the roll-off"))
+    columns[0].append(mark(**limit, label=r"$H-1$, if cut-off $\ll$ roll-off"))
     columns[2].append(Patch(color="0.88", label=f"no size effect: within {NO_EFFECT:g} of 0"))
-    columns[2].append(heading(f"bars: {100 * PROBABILITY:.0f} % intervals"))
+    columns[2].append(heading(f"bars: {100 * USUAL:.0f} % intervals"))
     return columns
 
 
