@@ -6,30 +6,23 @@ SPECIMEN_ROW = f"{RESULTS}/rows/{{specimen}}.nc"
 
 def stages_of(wildcards):
     """Files of all stages that an atlas of one specimen has."""
-    maps = {} if IN_PARTS else MAP_FILES
-    sliding = SLIDING_FILES if wildcards.specimen in SLIDING_NAMES else {}
-    tests = TESTED_FILES if wildcards.specimen in TESTED_NAMES else {}
-    return STAGE_FILES | maps | sliding | tests | ensemble_of(wildcards)
+    return of_specimen(wildcards, *MEMBERS) | ({} if IN_PARTS else MAP_FILES)
 
 
-def atlas_inputs():
-    """What the atlas of the study is made of: all stages, or a row of each specimen."""
-    if IN_PARTS:
-        return {"rows": expand(SPECIMEN_ROW, specimen=SPECIMENS)}
-    specimens = {stage: expand(path, specimen=SPECIMENS) for stage, path in STAGE_FILES.items()}
-    sliding = {stage: expand(path, specimen=SLIDING) for stage, path in SLIDING_FILES.items()}
-    ensembles = {
-        stage: expand(path, specimen=REALISATIONS) for stage, path in ENSEMBLE_FILES.items()
+def files_of_all():
+    """Files of the stages of all specimens, by stage; those of an optional grain where it has any."""
+    return {
+        stage: expand(path, specimen=names)
+        for grain, names in MEMBERS.items()
+        if names or grain in (SPECIMEN, JOINT)
+        for stage, path in files_of(stages.paths_of(grain)).items()
     }
-    tests = {stage: expand(path, specimen=TESTED_NAMES) for stage, path in TESTED_FILES.items()}
-    optional = (ensembles if REALISATIONS else {}) | (tests if TESTED_NAMES else {})
-    return specimens | sliding | optional
 
 
 # All stages, and what the paper says compared with them.
 rule atlas:
     input:
-        **atlas_inputs(),
+        **({"rows": expand(SPECIMEN_ROW, specimen=SPECIMENS)} if IN_PARTS else files_of_all()),
         **MAP_FILES,
         **STUDY_FILES,
     output:

@@ -198,7 +198,6 @@ def settings_read_by(function):
 #: Surfaces against a plane, which cannot slide, and all others.
 FLAT = [name for name in SPECIMENS if not slides(SETTINGS[name].opposite)]
 SLIDING = sorted(set(SPECIMENS) - set(FLAT))
-SLIDING_NAMES = set(SLIDING)
 
 
 def kind_of(some, others):
@@ -212,10 +211,13 @@ REALISATIONS = {
     for name, recipe in config.get("embedded", {}).items()
     if name in SETTINGS and "realisations" in recipe
 }
-
-
-#: Specimens with laboratory tests.
-TESTED_NAMES = [name for name in SPECIMENS if SETTINGS[name].measured]
+#: Specimens that have the stages of a grain: all, those that slide, with an ensemble, with tests.
+MEMBERS = {
+    SPECIMEN: dict.fromkeys(SPECIMENS),
+    JOINT: dict.fromkeys(SLIDING),
+    ENSEMBLE: REALISATIONS,
+    TESTED: dict.fromkeys(name for name in SPECIMENS if SETTINGS[name].measured),
+}
 
 
 #: Whether the atlas has a file a specimen: then nothing asks for all that was made of each of them.
@@ -248,17 +250,10 @@ def calling(stage):
     }
 
 
-#: Files of the stages that every specimen has, of those that only joints that slide have, of those
-#: of an ensemble, and of laboratory tests.
-STAGE_FILES = files_of(stages.paths_of(SPECIMEN))
-SLIDING_FILES = files_of(stages.paths_of(JOINT))
-ENSEMBLE_FILES = files_of(stages.paths_of(ENSEMBLE))
-TESTED_FILES = files_of(stages.paths_of(TESTED))
-
-
-def ensemble_of(wildcards):
-    """Files of the ensemble of a specimen; none where the study wants none."""
-    return ENSEMBLE_FILES if wildcards.specimen in REALISATIONS else {}
+def of_specimen(wildcards, *grains):
+    """Files of the stages of some grains that a specimen has."""
+    here = [grain for grain in grains if wildcards.specimen in MEMBERS[grain]]
+    return files_of(stages.paths_of(*here))
 
 
 # Measured contact maps stand in every atlas, beside the domains computed there.

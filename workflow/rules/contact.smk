@@ -60,8 +60,13 @@ def contact_parts(wildcards):
 
 def strength_of(wildcards):
     """Strength of a joint that slides; none of a surface against a plane."""
-    sliding = wildcards.specimen in SLIDING_NAMES
-    return {"strength": SLIDING_FILES["strength"]} if sliding else {}
+    sliding = wildcards.specimen in MEMBERS[JOINT]
+    return files_of({"strength": stages.STAGES["strength"].path} if sliding else {})
+
+
+def ensemble_of(wildcards):
+    """Files of the ensemble of a specimen; none where the study wants none."""
+    return of_specimen(wildcards, ENSEMBLE)
 
 
 class StageJob(NamedTuple):

@@ -168,8 +168,7 @@ def collect_everything(wildcards):
     if IN_PARTS:
         return made
     return [
-        *expand(list(STAGE_FILES.values()), specimen=SPECIMENS),
-        *expand(list(SLIDING_FILES.values()), specimen=SLIDING),
+        *(path for paths in files_of_all().values() for path in paths),
         *expand(list(rules.embedded.output), specimen=set(SPECIMENS) - set(SCANS)),
         *(path for paths in MAP_FILES.values() for path in paths),
         *expand(rules.size_effect_part.output[0], job=SIZE_JOBS),

@@ -109,9 +109,7 @@ class LogHandler(LogHandlerBase):
 
     def _error(self, record):
         lines = str(record.msg).splitlines() or [""]
-        if len(lines) > 1 and re.fullmatch(
-            r"\w+(?: in (?:rule .*|file \".*\", line \d+))?:", lines[0]
-        ):
+        if len(lines) > 1 and _PLACE.fullmatch(lines[0]):
             del lines[0]
         self.errors.append("\n".join(s for s in lines if not s.startswith('  File "')).strip())
 
