@@ -1,6 +1,6 @@
 """What the recipes add works as it stands: an estimator, a solver, a scan format, a stage.
 
-The figure is drawn in tests/figures, the rule is run in tests/workflow.
+The figure is drawn in tests/figures, the job is run in tests/workflow.
 """
 
 import numpy as np

@@ -39,8 +39,8 @@ NOT_RUN = {
     ): "a caption: tests/figures/test_atlas_examples.py",
     (
         "docs/extending_stages.md",
-        "rule summits:",
-    ): "a rule: run in tests/workflow/test_added_stage.py",
+        '"summits": StageJob(',
+    ): "a row of a rule file: run in tests/workflow/test_added_stage.py",
     (
         "docs/flow.md",
         "python -m fractalcontact.commands.export_aperture",
