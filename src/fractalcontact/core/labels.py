@@ -4,6 +4,9 @@ import math
 import re
 from collections.abc import Iterable
 
+#: Members of an ensemble: of an embedded specimen, and of a scan, which they are not.
+REALISATIONS, TWINS = "realisations", "twins of the scan"
+
 
 def cf_attrs(units: str, long_name: str) -> dict[str, str]:
     """Attributes of a variable, named as the CF conventions have them."""

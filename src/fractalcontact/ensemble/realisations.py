@@ -1,17 +1,18 @@
-"""Contact of an ensemble: realisations of an embedded specimen that differ in their seed alone.
+"""Contact of an ensemble: realisations of an embedded specimen, or twins of a scan.
 
-What one specimen shows may be its own. What is said of specimens of a kind is said of the ensemble:
-of its mean, whose interval tells how well it is known, and of its spread.
+They differ in their seed alone. What one specimen shows may be its own. What is said of specimens
+of a kind is said of the ensemble: of its mean, whose interval tells how well it is known, and of
+its spread. Twins of a scan judge nothing; their spread is the population error of its numbers.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
 import numpy as np
 import xarray as xr
 
 from ..core.datasets import labelled, labelled_dataset
-from ..core.labels import cf_attrs
+from ..core.labels import REALISATIONS, TWINS, cf_attrs
 from ..core.limits import RESOLVED_NODES
 from ..core.settings import EnsembleSettings, Solver
 from ..core.window import cell_side, window_sides
@@ -33,6 +34,7 @@ from ..surface.embedded import embedded_surface
 from ..surface.specimen import make_specimen
 from .null_slopes import NULL_SLOPES, null_slopes
 from .statistics import add_statistics, add_trends
+from .twins import twin_loadings
 
 #: Sub-windows along a side of the window, and how many of each size are solved.
 PARTS, MAX_WINDOWS = (1, 2, 4), 4
@@ -74,12 +76,12 @@ EXPONENTS = {
 def ensemble(
     specimens: xr.Dataset,
     joints: xr.Dataset,
-    recipe: Mapping,
+    recipe: Mapping | None,
     realisations: int,
     settings: EnsembleSettings,
     solver: Solver,
 ) -> xr.Dataset:
-    """Contact of realisations of an embedded specimen, in the reported direction and offset.
+    """Contact of realisations of a specimen, in the reported direction and offset.
 
     Parameters
     ----------
@@ -87,7 +89,7 @@ def ensemble(
         Of the stages of these names: the named specimen, which is the first realisation.
     recipe : mapping
         From :func:`study.configuration.resolve_embedded`. The realisations have its seed and those
-        that follow it; none is chosen.
+        that follow it; none is chosen. None for a scan: they are its twins, of seeds from 1.
     realisations : int
     settings : EnsembleSettings
     solver : Solver
@@ -101,22 +103,23 @@ def ensemble(
         :data:`EXPONENTS` under the reference load and the trends of
         :func:`ensemble.statistics.add_trends`; over both, by how much eq. 6 is missed, ``eq6_area``
         and ``eq6_box``. Of each the mean over the realisations with its interval and the spread, as
-        :func:`ensemble.statistics.add_statistics` names them.
+        :func:`ensemble.statistics.add_statistics` names them. The attribute ``members`` says
+        what they are.
 
     Raises
     ------
     NotConverged
         If a state could not be verified; the message names the realisation.
+    InputError
+        As :func:`ensemble.twins.twin_loadings`.
     """
     whole = JointLoading.of_joint(
         specimens, joints, settings.contact_directions[0], settings, solver
     )
     loading = replace(whole, settings=_light(settings, whole.area)).at_map_offset()
-    seeds = recipe["seed"] + np.arange(realisations)
-    rows = []
-    for seed in seeds:
-        specimen = _realised(specimens, {**recipe, "seed": int(seed)}, settings)
-        rows.append(_realisation(replace(loading, specimen=specimen)))
+    seeds = (1 if recipe is None else recipe["seed"]) + np.arange(realisations)
+    members = _members(loading, recipe, [int(seed) for seed in seeds])
+    rows = [_realisation(member) for member in members]
     result = xr.concat(rows, "realisation")
     for name in result.data_vars:
         result[name].attrs = rows[0][name].attrs
@@ -128,6 +131,7 @@ def ensemble(
     add_trends(result)
     add_statistics(result, [*STATES, *NULL_SLOPES, _SEATED, *EXPONENTS, *_EQ6])
     return with_pressure(result, whole.area).assign_attrs(
+        members=REALISATIONS if recipe is not None else TWINS,
         direction=loading.direction,
         offset=float(loading.offsets[0]),
         map_load=float(forces_of([settings.map_load], whole.area)[0]),
@@ -164,6 +168,18 @@ def _add_eq6(result: xr.Dataset) -> None:
         words = f"exponent of corrected A_r/A_0 against b less Delta_sigma - 2 of eq. 6 by {by}"
         residual = result["area_exponent"] - (result[dimension] - 2)
         result[name] = residual.assign_attrs(cf_attrs("1", words))
+
+
+def _members(
+    loading: JointLoading[EnsembleSettings], recipe: Mapping | None, seeds: list[int]
+) -> Iterator[JointLoading[EnsembleSettings]]:
+    """Loadings of the realisations of a recipe, or of the twins of a scan."""
+    if recipe is None:
+        yield from twin_loadings(loading, seeds)
+        return
+    for seed in seeds:
+        specimen = _realised(loading.specimen, {**recipe, "seed": seed}, loading.settings)
+        yield replace(loading, specimen=specimen)
 
 
 def _realised(specimens: xr.Dataset, recipe: Mapping, settings: EnsembleSettings) -> xr.Dataset:

@@ -68,7 +68,7 @@ def self_affine(
         raise ValueError(f"roll_off must be positive, not {roll_off}")
 
     density = _power_spectral_density(grid_side(shape), spacing, hurst, roll_off)
-    return levelled(_filtered_noise(density, shape, seed), rms)
+    return levelled(filtered_noise(density, shape, seed), rms)
 
 
 def band_limited(
@@ -121,7 +121,7 @@ def band_limited(
         )
     q = _wave_numbers(grid_side(shape), spacing)
     density = _band(q, hurst, prefactor, cut_off, roll_off) / spacing**2
-    return without_mean_plane(_filtered_noise(density, shape, seed))
+    return without_mean_plane(filtered_noise(density, shape, seed))
 
 
 def band_slope(
@@ -176,8 +176,24 @@ def grid_side(shape: tuple[int, int]) -> int:
     return int(scipy.fft.next_fast_len(EMBEDDING * max(shape), real=True))
 
 
-def _filtered_noise(density: np.ndarray, shape: tuple[int, int], seed: int) -> np.ndarray:
-    """Patch of white noise of variance one whose spectrum is multiplied by a density."""
+def filtered_noise(density: np.ndarray, shape: tuple[int, int], seed: int) -> np.ndarray:
+    """Gaussian patch: white noise of variance one whose spectrum is multiplied by a density.
+
+    Parameters
+    ----------
+    density : (side, side // 2 + 1) ndarray
+        Power spectral density over the area of a cell, mm2, on the half plane of
+        `scipy.fft.rfft2` of the periodic grid of :func:`grid_side` nodes.
+    shape : (ny, nx)
+        Of the patch.
+    seed : int
+        The same seed gives the same bits.
+
+    Returns
+    -------
+    (ny, nx) float64
+        mm.
+    """
     side = len(density)
     noise = np.random.Generator(np.random.PCG64(seed)).standard_normal((side, side))
     # One worker: the result must not depend on how many cores there are.

@@ -1,0 +1,80 @@
+"""Twins of a scan: random surfaces with its measured spectrum, a parametric bootstrap.
+
+What one window shows has the error of a sample of one. Twins are further samples, of a population
+that shares with the scan its power spectrum, directional and with its roll-off, the distribution of
+its heights, and its mean plane; they are not the scan. The spread of what they show is the
+population error of the scan's numbers.
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+
+import numpy as np
+import xarray as xr
+
+from ..core.errors import InputError
+from ..core.mean_plane import without_mean_plane
+from ..core.settings import EnsembleSettings
+from ..core.window import spacing_of, window_slices
+from ..mechanics.loading import JointLoading
+from ..roughness.twin_surface import twin_surface
+
+
+def twin_loadings(
+    loading: JointLoading[EnsembleSettings], seeds: Sequence[int]
+) -> Iterator[JointLoading[EnsembleSettings]]:
+    """Loadings of the twins of a scan, one a seed.
+
+    Parameters
+    ----------
+    loading : JointLoading
+        Of the scan, at one offset.
+    seeds : sequence of int
+
+    Yields
+    ------
+    JointLoading
+        Of a face with its perfect match: a twin of the face, slid as the scan is. Of two scanned
+        faces: a twin of their composite topography at the offset, and of a face on a plane, of an
+        aperture map, a twin of it, each of the window alone, against a plane.
+
+    Raises
+    ------
+    InputError
+        If what is to have a twin is flat, or a few nodes wide.
+
+    Notes
+    -----
+    The spectrum and the heights are those of the window that is solved. Waves longer than half of
+    it are extrapolated, and the mean plane of the twin is the scan's: chance in the tilt of the
+    faces is in no twin.
+    """
+    specimen, offset = loading.specimen, int(loading.cells[0])
+    slid = specimen.attrs["opposite"] == "match"
+    whole = specimen["lower"].values.astype(float)
+    rough = whole[window_slices(specimen)] if slid else loading.composite(offset)
+    plane = 0.0 if slid else rough - without_mean_plane(rough)
+    try:
+        surface = twin_surface(rough, spacing_of(specimen), (whole if slid else rough).shape)
+    except ValueError as error:
+        name = specimen.attrs["name"]
+        raise InputError(f"specimen {name}, key 'twins': {error}; remove the key") from error
+    against_plane = {
+        "direction": "none",
+        "cells": np.zeros(1, int),
+        "settings": replace(loading.settings, contact_directions=["none"], map_offset=None),
+    }
+    for seed in seeds:
+        twin = _twin(specimen, plane + surface.drawn(seed), slid=slid)
+        twin.attrs["name"] = f"{specimen.attrs['name']}, twin of seed {seed}"
+        yield replace(loading, specimen=twin, **({} if slid else against_plane))
+
+
+def _twin(specimen: xr.Dataset, heights: np.ndarray, *, slid: bool) -> xr.Dataset:
+    """Specimen of the heights of a whole face, or of the window against a plane."""
+    twin = specimen[["lower"]]
+    if not slid:
+        rows, columns = window_slices(specimen)
+        twin = twin.isel(y=rows, x=columns)
+        twin = twin.assign_attrs(specimen.attrs, opposite="flat", window_y0=0, window_x0=0)
+    return twin.assign(lower=twin["lower"].copy(data=heights))

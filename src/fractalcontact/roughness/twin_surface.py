@@ -1,0 +1,126 @@
+"""Twin surfaces: random ones with the spectrum and, where it matters, the heights of a measured one.
+
+They are Gaussian, filtered white noise. Where skewness or kurtosis of the measured heights are none
+that a Gaussian surface of this spectrum shows by chance, the twins are translation processes
+(Grigoriu, J. Eng. Mech. 110 (1984) 610): a Gaussian surface each of whose heights is replaced by
+the measured one of its rank, and whose covariance is such that the result has the spectrum.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.fft
+from scipy import special
+
+from ..core.intervals import t_quantile
+from ..core.mean_plane import without_mean_plane
+from ..surface.synthesis import filtered_noise, grid_side
+from .plane_spectrum import plane_spectrum
+
+#: Hermite polynomials that a distribution is expanded in, and normal deviates it is sampled at.
+_POLYNOMIALS, _DEVIATES = 16, np.linspace(-6, 6, 2001)
+
+
+@dataclass(frozen=True, eq=False)
+class TwinSurface:
+    """Random surface like a measured one, to be drawn.
+
+    Attributes
+    ----------
+    shape : (ny, nx)
+        Nodes of a twin.
+    density : ndarray
+        Of :func:`surface.synthesis.filtered_noise`, mm2; of a translation process that of the
+        Gaussian surface of variance one.
+    heights : (n,) ndarray
+        Of a translation process the measured ones, mm, ascending; empty of a Gaussian surface.
+    """
+
+    shape: tuple[int, int]
+    density: np.ndarray
+    heights: np.ndarray
+
+    @property
+    def gaussian(self) -> bool:
+        """Whether the twins are Gaussian."""
+        return not self.heights.size
+
+    def drawn(self, seed: int) -> np.ndarray:
+        """Heights of a twin (ny, nx) about its mean plane, mm; not periodic."""
+        z = filtered_noise(self.density, self.shape, seed)
+        if not self.gaussian:
+            z = _translated(z, self.heights)
+        return without_mean_plane(z)
+
+
+def twin_surface(
+    heights: np.ndarray, spacing: tuple[float, float], shape: tuple[int, int]
+) -> TwinSurface:
+    """Random surface with the spectrum and distribution of a measured one.
+
+    Parameters
+    ----------
+    heights : (ny, nx) ndarray
+        mm, without holes.
+    spacing : (float, float)
+        (dy, dx), mm.
+    shape : (ny, nx)
+        Nodes of the twins.
+
+    Raises
+    ------
+    ValueError
+        As :func:`roughness.plane_spectrum.plane_spectrum`.
+    """
+    spectrum, side = plane_spectrum(heights, spacing), grid_side(shape)
+    along = scipy.fft.fftfreq(side, spacing[0]), scipy.fft.rfftfreq(side, spacing[1])
+    waves = np.meshgrid(*along, indexing="ij")
+    density = spectrum.at(*waves) / (spacing[0] * spacing[1])
+    covariance = scipy.fft.irfft2(density, s=(side, side), workers=1)
+    variance = float(covariance[0, 0])
+    correlation = covariance / variance
+    z = without_mean_plane(np.asarray(heights, float)).ravel()
+    z /= z.std()
+    if not _matters(z, correlation):
+        return TwinSurface(shape, density, np.empty(0))
+    ordered = np.sort(z)
+    normal = scipy.fft.rfft2(_before_translation(correlation, ordered), workers=1).real
+    return TwinSurface(shape, np.maximum(normal, 0), np.sqrt(variance) * ordered)
+
+
+def _matters(z: np.ndarray, correlation: np.ndarray) -> bool:
+    """True if heights of variance one are none of a Gaussian surface, by two of their moments.
+
+    Variances of the mean cube and fourth Hermite polynomial of correlated normal deviates: 6 and 24
+    times the mean of the correlation to the third and fourth power over all pairs.
+    """
+    pairs = [np.sum(correlation**k) / z.size for k in (3, 4)]
+    moments = np.mean(z**3), np.mean(z**4) - 3
+    errors = (np.sqrt(max(k * pair, 0)) for k, pair in zip((6, 24), pairs, strict=True))
+    limit = t_quantile(np.inf)
+    return any(abs(one) > limit * error for one, error in zip(moments, errors, strict=True))
+
+
+def _translated(normal: np.ndarray, ordered: np.ndarray) -> np.ndarray:
+    """Measured heights of the ranks of normal deviates."""
+    ranks = (np.arange(ordered.size) + 0.5) / ordered.size
+    return np.interp(special.ndtr(normal), ranks, ordered)
+
+
+def _before_translation(correlation: np.ndarray, ordered: np.ndarray) -> np.ndarray:
+    """Correlation of the normal deviates that heights of this correlation are translated from.
+
+    Mehler's formula: that of the heights is the sum of a_k^2 r^k / k! over the Hermite polynomials
+    k = 1, 2, ...
+    """
+    weight = np.exp(-(_DEVIATES**2) / 2)
+    heights = _translated(_DEVIATES, ordered)
+    parts = []
+    for k in range(1, _POLYNOMIALS + 1):
+        of_k = special.eval_hermitenorm(k, _DEVIATES)
+        parts.append(np.sum(weight * heights * of_k) ** 2 / special.factorial(k))
+    r = np.linspace(-1, 1, 2001)
+    after = np.sum([part * r**k for k, part in enumerate(parts, 1)], axis=0) / np.sum(parts)
+    # Rises from -1 on where the distribution is not too skew; its lowest values are unattainable.
+    after = np.maximum.accumulate(after)
+    return np.interp(correlation, after, r)
