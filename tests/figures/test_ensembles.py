@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 
 from fractalcontact.core.subject import Subject
 from fractalcontact.ensemble.statistics import add_statistics
-from fractalcontact.figures.kit.ensembles import draw_band, realisations_of
+from fractalcontact.figures.kit.ensembles import draw_band, members_of
 from fractalcontact.figures.kit.panel import Panel, table_of
 
 
@@ -43,7 +43,7 @@ def test_the_band_spans_the_loads_that_every_realisation_has(panel):
 
 def test_nothing_is_drawn_without_an_ensemble_or_a_load_that_all_have(panel):
     without = Subject({}, {})
-    assert realisations_of(without) == 0
+    assert members_of(without) == ""
     draw_band(panel, without, "delta_sigma", "k", "boxes")
     draw_band(panel, subject_of(np.full((3, 3), np.nan)), "delta_sigma", "k", "boxes")
     assert not panel.axes.collections

@@ -94,6 +94,8 @@ def broken(study, path, value):
         (("solver", "rtol"), "1e-6", r"solver.rtol: '1e-6' is not right; expected a number"),
         (("embedded", "concrete_twin", "size"), "4 N", r"embedded.concrete_twin.size: '4 N'"),
         (("embedded", "joint_2.1", "realisations"), 2, r"realisations: 2 is .* from 3 to 1000"),
+        (("defaults", "twins"), 2, r"defaults.twins: 2 is not right; expected 0 for none"),
+        (("specimens", "concrete_twin", "twins"), 5, r"twins: .* write 'realisations: 5' in emb"),
         (("embedded", "concrete_twin", "dimension"), 3.2, r"embedded.concrete_twin.dimension: 3.2"),
     ],
 )

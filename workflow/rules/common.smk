@@ -205,8 +205,9 @@ def kind_of(some, others):
     return alternation(some) if others else "[^/]+" if some else alternation([])
 
 
-#: Realisations of the embedded specimens of which the study wants an ensemble.
-REALISATIONS = {
+#: Members of the ensembles that the study wants: twins of scans, realisations of embedded specimens.
+TWINS = {name: SETTINGS[name].twins for name in SPECIMENS if SETTINGS[name].twins}
+REALISATIONS = TWINS | {
     name: recipe["realisations"]
     for name, recipe in config.get("embedded", {}).items()
     if name in SETTINGS and "realisations" in recipe

@@ -58,6 +58,12 @@ def contact_parts(wildcards):
     return {"parts": contact_parts_of(wildcards.specimen)}
 
 
+def contact_and_twins(wildcards):
+    """The same with the ensemble of a scan, whose spread is the error of its population."""
+    twins = ensemble_of(wildcards) if wildcards.specimen in TWINS else {}
+    return contact_parts(wildcards) | twins
+
+
 def strength_of(wildcards):
     """Strength of a joint that slides; none of a surface against a plane."""
     sliding = wildcards.specimen in MEMBERS[JOINT]
@@ -93,7 +99,7 @@ STAGE_JOBS = {
         "closure",
         "closure, contact domains and their errors",
         asked_for("analysis"),
-        inputs=contact_parts,
+        inputs=contact_and_twins,
     ),
     # Sparse equations of all open cells, so a job of its own.
     "flow": StageJob(
@@ -106,14 +112,14 @@ STAGE_JOBS = {
         asked_for("windows"),
         priority=1,
     ),
-    # Its seed and those that follow. As long as the sub-windows, and the report waits for it.
+    # Of its seed and those that follow, or twins of a scan. As long as the sub-windows, and the report waits for it.
     "ensemble": StageJob(
         "ensemble",
         "its ensemble",
         asked_for("ensemble", states=lambda wc: REALISATIONS[wc.specimen]),
         specimens=alternation(REALISATIONS),
         extra={
-            "recipe": lambda wc: recipe_named(known(wc)),
+            "recipe": lambda wc: None if wc.specimen in TWINS else recipe_named(known(wc)),
             "realisations": lambda wc: REALISATIONS[wc.specimen],
         },
         priority=1,

@@ -109,7 +109,7 @@ class StateSettings(ContactSettings):
 
 @dataclass(frozen=True)
 class EnsembleSettings(SpecimenSettings, StateSettings):
-    """Settings of the realisations of an embedded specimen: of their making and their states."""
+    """Settings of an ensemble: of the making of its members and their states."""
 
 
 @dataclass(frozen=True)
@@ -189,9 +189,10 @@ class ReportSettings(StrengthSettings):
 
 @dataclass(frozen=True)
 class Settings(SpecimenSettings, StateSettings, WindowSettings, MeasuredSettings, ReportSettings):
-    """All settings of a specimen, as the atlas keeps them."""
+    """All settings of a specimen, as the atlas keeps them; ``twins`` of a scan, 0 for none."""
 
     material: Material
+    twins: int
 
 
 @dataclass(frozen=True)

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from .labels import REALISATIONS
 from .reported import Reported
 from .window import nominal_area
 
@@ -74,6 +75,18 @@ class Subject:
     def forces(self) -> np.ndarray:
         """Loads of the study (n,), N, ascending."""
         return self.reported.forces
+
+    @cached_property
+    def members(self) -> str:
+        """What its ensemble holds: realisations of it or twins of the scan; empty without one."""
+        if "ensemble" not in self.stages:
+            return ""
+        return str(self["ensemble"].attrs.get("members", REALISATIONS))
+
+    @property
+    def realised(self) -> bool:
+        """True if joints of its kind are judged on an ensemble; twins of a scan judge nothing."""
+        return self.members == REALISATIONS
 
     @cached_property
     def area(self) -> float:

@@ -59,15 +59,13 @@ def twin_loadings(
     except ValueError as error:
         name = specimen.attrs["name"]
         raise InputError(f"specimen {name}, key 'twins': {error}; remove the key") from error
-    against_plane = {
-        "direction": "none",
-        "cells": np.zeros(1, int),
-        "settings": replace(loading.settings, contact_directions=["none"], map_offset=None),
-    }
+    if not slid:
+        settings = replace(loading.settings, contact_directions=["none"], map_offset=None)
+        loading = replace(loading, direction="none", cells=np.zeros(1, int), settings=settings)
     for seed in seeds:
         twin = _twin(specimen, plane + surface.drawn(seed), slid=slid)
         twin.attrs["name"] = f"{specimen.attrs['name']}, twin of seed {seed}"
-        yield replace(loading, specimen=twin, **({} if slid else against_plane))
+        yield replace(loading, specimen=twin)
 
 
 def _twin(specimen: xr.Dataset, heights: np.ndarray, *, slid: bool) -> xr.Dataset:

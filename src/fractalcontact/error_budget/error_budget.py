@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from ..core.datasets import labelled_dataset
 from ..core.estimate import Estimate
 from ..core.intervals import t_quantile
-from ..core.labels import cf_attrs
+from ..core.labels import TWINS, cf_attrs
 from ..core.limits import MAX_TOUCHING, MIN_NODES
 from ..core.settings import StateSettings
 from ..mechanics.joint import prefractal
@@ -28,13 +28,15 @@ from .refinement import (
     domain_dimension,
     refine,
 )
+from .twins import twins_spread
 
 #: Sources of error: those of the number as a property of this surface, those of the population the
 #: window is a sample of; and, in no total, the change of the surface with its resolution, what a
 #: harder material would change, and what another estimator gives.
 OF_SURFACE = ("solver", "numerical", "secant")
-OF_POPULATION = ("counting", "window", "registration")
-#: Of these only the larger is in a total: a spread over windows holds that of counting.
+OF_POPULATION = ("counting", "window", TWINS, "registration")
+#: Of these only the larger is in a total: a spread over windows holds that of counting. Neither is
+#: where twins of the scan were solved.
 _OF_WINDOW = ("counting", "window")
 SOURCES = (*OF_SURFACE, *OF_POPULATION, "resolution", "model", "estimator")
 
@@ -67,7 +69,7 @@ _TABLE = {
     "largest_source_of_population": (
         _ALL,
         "1",
-        "source of the larger error of the window: count of its contacts, or other windows",
+        "source of the error of the window: count of its contacts, other windows, or twins",
     ),
     "limit": (_ALL, _UNIT, "value extrapolated to zero spacing of the same surface"),
     "observed_order": (_ALL, "1", "observed order of convergence of the same surface"),
@@ -123,6 +125,7 @@ def error_budget(
     domains: xr.Dataset,
     *,
     registration_spread: Mapping[str, ArrayLike] | None = None,
+    twins: xr.Dataset | None = None,
 ) -> xr.Dataset:
     """Errors of closure, separation, area, stiffness and Delta_sigma at the map offset, by source.
 
@@ -135,12 +138,15 @@ def error_budget(
     registration_spread : mapping of str to (normal_force,) array_like, optional
         By quantity, half-widths of the spread over registrations of two scanned faces that are
         statistically as good, in the quantity's unit.
+    twins : xr.Dataset, optional
+        Stage ``ensemble``, of twins of the scan: a source of its own, in place of counting and
+        windows in the total of the population.
 
     Returns
     -------
     xr.Dataset
         The variables of :data:`_TABLE` over (quantity, source, normal_force), and those of
-        :func:`derived.with_derived`.
+        :func:`derived.with_derived`; with twins ``within_twins`` (quantity, normal_force).
 
     Raises
     ------
@@ -169,15 +175,28 @@ def error_budget(
         "secant": _secant(curve),
         "estimator": _estimator(curve),
     }
+    if twins is not None:
+        spread, within = twins_spread(curve, twins)
+        errors[TWINS] = over_loads(curve.forces, spread, _scale(curve))
     reasons = _reasons(curve, errors, found, effective, registration_spread is not None)
-    return _budget(curve, values, errors, found, reasons, (n_windows, effective))
+    budget = _budget(curve, values, errors, found, reasons, (n_windows, effective))
+    if twins is not None:
+        words = cf_attrs("1", "whether the scan lies within the 95 % band of its twins")
+        budget["within_twins"] = (_ALL, within, words)
+    return budget
 
 
 def _budget(curve, values, errors, found, reasons, windows) -> xr.Dataset:
     """The dataset from its parts."""
-    each = np.stack([errors[source] for source in SOURCES], axis=1)
+    sources = [source for source in SOURCES if source in errors]
+    each = np.stack([errors[source] for source in sources], axis=1)
     total = np.sqrt(sum(errors[source] ** 2 for source in OF_SURFACE))
     sampling = np.fmax(errors["counting"], errors["window"])
+    largest = _largest(errors, _OF_WINDOW)
+    if TWINS in errors:
+        known = np.isfinite(errors[TWINS])
+        sampling = np.where(known, errors[TWINS], sampling)
+        largest = np.where(known, TWINS, largest)
     if curve.loading.specimen.attrs["opposite"] == "scanned":
         sampling = np.hypot(sampling, errors["registration"])
     of_population = np.hypot(total, sampling)
@@ -194,7 +213,7 @@ def _budget(curve, values, errors, found, reasons, windows) -> xr.Dataset:
         "total_of_population": of_population,
         "relative_total_of_population": of_population / size,
         "largest_source": _largest(errors, OF_SURFACE),
-        "largest_source_of_population": _largest(errors, _OF_WINDOW),
+        "largest_source_of_population": largest,
         "limit": found.limit,
         "observed_order": found.order,
         "finest_spacing": np.where(found.finest > 1, side / found.finest, np.nan),
@@ -208,7 +227,7 @@ def _budget(curve, values, errors, found, reasons, windows) -> xr.Dataset:
     }
     coords = {
         "quantity": list(BUDGET_QUANTITIES),
-        "source": list(SOURCES),
+        "source": sources,
         "normal_force": curve.curve["normal_force"],
     }
     attrs = {
@@ -408,6 +427,7 @@ def _reasons(curve, errors, found: Refinement, effective, registered: bool) -> n
         "window": TOO_SMALL
         if effective < MIN_EFFECTIVE
         else "no value in every window at any load",
+        TWINS: "not in every twin at any load",
         "registration": "no spread of registrations is known"
         if scanned
         else "only one face was scanned",
@@ -416,9 +436,10 @@ def _reasons(curve, errors, found: Refinement, effective, registered: bool) -> n
     }
     if scanned and registered:
         missing["registration"] = "not known of this quantity"
-    reasons = np.full((len(BUDGET_QUANTITIES), len(SOURCES)), "", object)
+    sources = [source for source in SOURCES if source in errors]
+    reasons = np.full((len(BUDGET_QUANTITIES), len(sources)), "", object)
     for i in range(len(BUDGET_QUANTITIES)):
-        for j, source in enumerate(SOURCES):
+        for j, source in enumerate(sources):
             if not np.isfinite(errors[source][i]).any():
                 reasons[i, j] = missing[source]
             elif source in _NONE and not errors[source][i].any():

@@ -3,12 +3,12 @@
 import math
 from dataclasses import dataclass
 
+from ..core.labels import TWINS
 from .summary import Quantity, Specimen
 from .words import with_unit
 
 #: Sources of the total of this surface, in the order of the bar; the rest belong to the population.
 OF_SURFACE = ("solver", "numerical")
-OF_POPULATION = (*OF_SURFACE, "counting", "window", "registration")
 
 
 @dataclass(frozen=True)
@@ -81,6 +81,6 @@ def _words(quantity, source):
     error = quantity.sources[source]
     note = quantity.reasons[source]
     if math.isfinite(error) and not (error == 0 and note):
-        beside = f" ({note})" if source == "estimator" else ""
+        beside = f" ({note})" if source in ("estimator", TWINS) and note else ""
         return quantity.error_words(error) + beside
     return note or "not known"

@@ -10,6 +10,7 @@ import xarray as xr
 
 from ..core.determined import decided_by_scan
 from ..core.estimate import DIMENSION, Estimate, Judged
+from ..core.labels import TWINS
 from ..core.measured_maps import map_table
 from ..core.quantities import Shown, Value, shown_in
 from ..core.subject import Subject
@@ -333,6 +334,8 @@ def quantities_at(subject: Subject, number: int) -> dict[str, Quantity]:
             reasons={source: str(one["reason"].sel(source=source).item()) for source in sources},
             missing=missing.get(name, ""),
         )
+        if "within_twins" in one and (place := str(one["within_twins"].item())):
+            found[name].reasons[TWINS] = f"the scan lies {place}"
     # Beside the dimension that is published, what other estimators give.
     domains, scaling = (subject.states(stage) for stage in ("domains", "scaling"))
     others = {

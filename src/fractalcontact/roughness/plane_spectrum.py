@@ -7,10 +7,9 @@ import scipy.fft
 import scipy.ndimage
 
 from ..core.mean_plane import without_mean_plane
-from .curves import LENGTHS_PER_OCTAVE
 
-#: Sectors of the half plane of directions.
-SECTORS = 12
+#: Sectors of the half plane of directions, and rings of an octave of wave numbers.
+SECTORS, RINGS_PER_OCTAVE = 12, 2
 #: Waves that a sector of a ring is pooled with, which have the mean of the ring: as long as few
 #: waves are seen the spectrum is isotropic, and directional where many are.
 POOLED = 8
@@ -18,9 +17,7 @@ POOLED = 8
 #: little of them.
 FIRST_ORDER = 2
 #: Lowest rings whose slope longer waves follow: an octave. It lies between these.
-_LOWEST, _SLOPES = LENGTHS_PER_OCTAVE + 1, (-4.0, 0.0)
-#: Corrections of what the taper smears: the second changes next to nothing.
-_CORRECTIONS = 2
+_LOWEST, _SLOPES = RINGS_PER_OCTAVE + 1, (-4.0, 0.0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,12 +94,11 @@ def plane_spectrum(heights: np.ndarray, spacing: tuple[float, float]) -> PlaneSp
     padded = [2 * n for n in z.shape]
     waves = _waves(padded, spacing)
     of_taper = scipy.fft.ifft2(np.abs(scipy.fft.fft2(taper, padded)) ** 2).real
-    for _ in range(_CORRECTIONS):
-        covariance = scipy.fft.ifft2(spectrum.at(*waves)).real / cell
-        expected = scipy.fft.fft2(covariance * of_taper).real[::2, ::2]
-        ratio = seen / np.maximum(bins.means(expected), 1e-300)
-        spectrum = replace(spectrum, density=spectrum.density * ratio)
-    return spectrum
+    covariance = scipy.fft.ifft2(spectrum.at(*waves)).real / cell
+    expected = scipy.fft.fft2(covariance * of_taper).real[::2, ::2]
+    # Once: a second correction would magnify what chance does to the long waves.
+    ratio = seen / np.maximum(bins.means(expected), np.finfo(float).tiny)
+    return replace(spectrum, density=spectrum.density * ratio)
 
 
 class _Bins:
@@ -114,7 +110,7 @@ class _Bins:
         longest = FIRST_ORDER / min(n * d for n, d in zip(shape, spacing, strict=True))
         self.used = number >= longest * (1 - 1e-9)
         used = number[self.used]
-        ring = np.round(np.log2(used / longest) * LENGTHS_PER_OCTAVE).astype(int)
+        ring = np.round(np.log2(used / longest) * RINGS_PER_OCTAVE).astype(int)
         _, self.ring = np.unique(ring, return_inverse=True)
         angle = np.arctan2(number_y, number_x)[self.used] / np.pi % 1
         self.place = self.ring * SECTORS + np.minimum((angle * SECTORS).astype(int), SECTORS - 1)

@@ -1,4 +1,4 @@
-"""Twin surfaces: random ones with the spectrum and, where it matters, the heights of a measured one.
+"""Twin surfaces: random ones with the spectrum and, where it matters, heights of a measured one.
 
 They are Gaussian, filtered white noise. Where skewness or kurtosis of the measured heights are none
 that a Gaussian surface of this spectrum shows by chance, the twins are translation processes
@@ -12,11 +12,12 @@ import numpy as np
 import scipy.fft
 from scipy import special
 
-from ..core.intervals import t_quantile
 from ..core.mean_plane import without_mean_plane
 from ..surface.synthesis import filtered_noise, grid_side
 from .plane_spectrum import plane_spectrum
 
+#: Standard deviations of a moment of Gaussian heights beyond which it is none of chance.
+_BEYOND_CHANCE = 3.0
 #: Hermite polynomials that a distribution is expanded in, and normal deviates it is sampled at.
 _POLYNOMIALS, _DEVIATES = 16, np.linspace(-6, 6, 2001)
 
@@ -97,8 +98,9 @@ def _matters(z: np.ndarray, correlation: np.ndarray) -> bool:
     pairs = [np.sum(correlation**k) / z.size for k in (3, 4)]
     moments = np.mean(z**3), np.mean(z**4) - 3
     errors = (np.sqrt(max(k * pair, 0)) for k, pair in zip((6, 24), pairs, strict=True))
-    limit = t_quantile(np.inf)
-    return any(abs(one) > limit * error for one, error in zip(moments, errors, strict=True))
+    return any(
+        abs(one) > _BEYOND_CHANCE * error for one, error in zip(moments, errors, strict=True)
+    )
 
 
 def _translated(normal: np.ndarray, ordered: np.ndarray) -> np.ndarray:

@@ -38,6 +38,7 @@ def state_stages(
     parts: Sequence[xr.Dataset],
     settings: StateSettings,
     solver: Solver,
+    ensemble: xr.Dataset | None = None,
 ) -> dict[str, xr.Dataset]:
     """Stages that are computed from the contact states of one specimen.
 
@@ -49,6 +50,8 @@ def state_stages(
         Contact states, from :func:`mechanics.sweep.joint_states`.
     settings : StateSettings
     solver : Solver
+    ensemble : xr.Dataset, optional
+        Stage of this name: of a scan, its twins.
 
     Returns
     -------
@@ -112,6 +115,7 @@ def state_stages(
         mapped,
         settings=settings,
         solver=solver,
+        twins=ensemble,
     )
 
 

@@ -247,7 +247,7 @@ class OfRealisations(Evidence):
 
 def evidence_of(joint: Joint) -> Evidence:
     """Numbers that a statement on joints of a kind is judged by."""
-    return OfRealisations(joint) if "ensemble" in joint.stages else Evidence(joint)
+    return OfRealisations(joint) if joint.realised else Evidence(joint)
 
 
 def at_reference(joint: Joint, evidence: Evidence) -> xr.Dataset:

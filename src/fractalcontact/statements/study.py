@@ -53,7 +53,7 @@ def size_exponent_grows_with_dimension(joints: Mapping[str, Joint]) -> Finding:
     if len(flat) < 3:
         return Finding(UNDETERMINED, f"{len(flat)} surfaces against a plane, three needed")
     dimension = np.array([best_dimension(j["surface_dimension"]).value for j in flat])
-    of_kinds = all("ensemble" in joint.stages for joint in flat)
+    of_kinds = all(joint.realised for joint in flat)
     if of_kinds:
         delta = Estimate.stack(evidence_of(joint).area_dimension() for joint in flat)
         effect, error = 2 - delta.value, delta.width / 2

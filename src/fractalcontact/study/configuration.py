@@ -24,6 +24,7 @@ SPECIMEN = {
     "fill_holes": 0,
     "directions": ["E", "N", "W", "S"],
     "seating_pressure": "0.25 MPa",
+    "twins": 0,
 }
 #: Of its hardness, up to which a specimen carries the loads that the study's defaults name.
 LARGEST_SHARE = 0.95
@@ -68,6 +69,7 @@ def resolve_settings(
         group=stated.get("group", scan.group if scan else ""),
         known_dimension=float(recipe.get("dimension", math.nan)),
         chosen_for=dict(recipe.get("chosen_for", {})),
+        twins=stated.twins(),
         capped_variant=is_capped_variant(config, name),
         material=material,
         opposite=opposite,
@@ -147,6 +149,15 @@ class _Stated(dict):
         if value == "auto":
             return None
         return [*map(resolved, value)] if isinstance(value, list) else resolved(value)
+
+    def twins(self):
+        """Number of twins of a scan, the defaults' too; embedded specimens have realisations."""
+        if self._scan is None and "twins" in self._study:
+            raise InputError(
+                f"{self.where('twins')}: {self._name} is no scan; write 'realisations: "
+                f"{self['twins']}' in embedded.{self._name}"
+            )
+        return self["twins"] if self._scan else 0
 
     def solved_loads(self, hardness):
         """Loads that are solved; of the defaults only those that the hardness can carry."""

@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from ...core.labels import TWINS
 from ..kit.words import length_unit, percent, short
 
 #: Quantities: title of the panel, and its word in the caption.
@@ -25,6 +26,7 @@ SOURCES = {
     "resolution": "every second node: another surface, in no total",
     "model": "three times the hardness: another model, in no total",
     "estimator": "ordinary box-counting slope: another estimator, in no total",
+    TWINS: "twins of the scan, in place of counting and windows",
 }
 TOTALS = {
     "total": ("total for this very surface\n(solver, numerical, secant)", "-"),

@@ -101,6 +101,8 @@ def _draw_errors(axes, errors, size):
     between = np.char.startswith(errors["numerical_from"].values.astype(str), "interpolated")
 
     def line(source, words, **style):
+        if source not in errors["source"]:  # twins of a scan, where it has some
+            return
         height = heights.sel(source=source).values
         known = np.isfinite(height)
         if known.any():

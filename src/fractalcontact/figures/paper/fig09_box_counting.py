@@ -15,7 +15,7 @@ from ..kit.axes import label_short_span
 from ..kit.caption import caption
 from ..kit.domains import contact_domain
 from ..kit.drawing import COLOURS, WEAK, WIDTH, Drawing
-from ..kit.ensembles import realisations_of
+from ..kit.ensembles import members_of
 from ..kit.legends import heading
 from ..kit.maps import draw_domain
 from ..kit.panel import Panel, table_of
@@ -54,13 +54,13 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     b, c = Panel(axes[1], "b", "box counts"), Panel(axes[2], "c")
     _draw_counts(b, counts, rf"count law: $\Delta_\sigma$ {law.text()}", ordinary)
     draw_slopes(c, counts)
-    realised = _draw_realisations(c, subject)
+    band = _draw_ensemble(c, subject)
     handles, _ = axes[1].get_legend_handles_labels()
     if np.isfinite(counts["law_count"]).any():
         handles.append(heading(_law_form(counts)))
     handles.append(Patch(**band_of(LAW), label="(c) 95 % of the count law"))
     handles.append(Patch(**band_of(ORDINARY), label="(c) 95 % of the ordinary slope"))
-    handles += realised
+    handles += band
     narrow = {"columnspacing": 1.2, "handlelength": 1.8}
     figure.legend(handles=handles, loc="outside lower center", ncols=3, **narrow)
     where = place(subject.direction, subject.offset)
@@ -76,22 +76,22 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     return Drawing(figure, table_of(b, c), text)
 
 
-def _draw_realisations(panel: Panel, subject: Subject) -> list[Artist]:
-    """Band in which the local slopes of 95 % of the realisations lie; its entry, if there are.
+def _draw_ensemble(panel: Panel, subject: Subject) -> list[Artist]:
+    """Band in which the local slopes of 95 % of an ensemble lie; its entry, if there is one.
 
-    Where a realisation has no slope, the band would be that of the others alone.
+    Where a member has no slope, the band would be that of the others alone.
     """
-    if not (realisations := realisations_of(subject)):
+    if not (members := members_of(subject)):
         return []
     stage = subject["ensemble"].sel(normal_force=subject.reported.force, method="nearest")
-    stage = stage.isel(null_octave=np.flatnonzero(stage["local_slope_n"] == realisations))
+    stage = stage.isel(null_octave=np.flatnonzero(stage["local_slope_n"] == stage.sizes["realisation"]))
     if not stage.sizes["null_octave"]:
         return []
     low, high = (stage[f"local_slope_band_{end}"].values for end in ("low", "high"))
     style: dict[str, Any] = {"color": COLOURS[1], "alpha": 0.2, "lw": 0}
     panel.axes.fill_between(stage["local_slope_side"], low, high, **style, zorder=0)
     panel.keep(stage, *(f"local_slope_{of}" for of in ("mean", "band_low", "band_high")))
-    return [Patch(**style, label=f"(c) 95 % of {realisations} realisations")]
+    return [Patch(**style, label=f"(c) 95 % of {members}")]
 
 
 def _draw_counts(panel, counts, law, ordinary):

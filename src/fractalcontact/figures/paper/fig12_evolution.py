@@ -12,7 +12,7 @@ from ..kit.caption import caption
 from ..kit.domains import contact_domain, departures, estimates_of, rise_words, spread_loads
 from ..kit.drawing import COLOURS, WIDTH, Drawing
 from ..kit.empty import say_empty
-from ..kit.ensembles import draw_band, realisations_of
+from ..kit.ensembles import draw_band, members_of
 from ..kit.legends import entries
 from ..kit.maps import draw_domain, ring_entry
 from ..kit.measured import draw_over_force, measured_range, measured_series
@@ -85,7 +85,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
         verdicts=rise_words(atlas, name, numbers=False),
         least=MIN_NODES,
         larger=larger,
-        realisations=realisations_of(subject),
+        members=members_of(subject),
         **departures(counts),
         **measured_range(series),
     )
@@ -133,7 +133,7 @@ def _draw_dimensions(panel, subject):
         axes.plot(places[sure], one.value[sure], **style, label=label)
     axes.errorbar([], [], [], ls="none", color="0.4", capsize=2, label="bars: 95 % interval")
     # The rise of a kind is that of its realisations.
-    faint = "faint: undetermined" + ("" if realisations_of(subject) else ", not in the rise")
+    faint = "faint: undetermined" + ("" if subject.realised else ", not in the rise")
     axes.plot([], [], "s", color="0.4", mfc="white", alpha=0.35, label=faint)
     if not any(one.known.any() for one in estimates):
         say_empty(axes, "\n".join(wrapped(one.reason[0]) for one in estimates))
