@@ -1,0 +1,148 @@
+"""Calibration of the sampling errors of one window: `calibration_sampling.py`.
+
+Over seeds that nobody chose, the stated half-width of closure from a seat, mean gap, corrected
+area, tangent stiffness (the slope of the closure curve) and Delta_sigma over 1.96 standard
+deviations of the values, and how often the interval holds their mean: as counts of contacts state
+it, and twins of the window.
+"""
+
+import argparse
+import csv
+import sys
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+import scipy.ndimage
+import xarray as xr
+from calibration import FIRST_SEED, PRESSURES, RMS, TWINS, calibration
+
+from fractalcontact.domain.box_dimension import dimension_of_domain
+from fractalcontact.domain.clusters import NEIGHBOURS
+from fractalcontact.domain.random_nodes import band_of
+from fractalcontact.error_budget.error_budget import counting_error
+from fractalcontact.error_budget.refinement import LoadCurve
+from fractalcontact.mechanics.state_scalars import aperture
+from fractalcontact.mechanics.subgrid import state_quantities
+from fractalcontact.mechanics.sweep import load_steps
+from fractalcontact.roughness.twin_surface import twin_surface
+from fractalcontact.surface.synthesis import self_affine
+from roughcontact.elastic.halfspace import HalfSpace
+
+#: Joints of calibration.py, and of how many seeds the twins are solved.
+JOINTS = {"sandstone": 30, "sandstone, capped": 30, "joint 2.1": 10}
+#: Load that closures count from, MPa.
+SEAT = 0.25
+#: Quantities, and the rows of `counting_error` that are stated of them: none of a closure from a
+#: seat.
+QUANTITIES = {
+    "closure from the seat": None,
+    "mean gap": 1,
+    "corrected area": 2,
+    "stiffness": 3,
+    "Delta_sigma": 4,
+}
+
+
+def face_of(joint, seed):
+    """Part of a larger face that a window needs: its rows, and its columns with the offset."""
+    shape, first = (joint.face, joint.face), (joint.face - joint.window) // 2
+    spectrum = {"rms": RMS, "seed": seed, "roll_off": joint.roll_off}
+    face = self_affine(shape, joint.spacing, joint.hurst, **spectrum)
+    last = first + joint.window
+    return face[first:last, first : last + joint.slid]
+
+
+def states_of(joint, face):
+    """Values (quantity, load) of a window, and half-widths by counting, NaN of none stated."""
+    composite = face[:, joint.slid :] - face[:, : -joint.slid]
+    space = HalfSpace(composite.shape, (joint.spacing,) * 2, joint.modulus)
+    area = composite.size * joint.spacing**2
+    forces = area * np.array([SEAT, *PRESSURES])
+    solving = {"rtol": 1e-4, "hardness": joint.hardness}
+    rows = []
+    for state in load_steps(composite, space, forces, solving, "calibration"):
+        found = state_quantities(state, float(composite.max()))
+        boxes = dimension_of_domain(state.in_contact, joint.spacing)
+        ends = dict(zip(("", "_low", "_high"), boxes.ends, strict=True))
+        row = {
+            "area_share": state.in_contact.mean(),
+            "area_corrected": found["area_corrected"],
+            "closure": state.closure,
+            "stiffness": found["stiffness"],
+            "interface_closure": found["closure"],
+            "interface_stiffness": found["stiffness"],
+            "gap": aperture(state).mean(),
+            "clusters": scipy.ndimage.label(state.in_contact, NEIGHBOURS)[1],
+        }
+        rows.append(row | {f"delta_sigma{end}": value for end, value in ends.items()})
+    table = {name: ("normal_force", [row[name] for row in rows]) for name in rows[0]}
+    curve = xr.Dataset(table, {"normal_force": forces})
+    loading = SimpleNamespace(area=area)
+    counted = counting_error(LoadCurve(loading, composite, 0.0, 1, curve, curve))
+    none = np.full(len(forces), np.nan)
+    half = [none if row is None else counted[row] for row in QUANTITIES.values()]
+    seated = curve["interface_closure"] - curve["interface_closure"][0]
+    of_state = ("gap", "area_corrected", "interface_stiffness", "delta_sigma")
+    values = [seated.values, *(curve[name].values for name in of_state)]
+    return np.array(values)[:, 1:], np.array(half)[:, 1:]
+
+
+def twin_half_widths(joint, face, number):
+    """Half-widths (quantity, load) within which one more twin of a window lies."""
+    window = face[:, : joint.window]
+    surface = twin_surface(window, (joint.spacing,) * 2, face.shape)
+    drawn = [states_of(joint, surface.drawn(seed))[0] for seed in range(1, number + 1)]
+    return band_of(np.array(drawn)).width / 2
+
+
+def rows(seeds, number):
+    """Rows of the table: joint, pressure, quantity, by what stated, and the numbers of both."""
+    for name, most in JOINTS.items():
+        joint = TWINS[name]
+        faces = [face_of(joint, seed) for seed in seeds]
+        solved = [states_of(joint, face) for face in faces]
+        values, counted = (np.array([one[k] for one in solved]) for k in (0, 1))
+        by_twins = np.full(values.shape, np.nan)
+        for i, face in enumerate(faces[:most]):
+            by_twins[i] = twin_half_widths(joint, face, number)
+        for load, pressure in enumerate(PRESSURES):
+            for k, quantity in enumerate(QUANTITIES):
+                value = values[:, k, load]
+                known = value[np.isfinite(value)]
+                truth, sd = known.mean(), known.std(ddof=1)
+                if sd < 1e-6 * abs(truth):  # yielding contacts have the area F/H
+                    continue
+                for by, half in (("counting", counted), ("twins", by_twins)):
+                    ends = np.stack([value, value - half[:, k, load], value + half[:, k, load]])
+                    n, _, of_these, ratio, covered = calibration(ends.T, truth)
+                    # Against the deviation over all seeds, of which not all may have twins.
+                    yield name, pressure, quantity, by, n, truth, sd, ratio * of_these / sd, covered
+
+
+def main(arguments):
+    """Measure all, write the table as CSV and print it."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--first", type=int, default=FIRST_SEED, help="first seed")
+    parser.add_argument("--seeds", type=int, default=60)
+    parser.add_argument("--twins", type=int, default=10, help="twins of each window")
+    parser.add_argument("--output", type=Path, default=Path("calibration_sampling.csv"))
+    options = parser.parse_args(arguments)
+    seeds = range(options.first, options.first + options.seeds)
+    names = ("joint", "pressure", "quantity", "stated by", "n", "mean", "sd")
+    names += ("stated / 1.96 sd", "coverage")
+    options.output.parent.mkdir(parents=True, exist_ok=True)
+    with options.output.open("w", newline="") as file:
+        table = csv.writer(file)
+        table.writerow(names)
+        for row in rows(seeds, options.twins):
+            table.writerow(row)
+            file.flush()
+            sys.stdout.write(
+                "{:18} {:5g} {:22} {:9} {:3d} {:9.4g} {:9.3g} {:6.2f} {:6.2f}\n".format(*row)
+            )
+            sys.stdout.flush()
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])
