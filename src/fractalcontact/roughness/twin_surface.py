@@ -97,10 +97,8 @@ def _matters(z: np.ndarray, correlation: np.ndarray) -> bool:
     """
     pairs = [np.sum(correlation**k) / z.size for k in (3, 4)]
     moments = np.mean(z**3), np.mean(z**4) - 3
-    errors = (np.sqrt(max(k * pair, 0)) for k, pair in zip((6, 24), pairs, strict=True))
-    return any(
-        abs(one) > _BEYOND_CHANCE * error for one, error in zip(moments, errors, strict=True)
-    )
+    errors = np.sqrt(np.maximum([6 * pairs[0], 24 * pairs[1]], 0))
+    return bool((np.abs(moments) > _BEYOND_CHANCE * errors).any())
 
 
 def _translated(normal: np.ndarray, ordered: np.ndarray) -> np.ndarray:
