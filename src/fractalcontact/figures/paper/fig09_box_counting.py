@@ -84,7 +84,9 @@ def _draw_ensemble(panel: Panel, subject: Subject) -> list[Artist]:
     if not (members := members_of(subject)):
         return []
     stage = subject["ensemble"].sel(normal_force=subject.reported.force, method="nearest")
-    stage = stage.isel(null_octave=np.flatnonzero(stage["local_slope_n"] == stage.sizes["realisation"]))
+    stage = stage.isel(
+        null_octave=np.flatnonzero(stage["local_slope_n"] == stage.sizes["realisation"])
+    )
     if not stage.sizes["null_octave"]:
         return []
     low, high = (stage[f"local_slope_band_{end}"].values for end in ("low", "high"))
