@@ -29,8 +29,8 @@ def _settings(**own):
         "defaults": {
             "material": "rock",
             "opposite": "flat",
-            "loads": ["0.5 MPa", "2 MPa", "8 MPa"],
-            "dilatancy_loads": ["2 MPa"],
+            "loads": ["0.5 MPa", "8 MPa", "25 MPa"],
+            "dilatancy_loads": ["8 MPa"],
             "map_load": "8 MPa",
             "resolutions": [1, 2],
             **own,
@@ -68,13 +68,14 @@ def test_twins_scatter_as_fresh_surfaces_of_the_same_spectrum_do(monkeypatch):
 
     monkeypatch.setattr(realisations, "twin_loadings", fresh)
     seen = _twins(known, settings, 24)
+    many = seen["nodes"].mean("realisation").values > 30  # of few nodes one box more is a jump
     for name in ("interface_closure", "mean_gap", "area_corrected_share", "delta_sigma"):
-        spread = np.mean([one[f"{name}_spread"] for one in twins], axis=0)
-        ratio = spread / seen[f"{name}_spread"].values
-        assert 0.65 < ratio.mean() < 1.5, (name, ratio)
-        mean = np.mean([one[f"{name}_mean"] for one in twins], axis=0)
-        apart = np.abs(mean - seen[f"{name}_mean"].values)
-        assert (apart < 1.3 * seen[f"{name}_spread"].values).all(), name
+        spread = np.mean([one[f"{name}_spread"][many] for one in twins], axis=0)
+        ratio = spread / seen[f"{name}_spread"].values[many]
+        assert 0.6 < ratio.mean() < 1.6, (name, ratio)
+        mean = np.mean([one[f"{name}_mean"][many] for one in twins], axis=0)
+        apart = np.abs(mean - seen[f"{name}_mean"].values[many])
+        assert (apart < 1.3 * seen[f"{name}_spread"].values[many]).all(), name
 
 
 def _loading(known, settings):
