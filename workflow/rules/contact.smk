@@ -112,7 +112,7 @@ STAGE_JOBS = {
         asked_for("windows"),
         priority=1,
     ),
-    # Of its seed and those that follow, or twins of a scan. As long as the sub-windows, and the report waits for it.
+    # Its seed and those that follow, or twins. As long as the sub-windows, and the report waits for it.
     "ensemble": StageJob(
         "ensemble",
         "its ensemble",
