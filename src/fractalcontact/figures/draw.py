@@ -18,7 +18,14 @@ from ..core.errors import InputError, OutputError
 from ..study.atlas import read_atlas
 from ..study.figure_list import all_figures
 from ..study.stages import STAGES
-from .kit.drawing import Drawing, garbage_collection_paused, keep_style, print_style, save
+from .kit.drawing import (
+    Drawing,
+    garbage_collection_paused,
+    keep_style,
+    let_go,
+    print_style,
+    save,
+)
 from .kit.layout import lay_out
 from .kit.remembered import layouts_remembered
 from .kit.titles import entitle
@@ -165,4 +172,5 @@ def _draw(atlas, subject, folder, names):
                     drawing = undrawn(all_figures()[name].title, subject, error)
                     save(drawing, folder, name)
             drawn.captions[name] = drawing.caption
+            let_go(drawing.figure)
     return drawn

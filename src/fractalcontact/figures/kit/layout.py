@@ -1,16 +1,16 @@
 """Layout of a figure, computed once and reused for every file format."""
 
 import numpy as np
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
+from .canvas import Canvas
 from .empty import settle_empty_axes
 from .line_breaks import break_lines
 from .remembered import remember_ticks
 from .ticks import plain_ticks
 
 
-def lay_out(figure: Figure) -> FigureCanvasAgg:
+def lay_out(figure: Figure) -> Canvas:
     """Find the layout of a figure on which everything is drawn, and keep it.
 
     A figure that is laid out already stays as it is.
@@ -21,13 +21,13 @@ def lay_out(figure: Figure) -> FigureCanvasAgg:
 
     Returns
     -------
-    matplotlib.backends.backend_agg.FigureCanvasAgg
+    figures.kit.canvas.Canvas
         On which it was measured: what is drawn there needs no measuring again.
     """
-    if isinstance(figure.canvas, FigureCanvasAgg):
+    if isinstance(figure.canvas, Canvas):
         return figure.canvas
     settle_empty_axes(figure)
-    canvas = FigureCanvasAgg(figure)
+    canvas = Canvas(figure)
     plain_ticks(figure)
     remember_ticks(figure)
     _place(figure)

@@ -8,11 +8,13 @@ import itertools
 import re
 from collections.abc import Iterator
 
-from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.figure import Figure
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure, FigureBase
 from matplotlib.legend import Legend
 from matplotlib.text import Text
 from matplotlib.transforms import BboxBase
+
+from .canvas import Canvas
 
 #: Points between words and the edge of the figure, and between two titles side by side.
 _EDGE, _GAP = 1, 4
@@ -50,7 +52,7 @@ def width_of(words: str, size: float) -> float:
 def _alone(words, size):
     """A text in a figure of its own."""
     figure = Figure(figsize=(1, 1))
-    FigureCanvasAgg(figure)
+    Canvas(figure)
     return figure.text(0, 0, words, fontsize=size)
 
 
@@ -68,8 +70,17 @@ def break_lines(figure: Figure) -> bool:
         Whether any was broken: the panels then want other places.
     """
     broken = [*_break_panel_titles(figure)]
-    broken += [_narrow(legend, figure) for legend in figure.findobj(Legend)]
+    broken += [_narrow(legend, figure) for legend in _legends(figure)]
     return any(broken)
+
+
+def _legends(parent: FigureBase | Axes) -> Iterator[Legend]:
+    """Legends in a figure; `findobj` would go through all ticks, and make those there are not."""
+    for child in parent.get_children():
+        if isinstance(child, Legend):
+            yield child
+        elif isinstance(child, FigureBase | Axes):
+            yield from _legends(child)
 
 
 def _break_panel_titles(figure) -> Iterator[bool]:
@@ -181,7 +192,7 @@ def _width(text: Text, words: str) -> float:
 
 def _renderer(figure):
     """Renderer that measures the figure."""
-    canvas: FigureCanvasAgg = figure.canvas
+    canvas: Canvas = figure.canvas
     return canvas.get_renderer()
 
 

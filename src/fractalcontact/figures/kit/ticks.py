@@ -12,7 +12,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
 from matplotlib.figure import FigureBase
-from matplotlib.ticker import Locator, LogFormatterSciNotation
+from matplotlib.ticker import Locator, LogFormatterSciNotation, NullLocator
 
 _UNLABELLED = {f"label{side}": False for side in ("bottom", "top", "left", "right")}
 
@@ -20,8 +20,8 @@ _UNLABELLED = {f"label{side}": False for side in ("bottom", "top", "left", "righ
 def plain_ticks(figure: FigureBase) -> None:
     """Remove invisible parts of the ticks of a finished figure.
 
-    Powers of ten become plain text, ticks between them are made within the axes alone, and nothing
-    is measured for labels that are empty.
+    Powers of ten become plain text, ticks between them are made within the axes alone and drawn as
+    one, and nothing is measured for labels that are empty.
 
     Parameters
     ----------
@@ -67,6 +67,30 @@ def _spare(panel, axis):
         axis.set_minor_locator(_Within(axis.get_minor_locator()))
     if not any(axis.get_minor_formatter().format_ticks(minor)):
         panel.tick_params(axis.axis_name, which="minor", **_UNLABELLED)
+        if len(minor) and not axis.get_tick_params(which="minor").get("gridOn"):
+            vars(axis)["_update_ticks"] = _minor_ticks_as_one(axis)
+
+
+def _minor_ticks_as_one(axis):
+    """Way to the ticks of an axis, of which a single one stands for all that have no label."""
+    find, none = axis._update_ticks, NullLocator()
+
+    def ticks():
+        locator = axis.minor.locator
+        places = axis.get_minorticklocs()
+        axis.minor.locator = none
+        try:
+            labelled = find()
+        finally:
+            axis.minor.locator = locator
+        if not len(places):
+            return labelled
+        (tick,) = axis.get_minor_ticks(1)
+        for line in (tick.tick1line, tick.tick2line):
+            line.set(**{f"{axis.axis_name}data": places})
+        return [*labelled, tick]
+
+    return ticks
 
 
 class _Decades(LogFormatterSciNotation):

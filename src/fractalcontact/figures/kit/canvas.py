@@ -1,0 +1,63 @@
+"""Canvas that prints a line of words as one picture, and writes the figure without transparency.
+
+Matplotlib renders the letters of a text one by one, each from its outline, and has the line laid
+out once more than for its size: a fifth of the time of a figure.
+"""
+
+from functools import lru_cache
+from pathlib import Path
+
+import numpy as np
+from matplotlib.backends.backend_agg import FigureCanvasAgg, RendererAgg, get_hinting_flag
+from matplotlib.font_manager import FontProperties, fontManager, get_font
+from PIL import Image
+
+#: Of the PNG: a third less time than by default, for files larger by a fiftieth.
+COMPRESSION = 3
+
+
+class Canvas(FigureCanvasAgg):
+    """Canvas of a figure, whose renderer stays the same while its size does."""
+
+    def get_renderer(self) -> RendererAgg:
+        """Renderer on which the figure is measured and drawn."""
+        size = (*self.get_width_height(physical=True), self.figure.dpi)
+        if size != self._lastKey:
+            self._lastKey, self.renderer = size, _Renderer(*size)
+        return self.renderer
+
+    def write_png(self, path: Path | str) -> None:
+        """Draw the figure, and write its picture."""
+        self.draw()
+        picture = Image.fromarray(np.asarray(self.buffer_rgba())).convert("RGB")
+        resolution = (self.figure.dpi, self.figure.dpi)
+        picture.save(path, format="png", dpi=resolution, compress_level=COMPRESSION)
+
+
+class _Renderer(RendererAgg):
+    def get_text_width_height_descent(self, s, prop, ismath):
+        if ismath:
+            return super().get_text_width_height_descent(s, prop, ismath)
+        _, _, size = _printed(s, prop, self.dpi)
+        return size
+
+    def draw_text(self, gc, x, y, s, prop, angle, ismath=False, mtext=None):
+        if ismath or angle:
+            super().draw_text(gc, x, y, s, prop, angle, ismath, mtext)
+            return
+        picture, (right, down), (_, _, descent) = _printed(s, prop.copy(), self.dpi)
+        # On whole pixels, as the hints in the font have the letters' stems.
+        place = round(x + right), round(y + down + descent) + 1
+        self._renderer.draw_text_image(picture, *place, 0, gc)
+
+
+@lru_cache(2048)
+def _printed(words: str, font: FontProperties, dpi: float):
+    """Picture of a line of words, its place in pixels, and the line's width, height and descent."""
+    face = get_font(fontManager._find_fonts_by_props(font))
+    face.clear()
+    face.set_size(font.get_size_in_points(), dpi)
+    face.set_text(words, 0.0, flags=get_hinting_flag())
+    face.draw_glyphs_to_bitmap()
+    size = (*np.array(face.get_width_height()) / 64, face.get_descent() / 64)
+    return np.array(face.get_image()), np.array(face.get_bitmap_offset()) / 64, size

@@ -1,0 +1,53 @@
+"""Formulas read once, and scaled to the sizes and resolutions they are drawn at."""
+
+import contextlib
+from collections.abc import Iterator
+from functools import lru_cache
+from math import ceil
+
+from matplotlib.font_manager import FontProperties
+from matplotlib.mathtext import MathTextParser, VectorParse
+
+#: Letters in which formulas are read, points: so large that rounding to pixels does not count; and
+#: pixels per inch.
+_SIZE, _DPI = 1000.0, 72.0
+_READER, _read = MathTextParser("path"), MathTextParser.parse
+
+
+@contextlib.contextmanager
+def formulas_read_once() -> Iterator[None]:
+    """Every formula read once, for as long as the block, not once for each of its sizes.
+
+    Matplotlib takes some milliseconds for each, and reads it for the PNG, for its size in the SVG,
+    and for the SVG itself.
+    """
+    before = MathTextParser.parse
+    setattr(MathTextParser, "parse", _read_or_remember)  # noqa: B010  # types do not know methods
+    try:
+        yield
+    finally:
+        setattr(MathTextParser, "parse", before)  # noqa: B010
+
+
+def _read_or_remember(parser, s, dpi=72, prop=None, *, antialiased=None):
+    if parser._output_type != "vector":
+        return _read(parser, s, dpi, prop, antialiased=antialiased)
+    font = FontProperties() if prop is None else prop.copy()
+    size = font.get_size_in_points()
+    font.set_size(_SIZE)
+    return _scaled(_large(s, font), size / _SIZE, dpi / _DPI)
+
+
+@lru_cache(1024)
+def _large(formula, font):
+    return _read(_READER, formula, _DPI, font)
+
+
+def _scaled(large: VectorParse, points: float, pixels: float) -> VectorParse:
+    """A formula in letters of another size, on pixels of another size."""
+    by = points * pixels
+    return VectorParse(
+        *(ceil(by * length) for length in large[:3]),
+        [(face, points * size, *key, by * x, by * y) for face, size, *key, x, y in large.glyphs],
+        [tuple(by * length for length in rectangle) for rectangle in large.rects],
+    )
