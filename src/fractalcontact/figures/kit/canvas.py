@@ -19,11 +19,13 @@ COMPRESSION = 3
 class Canvas(FigureCanvasAgg):
     """Canvas of a figure, whose renderer stays the same while its size does."""
 
+    _size: tuple[float, ...] = ()
+
     def get_renderer(self) -> RendererAgg:
         """Renderer on which the figure is measured and drawn."""
         size = (*self.get_width_height(physical=True), self.figure.dpi)
-        if size != self._lastKey:
-            self._lastKey, self.renderer = size, _Renderer(*size)
+        if size != self._size:
+            self._size, self.renderer = size, _Renderer(*size)
         return self.renderer
 
     def write_png(self, path: Path | str) -> None:

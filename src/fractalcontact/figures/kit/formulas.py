@@ -46,8 +46,7 @@ def _large(formula, font):
 def _scaled(large: VectorParse, points: float, pixels: float) -> VectorParse:
     """A formula in letters of another size, on pixels of another size."""
     by = points * pixels
-    return VectorParse(
-        *(ceil(by * length) for length in large[:3]),
-        [(face, points * size, *key, by * x, by * y) for face, size, *key, x, y in large.glyphs],
-        [tuple(by * length for length in rectangle) for rectangle in large.rects],
-    )
+    glyphs = [(face, points * size, *key, by * x, by * y) for face, size, *key, x, y in large.glyphs]
+    rectangles = [tuple(by * length for length in rectangle) for rectangle in large.rects]
+    width, height, depth = (ceil(by * length) for length in large[:3])
+    return VectorParse(width, height, depth, glyphs, rectangles)
