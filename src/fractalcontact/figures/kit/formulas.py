@@ -46,7 +46,10 @@ def _large(formula, font):
 def _scaled(large: VectorParse, points: float, pixels: float) -> VectorParse:
     """A formula in letters of another size, on pixels of another size."""
     by = points * pixels
-    glyphs = [(face, points * size, *key, by * x, by * y) for face, size, *key, x, y in large.glyphs]
-    rectangles = [tuple(by * length for length in rectangle) for rectangle in large.rects]
+    glyphs = [
+        (face, points * size, code, index, by * x, by * y)
+        for face, size, code, index, x, y in large.glyphs
+    ]
+    rectangles = [(by * x, by * y, by * width, by * height) for x, y, width, height in large.rects]
     width, height, depth = (ceil(by * length) for length in large[:3])
     return VectorParse(width, height, depth, glyphs, rectangles)
