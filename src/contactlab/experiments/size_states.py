@@ -20,6 +20,7 @@ from fractalcontact.domain.null_models import bearing_area_cut
 from fractalcontact.domain.random_nodes import expected_dimension
 from fractalcontact.mechanics.area import corrected_area
 from fractalcontact.mechanics.closure import bulk_settlement
+from fractalcontact.mechanics.states import SCALARS
 from fractalcontact.mechanics.sweep import load_steps
 from fractalcontact.surface.embedded import embedded_surface
 from fractalcontact.surface.synthesis import band_limited, band_slope
@@ -51,12 +52,7 @@ STATES: dict[str, tuple] = {
     "correlation_dimension": (_STATE, "1", "correlation dimension D_2 of the contact domain"),
     "band_dimension": (_STATE, "1", "D_2 between the cut-off and the roll-off"),
     "cut_dimension": (_STATE, "1", "the same of the bearing-area cut of as many nodes"),
-    "residual": (_STATE, "1", "largest KKT residual, fraction of the closure"),
-    "energy_error": (
-        _STATE,
-        "1",
-        "Frank-Wolfe bound on the energy above its minimum, fraction of it",
-    ),
+    **{name: (_STATE, *SCALARS[name]) for name in ("residual", "energy_error")},
 }
 #: What is kept of every surface.
 SURFACES: dict[str, tuple] = {

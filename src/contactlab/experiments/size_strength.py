@@ -16,6 +16,7 @@ from fractalcontact.core.datasets import labelled_dataset
 from fractalcontact.core.errors import InputError
 from fractalcontact.core.labels import cf_attrs
 from fractalcontact.mechanics.area import corrected_area
+from fractalcontact.mechanics.states import SCALARS
 from fractalcontact.mechanics.sweep import load_steps
 from roughcontact.contact.state import ContactState
 from roughcontact.elastic.halfspace import HalfSpace
@@ -39,12 +40,7 @@ STATES: dict[str, tuple] = {
     "corrected_share": (_STATE, "1", "real contact area A_r / A_0, corrected for the perimeter"),
     "nodes": (_STATE, "1", "nodes in contact"),
     "yielded": (_STATE, "1", "fraction of the nodes in contact that carry the hardness"),
-    "residual": (_STATE, "1", "largest KKT residual, fraction of the closure"),
-    "energy_error": (
-        _STATE,
-        "1",
-        "Frank-Wolfe bound on the energy above its minimum, fraction of it",
-    ),
+    **{name: (_STATE, *SCALARS[name]) for name in ("residual", "energy_error")},
 }
 #: What is kept of every surface, and of every spectrum.
 SURFACES: dict[str, tuple] = {
