@@ -232,9 +232,9 @@ def test_a_wrong_solution_is_refused(monkeypatch):
 
 @pytest.mark.parametrize("cholmod", SOLVERS)
 def test_singular_equations_are_refused(cholmod):
-    lower = sparse.csc_array(np.tril([[1.0, -1.0], [-1.0, 1.0]]))
+    lower = sparse.coo_array(np.tril([[1.0, -1.0], [-1.0, 1.0]]))
     try:
-        found = factorised(lower, np.arange(2), cholmod=cholmod)(np.ones((2, 1)))
+        found = factorised(lower, cholmod=cholmod)(np.ones((2, 1)))
     except ArithmeticError:
         return
     assert not np.isfinite(found).all() or np.abs(found).max() > 1e12

@@ -22,16 +22,14 @@ def cholmod_is_here() -> bool:
 
 
 def factorised(
-    lower: sparse.csc_array, order: np.ndarray, *, cholmod: bool | None = None
+    lower: sparse.coo_array, *, cholmod: bool | None = None
 ) -> Callable[[np.ndarray], np.ndarray]:
-    """Solver of A x = b, A symmetric and positive definite.
+    """Solver of A x = b, A symmetric and positive definite, its rows eliminated as they are.
 
     Parameters
     ----------
-    lower : (n, n) sparse.csc_array
-        Lower triangle of A with its diagonal, each entry once.
-    order : (n,) ndarray
-        Order of elimination of the unknowns, one that leaves little fill-in.
+    lower : (n, n) sparse.coo_array
+        Lower triangle of A with its diagonal; what is said of an entry twice is added.
     cholmod : bool, optional
         True solves with CHOLMOD, False with SuperLU; unsaid, CHOLMOD where it is installed.
 
@@ -46,20 +44,18 @@ def factorised(
         If a pivot is not positive: A is singular to the precision of the numbers.
     """
     if cholmod_is_here() if cholmod is None else cholmod:
-        return _by_cholmod(lower, order)
-    return _by_superlu(lower, order)
+        return _by_cholmod(lower)
+    return _by_superlu(lower)
 
 
-def _by_cholmod(lower, order):
+def _by_cholmod(lower):
     cvxopt, cholmod = import_module("cvxopt"), import_module("cvxopt.cholmod")
-    rows, starts = (one.astype(np.int64, copy=False) for one in (lower.indices, lower.indptr))
-    columns = np.repeat(np.arange(order.size), np.diff(starts))
-    matrix = cvxopt.spmatrix(lower.data, rows, columns, lower.shape)
+    matrix = cvxopt.spmatrix(lower.data, *lower.coords, lower.shape)
     # Else it would compare the order with that of AMD, which takes as long as the factor.
     stated = cholmod.options
     cholmod.options = {**stated, "nmethods": 1}
     try:
-        factor = cholmod.symbolic(matrix, p=cvxopt.matrix(order))
+        factor = cholmod.symbolic(matrix, p=cvxopt.matrix(np.arange(lower.shape[0])))
     finally:
         cholmod.options = stated
     cholmod.numeric(matrix, factor)
@@ -72,21 +68,13 @@ def _by_cholmod(lower, order):
     return solve
 
 
-def _by_superlu(lower, order):
-    matrix = (lower + sparse.tril(lower, -1, format="csc").T).tocsc()
+def _by_superlu(lower):
+    triangle = lower.tocsc()
+    matrix = triangle + sparse.tril(triangle, -1, format="csc").T
+    options = {"SymmetricMode": True}
     try:
-        factor = splu(
-            matrix[order][:, order],
-            permc_spec="NATURAL",
-            diag_pivot_thresh=0.0,
-            options={"SymmetricMode": True},
-        )
+        return splu(
+            matrix.tocsc(), permc_spec="NATURAL", diag_pivot_thresh=0.0, options=options
+        ).solve
     except RuntimeError as error:
         raise ArithmeticError(str(error)) from error
-
-    def solve(right: np.ndarray) -> np.ndarray:
-        solution = np.empty_like(right)
-        solution[order] = factor.solve(right[order])
-        return solution
-
-    return solve

@@ -8,7 +8,7 @@ from scipy import ndimage
 from roughcontact.kernel_cache import njit
 
 from .errors import FlowNotConverged
-from .red_black import RedBlack
+from .red_black import red_black_solver
 
 #: Largest error of a flow that the imbalance of its cells may make, a fraction of the flow.
 MAX_IMBALANCE = 1e-6
@@ -180,14 +180,14 @@ def solve_network(
     scale = 1 / max(network.along_x.max(initial=0), network.along_y.max(initial=0), ends.max())
     faces = network.along_x * scale, network.along_y * scale
     try:
-        equations = RedBlack(*faces, ends.sum(axis=0) * scale, cells, cholmod)
-        solution = _complementary(equations.solve(ends * scale), cells)
+        solve = red_black_solver(*faces, ends.sum(axis=0) * scale, cells, cholmod)
+        solution = _complementary(solve(ends * scale), cells)
         for step in range(REFINEMENTS + 1):
             balance, flows, fluxes = _balance(network, *solution)
             error = float(np.abs(balance).sum()) / max(min(flows), np.finfo(float).tiny)
             if error <= MAX_IMBALANCE or step == REFINEMENTS:
                 break
-            change = equations.solve(np.stack([balance, -balance]) * scale)
+            change = solve(np.stack([balance, -balance]) * scale)
             solution = _complementary(solution + change, cells)
     except ArithmeticError as failed:
         raise FlowNotConverged(f"the equations are singular ({failed})", np.inf) from failed
