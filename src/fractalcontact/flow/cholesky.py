@@ -29,7 +29,7 @@ def factorised(
     Parameters
     ----------
     lower : (n, n) sparse.coo_array
-        Lower triangle of A with its diagonal; what is said of an entry twice is added.
+        Lower triangle of A with its diagonal, each entry once.
     cholmod : bool, optional
         True solves with CHOLMOD, False with SuperLU; unsaid, CHOLMOD where it is installed.
 

@@ -13,6 +13,12 @@ from roughcontact.kernel_cache import njit
 
 from .cholesky import factorised
 
+#: Number of the later cell that two steps (up, left, right, down) lead to, -1 to an earlier one.
+_FORWARD = ((-1, -1, -1, -1), (-1, -1, -1, 1), (-1, -1, 0, 2), (-1, 1, 2, 3))
+
+#: Cells of a box that is not dissected further.
+MAX_LEAF = 4
+
 
 def red_black_solver(
     along_x: np.ndarray,
@@ -70,15 +76,36 @@ def red_black_solver(
 def _dissection(rows, columns):
     """Order of nested dissection (George 1973) of red cells, each separating line after its halves.
 
-    Their equations join neighbours on the diagonals too: one diagonal separates. Diagonals are cut
-    at multiples of powers of two from the middle, those of a larger power later.
+    Their equations join neighbours on the diagonals too: one diagonal separates.
     """
-    powers = []
-    for diagonal in (rows + columns) // 2, (rows - columns) // 2:
-        middle = (diagonal.max(initial=0) + diagonal.min(initial=0)) // 2
-        from_middle = diagonal - middle + (1 << 40)
-        powers.append(np.log2(from_middle & -from_middle))
-    return np.argsort(np.maximum(2 * powers[0] + 1, 2 * powers[1]).astype(np.int8), kind="stable")
+    down, up = (rows + columns) // 2, (rows - columns) // 2
+    down, up = down - down.min(initial=down.size), up - up.min(initial=up.size)
+    numbers = np.full((down.max(initial=0) + 1, up.max(initial=0) + 1), -1)
+    numbers[down, up] = np.arange(rows.size)
+    return _dissected(numbers)[::-1]
+
+
+@njit(cache=True)
+def _dissected(numbers):
+    """Numbers on a grid, -1 where none is: those of the middle line, then of each half alike."""
+    order, n = np.empty(numbers.size, np.int64), 0
+    boxes = [(0, numbers.shape[0], 0, numbers.shape[1])]
+    while boxes:
+        top, bottom, left, right = boxes.pop()
+        if (bottom - top) * (right - left) > MAX_LEAF:
+            if bottom - top >= right - left:
+                middle = (top + bottom) // 2
+                boxes += [(top, middle, left, right), (middle + 1, bottom, left, right)]
+                top, bottom = middle, middle + 1
+            else:
+                middle = (left + right) // 2
+                boxes += [(top, bottom, left, middle), (top, bottom, middle + 1, right)]
+                left, right = middle, middle + 1
+        for number in numbers[top:bottom, left:right].flat:
+            if number >= 0:
+                order[n] = number
+                n += 1
+    return order[:n]
 
 
 @njit(cache=True)
@@ -86,22 +113,27 @@ def _mesh(stars, ends, over, ordered, steps):
     """Lower triangle of the equations of the red cells: values, rows and columns."""
     number = np.full(ends.size, -1)
     number[ordered] = np.arange(ordered.size)
-    values, entries, n = np.empty(13 * ordered.size), np.empty((2, 13 * ordered.size), np.int64), 0
+    values, entries, n = np.empty(5 * ordered.size), np.empty((2, 5 * ordered.size), np.int64), 0
     for cell in np.flatnonzero(number >= 0):
-        column, diagonal = number[cell], ends[cell]
+        column, diagonal, forward = number[cell], ends[cell], np.zeros(4)
         for one in range(4):
             black = cell + steps[one]
             part = stars[one, cell] * over[black]
             diagonal += part * ends[black]
             for other in range(4):
-                through, row = part * stars[other, black], number[black + steps[other]]
-                if one + other != 3 and through > 0:
+                if one + other != 3:
+                    through = part * stars[other, black]
                     diagonal += through
-                    if row > column:
-                        values[n], entries[0, n], entries[1, n] = -through, row, column
-                        n += 1
+                    if _FORWARD[one][other] >= 0:
+                        forward[_FORWARD[one][other]] += through
         values[n], entries[:, n] = diagonal, column
         n += 1
+        for place in range(4):
+            if forward[place] > 0:
+                row = number[cell + (2, steps[3] - 1, steps[3] + 1, 2 * steps[3])[place]]
+                entries[0, n], entries[1, n] = max(row, column), min(row, column)
+                values[n] = -forward[place]
+                n += 1
     return values[:n], entries[0, :n], entries[1, :n]
 
 
