@@ -7,7 +7,7 @@ import pandas as pd
 import pytest
 import xarray as xr
 
-from fractalcontact.cards.apertures import aperture_at, write_aperture
+from fractalcontact.cards.apertures import aperture_at, with_solved_gaps, write_aperture
 from fractalcontact.commands.export_aperture import main
 from fractalcontact.core.errors import InputError
 from fractalcontact.scan.read import read_scan
@@ -68,6 +68,19 @@ def test_between_two_loads_the_aperture_is_interpolated_in_the_logarithm(contact
     assert middle.attrs["source"] == "interpolated in ln(pressure) between 125 and 250 MPa"
     with pytest.raises(InputError, match=r"no aperture at 0\.5 MPa; its maps are kept at 1, 125"):
         aperture_at(contact, 0.5, "pair")
+
+
+def test_where_the_states_are_kept_all_loads_have_their_map_as_solved(contact, tmp_path):
+    gaps = contact["map_gap"]
+    solved = np.random.default_rng(1).random(gaps.shape, np.float32)
+    part = xr.Dataset({"map_gap": (gaps.dims, solved)}, {"normal_force": gaps["normal_force"]})
+    (tmp_path / "contact/pair").mkdir(parents=True)
+    part.drop_vars("map_gap").to_netcdf(tmp_path / "contact/pair/0.0.0.nc")
+    part.to_netcdf(tmp_path / "contact/pair/0.1.0.nc")
+    whole = with_solved_gaps(contact, tmp_path, "pair")
+    for pressure, gap in zip(gaps["nominal_pressure"].values, solved, strict=True):
+        np.testing.assert_array_equal(aperture_at(whole, pressure, "pair"), gap)
+    assert with_solved_gaps(contact, tmp_path, "flat.1") is contact
 
 
 def test_apertures_at_ones_own_points(folder, contact, tmp_path, capsys):

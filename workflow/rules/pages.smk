@@ -27,6 +27,7 @@ rule explorer:
 rule cards:
     input:
         rules.atlas.output[0],
+        *(path for specimen in SPECIMENS for path in contact_parts_of(specimen)),
     output:
         expand(f"{RESULTS}/{page_files.CARD}", specimen=SPECIMENS, ending=page_files.CARD_ENDINGS),
         expand(

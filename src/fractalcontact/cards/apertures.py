@@ -16,13 +16,32 @@ from ..core.tables import write_table
 SAME = 1e-6
 
 
+def with_solved_gaps(contact: xr.Dataset, results: Path | str, name: str) -> xr.Dataset:
+    """Stage contact with the gaps of all loads as solved, where their states are in the results.
+
+    Parameters
+    ----------
+    contact : xr.Dataset
+        Of the stage of this name, whose ``map_gap`` an atlas rounds, under some of the loads.
+    results : path-like
+        Folder of the results of a study.
+    name : str
+        The specimen.
+    """
+    for path in sorted(Path(results).glob(f"contact/{name}/*.nc")):
+        with xr.open_dataset(path) as part:
+            if "map_gap" in part:
+                return contact.assign(map_gap=contact["map_gap"].copy(data=part["map_gap"]))
+    return contact
+
+
 def aperture_at(contact: xr.Dataset, pressure: float | None, name: str) -> xr.DataArray:
     """Aperture map at a pressure, 0 in contact.
 
     Parameters
     ----------
     contact : xr.Dataset
-        Of the stage of this name.
+        As :func:`with_solved_gaps` gives it.
     pressure : float or None
         MPa; None for the reference load.
     name : str
@@ -37,7 +56,7 @@ def aperture_at(contact: xr.Dataset, pressure: float | None, name: str) -> xr.Da
     Raises
     ------
     InputError
-        If the pressure lies outside those whose maps the atlas keeps.
+        If the pressure lies outside those whose maps are kept.
     """
     maps = contact["map_gap"].dropna("normal_force", how="all")
     known = maps["nominal_pressure"].values
@@ -48,7 +67,7 @@ def aperture_at(contact: xr.Dataset, pressure: float | None, name: str) -> xr.Da
         raise InputError(
             f"{name}: no aperture at {pressure:g} MPa; its maps are kept at "
             f"{', '.join(f'{one:.4g}' for one in known)} MPa, so write a pressure between the "
-            "first and the last, or name others under 'dilatancy_loads' of the study"
+            "first and the last, or name others under 'loads' of the study"
         )
     nearest = int(np.argmin(np.abs(np.log(known / pressure))))
     if abs(known[nearest] - pressure) <= SAME * pressure:

@@ -14,7 +14,7 @@ from ..pages.files import APERTURE, APERTURE_ENDINGS, CARD
 from ..pages.templating import write_page
 from ..study.atlas import read_atlas, read_variables
 from ..study.stages import STAGES as ALL_STAGES
-from .apertures import aperture_at, write_aperture
+from .apertures import aperture_at, with_solved_gaps, write_aperture
 from .card import FORM, STAGES, card_of, made_of
 from .page import page_of
 
@@ -45,7 +45,7 @@ def write_cards(path: Path | str, folder: Path | str) -> list[str]:
     for name in names:
         write_card(card_of(Subject.of(atlas, name), study, made), folder)
     for name, contact in read_variables(path, "contact", ["map_gap"]):
-        aperture = aperture_at(contact, None, name)
+        aperture = aperture_at(with_solved_gaps(contact, folder, name), None, name)
         for ending in APERTURE_ENDINGS:
             write_aperture(aperture, Path(folder) / APERTURE.format(specimen=name, ending=ending))
     return names

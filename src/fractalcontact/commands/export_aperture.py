@@ -10,7 +10,12 @@ import argparse
 import sys
 from collections.abc import Sequence
 
-from ..cards.apertures import aperture_at, aperture_at_points, write_aperture
+from ..cards.apertures import (
+    aperture_at,
+    aperture_at_points,
+    with_solved_gaps,
+    write_aperture,
+)
 from ..core.errors import InputError
 from ..core.units import quantity
 from ..study.atlas_parts import open_atlas
@@ -33,7 +38,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
                 f"{given.results}: no specimen {given.specimen!r}; it has "
                 f"{', '.join(atlas.specimens) or 'none'}"
             )
-        aperture = aperture_at(atlas[f"contact/{given.specimen}"], pressure, given.specimen)
+        contact = atlas[f"contact/{given.specimen}"]
+        contact = with_solved_gaps(contact, given.results, given.specimen)
+        aperture = aperture_at(contact, pressure, given.specimen)
         points = given.points and aperture_at_points(aperture, given.points)
         write_aperture(points if given.points else aperture, given.out)
     except InputError as error:
