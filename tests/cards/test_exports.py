@@ -65,7 +65,8 @@ def card(cards):
                 for at in PRESSURE.tolist()
             ],
         }
-    made["entries"]["tangent_stiffness"]["values"] = [
+    made["geometry"]["reference_pressure"]["value"] = 5.0
+    made["entries"]["interface_stiffness"]["values"] = [
         {
             "at": {"pressure": at},
             "value": K_NI * (1 + at / (K_NI * V_M)) ** 2,

@@ -94,7 +94,8 @@ def test_a_column_has_one_value_at_one_state_in_all_tables_and_in_the_atlas(comp
 COLUMNS = {
     "Nominal pressure": "nominal_pressure_MPa",
     "Real pressure": "real_pressure_MPa",
-    "Interface closure": "interface_closure_mm",
+    "Closure from the seat": "seated_closure_mm",
+    "Closure from first touch": "interface_closure_mm",
     "Tangent stiffness": "stiffness_MPa_per_mm",
     "Δσ by boxes": "delta_sigma_boxes",
     "Δσ by area": "delta_sigma_areas",
@@ -104,7 +105,7 @@ COLUMNS = {
 }
 #: Of these, what suspicious cells of the scans leave undetermined.
 BY_SCAN = {
-    *("interface_closure_mm", "stiffness_MPa_per_mm"),
+    *("seated_closure_mm", "interface_closure_mm", "stiffness_MPa_per_mm"),
     *("mean_gap_mm", "transmissivity_along_mm3"),
 }
 #: Of the error budget: column of the summary, its unit, and that of its errors on the page: those
@@ -274,6 +275,8 @@ def test_the_explorer_has_the_values_errors_and_words_of_the_summary(published, 
                 "scaling/delta_sigma_area": row["delta_sigma_area"],
                 "total/closure/closure": row["interface_closure_error_surface_mm"],
                 "total/closure/interface_closure": row["interface_closure_error_surface_mm"],
+                "closure/seated_closure": row["seated_closure_mm"],
+                "total/closure/seated_closure": row["seated_closure_error_surface_mm"],
                 "total/closure/separation": row["separation_error_surface_mm"],
                 "total/closure/interface_stiffness": row["stiffness_error_surface_MPa_per_mm"],
                 "undetermined/by_scan": float(row["by_scan"]),

@@ -31,7 +31,8 @@ SUMMARY = {
 }
 #: Quantities of curves.csv.
 CURVES = {
-    "interface closure": "interface_closure_mm",
+    "closure from the seat": "seated_closure_mm",
+    "closure from first touch": "interface_closure_mm",
     "tangent stiffness": "interface_stiffness_MPa_per_mm",
     "real contact area A_r/A_0": "area_corrected_share",
     "Delta_sigma by box counting": "delta_sigma_box",

@@ -66,6 +66,7 @@ def card_of(subject: Subject, study: Mapping[str, Any], made: Mapping[str, Any])
         "model": model,
         "direction": subject.direction,
         "geometry": geometry_of(subject),
+        "window": str(subject["specimens"].attrs["window_note"]),
         "entries": {one.key: read_entry(one, subject, model) for one in entries()},
         "errors": errors_of(subject),
         "lights": [
@@ -98,7 +99,7 @@ def is_synthetic(name: str, study: Mapping[str, Any]) -> bool:
 
 
 def geometry_of(subject: Subject) -> dict[str, Any]:
-    """Spacing, window, offset and seat, without intervals: they are chosen, not measured."""
+    """Spacing, window, offset, seat and reference pressure: chosen, so without intervals."""
     side_y, side_x = window_sides(subject["specimens"])
     lengths = {
         "spacing": max(spacing_of(subject["specimens"])),
@@ -109,20 +110,26 @@ def geometry_of(subject: Subject) -> dict[str, Any]:
     found = {name: {"value": rounded(one), "unit": "mm"} for name, one in lengths.items()}
     seat = float(subject.states("closure")["seating_pressure"])
     return found | {
-        "seat": number(Estimate(seat), "no resolved state at the seat") | {"unit": "MPa"}
+        "seat": number(Estimate(seat), "no resolved state at the seat") | {"unit": "MPa"},
+        "reference_pressure": {"value": reference_pressure_of(subject), "unit": "MPa"},
     }
+
+
+def reference_pressure_of(subject: Subject) -> float | None:
+    """Nominal pressure of the reference load, MPa: first numbers, maps and exports are of it."""
+    return rounded(subject["closure"]["nominal_pressure"][subject.reported.reference])
 
 
 def errors_of(subject: Subject) -> list[dict[str, Any]]:
     """Errors by source of the quantities under the reference load, half-widths at 95 %."""
     reference = subject.reported.reference
-    pressure = float(subject["closure"]["nominal_pressure"][reference])
+    pressure = reference_pressure_of(subject)
     return [
         {
             "quantity": one.name,
             "title": one.meaning,
             "unit": one.unit,
-            "pressure": rounded(pressure),
+            "pressure": pressure,
             "value": rounded(one.value),
             "of_this_surface": rounded(one.errors["surface"]),
             "of_its_population": rounded(one.errors["population"]),

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from ..pages.captions import symbols
-from ..pages.first_screen import row_at
+from ..pages.first_screen import facts_of, row_at, window_of
 from ..pages.words import MISSING, measured, percent, short, with_unit
 
 #: Tables of curves over pressure, by title: the sections that share one.
@@ -43,6 +43,8 @@ def page_of(card: Mapping[str, Any]) -> dict[str, Any]:
     stiffness = [entries[key] for key in ("tangent_stiffness", "reload_stiffness")]
     return {
         "card": card,
+        "facts": facts_of(card) if card["kind"] == "joint" else [],
+        "window": window_of(card) if card["kind"] == "joint" else "",
         "stiffness": over_pressure(stiffness),
         "tables": list(_tables(printed)),
         "tests": tests_of(entries),

@@ -5,6 +5,7 @@ from functools import cache
 from pathlib import Path
 from typing import NamedTuple
 
+import xarray as xr
 import yaml
 
 from .estimate import Estimate, Judged, names_of
@@ -72,6 +73,12 @@ class Shown:
         else:
             found = Estimate(state[self.variable].item())
         return Value(found, "" if unit == "1" else unit, has_interval)
+
+    def total(self, budget: xr.Dataset) -> xr.DataArray:
+        """Total error for this surface, of a quantity that the error budget has one of."""
+        if (own := f"{self.budget}_total") in budget:
+            return budget[own]
+        return budget["total"].sel(quantity=self.budget, drop=True)
 
 
 class Value(NamedTuple):

@@ -15,7 +15,7 @@ from .sweep import load_steps
 
 #: Quantities of a state whose numerical error is found: unit, long name.
 QUANTITIES = {
-    "closure": ("mm", "interface closure w_int"),
+    "closure": ("mm", "closure w_int from first touch"),
     "separation": ("mm", "separation of the mean planes, delta_r - w"),
     "area_corrected": ("mm2", "real contact area, corrected for its edge"),
     "stiffness": ("MPa/mm", "stiffness of the interface d sigma / d w_int"),

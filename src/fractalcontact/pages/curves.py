@@ -28,8 +28,8 @@ COLUMNS = (
 def curves_table(study: str, subjects: list[Subject]) -> pd.DataFrame:
     """Curves of specimens, one row a point; points that were not solved are left out.
 
-    Interface closure, tangent stiffness and corrected area with the total error of this surface,
-    both Delta_sigma with their intervals. A point is ``resolved`` where ten nodes touch and, of a
+    Closure, tangent stiffness and corrected area with the total error of this surface, both
+    Delta_sigma with their intervals. A point is ``resolved`` where ten nodes touch and, of a
     dimension, where its interval determines it; figures draw the others hollow.
 
     Parameters
@@ -74,9 +74,13 @@ def _quantities(one):
     """Name, unit and estimates of each curve over the loads."""
     closure = one.states("closure")
     budget = one["error_budget"].sel(normal_force=one.forces, method="nearest")
+    seated, error = closure["seated_closure"].values, budget["seated_closure_total"].values
+    # At the seat it is 0 by definition.
+    above = np.where(seated > 0, seated, np.nan)
+    yield "closure from the seat", "mm", Estimate(above, above - error, above + error)
     share = closure["area_corrected_share"].values
     of_values = (
-        ("interface closure", "mm", closure["interface_closure"].values, "closure"),
+        ("closure from first touch", "mm", closure["interface_closure"].values, "closure"),
         ("tangent stiffness", "MPa/mm", closure["interface_stiffness"].values, "stiffness"),
         ("real contact area A_r/A_0", "mm2/mm2", share, "area_corrected"),
     )

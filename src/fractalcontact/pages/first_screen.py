@@ -11,8 +11,6 @@ from ..core.limits import JRC_SAMPLING
 from .files import CARD
 from .words import measured, short, with_unit
 
-#: Nominal pressure that the first numbers are of, MPa; of what is solved under loads, the nearest.
-_PRESSURE = 5.0
 #: Intervals as cards name them, in words.
 _ALONE = {"solver": " solver alone", "all errors of this surface": " this surface"}
 #: Where a card has the half-width of a number for other surfaces of its kind.
@@ -36,6 +34,8 @@ class Block:
     name, label : str
     state : str
         Offset of what is quoted, and what the contact was solved as.
+    window : str
+        Its sides, and how they were chosen.
     facts : list of Fact
     trust : mapping
         ``word``, ``reason`` and ``help``, of the card.
@@ -50,6 +50,7 @@ class Block:
     name: str
     label: str
     state: str
+    window: str
     facts: list[Fact]
     trust: Mapping[str, str]
     synthetic: bool
@@ -73,37 +74,58 @@ def blocks_of(names: Sequence[str], folder: Path) -> list[Block]:
 
 def block_of(card: Mapping[str, Any]) -> Block:
     """Block of one card."""
-    entries = card["entries"]
-    closure = entries["seated_closure"]
-    if not (near := _nearest(closure)) or not near["value"]:
-        closure = entries["interface_closure"]
-        near = _nearest(closure)
-    pressure = near["at"]["pressure"] if near else _PRESSURE
-    at = f"at {short(pressure)} MPa"
-    stiffness = row_at(entries["tangent_stiffness"], _PRESSURE)
-    strength, barton = (row_at(entries[k], pressure) for k in ("peak_strength", "barton_strength"))
-    hydraulic = row_at(entries["hydraulic_aperture"], pressure)
-    flowing = f"hydraulic {short(hydraulic['value'])} mm" if "value" in hydraulic else ""
-    facts = [
-        _fact(f"normal stiffness at {short(_PRESSURE)} MPa", stiffness, "MPa/mm"),
-        _fact(f"closure {at}", near or {"missing": "no load was solved"}, "mm"),
-        _fact(f"mean gap {at}", row_at(entries["mean_gap"], pressure), "mm", flowing),
-        _fact(f"contact {at}", row_at(entries["contact_fraction"], pressure), "%"),
-    ]
-    if card["direction"] != "none":
-        beside = f"Barton {with_unit(barton['value'], 'MPa')}" if "value" in barton else ""
-        facts.append(_fact("JRC", *_jrc(card)))
-        facts.append(_fact(f"peak shear strength {at}", strength, "MPa", beside))
     return Block(
         name=card["name"],
         label=card["label"],
         state=f"{_offset(card)}; contact {card['model']}",
-        facts=facts,
+        window=window_of(card),
+        facts=facts_of(card),
         trust=card["trust"],
         synthetic=card["synthetic"],
         methods=card["methods"],
         references=card["references"],
     )
+
+
+def window_of(card: Mapping[str, Any]) -> str:
+    """Sides and spacing of the window of a joint, and how they were chosen."""
+    size = {key: one.get("value", math.nan) for key, one in card["geometry"].items()}
+    sides = f"{short(size['window_x'])} × {short(size['window_y'])} mm"
+    chosen = f": {card['window']}" if card.get("window") else ""
+    return f"window {sides}, spacing {with_unit(size['spacing'], 'mm')}{chosen}"
+
+
+def facts_of(card: Mapping[str, Any]) -> list[Fact]:
+    """First numbers of a joint, all at the reference pressure of its study."""
+    pressure = reference_of(card)
+    at = f"at {short(pressure)} MPa"
+    stiffness, seated, gap, hydraulic, contact, strength, barton = (
+        row_at(card["entries"][key], pressure)
+        for key in (
+            *("interface_stiffness", "seated_closure", "mean_gap", "hydraulic_aperture"),
+            *("contact_fraction", "peak_strength", "barton_strength"),
+        )
+    )
+    since = f"from {with_unit(card['geometry']['seat'].get('value', math.nan), 'MPa')} on"
+    if not seated.get("value"):
+        seated, since = row_at(card["entries"]["interface_closure"], pressure), "from first touch"
+    flowing = f"hydraulic {short(hydraulic['value'])} mm" if "value" in hydraulic else ""
+    facts = [
+        _fact(f"normal stiffness {at}", stiffness, "MPa/mm"),
+        _fact(f"closure {at}", seated, "mm", since),
+        _fact(f"mean gap {at}", gap, "mm", flowing),
+        _fact(f"contact {at}", contact, "%"),
+    ]
+    if card["direction"] != "none":
+        beside = f"Barton {with_unit(barton['value'], 'MPa')}" if "value" in barton else ""
+        facts.append(_fact("JRC", *_jrc(card)))
+        facts.append(_fact(f"peak shear strength {at}", strength, "MPa", beside))
+    return facts
+
+
+def reference_of(card: Mapping[str, Any]) -> float:
+    """Reference pressure of a card, MPa; NaN where it has no contact."""
+    return float(card["geometry"].get("reference_pressure", {}).get("value", math.nan))
 
 
 def _offset(card):
@@ -115,24 +137,12 @@ def _offset(card):
     return "in the mated position" if card["faces"].startswith("one") else "as scanned"
 
 
-def _nearest(curve):
-    """Row of a curve with a number whose pressure is nearest to the reference."""
-    known = [row for row in _rows(curve) if "value" in row]
-    return min(
-        known, key=lambda row: abs(math.log(row["at"]["pressure"] / _PRESSURE)), default=None
-    )
-
-
-def _rows(curve):
-    """Rows of a curve, each with the errors that its interval contains."""
-    interval = curve.get("interval", "")
-    return [row | {"interval": interval} for row in curve.get("values", ())]
-
-
 def row_at(curve: Mapping[str, Any], pressure: float) -> dict[str, Any]:
     """Row of a curve of a card at a pressure, MPa, or its absence with the reason."""
-    rows = [row for row in _rows(curve) if row["at"].get("pressure") == pressure]
-    return rows[0] if rows else {"missing": curve.get("missing", "not solved there")}
+    # With the errors that its interval contains.
+    beside = {"interval": curve.get("interval", "")}
+    rows = [row for row in curve.get("values", ()) if row["at"].get("pressure") == pressure]
+    return rows[0] | beside if rows else {"missing": curve.get("missing", "not solved there")}
 
 
 def _jrc(card):

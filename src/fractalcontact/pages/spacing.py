@@ -44,23 +44,11 @@ def spacing_words(found: Sequence[Doubled]) -> Markup:
     initial = [one.k_ni for one in found if math.isfinite(one.k_ni)]
     if not initial:
         return Markup("")
-    larger, smaller = sum(one > 0 for one in initial), sum(one < 0 for one in initial)
-    text = (
-        f"Twice the spacing makes k_ni larger for {larger or 'none'} and smaller for "
-        f"{smaller or 'none'} of {len(initial)} specimen{'s' if len(initial) > 1 else ''} "
-        f"({_range(initial)}): {_verdict(larger, smaller)}"
-    )
+    text = f"If only every second point of a scan is used, k_ni changes by {_range(initial)}"
     tangent = [one.stiffness for one in found if math.isfinite(one.stiffness)]
     if tangent:
-        text += f". The tangent stiffness under the reference load changes by {_range(tangent)}"
+        text += f" and the tangent stiffness under the reference load by {_range(tangent)}"
     return symbols(f"{text}.")
-
-
-def _verdict(larger, smaller):
-    """Trend of k_ni with finer scans, if there is one."""
-    if bool(larger) == bool(smaller):
-        return "k_ni has no common trend with finer scans"
-    return f"the finer the scan, the {'smaller' if larger else 'larger'} k_ni"
 
 
 def _range(changes):

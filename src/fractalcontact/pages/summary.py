@@ -320,7 +320,8 @@ def quantities_at(subject: Subject, number: int) -> dict[str, Quantity]:
     sources = [str(source) for source in budget["source"].values]
     why = subject.states("closure")["interface_stiffness_reason"].isel(normal_force=number)
     missing = {"stiffness": str(why.item())}
-    found = {}
+    total = float(budget["seated_closure_total"])
+    found = {"seated_closure": _seated_closure(subject, number, total)}
     for name in map(str, budget["quantity"].values):
         one = budget.sel(quantity=name)
         found[name] = Quantity(
@@ -346,6 +347,22 @@ def quantities_at(subject: Subject, number: int) -> dict[str, Quantity]:
     known = [f"{value:.2f} {words}" for words, value in values.items() if np.isfinite(value)]
     found["delta_sigma"].reasons["estimator"] = ", ".join(known) or "no other estimate"
     return found
+
+
+def _seated_closure(subject, number, error):
+    """Closure from the seat, of which the budget has the total for this surface alone."""
+    value = float(subject.states("closure")["seated_closure"].isel(normal_force=number))
+    return Quantity(
+        name="seated_closure",
+        meaning="closure from the seat",
+        unit="mm",
+        absolute=False,
+        value=value,
+        errors={"surface": error, "population": math.nan},
+        sources={},
+        reasons={},
+        missing="" if math.isfinite(value) else "below the seat, or not solved",
+    )
 
 
 def dilatancy_of(subject: Subject) -> Dilatancy:

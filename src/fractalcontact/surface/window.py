@@ -82,13 +82,15 @@ def place_window(specimen: xr.Dataset, request: WindowRequest) -> dict:
     _require_room(specimen, wanted, shape, multiple)
     corner, place_note = _find_place(specimen, shape, wanted, request.window_centre is not None)
     notes = [place_note] if place_note else []
+    if automatic and slides(specimen.attrs["opposite"]):
+        notes.append("half of the largest square without holes, so that it can slide")
+    elif automatic:
+        notes.append("the largest square without holes")
     if shape != wanted.cells:
         notes.append(
             f"{wanted.cells[1]} x {wanted.cells[0]} cells rounded down to {shape[1]} x {shape[0]}, "
             f"multiples of {multiple}"
         )
-    if automatic:
-        notes.append("size chosen from the largest hole-free square")
     return {
         "window_y0": corner[0],
         "window_x0": corner[1],

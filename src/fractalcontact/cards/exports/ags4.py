@@ -10,7 +10,8 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from ...core.limits import JRC_RANGE, JRC_SAMPLING
-from .constants import at_preferred, in_words
+from ...pages.first_screen import reference_of, row_at
+from .constants import in_words
 
 ENDING = "ags"
 _EDITION = "4.1.1"
@@ -26,7 +27,7 @@ def discontinuity_of(card: Mapping[str, Any]) -> dict[str, tuple[str, str, str]]
         and row["at"]["direction"] == card["direction"]
         and JRC_RANGE[0] <= row.get("value", -1) <= JRC_RANGE[1]
     ]
-    gap, wall = at_preferred(entries["mean_gap"]), entries["joint_wall_strength"]
+    gap, wall = row_at(entries["mean_gap"], reference_of(card)), entries["joint_wall_strength"]
     remarks = [f"contact {card['model']}", f"trust {card['trust']['word']}"]
     if jrc:
         remarks.append(

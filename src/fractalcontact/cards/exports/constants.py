@@ -6,8 +6,6 @@ from typing import Any
 
 from ...pages.words import short
 
-#: Pressures at which one stiffness is given where a code takes one, MPa, the first that is known.
-PREFERRED = (5.0, 1.0, 10.0)
 #: Factors from the units of a card to metres and pascals.
 TO_SI = {"MPa/mm": 1e9, "MPa": 1e6, "mm": 1e-3, "1": 1.0}
 UNITS_SI = {"MPa/mm": "Pa/m", "MPa": "Pa", "mm": "m", "1": "-"}
@@ -50,15 +48,6 @@ def in_words(entry: Mapping[str, Any], row: Mapping[str, Any]) -> str:
     ends = f" [{low}, {high}]" if low != high else ""
     unit = "" if entry["unit"] == "1" else f" {entry['unit']}"
     return f"{short(row['value'])}{ends}{unit}"
-
-
-def at_preferred(entry: Mapping[str, Any]) -> dict[str, Any]:
-    """Row of a curve over pressure at the first of :data:`PREFERRED` where it has a number."""
-    known = {row["at"]["pressure"]: row for row in entry.get("values", ()) if "value" in row}
-    for pressure in PREFERRED:
-        if pressure in known:
-            return known[pressure]
-    return {"missing": "no resolved states around 1, 5 or 10 MPa"}
 
 
 def over_pressure(entry: Mapping[str, Any]) -> str:

@@ -1,16 +1,18 @@
 """Constants for OpenGeoSys: parts of a project file with ``fracture_model``, in SI units.
 
 Its normal stress is K_n w (1 + ln^2(a / a_0)): a logarithmic penalty and no hyperbola. K_n is the
-tangent stiffness at the initial aperture a_0, so one of the card's tangent stiffnesses is given,
-with the mean gap under the same pressure.
+tangent stiffness at the initial aperture a_0, so that under the card's reference pressure is
+given, with the mean gap there.
 """
 
 from collections.abc import Mapping
 from typing import Any
 from xml.etree import ElementTree as xml
 
+from ...pages.first_screen import reference_of, row_at
+from ...pages.words import short
 from ._xml import comment, headed, text_of_element
-from .constants import Constants, at_preferred, over_pressure
+from .constants import Constants, over_pressure
 
 ENDING = "xml"
 
@@ -18,17 +20,13 @@ ENDING = "xml"
 def constants_of(card: Mapping[str, Any]) -> Constants:
     """Parameters of ``fracture_model`` and ``fracture_properties`` that a card has a number for."""
     entries, found = card["entries"], Constants()
-    stiffness = entries["tangent_stiffness"]
-    row = at_preferred(stiffness)
-    pressure = row.get("at", {}).get("pressure")
-    at = "" if pressure is None else f" at {pressure:g} MPa"
-    found.add("normal_stiffness", stiffness, row, f"tangent stiffness{at}")
-    gap = entries["mean_gap"]
-    same = [
-        one for one in gap.get("values", ()) if "value" in one and one["at"]["pressure"] == pressure
-    ]
-    absent = {"missing": gap.get("missing", f"no state was solved{at}")}
-    found.add("initial_aperture", gap, same[0] if same else absent, f"mean gap{at}")
+    pressure = reference_of(card)
+    for key, name, words in (
+        ("normal_stiffness", "interface_stiffness", "tangent stiffness"),
+        ("initial_aperture", "mean_gap", "mean gap"),
+    ):
+        row = row_at(entries[name], pressure)
+        found.add(key, entries[name], row, f"{words} at {short(pressure)} MPa")
     found.left_out.update(
         shear_stiffness="no shear stiffness is computed",
         friction_angle=f"one number there; peak strength here: "

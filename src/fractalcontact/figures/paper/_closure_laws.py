@@ -56,7 +56,7 @@ def draw_closure(axes: Axes, drawn: xr.Dataset, subject: Subject) -> None:
     else:
         say_empty(axes, TOO_FULL)
     axes.set_ylim(0, 1.05 * float(drawn["normal_force"][-1]) / size)
-    axes.set_xlabel(r"interface closure $w_\mathrm{int}$ (mm)")
+    axes.set_xlabel(r"closure $w_\mathrm{int}$ from first touch (mm)")
     second_axis(axes, size / subject.area, f"{NOMINAL_PRESSURE} (MPa)")
 
 
@@ -73,7 +73,7 @@ def draw_light_loads(axes: Axes, drawn: xr.Dataset, subject: Subject) -> None:
         axes.set_ylim(pressure[0] / 1.5, pressure[-1] * 1.5)
     else:
         say_empty(axes, TOO_FULL)
-    axes.set_xlabel(r"interface closure $w_\mathrm{int}$ (mm)")
+    axes.set_xlabel(r"closure $w_\mathrm{int}$ from first touch (mm)")
     axes.set_ylabel(f"{NOMINAL_PRESSURE} (MPa)")
     label_short_span(axes.xaxis)
 

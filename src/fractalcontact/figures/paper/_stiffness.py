@@ -65,11 +65,6 @@ def draw_stiffness(panel: Panel, curves: xr.Dataset) -> list[str]:
         say_empty(axes, "\n".join(different_reasons(reasons)) or TOO_FULL)
         return []
     axes.set_yscale("log")
-    # Room for the legend above all points.
-    low, high = axes.get_ylim()
-    axes.set_ylim(low, high**2 / low)
-    title = "at the finest $s$ (change at $2s$), MPa/mm"
-    axes.legend(loc="upper left", handlelength=1.5, title=title, title_fontsize=7)
     label_short_span(axes.yaxis)
     return missing_lines(reasons, "d")
 

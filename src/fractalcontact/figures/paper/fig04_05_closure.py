@@ -43,6 +43,8 @@ CURVES = 5
 _LEGEND = "(a), (b): rms misfit of logarithmic law, of hyperbola; $k_{ni}$ (MPa/mm) [95 %]"
 _LEGEND_AREA = r"(c): exponent $m$ of $A_r \sim F^m$ [95 %]"
 
+_LEGEND_STIFFNESS = "(d): MPa/mm at the finest $s$ (change at $2s$)"
+
 #: What the table has of the curves, besides the law of the area.
 _COLUMNS = (
     *("nodes", "resolved", "interface_closure", "seated_closure", "separation"),
@@ -64,7 +66,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     drawn = curves.isel(offset=spread(count, CURVES))
     stiffness = over_spacing(subject)
 
-    figure = Figure(figsize=(WIDTH, 7.2))
+    figure = Figure(figsize=(WIDTH, 7.6))
     panels = figure.subplot_mosaic("ab;cd", height_ratios=[1.1, 1])
     where = offset_words(subject, subject.offset)
     d = Panel(panels["d"], "d", f"stiffness over the spacing, {where}")
@@ -78,6 +80,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     letter(panels["c"], "c", "contact area")
     of_laws = _keyed(_LEGEND, panels["a"], drawn, "semi_logarithmic", "hyperbola", "beyond")
     of_areas = _keyed(_LEGEND_AREA, panels["c"], drawn, "area")
+    of_areas += [heading(_LEGEND_STIFFNESS), *entries(d.axes)] if d.axes.has_data() else []
     of_areas += [*_hollow(drawn, stiffness), *(heading(line) for line in missing)]
     legends_below(figure, of_laws, of_areas)
     headline(figure, subject.label, place(subject.direction))
