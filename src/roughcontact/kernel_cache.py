@@ -104,12 +104,7 @@ def load_cached() -> int:
 
 
 class KernelCache(FunctionCache):
-    """Compiled forms of one kernel, a checked file for each set of types it is called with.
-
-    Parameters
-    ----------
-    kernel : Dispatcher
-    """
+    """Compiled forms of one kernel, a checked file for each set of types it is called with."""
 
     _warned = False
     _announced = False

@@ -206,7 +206,9 @@ def test_curves_are_those_of_the_atlas(results, atlas):
     for name in ("pair", "flat.1"):
         subject = Subject.of(atlas, name)
         states = subject.states("closure")
-        drawn = table[(table["specimen"] == name) & (table["quantity"] == "closure from first touch")]
+        drawn = table[
+            (table["specimen"] == name) & (table["quantity"] == "closure from first touch")
+        ]
         known = np.isfinite(states["interface_closure"].values)
         np.testing.assert_allclose(drawn["value"], states["interface_closure"].values[known])
         np.testing.assert_allclose(

@@ -14,6 +14,9 @@ pytestmark = pytest.mark.workflow
 #: Jobs of every specimen.
 OF_SPECIMEN = ("specimen", "contact", "windows", "analysis", "flow", "strength", "figures")
 
+#: Jobs of the study.
+OF_STUDY = ("atlas", "study_figures", "all_drawn", "cards", "result_page", "all")
+
 
 def write_groups(project, names):
     for number, name in enumerate(names):
@@ -29,7 +32,9 @@ def test_jobs_go_with_the_specimens_and_few_files_of_each_are_asked_for(project)
     planned = run(project, study, "--dry-run")
     jobs = jobs_of(planned)
     assert {name: jobs.pop(name) for name in OF_SPECIMEN} == dict.fromkeys(OF_SPECIMEN, 3)
-    assert jobs == dict.fromkeys(("atlas", "study_figures", "all_drawn", "all"), 1)
+    assert jobs == dict.fromkeys(OF_STUDY, 1)
+    asked = small_study(project, groups="folders", atlas="parts", explorer=["a_s1"])
+    assert jobs_of(run(project, asked, "--dry-run"))["explorer"] == 1
     assert "fig02_relief" not in planned.stdout + planned.stderr
     asked = small_study(project, groups="folders", atlas="parts", figures=["fig02_relief"])
     drawn = run(project, asked, "--dry-run", "--summary")
@@ -56,7 +61,7 @@ def test_one_more_specimen_runs_its_own_jobs_and_the_gather(project):
     write_groups(project, ["b/s2"])
     assert jobs_of(run(project, study)) == {  # what it ran, not what it planned
         **dict.fromkeys(OF_SPECIMEN, 1),
-        **dict.fromkeys(("atlas", "study_figures", "all_drawn", "all"), 1),
+        **dict.fromkeys(OF_STUDY, 1),
     }
     assert times_of(project / "results/test", ("a_s1", "b_s1")) == before
     assert (project / "results/test/figures/b_s2/fig02_relief.png").stat().st_size > 10_000

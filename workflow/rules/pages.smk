@@ -3,9 +3,16 @@
 from fractalcontact.pages import files as page_files
 
 
+#: Files with the stages of each specimen that are not in the atlas of the study.
+PARTS = expand(SPECIMEN_ATLAS, specimen=SPECIMENS) if IN_PARTS else []
+#: Specimens that the explorer shows.
+EXPLORED = campaign.explored(config, SPECIMENS)
+
+
 rule explorer:
     input:
         rules.atlas.output[0],
+        PARTS,
     output:
         f"{RESULTS}/explorer.html",
     log:
@@ -15,6 +22,7 @@ rule explorer:
     resources:
         **fixed(3000, 10),
     params:
+        specimens=EXPLORED,
         code=code("pages", "fractalcontact/pages"),
     message:
         "the study: explorer of all contact states"
@@ -23,16 +31,17 @@ rule explorer:
 
 
 # A card a specimen: constants with their intervals, which the page and other codes read; and its
-# aperture map for other programs.
+# aperture map for other programs, which of many specimens `export_aperture` writes.
 rule cards:
     input:
         rules.atlas.output[0],
-        *(path for specimen in SPECIMENS for path in contact_parts_of(specimen)),
+        # Aperture maps are those of the jobs of contact, which the atlas rounds.
+        PARTS or [path for specimen in SPECIMENS for path in contact_parts_of(specimen)],
     output:
         expand(f"{RESULTS}/{page_files.CARD}", specimen=SPECIMENS, ending=page_files.CARD_ENDINGS),
         expand(
             f"{RESULTS}/{page_files.APERTURE}",
-            specimen=SPECIMENS,
+            specimen=[] if IN_PARTS else SPECIMENS,
             ending=page_files.APERTURE_ENDINGS,
         ),
     log:
@@ -49,25 +58,21 @@ rule cards:
         "../scripts/cards.py"
 
 
-CARDS = list(rules.cards.output) if SPECIMENS and not IN_PARTS else []
+CARDS = list(rules.cards.output) if SPECIMENS else []
 # Measured contact maps alone have no states to explore.
-EXPLORER = list(rules.explorer.output) if SPECIMENS and not IN_PARTS else []
-# The pages show specimens side by side, from an atlas that is one file.
-RESULT_PAGE = (
-    []
-    if IN_PARTS
-    else [
-        *(f"{RESULTS}/{name}" for name in page_files.FILES),
-        *expand(f"{RESULTS}/{page_files.SPECIMEN_PAGE}", specimen=SPECIMENS),
-        *EXPLORER,
-        *CARDS,
-    ]
-)
+EXPLORER = list(rules.explorer.output) if EXPLORED else []
+RESULT_PAGE = [
+    *(f"{RESULTS}/{name}" for name in page_files.FILES),
+    *expand(f"{RESULTS}/{page_files.SPECIMEN_PAGE}", specimen=SPECIMENS),
+    *EXPLORER,
+    *CARDS,
+]
 
 
 rule result_page:
     input:
         rules.atlas.output[0],
+        PARTS,
         lambda wildcards: all_figure_files(),
         # The index links to it where it is there.
         EXPLORER,

@@ -10,7 +10,7 @@ from fractalcontact.pages.result_page import Place, write_result_page
 with job(snakemake) as log:
     atlas, page = Path(snakemake.input[0]), Path(snakemake.output[0])
     if snakemake.rule == "explorer":
-        write_explorer(atlas, page)
+        write_explorer(atlas, page, snakemake.params.specimens)
         log.info("%.1f MB", page.stat().st_size / 1e6)
     else:
         log.info("%d specimens", len(write_result_page(Place.of(atlas.parent))))

@@ -9,10 +9,11 @@ import yaml
 
 from ..core.atomic import atomic_write
 from ..core.errors import InputError
-from ..core.subject import Subject, configuration_of, specimens_of
+from ..core.subject import Subject, configuration_of
 from ..pages.files import APERTURE, APERTURE_ENDINGS, CARD
 from ..pages.templating import write_page
-from ..study.atlas import read_atlas, read_variables
+from ..study.atlas import read_variables
+from ..study.atlas_parts import Trees
 from ..study.stages import STAGES as ALL_STAGES
 from .apertures import aperture_at, with_solved_gaps, write_aperture
 from .card import FORM, STAGES, card_of, made_of
@@ -25,12 +26,13 @@ SCHEMA = Path(__file__).with_name("card.schema.json")
 def write_cards(path: Path | str, folder: Path | str) -> list[str]:
     """Write the card of every specimen of a study: ``cards/NAME.yaml``, ``.json`` and ``.html``.
 
-    And its aperture map under the reference load: ``apertures/NAME.csv``, ``.nc`` and ``.vtk``.
+    And its aperture map under the reference load: ``apertures/NAME.csv``, ``.nc`` and ``.vtk``, but
+    for an atlas in parts.
 
     Parameters
     ----------
     path : path-like
-        The atlas, in one file.
+        The atlas.
     folder : path-like
         Of the results.
 
@@ -39,16 +41,17 @@ def write_cards(path: Path | str, folder: Path | str) -> list[str]:
     list of str
         Specimens that have one.
     """
-    atlas = read_atlas(path, without=ALL_STAGES.keys() - set(STAGES))
-    study, made = configuration_of(atlas)["study"], made_of(atlas.attrs)
-    names = specimens_of(atlas)
-    for name in names:
-        write_card(card_of(Subject.of(atlas, name), study, made), folder)
+    trees = Trees(path, without=ALL_STAGES.keys() - set(STAGES))
+    study, made = configuration_of(trees.root)["study"], made_of(trees.root.attrs)
+    for name in trees.names:
+        write_card(card_of(Subject.of(trees.of(name)[0], name), study, made), folder)
+    if trees.parts:
+        return trees.names
     for name, contact in read_variables(path, "contact", ["map_gap"]):
         aperture = aperture_at(with_solved_gaps(contact, folder, name), None, name)
         for ending in APERTURE_ENDINGS:
             write_aperture(aperture, Path(folder) / APERTURE.format(specimen=name, ending=ending))
-    return names
+    return trees.names
 
 
 def write_card(card: Mapping[str, Any], folder: Path | str) -> None:

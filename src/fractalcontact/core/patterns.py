@@ -7,10 +7,6 @@ from collections.abc import Iterable
 def alternation(names: Iterable[str]) -> str:
     """Pattern that matches these names only; without names it matches nothing.
 
-    Parameters
-    ----------
-    names : iterable of str
-
     Notes
     -----
     What names have in common at their beginning is written once (a radix tree), so that a match

@@ -84,10 +84,6 @@ def prepare_clouds(scans: Sequence[Measured]) -> list[Cloud]:
     turned level if they lie steeply, faces together; then the points hidden under others are left
     out.
 
-    Parameters
-    ----------
-    scans : list of Measured
-
     Raises
     ------
     InputError
@@ -100,13 +96,7 @@ def prepare_clouds(scans: Sequence[Measured]) -> list[Cloud]:
 
 
 def moved_cloud(cloud: Cloud, motions: Sequence[Motion]) -> Cloud:
-    """A cloud after rigid motions, one after the other.
-
-    Parameters
-    ----------
-    cloud : Cloud
-    motions : list of Motion
-    """
+    """A cloud after rigid motions, one after the other."""
     points, mesh = cloud.points, cloud.mesh
     for motion in motions:
         if mesh is not None:

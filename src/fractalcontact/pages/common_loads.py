@@ -60,13 +60,7 @@ def _compared(subject, comparison):
 
 
 def main_load(loads: Sequence[CommonLoad], subjects: Sequence[Subject]) -> CommonLoad | None:
-    """The load to show first: that of most specimens, then of most contact maps, then the largest.
-
-    Parameters
-    ----------
-    loads : sequence of CommonLoad
-    subjects : sequence of Subject
-    """
+    """Load to show first: that of most specimens, then of most contact maps, then the largest."""
 
     def rank(load):
         maps = sum(load.numbers.get(one.name) == one.reported.reference for one in subjects)

@@ -31,11 +31,6 @@ def curves_table(study: str, subjects: list[Subject]) -> pd.DataFrame:
     Closure, tangent stiffness and corrected area with the total error of this surface, both
     Delta_sigma with their intervals. A point is ``resolved`` where ten nodes touch and, of a
     dimension, where its interval determines it; figures draw the others hollow.
-
-    Parameters
-    ----------
-    study : str
-    subjects : list of Subject
     """
     rows: list[dict[str, Any]] = []
     for one in subjects:

@@ -1,6 +1,6 @@
 """Explorer of the contact states of a study: maps and curves of every state on one page."""
 
-from collections.abc import Iterator
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -8,7 +8,7 @@ from matplotlib import colormaps
 from matplotlib.colors import to_hex
 
 from ..core.labels import printable
-from ..study.atlas import read_atlas
+from ..study.atlas_parts import Trees
 from ..study.stages import STAGES
 from .packed_states import packed_states
 from .templating import write_page
@@ -32,8 +32,10 @@ NEEDS = (
 )
 
 
-def write_explorer(atlas_path: Path | str, path: Path | str) -> None:
-    """Write the page on all contact states of a study: one file that needs no other.
+def write_explorer(
+    atlas_path: Path | str, path: Path | str, names: Sequence[str] | None = None
+) -> None:
+    """Write the page on all contact states of specimens: one file that needs no other.
 
     Parameters
     ----------
@@ -41,19 +43,23 @@ def write_explorer(atlas_path: Path | str, path: Path | str) -> None:
         Atlas of the study.
     path : path-like
         ``explorer.html`` beside the atlas and the result page, to which it links.
+    names : sequence of str, optional
+        Of the specimens; all of the study by default.
 
     Raises
     ------
     OutputError
         If the disk is full or the folder cannot be written to.
     """
-    atlas = read_atlas(atlas_path, without=STAGES.keys() - set(NEEDS))
-    specimens = list(_specimens(atlas))
+    trees = Trees(atlas_path, without=STAGES.keys() - set(NEEDS))
+    study = trees.root.attrs["study"]
+    shown = trees.names if names is None else names
+    specimens = [_specimen(trees.of(name)[0], name) for name in shown]
     values = {
-        "title": f"Explorer of the study {atlas.attrs['study']}",
-        "study": atlas.attrs["study"],
+        "title": f"Explorer of the study {study}",
+        "study": study,
         "index": {
-            "study": atlas.attrs["study"],
+            "study": study,
             "specimens": [{key: one[key] for key in ("name", "label")} for one in specimens],
             "colours": _colours(),
         },
@@ -62,13 +68,10 @@ def write_explorer(atlas_path: Path | str, path: Path | str) -> None:
     write_page(path, "explorer.html", values)
 
 
-def _specimens(atlas) -> Iterator[dict[str, Any]]:
-    """Names, labels and states of all specimens that have contact states."""
-    groups = atlas["closure"].children if "closure" in atlas.children else ()
-    for name in groups:
-        attrs = atlas[f"specimens/{name}"].attrs
-        label = printable(attrs.get("label") or name, MAX_LABEL)
-        yield {"name": name, "label": label, "states": packed_states(atlas, name)}
+def _specimen(atlas, name) -> dict[str, Any]:
+    """Name, label and states of a specimen."""
+    label = printable(atlas[f"specimens/{name}"].attrs.get("label") or name, MAX_LABEL)
+    return {"name": name, "label": label, "states": packed_states(atlas, name)}
 
 
 def _colours() -> list[str]:

@@ -166,10 +166,6 @@ _TRUST = {POOR: "low", IN_PART: "limited", GOOD: "good"}
 def trust_of(lights: Sequence[Light]) -> tuple[str, str, str]:
     """Trust in a specimen by its worst light, why, and what would help.
 
-    Parameters
-    ----------
-    lights : sequence of Light
-
     Returns
     -------
     word, reason, help : str

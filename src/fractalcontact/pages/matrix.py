@@ -4,7 +4,7 @@ Verdicts are those of the stages ``statements`` and ``study_statements``; nothin
 """
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import xarray as xr
 
@@ -72,6 +72,14 @@ def matrix_of(atlas: xr.DataTree, specimens: Sequence[str]) -> list[Row]:
     """
     tables = {name: atlas[f"statements/{name}"].to_dataset() for name in specimens}
     return [row for one in claims_of("one").values() if (row := _row(one, tables)).cells]
+
+
+def merged(found: Iterable[Iterable[Row]]) -> list[Row]:
+    """Statements of several specimens together, in the order of the paper."""
+    rows: dict[str, Row] = {}
+    for row in (row for one in found for row in one):
+        rows.setdefault(row.name, replace(row, cells={})).cells.update(row.cells)
+    return [rows[name] for name in claims_of("one") if name in rows]
 
 
 def counted(rows: Iterable[Row]) -> dict[str, int]:

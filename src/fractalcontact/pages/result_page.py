@@ -25,9 +25,10 @@ from ..core.labels import printable
 from ..core.measured_maps import measured_maps
 from ..core.quantities import Shown, shown_in
 from ..core.stage import JOINT, SPECIMEN
-from ..core.subject import Subject, configuration_of, specimens_of
+from ..core.subject import Subject, configuration_of
 from ..core.tables import write_table
-from ..study.atlas import read_named_atlas
+from ..study.atlas_parts import Trees
+from ..study.campaign import explored
 from ..study.figure_list import STUDY, all_figures
 from ..study.stages import STAGES
 from .budget import bars_of
@@ -35,10 +36,10 @@ from .captions import symbols
 from .cards import SECTIONS, cards_of, section_of
 from .common_loads import common_loads, main_load
 from .curves import curves_table
-from .files import CONFIGURATION, CURVES, EXPLORER, INDEX, SPECIMEN_PAGE, SUMMARY, TABLES
+from .files import APERTURE, CONFIGURATION, CURVES, EXPLORER, INDEX, SPECIMEN_PAGE, SUMMARY, TABLES
 from .first_screen import blocks_of
 from .material import opposite_words
-from .matrix import Row, counted, matrix_of, of_study
+from .matrix import Row, counted, matrix_of, merged, of_study
 from .opening import opening_of
 from .spacing import spacing_words
 from .summary import AtLoad, Quantity, Specimen, summarised, summary_table, why
@@ -71,6 +72,8 @@ NEEDS = (
 _ZIP_TIME = (1980, 1, 1, 0, 0, 0)
 #: Letters of a label in a table.
 _LONGEST = 120
+#: Joints up to which each has a block on the first screen, and verdicts a column each.
+_BLOCKS, _COLUMNS = 12, 30
 
 
 @dataclass(frozen=True)
@@ -102,46 +105,44 @@ class Place:
 def write_result_page(place: Place) -> list[str]:
     """Write the pages of a study, and its summary, curves, tables and configuration beside them.
 
-    Parameters
-    ----------
-    place : Place
-
     Returns
     -------
     list of str
         Specimens that have a page, ``pages/NAME.html``.
     """
-    atlas, groups = read_named_atlas(place.atlas, without=STAGES.keys() - set(NEEDS))
-    subjects = [Subject.of(atlas, name) for name in specimens_of(atlas)]
-    loads = common_loads(subjects, _comparison(atlas))
-    specimens = [summarised(one, loads) for one in subjects]
-    study = str(atlas.attrs["study"])
-    curves = _finite(curves_table(study, subjects))
-    summary = _finite(summary_table(study, specimens, measured_maps(atlas)))
-    write_table(place.folder / SUMMARY, summary)
-    write_table(place.folder / CURVES, curves)
-    _write_configuration(place.folder / CONFIGURATION, atlas)
-    _write_tables(place)
-    head = _head(place, atlas)
-    rows = matrix_of(atlas, [one.name for one in subjects])
-    blocks = {one.name: one for one in blocks_of([one.name for one in subjects], place.folder)}
-    for one, specimen in zip(subjects, specimens, strict=True):
-        values = _specimen_values(place, one, specimen, rows, groups)
-        values["block"] = blocks.get(one.name)
-        path = place.folder / SPECIMEN_PAGE.format(specimen=one.name)
+    trees = Trees(place.atlas, without=STAGES.keys() - set(NEEDS))
+    atlas, names = trees.root, trees.names
+    reported = [trees.closure(name) for name in names]
+    loads = common_loads(reported, _comparison(atlas))
+    head, blocks = _head(place, atlas), {one.name: one for one in blocks_of(names, place.folder)}
+    specimens, curves, rows, reliefs = [], [], [], {}
+    # One after the other: those of an atlas in parts would not all fit into memory.
+    for name in names:
+        tree, groups, file = trees.of(name)
+        subject, found = Subject.of(tree, name), matrix_of(tree, [name])
+        specimen = summarised(subject, loads)
+        values = _specimen_values(place, subject, specimen, found, (_as_typed(file), groups))
+        values["block"] = blocks.get(name)
+        path = place.folder / SPECIMEN_PAGE.format(specimen=name)
         write_page(path, "specimen.html", head | values)
-    reliefs = {one.name: relief_thumbnail(one["specimens"]) for one in subjects}
-    first = main_load(loads, subjects)
-    values = _index_values(place, atlas, specimens, rows, curves, groups) | {
+        specimens.append(specimen)
+        rows.append(found)
+        reliefs[name] = relief_thumbnail(subject["specimens"])
+        curves.append(curves_table(str(atlas.attrs["study"]), [subject]))
+    matrix, first = merged(rows), main_load(loads, reported)
+    table = _finite(pd.concat(curves) if curves else curves_table("", []))
+    _write_files(place, atlas, specimens, table)
+    values = _index_values(place, atlas, specimens, matrix, table, trees.groups) | {
         "reliefs": reliefs,
         "loads": loads,
         "first_load": first,
-        "blocks": list(blocks.values()),
-        "opening": opening_of(specimens, first, rows),
+        "blocks": list(blocks.values()) if len(blocks) <= _BLOCKS else [],
+        "with_card": blocks.keys(),
+        "opening": opening_of(specimens, first, matrix),
         "over_spacing": spacing_words([one.doubled for one in specimens]),
     }
     write_page(place.folder / INDEX, "index.html", head | values)
-    return [one.name for one in subjects]
+    return names
 
 
 # -- what all pages have ---------------------------------------------------------------------------
@@ -159,7 +160,7 @@ def _head(place, atlas):
         "work": f"{duration(seconds)} of work in {jobs} jobs" if jobs else "",
         "atlas_size": f"{place.atlas.stat().st_size / 1e6:.0f} MB",
         "atlas_path": _as_typed(place.atlas),
-        "has_explorer": (place.folder / EXPLORER).is_file(),
+        "explored": _explored(place, atlas),
         "short": short,
         "measured": measured,
         "with_unit": with_unit,
@@ -176,9 +177,17 @@ def _head(place, atlas):
     }
 
 
+def _explored(place, atlas):
+    """Specimens that the explorer shows; none where it is not there."""
+    configuration = configuration_of(atlas)
+    there = (place.folder / EXPLORER).is_file()
+    return explored(configuration["study"], configuration["settings"]) if there else []
+
+
 def _as_typed(path):
-    """Path of a result as a user would type it in the folder of the project."""
-    return "/".join(("results", path.parent.name, path.name))
+    """Path of an atlas as a user would type it in the folder of the project."""
+    folder = path.parent.parent if path.parent.name == "atlas" else path.parent
+    return "/".join(("results", folder.name, path.relative_to(folder).as_posix()))
 
 
 def _estimate(found):
@@ -271,6 +280,7 @@ def _index_values(
         "columns": _columns(),
         "longest": _LONGEST,
         "matrix": rows,
+        "counted": counted if len(specimens) > _COLUMNS else None,
         "verdicts": counted([*rows, *together]),
         "together": together,
         "maps": [printable(one.attrs["label"], _LONGEST) for one in measured_maps(atlas).values()],
@@ -317,7 +327,7 @@ def _specimen_values(
     subject: Subject,
     specimen: Specimen,
     rows: list[Row],
-    groups: Collection[str],
+    held: tuple[str, Collection[str]],
 ) -> dict[str, Any]:
     figures = all_figures()
     names = [name for name, one in figures.items() if one.subject in (SPECIMEN, JOINT)]
@@ -325,10 +335,11 @@ def _specimen_values(
         names,
         place.figures / subject.name,
         f"../figures/{subject.name}",
-        atlas=_as_typed(place.atlas),
-        groups=groups,
+        atlas=held[0],
+        groups=held[1],
         specimen=subject.name,
     )
+    aperture = APERTURE.format(specimen=subject.name, ending="vtk")
     sections = [
         (name, title, [card for card in cards if section_of(figures[card.name]) == name])
         for name, title in SECTIONS.items()
@@ -339,12 +350,22 @@ def _specimen_values(
         "opposite": opposite_words(specimen.opposite),
         "sections": [(name.replace(" ", "-"), title, found) for name, title, found in sections],
         "bars": bars_of(specimen),
-        "statements": [(row, row.cells[subject.name]) for row in rows if subject.name in row.cells],
+        "statements": [(row, row.cells[subject.name]) for row in rows],
+        "apertures": (place.folder / aperture).is_file(),
         "drawn": {card.name for card in cards},
     }
 
 
 # -- the files beside them -------------------------------------------------------------------------
+
+
+def _write_files(place: Place, atlas: xr.DataTree, specimens: list[Specimen], curves: pd.DataFrame):
+    """Write summary, curves, configuration, and the archive of all tables."""
+    summary = summary_table(str(atlas.attrs["study"]), specimens, measured_maps(atlas))
+    write_table(place.folder / SUMMARY, _finite(summary))
+    write_table(place.folder / CURVES, curves)
+    _write_configuration(place.folder / CONFIGURATION, atlas)
+    _write_tables(place)
 
 
 def _write_configuration(path: Path, atlas: xr.DataTree) -> None:

@@ -56,12 +56,7 @@ class Trend:
 
 
 class Evidence:
-    """Numbers of one specimen.
-
-    Parameters
-    ----------
-    joint : Joint
-    """
+    """Numbers of one specimen."""
 
     def __init__(self, joint: Joint) -> None:
         self.joint = joint

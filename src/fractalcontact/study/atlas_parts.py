@@ -1,13 +1,15 @@
 """Atlas in parts: one file for each specimen, read at its first use."""
 
 import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
 import xarray as xr
 
 from ..core.errors import InputError
+from ..core.subject import Subject, configuration_of, specimens_of
+from .atlas import read_named_atlas
 from .stages import STAGES
 
 
@@ -138,6 +140,43 @@ class Atlas:
 
     def _file(self, name):
         return self.path.parent / self._parts[name] if name in self._parts else self.path
+
+
+class Trees:
+    """Atlas as trees in memory: one of all specimens, or one a specimen, read when asked for.
+
+    Attributes
+    ----------
+    root : xr.DataTree
+        All of the study, or what its specimens have together.
+    names : list of str
+        Specimens.
+    parts : dict of str to str
+        Files of the specimens, below the folder of the atlas; empty where it is one file.
+    groups : frozenset of str
+        Names of the groups of the file, those left out too.
+    """
+
+    def __init__(self, path: Path | str, without: Collection[str] = ()):
+        self.path, self._without = Path(path), without
+        self.root, self.groups = read_named_atlas(path, without)
+        self.parts: dict[str, str] = json.loads(self.root.attrs.get("parts", "{}"))
+        self.names = sorted({*specimens_of(self.root), *self.parts})
+
+    def of(self, name: str) -> tuple[xr.DataTree, frozenset[str], Path]:
+        """Tree with the stages of a specimen, names of the groups of its file, and the file."""
+        if name not in self.parts:
+            return self.root, self.groups, self.path
+        file = self.path.parent / self.parts[name]
+        return *read_named_atlas(file, self._without), file
+
+    def closure(self, name: str) -> Subject:
+        """A specimen with its closure curves alone, which say what is reported."""
+        if name in self.parts:
+            curves = read_group(self.path.parent / self.parts[name], f"closure/{name}")[0]
+        else:
+            curves = self.root[f"closure/{name}"].to_dataset()
+        return Subject({"closure": curves}, configuration_of(self.root)["settings"][name], name)
 
 
 def read_group(path: Path | str, group: str) -> tuple[xr.Dataset, Mapping[str, Any]]:

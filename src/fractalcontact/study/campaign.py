@@ -52,6 +52,19 @@ def drawn_of(config: Mapping[str, Any], specimens: Collection[str], opposite: st
     return [] if asked == NONE else [name for name in known if name in asked]
 
 
+def explored(config: Mapping[str, Any], specimens: Collection[str]) -> list[str]:
+    """Specimens whose contact states are in the explorer: all, or of many those that are named.
+
+    Parameters
+    ----------
+    config : mapping
+        A study that passed the schema.
+    specimens : collection of str
+        All of the study.
+    """
+    return list(config.get("explorer", [] if in_parts(config, specimens) else specimens))
+
+
 def of_study_alone(names: Collection[str]) -> list[str]:
     """Figures of a study that read no stage of its specimens one by one.
 

@@ -78,10 +78,11 @@ def resolve_study(
     folder = config.get("scans", "scans")
     check_names(scans, config, folder, source)
     known = {*scans, *refused, *config.get("embedded", {})}
-    if unknown := sorted(set(config.get("specimens", {})) - known):
-        raise InputError(
-            f"{source}: specimens.{unknown[0]}: neither embedded nor a scan in {folder}"
-        )
+    for key in ("specimens", "explorer"):
+        if unknown := sorted(set(config.get(key, {})) - known):
+            raise InputError(
+                f"{source}: {key}.{unknown[0]}: neither embedded nor a scan in {folder}"
+            )
     settings, options, labels = {}, {}, {}
     for name in sorted(stated.keys() - refused.keys()):
         with _refusing(refused, name):

@@ -36,12 +36,7 @@ LAG = 0.25
 
 
 class CoarseCorrection:
-    """Coarse operator of a contact set, and the preconditioner balanced with it.
-
-    Parameters
-    ----------
-    space : HalfSpace
-    """
+    """Coarse operator of a contact set, and the preconditioner balanced with it."""
 
     def __init__(self, space: HalfSpace):
         step = FINEST_STEP

@@ -34,10 +34,6 @@ SCATTERED = 10_000
 class Preconditioner:
     """Symmetric positive definite approximation to the inverse of K on a contact set.
 
-    Parameters
-    ----------
-    space : HalfSpace
-
     Attributes
     ----------
     small : bool

@@ -86,10 +86,6 @@ def settle_empty_axes(figure: Figure) -> None:
     """Give logarithmic axes that hold no positive value ends, and their panels words.
 
     To be called once everything is drawn: matplotlib has no ticks for such an axis, and raises.
-
-    Parameters
-    ----------
-    figure : matplotlib.figure.Figure
     """
     for axes in (axes for axes in figure.axes if axes.axison):
         empty = [axis for axis in (axes.xaxis, axes.yaxis) if _without_values(axis)]

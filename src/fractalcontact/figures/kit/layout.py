@@ -15,10 +15,6 @@ def lay_out(figure: Figure) -> Canvas:
 
     A figure that is laid out already stays as it is.
 
-    Parameters
-    ----------
-    figure : matplotlib.figure.Figure
-
     Returns
     -------
     figures.kit.canvas.Canvas

@@ -20,10 +20,6 @@ def remember_ticks(figure: Figure) -> None:
     """Find the ticks of each axis once for every size and view that it is given.
 
     To be called once everything is drawn: a locator, or labels, that change later go unnoticed.
-
-    Parameters
-    ----------
-    figure : matplotlib.figure.Figure
     """
     for _, axis in axes_of(figure):
         vars(axis)["_update_ticks"] = _ticks_remembered(axis)
