@@ -206,9 +206,8 @@ def test_curves_are_those_of_the_atlas(results, atlas):
     for name in ("pair", "flat.1"):
         subject = Subject.of(atlas, name)
         states = subject.states("closure")
-        drawn = table[
-            (table["specimen"] == name) & (table["quantity"] == "closure from first touch")
-        ]
+        own = table[table["specimen"] == name]
+        drawn = own[own["quantity"] == "closure from first touch"]
         known = np.isfinite(states["interface_closure"].values)
         np.testing.assert_allclose(drawn["value"], states["interface_closure"].values[known])
         np.testing.assert_allclose(
