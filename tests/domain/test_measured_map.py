@@ -273,7 +273,7 @@ def test_coordinates_may_be_files_of_their_own(tmp_path, form):
         ({"x": "film_z.csv"}, "plain name"),
         ({"x": "absent.csv"}, "no such file"),
         ({"x": None}, "key 'x' is missing"),
-        ({"spacing": 0.1}, "say the 'spacing'"),
+        ({"spacing": 0.1}, "remove 'spacing'"),
         ({"unit": None}, "unit"),
         ({"y": "film_x.csv"}, "16 coordinates y"),
         ({"x": "film_z2.csv"}, "no coordinates x"),

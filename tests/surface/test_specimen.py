@@ -160,7 +160,7 @@ def test_window_of_a_given_side_is_central_and_rounded_down():
     rows, columns = window_slices(specimen)
     assert (rows.start, rows.stop, columns.start, columns.stop) == (12, 28, 22, 38)
     assert specimen.attrs["window_mm"] == [8.0, 8.0]
-    assert "20 x 20 cells rounded down to 16 x 16" in specimen.attrs["window_note"]
+    assert "cut from 20 x 20 to 16 x 16 cells" in specimen.attrs["window_note"]
 
 
 def test_a_side_that_is_whole_cells_loses_none_to_rounding():

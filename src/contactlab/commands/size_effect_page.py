@@ -291,10 +291,10 @@ def _strength(test: xr.Dataset) -> list[str]:
         tan(φ_b + i), φ_b = {test.attrs["basic_friction_angle"]:g}°, i = atan(Δδ/Δv) between
         successive displacements, not truncated: bounds of 0° and
         {test.attrs["largest_friction_angle"]:g}° would meet {100 * truncated:.2g} % of the angles.
-        At equal v all intervals are taken together. At equal v/b the exponent is followed by that
-        of the largest joints at the same v, which no size enters, and by that of the
-        height-difference function S(v) alone. An asterisk marks no size effect, within
-        {test.attrs["bound"]:g} of zero, a question mark an undetermined one."""
+        At equal v all intervals are taken together. The columns at equal v/b hold three exponents:
+        that of all joints, that of the largest joints alone at the same v, where size plays no
+        part, and that of the height-difference function S(v). An asterisk marks no size effect,
+        within {test.attrs["bound"]:g} of zero, a question mark an undetermined one."""
     ends = test.isel(hurst=0, law=0, reduced_pressure=0)
     fractions = " | ".join(
         f"v/b = {float(low):.3g} to {float(high):.3g}"

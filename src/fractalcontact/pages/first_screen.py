@@ -12,7 +12,7 @@ from .files import CARD
 from .words import measured, short, with_unit
 
 #: Intervals as cards name them, in words.
-_ALONE = {"solver": " solver alone", "all errors of this surface": " this surface"}
+_ALONE = {"solver": " solver error alone", "all errors of this surface": " this surface"}
 #: Where a card has the half-width of a number for other surfaces of its kind.
 _KIND = "of_its_population"
 
@@ -150,7 +150,11 @@ def _jrc(card):
     for row in card["entries"]["jrc"].get("values", ()):
         at = row["at"]
         if (at["sampling"], at["direction"]) == (JRC_SAMPLING, card["direction"]):
-            return row, "1", f"step {with_unit(at['step'], 'mm')}, its fit {JRC_SAMPLING}"
+            return (
+                row,
+                "1",
+                f"at a step of {with_unit(at['step'], 'mm')}; its fit has {JRC_SAMPLING}",
+            )
     return {"missing": "no profile is long enough"}, "1", ""
 
 

@@ -105,8 +105,8 @@ def _nodes(subject):
     # A state that was not solved has none: the comparison is then false, as it should be.
     word = GOOD if nodes >= CORRECTED_NODES else IN_PART if nodes >= RESOLVED_NODES else POOR
     reason = (
-        f"{nodes:.0f} nodes are in contact under the reference load; a fit takes "
-        f"{RESOLVED_NODES}, the correction of the area {CORRECTED_NODES}"
+        f"{nodes:.0f} nodes are in contact under the reference load; a fit needs "
+        f"{RESOLVED_NODES} nodes, the correction of the area {CORRECTED_NODES}"
     )
     helps = ""
     if word != GOOD:
@@ -114,7 +114,7 @@ def _nodes(subject):
         if nodes > 0:
             enough = float(subject.reported.force) * CORRECTED_NODES / nodes
             helps += f" (about {with_unit(enough, 'N')})"
-    return Light("nodes", "Enough nodes", word, reason, helps)
+    return Light("nodes", "Contact nodes", word, reason, helps)
 
 
 def _grid(subject):
@@ -122,7 +122,7 @@ def _grid(subject):
 
     Of the closure from the seat, which is published first; from first touch where there is none.
     """
-    key, title = "grid", "Converged in the grid"
+    key, title = "grid", "Convergence in the grid"
     asked = float(subject["choices"]["closure_accuracy"])
     budget = subject.state("error_budget")
     seated = float(subject.state("closure")["seated_closure"]) > 0

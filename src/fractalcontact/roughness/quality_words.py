@@ -150,7 +150,8 @@ def overlap_words(specimen: xr.Dataset, quality: xr.Dataset) -> str:
 def cells_words(specimen: xr.Dataset, quality: xr.Dataset) -> str:
     """A clause on cells missing, outlying, filled and suspicious."""
     missing = [f"{plain(100 * share, 2)} %" for share in quality["missing_share"].values]
-    words = [f"{', '.join(missing)} of the cells missing"]
+    which = " (lower and upper face)" if len(missing) > 1 else ""
+    words = [f"{' and '.join(missing)} of the cells are missing{which}"]
     if "outlier_count" in specimen.attrs:
         treated = {"keep": "kept", "mask": "masked", "fill": "filled"}
         how = treated.get(str(specimen.attrs.get("outliers")), "")

@@ -172,9 +172,9 @@ def _refuse_one_unit_for_two(raw: RawScan, options: ScanOptions, path: Path) -> 
     if options.unit_xy is None and of_spacing and not math.isclose(given, lateral):
         heights = f"heights in {raw.unit_z}" if raw.unit_z else "no unit of heights"
         raise InputError(
-            f"{path}: the file says x and y in {raw.unit_xy} and {heights}, its sidecar 'unit: "
-            f"{options.unit}' of all; write 'unit_z: {options.unit}' if that is of heights, and "
-            f"'unit_xy: {options.unit}' if the file is wrong"
+            f"{path}: the file has x and y in {raw.unit_xy} and {heights}, but its sidecar states "
+            f"'unit: {options.unit}' for all; write 'unit_z: {options.unit}' if you meant the "
+            f"heights, or 'unit_xy: {options.unit}' if the file is wrong"
         )
 
 

@@ -201,7 +201,7 @@ def coordinate_files(path: Path, options: Mapping[str, Any]) -> dict[str, Path]:
         raise InputError(f"sidecar of {path}: key '{missing[0]}' is missing; x and y are two files")
     for key in ("spacing", "first_row"):
         if options.get(key) is not None:
-            raise InputError(f"sidecar of {path}: the files of x and y say the '{key}'; remove it")
+            raise InputError(f"sidecar of {path}: remove '{key}': the files of x and y state it")
     for key, name in named.items():
         # Sidecars are untrusted input: nothing outside the folder is read.
         if Path(name).name != name or "\\" in name or name.startswith(".") or name == path.name:

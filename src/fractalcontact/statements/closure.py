@@ -113,7 +113,7 @@ def compliance_goes_with_dimension(joint: Joint) -> Finding:
     """Compliance against a dimension that the range of the fit decides."""
     return Finding(
         ILL_POSED,
-        "asks for the dimension of the row above",
+        "it needs the dimension of the composite topography, which is ill-posed",
         "a joint slid farther is more compliant since sigma_z grows",
     )
 
@@ -154,8 +154,8 @@ def area_is_linear(joint: Joint) -> Finding:
     return Finding(
         verdict,
         f"m = {ends}",
-        f"A_r ~ F^m; {near} of {value.size} within {NEARLY:g} of 1, {apart} outside by their "
-        "intervals",
+        f"A_r ~ F^m; {near} of {value.size} exponents lie within {NEARLY:g} of 1, "
+        f"{apart or 'none'} surely outside",
     )
 
 
@@ -211,13 +211,13 @@ def refinement_changes_little(joint: Joint) -> Finding:
     little = {name: int((np.abs(change) <= margin).sum()) for name, change in changes.items()}
     n = int(counts.sum()) - 1
     words = (
-        f"{name} by {100 * change.min():+z.0f} to {100 * change.max():+z.0f} %, within "
-        f"{100 * margin:g} % at {loads_of(little[name], n)}"
+        f"{name} by {100 * change.min():+z.0f} to {100 * change.max():+z.0f} % (within "
+        f"{100 * margin:g} % at {loads_of(little[name], n)})"
         for name, change in changes.items()
     )
     return Finding(
         share(sum(little.values()), 2 * n),
-        f"from 2 s to s: {'; '.join(words)}",
+        f"half the spacing changes {' and '.join(words)}",
         f"from a seat of {pressures[counts][0]:.3g} MPa",
     )
 

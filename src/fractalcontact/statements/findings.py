@@ -175,7 +175,7 @@ def under_every_load(joint: Joint, rule: Callable[[float], Finding]) -> Finding:
     force = min(decided, key=lambda one: abs(np.log(one / joint.force)))
     verdicts = [one.verdict for one in decided.values()]
     pressure = force / joint.area
-    share_of = f"so at {verdicts.count(HOLDS)} of {len(decided)} loads"
+    share_of = f"holds at {verdicts.count(HOLDS)} of {len(decided)} loads"
     if PARTLY in verdicts:
         share_of += f", in part at {verdicts.count(PARTLY)}"
     return decided[force]._replace(
@@ -195,8 +195,8 @@ def beyond_margin(found: Estimate, margin: float, *, rising: bool) -> str:
     """Verdict on a claim of a sign, with an equivalence margin.
 
     It holds where the whole interval lies beyond the margin, in part where all of it has the sign
-    and some lies beyond, and fails where none does: a change smaller than the margin is called
-    none.
+    and some lies beyond, and fails where none does: a change smaller than the margin counts
+    as none.
 
     Parameters
     ----------
@@ -227,7 +227,7 @@ def within_margin(difference: Estimate, margin: float) -> str:
 
 def margin_words(name: str) -> str:
     """The equivalence margin of a claim, in words."""
-    return f"less than {all_claims()[name].margin:g} is called no change"
+    return f"changes below {all_claims()[name].margin:g} count as none"
 
 
 def level(values: Estimate, symbol: str, v: np.ndarray, margin: float) -> Finding:

@@ -52,8 +52,8 @@ def closure_is_hyperbolic(joint: Joint) -> Finding:
     better = int((laws[decided] == HYPERBOLA).sum())
     return Finding(
         share(better, int(decided.sum())),
-        f"the better law at {better} of {decided.sum()} offsets",
-        f"median rms misfit {misfits} of w_int = c + d ln sigma_0",
+        f"the hyperbola fits better at {better or 'none'} of {decided.sum()} offsets",
+        f"median rms misfits are {misfits} of w_int = c + d ln sigma_0",
     )
 
 
@@ -125,8 +125,8 @@ def domains_differ_from_cuts(joint: Joint, evidence: Evidence) -> Finding:
     return Finding(
         verdict,
         f"local slopes differ from those of the cut at {loads_of(different, total)}",
-        f"{int(alike.sum())} coincide, a difference below {margin:g} is called none; Delta_sigma "
-        f"less that of the cut {' to '.join(ends)}",
+        f"{loads_of(int(alike.sum()), total)} with coincident slopes, where differences below "
+        f"{margin:g} count as none; Delta_sigma minus that of the cut is {' to '.join(ends)}",
     )
 
 

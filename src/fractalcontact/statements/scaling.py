@@ -74,7 +74,8 @@ def estimates_agree(joint: Joint, evidence: Evidence) -> Finding:
     ends = " to ".join(dict.fromkeys(f"{d:+.2f}" for d in difference.value[[0, -1]]))
     return Finding(
         share(decided.count(HOLDS), len(decided)) if decided else UNDETERMINED,
-        f"A_r(s) less boxes {ends}, different at {loads_of(each.count(FAILS), len(each))}",
+        f"Delta_sigma by A_r(s) minus that by boxes is {ends}, different at "
+        f"{loads_of(each.count(FAILS), len(each))}",
         f"{_between(pressures)}; {margin_words(name)}",
     )
 
@@ -99,10 +100,12 @@ def dimension_rises_by_boxes(joint: Joint, evidence: Evidence) -> Finding:
     if found.verdict not in (HOLDS, PARTLY):
         return found
     faster = beyond_margin(trend.departure, all_claims()[name].margin, rising=True)
-    less = f"less that of as many random nodes {trend.departure:+z.2f}"
+    less = "but random nodes are near 2"
+    if trend.departure.known:
+        less = f"or {trend.departure:+z.2f} minus that of as many random nodes"
     return found._replace(
         verdict=found.verdict if faster == HOLDS else PARTLY,
-        numbers=f"{found.numbers}, {less if trend.departure.known else 'random nodes near 2'}",
+        numbers=f"{found.numbers}, {less}",
     )
 
 
@@ -112,7 +115,7 @@ def _rise(trend: Trend, name: str) -> Finding:
         return Finding(UNDETERMINED, f"{trend.pressures.size} loads with a dimension, too few")
     return Finding(
         beyond_margin(trend.slope, all_claims()[name].margin, rising=True),
-        f"{trend.slope:+z.2f} a decade of F",
+        f"Delta_sigma changes by {trend.slope:+z.2f} per decade of F",
         f"{_between(trend.pressures)}; {margin_words(name)}",
     )
 
@@ -123,7 +126,7 @@ def dimension_spans_all(joint: Joint, evidence: Evidence) -> Finding:
     (delta, pressures), random = evidence.box_dimension()
     if not pressures.size:
         return Finding(UNDETERMINED, "no load with a dimension by boxes")
-    note = f"{_between(pressures)}; near the lower end one node more changes the answer"
+    note = f"{_between(pressures)}; near 0 a single node changes the answer"
     return span_finding(delta, random, pressures, note + by_design(joint))
 
 
@@ -154,7 +157,8 @@ def span_finding(delta: Estimate, random: np.ndarray, pressures: np.ndarray, not
         verdict = FAILS
     return Finding(
         verdict,
-        f"by boxes {_of_a_set(lower)} to {_of_a_set(upper)} up to {pressures[-1]:.3g} MPa",
+        f"Delta_sigma by boxes goes from {_of_a_set(lower)} to {_of_a_set(upper)} up to "
+        f"{pressures[-1]:.3g} MPa",
         note,
     )
 
@@ -212,7 +216,7 @@ def size_effect_follows(joint: Joint, evidence: Evidence) -> Finding:
         agree = f"{decided.count(HOLDS)} of {len(decided)} decisive cases (load, estimate) agree"
     return Finding(
         share(decided.count(HOLDS), len(decided)) if decided else UNDETERMINED,
-        f"{law}, x less eq. 6's exponent {less}",
+        f"{law}, x minus the exponent of eq. 6 is {less}",
         f"{_between(pressures)}, {agree}, on windows within one joint; {margin_words(name)}",
     )
 
@@ -268,7 +272,7 @@ def strength_falls_with_size(joint: Joint) -> Finding:
     exponents = _exponents(value, low, high, known)
     if 2 * known.sum() <= cases.sum():
         bounded = int((cases & truncated).sum())
-        bound = f"a strength lies at its bound in {bounded} of {cases.sum()} cases (v/b, F)"
+        bound = f"strengths are truncated in {bounded} of {cases.sum()} cases of v/b and F"
         return Finding(UNDETERMINED, bound, exponents)
     falls, rises = int((high[known] < 0).sum()), int((low[known] > 0).sum())
     if falls == known.sum() or rises == known.sum():
@@ -283,6 +287,6 @@ def _exponents(value, low, high, known):
     ends = " to ".join(dict.fromkeys(f"{e:.2f}" for e in (value[known].min(), value[known].max())))
     falls, rises = int((high[known] < 0).sum()), int((low[known] > 0).sum())
     return (
-        f"tau ~ b^x at equal v/b, x = {ends}, falls beyond its interval in {falls} of "
-        f"{known.sum()} cases, rises in {rises}"
+        f"tau ~ b^x at equal v/b, x = {ends}: tau surely falls in {falls or 'none'} of "
+        f"{known.sum()} cases and surely rises in {rises or 'none'}"
     )

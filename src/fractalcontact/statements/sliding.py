@@ -126,7 +126,7 @@ def no_correlation_is_left(joint: Joint) -> Finding:
     correlation = joint.of_direction("face_correlation")[np.argmin(np.abs(v - joint.offsets[-1]))]
     numbers, where = f"correlation {correlation:+.2f}", f"at v = {joint.offsets[-1]:.3g} mm"
     if not np.isfinite(limit):
-        too_small = "the window is too small to separate it from chance"
+        too_small = "in so small a window chance may give as much"
         return Finding(UNDETERMINED, numbers, f"{where}; {too_small}")
     verdict = HOLDS if correlation <= limit else FAILS
     return Finding(verdict, f"{numbers}, by chance up to {limit:.2f}", where)

@@ -22,7 +22,7 @@ NEEDS = ("specimens", "joints", "statements")
 ORDER = 40
 
 #: Why a correlation may decide nothing.
-_TOO_SMALL = "window too small to separate it from chance"
+_TOO_SMALL = "in so small a window chance may give as much"
 
 
 def draw(atlas: DataTree, name: str) -> Drawing:
