@@ -77,7 +77,7 @@ def _closure(found: _At, under: str, total: int) -> Markup | None:
     counted = f"all {total}" if known == total else f"{known} of {total}"
     whose = "" if total == 1 else f" of {counted} specimens"
     words = Markup(" to ").join(ends)
-    text = Markup("{} the interface{} closes by {}").format(under, whose, words)
+    text = Markup("{} the interface{} has closed by {} since first touch").format(under, whose, words)
     stiffness = _ends(sure, lambda at: at.quantities["stiffness"].value)
     if stiffness:
         text += Markup("; its tangent stiffness is {}").format(
@@ -212,7 +212,7 @@ def _listed(names: Sequence[str], most: int = _LISTED) -> str:
 #: What the paper's number is an exponent of, and what eq. 6 makes of it.
 _OF_THE_PAPER = (
     "The paper's 1.39 is a box count, printed under a picture of areas A_r(s). By that count the "
-    "exponent of eq. 6 is -0.61; by the areas it is Delta_sigma of A_r(s) less 2."
+    "exponent of eq. 6 is -0.61; by the areas it is Delta_sigma of A_r(s) minus 2."
 )
 
 
