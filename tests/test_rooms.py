@@ -118,9 +118,7 @@ def test_a_room_imports_nothing_but_what_is_asked_of_it(room):
 #: Figures, pages and cards read an atlas, and compute nothing of it. What they may import besides
 #: core and each other: tables of the study. Those of the laboratory may import its rooms.
 READERS = ("figures", "pages", "cards")
-TABLES = {
-    ("study", name) for name in ("atlas", "atlas_parts", "campaign", "figure_list", "stages")
-}
+TABLES = {("study", name) for name in ("atlas", "atlas_parts", "campaign", "figure_list", "stages")}
 
 
 def beyond_reading(module, others):

@@ -2,7 +2,6 @@
 # specimen and tables beside them.
 from fractalcontact.pages import files as page_files
 
-
 #: Files with the stages of each specimen that are not in the atlas of the study.
 PARTS = expand(SPECIMEN_ATLAS, specimen=SPECIMENS) if IN_PARTS else []
 #: Specimens that the explorer shows.

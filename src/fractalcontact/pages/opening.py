@@ -77,7 +77,8 @@ def _closure(found: _At, under: str, total: int) -> Markup | None:
     counted = f"all {total}" if known == total else f"{known} of {total}"
     whose = "" if total == 1 else f" of {counted} specimens"
     words = Markup(" to ").join(ends)
-    text = Markup("{} the interface{} has closed by {} since first touch").format(under, whose, words)
+    said = Markup("{} the interface{} has closed by {} since first touch")
+    text = said.format(under, whose, words)
     stiffness = _ends(sure, lambda at: at.quantities["stiffness"].value)
     if stiffness:
         text += Markup("; its tangent stiffness is {}").format(
