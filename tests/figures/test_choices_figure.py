@@ -37,4 +37,4 @@ def test_stated_errors_are_the_largest_of_the_atlas(atlas, name):
         .any()
     )
     halved = bool(np.isfinite(curves["closure_spacing_error"]).any())
-    assert ("With every second point only, the closure changes by" in drawing.caption) == halved
+    assert ("At twice the spacing the closure changes by" in drawing.caption) == halved
