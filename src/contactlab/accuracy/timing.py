@@ -33,10 +33,6 @@ def repeated(
         Of each, the first included.
     longest : float
         A call that took more seconds is not made again.
-
-    Returns
-    -------
-    list of list of float
     """
     seconds = [[took] for took in first]
     for _ in range(runs - 1):

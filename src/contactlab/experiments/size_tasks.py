@@ -73,10 +73,6 @@ def size_tasks(recipe: Mapping[str, Any]) -> list[SizeTask]:
         with ``cut_offs`` and that of G with ``constructions`` beside them. The windows of arm W are
         cut from surfaces of its largest size.
 
-    Returns
-    -------
-    list of SizeTask
-
     Raises
     ------
     InputError

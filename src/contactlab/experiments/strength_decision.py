@@ -141,10 +141,6 @@ def equal_exponent(sides: np.ndarray, values: np.ndarray) -> Exponent:
 def size_verdict(exponent: Exponent) -> str:
     """Verdict on an exponent over the side as a size effect.
 
-    Parameters
-    ----------
-    exponent : Exponent
-
     Returns
     -------
     str

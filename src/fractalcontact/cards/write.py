@@ -12,8 +12,7 @@ from ..core.errors import InputError
 from ..core.subject import Subject, configuration_of
 from ..pages.files import APERTURE, APERTURE_ENDINGS, CARD
 from ..pages.templating import write_page
-from ..study.atlas import read_variables
-from ..study.atlas_parts import Trees
+from ..study.atlas_parts import Trees, read_group
 from ..study.stages import STAGES as ALL_STAGES
 from .apertures import aperture_at, with_solved_gaps, write_aperture
 from .card import FORM, STAGES, card_of, made_of
@@ -26,8 +25,7 @@ SCHEMA = Path(__file__).with_name("card.schema.json")
 def write_cards(path: Path | str, folder: Path | str) -> list[str]:
     """Write the card of every specimen of a study: ``cards/NAME.yaml``, ``.json`` and ``.html``.
 
-    And its aperture map under the reference load: ``apertures/NAME.csv``, ``.nc`` and ``.vtk``, but
-    for an atlas in parts.
+    Of an atlas in one file also ``apertures/NAME.csv``, ``.nc`` and ``.vtk``, at the reference load.
 
     Parameters
     ----------
@@ -45,9 +43,9 @@ def write_cards(path: Path | str, folder: Path | str) -> list[str]:
     study, made = configuration_of(trees.root)["study"], made_of(trees.root.attrs)
     for name in trees.names:
         write_card(card_of(Subject.of(trees.of(name)[0], name), study, made), folder)
-    if trees.parts:
-        return trees.names
-    for name, contact in read_variables(path, "contact", ["map_gap"]):
+        if trees.parts:
+            continue
+        contact = read_group(path, f"contact/{name}", ["map_gap"])[0]
         aperture = aperture_at(with_solved_gaps(contact, folder, name), None, name)
         for ending in APERTURE_ENDINGS:
             write_aperture(aperture, Path(folder) / APERTURE.format(specimen=name, ending=ending))

@@ -82,10 +82,6 @@ def plane_flow(
     cholmod : bool, optional
         As of :func:`flow.cholesky.factorised`.
 
-    Returns
-    -------
-    Flow
-
     Raises
     ------
     FlowNotConverged

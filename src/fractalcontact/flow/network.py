@@ -154,10 +154,6 @@ def solve_network(
     cholmod : bool, optional
         As of :func:`flow.cholesky.factorised`.
 
-    Returns
-    -------
-    NetworkFlow
-
     Raises
     ------
     FlowNotConverged

@@ -60,10 +60,6 @@ def load_steps(
     where : str
         What is loaded, for errors.
 
-    Yields
-    ------
-    ContactState
-
     Raises
     ------
     NotConverged

@@ -50,10 +50,6 @@ def take_apart(caption: str) -> Caption:
     ----------
     caption : str
         As a figure's text file holds it; one without an empty line is what is drawn alone.
-
-    Returns
-    -------
-    Caption
     """
     heading, parts, lines = caption.rstrip("\n").partition("\n\n")
     if not parts:

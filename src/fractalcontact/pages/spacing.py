@@ -53,9 +53,5 @@ def spacing_words(found: Sequence[Doubled]) -> Markup:
 
 def _range(changes):
     """Least to largest change, with their signs."""
-    low, high = (_signed(change) for change in (min(changes), max(changes)))
-    return low if low == high else f"{low} to {high}"
-
-
-def _signed(change):
-    return f"{'+' if change > 0 else ''}{percent(change)}"
+    ends = min(changes), max(changes)
+    return " to ".join(dict.fromkeys(f"{'+' if end > 0 else ''}{percent(end)}" for end in ends))

@@ -352,17 +352,10 @@ def quantities_at(subject: Subject, number: int) -> dict[str, Quantity]:
 def _seated_closure(subject, number, error):
     """Closure from the seat, of which the budget has the total for this surface alone."""
     value = float(subject.states("closure")["seated_closure"].isel(normal_force=number))
-    return Quantity(
-        name="seated_closure",
-        meaning="closure from the seat",
-        unit="mm",
-        absolute=False,
-        value=value,
-        errors={"surface": error, "population": math.nan},
-        sources={},
-        reasons={},
-        missing="" if math.isfinite(value) else "below the seat, or not solved",
-    )
+    errors = {"surface": error, "population": math.nan}
+    missing = "" if math.isfinite(value) else "below the seat, or not solved"
+    name, meaning = "seated_closure", "closure from the seat"
+    return Quantity(name, meaning, "mm", False, value, errors, {}, {}, missing)
 
 
 def dilatancy_of(subject: Subject) -> Dilatancy:

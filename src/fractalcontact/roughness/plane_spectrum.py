@@ -67,10 +67,6 @@ def plane_spectrum(heights: np.ndarray, spacing: tuple[float, float]) -> PlaneSp
     spacing : (float, float)
         (dy, dx), mm.
 
-    Returns
-    -------
-    PlaneSpectrum
-
     Raises
     ------
     ValueError

@@ -100,9 +100,8 @@ def dimension_rises_by_boxes(joint: Joint, evidence: Evidence) -> Finding:
     if found.verdict not in (HOLDS, PARTLY):
         return found
     faster = beyond_margin(trend.departure, all_claims()[name].margin, rising=True)
-    less = "but random nodes are near 2"
-    if trend.departure.known:
-        less = f"or {trend.departure:+z.2f} minus that of as many random nodes"
+    less = f"or {trend.departure:+z.2f} minus that of as many random nodes"
+    less = less if trend.departure.known else "but random nodes are near 2"
     return found._replace(
         verdict=found.verdict if faster == HOLDS else PARTLY,
         numbers=f"{found.numbers}, {less}",

@@ -1,7 +1,7 @@
 """Atlas of a study: all its results in one netCDF-4 file, a group for each stage and specimen."""
 
 import json
-from collections.abc import Collection, Hashable, Iterator, Mapping
+from collections.abc import Collection, Hashable, Mapping
 from pathlib import Path
 
 import numpy as np
@@ -192,10 +192,6 @@ def read_atlas(path: Path | str, without: Collection[str] = ()) -> xr.DataTree:
     without : collection of str
         Stages to leave out.
 
-    Returns
-    -------
-    xr.DataTree
-
     Notes
     -----
     Group by group, from a file that is opened once and closed: to open every group for itself takes
@@ -203,25 +199,6 @@ def read_atlas(path: Path | str, without: Collection[str] = ()) -> xr.DataTree:
     opened before, with this or with xarray's ``open_datatree``, makes no difference.
     """
     return read_named_atlas(path, without)[0]
-
-
-def read_variables(
-    path: Path | str, stage: str, names: list[str]
-) -> Iterator[tuple[str, xr.Dataset]]:
-    """Some variables of a stage, of one specimen after the other.
-
-    Yields
-    ------
-    str
-        Specimen.
-    xr.Dataset
-        These variables, in memory.
-    """
-    import netCDF4
-
-    with netCDF4.Dataset(path) as file:
-        for name, group in file[stage].groups.items():
-            yield name, xr.open_dataset(xr.backends.NetCDF4DataStore(group))[names].load()
 
 
 def read_named_atlas(

@@ -134,10 +134,6 @@ class LoadCase:
             Cells of the next coarser grid that hold all candidates.
         gain : float
             How many times less an application has to take.
-
-        Returns
-        -------
-        Restricted or None
         """
         total = self.space.shape[0] * self.space.shape[1]
         if self.load > MAX_CANDIDATES * total * self.bounds.upper and self.by_force:

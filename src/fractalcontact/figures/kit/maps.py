@@ -92,10 +92,6 @@ def draw_map(
         By default none, so that no missing cell is filled.
     **options
         Of ``imshow``.
-
-    Returns
-    -------
-    matplotlib.image.AxesImage
     """
     name, size = length_unit(max(sides))
     extent = (0, sides[1] / size, 0, sides[0] / size)

@@ -22,10 +22,6 @@ def plain_ticks(figure: FigureBase) -> None:
 
     Powers of ten become plain text, ticks between them are made within the axes alone and drawn as
     one, and nothing is measured for labels that are empty.
-
-    Parameters
-    ----------
-    figure : matplotlib.figure.Figure
     """
     for panel, axis in axes_of(figure):
         _spare(panel, axis)
@@ -40,10 +36,6 @@ def keep_labels(figure: FigureBase) -> None:
 
 def axes_of(figure: FigureBase) -> Iterator[tuple[Axes, Axis]]:
     """Every axis of a figure, after the panel it belongs to.
-
-    Parameters
-    ----------
-    figure : matplotlib.figure.Figure
 
     Yields
     ------
