@@ -203,7 +203,7 @@ def test_ticked_specimens_lie_over_each_other_and_over_another_study(
 def test_the_curves_are_those_of_the_atlas(results, atlas):
     table = pd.read_csv(results / "curves.csv")
     compared = 0
-    for name, rows in table[table["quantity"].str.contains("closure")].groupby("specimen"):
+    for name, rows in table[table["quantity"].str.contains("first touch")].groupby("specimen"):
         contact = atlas[f"contact/{name}"].attrs
         curve = atlas[f"closure/{name}/interface_closure"].sel(
             direction=contact["map_direction"],

@@ -25,7 +25,7 @@ SCHEMA = Path(__file__).with_name("card.schema.json")
 def write_cards(path: Path | str, folder: Path | str) -> list[str]:
     """Write the card of every specimen of a study: ``cards/NAME.yaml``, ``.json`` and ``.html``.
 
-    Of an atlas in one file also ``apertures/NAME.csv``, ``.nc`` and ``.vtk``, at the reference load.
+    Of an atlas in one file also ``apertures/NAME.csv``, ``.nc``, ``.vtk`` at the reference load.
 
     Parameters
     ----------

@@ -39,7 +39,7 @@ DECIDED = (AGREES, STEEPER, FLATTER)
 #: Why there is no real mean pressure: the areas of fewer nodes are not corrected for their edge.
 NO_PRESSURE = f"fewer than {CORRECTED_NODES} nodes in contact, too few for a real mean pressure"
 #: Why there is no Delta_sigma from the area where its stage gives no reason.
-TOO_FEW_RESOLUTIONS = "too few resolutions were solved under this load with nodes enough in contact"
+TOO_FEW_RESOLUTIONS = "under this load too few resolutions have enough nodes in contact"
 
 #: On where an estimate lies beside the values that theories give.
 BELOW, WITHIN, ABOVE = "below", "within", "above"

@@ -49,7 +49,7 @@ def curves_overlap(joint: Joint) -> Finding:
 
 
 def compliance_rises_again(joint: Joint) -> Finding:
-    """Compliance where the faces no longer correlate, against that just before, at every load.
+    """Change of the compliance as the correlation of the faces is lost, at every load.
 
     The mean of its logarithm over the offsets, whose scatter gives the interval, with a margin.
     Before are the offsets beyond the correlation length or, if none was solved there, the last
@@ -103,9 +103,9 @@ def composite_dimension_rises(joint: Joint) -> Finding:
     high = float(joints["composite_fit_max"].max())
     return Finding(
         ILL_POSED,
-        f"Delta_g {fitted[0]:.2f} at v = {v[0]:.3g} mm, {fitted[-1]:.2f} at {v[-1]:.3g} mm, for "
-        f"lags of {low:.3g} to {high:.3g} mm",
-        "the variogram of a difference is flat above v, and the face's own below it at every v",
+        f"Delta_g is {fitted[0]:.2f} at v = {v[0]:.3g} mm and {fitted[-1]:.2f} at {v[-1]:.3g} mm, "
+        f"over lags of {low:.3g} to {high:.3g} mm",
+        "the variogram of the composite topography is flat above v, and that of the face below v",
     )
 
 
@@ -181,7 +181,7 @@ def area_settles(joint: Joint) -> Finding:
 
 
 def refinement_changes_little(joint: Joint) -> Finding:
-    """Change of closure and contact area from twice the scan's spacing to the spacing itself.
+    """Change of closure and contact area from every second point of the scan to all points.
 
     Closure counts from a seat, the lightest load that seats both: from first touch it would change
     with the highest point, which any finer scan moves. Judged under every load above the seat, with

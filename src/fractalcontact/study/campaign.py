@@ -53,15 +53,7 @@ def drawn_of(config: Mapping[str, Any], specimens: Collection[str], opposite: st
 
 
 def explored(config: Mapping[str, Any], specimens: Collection[str]) -> list[str]:
-    """Specimens whose contact states are in the explorer: all, or of many those that are named.
-
-    Parameters
-    ----------
-    config : mapping
-        A study that passed the schema.
-    specimens : collection of str
-        All of the study.
-    """
+    """Specimens of a study whose states the explorer shows: all, or of many those named."""
     return list(config.get("explorer", [] if in_parts(config, specimens) else specimens))
 
 
