@@ -21,7 +21,7 @@
 # make check-accuracy  the study against itself at full cost: numbers within their errors, and seconds
 # make keep, before a change, and make same, after it: what differs, bit for bit, in the smoke study
 #   and the default one (or STUDY); AGAINST=folder of other results; RENAMED=file of new names
-# make calibration   intervals of Delta_sigma: stated half-widths over those seen, and coverage (10 minutes)
+# make calibration   stated half-widths over those seen, and coverage: Delta_sigma, closure, gap, area, stiffness (20 minutes)
 # make cost   where the time of the study went
 # make campaign SPECIMENS=1000   the scans and the study of that many small twins, in results/campaigns
 # make bench  the contact solver timed; with PEERS=1 also against other codes, installed for it
@@ -118,6 +118,7 @@ same:
 
 calibration: $(VENV)/installed
 	@$(BIN)/python benchmarks/calibration.py --output results/calibration.csv
+	@$(BIN)/python benchmarks/calibration_sampling.py --output results/calibration_sampling.csv
 
 cost: study
 	@$(BIN)/python benchmarks/study_cost.py "$$STUDY"

@@ -8,6 +8,7 @@ it, and twins of the window.
 
 import argparse
 import csv
+import functools
 import sys
 from pathlib import Path
 from types import SimpleNamespace
@@ -26,7 +27,7 @@ from fractalcontact.mechanics.state_scalars import aperture
 from fractalcontact.mechanics.subgrid import state_quantities
 from fractalcontact.mechanics.sweep import load_steps
 from fractalcontact.roughness.twin_surface import twin_surface
-from fractalcontact.surface.synthesis import self_affine
+from fractalcontact.surface.synthesis import band_limited
 from roughcontact.elastic.halfspace import HalfSpace
 
 #: Joints of calibration.py, and of how many seeds the twins are solved.
@@ -44,13 +45,28 @@ QUANTITIES = {
 }
 
 
+@functools.cache
+def prefactor_of(joint):
+    """Prefactor of the spectrum that makes faces of a joint as rough as RMS in the mean square."""
+    faces = [_unscaled(joint, seed, 1.0) for seed in range(8)]
+    return RMS**2 / np.mean(np.square(faces))
+
+
+def _unscaled(joint, seed, prefactor):
+    spectrum = {"cut_off": 2 * joint.spacing, "roll_off": joint.roll_off, "prefactor": prefactor}
+    shape = (joint.face, joint.face)
+    return band_limited(shape, joint.spacing, joint.hurst, seed=seed, **spectrum)
+
+
 def face_of(joint, seed):
-    """Part of a larger face that a window needs: its rows, and its columns with the offset."""
-    shape, first = (joint.face, joint.face), (joint.face - joint.window) // 2
-    spectrum = {"rms": RMS, "seed": seed, "roll_off": joint.roll_off}
-    face = self_affine(shape, joint.spacing, joint.hurst, **spectrum)
+    """Part of a larger face that a window needs: its rows, and its columns with the offset.
+
+    All faces have one spectrum. Scaled to one rms, those without a roll-off would differ by their
+    longest wave in the amplitude of all others, of which no window knows.
+    """
+    first = (joint.face - joint.window) // 2
     last = first + joint.window
-    return face[first:last, first : last + joint.slid]
+    return _unscaled(joint, seed, prefactor_of(joint))[first:last, first : last + joint.slid]
 
 
 def states_of(joint, face):

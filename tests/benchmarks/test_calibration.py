@@ -35,3 +35,22 @@ def test_random_fractals_have_their_dimension(measured, name):
         assert cells.shape == (parts**4,) * 2
         nodes.append(cells.sum())
     assert np.mean(nodes) == pytest.approx(parts ** (4 * dimension), rel=0.2)
+
+
+def test_states_of_a_window_have_the_quantities_that_are_calibrated(monkeypatch):
+    monkeypatch.syspath_prepend(BENCHMARKS)
+    sampling = importlib.import_module("calibration_sampling")
+    joint = sampling.TWINS["sandstone, capped"]._replace(face=96, window=48)
+    face = sampling.face_of(joint, 1)
+    assert face.shape == (48, 48 + joint.slid)
+    values, counted = sampling.states_of(joint, face)
+    names = list(sampling.QUANTITIES)
+    assert values.shape == counted.shape == (len(names), len(sampling.PRESSURES))
+    area = (48 * joint.spacing) ** 2 * np.array(sampling.PRESSURES) / joint.hardness
+    np.testing.assert_allclose(values[names.index("corrected area")], area, rtol=1e-3)
+    assert (np.diff(values[names.index("closure from the seat")]) > 0).all()
+    assert (np.diff(values[names.index("mean gap")]) < 0).all()
+    assert np.isnan(counted[names.index("closure from the seat")]).all()
+    assert (counted[names.index("mean gap")] > 0).all()
+    half = sampling.twin_half_widths(joint, face, range(1, 4))
+    assert (half[names.index("mean gap")] > 0).all()
