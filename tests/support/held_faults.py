@@ -132,7 +132,7 @@ class HeldStudy:
 
     @contextlib.contextmanager
     def held(self, rule):
-        """A run in which the job of a rule, by the name of its script, stands still."""
+        """A run in which the job of a rule stands still."""
         self.order(rule, "hold")
         running = self.start()
         try:

@@ -1,7 +1,8 @@
 """On the PYTHONPATH of a study whose jobs are to be caught in mid-work: see held_faults.py.
 
-A script of the workflow that has an order in the folder HELD_JOBS stands still for as long as the
-order says "hold"; "memory 2000" makes it take 2000 MB more than it needs, and go on.
+A job whose rule has an order in the folder HELD_JOBS stands still for as long as the order says
+"hold"; "memory 2000" makes it take 2000 MB more than it needs, and go on. The rule of a job is the
+folder of its log, which Snakemake writes into its script.
 """
 
 import os
@@ -28,8 +29,8 @@ def _obey(order):
 _ballast = []
 if "HELD_JOBS" in os.environ:
     for _word in sys.orig_argv:
-        if (
-            "/.snakemake/scripts/" in _word
-            and (_order := Path(os.environ["HELD_JOBS"], Path(_word).name.split(".")[-2])).exists()
-        ):
-            _obey(_order)
+        if "/.snakemake/scripts/" in _word:
+            _script = Path(_word).read_text(encoding="utf-8")
+            for _order in Path(os.environ["HELD_JOBS"]).iterdir():
+                if not _order.suffix and f"/logs/{_order.name}/" in _script:
+                    _obey(_order)
