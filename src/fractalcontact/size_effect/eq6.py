@@ -81,8 +81,9 @@ def size_test(loading: JointLoading[WindowSettings]) -> xr.Dataset:
         solver's, which is infinite where the value may not be reached at all), ``windows_below``,
         ``windows_above``, ``windows_unknown``, ``crossings``; what is predicted for the whole
         window, see :func:`size_effect.prediction.predict_whole`; what :func:`add_decisions` adds.
-        Loads ``beyond_study`` are those
-        of :data:`size_effect.load_ladder.TESTED_DOUBLINGS`.
+        Loads ``beyond_study`` are
+        there while sub-windows hold too few nodes under those of the study, see
+        :data:`size_effect.load_ladder.TESTED_DOUBLINGS`.
 
     Notes
     -----

@@ -9,7 +9,7 @@ from roughcontact.contact.state import ContactState
 
 from ..core.datasets import labelled_dataset
 from ..core.labels import cf_attrs
-from ..core.limits import RESOLVED_NODES
+from ..core.limits import CORRECTED_NODES, RESOLVED_NODES
 from ..core.ranges import within
 from ..core.settings import JointSettings
 from ..domain.renormalisation import MIN_NODES_PER_RESOLUTION
@@ -23,8 +23,8 @@ from .division import PARTS, solvable_parts, split
 
 #: A resolution is used if the smallest sub-windows keep this many nodes per side at it.
 MIN_NODES_PER_SIDE = 12
-#: The whole window is tested at the study's loads and at this many doublings of the largest: loads
-#: no rock would stand as an elastic body, but where small windows hold nodes enough.
+#: The whole window is tested at the study's loads and, while sub-windows hold too few nodes, at up
+#: to this many doublings of the largest: loads that no rock would stand as an elastic body.
 TESTED_DOUBLINGS = 3
 #: This many more doublings may be needed for small windows to have the sigma* of the whole; see
 #: :func:`solve_sub_windows` for when they are solved.
@@ -75,6 +75,7 @@ def solve_sub_windows(
     same area at each.
 
     Doublings beyond the loads cost most, and the ladder is extended by them where they are needed:
+    the whole is tested beyond the study until sub-windows of all sizes hold nodes enough, and
     windows of side b' up to sigma_0 (b/b')^(2 - Delta), where eq. 6 has the sigma* of the whole,
     for all loads and estimates of Delta_sigma; and on until each of them has a larger real mean
     pressure than the whole has under any load. Without an estimate, or where the study requests all
@@ -91,14 +92,20 @@ def solve_sub_windows(
     # Stiffness costs a solve of its own: at the loads whose closure is looked at.
     looked_at = loading.forces(settings.dilatancy_loads) / area
     compliant = np.isclose(pressures[:, np.newaxis], looked_at, rtol=1e-9).any(axis=1)
-    n_tested = min(len(of_study) + TESTED_DOUBLINGS, len(pressures))
     sizes = []
     for n in parts:
         windows = _cut(composite, n, max(factors))
         where = f"{n} x {n} parts"
         size = _LoadedSize(loading, windows, factors, pressures, where, compliant)
-        size.extend(n_tested + 1)
+        size.extend(len(of_study))
         sizes.append(size)
+    n_tested, most = len(of_study), min(len(of_study) + TESTED_DOUBLINGS, len(pressures))
+    while n_tested < most and not all(size.resolved() for size in sizes):
+        n_tested += 1
+        for size in sizes:
+            size.extend(1)
+    for size in sizes:
+        size.extend(1)
 
     whole, estimated, powers = sizes[0], xr.Dataset(), np.ones(1)
     domains = np.array(whole.domains[:n_tested])
@@ -224,6 +231,15 @@ class _LoadedSize:
             if reached and within(self.pressures[last], pressure, np.inf):
                 return
             self.extend(1)
+
+    def resolved(self) -> bool:
+        """True if sub-windows hold nodes enough, under the last load solved, for all that is tested.
+
+        Each for its corrected area, and on the average at every resolution for sigma*.
+        """
+        nodes = self.nodes[:, :, self.solved - 1]
+        each, mean = nodes[:, 0].min(), nodes.mean(axis=0).min()
+        return bool(each >= CORRECTED_NODES and mean >= MIN_NODES_PER_RESOLUTION)
 
     def real_pressure(self) -> np.ndarray:
         """:func:`real_pressure` of each sub-window, (window, step)."""
