@@ -93,16 +93,19 @@ def _compare_pairs(y, x, part, ring, weight, rings):
 def _transformed_pairs(domain, ring, inside, n):
     """Pairs up to each of n distances, weighted and as they are, by Fourier transform."""
     reach = len(ring) // 2
-    # Zeros as wide as the largest lag keep opposite sides of the window apart.
-    shape = [fft.next_fast_len(side + reach, real=True) for side in domain.shape]
-    spectrum = np.conj(fft.rfft2(domain, shape))
     lag_y, lag_x = np.mgrid[-reach : reach + 1, -reach : reach + 1]
     pairs = np.zeros((n, 2, BLOCKS**2))
     for i, part in enumerate(_parts(domain.shape)):
+        # Of a part and all around it that its nodes pair with; zeros fill up what the window lacks,
+        # and keep opposite sides apart.
+        around = tuple(slice(max(0, along.start - reach), along.stop + reach) for along in part)
+        lengths = (along.stop - along.start + 2 * reach for along in part)
+        shape = [fft.next_fast_len(length, real=True) for length in lengths]
         first = np.zeros(domain.shape)
         first[part] = domain[part]
         if first.any():
-            counts = np.round(fft.irfft2(fft.rfft2(first, shape) * spectrum, shape))
+            spectrum = np.conj(fft.rfft2(domain[around], shape))
+            counts = np.round(fft.irfft2(fft.rfft2(first[around], shape) * spectrum, shape))
             counts = counts[lag_y, lag_x]
             for j, weighted in enumerate((counts / inside, counts)):
                 by_ring = np.bincount(ring.ravel(), weights=weighted.ravel(), minlength=n + 1)
