@@ -71,13 +71,17 @@ def secant_slope(state: Any, solve_contact: Callable[..., Any] | None) -> Slope:
     of_nodes = HALF_SPAN_OF_NODES * float(np.min(hardness)) * own
     half = min(max(HALF_SPAN * state.closure, of_nodes), MAX_HALF_SPAN * state.closure)
 
-    def at(closure):
+    def at(closure, start):
         case = (state.composite, space)
         return solve_contact(
-            *case, closure=closure, hardness=hardness, start=state, rtol=SECANT_RTOL
+            *case, closure=closure, hardness=hardness, start=start, rtol=SECANT_RTOL
         )
 
-    low, high = at(state.closure - half), at(state.closure + half)
+    high = at(state.closure + half, state)
+    # On the line through both, nodes at the hardness stay there; towards a far lower load, of which
+    # the state may have come, all that have yielded since would leave it, and three times as many
+    # iterations put them back.
+    low = at(state.closure - half, state.with_before(high))
     change = (high.pressure - low.pressure) * space.cell_area
     total, scatter = float(change.sum()), float(np.sqrt((change**2).sum()))
     if not total > 0:

@@ -163,9 +163,13 @@ class ContactState:
         return Operator(self.space), between
 
     def without_before(self) -> "ContactState":
-        """The same state without the earlier states of its extrapolation."""
+        """The same state without the other one of its extrapolation."""
+        return self.with_before(None)
+
+    def with_before(self, other: "ContactState | None") -> "ContactState":
+        """The same state, extrapolated as a start along the line through another one."""
         state = copy.copy(self)
-        vars(state)["_before"] = None
+        vars(state)["_before"] = other and other.without_before()
         return state
 
 

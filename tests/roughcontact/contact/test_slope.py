@@ -5,6 +5,7 @@ import pytest
 
 from fractalcontact.surface.synthesis import self_affine
 from roughcontact.contact.path import load_path
+from roughcontact.contact.slope import SECANT_RTOL, secant_slope
 from roughcontact.contact.solve import solve_contact
 from roughcontact.elastic.halfspace import HalfSpace
 from roughcontact.limits import RESOLVED_NODES
@@ -53,6 +54,29 @@ def test_slope_is_that_of_the_joint_and_not_of_the_grid(pressure):
     first, second = every
     assert first.error < second.error < 0.2 * second.value
     assert abs(first.value - second.value) < 2 * np.hypot(first.error, second.error)
+
+
+def test_both_ends_of_a_secant_are_near_the_state():
+    """Also the lower one of a state under far more load than the one it was started from."""
+    hardness, (height, space) = 80.0, rough(256, seed=1)
+    light, heavy = (share * hardness * height.size * SPACING**2 for share in (0.6, 0.95))
+    start = solve_contact(height, space, force=light, hardness=hardness)
+    state = solve_contact(height, space, force=heavy, hardness=hardness, start=start)
+    ends = []
+
+    def counted(*args, **options):
+        ends.append(solve_contact(*args, **options))
+        return ends[-1]
+
+    slope = secant_slope(state, counted)
+    fewer, more = sorted(end.iterations for end in ends)
+    assert more < 2 * fewer
+    alone = [
+        solve_contact(height, space, closure=end.closure, hardness=hardness, rtol=SECANT_RTOL)
+        for end in ends
+    ]
+    exact = (alone[0].force - alone[1].force) / (ends[0].closure - ends[1].closure)
+    assert slope.value == pytest.approx(exact, abs=slope.error - slope.scatter)
 
 
 @pytest.mark.parametrize("seed", range(4))
