@@ -65,7 +65,7 @@ def load_steps(
     NotConverged
         If a state could not be verified; its note names it.
     """
-    state = None
+    state, composite = None, np.ascontiguousarray(composite)  # once, not at every load
     for force in np.asarray(forces):
         state = _solved(composite, space, force, state, solving, where)
         yield state

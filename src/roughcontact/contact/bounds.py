@@ -1,5 +1,6 @@
 """Bounds of the pressure: on all nodes the same, or on each its own."""
 
+import math
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -8,9 +9,6 @@ import numpy as np
 from .restriction import restrict_sum
 
 
-def _on_nodes(bound, n):
-    return _on_all(bound, n) if _is_one(bound) else np.broadcast_to(bound, (n,))
-
 
 def _is_one(bound):
     # Of a plain number `np.ndim` makes an array first.
@@ -18,9 +16,9 @@ def _is_one(bound):
 
 
 @lru_cache(maxsize=64)
-def _on_all(bound, n):
-    """One number on n nodes. In small windows to make it takes as long as to read it."""
-    return np.broadcast_to(bound, (n,))
+def _on_all(lower, upper, n):
+    """Two numbers on n nodes. In small windows to make them takes as long as to read them."""
+    return np.broadcast_to(lower, (n,)), np.broadcast_to(upper, (n,))
 
 
 @dataclass(frozen=True)
@@ -44,7 +42,8 @@ class Bounds:
     @property
     def elastic(self) -> bool:
         """True if no node has an upper bound."""
-        return bool(np.isinf(self.upper).all())
+        upper = self.upper
+        return math.isinf(upper) if isinstance(upper, float) else bool(np.isinf(upper).all())
 
     def clip(self, pressure: np.ndarray) -> np.ndarray:
         """Pressure, (n,), clipped to the bounds."""
@@ -76,7 +75,10 @@ class Bounds:
 
     def on(self, n: int) -> tuple[np.ndarray, np.ndarray]:
         """Both bounds on each of n nodes for compiled code; a scalar takes no memory."""
-        return _on_nodes(self.lower, n), _on_nodes(self.upper, n)
+        lower, upper = self.lower, self.upper
+        if isinstance(lower, float) and isinstance(upper, float):
+            return _on_all(lower, upper, n)
+        return np.broadcast_to(lower, (n,)), np.broadcast_to(upper, (n,))
 
     def coarser(self, shape: tuple[int, int]) -> "Bounds":
         """Bounds on the grid twice as coarse as one of a shape.

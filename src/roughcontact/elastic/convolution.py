@@ -147,26 +147,25 @@ class Convolution:
         result = np.empty_like(field)
         spectra = np.empty((self._waves, self._blocks * ROW * ROW), self._dtype)
         nx = self._shape[1]
-        _in_parts(
+        if field.size < THREADED_CELLS:  # of small windows the calls take as long as the rest
+            _convolve(field, spectra, result, self._along_y, self._along_x)
+            return result
+        threads.in_parts(
             lambda *part: _forward_along_y(*part, field, spectra, *self._along_y),
             self._blocks,
-            field.size,
+            smallest=1,
         )
-        _in_parts(
+        threads.in_parts(
             lambda *part: _multiply_along_x(*part, nx, spectra, *self._along_x),
             self._waves,
-            field.size,
+            smallest=1,
         )
-        _in_parts(
+        threads.in_parts(
             lambda *part: _back_along_y(*part, spectra, result, *self._along_y),
             self._blocks,
-            field.size,
+            smallest=1,
         )
         return result
-
-
-def _in_parts(function, n, cells):
-    threads.in_parts(function, n, smallest=1 if cells >= THREADED_CELLS else n)
 
 
 def _plan(n, dtype):
@@ -405,3 +404,12 @@ def _back_along_y(start, stop, spectra, field, radices, twiddles, place):
             for y in range(ny):
                 for lane in range(nx - left):
                     field[y, left + lane] = x[y * ROW + lane]
+
+
+@njit(cache=True, nogil=True)
+def _convolve(field, spectra, result, along_y, along_x):
+    """All three passes at once."""
+    blocks = spectra.shape[1] // (ROW * ROW)
+    _forward_along_y(0, blocks, field, spectra, *along_y)
+    _multiply_along_x(0, spectra.shape[0], field.shape[1], spectra, *along_x)
+    _back_along_y(0, blocks, spectra, result, *along_y)
