@@ -233,7 +233,7 @@ class _LoadedSize:
             self.extend(1)
 
     def resolved(self) -> bool:
-        """True if sub-windows hold nodes enough, under the last load solved, for all that is tested.
+        """True if sub-windows hold nodes enough under the last load, for all that is tested.
 
         Each for its corrected area, and on the average at every resolution for sigma*.
         """

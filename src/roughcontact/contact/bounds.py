@@ -9,7 +9,6 @@ import numpy as np
 from .restriction import restrict_sum
 
 
-
 def _is_one(bound):
     # Of a plain number `np.ndim` makes an array first.
     return isinstance(bound, float) or np.ndim(bound) == 0
