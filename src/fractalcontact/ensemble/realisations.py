@@ -193,7 +193,8 @@ def _realised(specimens: xr.Dataset, recipe: Mapping, settings: EnsembleSettings
 def _realisation(loading: JointLoading[EnsembleSettings]) -> xr.Dataset:
     """:data:`STATES` over the loads, and :data:`EXPONENTS`, of one realisation."""
     settings, spacing = loading.settings, cell_side(loading.specimen)
-    states = contact_states(loading, settings.resolutions, mapped=int(loading.cells[0]))
+    mapped = int(loading.cells[0])
+    states = contact_states(loading, settings.resolutions, mapped=mapped, lightly=True)
     curves = interface_states(states, window_sides(loading.specimen), settings.material.e_star)
     finest = min(settings.resolutions)
     at = {"direction": loading.direction, "offset": loading.offsets[0], "resolution": finest}
@@ -221,7 +222,7 @@ def _realisation(loading: JointLoading[EnsembleSettings]) -> xr.Dataset:
         values[name] = curves[name].sel(at).values
     table = {name: ("normal_force", *words) for name, words in STATES.items()}
     result = labelled_dataset(table, values, coords={"normal_force": curves["normal_force"]})
-    composite = loading.composite(int(loading.cells[0]))[::finest, ::finest]
+    composite = loading.composite(mapped)[::finest, ::finest]
     slopes = null_slopes(touching, composite, cell, fit_range=fitted)
     return result.merge(slopes).assign(_size_exponents(loading))
 

@@ -4,6 +4,7 @@ from typing import Any
 
 import numpy as np
 
+from roughcontact.contact.slope import Slope
 from roughcontact.contact.state import STIFFNESS_ERROR, ContactState
 
 from .area import EDGE_EXCESS, contact_perimeter, corrected_area
@@ -20,7 +21,9 @@ def aperture(state: ContactState) -> np.ndarray:
     return np.where(state.in_contact, 0.0, np.maximum(state.gap, 0.0))
 
 
-def numbers_of(state: ContactState, suspicious: np.ndarray | None = None) -> dict[str, Any]:
+def numbers_of(
+    state: ContactState, suspicious: np.ndarray | None = None, *, stiff: bool = True
+) -> dict[str, Any]:
     """Scalars of a contact state, stored without its fields.
 
     Parameters
@@ -28,6 +31,8 @@ def numbers_of(state: ContactState, suspicious: np.ndarray | None = None) -> dic
     state : ContactState
     suspicious : (ny, nx) bool ndarray, optional
         Nodes of suspicious cells, from :func:`mechanics.overlap.suspect_nodes`; none if left out.
+    stiff : bool
+        Whether the stiffness is wanted, which takes more solves; else it is NaN.
 
     Returns
     -------
@@ -40,6 +45,7 @@ def numbers_of(state: ContactState, suspicious: np.ndarray | None = None) -> dic
         As :attr:`contact.solve.ContactState.stiffness`.
     """
     spacing, gap = state.space.spacing, aperture(state)
+    slope = state.slope if stiff else Slope(np.nan, np.nan)
     of_domain: dict[str, Any] = {
         "nodes": np.count_nonzero(state.in_contact),
         "extent": _extent(state.in_contact),
@@ -50,10 +56,11 @@ def numbers_of(state: ContactState, suspicious: np.ndarray | None = None) -> dic
         "suspect_load_share": (
             0.0 if suspicious is None else suspect_load_share(state.pressure, suspicious)
         ),
-        "stiffness_scatter": state.slope.scatter,
+        "stiffness": slope.value,
+        "stiffness_scatter": slope.scatter,
     }
     of_state = {name: getattr(state, name) for name in SCALARS if name not in of_domain}
-    return of_domain | of_state | state_errors(state)
+    return of_domain | of_state | state_errors(state, slope)
 
 
 def state_area(state: ContactState) -> float:
@@ -72,13 +79,15 @@ def _extent(in_contact: np.ndarray) -> float:
     return float(np.prod(sides)) / in_contact.size
 
 
-def state_errors(state: ContactState) -> dict[str, float]:
+def state_errors(state: ContactState, slope: Slope | None = None) -> dict[str, float]:
     """Solver error bounds of a state's scalars: its KKT conditions hold to a residual only.
 
     Parameters
     ----------
     state
         As for :func:`numbers_of`.
+    slope : Slope, optional
+        By default its own.
 
     Returns
     -------
@@ -100,7 +109,7 @@ def state_errors(state: ContactState) -> dict[str, float]:
     near_cap = below_cap & (state.pressure >= state.hardness - hidden)
     loose = ambiguous + np.count_nonzero(near_cap)
     fraction = STIFFNESS_ERROR + loose / max(int(np.count_nonzero(below_cap)), 1)
-    slope = state.slope
+    slope = slope or state.slope
     return {
         "closure_error": state.residual * state.closure,
         "area_error": ambiguous * space.cell_area,

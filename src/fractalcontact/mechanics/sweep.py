@@ -145,7 +145,11 @@ def joint_states(
 
 
 def contact_states(
-    loading: JointLoading[ContactSettings], resolutions: Sequence[int], *, mapped: int | None = None
+    loading: JointLoading[ContactSettings],
+    resolutions: Sequence[int],
+    *,
+    mapped: int | None = None,
+    lightly: bool = False,
 ) -> xr.Dataset:
     """Contact states at some offsets and resolutions, under the loads that are needed.
 
@@ -158,6 +162,8 @@ def contact_states(
         Multiples k of the scan's spacing.
     mapped : int, optional
         Offset of the contact maps in cells, from :func:`map_place`.
+    lightly : bool
+        Without dips, and with the stiffness at the finest resolution alone.
 
     Returns
     -------
@@ -189,11 +195,12 @@ def contact_states(
         space = loading.half_space(grid, factor)
         touching = np.zeros((1, len(cells), len(forces), *grid), bool)
         looked_at = _in_first_direction(loading) and factor == min(settings.resolutions)
+        stiff = not lightly or factor == min(settings.resolutions)
         of_offsets = np.full((len(cells), *grid), np.nan, np.float32) if looked_at else None
         for i, n in enumerate(cells):
             pressures, gaps = [], []
             suspicious = prefractal(loading.suspect_nodes(n), factor)
-            slopes = loading.contact_dips(n, factor)
+            slopes = [] if lightly else loading.contact_dips(n, factor)
             for j, state in _load_curve(loading, n, factor, space, mapped=n == mapped):
                 pressures.append(state.pressure.astype(np.float32))
                 gaps.append(aperture(state).astype(np.float32))
@@ -203,7 +210,7 @@ def contact_states(
                 for one, of_step in enumerate(slopes):
                     dips[0, i, k, j, one] = dips_by_force(state.pressure, of_step)
                 touching[0, i, j] = state.in_contact
-                for name, value in numbers_of(state, suspicious).items():
+                for name, value in numbers_of(state, suspicious, stiff=stiff).items():
                     scalars[name][0, i, k, j] = value
             if looked_at and n == mapped:
                 fields |= map_fields(pressures, gaps, loading.offsets[i], direction, factor)
@@ -215,7 +222,7 @@ def contact_states(
             touching,
             cf_attrs("1", f"contact domain at {factor} times the scan's spacing"),
         )
-    if loading.slides:
+    if loading.slides and not lightly:
         words = cf_attrs("degree", "apparent dip along the sliding, by equal parts of the force")
         dims = ("direction", "offset", "resolution", "normal_force", "dip_step", "force_part")
         fields[DIP] = dims, dips, words
