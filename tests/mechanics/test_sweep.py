@@ -20,6 +20,7 @@ from fractalcontact.mechanics.joint import (
 from fractalcontact.mechanics.loading import JointLoading
 from fractalcontact.mechanics.state_scalars import numbers_of, state_errors
 from fractalcontact.mechanics.states import (
+    DIP,
     MAP_PRESSURE,
     OFFSETS,
     combine,
@@ -70,6 +71,17 @@ def parts(specimen, joint):
         for i in range(len(cells))
         for resolution in (1, 2)
     ]
+
+
+def test_states_solved_lightly_lack_nothing_but_dips_and_coarse_stiffness(specimen, joint):
+    direction = SETTINGS.contact_directions[0]
+    cells = joint["offset_cells"].sel(contact_direction=direction).values[:2]
+    loading = JointLoading(specimen, direction, cells, SETTINGS, SOLVER)
+    full, light = (contact_states(loading, [1, 2], lightly=one) for one in (False, True))
+    stiffness = [name for name in light if name.startswith("stiffness")]
+    assert len(stiffness) == 3
+    xr.testing.assert_equal(light[stiffness], full[stiffness].where(full["resolution"] == 1))
+    xr.testing.assert_identical(light.drop_vars(stiffness), full.drop_vars([*stiffness, DIP]))
 
 
 def lone_node(space):
