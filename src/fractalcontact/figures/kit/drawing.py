@@ -13,7 +13,6 @@ import pandas as pd
 import xarray as xr
 from cycler import cycler
 from matplotlib.backend_bases import FigureCanvasBase, RendererBase
-from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 from xarray import DataTree
 
@@ -123,7 +122,7 @@ def save(drawing: Drawing, folder: Path | str, name: str) -> None:
             canvas.write_png(path)
         keep_labels(figure)
         with atomic_write(folder / f"{name}.svg") as path:
-            FigureCanvasSVG(figure).print_svg(path, metadata={"Date": None})
+            canvas.write_svg(path)
     with atomic_write(folder / f"{name}.txt") as path:
         words = drawing.caption
         path.write_text((words.text if isinstance(words, Caption) else words) + "\n", "utf-8")

@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from functools import lru_cache
 from math import ceil
 
+from matplotlib import font_manager
 from matplotlib.font_manager import FontProperties
 from matplotlib.mathtext import MathTextParser, VectorParse
 
@@ -12,6 +13,8 @@ from matplotlib.mathtext import MathTextParser, VectorParse
 #: pixels per inch.
 _SIZE, _DPI = 1000.0, 72.0
 _READER, _read = MathTextParser("path"), MathTextParser.parse
+_NAMES = "ttfFontProperty"
+_font_names = lru_cache(100)(getattr(font_manager, _NAMES))
 
 
 @contextlib.contextmanager
@@ -21,12 +24,16 @@ def formulas_read_once() -> Iterator[None]:
     Matplotlib takes some milliseconds for each, and reads it for the PNG, for its size in the SVG,
     and for the SVG itself.
     """
-    before = MathTextParser.parse
-    setattr(MathTextParser, "parse", _read_or_remember)  # noqa: B010  # types do not know methods
+    # Of its letters' fonts the SVG asks the names for each letter anew.
+    places = ((MathTextParser, "parse", _read_or_remember), (font_manager, _NAMES, _font_names))
+    before = [(place, name, getattr(place, name)) for place, name, _ in places]
+    for place, name, function in places:
+        setattr(place, name, function)
     try:
         yield
     finally:
-        setattr(MathTextParser, "parse", before)  # noqa: B010
+        for place, name, function in before:
+            setattr(place, name, function)
 
 
 def _read_or_remember(parser, s, dpi=72, prop=None, *, antialiased=None):
