@@ -97,7 +97,8 @@ def joined_cells(open_cells: np.ndarray, inlet: np.ndarray, outlet: np.ndarray) 
     """
     labels, n = ndimage.label(open_cells)
     joined = np.zeros(n + 1, bool)
-    joined[_at_both(labels, inlet, outlet)] = True
+    joined[np.intersect1d(labels[inlet], labels[outlet])] = True
+    joined[0] = False
     return joined[labels]
 
 
@@ -134,12 +135,6 @@ def are_joined(opening: np.ndarray, level: float, inlet: np.ndarray, outlet: np.
                 unseen[other], waiting[n] = False, other
                 n += 1
     return False
-
-
-def _at_both(labels, inlet, outlet):
-    """Labels above 0 at both ends."""
-    both = np.intersect1d(labels[inlet], labels[outlet])
-    return both[both > 0]
 
 
 def solve_network(
