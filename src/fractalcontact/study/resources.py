@@ -67,7 +67,7 @@ COSTS = {
     "windows": Cost(420, 620, 6, 55),
     "ensemble": Cost(420, 620, 5, 0, 0, 25),
     "strength": Cost(190, 10, 2.5, 0),
-    "figures": Cost(380, 300, 25, 4, 8),
+    "figures": Cost(480, 300, 15, 4, 8),
     "atlas_part": Cost(190, 180, 3, 1, 1),
     "size_effect_part": Cost(170, 1000, 10, 50),
 }
