@@ -66,7 +66,7 @@ def test_every_link_leads_somewhere(open_page, results, pages):
 
 def test_a_click_on_a_heading_sorts_the_rows_both_ways(open_page):
     with open_page("index.html") as page:
-        assert page.locator("#table thead th:visible").count() == 11
+        assert page.locator("#table thead th:visible").count() == 9
         page.locator("#all-columns").check()
         headings = page.locator("#table thead button")
         assert page.locator("#table thead th:visible").count() == headings.count() == 17
@@ -117,7 +117,7 @@ def test_the_table_shows_the_atlas_under_the_chosen_pressure(open_page, atlas):
             for row, name in zip(rows_of(page).all(), names_of(page), strict=True):
                 shown = {
                     column: row.locator(SHOWN.format(column=column, load=key))
-                    for column in (6, 7, 8, 9, 17)
+                    for column in (6, 7, 8, 9, 10, 17)
                 }
                 assert all(cell.get_attribute("hidden") is None for cell in shown.values())
                 sorts = {i: cell.get_attribute("data-sort") for i, cell in shown.items()}
@@ -127,8 +127,9 @@ def test_the_table_shows_the_atlas_under_the_chosen_pressure(open_page, atlas):
                 pressures.append(float(sorts[6]))
                 at, curves = _states_at(atlas, name, pressures[-1])
                 for column, variable in (
-                    (8, "interface_closure"),
-                    (9, "interface_stiffness"),
+                    (8, "seated_closure"),
+                    (9, "interface_closure"),
+                    (10, "interface_stiffness"),
                     (17, "nodes"),
                 ):
                     if sorts[column]:
@@ -253,6 +254,13 @@ def test_a_specimen_leads_to_its_states(open_page, results):
         assert chosen.startswith(name)
         page.locator("header a", has_text="results").click()
         page.wait_for_selector("#table")
+
+
+def test_the_table_of_specimens_is_whole_on_a_small_screen(open_page):
+    with open_page("index.html") as page:
+        page.set_viewport_size({"width": 1200, "height": 900})
+        needed, there = page.locator("#table").evaluate("(e) => [e.scrollWidth, e.clientWidth]")
+        assert needed <= there
 
 
 @pytest.mark.parametrize("which", [0, 1])
