@@ -89,7 +89,7 @@ def place_window(specimen: xr.Dataset, request: WindowRequest) -> dict:
     if shape != wanted.cells:
         notes.append(
             f"cut from {wanted.cells[1]} x {wanted.cells[0]} to {shape[1]} x {shape[0]} cells, "
-            f"multiples of the coarsest spacing ({multiple})"
+            f"multiples of {multiple}, the largest of 'resolutions'"
         )
     return {
         "window_y0": corner[0],

@@ -63,7 +63,7 @@ def roughness_words(strength: xr.Dataset) -> str:
     if used != jrc:
         words += f", {short(used)} used"
     if np.isfinite(used) and np.isnan(strength["scaled_roughness"]):
-        words += f", scaled to this length above Barton's {JRC_RANGE[1]:g}"
+        words += f", above Barton's {JRC_RANGE[1]:g} once scaled to this length"
     return words
 
 
