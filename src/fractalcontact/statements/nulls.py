@@ -95,12 +95,12 @@ def _departure_words(state, null, words):
 
 @of_a_kind
 def domains_differ_from_cuts(joint: Joint, evidence: Evidence) -> Finding:
-    """Elastic contact domain compared with the cut of the composite topography, over the loads.
+    """Elastic contact domain compared with the bearing-area cut of the topography, over the loads.
 
-    Coincident where the intervals of all differences of local slopes lie within the margin; not
-    coincident where one differs by the margin or more, significantly among all loads and box sides
-    (Holm). Not related where the interval of the difference of a box-counting or correlation
-    dimension, corrected for the number of loads, lies beyond a quarter.
+    They coincide where the intervals of all differences of local slopes lie within the margin. They
+    differ where one slope differs by the margin or more, significantly among all loads and box
+    sides (Holm). They are unrelated where their box-counting or correlation dimensions differ
+    by more than a quarter, with an interval corrected for the number of loads.
     """
     margin = all_claims()["domains_differ_from_cuts"].margin
     states = evidence.slopes()

@@ -27,9 +27,9 @@ from .local_slopes import one_slope
 def area_is_lacunar(joint: Joint, evidence: Evidence) -> Finding:
     """Exponent of A_r over the resolutions at the reference load, and its change over them.
 
-    The area falls with refinement where 2 - Delta_sigma lies beyond the margin. If it falls, the
-    claim holds in part unless Delta_sigma of the two finest resolutions is, within the margin, that
-    of the two coarsest: one power law.
+    The area falls with refinement where 2 - Delta_sigma lies beyond the margin. If it falls, it
+    does so as one power law where the two finest resolutions and the two coarsest have the same
+    Delta_sigma within the margin; else the claim holds in part.
     """
     name = "area_is_lacunar"
     margin = all_claims()[name].margin
