@@ -12,7 +12,7 @@ from ..core.errors import InputError
 from ..core.subject import Subject, configuration_of
 from ..pages.files import APERTURE, APERTURE_ENDINGS, CARD
 from ..pages.templating import write_page
-from ..study.atlas_parts import Trees, read_group
+from ..study.atlas_parts import Trees
 from ..study.stages import STAGES as ALL_STAGES
 from .apertures import aperture_at, with_solved_gaps, write_aperture
 from .card import FORM, STAGES, card_of, made_of
@@ -39,13 +39,13 @@ def write_cards(path: Path | str, folder: Path | str) -> list[str]:
     list of str
         Specimens that have one.
     """
-    trees = Trees(path, without=ALL_STAGES.keys() - set(STAGES))
+    trees = Trees(path, without=ALL_STAGES.keys() - {*STAGES, "contact"})
     study, made = configuration_of(trees.root)["study"], made_of(trees.root.attrs)
     for name in trees.names:
         write_card(card_of(Subject.of(trees.of(name)[0], name), study, made), folder)
         if trees.parts:
             continue
-        contact = read_group(path, f"contact/{name}", ["map_gap"])[0]
+        contact = trees.root[f"contact/{name}"].to_dataset()[["map_gap"]]
         aperture = aperture_at(with_solved_gaps(contact, folder, name), None, name)
         for ending in APERTURE_ENDINGS:
             write_aperture(aperture, Path(folder) / APERTURE.format(specimen=name, ending=ending))

@@ -1,7 +1,7 @@
 """Atlas in parts: one file for each specimen, read at its first use."""
 
 import json
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -168,14 +168,14 @@ class Trees:
 
     def closure(self, name: str) -> Subject:
         """A specimen with its closure curves alone, which say what is reported."""
-        file = self.path.parent / self.parts.get(name, self.path.name)
-        curves = read_group(file, f"closure/{name}")[0]
+        if name in self.parts:
+            curves = read_group(self.path.parent / self.parts[name], f"closure/{name}")[0]
+        else:
+            curves = self.root[f"closure/{name}"].to_dataset()
         return Subject({"closure": curves}, configuration_of(self.root)["settings"][name], name)
 
 
-def read_group(
-    path: Path | str, group: str, names: Sequence[str] | None = None
-) -> tuple[xr.Dataset, Mapping[str, Any]]:
+def read_group(path: Path | str, group: str) -> tuple[xr.Dataset, Mapping[str, Any]]:
     """One group of a netCDF-4 file in memory, and the attributes of the file.
 
     Parameters
@@ -183,8 +183,6 @@ def read_group(
     path : path-like
     group : str
         "STAGE/SPECIMEN".
-    names : sequence of str, optional
-        Of the variables to read; all by default.
 
     Raises
     ------
@@ -204,8 +202,7 @@ def read_group(
             found = file[group]
         except (IndexError, KeyError):
             raise KeyError(f"{path}: no group {group}") from None
-        dataset = xr.open_dataset(xr.backends.NetCDF4DataStore(found))
-        dataset = (dataset if names is None else dataset[list(names)]).load()
+        dataset = xr.open_dataset(xr.backends.NetCDF4DataStore(found)).load()
         return dataset, {name: file.getncattr(name) for name in file.ncattrs()}
 
 
