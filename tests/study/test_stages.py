@@ -45,8 +45,9 @@ def test_a_stage_has_a_rule_but_those_of_all_specimens_together():
     for name, stage in STAGES.items():
         if stage.grain != STUDY:
             together = "|".join(made_together(name))
-            made = rf'(outputs_of|calling)\(\s*"({together})"|RESULTS}}/({together})/'
-            # Experiments that share a rule.
+            made = rf'(outputs_of|calling|StageJob)\(\s*"({together})"|RESULTS}}/({together})/'
+            # Measurements, and experiments, that share a rule.
+            made += rf'|"({together})/{{?\w+}}?": Measurement|MEASURED\["({together})/'
             made += rf'|(?:LONG|SHORT) = [({{][^)}}]*"({together})"'
             assert re.search(made, rules), f"no rule in workflow/rules makes {name}"
 
