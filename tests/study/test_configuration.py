@@ -31,7 +31,7 @@ def study():
     return copy.deepcopy(PAPER)
 
 
-@pytest.mark.parametrize("name", ["paper", "smoke", "accuracy", "accuracy_small"])
+@pytest.mark.parametrize("name", ["paper", "smoke", "accuracy", "accuracy_chart", "accuracy_small"])
 def test_the_studies_that_ship_are_valid(name):
     check_study(yaml.safe_load((ROOT / f"config/{name}.yaml").read_text()), SCHEMA, name)
 
