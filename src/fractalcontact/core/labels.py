@@ -4,8 +4,10 @@ import math
 import re
 from collections.abc import Iterable
 
-#: Members of an ensemble: of an embedded specimen, and of a scan, which they are not.
+#: Members of an ensemble: realisations of an embedded specimen, or twins of a scan.
 REALISATIONS, TWINS = "realisations", "twins of the scan"
+#: Sources of the error of a number as a property of this surface; others are of its population.
+OF_SURFACE = ("solver", "numerical", "secant")
 
 
 def cf_attrs(units: str, long_name: str) -> dict[str, str]:

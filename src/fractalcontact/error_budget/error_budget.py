@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from ..core.datasets import labelled_dataset
 from ..core.estimate import Estimate
 from ..core.intervals import t_quantile
-from ..core.labels import TWINS, cf_attrs
+from ..core.labels import OF_SURFACE, TWINS, cf_attrs
 from ..core.limits import MAX_TOUCHING, MIN_NODES
 from ..core.settings import StateSettings
 from ..mechanics.joint import prefractal
@@ -33,10 +33,9 @@ from .twins import twins_spread
 #: Sources of error: those of the number as a property of this surface, those of the population the
 #: window is a sample of; and, in no total, the change of the surface with its resolution, what a
 #: harder material would change, and what another estimator gives.
-OF_SURFACE = ("solver", "numerical", "secant")
 OF_POPULATION = ("counting", "window", TWINS, "registration")
-#: Of these only the larger is in a total: a spread over windows holds that of counting. Neither is
-#: where twins of the scan were solved.
+#: Only the larger of these is in a total, as a spread over windows holds that of counting; where
+#: twins of the scan were solved, neither is.
 _OF_WINDOW = ("counting", "window")
 SOURCES = (*OF_SURFACE, *OF_POPULATION, "resolution", "model", "estimator")
 
@@ -178,18 +177,18 @@ def error_budget(
     if twins is not None:
         spread, within = twins_spread(curve, twins)
         errors[TWINS] = over_loads(curve.forces, spread, _scale(curve))
+    errors = {source: errors[source] for source in SOURCES if source in errors}
     reasons = _reasons(curve, errors, found, effective, registration_spread is not None)
     budget = _budget(curve, values, errors, found, reasons, (n_windows, effective))
     if twins is not None:
-        words = cf_attrs("1", "whether the scan lies within the 95 % band of its twins")
+        words = cf_attrs("1", "position of the scan relative to the 95 % band of its twins")
         budget["within_twins"] = (_ALL, within, words)
     return budget
 
 
 def _budget(curve, values, errors, found, reasons, windows) -> xr.Dataset:
     """The dataset from its parts."""
-    sources = [source for source in SOURCES if source in errors]
-    each = np.stack([errors[source] for source in sources], axis=1)
+    each = np.stack(list(errors.values()), axis=1)
     total = np.sqrt(sum(errors[source] ** 2 for source in OF_SURFACE))
     sampling = np.fmax(errors["counting"], errors["window"])
     largest = _largest(errors, _OF_WINDOW)
@@ -227,7 +226,7 @@ def _budget(curve, values, errors, found, reasons, windows) -> xr.Dataset:
     }
     coords = {
         "quantity": list(BUDGET_QUANTITIES),
-        "source": sources,
+        "source": list(errors),
         "normal_force": curve.curve["normal_force"],
     }
     attrs = {
@@ -436,12 +435,11 @@ def _reasons(curve, errors, found: Refinement, effective, registered: bool) -> n
     }
     if scanned and registered:
         missing["registration"] = "not known of this quantity"
-    sources = [source for source in SOURCES if source in errors]
-    reasons = np.full((len(BUDGET_QUANTITIES), len(sources)), "", object)
+    reasons = np.full((len(BUDGET_QUANTITIES), len(errors)), "", object)
     for i in range(len(BUDGET_QUANTITIES)):
-        for j, source in enumerate(sources):
-            if not np.isfinite(errors[source][i]).any():
+        for j, (source, error) in enumerate(errors.items()):
+            if not np.isfinite(error[i]).any():
                 reasons[i, j] = missing[source]
-            elif source in _NONE and not errors[source][i].any():
+            elif source in _NONE and not error[i].any():
                 reasons[i, j] = _NONE[source]
     return reasons.astype(str)

@@ -3,12 +3,9 @@
 import math
 from dataclasses import dataclass
 
-from ..core.labels import TWINS
+from ..core.labels import OF_SURFACE, TWINS
 from .summary import Quantity, Specimen
 from .words import with_unit
-
-#: Sources of the total of this surface, in the order of the bar; the rest belong to the population.
-OF_SURFACE = ("solver", "numerical")
 
 
 @dataclass(frozen=True)
