@@ -31,7 +31,8 @@ def with_solved_gaps(contact: xr.Dataset, results: Path | str, name: str) -> xr.
     for path in sorted(Path(results).glob(f"contact/{name}/*.nc")):
         with xr.open_dataset(path) as part:
             if "map_gap" in part:
-                return contact.assign(map_gap=contact["map_gap"].copy(data=part["map_gap"]))
+                gaps = part["map_gap"].values  # read while the file is open
+                return contact.assign(map_gap=contact["map_gap"].copy(data=gaps))
     return contact
 
 
@@ -67,7 +68,8 @@ def aperture_at(contact: xr.Dataset, pressure: float | None, name: str) -> xr.Da
         raise InputError(
             f"{name}: no aperture at {pressure:g} MPa; its maps are kept at "
             f"{', '.join(f'{one:.4g}' for one in known)} MPa, so write a pressure between the "
-            "first and the last, or name others under 'loads' of the study"
+            "first and the last, or add it to 'loads' of the study (without the folder 'contact' "
+            "of its results, to 'dilatancy_loads')"
         )
     nearest = int(np.argmin(np.abs(np.log(known / pressure))))
     if abs(known[nearest] - pressure) <= SAME * pressure:

@@ -42,7 +42,8 @@ def write_cards(path: Path | str, folder: Path | str) -> list[str]:
     trees = Trees(path, without=ALL_STAGES.keys() - {*STAGES, "contact"})
     study, made = configuration_of(trees.root)["study"], made_of(trees.root.attrs)
     for name in trees.names:
-        write_card(card_of(Subject.of(trees.of(name)[0], name), study, made), folder)
+        tree = trees.of(name, without={"contact"})[0]
+        write_card(card_of(Subject.of(tree, name), study, made), folder)
         if trees.parts:
             continue
         contact = trees.root[f"contact/{name}"].to_dataset()[["map_gap"]]

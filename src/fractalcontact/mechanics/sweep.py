@@ -194,8 +194,8 @@ def contact_states(
         grid = tuple(-(-n // factor) for n in loading.shape)
         space = loading.half_space(grid, factor)
         touching = np.zeros((1, len(cells), len(forces), *grid), bool)
-        looked_at = _in_first_direction(loading) and factor == min(settings.resolutions)
-        stiff = not lightly or factor == min(settings.resolutions)
+        finest = factor == min(settings.resolutions)
+        looked_at, stiff = finest and _in_first_direction(loading), finest or not lightly
         of_offsets = np.full((len(cells), *grid), np.nan, np.float32) if looked_at else None
         for i, n in enumerate(cells):
             pressures, gaps = [], []

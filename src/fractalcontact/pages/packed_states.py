@@ -223,8 +223,7 @@ def _totals(subject, numbers):
     for one in shown_quantities():
         if not one.budget or (one.stage == "dilatancy" and not slides):
             continue
-        total = one.total(budget)
-        total = total / subject.area if one.key.endswith("_share") else total.copy()
+        total = one.total(budget) / (subject.area if one.key.endswith("_share") else 1.0)
         total.attrs = cf_attrs(numbers.entries[one.key]["units"], "error of all sources")
         numbers.add("error_budget", "total", total, key=f"total/{one.key}")
     return {

@@ -132,7 +132,7 @@ def write_result_page(place: Place) -> list[str]:
     matrix, first = merged(rows), main_load(loads, reported)
     table = _finite(pd.concat(curves) if curves else curves_table("", []))
     _write_files(place, atlas, specimens, table)
-    values = _index_values(place, atlas, specimens, matrix, table, trees.groups) | {
+    values = _index_values(place, atlas, specimens, matrix, table, trees.held) | {
         "reliefs": reliefs,
         "loads": loads,
         "first_load": first,

@@ -1,4 +1,4 @@
-"""Atlas in parts: one file for each specimen, read at its first use."""
+"""Atlas of a study, in one file or in parts, read specimen by specimen."""
 
 import json
 from collections.abc import Collection, Iterator, Mapping
@@ -149,30 +149,38 @@ class Trees:
         Specimens.
     parts : dict of str to str
         Files of the specimens, below the folder of the atlas; empty where it is one file.
-    groups : frozenset of str
+    held : frozenset of str
         Names of the groups of the file, those left out too.
     """
 
     def __init__(self, path: Path | str, without: Collection[str] = ()):
         self.path, self._without = Path(path), without
-        self.root, self.groups = read_named_atlas(path, without)
+        self.root, self.held = read_named_atlas(path, without)
         self.parts: dict[str, str] = json.loads(self.root.attrs.get("parts", "{}"))
         self.names = sorted({*specimens_of(self.root), *self.parts})
 
-    def of(self, name: str) -> tuple[xr.DataTree, frozenset[str], Path]:
-        """Tree with the stages of a specimen, names of the groups of its file, and the file."""
+    def of(
+        self, name: str, without: Collection[str] = ()
+    ) -> tuple[xr.DataTree, frozenset[str], Path]:
+        """Tree with the stages of a specimen, names of the groups of its file, and the file.
+
+        Of an atlas in parts more stages can be left out.
+        """
         if name not in self.parts:
-            return self.root, self.groups, self.path
-        file = self.path.parent / self.parts[name]
-        return *read_named_atlas(file, self._without), file
+            return self.root, self.held, self.path
+        file = self._file(name)
+        return *read_named_atlas(file, {*self._without, *without}), file
 
     def closure(self, name: str) -> Subject:
         """A specimen with its closure curves alone, which say what is reported."""
         if name in self.parts:
-            curves = read_group(self.path.parent / self.parts[name], f"closure/{name}")[0]
+            curves = read_group(self._file(name), f"closure/{name}")[0]
         else:
             curves = self.root[f"closure/{name}"].to_dataset()
         return Subject({"closure": curves}, configuration_of(self.root)["settings"][name], name)
+
+    def _file(self, name):
+        return self.path.parent / self.parts[name]
 
 
 def read_group(path: Path | str, group: str) -> tuple[xr.Dataset, Mapping[str, Any]]:
