@@ -6,7 +6,13 @@ import pytest
 import yaml
 
 from fractalcontact.core.errors import InputError
-from fractalcontact.study.campaign import MAX_WHOLE, drawn_of, in_parts, of_study_alone
+from fractalcontact.study.campaign import (
+    MAX_WHOLE,
+    drawn_of,
+    explored,
+    in_parts,
+    of_study_alone,
+)
 from fractalcontact.study.checks import check_study
 from fractalcontact.study.figure_list import figures_of, study_figures_of
 
@@ -32,6 +38,12 @@ def test_all_figures_are_drawn_of_few_specimens_and_those_asked_for_of_many():
     assert drawn_of({"figures": "all"}, MANY, "flat") == figures_of("flat")
     assert drawn_of({"figures": ["strength", "fig02_relief"]}, MANY, "flat") == ["fig02_relief"]
     assert drawn_of({"figures": "none"}, FEW, "match") == []
+
+
+def test_the_explorer_shows_few_specimens_all_and_of_many_those_named_that_are_there():
+    assert explored({}, ["a", "b"]) == ["a", "b"]
+    assert explored({}, MANY) == []
+    assert explored({"explorer": ["refused", "a"]}, ["a", "b"]) == ["a"]
 
 
 def test_figures_of_a_campaign_read_no_specimen_for_itself():

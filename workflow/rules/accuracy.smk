@@ -32,7 +32,8 @@ class Measurement(NamedTuple):
     inputs: dict = {}
 
 
-#: By the file that is made. Of hard problems a job judges some kinds, another all together.
+#: Measurements, by the file that is made. One job judges some kinds of hard problems, another joins
+#: them.
 STABILITY = {
     f"stability/{part}": Measurement(
         "contactlab.accuracy.stability:stability",
@@ -104,7 +105,7 @@ rule measurement:
     params:
         function=lambda wc: MEASURED[wc.measured].function,
         arguments=lambda wc: MEASURED[wc.measured].arguments,
-        peers=lambda wc: PEERS if "stability" in wc.measured else [],
+        peers=lambda wc: PEERS if wc.measured in STABILITY else [],
         code=code("stage", "contactlab/accuracy", "contactlab/methods"),
     message:
         "accuracy: {wildcards.measured}"

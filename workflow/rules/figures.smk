@@ -76,7 +76,7 @@ for NAME, OPPOSITE, HERE, OTHERS in (
         # long.
         priority: 0 if IN_PARTS else -2
         resources:
-            **asked_for("figures" if drawn_of("match") else "atlas_part"),
+            **asked_for("figures" if drawn_of(OPPOSITE) else "atlas_part"),
         params:
             names=drawn_of(OPPOSITE),
             folder=lambda wildcards: f"{RESULTS}/figures/{wildcards.specimen}",

@@ -4,7 +4,6 @@ Captions and failures stand in the log. Failures are listed in a file too, which
 any, and the job goes on: other figures stay, and the rule `all_drawn` ends the study with the list.
 """
 
-import gc
 from pathlib import Path
 
 from _job import job
@@ -13,9 +12,6 @@ from _stages import read_stages, warn_of_versions
 from fractalcontact.core import netcdf
 from fractalcontact.core.atomic import atomic_write
 from fractalcontact.stages.atlas import join_stages, row_of
-
-# A figure leaves 6 MB of objects that hold each other; the job ends before that counts.
-gc.disable()
 
 with job(snakemake) as log:
     output, params = snakemake.output, snakemake.params

@@ -159,9 +159,9 @@ def draw_study_figures(
 
 def _draw(atlas, subject, folder, names):
     drawn = Drawn()
-    with print_style():
+    with print_style(), garbage_collection_paused():
         for name in names:
-            with garbage_collection_paused(), layouts_remembered():
+            with layouts_remembered():
                 try:
                     drawing = draw_figure(atlas, name, subject)
                     save(drawing, folder, name)

@@ -54,7 +54,8 @@ def drawn_of(config: Mapping[str, Any], specimens: Collection[str], opposite: st
 
 def explored(config: Mapping[str, Any], specimens: Collection[str]) -> list[str]:
     """Specimens of a study whose states the explorer shows: all, or of many those named."""
-    return list(config.get("explorer", [] if in_parts(config, specimens) else specimens))
+    asked = config.get("explorer", [] if in_parts(config, specimens) else specimens)
+    return [name for name in asked if name in specimens]
 
 
 def of_study_alone(names: Collection[str]) -> list[str]:
