@@ -41,13 +41,13 @@ def twin_loadings(
     Raises
     ------
     InputError
-        If what is to have a twin is flat, or a few nodes wide.
+        If the surface is flat, or a side has fewer than eight nodes.
 
     Notes
     -----
     The spectrum and the heights are those of the window that is solved. Waves longer than half of
-    it are extrapolated, and the mean plane of the twin is the scan's: chance in the tilt of the
-    faces is in no twin.
+    it are extrapolated. A twin against a plane has the mean plane of the scan; the twin of a face
+    that slides on its match is level, as a tilt adds a constant to its composite topography.
     """
     specimen, offset = loading.specimen, int(loading.cells[0])
     slid = specimen.attrs["opposite"] == "match"
@@ -74,5 +74,5 @@ def _twin(specimen: xr.Dataset, heights: np.ndarray, *, slid: bool) -> xr.Datase
     if not slid:
         rows, columns = window_slices(specimen)
         twin = twin.isel(y=rows, x=columns)
-        twin = twin.assign_attrs(specimen.attrs, opposite="flat", window_y0=0, window_x0=0)
+        twin = twin.assign_attrs(opposite="flat", window_y0=0, window_x0=0)
     return twin.assign(lower=twin["lower"].copy(data=heights))

@@ -16,7 +16,7 @@ POOLED = 8
 #: Waves of which fewer fit into the surface are extrapolated: the taper and the mean plane leave
 #: little of them.
 FIRST_ORDER = 2
-#: Lowest rings whose slope longer waves follow: an octave. It lies between these.
+#: Rings (an octave) whose slope is continued to longer waves, and the limits of that slope.
 _LOWEST, _SLOPES = RINGS_PER_OCTAVE + 1, (-4.0, 0.0)
 
 
@@ -81,7 +81,7 @@ def plane_spectrum(heights: np.ndarray, spacing: tuple[float, float]) -> PlaneSp
     """
     z = without_mean_plane(np.asarray(heights, float))
     if min(z.shape) < 8 or np.ptp(z) <= 1e-12 * np.abs(heights).max():
-        raise ValueError("no spectrum: expected heights that vary, on eight nodes a side or more")
+        raise ValueError("no spectrum: expected heights that vary, and eight nodes along each side")
     taper = np.outer(*(np.hanning(n + 2)[1:-1] for n in z.shape))
     bins = _Bins(z.shape, spacing)
     seen = bins.means(np.abs(scipy.fft.fft2(z * taper, workers=1)) ** 2)

@@ -1,9 +1,9 @@
-"""Twin surfaces: random ones with the spectrum and, where it matters, heights of a measured one.
+"""Twin surfaces: random surfaces with the spectrum, and if needed the heights, of a measured one.
 
-They are Gaussian, filtered white noise. Where skewness or kurtosis of the measured heights are none
-that a Gaussian surface of this spectrum shows by chance, the twins are translation processes
-(Grigoriu, J. Eng. Mech. 110 (1984) 610): a Gaussian surface each of whose heights is replaced by
-the measured one of its rank, and whose covariance is such that the result has the spectrum.
+They are Gaussian: filtered white noise. If skewness or kurtosis of the measured heights is larger
+than chance gives a Gaussian surface of this spectrum, they are translation processes (Grigoriu,
+J. Eng. Mech. 110 (1984) 610): each height of a Gaussian surface is replaced by the measured one of
+its rank, and the covariance of that surface is chosen so that the result has the spectrum.
 """
 
 from dataclasses import dataclass
@@ -16,7 +16,7 @@ from ..core.mean_plane import without_mean_plane
 from ..surface.synthesis import filtered_noise, grid_side
 from .plane_spectrum import plane_spectrum
 
-#: Standard deviations of a moment of Gaussian heights beyond which it is none of chance.
+#: Standard deviations by which a moment differs from that of Gaussian heights by more than chance.
 _BEYOND_CHANCE = 3.0
 #: Hermite polynomials that a distribution is expanded in, and normal deviates it is sampled at.
 _POLYNOMIALS, _DEVIATES = 16, np.linspace(-6, 6, 2001)
@@ -43,7 +43,7 @@ class TwinSurface:
 
     @property
     def gaussian(self) -> bool:
-        """Whether the twins are Gaussian."""
+        """True if the twins are Gaussian."""
         return not self.heights.size
 
     def drawn(self, seed: int) -> np.ndarray:
@@ -86,11 +86,14 @@ def twin_surface(
         return TwinSurface(shape, density, np.empty(0))
     ordered = np.sort(z)
     normal = scipy.fft.rfft2(_before_translation(correlation, ordered), workers=1).real
-    return TwinSurface(shape, np.maximum(normal, 0), np.sqrt(variance) * ordered)
+    normal = np.maximum(normal, 0)
+    # Without its negative parts the density is that of a variance above one.
+    normal /= scipy.fft.irfft2(normal, s=(side, side), workers=1)[0, 0]
+    return TwinSurface(shape, normal, np.sqrt(variance) * ordered)
 
 
 def _matters(z: np.ndarray, correlation: np.ndarray) -> bool:
-    """True if heights of variance one are none of a Gaussian surface, by two of their moments.
+    """True if skewness or kurtosis of heights of variance one is beyond chance.
 
     Variances of the mean cube and fourth Hermite polynomial of correlated normal deviates: 6 and 24
     times the mean of the correlation to the third and fourth power over all pairs.
