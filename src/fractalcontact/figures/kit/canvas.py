@@ -16,7 +16,7 @@ from matplotlib.font_manager import FontProperties, fontManager, get_font
 from matplotlib.ft2font import RenderMode
 from PIL import Image
 
-#: Of the PNG: a third less time than by default, for files larger by a fiftieth.
+#: Compression of the PNG: a third less time than by default, for files larger by a fiftieth.
 COMPRESSION = 3
 #: Places within a pixel, along either side, at which a letter of a formula may begin.
 _PHASES = 4
@@ -65,8 +65,9 @@ class _Vectors(RendererSVG):
 
     def get_text_width_height_descent(self, s, prop, ismath):
         if ismath:
-            return self._text2path.mathtext_parser.parse(s, _POINTS, prop)[:3]
-        _, _, size = _printed(s, prop, self.image_dpi)
+            size = self._text2path.mathtext_parser.parse(s, self.image_dpi, prop)[:3]
+        else:
+            _, _, size = _printed(s, prop, self.image_dpi)
         return tuple(length * _POINTS / self.image_dpi for length in size)
 
 
@@ -102,7 +103,7 @@ class _Renderer(RendererAgg):
 
 @lru_cache(8192)
 def _letter(face, size: float, dpi: float, index: int, angle: float, right: int, above: int):
-    """Picture of a letter, and its left and upper end, so many phases off its pixel."""
+    """Picture of a letter begun some phases right of and above a pixel, and its left and top."""
     face.set_size(size, dpi)
     cos, sin = np.cos(np.radians(angle)), np.sin(np.radians(angle))
     turn = (2**16 * np.array([[cos, -sin], [sin, cos]])).round().astype(int)
