@@ -161,15 +161,20 @@ def main(arguments):
     options = parser.parse_args(arguments)
     seeds = range(options.first, options.first + options.seeds)
     names = ("set", "by", "range", "n", "mean", "sd", "stated / 1.96 sd", "coverage")
-    options.output.parent.mkdir(parents=True, exist_ok=True)
-    with options.output.open("w", newline="") as file:
+    sys.stdout.write("{:30} {:7} {:13} {:>3} {:>6} {:>6} {:>6} {:>6}\n".format(*names))
+    line = "{:30} {:7} {:13} {:3d} {:6.3f} {:6.3f} {:6.2f} {:6.2f}\n"
+    write_rows(options.output, names, rows(seeds), line)
+
+
+def write_rows(path, names, found, line):
+    """Write rows as CSV, and print each in the form of a line, as it is found."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with path.open("w", newline="") as file:
         table = csv.writer(file)
         table.writerow(names)
-        sys.stdout.write("{:30} {:7} {:13} {:>3} {:>6} {:>6} {:>6} {:>6}\n".format(*names))
-        for row in rows(seeds):
+        for row in found:
             table.writerow(row)
             file.flush()
-            line = "{:30} {:7} {:13} {:3d} {:6.3f} {:6.3f} {:6.2f} {:6.2f}\n"
             sys.stdout.write(line.format(*row))
             sys.stdout.flush()
 

@@ -7,7 +7,6 @@ it, and twins of the window.
 """
 
 import argparse
-import csv
 import functools
 import sys
 from pathlib import Path
@@ -16,7 +15,7 @@ from types import SimpleNamespace
 import numpy as np
 import scipy.ndimage
 import xarray as xr
-from calibration import FIRST_SEED, PRESSURES, RMS, TWINS, calibration
+from calibration import FIRST_SEED, PRESSURES, RMS, TWINS, calibration, write_rows
 
 from fractalcontact.domain.box_dimension import dimension_of_domain
 from fractalcontact.domain.clusters import NEIGHBOURS
@@ -148,17 +147,8 @@ def main(arguments):
     seeds = range(options.first, options.first + options.seeds)
     names = ("joint", "pressure", "quantity", "stated by", "n", "mean", "sd")
     names += ("stated / 1.96 sd", "coverage")
-    options.output.parent.mkdir(parents=True, exist_ok=True)
-    with options.output.open("w", newline="") as file:
-        table = csv.writer(file)
-        table.writerow(names)
-        for row in rows(seeds, options.twins):
-            table.writerow(row)
-            file.flush()
-            sys.stdout.write(
-                "{:18} {:5g} {:22} {:9} {:3d} {:9.4g} {:9.3g} {:6.2f} {:6.2f}\n".format(*row)
-            )
-            sys.stdout.flush()
+    line = "{:18} {:5g} {:22} {:9} {:3d} {:9.4g} {:9.3g} {:6.2f} {:6.2f}\n"
+    write_rows(options.output, names, rows(seeds, options.twins), line)
 
 
 if __name__ == "__main__":

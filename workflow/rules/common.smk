@@ -207,7 +207,7 @@ def kind_of(some, others):
 
 #: Members of the ensembles that the study wants: twins of scans, realisations of embedded specimens.
 TWINS = {name: SETTINGS[name].twins for name in SPECIMENS if SETTINGS[name].twins}
-REALISATIONS = TWINS | {
+ENSEMBLES = TWINS | {
     name: recipe["realisations"]
     for name, recipe in config.get("embedded", {}).items()
     if name in SETTINGS and "realisations" in recipe
@@ -216,7 +216,7 @@ REALISATIONS = TWINS | {
 MEMBERS = {
     SPECIMEN: dict.fromkeys(SPECIMENS),
     JOINT: dict.fromkeys(SLIDING),
-    ENSEMBLE: REALISATIONS,
+    ENSEMBLE: ENSEMBLES,
     TESTED: dict.fromkeys(name for name in SPECIMENS if SETTINGS[name].measured),
 }
 

@@ -59,7 +59,7 @@ def contact_parts(wildcards):
 
 
 def contact_and_twins(wildcards):
-    """The same with the ensemble of a scan, whose spread is the error of its population."""
+    """Contact parts of a specimen, and of a scan its twins, whose spread is an error of them."""
     twins = ensemble_of(wildcards) if wildcards.specimen in TWINS else {}
     return contact_parts(wildcards) | twins
 
@@ -78,19 +78,18 @@ def ensemble_of(wildcards):
 class StageJob(NamedTuple):
     """Job that calls the function of stages of a specimen, and what it has beside their entries."""
 
-    #: One of its stages, and what the terminal says of it.
-    stage: str
-    words: str
+    stage: str  # one of those it makes
+    words: str  # in the terminal
     resources: dict
-    #: Pattern of the specimens that have it, further inputs and parameters, stages that it makes.
-    specimens: str = "[^/]+"
-    inputs: Callable = lambda wildcards: {}
-    extra: dict = {}
-    grains: Collection = GRAINS
+    specimens: str = "[^/]+"  # pattern of those that have it
+    inputs: Callable = lambda wildcards: {}  # beside the stages that it needs
+    extra: dict = {}  # parameters
+    grains: Collection = GRAINS  # of the stages that it makes
     priority: int = 0
 
 
-#: By the name of their rule.
+#: Jobs, by the name of their rule, which is not that of a stage: "windows" makes window_states and
+#: size_test, "strength" makes windows, strength and the statements.
 STAGE_JOBS = {
     # Closure curves and laws of area; box counts, dimension and clusters of every contact domain;
     # and the error of what is published, by source, for which some states are solved again on finer
@@ -116,11 +115,11 @@ STAGE_JOBS = {
     "ensemble": StageJob(
         "ensemble",
         "its ensemble",
-        asked_for("ensemble", states=lambda wc: REALISATIONS[wc.specimen]),
-        specimens=alternation(REALISATIONS),
+        asked_for("ensemble", states=lambda wc: ENSEMBLES[wc.specimen]),
+        specimens=alternation(ENSEMBLES),
         extra={
             "recipe": lambda wc: None if wc.specimen in TWINS else recipe_named(known(wc)),
-            "realisations": lambda wc: REALISATIONS[wc.specimen],
+            "realisations": lambda wc: ENSEMBLES[wc.specimen],
         },
         priority=1,
     ),

@@ -55,10 +55,8 @@ class Exponent(Estimate):
         """Difference from an independent one, with the joint interval."""
         value = self.value - other.value
         half = float(np.hypot(self.high - self.value, other.high - other.value))
-        error, usual = (
-            float(np.hypot(*(getattr(one, name) for one in (self, other))))
-            for name in ("error", "half_width")
-        )
+        error = float(np.hypot(self.error, other.error))
+        usual = float(np.hypot(self.half_width, other.half_width))
         return Exponent(value, value - half, value + half, error=error, half_width=usual)
 
     def columns(self, name: str, unit: str = "") -> dict[str, Any]:

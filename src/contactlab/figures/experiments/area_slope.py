@@ -99,5 +99,8 @@ def _counts(slopes):
     below, above = int((corrected < low).sum()), int((corrected > high).sum())
     inside = corrected.size - below - above
     counts = {"below": below, "within": inside, "above": above}
-    lie = [f"{n} {words}" for words, n in counts.items() if n]
-    return found | {"total": corrected.size, "lie": lie, "computed": (low, high)}
+    lie = [(n, words) for words, n in counts.items() if n]
+    where = f"All {lie[0][0]} values lie {lie[0][1]}"
+    if len(lie) > 1:
+        where = f"Of {corrected.size} values {', '.join(f'{n} {words}' for n, words in lie)} lie"
+    return found | {"where": where, "computed": (low, high)}
