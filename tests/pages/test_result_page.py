@@ -516,6 +516,7 @@ def test_synthetic_joints_stand_behind_scanned_ones_under_their_own_heading(resu
     [
         (["does not hold"], "does not hold for the specimen"),
         (["holds"] * 3, "holds for all 3 specimens"),
+        (["does not hold"] * 3, "holds for none of 3 specimens"),
         (
             ["undetermined", "does not hold", "does not hold", "holds"],
             "holds for 1, does not hold for 2 and is undetermined for 1 of 4 specimens",

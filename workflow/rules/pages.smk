@@ -1,4 +1,4 @@
-# The explorer, every contact state of the study on one page; and the result page: an index, a page a
+# The explorer, contact states of all specimens or of those named on one page; and the result page: an index, a page a
 # specimen and tables beside them.
 from fractalcontact.pages import files as page_files
 
@@ -58,7 +58,7 @@ rule cards:
 
 
 CARDS = list(rules.cards.output) if SPECIMENS else []
-# Measured contact maps alone have no states to explore.
+# None of measured contact maps alone, nor of many specimens of which the study names none.
 EXPLORER = list(rules.explorer.output) if EXPLORED else []
 RESULT_PAGE = [
     *(f"{RESULTS}/{name}" for name in page_files.FILES),

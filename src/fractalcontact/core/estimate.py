@@ -214,13 +214,13 @@ class Estimate:
 
 @dataclass(frozen=True)
 class Judged(Estimate):
-    """An estimate that something else than its interval determines."""
+    """Estimate whose stage, not its interval, says if it is determined."""
 
     says: bool = False
 
     @property
     def determined(self) -> bool:
-        """As it is said."""
+        """True if the stage says so."""
         return self.says
 
 

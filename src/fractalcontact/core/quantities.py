@@ -75,7 +75,7 @@ class Shown:
         return Value(found, "" if unit == "1" else unit, has_interval)
 
     def total(self, budget: xr.Dataset) -> xr.DataArray:
-        """Total error for this surface, of a quantity that the error budget has one of."""
+        """Total error for this surface; only of quantities with ``budget``."""
         if (own := f"{self.budget}_total") in budget:
             return budget[own]
         return budget["total"].sel(quantity=self.budget, drop=True)

@@ -78,7 +78,7 @@ class Subject:
 
     @cached_property
     def members(self) -> str:
-        """What its ensemble holds: realisations of it or twins of the scan; empty without one."""
+        """Kind of the members of its ensemble, `REALISATIONS` or `TWINS`; empty without one."""
         if "ensemble" not in self.stages:
             return ""
         return str(self["ensemble"].attrs.get("members", REALISATIONS))

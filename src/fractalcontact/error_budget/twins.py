@@ -1,4 +1,4 @@
-"""Spread over twins of a scan, in place of what its one window is thought to scatter by."""
+"""Spread over twins of a scan: the sampling error of its one window."""
 
 import numpy as np
 import xarray as xr

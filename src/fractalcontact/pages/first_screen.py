@@ -1,4 +1,4 @@
-"""First screen of a result page: one block of five numbers for each joint, from its card."""
+"""First screen of a result page: one block of first numbers for each joint, from its card."""
 
 import json
 import math

@@ -20,7 +20,7 @@ MARKS = (
     "the change of the numbers is the error of the scans"
 )
 LIGHTER = "lighter loads, under which less of the window touches"
-STEEP = "stating the rms slope beside every number, as no scan makes the surface less steep"
+STEEP = "a laboratory test laid over the computed curve, as no scan makes the surface less steep"
 CRUSH = "a 'hardness' in the material, such as the joint wall strength, at which contacts crush"
 STATE = "'joint_wall_strength' of the rock in its material, at which contacts then crush"
 

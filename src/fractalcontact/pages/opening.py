@@ -259,4 +259,6 @@ def _size_effect(rows: Sequence[Row]) -> Markup | None:
             else None
         )
     verdicts = _counted(asked, _VERDICTS)
+    if len(asked) > 1 and set(asked) == {FAILS}:  # not "does not hold for all": for some it might
+        verdicts = f"holds for none of {len(asked)} specimens"
     return symbols(f"The size effect of eq. 6 {verdicts} (windows within one joint).")

@@ -100,8 +100,9 @@ def dimension_rises_by_boxes(joint: Joint, evidence: Evidence) -> Finding:
     if found.verdict not in (HOLDS, PARTLY):
         return found
     faster = beyond_margin(trend.departure, all_claims()[name].margin, rising=True)
-    less = f"or {trend.departure:+z.2f} minus that of as many random nodes"
-    less = less if trend.departure.known else "but random nodes are near 2"
+    less = "but random nodes are near 2"
+    if trend.departure.known:
+        less = f"{trend.departure:+z.2f} after subtraction of as many random nodes"
     return found._replace(
         verdict=found.verdict if faster == HOLDS else PARTLY,
         numbers=f"{found.numbers}, {less}",

@@ -14,7 +14,7 @@ from ..core.settings import TEST_COLUMNS, MeasuredTest
 from ..core.units import length_factor, quantity
 from .scan_files import refuse_outside_link
 
-#: What the sidecar must say of each kind of test, and what it may.
+#: Keys that the sidecar must state of each kind of test, and keys that it may.
 _NEEDS = {
     "closure": ("file", "gauge", "seat", "branch", "cycle"),
     "flow": ("file", "way", "branch", "cycle"),

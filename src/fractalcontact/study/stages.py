@@ -81,7 +81,7 @@ _TABLE = (
     ),
     Stage(
         "ensemble",
-        "realisations of an embedded specimen, their mean and spread",
+        "realisations of an embedded specimen or twins of a scan, their mean and spread",
         ENSEMBLE,
         "fractalcontact.ensemble.realisations:ensemble",
         ("specimens", "joints"),
