@@ -210,15 +210,19 @@ def test_stiffness_at_a_pressure_has_the_relative_error_of_the_states_beside_it(
         {"reference_pressure": [1.0, 5.0, 10.0], "nominal_pressure": ("normal_force", pressure)}
         | loads,
     )
-    errors = {"separation": [0.1, 0.03, 0.04, 0.0], "stiffness": [np.nan] * 4}
+    errors = {
+        "separation": [0.1, 0.03, 0.04, 0.0],
+        "area_corrected": [np.nan, 0.4, 0.8, 1.2],
+        "stiffness": [np.nan] * 4,
+    }
     coords = {"quantity": list(errors)} | loads
     dims = ("quantity", "normal_force")
     both = {
-        "relative_total": (dims, [relative, relative]),
-        "relative_total_of_population": (dims, [2 * relative, 2 * relative]),
+        "relative_total": (dims, [relative] * 3),
+        "relative_total_of_population": (dims, [2 * relative] * 3),
     }
     budget = xr.Dataset({"total": (dims, list(errors.values())), **both}, coords)
-    found = with_derived(budget, SimpleNamespace(curve=curve))
+    found = with_derived(budget, SimpleNamespace(curve=curve, loading=SimpleNamespace(area=4.0)))
     # 5 MPa lies in the middle of 4 and 6.25, as the logarithm has it.
     expected = [np.nan, 50 * np.sqrt(0.1 * 0.2), 80 * 0.2]
     np.testing.assert_allclose(found["reference_stiffness_total"], expected)
@@ -226,6 +230,7 @@ def test_stiffness_at_a_pressure_has_the_relative_error_of_the_states_beside_it(
     np.testing.assert_allclose(of_population, 2 * np.array(expected))
     np.testing.assert_allclose(found["seated_closure_total"], [np.nan, 0.0, 0.05, 0.03])
     np.testing.assert_allclose(found["seated_closure_relative"], [np.nan, np.nan, 0.5, 0.15])
+    np.testing.assert_allclose(found["contact_fraction_total"], [np.nan, 0.1, 0.2, 0.3])
 
 
 def test_resolution_is_the_change_from_twice_the_spacing_and_in_no_total(one):
@@ -246,18 +251,32 @@ def test_the_model_is_what_three_times_the_hardness_changes(one):
     composite = loading.composite(int(loading.cells[0]))
     space, forces = loading.half_space(composite.shape), curves["normal_force"].values
     closure = budget["error"].sel(source="model", quantity="closure")
-    for place in (1, 4):
+    at_seat = []
+    assert budget["hardest_hardness"] == 240
+    seat = int(np.flatnonzero(curves.sel(resolution=1).isel(offset=1)["seated_closure"][0] == 0)[0])
+    for place in (seat, 4):
         both = [
-            solve_contact(composite, space, force=forces[place], hardness=hardness).closure
+            solve_contact(composite, space, force=forces[place], hardness=hardness)
             for hardness in (80.0, 240.0)
         ]
-        assert closure[place] == pytest.approx(abs(both[1] - both[0]), rel=1e-3)
+        closed = [state.closure for state in both]
+        assert closure[place] == pytest.approx(abs(closed[1] - closed[0]), rel=1e-3)
+        gap = budget["mean_gap_hardest"][place]
+        assert gap == pytest.approx(np.maximum(both[1].gap, 0).mean(), rel=1e-3)
+        at_seat.append(closed)
+    # Since the seat the faces come together by the difference of the closures.
+    harder, own = (at_seat[1][i] - at_seat[0][i] for i in (1, 0))
+    seated = budget["seated_closure_hardest"] - curves["seated_closure"].sel(
+        direction="E", resolution=1
+    ).isel(offset=1)
+    assert float(seated[4]) == pytest.approx(harder - own, rel=1e-3)
     assert (closure > 0).all()
     assert reason_of(budget, "model") == ""
     squares = sum(budget["error"].sel(source=source) ** 2 for source in OF_SURFACE)
     np.testing.assert_allclose(budget["total"], np.sqrt(squares))
     _, _, elastic, _ = one
     assert np.isnan(elastic["error"].sel(source="model")).all()
+    assert np.isnan(elastic["hardest"]).all()
     assert "elastic contact" in reason_of(elastic, "model")
 
 

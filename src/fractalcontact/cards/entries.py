@@ -1,7 +1,7 @@
 """Entries of a card, read from the atlas by ``entries.yaml`` without any computation."""
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
@@ -14,6 +14,7 @@ import yaml
 from ..core.estimate import DIMENSION, SIZE, Estimate, names_of
 from ..core.settings import TEST_COLUMNS
 from ..core.subject import Subject
+from ..pages.material import opposite_words
 
 _FILE = Path(__file__).with_name("entries.yaml")
 #: What stands for a dimension beside each row of a curve: its name there, its coordinate, its unit.
@@ -30,6 +31,39 @@ _BESIDE = {
 }
 #: Significant digits of the numbers of a card.
 _DIGITS = 6
+_NOT_SOLVED = "not solved under this load"
+
+
+def _unstated(key: str, words: str) -> Callable[[Subject], str]:
+    """Reason for what needs a number of the material; empty where it is stated."""
+
+    def reason(subject: Subject) -> str:
+        stated = subject.settings["material"].get(key)
+        known = stated is not None and math.isfinite(stated)
+        return "" if known else f"no {words} is stated"
+
+    return reason
+
+
+def _not_sliding(subject: Subject) -> str:
+    """Reason for what needs faces that slide."""
+    if "strength" in subject.stages:
+        return ""
+    return f"nothing slides: {opposite_words(str(subject['specimens'].attrs['opposite']))}"
+
+
+def _no_jrc(subject: Subject) -> str:
+    known = np.isfinite(subject.states("strength")["jrc_used"].item())
+    return "" if known else "no JRC at the step of its law"
+
+
+#: What an entry may need: the reason where it is absent, or nothing.
+NEEDS: Mapping[str, Callable[[Subject], str]] = {
+    "sliding": _not_sliding,
+    "basic_friction_angle": _unstated("basic_friction_angle", "basic friction angle"),
+    "joint_wall_strength": _unstated("joint_wall_strength", "joint wall strength"),
+    "jrc": _no_jrc,
+}
 
 
 @dataclass(frozen=True)
@@ -52,12 +86,16 @@ class Entry:
     all: bool = False
     error: str = ""
     population: str = ""
+    hardest: str = ""
+    within: tuple[float, float] = (0.0, math.inf)
     interval: str = ""
     range: tuple[str, ...] = ()
     flag: str = ""
     note: str = ""
     reason: str = ""
     beside: tuple[str, ...] = ()
+    needs: tuple[str, ...] = ()
+    absent: str = ""
     model: str = "stated"
     law: str = ""
     dimension: bool = False
@@ -93,7 +131,8 @@ def read_entry(entry: Entry, subject: Subject, model: str) -> dict[str, Any]:
         Of ``card.schema.json``: a number where no dimension is left, else a curve with ``values``.
     """
     found: dict[str, Any] = {"title": entry.title, "section": entry.section}
-    rows = list(_rows(entry, subject))
+    without = next(filter(None, (NEEDS[one](subject) for one in entry.needs)), "")
+    rows = [] if without else list(_rows(entry, subject))
     unit = entry.unit or (_units(entry, subject) if rows else "")
     found |= {"unit": unit or "1", "model": model if entry.model == "contact" else entry.model}
     if entry.law:
@@ -104,8 +143,10 @@ def read_entry(entry: Entry, subject: Subject, model: str) -> dict[str, Any]:
         found["range"] = over
     if not entry.print:
         found["print"] = False
+    if without:
+        return found | {"missing": without}
     if not rows:
-        return found | {"missing": entry.missing}
+        return found | {"missing": entry.absent or entry.missing}
     if len(rows) == 1 and not rows[0][0]:
         return found | rows[0][1]
     units = {name: unit for name, _, unit in _BESIDE.values()} | {"step": "mm", "fit_step": "mm"}
@@ -180,16 +221,22 @@ def _rows(entry: Entry, subject: Subject) -> Iterator[tuple[dict[str, Any], dict
         return
     data, array = found[0], found[0][variable]
     ends = _ends(entry, subject, data, array)
-    flags, reasons, population = (
-        _values(entry, subject, key) for key in (entry.flag, entry.reason, entry.population)
+    flags, reasons, population, hardest = (
+        _values(entry, subject, key)
+        for key in (entry.flag, entry.reason, entry.population, entry.hardest)
     )
+    solved = None
+    if array.dims == ("normal_force",):
+        solved = subject.states("closure")["solved"]
     for place in np.ndindex(array.shape):
         at = dict(zip(array.dims, place, strict=True))
-        yield (
-            _beside(entry, data, at),
-            _number(entry, [end[place] for end in ends], _at(flags, at), _at(reasons, at))
-            | _of_population(_at(population, at)),
-        )
+        row = _number(entry, [end[place] for end in ends], _at(flags, at), _at(reasons, at))
+        if "missing" in row and solved is not None and not _at(solved, at):
+            row = {"missing": _NOT_SOLVED}
+        elif "value" in row:
+            row |= _known("of_its_population", _at(population, at))
+            row |= _known("hardest", _at(hardest, at))
+        yield _beside(entry, data, at), row
 
 
 def _ends(entry, subject, data, array):
@@ -203,7 +250,7 @@ def _ends(entry, subject, data, array):
         nothing = np.full(value.shape, np.nan)
         return value, nothing, nothing
     half = error.transpose(*array.dims).values
-    return value, value - half, value + half
+    return Estimate.about(value, half, *entry.within).ends
 
 
 def _at(array, at):
@@ -217,7 +264,7 @@ def _number(entry, ends, flag, reason):
     estimate = Estimate(*ends, reason=why, scale=DIMENSION if entry.dimension else SIZE)
     valid = flag is None or bool(np.nan_to_num(flag.item()))
     if not valid and not entry.range:  # what is no result, and no fit, is not printed as one
-        return {"missing": (estimate.known and (why or entry.note)) or entry.missing}
+        return {"missing": why or (estimate.known and entry.note) or entry.missing}
     found = number(estimate, entry.missing)
     if estimate.known and entry.range:  # of a fit
         found["determined"] = valid and bool(estimate.determined)
@@ -225,10 +272,10 @@ def _number(entry, ends, flag, reason):
     return found
 
 
-def _of_population(error):
-    """Half-width of a number as one of its kind, where it is known."""
-    known = error is not None and math.isfinite(error.item())
-    return {"of_its_population": rounded(error.item())} if known else {}
+def _known(key, found):
+    """A further number of a row under this key, where it is known."""
+    known = found is not None and math.isfinite(found.item())
+    return {key: rounded(found.item())} if known else {}
 
 
 def _beside(entry, data, at):

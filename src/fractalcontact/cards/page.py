@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from ..pages.captions import symbols
-from ..pages.first_screen import facts_of, row_at, window_of
+from ..pages.first_screen import STRENGTH_RULES, facts_of, hardnesses_of, row_at, window_of
 from ..pages.words import MISSING, measured, percent, short, with_unit
 
 #: Tables of curves over pressure, by title: the sections that share one.
@@ -28,6 +28,8 @@ _HEADS = {
     "barton_scaled_strength": "τ by Barton and Bandis",
 }
 _UNITS = {"1": "%", "degree": "°"}
+#: Heads of the rules for the strength, and of their range.
+_RULES, _RULES_HEAD = {_HEADS[key] for key in STRENGTH_RULES}, "peak τ over these rules"
 
 
 def page_of(card: Mapping[str, Any]) -> dict[str, Any]:
@@ -52,6 +54,7 @@ def page_of(card: Mapping[str, Any]) -> dict[str, Any]:
         "jrc": jrc_table(entries["jrc"], entries["jrc_by_fit"]),
         # An elastic joint has no hardness to state.
         "missing": missing_of({key: one for key, one in printed.items() if key != "hardness"}),
+        "hardest": hardnesses_of(card)[1],
         "errors": errors_of(card),
         "number": lambda value: MISSING if value is None else short(value, 2),
         "words": in_words,
@@ -71,8 +74,19 @@ def _tables(printed):
             if one["section"] in sections and has_values(one)
         }
         heads = [(head, _UNITS.get(one["unit"], one["unit"])) for head, one in curves.items()]
+        rows = over_pressure(list(curves.values()))
+        rules = [i for i, head in enumerate(curves) if head in _RULES]
+        if len(rules) > 1:
+            heads.insert(0, (_RULES_HEAD, "MPa"))
+            rows = [(at, [_over_rules([cells[i] for i in rules]), *cells]) for at, cells in rows]
         if curves:
-            yield title, heads, over_pressure(list(curves.values()))
+            yield title, heads, rows
+
+
+def _over_rules(cells):
+    """Range of the strength over its rules: none of their errors is that of the strength."""
+    values = [one["value"] for one in cells if "value" in one]
+    return {"unit": "MPa"} | ({"value": min(values), "to": max(values)} if values else {})
 
 
 def tests_of(entries: Mapping[str, Any]) -> list[tuple[str, str, Mapping[str, Any]]]:
@@ -153,6 +167,8 @@ def in_words(number: Mapping[str, Any]) -> str:
     """A number of a table, fractions in per cent; a dash where there is none."""
     if "value" not in number:
         return MISSING
+    if "to" in number:
+        return " to ".join(dict.fromkeys((short(number["value"]), short(number["to"]))))
     value = number["value"]
     # As many digits as its interval has, if there is one: it would seem to lie outside.
     digits = 2 if number.get("low") is None else 3

@@ -97,6 +97,26 @@ class Estimate:
         return cls(value, low, high, reason=reason, scale=scale)
 
     @classmethod
+    def about(
+        cls, value: Any, half: Any, least: float = -np.inf, most: float = np.inf, **of: Any
+    ) -> Self:
+        """Estimate from a half-width, its ends kept within what the quantity can be.
+
+        Parameters
+        ----------
+        value, half : array_like
+            Of the same shape; a half-width that is NaN gives no interval.
+        least, most : float, optional
+            Bounds of the quantity, such as 0 of a gap.
+        **of
+            Further fields.
+        """
+        value, half = np.asarray(value, float)[()], np.asarray(half, float)[()]
+        low, high = np.maximum(value - half, least), np.minimum(value + half, most)
+        # A value beyond a bound by rounding still lies in its interval.
+        return cls(value, np.minimum(low, value), np.maximum(high, value), **of)
+
+    @classmethod
     def stack(cls, estimates: Iterable["Estimate"], shape: Sequence[int] = (-1,)) -> "Estimate":
         """Estimates as one of arrays, in C order over ``shape``."""
         each = list(estimates)

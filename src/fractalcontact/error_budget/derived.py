@@ -1,4 +1,4 @@
-"""Errors of quantities derived from the budget: closure from the seat, stated stiffness."""
+"""Errors derived from the budget: of closure from the seat, contact fraction, stated stiffness."""
 
 import numpy as np
 import xarray as xr
@@ -15,6 +15,11 @@ _TABLE = {
         "error of the closure from the seat as a property of this surface, half-width at 95 %",
     ),
     "seated_closure_relative": (("normal_force",), "1", "the same over the closure from the seat"),
+    "contact_fraction_total": (
+        ("normal_force",),
+        "1",
+        "error of the corrected A_r/A_0 as a property of this surface, half-width at 95 %",
+    ),
     "reference_stiffness_total": (
         _AT,
         "MPa/mm",
@@ -64,6 +69,9 @@ def with_derived(budget: xr.Dataset, curve: LoadCurve) -> xr.Dataset:
     ]
     of_seated = np.where(np.isfinite(seated), of_both, np.nan)
     relative = of_seated / np.where(seated > 0, seated, np.nan)
+    fraction = budget["total"].sel(quantity="area_corrected").values / curve.loading.area
     coords = {"reference_pressure": states["reference_pressure"]}
-    table = labelled(_TABLE, dict(zip(_TABLE, [of_seated, relative, *totals], strict=True)))
+    table = labelled(
+        _TABLE, dict(zip(_TABLE, [of_seated, relative, fraction, *totals], strict=True))
+    )
     return budget.assign_coords(coords).assign(table)

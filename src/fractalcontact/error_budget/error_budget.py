@@ -18,6 +18,7 @@ from ..mechanics.loading import JointLoading
 from ..mechanics.subgrid import state_quantities
 from ..mechanics.sweep import load_steps
 from .derived import with_derived
+from .hardness import of_the_hardest
 from .other_windows import MIN_EFFECTIVE, TOO_SMALL, other_composites, window_spread
 from .refinement import (
     ABSOLUTE,
@@ -38,9 +39,6 @@ OF_POPULATION = ("counting", "window", TWINS, "registration")
 #: twins of the scan were solved, neither is.
 _OF_WINDOW = ("counting", "window")
 SOURCES = (*OF_SURFACE, *OF_POPULATION, "resolution", "model", "estimator")
-
-#: Hardness of rough contacts over the joint wall strength: between 1 and this (Tabor's 3).
-HARDEST = 3.0
 
 #: Numerical errors of states that are not refined, in errors interpolated between those that are:
 #: chance differs from state to state. Then 95 to 100 % of 100 other joints were covered, else
@@ -163,6 +161,7 @@ def error_budget(
     found = refine(curve, loading.settings, None if accuracy is None else accuracy["closure"])
     values = curve.values()
     windows, n_windows, effective = _window_spread(curve)
+    hardest = of_the_hardest(curve)
     errors = {
         "solver": _solver(curve),
         "numerical": over_loads(curve.forces, found.error, _scale(curve), WIDENED),
@@ -170,7 +169,7 @@ def error_budget(
         "window": over_loads(curve.forces, windows, _scale(curve)),
         "registration": _registration(registration_spread, len(curve.forces)),
         "resolution": _resolution(loading, curves, domains, curve),
-        "model": _model(curve),
+        "model": np.abs(hardest["hardest"][1] - values),
         "secant": _secant(curve),
         "estimator": _estimator(curve),
     }
@@ -180,6 +179,7 @@ def error_budget(
     errors = {source: errors[source] for source in SOURCES if source in errors}
     reasons = _reasons(curve, errors, found, effective, registration_spread is not None)
     budget = _budget(curve, values, errors, found, reasons, (n_windows, effective))
+    budget = with_derived(budget.assign(hardest), curve)
     if twins is not None:
         words = cf_attrs("1", "position of the scan relative to the 95 % band of its twins")
         budget["within_twins"] = (_ALL, within, words)
@@ -237,7 +237,7 @@ def _budget(curve, values, errors, found, reasons, windows) -> xr.Dataset:
     budget = labelled_dataset(_TABLE, table, coords, attrs)
     for name, words in (("quantity", "published quantity"), ("source", "source of error")):
         budget[name].attrs = cf_attrs("1", words)
-    return with_derived(budget, curve)
+    return budget
 
 
 def _largest(errors: Mapping[str, np.ndarray], sources: Sequence[str]) -> np.ndarray:
@@ -394,22 +394,6 @@ def _resolution(loading, curves, domains, curve: LoadCurve) -> np.ndarray:
         return np.full((len(BUDGET_QUANTITIES), len(curve.forces)), np.nan)
     coarser = map_curve(loading, curves, domains, coarse)
     return np.abs(coarser.values() - curve.values())
-
-
-def _model(curve: LoadCurve) -> np.ndarray:
-    """Change from the hardness to the largest possible one; none where nothing yields."""
-    changes = np.full((len(BUDGET_QUANTITIES), len(curve.forces)), np.nan)
-    solving = curve.loading.solving
-    if not np.isfinite(solving["hardness"]):
-        return changes
-    harder = {**solving, "hardness": HARDEST * solving["hardness"]}
-    where, highest = f"{curve.where}, hardness x {HARDEST:g}", float(curve.composite.max())
-    states = load_steps(curve.composite, curve.space, curve.forces, harder, where)
-    for place, state in enumerate(states):
-        numbers = state_quantities(state, highest, curve.reference)
-        dimension = domain_dimension(state, curve.loading.settings.box_range)
-        changes[:, place] = [*numbers.values(), dimension]
-    return np.abs(changes - curve.values())
 
 
 def _reasons(curve, errors, found: Refinement, effective, registered: bool) -> np.ndarray:

@@ -253,6 +253,7 @@ _QUANTITIES = {
     ),
     "truncated_low": ("1", "intervals whose angle was truncated at 0"),
     "shear_strength_valid": ("1", "the shear strength is a result"),
+    "shear_strength_reason": ("1", "why the shear strength is no result"),
     "peak_strength_valid": ("1", "the peak strength is a result"),
     "peak_strength_reason": ("1", "why the peak strength is no result"),
     "peak_strength": ("MPa", "largest shear strength over the offsets"),
@@ -365,6 +366,7 @@ def judged_strengths(values: Mapping[str, ArrayLike], full: np.ndarray) -> dict[
     cut = (truncated & at_peak).any(axis=0)
     return {
         "shear_strength_valid": ~truncated & ~full,
+        "shear_strength_reason": np.where(full, FULL, np.where(truncated, TRUNCATED, "")),
         "peak_strength_valid": ~cut & ~full,
         "peak_strength_reason": np.where(full, FULL, np.where(cut, TRUNCATED, "")),
         "peak_over_barton": peaks / barton,

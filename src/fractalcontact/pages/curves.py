@@ -72,7 +72,7 @@ def _quantities(one):
     seated, error = closure["seated_closure"].values, budget["seated_closure_total"].values
     # At the seat it is 0 by definition.
     above = np.where(seated > 0, seated, np.nan)
-    yield "closure from the seat", "mm", Estimate(above, above - error, above + error)
+    yield "closure from the seat", "mm", Estimate.about(above, error, 0.0)
     share = closure["area_corrected_share"].values
     of_values = (
         ("closure from first touch", "mm", closure["interface_closure"].values, "closure"),
@@ -81,7 +81,8 @@ def _quantities(one):
     )
     for words, unit, values, name in of_values:
         error = abs(values) * budget["relative_total"].sel(quantity=name).values
-        yield words, unit, Estimate(values, values - error, values + error)
+        most = 1.0 if name == "area_corrected" else np.inf
+        yield words, unit, Estimate.about(values, error, 0.0, most)
     for words, stage in (("by box counting", "domains"), ("by areas", "scaling")):
         found = Estimate.read(one.states(stage), "delta_sigma", scale=DIMENSION)
         yield f"Delta_sigma {words}", "1", found

@@ -12,17 +12,28 @@ from .files import CARD
 from .words import measured, short, with_unit
 
 #: Intervals as cards name them, in words.
-_ALONE = {"solver": " solver error alone", "all errors of this surface": " this surface"}
+_ALONE = {
+    "solver": " solver error alone",
+    "all errors of this surface": " this surface",
+    "slopes over twice the spacing": " by the grid",
+}
+#: Rules for the peak shear strength, by their entries, in words.
+STRENGTH_RULES = {
+    "peak_strength": "by dilatancy",
+    "contact_strength": "from the contact",
+    "barton_strength": "by Barton",
+    "barton_scaled_strength": "by Barton and Bandis",
+}
 #: Where a card has the half-width of a number for other surfaces of its kind.
 _KIND = "of_its_population"
 
 
 class Fact(NamedTuple):
-    """Number of a block: its title, its value in words, and its interval or why it is missing."""
+    """Number of a block: its title, its value in words, and what stands below it, a line each."""
 
     title: str
     words: str
-    note: str
+    notes: list[str]
 
 
 @dataclass(frozen=True)
@@ -99,11 +110,11 @@ def facts_of(card: Mapping[str, Any]) -> list[Fact]:
     """First numbers of a joint, all at the reference pressure of its study."""
     pressure = reference_of(card)
     at = f"at {short(pressure)} MPa"
-    stiffness, seated, gap, hydraulic, contact, strength, barton = (
+    stiffness, seated, gap, hydraulic, contact = (
         row_at(card["entries"][key], pressure)
         for key in (
-            *("interface_stiffness", "seated_closure", "mean_gap", "hydraulic_aperture"),
-            *("contact_fraction", "peak_strength", "barton_strength"),
+            *("interface_stiffness", "seated_closure", "mean_gap"),
+            *("hydraulic_aperture", "contact_fraction"),
         )
     )
     since = f"from {with_unit(card['geometry']['seat'].get('value', math.nan), 'MPa')} on"
@@ -111,16 +122,22 @@ def facts_of(card: Mapping[str, Any]) -> list[Fact]:
         seated, since = row_at(card["entries"]["interface_closure"], pressure), "from first touch"
     flowing = f"hydraulic {short(hydraulic['value'])} mm" if "value" in hydraulic else ""
     facts = [
-        _fact(f"normal stiffness {at}", stiffness, "MPa/mm"),
-        _fact(f"closure {at}", seated, "mm", since),
-        _fact(f"mean gap {at}", gap, "mm", flowing),
-        _fact(f"contact {at}", contact, "%"),
+        _fact(card, f"normal stiffness {at}", stiffness, "MPa/mm"),
+        _fact(card, f"closure {at}", seated, "mm", since),
+        _fact(card, f"mean gap {at}", gap, "mm", flowing),
+        _fact(card, f"contact {at}", contact, "%"),
     ]
     if card["direction"] != "none":
-        beside = f"Barton {with_unit(barton['value'], 'MPa')}" if "value" in barton else ""
-        facts.append(_fact("JRC", *_jrc(card)))
-        facts.append(_fact(f"peak shear strength {at}", strength, "MPa", beside))
+        facts.append(_fact(card, "JRC", *_jrc(card)))
+        facts.append(_strength(card, f"peak shear strength {at}", pressure))
     return facts
+
+
+def hardnesses_of(card: Mapping[str, Any]) -> tuple[float, float]:
+    """Range of the hardness of single contacts, MPa; NaN where contacts are elastic."""
+    ends = (card["entries"].get(key, {}) for key in ("hardness", "hardest_hardness"))
+    low, high = (one.get("value", math.nan) for one in ends)
+    return low, high
 
 
 def reference_of(card: Mapping[str, Any]) -> float:
@@ -150,23 +167,58 @@ def _jrc(card):
     for row in card["entries"]["jrc"].get("values", ()):
         at = row["at"]
         if (at["sampling"], at["direction"]) == (JRC_SAMPLING, card["direction"]):
-            return (
-                row,
-                "1",
-                f"at a step of {with_unit(at['step'], 'mm')}; its fit has {JRC_SAMPLING}",
-            )
+            step = with_unit(at["step"], "mm")
+            return row, "1", f"by Tse and Cruden at a step of {step}; they used {JRC_SAMPLING}"
     return {"missing": "no profile is long enough"}, "1", ""
 
 
-def _fact(title, row, unit, beside=""):
-    """Number in words with its interval, or the reason why it is missing, and a remark."""
+def _strength(card, title, pressure):
+    """Range of the rules for the strength, then each rule with its own error.
+
+    No rule's error is that of the strength: the rules differ by more.
+    """
+    rows = {words: row_at(card["entries"][key], pressure) for key, words in STRENGTH_RULES.items()}
+    known = {words: row for words, row in rows.items() if "value" in row}
+    if not known:
+        return Fact(title, "–", [rows["by dilatancy"]["missing"]])
+    values = sorted(row["value"] for row in known.values())
+    lines = [
+        f"{words} {' '.join(filter(None, (short(row['value']), _ends(row))))}"
+        for words, row in sorted(known.items(), key=lambda one: one[1]["value"])
+    ]
+    lines += [f"{words}: {row['missing']}" for words, row in rows.items() if "missing" in row]
+    ends = dict.fromkeys(short(value) for value in (values[0], values[-1]))
+    return Fact(title, f"{' to '.join(ends)} MPa", lines)
+
+
+def _fact(card, title, row, unit, beside=""):
+    """Number in words, below it its interval, what others of its kind and harder contacts have.
+
+    Or a dash with the reason why it is missing.
+    """
     if "missing" in row:
-        return Fact(title, "–", "; ".join(filter(None, (row["missing"], beside))))
+        return Fact(title, "–", list(filter(None, (row["missing"], beside))))
     # One unit for a number and its interval, the same in all blocks.
     size, shown = (100.0, " %") if unit == "%" else (1.0, f" {unit}".removesuffix(" 1"))
-    low, high = ("" if row[end] is None else measured(size * row[end]) for end in ("low", "high"))
     words = f"{short(size * row['value'])}{shown}"
-    alone = _ALONE.get(row.get("interval", ""), "")
-    ends = f"[{low}, {high}]{alone}" if low != high else ""
     kind = f"± {short(size * row[_KIND], 2)} for the whole joint" if _KIND in row else ""
-    return Fact(title, words, "; ".join(filter(None, (ends, kind, beside))))
+    return Fact(
+        title, words, list(filter(None, (beside, _ends(row, size), kind, _harder(card, row, size))))
+    )
+
+
+def _ends(row, size=1.0):
+    """Interval of a number, and what it holds; empty if it is narrower than it prints."""
+    low, high = ("" if row[end] is None else measured(size * row[end]) for end in ("low", "high"))
+    alone = _ALONE.get(row.get("interval", ""), "")
+    return f"[{low}, {high}]{alone}" if low != high else ""
+
+
+def _harder(card, row, size):
+    """Range of a number over the hardness of single contacts; empty where they are elastic."""
+    if "hardest" not in row:
+        return ""
+    low, high = sorted((row["value"], row["hardest"]))
+    ends = " to ".join(dict.fromkeys(short(size * end) for end in (low, high)))
+    soft, hard = hardnesses_of(card)
+    return f"{ends} for H from {short(soft)} to {short(hard)} MPa"

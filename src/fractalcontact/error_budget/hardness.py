@@ -1,0 +1,99 @@
+"""Quantities if contacts are harder: their range over hardnesses, a source of error of its own.
+
+The joint wall strength at which contacts crush is that of the rock in bulk; what single contacts
+bear lies between it and Tabor's three times of it.
+"""
+
+import numpy as np
+
+from ..core.datasets import labelled
+from ..mechanics.seated_laws import at_reference_pressures
+from ..mechanics.state_scalars import aperture
+from ..mechanics.subgrid import state_quantities
+from ..mechanics.sweep import load_steps
+from .refinement import BUDGET_QUANTITIES, LoadCurve, domain_dimension
+
+#: Hardness of rough contacts over the joint wall strength: between 1 and this (Tabor's 3).
+HARDEST = 3.0
+
+_LOADS = ("normal_force",)
+_IF = f"if contacts are {HARDEST:g} times as hard; missing where they are elastic"
+_TABLE = {
+    "hardest_hardness": ((), "MPa", "hardness of contacts at the upper end of its range"),
+    "hardest": (("quantity", *_LOADS), "unit of the quantity", f"value of the quantity {_IF}"),
+    "mean_gap_hardest": (_LOADS, "mm", f"mean gap {_IF}"),
+    "contact_fraction_hardest": (_LOADS, "1", f"corrected A_r/A_0 {_IF}"),
+    "seated_closure_hardest": (_LOADS, "mm", f"closure from the seat {_IF}"),
+    "reference_stiffness_hardest": (
+        ("reference_pressure",),
+        "MPa/mm",
+        f"tangent stiffness of the interface at a pressure {_IF}",
+    ),
+}
+
+
+def of_the_hardest(curve: LoadCurve) -> dict[str, tuple]:
+    """Quantities of a load curve at :data:`HARDEST` times its hardness.
+
+    Parameters
+    ----------
+    curve : LoadCurve
+
+    Returns
+    -------
+    dict
+        Variables of the error budget as ``xr.Dataset`` takes them: ``hardest`` (quantity,
+        normal_force); ``mean_gap_hardest``, ``contact_fraction_hardest`` and
+        ``seated_closure_hardest`` (normal_force), ``reference_stiffness_hardest``
+        (reference_pressure) and ``hardest_hardness``, MPa. NaN where contacts are elastic.
+
+    Raises
+    ------
+    NotConverged
+        If a state could not be verified.
+    """
+    hardness = HARDEST * curve.loading.solving["hardness"]
+    hardest, gap = _solved(curve, hardness)
+    area, separation, stiffness = (
+        hardest[list(BUDGET_QUANTITIES).index(name)]
+        for name in ("area_corrected", "separation", "stiffness")
+    )
+    pressure = curve.curve["nominal_pressure"].values
+    values = {
+        "hardest_hardness": hardness if np.isfinite(hardness) else np.nan,
+        "hardest": hardest,
+        "mean_gap_hardest": gap,
+        "contact_fraction_hardest": area / curve.loading.area,
+        "seated_closure_hardest": _seated(curve, separation),
+        "reference_stiffness_hardest": at_reference_pressures(pressure, stiffness),
+    }
+    return labelled(_TABLE, values)
+
+
+def _solved(curve: LoadCurve, hardness: float) -> tuple[np.ndarray, np.ndarray]:
+    """Values (quantity, normal_force) at a hardness, and mean gaps; NaN if it is infinite."""
+    values = np.full((len(BUDGET_QUANTITIES), len(curve.forces)), np.nan)
+    gaps = np.full(len(curve.forces), np.nan)
+    if not np.isfinite(hardness):
+        return values, gaps
+    solving = {**curve.loading.solving, "hardness": hardness}
+    where, highest = f"{curve.where}, hardness x {HARDEST:g}", float(curve.composite.max())
+    states = load_steps(curve.composite, curve.space, curve.forces, solving, where)
+    for place, state in enumerate(states):
+        numbers = state_quantities(state, highest, curve.reference)
+        dimension = domain_dimension(state, curve.loading.settings.box_range)
+        values[:, place] = [*numbers.values(), dimension]
+        gaps[place] = aperture(state).mean()
+    return values, gaps
+
+
+def _seated(curve: LoadCurve, separation: np.ndarray) -> np.ndarray:
+    """Closure from the seat of faces with these separations, mm.
+
+    Since the seat harder faces have come together by less: by the difference of their separation
+    there, less that at the seat.
+    """
+    seated = curve.curve["seated_closure"].values
+    wider = separation - curve.values()[list(BUDGET_QUANTITIES).index("separation")]
+    seat = np.flatnonzero(seated == 0)
+    return seated + (wider[seat[0]] - wider if seat.size else np.nan)
