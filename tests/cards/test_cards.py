@@ -137,6 +137,36 @@ def test_what_does_not_slide_has_no_strength_and_says_so(cards):
         assert "slid" in cards["flat.1"]["entries"][key]["missing"]
 
 
+def test_of_several_possible_reasons_a_card_prints_the_one_that_holds(subjects):
+    pair, flat = subjects["pair"], subjects["flat.1"]
+    by_key = {entry.key: entry for entry in entries()}
+
+    def stated(**material):
+        settings = pair.settings | {"material": pair.settings["material"] | material}
+        return Subject(pair.stages, settings, "pair")
+
+    for subject, key, reason in (
+        (flat, "barton_strength", "nothing slides: one face given, against a rigid plane"),
+        (stated(joint_wall_strength=None), "barton_strength", "no joint wall strength is stated"),
+        (
+            stated(basic_friction_angle=float("nan")),
+            "peak_strength",
+            "no basic friction angle is stated",
+        ),
+    ):
+        assert read_entry(by_key[key], subject, "elastic")["missing"] == reason
+    known = stated(joint_wall_strength=80.0, basic_friction_angle=30.0)
+    rough = {"barton_scaled_strength": pair["strength"]["barton_scaled_strength"] * np.nan}
+    known = Subject(
+        dict(known.stages) | {"strength": pair["strength"].assign(rough)}, known.settings, "pair"
+    )
+    rows = read_entry(by_key["barton_scaled_strength"], known, "elastic")["values"]
+    assert {row["missing"] for row in rows} <= {
+        "JRC_n is above 20, where Barton's law ends",
+        "not solved under this load",
+    }
+
+
 def test_numbers_of_contact_name_the_model_that_they_are_of(cards, subjects):
     for name, card in cards.items():
         hardness = subjects[name].settings["material"]["hardness"]

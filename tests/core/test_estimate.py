@@ -51,6 +51,16 @@ def test_a_missing_end_is_an_error():
         Estimate.read({"k": 1.0, "k_low": 0.5}, "k")
 
 
+def test_an_interval_about_a_value_keeps_within_the_bounds_of_the_quantity():
+    found = Estimate.about(np.array([0.001, 0.5, 0.99, 1.0000001]), 0.02, 0.0, 1.0)
+    np.testing.assert_allclose(found.low, [0.0, 0.48, 0.97, 0.98], atol=1e-6)
+    np.testing.assert_allclose(found.high, [0.021, 0.52, 1.0, 1.0], atol=1e-6)
+    assert (found.low <= found.value).all()
+    assert (found.value <= found.high).all()
+    assert Estimate.about(-0.5, 1.0).ends == (-0.5, -1.5, 0.5)
+    assert np.isnan(Estimate.about(0.5, np.nan, 0.0).ends[1:]).all()
+
+
 def test_a_falling_function_exchanges_the_ends():
     rising, falling = (
         SEVERAL.mapped(np.log),

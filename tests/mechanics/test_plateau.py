@@ -10,6 +10,7 @@ from fractalcontact.mechanics.plateau import (
     relative_change,
     rigid_plateaus,
     second_half,
+    undecided_plateaus,
 )
 
 V = np.linspace(0, 8, 41)
@@ -114,3 +115,15 @@ def test_directions_without_their_opposite_have_no_parts():
     found = parts_of(v, [v, v, v], ["E", "N", "S"])
     assert found["axis"].values.tolist() == ["N-S"]
     assert parts_of(v, [v], ["none"]).sizes["axis"] == 0
+
+
+def test_a_trend_decides_on_a_plateau_only_beyond_the_correlation_of_the_faces():
+    correlation = np.linspace(1, [0.49, 0.0, 0.0, np.nan], V.size).T
+    lost = np.array([np.nan, 6.0, 3.0, np.nan])
+    _, words, _ = undecided_plateaus(V, correlation, lost)["plateau_undecided"]
+    assert words.tolist() == [
+        "offsets end at 8 mm, where the faces still correlate (0.49)",
+        "the faces still correlate up to 6 mm",
+        "",
+        "",
+    ]

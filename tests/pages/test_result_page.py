@@ -25,7 +25,7 @@ from fractalcontact.figures.draw import drawer_of
 from fractalcontact.figures.kit.drawing import print_style
 from fractalcontact.pages.common_loads import CommonLoad, common_loads, main_load
 from fractalcontact.pages.files import FILES
-from fractalcontact.pages.first_screen import block_of, blocks_of
+from fractalcontact.pages.first_screen import block_of, blocks_of, facts_of
 from fractalcontact.pages.lights import lights_of, validity_at
 from fractalcontact.pages.material import Material, opposite_words
 from fractalcontact.pages.matrix import (
@@ -440,6 +440,7 @@ def test_the_dilatancy_of_the_summary_is_the_plateau_of_the_atlas(atlas):
     told = {"plateau_trend": "falling", "plateau_level": 0.7, "plateau_slope": -0.2}
     found = summarised(Subject.of(with_told(atlas, "joints/pair", **told), "pair")).dilatancy
     assert (found.kind, found.level, found.slope) == ("falling", 0.7, -0.2)
+    assert found.undecided == Subject.of(atlas, "pair").along("joints")["plateau_undecided"].item()
     none = with_told(atlas, "joints/pair", plateau_trend="", plateau_level=np.nan)
     assert summarised(Subject.of(none, "pair")).dilatancy.kind == "none"
     assert summarised(Subject.of(atlas, "flat.1")).dilatancy.kind == "none"
@@ -489,7 +490,7 @@ def test_the_first_screen_says_of_each_joint_what_its_card_says(results):
         assert f"Trust: {card['trust']['word']}." in shown
         for fact in block.facts:
             assert f"<dt>{fact.title}</dt><dd><strong>{fact.words}</strong>" in shown
-            assert fact.words != "–" or fact.note
+            assert fact.words != "–" or fact.notes
         for ending in ("html", "yaml", "json"):
             assert f'href="cards/{name}.{ending}"' in shown
         assert {fact.title.partition(" at ")[2] for fact in block.facts} <= {"125 MPa", ""}
@@ -498,7 +499,38 @@ def test_the_first_screen_says_of_each_joint_what_its_card_says(results):
         assert words == f"{short(stiffness['value'])} MPa/mm"
         assert block.window.startswith("window ")
         assert block.window.capitalize() in shown
-    assert "as scanned" in html
+    assert "at no offset" in html
+
+
+def test_the_first_screen_says_what_no_interval_holds(results):
+    """Hardness of single contacts, the rules of strength, the spacing."""
+    card = json.loads((results / "cards/pair.json").read_text())
+    at = {"pressure": card["geometry"]["reference_pressure"]["value"]}
+    number = {"low": None, "high": None, "at": at}
+    tau = {"peak_strength": 26.8, "barton_strength": 18.9, "contact_strength": 45.5}
+    for key, value in tau.items():
+        card["entries"][key] = {"values": [number | {"value": value}]}
+    card["entries"]["barton_scaled_strength"] = {"missing": "JRC_n is above 20"}
+    fact = facts_of(card)[-1]
+    assert fact.words == "18.9 to 45.5 MPa"
+    assert fact.notes == [
+        "peak by 3 rules, each with its own error:",
+        *("Barton 18.9", "dilatancy 26.8", "contact 45.5"),
+        "Barton and Bandis: JRC_n is above 20",
+    ]
+    contact = number | {"value": 0.0333, "low": 0.033, "high": 0.034, "hardest": 0.0111}
+    of_surface = {"interval": "all errors of this surface", "values": [contact]}
+    card["entries"] |= {
+        "contact_fraction": of_surface,
+        "hardness": {"value": 150.0},
+        "hardest_hardness": {"value": 450.0},
+    }
+    fact = facts_of(card)[3]
+    assert fact.words == "3.33 %"
+    assert fact.notes == ["[3.30, 3.40] this surface", "1.11 to 3.33 for H from 150 to 450 MPa"]
+    (stiffness,) = (one for one in card["errors"] if one["quantity"] == "stiffness")
+    stiffness["sources"]["resolution"] = 18.25
+    assert "changes by 18 at twice the spacing" in facts_of(card)[0].notes
 
 
 def test_synthetic_joints_stand_behind_scanned_ones_under_their_own_heading(results, tmp_path):

@@ -133,6 +133,7 @@ def errors_of(subject: Subject) -> list[dict[str, Any]]:
             "value": rounded(one.value),
             "of_this_surface": rounded(one.errors["surface"]),
             "of_its_population": rounded(one.errors["population"]),
+            "hardest": rounded(one.hardest),
             "sources": {
                 of: rounded(error if error > _ROUNDING * abs(one.value) else 0.0)
                 for of, error in one.sources.items()

@@ -5,7 +5,14 @@ from collections.abc import Mapping
 from typing import Any
 
 from ..pages.captions import symbols
-from ..pages.first_screen import STRENGTH_RULES, facts_of, hardnesses_of, row_at, window_of
+from ..pages.first_screen import (
+    STRENGTH_RULES,
+    facts_of,
+    hardnesses_of,
+    offset_of,
+    row_at,
+    window_of,
+)
 from ..pages.words import MISSING, measured, percent, short, with_unit
 
 #: Tables of curves over pressure, by title: the sections that share one.
@@ -29,7 +36,7 @@ _HEADS = {
 }
 _UNITS = {"1": "%", "degree": "°"}
 #: Heads of the rules for the strength, and of their range.
-_RULES, _RULES_HEAD = {_HEADS[key] for key in STRENGTH_RULES}, "peak τ over these rules"
+_RULES, _RULES_HEAD = {_HEADS[key] for key in STRENGTH_RULES}, "peak τ, range of all rules"
 
 
 def page_of(card: Mapping[str, Any]) -> dict[str, Any]:
@@ -47,6 +54,7 @@ def page_of(card: Mapping[str, Any]) -> dict[str, Any]:
         "card": card,
         "facts": facts_of(card) if card["kind"] == "joint" else [],
         "window": window_of(card) if card["kind"] == "joint" else "",
+        "offset": offset_of(card) if card["kind"] == "joint" else "",
         "stiffness": over_pressure(stiffness),
         "tables": list(_tables(printed)),
         "tests": tests_of(entries),
@@ -56,7 +64,7 @@ def page_of(card: Mapping[str, Any]) -> dict[str, Any]:
         "missing": missing_of({key: one for key, one in printed.items() if key != "hardness"}),
         "hardest": hardnesses_of(card)[1],
         "errors": errors_of(card),
-        "number": lambda value: MISSING if value is None else short(value, 2),
+        "number": lambda value, digits=2: MISSING if value is None else short(value, digits),
         "words": in_words,
         "ends": ends_in_words,
         "short": short,
@@ -86,7 +94,8 @@ def _tables(printed):
 def _over_rules(cells):
     """Range of the strength over its rules: none of their errors is that of the strength."""
     values = [one["value"] for one in cells if "value" in one]
-    return {"unit": "MPa"} | ({"value": min(values), "to": max(values)} if values else {})
+    found = {"value": min(values), "to": max(values)} if values else {"missing": "no rule applies"}
+    return {"unit": "MPa"} | found
 
 
 def tests_of(entries: Mapping[str, Any]) -> list[tuple[str, str, Mapping[str, Any]]]:

@@ -19,7 +19,7 @@ from ..core.settings import SpecimenSettings
 from ..core.window import faces, nominal_area, window_slices
 from ..surface.specimen import largest_offset
 from .composite_dimension import composite_dimensions
-from .plateau import opposite_parts, rigid_plateaus
+from .plateau import opposite_parts, rigid_plateaus, undecided_plateaus
 from .rigid_slide import Slide, slide
 
 #: Steps (y, x) of one cell towards East, North, West and South; "none" for a joint that cannot
@@ -339,6 +339,7 @@ def _describe_slide(
         },
     )
     result = result.assign(rigid_plateaus(offsets, dilatancy, directions))
+    result = result.assign(undecided_plateaus(offsets, correlation, uncorrelated))
     result = result.assign(opposite_parts(offsets, dilatancy, directions))
     return with_spreads(result, specimen)
 

@@ -10,7 +10,7 @@ from ..core.datasets import labelled
 from ..core.directions import NO_SLIDING
 from ..core.estimate import Estimate, rows_of
 from ..core.fitting import MIN_POINTS, LineFit, fit_line
-from ..core.labels import cf_attrs
+from ..core.labels import cf_attrs, length_words
 from ..core.limits import LEVEL_CHANGE
 from ..core.verdicts import FALLING, LEVEL, RISING
 
@@ -25,6 +25,10 @@ _WORDS = {
     "plateau_offset_max": ("mm", "largest offset of that line"),
     "plateau_trend": ("1", f"trend of the {_HALF}: {LEVEL}, {RISING} or {FALLING}"),
     "no_plateau": ("1", "why it has no line"),
+}
+#: Whether the trend says anything of a plateau: dimensions, unit, long name.
+_UNDECIDED = {
+    "plateau_undecided": ("direction", "1", f"why the trend of the {_HALF} decides on no plateau")
 }
 #: Opposite directions, by the axis that they lie on.
 AXES = {"E-W": ("E", "W"), "N-S": ("N", "S")}
@@ -105,6 +109,43 @@ def rigid_plateaus(
     ]
     table = {name: ("direction", *words) for name, words in _WORDS.items()}
     return labelled(table, {name: np.array([row[name] for row in rows]) for name in _WORDS})
+
+
+def undecided_plateaus(
+    offset: np.ndarray, correlation: np.ndarray, uncorrelated: np.ndarray
+) -> dict[str, tuple]:
+    """Reason why trends over the second half of the offsets say nothing of a plateau.
+
+    Faces that match open as long as they still correlate: a plateau begins beyond (the spread of
+    the composite topography is then that of two unrelated faces).
+
+    Parameters
+    ----------
+    offset : (n,) ndarray
+        v, mm, ascending.
+    correlation : (directions, n) ndarray
+        Of the faces.
+    uncorrelated : (directions,) ndarray
+        First offset where it does not differ from zero, mm; NaN where there is none.
+
+    Returns
+    -------
+    dict
+        ``plateau_undecided`` (direction,) as ``xr.Dataset`` takes it; empty where the second half
+        lies beyond that offset, or nothing slides.
+    """
+    first = offset[second_half(offset)][0]
+
+    def reason(last: float, lost: float) -> str:
+        if np.isnan(last) or lost <= first:
+            return ""
+        if np.isnan(lost):
+            end = length_words(offset[-1])
+            return f"offsets end at {end}, where the faces still correlate ({last:.2f})"
+        return f"the faces still correlate up to {length_words(lost)}"
+
+    words = [reason(*one) for one in zip(correlation[:, -1], uncorrelated, strict=True)]
+    return labelled(_UNDECIDED, {"plateau_undecided": np.array(words)})
 
 
 def opposite_parts(

@@ -31,13 +31,14 @@ class Part:
 
 @dataclass(frozen=True)
 class Bar:
-    """A quantity, its totals in words, and its sources."""
+    """A quantity, its totals and its value for harder contacts in words, and its sources."""
 
     name: str
     meaning: str
     value: str
     surface: str
     population: str
+    hardest: str
     parts: list[Part]
 
 
@@ -70,6 +71,7 @@ def _bar(quantity: Quantity) -> Bar:
         else with_unit(quantity.value, quantity.unit),
         surface=quantity.error_words(quantity.errors["surface"]),
         population=quantity.error_words(quantity.errors["population"]),
+        hardest=with_unit(quantity.hardest, quantity.unit),
         parts=parts,
     )
 

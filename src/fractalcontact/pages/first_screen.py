@@ -15,14 +15,13 @@ from .words import measured, short, with_unit
 _ALONE = {
     "solver": " solver error alone",
     "all errors of this surface": " this surface",
-    "slopes over twice the spacing": " by the grid",
 }
 #: Rules for the peak shear strength, by their entries, in words.
 STRENGTH_RULES = {
-    "peak_strength": "by dilatancy",
-    "contact_strength": "from the contact",
-    "barton_strength": "by Barton",
-    "barton_scaled_strength": "by Barton and Bandis",
+    "peak_strength": "dilatancy",
+    "contact_strength": "contact",
+    "barton_strength": "Barton",
+    "barton_scaled_strength": "Barton and Bandis",
 }
 #: Where a card has the half-width of a number for other surfaces of its kind.
 _KIND = "of_its_population"
@@ -88,7 +87,7 @@ def block_of(card: Mapping[str, Any]) -> Block:
     return Block(
         name=card["name"],
         label=card["label"],
-        state=f"{_offset(card)}; contact {card['model']}",
+        state=f"{offset_of(card)}; contact {card['model']}",
         window=window_of(card),
         facts=facts_of(card),
         trust=card["trust"],
@@ -117,19 +116,24 @@ def facts_of(card: Mapping[str, Any]) -> list[Fact]:
             *("hydraulic_aperture", "contact_fraction"),
         )
     )
-    since = f"from {with_unit(card['geometry']['seat'].get('value', math.nan), 'MPa')} on"
+    since = f"counted from {with_unit(card['geometry']['seat'].get('value', math.nan), 'MPa')}"
     if not seated.get("value"):
-        seated, since = row_at(card["entries"]["interface_closure"], pressure), "from first touch"
-    flowing = f"hydraulic {short(hydraulic['value'])} mm" if "value" in hydraulic else ""
+        seated, since = (
+            row_at(card["entries"]["interface_closure"], pressure),
+            "counted from first touch",
+        )
+    flowing = ""
+    if "value" in hydraulic:
+        flowing = f"hydraulic aperture {short(hydraulic['value'])} mm {_ends(hydraulic)}".rstrip()
     facts = [
-        _fact(card, f"normal stiffness {at}", stiffness, "MPa/mm"),
+        _fact(card, f"normal stiffness {at}", stiffness, "MPa/mm", _at_twice(card)),
         _fact(card, f"closure {at}", seated, "mm", since),
         _fact(card, f"mean gap {at}", gap, "mm", flowing),
         _fact(card, f"contact {at}", contact, "%"),
     ]
     if card["direction"] != "none":
         facts.append(_fact(card, "JRC", *_jrc(card)))
-        facts.append(_strength(card, f"peak shear strength {at}", pressure))
+        facts.append(_strength(card, f"shear strength {at}", pressure))
     return facts
 
 
@@ -145,13 +149,14 @@ def reference_of(card: Mapping[str, Any]) -> float:
     return float(card["geometry"].get("reference_pressure", {}).get("value", math.nan))
 
 
-def _offset(card):
+def offset_of(card: Mapping[str, Any]) -> str:
+    """Offset of a joint in words."""
     offset = card["geometry"]["offset"]["value"]
     if card["direction"] == "none":
         return "without sliding"
     if offset:
         return f"slid by {with_unit(offset, 'mm')} towards {card['direction']}"
-    return "in the mated position" if card["faces"].startswith("one") else "as scanned"
+    return "in the mated position" if card["faces"].startswith("one") else "at no offset"
 
 
 def row_at(curve: Mapping[str, Any], pressure: float) -> dict[str, Any]:
@@ -180,12 +185,14 @@ def _strength(card, title, pressure):
     rows = {words: row_at(card["entries"][key], pressure) for key, words in STRENGTH_RULES.items()}
     known = {words: row for words, row in rows.items() if "value" in row}
     if not known:
-        return Fact(title, "–", [rows["by dilatancy"]["missing"]])
+        return Fact(title, "–", [rows["dilatancy"]["missing"]])
     values = sorted(row["value"] for row in known.values())
     lines = [
-        f"{words} {' '.join(filter(None, (short(row['value']), _ends(row))))}"
+        f"{words} {short(row['value'])} {_ends(row, of='')}".rstrip()
         for words, row in sorted(known.items(), key=lambda one: one[1]["value"])
     ]
+    if len(known) > 1:
+        lines.insert(0, f"peak by {len(known)} rules, each with its own error:")
     lines += [f"{words}: {row['missing']}" for words, row in rows.items() if "missing" in row]
     ends = dict.fromkeys(short(value) for value in (values[0], values[-1]))
     return Fact(title, f"{' to '.join(ends)} MPa", lines)
@@ -203,15 +210,22 @@ def _fact(card, title, row, unit, beside=""):
     words = f"{short(size * row['value'])}{shown}"
     kind = f"± {short(size * row[_KIND], 2)} for the whole joint" if _KIND in row else ""
     return Fact(
-        title, words, list(filter(None, (beside, _ends(row, size), kind, _harder(card, row, size))))
+        title, words, list(filter(None, (_ends(row, size), kind, _harder(card, row, size), beside)))
     )
 
 
-def _ends(row, size=1.0):
-    """Interval of a number, and what it holds; empty if it is narrower than it prints."""
+def _ends(row, size=1.0, of=None):
+    """Interval of a number, and what it is of; empty if it is narrower than it prints."""
     low, high = ("" if row[end] is None else measured(size * row[end]) for end in ("low", "high"))
-    alone = _ALONE.get(row.get("interval", ""), "")
+    alone = _ALONE.get(row.get("interval", ""), "") if of is None else of
     return f"[{low}, {high}]{alone}" if low != high else ""
+
+
+def _at_twice(card):
+    """Change of the stiffness with the spacing, which no interval contains."""
+    rows = [one["sources"] for one in card["errors"] if one["quantity"] == "stiffness"]
+    change = rows[0].get("resolution") if rows else None
+    return f"changes by {short(change, 2)} at twice the spacing" if change else ""
 
 
 def _harder(card, row, size):

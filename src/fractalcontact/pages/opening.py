@@ -179,10 +179,13 @@ def _dilatancy(specimens: Sequence[Specimen], rows: Sequence[Row]) -> Markup | N
         named = [
             f"{one.name} ({_level(one.dilatancy)}, towards {one.direction})"
             for one in specimens
-            if one.dilatancy.kind == kind and one.name in asked
+            if one.dilatancy.kind == kind and not one.dilatancy.undecided and one.name in asked
         ]
         if named:
             parts.append(f"{words} for {_listed(named)}")
+    open_ones = [one.name for one in specimens if one.dilatancy.undecided and one.name in asked]
+    if open_ones:
+        parts.append(f"is undecided for {_listed(open_ones)}, whose faces still correlate")
     if not parts:
         return None
     plateaus = [row.cells for row in rows if row.name in _PLATEAUS]

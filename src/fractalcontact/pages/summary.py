@@ -26,6 +26,8 @@ from .words import percent, with_unit
 
 #: Errors of a quantity as a property of this surface, and of that which the window is cut from.
 TOTALS = {"surface": "total", "population": "total_of_population"}
+#: Columns of the stiffness at a pressure, by what stands in them.
+_OF_STIFFNESS = ("", *(f"error_{of}_" for of in TOTALS), "hardest_")
 #: Columns of the summary that are not called as the error budget calls their quantity.
 _COLUMNS = {"closure": "interface_closure"}
 
@@ -60,6 +62,9 @@ class Quantity:
         Why a source has none.
     missing : str
         Why there is no value, where that is known.
+    hardest : float
+        Value if contacts are three times as hard, the other end of its range over hardness; NaN
+        where they are elastic.
     """
 
     name: str
@@ -71,6 +76,7 @@ class Quantity:
     sources: dict[str, float]
     reasons: dict[str, str]
     missing: str = ""
+    hardest: float = math.nan
 
     @property
     def known(self) -> bool:
@@ -172,11 +178,14 @@ class Dilatancy:
         Its mean, mm.
     slope : float
         mm/mm.
+    undecided : str
+        Why its trend says nothing of a plateau; empty where it does.
     """
 
     kind: str
     level: float = math.nan
     slope: float = math.nan
+    undecided: str = ""
 
 
 @dataclass(frozen=True)
@@ -198,7 +207,8 @@ class Specimen:
     v_m: Estimate
     chi: Estimate
     seat: float
-    stiffness: dict[float, tuple[float, float, float]]
+    stiffness: dict[float, tuple[float, ...]]
+    hardest: float
     doubled: Doubled
     closure_law: str
     dilatancy: Dilatancy
@@ -249,6 +259,7 @@ def summarised(subject: Subject, common: Sequence[CommonLoad] = ()) -> Specimen:
         chi=Estimate.read(curve, "seated_chi"),
         seat=float(curve["seating_pressure"]),
         stiffness=_stated_stiffness(subject),
+        hardest=float(subject["error_budget"]["hardest_hardness"]),
         doubled=doubled_spacing(subject),
         closure_law=str(curve["closure_law"].item()),
         dilatancy=dilatancy_of(subject),
@@ -269,11 +280,14 @@ def _initial_stiffness(curve):
 
 
 def _stated_stiffness(subject):
-    """Tangent stiffness and its two errors by nominal pressure, MPa/mm; NaN if unknown."""
+    """Tangent stiffness, its two errors, and it of harder contacts, by nominal pressure.
+
+    MPa/mm; NaN if unknown.
+    """
     stated = subject.states("closure")["reference_stiffness"]
     budget = subject["error_budget"]
-    errors = [budget[f"reference_stiffness_{total}"].values.tolist() for total in TOTALS.values()]
-    numbers = zip(stated.values.tolist(), *errors, strict=True)
+    beside = [budget[f"reference_stiffness_{of}"] for of in (*TOTALS.values(), "hardest")]
+    numbers = zip(*(one.values.tolist() for one in (stated, *beside)), strict=True)
     return dict(zip(stated["reference_pressure"].values.tolist(), numbers, strict=True))
 
 
@@ -320,8 +334,7 @@ def quantities_at(subject: Subject, number: int) -> dict[str, Quantity]:
     sources = [str(source) for source in budget["source"].values]
     why = subject.states("closure")["interface_stiffness_reason"].isel(normal_force=number)
     missing = {"stiffness": str(why.item())}
-    total = float(budget["seated_closure_total"])
-    found = {"seated_closure": _seated_closure(subject, number, total)}
+    found = {"seated_closure": _seated_closure(subject, number, budget)}
     for name in map(str, budget["quantity"].values):
         one = budget.sel(quantity=name)
         found[name] = Quantity(
@@ -334,6 +347,7 @@ def quantities_at(subject: Subject, number: int) -> dict[str, Quantity]:
             sources={source: float(one["error"].sel(source=source)) for source in sources},
             reasons={source: str(one["reason"].sel(source=source).item()) for source in sources},
             missing=missing.get(name, ""),
+            hardest=float(one["hardest"]),
         )
         if "within_twins" in one and (place := str(one["within_twins"].item())):
             found[name].reasons[TWINS] = f"the scan lies {place}"
@@ -349,13 +363,14 @@ def quantities_at(subject: Subject, number: int) -> dict[str, Quantity]:
     return found
 
 
-def _seated_closure(subject, number, error):
+def _seated_closure(subject, number, budget):
     """Closure from the seat, of which the budget has the total for this surface alone."""
     value = float(subject.states("closure")["seated_closure"].isel(normal_force=number))
-    errors = {"surface": error, "population": math.nan}
+    errors = {"surface": float(budget["seated_closure_total"]), "population": math.nan}
     missing = "" if math.isfinite(value) else "below the seat, or not solved"
     name, meaning = "seated_closure", "closure from the seat"
-    return Quantity(name, meaning, "mm", False, value, errors, {}, {}, missing)
+    hardest = float(budget["seated_closure_hardest"])
+    return Quantity(name, meaning, "mm", False, value, errors, {}, {}, missing, hardest)
 
 
 def dilatancy_of(subject: Subject) -> Dilatancy:
@@ -366,7 +381,8 @@ def dilatancy_of(subject: Subject) -> Dilatancy:
     along = joints.sel(direction=subject.direction)
     kind = str(along["plateau_trend"].item())
     level, slope = (float(along[f"plateau_{name}"]) for name in ("level", "slope"))
-    return Dilatancy(kind or "none", level, slope)
+    undecided = str(along["plateau_undecided"].item()) if kind else ""
+    return Dilatancy(kind or "none", level, slope, undecided)
 
 
 def summary_table(
@@ -402,6 +418,7 @@ def _of_specimen(one):
         "modulus_MPa": one.material.modulus,
         "poisson": one.material.poisson,
         "hardness_MPa": one.material.hardness,
+        "hardest_hardness_MPa": one.hardest,
         "direction": one.direction,
         "offset_mm": one.offset,
         "window_x_mm": one.window[0],
@@ -414,7 +431,7 @@ def _of_specimen(one):
         **{
             f"stiffness_at_{pressure:g}_MPa_{of}MPa_per_mm": number
             for pressure, numbers in one.stiffness.items()
-            for of, number in zip(("", *(f"error_{of}_" for of in TOTALS)), numbers, strict=True)
+            for of, number in zip(_OF_STIFFNESS, numbers, strict=True)
         },
         **_columns("k_ni_MPa_per_mm", one.k_ni),
         **_columns("v_m_mm", one.v_m),
@@ -424,6 +441,7 @@ def _of_specimen(one):
         "stiffness_change_at_twice_the_spacing": one.doubled.stiffness,
         "closure_law": one.closure_law,
         "dilatancy": one.dilatancy.kind,
+        "dilatancy_undecided": one.dilatancy.undecided,
         "dilatancy_level_mm": one.dilatancy.level,
         "dilatancy_slope": one.dilatancy.slope,
     }
@@ -451,6 +469,7 @@ def _of_load(load):
         unit = quantity.unit.replace("/", "_per_")
         row[f"{name}_{unit}"] = quantity.value
         row |= {f"{name}_error_{which}_{unit}": error for which, error in quantity.errors.items()}
+        row[f"{name}_hardest_{unit}"] = quantity.hardest
         if name == "stiffness":
             row["stiffness_reason"] = quantity.missing
     row |= _columns("delta_sigma_boxes", load.delta_sigma_boxes)
