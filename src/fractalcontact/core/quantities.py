@@ -65,8 +65,15 @@ class Shown:
         states = subject.states(self.stage)
         state = states.isel(normal_force=load) if "normal_force" in states.dims else states
         unit = str(states[self.variable].attrs["units"])
-        has_interval = all(end in state for end in names_of(self.variable))
-        if has_interval:
+        own = f"{self.variable}_total"
+        in_budget = "error_budget" in subject.stages and own in subject["error_budget"]
+        has_interval = in_budget or all(end in state for end in names_of(self.variable))
+        if in_budget:
+            error = subject["error_budget"][own].sel(
+                normal_force=subject.forces[load], method="nearest"
+            )
+            found = Estimate.about(state[self.variable].item(), error.item(), 0.0)
+        elif has_interval:
             found = Estimate.read(state, self.variable)
             if self.over_windows:
                 found = Judged(*found.ends, says=bool(found.known))

@@ -15,6 +15,11 @@ _TABLE = {
         "error of the closure from the seat as a property of this surface, half-width at 95 %",
     ),
     "seated_closure_relative": (("normal_force",), "1", "the same over the closure from the seat"),
+    "mean_gap_total": (
+        ("normal_force",),
+        "mm",
+        "error of the mean gap as a property of this surface, half-width at 95 %",
+    ),
     "contact_fraction_total": (
         ("normal_force",),
         "1",
@@ -51,7 +56,8 @@ def with_derived(budget: xr.Dataset, curve: LoadCurve) -> xr.Dataset:
     -----
     Closure from the seat is the difference of two separations, less the settlement of the blocks,
     which is exact: its error is the root sum of squares of theirs. First touch, which decides the
-    error of the closure from there, is in neither. At the seat it is 0 by definition. The stiffness
+    error of the closure from there, is in neither. At the seat it is 0 by definition. What moves the
+    mean planes apart widens the gap by as much. The stiffness
     at a pressure has the relative error of the states beside it, and none beyond states whose
     error is known.
     """
@@ -72,6 +78,6 @@ def with_derived(budget: xr.Dataset, curve: LoadCurve) -> xr.Dataset:
     fraction = budget["total"].sel(quantity="area_corrected").values / curve.loading.area
     coords = {"reference_pressure": states["reference_pressure"]}
     table = labelled(
-        _TABLE, dict(zip(_TABLE, [of_seated, relative, fraction, *totals], strict=True))
+        _TABLE, dict(zip(_TABLE, [of_seated, relative, separation, fraction, *totals], strict=True))
     )
     return budget.assign_coords(coords).assign(table)

@@ -16,6 +16,7 @@ _ALONE = {
     "solver": " solver error alone",
     "all errors of this surface": " this surface",
 }
+_NBSP = "\u00a0"
 #: Rules for the peak shear strength, by their entries, in words.
 STRENGTH_RULES = {
     "peak_strength": "dilatancy",
@@ -218,14 +219,14 @@ def _ends(row, size=1.0, of=None):
     """Interval of a number, and what it is of; empty if it is narrower than it prints."""
     low, high = ("" if row[end] is None else measured(size * row[end]) for end in ("low", "high"))
     alone = _ALONE.get(row.get("interval", ""), "") if of is None else of
-    return f"[{low}, {high}]{alone}" if low != high else ""
+    return f"[{low},{_NBSP}{high}]{alone}" if low != high else ""
 
 
 def _at_twice(card):
     """Change of the stiffness with the spacing, which no interval contains."""
     rows = [one["sources"] for one in card["errors"] if one["quantity"] == "stiffness"]
     change = rows[0].get("resolution") if rows else None
-    return f"changes by {short(change, 2)} at twice the spacing" if change else ""
+    return f"twice the spacing changes it by {short(change, 2)}" if change else ""
 
 
 def _harder(card, row, size):
