@@ -527,7 +527,10 @@ def test_the_first_screen_says_what_no_interval_holds(results):
     }
     fact = facts_of(card)[3]
     assert fact.words == "3.33 %"
-    assert fact.notes == ["[3.30,\u00a03.40] this surface", "1.11 to 3.33 for H from 150 to 450 MPa"]
+    assert fact.notes == [
+        "[3.30,\u00a03.40] this surface",
+        "1.11 to 3.33 for H from 150 to 450 MPa",
+    ]
     (stiffness,) = (one for one in card["errors"] if one["quantity"] == "stiffness")
     stiffness["sources"]["resolution"] = 18.25
     assert "twice the spacing changes it by 18" in facts_of(card)[0].notes

@@ -56,9 +56,9 @@ def with_derived(budget: xr.Dataset, curve: LoadCurve) -> xr.Dataset:
     -----
     Closure from the seat is the difference of two separations, less the settlement of the blocks,
     which is exact: its error is the root sum of squares of theirs. First touch, which decides the
-    error of the closure from there, is in neither. At the seat it is 0 by definition. What moves the
-    mean planes apart widens the gap by as much. The stiffness
-    at a pressure has the relative error of the states beside it, and none beyond states whose
+    error of the closure from there, is in neither. At the seat it is 0 by definition. What
+    moves the mean planes apart widens the gap by as much. The stiffness at a pressure has the
+    relative error of the states beside it, and none beyond states whose
     error is known.
     """
     states = curve.curve
