@@ -2,19 +2,22 @@
 # study of its own (config/accuracy.yaml), no part of `all`.
 from typing import NamedTuple
 
-from contactlab.methods import registry
 from fractalcontact.study.figure_list import accuracy_figures_of
 
+# What needs the solver is imported where a study has the keys: no other needs it to know its jobs.
 TIMED = []
 if "speed" in config:
-    # Imported here, because no other study needs the solver to know its jobs.
     from contactlab.accuracy.reference import problems_of
 
     TIMED = list(problems_of(config["speed"]))
 
 PROBLEMS = ["hertz", "punch", "richardson"] if "convergence" in config else []
 # Installed later, they are measured later.
-PEERS = list(registry.installed_peers())
+PEERS = []
+if config.keys() & {"speed", "stability"}:
+    from contactlab.methods.registry import installed_peers
+
+    PEERS = list(installed_peers())
 # Kinds of problem that one job judges.
 KINDS_A_JOB = 14
 KINDS = []

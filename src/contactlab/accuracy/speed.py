@@ -25,8 +25,9 @@ from roughcontact.contact.state import ContactState
 from roughcontact.elastic.halfspace import HalfSpace
 from roughcontact.errors import NotConverged
 
+from ..methods.method import Method
 from ..methods.peers import PATIENCE, Load, PublicCode, clearance_of, state_of
-from ..methods.registry import METHODS, Method, installed_peers
+from ..methods.registry import METHODS, installed_peers
 from .cheap_models import CheapState, bearing_area, coarse_grid, winkler
 from .reference import HertzProblem, Reference, ReferenceProblem
 from .timing import peak_memory, repeated, timed

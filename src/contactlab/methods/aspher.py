@@ -15,44 +15,9 @@ from numpy.typing import ArrayLike
 
 from roughcontact.elastic.halfspace import HalfSpace
 
+from .method import Method
 from .peers import Failed, Load, PublicCode
-from .registry import Method
 
-METHODS = (
-    Method(
-        name="ASPHER active set",
-        order=300,
-        loads=("force",),
-        kernels=("love",),
-        windows="dyadic",
-        counts="applications",
-        likely=-6.0,
-        packages=("aspher",),
-        options={"mode": "active set"},
-    ),
-    Method(
-        name="ASPHER fft",
-        order=310,
-        loads=("force",),
-        kernels=("love",),
-        windows="dyadic",
-        counts="applications",
-        likely=-6.0,
-        packages=("aspher",),
-        options={"mode": "fft"},
-    ),
-    Method(
-        name="ASPHER float then double",
-        order=320,
-        loads=("force",),
-        kernels=("love",),
-        windows="dyadic",
-        counts="applications",
-        likely=-6.0,
-        packages=("aspher",),
-        options={"mode": "float then double"},
-    ),
-)
 #: What it is called with, by mode.
 _OPTIONS: dict[str, dict[str, Any]] = {
     "active set": {"active_set": True},
@@ -128,4 +93,18 @@ class Aspher(PublicCode):
         )
 
 
-set_up = Aspher
+METHODS = [
+    Method(
+        name=f"ASPHER {mode}",
+        order=300 + 10 * place,
+        loads=("force",),
+        kernels=("love",),
+        windows="dyadic",
+        counts="applications",
+        likely=-6.0,
+        packages=("aspher",),
+        options={"mode": mode},
+        solver=Aspher,
+    )
+    for place, mode in enumerate(_OPTIONS)
+]

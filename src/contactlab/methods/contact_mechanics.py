@@ -7,52 +7,17 @@ forces at a given offset; L-BFGS-B is given no limit of iterations. The package 
 thread; its parallelism is MPI's.
 """
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import ArrayLike
 
 from roughcontact.elastic.halfspace import HalfSpace
 
 from .common import in_stress
+from .method import Method
 from .peers import Failed, Load, PublicCode
-from .registry import Method
 
-METHODS = (
-    Method(
-        name="ContactMechanics ccg",
-        order=110,
-        loads=("closure", "force"),
-        hardness=("closure", "force"),
-        kernels=("love",),
-        holes=True,
-        warm=True,
-        counts="applications",
-        likely=-4.5,
-        packages=("ContactMechanics", "muGrid"),
-        options={"optimiser": "ccg"},
-    ),
-    Method(
-        name="ContactMechanics dual",
-        order=120,
-        kernels=("love",),
-        holes=True,
-        warm=True,
-        counts="applications",
-        likely=-5.5,
-        packages=("ContactMechanics", "muGrid"),
-        options={"optimiser": "dual"},
-    ),
-    Method(
-        name="ContactMechanics dual-lbfgs",
-        order=130,
-        kernels=("love",),
-        holes=True,
-        warm=True,
-        counts="applications",
-        likely=-5.5,
-        packages=("ContactMechanics", "muGrid"),
-        options={"optimiser": "dual-lbfgs"},
-    ),
-)
 # The dual optimisers' names there.
 _DUAL = {"dual": "ccg-without-restart", "dual-lbfgs": "l-bfgs-b"}
 
@@ -161,4 +126,30 @@ class ContactMechanics(PublicCode):
         return self._applications
 
 
-set_up = ContactMechanics
+_CCG = Method(
+    name="ContactMechanics ccg",
+    order=110,
+    loads=("closure", "force"),
+    hardness=("closure", "force"),
+    kernels=("love",),
+    holes=True,
+    warm=True,
+    counts="applications",
+    likely=-4.5,
+    packages=("ContactMechanics", "muGrid"),
+    options={"optimiser": "ccg"},
+    solver=ContactMechanics,
+)
+_BY_CLOSURE = replace(_CCG, loads=("closure",), hardness=(), likely=-5.5)
+METHODS = [
+    _CCG,
+    *(
+        replace(
+            _BY_CLOSURE,
+            name=f"ContactMechanics {optimiser}",
+            order=120 + 10 * place,
+            options={"optimiser": optimiser},
+        )
+        for place, optimiser in enumerate(_DUAL)
+    ),
+]

@@ -13,7 +13,7 @@ from scipy import linalg
 from roughcontact.contact.state import ContactState
 
 from .common import ContactProblem, influence_matrix
-from .registry import Method
+from .method import Method
 
 # Pressures and gaps smaller than this fraction of the largest pressure and of the closure are zero:
 # the rounding of a Cholesky solution, which must not count as tension or penetration.
@@ -27,20 +27,6 @@ MAX_CLOSURES = 100
 MAX_SETS = 10_000
 # What a node can be: its pressure zero, its gap zero, or its pressure at the hardness.
 OPEN, CLOSED, CAPPED = 0, 1, 2
-
-
-METHOD = Method(
-    name="dense",
-    order=10,
-    title="direct elimination",
-    loads=("closure", "force"),
-    hardness=("closure", "force"),
-    direct=True,
-    warm=True,
-    counts="contact sets",
-    largest=6000,
-    rtol=1e-9,
-)
 
 
 def solve(problem: ContactProblem) -> ContactState:
@@ -179,3 +165,20 @@ def _closure_of_set(space, clearance, total, status, limit):
         axis=0
     )
     return (total + at_zero) / per_closure
+
+
+METHODS = [
+    Method(
+        name="dense",
+        order=10,
+        title="direct elimination",
+        loads=("closure", "force"),
+        hardness=("closure", "force"),
+        direct=True,
+        warm=True,
+        counts="contact sets",
+        largest=6000,
+        rtol=1e-9,
+        solver=solve,
+    )
+]

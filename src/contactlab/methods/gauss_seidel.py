@@ -10,25 +10,12 @@ from roughcontact.contact.state import ContactState
 from roughcontact.kernel_cache import njit
 
 from .common import ContactProblem, in_stress
-from .registry import Method
+from .method import Method
 
 # Sweeps before giving up: the number needed grows with the width of the contact patches in cells.
 MAX_SWEEPS = 5000
 # The sweeps end this far below the tolerance of the final check.
 SAFETY = 0.3
-
-
-METHOD = Method(
-    name="gauss-seidel",
-    order=40,
-    title="projected Gauss-Seidel",
-    # A sum to be kept is no bound on a single point.
-    loads=("closure",),
-    hardness=("closure",),
-    warm=True,
-    counts="sweeps",
-    largest=12_000,
-)
 
 
 def solve(problem: ContactProblem) -> ContactState:
@@ -117,3 +104,19 @@ def _sweep(influence, rows, columns, interference, values, limit, tolerance, max
                 values[s] = value
                 relieve(influence, rows, columns, s, change, left)
     return max_sweeps
+
+
+METHODS = [
+    Method(
+        name="gauss-seidel",
+        order=40,
+        title="projected Gauss-Seidel",
+        # A sum to be kept is no bound on a single point.
+        loads=("closure",),
+        hardness=("closure",),
+        warm=True,
+        counts="sweeps",
+        largest=12_000,
+        solver=solve,
+    )
+]

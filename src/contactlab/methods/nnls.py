@@ -13,7 +13,7 @@ from scipy import linalg
 from roughcontact.contact.state import ContactState
 
 from .common import ContactProblem, influence_matrix
-from .registry import Method
+from .method import Method
 
 # Gradient projections for the warm start; each one application of the operator.
 PROJECTIONS = 100
@@ -21,17 +21,6 @@ PROJECTIONS = 100
 MAX_SETS = 5000
 # Points are admitted until overlap is this far below the tolerance of the final check.
 SAFETY = 0.3
-
-
-METHOD = Method(
-    name="nnls",
-    order=50,
-    title="NNLS",
-    loads=("closure",),  # as the authors impose it
-    warm=True,
-    counts="contact sets",
-    largest=12_000,
-)
 
 
 def solve(problem: ContactProblem) -> ContactState:
@@ -116,3 +105,17 @@ def _solve_inside(space, inside, interference):
     pressure = np.zeros(space.shape)
     pressure[inside] = linalg.cho_solve(factor, interference[inside])
     return pressure
+
+
+METHODS = [
+    Method(
+        name="nnls",
+        order=50,
+        title="NNLS",
+        loads=("closure",),  # as the authors impose it
+        warm=True,
+        counts="contact sets",
+        largest=12_000,
+        solver=solve,
+    )
+]

@@ -14,22 +14,12 @@ from roughcontact.kernel_cache import njit
 
 from .common import ContactProblem
 from .gauss_seidel import relieve
-from .registry import Method
+from .method import Method
 
 # Sweeps on one set before giving up: 500 over all sets sufficed for 12,000 interpenetrating nodes.
 MAX_SWEEPS = 5000
 # Each set is solved this far below the tolerance of the final check.
 SAFETY = 0.3
-
-
-METHOD = Method(
-    name="paper",
-    order=20,
-    title="the paper's algorithm",
-    loads=("closure",),  # as the paper imposes it
-    counts="sweeps",
-    largest=12_000,
-)
 
 
 def solve(problem: ContactProblem) -> ContactState:
@@ -93,3 +83,16 @@ def _gauss_seidel(influence, rows, columns, target, values, tolerance, max_sweep
             values[s] += change
             relieve(influence, rows, columns, s, change, left)
     return max_sweeps + 1
+
+
+METHODS = [
+    Method(
+        name="paper",
+        order=20,
+        title="the paper's algorithm",
+        loads=("closure",),  # as the paper imposes it
+        counts="sweeps",
+        largest=12_000,
+        solver=solve,
+    )
+]

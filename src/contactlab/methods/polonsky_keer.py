@@ -16,7 +16,7 @@ import numpy as np
 from roughcontact.contact.state import ContactState
 
 from .common import ContactProblem, in_stress
-from .registry import Method
+from .method import Method
 
 # Two applications each: rough surfaces need 30 to 150 for 1e-6.
 MAX_ITERATIONS = 5000
@@ -24,17 +24,6 @@ MAX_ITERATIONS = 5000
 SAFETY = 0.9
 # Closures, mm, between which the squares of gaps so much smaller still are numbers.
 MIN_CLOSURE, MAX_CLOSURE = 1e-140, 1e140
-
-
-METHOD = Method(
-    name="polonsky-keer",
-    order=30,
-    title="the Polonsky-Keer iteration",
-    loads=("closure", "force"),
-    hardness=("closure",),
-    warm=True,
-    counts="applications",
-)
 
 
 def solve(problem: ContactProblem) -> ContactState:
@@ -135,3 +124,17 @@ def _iterate(problem, pressure, total, limit):
         np.clip(pressure, 0.0, limit, out=pressure)
         if by_force:
             pressure *= total / pressure.sum()
+
+
+METHODS = [
+    Method(
+        name="polonsky-keer",
+        order=30,
+        title="the Polonsky-Keer iteration",
+        loads=("closure", "force"),
+        hardness=("closure",),
+        warm=True,
+        counts="applications",
+        solver=solve,
+    )
+]

@@ -12,19 +12,8 @@ from numpy.typing import ArrayLike
 
 from roughcontact.elastic.halfspace import HalfSpace
 
+from .method import Method
 from .peers import Failed, Load, PublicCode
-from .registry import Method
-
-METHOD = Method(
-    name="Tamaas",
-    order=200,
-    loads=("force",),
-    kernels=("love",),
-    warm=True,
-    counts="applications",
-    likely=-3.5,
-    packages=("tamaas",),
-)
 
 
 class Tamaas(PublicCode):
@@ -97,4 +86,16 @@ def _counter(tamaas):
     return Counter()
 
 
-set_up = Tamaas
+METHODS = [
+    Method(
+        name="Tamaas",
+        order=200,
+        loads=("force",),
+        kernels=("love",),
+        warm=True,
+        counts="applications",
+        likely=-3.5,
+        packages=("tamaas",),
+        solver=Tamaas,
+    )
+]

@@ -20,8 +20,9 @@ from contactlab.accuracy.speed import (
     pareto_front,
 )
 from contactlab.accuracy.timing import peak_memory, repeated
+from contactlab.methods.method import Method
 from contactlab.methods.peers import PublicCode
-from contactlab.methods.registry import METHODS, Method
+from contactlab.methods.registry import METHODS
 
 RECIPE = {
     "sizes": [24, 32],
@@ -176,8 +177,7 @@ def test_a_peer_that_crashes_is_a_failure_in_the_table(problem, monkeypatch):
         def solve(self, load, rtol):
             os.abort()
 
-    wild = Method(name="wild")
-    monkeypatch.setattr(Method, "set_up", lambda self, height, space: Wild(height, space))
+    wild = Method(name="wild", solver=Wild)
     monkeypatch.setattr(speed, "installed_peers", lambda: {"wild": wild})
     recipe = {**RECIPE, "tolerances": [1e-1], "runs": 1, "slow_nodes": 0}
     found = error_against_time(problem, recipe)
