@@ -23,14 +23,15 @@ rule size_effect_part:
         ),
         runtime=doubled(60),
     params:
+        function="contactlab.experiments.size_states:solve_tasks",
         tasks=lambda wc: [list(task) for task in SIZE_JOBS[wc.job]],
         loads=config.get("size_effect", {}).get("loads"),
         rtol=SOLVER.rtol,
-        code=code("size_effect_part"),
+        code=code("stage", "contactlab/experiments/size_states.py"),
     message:
         "size effect: synthetic surfaces {wildcards.job}"
     script:
-        "../scripts/size_effect_part.py"
+        "../scripts/stage.py"
 
 
 rule size_effect:

@@ -76,6 +76,11 @@ SURFACES: dict[str, tuple] = {
 }
 
 
+def solve_tasks(tasks: Sequence[Sequence[Any]], loads: Sequence[float], rtol: float) -> xr.Dataset:
+    """:func:`solve_task` of each task of a job, as the workflow states it, along ``surface``."""
+    return xr.concat([solve_task(SizeTask(*task), loads, rtol) for task in tasks], "surface")
+
+
 def solve_task(task: SizeTask, loads: Sequence[float], rtol: float) -> xr.Dataset:
     """States of the surfaces of one job under rising loads.
 
