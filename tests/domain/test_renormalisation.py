@@ -1,7 +1,6 @@
 import numpy as np
 import pytest
 import xarray as xr
-from scipy import stats
 
 from fractalcontact.core.estimate import Estimate
 from fractalcontact.domain.renormalisation import (
@@ -25,7 +24,6 @@ def test_exact_fractal_gives_back_its_dimension_and_measure():
     assert result.delta_sigma.dims == ("normal_force",)
     np.testing.assert_allclose(result.delta_sigma, DELTA)
     np.testing.assert_allclose(result.hausdorff_measure, MEASURE)
-    np.testing.assert_allclose(result.hausdorff_spread, 1)
     np.testing.assert_allclose(result.sigma_star, FORCE / MEASURE)
     assert (result.n == 4).all()
 
@@ -85,16 +83,6 @@ def test_fit_agrees_with_numpy():
         assert result.delta_sigma[load].item() == pytest.approx(2 - slope)
     assert (result.delta_sigma_low < result.delta_sigma).all()
     assert (result.delta_sigma < result.delta_sigma_high).all()
-    assert (result.hausdorff_spread > 1).all()
-
-
-def test_spread_of_the_measure_is_that_of_a_sample():
-    rng = np.random.default_rng(2)
-    area = AREA * np.exp(0.1 * xr.DataArray(rng.standard_normal(4), dims="resolution"))
-    result = renormalisation(S, area, FORCE)
-    measures = area * S ** (result.delta_sigma - 2)
-    for load in range(3):
-        assert result.hausdorff_spread[load].item() == pytest.approx(stats.gstd(measures[load]))
 
 
 def test_resolutions_without_contact_are_left_out():

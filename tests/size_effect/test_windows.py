@@ -23,7 +23,7 @@ from fractalcontact.mechanics.theory import scaled_joint
 from fractalcontact.roughness.estimators.roughness_length import roughness_length_curves
 from fractalcontact.size_effect.division import MIN_CELLS, PARTS, split, spread_windows
 from fractalcontact.size_effect.laws import size_laws
-from fractalcontact.size_effect.local_roughness import local_roughness, tilt_fraction
+from fractalcontact.size_effect.local_roughness import local_roughness
 from fractalcontact.size_effect.strength_laws import OFFSET_FRACTIONS
 from fractalcontact.size_effect.window_means import power_through
 from fractalcontact.size_effect.windows import window_states
@@ -145,12 +145,10 @@ def test_windows_are_spread_evenly_and_never_more_than_asked(parts, most):
     assert abs((rows.min() + rows.max()) - (parts - 1)) <= 1
 
 
-def test_a_plane_is_not_rough_and_all_of_it_is_tilt():
+def test_a_plane_is_not_rough():
     y, x = np.mgrid[:20, :24] * 0.1
     plane = (3 + 2 * x - y)[np.newaxis]
     assert local_roughness(plane) == pytest.approx(0, abs=1e-12)
-    assert tilt_fraction(plane) == pytest.approx(1)
-    assert np.isnan(tilt_fraction(np.zeros((1, 20, 24))))
 
 
 def test_a_joint_of_equal_tiles_has_no_size():
@@ -295,14 +293,13 @@ def climbing(states, slopes):
 def test_no_exponent_goes_through_strengths_held_at_their_bound(states):
     # 30 + 45 degrees are held at 70: the smallest size is left out, the other three are equal.
     found = size_laws(climbing(states, [0.5, 0.5, 0.5, 1.0]), ROCK, 12.0, DIMENSION)
-    for name in ("strength_exponent", "residual_exponent"):
-        np.testing.assert_allclose(found[name], 0, atol=1e-9)
-        np.testing.assert_array_equal(found[f"{name}_n"], 3)
+    np.testing.assert_allclose(found["strength_exponent"], 0, atol=1e-9)
+    np.testing.assert_array_equal(found["strength_exponent_n"], 3)
     np.testing.assert_array_equal(found["truncated_fraction_at_peak"].sel(part=8), 1)
     assert (found["strength_at_equal_v_over_b_exponent_n"] <= 3).all()
     # Where two sizes are left there is no exponent, though all have a strength.
     found = size_laws(climbing(states, [0.5, 0.5, 1.0, 1.0]), ROCK, 12.0, DIMENSION)
-    for name in ("strength_exponent", "residual_exponent", "strength_at_equal_v_over_b_exponent"):
+    for name in ("strength_exponent", "strength_at_equal_v_over_b_exponent"):
         assert np.isnan(found[name]).all(), name
     assert np.isfinite(found["peak_strength"]).all()
 
@@ -337,8 +334,6 @@ def test_local_roughness_is_that_of_the_plane_by_least_squares():
     residual = np.array([without_mean_plane(w) for w in windows])
     expected = np.sqrt((residual**2).sum(axis=(1, 2)) / (residual[0].size - 3))
     np.testing.assert_allclose(local_roughness(windows), expected, rtol=1e-10)
-    explained = 1 - (residual**2).mean(axis=(1, 2)) / windows.var(axis=(1, 2))
-    np.testing.assert_allclose(tilt_fraction(windows), explained, rtol=1e-9)
 
 
 def test_local_roughness_is_that_of_the_roughness_length_estimator():
@@ -491,8 +486,6 @@ def test_seating_takes_the_tilt_away_and_leaves_the_roughness(rock):
     chosen = settings(["20 MPa"])
     loose, seated = (states_of(rock, "W", [32], chosen, (8,), seated=s) for s in (False, True))
     np.testing.assert_allclose(seated["sigma_z"], loose["sigma_z"])
-    np.testing.assert_allclose(seated["tilt_share"], 0, atol=1e-12)
-    assert (loose["tilt_share"].mean() > 0.1).all()
     assert seated["interface_closure"].mean() < loose["interface_closure"].mean()
 
 

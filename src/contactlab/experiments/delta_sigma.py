@@ -14,7 +14,7 @@ import numpy as np
 import xarray as xr
 
 from fractalcontact.core.datasets import labelled, labelled_dataset
-from fractalcontact.core.estimate import NO_ESTIMATE, Estimate, rows_of
+from fractalcontact.core.estimate import Estimate, rows_of
 from fractalcontact.core.fitting import fit_line
 from fractalcontact.core.intervals import mean_interval
 from fractalcontact.core.labels import cf_attrs
@@ -42,12 +42,9 @@ def _words_of(name: str, words: str) -> dict[str, str]:
 ESTIMATES = {
     **_words_of("delta_sigma_area", "Delta_sigma from A_r(s) over the resolutions at one force"),
     **_words_of("delta_sigma_box", "Delta_sigma from box counts at the finest resolution"),
-    **_words_of("delta_ordinary", "ordinary slope of the box counts at the finest resolution"),
     **_words_of(
         "delta_pairs", "correlation dimension of the contact domain at the finest resolution"
     ),
-    "box_fit_min": "smallest box fitted over the finest spacing",
-    "box_fit_max": "largest box fitted over the finest spacing",
 }
 
 
@@ -71,12 +68,11 @@ def dimension_test(recipe: Mapping[str, Any], rtol: float = 1e-6) -> xr.Dataset:
     xr.Dataset
         :data:`ESTIMATES`, ``difference`` (area less box) and ``boxes_per_node`` over (dimension,
         size, seed, load); ``mean_delta_sigma_area``, ``mean_delta_sigma_box``,
-        ``mean_delta_ordinary``, ``mean_delta_pairs`` and
-        ``mean_difference`` over the seeds with ``_low`` and ``_high`` (95 %, Student's t) and
-        ``_n``; ``difference_agrees``, where zero lies in the last; ``light_load_delta`` (dimension)
-        = 4 - Delta_g; ``growth`` (dimension, load), change
-        of the difference with each doubling of the size, ``decade`` (dimension, size) with each
-        decade of load. With a hardness the same names after ``capped_``, over (dimension, seed,
+        ``mean_delta_pairs`` and ``mean_difference`` over the seeds with ``_low`` and ``_high``
+        (95 %, Student's t) and ``_n``; ``difference_agrees``, where zero lies in the last;
+        ``light_load_delta`` (dimension) = 4 - Delta_g; ``growth`` (dimension, load), change of the
+        difference with each doubling of the size, ``decade`` (dimension, size) with each decade of
+        load. With a hardness the same names after ``capped_``, over (dimension, seed,
         capped_pressure).
 
     Notes
@@ -198,10 +194,7 @@ def _estimates(
     return {
         **Estimate.read(by_area, "delta_sigma").columns("delta_sigma_area"),
         **Estimate.stack(boxes).columns("delta_sigma_box"),
-        **Estimate.stack(box.ordinary or NO_ESTIMATE for box in boxes).columns("delta_ordinary"),
         **Estimate.stack(pairs).columns("delta_pairs"),
-        "box_fit_min": [box.over[0] / spacing for box in boxes],
-        "box_fit_max": [box.over[1] / spacing for box in boxes],
         "nodes": nodes,
         "occupied": occupied,
     }
@@ -263,13 +256,7 @@ def _labelled(axes: Mapping[str, Any], values: Mapping[str, np.ndarray]) -> xr.D
 
 def _add_means(result: xr.Dataset) -> None:
     """Means over the seeds with their intervals, into ``result``."""
-    for name in (
-        "delta_sigma_area",
-        "delta_sigma_box",
-        "delta_ordinary",
-        "delta_pairs",
-        "difference",
-    ):
+    for name in ("delta_sigma_area", "delta_sigma_box", "delta_pairs", "difference"):
         values = result[name]
         dims = tuple(dim for dim in values.dims if dim != "seed")
         mean = mean_interval(values.values, axis=values.dims.index("seed"))

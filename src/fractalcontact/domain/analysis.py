@@ -16,7 +16,6 @@ from .box_dimension import ESTIMATORS, dimension_of_domain
 from .cluster_laws import cluster_laws
 from .clusters import CLUSTER_FIELDS, cluster_statistics
 from .fitted_counts import fitted_counts
-from .isotropy import LAG_FIELDS, contact_at_lag
 from .mean_law import mean_sizes
 from .renormalisation import MIN_RESOLUTIONS, area_bend, compare_dimensions, renormalisation
 
@@ -43,7 +42,6 @@ DOMAIN_FIELDS = {
     "ordinary_fit_min": ("mm", "smallest box in the fit of the ordinary dimension"),
     "ordinary_fit_max": ("mm", "largest box in the fit of the ordinary dimension"),
     "ordinary_fit_n": ("1", "box sizes in the fit of the ordinary dimension"),
-    **LAG_FIELDS,
     **CLUSTER_FIELDS,
 }
 
@@ -135,7 +133,6 @@ def analyse_domains(
     n_scales, n_means = (max(map(len, of_all)) for of_all in sizes.values())
     table = _empty_table(shape, n_scales, n_means, n_octaves)
     nodes = np.zeros(shape, int)
-    directions = [str(direction) for direction in fields["direction"].values]
     for place in np.ndindex(shape):
         direction, offset, k, load = place
         if not solved[place]:
@@ -148,7 +145,6 @@ def analyse_domains(
             domain,
             factor * spacing,
             ambiguous[place],
-            directions[direction],
             fit_range=fit_range,
             whole_cells=whole_cells,
         )
@@ -193,7 +189,7 @@ def _empty_table(shape, n_scales, n_means, n_octaves) -> dict[str, np.ndarray]:
     }
 
 
-def _row(domain, spacing, ambiguous, direction, **how) -> dict:
+def _row(domain, spacing, ambiguous, **how) -> dict:
     """Row of the table for one domain; ``how`` chooses the estimator of its dimension."""
     box = dimension_of_domain(domain, spacing, **how)
     return {
@@ -207,7 +203,6 @@ def _row(domain, spacing, ambiguous, direction, **how) -> dict:
         "fit_misfit": box.misfit,
         **{f"law_{name}": value for name, value in box.terms._asdict().items()},
         **_ordinary(box, spacing),
-        **contact_at_lag(domain, direction),
         **cluster_statistics(domain, spacing),
         "reason": box.reason,
         "estimator": ESTIMATORS.get(box.estimator, ""),

@@ -42,7 +42,7 @@ def pair_counts(domain: np.ndarray, distances: np.ndarray) -> tuple[np.ndarray, 
     lag_y, lag_x = np.mgrid[-reach : reach + 1, -reach : reach + 1]
     inside = (1 - np.abs(lag_y) / domain.shape[0]) * (1 - np.abs(lag_x) / domain.shape[1])
     ring = _rings(lag_y, lag_x, distances)
-    rings, lags = len(distances) + 1, lags_of(distances)
+    rings, lags = len(distances) + 1, _lags_of(distances)
     nodes = np.nonzero(domain)
     if nodes[0].size ** 2 * min(reach / domain.shape[0], 1) < _MAX_COMPARED:
         part = np.zeros(domain.shape, np.int64)
@@ -54,7 +54,7 @@ def pair_counts(domain: np.ndarray, distances: np.ndarray) -> tuple[np.ndarray, 
     return _transformed_pairs(domain, ring, inside, len(distances)), lags
 
 
-def lags_of(distances: np.ndarray) -> np.ndarray:
+def _lags_of(distances: np.ndarray) -> np.ndarray:
     """Number of non-zero lags of the grid within each distance, (k,) int64."""
     reach = int(distances[-1])
     lag_y, lag_x = np.mgrid[-reach : reach + 1, -reach : reach + 1]
@@ -188,41 +188,3 @@ def pairs_slope(distances: np.ndarray, pairs: np.ndarray, lags: np.ndarray) -> f
     if np.count_nonzero(known) < MIN_SCALES:
         return np.nan
     return 2 + fit_line(np.log(distances[known]), np.log(pairs[known] / lags[known])).slope.value
-
-
-def expected_pairs(
-    shape: tuple[int, int], nodes: int, mask: np.ndarray | None = None
-) -> tuple[np.ndarray, np.ndarray]:
-    """Pairs that as many random nodes are expected to have in each ring of distances.
-
-    Parameters
-    ----------
-    shape : (int, int)
-        Cells of the window.
-    nodes : int
-    mask : (ny, nx) bool ndarray, optional
-        Cells that nodes may lie in; all by default.
-
-    Returns
-    -------
-    pairs : (k,) float64
-        Of two nodes, each counted once.
-    weight : (k,) float64
-        Mean translation correction of a ring.
-    """
-    distances = pair_distances(shape)
-    reach = int(distances[-1])
-    lag_y, lag_x = np.mgrid[-reach : reach + 1, -reach : reach + 1]
-    inside = (1 - np.abs(lag_y) / shape[0]) * (1 - np.abs(lag_x) / shape[1])
-    cells = int(np.prod(shape)) if mask is None else int(np.count_nonzero(mask))
-    overlap = inside * np.prod(shape)
-    if mask is not None:
-        padded = [fft.next_fast_len(n + reach, real=True) for n in shape]
-        spectrum = fft.rfft2(mask.astype(float), padded)
-        overlap = np.round(fft.irfft2(np.abs(spectrum) ** 2, padded))[lag_y, lag_x]
-    ring = _rings(lag_y, lag_x, distances).ravel()
-    rings = len(distances) + 1
-    places = np.bincount(ring, weights=overlap.ravel(), minlength=rings)[:-1]
-    corrected = np.bincount(ring, weights=(overlap / inside).ravel(), minlength=rings)[:-1]
-    chance = nodes * (nodes - 1) / max(cells * (cells - 1), 1)
-    return places * chance / 2, corrected / np.maximum(places, 1)

@@ -6,7 +6,7 @@ drawn at random in the same window; and what elastic interaction adds, the depar
 bearing-area cut: as many nodes, the highest of the composite topography.
 """
 
-from collections.abc import Mapping
+from collections.abc import Collection
 from typing import Any
 
 import numpy as np
@@ -32,30 +32,33 @@ from .slope_curves import (
     random_curves,
 )
 
-#: What is stored of each quantity, by the ending of its name: estimates, and single numbers.
+#: What is stored of the bearing-area cut, of random nodes and of the difference, by the ending of a
+#: name.
+_CUT = "that of the bearing-area cut of as many nodes"
 _ESTIMATES = {
     "_random": "as many random nodes, mean and 95 % band",
-    "_random_difference": "less that of as many random nodes",
     "_cut_difference": "less that of the bearing-area cut",
 }
-_CUT = "that of the bearing-area cut of as many nodes"
+#: Of which quantities.
+_COMPARED = {
+    "_random": ("delta_sigma", "clusters"),
+    "_cut_difference": ("delta_sigma", "correlation_dimension"),
+}
 
 _BY_SIDE = ("normal_force", "null_scale")
 _BY_OCTAVE = ("normal_force", "null_octave")
 
 
-def _rows(name: str, words: str, dims: Any, endings: Mapping[str, str]) -> dict[str, tuple]:
+def _rows(name: str, words: str, dims: Any, endings: Collection[str]) -> dict[str, tuple]:
     """Variables of a quantity beside its null models."""
     rows = {f"{name}_cut": ("1", f"{words}: {_CUT}")}
-    for ending, what in endings.items():
-        rows |= rows_of(f"{name}{ending}", "1", f"{words}: {what}")
+    for ending in endings:
+        rows |= rows_of(f"{name}{ending}", "1", f"{words}: {_CURVES[ending]}")
     return {of: (dims, *units_and_words) for of, units_and_words in rows.items()}
 
 
 #: Curves of local slopes that are stored, by the ending of their name.
-_CURVES = {"": "of the domain"} | {
-    ending: words for ending, words in _ESTIMATES.items() if ending != "_random_difference"
-}
+_CURVES = {"": "of the domain"} | _ESTIMATES
 #: Reason of a window with no local slope.
 TOO_SMALL = "the window is too small for local slopes"
 
@@ -69,7 +72,9 @@ _TABLE: dict[str, tuple] = {
     **{
         of: row
         for name, words in QUANTITIES.items()
-        for of, row in _rows(name, words, "normal_force", _ESTIMATES).items()
+        for of, row in _rows(
+            name, words, "normal_force", [of for of, names in _COMPARED.items() if name in names]
+        ).items()
     },
     **_rows("local_slope", "local slope of the mean box counts", _BY_OCTAVE, _CURVES),
     **OCTAVES,
@@ -137,21 +142,20 @@ def null_models(
     Returns
     -------
     xr.Dataset
-        Over ``normal_force`` (without coordinate): each of :data:`QUANTITIES` with ``_random``,
-        ``_random_low``, ``_random_high``, ``_random_difference`` with its ends, ``_cut``,
-        and ``_cut_difference`` with its ends; the counts of the null models over the box sides
-        ``null_side`` and ``null_mean_side`` (mm). The ``local_slope`` of :mod:`domain.slope_curves`
-        over ``local_slope_side`` (mm), likewise; ``local_slope_random_p`` and ``_side``, the
-        probability of its largest departure from random nodes and the box side of that, and those
-        of the cut; ``null_verdict``, by :func:`domain.departure.departure_of`, and ``null_reason``.
+        Over ``normal_force`` (without coordinate): ``_cut`` of each of :data:`QUANTITIES`;
+        ``_random``, ``_random_low`` and ``_random_high`` of Delta_sigma and of the clusters;
+        ``_cut_difference`` with its ends of both dimensions; the counts of the null models over the
+        box sides ``null_side`` and ``null_mean_side`` (mm). The ``local_slope`` of
+        :mod:`domain.slope_curves` over ``local_slope_side`` (mm), likewise;
+        ``local_slope_random_p`` and ``_side``, the probability of its largest departure from random
+        nodes and the box side of that, and those of the cut; ``null_verdict``, by
+        :func:`domain.departure.departure_of`, and ``null_reason``.
 
     Notes
     -----
     The domain and its cut share most of their hills, so the interval of their difference is that of
-    pairs: the jackknife leaves the same part of the window out of both. Random nodes share nothing
-    with it: the interval of that difference is the root of the sum of the squares of the domain's
-    own by the jackknife and of half the band. Both models are fitted over the boxes of the domain,
-    so that what the choice of these changes is common and in neither.
+    pairs: the jackknife leaves the same part of the window out of both. Both models are fitted over
+    the boxes of the domain, so that what the choice of these changes is common and in neither.
     """
     domains = np.asarray(domains, bool)
     limits = in_cells(fit_range, spacing)
@@ -243,11 +247,10 @@ def _row(domain, spacing, composite, fit_range, mask, how) -> dict[str, Any]:
 
     ours = counted(domain)
     box, nodes = ours.box, int(np.count_nonzero(domain))
-    used = None if box.ordinary is None else box.ordinary.used
     law = ours.law if box.estimator == "mean" else None
-    bands, counts = random_bands(domain.shape, nodes, mask=mask, law=law, used=used, **how)
-    random = _less_random(ours, bands)
-    of_cut, beyond_cut = dict.fromkeys(QUANTITIES, np.nan), dict.fromkeys(QUANTITIES, NO_ESTIMATE)
+    bands, counts = random_bands(domain.shape, nodes, mask=mask, law=law, **how)
+    of_cut = dict.fromkeys(QUANTITIES, np.nan)
+    beyond_cut = dict.fromkeys(_COMPARED["_cut_difference"], NO_ESTIMATE)
     count = np.full(dyadic_sizes(domain.shape).size, np.nan)
     highest_nodes = None
     if composite is not None and nodes > 1:
@@ -256,11 +259,10 @@ def _row(domain, spacing, composite, fit_range, mask, how) -> dict[str, Any]:
         of_cut, beyond_cut = highest.values, _less_cut(ours, highest)
         if highest.box.ordinary is not None:
             count = highest.box.ordinary.counts
-    row: dict[str, Any] = {}
-    for name in QUANTITIES:
-        row[f"{name}_cut"] = of_cut[name]
-        for ending, of in zip(_ESTIMATES, (bands, random, beyond_cut), strict=True):
-            row |= of[name].columns(f"{name}{ending}")
+    row: dict[str, Any] = {f"{name}_cut": value for name, value in of_cut.items()}
+    for ending, found in (("_random", bands), ("_cut_difference", beyond_cut)):
+        for name, estimate in found.items():
+            row |= estimate.columns(f"{name}{ending}")
     row |= _compared_slopes(domain, highest_nodes, mask, spacing)
     row |= counts.columns("null_count_random")
     row["null_count_cut"] = count
@@ -318,21 +320,11 @@ def _why_not_compared(nodes, slopes):
     return "" if slopes else TOO_SMALL
 
 
-def _less_random(domain, bands) -> dict[str, Estimate]:
-    """Differences of a domain's quantities from those of random nodes."""
-    less = {}
-    for name, error in errors_of([domain]).items():
-        band, difference = bands[name], domain.values[name] - bands[name].value
-        low = difference - np.hypot(error, band.high - band.value)
-        less[name] = Estimate(difference, low, difference + np.hypot(error, band.value - band.low))
-    return less
-
-
 def _less_cut(domain, cut) -> dict[str, Estimate]:
-    """Differences of a domain's quantities from those of the cut."""
+    """Differences of a domain's dimensions from those of the cut."""
     less = {}
     same = np.array_equal(domain.nodes, cut.nodes)
-    for name, error in errors_of([domain, cut]).items():
+    for name, error in errors_of(domain, cut).items():
         difference, half = domain.values[name] - cut.values[name], 0.0 if same else error
         less[name] = Estimate(difference, difference - half, difference + half)
     return less

@@ -5,19 +5,14 @@ import scipy.ndimage
 
 from ..core.estimate import NO_ESTIMATE, Estimate
 from ..core.intervals import t_quantile
-from ..core.limits import CONFIDENCE
 from ..core.ranges import in_cells
 from .box_counts import mean_count, minimal_cover
-from .clusters import NEIGHBOURS, morisita_index, quadrat_counts
-from .correlation import expected_pairs, lags_of, pair_distances, pairs_slope
-from .mean_law import FoundLaw, count_slope, dimension_by_means, find_law
-from .ordinary_slope import cover_used, dyadic_sizes
+from .clusters import NEIGHBOURS
+from .mean_law import FoundLaw, dimension_by_means, find_law
+from .ordinary_slope import dyadic_sizes
 
 #: Draws of random nodes. The band allows for their number.
 DRAWS = 20
-
-#: Draws of numbers that cost next to nothing.
-CHEAP_DRAWS = 200
 
 
 def band_of(draws: np.ndarray) -> Estimate:
@@ -45,15 +40,6 @@ def band_of(draws: np.ndarray) -> Estimate:
     return Estimate(mean, mean - half, mean + half)
 
 
-def _quantiles(draws: np.ndarray) -> Estimate:
-    """Mean of many draws and the band of 95 % of them; NaN where half have no value."""
-    known = draws[np.isfinite(draws)]
-    if known.size < max(draws.size / 2, 2):
-        return NO_ESTIMATE
-    low, high = np.quantile(known, ((1 - CONFIDENCE) / 2, (1 + CONFIDENCE) / 2))
-    return Estimate(float(known.mean()), float(low), float(high))
-
-
 def random_bands(
     shape: tuple[int, int],
     nodes: int,
@@ -62,7 +48,6 @@ def random_bands(
     limits: tuple[float, float] = (0.0, np.inf),
     whole_cells: bool | None = False,
     law: FoundLaw | None = None,
-    used: np.ndarray | None = None,
     draws: int = DRAWS,
 ) -> tuple[dict[str, Estimate], Estimate]:
     """Bands of the same estimators for as many random nodes in a window.
@@ -82,15 +67,12 @@ def random_bands(
     law : FoundLaw, optional
         Law of the domain that is compared: the draws' laws are fitted over the same boxes. By
         default each draw has its own range, between its own cut-offs.
-    used : (k,) bool ndarray, optional
-        Likewise the sizes of the ordinary slope that is compared.
     draws : int
 
     Returns
     -------
     bands : dict of str to Estimate
-        ``delta_sigma``, ``delta_sigma_ordinary``, ``correlation_dimension``, ``clusters`` and
-        ``morisita``.
+        ``delta_sigma`` and ``clusters``.
     counts : Estimate
         Of the minimal cover, each (k,) over :func:`domain.ordinary_slope.dyadic_sizes`.
 
@@ -103,9 +85,7 @@ def random_bands(
     """
     sizes = dyadic_sizes(shape)
     cells = np.arange(np.prod(shape)) if mask is None else np.flatnonzero(mask)
-    rows: dict[str, list[float]] = {
-        name: [] for name in ("delta_sigma", "delta_sigma_ordinary", "clusters")
-    }
+    rows: dict[str, list[float]] = {"delta_sigma": [], "clusters": []}
     covers = []
     for seed in range(draws if nodes > 1 else 0):
         domain = random_nodes(shape, nodes, cells, seed)
@@ -119,16 +99,11 @@ def random_bands(
             dimension = law.refound(mean, whole_cells)
         covers.append(cover)
         rows["delta_sigma"].append(dimension)
-        kept = cover_used(cover, sizes, nodes, shape, limits) if used is None else used
-        rows["delta_sigma_ordinary"].append(count_slope(cover[kept], sizes[kept]))
         rows["clusters"].append(scipy.ndimage.label(domain, NEIGHBOURS)[1])
     if not covers:
-        names = (*rows, "correlation_dimension", "morisita")
         missing = np.full(sizes.size, np.nan)
-        return dict.fromkeys(names, NO_ESTIMATE), Estimate(missing, missing, missing)
+        return dict.fromkeys(rows, NO_ESTIMATE), Estimate(missing, missing, missing)
     bands = {name: band_of(np.array(values)) for name, values in rows.items()}
-    bands["correlation_dimension"] = _quantiles(_pair_draws(shape, nodes, mask))
-    bands["morisita"] = _quantiles(_index_draws(shape, nodes, mask))
     return bands, band_of(np.array(covers))
 
 
@@ -147,32 +122,6 @@ def random_nodes(shape: tuple[int, int], nodes: int, cells: np.ndarray, seed: in
     domain = np.zeros(int(np.prod(shape)), bool)
     domain[cells[rng.choice(cells.size, nodes, replace=False, shuffle=False)]] = True
     return domain.reshape(shape)
-
-
-def _pair_draws(shape, nodes, mask):
-    """Correlation dimensions of random nodes, drawn ring by ring.
-
-    Pairs at different lags go together by the number of nodes alone, which is given; those of a
-    ring vary as Poisson's law has it where nodes are few, less by 1 - f at a fraction f.
-    """
-    distances = pair_distances(shape)
-    expected, weight = expected_pairs(shape, nodes, mask)
-    lags = lags_of(distances)
-    cells = np.prod(shape) if mask is None else np.count_nonzero(mask)
-    rng = np.random.default_rng([*shape, int(cells), nodes])
-    pairs = rng.poisson(expected, (CHEAP_DRAWS, expected.size))
-    pairs = expected + (pairs - expected) * (1 - nodes / cells)
-    sums = np.cumsum(2 * pairs * weight, axis=1)
-    return np.array([pairs_slope(distances, row, lags) for row in sums])
-
-
-def _index_draws(shape, nodes, mask):
-    """Indices of Morisita of random nodes: their quadrat counts are hypergeometric."""
-    inside = np.ones(shape, bool) if mask is None else mask
-    places, cells = quadrat_counts(inside)
-    rng = np.random.default_rng([*shape, int(places.sum()), nodes, 1])
-    contact = rng.multivariate_hypergeometric(places, nodes, size=CHEAP_DRAWS)
-    return np.array([morisita_index(row, cells)[0] for row in contact])
 
 
 def expected_mean_counts(shape: tuple[int, int], nodes: int, sizes: np.ndarray) -> np.ndarray:

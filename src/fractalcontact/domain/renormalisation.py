@@ -53,8 +53,7 @@ def renormalisation(
     -------
     xarray.Dataset
         On the other dimensions of `area`: `delta_sigma` with `_low`, `_high` (95 %), `n`
-        resolutions fitted, `r2`; `hausdorff_measure` (geometric mean over resolutions, mm^Delta)
-        and `hausdorff_spread`, the geometric standard deviation about it (1 = no spread);
+        resolutions fitted, `r2`; `hausdorff_measure` (geometric mean over resolutions, mm^Delta);
         `sigma_star` = F / H_D, N mm^-Delta. On (resolution, ...): `sigma_n` = F / A_n, MPa, at the
         resolutions that count. NaN where fewer than three resolutions can be;
         no interval with fewer than `MIN_RESOLUTIONS`.
@@ -96,17 +95,13 @@ def renormalisation(
     bounded = delta.high.where((delta.high < 2) | (delta.value > 2) | delta.high.isnull(), 2.0)
     delta = replace(delta, high=bounded)
     measure = hausdorff_measure(s, touching, delta.value)
-    mean_log, spread_log = (
-        np.log(measure).mean(RESOLUTION),
-        np.log(measure).std(RESOLUTION, ddof=1),
-    )
+    measure = np.exp(np.log(measure).mean(RESOLUTION))
     values = {
         **delta.columns("delta_sigma"),
         "n": n.astype(int),
         "r2": r2,
-        "hausdorff_measure": np.exp(mean_log),
-        "hausdorff_spread": np.exp(spread_log),
-        "sigma_star": force / np.exp(mean_log),
+        "hausdorff_measure": measure,
+        "sigma_star": force / measure,
         "sigma_n": force / touching,
     }
     return _described(values, _RENORMALISED)
@@ -118,7 +113,6 @@ _RENORMALISED = {
     "n": ("1", "resolutions fitted"),
     "r2": ("1", "coefficient of determination of the fit"),
     "hausdorff_measure": ("mm^delta_sigma", "fractal measure H_D of the contact domain"),
-    "hausdorff_spread": ("1", "geometric standard deviation of H_D over resolutions"),
     "sigma_star": ("N mm^-delta_sigma", "fractal mean pressure sigma*"),
     "sigma_n": ("MPa", "real mean pressure at each resolution"),
 }

@@ -119,7 +119,7 @@ def size_laws(
     result["windows"].attrs = cf_attrs("1", "sub-windows solved of each size")
     _add_hurst(result, states, dimension, fit_range)
     _add_exponents(result, states)
-    for name in ("sigma_z", "tilt_share", "mean_gap"):
+    for name in ("sigma_z", "mean_gap"):
         add_mean(result, name, states[name])
     if states["direction"].item() != "none":
         result = result.merge(strength_by_size(states, material, roughness))

@@ -37,14 +37,6 @@ def local_roughness(windows: ArrayLike) -> np.ndarray:
     return np.sqrt(np.sum(residuals**2, axis=(1, 2)) / (ny * nx - 3))
 
 
-def tilt_fraction(windows: ArrayLike) -> np.ndarray:
-    """Fraction of each window's variance that its mean plane explains; NaN where it is flat."""
-    windows = np.asarray(windows, float)
-    total = windows.var(axis=(1, 2))
-    left = np.mean(without_mean_planes(windows) ** 2, axis=(1, 2))
-    return np.where(total > 0, 1 - left / np.where(total > 0, total, 1), np.nan)
-
-
 _SCALES = {
     "scale_side": ("scale", "mm", "side b of the sub-windows"),
     "scale_n": ("scale", "1", "sub-windows of that size"),

@@ -46,10 +46,10 @@ def strength_by_size(states: xr.Dataset, material: Friction, roughness: float) -
         ``peak_strength``, ``peak_dilatancy_angle`` (which is not truncated), ``residual_strength``
         (part, normal_force) and ``shear_strength`` (interval, part, normal_force);
         ``truncated_fraction_at_peak`` (part, normal_force), the fraction of sub-windows whose angle
-        was truncated there; ``strength_exponent``, ``residual_exponent`` (normal_force) and
-        ``shear_exponent`` (interval, normal_force); ``barton_scaled_strength`` (part, normal_force)
-        with the JRC and JCS of that size by Barton and Bandis' law (which was measured on joints of
-        50 mm and more); none where that JRC is beyond Barton's scale of 0 to 20.
+        was truncated there; ``strength_exponent`` (normal_force); ``barton_scaled_strength``
+        (part, normal_force) with the JRC and JCS of that size by Barton and Bandis' law (which was
+        measured on joints of 50 mm and more); none where that JRC is beyond Barton's scale of 0 to
+        20.
 
         At offsets in proportion to the size, v = (v/b) b, over (share, part, load): mean
         ``strength_at_equal_v_over_b`` and ``slope_at_equal_v_over_b`` (d delta/dv, not truncated),
@@ -107,8 +107,6 @@ def strength_by_size(states: xr.Dataset, material: Friction, roughness: float) -
     bounds = {
         "strength_at_equal_v_over_b": (_at_fractions(offset, side.values, bound) > 0).any(axis=2),
         "peak_strength": (peak(midpoint, truncated)[0] > 0).any(axis=1),
-        "residual_strength": (residual(midpoint, bound, largest).value > 0).any(axis=1),
-        "shear_strength": (bound > 0).any(axis=2),
     }
     for name, exponent in _EXPONENTS.items():
         fitted = result[name]
@@ -215,8 +213,6 @@ _EXPONENTS = {
     "strength_at_equal_v_over_b": "strength_at_equal_v_over_b_exponent",
     "slope_at_equal_v_over_b": "slope_at_equal_v_over_b_exponent",
     "peak_strength": "strength_exponent",
-    "residual_strength": "residual_exponent",
-    "shear_strength": "shear_exponent",
 }
 
 _TRUNCATED_FRACTION = f"fraction of sub-windows truncated at {LARGEST_FRICTION_ANGLE:g} degrees"

@@ -22,7 +22,7 @@ from ..mechanics.state_scalars import state_area, state_errors
 from ..mechanics.states import SOLVER_ERROR
 from ..mechanics.sweep import load_steps
 from .division import PARTS, solvable_parts, split, spread_windows
-from .local_roughness import local_roughness, roughness_by_size, tilt_fraction
+from .local_roughness import local_roughness, roughness_by_size
 
 #: Sub-windows solved of each size.
 MAX_WINDOWS = 16
@@ -50,7 +50,6 @@ STATES = {
 #: Scalars of every sub-window at an offset: unit, long name.
 SHAPES = {
     "sigma_z": ("mm", "rms of the composite topography about its own mean plane"),
-    "tilt_share": ("1", "fraction of the variance of the composite topography that is tilt"),
     "rigid_opening": ("mm", "rigid dilatancy delta_r of the sub-window"),
 }
 
@@ -204,11 +203,7 @@ class _SubWindows:
     def shapes(self, composites: np.ndarray) -> dict[str, np.ndarray]:
         """:data:`SHAPES` (n,) of the composite topographies at an offset."""
         opened = composites.max(axis=(1, 2)) - self._mated.max(axis=(1, 2))
-        return {
-            "rigid_opening": opened,
-            "sigma_z": local_roughness(composites),
-            "tilt_share": tilt_fraction(composites),
-        }
+        return {"rigid_opening": opened, "sigma_z": local_roughness(composites)}
 
 
 def _solved(
