@@ -105,13 +105,16 @@ def mean_exponent(values: np.ndarray) -> Exponent:
     return Exponent.scattered(float(values.mean()), error, values.size - 1)
 
 
-def size_exponent(sides: np.ndarray, values: np.ndarray) -> Exponent:
+def size_exponent(sides: np.ndarray, values: np.ndarray, *, equal: bool = False) -> Exponent:
     """Exponent of a positive quantity over the side, from independent surfaces of each side.
 
     Parameters
     ----------
     sides, values : (n,) array_like
         One of each surface; NaN where missing.
+    equal : bool, optional
+        One weight for all sides: where values follow no straight line, a prediction for the same
+        sides then has the same line.
 
     Returns
     -------
@@ -136,7 +139,7 @@ def size_exponent(sides: np.ndarray, values: np.ndarray) -> Exponent:
     # A side whose surfaces are all alike would have all the weight.
     variance = np.array([np.var(group, ddof=1) / group.size for group in groups])
     variance = np.maximum(variance, 1e-12)
-    weight = 1 / variance
+    weight = np.ones(variance.size) if equal else 1 / variance
     lever = x - np.sum(weight * x) / weight.sum()
     parts = weight * lever / np.sum(weight * lever**2)
     value = float(np.sum(parts * mean))

@@ -12,7 +12,6 @@ import numpy as np
 
 from .size_decision import (
     NO_EFFECT,
-    UNKNOWN,
     Exponent,
     mean_exponent,
     size_exponent,
@@ -109,33 +108,6 @@ def strength_exponent(sides: np.ndarray, rates: np.ndarray, basic_angle: float) 
         Degrees.
     """
     return size_exponent(sides, linear_strengths(sides, rates, basic_angle))
-
-
-def equal_exponent(sides: np.ndarray, values: np.ndarray) -> Exponent:
-    """Exponent over the side as :func:`size_exponent`, but with one weight for all sides.
-
-    Over sides at equal v/b the strength follows v, and not along a straight line: with equal
-    weights a prediction for the same sides has the same line.
-
-    Parameters
-    ----------
-    sides, values : (n,) array_like
-    """
-    sides, values = np.asarray(sides, float), np.asarray(values, float)
-    usable = np.isfinite(values) & (values > 0)
-    groups = {side: np.log(values[usable & (sides == side)]) for side in np.unique(sides)}
-    groups = {side: group for side, group in groups.items() if group.size > 1}
-    if len(groups) < 2:
-        return UNKNOWN
-    lever = np.log(list(groups)) - np.mean(np.log(list(groups)))
-    parts = lever / np.sum(lever**2)
-    value = float(np.sum(parts * [group.mean() for group in groups.values()]))
-    of_sides = parts**2 * [np.var(group, ddof=1) / group.size for group in groups.values()]
-    variance = of_sides.sum()
-    freedom = np.array([group.size - 1 for group in groups.values()])
-    # Welch and Satterthwaite; surfaces that are all alike have no scatter and any freedom.
-    joint = variance**2 / np.sum(of_sides**2 / freedom) if variance > 0 else freedom.sum()
-    return Exponent.scattered(value, float(np.sqrt(variance)), float(joint))
 
 
 def size_verdict(exponent: Exponent) -> str:

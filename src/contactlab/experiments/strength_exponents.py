@@ -23,7 +23,6 @@ from .size_decision import (
     size_exponent,
 )
 from .strength_decision import (
-    equal_exponent,
     friction_ratio,
     joint_verdict,
     linear_strengths,
@@ -330,12 +329,14 @@ def _scaled(
 def _over_sides(
     one: _Sample, intervals: Mapping[float, int], column: Callable[[int], np.ndarray]
 ) -> Exponent:
-    """Exponent over sides of a column, that of each side at its own interval."""
+    """Exponent over sides of a column, that of each side at its own interval.
+
+    At equal v/b the strength follows v, and not along a straight line.
+    """
     here = {side: one.sides * SPACING == side for side in intervals}
     sides = np.concatenate([np.full(np.count_nonzero(at), side) for side, at in here.items()])
-    return equal_exponent(
-        sides, np.concatenate([column(intervals[side])[at] for side, at in here.items()])
-    )
+    values = np.concatenate([column(intervals[side])[at] for side, at in here.items()])
+    return size_exponent(sides, values, equal=True)
 
 
 def _by_largest(

@@ -9,7 +9,7 @@ from contactlab.experiments.mated_faces import (
     mated_composite,
     sliding_face,
 )
-from contactlab.experiments.size_decision import Exponent
+from contactlab.experiments.size_decision import Exponent, size_exponent
 from contactlab.experiments.size_strength import size_strength, sliding_joint, sliding_states
 from contactlab.experiments.strength_decision import (
     EFFECT,
@@ -17,7 +17,6 @@ from contactlab.experiments.strength_decision import (
     OF_B,
     OF_V,
     OPEN,
-    equal_exponent,
     friction_ratio,
     joint_verdict,
     linear_strengths,
@@ -266,10 +265,10 @@ def test_linear_strengths_have_the_strength_of_the_mean_rate():
 def test_equal_weights_give_the_ordinary_line():
     sides = np.repeat([1.0, 2.0, 4.0], 5)
     values = sides**-0.3
-    assert equal_exponent(sides, values).value == pytest.approx(-0.3)
+    assert size_exponent(sides, values, equal=True).value == pytest.approx(-0.3)
     bent = np.exp(np.repeat([0.0, 1.0, 0.0], 5))
-    assert equal_exponent(sides, bent).value == pytest.approx(0)
-    assert np.isnan(equal_exponent(sides[:5], values[:5]).value)
+    assert size_exponent(sides, bent, equal=True).value == pytest.approx(0)
+    assert np.isnan(size_exponent(sides[:5], values[:5], equal=True).value)
 
 
 def _exponent(value, half):
