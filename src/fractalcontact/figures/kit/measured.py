@@ -144,7 +144,17 @@ def table_of(series: Sequence[Series]) -> pd.DataFrame:
 
 
 def draw_over_force(axes: Axes, series: Sequence[Series], nominal: float) -> None:
-    """Measured domains at their nominal pressure: F is of this window, their area is another."""
+    """Measured domains at their nominal pressure: F is of this window, their area is another.
+
+    Parameters
+    ----------
+    axes : matplotlib.axes.Axes
+        Of Delta_sigma over F, N, along x.
+    series : sequence of Series
+        Their pressures in MPa; a map without one is a line across.
+    nominal : float
+        A_0 of this window, mm2.
+    """
     for each in series:
         pressure = each.pressure
         without = np.flatnonzero(~np.isfinite(pressure))

@@ -31,7 +31,24 @@ def draw_faces(
     faces: Sequence[str],
     sides: Sequence[float],
 ) -> Rectangle:
-    """Reliefs side by side with one scale of heights; the outline of the window."""
+    """Reliefs side by side with one scale of heights; the outline of the window.
+
+    Parameters
+    ----------
+    figure, panels
+        Where they stand, a panel a face.
+    specimen : xr.Dataset
+        Of the stage ``specimens``.
+    faces : sequence of str
+        Names of its variables of heights (y, x), mm.
+    sides : (2,) sequence of float
+        Of the scan along y and x, mm.
+
+    Returns
+    -------
+    Rectangle
+        For a legend.
+    """
     heights = np.concatenate([specimen[face].values.ravel() for face in faces])
     low, high = np.nanquantile(heights, [CLIPPED, 1 - CLIPPED])
     _, size = length_unit(max(sides))

@@ -119,7 +119,16 @@ def name_exponents(axes: Axes, laws: xr.Dataset, name: str, of: str) -> None:
 def draw_bars(
     axes: Axes, b: np.ndarray, mean: np.ndarray, low: np.ndarray, high: np.ndarray, colour: str
 ) -> None:
-    """Intervals of means on a logarithmic axis; one that includes zero ends below the frame."""
+    """Intervals of means on a logarithmic axis; one that includes zero ends below the frame.
+
+    Parameters
+    ----------
+    axes : matplotlib.axes.Axes
+        Of the side b, mm, along x.
+    b, mean, low, high : (n,) ndarray
+        NaN where there is no interval.
+    colour : str
+    """
     known = np.isfinite(low) & (mean > 0)
     bottom = np.maximum(low[known], _OUT_OF_FRAME * mean[known])
     axes.vlines(b[known], bottom, high[known], color=colour, lw=0.8)
