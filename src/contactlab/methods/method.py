@@ -180,22 +180,6 @@ class Method:
         square = ny == nx and abs(dy - dx) <= 1e-9 * dx
         return square and nx >= MIN_DYADIC and nx & (nx - 1) == 0
 
-    def offers(
-        self,
-        *,
-        closure: float | None = None,
-        force: float | None = None,
-        hardness: float | None = None,
-    ) -> bool:
-        """True if the method takes a load and a hardness; None matches any.
-
-        Parameters
-        ----------
-        closure, force, hardness : float, optional
-            As of a call.
-        """
-        return not self._lack(closure, force, hardness, "")
-
     def _lack(self, closure, force, hardness, kernel):
         """Missing capability of the method for a problem, as a sentence; empty without one."""
         title = self.title or self.name

@@ -11,8 +11,8 @@ from fractalcontact import HalfSpace, NotConverged
 from fractalcontact.surface.synthesis import self_affine
 
 ITERATIVE = [name for name, method in METHODS.items() if not method.direct]
-BY_FORCE = [name for name, method in METHODS.items() if method.offers(force=1.0)]
-CAPPED = [name for name, method in METHODS.items() if method.offers(closure=1.0, hardness=1.0)]
+BY_FORCE = [name for name, method in METHODS.items() if "force" in method.loads]
+CAPPED = [name for name, method in METHODS.items() if "closure" in method.hardness]
 # One line per problem: seed, nodes each way, H and closure in rms heights; from 2 to 45 % in
 # contact.
 PROBLEMS = [

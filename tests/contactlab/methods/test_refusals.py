@@ -30,8 +30,8 @@ SOLVERS = {"": solve_contact, **METHODS}
 def offered(loads):
     """Pairs of a method and a load that it does not refuse for its kind."""
 
-    def offers(name, rtol=None, **load):
-        return METHODS[name].offers(**load)
+    def offers(name, closure=None, force=None, hardness=None, rtol=None):
+        return not METHODS[name]._lack(closure, force, hardness, "")
 
     return [(name, *load) for name in METHODS for load in loads if offers(name, **load[0])]
 

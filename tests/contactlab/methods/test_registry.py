@@ -7,12 +7,6 @@ from contactlab.methods.method import Method
 from contactlab.methods.registry import METHODS, PEERS
 
 
-def test_a_method_offers_what_it_declares():
-    method = Method(name="mean plane", solver=print, loads=("force",), hardness=("force",))
-    assert method.offers(force=1.0, hardness=2.0)
-    assert not method.offers(closure=0.1)
-
-
 def test_every_method_is_there_in_its_order():
     assert {"dense", "paper", "polonsky-keer", "gauss-seidel", "nnls"} <= METHODS.keys()
     assert {"ContactMechanics ccg", "Tamaas"} <= PEERS.keys()
