@@ -49,8 +49,7 @@ STATES: dict[str, tuple] = {
     "box_dimension": (_STATE, "1", "Delta_sigma of the contact domain by box counting"),
     "random_dimension": (_STATE, "1", "the same expected of as many random nodes"),
     "cut_box_dimension": (_STATE, "1", "the same of the bearing-area cut of as many nodes"),
-    "correlation_dimension": (_STATE, "1", "correlation dimension D_2 of the contact domain"),
-    "band_dimension": (_STATE, "1", "D_2 between the cut-off and the roll-off"),
+    "band_dimension": (_STATE, "1", "correlation dimension between cut-off and roll-off"),
     "cut_dimension": (_STATE, "1", "the same of the bearing-area cut of as many nodes"),
     **{name: (_STATE, *SCALARS[name]) for name in ("residual", "energy_error")},
 }
@@ -232,7 +231,6 @@ def _numbers_of(
         "box_dimension": dimension_of_domain(domain, SPACING).dimension,
         "random_dimension": expected_dimension(domain, SPACING),
         "cut_box_dimension": dimension_of_domain(cut, SPACING).dimension,
-        "correlation_dimension": correlation_dimension(domain, SPACING).value,
         "band_dimension": correlation_dimension(domain, SPACING, band).value,
         "cut_dimension": correlation_dimension(cut, SPACING, band).value,
         "residual": state.residual,
