@@ -213,3 +213,8 @@ def test_the_command_writes_a_file_or_says_what_is_no_card(tmp_path, card, capsy
     assert out.read_text() == porepy.text_of(card)
     assert main([str(tmp_path / "none.yaml"), "--to", "csv"]) == 1
     assert "expected a card" in capsys.readouterr().err
+    out.with_name("file").write_text("no folder")
+    assert main([*arguments[:-1], str(out.with_name("file") / "pair.py")]) == 1
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith("error: ")
+    assert "cannot be written" in line

@@ -5,6 +5,7 @@ python -m contactlab.commands.size_effect_page results/size_effect/atlas.nc docs
 
 import argparse
 import itertools
+import sys
 import textwrap
 from collections.abc import Iterable, Sequence
 from pathlib import Path
@@ -13,7 +14,7 @@ import numpy as np
 import xarray as xr
 
 from fractalcontact.core.atomic import atomic_write
-from fractalcontact.core.errors import InputError
+from fractalcontact.core.errors import InputError, said_in_one_line
 from fractalcontact.study.atlas import read_atlas
 
 from ..experiments.size_tasks import ARMS
@@ -412,8 +413,9 @@ def _surfaces(test: xr.Dataset) -> list[str]:
     ]
 
 
-def main(arguments: Sequence[str] | None = None) -> None:
-    """Read the atlas, write the page."""
+@said_in_one_line
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Read the atlas, write the page; exit code 1 if there is no such atlas, else 0."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("atlas", type=Path)
     parser.add_argument("page", type=Path)
@@ -428,7 +430,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
     text = page(test, stated.atlas.parent.name, strength)
     with atomic_write(stated.page) as path:
         path.write_text(text, encoding="utf-8")
+    return 0
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

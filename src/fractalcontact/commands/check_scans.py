@@ -12,7 +12,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from ..core.errors import InputError
+from ..core.errors import InputError, said_in_one_line
 from ..core.labels import length_words, natural_key, percent, plain, printable
 from ..core.window import face_words, spacing_of, window_sides
 from ..domain.measured_map import read_contact_map
@@ -288,6 +288,7 @@ def _wrapped(sentence):
     return lines
 
 
+@said_in_one_line
 def main(arguments: Sequence[str] | None = None) -> int:
     """Print the table; 1 if a file was refused or the study is wrong, else 0."""
     parser = argparse.ArgumentParser(prog="check_scans", description=__doc__.split("\n")[0])
@@ -297,15 +298,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     options = parser.parse_args(arguments)
     # Names may hold what a terminal's encoding does not.
     sys.stdout.reconfigure(errors="backslashreplace")  # type: ignore[union-attr]  # a text file
-    try:
-        study, schema = read_study(options.study), read_study(options.schema)
-        check_study(study, schema, options.study)
-        return _print_table(
-            Path(options.folder or study.get("scans") or "scans"), study, schema, options.study
-        )
-    except InputError as error:
-        sys.stderr.write(f"error: {error}\n")
-        return 1
+    study, schema = read_study(options.study), read_study(options.schema)
+    check_study(study, schema, options.study)
+    return _print_table(
+        Path(options.folder or study.get("scans") or "scans"), study, schema, options.study
+    )
 
 
 def _print_table(folder, study, schema, source):

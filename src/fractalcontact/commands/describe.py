@@ -15,7 +15,7 @@ import numpy as np
 import yaml
 
 from ..core.directions import APERTURE
-from ..core.errors import InputError
+from ..core.errors import InputError, said_in_one_line
 from ..core.file_names import split_file_name
 from ..core.labels import natural_key, percent, printable
 from ..core.units import length_factor
@@ -310,6 +310,7 @@ def _like(path: Path, scans: Mapping[str, ScanFiles]) -> tuple[dict, ScanFiles]:
 # -- the command -----------------------------------------------------------------------------------
 
 
+@said_in_one_line
 def main(arguments: Sequence[str] | None = None) -> int:
     """Write drafts and pictures, print one table; 1 if a file cannot be read at all, else 0."""
     parser = argparse.ArgumentParser(prog="describe", description=__doc__.split("\n")[0])
@@ -320,14 +321,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--schema", default="config/schema/study.schema.yaml")
     chosen = parser.parse_args(arguments)
     sys.stdout.reconfigure(errors="backslashreplace")  # type: ignore[union-attr]  # a text file
-    try:
-        study, schema = read_study(chosen.study), read_study(chosen.schema)
-        one = chosen.file or chosen.like
-        folder = one.parent if one else Path(chosen.folder or study.get("scans") or "scans")
-        return _run(folder, schema, chosen)
-    except InputError as error:
-        sys.stderr.write(f"error: {error}\n")
-        return 1
+    study, schema = read_study(chosen.study), read_study(chosen.schema)
+    one = chosen.file or chosen.like
+    folder = one.parent if one else Path(chosen.folder or study.get("scans") or "scans")
+    return _run(folder, schema, chosen)
 
 
 def _run(folder: Path, schema: Mapping, chosen: argparse.Namespace) -> int:

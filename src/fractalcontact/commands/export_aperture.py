@@ -16,11 +16,12 @@ from ..cards.apertures import (
     with_solved_gaps,
     write_aperture,
 )
-from ..core.errors import InputError
+from ..core.errors import InputError, said_in_one_line
 from ..core.units import quantity
 from ..study.atlas_parts import open_atlas
 
 
+@said_in_one_line
 def main(arguments: Sequence[str] | None = None) -> int:
     """Write the file; exit code 1 for a wrong request, else 0."""
     parser = argparse.ArgumentParser(prog="export_aperture", description=__doc__)
@@ -30,22 +31,18 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--pressure", help="such as '5 MPa'; the reference load by default")
     parser.add_argument("--points", help="CSV file with columns x and y in mm; the grid by default")
     given = parser.parse_args(arguments)
-    try:
-        pressure = given.pressure and quantity(given.pressure, "pressure", "--pressure")
-        atlas = open_atlas(given.results)
-        if given.specimen not in atlas.specimens:
-            raise InputError(
-                f"{given.results}: no specimen {given.specimen!r}; it has "
-                f"{', '.join(atlas.specimens) or 'none'}"
-            )
-        contact = atlas[f"contact/{given.specimen}"]
-        contact = with_solved_gaps(contact, given.results, given.specimen)
-        aperture = aperture_at(contact, pressure, given.specimen)
-        points = given.points and aperture_at_points(aperture, given.points)
-        write_aperture(points if given.points else aperture, given.out)
-    except InputError as error:
-        sys.stderr.write(f"error: {error}\n")
-        return 1
+    pressure = given.pressure and quantity(given.pressure, "pressure", "--pressure")
+    atlas = open_atlas(given.results)
+    if given.specimen not in atlas.specimens:
+        raise InputError(
+            f"{given.results}: no specimen {given.specimen!r}; it has "
+            f"{', '.join(atlas.specimens) or 'none'}"
+        )
+    contact = atlas[f"contact/{given.specimen}"]
+    contact = with_solved_gaps(contact, given.results, given.specimen)
+    aperture = aperture_at(contact, pressure, given.specimen)
+    points = given.points and aperture_at_points(aperture, given.points)
+    write_aperture(points if given.points else aperture, given.out)
     sys.stdout.write(f"{given.out}: aperture in mm, {aperture.attrs['source']}\n")
     return 0
 

@@ -14,12 +14,13 @@ from typing import Any
 
 from ..cards.write import read_card
 from ..core.atomic import atomic_write
-from ..core.errors import InputError
+from ..core.errors import said_in_one_line
 
 #: Codes that constants are written for: modules of ``cards.exports``.
 CODES = ("porepy", "geos", "opengeosys", "ags4", "csv")
 
 
+@said_in_one_line
 def main(arguments: Sequence[str] | None = None) -> int:
     """Print the constants, or write them to a file; exit code 1 without a card, else 0."""
     parser = argparse.ArgumentParser(prog="export_constants", description=__doc__)
@@ -27,11 +28,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--to", choices=CODES, required=True)
     parser.add_argument("--out", help="file to write; printed by default")
     given = parser.parse_args(arguments)
-    try:
-        text = exported(read_card(given.card), given.to)
-    except InputError as error:
-        sys.stderr.write(f"error: {error}\n")
-        return 1
+    text = exported(read_card(given.card), given.to)
     if not given.out:
         sys.stdout.write(text)
         return 0

@@ -13,7 +13,7 @@ from pathlib import Path
 import yaml
 
 from ..core.atomic import atomic_write
-from ..core.errors import InputError, OutputError
+from ..core.errors import InputError, said_in_one_line
 from ..core.labels import listed, natural_key
 from ..study.documents import read_study, study_name
 from ..study.scan_files import list_scans
@@ -82,6 +82,7 @@ def next_steps(path: Path, scans: Path, rows: Sequence[Described]) -> list[str]:
     ]
 
 
+@said_in_one_line
 def main(arguments: Sequence[str] | None = None) -> int:
     """Write the study and print the next steps; exit code 1 if it cannot be written, else 0."""
     parser = argparse.ArgumentParser(prog="new_study", description=__doc__.split("\n")[0])
@@ -91,12 +92,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--schema", default="config/schema/study.schema.yaml")
     chosen = parser.parse_args(arguments)
     sys.stdout.reconfigure(errors="backslashreplace")  # type: ignore[union-attr]  # a text file
-    try:
-        path = chosen.config / f"{study_name({'study': chosen.name}, 'NAME')}.yaml"
-        rows = new_study(path, chosen.scans, read_study(chosen.schema))
-    except (InputError, OutputError) as error:
-        sys.stderr.write(f"error: {error}\n")
-        return 1
+    path = chosen.config / f"{study_name({'study': chosen.name}, 'NAME')}.yaml"
+    rows = new_study(path, chosen.scans, read_study(chosen.schema))
     lines = [line for row in rows for line in row_lines(row)]
     lines += [f"{path}: written", *next_steps(path, chosen.scans, rows)]
     sys.stdout.write("\n".join(lines) + "\n")

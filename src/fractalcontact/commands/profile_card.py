@@ -13,23 +13,20 @@ from pathlib import Path
 from ..cards.profile import card_of_profile
 from ..cards.write import write_card
 from ..core.checksums import sha256
-from ..core.errors import InputError
+from ..core.errors import said_in_one_line
 from ..core.file_names import specimen_name
 from ..mechanics.profile import profile_coefficients
 from ..scan.profile import read_profile
 
 
+@said_in_one_line
 def main(arguments: Sequence[str] | None = None) -> int:
     """Write the card; 1 if the file is no profile, else 0."""
     parser = argparse.ArgumentParser(prog="profile_card", description=__doc__)
     parser.add_argument("file")
     parser.add_argument("--out", default="results/profiles")
     given = parser.parse_args(arguments)
-    try:
-        heights, spacing = read_profile(given.file)
-    except InputError as error:
-        sys.stderr.write(f"error: {error}\n")
-        return 1
+    heights, spacing = read_profile(given.file)
     name = specimen_name(Path(given.file).stem)
     found = profile_coefficients(heights, spacing)
     write_card(card_of_profile(name, found, heights.size, spacing, sha256(given.file)), given.out)

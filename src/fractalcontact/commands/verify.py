@@ -8,21 +8,18 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from ..core.checksums import check
-from ..core.errors import InputError
+from ..core.errors import InputError, said_in_one_line
 from ..study.documents import read_study, study_name
 
 
+@said_in_one_line
 def main(arguments: Sequence[str] | None = None) -> int:
     """Print damaged or missing files; exit code 1 for any, or without checksums, else 0."""
     (given,) = sys.argv[1:] if arguments is None else arguments
-    try:
-        results = results_of(given)
-        if not results.is_dir():
-            raise InputError(f"{results}: no such folder; run 'make' first")
-        checked = check(results)
-    except InputError as error:
-        sys.stderr.write(f"error: {error}\n")
-        return 1
+    results = results_of(given)
+    if not results.is_dir():
+        raise InputError(f"{results}: no such folder; run 'make' first")
+    checked = check(results)
     for word in ("damaged", "unrecorded", "missing"):
         for path in getattr(checked, word):
             sys.stdout.write(f"{word}: {path}\n")

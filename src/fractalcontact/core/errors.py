@@ -1,4 +1,11 @@
-"""Exceptions of the package."""
+"""Exceptions of the package, and the form in which commands say them."""
+
+import functools
+import sys
+from collections.abc import Callable
+from typing import ParamSpec
+
+P = ParamSpec("P")
 
 
 class InputError(ValueError):
@@ -11,3 +18,17 @@ class InputError(ValueError):
 
 class OutputError(OSError):
     """Error of a result that could not be written, with the file's name and a remedy."""
+
+
+def said_in_one_line(main: Callable[P, int]) -> Callable[P, int]:
+    """A command whose errors of input and output are one line each, with exit code 1."""
+
+    @functools.wraps(main)
+    def command(*arguments: P.args, **options: P.kwargs) -> int:
+        try:
+            return main(*arguments, **options)
+        except (InputError, OutputError) as error:
+            sys.stderr.write(f"error: {error}\n")
+            return 1
+
+    return command
