@@ -482,13 +482,6 @@ def test_forces_are_those_of_the_whole_window_at_one_pressure_for_all(rock):
     )
 
 
-def test_seating_takes_the_tilt_away_and_leaves_the_roughness(rock):
-    chosen = settings(["20 MPa"])
-    loose, seated = (states_of(rock, "W", [32], chosen, (8,), seated=s) for s in (False, True))
-    np.testing.assert_allclose(seated["sigma_z"], loose["sigma_z"])
-    assert seated["interface_closure"].mean() < loose["interface_closure"].mean()
-
-
 def test_a_surface_against_a_plane_has_no_strength():
     face = make_specimen(
         scan(self_affine((64, 64), 0.1, 0.8, rms=0.1, seed=2)), opposite="flat", name="flat"

@@ -13,7 +13,6 @@ from roughcontact.elastic.halfspace import HalfSpace
 
 from ..core.datasets import labelled_dataset
 from ..core.labels import cf_attrs
-from ..core.mean_plane import without_mean_planes
 from ..core.settings import JointSettings
 from ..mechanics.closure import bulk_settlement, interface_closure
 from ..mechanics.joint import sliding_axis
@@ -70,14 +69,12 @@ def window_states(
     loading: JointLoading[JointSettings],
     parts: Sequence[int] = PARTS,
     most: int = MAX_WINDOWS,
-    *,
-    seated: bool = False,
 ) -> xr.Dataset:
     """Contact states of sub-windows of several sizes, and how rough those of many more are.
 
     Parameters
     ----------
-    loading, parts, most, seated
+    loading, parts, most
         As of :func:`solved_windows`.
 
     Returns
@@ -92,7 +89,7 @@ def window_states(
     NotConverged
         As :func:`solved_windows`.
     """
-    solved = solved_windows(loading, parts, most, seated=seated)
+    solved = solved_windows(loading, parts, most)
     return solved.merge(roughness_by_size(loading))
 
 
@@ -100,8 +97,6 @@ def solved_windows(
     loading: JointLoading[JointSettings],
     parts: Sequence[int] = PARTS,
     most: int = MAX_WINDOWS,
-    *,
-    seated: bool = False,
 ) -> xr.Dataset:
     """Contact states of sub-windows of several sizes, under the study's dilatancy loads.
 
@@ -114,8 +109,6 @@ def solved_windows(
         Sub-windows along each side, of which :func:`size_effect.division.solvable_parts` are taken.
     most : int
         Sub-windows solved of each size.
-    seated : bool
-        Remove the mean plane of each sub-window before it is loaded, as if its blocks could turn.
 
     Returns
     -------
@@ -131,7 +124,7 @@ def solved_windows(
 
     Notes
     -----
-    By default the composite topography of a sub-window is loaded as it lies in the whole one. The
+    The composite topography of a sub-window is loaded as it lies in the whole one. The
     blocks of the model do not turn (sect. 4), and only so the states of the parts can be compared
     with those of the whole, of which they are pieces. A laboratory would seat a specimen of that
     size; the part of its closure that comes from tilt alone then vanishes.
@@ -146,7 +139,7 @@ def solved_windows(
     settlement = np.full((len(parts), len(pressures)), np.nan)
     sides = np.full((len(parts), 2), np.nan)
     for k, n in enumerate(parts):
-        size = _SubWindows(loading, n, chosen[k], seated=seated)
+        size = _SubWindows(loading, n, chosen[k])
         sides[k] = size.sides
         forces = pressures * sides[k].prod()
         settlement[k] = bulk_settlement(forces, size.space.modulus, *sides[k])
@@ -178,7 +171,7 @@ def solved_windows(
             ),
             "direction": loading.direction,
         },
-        attrs={"opposite": loading.specimen.attrs["opposite"], "seated": int(seated)},
+        attrs={"opposite": loading.specimen.attrs["opposite"]},
     )
 
 
@@ -186,19 +179,18 @@ class _SubWindows:
     """The sub-windows of one size that are solved, over the offsets of a joint."""
 
     def __init__(
-        self, loading: JointLoading[JointSettings], parts: int, chosen: np.ndarray, *, seated: bool
+        self, loading: JointLoading[JointSettings], parts: int, chosen: np.ndarray
     ) -> None:
         ny, nx = loading.shape
         shape = ny // parts, nx // parts
         self.sides = shape * loading.spacing
         self.space = loading.half_space(shape)
-        self._loading, self._parts, self._chosen, self._seated = loading, parts, chosen, seated
+        self._loading, self._parts, self._chosen = loading, parts, chosen
         self._mated = self.composites(0)
 
     def composites(self, cells: int) -> np.ndarray:
         """Composite topographies (n, ny, nx) at an offset in cells, mm."""
-        windows = split(self._loading.composite(cells), self._parts)[self._chosen]
-        return without_mean_planes(windows) if self._seated else windows
+        return split(self._loading.composite(cells), self._parts)[self._chosen]
 
     def shapes(self, composites: np.ndarray) -> dict[str, np.ndarray]:
         """:data:`SHAPES` (n,) of the composite topographies at an offset."""
