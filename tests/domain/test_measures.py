@@ -4,7 +4,7 @@ import pytest
 from fractalcontact.domain.box_dimension import dimension_of_domain
 from fractalcontact.domain.correlation import correlation_dimension
 from fractalcontact.domain.measures import domain_measures, measures_of_states, order_name
-from fractalcontact.domain.multifractal import ORDERS, lacunarity
+from fractalcontact.domain.multifractal import ORDERS
 from fractalcontact.surface.synthesis import self_affine
 
 HEIGHTS = self_affine((128, 128), 0.1, 0.8, rms=1.0, seed=2)
@@ -17,7 +17,7 @@ def states():
 
 
 def row_of(domain, pressure):
-    return domain_measures(domain, 0.1, pressure, lacunarity(domain, 0.1))
+    return domain_measures(domain, 0.1, pressure)
 
 
 def test_row_holds_what_the_measures_say():
@@ -27,9 +27,8 @@ def test_row_holds_what_the_measures_say():
     assert row["delta_sigma"] == box.dimension
     assert (row["delta_sigma_low"], row["delta_sigma_r_max"]) == (box.low, box.over[1])
     assert row["correlation_dimension"] == correlation_dimension(domains[2], 0.1).value
-    assert row["lacunarity_slope"] == lacunarity(domains[2], 0.1).slope.value
     assert all(isinstance(value, float) for value in row.values())
-    assert len(row) == 6 * (3 + len(ORDERS))
+    assert len(row) == 6 * (2 + len(ORDERS))
     assert {order_name(q) for q in ORDERS} <= set(row)
 
 

@@ -46,7 +46,6 @@ def test_spectrum_of_a_cascade():
 def test_lacunarity_of_an_even_window_is_one():
     found = lacunarity(np.ones((40, 50), dtype=bool), 0.1)
     np.testing.assert_allclose(found.value, 1)
-    assert found.slope.value == pytest.approx(0, abs=1e-9)
 
 
 def test_lacunarity_of_independent_nodes():
@@ -113,7 +112,6 @@ def test_no_contact_has_no_measures():
     empty = np.zeros((64, 64))
     assert all(np.isnan(slope.value) for slope in generalised_dimensions(empty, 1.0).values())
     assert np.isnan(lacunarity(empty, 1.0).value).all()
-    assert np.isnan(lacunarity(empty, 1.0).slope.value)
 
 
 def test_few_nodes_have_no_generalised_dimension():

@@ -9,7 +9,6 @@ from fractalcontact.domain.box_counts import box_count, mean_count, window_sizes
 from fractalcontact.domain.box_dimension import box_dimension, dimension_of_domain
 from fractalcontact.domain.count_law import law_count
 from fractalcontact.domain.measures import domain_measures
-from fractalcontact.domain.multifractal import lacunarity
 from fractalcontact.domain.null_models import null_models
 from fractalcontact.domain.ordinary_slope import dyadic_sizes
 from fractalcontact.surface.synthesis import self_affine
@@ -80,7 +79,7 @@ def test_every_stage_states_one_dimension(level):
     )
     alone = dimension_of_domain(domain, 0.1, fit_range=fit_range)
     row = analyse_domains(fields, 0.1, fit_range=fit_range).squeeze()
-    measures = domain_measures(domain, 0.1, domain, lacunarity(domain, 0.1), fit_range)
+    measures = domain_measures(domain, 0.1, domain, fit_range)
     nulls = null_models(domain[np.newaxis], 0.1, HEIGHTS, fit_range=fit_range)
     assert row["delta_sigma"].item() == alone.dimension == measures["delta_sigma"]
     assert row["delta_sigma_low"].item() == alone.low == measures["delta_sigma_low"]

@@ -14,14 +14,13 @@ from .box_counts import mean_count, window_sizes
 from .box_dimension import dimension_of_domain, local_slopes
 from .correlation import correlation_dimension
 from .isotropy import LAG_FIELDS, contact_at_lag
-from .multifractal import ORDERS, SizeCurve, generalised_dimensions, lacunarity
+from .multifractal import ORDERS, generalised_dimensions, lacunarity
 from .slope_curves import window_counts
 
 #: Measures of a domain that are slopes, with their long names.
 SLOPES = {
     "delta_sigma": "box-counting dimension Delta_sigma",
     "correlation_dimension": "correlation dimension of the nodes in contact",
-    "lacunarity_slope": "slope of log lacunarity against log box side",
 }
 
 
@@ -34,7 +33,6 @@ def domain_measures(
     domain: np.ndarray,
     spacing: float,
     pressure: np.ndarray,
-    gliding: SizeCurve,
     fit_range: tuple[float, float] | None = None,
 ) -> dict[str, float]:
     """Every measure of a contact domain as one row of a table.
@@ -47,8 +45,6 @@ def domain_measures(
         mm.
     pressure : (ny, nx) ndarray
         MPa, or whatever the generalised dimensions are to weigh nodes by.
-    gliding : SizeCurve
-        Lacunarity of the domain.
     fit_range : (float, float), optional
         Smallest and largest box of Delta_sigma, mm; by default all between the cut-offs.
 
@@ -63,7 +59,6 @@ def domain_measures(
     slopes = {
         "delta_sigma": box,
         "correlation_dimension": correlation_dimension(domain, spacing),
-        "lacunarity_slope": gliding.slope if domain.any() else Estimate(),
         **{order_name(q): slope for q, slope in generalised_dimensions(pressure, spacing).items()},
     }
     row: dict[str, float] = {}
@@ -149,8 +144,8 @@ def measures_of_states(
             "do not belong together"
         )
     curves = [lacunarity(domain, spacing) for domain in domains]
-    states = zip(domains, pressures, curves, strict=True)
-    rows = [domain_measures(domain, spacing, p, curve, fit_range) for domain, p, curve in states]
+    states = zip(domains, pressures, strict=True)
+    rows = [domain_measures(domain, spacing, p, fit_range) for domain, p in states]
     side, local = _local_slopes(domains, spacing)
     variables: dict[str, Any] = {}
     for name, long_name in SLOPES.items():

@@ -33,10 +33,9 @@ FEWEST = 10
 
 @dataclass(frozen=True, kw_only=True)
 class SizeCurve(Estimate):
-    """Numbers (k,) at box sizes ``r`` (k,), and the slope of their logarithm."""
+    """Numbers (k,) at box sizes ``r`` (k,)."""
 
     r: np.ndarray
-    slope: Estimate
 
 
 def gliding_moments(
@@ -141,7 +140,7 @@ def lacunarity(mass: np.ndarray, spacing: float) -> SizeCurve:
     -------
     SizeCurve
         `r` in mm from one cell to half of the window; interval by the jackknife over parts of the
-        window (on the logarithm); the slope over the boxes of `fit_sizes`. Empty window: NaN.
+        window (on the logarithm). Empty window: NaN.
     """
     mass = _checked(mass)
     sizes = whole_sizes(min(mass.shape) / 2)
@@ -151,10 +150,8 @@ def lacunarity(mass: np.ndarray, spacing: float) -> SizeCurve:
     left = [np.log(_lacunarity(sums.sum(axis=2) - sums[:, :, i])) for i in range(sums.shape[2])]
     error = np.array([jackknife_error(column) for column in np.transpose(left)])
     error[~np.isfinite(value)] = np.nan
-    fitted = np.isin(sizes, fit_sizes(mass.shape))
-    slope = slope_of_sums(sizes[fitted] * float(spacing), sums[fitted], _lacunarity)
     r = sizes * float(spacing)
-    return SizeCurve(value, value * np.exp(-error), value * np.exp(error), r=r, slope=slope)
+    return SizeCurve(value, value * np.exp(-error), value * np.exp(error), r=r)
 
 
 def _lacunarity(sums):
