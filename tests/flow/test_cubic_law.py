@@ -7,11 +7,12 @@ import pytest
 from ensembles import ensemble
 from scipy import ndimage, sparse
 
-from fractalcontact.flow import network, red_black
+from fractalcontact.flow import red_black
 from fractalcontact.flow.aperture import transmissivity_bounds
 from fractalcontact.flow.cholesky import cholmod_is_here, factorised
-from fractalcontact.flow.cubic_law import plane_flow, radial_flow
+from fractalcontact.flow.cubic_law import critical_gap, plane_flow, radial_flow
 from fractalcontact.flow.errors import FlowNotConverged
+from fractalcontact.flow.network import joined_cells
 
 SOLVERS = [
     False,
@@ -240,12 +241,13 @@ def test_singular_equations_are_refused(cholmod):
     assert not np.isfinite(found).all() or np.abs(found).max() > 1e12
 
 
-def test_a_path_is_found_where_labels_join_both_ends():
+def test_the_critical_gap_is_the_largest_at_which_a_path_joins_both_ends():
     for seed in range(ensemble("fields solved densely")):
         rng = np.random.default_rng(seed)
         shape = tuple(rng.integers(2, 40, 2))
-        opened = rng.random(shape) < rng.choice([0.4, 0.55, 0.6, 0.65, 0.9])
+        gap = rng.random(shape) * (rng.random(shape) < rng.choice([0.55, 0.6, 0.65, 0.9]))
         ends = rng.random((2, *shape)) < 0.02
         ends[0, :, 0] = ends[1, :, -1] = True
-        joined = network.joined_cells(opened, *ends).any()
-        assert network.are_joined(opened, True, *ends) == joined
+        critical = critical_gap(gap, *ends)
+        assert not joined_cells(gap > critical, *ends).any()
+        assert joined_cells((gap >= critical) & (gap > 0), *ends).any() == (critical > 0)

@@ -53,7 +53,7 @@ def _by_cholmod(lower):
     matrix = cvxopt.spmatrix(lower.data, *lower.coords, lower.shape)
     # Else it would compare the order with that of AMD, which takes as long as the factor.
     stated = cholmod.options
-    cholmod.options = {**stated, "nmethods": 1}
+    cholmod.options = {**stated, "nmethods": 1, "postorder": False}
     try:
         factor = cholmod.symbolic(matrix, p=cvxopt.matrix(np.arange(lower.shape[0])))
     finally:

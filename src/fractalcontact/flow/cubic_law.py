@@ -6,19 +6,20 @@ Zimmerman and Bodvarsson (Transp. Porous Media 23 (1996) 1) review the law and i
 """
 
 from dataclasses import dataclass, replace
+from heapq import heappop, heappush
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .network import Network, NetworkFlow, are_joined, harmonic_faces, solve_network
+from roughcontact.kernel_cache import njit
+
+from .network import solve_network
 
 #: Gaps below this fraction of the widest passage's narrowest gap are closed: what they carry, a
 #: part in 1e9 of that passage, is beyond the precision of the equations.
 CLOSED_BELOW = 1e-3
 #: Fraction of the flow that the flow channels are said to carry.
 CHANNEL_FLOW = 0.9
-#: Steps of the bisection for the critical gap.
-_BISECTIONS = 12
 
 
 def hydraulic_aperture(transmissivity: ArrayLike) -> np.ndarray:
@@ -94,17 +95,12 @@ def plane_flow(
         return replace(turned, flux=turned.flux.T, pressure=turned.pressure.T)
     opening = _checked(gap)
     (ny, nx), (dy, dx) = opening.shape, spacing
-    at_ends = np.zeros((2, ny, nx), bool)
-    at_ends[0, :, 0] = at_ends[1, :, -1] = True
-    critical, conductivity = _conductivity(opening, *at_ends)
+    ends = np.zeros((2, 1, nx))
     # From the middle of a cell to the end of the window is half a cell.
-    inlet, outlet = 2 * (dy / dx) * conductivity * at_ends
-    network = Network(*harmonic_faces(conductivity, spacing), inlet, outlet)
-    solved = solve_network(network, conductivity > 0, cholmod=cholmod)
-    length, width = nx * dx, ny * dy
-    transmissivity = solved.rate * length / width
-    flux = _cell_flux(network, solved, spacing, solved.rate / width)
-    return Flow(transmissivity, solved.imbalance, critical, flux, solved.pressure)
+    ends[0, 0, 0] = ends[1, 0, -1] = 2 * dy / dx
+    ends = np.broadcast_to(ends, (2, ny, nx))
+    width = ny * dy
+    return _flow(opening, ends, spacing, nx * dx / width, width, cholmod)
 
 
 def radial_flow(
@@ -155,16 +151,11 @@ def radial_flow(
     radius = np.hypot(y[:, np.newaxis], x)
     between = (radius > hole) & (radius < rim)
     steps = _steps_to_circles(y, x, spacing, hole, rim)
-    at_ends = between & (steps > 0).any(axis=1)
-    critical, conductivity = _conductivity(np.where(between, opening, 0.0), *at_ends)
     sides = np.array([dy / dx, dy / dx, dx / dy, dx / dy])[:, np.newaxis, np.newaxis]
     over = np.divide(sides, steps, where=steps > 0, out=np.zeros_like(steps))
-    inlet, outlet = over.sum(axis=1) * conductivity
-    network = Network(*harmonic_faces(conductivity, spacing), inlet, outlet)
-    solved = solve_network(network, conductivity > 0, cholmod=cholmod)
-    transmissivity = solved.rate * np.log(rim / hole) / (2 * np.pi)
-    flux = _cell_flux(network, solved, spacing, solved.rate / (2 * np.pi * hole))
-    return Flow(transmissivity, solved.imbalance, critical, flux, solved.pressure)
+    opening, ends = np.where(between, opening, 0.0), over.sum(axis=1) * between
+    around = 2 * np.pi
+    return _flow(opening, ends, spacing, np.log(rim / hole) / around, around * hole, cholmod)
 
 
 #: Smallest part of a cell that a circle cuts off: closer to it, a cell is on it.
@@ -191,16 +182,36 @@ def _steps_to_circles(y, x, spacing, hole, rim):
 
 
 def _checked(gap: ArrayLike) -> np.ndarray:
-    """Gap with closed cells in place of missing ones."""
-    opening = np.ascontiguousarray(gap, float)
-    known = opening[~np.isnan(opening)]
-    if opening.ndim != 2 or not known.size or not ((known >= 0) & (known < np.inf)).all():
+    """Copy of the gap with closed cells in place of missing ones."""
+    opening = np.array(gap, float, order="C")
+    missing = np.isnan(opening)
+    opening[missing] = 0
+    if opening.ndim != 2 or missing.all() or not 0 <= opening.min() <= opening.max() < np.inf:
         raise ValueError("gap: expected (ny, nx) finite numbers of 0 (contact) and more, or NaN")
-    return np.nan_to_num(opening, nan=0.0)
+    return opening
 
 
+def _flow(opening, ends, spacing, length, width, cholmod) -> Flow:
+    """Flow between two ends, whose plates of the same flow are as long as ``length`` widths.
+
+    ``ends`` is that of :func:`flow.network.solve_network`; ``width``, mm, that of the mean flux.
+    """
+    critical = critical_gap(opening, *(ends > 0))
+    if not critical:
+        nothing = np.zeros_like(opening)
+        return Flow(0.0, 0.0, 0.0, nothing, np.full_like(nothing, np.nan))
+    # Over the widest gap: apertures cubed in mm would leave the range of the factors.
+    widest = opening.max()
+    relative = np.where(opening >= CLOSED_BELOW * critical, opening / widest, 0.0)
+    solved = solve_network(relative * relative * relative, ends, spacing, cholmod=cholmod)
+    transmissivity = solved.rate * length * widest**3 / 12
+    flux = solved.flux * (width / solved.rate)
+    return Flow(transmissivity, solved.imbalance, critical, flux, solved.pressure)
+
+
+@njit(cache=True)
 def critical_gap(gap: np.ndarray, inlet: np.ndarray, outlet: np.ndarray) -> float:
-    """Narrowest gap of the widest passage between both ends; 0 without a passage.
+    """Narrowest gap of the widest passage between both ends, mm; 0 without a passage.
 
     Parameters
     ----------
@@ -208,41 +219,35 @@ def critical_gap(gap: np.ndarray, inlet: np.ndarray, outlet: np.ndarray) -> floa
         mm, 0 where closed.
     inlet, outlet : (ny, nx) bool ndarray
         Cells at the ends.
-
-    Returns
-    -------
-    float
-        mm, to a part in 2^12 of the number of cells, from below.
     """
-    values = gap[gap > 0]
-    if not values.size or not are_joined(gap, values.min(), inlet, outlet):
-        return 0.0
-    for _ in range(_BISECTIONS):
-        middle = values.size // 2
-        if middle == 0:
-            break
-        values.partition(middle)
-        joined = are_joined(gap, values[middle], inlet, outlet)
-        values = values[middle:] if joined else values[:middle]
-    return float(values.min())
-
-
-def _conductivity(gap, inlet, outlet):
-    """Critical gap, mm, and g^3/12 of the cells, mm3; 0 where closed."""
-    critical = critical_gap(gap, inlet, outlet)
-    return critical, np.where(gap >= CLOSED_BELOW * critical, gap, 0.0) ** 3 / 12
-
-
-def _cell_flux(network: Network, solved: NetworkFlow, spacing, mean):
-    """Flow per width in the cells over ``mean``: from the flows through their faces."""
-    dy, dx = spacing
-    p = np.nan_to_num(solved.pressure)
-    ny, nx = p.shape
-    through_x, through_y = np.zeros((ny, nx + 1)), np.zeros((ny + 1, nx))
-    through_x[:, 1:-1], through_y[1:-1] = solved.flux_x, solved.flux_y
-    middle_x = np.abs(through_x[:, 1:] + through_x[:, :-1]) / 2
-    middle_y = np.abs(through_y[1:] + through_y[:-1]) / 2
-    # A cell at an end has the flow of that end beside that of its face.
-    end = np.where(p > 0, network.inlet * (1 - p) + network.outlet * p, 0.0)
-    flux = np.hypot(middle_x / dy, middle_y / dx) + end / (2 * dy)
-    return flux / mean if mean > 0 else np.zeros_like(flux)
+    ny, nx = gap.shape
+    unseen, waiting, n = gap > 0, np.empty(gap.size, np.int32), 0
+    # Cells below the level wait for it to fall to the widest of them.
+    level, below = np.inf, [(0.0, 0) for _ in range(0)]
+    for row in range(ny):
+        for column in range(nx):
+            if inlet[row, column] and unseen[row, column]:
+                unseen[row, column] = False
+                heappush(below, (-gap[row, column], row * nx + column))
+    while below:
+        height, waiting[0] = heappop(below)
+        level, n = min(level, -height), 1
+        while n:
+            n -= 1
+            row, column = divmod(waiting[n], nx)
+            if outlet[row, column]:
+                return level
+            for i, j in (
+                (row - 1, column),
+                (row, column - 1),
+                (row, column + 1),
+                (row + 1, column),
+            ):
+                if 0 <= i < ny and 0 <= j < nx and unseen[i, j]:
+                    unseen[i, j] = False
+                    if gap[i, j] >= level:
+                        waiting[n] = i * nx + j
+                        n += 1
+                    else:
+                        heappush(below, (-gap[i, j], i * nx + j))
+    return 0.0
