@@ -9,6 +9,7 @@ import argparse
 import importlib.util
 import os
 import resource
+import statistics
 import subprocess
 import sys
 import time
@@ -52,7 +53,7 @@ def by_reynoldsflow(gap, solver):
 
 
 def measure(n, solver):
-    """Solve one field with one solver and write a row; compiled on a small field before."""
+    """Solve one field with one solver and write its numbers; compiled on a small field before."""
     ours = solver in OURS
     solve = by_ours if ours else by_reynoldsflow
     how = OURS[solver] if ours else solver
@@ -62,35 +63,46 @@ def measure(n, solver):
     value, error = solve(gap, how)
     seconds, busy = time.perf_counter() - start, time.process_time() - busy
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024 / 1e9
-    code = "fractalcontact" if ours else "reynoldsflow"
-    taken = f"{seconds:8.2f} {busy:8.2f} {peak:8.2f}"
-    sys.stdout.write(f"{n:6} {code:15} {solver:29} {taken} {value:.10e} {error:9.1e}\n")
+    sys.stdout.write(f"{seconds} {busy} {peak} {value:.10e} {error:.1e}\n")
+
+
+def measured(n, solver):
+    """What one process of its own writes of a solver: numbers in words."""
+    command = [sys.executable, __file__, "--measure", str(n), solver]
+    taken = subprocess.run(command, check=True, stdout=subprocess.PIPE, env=os.environ | THREADS)
+    return taken.stdout.decode().split()
 
 
 def main(arguments):
-    """Measure every solver that is installed, in turn."""
+    """Measure every solver that is installed, in turn, and write medians."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--sizes", nargs="+", type=int, default=[512, 1024, 2048])
     parser.add_argument("--solvers", nargs="+", choices=SOLVERS, default=list(SOLVERS))
+    parser.add_argument("--repeats", type=int, default=7, help="of each, in turn: medians")
     parser.add_argument("--measure", nargs=2, help=argparse.SUPPRESS)
     options = parser.parse_args(arguments)
     if options.measure:
         measure(int(options.measure[0]), options.measure[1])
         return
+    solvers = [
+        solver
+        for solver in options.solvers
+        if importlib.util.find_spec(NEEDED.get(solver, "reynoldsflow"))
+    ]
     sys.stdout.write(
         " nodes code            solver                         seconds    CPU s  peak GB"
         " T (mm3)              balance\n"
     )
     for n in options.sizes:
-        for solver in options.solvers:
-            if importlib.util.find_spec(NEEDED.get(solver, "reynoldsflow")) is None:
-                continue
-            sys.stdout.flush()
-            subprocess.run(
-                [sys.executable, __file__, "--measure", str(n), solver],
-                check=True,
-                env=os.environ | THREADS,
+        rows = [[measured(n, solver) for solver in solvers] for _ in range(options.repeats)]
+        for solver, runs in zip(solvers, zip(*rows, strict=True), strict=True):
+            code = "fractalcontact" if solver in OURS else "reynoldsflow"
+            times = " ".join(
+                f"{statistics.median(map(float, column)):8.3f}"
+                for column in list(zip(*runs, strict=True))[:3]
             )
+            sys.stdout.write(f"{n:6} {code:15} {solver:29} {times} {' '.join(runs[0][3:])}\n")
+            sys.stdout.flush()
 
 
 if __name__ == "__main__":

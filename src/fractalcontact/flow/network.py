@@ -12,7 +12,8 @@ from .red_black import red_black_solver, stars_of
 
 #: Largest error of a flow that the imbalance of its cells may make, a fraction of the flow.
 MAX_IMBALANCE = 1e-6
-#: Steps of iterative refinement before a flow is refused.
+#: Such an error at which iterative refinement ends, and its steps.
+AIMED_IMBALANCE = 1e-8
 REFINEMENTS = 2
 
 
@@ -80,8 +81,8 @@ def solve_network(
 
     Notes
     -----
-    Solved for the pressure p and for its complement d = 1 - p at once: beside an end, the smaller
-    of both has all its digits, and so do the flows through faces there, however narrow the
+    The pressure p and its complement d = 1 - p are refined, each for itself: beside an end, the
+    smaller of both has all its digits, and so do the flows through faces there, however narrow the
     passages elsewhere are. With r the imbalance of the cells, the outflow is off by sum(r d) of the
     exact d, which is between 0 and 1: sum(abs(r)) bounds its error whatever solver gave p.
     """
@@ -89,16 +90,19 @@ def solve_network(
     stars = stars_of(conductivity, ends, cells, spacing)
     try:
         solve = red_black_solver(stars, cholmod)
-        solution = _complementary(solve(stars.ends))
+        p = solve(stars.ends[:1])[0]
+        solution = np.stack([p, 1 - p])
         for step in range(REFINEMENTS + 1):
             # Inflow by the complement, outflow by the pressure.
             flows = stars.ends * solution[::-1]
-            rates = flows.sum(axis=1)
+            inflow, outflow = flows.sum(axis=1)
             balance, passing = _balance(stars.faces, stars.neighbours, solution, flows)
-            error = float(np.abs(balance).sum()) / max(rates.min(), np.finfo(float).tiny)
-            if error <= MAX_IMBALANCE or step == REFINEMENTS:
+            least, total = float(min(inflow, outflow)), float(np.abs(balance).sum())
+            error = total / least if least > 0 else np.inf
+            if error <= AIMED_IMBALANCE or step == REFINEMENTS:
                 break
-            solution = _complementary(solution + solve(np.stack([balance, -balance])))
+            change = solve(balance[np.newaxis])
+            solution = _complementary(solution + np.concatenate([change, -change]))
     except ArithmeticError as failed:
         raise FlowNotConverged(f"the equations are singular ({failed})", np.inf) from failed
     if not error <= MAX_IMBALANCE:
@@ -107,7 +111,7 @@ def solve_network(
     # A cell at an end has the flow of that end beside that of its face.
     flux = np.hypot(passing[0] / dx, passing[1] / dy) / 2 + flows.sum(axis=0) / (2 * dy)
     pressure = np.append(solution[0], np.nan)[stars.numbers]
-    return NetworkFlow(float(rates.mean()), error, pressure, np.append(flux, 0.0)[stars.numbers])
+    return NetworkFlow(float(outflow), error, pressure, np.append(flux, 0.0)[stars.numbers])
 
 
 def _complementary(solution):

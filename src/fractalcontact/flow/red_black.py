@@ -20,7 +20,7 @@ _WAYS = ((-1, 0), (0, -1), (0, 1), (1, 0))
 #: four later ones within two steps.
 _LATER = ((-1, 1, 2, 3), (-1, -1, 0, 2), (-1, -1, -1, 1))
 #: Cells of a box that is not dissected further.
-MAX_LEAF = 16
+MAX_LEAF = 32
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,48 +61,63 @@ def stars_of(
     spacing : (float, float)
         Sides (dy, dx) of a cell, mm.
     """
-    numbers, n_red, n = _numbered(cells)
+    numbers, n_red = _numbered(cells)
     dy, dx = spacing
     ratios = np.array([dx / dy, dy / dx, dy / dx, dx / dy])
-    return Stars(numbers, *_assembled(conductivity, ends, numbers, n_red, n, ratios))
+    return Stars(numbers, *_assembled(conductivity, ends, numbers, n_red, cells.sum(), ratios))
 
 
 @njit(cache=True)
 def _numbered(cells):
-    """Numbers of the cells, -1 for none, how many are red, and how many there are.
+    """Numbers of the cells, -1 for none, and how many of them are red.
 
     Red cells are numbered in the order of nested dissection (George 1973), the line that separates
     two halves after both. Their equations join neighbours on the diagonals too: one diagonal
     separates.
     """
     ny, nx = cells.shape
-    numbers = np.full((ny, nx), -1, np.int32)
-    n = n_red = sum([cells[row, row % 2 :: 2].sum() for row in range(ny)])
+    numbers, n = np.full(cells.shape, -1, np.int32), cells.sum()
+    # Places of the red cells on the grid of their diagonals.
+    places = np.full(((ny + nx) // 2, (ny + nx + 1) // 2), -1, np.int32)
     for row in range(ny):
-        for column in range(1 - row % 2, nx, 2):
-            if cells[row, column]:
+        for column in range(nx):
+            if cells[row, column] and (row + column) % 2:
+                n -= 1
                 numbers[row, column] = n
-                n += 1
-    left = n_red
-    # Boxes of diagonals: row + column = 2 down and row - column = 2 up.
-    boxes = [(0, (ny + nx) // 2, -((nx - 1) // 2), (ny + 1) // 2)]
+            elif cells[row, column]:
+                places[(row + column) // 2, (row - column + nx) // 2] = row * nx + column
+    n_red, is_red = n, places >= 0
+    boxes = [(0, places.shape[0], 0, places.shape[1])]
     while boxes:
-        top, bottom, first, last = boxes.pop()
-        if (bottom - top) * (last - first) > MAX_LEAF:
-            if bottom - top >= last - first:
-                middle = (top + bottom) // 2
-                boxes += [(top, middle, first, last), (middle + 1, bottom, first, last)]
-                top, bottom = middle, middle + 1
+        top, bottom, left, right = line = boxes.pop()
+        if (bottom - top) * (right - left) > MAX_LEAF:
+            line = _separator(is_red, line)
+            if bottom - top >= right - left:
+                boxes += [(top, line[0], left, right), (line[1], bottom, left, right)]
             else:
-                middle = (first + last) // 2
-                boxes += [(top, bottom, first, middle), (top, bottom, middle + 1, last)]
-                first, last = middle, middle + 1
-        for down in range(top, bottom):
-            for up in range(max(first, -down, down - nx + 1), min(last, down + 1, ny - down)):
-                if cells[down + up, down - up]:
-                    left -= 1
-                    numbers[down + up, down - up] = left
-    return numbers, n_red, n
+                boxes += [(top, bottom, left, line[2]), (top, bottom, line[3], right)]
+        for place in places[line[0] : line[1], line[2] : line[3]].flat:
+            if place >= 0:
+                n -= 1
+                numbers[place // nx, place % nx] = n
+    return numbers, n_red
+
+
+@njit(cache=True)
+def _separator(is_red, box):
+    """Line across the longer side of a box, near its middle, that meets the fewest red cells."""
+    top, bottom, left, right = box
+    size, fewest, separator = max(bottom - top, right - left), np.inf, box
+    for at in range(size // 2 - size // 10, size // 2 + size // 10 + 1):
+        if size == bottom - top:
+            line = (top + at, top + at + 1, left, right)
+        else:
+            line = (top, bottom, left + at, left + at + 1)
+        # Of equals the middle one.
+        met = is_red[line[0] : line[1], line[2] : line[3]].sum() + abs(at - size // 2) / size
+        if met < fewest:
+            fewest, separator = met, line
+    return separator
 
 
 @njit(cache=True)
@@ -148,13 +163,18 @@ def red_black_solver(stars: Stars, cholmod: bool | None) -> Callable[[np.ndarray
     lower = sparse.coo_array((values, entries), shape=(n_red, n_red))
     solve = factorised(lower, cholmod=cholmod) if n_red else np.copy
 
+    each = np.arange(0, stars.faces.size + 1, 4)
+    joins = sparse.csr_array(
+        (stars.faces.ravel(), stars.neighbours.ravel(), each), shape=(over.size, ends.size)
+    )
+
     def solution(right: np.ndarray) -> np.ndarray:
-        values = right.copy()
-        values[:, n_red:] *= over
-        _spread(stars.faces, stars.neighbours, values)
-        values[:, :n_red] = solve(values[:, :n_red].T).T
-        _gather(stars.faces, stars.neighbours, over, values)
-        return values
+        values = right.T.copy()
+        values[n_red:] *= over[:, np.newaxis]
+        values += joins.T @ values[n_red:]
+        values[:n_red] = solve(values[:n_red])
+        values[n_red:] += over[:, np.newaxis] * (joins @ values)
+        return values.T
 
     return solution
 
@@ -191,26 +211,3 @@ def _mesh(faces, neighbours, ends, over):
                 rows[n], columns[n] = max(red, beside), min(red, beside)
                 n += 1
     return values, rows, columns
-
-
-@njit(cache=True)
-def _spread(faces, neighbours, values):
-    """Add to red cells the values of black ones times the conductances between them."""
-    n_red = values.shape[1] - len(faces)
-    for field in range(len(values)):
-        for black in range(len(faces)):
-            value = values[field, n_red + black]
-            for way in range(4):
-                values[field, neighbours[black, way]] += faces[black, way] * value
-
-
-@njit(cache=True)
-def _gather(faces, neighbours, over, values):
-    """Add to black cells the values of red ones times the conductances between them, and over."""
-    n_red = values.shape[1] - len(faces)
-    for field in range(len(values)):
-        for black in range(len(faces)):
-            inflow = 0.0
-            for way in range(4):
-                inflow += faces[black, way] * values[field, neighbours[black, way]]
-            values[field, n_red + black] += over[black] * inflow
