@@ -92,6 +92,7 @@ def stages(**changes):
         "held": np.zeros((2, 1)),
         "length": 0.5,
         "uncorrelated": 2.0,
+        "roll_off": 3.0,
     } | changes
     dims = ("direction", "offset", "resolution", "normal_force")
     coords = {"direction": ["W"], "offset": V, "resolution": [1], "normal_force": LOADS}
@@ -177,6 +178,7 @@ def stages(**changes):
     )
     made = {
         "specimens": specimen,
+        "surface_dimension": xr.Dataset({"roll_off": values["roll_off"]}),
         "joints": slid,
         "closure": xr.Dataset(
             {

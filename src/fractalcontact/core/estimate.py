@@ -46,9 +46,11 @@ SIZE = Scale()
 EXPONENT = Scale(span=1.0)
 #: Angles in degrees.
 ANGLE = Scale(span=30.0)
+#: Least and largest dimension of a set in the plane.
+IN_PLANE = (0.0, 2.0)
 #: Fractal dimensions and their slopes, which lie within 2: any interval determines them, and each
 #: verdict is by what it leaves out; those of a contact domain, 0 and 2, need none.
-DIMENSION = Scale(span=2.0, exact=(0.0, 2.0), decimals=2)
+DIMENSION = Scale(span=2.0, exact=IN_PLANE, decimals=2)
 
 
 @dataclass(frozen=True)
@@ -208,6 +210,13 @@ class Estimate:
             if falling
             else replace(self, value=value, low=low, high=high)
         )
+
+    def in_plane(self) -> Self:
+        """Estimate of the dimension of a set in the plane, which lies between 0 and 2.
+
+        A value, or an end of an interval, beyond these bounds is stated as the bound.
+        """
+        return self.mapped(lambda end: np.clip(end, *IN_PLANE))
 
     def columns(self, name: str, unit: str = "") -> dict[str, Any]:
         """Columns of a table: ``NAME``, ``NAME_low``, ``NAME_high``, each ending in the unit."""

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..core.estimate import DIMENSION, Estimate, Scale
+from ..core.estimate import DIMENSION, IN_PLANE, Estimate, Scale
 from ..core.fitting import MIN_POINTS, LineFit, fit_line
 from ..core.limits import MIN_NODES
 from ..core.ranges import in_cells, within
@@ -27,10 +27,6 @@ from .mean_law import (
     law_of_means,
 )
 from .ordinary_slope import OrdinarySlope, dyadic_sizes, ordinary_slope
-
-#: No set in the plane has another dimension, whatever a regression says.
-DIMENSIONS = (0.0, 2.0)
-
 
 #: The estimators of the dimension by their names in results.
 ESTIMATORS = {
@@ -214,11 +210,7 @@ def _with_interval(found: BoxDimension, nodes: int) -> BoxDimension:
     """The dimension without its interval where that means nothing, and with the reason."""
     why = FEW_NODES.format(nodes) if nodes < MIN_NODES else ONE_PART
     if nodes >= MIN_NODES and np.isfinite(found.width):
-        return replace(
-            found,
-            low=float(np.clip(found.low, *DIMENSIONS)),
-            high=float(np.clip(found.high, *DIMENSIONS)),
-        )
+        return found.in_plane()
     return replace(found, low=np.nan, high=np.nan, reason=why)
 
 
@@ -330,7 +322,7 @@ def _exact(cover: _Cover, ladder, extent) -> BoxDimension:
     line = _line(r, count, ladder)
     slopes += [line.slope.low, line.slope.high]
     found = _of_cover(cover, ladder, "exact", extent)
-    low, high = np.clip([0.0 - max(slopes), 0.0 - min(slopes)], *DIMENSIONS)
+    low, high = np.clip([0.0 - max(slopes), 0.0 - min(slopes)], *IN_PLANE)
     return replace(found, low=float(low), high=float(high))
 
 

@@ -161,7 +161,7 @@ def correlation_dimension(
         return Estimate()
     pairs, lags = pair_counts(domain, distances)
     slope = slope_of_sums(distances * float(spacing), pairs, lambda sums: sums[:, 0] / lags)
-    return slope.mapped(lambda exponent: 2 + exponent)
+    return slope.mapped(lambda exponent: 2 + exponent).in_plane()
 
 
 def pair_distances(shape: tuple[int, ...]) -> np.ndarray:

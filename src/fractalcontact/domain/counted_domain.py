@@ -6,6 +6,7 @@ from functools import cached_property
 import numpy as np
 import scipy.ndimage
 
+from ..core.estimate import IN_PLANE
 from ..core.intervals import jackknife_error
 from ..core.slope_of_sums import BLOCKS
 from .box_counts import mean_count
@@ -53,7 +54,7 @@ class CountedDomain:
             slope = pairs_slope(self.distances, pairs[:, 0].sum(axis=1), lags)
         return {
             "delta_sigma": self.box.dimension,
-            "correlation_dimension": slope,
+            "correlation_dimension": float(np.clip(slope, *IN_PLANE)),
             "clusters": float(scipy.ndimage.label(self.nodes, NEIGHBOURS)[1]),
             "morisita": morisita_index(*quadrat_counts(self.nodes))[0],
         }

@@ -292,7 +292,7 @@ def _compared_slopes(domain, cut, mask, spacing):
     reason = _why_not_compared(nodes, curve.values.size)
     if nodes > 1:
         draws = random_curves(domain.shape, nodes, mask)
-        curves["_random"] = band_of(draws)
+        curves["_random"] = band_of(draws).in_plane()
         departures["random"] = departure_from_draws(curve.values, draws)
     if cut is not None:
         highest = SlopeCurve(cut, mask)

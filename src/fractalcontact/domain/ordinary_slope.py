@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..core.estimate import DIMENSION, Estimate, Scale
+from ..core.estimate import DIMENSION, IN_PLANE, Estimate, Scale
 from ..core.fitting import fit_line
 from ..core.limits import MIN_NODES
 from ..core.ranges import within
@@ -81,7 +81,7 @@ def ordinary_slope(
     law = line.intercept.value + slope.value * np.log(sizes[used])
     half = np.hypot(error, wave_error(sizes[used], np.log(count[used]) - law))
     half = half if nodes >= MIN_NODES and np.isfinite(half) else np.nan
-    ends = np.clip((-slope.value - half, -slope.value + half), 0.0, 2.0)
+    ends = np.clip((-slope.value - half, -slope.value + half), *IN_PLANE)
     return OrdinarySlope(
         value=0.0 - slope.value,  # a constant count gives 0, not -0
         low=float(ends[0]),

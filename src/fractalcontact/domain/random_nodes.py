@@ -104,6 +104,7 @@ def random_bands(
         missing = np.full(sizes.size, np.nan)
         return dict.fromkeys(rows, NO_ESTIMATE), Estimate(missing, missing, missing)
     bands = {name: band_of(np.array(values)) for name, values in rows.items()}
+    bands["delta_sigma"] = bands["delta_sigma"].in_plane()
     return bands, band_of(np.array(covers))
 
 

@@ -1,6 +1,5 @@
 """Renormalisation of the contact area over resolutions and the size effect (eqs. 5 and 6)."""
 
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -67,8 +66,8 @@ def renormalisation(
 
     The interval is of sampling: N_n nodes vary as sqrt(N_n) (as Poisson's law has it for nodes that
     touch independently), and what waves about the smooth bend may tilt comes on top, in quadrature.
-    It ends at 2, the dimension of a plane, unless the value is beyond.
-    That of the regression would take the bend for an error: it was four times too wide on joints.
+    Value and interval lie between 0 and 2, the bounds of a set in the plane.
+    The interval of the regression would take the bend for an error: it was four times too wide on joints.
 
     Raises
     ------
@@ -90,10 +89,7 @@ def renormalisation(
         output_core_dims=[[]] * 5,
         vectorize=True,
     )
-    delta = Estimate(*slope).mapped(lambda exponent: 2 - exponent, falling=True)
-    # No set in a plane has more than 2. An area that grows with refinement has, and keeps its ends.
-    bounded = delta.high.where((delta.high < 2) | (delta.value > 2) | delta.high.isnull(), 2.0)
-    delta = replace(delta, high=bounded)
+    delta = Estimate(*slope).mapped(lambda exponent: 2 - exponent, falling=True).in_plane()
     measure = hausdorff_measure(s, touching, delta.value)
     measure = np.exp(np.log(measure).mean(RESOLUTION))
     values = {

@@ -96,7 +96,7 @@ class SlopeCurve:
     def interval(self) -> Estimate:
         """Local slopes with the 95 % interval of each, by the jackknife over parts."""
         half = _jackknife(self.without(self.occupied))[0]
-        return Estimate(self.values, self.values - half, self.values + half)
+        return Estimate(self.values, self.values - half, self.values + half).in_plane()
 
     @property
     def occupied(self) -> np.ndarray:

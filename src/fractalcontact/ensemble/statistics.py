@@ -10,6 +10,11 @@ from ..core.labels import cf_attrs
 from ..core.limits import NEAR_FULL
 from ..domain.random_nodes import band_of
 
+#: Dimensions of sets in the plane.
+DIMENSIONS = {
+    *("delta_sigma", "delta_sigma_random", "delta_sigma_area"),
+    *("local_slope", "local_slope_random", "local_slope_cut"),
+}
 #: Trends with the load: quantity, and what is taken from it or None; what the trend is of.
 TRENDS = {
     "delta_sigma_trend": ("delta_sigma", None, "Delta_sigma by boxes"),
@@ -73,11 +78,12 @@ def add_statistics(result: xr.Dataset, names: Sequence[str]) -> None:
         values = result[name].transpose("realisation", ...)
         units, words = values.attrs["units"], values.attrs["long_name"]
         dims = values.dims[1:]
-        mean = mean_interval(values.values)
+        mean, band = mean_interval(values.values), band_of(values.values)
+        if name in DIMENSIONS:
+            mean, band = mean.in_plane(), band.in_plane()
         result.update(
             mean.variables(f"{name}_mean", dims, units, f"{words}, mean over realisations")
         )
-        band = band_of(values.values)
         for end, of_end, of_band in (("low", "lower", band.low), ("high", "upper", band.high)):
             attrs = cf_attrs(units, f"{words}, {of_end} end of the 95 % band of one more")
             result[f"{name}_band_{end}"] = (dims, of_band, attrs)

@@ -9,6 +9,7 @@ import numpy as np
 from ..core.claims import all_claims
 from ..core.estimate import Estimate, names_of
 from ..core.fitting import MIN_POINTS, fit_line
+from ..core.labels import loads_of
 from ..core.limits import RESOLVED_NODES
 from ..core.subject import Subject
 from ..core.verdicts import FAILS, HOLDS, ILL_POSED, PARTLY, UNDETERMINED
@@ -33,9 +34,9 @@ class Finding(NamedTuple):
 class Joint(Subject):
     """Joint, with quantities that several statements use.
 
-    It has the stages ``specimens``, ``joints``, ``closure``, ``dilatancy``, ``area``, ``windows``,
-    ``domains``, ``scaling``, ``domain_measures`` and ``size_test``, and ``ensemble`` if the study
-    wants one.
+    It has the stages ``specimens``, ``surface_dimension``, ``joints``, ``closure``, ``dilatancy``,
+    ``area``, ``windows``, ``domains``, ``scaling``, ``domain_measures`` and ``size_test``, and
+    ``ensemble`` if the study wants one.
     """
 
     @property
@@ -175,9 +176,9 @@ def under_every_load(joint: Joint, rule: Callable[[float], Finding]) -> Finding:
     force = min(decided, key=lambda one: abs(np.log(one / joint.force)))
     verdicts = [one.verdict for one in decided.values()]
     pressure = force / joint.area
-    share_of = f"holds at {verdicts.count(HOLDS)} of {len(decided)} loads"
+    share_of = f"holds at {loads_of(verdicts.count(HOLDS), len(decided))}"
     if PARTLY in verdicts:
-        share_of += f", in part at {verdicts.count(PARTLY)}"
+        share_of += f", in part at {loads_of(verdicts.count(PARTLY), len(decided))}"
     return decided[force]._replace(
         verdict=verdicts[0] if len(set(verdicts)) == 1 else PARTLY,
         numbers=f"{decided[force].numbers} at {pressure:.3g} MPa; {share_of}",

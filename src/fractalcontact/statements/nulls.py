@@ -4,7 +4,7 @@ import numpy as np
 from scipy import special
 
 from ..core.claims import all_claims
-from ..core.determined import differ_together
+from ..core.determined import differ_together, differs
 from ..core.directions import slides
 from ..core.estimate import Estimate
 from ..core.labels import loads_of
@@ -81,15 +81,20 @@ def domains_are_fractal(joint: Joint, evidence: Evidence) -> Finding:
 
 
 def _departure_words(state, null, words):
-    """Box side of the largest departure from a null model, in words."""
+    """Box side of the largest departure from a null model, in words.
+
+    One that is significant but smaller than the margin is none, and the words say so.
+    """
     side, p = (float(state[f"local_slope_{null}_{name}"]) for name in ("side", "p"))
     if not np.isfinite(p):
         return f"{words}: not compared"
     place = int(np.argmin(np.abs(state["local_slope_side"].values - side)))
     slope, other = (float(state[name][place]) for name in ("local_slope", f"local_slope_{null}"))
+    small = differs(p) and abs(slope - other) < NEARLY
     return (
         f"{words}: largest departure at r = {side:.2g} mm, local slope {slope:.2f} against "
         f"{other:.2f}, p {f'= {p:.2g}' if p >= _LEAST_P else f'< {_LEAST_P:g}'}"
+        f"{f' (significant, but below {NEARLY:g}, which counts as none)' if small else ''}"
     )
 
 

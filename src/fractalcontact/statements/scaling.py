@@ -100,13 +100,19 @@ def dimension_rises_by_boxes(joint: Joint, evidence: Evidence) -> Finding:
     if found.verdict not in (HOLDS, PARTLY):
         return found
     faster = beyond_margin(trend.departure, all_claims()[name].margin, rising=True)
-    less = "but random nodes are near 2"
-    if trend.departure.known:
-        less = f"{trend.departure:+z.2f} after subtraction of as many random nodes"
     return found._replace(
         verdict=found.verdict if faster == HOLDS else PARTLY,
-        numbers=f"{found.numbers}, {less}",
+        numbers=f"{found.numbers}, {_beside_random(trend.departure)}",
     )
+
+
+def _beside_random(less: Estimate) -> str:
+    """Rise of Delta_sigma less that of as many random nodes, in words."""
+    if not less.known:
+        return "but random nodes are near 2"
+    if less.low <= 0 <= less.high:
+        return f"as fast as random nodes within the error ({less:+z.2f})"
+    return f"{'faster' if less.value > 0 else 'slower'} than random nodes (by {less:+z.2f})"
 
 
 def _rise(trend: Trend, name: str) -> Finding:

@@ -115,11 +115,17 @@ def _legend() -> list[list[Artist]]:
 
 
 def _words(test: xr.Dataset) -> dict[str, Any]:
-    """The three of every class at one load, and the first by the slopes alone."""
+    """Exponents and their null models at one load, of the lowest and the highest H."""
     one = test.sel(reduced_pressure=_QUOTED, method="nearest")
-    three = [one[name].values - less for name, less, *_ in _EXPONENTS]
-    three.append(one["theory_delta"].values - 2)
-    classes = list(zip(test["hurst"].values.tolist(), zip(*three, strict=True), strict=True))
+    exponents = {
+        of: one[of].values - less
+        for name, less, *_, nulls in _EXPONENTS
+        for of in (name, *nulls)
+    }
+    classes = [
+        (hurst, {name: values[i] for name, values in exponents.items()})
+        for i, hurst in enumerate(test["hurst"].values.tolist())
+    ]
     # The lowest and the highest H alone: a caption is short.
-    ends = dict.fromkeys((classes[0], classes[-1]))
-    return {"load": float(one["reduced_pressure"]), "classes": list(ends)}
+    ends = {hurst: found for hurst, found in (classes[0], classes[-1])}
+    return {"load": float(one["reduced_pressure"]), "classes": ends}

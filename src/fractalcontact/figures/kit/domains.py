@@ -7,11 +7,10 @@ import xarray as xr
 from matplotlib.axes import Axes
 from xarray import DataTree
 
-from ...core.determined import differs
 from ...core.estimate import DIMENSION, Estimate
 from ...core.labels import loads_of
 from ...core.subject import Subject
-from ...core.verdicts import UNDETERMINED
+from ...core.verdicts import BEYOND_BOTH, BEYOND_RANDOM, LIKE_CUT, UNDETERMINED
 from .drawing import COLOURS, MARKERS, spread
 from .verdicts import verdict_words
 
@@ -19,6 +18,9 @@ from .verdicts import verdict_words
 RISES = {"area": "dimension_rises_by_area", "box": "dimension_rises_by_boxes"}
 #: Estimates of Delta_sigma by name in the atlas: their words and symbols.
 _ESTIMATORS = {"area": ("A_r(s)", "$A_r(s)$"), "box": ("box counting", "box counting")}
+
+#: Verdicts that say that a domain differs from a null model.
+_DIFFERENT = {"random": (BEYOND_BOTH, BEYOND_RANDOM, LIKE_CUT), "cut": (BEYOND_BOTH,)}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -128,12 +130,11 @@ def departures(counts: xr.Dataset) -> dict[str, str]:
     counts : xr.Dataset
         The stage ``domains`` over loads, of domains that are looked at closely.
     """
-    found = {}
-    for null in ("random", "cut"):
-        p = counts[f"local_slope_{null}_p"].values
-        compared = p[np.isfinite(p)]
-        some = loads_of(sum(map(differs, compared)), compared.size)
-        found[null] = some if compared.size else ""
+    verdicts, found = counts["null_verdict"].values, {}
+    for null, differ in _DIFFERENT.items():
+        compared = np.isfinite(counts[f"local_slope_{null}_p"].values)
+        some = loads_of(int(np.isin(verdicts[compared], differ).sum()), int(compared.sum()))
+        found[null] = some if compared.any() else ""
     return found
 
 

@@ -57,7 +57,7 @@ def draw_stiffness(panel: Panel, curves: xr.Dataset) -> list[str]:
         numbers = _numbers(finest, "hyperbola_k_ni")
         doubted = np.isfinite(initial[0]) and not finest["hyperbola_k_ni_determined"]
         words = f"\n{UNDETERMINED}, {numbers}" if doubted else f" {numbers}"
-        style["label"] = f"$k_{{ni}}$ of the hyperbola, bars 95 %:{words}"
+        style["label"] = f"$k_{{ni}}$ from first touch, bars 95 %:{words}"
     panel.curve(curves, "spacing", "hyperbola_k_ni", **style)
     _finish(axes, curves["spacing"].values)
     reasons = curves["interface_stiffness_reason"]

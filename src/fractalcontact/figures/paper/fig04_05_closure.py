@@ -40,7 +40,10 @@ ORDER = 50
 CURVES = 5
 
 #: What the numbers of every curve are.
-_LEGEND = "(a), (b): rms misfit of logarithmic law, of hyperbola; $k_{ni}$ (MPa/mm) [95 %]"
+_LEGEND = (
+    "(a), (b), from first touch: rms misfit of logarithmic law, of hyperbola; "
+    "$k_{ni}$ (MPa/mm) [95 %]"
+)
 _LEGEND_AREA = r"(c): exponent $m$ of $A_r \sim F^m$ [95 %]"
 
 _LEGEND_STIFFNESS = "(d): MPa/mm at the finest $s$ (change at $2s$)"

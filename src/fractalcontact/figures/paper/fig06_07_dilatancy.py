@@ -1,5 +1,6 @@
 """Rigid and elastic dilatancy, and the contact domains along the way (Figs. 6 and 7)."""
 
+import numpy as np
 from matplotlib.figure import Figure
 from xarray import DataTree
 
@@ -22,7 +23,16 @@ from ._rigid_dilatancy import direction_style, draw_rigid
 
 TITLE = "Figs. 6 and 7: rigid and elastic dilatancy, and contact domains along the curve"
 SUBJECT = "joint"
-NEEDS = ("specimens", "joints", "dilatancy", "closure", "contact", "statements", "measured")
+NEEDS = (
+    "specimens",
+    "surface_dimension",
+    "joints",
+    "dilatancy",
+    "closure",
+    "contact",
+    "statements",
+    "measured",
+)
 ORDER = 100
 
 #: Height of the curves and their legend, inches.
@@ -64,7 +74,12 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     bottom.suptitle(title, x=0.01, ha="left", fontsize=8)
     headline(figure, subject.label)
     trends = dict(zip(plateaus["direction"].values, plateaus["plateau_trend"].values, strict=True))
+    end = float(plateaus["rigid_offset"][-1])
+    roll_off = float(subject["surface_dimension"]["roll_off"])
+    short_of = f", short of the roll-off at {short(roll_off)} mm" if end < roll_off < np.inf else ""
     words = {
+        "end": end,
+        "short_of": short_of,
         "tests": test_words(subject, "dilatancy"),
         "force": subject.reported.force,
         "fitted": sum(map(bool, trends.values())),

@@ -20,7 +20,7 @@ from ..kit.legends import heading
 from ..kit.maps import draw_domain
 from ..kit.panel import Panel, table_of
 from ..kit.titles import headline, letter
-from ..kit.verdicts import claim
+from ..kit.verdicts import claim, verdict_words
 from ..kit.words import force_label, place, short
 from ._local_slopes import CUT, LAW, ORDINARY, RANDOM, band_of, draw_slopes
 
@@ -69,6 +69,8 @@ def draw(atlas: DataTree, name: str) -> Drawing:
         __name__,
         reason=str(counts["reason"].item()),
         law=law,
+        sides=[float(counts[f"fit_{end}"]) for end in ("min", "max")],
+        one_power=verdict_words(atlas, name, "boxes_follow_one_law", numbers=False),
         ordinary=ordinary,
         one_law=claim(atlas, name, "boxes_follow_one_law", numbers=False),
         fractal=claim(atlas, name, "domains_are_fractal"),
