@@ -119,26 +119,29 @@ def _model(found: _At, under: str) -> Markup | None:
     shares = [at.contact_share for _, at in known]
     text = (
         f"{under} {_range(shares, percent)} of the window is in contact, at a real mean pressure "
-        f"of {_range([at.model.pressure for _, at in known], _pressure)}: {_tested(known)}"
+        f"of {_range([at.model.pressure for _, at in known], _pressure)}: {_tested(known, found)}"
     )
     return Markup(escape(text))
 
 
-def _tested(known: _At) -> str:
-    """Verdicts on specimens without a hardness, then the names of those with one."""
+def _tested(known: _At, found: _At) -> str:
+    """Verdicts on specimens without a hardness, then the names of those that are not judged."""
     tested = [(one, at) for one, at in known if not at.model.capped]
     capped = [one.name for one, at in known if at.model.capped]
+    few = [one.name for one, at in found if at.model.verdict not in _MODEL]
     parts = []
     if tested:
         verdicts = _counted([at.model.verdict for _, at in tested], _MODEL)
         slopes = [one.rms_slope for one, _ in tested if math.isfinite(one.rms_slope)]
-        uncapped = " whose pressure no hardness caps" if capped else ""
+        judged = " judged" if capped or few else ""
         parts.append(
-            f"the elastic model is {verdicts}{uncapped} ({_limits(tested)}{_slopes(slopes)})"
+            f"the elastic model is {verdicts}{judged} ({_limits(tested)}{_slopes(slopes)})"
         )
+    if few:
+        parts.append(f"{_listed(few)} {'have' if few[1:] else 'has'} too few contact nodes for it")
     if capped:
         parts.append(
-            f"the hardness of {_listed(capped)} caps the pressure, which tests nothing there"
+            f"the hardness of {_listed(capped)} caps the pressure, so that it tests nothing there"
         )
     return f"{'; '.join(parts)}."
 
@@ -215,8 +218,8 @@ def _listed(names: Sequence[str], most: int = _LISTED) -> str:
 
 #: What the paper's number is an exponent of, and what eq. 6 makes of it.
 _OF_THE_PAPER = (
-    "The paper's 1.39 is a box count, printed under a picture of areas A_r(s). By that count the "
-    "exponent of eq. 6 is -0.61; by the areas it is Delta_sigma of A_r(s) minus 2."
+    "The paper's 1.39 is a box count, printed under a picture of areas A_r(s). The exponent of "
+    "eq. 6, Delta_sigma - 2, is -0.61 with it; with the larger Delta_sigma of areas it is nearer 0."
 )
 
 
@@ -224,12 +227,13 @@ def _dimensions(found: _At, under: str, rows: Sequence[Row]) -> Markup:
     """Delta_sigma by both estimators where it is determined, and the verdict beside nulls."""
     verdicts = {row.name: {n: cell.verdict for n, cell in row.cells.items()} for row in rows}
     # Where all that touches yields, A_r(s) has the dimension 2 by construction.
-    asked = [
-        (one, at) for one, at in found if verdicts.get(_LACUNAR, {}).get(one.name) != ILL_POSED
-    ]
+    yielded = {name for name, one in verdicts.get(_LACUNAR, {}).items() if one == ILL_POSED}
     by_boxes = _determined([at.delta_sigma_boxes for _, at in found])
-    by_areas = _determined([at.delta_sigma_areas for _, at in asked])
+    by_areas = _determined([at.delta_sigma_areas for one, at in found if one.name not in yielded])
     text = f"{under} Delta_sigma is {by_boxes} by box counting and {by_areas} by A_r(s)"
+    by_construction = [one.name for one, _ in found if one.name in yielded]
+    if by_construction:
+        text += f"; in {_listed(by_construction)} all contacts yield and A_r(s) has 2 by construction"
     beside = [one for one in verdicts.get(_FRACTAL, {}).values() if one in _ANSWERS]
     question = ""
     if beside:
