@@ -58,7 +58,8 @@ def test_no_dimension_and_no_interval_goes_beyond_a_plane():
     for delta, stated in ((-0.1, 0), (0.0, 0), (1.95, 1.95), (2.0, 2), (2.1, 2)):
         found = renormalisation(S, 40.0 * S ** (2 - delta) + 0 * FORCE, FORCE)
         np.testing.assert_allclose(found.delta_sigma, stated, atol=1e-9)
-        assert (found.delta_sigma_low >= 0).all() and (found.delta_sigma_high <= 2).all()
+        assert (found.delta_sigma_low >= 0).all()
+        assert (found.delta_sigma_high <= 2).all()
         assert (found.delta_sigma_low <= found.delta_sigma).all()
         assert (found.delta_sigma <= found.delta_sigma_high).all()
 
@@ -106,7 +107,8 @@ def test_few_nodes_have_no_dimension(nodes, fitted):
     assert result.n.item() == fitted
     if fitted:
         assert result.delta_sigma.item() == pytest.approx(0, abs=1e-9)
-        assert result.delta_sigma_high > 0.5 and result.delta_sigma_low == 0
+        assert result.delta_sigma_low == 0
+        assert result.delta_sigma_high > 0.5
     else:
         assert np.isnan(result.delta_sigma)
         assert np.isnan(result.sigma_n).all()

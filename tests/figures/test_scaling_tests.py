@@ -139,11 +139,15 @@ def judged_as(atlas, verdict, reason):
 @pytest.mark.parametrize(
     ("verdict", "reason", "said"),
     [
-        ("agrees", "", "agrees at {n} of {n} conclusive loads by A_r(s), agrees at {n} of {n}"),
+        (
+            "agrees",
+            "",
+            "by A_r(s) eq. 6 agrees at {n} of {n} conclusive loads, by box counting eq. 6",
+        ),
         (
             "measured flatter",
             "",
-            "agrees at 0 of {n} conclusive loads by A_r(s), agrees at 0 of {n}",
+            "by A_r(s) eq. 6 agrees at none of {n} conclusive loads, by box counting eq. 6 agrees",
         ),
         ("undecided", "the cat ate it", "inconclusive: the cat ate it"),
     ],

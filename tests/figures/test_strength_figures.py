@@ -220,7 +220,7 @@ def test_both_figures_of_strength_word_the_roughness_alike(atlas):
     laws["barton_roughness"] = laws["barton_roughness"] * np.nan
     changed["windows/sliding"] = xr.DataTree(laws)
     words = roughness_words(strength.isel(contact_direction=0))
-    assert "above Barton's 20 once scaled to this length" in words
+    assert "scaled to this length it exceeds Barton's largest, 20" in words
     for figure in ("strength", "fig11_slope_angle"):
         assert words in drawn(changed, "sliding", figure).caption
     known = strength.assign(scaled_roughness=strength["jrc_used"])

@@ -66,8 +66,8 @@ def renormalisation(
 
     The interval is of sampling: N_n nodes vary as sqrt(N_n) (as Poisson's law has it for nodes that
     touch independently), and what waves about the smooth bend may tilt comes on top, in quadrature.
-    Value and interval lie between 0 and 2, the bounds of a set in the plane.
-    The interval of the regression would take the bend for an error: it was four times too wide on joints.
+    Value and interval lie between 0 and 2, the bounds of a set in the plane. The interval of the
+    regression would take the bend for an error: it was four times too wide on joints.
 
     Raises
     ------

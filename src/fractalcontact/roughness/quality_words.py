@@ -152,10 +152,14 @@ def cells_words(specimen: xr.Dataset, quality: xr.Dataset) -> str:
     missing = [f"{plain(100 * share, 2)} %" for share in quality["missing_share"].values]
     which = " (lower and upper face)" if len(missing) > 1 else ""
     words = [f"{' and '.join(missing)} of the cells are missing{which}"]
-    if "outlier_count" in specimen.attrs:
+    if not quality["missing_share"].values.any():
+        words = ["no cell is missing"]
+    if outliers := specimen.attrs.get("outlier_count"):
         treated = {"keep": "kept", "mask": "masked", "fill": "filled"}
         how = treated.get(str(specimen.attrs.get("outliers")), "")
-        words.append(f"{specimen.attrs['outlier_count']} outliers {how}".rstrip())
+        words.append(f"{outliers} outlier{'s' * (outliers > 1)} {how}".rstrip())
+    elif outliers is not None:
+        words.append("no outlier")
     if filled := specimen.attrs.get("filled_count"):
         words.append(f"{filled} cells filled")
     return ", ".join(filter(None, [*words, suspect_words(specimen)]))

@@ -245,9 +245,10 @@ def _verdict_reason(result):
     of_study = of_study.sel(estimator=list(_QUOTED))
     if of_study["decides"].any():
         return ", ".join(
-            f"agrees at {int(of_study['agreeing_loads'][i])} of {count} conclusive loads by {by}"
+            f"by {by} eq. 6 agrees at {int(of_study['agreeing_loads'][i]) or 'none'} of {count} "
+            f"conclusive load{'s' * (count > 1)}"
             if (count := int(of_study["deciding_loads"][i]))
-            else f"no load is conclusive by {by}"
+            else f"by {by} no load is conclusive"
             for i, by in enumerate(_QUOTED.values())
         )
     tested = of_study["reason"].values[of_study["verdict"].values != NOT_TESTED].astype(str)

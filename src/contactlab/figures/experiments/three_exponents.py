@@ -118,14 +118,12 @@ def _words(test: xr.Dataset) -> dict[str, Any]:
     """Exponents and their null models at one load, of the lowest and the highest H."""
     one = test.sel(reduced_pressure=_QUOTED, method="nearest")
     exponents = {
-        of: one[of].values - less
-        for name, less, *_, nulls in _EXPONENTS
-        for of in (name, *nulls)
+        of: one[of].values - less for name, less, *_, nulls in _EXPONENTS for of in (name, *nulls)
     }
     classes = [
         (hurst, {name: values[i] for name, values in exponents.items()})
         for i, hurst in enumerate(test["hurst"].values.tolist())
     ]
     # The lowest and the highest H alone: a caption is short.
-    ends = {hurst: found for hurst, found in (classes[0], classes[-1])}
+    ends = dict((classes[0], classes[-1]))
     return {"load": float(one["reduced_pressure"]), "classes": ends}

@@ -16,10 +16,13 @@ from ..kit.words import force_label, percent
 
 #: The paper's stages of sliding: what each is said to do, and what decides about it.
 STAGES = {
-    "compliance_rises_at_first": ("rising as v^x", ""),
-    "curves_overlap": ("the same", f"margin {percent(all_claims()['curves_overlap'].margin)}"),
+    "compliance_rises_at_first": ("it rises as v^x", ""),
+    "curves_overlap": (
+        "it stays the same",
+        f"margin {percent(all_claims()['curves_overlap'].margin)}",
+    ),
     "compliance_rises_again": (
-        "rising again on average",
+        "it rises again on average",
         f"margin {percent(all_claims()['compliance_rises_again'].margin, '+')}",
     ),
 }

@@ -63,7 +63,7 @@ def roughness_words(strength: xr.Dataset) -> str:
     if used != jrc:
         words += f", {short(used)} used"
     if np.isfinite(used) and np.isnan(strength["scaled_roughness"]):
-        words += f", above Barton's {JRC_RANGE[1]:g} once scaled to this length"
+        words += f"; scaled to this length it exceeds Barton's largest, {JRC_RANGE[1]:g}"
     return words
 
 
