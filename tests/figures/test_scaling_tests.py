@@ -142,7 +142,7 @@ def judged_as(atlas, verdict, reason):
         (
             "agrees",
             "",
-            "by A_r(s) eq. 6 agrees at {n} of {n} conclusive loads, by box counting eq. 6",
+            "by A_r(s) eq. 6 agrees at {n} of {n} conclusive loads, by box counting",
         ),
         (
             "measured flatter",

@@ -234,7 +234,6 @@ def _dimensions(found: _At, under: str, rows: Sequence[Row]) -> Markup:
     by_construction = [one.name for one, _ in found if one.name in yielded]
     if by_construction:
         text += f"; all contacts of {_listed(by_construction)} yield, so that A_r(s) gives 2 there"
-    text += f"; in {_listed(by_construction)} all contacts yield and A_r(s) has 2 by construction"
     beside = [one for one in verdicts.get(_FRACTAL, {}).values() if one in _ANSWERS]
     question = ""
     if beside:
