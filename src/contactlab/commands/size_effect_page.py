@@ -40,7 +40,7 @@ def page(test: xr.Dataset, study: str, strength: xr.Dataset | None = None) -> st
 
 def _prose(text: str) -> list[str]:
     """A paragraph, wrapped, and the line that ends it."""
-    return [*textwrap.wrap(" ".join(text.split()), 125, break_on_hyphens=False), ""]
+    return [*textwrap.wrap(" ".join(text.split()), 132, break_on_hyphens=False), ""]
 
 
 def _table(head: str, rows: Iterable[Sequence[str]]) -> list[str]:
@@ -78,8 +78,8 @@ def _head(test: xr.Dataset) -> list[str]:
     flat = test["no_size_effect"].sel(arm="S1")
     answer = f"""
         **Answer.** The verdicts over the classes (arm and H) are: {counts}. With the roll-off fixed
-        (arm S1) there is no size effect at {int(flat.sum())} of {flat.size} loads: the whole 99 %
-        interval of the exponent lies within 0.02 of zero."""
+        (arm S1) there is no size effect in {int(flat.sum())} of {flat.size} cases (H and load): the
+        whole 99 % interval of the exponent lies within 0.02 of zero."""
     load = test["reduced_pressure"].values[min(1, test.sizes["reduced_pressure"] - 1)]
     text = f"""
         Eq. 6 has one exponent, Δσ - 2, for three things: how the contact area falls with finer
@@ -111,11 +111,10 @@ def _head(test: xr.Dataset) -> list[str]:
 def _origin(test: xr.Dataset, study: str) -> list[str]:
     text = f"""
         The surfaces are synthetic, lie against a plane, and have one spectral prefactor, a shortest
-        wave of {test.attrs["cut_off"]} nodes and a roll-off that is set by itself. This page was
+        wave of {test.attrs["cut_off"]} nodes and a roll-off that is varied on its own. This page was
         written by `python -m contactlab.commands.size_effect_page` from the atlas of
         {test.sizes["surface"]} surfaces, the picture from that of its small part in
-        `config/paper.yaml`. Intervals are of 99 %, over surfaces, those of the picture of 95 %;
-        ± is one standard error. Columns of the tables are loads p/(E\\* h'_rms)."""
+        `config/paper.yaml`. Intervals over surfaces cover 99 %, those of the picture 95 %; ± is one standard error. Columns of the tables are loads p/(E\\* h'_rms)."""
     return [*_prose(text.replace("\\\\", "\\")), f"    make STUDY=config/{study}.yaml", ""]
 
 
@@ -181,8 +180,8 @@ def _stiffness(test: xr.Dataset) -> list[str]:
         for arm, hurst in _product(test, "arm", "hurst")
     ]
     text = """
-        Compliance of the interface; mean gap, at one nominal pressure, as powers of the side.
-        Without a roll-off they grow with the rms height, about as b^H: larger joints are more
+        Exponents over the side at one nominal pressure, of the compliance of the interface; of the
+        mean gap. Without a roll-off they grow with the rms height, about as b^H: larger joints are more
         compliant because they are rougher, not because less of them touches."""
     loads = test["reduced_pressure"].values
     between = ", ".join(f"{a:g} to {b:g}" for a, b in itertools.pairwise(loads))
@@ -234,8 +233,8 @@ def _resolution(test: xr.Dataset) -> list[str]:
         ),
         *_table(f"H | {_loads(test)} | 1 + H", rows),
         *_prose(
-            f"""The two differ by at most {departure:.3f}: the exponent of A_r(s) is the surface's,
-            by its rms slope, and is no property of the contact domain."""
+            f"""The two differ by at most {departure:.3f}: the exponent of A_r(s) follows from
+            the rms slope of the surface and is no property of the contact domain."""
         ),
     ]
 
@@ -252,8 +251,8 @@ def _geometry(test: xr.Dataset) -> list[str]:
         "",
         *_prose(
             """Correlation dimension of the contact domain between cut-off and roll-off, and of the
-            bearing-area cut of as many nodes; random nodes have 2. Box counts of the domain stand
-            under Size, less 2. A dimension that grows with the load, as that of the cut does, is no
+            bearing-area cut of as many nodes; random nodes have 2. Box-counting dimensions of the
+            domain, minus 2, stand under Size. A dimension that grows with the load, as that of the cut does, is no
             property of the surface:"""
         ),
         *_table(f"H | set | {_loads(test)}", rows),
@@ -276,7 +275,7 @@ def _constructions(test: xr.Dataset) -> list[str]:
     ]
     return [
         *_prose(
-            """The same of other constructions of known dimension (arm G), contact domain; cut:"""
+            """The same for other constructions of known dimension (arm G): contact domain; cut:"""
         ),
         *_table(f"construction | H | {_loads(test)}", rows),
     ]
@@ -294,8 +293,8 @@ def _strength(test: xr.Dataset) -> list[str]:
         {test.attrs["largest_friction_angle"]:g}° would meet {100 * truncated:.2g} % of the angles.
         At equal v all intervals are taken together. The columns at equal v/b hold three exponents:
         that of all joints, that of the largest joints alone at the same v, where size plays no
-        part, and that of the height-difference function S(v). An asterisk marks no size effect,
-        within {test.attrs["bound"]:g} of zero, a question mark an undetermined one."""
+        part, and that of the height-difference function S(v). An asterisk marks exponents
+        within {test.attrs["bound"]:g} of zero (no size effect), a question mark undetermined ones."""
     ends = test.isel(hurst=0, law=0, reduced_pressure=0)
     fractions = " | ".join(
         f"v/b = {float(low):.3g} to {float(high):.3g}"
@@ -314,7 +313,7 @@ def _strength(test: xr.Dataset) -> list[str]:
     rest = f"""
         Over all loads: {classes}. Contact area and separation at equal v, over all displacements:
         {others}. A window alone on a half-space carries more at its rim as it grows, which makes
-        the mean separation rise a little with b; eq. 6 wants the strength to fall."""
+        the mean separation rise a little with b; by eq. 6 the strength would fall."""
     head = f"H | contact | p/(E\\* h'_rms) | equal v | {fractions}"
     return ["## Strength", "", *_prose(text), *_table(head, rows), *_prose(rest)]
 
@@ -370,23 +369,22 @@ def _questions(test: xr.Dataset) -> list[str]:
             differs from α by {float(central.median()):.3f} in the median and at most
             {float(central.max()):.3f}.""",
         "Window and mean plane": """Every surface is cut from one of twice its side, and its mean
-            plane is taken off once; windows of arm W lose their own.""",
+            plane is removed once; each window of arm W has its own mean plane removed.""",
         "Prefactor or rms": """The prefactor is the same for all: a larger surface continues a
             smaller one. Scaled to one rms height, larger ones would be smoother at every
             wavelength.""",
         "Decimation or low-pass": """The short cut-off is a low-pass on one grid; decimated surfaces
-            alias and are others.""",
-        "Correction of the area": f"""Raw over corrected, in the median of all surfaces:
+            alias, and are different surfaces.""",
+        "Correction of the area": f"""Ratio of raw to corrected area, median of all surfaces:
             {", ".join(f"{float(v):.3f}" for v in raw.median("surface"))} over the loads; a constant
-            factor is in no exponent.""",
+            factor changes no exponent.""",
         "Few contacts": f"""The sparsest state in an exponent has {float(nodes.min()):.0f} nodes (of
             arm W in the mean over its windows).""",
         "Loads": f"""p/(E\\* h'_rms) = {loads}, that is A_r/A_0 of
             {float(shares.min()):.2g} to {float(shares.max()):.2g}.""",
-        "Solver": f"""Largest residual of the contact conditions:
-            {float(test["residual"].max()):.1g} of the closure.""",
-        "Error": f"""The largest standard error of α is {float(errors.max()):.3f}, that of arm S1
-            {float(errors.sel(arm="S1").max()):.3f}.""",
+        "Errors": f"""The largest residual of the contact conditions is
+            {float(test["residual"].max()):.1g} of the closure. The largest standard error of α is
+            {float(errors.max()):.3f}, that of arm S1 {float(errors.sel(arm="S1").max()):.3f}.""",
     }
     lines = [line for name, text in points.items() for line in _prose(f"- **{name}.** {text}")[:-1]]
     return ["## Questions that a reader will have", "", *lines, ""]
