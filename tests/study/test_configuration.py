@@ -275,7 +275,7 @@ def test_embedded_names_and_those_of_scans_are_told_apart(study, scan, message):
 def test_numbers_and_dates_that_are_none_are_refused_on_reading(tmp_path, value):
     path = tmp_path / "mine.yaml"
     path.write_text(f"study: mine\nseed: {value}\n")
-    with pytest.raises(InputError, match=r"mine\.yaml: a date or number that is none"):
+    with pytest.raises(InputError, match=r"mine\.yaml: an invalid date or number"):
         read_study(path)
 
 

@@ -382,9 +382,9 @@ def _questions(test: xr.Dataset) -> list[str]:
             arm W in the mean over its windows).""",
         "Loads": f"""p/(E\\* h'_rms) = {loads}, that is A_r/A_0 of
             {float(shares.min()):.2g} to {float(shares.max()):.2g}.""",
-        "Errors": f"""The largest residual of the contact conditions is
-            {float(test["residual"].max()):.1g} of the closure. The largest standard error of α is
-            {float(errors.max()):.3f}, that of arm S1 {float(errors.sel(arm="S1").max()):.3f}.""",
+        "Errors": f"""Largest residual of the contact conditions:
+            {float(test["residual"].max()):.1g} of the closure. Largest standard error of α:
+            {float(errors.max()):.3f}, of arm S1 {float(errors.sel(arm="S1").max()):.3f}.""",
     }
     lines = [line for name, text in points.items() for line in _prose(f"- **{name}.** {text}")[:-1]]
     return ["## Questions that a reader will have", "", *lines, ""]

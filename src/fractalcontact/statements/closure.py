@@ -96,7 +96,7 @@ def composite_dimension_rises(joint: Joint) -> Finding:
     known = np.isfinite(dimension) & (joint.offsets > 0)
     if not known.any():
         return Finding(
-            ILL_POSED, "fixed by the range of lags fitted: flat above v, the face's below"
+            ILL_POSED, "fixed by the lags fitted: the variogram is flat above v, the face's below"
         )
     v, fitted = joint.offsets[known], dimension[known]
     low = float(joints["composite_fit_min"].min())
@@ -132,8 +132,8 @@ def larger_samples_close_more(joint: Joint, evidence: Evidence) -> Finding:
     return Finding(
         beyond_margin(exponent, all_claims()[name].margin, rising=True),
         f"x = {exponent:z.2f}",
-        f"compliance ~ b^x {evidence.reference}; {margin_words(name)}; closure from first "
-        f"contact, b^{closure:.2f} in this specimen, grows as any largest value does",
+        f"compliance ~ b^x {evidence.reference}; {margin_words(name)}; closure from first contact "
+        f"(b^{closure:.2f} in this specimen) grows because it counts from the highest node",
     )
 
 

@@ -166,7 +166,7 @@ def domains_are_isotropic(joint: Joint) -> Finding:
         Estimate.read(measures, f"contact_at_lag_{way}") for way in ("along", "across")
     )
     if not (along.known and across.known) or along.value + across.value == 0:
-        return Finding(UNDETERMINED, "no contact at that lag from another")
+        return Finding(UNDETERMINED, "no node touches at that lag from another")
     ways = _OF_SLIDING if slides(joint.settings["opposite"]) else ("along x", "along y")
     numbers = f"contact at a lag {along:.2f} {ways[0]}, {across:.2f} {ways[1]}"
     apart = max(along.low, across.low) > min(along.high, across.high)

@@ -68,8 +68,8 @@ def size_exponent_grows_with_dimension(joints: Mapping[str, Joint]) -> Finding:
     return Finding(
         by_sign(slope, rising=True),
         f"2 - Delta_sigma by A_r(s) {pairs}",
-        "at light load it is the growth of the slopes h'_rms of the surface with resolution; eq. "
-        "6 is judged for whether strength follows that exponent as the size grows",
+        "at light load the exponent is the growth of the slopes h'_rms with resolution; under eq. 6 "
+        "stands whether the area follows it as the size grows",
         "realisations of each" if of_kinds else "",
     )
 

@@ -32,7 +32,7 @@ def read_study(path: Path | str) -> dict:
     except UnicodeDecodeError as error:
         raise InputError(f"{path}: not text in UTF-8 ({error.reason}); save it as that") from error
     except ValueError as error:  # a day that no month has, an integer of thousands of digits
-        raise InputError(f"{path}: a date or number that is none ({error})") from error
+        raise InputError(f"{path}: an invalid date or number ({error})") from error
     if not isinstance(document, dict):
         raise InputError(f"{path}: expected 'key: value' lines, found {type(document).__name__}")
     if _TEMPLATE in document:

@@ -62,7 +62,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     by_offset = [heading(rf"(d) at $F$ = {force}: number $\sim a^{{-\beta}}$ [95 %]")]
     legends_below(figure, by_load, [*by_offset, *entries(axes[3])])
     headline(figure, subject.label, place(subject.direction))
-    why = f"I ~ v^x over all v at {force}"
+    why = f"Morisita's index ~ v^x over all v at {force}"
     text = caption(
         __name__,
         clustered=claim(atlas, name, "domains_cluster", why=why),
