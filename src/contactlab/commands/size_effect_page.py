@@ -111,10 +111,11 @@ def _head(test: xr.Dataset) -> list[str]:
 def _origin(test: xr.Dataset, study: str) -> list[str]:
     text = f"""
         The surfaces are synthetic, lie against a plane, and have one spectral prefactor, a shortest
-        wave of {test.attrs["cut_off"]} nodes and a roll-off that is varied on its own. This page was
-        written by `python -m contactlab.commands.size_effect_page` from the atlas of
+        wave of {test.attrs["cut_off"]} nodes and a roll-off that is varied on its own. This page
+        was written by `python -m contactlab.commands.size_effect_page` from the atlas of
         {test.sizes["surface"]} surfaces, the picture from that of its small part in
-        `config/paper.yaml`. Intervals over surfaces cover 99 %, those of the picture 95 %; ± is one standard error. Columns of the tables are loads p/(E\\* h'_rms)."""
+        `config/paper.yaml`. Intervals over surfaces cover 99 %, those of the picture 95 %; ± is
+        one standard error. Columns of the tables are loads p/(E\\* h'_rms)."""
     return [*_prose(text.replace("\\\\", "\\")), f"    make STUDY=config/{study}.yaml", ""]
 
 
@@ -181,8 +182,8 @@ def _stiffness(test: xr.Dataset) -> list[str]:
     ]
     text = """
         Exponents over the side at one nominal pressure, of the compliance of the interface; of the
-        mean gap. Without a roll-off they grow with the rms height, about as b^H: larger joints are more
-        compliant because they are rougher, not because less of them touches."""
+        mean gap. Without a roll-off they grow with the rms height, about as b^H: larger joints are
+        more compliant because they are rougher, not because less of them touches."""
     loads = test["reduced_pressure"].values
     between = ", ".join(f"{a:g} to {b:g}" for a, b in itertools.pairwise(loads))
     law = f"""
@@ -252,8 +253,8 @@ def _geometry(test: xr.Dataset) -> list[str]:
         *_prose(
             """Correlation dimension of the contact domain between cut-off and roll-off, and of the
             bearing-area cut of as many nodes; random nodes have 2. Box-counting dimensions of the
-            domain, minus 2, stand under Size. A dimension that grows with the load, as that of the cut does, is no
-            property of the surface:"""
+            domain, minus 2, stand under Size. A dimension that grows with the load, as that of the
+            cut does, is no property of the surface:"""
         ),
         *_table(f"H | set | {_loads(test)}", rows),
     ]
@@ -294,7 +295,8 @@ def _strength(test: xr.Dataset) -> list[str]:
         At equal v all intervals are taken together. The columns at equal v/b hold three exponents:
         that of all joints, that of the largest joints alone at the same v, where size plays no
         part, and that of the height-difference function S(v). An asterisk marks exponents
-        within {test.attrs["bound"]:g} of zero (no size effect), a question mark undetermined ones."""
+        within {test.attrs["bound"]:g} of zero (no size effect), a question mark undetermined
+        ones."""
     ends = test.isel(hurst=0, law=0, reduced_pressure=0)
     fractions = " | ".join(
         f"v/b = {float(low):.3g} to {float(high):.3g}"
