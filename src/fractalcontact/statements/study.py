@@ -68,8 +68,8 @@ def size_exponent_grows_with_dimension(joints: Mapping[str, Joint]) -> Finding:
     return Finding(
         by_sign(slope, rising=True),
         f"2 - Delta_sigma by A_r(s) {pairs}",
-        "at light load the exponent is the growth of the slopes h'_rms with resolution; whether the "
-        "area follows it as the size grows is judged under eq. 6",
+        "at light load the exponent is the growth of the slopes h'_rms with resolution; whether "
+        "the area follows it as the size grows is judged under eq. 6",
         "realisations of each" if of_kinds else "",
     )
 
