@@ -303,10 +303,10 @@ def test_the_estimates_are_compared_or_it_is_said_that_they_cannot_be(atlas):
     }
     four["scaling/flat"] = xr.DataTree(scaling.assign(ends))
     assert re.search(verdict, draw(four, "fig10_scaling", "flat").caption)
-    assert "One of them has no interval." in draw(atlas, "fig10_scaling", "flat").caption
+    assert ", no interval: " in draw(atlas, "fig10_scaling", "flat").caption
     # One resolution gives no A_r(s) to fit.
     assert np.isnan(Subject.of(atlas, "pair").states("scaling")["delta_sigma_area"]).all()
-    assert "One of them has no interval." in draw(atlas, "fig10_scaling", "pair").caption
+    assert "; by A_r(s): no fit: " in draw(atlas, "fig10_scaling", "pair").caption
 
 
 def test_no_fit_is_said_with_its_reason(atlas):

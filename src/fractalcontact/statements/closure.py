@@ -143,7 +143,7 @@ def area_is_linear(joint: Joint) -> Finding:
     law = joint.along("area")
     exponent = Estimate.read(law, "corrected_exponent")
     if not exponent.known.any():
-        return Finding(UNDETERMINED, "no law of the area could be fitted")
+        return Finding(UNDETERMINED, "no area law could be fitted")
     exponent = exponent[exponent.known]
     value = exponent.value
     near = int((np.abs(value - 1) <= NEARLY).sum())
