@@ -107,15 +107,13 @@ ALIKE = [1 - np.exp(-RIGID)] * 4
         ("larger_samples_close_more", {"window_exponent": np.full(7, np.nan)}, UNDETERMINED),
         ("dilatancy_flattens", {"dilatancy": RISING * 2}, PARTLY),
         ("dilatancy_flattens", {"dilatancy": [0.1 * RIGID, 0.2 * RIGID] * 2}, FAILS),
-        # Offsets that end before the roll-off show plateaus, but not that there are none.
-        ("dilatancy_flattens", {"dilatancy": RISING * 2, "roll_off": 12.0}, UNDETERMINED),
-        ("dilatancy_flattens", {"roll_off": 12.0}, HOLDS),
-        ("dilatancy_flattens", {"dilatancy": RISING * 2, "roll_off": np.inf}, PARTLY),
+        # While the faces still correlate no trend decides.
+        ("dilatancy_flattens", {"dilatancy": RISING * 2, "uncorrelated": 7.0}, UNDETERMINED),
+        ("dilatancy_flattens", {"uncorrelated": np.nan}, UNDETERMINED),
         ("dilatancy_flattens_in_two", {"dilatancy": RISING * 2}, HOLDS),
         ("dilatancy_flattens_in_two", {"dilatancy": RISING + RISING[1:] * 2}, PARTLY),
         ("dilatancy_flattens_in_two", {"dilatancy": ALIKE}, FAILS),
-        ("dilatancy_flattens_in_two", {"dilatancy": RISING * 2, "roll_off": 12.0}, UNDETERMINED),
-        ("dilatancy_flattens_in_two", {"dilatancy": ALIKE, "roll_off": 12.0}, FAILS),
+        ("dilatancy_flattens_in_two", {"dilatancy": ALIKE, "uncorrelated": 7.0}, UNDETERMINED),
         ("dilatancy_flattens_in_two", {"dilatancy": RISING[1:] * 4}, FAILS),
         ("dilatancy_is_anisotropic", {"dilatancy": ALIKE}, FAILS),
         # Of other levels, but none rises: the claim is of slopes.

@@ -5,7 +5,7 @@ import xarray as xr
 
 from fractalcontact.core.reported import Reported
 from fractalcontact.domain.cluster_laws import localisation
-from fractalcontact.mechanics.plateau import opposite_parts, rigid_plateaus
+from fractalcontact.mechanics.plateau import opposite_parts, rigid_plateaus, undecided_plateaus
 
 V = np.array([0.1, 0.2, 0.4, 1.2, 1.4, 1.6, 10.0])
 # Correlated up to 0.5 mm by 1/e, not at all from 2 mm on.
@@ -92,7 +92,6 @@ def stages(**changes):
         "held": np.zeros((2, 1)),
         "length": 0.5,
         "uncorrelated": 2.0,
-        "roll_off": 3.0,
     } | changes
     dims = ("direction", "offset", "resolution", "normal_force")
     coords = {"direction": ["W"], "offset": V, "resolution": [1], "normal_force": LOADS}
@@ -165,6 +164,8 @@ def stages(**changes):
         np.repeat(np.asarray(values["held"])[:, np.newaxis], 3, 1),
     )
     slid = slid.assign(rigid_plateaus(RIGID, values["dilatancy"], [*"WENS"]))
+    lost = np.full(4, values["uncorrelated"])
+    slid = slid.assign(undecided_plateaus(RIGID, slid["face_correlation"].values, lost))
     slid = slid.assign(opposite_parts(RIGID, values["dilatancy"], [*"WENS"]))
     specimen = xr.Dataset(
         attrs={"window_ny": 10, "window_nx": 10, "spacing_y": 1.0, "spacing_x": 1.0}
@@ -178,7 +179,6 @@ def stages(**changes):
     )
     made = {
         "specimens": specimen,
-        "surface_dimension": xr.Dataset({"roll_off": values["roll_off"]}),
         "joints": slid,
         "closure": xr.Dataset(
             {

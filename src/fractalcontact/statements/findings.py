@@ -34,9 +34,9 @@ class Finding(NamedTuple):
 class Joint(Subject):
     """Joint, with quantities that several statements use.
 
-    It has the stages ``specimens``, ``surface_dimension``, ``joints``, ``closure``, ``dilatancy``,
-    ``area``, ``windows``, ``domains``, ``scaling``, ``domain_measures`` and ``size_test``, and
-    ``ensemble`` if the study wants one.
+    It has the stages ``specimens``, ``joints``, ``closure``, ``dilatancy``, ``area``, ``windows``,
+    ``domains``, ``scaling``, ``domain_measures`` and ``size_test``, and ``ensemble`` if the study
+    wants one.
     """
 
     @property

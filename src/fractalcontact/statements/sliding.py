@@ -23,11 +23,14 @@ class Plateaus(NamedTuple):
         :data:`core.verdicts.LEVEL`, ``RISING`` or ``FALLING``.
     change : (n,) ndarray
         Of the fitted line, a fraction of the mean.
+    undecided : str
+        Why the trend of some direction says nothing of a plateau; empty where all do.
     """
 
     directions: list[str]
     trend: np.ndarray
     change: np.ndarray
+    undecided: str
 
     @classmethod
     def of(cls, joints: xr.Dataset) -> "Plateaus":
@@ -37,6 +40,7 @@ class Plateaus(NamedTuple):
             [str(name) for name in fitted["direction"].values],
             fitted["plateau_trend"].values.astype(str),
             fitted["plateau_change"].values,
+            next(filter(None, fitted["plateau_undecided"].values.tolist()), ""),
         )
 
     @property
@@ -49,17 +53,14 @@ class Plateaus(NamedTuple):
         """Directions in which dilatancy keeps rising."""
         return self.trend == RISING
 
-    def finding(self, verdict: str, open_end: str) -> Finding:
-        """Verdict with the number of level directions and their change.
-
-        It is undetermined with a reason why a plateau may still follow (``open_end``).
-        """
+    def finding(self, verdict: str) -> Finding:
+        """Verdict with the number of level directions and their change; undetermined if one is."""
         rising = [self.directions[i] for i in np.flatnonzero(self.rising)]
         more = f"; rising {', '.join(rising)}" if rising else ""
         return Finding(
-            UNDETERMINED if open_end else verdict,
+            UNDETERMINED if self.undecided else verdict,
             f"{self.flat.sum()} of {self.change.size} directions level{more}"
-            f"{f'; {open_end}' if open_end else ''}",
+            f"{f'; {self.undecided}' if self.undecided else ''}",
             f"{100 * self.change.min():+.0f} to {100 * self.change.max():+.0f} % of the mean over "
             f"the second half of v, level within {100 * LEVEL_CHANGE:g} %",
         )
@@ -68,21 +69,18 @@ class Plateaus(NamedTuple):
 def dilatancy_flattens(joint: Joint) -> Finding:
     """Change of the rigid dilatancy over the second half of the offsets, in every direction.
 
-    Where the offsets end before the roll-off of the face, a direction that is not level may still
-    reach a plateau, and the claim is undetermined.
+    Where the faces still correlate a plateau may still follow, and the claim is undetermined.
     """
     plateaus = Plateaus.of(joint["joints"])
     if not plateaus.change.size:
         return Finding(UNDETERMINED, no_offsets("three rigid"))
-    verdict = share(int(plateaus.flat.sum()), plateaus.flat.size)
-    return plateaus.finding(verdict, "" if verdict == HOLDS else _end_before_roll_off(joint))
+    return plateaus.finding(share(int(plateaus.flat.sum()), plateaus.flat.size))
 
 
 def dilatancy_flattens_in_two(joint: Joint) -> Finding:
     """Numbers of directions with a plateau and of those that rise on, two of four each.
 
-    Where the offsets end before the roll-off of the face, a direction that rises may still reach a
-    plateau, and the claim is undetermined.
+    Where the faces still correlate a plateau may still follow, and the claim is undetermined.
     """
     plateaus = Plateaus.of(joint["joints"])
     if plateaus.change.size < DIRECTIONS:
@@ -90,16 +88,7 @@ def dilatancy_flattens_in_two(joint: Joint) -> Finding:
     flat, rising = int(plateaus.flat.sum()), int(plateaus.rising.sum())
     both = flat > 0 and rising > 0
     verdict = HOLDS if both and flat == rising == PLATEAUS else PARTLY if both else FAILS
-    return plateaus.finding(verdict, _end_before_roll_off(joint) if rising else "")
-
-
-def _end_before_roll_off(joint: Joint) -> str:
-    """Offsets that end before the roll-off of the face, from where dilatancy levels off; or ""."""
-    end = float(joint["joints"]["rigid_offset"][-1])
-    roll_off = float(joint["surface_dimension"]["roll_off"])
-    if not end < roll_off < np.inf:
-        return ""
-    return f"the offsets end at {end:.3g} mm, before the roll-off at {roll_off:.3g} mm"
+    return plateaus.finding(verdict)
 
 
 def dilatancy_is_anisotropic(joint: Joint) -> Finding:

@@ -1,6 +1,5 @@
 """Rigid and elastic dilatancy, and the contact domains along the way (Figs. 6 and 7)."""
 
-import numpy as np
 from matplotlib.figure import Figure
 from xarray import DataTree
 
@@ -25,7 +24,6 @@ TITLE = "Figs. 6 and 7: rigid and elastic dilatancy, and contact domains along t
 SUBJECT = "joint"
 NEEDS = (
     "specimens",
-    "surface_dimension",
     "joints",
     "dilatancy",
     "closure",
@@ -75,11 +73,10 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     headline(figure, subject.label)
     trends = dict(zip(plateaus["direction"].values, plateaus["plateau_trend"].values, strict=True))
     end = float(plateaus["rigid_offset"][-1])
-    roll_off = float(subject["surface_dimension"]["roll_off"])
-    short_of = f", short of the roll-off at {short(roll_off)} mm" if end < roll_off < np.inf else ""
+    undecided = next(filter(None, plateaus["plateau_undecided"].values.tolist()), "")
     words = {
         "end": end,
-        "short_of": short_of,
+        "undecided": undecided,
         "tests": test_words(subject, "dilatancy"),
         "force": subject.reported.force,
         "fitted": sum(map(bool, trends.values())),
