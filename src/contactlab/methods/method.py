@@ -134,7 +134,7 @@ class Method:
         if self.holes and has_holes(composite):
             title = self.title or self.name
             raise NotOffered(
-                f"{title} solves another problem: a missing cell is one that never touches"
+                f"{title} cannot take missing cells: for it such a cell never touches"
             )
         if lack := self._lack(closure, force, hardness, getattr(space, "kernel", "")):
             raise NotOffered(lack)

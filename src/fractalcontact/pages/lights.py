@@ -153,7 +153,7 @@ def _finer(subject, excess, order):
 
 def _model(subject):
     found = validity_at(subject, subject.reported.reference)
-    reason = f"{found.reason}, under the reference load"
+    reason = f"under the reference load, {found.reason}"
     by_pressure = {HARDNESS: LIGHTER, STRENGTH: CRUSH, USUAL: STATE}[found.limits.criterion]
     helps = {"": "", SLOPE: STEEP}.get(found.decided_by, by_pressure)
     return Light("model", "Validity of the model", found.verdict, reason, helps)

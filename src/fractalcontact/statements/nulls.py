@@ -157,7 +157,7 @@ def _any_beyond(difference, loads):
 
 
 def domains_are_isotropic(joint: Joint) -> Finding:
-    """Contact at a lag from a node in contact, along the sliding and across it.
+    """Probability of contact two nodes away from a node in contact, along the sliding and across.
 
     What scales alike along both axes has the same probability along both.
     """
@@ -166,9 +166,12 @@ def domains_are_isotropic(joint: Joint) -> Finding:
         Estimate.read(measures, f"contact_at_lag_{way}") for way in ("along", "across")
     )
     if not (along.known and across.known) or along.value + across.value == 0:
-        return Finding(UNDETERMINED, "no node touches at that lag from another")
+        return Finding(UNDETERMINED, "no node touches two nodes from another")
     ways = _OF_SLIDING if slides(joint.settings["opposite"]) else ("along x", "along y")
-    numbers = f"contact at a lag {along:.2f} {ways[0]}, {across:.2f} {ways[1]}"
+    numbers = (
+        f"a node two nodes from contact touches with the probability {along:.2f} {ways[0]}, "
+        f"{across:.2f} {ways[1]}"
+    )
     apart = max(along.low, across.low) > min(along.high, across.high)
     difference = abs(across.value - along.value) / (across.value + along.value)
     if apart:
