@@ -133,9 +133,7 @@ class Method:
         """
         if self.holes and has_holes(composite):
             title = self.title or self.name
-            raise NotOffered(
-                f"{title} cannot take missing cells: for it such a cell never touches"
-            )
+            raise NotOffered(f"{title} cannot take missing cells: for it such a cell never touches")
         if lack := self._lack(closure, force, hardness, getattr(space, "kernel", "")):
             raise NotOffered(lack)
         load: dict[str, Any] = {

@@ -65,6 +65,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
         "rises": rises,
         "ends": ends,
         "decidable": decidable,
+        "end": float(joint["rigid_offset"][-1]),
         "stages": [text for text, *_ in stages],
     }
     return Drawing(figure, table_of(a, b, c), caption(__name__, force=force, **words))

@@ -39,10 +39,9 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     axes = figure.subplots(1, 2, sharex=True, sharey=True)
     panels, columns = [], []
     for one, which, here in zip(estimates_of(states), "ab", axes, strict=True):
-        # As many nodes as touch: the caption of Fig. 12 has the room to say so.
-        rise = verdict_words(atlas, name, RISES[one.key]).replace("as many random", "random")
+        rise = verdict_words(atlas, name, RISES[one.key], numbers=False)
         words = rf"$\Delta_\sigma$ by {one.symbol}; the paper's rise with $F$:"
-        panel = Panel(here, which, f"{words}\n{rise.replace(' of F', ' of $F$')}")
+        panel = Panel(here, which, f"{words}\n{rise}")
         columns.append(_draw_lines(panel, states, one, shown, np.sqrt(subject.area)))
         panels.append(panel)
     plain_decades(axes[0].xaxis)
