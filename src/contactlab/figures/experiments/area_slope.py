@@ -102,5 +102,7 @@ def _counts(slopes):
     lie = [(n, words) for words, n in counts.items() if n]
     where = f"All {lie[0][0]} values lie {lie[0][1]}"
     if len(lie) > 1:
-        where = f"Of {corrected.size} values {', '.join(f'{n} lie {words}' for n, words in lie)}"
+        (n, first), *others = lie
+        rest = "".join(f", {m} {words}" for m, words in others)
+        where = f"{n} of {corrected.size} values lie {first}{rest}"
     return found | {"where": where, "computed": (low, high)}
