@@ -1,6 +1,6 @@
 """Exponents of strength, contact area and separation over the side, at equal v and at equal v/b."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from fractions import Fraction
 from itertools import pairwise, product
 from typing import Any, NamedTuple
@@ -48,8 +48,6 @@ EXPONENTS: dict[str, tuple[tuple[str, ...], str]] = {
         "exponent over b of the geometric mean of tau/sigma_0 over all intervals of v",
     ),
     "scaled_strength_exponent": (_AT_FRACTION, "exponent of tau/sigma_0 over b at equal v/b"),
-    "scaled_area_exponent": (_AT_FRACTION, "exponent of the corrected A_r/A_0 over b, equal v/b"),
-    "scaled_separation_exponent": (_AT_FRACTION, "exponent of the separation over b, equal v/b"),
     "predicted_exponent": (_AT_FRACTION, "that of tau/sigma_0 by v alone, from the largest joints"),
     "beyond_exponent": (_AT_FRACTION, "exponent of tau/sigma_0 at equal v/b less that by v alone"),
 }
@@ -60,8 +58,6 @@ VERDICTS = {
     "separation_exponent": "verdict on the separation at equal v",
     "pooled_exponent": "verdict on the strength at equal v, all intervals together",
     "scaled_strength_exponent": "verdict on the strength at equal v/b",
-    "scaled_area_exponent": "verdict on the contact area at equal v/b",
-    "scaled_separation_exponent": "verdict on the separation at equal v/b",
     "beyond_exponent": "verdict on the strength at equal v/b beyond what v alone makes of it",
 }
 #: What decides a class, at equal v and at equal v/b.
@@ -309,11 +305,7 @@ def _scaled(
     largest = one.sides == one.sides.max(initial=0)
     for intervals in classes.values():
         exponents = {
-            "scaled_strength_exponent": _over_sides(one, intervals, lambda k: linear[k]),
-            "scaled_area_exponent": _over_sides(one, intervals, lambda k: one.shares[:, k]),
-            "scaled_separation_exponent": _over_sides(
-                one, intervals, lambda k: one.separations[:, k]
-            ),
+            "scaled_strength_exponent": _over_sides(one, intervals, linear),
             "predicted_exponent": _by_largest(
                 one.rates[largest], one.numbers[largest], intervals, basic
             ),
@@ -326,16 +318,14 @@ def _scaled(
     return found
 
 
-def _over_sides(
-    one: _Sample, intervals: Mapping[float, int], column: Callable[[int], np.ndarray]
-) -> Exponent:
-    """Exponent over sides of a column, that of each side at its own interval.
+def _over_sides(one: _Sample, intervals: Mapping[float, int], linear: np.ndarray) -> Exponent:
+    """Exponent over sides of the strength (interval, surface), of each side at its own interval.
 
     At equal v/b the strength follows v, and not along a straight line.
     """
     here = {side: one.sides * SPACING == side for side in intervals}
     sides = np.concatenate([np.full(np.count_nonzero(at), side) for side, at in here.items()])
-    values = np.concatenate([column(intervals[side])[at] for side, at in here.items()])
+    values = np.concatenate([linear[intervals[side]][at] for side, at in here.items()])
     return size_exponent(sides, values, equal=True)
 
 
