@@ -31,6 +31,8 @@ _LAWS: dict[str, tuple[str, dict[str, Any]]] = {
     "barton_aperture": ("Barton", {"color": colour_of(3), "ls": "-."}),
 }
 _BRANCHES = (("load", "loading", "-"), ("reload", "unloading and reloading", ":"))
+#: Ends of the bars, points: both ways have the same abscissae.
+_CAPS = {"along": 6.0, "across": 3.0}
 _NO_FLOW = "no load has a path of open gap from side to side"
 
 
@@ -61,10 +63,11 @@ def _draw_apertures(panel: Panel, states: xr.Dataset) -> None:
             keep=kept if way == "along" else (),
             label=f"cubic law, {way} ({states.attrs[f'flow_axis_{way}']})",
             ls="none",
+            caps=_CAPS[way],
             **style,
         )
     if states[names_of("hydraulic_aperture_along")[1]].notnull().any():
-        panel.axes.plot([], [], "|", color="0.4", ms=10, label="bars: 95 %, mean over windows")
+        panel.axes.plot([], [], "|", color="0.4", ms=10, label="95 % interval, mean over windows")
     # Laws go on where no path is left: they are drawn beside what was computed.
     flows = sum(states[f"transmissivity_{way}"].fillna(0) for way in WAYS)
     beside = states.isel(normal_force=np.flatnonzero(flows > 0))
@@ -102,7 +105,7 @@ def _draw_branches(panel: Panel, flow: xr.Dataset) -> None:
         say_empty(panel.axes, _NO_FLOW)
     panel.axes.set(xscale="log", yscale="log", xlabel=f"{NOMINAL_PRESSURE} (MPa)")
     plain_decades(panel.axes.xaxis)
-    panel.axes.set_ylabel("transmissivity $T$ (mm³)")
+    panel.axes.set_ylabel("transmissivity $T = h_h^3/12$ (mm³)")
 
 
 def _words(subject: Subject, states: xr.Dataset) -> dict[str, Any]:
@@ -115,6 +118,7 @@ def _words(subject: Subject, states: xr.Dataset) -> dict[str, Any]:
     return {
         "pressure": float(at["nominal_pressure"]),
         "transmissivity": flow,
+        "aperture": float(at["hydraulic_aperture_along"]),
         "ratio": ratio,
         "flows": flow > 0,
         "window": [window.low, window.high],

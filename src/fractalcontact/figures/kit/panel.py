@@ -86,6 +86,7 @@ class Panel:
         unit: tuple[float, float] = (1.0, 1.0),
         keep: Sequence[str] = (),
         hollow: dict[str, Any] | None = None,
+        caps: float = 0.0,
         **style: Any,
     ) -> None:
         """One curve, its points hollow where they are not trusted, bars where they have intervals.
@@ -102,6 +103,8 @@ class Panel:
             Values are drawn divided by these; rows keep the dataset's units.
         keep : sequence of str, optional
             Other variables that the rows have.
+        caps : float, optional
+            Half-width of the ends of bars, points: of its own where curves share their abscissae.
         hollow, **style
             As of :func:`kit.points.draw_points`.
         """
@@ -113,7 +116,7 @@ class Panel:
             value, low, high = along.ends
             # A bar without an upper end leaves the frame.
             bars = reach(value, low, np.where(np.isposinf(high), _FAR * value, high))
-            self.axes.errorbar(across, value, bars, fmt="none", ecolor=colour)
+            self.axes.errorbar(across, value, bars, fmt="none", ecolor=colour, capsize=caps)
         draw_points(self.axes, across, along.value, trusted, hollow, **style)
         named = [name for name in (x, y, filled, *keep) if name and name not in data.dims]
         self.keep(data, *dict.fromkeys(named))
