@@ -12,10 +12,13 @@ from fractalcontact import open_atlas
 __all__ = ["project"]  # a fixture
 pytestmark = pytest.mark.workflow
 #: Jobs of every specimen.
-OF_SPECIMEN = ("specimen", "contact", "windows", "analysis", "flow", "strength", "figures")
+OF_SPECIMEN = (
+    *("specimen", "contact", "windows", "analysis", "flow", "strength", "figures"),
+    "specimen_page",
+)
 
 #: Jobs of the study.
-OF_STUDY = ("atlas", "study_figures", "all_drawn", "cards", "result_page", "all")
+OF_STUDY = ("atlas", "study_figures", "all_drawn", "result_page", "all")
 
 
 def write_groups(project, names):
@@ -75,11 +78,9 @@ def test_one_more_specimen_runs_its_own_jobs_and_the_gather(project):
 
 
 def times_of(results, specimens):
-    """When each file of some specimens was written, by name; cards and pages are the study's."""
+    """When each file of some specimens was written, by name: cards and pages too."""
     return {
         str(path): path.stat().st_mtime_ns
         for path in results.rglob("*")
-        if path.is_file()
-        and path.parent.name not in ("cards", "pages")
-        and any(name in str(path) for name in specimens)
+        if path.is_file() and any(name in str(path) for name in specimens)
     }

@@ -185,7 +185,7 @@ def test_results_that_snakemake_has_no_record_of_are_made_again(project):
 #: What words alone make again: nothing is solved.
 DRAWING = {
     *("atlas", "figures_against_plane", "study_figures", "explorer", "result_page"),
-    *("all_drawn", "all"),
+    *("specimen_page", "all_drawn", "all"),
 }
 
 

@@ -40,6 +40,8 @@ def configuration_of(wildcards):
     """
     name = known(wildcards)
     stated = {key: config[key] for key in ("study", "accuracy", "solver") if key in config}
+    if name in config.get("embedded", {}):
+        stated["embedded"] = {name: config["embedded"][name]}
     return {"study": stated, "settings": {name: RECORDS[name]}}
 
 

@@ -8,10 +8,15 @@ PARTS = expand(SPECIMEN_ATLAS, specimen=SPECIMENS) if IN_PARTS else []
 EXPLORED = campaign.explored(config, SPECIMENS)
 
 
+def files_of_card(path, endings):
+    """Files of a specimen, one an ending, below the folder of the results."""
+    return [f"{RESULTS}/{path.format(specimen='{specimen}', ending=ending)}" for ending in endings]
+
+
 rule explorer:
     input:
         rules.atlas.output[0],
-        PARTS,
+        expand(SPECIMEN_ATLAS, specimen=EXPLORED) if IN_PARTS else [],
     output:
         f"{RESULTS}/explorer.html",
     log:
@@ -29,42 +34,45 @@ rule explorer:
         "../scripts/pages.py"
 
 
-# A card a specimen: constants with their intervals, which the page and other codes read; and its
-# aperture map for other programs, which of many specimens `export_aperture` writes.
-rule cards:
+# The card of a specimen, constants with their intervals which the page and other codes read; its
+# aperture map for other programs, which of many specimens `export_aperture` writes; and its page. All
+# from its own atlas: one more specimen writes no other's again.
+rule specimen_page:
     input:
-        rules.atlas.output[0],
-        # Aperture maps are those of the jobs of contact, which the atlas rounds.
-        PARTS or [path for specimen in SPECIMENS for path in contact_parts_of(specimen)],
-    output:
-        expand(f"{RESULTS}/{page_files.CARD}", specimen=SPECIMENS, ending=page_files.CARD_ENDINGS),
-        expand(
-            f"{RESULTS}/{page_files.APERTURE}",
-            specimen=[] if IN_PARTS else SPECIMENS,
-            ending=page_files.APERTURE_ENDINGS,
+        SPECIMEN_ATLAS,
+        lambda wildcards: figures_of_specimens(
+            "match" if known(wildcards) in SLIDING else "flat", [wildcards.specimen]
         ),
+        # Aperture maps are those of the jobs of contact, which the atlas rounds.
+        lambda wildcards: [] if IN_PARTS else contact_parts_of(known(wildcards)),
+    output:
+        f"{RESULTS}/{page_files.SPECIMEN_PAGE}",
+        *files_of_card(page_files.CARD, page_files.CARD_ENDINGS),
+        *([] if IN_PARTS else files_of_card(page_files.APERTURE, page_files.APERTURE_ENDINGS)),
     log:
-        f"{RESULTS}/logs/cards.log",
+        f"{RESULTS}/logs/specimen_page/{{specimen}}.log",
     benchmark:
-        f"{RESULTS}/benchmarks/cards.tsv"
+        f"{RESULTS}/benchmarks/specimen_page/{{specimen}}.tsv"
     resources:
         **fixed(1500, 10),
     params:
-        code=code("cards", "fractalcontact/cards"),
+        # Of itself alone: one specimen more or less changes no other's page.
+        explored=lambda wildcards: [name for name in EXPLORED if name == wildcards.specimen],
+        apertures=not IN_PARTS,
+        code=code("specimen_page", "fractalcontact/cards", "fractalcontact/pages"),
     message:
-        "the study: cards of its joints"
+        "{wildcards.specimen}: card and page"
     script:
-        "../scripts/cards.py"
+        "../scripts/specimen_page.py"
 
 
-CARDS = list(rules.cards.output) if SPECIMENS else []
+PAGES = expand(list(rules.specimen_page.output), specimen=SPECIMENS)
 # None of measured contact maps alone, nor of many specimens of which the study names none.
 EXPLORER = list(rules.explorer.output) if EXPLORED else []
 RESULT_PAGE = [
     *(f"{RESULTS}/{name}" for name in page_files.FILES),
-    *expand(f"{RESULTS}/{page_files.SPECIMEN_PAGE}", specimen=SPECIMENS),
     *EXPLORER,
-    *CARDS,
+    *PAGES,
 ]
 
 
@@ -76,9 +84,9 @@ rule result_page:
         # The index links to it where it is there.
         EXPLORER,
         # Its first screen is that of the cards.
-        CARDS,
+        PAGES,
     output:
-        [path for path in RESULT_PAGE if path not in (*EXPLORER, *CARDS)],
+        [f"{RESULTS}/{name}" for name in page_files.FILES],
     log:
         f"{RESULTS}/logs/result_page.log",
     benchmark:

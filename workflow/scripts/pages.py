@@ -1,11 +1,11 @@
-"""Write the explorer of all contact states, or the result page, from the atlas and its figures."""
+"""Write the explorer of all contact states, or the index of the study, from the atlas."""
 
 from pathlib import Path
 
 from _job import job
 
 from fractalcontact.pages.explorer import write_explorer
-from fractalcontact.pages.result_page import Place, write_result_page
+from fractalcontact.pages.result_page import Place, write_index
 
 with job(snakemake) as log:
     atlas, page = Path(snakemake.input[0]), Path(snakemake.output[0])
@@ -13,4 +13,4 @@ with job(snakemake) as log:
         write_explorer(atlas, page, snakemake.params.specimens)
         log.info("%.1f MB", page.stat().st_size / 1e6)
     else:
-        log.info("%d specimens", len(write_result_page(Place.of(atlas.parent))))
+        log.info("%d specimens", len(write_index(Place.of(atlas.parent))))

@@ -1,7 +1,7 @@
 """Printed page of a card: its entries in tables, one unit a column, from the card alone."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import Any
 
 from ..pages.captions import symbols
@@ -63,7 +63,8 @@ def page_of(card: Mapping[str, Any]) -> dict[str, Any]:
         # An elastic joint has no hardness to state.
         "missing": missing_of({key: one for key, one in printed.items() if key != "hardness"}),
         "hardest": hardnesses_of(card)[1],
-        "errors": errors_of(card),
+        # What harder contacts change stands in a column of its own.
+        "errors": errors_of(card, without=("model",)),
         "number": lambda value, digits=2: MISSING if value is None else short(value, digits),
         "words": in_words,
         "ends": ends_in_words,
@@ -165,11 +166,11 @@ def missing_of(entries: Mapping[str, Any]) -> dict[str, list[str]]:
     return found
 
 
-def errors_of(card: Mapping[str, Any]) -> dict[str, Any]:
+def errors_of(card: Mapping[str, Any], without: Collection[str] = ()) -> dict[str, Any]:
     """Rows of the table of errors, of quantities that have a value, and the sources of any."""
     rows = [one for one in card["errors"] if one["value"] is not None]
     sources = dict.fromkeys(source for one in rows for source, error in one["sources"].items())
-    return {"rows": rows, "sources": list(sources)}
+    return {"rows": rows, "sources": [of for of in sources if of not in without]}
 
 
 def in_words(number: Mapping[str, Any]) -> str:

@@ -22,17 +22,18 @@ from .page import page_of
 SCHEMA = Path(__file__).with_name("card.schema.json")
 
 
-def write_cards(path: Path | str, folder: Path | str) -> list[str]:
-    """Write the card of every specimen of a study: ``cards/NAME.yaml``, ``.json`` and ``.html``.
-
-    Of an atlas in one file also ``apertures/NAME.csv``, ``.nc``, ``.vtk`` at the reference load.
+def write_cards(path: Path | str, folder: Path | str, apertures: bool = True) -> list[str]:
+    """Write the card of every specimen of an atlas: ``cards/NAME.yaml``, ``.json`` and ``.html``.
 
     Parameters
     ----------
     path : path-like
-        The atlas.
+        The atlas of a study, or of one specimen.
     folder : path-like
         Of the results.
+    apertures : bool
+        Whether to write ``apertures/NAME.csv``, ``.nc``, ``.vtk`` at the reference load too; never
+        of an atlas in parts.
 
     Returns
     -------
@@ -44,7 +45,7 @@ def write_cards(path: Path | str, folder: Path | str) -> list[str]:
     for name in trees.names:
         tree = trees.of(name, without={"contact"})[0]
         write_card(card_of(Subject.of(tree, name), study, made), folder)
-        if trees.parts:
+        if trees.parts or not apertures:
             continue
         contact = trees.root[f"contact/{name}"].to_dataset()[["map_gap"]]
         aperture = aperture_at(with_solved_gaps(contact, folder, name), None, name)

@@ -193,7 +193,7 @@ def _strength(card, title, pressure):
         for words, row in sorted(known.items(), key=lambda one: one[1]["value"])
     ]
     if len(known) > 1:
-        lines.insert(0, f"peak by {len(known)} rules, each with its own error:")
+        lines.insert(0, f"range of {len(known)} rules:")
     lines += [f"{words}: {row['missing']}" for words, row in rows.items() if "missing" in row]
     ends = dict.fromkeys(short(value) for value in (values[0], values[-1]))
     return Fact(title, f"{' to '.join(ends)} MPa", lines)
@@ -226,7 +226,7 @@ def _at_twice(card):
     """Change of the stiffness with the spacing, which no interval contains."""
     rows = [one["sources"] for one in card["errors"] if one["quantity"] == "stiffness"]
     change = rows[0].get("resolution") if rows else None
-    return f"twice the spacing changes it by {short(change, 2)}" if change else ""
+    return f"± {short(change, 2)} at twice the spacing" if change else ""
 
 
 def _harder(card, row, size):
@@ -236,4 +236,4 @@ def _harder(card, row, size):
     low, high = sorted((row["value"], row["hardest"]))
     ends = " to ".join(dict.fromkeys(short(size * end) for end in (low, high)))
     soft, hard = hardnesses_of(card)
-    return f"{ends} for H from {short(soft)} to {short(hard)} MPa"
+    return f"{ends} for 1 to {short(hard / soft)} times H"

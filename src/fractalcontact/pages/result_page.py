@@ -103,7 +103,7 @@ class Place:
 
 
 def write_result_page(place: Place) -> list[str]:
-    """Write the pages of a study, and its summary, curves, tables and configuration beside them.
+    """Write the pages of a study: those of its specimens, and :func:`write_index`.
 
     Returns
     -------
@@ -111,22 +111,65 @@ def write_result_page(place: Place) -> list[str]:
         Specimens that have a page, ``pages/NAME.html``.
     """
     trees = Trees(place.atlas, without=STAGES.keys() - set(NEEDS))
+    write_specimen_pages(place, _explored(place, trees.root), trees)
+    return write_index(place, trees)
+
+
+def write_specimen_pages(
+    place: Place, explored: Collection[str], trees: Trees | None = None
+) -> None:
+    """Write the pages of the specimens of an atlas, which may be that of one of a study.
+
+    Parameters
+    ----------
+    place : Place
+        With the cards.
+    explored : collection of str
+        Specimens that the explorer shows.
+    trees : Trees, optional
+        The atlas, if it is in memory.
+    """
+    trees = trees or Trees(place.atlas, without=STAGES.keys() - set(NEEDS))
+    head = _head(place, trees.root) | {"explored": explored}
+    for block in blocks_of(trees.names, place.folder):
+        name = block.name
+        tree, groups, file = trees.of(name)
+        subject, found = Subject.of(tree, name), matrix_of(tree, [name])
+        values = _specimen_values(
+            place, subject, summarised(subject), found, (_as_typed(file), groups)
+        )
+        path = place.folder / SPECIMEN_PAGE.format(specimen=name)
+        write_page(path, "specimen.html", head | values | {"block": block})
+
+
+def write_index(place: Place, trees: Trees | None = None) -> list[str]:
+    """Write the index of a study, and its summary, curves, tables and configuration beside it.
+
+    Parameters
+    ----------
+    place : Place
+        With the cards of its specimens.
+    trees : Trees, optional
+        The atlas of the study, if it is in memory.
+
+    Returns
+    -------
+    list of str
+        Its specimens.
+    """
+    trees = trees or Trees(place.atlas, without=STAGES.keys() - set(NEEDS))
     atlas, names = trees.root, trees.names
     reported = [trees.closure(name) for name in names]
     loads = common_loads(reported, _comparison(atlas))
     head, blocks = _head(place, atlas), {one.name: one for one in blocks_of(names, place.folder)}
+    head["explored"] = _explored(place, atlas)
     specimens, curves, rows, reliefs = [], [], [], {}
     # One after the other: those of an atlas in parts would not all fit into memory.
     for name in names:
-        tree, groups, file = trees.of(name)
-        subject, found = Subject.of(tree, name), matrix_of(tree, [name])
-        specimen = summarised(subject, loads)
-        values = _specimen_values(place, subject, specimen, found, (_as_typed(file), groups))
-        values["block"] = blocks.get(name)
-        path = place.folder / SPECIMEN_PAGE.format(specimen=name)
-        write_page(path, "specimen.html", head | values)
-        specimens.append(specimen)
-        rows.append(found)
+        tree = trees.of(name)[0]
+        subject = Subject.of(tree, name)
+        specimens.append(summarised(subject, loads))
+        rows.append(matrix_of(tree, [name]))
         reliefs[name] = relief_thumbnail(subject["specimens"])
         curves.append(curves_table(str(atlas.attrs["study"]), [subject]))
     matrix, first = merged(rows), main_load(loads, reported)
@@ -160,7 +203,6 @@ def _head(place, atlas):
         "work": f"{duration(seconds)} of work in {jobs} jobs" if jobs else "",
         "atlas_size": f"{place.atlas.stat().st_size / 1e6:.0f} MB",
         "atlas_path": _as_typed(place.atlas),
-        "explored": _explored(place, atlas),
         "short": short,
         "measured": measured,
         "with_unit": with_unit,
