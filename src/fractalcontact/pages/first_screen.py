@@ -236,4 +236,4 @@ def _harder(card, row, size):
     low, high = sorted((row["value"], row["hardest"]))
     ends = " to ".join(dict.fromkeys(short(size * end) for end in (low, high)))
     soft, hard = hardnesses_of(card)
-    return f"{ends} for 1 to {short(hard / soft)} times H"
+    return f"{ends} for H to {short(hard / soft)}{_NBSP}H"

@@ -123,7 +123,7 @@ def write_specimen_pages(
     Parameters
     ----------
     place : Place
-        With the cards.
+        With their cards, if there are any.
     explored : collection of str
         Specimens that the explorer shows.
     trees : Trees, optional
@@ -131,15 +131,15 @@ def write_specimen_pages(
     """
     trees = trees or Trees(place.atlas, without=STAGES.keys() - set(NEEDS))
     head = _head(place, trees.root) | {"explored": explored}
-    for block in blocks_of(trees.names, place.folder):
-        name = block.name
+    blocks = {one.name: one for one in blocks_of(trees.names, place.folder)}
+    for name in trees.names:
         tree, groups, file = trees.of(name)
         subject, found = Subject.of(tree, name), matrix_of(tree, [name])
         values = _specimen_values(
             place, subject, summarised(subject), found, (_as_typed(file), groups)
         )
         path = place.folder / SPECIMEN_PAGE.format(specimen=name)
-        write_page(path, "specimen.html", head | values | {"block": block})
+        write_page(path, "specimen.html", head | values | {"block": blocks.get(name)})
 
 
 def write_index(place: Place, trees: Trees | None = None) -> list[str]:
@@ -148,7 +148,7 @@ def write_index(place: Place, trees: Trees | None = None) -> list[str]:
     Parameters
     ----------
     place : Place
-        With the cards of its specimens.
+        With the cards of its specimens, if there are any.
     trees : Trees, optional
         The atlas of the study, if it is in memory.
 
