@@ -516,7 +516,7 @@ def test_the_first_screen_says_what_no_interval_holds(results):
     assert fact.notes == [
         "range of 3 rules:",
         *("Barton 18.9", "dilatancy 26.8", "contact 45.5"),
-        "Barton and Bandis: JRC_n is above 20",
+        "none by: Barton and Bandis",
     ]
     contact = number | {"value": 0.0333, "low": 0.033, "high": 0.034, "hardest": 0.0111}
     of_surface = {"interval": "all errors of this surface", "values": [contact]}

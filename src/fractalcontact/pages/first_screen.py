@@ -16,6 +16,7 @@ _ALONE = {
     "solver": " solver error alone",
     "all errors of this surface": " this surface",
 }
+#: Keeps an interval on one line.
 _NBSP = "\u00a0"
 #: Rules for the peak shear strength, by their entries, in words.
 STRENGTH_RULES = {
@@ -194,7 +195,8 @@ def _strength(card, title, pressure):
     ]
     if len(known) > 1:
         lines.insert(0, f"range of {len(known)} rules:")
-    lines += [f"{words}: {row['missing']}" for words, row in rows.items() if "missing" in row]
+    if without := [words for words, row in rows.items() if "missing" in row]:
+        lines.append(f"none by: {', '.join(without)}")
     ends = dict.fromkeys(short(value) for value in (values[0], values[-1]))
     return Fact(title, f"{' to '.join(ends)} MPa", lines)
 

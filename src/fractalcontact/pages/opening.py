@@ -74,7 +74,7 @@ def _closure(found: _At, under: str, total: int) -> Markup | None:
         for value, one, at in closure
     ]
     known = sum(at.quantities["closure"].known for _, at in sure)
-    counted = f"all {total}" if known == total else f"{known} of {total}"
+    counted = _all(total) if known == total else f"{known} of {total}"
     whose = "" if total == 1 else f" of {counted} specimens"
     words = Markup(" to ").join(ends)
     said = Markup("{} the interface{} has closed by {} since first touch")
@@ -169,9 +169,14 @@ def _counted(verdicts: Sequence[str], words: Mapping[str, str]) -> str:
     total, counts = len(verdicts), Counter(verdicts)
     given = [verdict for verdict in words if counts[verdict]]
     if len(given) == 1:
-        return f"{words[given[0]]} for {f'all {total} specimens' if total > 1 else 'the specimen'}"
+        whom = f"{_all(total)} specimens" if total > 1 else "the specimen"
+        return f"{words[given[0]]} for {whom}"
     parts = [f"{words[verdict]} for {counts[verdict]}" for verdict in given]
     return f"{_listed(parts, len(parts))} of {total} specimens"
+
+
+def _all(total: int) -> str:
+    return "both" if total == 2 else f"all {total}"
 
 
 def _dilatancy(specimens: Sequence[Specimen], rows: Sequence[Row]) -> Markup | None:
