@@ -74,6 +74,7 @@ def add_statistics(result: xr.Dataset, names: Sequence[str]) -> None:
     names : sequence of str
         Variables over realisation.
     """
+    found: dict[str, tuple | xr.DataArray] = {}
     for name in names:
         values = result[name].transpose("realisation", ...)
         units, words = values.attrs["units"], values.attrs["long_name"]
@@ -81,13 +82,13 @@ def add_statistics(result: xr.Dataset, names: Sequence[str]) -> None:
         mean, band = mean_interval(values.values), band_of(values.values)
         if name in DIMENSIONS:
             mean, band = mean.in_plane(), band.in_plane()
-        result.update(
-            mean.variables(f"{name}_mean", dims, units, f"{words}, mean over realisations")
-        )
+        found |= mean.variables(f"{name}_mean", dims, units, f"{words}, mean over realisations")
         for end, of_end, of_band in (("low", "lower", band.low), ("high", "upper", band.high)):
             attrs = cf_attrs(units, f"{words}, {of_end} end of the 95 % band of one more")
-            result[f"{name}_band_{end}"] = (dims, of_band, attrs)
+            found[f"{name}_band_{end}"] = (dims, of_band, attrs)
         attrs = cf_attrs(units, f"{words}, standard deviation over realisations")
-        result[f"{name}_spread"] = values.std("realisation", ddof=1).assign_attrs(attrs)
+        found[f"{name}_spread"] = values.std("realisation", ddof=1).assign_attrs(attrs)
         attrs = cf_attrs("1", f"{words}, number of realisations with a value")
-        result[f"{name}_n"] = (dims, mean.n, attrs)
+        found[f"{name}_n"] = (dims, mean.n, attrs)
+    # All at once: xarray goes through all that is there each time that something is added.
+    result.update(found)
