@@ -283,6 +283,6 @@ def _beside(entry, data, at):
     found: dict[str, Any] = {}
     for dim, index in at.items():
         name, coordinate, _ = _BESIDE[str(dim)]
-        label = data[coordinate].isel({dim: index}).item()
+        label = data[coordinate].variable[index].item()
         found[name] = label if isinstance(label, str) else rounded(label)
     return found | {name: rounded(_at(data[name], at).item()) for name in entry.beside}

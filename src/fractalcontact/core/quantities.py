@@ -63,8 +63,10 @@ class Shown:
     def at(self, subject: Subject, load: int) -> "Value":
         """Value at the reported state under the load of this number."""
         states = subject.states(self.stage)
-        state = states.isel(normal_force=load) if "normal_force" in states.dims else states
         unit = str(states[self.variable].attrs["units"])
+        # These alone: xarray would index each of some hundred variables.
+        state = states[[name for name in names_of(self.variable) if name in states]]
+        state = state.isel(normal_force=load) if "normal_force" in states.dims else state
         own = f"{self.variable}_total"
         in_budget = "error_budget" in subject.stages and own in subject["error_budget"]
         has_interval = in_budget or all(end in state for end in names_of(self.variable))

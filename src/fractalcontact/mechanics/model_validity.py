@@ -76,11 +76,11 @@ def model_validity(area: xr.Dataset, scaling: xr.Dataset, material: Material) ->
     dims = ("direction", "offset", "normal_force")
     finest = scaling["sigma_n"].sel(resolution=scaling["resolution"].min(), drop=True)
     pressures, slopes = xr.align(finest.transpose(*dims), area["rms_slope"], join="exact")
-    of_offsets = slopes.transpose(*dims[:2]).values
+    of_offsets, of_loads = slopes.transpose(*dims[:2]).values, pressures["nominal_pressure"].values
     judged = np.empty(pressures.shape, object)
     for place in np.ndindex(judged.shape):
         pressure, slope = float(pressures.values[place]), float(of_offsets[place[:2]])
-        nominal = float(pressures["nominal_pressure"][place[2]])
+        nominal = float(of_loads[place[2]])
         judged[place] = elastic_model_validity(pressure, slope, material, nominal)
     values: dict[str, Any] = {
         name: np.array([getattr(one, name) for one in judged.flat]).reshape(judged.shape)

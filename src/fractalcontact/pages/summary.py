@@ -9,7 +9,7 @@ import pandas as pd
 import xarray as xr
 
 from ..core.determined import decided_by_scan
-from ..core.estimate import DIMENSION, Estimate, Judged
+from ..core.estimate import DIMENSION, Estimate, Judged, names_of
 from ..core.labels import TWINS
 from ..core.measured_maps import map_table
 from ..core.quantities import Shown, Value, shown_in
@@ -312,7 +312,9 @@ def _at_load(subject, curve, number):
 
 def _dimension(subject, stage, state):
     """Delta_sigma of a stage, with the stage's reason where it is missing."""
-    found = subject.states(stage).isel(state)
+    states = subject.states(stage)
+    read = (*names_of("delta_sigma"), "reason")
+    found = states[[name for name in read if name in states]].isel(state)
     note = str(found["reason"].item()) if "reason" in found else ""
     if not note and np.isnan(float(found["delta_sigma"])):
         note = TOO_FEW_RESOLUTIONS
@@ -344,8 +346,8 @@ def quantities_at(subject: Subject, number: int) -> dict[str, Quantity]:
             absolute=bool(one["absolute"]),
             value=float(one["published"]),
             errors={which: float(one[total]) for which, total in TOTALS.items()},
-            sources={source: float(one["error"].sel(source=source)) for source in sources},
-            reasons={source: str(one["reason"].sel(source=source).item()) for source in sources},
+            sources=dict(zip(sources, map(float, one["error"].values), strict=True)),
+            reasons=dict(zip(sources, map(str, one["reason"].values), strict=True)),
             missing=missing.get(name, ""),
             hardest=float(one["hardest"]),
         )
