@@ -23,6 +23,8 @@ rule explorer:
         f"{RESULTS}/logs/explorer.log",
     benchmark:
         f"{RESULTS}/benchmarks/explorer.tsv"
+    # Among the last it is the shortest, and leaves the other cores the least time with nothing to do.
+    priority: -3
     resources:
         **fixed(3000, 10),
     params:
