@@ -23,7 +23,7 @@ rule explorer:
         f"{RESULTS}/logs/explorer.log",
     benchmark:
         f"{RESULTS}/benchmarks/explorer.tsv"
-    # Among the last it is the shortest, and leaves the other cores the least time with nothing to do.
+    # After the figures: shorter than those, it leaves other cores less time with nothing to do at the end.
     priority: -3
     resources:
         **fixed(3000, 10),
