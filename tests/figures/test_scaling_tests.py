@@ -119,8 +119,8 @@ def test_prediction_is_headed_by_the_heaviest_load_of_the_study(atlas):
         caption = drawn(size_prediction, tree, "sliding").caption
         assert f"At {pressure[shown]:.3g} MPa" in caption
         assert ("beyond the study's loads" in caption) == (first == 0)
-        assert "ratios are 1.25 (" in caption
-        assert ") for the closure; 1.25 (" in caption
+        assert "of the closure are 1.25 (" in caption
+        assert "), of the contact area are 1.25 (" in caption
 
 
 def judged_as(atlas, verdict, reason):

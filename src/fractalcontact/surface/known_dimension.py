@@ -119,7 +119,7 @@ def cantor_punch(
     if generations < 1 or abs(ratio - parts * narrowing) > 1e-9 or gap <= 0 or gap != int(gap):
         raise ValueError(
             f"a Cantor punch of {parts} parts, {narrowing} times narrower, does not end at nodes: "
-            f"parts x narrowing must be a whole number, and so the gap between the parts"
+            "parts x narrowing and the gap between the parts must be whole numbers"
         )
     first = np.zeros(ratio, bool)
     first[:: 1 + int(gap)] = True
