@@ -109,10 +109,11 @@ def dimension_rises_by_boxes(joint: Joint, evidence: Evidence) -> Finding:
 def _beside_random(less: Estimate) -> str:
     """Rise of Delta_sigma less that of as many random nodes, in words."""
     if not less.known:
-        return "but random nodes are near 2"
+        return "not compared with random nodes, which are near 2"
     if less.low <= 0 <= less.high:
         return f"as fast as random nodes within the error ({less:+z.2f})"
-    return f"{'faster' if less.value > 0 else 'slower'} than random nodes (by {less:+z.2f})"
+    how = "faster" if less.value > 0 else "slower"
+    return f"{how} than random nodes (difference {less:+z.2f})"
 
 
 def _rise(trend: Trend, name: str) -> Finding:
