@@ -125,6 +125,11 @@ def test_what_is_undetermined_has_its_value_and_error(ends, words):
     assert Estimate(*ends).undetermined() == words
 
 
+def test_rounding_is_no_digit_of_a_dimension():
+    slope = Estimate(-2.2e-16, np.nan, np.nan, scale=DIMENSION)
+    assert slope.text() == "undetermined (0.00, error not known)"
+
+
 def test_error_has_two_digits_however_small_or_large():
     for size in 10.0 ** np.arange(-6, 7):
         words = Estimate(3 * size, -1.1 * size, 7.1 * size).undetermined()

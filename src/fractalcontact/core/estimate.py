@@ -193,7 +193,10 @@ class Estimate:
         value, low, high = self.ends
         half = self.width / 2
         if not half > NO_WIDTH * max(abs(value), 1e-300) or not np.isfinite(half):
-            words = f"{plain(value, limits=(1e-4, 1e6))}, error not known"
+            known = plain(value, limits=(1e-4, 1e6))
+            if self.scale.decimals is not None:  # rounding leaves 1e-16 of a slope of 0
+                known = _decimals(value, self.scale.decimals)
+            words = f"{known}, error not known"
         else:
             # Two digits of the error, and two decimals where it is of the order of one.
             digits = max(1 - int(np.floor(np.log10(half))), 2 if half < 10 else 0)

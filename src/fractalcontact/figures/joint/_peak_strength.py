@@ -70,7 +70,7 @@ def scan_entries(strength: xr.Dataset) -> list[Line2D]:
     """Entry of a legend: the JRC of the scan, if known."""
     if not np.isfinite(strength["jrc_used"]):
         return []
-    return [heading(roughness_words(strength).replace("; ", ";\n"))]
+    return [heading(roughness_words(strength).replace("; ", ";\n").replace(" it ", "\nit "))]
 
 
 def why_none(strength: xr.Dataset) -> str:
