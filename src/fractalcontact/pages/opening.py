@@ -141,7 +141,7 @@ def _tested(known: _At, found: _At) -> str:
         parts.append(f"{_listed(few)} {'have' if few[1:] else 'has'} too few contact nodes for it")
     if capped:
         parts.append(
-            f"the hardness of {_listed(capped)} caps the pressure, so that it tests nothing there"
+            f"the hardness of {_listed(capped)} caps the pressure, which therefore tests nothing"
         )
     return f"{'; '.join(parts)}."
 
