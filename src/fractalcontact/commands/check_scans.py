@@ -201,7 +201,8 @@ def _map_row(scan, contact):
     load = f"F = {force:.4g} N, F/A_0 = {pressure:.4g} MPa"
     lines = [_file_names(scan), stated, load if math.isfinite(pressure) else "no load stated"]
     if not attrs["binary"]:
-        lines.append(f"the cells within add up to {attrs['integral']:.4g} N if they hold MPa")
+        force = f"{attrs['integral']:.4g} N"
+        lines.append(f"the cells within the outline add up to {force} if they hold MPa")
     if contact.sizes["threshold"] > 1:
         shares = ", ".join(
             f"{percent(part)} above {at:g}"

@@ -203,8 +203,8 @@ def _refuse_contradictions(settings, where):
         if direction not in settings.directions:
             raise InputError(
                 f"{where('contact_directions')}: {direction} is not among the directions "
-                f"{settings.directions} of {where('directions')}; add it there, the rigid "
-                "dilatancy is needed too"
+                f"{settings.directions} of {where('directions')}; add it there, as its "
+                "rigid dilatancy is needed too"
             )
     for offset in settings.offsets or ():
         if offset < 0:
