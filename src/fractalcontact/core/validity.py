@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import xarray as xr
 
-from .verdicts import HARDNESS, IN_PART, USUAL
+from .verdicts import HARDNESS, USUAL
 
 #: What decides a verdict that is not good, beside the pressure.
 SLOPE, LOAD = "slope", "load"
@@ -76,13 +76,6 @@ class Validity(NamedTuple):
     def stated(self) -> bool:
         """True if a stated strength or hardness judges the pressure."""
         return self.limits.criterion != USUAL
-
-    @property
-    def sentence(self) -> str:
-        """Reason and verdict, for a caption."""
-        verdict = "partly good" if self.verdict == IN_PART else self.verdict
-        model = "model" if self.capped else "elastic model"
-        return f"{self.reason}: {model} {verdict}."
 
 
 def pressure_words(pressure: float) -> str:
