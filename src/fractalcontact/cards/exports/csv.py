@@ -22,7 +22,7 @@ def table_of(card: Mapping[str, Any]) -> pd.DataFrame:
             rows.append(
                 {"joint": card["name"], "key": key, "title": entry["title"]}
                 | {name: at.get(name) for name in _BESIDE}
-                | {name: number.get(name) for name in ("value", "low", "high")}
+                | {name: number.get(name) for name in ("value", "low", "high", "hardest")}
                 | {"unit": entry["unit"], "model": entry["model"], "law": entry.get("law", "")}
                 | {"interval": entry.get("interval", "")}
                 | {f"range_{name}": over.get(name) for name in ("low", "high", "unit")}
