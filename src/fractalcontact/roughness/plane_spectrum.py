@@ -1,6 +1,6 @@
 """Directional power spectrum of a rough surface, in bins of wave number and direction."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 import scipy.fft
@@ -10,14 +10,20 @@ from ..core.mean_plane import without_mean_plane
 
 #: Sectors of the half plane of directions, and rings of an octave of wave numbers.
 SECTORS, RINGS_PER_OCTAVE = 12, 2
-#: Waves that a sector of a ring is pooled with, which have the mean of the ring: as long as few
-#: waves are seen the spectrum is isotropic, and directional where many are.
+#: Waves of the power law that a ring of long waves is pooled with, and of its ring a sector: few
+#: waves tell little of a density, and less of a direction.
 POOLED = 8
-#: Waves of which fewer fit into the surface are extrapolated: the taper and the mean plane leave
-#: little of them.
+#: Waves of which fewer fit into the surface are extrapolated: the taper mixes them with the tilt.
 FIRST_ORDER = 2
-#: Rings (an octave) whose slope is continued to longer waves, and the limits of that slope.
-_LOWEST, _SLOPES = RINGS_PER_OCTAVE + 1, (-4.0, 0.0)
+#: Waves of the tapered surface that tell as much as one that is independent.
+_TAPERED = 2.25
+#: The power law is that of waves down to this fraction of the longest, of whose rings none is taken
+#: for better known than to `_MISFIT`: no surface follows a power law more closely.
+_FITTED, _MISFIT = 1 / 16, 0.1
+#: Slopes that are tried, and roll-offs, in longest waves.
+_SLOPES, _ROLL_OFFS = np.linspace(0, 4, 41), np.geomspace(1, 1 / 8, 13)
+#: Deviance by which a roll-off must describe the rings better than a power law alone.
+_EVIDENCE = 3.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,24 +36,25 @@ class PlaneSpectrum:
         Wave numbers of the rings, 1/mm, ascending: inverse wavelengths.
     density : (k, SECTORS) ndarray
         mm4, from direction x over y to -x: independent heights of variance v have v dx dy.
+    slope : float
+        Exponent of the density of waves longer than those of the first ring.
     """
 
     number: np.ndarray
     density: np.ndarray
+    slope: float
 
     def at(self, number_y: np.ndarray, number_x: np.ndarray) -> np.ndarray:
         """Density at wave numbers, mm4; zero for the mean height.
 
         Logarithms are interpolated between rings and sectors. Longer waves than those of the
-        first ring follow its neighbours' slope, shorter ones than those of the last have its value.
+        first ring follow the slope, shorter ones than those of the last have its value.
         """
         number = np.hypot(number_y, number_x)
         known = number > 0
         log_q = np.log(np.where(known, number, self.number[0]))
         rings, table = np.log(self.number), np.log(self.density)
-        mean = np.log(self.density.mean(axis=1))
-        slope = np.polyfit(rings[:_LOWEST], mean[:_LOWEST], 1)[0] if len(rings) > 1 else 0.0
-        beyond = np.clip(slope, *_SLOPES) * np.minimum(log_q - rings[0], 0)
+        beyond = self.slope * np.minimum(log_q - rings[0], 0)
         place = np.interp(log_q, rings, np.arange(len(rings)))
         sector = (np.arctan2(number_y, number_x) / np.pi % 1) * SECTORS - 0.5
         around = np.concatenate([table[:, -1:], table, table[:, :1]], axis=1)
@@ -74,61 +81,92 @@ def plane_spectrum(heights: np.ndarray, spacing: tuple[float, float]) -> PlaneSp
 
     Notes
     -----
-    Periodogram of the levelled heights under a Hann taper, averaged in rings of equal ratio and
-    sectors; of few waves in a sector the mean of the ring is part. What the taper smears is then
-    corrected: the density is divided by the ratio of the periodogram expected of it, which is the
-    transform of its autocovariance times that of the taper, to the one seen.
+    Periodogram of the differences along both axes under a Hann taper, divided by their gain:
+    differences are whitened, so that neither the tilt nor long waves leak into shorter ones. It is
+    averaged in rings of equal ratio and sectors. Rings of long waves, of which there are few, are
+    pooled with the power law, with a roll-off if that is seen, which describes the longest three
+    octaves best. What taper and rings smear is then corrected: the density is divided by the
+    ratio of the periodogram expected of it to itself.
     """
     z = without_mean_plane(np.asarray(heights, float))
     if min(z.shape) < 8 or np.ptp(z) <= 1e-12 * np.abs(heights).max():
         raise ValueError("no spectrum: expected heights that vary, and eight nodes along each side")
-    taper = np.outer(*(np.hanning(n + 2)[1:-1] for n in z.shape))
-    bins = _Bins(z.shape, spacing)
-    seen = bins.means(np.abs(scipy.fft.fft2(z * taper, workers=1)) ** 2)
-    cell = spacing[0] * spacing[1]
-    spectrum = PlaneSpectrum(bins.number, seen * cell / np.sum(taper**2))
-    padded = [2 * n for n in z.shape]
-    waves = _waves(padded, spacing)
-    of_taper = scipy.fft.ifft2(np.abs(scipy.fft.fft2(taper, padded)) ** 2).real
-    covariance = scipy.fft.ifft2(spectrum.at(*waves)).real / cell
-    expected = scipy.fft.fft2(covariance * of_taper).real[::2, ::2]
-    # Once: a second correction would magnify what chance does to the long waves.
-    ratio = seen / np.maximum(bins.means(expected), np.finfo(float).tiny)
-    return replace(spectrum, density=spectrum.density * ratio)
+    differences = np.diff(z, axis=0)[:, :-1] / spacing[0], np.diff(z, axis=1)[:-1] / spacing[1]
+    shape = differences[0].shape
+    taper = np.outer(*(np.hanning(n + 2)[1:-1] for n in shape))
+    size = np.sum(taper**2) / (spacing[0] * spacing[1])
+    power = sum(np.abs(scipy.fft.fft2((d - d.mean()) * taper, workers=1)) ** 2 for d in differences)
+    bins = _Bins(shape, spacing)
+    rings, table = bins.means(power / size)
+    pooled, slope = _pooled(bins, rings)
+    table = (bins.in_sector * table + POOLED * pooled[:, np.newaxis]) / (bins.in_sector + POOLED)
+    spectrum = PlaneSpectrum(bins.number, np.maximum(table, 1e-15 * table.max()), slope)
+    padded = _Waves([2 * n for n in shape], spacing)
+    of_taper = scipy.fft.ifft2(np.abs(scipy.fft.fft2(taper, padded.shape, workers=1)) ** 2).real
+    covariance = scipy.fft.ifft2(padded.gain * spectrum.at(*padded.numbers), workers=1).real
+    expected = scipy.fft.fft2(covariance * of_taper, workers=1).real[::2, ::2]
+    ratio = pooled / bins.means(expected / np.sum(taper**2))[0]
+    return PlaneSpectrum(spectrum.number, spectrum.density * ratio[:, np.newaxis], slope)
+
+
+class _Waves:
+    """Wave numbers (y, x) of a grid, 1/mm, and the gain of the differences along both axes."""
+
+    def __init__(self, shape, spacing):
+        self.shape = shape
+        along = [scipy.fft.fftfreq(n, d) for n, d in zip(shape, spacing, strict=True)]
+        self.numbers = np.meshgrid(*along, indexing="ij")
+        steps = zip(self.numbers, spacing, strict=True)
+        self.gain = sum((2 * np.sin(np.pi * number * d) / d) ** 2 for number, d in steps)
 
 
 class _Bins:
     """Rings and sectors of the waves of a grid."""
 
     def __init__(self, shape, spacing):
-        number_y, number_x = _waves(shape, spacing)
-        number = np.hypot(number_y, number_x)
+        waves = _Waves(shape, spacing)
+        number = np.hypot(*waves.numbers)
         longest = FIRST_ORDER / min(n * d for n, d in zip(shape, spacing, strict=True))
         self.used = number >= longest * (1 - 1e-9)
+        self.gain = waves.gain[self.used]
         used = number[self.used]
         ring = np.round(np.log2(used / longest) * RINGS_PER_OCTAVE).astype(int)
         _, self.ring = np.unique(ring, return_inverse=True)
-        angle = np.arctan2(number_y, number_x)[self.used] / np.pi % 1
+        angle = np.arctan2(*waves.numbers)[self.used] / np.pi % 1
         self.place = self.ring * SECTORS + np.minimum((angle * SECTORS).astype(int), SECTORS - 1)
-        self.of_ring = np.bincount(self.ring)
-        self.number = np.exp(np.bincount(self.ring, np.log(used)) / self.of_ring)
+        # A wave and its negative are one.
+        self.in_ring = np.bincount(self.ring) / 2
+        self.in_sector = np.bincount(self.place, minlength=len(self.in_ring) * SECTORS) / 2
+        self.in_sector = self.in_sector.reshape(-1, SECTORS)
+        self.number = np.exp(np.bincount(self.ring, np.log(used)) / self.in_ring / 2)
 
     def means(self, power):
-        """Means (ring, sector), pooled with that of the ring; never zero."""
-        power = power[self.used]
-        ring = (np.bincount(self.ring, power) / self.of_ring)[:, np.newaxis]
-        size = len(self.of_ring) * SECTORS
-        total, waves = (
-            np.bincount(self.place, weights, size).reshape(-1, SECTORS)
-            for weights in (power, np.ones_like(power))
-        )
-        # A wave and its negative are one.
-        means = (total / 2 + POOLED * ring) / (waves / 2 + POOLED)
-        return np.maximum(means, 1e-15 * means.max())
+        """Mean densities of rings and of their sectors (ring, sector), from power of differences.
+
+        Zero without a wave.
+        """
+        power = power[self.used] / self.gain
+        ring = np.bincount(self.ring, power) / self.in_ring / 2
+        total = np.bincount(self.place, power, self.in_sector.size).reshape(-1, SECTORS)
+        return ring, total / np.maximum(2 * self.in_sector, 1)
 
 
-def _waves(shape, spacing):
-    """Wave numbers (y, x) of a grid, 1/mm."""
-    along = [scipy.fft.fftfreq(n, d) for n, d in zip(shape, spacing, strict=True)]
-    number_y, number_x = np.meshgrid(*along, indexing="ij")
-    return number_y, number_x
+def _pooled(bins, rings):
+    """Rings of which the long ones are pooled with a power law, and its slope to longer waves."""
+    x = bins.number / bins.number[0]
+    long = x <= 1 / _FITTED
+    waves = bins.in_ring[long] / _TAPERED
+    weights = 1 / (1 / waves + _MISFIT**2)
+    starts = np.concatenate([[0.0], 1 / _ROLL_OFFS])[:, np.newaxis, np.newaxis]
+    shapes = np.maximum(x[long], starts) ** -_SLOPES[:, np.newaxis]
+    # Deviance of mean periodograms, which are gamma distributed, about the best multiple.
+    ratio = rings[long] / shapes
+    ratio /= np.average(ratio, axis=-1, weights=weights)[..., np.newaxis]
+    deviance = -2 * np.sum(weights * np.log(np.maximum(ratio, 1e-300)), axis=-1)
+    rolls_off = deviance[1:].min() < deviance[0].min() - _EVIDENCE
+    deviance[0 if rolls_off else slice(1, None)] = np.inf
+    best = np.unravel_index(deviance.argmin(), deviance.shape)
+    law = shapes[best] * np.average(rings[long] / shapes[best], weights=weights)
+    pooled = rings.copy()
+    pooled[long] = (waves * rings[long] + POOLED * law) / (waves + POOLED)
+    return pooled, 0.0 if rolls_off else -_SLOPES[best[1]]
