@@ -30,7 +30,7 @@ from fractalcontact.surface.synthesis import band_limited
 from roughcontact.elastic.halfspace import HalfSpace
 
 #: Joints of calibration.py, and of how many seeds the twins are solved.
-JOINTS = {"sandstone": 30, "sandstone, capped": 20, "joint 2.1": 8}
+JOINTS = {"sandstone": 60, "sandstone, capped": 40, "joint 2.1": 24}
 #: Load that closures count from, MPa.
 SEAT = 0.25
 #: Quantities, and the rows of `counting_error` that are stated of them: none of a closure from a
@@ -87,18 +87,18 @@ def states_of(joint, face):
             "stiffness": found["stiffness"],
             "interface_closure": found["closure"],
             "interface_stiffness": found["stiffness"],
-            "gap": aperture(state).mean(),
+            "mean_gap": aperture(state).mean(),
             "clusters": scipy.ndimage.label(state.in_contact, NEIGHBOURS)[1],
         }
         rows.append(row | {f"delta_sigma{end}": value for end, value in ends.items()})
     table = {name: ("normal_force", [row[name] for row in rows]) for name in rows[0]}
     curve = xr.Dataset(table, {"normal_force": forces})
-    loading = SimpleNamespace(area=area)
+    loading = SimpleNamespace(area=area, half_space=lambda shape, resolution: space)
     counted = counting_error(LoadCurve(loading, composite, 0.0, 1, curve, curve))
     none = np.full(len(forces), np.nan)
     half = [none if row is None else counted[row] for row in QUANTITIES.values()]
     seated = curve["interface_closure"] - curve["interface_closure"][0]
-    of_state = ("gap", "area_corrected", "interface_stiffness", "delta_sigma")
+    of_state = ("mean_gap", "area_corrected", "interface_stiffness", "delta_sigma")
     values = [seated.values, *(curve[name].values for name in of_state)]
     return np.array(values)[:, 1:], np.array(half)[:, 1:]
 

@@ -8,13 +8,14 @@ from made_stages import scan, stages_of
 from materials import ROCK
 
 from fractalcontact.core.errors import InputError
-from fractalcontact.core.labels import TWINS
+from fractalcontact.core.labels import REALISATIONS, TWINS
 from fractalcontact.core.settings import EnsembleSettings, read
+from fractalcontact.domain.random_nodes import band_of
 from fractalcontact.ensemble import realisations
 from fractalcontact.ensemble.realisations import ensemble
 from fractalcontact.ensemble.twins import twin_loadings
+from fractalcontact.error_budget.ensemble_spread import INSIDE, OUTSIDE
 from fractalcontact.error_budget.error_budget import error_budget
-from fractalcontact.error_budget.twins import INSIDE, OUTSIDE
 from fractalcontact.mechanics.loading import JointLoading
 from fractalcontact.study.configuration import resolve_settings, solver_settings
 from fractalcontact.surface.synthesis import band_limited
@@ -117,7 +118,7 @@ def test_the_spread_of_twins_takes_the_place_of_counting_and_windows_in_the_popu
     np.testing.assert_array_equal(known["ensemble"]["seed"], np.arange(1, 7))
     loading, states = _loading(known, settings), (known["closure"], known["domains"])
     with_twins, without = (
-        error_budget(loading, *states, twins=twins) for twins in (known["ensemble"], None)
+        error_budget(loading, *states, ensemble=twins) for twins in (known["ensemble"], None)
     )
     assert TWINS not in without["source"]
     assert "within_twins" not in without
@@ -132,9 +133,32 @@ def test_the_spread_of_twins_takes_the_place_of_counting_and_windows_in_the_popu
     np.testing.assert_allclose(closure["total_of_population"], whole)
     assert (closure["largest_source_of_population"] == TWINS).all()
     own, low = closure["published"], known["ensemble"]["interface_closure_band_low"].values
+    seated = known["closure"].isel(direction=0, offset=0, resolution=0)["seated_closure"].values
+    (seat,) = np.flatnonzero(seated == 0)
+    closing = known["ensemble"]["interface_closure"].transpose("realisation", ...).values
+    spread = band_of(closing - closing[:, [seat]]).width / 2
+    whole = np.hypot(with_twins["seated_closure_total"], spread)
+    np.testing.assert_allclose(with_twins["seated_closure_total_of_population"], whole)
+    assert (whole[seat + 1 :] > 0).all()
+    assert np.isnan(without["seated_closure_total_of_population"]).all()
     inside = (low <= own) & (own <= band.values)
     np.testing.assert_array_equal(closure["within_twins"] == INSIDE, inside)
     np.testing.assert_array_equal(closure["within_twins"] == OUTSIDE, ~inside)
+
+
+def test_realisations_of_an_embedded_specimen_are_a_source_of_their_own_name():
+    settings = _settings()
+    faces = scan(_surface(3), SPACING), None
+    known = stages_of("tiny", faces, settings, SOLVER, later=("closure",))
+    members = _twins(known, settings, 6).assign_attrs(members=REALISATIONS)
+    states = known["closure"], known["domains"]
+    budget = error_budget(_loading(known, settings), *states, ensemble=members)
+    assert "within_twins" not in budget
+    assert TWINS not in budget["source"]
+    gap = budget.sel(quantity="separation")
+    whole = np.hypot(gap["total"], gap["error"].sel(source=REALISATIONS))
+    np.testing.assert_allclose(gap["total_of_population"], whole)
+    assert (gap["largest_source_of_population"] == REALISATIONS).all()
 
 
 def test_a_flat_surface_has_no_twins_and_the_key_is_named():

@@ -218,18 +218,24 @@ def test_stiffness_at_a_pressure_has_the_relative_error_of_the_states_beside_it(
     coords = {"quantity": list(errors)} | loads
     dims = ("quantity", "normal_force")
     both = {
+        "total_of_population": (dims, 3 * np.array(list(errors.values()))),
         "relative_total": (dims, [relative] * 3),
         "relative_total_of_population": (dims, [2 * relative] * 3),
     }
     budget = xr.Dataset({"total": (dims, list(errors.values())), **both}, coords)
-    found = with_derived(budget, SimpleNamespace(curve=curve, loading=SimpleNamespace(area=4.0)))
+    sampling = np.array([np.nan, 0.0, 0.12, np.nan])
+    one = SimpleNamespace(curve=curve, loading=SimpleNamespace(area=4.0))
+    found = with_derived(budget, one, sampling)
     # 5 MPa lies in the middle of 4 and 6.25, as the logarithm has it.
     expected = [np.nan, 50 * np.sqrt(0.1 * 0.2), 80 * 0.2]
     np.testing.assert_allclose(found["reference_stiffness_total"], expected)
     of_population = found["reference_stiffness_total_of_population"]
     np.testing.assert_allclose(of_population, 2 * np.array(expected))
     np.testing.assert_allclose(found["seated_closure_total"], [np.nan, 0.0, 0.05, 0.03])
+    of_population = found["seated_closure_total_of_population"]
+    np.testing.assert_allclose(of_population, [np.nan, 0.0, 0.13, np.nan])
     np.testing.assert_allclose(found["seated_closure_relative"], [np.nan, np.nan, 0.5, 0.15])
+    np.testing.assert_allclose(found["mean_gap_total_of_population"], [0.3, 0.09, 0.12, 0])
     np.testing.assert_allclose(found["contact_fraction_total"], [np.nan, 0.1, 0.2, 0.3])
 
 

@@ -89,5 +89,7 @@ def test_values_do_not_depend_on_how_far_apart_the_faces_were_scanned():
 def test_loads_can_be_chosen():
     whole, one = loading([Motion(MIDDLE, (12.1, 12.0)), Motion(MIDDLE, (11.9, 12.0))]), None
     one = registration_values(whole, [(25.0, "pressure")])
-    for name, of in registration_values(whole).items():
+    whole_ladder = registration_values(whole)
+    del whole_ladder["seated_closure"]  # counts from the first of its loads
+    for name, of in whole_ladder.items():
         assert one[name][:, 0] == pytest.approx(of[:, 1], rel=1e-2)

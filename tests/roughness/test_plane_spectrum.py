@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from fractalcontact.roughness.plane_spectrum import SECTORS, plane_spectrum
+from fractalcontact.roughness.plane_spectrum import SECTORS, amplitude_error, plane_spectrum
 from fractalcontact.roughness.twin_surface import twin_surface
-from fractalcontact.surface.synthesis import self_affine
+from fractalcontact.surface.synthesis import band_limited, self_affine
 
 
 def test_independent_heights_have_their_variance_times_a_cell_everywhere():
@@ -63,6 +63,31 @@ def test_directions_are_told_apart_where_the_surface_has_them_and_not_where_it_h
 
     assert abs(apart(same)) < 0.3
     assert apart(stretched) > 1.5
+
+
+@pytest.mark.parametrize(("hurst", "roll_off"), [(0.8, 2.0), (0.5, None)])
+def test_the_amplitude_error_is_the_scatter_of_the_rms_over_windows(hurst, roll_off):
+    band = {"prefactor": 0.01, "cut_off": 0.2, "roll_off": roll_off}
+    surfaces = [band_limited((96, 96), 0.1, hurst, seed=seed, **band) for seed in range(40)]
+    rms = np.array([z.std() for z in surfaces])
+    stated = np.median([amplitude_error(z, (0.1, 0.1)) for z in surfaces[:12]])
+    assert 0.6 < stated / (rms.std(ddof=1) / rms.mean()) < 1.7
+
+
+@pytest.mark.parametrize("roll_off", [None, 4.0])
+def test_longer_waves_than_the_window_holds_are_continued_by_its_power_law(roll_off):
+    band = {"prefactor": 0.01, "cut_off": 0.2, "roll_off": roll_off}
+    slopes, logs = [], []
+    for seed in range(16):
+        whole = band_limited((256, 256), 0.1, 0.8, seed=seed, **band)
+        spectrum = plane_spectrum(whole[64:192, 64:192], (0.1, 0.1))
+        slopes.append(spectrum.slope)
+        number = np.array([1 / 12.8])  # one wave in the window
+        theory = 0.01 * (2 * np.pi * max(number[0], 1 / (roll_off or np.inf))) ** -3.6
+        logs.append(np.log(spectrum.at(0 * number, number)[0] / theory))
+    assert abs(np.median(logs)) < 0.4
+    expected = -3.6 if roll_off is None else 0.0
+    assert np.median(slopes) == pytest.approx(expected, abs=0.5)
 
 
 def test_a_plane_has_no_spectrum():

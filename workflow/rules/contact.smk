@@ -58,10 +58,9 @@ def contact_parts(wildcards):
     return {"parts": contact_parts_of(wildcards.specimen)}
 
 
-def contact_and_twins(wildcards):
-    """Contact parts of a specimen, and of a scan its twins, whose spread is an error of them."""
-    twins = ensemble_of(wildcards) if wildcards.specimen in TWINS else {}
-    return contact_parts(wildcards) | twins
+def contact_and_ensemble(wildcards):
+    """Contact parts of a specimen, and its ensemble, whose spread is an error of them."""
+    return contact_parts(wildcards) | ensemble_of(wildcards)
 
 
 def strength_of(wildcards):
@@ -98,7 +97,7 @@ STAGE_JOBS = {
         "closure",
         "closure, contact domains and their errors",
         asked_for("analysis"),
-        inputs=contact_and_twins,
+        inputs=contact_and_ensemble,
     ),
     # Sparse equations of all open cells, so a job of its own.
     "flow": StageJob(
@@ -111,7 +110,7 @@ STAGE_JOBS = {
         asked_for("windows"),
         priority=1,
     ),
-    # Its seed and those that follow, or twins. As long as the sub-windows, and the report waits for it.
+    # Its seed and those that follow, or twins. As long as the sub-windows, and all but they wait for it.
     "ensemble": StageJob(
         "ensemble",
         "its ensemble",
@@ -121,7 +120,7 @@ STAGE_JOBS = {
             "recipe": lambda wc: None if wc.specimen in TWINS else recipe_named(known(wc)),
             "realisations": lambda wc: ENSEMBLES[wc.specimen],
         },
-        priority=1,
+        priority=2,
     ),
     # The report. These two alone read friction angles, wall strengths and labels, and solve nothing.
     "strength": StageJob(

@@ -15,10 +15,20 @@ _TABLE = {
         "error of the closure from the seat as a property of this surface, half-width at 95 %",
     ),
     "seated_closure_relative": (("normal_force",), "1", "the same over the closure from the seat"),
+    "seated_closure_total_of_population": (
+        ("normal_force",),
+        "mm",
+        "error of it as that of the surface the window is cut from, half-width at 95 %",
+    ),
     "mean_gap_total": (
         ("normal_force",),
         "mm",
         "error of the mean gap as a property of this surface, half-width at 95 %",
+    ),
+    "mean_gap_total_of_population": (
+        ("normal_force",),
+        "mm",
+        "error of it as that of the surface the window is cut from, half-width at 95 %",
     ),
     "contact_fraction_total": (
         ("normal_force",),
@@ -38,7 +48,7 @@ _TABLE = {
 }
 
 
-def with_derived(budget: xr.Dataset, curve: LoadCurve) -> xr.Dataset:
+def with_derived(budget: xr.Dataset, curve: LoadCurve, sampling: np.ndarray) -> xr.Dataset:
     """Error budget with the errors of derived quantities.
 
     Parameters
@@ -46,6 +56,8 @@ def with_derived(budget: xr.Dataset, curve: LoadCurve) -> xr.Dataset:
     budget : xr.Dataset
         Of one load curve.
     curve : LoadCurve
+    sampling : (normal_force,) ndarray
+        Sampling error of the closure from the seat, half-width at 95 %, mm.
 
     Returns
     -------
@@ -75,9 +87,10 @@ def with_derived(budget: xr.Dataset, curve: LoadCurve) -> xr.Dataset:
     ]
     of_seated = np.where(np.isfinite(seated), of_both, np.nan)
     relative = of_seated / np.where(seated > 0, seated, np.nan)
+    population = np.hypot(of_seated, sampling)
+    gap = budget["total_of_population"].sel(quantity="separation").values
     fraction = budget["total"].sel(quantity="area_corrected").values / curve.loading.area
     coords = {"reference_pressure": states["reference_pressure"]}
-    table = labelled(
-        _TABLE, dict(zip(_TABLE, [of_seated, relative, separation, fraction, *totals], strict=True))
-    )
+    values = (of_seated, relative, population, separation, gap, fraction, *totals)
+    table = labelled(_TABLE, dict(zip(_TABLE, values, strict=True)))
     return budget.assign_coords(coords).assign(table)

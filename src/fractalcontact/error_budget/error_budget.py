@@ -10,14 +10,16 @@ from numpy.typing import ArrayLike
 from ..core.datasets import labelled_dataset
 from ..core.estimate import Estimate
 from ..core.intervals import t_quantile
-from ..core.labels import OF_SURFACE, TWINS, cf_attrs
+from ..core.labels import OF_SURFACE, REALISATIONS, TWINS, cf_attrs
 from ..core.limits import MAX_TOUCHING, MIN_NODES
 from ..core.settings import StateSettings
 from ..mechanics.joint import prefractal
 from ..mechanics.loading import JointLoading
 from ..mechanics.subgrid import state_quantities
 from ..mechanics.sweep import load_steps
+from ..roughness.plane_spectrum import amplitude_error
 from .derived import with_derived
+from .ensemble_spread import ensemble_spread, position_in_band, seated_spread
 from .hardness import of_the_hardest
 from .other_windows import MIN_EFFECTIVE, TOO_SMALL, other_composites, window_spread
 from .refinement import (
@@ -29,14 +31,13 @@ from .refinement import (
     domain_dimension,
     refine,
 )
-from .twins import twins_spread
 
 #: Sources of error: those of the number as a property of this surface, those of the population the
 #: window is a sample of; and, in no total, the change of the surface with its resolution, what a
 #: harder material would change, and what another estimator gives.
-OF_POPULATION = ("counting", "window", TWINS, "registration")
+OF_POPULATION = ("counting", "window", TWINS, REALISATIONS, "registration")
 #: Only the larger of these is in a total, as a spread over windows holds that of counting; where
-#: twins of the scan were solved, neither is.
+#: an ensemble was solved, neither is.
 _OF_WINDOW = ("counting", "window")
 SOURCES = (*OF_SURFACE, *OF_POPULATION, "resolution", "model", "estimator")
 
@@ -66,7 +67,7 @@ _TABLE = {
     "largest_source_of_population": (
         _ALL,
         "1",
-        "source of the error of the window: count of its contacts, other windows, or twins",
+        "source of the error of the window: count of its contacts, other windows, or ensemble",
     ),
     "limit": (_ALL, _UNIT, "value extrapolated to zero spacing of the same surface"),
     "observed_order": (_ALL, "1", "observed order of convergence of the same surface"),
@@ -122,7 +123,7 @@ def error_budget(
     domains: xr.Dataset,
     *,
     registration_spread: Mapping[str, ArrayLike] | None = None,
-    twins: xr.Dataset | None = None,
+    ensemble: xr.Dataset | None = None,
 ) -> xr.Dataset:
     """Errors of closure, separation, area, stiffness and Delta_sigma at the map offset, by source.
 
@@ -135,15 +136,16 @@ def error_budget(
     registration_spread : mapping of str to (normal_force,) array_like, optional
         By quantity, half-widths of the spread over registrations of two scanned faces that are
         statistically as good, in the quantity's unit.
-    twins : xr.Dataset, optional
-        Stage ``ensemble``, of twins of the scan: a source of its own, in place of counting and
-        windows in the total of the population.
+    ensemble : xr.Dataset, optional
+        Stage of this name, twins of a scan or realisations of an embedded specimen: a source of
+        its own, in place of counting and windows in the total of the population.
 
     Returns
     -------
     xr.Dataset
         The variables of :data:`_TABLE` over (quantity, source, normal_force), and those of
-        :func:`derived.with_derived`; with twins ``within_twins`` (quantity, normal_force).
+        :func:`derived.with_derived`; with twins ``within_twins`` (quantity,
+        normal_force).
 
     Raises
     ------
@@ -173,16 +175,17 @@ def error_budget(
         "secant": _secant(curve),
         "estimator": _estimator(curve),
     }
-    if twins is not None:
-        spread, within = twins_spread(curve, twins)
-        errors[TWINS] = over_loads(curve.forces, spread, _scale(curve))
+    if ensemble is not None:
+        spread = ensemble_spread(curve, ensemble)
+        errors[ensemble.attrs["members"]] = over_loads(curve.forces, spread, _scale(curve))
     errors = {source: errors[source] for source in SOURCES if source in errors}
     reasons = _reasons(curve, errors, found, effective, registration_spread is not None)
     budget = _budget(curve, values, errors, found, reasons, (n_windows, effective))
-    budget = with_derived(budget.assign(hardest), curve)
-    if twins is not None:
+    sampling = _seated_sampling(curve, ensemble, registration_spread)
+    budget = with_derived(budget.assign(hardest), curve, sampling)
+    if TWINS in errors:
         words = cf_attrs("1", "position of the scan relative to the 95 % band of its twins")
-        budget["within_twins"] = (_ALL, within, words)
+        budget["within_twins"] = (_ALL, position_in_band(curve, ensemble), words)
     return budget
 
 
@@ -192,10 +195,11 @@ def _budget(curve, values, errors, found, reasons, windows) -> xr.Dataset:
     total = np.sqrt(sum(errors[source] ** 2 for source in OF_SURFACE))
     sampling = np.fmax(errors["counting"], errors["window"])
     largest = _largest(errors, _OF_WINDOW)
-    if TWINS in errors:
-        known = np.isfinite(errors[TWINS])
-        sampling = np.where(known, errors[TWINS], sampling)
-        largest = np.where(known, TWINS, largest)
+    for members in (TWINS, REALISATIONS):
+        if members in errors:
+            known = np.isfinite(errors[members])
+            sampling = np.where(known, errors[members], sampling)
+            largest = np.where(known, members, largest)
     if curve.loading.specimen.attrs["opposite"] == "scanned":
         sampling = np.hypot(sampling, errors["registration"])
     of_population = np.hypot(total, sampling)
@@ -333,6 +337,7 @@ def counting_error(curve: LoadCurve) -> np.ndarray:
     their area and, as long as contacts act side by side, their stiffness. At a given separation the
     force varies by as much, so that at a given force the separation does by
     l/sqrt(N), l = sigma_0/(d sigma/d w_int) being the length over which the pressure falls by e.
+    The mean gap is also as uncertain as the amplitude of the waves of which the window holds few.
     Closure also counts from the highest of the heights, whose tail falls over that length: the
     largest of many such scatters by pi/sqrt(6) l (Gumbel). That of Delta_sigma is its published
     interval, which leaves out parts of the window. Where more than half of the window
@@ -349,12 +354,21 @@ def counting_error(curve: LoadCurve) -> np.ndarray:
     return np.array(
         [
             np.hypot(fraction * length, summit_spread),
-            fraction * length,
+            np.hypot(fraction * length, t_quantile(np.inf) * _amplitude_error(curve)),
             fraction * np.sqrt(np.clip(1 - touching, 0, 1)) * area,
             np.where(touching > MAX_TOUCHING, np.nan, fraction * stiffness),
             np.fmax(high - value, value - low),
         ]
     )
+
+
+def _amplitude_error(curve: LoadCurve) -> np.ndarray:
+    """Standard deviation of the mean gap by the amplitude of the waves (normal_force), mm."""
+    try:
+        relative = amplitude_error(curve.composite, curve.space.spacing)
+    except ValueError:  # faces that are flush have none
+        relative = 0.0
+    return relative * curve.curve["mean_gap"].values
 
 
 def _window_spread(curve: LoadCurve) -> tuple[np.ndarray, int, float]:
@@ -387,6 +401,20 @@ def _registration(spread: Mapping[str, ArrayLike] | None, loads: int) -> np.ndar
     return np.array([np.broadcast_to(row, loads) for row in rows])
 
 
+def _seated_sampling(curve, ensemble, registration) -> np.ndarray:
+    """Sampling and registration error of the closure from the seat (normal_force), mm.
+
+    NaN without an ensemble: neither counts nor windows tell how much two separations share.
+    """
+    if ensemble is None:
+        return np.full(len(curve.forces), np.nan)
+    scale = curve.curve["seated_closure"].values[np.newaxis]
+    (half,) = over_loads(curve.forces, seated_spread(curve, ensemble)[np.newaxis], scale)
+    if curve.loading.specimen.attrs["opposite"] == "scanned":
+        half = np.hypot(half, (registration or {}).get("seated_closure", np.nan))
+    return half
+
+
 def _resolution(loading, curves, domains, curve: LoadCurve) -> np.ndarray:
     """Change from twice the spacing: of another surface, its every second node."""
     coarse = 2 * curve.resolution
@@ -411,6 +439,7 @@ def _reasons(curve, errors, found: Refinement, effective, registered: bool) -> n
         if effective < MIN_EFFECTIVE
         else "no value in every window at any load",
         TWINS: "not in every twin at any load",
+        REALISATIONS: "not in every realisation at any load",
         "registration": "no spread of registrations is known"
         if scanned
         else "only one face was scanned",

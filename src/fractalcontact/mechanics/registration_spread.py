@@ -12,12 +12,14 @@ from ..registration.registration_scatter import stored_motions
 from ..registration.surface_motion import Motion, Surface, grid_nodes
 from .closure import bulk_settlement, interface_closure, interface_stiffness
 from .loading import JointLoading
+from .separation import ROUNDING
 from .state_scalars import numbers_of
 from .sweep import load_steps
 
 #: Quantities whose spread is computed: unit, long name.
 QUANTITIES = {
     "closure": ("mm", "interface closure w_int"),
+    "seated_closure": ("mm", "interface closure from the first load at the seat or beyond"),
     "separation": ("mm", "separation of the mean planes"),
     "area_corrected": ("mm2", "real contact area, corrected for its edge"),
     "stiffness": ("MPa/mm", "stiffness of the interface d sigma / d w_int"),
@@ -51,7 +53,7 @@ def moved_specimen(specimen: xr.Dataset, motion: Motion) -> xr.Dataset:
 def registration_values(
     loading: JointLoading, loads: Sequence[Load] | None = None
 ) -> dict[str, np.ndarray]:
-    """Closure, separation, area and stiffness of each registration that is as good.
+    """Closures, separation, area and stiffness of each registration that is as good.
 
     Parameters
     ----------
@@ -78,6 +80,8 @@ def registration_values(
     settlement = bulk_settlement(
         forces, space.modulus, *(n * s for n, s in zip(space.shape, space.spacing, strict=True))
     )
+    seating = loading.settings.seating_pressure * loading.area * (1 - ROUNDING)
+    seat = min(int(np.searchsorted(forces, seating)), len(forces) - 1)
     rows = []
     for motion in stored_motions(loading.specimen):
         moved = replace(loading, specimen=moved_specimen(loading.specimen, motion))
@@ -93,9 +97,11 @@ def registration_values(
         of_interface = interface_stiffness(
             xr.DataArray(stiffness / loading.area), xr.DataArray(bulk)
         )
+        of_interface_closure = interface_closure(closure, settlement)
         rows.append(
             {
-                "closure": interface_closure(closure, settlement),
+                "closure": of_interface_closure,
+                "seated_closure": of_interface_closure - of_interface_closure[seat],
                 "separation": composite.max() - composite.mean() - closure,
                 "area_corrected": area,
                 "stiffness": of_interface.values,

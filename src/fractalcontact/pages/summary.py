@@ -366,9 +366,9 @@ def quantities_at(subject: Subject, number: int) -> dict[str, Quantity]:
 
 
 def _seated_closure(subject, number, budget):
-    """Closure from the seat, of which the budget has the total for this surface alone."""
+    """Closure from the seat, of which the budget has the totals and no sources."""
     value = float(subject.states("closure")["seated_closure"].isel(normal_force=number))
-    errors = {"surface": float(budget["seated_closure_total"]), "population": math.nan}
+    errors = {which: float(budget[f"seated_closure_{total}"]) for which, total in TOTALS.items()}
     missing = "" if math.isfinite(value) else "below the seat, or not solved"
     name, meaning = "seated_closure", "closure from the seat"
     hardest = float(budget["seated_closure_hardest"])

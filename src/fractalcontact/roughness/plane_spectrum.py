@@ -109,6 +109,35 @@ def plane_spectrum(heights: np.ndarray, spacing: tuple[float, float]) -> PlaneSp
     return PlaneSpectrum(spectrum.number, spectrum.density * ratio[:, np.newaxis], slope)
 
 
+def amplitude_error(heights: np.ndarray, spacing: tuple[float, float]) -> float:
+    """Relative standard deviation of the root mean square height, over windows like this one.
+
+    Parameters
+    ----------
+    heights : (ny, nx) ndarray
+        mm, without holes.
+    spacing : (float, float)
+        (dy, dx), mm.
+
+    Raises
+    ------
+    ValueError
+        As :func:`plane_spectrum`.
+
+    Notes
+    -----
+    The mean square of correlated Gaussian heights has the relative variance 2 <r^2>, r being the
+    correlation, that of the spectrum, and <> the mean over all pairs of nodes.
+    """
+    waves = _Waves([2 * n for n in heights.shape], spacing)
+    covariance = scipy.fft.ifft2(
+        plane_spectrum(heights, spacing).at(*waves.numbers), workers=1
+    ).real
+    lags = [np.abs(scipy.fft.fftfreq(2 * n, 1 / (2 * n))) for n in heights.shape]
+    pairs = np.outer(*((1 - lag / n) / n for lag, n in zip(lags, heights.shape, strict=True)))
+    return float(np.sqrt(np.sum(pairs * (covariance / covariance[0, 0]) ** 2) / 2))
+
+
 class _Waves:
     """Wave numbers (y, x) of a grid, 1/mm, and the gain of the differences along both axes."""
 

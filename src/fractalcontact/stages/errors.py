@@ -24,7 +24,7 @@ def error_stages(
     mapped: xr.Dataset,
     settings: StateSettings,
     solver: Solver,
-    twins: xr.Dataset | None = None,
+    ensemble: xr.Dataset | None = None,
 ) -> dict[str, xr.Dataset]:
     """Stages that solve some states again on finer grids, along the first direction of contact.
 
@@ -36,8 +36,8 @@ def error_stages(
         Fields of the states at the offset of the maps, from :func:`mechanics.states.map_states`.
     settings : StateSettings
     solver : Solver
-    twins : xr.Dataset, optional
-        Stage ``ensemble`` of a scan.
+    ensemble : xr.Dataset, optional
+        Stage of this name.
 
     Returns
     -------
@@ -48,7 +48,7 @@ def error_stages(
     joint = JointLoading.of_joint(specimens, joints, direction, settings, solver)
     loading = joint.at_map_offset()
     spread = registration_spread(loading)
-    budget = error_budget(loading, closure, domains, registration_spread=spread, twins=twins)
+    budget = error_budget(loading, closure, domains, registration_spread=spread, ensemble=ensemble)
     plan = solve_plan(closure, dilatancy, settings, solver, budget)
     return {
         "branches": joint_branches(loading, closure, mapped),

@@ -51,7 +51,7 @@ def state_stages(
     settings : StateSettings
     solver : Solver
     ensemble : xr.Dataset, optional
-        Stage of this name: of a scan, its twins.
+        Stage of this name: twins of a scan, or realisations.
 
     Returns
     -------
@@ -115,7 +115,7 @@ def state_stages(
         mapped,
         settings=settings,
         solver=solver,
-        twins=ensemble,
+        ensemble=ensemble,
     )
 
 

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from ...core.labels import TWINS
+from ...core.labels import REALISATIONS, TWINS
 from ..kit.words import length_unit, percent, short
 
 #: Quantities: title of the panel, and its word in the caption.
@@ -27,6 +27,7 @@ SOURCES = {
     "model": "three times the hardness: another model, in no total",
     "estimator": "ordinary box-counting slope: another estimator, in no total",
     TWINS: "twins of the scan, in place of counting and windows",
+    REALISATIONS: "its realisations, in place of counting and windows",
 }
 TOTALS = {
     "total": ("total for this very surface\n(solver, numerical, secant)", "-"),
