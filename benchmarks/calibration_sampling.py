@@ -30,7 +30,7 @@ from fractalcontact.surface.synthesis import band_limited
 from roughcontact.elastic.halfspace import HalfSpace
 
 #: Joints of calibration.py, and of how many seeds the twins are solved.
-JOINTS = {"sandstone": 60, "sandstone, capped": 40, "joint 2.1": 24}
+JOINTS = {"sandstone": 30, "sandstone, capped": 20, "joint 2.1": 16}
 #: Load that closures count from, MPa.
 SEAT = 0.25
 #: Quantities, and the rows of `counting_error` that are stated of them: none of a closure from a
