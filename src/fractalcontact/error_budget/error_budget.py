@@ -183,7 +183,7 @@ def error_budget(
     budget = _budget(curve, values, errors, found, reasons, (n_windows, effective))
     sampling = _seated_sampling(curve, ensemble, registration_spread)
     budget = with_derived(budget.assign(hardest), curve, sampling)
-    if TWINS in errors:
+    if ensemble is not None and TWINS in errors:
         words = cf_attrs("1", "position of the scan relative to the 95 % band of its twins")
         budget["within_twins"] = (_ALL, position_in_band(curve, ensemble), words)
     return budget
