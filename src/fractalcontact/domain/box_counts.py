@@ -347,29 +347,27 @@ def mean_count(domain: np.ndarray, sizes: np.ndarray, *, blocks: int = 1) -> np.
 def _places_of(domain, sizes, blocks):
     """Places of gliding boxes that meet a domain, (k, blocks, blocks), sizes in any order."""
     ascending, place = np.unique(sizes, return_inverse=True)
-    return _places(domain, ascending, blocks)[place]
+    ny, nx = domain.shape
+    packed = np.zeros((ny, 8 * -(-nx // 64)), np.uint8)
+    packed[:, : -(-nx // 8)] = np.packbits(domain, axis=1, bitorder="little")
+    return _places(packed.view("<u8").astype(np.uint64, copy=False), nx, ascending, blocks)[place]
 
 
 @njit(cache=True)
-def _places(domain, sizes, blocks):
+def _places(packed, nx, sizes, blocks):
     """Places of gliding boxes that meet the domain, by the part that holds their middle.
 
     Each bit says whether the box whose lowest cell is there meets the domain: 64 places at a time.
     A box of side r is made of four of side r', whose lowest cells are r - r' apart.
     """
-    ny, nx = domain.shape
+    ny = packed.shape[0]
     reach = sizes[-1] if sizes.size else 1
     # Cell 0 stands at the first word that leaves room for boxes which hang over. Behind the last
     # word stand zeros, for those on the other side.
     before = (reach + 62) // 64
-    rows, words = ny + reach - 1, before + (nx + 63) // 64
+    rows, words = ny + reach - 1, before + packed.shape[1]
     meets = np.zeros((rows, words + reach // 64 + 2), np.uint64)
-    for y in range(ny):
-        for i in range(words - before):
-            word = np.uint64(0)
-            for x in range(64 * i, min(64 * i + 64, nx)):
-                word |= np.uint64(domain[y, x]) << np.uint64(x & 63)
-            meets[y + reach - 1, before + i] = word
+    meets[reach - 1 :, before:words] = packed
     places = np.zeros((sizes.size, blocks, blocks), np.int64)
     side = 1
     for k in range(sizes.size):

@@ -73,8 +73,17 @@ def gliding_moments(
     total = mass.sum()
     if total > 0:
         fraction = mass / total
-        for k, size in enumerate(sizes):
-            _glide(fraction, int(size), max(1, int(size) // PLACES), q, moments[k], places[k])
+        rows, columns = np.nonzero(fraction)
+        starts = np.searchsorted(rows, np.arange(mass.shape[0] + 1))
+        filled = fraction[rows, columns], columns, starts
+        for k, size in enumerate(sizes.astype(int)):
+            lowest = [np.arange(0, n - size + 1, max(1, size // PLACES)) for n in mass.shape]
+            parts = [
+                (2 * at + size) * BLOCKS // (2 * n)
+                for at, n in zip(lowest, mass.shape, strict=True)
+            ]
+            _glide(mass.shape[1], filled, size, *lowest, *parts, q, moments[k])
+            places[k] = np.outer(*(np.bincount(part, minlength=BLOCKS) for part in parts)).ravel()
     return moments, places
 
 
@@ -90,21 +99,21 @@ def _checked(mass):
 
 
 @njit(cache=True)
-def _glide(fraction, size, step, orders, moments, places):
-    """Add the moments of all boxes of one size; sums of columns move on with the box."""
-    ny, nx = fraction.shape
+def _glide(nx, filled, size, lowest_y, lowest_x, parts_y, parts_x, orders, moments):
+    """Add the moments of all boxes of one size, from the cells that are filled, row by row."""
+    fraction, columns, starts = filled
     column = np.zeros(nx)
-    for y in range(0, ny - size + 1, step):
+    before = np.zeros(nx + 1, np.int64)  # columns that are not empty, before each
+    for y, part_y in zip(lowest_y, parts_y):  # noqa: B905  # numba knows no `strict`
         # Summed anew: differences of sums would leave a trace of mass where there is none.
         column[:] = 0.0
-        for i in range(y, y + size):
-            column += fraction[i]
-        part_y = (2 * y + size) * BLOCKS // (2 * ny)
-        for x in range(0, nx - size + 1, step):
-            p = column[x : x + size].sum()
-            part = part_y * BLOCKS + (2 * x + size) * BLOCKS // (2 * nx)
-            places[part] += 1
-            if p > 0:
+        for i in range(starts[y], starts[y + size]):
+            column[columns[i]] += fraction[i]
+        for x in range(nx):
+            before[x + 1] = before[x] + (column[x] > 0)
+        for x, part_x in zip(lowest_x, parts_x):  # noqa: B905
+            if before[x + size] > before[x]:
+                p, part = column[x : x + size].sum(), part_y * BLOCKS + part_x
                 log_p = np.log(p)
                 moments[-1, part] += p * log_p
                 for j, q in enumerate(orders):
