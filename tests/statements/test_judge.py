@@ -203,6 +203,7 @@ ALIKE = [1 - np.exp(-RIGID)] * 4
         ("larger_domains_are_less_dense", {"density_exponent": 0.3}, FAILS),
         ("strength_falls_with_size", {"strength_exponent": np.array([[-0.3], [0.0]])}, PARTLY),
         ("strength_falls_with_size", {"strength_exponent": np.full((2, 1), 0.3)}, FAILS),
+        ("strength_falls_with_size", {"strength_exponent": np.array([[0.3], [0.0]])}, FAILS),
         ("strength_falls_with_size", {"strength_exponent": np.zeros((2, 1))}, UNDETERMINED),
         ("strength_falls_with_size", {"held": np.array([[0.1], [0]])}, UNDETERMINED),
         ("strength_falls_with_size", {"strength_exponent": np.full((2, 1), np.nan)}, UNDETERMINED),

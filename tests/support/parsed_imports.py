@@ -16,10 +16,12 @@ def parsed_imports(path, package):
     found = []
     nodes = list(ast.walk(ast.parse(path.read_text(encoding="utf-8"))))
     listed = {
-        node.args[0].id
+        ast.unparse(node.args[0])
         for node in nodes
         if isinstance(node, ast.Call) and getattr(node.func, "id", "") == "modules_of"
     }
+    if "sys.modules[__package__]" in listed:
+        found += sorted(path.parent.glob("*.py"))
     for node in nodes:
         if isinstance(node, ast.ImportFrom):
             parts = (node.module or "").split(".") if node.module else []

@@ -12,7 +12,7 @@ def modules_of(package: ModuleType) -> dict[str, ModuleType]:
     ----------
     package : module
         Imported by the calling module with a statement, ``from . import NAME``, and given by that
-        name.
+        name; or ``sys.modules[__package__]``, that of the calling module.
 
     Returns
     -------

@@ -284,7 +284,8 @@ def strength_falls_with_size(joint: Joint) -> Finding:
     falls, rises = int((high[known] < 0).sum()), int((low[known] > 0).sum())
     if falls == known.sum() or rises == known.sum():
         return Finding(HOLDS if falls else FAILS, exponents)
-    return Finding(PARTLY if falls else UNDETERMINED, exponents)
+    # Where nothing is sure in some cases, those that are decide.
+    return Finding(PARTLY if falls else FAILS if rises else UNDETERMINED, exponents)
 
 
 def _exponents(value, low, high, known):
