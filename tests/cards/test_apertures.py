@@ -10,6 +10,7 @@ import xarray as xr
 from fractalcontact.cards.apertures import aperture_at, with_solved_gaps, write_aperture
 from fractalcontact.commands.export_aperture import main
 from fractalcontact.core.errors import InputError
+from fractalcontact.core.tables import table_text
 from fractalcontact.scan.read import read_scan
 from fractalcontact.study.atlas_parts import open_atlas
 
@@ -81,6 +82,14 @@ def test_where_the_states_are_kept_all_loads_have_their_map_as_solved(contact, t
     for pressure, gap in zip(gaps["nominal_pressure"].values, solved, strict=True):
         np.testing.assert_array_equal(aperture_at(whole, pressure, "pair"), gap)
     assert with_solved_gaps(contact, tmp_path, "flat.1") is contact
+
+
+def test_the_table_of_a_map_is_that_of_any_table(folder, contact, tmp_path):
+    aperture = aperture_at(contact, None, "pair").copy()
+    aperture[1, 2] = np.nan
+    write_aperture(aperture, tmp_path / "map.csv")
+    table = aperture.to_dataframe().reset_index()[["x", "y", "aperture"]]
+    assert (tmp_path / "map.csv").read_text("utf-8") == table_text(table)
 
 
 def test_apertures_at_ones_own_points(folder, contact, tmp_path, capsys):
