@@ -4,10 +4,9 @@ import struct
 import zlib
 
 import pytest
-from page_study import write_study
+from page_study import write_pages, write_study
 
 from fractalcontact.cards.write import write_cards
-from fractalcontact.pages.result_page import Place, write_result_page
 from fractalcontact.study.figure_list import figures_of
 
 
@@ -44,5 +43,5 @@ def results(tmp_path_factory):
     (folder / "benchmarks").mkdir()
     (folder / "benchmarks/one.tsv").write_text("s\th:m:s\n61.5\t0:01:01\n")
     write_cards(folder / "atlas.nc", folder)
-    assert write_result_page(Place.of(folder)) == ["flat.1", "pair"]
+    assert write_pages(folder) == ["flat.1", "pair"]
     return folder

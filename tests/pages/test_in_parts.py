@@ -5,12 +5,12 @@ import json
 import numpy as np
 import pandas as pd
 import pytest
+from page_study import write_pages
 
 from fractalcontact.cards.write import write_cards
 from fractalcontact.core.subject import configuration_of
 from fractalcontact.pages import result_page
 from fractalcontact.pages.explorer import write_explorer
-from fractalcontact.pages.result_page import Place, write_result_page
 from fractalcontact.study.atlas import read_atlas, write_atlas
 
 NAMES = ["flat.1", "pair"]
@@ -42,7 +42,7 @@ def parts(results, tmp_path_factory):
     )
     write_explorer(folder / "atlas.nc", folder / "explorer.html", ["pair"])
     assert write_cards(folder / "atlas.nc", folder) == NAMES
-    assert write_result_page(Place.of(folder)) == NAMES
+    assert write_pages(folder) == NAMES
     return folder
 
 
@@ -77,7 +77,7 @@ def test_the_table_leads_to_the_card_of_each_and_to_the_states_of_chosen_ones(pa
 def test_verdicts_of_many_specimens_are_counted(results, parts, monkeypatch):
     monkeypatch.setattr(result_page, "_COLUMNS", 1)
     monkeypatch.setattr(result_page, "_BLOCKS", 1)
-    write_result_page(Place.of(parts))
+    write_pages(parts)
     html = (parts / "index.html").read_text(encoding="utf-8")
     assert "<template" not in html
     assert 'class="joint"' not in html

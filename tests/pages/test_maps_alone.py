@@ -5,10 +5,10 @@ import re
 import numpy as np
 import pandas as pd
 import pytest
+from page_study import write_pages
 from stated import MAP
 
 from fractalcontact.domain.measured_map import read_contact_map
-from fractalcontact.pages.result_page import Place, write_result_page
 from fractalcontact.stages.atlas import join_stages
 from fractalcontact.study.atlas import read_atlas
 
@@ -36,7 +36,7 @@ def folder(tmp_path_factory):
     join_stages(
         {"contact_maps": maps}, folder / "atlas.nc", {"study": study, "settings": {}}, made_with={}
     )
-    assert write_result_page(Place.of(folder)) == []
+    assert write_pages(folder) == []
     return folder
 
 

@@ -9,12 +9,12 @@ import pytest
 from chain import atlas_of_scan
 from extremes import Extreme, rough, write_extreme
 from materials import ROCK
+from page_study import write_pages
 
 from fractalcontact.figures.draw import drawer_of
 from fractalcontact.figures.kit.drawing import print_style
 from fractalcontact.mechanics.closure import SINGLE_CELLS
 from fractalcontact.pages.packed_states import packed_states
-from fractalcontact.pages.result_page import Place, write_result_page
 from fractalcontact.study.atlas import read_atlas
 
 LOADS = ["0.2 MPa", "1 MPa", "5 MPa", "20 MPa", "60 MPa", "120 MPa"]
@@ -103,7 +103,7 @@ def test_the_explorer_has_the_reason(atlas, curves):
 
 def test_page_and_summary_have_the_reason(atlas_file):
     folder = atlas_file.parent
-    write_result_page(Place.of(folder))
+    write_pages(folder)
     summary = pd.read_csv(folder / "summary.csv")
     missing = summary["stiffness_MPa_per_mm"].isna()
     assert missing.any()

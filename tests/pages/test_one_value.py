@@ -16,6 +16,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
+from page_study import write_pages
 from published import (
     DIGITS,
     SUMMARY,
@@ -30,7 +31,6 @@ from fractalcontact.figures.draw import drawer_of
 from fractalcontact.figures.kit.drawing import print_style
 from fractalcontact.pages.captions import symbols
 from fractalcontact.pages.explorer import write_explorer
-from fractalcontact.pages.result_page import Place, write_result_page
 from fractalcontact.study.atlas import read_atlas
 from fractalcontact.study.figure_list import figures_of
 
@@ -51,7 +51,7 @@ def published(results, tmp_path_factory):
                 drawing = drawer_of(figure)(atlas, name)
             drawing.data.to_csv(numbers / f"{figure}.csv", index=False, float_format="%.8g")
     write_explorer(folder / "atlas.nc", folder / "explorer.html")
-    write_result_page(Place.of(folder))
+    write_pages(folder)
     return folder
 
 

@@ -16,7 +16,7 @@ import xarray as xr
 import yaml
 from code_blocks import run_code
 from markup import MARKUP
-from page_study import HOSTILE, STUDY
+from page_study import HOSTILE, STUDY, write_pages
 from spreadsheets import FORMULA, formulas_in
 
 from fractalcontact.core.claims import claims_of
@@ -36,7 +36,6 @@ from fractalcontact.pages.matrix import (
     of_study,
 )
 from fractalcontact.pages.opening import opening_of
-from fractalcontact.pages.result_page import Place, write_result_page
 from fractalcontact.pages.spacing import Doubled, doubled_spacing, spacing_words
 from fractalcontact.pages.summary import summarised, why
 from fractalcontact.pages.words import short, with_unit
@@ -645,7 +644,7 @@ def test_no_table_has_a_cell_that_a_spreadsheet_runs(results):
 @pytest.mark.full
 def test_the_same_results_are_the_same_pages(results, tmp_path):
     shutil.copytree(results, tmp_path / "tiny", copy_function=shutil.copy2)
-    write_result_page(Place.of(tmp_path / "tiny"))
+    write_pages(tmp_path / "tiny")
     for path in [*results.glob("*.*"), *results.glob("pages/*")]:
         if path.is_file():
             again = tmp_path / "tiny" / path.relative_to(results)
@@ -657,7 +656,7 @@ def test_a_study_without_specimens_has_a_page(tmp_path):
     write_atlas(
         {}, tmp_path / "atlas.nc", study="none", configuration={"study": {}, "settings": {}}
     )
-    assert write_result_page(Place.of(tmp_path)) == []
+    assert write_pages(tmp_path) == []
     text = "".join(Parsed(tmp_path / "index.html").texts)
     assert "Study none" in text
     assert "Specimens" not in text
@@ -669,7 +668,7 @@ def test_a_page_without_pictures_has_none(results, tmp_path):
     """One that was removed, or is drawn later: what is there is shown, and nothing is promised."""
     shutil.copytree(results, tmp_path / "tiny")
     shutil.rmtree(tmp_path / "tiny/figures/pair")
-    write_result_page(Place.of(tmp_path / "tiny"))
+    write_pages(tmp_path / "tiny")
     parsed = Parsed(tmp_path / "tiny/pages/pair.html")
     assert not any(tag == "img" for tag, _ in parsed.elements)
     index = Parsed(tmp_path / "tiny/index.html")

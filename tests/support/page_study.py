@@ -7,7 +7,12 @@ from made_tests import with_tests
 from materials import ROCK
 from spreadsheets import FORMULA
 
+from fractalcontact.core.subject import configuration_of
+from fractalcontact.pages.files import EXPLORER
+from fractalcontact.pages.result_page import Place, write_index, write_specimen_pages
 from fractalcontact.stages.atlas import join_stages
+from fractalcontact.study.atlas_parts import Trees
+from fractalcontact.study.campaign import explored
 from fractalcontact.study.configuration import resolve_settings, solver_settings
 from fractalcontact.study.stages import STAGES
 from fractalcontact.surface.synthesis import self_affine
@@ -62,3 +67,12 @@ def write_study(folder):
     records = {name: asdict(stated) for name, stated in settings.items()}
     join_stages(parts, folder / "atlas.nc", {"study": STUDY, "settings": records})
     return settings
+
+
+def write_pages(folder):
+    """Write all pages of a study, as its jobs do; names of its specimens."""
+    place = Place.of(folder)
+    configuration = configuration_of(Trees(place.atlas).root)
+    shown = explored(configuration["study"], configuration["settings"])
+    write_specimen_pages(place, shown if (place.folder / EXPLORER).is_file() else [])
+    return write_index(place)

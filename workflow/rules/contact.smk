@@ -110,7 +110,7 @@ STAGE_JOBS = {
         asked_for("windows"),
         priority=1,
     ),
-    # Its seed and those that follow, or twins. As long as the sub-windows, and all but they wait for it.
+    # Its seed and those that follow, or twins. As long as the sub-windows; all but those wait for it.
     "ensemble": StageJob(
         "ensemble",
         "its ensemble",

@@ -1,5 +1,5 @@
-# The explorer, contact states of all specimens or of those named on one page; and the result page: an index, a page a
-# specimen and tables beside them.
+# The explorer, contact states of all specimens or of those named on one page; and the result page: an
+# index, a page a specimen and tables beside them.
 from fractalcontact.pages import files as page_files
 
 #: Files with the stages of each specimen that are not in the atlas of the study.
@@ -23,7 +23,8 @@ rule explorer:
         f"{RESULTS}/logs/explorer.log",
     benchmark:
         f"{RESULTS}/benchmarks/explorer.tsv"
-    # After the figures: shorter than those, it leaves other cores less time with nothing to do at the end.
+    # After the figures: it is shorter than those, so that other cores have less time with nothing to
+    # do at the end.
     priority: -3
     resources:
         **fixed(3000, 10),

@@ -144,8 +144,7 @@ def error_budget(
     -------
     xr.Dataset
         The variables of :data:`_TABLE` over (quantity, source, normal_force), and those of
-        :func:`derived.with_derived`; with twins ``within_twins`` (quantity,
-        normal_force).
+        :func:`derived.with_derived`; with twins ``within_twins`` (quantity, normal_force).
 
     Raises
     ------

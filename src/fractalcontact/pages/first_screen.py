@@ -12,10 +12,7 @@ from .files import CARD
 from .words import measured, short, with_unit
 
 #: Intervals as cards name them, in words.
-_ALONE = {
-    "solver": " solver error alone",
-    "all errors of this surface": " this surface",
-}
+_ALONE = {"solver": " solver error alone", "all errors of this surface": " this surface"}
 #: Keeps an interval on one line.
 _NBSP = "\u00a0"
 #: Rules for the peak shear strength, by their entries, in words.

@@ -102,22 +102,7 @@ class Place:
         return cls(results / "atlas.nc", results / "figures", results / "benchmarks", results)
 
 
-def write_result_page(place: Place) -> list[str]:
-    """Write the pages of a study: those of its specimens, and :func:`write_index`.
-
-    Returns
-    -------
-    list of str
-        Specimens that have a page, ``pages/NAME.html``.
-    """
-    trees = Trees(place.atlas, without=STAGES.keys() - set(NEEDS))
-    write_specimen_pages(place, _explored(place, trees.root), trees)
-    return write_index(place, trees)
-
-
-def write_specimen_pages(
-    place: Place, explored: Collection[str], trees: Trees | None = None
-) -> None:
+def write_specimen_pages(place: Place, explored: Collection[str]) -> None:
     """Write the pages of the specimens of an atlas, which may be that of one of a study.
 
     Parameters
@@ -126,10 +111,8 @@ def write_specimen_pages(
         With their cards, if there are any.
     explored : collection of str
         Specimens that the explorer shows.
-    trees : Trees, optional
-        The atlas, if it is in memory.
     """
-    trees = trees or Trees(place.atlas, without=STAGES.keys() - set(NEEDS))
+    trees = Trees(place.atlas, without=STAGES.keys() - set(NEEDS))
     head = _head(place, trees.root) | {"explored": explored}
     blocks = {one.name: one for one in blocks_of(trees.names, place.folder)}
     for name in trees.names:
@@ -142,22 +125,20 @@ def write_specimen_pages(
         write_page(path, "specimen.html", head | values | {"block": blocks.get(name)})
 
 
-def write_index(place: Place, trees: Trees | None = None) -> list[str]:
+def write_index(place: Place) -> list[str]:
     """Write the index of a study, and its summary, curves, tables and configuration beside it.
 
     Parameters
     ----------
     place : Place
         With the cards of its specimens, if there are any.
-    trees : Trees, optional
-        The atlas of the study, if it is in memory.
 
     Returns
     -------
     list of str
         Its specimens.
     """
-    trees = trees or Trees(place.atlas, without=STAGES.keys() - set(NEEDS))
+    trees = Trees(place.atlas, without=STAGES.keys() - set(NEEDS))
     atlas, names = trees.root, trees.names
     reported = [trees.closure(name) for name in names]
     loads = common_loads(reported, _comparison(atlas))
