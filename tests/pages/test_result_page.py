@@ -536,6 +536,22 @@ def test_the_first_screen_says_what_no_interval_holds(results):
     assert "± 18 at twice the spacing" in facts_of(card)[0].notes
 
 
+@pytest.mark.parametrize(
+    ("half", "synthetic", "words"),
+    [
+        (0.25, False, "± 0.25 for the whole joint"),
+        (3.2, False, "unknown for the whole joint (± 3.2; 'twins' narrows that)"),
+        (3.2, True, "unknown for the whole joint (± 3.2)"),
+    ],
+)
+def test_an_error_larger_than_its_number_leaves_it_unknown(results, half, synthetic, words):
+    card = json.loads((results / "cards/pair.json").read_text()) | {"synthetic": synthetic}
+    at = {"pressure": card["geometry"]["reference_pressure"]["value"]}
+    gap = {"value": 0.434, "low": None, "high": None, "at": at, "of_its_population": half}
+    card["entries"]["mean_gap"] = {"values": [gap]}
+    assert words in facts_of(card)[2].notes
+
+
 def test_synthetic_joints_stand_behind_scanned_ones_under_their_own_heading(results, tmp_path):
     (tmp_path / "cards").mkdir()
     for name in NAMES:

@@ -208,10 +208,19 @@ def _fact(card, title, row, unit, beside=""):
     # One unit for a number and its interval, the same in all blocks.
     size, shown = (100.0, " %") if unit == "%" else (1.0, f" {unit}".removesuffix(" 1"))
     words = f"{short(size * row['value'])}{shown}"
-    kind = f"± {short(size * row[_KIND], 2)} for the whole joint" if _KIND in row else ""
-    return Fact(
-        title, words, list(filter(None, (_ends(row, size), kind, _harder(card, row, size), beside)))
-    )
+    notes = _ends(row, size), _of_joint(card, row, size), _harder(card, row, size), beside
+    return Fact(title, words, list(filter(None, notes)))
+
+
+def _of_joint(card, row, size):
+    """Half-width for the whole joint; larger than the number, it says how little is known."""
+    if _KIND not in row:
+        return ""
+    half = short(size * row[_KIND], 2)
+    if row[_KIND] <= abs(row["value"]):
+        return f"± {half} for the whole joint"
+    remedy = "" if card["synthetic"] else "; 'twins' narrows that"
+    return f"unknown for the whole joint (± {half}{remedy})"
 
 
 def _ends(row, size=1.0, of=None):
