@@ -97,7 +97,7 @@ describe: $(VENV)/installed
 # Times are compared: let nothing else run meanwhile.
 accuracy: STUDY := $(if $(filter file,$(origin STUDY)),config/accuracy.yaml,$(STUDY))
 accuracy: $(VENV)/installed $(if $(PEERS),$(VENV)/peers-installed)
-	@$(RUN) $(OPTIONS) accuracy
+	@$(RUN) $(OPTIONS) $(TARGET)
 
 # The study, then all of it at full cost beside it (results/NAME_full), then the two compared.
 check-accuracy: study

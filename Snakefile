@@ -16,12 +16,10 @@ report: "workflow/report/start.rst"
 include: "workflow/rules/common.smk"
 include: "workflow/rules/specimens.smk"
 include: "workflow/rules/contact.smk"
-include: "workflow/rules/size_effect.smk"
-include: "workflow/rules/experiments.smk"
+include: "workflow/rules/laboratory.smk"
 include: "workflow/rules/atlas.smk"
 include: "workflow/rules/figures.smk"
 include: "workflow/rules/pages.smk"
-include: "workflow/rules/accuracy.smk"
 include: "workflow/rules/records.smk"
 
 

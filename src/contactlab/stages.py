@@ -1,6 +1,6 @@
 """Stages of the laboratory, see `fractalcontact.study.stages`: experiments, accuracy and speed."""
 
-from fractalcontact.core.stage import ACCURACY, EXPERIMENT, PROBLEM, Stage
+from fractalcontact.core.stage import EXPERIMENT, MEASUREMENT, Stage
 
 
 def _experiment(name, title, function):
@@ -41,14 +41,14 @@ STAGES = (
     Stage(
         "speed",
         "error against time of solvers and cheaper models, one group per test problem",
-        PROBLEM,
-        "contactlab.accuracy.speed:error_against_time",
+        MEASUREMENT,
+        "contactlab.accuracy.speed:speed",
         member="{scene}",
     ),
     Stage(
         "speed_growth",
         "time and memory of the solvers over sizes",
-        ACCURACY,
+        MEASUREMENT,
         "contactlab.accuracy.growth:growth",
         ("speed",),
         member="surfaces",
@@ -56,21 +56,21 @@ STAGES = (
     Stage(
         "convergence",
         "error against spacing where the solution is known, and Richardson's extrapolation",
-        PROBLEM,
+        MEASUREMENT,
         "contactlab.accuracy.stage:convergence",
         member="{problem}",
     ),
     Stage(
         "stability",
         "verdicts on the solvers by kind of test problem",
-        ACCURACY,
+        MEASUREMENT,
         "contactlab.accuracy.stability:join",
         member="scenes",
     ),
     Stage(
         "elimination",
         "whether dropping points alone reaches the right contact set",
-        ACCURACY,
+        MEASUREMENT,
         "contactlab.accuracy.elimination:elimination",
         member="scenes",
     ),

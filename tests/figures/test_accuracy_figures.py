@@ -16,7 +16,7 @@ from contactlab.accuracy.stability import HONEST, SILENT, stability
 from fractalcontact.figures.draw import draw_figure, draw_study_figures, drawer_of
 from fractalcontact.figures.kit.drawing import print_style
 from fractalcontact.study.atlas import read_atlas, write_atlas
-from fractalcontact.study.figure_list import accuracy_figures_of
+from fractalcontact.study.figure_list import study_figures_of
 
 RECIPE = {
     "sizes": ensemble("accuracy_figure_sizes"),
@@ -28,7 +28,7 @@ RECIPE = {
     "longest": 1.0,
     "slow_nodes": 200,
 }
-FIGURES = accuracy_figures_of(("speed", "convergence", "stability"))
+FIGURES = study_figures_of(("speed", "convergence", "stability"))
 
 
 @pytest.fixture(scope="module")

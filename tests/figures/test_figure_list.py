@@ -10,7 +10,6 @@ from fractalcontact.figures.draw import drawer_of
 from fractalcontact.study import figure_list
 from fractalcontact.study.atlas import STAGES
 from fractalcontact.study.figure_list import (
-    accuracy_figures_of,
     all_figures,
     figures_of,
     read_figure,
@@ -71,11 +70,11 @@ def test_every_figure_needs_stages_that_there_are_and_can_be_drawn():
 
 def test_every_figure_is_of_some_subject_and_every_experiment_has_one():
     keys = {figure.key for figure in all_figures().values()}
-    drawn = [*figures_of("match"), *study_figures_of(keys), *accuracy_figures_of(keys)]
+    drawn = [*figures_of("match"), *study_figures_of(keys)]
     assert sorted(drawn) == sorted(all_figures())
     assert set(figures_of("flat")) < set(figures_of("match"))
     assert all(study_figures_of([experiment]) for experiment in paths_of(EXPERIMENT))
-    assert study_figures_of([]) == accuracy_figures_of([]) == []
+    assert study_figures_of([]) == []
 
 
 def test_the_register_imports_nothing_heavy():

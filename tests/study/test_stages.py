@@ -10,7 +10,9 @@ import pytest
 import yaml
 from places import ROOT
 
-from fractalcontact.core.stage import EXPERIMENT, GRAINS, JOINT, MAP, SPECIMEN, STUDY
+from contactlab.jobs import jobs_of
+from fractalcontact.core.settings import Solver
+from fractalcontact.core.stage import EXPERIMENT, GRAINS, JOINT, MAP, MEASUREMENT, SPECIMEN, STUDY
 from fractalcontact.study.stages import STAGES, made_together, needed_by, paths_of
 
 
@@ -43,13 +45,31 @@ def test_stages_need_only_stages_before_them_and_those_of_one_function_the_same(
 def test_a_stage_has_a_rule_but_those_of_all_specimens_together():
     rules = "".join(path.read_text() for path in (ROOT / "workflow/rules").glob("*.smk"))
     for name, stage in STAGES.items():
-        if stage.grain != STUDY:
+        if stage.grain not in (STUDY, EXPERIMENT, MEASUREMENT):
             together = "|".join(made_together(name))
             made = rf'(outputs_of|calling|StageJob)\(\s*"({together})"|RESULTS}}/({together})/'
-            # Measurements, and experiments, that share a rule.
-            made += rf'|"({together})/{{?\w+}}?": Measurement|MEASURED\["({together})/'
-            made += rf'|(?:LONG|SHORT) = [({{][^)}}]*"({together})"'
             assert re.search(made, rules), f"no rule in workflow/rules makes {name}"
+
+
+def test_a_stage_of_the_laboratory_has_jobs_that_call_its_function_with_what_it_takes():
+    study = {"embedded": {}}
+    for name in ("smoke", "accuracy_small"):
+        study |= yaml.safe_load((ROOT / f"config/{name}.yaml").read_text())
+    jobs = jobs_of(study, Solver(1e-6, "", None), "study.yaml")
+    made = {}
+    for name, job in jobs.items():
+        taken = inspect.signature(function_of(job)).parameters
+        assert {*job.arguments, *job.parts} <= set(taken)
+        assert {*job.arguments, *job.parts} >= {
+            key for key, one in taken.items() if one.default is one.empty
+        }
+        assert {part for parts in job.parts.values() for part in parts} <= set(jobs)
+        made.setdefault(name.partition("/")[0], set()).add(job.function)
+    for name, stage in STAGES.items():
+        if stage.grain in (EXPERIMENT, MEASUREMENT):
+            assert made.pop(name) == {stage.function}
+    assert set(made) == {"size_effect_parts", "stability_parts"}
+    assert jobs_of({"study": "x"}, Solver(1e-6, "", None), "study.yaml") == {}
 
 
 def test_an_experiment_has_a_key_in_the_schema_of_studies():

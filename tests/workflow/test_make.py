@@ -72,7 +72,6 @@ def test_a_target_has_its_study(project, words, environment, study):
     done, calls = make(project, *words, **environment)
     assert done.returncode == 0, done.stderr
     assert calls[0].startswith(f"{study}: workflow/run.py {study} ")
-    assert calls[0].endswith(" accuracy") == (words[0] == "accuracy")
 
 
 def test_a_new_study_has_the_name_of_the_command_line_and_no_other(project):

@@ -17,7 +17,7 @@ from stated import GRANITE, array_sidecar, sidecar
 
 from fractalcontact.core.stage import EXPERIMENT
 from fractalcontact.study.atlas import read_atlas
-from fractalcontact.study.figure_list import accuracy_figures_of, figures_of, study_figures_of
+from fractalcontact.study.figure_list import figures_of, study_figures_of
 from fractalcontact.study.scan_files import list_scans
 from fractalcontact.study.stages import paths_of
 
@@ -87,31 +87,24 @@ def test_accuracy_is_a_study_of_its_own(project):
     study["speed"] |= {"sizes": [24], "runs": 1}
     study["convergence"] |= {"cells": [5, 8, 12], "trials": 2}
     (project / "config/speed.yaml").write_text(yaml.safe_dump(study))
-    done = run(project, "config/speed.yaml", "accuracy")
+    done = run(project, "config/speed.yaml")
     assert done.returncode == 0, done.stderr
     results = project / "results/speed"
     for ending in ("png", "svg", "csv", "txt"):
         drawn = {path.stem for path in (results / "figures").glob(f"*.{ending}")}
-        assert drawn == set(accuracy_figures_of(study))
-    atlas = read_atlas(results / "accuracy.nc")
+        assert drawn == set(study_figures_of(study))
+    assert (results / "index.html").is_file()
+    atlas = read_atlas(results / "atlas.nc")
     assert set(atlas["speed"].children) == {
         f"n24_{kind}" for kind in ("hertz", "punch", "h0.8_c10")
     }
     assert atlas["convergence/hertz/force_order"] > 1
 
 
-@pytest.mark.full
-def test_accuracy_says_which_study_has_something_to_measure(project):
-    done = run(project, "config/smoke.yaml", "accuracy")
-    assert done.returncode != 0
-    assert "give --configfile config/accuracy.yaml" in done.stdout + done.stderr
-    assert not (project / "results").exists()
-
-
 def test_reading_the_workflow_imports_nothing_heavy():
     """Those of accuracy alone know the solver's jobs, where they are asked for."""
     rules = "\n".join(path.read_text() for path in sorted(ROOT.glob("workflow/rules/*.smk")))
-    statement = r"^from fractalcontact[.\w]* import (?:\([^)]*\)|[^\n]+)"
+    statement = r"^from (?:fractalcontact|contactlab)[.\w]* import (?:\([^)]*\)|[^\n]+)"
     imports = re.findall(statement, rules, re.MULTILINE)
     assert "from fractalcontact.study.checks import resolve_study" in imports
     names = "import sys; print(sorted({'xarray', 'numba', 'matplotlib'} & set(sys.modules)))"

@@ -19,15 +19,14 @@ from fractalcontact.core.code_digest import Code
 from fractalcontact.core.directions import AUTOMATIC_OFFSETS, slides
 from fractalcontact.core.errors import InputError
 from fractalcontact.core.patterns import alternation
-from fractalcontact.core.stage import ENSEMBLE, EXPERIMENT, GRAINS, JOINT, MAP, SPECIMEN, TESTED
+from fractalcontact.core.stage import ENSEMBLE, GRAINS, JOINT, MAP, SPECIMEN, TESTED
 from fractalcontact.study import campaign, plan, resources, stages
 from fractalcontact.study.checks import resolve_study
-from fractalcontact.study.configuration import resolve_embedded, resolve_roll_off
+from fractalcontact.study.configuration import resolve_embedded
 from fractalcontact.study.figure_list import all_figures, study_figures_of
 from fractalcontact.study.scan_groups import grouped_notes
 from fractalcontact.study.selection import CAPPED_VARIANTS
 from fractalcontact.study.sidecar import sidecar_of_matrix
-from contactlab.experiments.size_tasks import size_jobs
 
 SCHEMA = yaml.safe_load((ROOT / "config/schema/study.schema.yaml").read_text())
 SOURCE = str(workflow.configfiles[-1]) if workflow.configfiles else "config/paper.yaml"
@@ -117,17 +116,13 @@ def asked_for(job, grid=1, states=kept_states):
     return {"mem_mb": ask(resources.memory), "runtime": ask(resources.minutes)}
 
 
-def doubled(amount):
-    """Megabytes or minutes that a job asks for, twice as many at every further attempt.
-
-    So what a cluster has ended for its memory or its time is done by the next.
-    """
-    return lambda wildcards, attempt: amount * 2 ** (attempt - 1)
-
-
 def fixed(megabytes, minutes):
     """Both of a job whose grid says nothing of them."""
-    return {"mem_mb": doubled(megabytes), "runtime": doubled(minutes)}
+
+    def ask(amount):
+        return lambda wildcards, attempt: amount * 2 ** (attempt - 1)
+
+    return {"mem_mb": ask(megabytes), "runtime": ask(minutes)}
 
 
 DIGESTS = checksums.Digests(".snakemake/fractalcontact-digests.json")
@@ -263,10 +258,6 @@ MAP_FILES = (
     if MAPS
     else {}
 )
-# What the study has once.
-STUDY_FILES = {
-    stage: path for stage, path in files_of(stages.paths_of(EXPERIMENT)).items() if stage in config
-}
 
 
 def grain(key, n):

@@ -166,14 +166,13 @@ def collect_everything(wildcards):
     Of a campaign what its atlas is made of is not asked for, file by file: it would take minutes to
     find that nothing is to be done.
     """
-    made = [*STUDY_FILES.values(), *rules.all_drawn.output, *all_figure_files(), *RESULT_PAGE]
+    made = [*LABORATORY_FILES.values(), *rules.all_drawn.output, *all_figure_files(), *RESULT_PAGE]
     if IN_PARTS:
         return made
     return [
         *(path for paths in files_of_all().values() for path in paths),
         *expand(list(rules.embedded.output), specimen=set(SPECIMENS) - set(SCANS)),
         *(path for paths in MAP_FILES.values() for path in paths),
-        *expand(rules.size_effect_part.output[0], job=SIZE_JOBS),
         *(path for specimen in SPECIMENS for path in contact_parts_of(specimen)),
         *expand(SPECIMEN_ATLAS, specimen=SPECIMENS),
         *made,

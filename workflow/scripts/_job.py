@@ -10,6 +10,9 @@ from pathlib import Path
 
 # The code of this checkout, wherever its environment was installed from: it may have been moved.
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "src"))
+# Read when numpy is imported. Two threads of BLAS that wait for each other make the L-BFGS-B of
+# another code four times slower; our own threads are another matter.
+os.environ["OPENBLAS_NUM_THREADS"] = "1"
 
 import _running
 import _warm

@@ -29,7 +29,7 @@ from ..methods.method import Method
 from ..methods.peers import PATIENCE, Load, PublicCode, clearance_of, state_of
 from ..methods.registry import METHODS, installed_peers
 from .cheap_models import CheapState, bearing_area, coarse_grid, winkler
-from .reference import HertzProblem, Reference, ReferenceProblem
+from .reference import HertzProblem, Reference, ReferenceProblem, problems_of
 from .timing import peak_memory, repeated, timed
 
 OURS = "fractalcontact"
@@ -87,6 +87,18 @@ class _Way:
     solve: Callable[[], Any]
     finish: Callable[[Any], ContactState | CheapState]
     from_scratch: Callable[[], Any]
+
+
+def speed(problem: str, recipe: Mapping[str, Any]) -> xr.Dataset:
+    """:func:`error_against_time` of one of a study's problems, named as in `reference.problems_of`.
+
+    Parameters
+    ----------
+    problem : str
+    recipe : mapping
+        The study's ``speed``.
+    """
+    return error_against_time(problems_of(recipe)[problem], recipe)
 
 
 def error_against_time(problem: ReferenceProblem, recipe: Mapping[str, Any]) -> xr.Dataset:

@@ -4,12 +4,11 @@ from dataclasses import dataclass
 
 #: How often a stage is made: for every specimen, for those that slide, for those with an ensemble,
 #: for those with laboratory tests, for every measured contact map; once, of all specimens together
-#: (in the atlas, without a file); once, on synthetic surfaces, where the study has the stage's key;
-#: and of studies of accuracy for every test problem, or once.
+#: (in the atlas, without a file); where the study has its key, once on synthetic surfaces, or as a
+#: measurement of accuracy or speed, for every test problem or once.
 SPECIMEN, JOINT, ENSEMBLE, MAP, STUDY = "specimen", "joint", "ensemble", "map", "study"
-EXPERIMENT, PROBLEM, ACCURACY = "experiment", "problem", "accuracy"
-TESTED = "tested"
-GRAINS = (SPECIMEN, JOINT, ENSEMBLE, TESTED, MAP, STUDY, EXPERIMENT, PROBLEM, ACCURACY)
+EXPERIMENT, MEASUREMENT, TESTED = "experiment", "measurement", "tested"
+GRAINS = (SPECIMEN, JOINT, ENSEMBLE, TESTED, MAP, STUDY, EXPERIMENT, MEASUREMENT)
 
 
 @dataclass(frozen=True)

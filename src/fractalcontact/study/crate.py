@@ -53,9 +53,8 @@ _FILES = {
     "curves.csv": "curves against pressure",
     "tables.zip": "numbers drawn in all figures",
     "study.yaml": "configuration of the study",
-    "accuracy.nc": "accuracy and speed of the solver",
 }
-_CONFIGURATION, _ATLASES = "study.yaml", ("atlas.nc", "accuracy.nc")
+_CONFIGURATION, _ATLAS = "study.yaml", "atlas.nc"
 _FOLDERS = {
     "pages": "page of the specimen {stem}",
     "apertures": "aperture map of the specimen {stem} under the reference load",
@@ -116,10 +115,10 @@ def write_crate(
         If the disk is full or the folder cannot be written to.
     """
     results = Path(results)
-    atlases = [results / name for name in _ATLASES if (results / name).is_file()]
-    if not atlases:
+    atlas = results / _ATLAS
+    if not atlas.is_file():
         return
-    made = max(path.stat().st_mtime for path in atlases)
+    made = atlas.stat().st_mtime
     date = f"{datetime.datetime.fromtimestamp(made, datetime.UTC):%Y-%m-%dT%H:%M:%S+00:00}"
     citation = yaml.safe_load((workflow.folder / "CITATION.cff").read_text(encoding="utf-8"))
     code = _copied(results, workflow)

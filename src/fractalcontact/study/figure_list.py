@@ -7,13 +7,13 @@ begins with the constant's name and holds literals alone,
     What it shows, for the report.
 ``SUBJECT``
     Of what it is drawn: "specimen" for every specimen, "joint" for those that slide, "study" for
-    a study as a whole, "accuracy" for measurements of accuracy and speed.
+    a study as a whole.
 ``NEEDS``
     Stages of the atlas that it reads.
 ``ORDER``
     Its place among the others of the same subjects.
 ``KEY``
-    Of the study and of accuracy alone: the key of the configuration that asks for it.
+    Of a study alone: the key of the configuration that asks for it.
 ``SECTION``
     Of the result page, where the stages it reads do not say it; may be left out.
 
@@ -35,9 +35,7 @@ from ..core.packages import SOURCES, installed
 FOLDERS = [SOURCES / name / "figures" for name in installed()]
 _SHARED = "kit"
 
-SPECIMEN, JOINT, STUDY, ACCURACY = "specimen", "joint", "study", "accuracy"
-#: Subjects that only some configurations ask for, by a key.
-_ASKED_FOR = (STUDY, ACCURACY)
+SPECIMEN, JOINT, STUDY = "specimen", "joint", "study"
 
 #: A constant and its value, which may go on in indented lines and end in a closing bracket.
 _CONSTANT = re.compile(
@@ -58,7 +56,7 @@ class Figure:
         "fractalcontact/figures/joint/strength".
     title : str
     subject : str
-        "specimen", "joint", "study" or "accuracy".
+        "specimen", "joint" or "study".
     needs : tuple of str
         Stages of the atlas.
     order : float
@@ -99,12 +97,12 @@ def read_figure(path: Path | str) -> Figure:
         except (ValueError, SyntaxError) as error:
             raise ValueError(f"{path}: {name} is no literal") from error
     wanted = ["title", "subject", "needs", "order"]
-    if stated.get("subject") in _ASKED_FOR:
+    if stated.get("subject") == STUDY:
         wanted.append("key")
     missing = [name.upper() for name in wanted if name not in stated]
     if missing:
         raise ValueError(f"{path}: a figure states {', '.join(missing)}")
-    if stated["subject"] not in (SPECIMEN, JOINT, *_ASKED_FOR):
+    if stated["subject"] not in (SPECIMEN, JOINT, STUDY):
         raise ValueError(f"{path}: SUBJECT {stated['subject']!r} is unknown")
     module = "/".join((*path.parts[-4:-1], path.stem))
     return Figure(path.stem, module, **stated)
@@ -152,25 +150,10 @@ def study_figures_of(experiments: Container[str]) -> list[str]:
     Parameters
     ----------
     experiments : container of str
-        Keys of the experiments it asks for, other names do not matter: its configuration.
+        Keys of what it asks for, other names do not matter: its configuration.
     """
-    return _asked_for(STUDY, experiments)
-
-
-def accuracy_figures_of(measurements: Container[str]) -> list[str]:
-    """Names of the figures of accuracy and speed.
-
-    Parameters
-    ----------
-    measurements : container of str
-        Keys of the measurements it asks for, other names do not matter: its configuration.
-    """
-    return _asked_for(ACCURACY, measurements)
-
-
-def _asked_for(subject, keys):
     return [
         name
         for name, figure in all_figures().items()
-        if figure.subject == subject and figure.key in keys
+        if figure.subject == STUDY and figure.key in experiments
     ]

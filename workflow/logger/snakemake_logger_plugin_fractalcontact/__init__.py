@@ -22,7 +22,7 @@ MIN_FREE_BYTES = 2**20
 #: Environment variable with the folder of the study's results.
 RESULTS = "FRACTALCONTACT_RESULTS"
 #: Rules that make nothing themselves: what they ask for is made when they come.
-_TARGETS = ("all", "pages", "accuracy")
+_TARGETS = ("all", "pages")
 _FULL = ("No space left on device", "Disk quota exceeded", "no space left on its disk")
 #: What Snakemake's reasons begin with, and what is said of them; the first that fits.
 _REASONS = {

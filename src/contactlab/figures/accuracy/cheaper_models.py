@@ -15,7 +15,7 @@ from ...accuracy.speed import DEFAULT_RTOL, ERRORS, MODEL, MODELS, OURS
 from ._speed import AXES, OURS_STYLE, legend_of, scenes_of, styles, table_of, values_of
 
 TITLE = "Errors and wall time of models cheaper than elastic contact"
-SUBJECT = "accuracy"
+SUBJECT = "study"
 NEEDS = ("speed",)
 KEY = "speed"
 ORDER = 80

@@ -16,7 +16,7 @@ from fractalcontact.figures.kit.titles import letter
 from ...accuracy.convergence import QUANTITIES
 
 TITLE = "Discretisation error where the solution is known, and Richardson extrapolation"
-SUBJECT = "accuracy"
+SUBJECT = "study"
 NEEDS = ("convergence",)
 KEY = "convergence"
 ORDER = 90

@@ -12,7 +12,7 @@ from fractalcontact.figures.kit.legends import entries
 from fractalcontact.figures.kit.titles import letter
 
 TITLE = "Whether dropping points in tension, as the paper does, reaches the contact set"
-SUBJECT = "accuracy"
+SUBJECT = "study"
 NEEDS = ("elimination",)
 KEY = "stability"
 ORDER = 110

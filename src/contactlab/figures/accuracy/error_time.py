@@ -25,7 +25,7 @@ from ._speed import (
 )
 
 TITLE = "Error of the force against wall time on rough surfaces, with the Pareto front"
-SUBJECT = "accuracy"
+SUBJECT = "study"
 NEEDS = ("speed",)
 KEY = "speed"
 ORDER = 50

@@ -24,7 +24,7 @@ from ._speed import (
 from .error_time import front
 
 TITLE = "Errors of contact area, Delta_sigma and pressure against wall time"
-SUBJECT = "accuracy"
+SUBJECT = "study"
 NEEDS = ("speed",)
 KEY = "speed"
 ORDER = 60

@@ -18,7 +18,7 @@ from ...accuracy.stability import HONEST, NOT_OFFERED, RIGHT, SILENT, VERDICTS
 from ...methods.registry import METHODS
 
 TITLE = "Verdicts on every solver by kind of test problem"
-SUBJECT = "accuracy"
+SUBJECT = "study"
 NEEDS = ("stability",)
 KEY = "stability"
 ORDER = 100

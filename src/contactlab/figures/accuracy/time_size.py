@@ -17,7 +17,7 @@ from ...accuracy.speed import OURS
 from ._speed import legend_of, middle_contact, rough, scenes_of, styles
 
 TITLE = "Wall time and memory against the size of the grid"
-SUBJECT = "accuracy"
+SUBJECT = "study"
 NEEDS = ("speed", "speed_growth")
 KEY = "speed"
 ORDER = 70
