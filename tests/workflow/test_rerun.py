@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 import yaml
 from projects import ROOT, copy_project, jobs_of, made, rough_heights, run, small_study, write_scan
+from stated import array_sidecar
 
 from fractalcontact.core.checksums import sha256
 from fractalcontact.core.code_digest import Code
@@ -222,6 +223,20 @@ def test_a_job_that_failed_with_a_new_scan_leaves_nothing_that_counts_as_made_of
     checksums.unlink()
     (project / "kept").rename(checksums)
     assert {"specimen", "contact", "atlas"} <= set(planned(project))
+
+
+def test_a_job_on_a_cluster_works_with_what_its_run_was_planned_with(project):
+    specimen = project / "results/test/specimens/rock.nc"
+    before = specimen.read_bytes()
+    specimen.unlink()
+    (project / "scans/rock.yaml").write_text(array_sidecar(0.2))
+    write_scan(project, "new")
+    (project / STUDY).write_text("study: another\nscans: nowhere\n")
+    # As the executor of a cluster calls it.
+    words = ("--mode", "remote", "--force", "--nolock", "--allowed-rules", "specimen")
+    done = run(project, STUDY, *words, "--target-jobs", "specimen:specimen=rock")
+    assert done.returncode == 0, done.stderr[-3000:]
+    assert specimen.read_bytes() == before
 
 
 def _rooms_behind(*modules):

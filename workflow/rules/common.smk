@@ -1,6 +1,7 @@
 # What every rule file uses: the checked study, its specimens, files of its stages, and digests of
 # scans and code, which are taken when a rule is asked for them.
 import functools
+import pickle
 import sys
 from dataclasses import asdict
 from pathlib import Path
@@ -20,7 +21,7 @@ from fractalcontact.core.directions import AUTOMATIC_OFFSETS, slides
 from fractalcontact.core.errors import InputError
 from fractalcontact.core.patterns import alternation
 from fractalcontact.core.stage import ENSEMBLE, GRAINS, JOINT, MAP, SPECIMEN, TESTED
-from fractalcontact.study import campaign, plan, resources, stages
+from fractalcontact.study import campaign, resources, stages
 from fractalcontact.study.checks import resolve_study
 from fractalcontact.study.configuration import resolve_embedded
 from fractalcontact.study.figure_list import all_figures, study_figures_of
@@ -28,29 +29,29 @@ from fractalcontact.study.scan_groups import grouped_notes
 from fractalcontact.study.selection import CAPPED_VARIANTS
 from fractalcontact.study.sidecar import sidecar_of_matrix
 
-SCHEMA = yaml.safe_load((ROOT / "config/schema/study.schema.yaml").read_text())
 SOURCE = str(workflow.configfiles[-1]) if workflow.configfiles else "config/paper.yaml"
-# What is wrong with one scan stops only that where the user asks so on the command line, which
-# Snakemake itself looks at later. Jobs read the workflow too, after the run has decided.
-LEAVE_OUT = not workflow.is_main_process or bool({"-k", "--keep-going"} & set(sys.argv))
-#: What the run was planned with, for its jobs on a cluster, each of which reads all this again.
-PLAN, PLANNED = ".snakemake/fractalcontact-plan.json", None
-try:
-    STUDY = resolve_study(config, SCHEMA, SOURCE, leave_out=LEAVE_OUT)
-    RESULTS, SCAN_FOLDER = f"results/{config['study']}", config.get("scans", "scans")
-    if not workflow.is_main_process:
-        PLANNED = plan.read_plan(PLAN)
-except InputError as error:
-    raise WorkflowError(str(error))
-
+#: What a run works with. Its jobs on a cluster read the workflow again, hours later, and take it from
+#: there: what is edited meanwhile, and specimens that come or go, are the next run's.
+PLAN = Path(".snakemake/fractalcontact-plan.pickle")
+#: SHA-256 of the scan files that the run was planned with.
+PLANNED = {}
+if workflow.is_main_process:
+    schema = yaml.safe_load((ROOT / "config/schema/study.schema.yaml").read_text())
+    # What is wrong with one scan stops only that where the user asks so on the command line, which
+    # Snakemake itself looks at later.
+    keep_going = bool({"-k", "--keep-going"} & set(sys.argv))
+    try:
+        STUDY = resolve_study(config, schema, SOURCE, leave_out=keep_going)
+    except InputError as error:
+        raise WorkflowError(str(error))
+else:
+    planned, STUDY, PLANNED = pickle.loads(PLAN.read_bytes())
+    config.clear()
+    config.update(planned)
+RESULTS, SCAN_FOLDER = f"results/{config['study']}", config.get("scans", "scans")
 SCANS, SETTINGS, OPTIONS, LABELS = STUDY.scans, STUDY.settings, STUDY.options, STUDY.labels
 SOLVER = STUDY.solver
-if PLANNED:
-    # Specimens that came meanwhile are the next run's.
-    for named in (SCANS, SETTINGS, OPTIONS, LABELS):
-        for name in named.keys() - PLANNED["specimens"]:
-            del named[name]
-elif SCAN_FOLDER:
+if SCAN_FOLDER and workflow.is_main_process:
     if not SCANS:
         made_alone = "no scan files there; only what the study itself makes is used"
         logger.warning(f"{SCAN_FOLDER}: {made_alone}")
@@ -64,11 +65,6 @@ MAPS = {name: SCANS[name] for name in LABELS}
 SPECIMENS = sorted(SETTINGS)
 #: Settings as the atlas keeps them.
 RECORDS = {name: asdict(stated) for name, stated in SETTINGS.items()}
-#: What is said of each specimen; what changed of it since the run was planned ends its jobs.
-SAID = plan.plan_of(config, RECORDS, OPTIONS)
-if PLANNED and (changed := plan.changed_since(PLANNED, SAID, SOURCE)):
-    # As jobs say it in their logs: on a cluster this is the log.
-    raise WorkflowError(f"\nerror: {changed}")
 
 
 def recipe_named(name):
@@ -134,8 +130,8 @@ def digest_of(path):
 
     Taken before any job: a scan that is replaced meanwhile belongs to the next run.
     """
-    if PLANNED and path in PLANNED["scans"]:
-        return PLANNED["scans"][path]
+    if path in PLANNED:
+        return PLANNED[path]
     try:
         return DIGESTS.of(path)
     except OSError:

@@ -7,6 +7,7 @@ import snakemake
 import _provenance
 import _running
 
+from fractalcontact.core.atomic import atomic_write
 from fractalcontact.study import crate, guards
 
 #: Whether a killed run left jobs half done, whose files may be newer than their checksums: Snakemake
@@ -46,7 +47,8 @@ def begin():
             guards.refuse_damage(RESULTS, DIGESTS.of)
         if "FRACTALCONTACT_DROP" not in os.environ:
             guards.refuse_loss(RESULTS, [*SETTINGS, *LABELS])
-        plan.write_plan(PLAN, SAID | {"scans": scan_digests()})
+        with atomic_write(PLAN) as path:
+            path.write_bytes(pickle.dumps((dict(config), STUDY, scan_digests())))
     except InputError as error:
         raise WorkflowError(str(error))
     DIGESTS.save()
