@@ -3,7 +3,7 @@
 import numpy as np
 import xarray as xr
 
-from fractalcontact.core.quantities import Shown, shown_in, shown_quantities
+from fractalcontact.core.quantities import Shown, bounds_of, shown_in, shown_quantities
 from fractalcontact.core.subject import Subject
 
 
@@ -59,3 +59,10 @@ def test_a_place_lists_what_it_shows_in_the_order_of_the_register():
         assert keys == sorted(keys, key=order.index)
         assert keys
     assert set(shown_in("page", "index")) == {*shown_in("page"), *shown_in("index")}
+
+
+def test_a_quantity_has_the_bounds_of_its_kind():
+    assert bounds_of("mean_gap") == bounds_of("interface_stiffness") == (0, np.inf)
+    assert bounds_of("delta_sigma") == bounds_of("delta_sigma_area") == (0, 2)
+    # Faces that are pressed into each other have a separation below zero.
+    assert bounds_of("separation") == bounds_of("of no register") == (-np.inf, np.inf)

@@ -168,3 +168,25 @@ def test_the_interval_of_the_mean_holds_it_in_95_of_100_ensembles():
     mean = Estimate.read(result, "x_mean")
     assert np.mean((mean.low <= 3) & (mean.high >= 3)) == pytest.approx(0.95, abs=0.015)
     assert result["x_spread"].attrs["units"] == "mm"
+
+
+@pytest.mark.parametrize(
+    ("name", "least", "most"),
+    [
+        ("mean_gap", 0, np.inf),
+        ("nodes", 0, np.inf),
+        ("closure_from_common_seat", 0, np.inf),
+        ("local_slope", 0, 2),
+        ("area_bend", -np.inf, np.inf),
+    ],
+)
+def test_intervals_end_at_the_bounds_of_the_quantity(name, least, most):
+    rows = ("realisation", [0.01, 0.02, 1.9], {"units": "1", "long_name": "a quantity"})
+    result = xr.Dataset({name: rows})
+    add_statistics(result, [name])
+    ends = [
+        float(result[f"{name}_{of}_{end}"]) for of in ("mean", "band") for end in ("low", "high")
+    ]
+    assert [end < 0 for end in ends] == [least < 0, False] * 2
+    assert min(ends) >= least
+    assert max(ends) <= most

@@ -219,7 +219,11 @@ class Estimate:
 
         A value, or an end of an interval, beyond these bounds is stated as the bound.
         """
-        return self.mapped(lambda end: np.clip(end, *IN_PLANE))
+        return self.within(*IN_PLANE)
+
+    def within(self, least: float, most: float) -> Self:
+        """Estimate of a quantity that has bounds: what lies beyond one is stated as the bound."""
+        return self.mapped(lambda end: np.clip(end, least, most))
 
     def columns(self, name: str, unit: str = "") -> dict[str, Any]:
         """Columns of a table: ``NAME``, ``NAME_low``, ``NAME_high``, each ending in the unit."""

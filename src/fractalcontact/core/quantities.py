@@ -5,10 +5,11 @@ from functools import cache
 from pathlib import Path
 from typing import NamedTuple
 
+import numpy as np
 import xarray as xr
 import yaml
 
-from .estimate import Estimate, Judged, names_of
+from .estimate import IN_PLANE, Estimate, Judged, names_of
 from .subject import Subject
 
 _FILE = Path(__file__).with_suffix(".yaml")
@@ -28,6 +29,8 @@ class Shown:
         Whether suspicious cells of the scans leave it undetermined.
     dimension : bool
         Whether it is a dimension, which its interval determines.
+    signed : bool
+        Whether it may be negative.
     over_windows : bool
         Whether its interval is one over other windows, which leaves the number itself determined.
     summary : str
@@ -44,6 +47,7 @@ class Shown:
     budget: str = ""
     by_scan: bool = False
     dimension: bool = False
+    signed: bool = False
     over_windows: bool = False
     summary: str = ""
     page: str = ""
@@ -60,6 +64,13 @@ class Shown:
         """Its name in that stage."""
         return self.key.partition("/")[2]
 
+    @property
+    def bounds(self) -> tuple[float, float]:
+        """Least and largest value that it can have."""
+        if self.dimension:
+            return IN_PLANE
+        return -np.inf if self.signed else 0.0, np.inf
+
     def at(self, subject: Subject, load: int) -> "Value":
         """Value at the reported state under the load of this number."""
         states = subject.states(self.stage)
@@ -74,7 +85,7 @@ class Shown:
             error = subject["error_budget"][own].sel(
                 normal_force=subject.forces[load], method="nearest"
             )
-            found = Estimate.about(state[self.variable].item(), error.item(), 0.0)
+            found = Estimate.about(state[self.variable].item(), error.item(), *self.bounds)
         elif has_interval:
             found = Estimate.read(state, self.variable)
             if self.over_windows:
@@ -113,3 +124,9 @@ def shown_quantities() -> tuple[Shown, ...]:
     """All of them, in their order."""
     stated = yaml.safe_load(_FILE.read_text(encoding="utf-8"))
     return tuple(Shown(key, **entry) for key, entry in stated.items())
+
+
+def bounds_of(variable: str) -> tuple[float, float]:
+    """Least and largest value of a variable; infinite of one that is not in the register."""
+    of = (one.bounds for one in shown_quantities() if one.variable == variable)
+    return next(of, (-np.inf, np.inf))

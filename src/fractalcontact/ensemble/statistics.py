@@ -8,12 +8,16 @@ import xarray as xr
 from ..core.intervals import mean_interval
 from ..core.labels import cf_attrs
 from ..core.limits import NEAR_FULL
+from ..core.quantities import bounds_of
 from ..domain.random_nodes import band_of
 
-#: Dimensions of sets in the plane.
-DIMENSIONS = {
-    *("delta_sigma", "delta_sigma_random", "delta_sigma_area"),
-    *("local_slope", "local_slope_random", "local_slope_cut"),
+#: Variables that the register of quantities does not have, and those there whose bounds they share.
+_ALIKE = {
+    "closure_from_common_seat": "seated_closure",
+    **dict.fromkeys(
+        ("delta_sigma_random", "local_slope", "local_slope_random", "local_slope_cut"),
+        "delta_sigma",
+    ),
 }
 #: Trends with the load: quantity, and what is taken from it or None; what the trend is of.
 TRENDS = {
@@ -70,7 +74,8 @@ def add_statistics(result: xr.Dataset, names: Sequence[str]) -> None:
         Of each name it gets ``NAME_mean`` with ``_low`` and ``_high``, by Student's t of the mean;
         ``NAME_spread``, the standard deviation over the realisations; ``NAME_band_low`` and
         ``NAME_band_high``, between which one more realisation lies with 95 % probability; and
-        ``NAME_n``, those that have a value.
+        ``NAME_n``, those that have a value. Intervals end at the bounds of the quantity, as
+        :func:`core.quantities.bounds_of` has them.
     names : sequence of str
         Variables over realisation.
     """
@@ -79,9 +84,8 @@ def add_statistics(result: xr.Dataset, names: Sequence[str]) -> None:
         values = result[name].transpose("realisation", ...)
         units, words = values.attrs["units"], values.attrs["long_name"]
         dims = values.dims[1:]
-        mean, band = mean_interval(values.values), band_of(values.values)
-        if name in DIMENSIONS:
-            mean, band = mean.in_plane(), band.in_plane()
+        bounds = bounds_of(_ALIKE.get(name, name))
+        mean, band = (of(values.values).within(*bounds) for of in (mean_interval, band_of))
         found |= mean.variables(f"{name}_mean", dims, units, f"{words}, mean over realisations")
         for end, of_end, of_band in (("low", "lower", band.low), ("high", "upper", band.high)):
             attrs = cf_attrs(units, f"{words}, {of_end} end of the 95 % band of one more")

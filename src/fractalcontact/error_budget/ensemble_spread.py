@@ -40,7 +40,7 @@ def ensemble_spread(curve: LoadCurve, ensemble: xr.Dataset) -> np.ndarray:
     for row, quantity in enumerate(BUDGET_QUANTITIES):
         low, high = _band(ensemble, quantity)
         size = curve.loading.area if quantity == "area_corrected" else 1.0
-        # A band of dimensions may end at a bound, nearer to the mean than its other end.
+        # A band may end at a bound, nearer to the mean than its other end.
         mean = ensemble[f"{_OF_ENSEMBLE[quantity]}_mean"].values
         half[row, _places(curve, ensemble)] = size * np.fmax(high - mean, mean - low)
     return half
