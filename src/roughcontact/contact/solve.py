@@ -309,7 +309,7 @@ class _Units:
         step = at - self._load_of(before) if before else 0.0
         if not step:
             return self._proportion(start, load) * field_of(start)
-        along = np.clip((load - at) / step, -1.0, FURTHEST)
+        along = min(max((load - at) / step, -1.0), FURTHEST)
         return (1 + along) * field_of(start) - along * field_of(before)
 
     def _proportion(self, start, load):

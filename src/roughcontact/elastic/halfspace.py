@@ -146,7 +146,7 @@ class HalfSpace:
     def __eq__(self, other):
         if not isinstance(other, HalfSpace):
             return NotImplemented
-        return self._key == other._key
+        return self is other or self._key == other._key
 
     def __hash__(self):
         return hash(self._key)
