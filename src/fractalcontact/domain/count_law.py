@@ -244,57 +244,55 @@ def _fit(law, sizes, count, side):
     return replace(law, dimension=at, misfit=float(misfit[i]))
 
 
-@njit(cache=True)
+#: Sums may be taken in any order, several terms at a time.
+_summing = njit(cache=True, fastmath={"reassoc", "contract"})
+
+
+@_summing
 def _misfits(rho, areas, side, terms, dimensions):
     """Relative misfit at each D with least-squares factors a; infinite for invalid factors."""
     misfits = np.full(dimensions.size, np.inf)
-    columns = np.empty((rho.size, terms))
+    log_rho, log_areas = np.log(rho), np.log(areas)
+    columns, normal, a = np.empty((terms, rho.size)), np.empty((terms, terms + 1)), np.empty(terms)
     for d in range(dimensions.size):
-        largest = 0.0
-        for k in range(rho.size):
-            columns[k, 0] = rho[k] ** (2 - dimensions[d]) / areas[k]
-            largest = max(largest, columns[k, 0])
-        for k in range(rho.size):
-            columns[k, 0] /= largest
-            for i in range(1, terms):
-                columns[k, i] = columns[k, i - 1] * (rho[k] / side)
-        a = _factors(columns)
+        columns[0] = np.exp((2 - dimensions[d]) * log_rho - log_areas)
+        columns[0] /= columns[0].max()
+        for i in range(1, terms):
+            columns[i] = columns[i - 1] * (rho / side)
+        _solve_normal(columns, normal, a)
         possible = a[0] > 0 and (terms == 1 or dimensions[d] >= MIN_WITH_OUTLINE)
         for i in range(1, terms):
             possible &= -1e-9 * a[0] <= a[i] <= MAX_OUTLINE * a[0]
         if possible:
             total = 0.0
             for k in range(rho.size):
-                found = 0.0
+                found = -1.0
                 for i in range(terms):
-                    found += columns[k, i] * a[i]
-                total += (found - 1) ** 2
+                    found += columns[i, k] * a[i]
+                total += found**2
             misfits[d] = np.sqrt(total / rho.size)
     return misfits
 
 
-@njit(cache=True)
-def _factors(columns):
+@_summing
+def _solve_normal(columns, normal, a):
     """Least-squares factors a of columns a = 1 by the normal equations; zeros if singular."""
-    n = columns.shape[1]
-    normal = np.zeros((n, n + 1))
-    for k in range(columns.shape[0]):
-        for i in range(n):
-            for j in range(n):
-                normal[i, j] += columns[k, i] * columns[k, j]
-            normal[i, n] += columns[k, i]
-    a = np.zeros(n)
+    n = a.size
+    a[:] = 0
+    for i in range(n):
+        for j in range(i, n):
+            normal[i, j] = (columns[i] * columns[j]).sum()
+        normal[i, n] = columns[i].sum()
     for i in range(n):
         # Positive definite: the diagonal is what is left of each column beside those before.
         if not normal[i, i] > 0:
-            return a
+            return
         for row in range(i + 1, n):
-            factor = normal[row, i] / normal[i, i]
-            for j in range(i, n + 1):
+            factor = normal[i, row] / normal[i, i]
+            for j in range(row, n + 1):
                 normal[row, j] -= factor * normal[i, j]
     for i in range(n - 1, -1, -1):
         a[i] = normal[i, n]
         for j in range(i + 1, n):
             a[i] -= normal[i, j] * a[j]
         a[i] /= normal[i, i]
-    return a
