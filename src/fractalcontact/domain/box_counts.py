@@ -19,6 +19,8 @@ _MAX_CELLS = 2**31 - 1
 
 #: Largest q of box sides p / q cells that are tried at every grid origin.
 _MAX_PARTS = 4
+#: Places along x that are counted side by side, at least.
+_SPAN = 64
 
 #: Boxes of no size cover more than this many times an oblong extent.
 MAX_OVERHANG = 1.1
@@ -236,8 +238,10 @@ def _over_origins(domain, sizes):
     reach = 1
     for size in sizes:
         reach = max(reach, size)
+    # Places along x are counted modulo a multiple of r: small boxes too go over many at a time.
+    spans = sizes * ((_SPAN + sizes - 1) // sizes)
     starts = np.zeros(sizes.size + 1, np.int64)
-    starts[1:] = np.cumsum(sizes**2)
+    starts[1:] = np.cumsum(sizes * spans)
     counts = np.zeros(starts[-1], np.int32)
     smallest = np.full(nx + reach, reach + 1, np.int32)  # place x stands at x + reach - 1
     for y in range(ny - 1 if sizes.size else -reach, -reach, -1):
@@ -245,17 +249,18 @@ def _over_origins(domain, sizes):
         if nearest > reach:
             continue
         for k in range(sizes.size):
-            size, least = sizes[k], np.int32(sizes[k])
+            size, span, least = sizes[k], spans[k], np.int32(sizes[k])
             if nearest > size or y <= -size:
                 continue
-            row = counts[starts[k] + (y + size - 1) % size * size :][:size]
-            for first in range(reach - size, nx + reach - 1, size):
-                part = smallest[first : min(first + size, nx + reach - 1)]
+            row = counts[starts[k] + (y + size - 1) % size * span :][:span]
+            for first in range(reach - size, nx + reach - 1, span):
+                part = smallest[first : min(first + span, nx + reach - 1)]
                 for i in range(part.size):
                     row[i] += part[i] <= least
     cover = np.empty(sizes.size, np.int64)
     for k in range(sizes.size):
-        cover[k] = counts[starts[k] : starts[k + 1]].min()
+        alike = counts[starts[k] : starts[k + 1]].reshape(sizes[k], -1, sizes[k])
+        cover[k] = alike.sum(axis=1).min()
     return cover
 
 
