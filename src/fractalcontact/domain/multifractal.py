@@ -98,12 +98,14 @@ def _checked(mass):
     return np.ascontiguousarray(mass)
 
 
-@njit(cache=True)
+@njit(cache=True, fastmath={"reassoc", "contract"})
 def _glide(nx, filled, size, lowest_y, lowest_x, parts_y, parts_x, orders, moments):
     """Add the moments of all boxes of one size, from the cells that are filled, row by row."""
     fraction, columns, starts = filled
     column = np.zeros(nx)
     before = np.zeros(nx + 1, np.int64)  # columns that are not empty, before each
+    whole, least = (orders == np.floor(orders)).all(), int(np.floor(orders.min()))
+    powers = np.empty(int(orders.max()) - least + 1)
     for y, part_y in zip(lowest_y, parts_y):  # noqa: B905  # numba knows no `strict`
         # Summed anew: differences of sums would leave a trace of mass where there is none.
         column[:] = 0.0
@@ -116,15 +118,13 @@ def _glide(nx, filled, size, lowest_y, lowest_x, parts_y, parts_x, orders, momen
                 p, part = column[x : x + size].sum(), part_y * BLOCKS + part_x
                 log_p = np.log(p)
                 moments[-1, part] += p * log_p
+                if whole:  # each is p times the one before
+                    power = p**least
+                    for n in range(powers.size):
+                        powers[n] = power
+                        power *= p
                 for j, q in enumerate(orders):
-                    if q == 0:
-                        moments[j, part] += 1.0
-                    elif q == 1:
-                        moments[j, part] += p
-                    elif q == 2:
-                        moments[j, part] += p * p
-                    else:
-                        moments[j, part] += np.exp(q * log_p)
+                    moments[j, part] += powers[int(q) - least] if whole else np.exp(q * log_p)
 
 
 def fit_sizes(shape: tuple[int, int]) -> np.ndarray:
