@@ -74,5 +74,6 @@ def write_pages(folder):
     place = Place.of(folder)
     configuration = configuration_of(Trees(place.atlas).root)
     shown = explored(configuration["study"], configuration["settings"])
-    write_specimen_pages(place, shown if (place.folder / EXPLORER).is_file() else [])
-    return write_index(place)
+    shown = shown if (place.folder / EXPLORER).is_file() else []
+    write_specimen_pages(place, shown)
+    return write_index(place, shown)

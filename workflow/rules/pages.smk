@@ -23,13 +23,12 @@ rule explorer:
         f"{RESULTS}/logs/explorer.log",
     benchmark:
         f"{RESULTS}/benchmarks/explorer.tsv"
-    # After the figures: it is shorter than those, so that other cores have less time with nothing to
-    # do at the end.
+    # After the figures: beside the result page, no core has nothing to do at the end.
     priority: -3
     resources:
         **fixed(3000, 10),
     params:
-        specimens=EXPLORED,
+        explored=EXPLORED,
         code=code("pages", "fractalcontact/pages"),
     message:
         "the study: explorer of all contact states"
@@ -84,8 +83,6 @@ rule result_page:
         rules.atlas.output[0],
         PARTS,
         lambda wildcards: all_figure_files(),
-        # The index links to it where it is there.
-        EXPLORER,
         # Its first screen is that of the cards.
         PAGES,
     output:
@@ -97,6 +94,8 @@ rule result_page:
     resources:
         **fixed(2000, 10),
     params:
+        # The index links to the explorer, which may be made after it or beside it.
+        explored=EXPLORED,
         code=code("pages", "fractalcontact/pages"),
     message:
         "the study: result page"

@@ -9,8 +9,9 @@ from fractalcontact.pages.result_page import Place, write_index
 
 with job(snakemake) as log:
     atlas, page = Path(snakemake.input[0]), Path(snakemake.output[0])
+    explored = snakemake.params.explored
     if snakemake.rule == "explorer":
-        write_explorer(atlas, page, snakemake.params.specimens)
+        write_explorer(atlas, page, explored)
         log.info("%.1f MB", page.stat().st_size / 1e6)
     else:
-        log.info("%d specimens", len(write_index(Place.of(atlas.parent))))
+        log.info("%d specimens", len(write_index(Place.of(atlas.parent), explored)))

@@ -28,7 +28,6 @@ from ..core.stage import JOINT, SPECIMEN
 from ..core.subject import Subject, configuration_of
 from ..core.tables import write_table
 from ..study.atlas_parts import Trees
-from ..study.campaign import explored
 from ..study.figure_list import STUDY, all_figures
 from ..study.stages import STAGES
 from .budget import bars_of
@@ -36,7 +35,7 @@ from .captions import symbols
 from .cards import SECTIONS, cards_of, section_of
 from .common_loads import common_loads, main_load
 from .curves import curves_table
-from .files import APERTURE, CONFIGURATION, CURVES, EXPLORER, INDEX, SPECIMEN_PAGE, SUMMARY, TABLES
+from .files import APERTURE, CONFIGURATION, CURVES, INDEX, SPECIMEN_PAGE, SUMMARY, TABLES
 from .first_screen import blocks_of
 from .material import opposite_words
 from .matrix import Row, counted, matrix_of, merged, of_study
@@ -125,13 +124,15 @@ def write_specimen_pages(place: Place, explored: Collection[str]) -> None:
         write_page(path, "specimen.html", head | values | {"block": blocks.get(name)})
 
 
-def write_index(place: Place) -> list[str]:
+def write_index(place: Place, explored: Collection[str]) -> list[str]:
     """Write the index of a study, and its summary, curves, tables and configuration beside it.
 
     Parameters
     ----------
     place : Place
         With the cards of its specimens, if there are any.
+    explored : collection of str
+        Specimens that the explorer shows, which may be made later.
 
     Returns
     -------
@@ -143,7 +144,7 @@ def write_index(place: Place) -> list[str]:
     reported = [trees.closure(name) for name in names]
     loads = common_loads(reported, _comparison(atlas))
     head, blocks = _head(place, atlas), {one.name: one for one in blocks_of(names, place.folder)}
-    head["explored"] = _explored(place, atlas)
+    head["explored"] = explored
     specimens, curves, rows, reliefs = [], [], [], {}
     # One after the other: those of an atlas in parts would not all fit into memory.
     for name in names:
@@ -198,13 +199,6 @@ def _head(place, atlas):
         "shown": _shown,
         "in_paper": _in_paper,
     }
-
-
-def _explored(place, atlas):
-    """Specimens that the explorer shows; none where it is not there."""
-    configuration = configuration_of(atlas)
-    there = (place.folder / EXPLORER).is_file()
-    return explored(configuration["study"], configuration["settings"]) if there else []
 
 
 def _as_typed(path):

@@ -167,7 +167,7 @@ class ContactState:
 
     def with_before(self, other: "ContactState | None") -> "ContactState":
         """The same state, extrapolated as a start along the line through another one."""
-        state = object.__new__(type(self))  # `copy.copy` takes as long as a kernel in a small window
+        state = object.__new__(type(self))  # `copy.copy` takes as long as a compiled kernel
         vars(state).update(vars(self), _before=other and other.without_before())
         return state
 
