@@ -140,13 +140,13 @@ rule all_drawn:
         "../scripts/all_drawn.py"
 
 
-def figures_of_specimens(opposite, specimens):
-    """All files of the figures of some specimens, that one which is removed is made again."""
+def figures_of_specimens(opposite, specimens, endings=("png", "svg", "csv", "txt")):
+    """Files of the figures of some specimens, that one which is removed is made again."""
     return expand(
         f"{RESULTS}/figures/{{specimen}}/{{name}}.{{ending}}",
         specimen=specimens,
         name=drawn_of(opposite),
-        ending=("png", "svg", "csv", "txt"),
+        ending=endings,
     )
 
 

@@ -42,8 +42,9 @@ rule explorer:
 rule specimen_page:
     input:
         SPECIMEN_ATLAS,
+        # Captions stand for the pictures, of which no page is made: the same job leaves both.
         lambda wildcards: figures_of_specimens(
-            "match" if known(wildcards) in SLIDING else "flat", [wildcards.specimen]
+            "match" if known(wildcards) in SLIDING else "flat", [wildcards.specimen], ["txt"]
         ),
         # Aperture maps are those of the jobs of contact, which the atlas rounds.
         lambda wildcards: [] if IN_PARTS else contact_parts_of(known(wildcards)),
@@ -82,7 +83,7 @@ rule result_page:
     input:
         rules.atlas.output[0],
         PARTS,
-        lambda wildcards: all_figure_files(),
+        lambda wildcards: [path for path in all_figure_files() if path.endswith(".txt")],
         # Its first screen is that of the cards.
         PAGES,
     output:
