@@ -172,9 +172,10 @@ def _spoilt(results):
 
 def _run(command, options, results):
     """Exit code of Snakemake, whose whole family of processes ends with this one."""
-    path = [str(ROOT / "workflow/logger"), str(ROOT / "workflow"), os.environ.get("PYTHONPATH")]
+    path = [*(str(ROOT / "workflow" / name) for name in ("logger", "", "scripts"))]
+    path += filter(None, [os.environ.get("PYTHONPATH")])
     told = {
-        "PYTHONPATH": os.pathsep.join(filter(None, path)),
+        "PYTHONPATH": os.pathsep.join(path),
         # That results were looked at here, where they are, and whether some may go.
         "FRACTALCONTACT_CHECKED": "1",
         "FRACTALCONTACT_RESULTS": str(results),

@@ -29,10 +29,13 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "src"))
 #: Rooms whose modules are loaded, with all that they import; the others are so too, or rarely used.
 ROOMS = (
-    *("fractalcontact.figures", "fractalcontact.mechanics", "fractalcontact.pages"),
-    *("fractalcontact.stages", "fractalcontact.study"),
+    *("fractalcontact.cards", "fractalcontact.ensemble", "fractalcontact.figures"),
+    *("fractalcontact.mechanics", "fractalcontact.pages", "fractalcontact.stages"),
+    "fractalcontact.study",
     *("contactlab.experiments", "contactlab.figures"),
 )
+#: What Snakemake has every script import first.
+FIRST_OF_SCRIPTS = "snakemake.iocontainers", "snakemake.logging"
 _SOCKET = "warm"
 #: What the libraries that are loaded take their number of threads from: that of a job.
 ONE_THREAD = ("OMP", "GOTO", "OPENBLAS", "MKL", "VECLIB_MAXIMUM", "NUMEXPR")
@@ -101,7 +104,7 @@ def load():
         package = importlib.import_module(room)
         for module in pkgutil.walk_packages(package.__path__, f"{package.__name__}."):
             importlib.import_module(module.name)
-    for name in ("netCDF4", "scipy.optimize", "scipy.stats"):
+    for name in ("netCDF4", "scipy.optimize", "scipy.stats", *FIRST_OF_SCRIPTS):
         importlib.import_module(name)
     load_cached()
 

@@ -20,12 +20,6 @@ import warm
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="jobs are forks on Linux alone")
 
-JOB = """import sys
-sys.path.insert(0, {scripts!r})
-import _warm
-_warm.hand_over()
-"""
-
 
 @pytest.fixture(scope="module")
 def address():
@@ -35,9 +29,11 @@ def address():
 
 def start(folder, text, address, **environment):
     """A script as Snakemake starts one, with its standard error in a file."""
-    script = folder / "script.py"
-    script.write_text(JOB.format(scripts=str(ROOT / "workflow/scripts")) + text)
+    script = folder / ".snakemake/scripts/script.py"
+    script.parent.mkdir(parents=True, exist_ok=True)
+    script.write_text(f"import sys\n{text}")
     told = {"FRACTALCONTACT_WARM": address, "OMP_NUM_THREADS": "1"} | environment
+    told["PYTHONPATH"] = str(ROOT / "workflow/scripts")
     with open(folder / "said", "w") as said:
         return subprocess.Popen(
             [sys.executable, script, "a word"],

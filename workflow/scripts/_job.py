@@ -15,9 +15,6 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "src"))
 os.environ["OPENBLAS_NUM_THREADS"] = "1"
 
 import _running
-import _warm
-
-_warm.hand_over()  # before the script imports what takes long
 
 from fractalcontact.core import checksums
 from fractalcontact.core.errors import InputError, OutputError
