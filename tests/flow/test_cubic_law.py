@@ -9,14 +9,13 @@ from scipy import ndimage, sparse
 
 from fractalcontact.flow import red_black
 from fractalcontact.flow.aperture import transmissivity_bounds
-from fractalcontact.flow.cholesky import cholmod_is_here, factorised
+from fractalcontact.flow.cholesky import HAS_CHOLMOD, factorised
 from fractalcontact.flow.cubic_law import critical_gap, plane_flow, radial_flow
-from fractalcontact.flow.errors import FlowNotConverged
-from fractalcontact.flow.network import AIMED_IMBALANCE, joined_cells
+from fractalcontact.flow.network import AIMED_IMBALANCE, FlowNotConverged, joined_cells
 
 SOLVERS = [
     False,
-    pytest.param(True, marks=pytest.mark.skipif(not cholmod_is_here(), reason="no cvxopt")),
+    pytest.param(True, marks=pytest.mark.skipif(not HAS_CHOLMOD, reason="no cvxopt")),
 ]
 
 
@@ -235,7 +234,7 @@ def test_a_wrong_solution_is_refused(monkeypatch):
 def test_singular_equations_are_refused(cholmod):
     lower = sparse.coo_array(np.tril([[1.0, -1.0], [-1.0, 1.0]]))
     try:
-        found = factorised(lower, cholmod=cholmod)(np.ones((2, 1)))
+        found = factorised(lower, cholmod=cholmod)(np.ones(2))
     except ArithmeticError:
         return
     assert not np.isfinite(found).all() or np.abs(found).max() > 1e12

@@ -5,20 +5,18 @@ CHOLMOD comes with `cvxopt`, which is under the GPL and therefore an optional de
 """
 
 from collections.abc import Callable
-from importlib import import_module
 
 import numpy as np
 from scipy import sparse
 from scipy.sparse.linalg import splu
 
-
-def cholmod_is_here() -> bool:
-    """True if `cvxopt` can be imported."""
-    try:
-        import_module("cvxopt.cholmod")
-    except ImportError:
-        return False
-    return True
+try:
+    import cvxopt
+    import cvxopt.cholmod
+except ImportError:
+    cvxopt = None
+#: True if CHOLMOD can be imported.
+HAS_CHOLMOD = cvxopt is not None
 
 
 def factorised(
@@ -36,21 +34,20 @@ def factorised(
     Returns
     -------
     callable
-        Gives x (n, k) for b (n, k).
+        Gives x (n,) for b (n,).
 
     Raises
     ------
     ArithmeticError
         If a pivot is not positive: A is singular to the precision of the numbers.
     """
-    if cholmod_is_here() if cholmod is None else cholmod:
+    if HAS_CHOLMOD if cholmod is None else cholmod:
         return _by_cholmod(lower)
     return _by_superlu(lower)
 
 
 def _by_cholmod(lower):
-    cvxopt, cholmod = import_module("cvxopt"), import_module("cvxopt.cholmod")
-    matrix = cvxopt.spmatrix(lower.data, *lower.coords, lower.shape)
+    cholmod, matrix = cvxopt.cholmod, cvxopt.spmatrix(lower.data, *lower.coords, lower.shape)
     # Else it would compare the order with that of AMD, which takes as long as the factor.
     stated = cholmod.options
     cholmod.options = {**stated, "nmethods": 1, "postorder": False}
@@ -61,9 +58,9 @@ def _by_cholmod(lower):
     cholmod.numeric(matrix, factor)
 
     def solve(right: np.ndarray) -> np.ndarray:
-        solution = cvxopt.matrix(np.asfortranarray(right))
+        solution = cvxopt.matrix(right)
         cholmod.solve(factor, solution)
-        return np.array(solution)
+        return np.array(solution)[:, 0]
 
     return solve
 

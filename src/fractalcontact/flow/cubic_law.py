@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike
 from roughcontact.kernel_cache import njit
 
 from .network import solve_network
+from .red_black import WAYS
 
 #: Gaps below this fraction of the widest passage's narrowest gap are closed: what they carry, a
 #: part in 1e9 of that passage, is beyond the precision of the equations.
@@ -203,10 +204,11 @@ def _flow(opening, ends, spacing, length, width, cholmod) -> Flow:
     # Over the widest gap: apertures cubed in mm would leave the range of the factors.
     widest = opening.max()
     relative = np.where(opening >= CLOSED_BELOW * critical, opening / widest, 0.0)
-    solved = solve_network(relative * relative * relative, ends, spacing, cholmod=cholmod)
-    transmissivity = solved.rate * length * widest**3 / 12
-    flux = solved.flux * (width / solved.rate)
-    return Flow(transmissivity, solved.imbalance, critical, flux, solved.pressure)
+    rate, imbalance, flux, pressure = solve_network(
+        relative * relative * relative, ends, spacing, cholmod=cholmod
+    )
+    transmissivity = rate * length * widest**3 / 12
+    return Flow(transmissivity, imbalance, critical, flux * (width / rate), pressure)
 
 
 @njit(cache=True)
@@ -237,12 +239,8 @@ def critical_gap(gap: np.ndarray, inlet: np.ndarray, outlet: np.ndarray) -> floa
             row, column = divmod(waiting[n], nx)
             if outlet[row, column]:
                 return level
-            for i, j in (
-                (row - 1, column),
-                (row, column - 1),
-                (row, column + 1),
-                (row + 1, column),
-            ):
+            for down, right in WAYS:
+                i, j = row + down, column + right
                 if 0 <= i < ny and 0 <= j < nx and unseen[i, j]:
                     unseen[i, j] = False
                     if gap[i, j] >= level:

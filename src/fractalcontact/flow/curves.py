@@ -7,7 +7,7 @@ import numpy as np
 from ..core.intervals import t_quantile
 from .aperture import QUANTILES, correlation_length, rms_slope, transmissivity_bounds
 from .cubic_law import Flow, plane_flow
-from .errors import FlowNotConverged
+from .network import FlowNotConverged
 
 #: Ways of the flow: along the sliding, and across it.
 WAYS = ("along", "across")

@@ -1,14 +1,11 @@
 """Flow through a grid of cells between an inlet and an outlet: solution and mass balance."""
 
-from dataclasses import dataclass
-
 import numpy as np
 from scipy import ndimage
 
 from roughcontact.kernel_cache import njit
 
-from .errors import FlowNotConverged
-from .red_black import red_black_solver, stars_of
+from .red_black import RedBlackCells
 
 #: Largest error of a flow that the imbalance of its cells may make, a fraction of the flow.
 MAX_IMBALANCE = 1e-6
@@ -17,26 +14,23 @@ AIMED_IMBALANCE = 1e-8
 REFINEMENTS = 2
 
 
-@dataclass(frozen=True, eq=False)
-class NetworkFlow:
-    """Flow through a network under a pressure difference of 1.
+class FlowNotConverged(RuntimeError):
+    """No flow whose mass balance closes was reached.
 
     Attributes
     ----------
-    rate : float
-        Flow per pressure difference.
     imbalance : float
-        Bound on the relative error of ``rate`` by the imbalance of the cells.
-    pressure : (ny, nx) ndarray
-        NaN in cells that no path joins to both ends.
-    flux : (ny, nx) ndarray
-        Flow per width in the cells, from the flows through their faces.
+        Bound on the error of the flow that the imbalance of its cells makes, a fraction of it.
     """
 
-    rate: float
-    imbalance: float
-    pressure: np.ndarray
-    flux: np.ndarray
+    def __init__(self, reason: str, imbalance: float):
+        super().__init__(
+            f"flow not solved: {reason}; the mass balance leaves {imbalance:.3g} of it open"
+        )
+        self.reason, self.imbalance = reason, imbalance
+
+    def __reduce__(self):
+        return type(self), (self.reason, self.imbalance)
 
 
 def joined_cells(open_cells: np.ndarray, inlet: np.ndarray, outlet: np.ndarray) -> np.ndarray:
@@ -60,7 +54,7 @@ def solve_network(
     spacing: tuple[float, float],
     *,
     cholmod: bool | None = None,
-) -> NetworkFlow:
+) -> tuple[float, float, np.ndarray, np.ndarray]:
     """Flow under a pressure of 1 at the inlet and 0 at the outlet.
 
     Parameters
@@ -73,6 +67,17 @@ def solve_network(
         Sides (dy, dx) of a cell, mm.
     cholmod : bool, optional
         As of :func:`flow.cholesky.factorised`.
+
+    Returns
+    -------
+    rate : float
+        Flow per pressure difference.
+    imbalance : float
+        Bound on the relative error of ``rate`` by the imbalance of the cells.
+    flux : (ny, nx) ndarray
+        Flow per width in the cells, from the flows through their faces.
+    pressure : (ny, nx) ndarray
+        NaN in cells that no path joins to both ends.
 
     Raises
     ------
@@ -87,31 +92,30 @@ def solve_network(
     exact d, which is between 0 and 1: sum(abs(r)) bounds its error whatever solver gave p.
     """
     cells = joined_cells(conductivity > 0, *(ends > 0))
-    stars = stars_of(conductivity, ends, cells, spacing)
     try:
-        solve = red_black_solver(stars, cholmod)
-        p = solve(stars.ends[:1])[0]
+        network = RedBlackCells(conductivity, ends, cells, spacing, cholmod)
+        p = network.solve(network.ends[0])
         solution = np.stack([p, 1 - p])
         for step in range(REFINEMENTS + 1):
             # Inflow by the complement, outflow by the pressure.
-            flows = stars.ends * solution[::-1]
+            flows = network.ends * solution[::-1]
             inflow, outflow = flows.sum(axis=1)
-            balance, passing = _balance(stars.faces, stars.neighbours, solution, flows)
+            balance, passing = _balance(network.faces, network.neighbours, solution, flows)
             least, total = float(min(inflow, outflow)), float(np.abs(balance).sum())
             error = total / least if least > 0 else np.inf
             if error <= AIMED_IMBALANCE or step == REFINEMENTS:
                 break
-            change = solve(balance[np.newaxis])
-            solution = _complementary(solution + np.concatenate([change, -change]))
+            change = network.solve(balance)
+            solution = _complementary(solution + np.stack([change, -change]))
     except ArithmeticError as failed:
         raise FlowNotConverged(f"the equations are singular ({failed})", np.inf) from failed
     if not error <= MAX_IMBALANCE:
         raise FlowNotConverged("the passages differ too much in width", error)
     dy, dx = spacing
     # A cell at an end has the flow of that end beside that of its face.
-    flux = np.hypot(passing[0] / dx, passing[1] / dy) / 2 + flows.sum(axis=0) / (2 * dy)
-    pressure = np.append(solution[0], np.nan)[stars.numbers]
-    return NetworkFlow(float(outflow), error, pressure, np.append(flux, 0.0)[stars.numbers])
+    p, flux = solution[0], np.hypot(passing[0] / dx, passing[1] / dy) / 2 + flows.sum(axis=0) / (2 * dy)
+    of_cells = (np.append(one, none)[network.numbers] for one, none in ((flux, 0.0), (p, np.nan)))
+    return float(outflow), error, *of_cells
 
 
 def _complementary(solution):

@@ -4,9 +4,6 @@ The star-mesh transform joins the four neighbours of an eliminated cell by condu
 Equations of half the size remain, and no difference of nearly equal numbers is taken.
 """
 
-from collections.abc import Callable
-from dataclasses import dataclass
-
 import numpy as np
 from scipy import sparse
 
@@ -15,7 +12,7 @@ from roughcontact.kernel_cache import njit
 from .cholesky import factorised
 
 #: Steps in rows and columns to the neighbours of a cell: up, left, right, down.
-_WAYS = ((-1, 0), (0, -1), (0, 1), (1, 0))
+WAYS = ((-1, 0), (0, -1), (0, 1), (1, 0))
 #: Place of the later of two neighbours of a black cell, seen from the earlier: each of the two has
 #: four later ones within two steps.
 _LATER = ((-1, 1, 2, 3), (-1, -1, 0, 2), (-1, -1, -1, 1))
@@ -23,14 +20,26 @@ _LATER = ((-1, 1, 2, 3), (-1, -1, 0, 2), (-1, -1, -1, 1))
 MAX_LEAF = 32
 
 
-@dataclass(frozen=True, eq=False)
-class Stars:
-    """Cells with an equation: n_red red ones, numbered as they are eliminated, then the black ones.
+class RedBlackCells:
+    """Cells with an equation, and the solver of their mass balance.
+
+    Parameters
+    ----------
+    conductivity : (ny, nx) ndarray
+        Of the cells. Faces between two cells have the harmonic mean.
+    ends : (2, ny, nx) ndarray
+        Conductance to the inlet and to the outlet over the conductivity of the cell.
+    cells : (ny, nx) bool ndarray
+        Cells with an equation: of positive conductivity, each joined to an end.
+    spacing : (float, float)
+        Sides (dy, dx) of a cell, mm.
+    cholmod : bool or None
+        As of :func:`flow.cholesky.factorised`, whose errors it raises.
 
     Attributes
     ----------
     numbers : (ny, nx) int ndarray
-        Of the cells; -1 where no equation is.
+        Of the cells: the red ones as they are eliminated, then the black ones; -1 for none.
     faces : (n_black, 4) ndarray
         Conductances of a black cell to its neighbours up, left, right, down; 0 where none is.
     neighbours : (n_black, 4) int ndarray
@@ -39,32 +48,44 @@ class Stars:
         Conductances of the cells to the inlet and to the outlet.
     """
 
-    numbers: np.ndarray
-    faces: np.ndarray
-    neighbours: np.ndarray
-    ends: np.ndarray
+    def __init__(
+        self,
+        conductivity: np.ndarray,
+        ends: np.ndarray,
+        cells: np.ndarray,
+        spacing: tuple[float, float],
+        cholmod: bool | None,
+    ):
+        self.numbers, n_red = _numbered(cells)
+        dy, dx = spacing
+        ratios = np.array([dx / dy, dy / dx, dy / dx, dx / dy])
+        self.faces, self.neighbours, self.ends = _assembled(
+            conductivity, ends, self.numbers, n_red, cells.sum(), ratios
+        )
+        both = self.ends.sum(axis=0)
+        self._over = 1 / (self.faces.sum(axis=1) + both[n_red:])
+        diagonal, later, joined = _mesh(self.faces, self.neighbours, both, self._over)
+        red, place = np.nonzero(later)
+        pair = red, joined[red, place]
+        itself = np.arange(n_red)
+        entries = [np.append(itself, of(*pair)) for of in (np.maximum, np.minimum)]
+        values = np.append(diagonal, -later[red, place])
+        lower = sparse.coo_array((values, entries), shape=(n_red, n_red))
+        self._solve_red = factorised(lower, cholmod=cholmod) if n_red else np.copy
+        each = np.arange(0, self.faces.size + 1, 4)
+        self._joins = sparse.csr_array(
+            (self.faces.ravel(), self.neighbours.ravel(), each), shape=(len(each) - 1, both.size)
+        )
 
-
-def stars_of(
-    conductivity: np.ndarray, ends: np.ndarray, cells: np.ndarray, spacing: tuple[float, float]
-) -> Stars:
-    """Cells of a grid and the conductances between them, harmonic means of both sides.
-
-    Parameters
-    ----------
-    conductivity : (ny, nx) ndarray
-        Of the cells.
-    ends : (2, ny, nx) ndarray
-        Conductance to the inlet and to the outlet over the conductivity of the cell.
-    cells : (ny, nx) bool ndarray
-        Cells with an equation: of positive conductivity, each joined to an end.
-    spacing : (float, float)
-        Sides (dy, dx) of a cell, mm.
-    """
-    numbers, n_red = _numbered(cells)
-    dy, dx = spacing
-    ratios = np.array([dx / dy, dy / dx, dy / dx, dx / dy])
-    return Stars(numbers, *_assembled(conductivity, ends, numbers, n_red, cells.sum(), ratios))
+    def solve(self, right: np.ndarray) -> np.ndarray:
+        """Solution (n,) of a right side (n,)."""
+        n_red = right.size - self._over.size
+        values = right.copy()
+        values[n_red:] *= self._over
+        values += self._joins.T @ values[n_red:]
+        values[:n_red] = self._solve_red(values[:n_red])
+        values[n_red:] += self._over * (self._joins @ values)
+        return values
 
 
 @njit(cache=True)
@@ -133,7 +154,7 @@ def _assembled(conductivity, ends, numbers, n_red, n, ratios):
                 of_ends[:, number] = ends[:, row, column] * here
             if number >= n_red:
                 for way in range(4):
-                    i, j = row + _WAYS[way][0], column + _WAYS[way][1]
+                    i, j = row + WAYS[way][0], column + WAYS[way][1]
                     if 0 <= i < ny and 0 <= j < nx and numbers[i, j] >= 0:
                         # The product of both would underflow where gaps are small: divide first.
                         face = 2 * here / (1 + here / conductivity[i, j])
@@ -142,50 +163,12 @@ def _assembled(conductivity, ends, numbers, n_red, n, ratios):
     return faces, neighbours, of_ends
 
 
-def red_black_solver(stars: Stars, cholmod: bool | None) -> Callable[[np.ndarray], np.ndarray]:
-    """Solver of the mass balance of cells.
-
-    Parameters
-    ----------
-    stars : Stars
-    cholmod : bool or None
-        As of :func:`flow.cholesky.factorised`, whose errors it raises.
-
-    Returns
-    -------
-    callable
-        Gives solutions (k, n) of right sides (k, n).
-    """
-    n_red = stars.ends.shape[1] - len(stars.faces)
-    ends = stars.ends.sum(axis=0)
-    over = 1 / (stars.faces.sum(axis=1) + ends[n_red:])
-    values, *entries = _mesh(stars.faces, stars.neighbours, ends, over)
-    lower = sparse.coo_array((values, entries), shape=(n_red, n_red))
-    solve = factorised(lower, cholmod=cholmod) if n_red else np.copy
-
-    each = np.arange(0, stars.faces.size + 1, 4)
-    joins = sparse.csr_array(
-        (stars.faces.ravel(), stars.neighbours.ravel(), each), shape=(over.size, ends.size)
-    )
-
-    def solution(right: np.ndarray) -> np.ndarray:
-        values = right.T.copy()
-        values[n_red:] *= over[:, np.newaxis]
-        values += joins.T @ values[n_red:]
-        values[:n_red] = solve(values[:n_red])
-        values[n_red:] += over[:, np.newaxis] * (joins @ values)
-        return values.T
-
-    return solution
-
-
 @njit(cache=True)
 def _mesh(faces, neighbours, ends, over):
-    """Lower triangle of the equations of the red cells: values, rows and columns."""
+    """Diagonal of the equations of the red cells, and conductances to later cells with these."""
     n_red = ends.size - over.size
     diagonal, later = ends[:n_red].copy(), np.zeros((n_red, 4))
     joined = np.zeros((n_red, 4), np.int32)
-    n = n_red
     for black in range(over.size):
         for one in range(4):
             part, red = faces[black, one] * over[black], neighbours[black, one]
@@ -194,20 +177,8 @@ def _mesh(faces, neighbours, ends, over):
                 through = part * faces[black, other]
                 if through > 0:
                     place, beside = _LATER[one][other], neighbours[black, other]
-                    n += later[red, place] == 0
                     later[red, place] += through
                     joined[red, place] = beside
                     diagonal[red] += through
                     diagonal[beside] += through
-    values, rows, columns = np.empty(n), np.empty(n, np.int32), np.empty(n, np.int32)
-    n = 0
-    for red in range(n_red):
-        values[n], rows[n], columns[n] = diagonal[red], red, red
-        n += 1
-        for place in range(4):
-            if later[red, place] > 0:
-                beside = joined[red, place]
-                values[n] = -later[red, place]
-                rows[n], columns[n] = max(red, beside), min(red, beside)
-                n += 1
-    return values, rows, columns
+    return diagonal, later, joined
