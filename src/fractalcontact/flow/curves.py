@@ -1,11 +1,12 @@
-"""Flow and aperture statistics of a series of states, along and across the sliding."""
+"""Flow through the gap of a state along one axis, with the errors of its grid and window."""
 
 from typing import Any
 
 import numpy as np
 
+from ..core.estimate import Estimate
 from ..core.intervals import t_quantile
-from .aperture import QUANTILES, correlation_length, rms_slope, transmissivity_bounds
+from .aperture import correlation_length, transmissivity_bounds
 from .cubic_law import Flow, plane_flow
 from .network import FlowNotConverged
 
@@ -13,21 +14,6 @@ from .network import FlowNotConverged
 WAYS = ("along", "across")
 #: Why a transmissivity is zero.
 NO_PATH = "no path of open cells joins both sides"
-
-#: Numbers of the flow one way: unit, long name.
-OF_WAY = {
-    "transmissivity": ("mm3", "transmissivity T = h_h^3/12 per unit viscosity"),
-    "hydraulic_aperture": ("mm", "hydraulic aperture h_h"),
-    "critical_gap": ("mm", "narrowest gap of the widest passage"),
-    "channel_fraction": ("1", "fraction of the window that carries 90 % of the flow"),
-    "flow_imbalance": ("1", "bound on the relative error of T by the mass balance"),
-    "flow_reason": ("1", "why T is zero or missing"),
-    "series_bound": ("mm3", "lower bound of T: strips along the flow, cells in series"),
-    "parallel_bound": ("mm3", "upper bound of T: strips across the flow, cells side by side"),
-    "gap_correlation_length": ("mm", "lag at which the correlation of the gap falls to 1/e"),
-}
-#: Numbers of a state: unit, long name.
-OF_APERTURE = {"gap_slope": ("1", "rms slope of the open gap")}
 
 
 def axes_of(axis: str) -> dict[str, str]:
@@ -62,15 +48,9 @@ def transmissivity_of(gap: np.ndarray, spacing: tuple[float, float], axis: str) 
     return flow_of(gap, spacing, axis)[0].transmissivity
 
 
-def coarse_transmissivity(gap: np.ndarray, spacing: tuple[float, float], axis: str) -> float:
-    """The same from every second cell, for the error of the grid."""
-    dy, dx = spacing
-    return transmissivity_of(gap[::2, ::2], (2 * dy, 2 * dx), axis)
-
-
 def window_interval(
     gap: np.ndarray, spacing: tuple[float, float], axis: str, whole: float
-) -> tuple[float, float]:
+) -> Estimate:
     """95 % interval of the geometric mean of T over windows of this size, mm3.
 
     T is taken for the geometric mean of the four quarters: Student's t of their ln T, as of four
@@ -85,8 +65,8 @@ def window_interval(
 
     Returns
     -------
-    low, high : float
-        NaN where one of the quarters lets nothing pass.
+    Estimate
+        Without an interval where one of the quarters lets nothing pass.
     """
     ny, nx = (n // 2 for n in gap.shape)
     quarters = [
@@ -96,30 +76,41 @@ def window_interval(
     ]
     flows = np.array([transmissivity_of(quarter, spacing, axis) for quarter in quarters])
     if not (flows > 0).all():
-        return np.nan, np.nan
+        return Estimate(whole)
     factor = np.exp(t_quantile(3) * np.log(flows).std(ddof=1) / 2)
-    return whole / factor, whole * factor
+    return Estimate(whole, whole / factor, whole * factor)
 
 
-def numbers_of_flow(gap: np.ndarray, spacing: tuple[float, float], axis: str) -> dict[str, Any]:
-    """The :data:`OF_WAY` of a gap, and its ``flux`` map; as :func:`flow_of` takes it."""
+def numbers_of_flow(
+    gap: np.ndarray, spacing: tuple[float, float], axis: str, *, errors: bool
+) -> dict[str, Any]:
+    """Numbers of the flow along an axis, as the stage flow names them, and its ``flux`` map.
+
+    Parameters
+    ----------
+    gap, spacing, axis
+        As :func:`flow_of` takes them.
+    errors : bool
+        Whether T has its interval and ``transmissivity_grid_error``: six more solves.
+    """
     flow, reason = flow_of(gap, spacing, axis)
-    number = "yx".index(axis)
+    number, whole = "yx".index(axis), flow.transmissivity
     lower, upper = transmissivity_bounds(gap, number)
-    kept = ("transmissivity", "hydraulic_aperture", "critical_gap", "channel_fraction", "flux")
+    coarse = np.nan
+    if errors:
+        coarse = transmissivity_of(gap[::2, ::2], (2 * spacing[0], 2 * spacing[1]), axis)
     return {
-        **{name: getattr(flow, name) for name in kept},
+        "transmissivity": window_interval(gap, spacing, axis, whole) if errors else Estimate(whole),
+        "transmissivity_grid_error": abs(coarse - whole),
+        "critical_gap": flow.critical_gap,
+        "channel_fraction": flow.channel_fraction,
+        "flux": flow.flux,
         "flow_imbalance": flow.imbalance,
         "flow_reason": reason,
         "series_bound": lower,
         "parallel_bound": upper,
         "gap_correlation_length": correlation_length(gap, spacing[number], number),
     }
-
-
-def numbers_of_aperture(gap: np.ndarray, spacing: tuple[float, float]) -> dict[str, Any]:
-    """The :data:`OF_APERTURE` of a gap, and its ``quantiles``, mm, at :data:`QUANTILES`."""
-    return {"gap_slope": rms_slope(gap, spacing), "quantiles": np.quantile(gap, QUANTILES)}
 
 
 def percolation_pressures(pressure: np.ndarray, flows: np.ndarray) -> tuple[float, float]:

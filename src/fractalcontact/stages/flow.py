@@ -1,7 +1,7 @@
 """Flow through a joint: transmissivity over loads, branches and offsets of the reported state."""
 
-from collections.abc import Mapping, Sequence
-from typing import Any
+from collections.abc import Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -9,7 +9,7 @@ import xarray as xr
 from roughcontact.contact.solve import solve_contact
 
 from ..core.datasets import Dims, labelled_dataset
-from ..core.estimate import names_of, rows_of
+from ..core.estimate import NO_ESTIMATE, Estimate, rows_of
 from ..core.labels import cf_attrs
 from ..core.reported import Reported
 from ..core.settings import JointSettings, Solver
@@ -18,20 +18,16 @@ from ..flow.aperture import (
     QUANTILES,
     barton_aperture,
     reynolds_gradient,
+    rms_slope,
     zimmerman_bodvarsson_aperture,
 )
 from ..flow.cubic_law import hydraulic_aperture
 from ..flow.curves import (
-    OF_APERTURE,
-    OF_WAY,
     WAYS,
     axes_of,
-    coarse_transmissivity,
-    numbers_of_aperture,
     numbers_of_flow,
     percolation_pressures,
     transmissivity_of,
-    window_interval,
 )
 from ..mechanics.joint import prefractal, sliding_axis
 from ..mechanics.jrc import profile_roughness
@@ -41,17 +37,28 @@ from ..mechanics.states import MAP_GAP, OFFSET_GAP, with_pressure
 
 _LOADS: Dims = "normal_force"
 _STATES: Dims = ("branch", "normal_force")
-_LOAD, _UNLOAD = 0, 1
-#: Numbers of a gap that branches and offsets have.
-NAMES = ("mean_gap", *(f"transmissivity_{way}" for way in WAYS))
 
 #: Why a load has no transmissivity.
 NOT_QUOTED = "solved under the reported loads alone"
 
 #: Numbers of each way with an interval, that of the window.
-_WITH_INTERVAL = ("transmissivity", "hydraulic_aperture")
-#: Numbers of each way of the flow beside those of :data:`flow.curves.OF_WAY`.
-_MORE_OF_WAY: dict[str, tuple[Dims, str, str]] = {
+_ESTIMATES = {
+    "transmissivity": ("mm3", "transmissivity T = h_h^3/12 per unit viscosity"),
+    "hydraulic_aperture": ("mm", "hydraulic aperture h_h"),
+}
+#: The others of each way.
+_OF_WAY: dict[str, tuple[Dims, str, str]] = {
+    "critical_gap": (_LOADS, "mm", "narrowest gap of the widest passage"),
+    "channel_fraction": (_LOADS, "1", "fraction of the window that carries 90 % of the flow"),
+    "flow_imbalance": (_LOADS, "1", "bound on the relative error of T by the mass balance"),
+    "flow_reason": (_LOADS, "1", "why T is zero or missing"),
+    "series_bound": (_LOADS, "mm3", "lower bound of T: strips along the flow, cells in series"),
+    "parallel_bound": (
+        _LOADS,
+        "mm3",
+        "upper bound of T: strips across the flow, cells side by side",
+    ),
+    "gap_correlation_length": (_LOADS, "mm", "lag at which the correlation of the gap falls to 1/e"),
     "hydraulic_ratio": (_LOADS, "1", "hydraulic aperture over the mean gap"),
     "transmissivity_grid_error": (
         _LOADS,
@@ -81,21 +88,17 @@ _MORE_OF_WAY: dict[str, tuple[Dims, str, str]] = {
 }
 _TABLE: dict[str, tuple[Dims, str, str]] = {
     **{
-        f"{name}_{way}": (dims, unit, f"{words}, {way} the sliding")
-        for way in WAYS
-        for name, (dims, unit, words) in (
-            {name: (_LOADS, *of) for name, of in OF_WAY.items()} | _MORE_OF_WAY
-        ).items()
-    },
-    **{
         row: (_LOADS, *words)
         for way in WAYS
-        for name in _WITH_INTERVAL
-        for row, words in rows_of(
-            f"{name}_{way}", OF_WAY[name][0], f"{OF_WAY[name][1]}, {way} the sliding"
-        ).items()
+        for name, (unit, of) in _ESTIMATES.items()
+        for row, words in rows_of(f"{name}_{way}", unit, f"{of}, {way} the sliding").items()
     },
-    **{name: (_LOADS, *words) for name, words in OF_APERTURE.items()},
+    **{
+        f"{name}_{way}": (dims, unit, f"{words}, {way} the sliding")
+        for way in WAYS
+        for name, (dims, unit, words) in _OF_WAY.items()
+    },
+    "gap_slope": (_LOADS, "1", "rms slope of the open gap"),
     "gap_quantile": (
         ("gap_probability", "normal_force"),
         "mm",
@@ -151,31 +154,30 @@ def flow_stages(
     """
     reported = Reported.read(closure)
     loading = JointLoading.of_joint(specimens, joints, reported.direction, settings, solver)
-    axis = "yx"[sliding_axis(reported.direction)] if loading.slides else "x"
-    whole = _Place(loading.spacing, axes_of(axis))
-    place = _Place(loading.spacing * reported.resolution, whole.axes)
+    axes = axes_of("yx"[sliding_axis(reported.direction)] if loading.slides else "x")
+    dy, dx = map(float, loading.spacing)
+    whole, grid = (_Grid((k * dy, k * dx), axes) for k in (1, reported.resolution))
     states = reported.states(closure)
-    mapped = next(part for part in parts if MAP_GAP in part)[MAP_GAP]
-    values: dict[str, Any] = _over_loads(mapped.values.astype(float), place, reported)
-    values |= _laws(states, specimens, reported.direction, loading.slides)
-    gap = states["mean_gap"].where(states["mean_gap"] > 0).values
-    total = error_budget["total"].sel(quantity="separation").values
+    error = error_budget["total"].sel(quantity="separation").values
+    gaps = next(part for part in parts if MAP_GAP in part)[MAP_GAP].values.astype(float)
+    values: dict[str, Any] = {
+        "gap_slope": [rms_slope(gap, grid.spacing) for gap in gaps],
+        "gap_quantile": np.quantile(gaps, QUANTILES, axis=(1, 2)),
+        **_laws(states, specimens, loading),
+    }
     for way in WAYS:
-        flow = values[f"transmissivity_{way}"]
-        values |= {
-            f"hydraulic_ratio_{way}": values[f"hydraulic_aperture_{way}"] / gap,
-            f"transmissivity_separation_error_{way}": _separation_error(gap, flow, total),
-            f"reynolds_gradient_{way}": reynolds_gradient(flow),
-        }
-        values[f"last_open_pressure_{way}"], values[f"first_closed_pressure_{way}"] = (
-            percolation_pressures(states["nominal_pressure"].values, flow)
-        )
+        values |= _over_loads(gaps, grid, way, states, error, reported)
+    loaded = {"mean_gap": states["mean_gap"].values}
+    loaded |= {of: values[of] for of in (f"transmissivity_{way}" for way in WAYS)}
     (cells,) = loading.at_map_offset().cells
     composite = loading.composite(int(cells))
-    values |= _of_branches(composite, loading, branches, states, whole, values)
     kept = prefractal(composite, reported.resolution)
-    values |= place.both("unloaded", kept.max() - kept)
-    values |= _over_offsets(parts, closure, place, reported, values)
+    for prefix, numbers in {
+        "branch": _of_branches(composite, loading, branches, whole, loaded),
+        "offset": _over_offsets(parts, closure["offset"].values, grid, reported, loaded),
+        "unloaded": grid.numbers(kept.max() - kept),
+    }.items():
+        values |= {f"{prefix}_{name}": value for name, value in numbers.items()}
     probability = cf_attrs("1", "fraction of the window with a smaller gap")
     coords: dict[str, Any] = {
         "normal_force": closure["normal_force"],
@@ -186,63 +188,64 @@ def flow_stages(
     for one in "yx":
         nodes = joints[f"window_{one}"].values[:: reported.resolution]
         coords[f"flow_{one}"] = (f"flow_{one}", nodes, cf_attrs("mm", f"{one} of the node"))
-    attrs = {"flow_axis_along": place.axes["along"], "flow_axis_across": place.axes["across"]}
+    attrs = {f"flow_axis_{way}": axis for way, axis in axes.items()}
     stage = labelled_dataset(_TABLE, values, coords, attrs)
     return {"flow": with_pressure(stage, nominal_area(specimens))}
 
 
-class _Place:
-    """Spacing of the cells and the axes of both ways of the flow."""
+class _Grid(NamedTuple):
+    """Sides (dy, dx) of the cells, mm, and the axes of both ways of the flow."""
 
-    def __init__(self, spacing: np.ndarray, axes: Mapping[str, str]):
-        self.spacing, self.axes = (float(spacing[0]), float(spacing[1])), axes
+    spacing: tuple[float, float]
+    axes: dict[str, str]
 
-    def both(self, prefix: str, gap: np.ndarray) -> dict[str, float]:
-        """Mean gap and transmissivities of a gap, their names after a prefix."""
-        flows = {
-            f"{prefix}_transmissivity_{way}": transmissivity_of(gap, self.spacing, axis)
+    def numbers(self, gap: np.ndarray) -> dict[str, float]:
+        """Mean gap and transmissivities of a gap."""
+        return {"mean_gap": float(gap.mean())} | {
+            f"transmissivity_{way}": transmissivity_of(gap, self.spacing, axis)
             for way, axis in self.axes.items()
         }
-        return {f"{prefix}_mean_gap": float(gap.mean()), **flows}
 
 
-def _over_loads(gaps: np.ndarray, place: _Place, reported: Reported) -> dict[str, Any]:
-    """Numbers of the states on loading, and the flux maps under the reference load."""
-    of_gaps = [numbers_of_aperture(gap, place.spacing) for gap in gaps]
-    values: dict[str, Any] = {name: [one[name] for one in of_gaps] for name in OF_APERTURE}
-    values["gap_quantile"] = np.transpose([one["quantiles"] for one in of_gaps])
-    for way, axis in place.axes.items():
-        # What does not slide has no across: a second direction, at the loads that are quoted.
-        every = way == WAYS[0] or reported.direction != "none"
-        rows = {
-            load: numbers_of_flow(gaps[load], place.spacing, axis)
-            for load in (range(len(gaps)) if every else reported.quoted)
-        }
-        for name in OF_WAY:
-            missing = NOT_QUOTED if name == "flow_reason" else np.nan
-            values[f"{name}_{way}"] = np.array(
-                [rows.get(load, {}).get(name, missing) for load in range(len(gaps))]
-            )
-        of_flow, of_aperture = (names_of(f"{name}_{way}")[1:] for name in _WITH_INTERVAL)
-        grid_error = f"transmissivity_grid_error_{way}"
-        values |= {
-            name: np.full(len(gaps), np.nan) for name in (*of_flow, *of_aperture, grid_error)
-        }
-        for load in reported.quoted:
-            whole = rows[load]["transmissivity"]
-            coarse = coarse_transmissivity(gaps[load], place.spacing, axis)
-            values[grid_error][load] = abs(coarse - whole)
-            ends = window_interval(gaps[load], place.spacing, axis, whole)
-            for name, other, end in zip(of_flow, of_aperture, ends, strict=True):
-                values[name][load], values[other][load] = end, hydraulic_aperture(end)
-        values[f"flux_map_{way}"] = rows[reported.reference]["flux"].astype(np.float32)
-    return values
+def _over_loads(gaps, grid, way, states, error, reported):
+    """Numbers of the flow one way on loading, and the flux map under the reference load."""
+    # What does not slide has no across: a second direction, at the loads that are quoted.
+    every = way == WAYS[0] or reported.direction != "none"
+    rows = {
+        load: numbers_of_flow(gap, grid.spacing, grid.axes[way], errors=load in reported.quoted)
+        for load, gap in enumerate(gaps)
+        if every or load in reported.quoted
+    }
+    flux = rows[reported.reference]["flux"].astype(np.float32)
+    nothing = {name: np.nan for name in rows[reported.reference] if name != "flux"}
+    nothing |= {"transmissivity": NO_ESTIMATE, "flow_reason": NOT_QUOTED}
+    of_loads = [rows.get(load, nothing) for load in range(len(gaps))]
+    values = {name: np.array([one[name] for one in of_loads]) for name in nothing}
+    flow = Estimate.stack(values.pop("transmissivity"))
+    aperture_ = flow.mapped(hydraulic_aperture)
+    mean = states["mean_gap"].where(states["mean_gap"] > 0).values
+    pressures = percolation_pressures(states["nominal_pressure"].values, flow.value)
+    values |= {
+        "hydraulic_ratio": aperture_.value / mean,
+        "transmissivity_separation_error": _separation_error(mean, flow.value, error),
+        "reynolds_gradient": reynolds_gradient(flow.value),
+        "flux_map": flux,
+        "last_open_pressure": pressures[0],
+        "first_closed_pressure": pressures[1],
+    }
+    return {
+        **{f"{name}_{way}": value for name, value in values.items()},
+        **flow.columns(f"transmissivity_{way}"),
+        **aperture_.columns(f"hydraulic_aperture_{way}"),
+    }
 
 
-def _laws(states, specimens, direction, slides):
+def _laws(states, specimens, loading):
     """Empirical laws and the effective-stress coefficient over loads."""
     mean, contact = states["mean_gap"].values, states["area_share"].values
-    jrc = float(profile_roughness(specimens, direction)["jrc_used"]) if slides else np.nan
+    jrc = np.nan
+    if loading.slides:
+        jrc = float(profile_roughness(specimens, loading.direction)["jrc_used"])
     return {
         "zimmerman_aperture": zimmerman_bodvarsson_aperture(
             mean, states["gap_deviation"].values, contact
@@ -264,42 +267,34 @@ def _separation_error(gap, flow, total):
     return error
 
 
-def _of_branches(composite, loading, branches, states, place, on_loading):
-    """Mean gaps and transmissivities of all branches; NaN above their largest load."""
-    forces = states["normal_force"].values
-    loaded = {f"branch_{name}": on_loading[name] for name in NAMES[1:]}
-    loaded["branch_mean_gap"] = states["mean_gap"].values
-    # All branches on loading's values; what has crushed gets its own below.
-    values = {name: np.tile(one, (branches.sizes["branch"], 1)) for name, one in loaded.items()}
+def _of_branches(composite, loading, branches, grid, loaded):
+    """Numbers of all branches: on loading as given, else NaN above the largest load."""
     held, top = branches["permanent_set"].values, branches["normal_force"].values[-1]
+    forces = loading.forces(loading.settings.loads)
+    values = {name: np.tile(one, (branches.sizes["branch"], 1)) for name, one in loaded.items()}
     for one in values.values():
-        one[_UNLOAD:, forces > top] = np.nan
+        one[1:, forces > top] = np.nan
+    # What has not crushed unloads and reloads as it was loaded.
     if held.any():
         pressed, space, state = composite - held, loading.half_space(composite.shape), None
         for load in np.flatnonzero(forces <= top)[::-1]:
             state = solve_contact(
                 pressed, space, force=float(forces[load]), start=state, rtol=loading.solver.rtol
             )
-            for name, value in place.both("branch", aperture(state)).items():
-                values[name][_UNLOAD:, load] = value
+            for name, value in grid.numbers(aperture(state)).items():
+                values[name][1:, load] = value
     return values
 
 
-def _over_offsets(parts, closure, place, reported, of_branches):
-    """Mean gaps and transmissivities over the offsets, under the reference load.
-
-    That of the reported offset is the state of its ``of_branches``.
-    """
-    values = {f"offset_{name}": np.full(closure.sizes["offset"], np.nan) for name in NAMES}
-    offsets = closure["offset"].values
+def _over_offsets(parts, offsets, grid, reported, loaded):
+    """Numbers over the offsets under the reference load; those of the reported one are loaded."""
+    values = {name: np.full(offsets.size, np.nan) for name in loaded}
     for part in (part for part in parts if OFFSET_GAP in part):
         for gap, offset in zip(part[OFFSET_GAP].values, part["offset"].values, strict=True):
             number = int(np.argmin(np.abs(offsets - offset)))
-            if offsets[number] == reported.offset:
-                at = _LOAD, reported.reference
-                found = {f"offset_{name}": of_branches[f"branch_{name}"][at] for name in NAMES}
-            else:
-                found = place.both("offset", gap.astype(float))
+            found = {name: one[reported.reference] for name, one in loaded.items()}
+            if offsets[number] != reported.offset:
+                found = grid.numbers(gap.astype(float))
             for name, value in found.items():
                 values[name][number] = value
     return values
