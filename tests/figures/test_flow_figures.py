@@ -32,8 +32,10 @@ def test_hydraulic_apertures_and_branches_are_those_of_the_atlas(atlas, name):
 
 @pytest.mark.parametrize("name", ["sliding", "pair"])
 def test_offsets_are_drawn_in_both_directions(atlas, name):
-    table = drawn(atlas, name, "flow_sliding").data
+    table = drawn(atlas, name, "hydraulic_aperture").data
     flow = Subject.of(atlas, name)["flow"]
+    mean = table["offset_mean_gap_mm"].dropna()
+    np.testing.assert_allclose(mean, flow["offset_mean_gap"].values)
     for way in ("along", "across"):
         values = table[f"offset_transmissivity_{way}_mm3"].dropna()
         np.testing.assert_allclose(values, flow[f"offset_transmissivity_{way}"].values)
@@ -76,3 +78,14 @@ def test_the_mean_gap_falls_and_its_bounds_hold(atlas):
             slack = 1e-9 * found[known]
             assert (flow[f"series_bound_{way}"].values[known] <= found[known] + slack).all()
             assert (found[known] <= flow[f"parallel_bound_{way}"].values[known] + slack).all()
+
+
+def test_quantiles_of_the_gap_count_contact_as_zero(atlas):
+    subject = Subject.of(atlas, "pair")
+    flow, gaps = subject.states("flow"), subject.states("contact")["map_gap"]
+    for load in subject.reported.quoted:
+        gap, probability = gaps[load].values, flow["gap_probability"].values
+        found, expected = flow["gap_quantile"][:, load], np.quantile(gap, probability)
+        # The atlas keeps three digits of the map.
+        np.testing.assert_allclose(found, expected, rtol=2e-3)
+        assert ((gap == 0).mean() < probability[found == 0]).sum() == 0

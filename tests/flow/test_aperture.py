@@ -16,7 +16,6 @@ from fractalcontact.flow.curves import (
     NO_PATH,
     axes_of,
     flow_of,
-    numbers_of_aperture,
     percolation_pressures,
 )
 
@@ -84,9 +83,3 @@ def test_a_closed_gap_says_why_nothing_flows():
     assert flow.transmissivity == 0
     assert reason == NO_PATH
     assert axes_of("y") == {"along": "y", "across": "x"}
-
-
-def test_quantiles_count_contact_as_zero():
-    gap = np.concatenate([np.zeros((30, 10)), np.ones((70, 10))])
-    found = numbers_of_aperture(gap, (1.0, 1.0))
-    np.testing.assert_array_equal(found["quantiles"], [0, 0, 1, 1, 1])

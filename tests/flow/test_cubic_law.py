@@ -10,8 +10,13 @@ from scipy import ndimage, sparse
 from fractalcontact.flow import red_black
 from fractalcontact.flow.aperture import transmissivity_bounds
 from fractalcontact.flow.cholesky import HAS_CHOLMOD, factorised
-from fractalcontact.flow.cubic_law import critical_gap, plane_flow, radial_flow
-from fractalcontact.flow.network import AIMED_IMBALANCE, FlowNotConverged, joined_cells
+from fractalcontact.flow.cubic_law import plane_flow, radial_flow
+from fractalcontact.flow.network import (
+    AIMED_IMBALANCE,
+    FlowNotConverged,
+    critical_gap,
+    joined_cells,
+)
 
 SOLVERS = [
     False,

@@ -5,67 +5,12 @@ have the harmonic mean of both. No flow leaves the sides of a window (it is not 
 Zimmerman and Bodvarsson (Transp. Porous Media 23 (1996) 1) review the law and its limits.
 """
 
-from dataclasses import dataclass, replace
-from heapq import heappop, heappush
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from roughcontact.kernel_cache import njit
-
-from .network import solve_network
-from .red_black import WAYS
-
-#: Gaps below this fraction of the widest passage's narrowest gap are closed: what they carry, a
-#: part in 1e9 of that passage, is beyond the precision of the equations.
-CLOSED_BELOW = 1e-3
-#: Fraction of the flow that the flow channels are said to carry.
-CHANNEL_FLOW = 0.9
-
-
-def hydraulic_aperture(transmissivity: ArrayLike) -> np.ndarray:
-    """Hydraulic aperture h_h = (12 T)^(1/3), mm, of a transmissivity T, mm3."""
-    return np.cbrt(12 * np.asarray(transmissivity))
-
-
-@dataclass(frozen=True, eq=False)
-class Flow:
-    """Flow through a joint along one axis, per unit viscosity.
-
-    Attributes
-    ----------
-    transmissivity : float
-        T = h_h^3 / 12, mm3: flow per width, pressure gradient and inverse viscosity. 0 where the
-        gap does not percolate.
-    imbalance : float
-        Bound on its relative error by the mass balance of the cells.
-    critical_gap : float
-        The largest gap such that a path of gaps no smaller joins both ends, mm; 0 without a path.
-    flux : (ny, nx) ndarray
-        Flow per width in each cell over the mean flow per width of the window.
-    pressure : (ny, nx) ndarray
-        From 1 to 0; NaN where no path joins a cell to both ends.
-    """
-
-    transmissivity: float
-    imbalance: float
-    critical_gap: float
-    flux: np.ndarray
-    pressure: np.ndarray
-
-    @property
-    def hydraulic_aperture(self) -> float:
-        """h_h of the transmissivity, mm."""
-        return float(hydraulic_aperture(self.transmissivity))
-
-    @property
-    def channel_fraction(self) -> float:
-        """Smallest fraction of the window that carries :data:`CHANNEL_FLOW` of the flow."""
-        flux = np.sort(self.flux, axis=None)[::-1]
-        total = flux.sum()
-        if not total > 0:
-            return np.nan
-        return (int(np.searchsorted(flux.cumsum(), CHANNEL_FLOW * total)) + 1) / flux.size
+from .network import Flow, network_flow
 
 
 def plane_flow(
@@ -87,7 +32,7 @@ def plane_flow(
     Raises
     ------
     FlowNotConverged
-        As :func:`flow.network.solve_network`.
+        As :func:`flow.network.network_flow`.
     ValueError
         If a gap is negative or no gap of the window is known.
     """
@@ -101,7 +46,7 @@ def plane_flow(
     ends[0, 0, 0] = ends[1, 0, -1] = 2 * dy / dx
     ends = np.broadcast_to(ends, (2, ny, nx))
     width = ny * dy
-    return _flow(opening, ends, spacing, nx * dx / width, width, cholmod)
+    return network_flow(opening, ends, spacing, nx * dx / width, width, cholmod)
 
 
 def radial_flow(
@@ -135,7 +80,7 @@ def radial_flow(
     Raises
     ------
     FlowNotConverged
-        As :func:`flow.network.solve_network`.
+        As :func:`flow.network.network_flow`.
     ValueError
         As :func:`plane_flow`, or if the radii are not 0 < hole < rim within the grid.
 
@@ -156,7 +101,8 @@ def radial_flow(
     over = np.divide(sides, steps, where=steps > 0, out=np.zeros_like(steps))
     opening, ends = np.where(between, opening, 0.0), over.sum(axis=1) * between
     around = 2 * np.pi
-    return _flow(opening, ends, spacing, np.log(rim / hole) / around, around * hole, cholmod)
+    length = np.log(rim / hole) / around
+    return network_flow(opening, ends, spacing, length, around * hole, cholmod)
 
 
 #: Smallest part of a cell that a circle cuts off: closer to it, a cell is on it.
@@ -190,62 +136,3 @@ def _checked(gap: ArrayLike) -> np.ndarray:
     if opening.ndim != 2 or missing.all() or not 0 <= opening.min() <= opening.max() < np.inf:
         raise ValueError("gap: expected (ny, nx) finite numbers of 0 (contact) and more, or NaN")
     return opening
-
-
-def _flow(opening, ends, spacing, length, width, cholmod) -> Flow:
-    """Flow between two ends, whose plates of the same flow are as long as ``length`` widths.
-
-    ``ends`` is that of :func:`flow.network.solve_network`; ``width``, mm, that of the mean flux.
-    """
-    critical = critical_gap(opening, *(ends > 0))
-    if not critical:
-        nothing = np.zeros_like(opening)
-        return Flow(0.0, 0.0, 0.0, nothing, np.full_like(nothing, np.nan))
-    # Over the widest gap: apertures cubed in mm would leave the range of the factors.
-    widest = opening.max()
-    relative = np.where(opening >= CLOSED_BELOW * critical, opening / widest, 0.0)
-    rate, imbalance, flux, pressure = solve_network(
-        relative * relative * relative, ends, spacing, cholmod=cholmod
-    )
-    transmissivity = rate * length * widest**3 / 12
-    return Flow(transmissivity, imbalance, critical, flux * (width / rate), pressure)
-
-
-@njit(cache=True)
-def critical_gap(gap: np.ndarray, inlet: np.ndarray, outlet: np.ndarray) -> float:
-    """Narrowest gap of the widest passage between both ends, mm; 0 without a passage.
-
-    Parameters
-    ----------
-    gap : (ny, nx) ndarray
-        mm, 0 where closed.
-    inlet, outlet : (ny, nx) bool ndarray
-        Cells at the ends.
-    """
-    ny, nx = gap.shape
-    unseen, waiting, n = gap > 0, np.empty(gap.size, np.int32), 0
-    # Cells below the level wait for it to fall to the widest of them.
-    level, below = np.inf, [(0.0, 0) for _ in range(0)]
-    for row in range(ny):
-        for column in range(nx):
-            if inlet[row, column] and unseen[row, column]:
-                unseen[row, column] = False
-                heappush(below, (-gap[row, column], row * nx + column))
-    while below:
-        height, waiting[0] = heappop(below)
-        level, n = min(level, -height), 1
-        while n:
-            n -= 1
-            row, column = divmod(waiting[n], nx)
-            if outlet[row, column]:
-                return level
-            for down, right in WAYS:
-                i, j = row + down, column + right
-                if 0 <= i < ny and 0 <= j < nx and unseen[i, j]:
-                    unseen[i, j] = False
-                    if gap[i, j] >= level:
-                        waiting[n] = i * nx + j
-                        n += 1
-                    else:
-                        heappush(below, (-gap[i, j], i * nx + j))
-    return 0.0

@@ -7,8 +7,8 @@ import numpy as np
 from ..core.estimate import Estimate
 from ..core.intervals import t_quantile
 from .aperture import correlation_length, transmissivity_bounds
-from .cubic_law import Flow, plane_flow
-from .network import FlowNotConverged
+from .cubic_law import plane_flow
+from .network import Flow, FlowNotConverged
 
 #: Ways of the flow: along the sliding, and across it.
 WAYS = ("along", "across")

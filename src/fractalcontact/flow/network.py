@@ -1,17 +1,71 @@
 """Flow through a grid of cells between an inlet and an outlet: solution and mass balance."""
 
+from dataclasses import dataclass
+from heapq import heappop, heappush
+
 import numpy as np
+from numpy.typing import ArrayLike
 from scipy import ndimage
 
 from roughcontact.kernel_cache import njit
 
-from .red_black import RedBlackCells
+from .red_black import WAYS, RedBlackCells
 
+#: Gaps below this fraction of the widest passage's narrowest gap are closed: what they carry, a
+#: part in 1e9 of that passage, is beyond the precision of the equations.
+CLOSED_BELOW = 1e-3
+#: Fraction of the flow that the flow channels are said to carry.
+CHANNEL_FLOW = 0.9
 #: Largest error of a flow that the imbalance of its cells may make, a fraction of the flow.
 MAX_IMBALANCE = 1e-6
 #: Such an error at which iterative refinement ends, and its steps.
 AIMED_IMBALANCE = 1e-8
 REFINEMENTS = 2
+
+
+def hydraulic_aperture(transmissivity: ArrayLike) -> np.ndarray:
+    """Hydraulic aperture h_h = (12 T)^(1/3), mm, of a transmissivity T, mm3."""
+    return np.cbrt(12 * np.asarray(transmissivity))
+
+
+@dataclass(frozen=True, eq=False)
+class Flow:
+    """Flow through a joint along one axis, per unit viscosity.
+
+    Attributes
+    ----------
+    transmissivity : float
+        T = h_h^3 / 12, mm3: flow per width, pressure gradient and inverse viscosity. 0 where the
+        gap does not percolate.
+    imbalance : float
+        Bound on its relative error by the mass balance of the cells.
+    critical_gap : float
+        The largest gap such that a path of gaps no smaller joins both ends, mm; 0 without a path.
+    flux : (ny, nx) ndarray
+        Flow per width in each cell over the mean flow per width of the window.
+    pressure : (ny, nx) ndarray
+        From 1 to 0; NaN where no path joins a cell to both ends.
+    """
+
+    transmissivity: float
+    imbalance: float
+    critical_gap: float
+    flux: np.ndarray
+    pressure: np.ndarray
+
+    @property
+    def hydraulic_aperture(self) -> float:
+        """h_h of the transmissivity, mm."""
+        return float(hydraulic_aperture(self.transmissivity))
+
+    @property
+    def channel_fraction(self) -> float:
+        """Smallest fraction of the window that carries :data:`CHANNEL_FLOW` of the flow."""
+        flux = np.sort(self.flux, axis=None)[::-1]
+        total = flux.sum()
+        if not total > 0:
+            return np.nan
+        return (int(np.searchsorted(flux.cumsum(), CHANNEL_FLOW * total)) + 1) / flux.size
 
 
 class FlowNotConverged(RuntimeError):
@@ -33,51 +87,30 @@ class FlowNotConverged(RuntimeError):
         return type(self), (self.reason, self.imbalance)
 
 
-def joined_cells(open_cells: np.ndarray, inlet: np.ndarray, outlet: np.ndarray) -> np.ndarray:
-    """Open cells that a path of open cells joins to both ends, (ny, nx) bool.
-
-    Parameters
-    ----------
-    open_cells, inlet, outlet : (ny, nx) bool ndarray
-        Open cells, and those of them at each end.
-    """
-    labels, n = ndimage.label(open_cells)
-    joined = np.zeros(n + 1, bool)
-    joined[np.intersect1d(labels[inlet], labels[outlet])] = True
-    joined[0] = False
-    return joined[labels]
-
-
-def solve_network(
-    conductivity: np.ndarray,
+def network_flow(
+    gap: np.ndarray,
     ends: np.ndarray,
     spacing: tuple[float, float],
-    *,
-    cholmod: bool | None = None,
-) -> tuple[float, float, np.ndarray, np.ndarray]:
-    """Flow under a pressure of 1 at the inlet and 0 at the outlet.
+    length: float,
+    width: float,
+    cholmod: bool | None,
+) -> Flow:
+    """Flow under a pressure of 1 at the inlet and 0 at the outlet, by the local cubic law.
 
     Parameters
     ----------
-    conductivity : (ny, nx) ndarray
-        Of the cells, of the order of 1 at most, 0 where closed; a path joins both ends.
+    gap : (ny, nx) ndarray
+        g, mm, 0 where closed.
     ends : (2, ny, nx) ndarray
         Conductance of a cell to the inlet and to the outlet over its conductivity, 0 inside.
     spacing : (float, float)
         Sides (dy, dx) of a cell, mm.
-    cholmod : bool, optional
+    length : float
+        Of the parallel plates of the same flow, in widths.
+    width : float
+        Of the mean flux, mm.
+    cholmod : bool or None
         As of :func:`flow.cholesky.factorised`.
-
-    Returns
-    -------
-    rate : float
-        Flow per pressure difference.
-    imbalance : float
-        Bound on the relative error of ``rate`` by the imbalance of the cells.
-    flux : (ny, nx) ndarray
-        Flow per width in the cells, from the flows through their faces.
-    pressure : (ny, nx) ndarray
-        NaN in cells that no path joins to both ends.
 
     Raises
     ------
@@ -91,9 +124,16 @@ def solve_network(
     passages elsewhere are. With r the imbalance of the cells, the outflow is off by sum(r d) of the
     exact d, which is between 0 and 1: sum(abs(r)) bounds its error whatever solver gave p.
     """
-    cells = joined_cells(conductivity > 0, *(ends > 0))
+    critical = critical_gap(gap, *(ends > 0))
+    if not critical:
+        nothing = np.zeros_like(gap)
+        return Flow(0.0, 0.0, 0.0, nothing, np.full_like(nothing, np.nan))
+    # Over the widest gap: apertures cubed in mm would leave the range of the factors.
+    widest = gap.max()
+    relative = np.where(gap >= CLOSED_BELOW * critical, gap / widest, 0.0)
+    cells = joined_cells(relative > 0, *(ends > 0))
     try:
-        network = RedBlackCells(conductivity, ends, cells, spacing, cholmod)
+        network = RedBlackCells(relative * relative * relative, ends, cells, spacing, cholmod)
         p = network.solve(network.ends[0])
         solution = np.stack([p, 1 - p])
         for step in range(REFINEMENTS + 1):
@@ -113,9 +153,68 @@ def solve_network(
         raise FlowNotConverged("the passages differ too much in width", error)
     dy, dx = spacing
     # A cell at an end has the flow of that end beside that of its face.
-    p, flux = solution[0], np.hypot(passing[0] / dx, passing[1] / dy) / 2 + flows.sum(axis=0) / (2 * dy)
-    of_cells = (np.append(one, none)[network.numbers] for one, none in ((flux, 0.0), (p, np.nan)))
-    return float(outflow), error, *of_cells
+    flux = np.hypot(passing[0] / dx, passing[1] / dy) / 2 + flows.sum(axis=0) / (2 * dy)
+    flux, pressure = (
+        np.append(one, outside)[network.numbers]
+        for one, outside in ((flux, 0.0), (solution[0], np.nan))
+    )
+    transmissivity = float(outflow) * length * widest**3 / 12
+    return Flow(transmissivity, error, critical, flux * (width / float(outflow)), pressure)
+
+
+def joined_cells(open_cells: np.ndarray, inlet: np.ndarray, outlet: np.ndarray) -> np.ndarray:
+    """Open cells that a path of open cells joins to both ends, (ny, nx) bool.
+
+    Parameters
+    ----------
+    open_cells, inlet, outlet : (ny, nx) bool ndarray
+        Open cells, and those of them at each end.
+    """
+    labels, n = ndimage.label(open_cells)
+    joined = np.zeros(n + 1, bool)
+    joined[np.intersect1d(labels[inlet], labels[outlet])] = True
+    joined[0] = False
+    return joined[labels]
+
+
+@njit(cache=True)
+def critical_gap(gap: np.ndarray, inlet: np.ndarray, outlet: np.ndarray) -> float:
+    """Narrowest gap of the widest passage between both ends, mm; 0 without a passage.
+
+    Parameters
+    ----------
+    gap : (ny, nx) ndarray
+        mm, 0 where closed.
+    inlet, outlet : (ny, nx) bool ndarray
+        Cells at the ends.
+    """
+    ny, nx = gap.shape
+    unseen, waiting, n = gap > 0, np.empty(gap.size, np.int32), 0
+    # Cells below the level wait for it to fall to the widest of them.
+    level, below = np.inf, [(0.0, 0) for _ in range(0)]
+    for row in range(ny):
+        for column in range(nx):
+            if inlet[row, column] and unseen[row, column]:
+                unseen[row, column] = False
+                heappush(below, (-gap[row, column], row * nx + column))
+    while below:
+        height, waiting[0] = heappop(below)
+        level, n = min(level, -height), 1
+        while n:
+            n -= 1
+            row, column = divmod(waiting[n], nx)
+            if outlet[row, column]:
+                return level
+            for down, right in WAYS:
+                i, j = row + down, column + right
+                if 0 <= i < ny and 0 <= j < nx and unseen[i, j]:
+                    unseen[i, j] = False
+                    if gap[i, j] >= level:
+                        waiting[n] = i * nx + j
+                        n += 1
+                    else:
+                        heappush(below, (-gap[i, j], i * nx + j))
+    return 0.0
 
 
 def _complementary(solution):

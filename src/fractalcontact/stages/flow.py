@@ -21,7 +21,6 @@ from ..flow.aperture import (
     rms_slope,
     zimmerman_bodvarsson_aperture,
 )
-from ..flow.cubic_law import hydraulic_aperture
 from ..flow.curves import (
     WAYS,
     axes_of,
@@ -29,6 +28,7 @@ from ..flow.curves import (
     percolation_pressures,
     transmissivity_of,
 )
+from ..flow.network import hydraulic_aperture
 from ..mechanics.joint import prefractal, sliding_axis
 from ..mechanics.jrc import profile_roughness
 from ..mechanics.loading import JointLoading
@@ -58,7 +58,11 @@ _OF_WAY: dict[str, tuple[Dims, str, str]] = {
         "mm3",
         "upper bound of T: strips across the flow, cells side by side",
     ),
-    "gap_correlation_length": (_LOADS, "mm", "lag at which the correlation of the gap falls to 1/e"),
+    "gap_correlation_length": (
+        _LOADS,
+        "mm",
+        "lag at which the correlation of the gap falls to 1/e",
+    ),
     "hydraulic_ratio": (_LOADS, "1", "hydraulic aperture over the mean gap"),
     "transmissivity_grid_error": (
         _LOADS,

@@ -1,4 +1,4 @@
-"""Hydraulic against mechanical aperture with the empirical laws, and transmissivity over load."""
+"""Hydraulic against mechanical aperture with empirical laws; transmissivity over load, offset."""
 
 from typing import Any
 
@@ -9,6 +9,7 @@ from xarray import DataTree
 
 from ...core.estimate import Estimate, names_of
 from ...core.subject import Subject
+from ..kit.axes import label_short_span, offset_axis
 from ..kit.caption import caption
 from ..kit.drawing import WIDTH, Drawing, colour_of
 from ..kit.empty import say_empty
@@ -18,14 +19,18 @@ from ..kit.panel import Panel, table_of
 from ..kit.sizes import plain_decades
 from ..kit.titles import headline
 from ..kit.words import NOMINAL_PRESSURE, place
-from ._flow_ways import WAYS, open_states
 
-TITLE = "Hydraulic aperture and transmissivity against load"
+TITLE = "Hydraulic aperture, and transmissivity against load and offset"
 SUBJECT = "specimen"
 NEEDS = ("specimens", "closure", "flow", "measured")
 ORDER = 46
 SECTION = "flow"
 
+#: Ways of the flow with their style.
+_WAYS: dict[str, dict[str, Any]] = {
+    "along": {"color": colour_of(0), "marker": "o"},
+    "across": {"color": colour_of(1), "marker": "s", "mfc": "none"},
+}
 _LAWS: dict[str, tuple[str, dict[str, Any]]] = {
     "zimmerman_aperture": ("Zimmerman and Bodvarsson", {"color": colour_of(2), "ls": "--"}),
     "barton_aperture": ("Barton", {"color": colour_of(3), "ls": "-."}),
@@ -37,27 +42,31 @@ _NO_FLOW = "no load has a path of open gap from side to side"
 
 
 def draw(atlas: DataTree, name: str) -> Drawing:
-    """Apertures and transmissivities at the reported offset."""
+    """Apertures and transmissivities at the reported offset, and transmissivity at all offsets."""
     subject = Subject.of(atlas, name)
     flow, closure = subject.states("flow"), subject.states("closure")
     states = flow.assign(mean_gap=closure["mean_gap"])
     figure = Figure(figsize=(WIDTH, 4.0))
-    titles = ("hydraulic against mean aperture", "transmissivity against pressure")
-    a, b = (Panel(*one) for one in zip(figure.subplots(1, 2), "ab", titles, strict=True))
+    titles = ("hydraulic aperture", "transmissivity", "$T$ under the reference load")
+    axes = figure.subplots(1, 3 if subject.direction != "none" else 2)
+    panels = [Panel(*one) for one in zip(axes, "abc", titles, strict=False)]
+    a, b, *offsets = panels
     _draw_apertures(a, states)
     _draw_branches(b, flow)
     draw_tests(b, subject, "flow")
+    for c in offsets:
+        _draw_offsets(c, subject["flow"])
     legends_below(figure, entries(a.axes), entries(b.axes))
     headline(figure, subject.label, place(subject.direction, subject.offset))
     words = {"tests": test_words(subject, "flow"), **_words(subject, states)}
-    return Drawing(figure, table_of(a, b), caption(__name__, **words))
+    return Drawing(figure, table_of(*panels), caption(__name__, **words))
 
 
 def _draw_apertures(panel: Panel, states: xr.Dataset) -> None:
     kept = ("nominal_pressure", "critical_gap_along", "channel_fraction_along")
-    for way, style in WAYS.items():
+    for way, style in _WAYS.items():
         panel.curve(
-            open_states(states, f"hydraulic_aperture_{way}"),
+            _open(states, f"hydraulic_aperture_{way}"),
             "mean_gap",
             f"hydraulic_aperture_{way}",
             keep=kept if way == "along" else (),
@@ -69,7 +78,7 @@ def _draw_apertures(panel: Panel, states: xr.Dataset) -> None:
     if states[names_of("hydraulic_aperture_along")[1]].notnull().any():
         panel.axes.plot([], [], "|", color="0.4", ms=10, label="95 % interval, mean over windows")
     # Laws go on where no path is left: they are drawn beside what was computed.
-    flows = sum(states[f"transmissivity_{way}"].fillna(0) for way in WAYS)
+    flows = sum(states[f"transmissivity_{way}"].fillna(0) for way in _WAYS)
     beside = states.isel(normal_force=np.flatnonzero(flows > 0))
     for law, (words, style) in _LAWS.items():
         if beside[law].notnull().any():
@@ -85,9 +94,9 @@ def _draw_apertures(panel: Panel, states: xr.Dataset) -> None:
 
 
 def _draw_branches(panel: Panel, flow: xr.Dataset) -> None:
-    for way, style in WAYS.items():
+    for way, style in _WAYS.items():
         variable = f"branch_transmissivity_{way}"
-        branches = open_states(flow, variable)
+        branches = _open(flow, variable)
         load, reload = (branches[variable].sel(branch=one) for one in ("load", "reload"))
         # Where nothing yields, there is one curve.
         crushed = bool((reload.notnull() & (reload != load)).any())
@@ -108,25 +117,45 @@ def _draw_branches(panel: Panel, flow: xr.Dataset) -> None:
     panel.axes.set_ylabel("transmissivity $T = h_h^3/12$ (mm³)")
 
 
+def _draw_offsets(panel: Panel, flow: xr.Dataset) -> None:
+    for way, style in _WAYS.items():
+        variable = f"offset_transmissivity_{way}"
+        keep = ("offset_mean_gap",) if way == "along" else ()
+        panel.curve(_open(flow, variable), "offset", variable, keep=keep, ls="-", **style)
+    if not (flow["offset_transmissivity_along"] > 0).any():
+        say_empty(panel.axes, "no offset has a path of open gap from side to side")
+    panel.axes.set_yscale("log")
+    label_short_span(panel.axes.yaxis)
+    offset_axis(panel.axes, flow["offset"].values)
+
+
+def _open(data: xr.Dataset, name: str) -> xr.Dataset:
+    """Data without the zeros of a variable: a logarithmic axis has none."""
+    return data.assign({name: data[name].where(data[name] > 0).assign_attrs(data[name].attrs)})
+
+
 def _words(subject: Subject, states: xr.Dataset) -> dict[str, Any]:
     """Values of the caption."""
     at = states.isel(normal_force=subject.reported.reference)
-    flow, ratio = float(at["transmissivity_along"]), float(at["hydraulic_ratio_along"])
-    reload = at["branch_transmissivity_along"].sel(branch="reload")
     window = Estimate.read(at, "transmissivity_along")
-    parts = {"grid": "grid_error", "closing": "separation_error"}
+    # Where nothing flows, neither does a part of it.
+    flow = float(window.value) if window.value > 0 else np.nan
+    offsets = subject["flow"]["offset_transmissivity_along"]
+    first, last = offsets.where(offsets > 0).values[[0, -1]]
     return {
         "pressure": float(at["nominal_pressure"]),
         "transmissivity": flow,
         "aperture": float(at["hydraulic_aperture_along"]),
-        "ratio": ratio,
+        "ratio": float(at["hydraulic_ratio_along"]),
         "flows": flow > 0,
         "window": [window.low, window.high],
-        "reload": float(reload / flow) if flow > 0 else np.nan,
+        "reload": float(at["branch_transmissivity_along"].sel(branch="reload") / flow),
         "closed": float(states["first_closed_pressure_along"]),
         "opened": float(states["last_open_pressure_along"]),
-        **{
-            name: float(at[f"transmissivity_{part}_along"]) / flow if flow > 0 else np.nan
-            for name, part in parts.items()
-        },
+        "grid": float(at["transmissivity_grid_error_along"]) / flow,
+        "closing": float(at["transmissivity_separation_error_along"]) / flow,
+        "walls": int((offsets == 0).sum()),
+        "offsets": offsets.size,
+        "last_offset": float(offsets["offset"][-1]),
+        "widening": float(last / first),
     }
