@@ -9,7 +9,7 @@ import pandas as pd
 from places import ROOT
 from spreadsheets import FORMULA, FORMULAS, formulas_in
 
-from fractalcontact.core.tables import write_table
+from fractalcontact.core.tables import table_text, write_table
 
 
 def test_no_text_is_one_that_a_spreadsheet_runs_and_all_others_come_back(tmp_path):
@@ -62,3 +62,18 @@ def test_no_other_function_writes_a_table():
     assert [path.relative_to(ROOT).as_posix() for path in found] == [
         "src/fractalcontact/core/tables.py"
     ]
+
+
+def test_a_table_of_floats_alone_is_written_as_pandas_would():
+    rng = np.random.default_rng(1)
+    values = rng.normal(size=(50, 2)) * 10.0 ** rng.integers(-320, 300, (50, 2))
+    table = pd.DataFrame(values, columns=["x", "=1+1"])
+    table["single"] = rng.random(50).astype(np.float32)
+    table.iloc[3:8, 0] = [np.nan, np.inf, -np.inf, -0.0, 1e22]
+    expected = table.rename(columns={"=1+1": "'=1+1"}).to_csv(
+        index=False, float_format="%.8g", lineterminator="\n"
+    )
+    assert table_text(table) == expected
+    alone = pd.DataFrame({"x": [1.0, np.nan]})
+    assert table_text(alone) == alone.to_csv(index=False, lineterminator="\n").replace("1.0", "1")
+    assert table_text(table[:0]) == "x,'=1+1,single\n"

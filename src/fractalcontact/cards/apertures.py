@@ -16,37 +16,22 @@ from ..core.tables import write_table
 SAME = 1e-6
 
 
-def with_solved_gaps(contact: xr.Dataset, results: Path | str, name: str) -> xr.Dataset:
-    """Stage contact with the gaps of all loads as solved, where their states are in the results.
-
-    Parameters
-    ----------
-    contact : xr.Dataset
-        Of the stage of this name, whose ``map_gap`` an atlas rounds, under some of the loads.
-    results : path-like
-        Folder of the results of a study.
-    name : str
-        The specimen.
-    """
-    for path in sorted(Path(results).glob(f"contact/{name}/*.nc")):
-        with xr.open_dataset(path) as part:
-            if "map_gap" in part:
-                gaps = part["map_gap"].values  # read while the file is open
-                return contact.assign(map_gap=contact["map_gap"].copy(data=gaps))
-    return contact
-
-
-def aperture_at(contact: xr.Dataset, pressure: float | None, name: str) -> xr.DataArray:
+def aperture_at(
+    contact: xr.Dataset, pressure: float | None, name: str, results: Path | str | None = None
+) -> xr.DataArray:
     """Aperture map at a pressure, 0 in contact.
 
     Parameters
     ----------
     contact : xr.Dataset
-        As :func:`with_solved_gaps` gives it.
+        Of the stage of this name, whose ``map_gap`` an atlas rounds, under some of the loads.
     pressure : float or None
         MPa; None for the reference load.
     name : str
         The specimen.
+    results : path-like, optional
+        Folder of the results of a study, for the gaps of all loads as solved: they are in its
+        folder ``contact``, if that is there.
 
     Returns
     -------
@@ -59,7 +44,7 @@ def aperture_at(contact: xr.Dataset, pressure: float | None, name: str) -> xr.Da
     InputError
         If the pressure lies outside those whose maps are kept.
     """
-    maps = contact["map_gap"].dropna("normal_force", how="all")
+    maps = _gaps(contact, results, name).dropna("normal_force", how="all")
     known = maps["nominal_pressure"].values
     if pressure is None:
         force = contact.attrs["map_load"]
@@ -93,6 +78,15 @@ def aperture_at(contact: xr.Dataset, pressure: float | None, name: str) -> xr.Da
         "x": ("x", x, cf_attrs("mm", "x of the node") | {"axis": "X"}),
     }
     return xr.DataArray(values.astype(np.float32), coords, ("y", "x"), "aperture", attrs)
+
+
+def _gaps(contact, results, name):
+    """Gaps as solved where their states are kept, else those of the atlas."""
+    for path in sorted(Path(results).glob(f"contact/{name}/*.nc")) if results else ():
+        with xr.open_dataset(path) as part:
+            if "map_gap" in part:
+                return contact["map_gap"].copy(data=part["map_gap"].values)
+    return contact["map_gap"]
 
 
 def aperture_at_points(aperture: xr.DataArray, path: Path | str) -> pd.DataFrame:
@@ -141,22 +135,12 @@ def write_aperture(aperture: xr.DataArray | pd.DataFrame, path: Path | str) -> N
         raise InputError(f"{path}: {what}: write a file that ends in {' or '.join(endings)}")
     if path.suffix == ".nc":
         write(aperture.to_dataset().assign_attrs(Conventions="CF-1.8"), path)
-        return
-    if of_points:
-        write_table(path, aperture[["x", "y", "aperture"]])
-        return
-    with atomic_write(path) as file:
-        file.write_bytes(_vtk(aperture) if path.suffix == ".vtk" else _csv(aperture))
-
-
-def _csv(aperture: xr.DataArray) -> bytes:
-    """The table that :func:`core.tables.table_text` makes of a map, in a third of its time."""
-    x, y = ([f"{one:.8g}," for one in aperture[axis].values] for axis in "xy")
-    rows = zip(y, aperture.values.tolist(), strict=True)
-    cells = ((f"{a}{b}", gap) for b, row in rows for a, gap in zip(x, row, strict=True))
-    # A missing aperture, which equals nothing, is an empty cell.
-    of_nodes = (f"{at}{gap:.8g}" if gap == gap else at for at, gap in cells)
-    return "\n".join(("x,y,aperture", *of_nodes, "")).encode()
+    elif path.suffix == ".vtk":
+        with atomic_write(path) as file:
+            file.write_bytes(_vtk(aperture))
+    else:
+        table = aperture if of_points else aperture.to_dataframe().reset_index()
+        write_table(path, table[["x", "y", "aperture"]])
 
 
 def _vtk(aperture: xr.DataArray) -> bytes:

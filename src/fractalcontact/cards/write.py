@@ -14,7 +14,7 @@ from ..pages.files import APERTURE, APERTURE_ENDINGS, CARD
 from ..pages.templating import write_page
 from ..study.atlas_parts import Trees
 from ..study.stages import STAGES as ALL_STAGES
-from .apertures import aperture_at, with_solved_gaps, write_aperture
+from .apertures import aperture_at, write_aperture
 from .card import FORM, STAGES, card_of, made_of
 from .page import page_of
 
@@ -48,7 +48,7 @@ def write_cards(path: Path | str, folder: Path | str, apertures: bool = True) ->
         if trees.parts or not apertures:
             continue
         contact = trees.root[f"contact/{name}"].to_dataset()[["map_gap"]]
-        aperture = aperture_at(with_solved_gaps(contact, folder, name), None, name)
+        aperture = aperture_at(contact, None, name, folder)
         for ending in APERTURE_ENDINGS:
             write_aperture(aperture, Path(folder) / APERTURE.format(specimen=name, ending=ending))
     return trees.names

@@ -10,12 +10,7 @@ import argparse
 import sys
 from collections.abc import Sequence
 
-from ..cards.apertures import (
-    aperture_at,
-    aperture_at_points,
-    with_solved_gaps,
-    write_aperture,
-)
+from ..cards.apertures import aperture_at, aperture_at_points, write_aperture
 from ..core.errors import InputError, said_in_one_line
 from ..core.units import quantity
 from ..study.atlas_parts import open_atlas
@@ -39,8 +34,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
             f"{', '.join(atlas.specimens) or 'none'}"
         )
     contact = atlas[f"contact/{given.specimen}"]
-    contact = with_solved_gaps(contact, given.results, given.specimen)
-    aperture = aperture_at(contact, pressure, given.specimen)
+    aperture = aperture_at(contact, pressure, given.specimen, given.results)
     points = given.points and aperture_at_points(aperture, given.points)
     write_aperture(points if given.points else aperture, given.out)
     sys.stdout.write(f"{given.out}: aperture in mm, {aperture.attrs['source']}\n")
