@@ -14,7 +14,6 @@ from fractalcontact.flow.aperture import (
 )
 from fractalcontact.flow.curves import (
     NO_PATH,
-    axes_of,
     flow_of,
     percolation_pressures,
 )
@@ -82,4 +81,3 @@ def test_a_closed_gap_says_why_nothing_flows():
     flow, reason = flow_of(np.zeros((4, 4)), (1.0, 1.0), "x")
     assert flow.transmissivity == 0
     assert reason == NO_PATH
-    assert axes_of("y") == {"along": "y", "across": "x"}

@@ -9,7 +9,6 @@ from scipy import ndimage, sparse
 
 from fractalcontact.flow import red_black
 from fractalcontact.flow.aperture import transmissivity_bounds
-from fractalcontact.flow.cholesky import HAS_CHOLMOD, factorised
 from fractalcontact.flow.cubic_law import plane_flow, radial_flow
 from fractalcontact.flow.network import (
     AIMED_IMBALANCE,
@@ -18,10 +17,14 @@ from fractalcontact.flow.network import (
     joined_cells,
 )
 
-SOLVERS = [
-    False,
-    pytest.param(True, marks=pytest.mark.skipif(not HAS_CHOLMOD, reason="no cvxopt")),
-]
+
+@pytest.fixture(params=["CHOLMOD", "SuperLU"])
+def library(request, monkeypatch):
+    """Either library that solves the equations."""
+    if request.param == "SuperLU":
+        monkeypatch.setattr(red_black, "cvxopt", None)
+    elif red_black.cvxopt is None:
+        pytest.skip("no cvxopt")
 
 
 def contact_field(seed, shape=(24, 30), smooth=2.0, level=0.35):
@@ -61,10 +64,10 @@ def by_dense_equations(gap, spacing):
 # -- exact solutions -------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("cholmod", SOLVERS)
+@pytest.mark.usefixtures("library")
 @pytest.mark.parametrize("axis", "xy")
-def test_parallel_plates_have_their_own_gap_as_hydraulic_aperture(axis, cholmod):
-    flow = plane_flow(np.full((7, 9), 0.2), (0.1, 0.3), axis, cholmod=cholmod)
+def test_parallel_plates_have_their_own_gap_as_hydraulic_aperture(axis):
+    flow = plane_flow(np.full((7, 9), 0.2), (0.1, 0.3), axis)
     assert flow.hydraulic_aperture == pytest.approx(0.2, rel=1e-12)
     assert flow.critical_gap == 0.2
     np.testing.assert_allclose(flow.flux, 1.0, rtol=1e-12)
@@ -121,12 +124,12 @@ def test_radial_flow_takes_oblong_cells():
 # -- an independent solution, bounds and symmetries ------------------------------------------------
 
 
-@pytest.mark.parametrize("cholmod", SOLVERS)
-def test_random_fields_with_contact_agree_with_dense_equations(cholmod):
+@pytest.mark.usefixtures("library")
+def test_random_fields_with_contact_agree_with_dense_equations():
     for seed in range(ensemble("fields solved densely")):
         gap = contact_field(seed, (14, 17), level=0.8)
         expected = by_dense_equations(gap, (0.3, 0.2))
-        found = plane_flow(gap, (0.3, 0.2), cholmod=cholmod)
+        found = plane_flow(gap, (0.3, 0.2))
         assert found.transmissivity == pytest.approx(expected, rel=1e-8, abs=1e-13)
         lower, upper = transmissivity_bounds(gap, 1)
         assert lower * (1 - 1e-12) <= found.transmissivity <= upper * (1 + 1e-12)
@@ -169,11 +172,11 @@ def test_a_bridge_of_one_cell_carries_the_flow_of_the_bridge():
     assert 12 * flow.transmissivity == pytest.approx(1e-6, rel=1e-4)
 
 
-@pytest.mark.parametrize("cholmod", SOLVERS)
-def test_gaps_a_million_times_narrower_are_solved(cholmod):
+@pytest.mark.usefixtures("library")
+def test_gaps_a_million_times_narrower_are_solved():
     gap = np.ones((9, 12))
     gap[:, 6] = 1e-6
-    flow = plane_flow(gap, (1, 1), cholmod=cholmod)
+    flow = plane_flow(gap, (1, 1))
     assert 12 * flow.transmissivity == pytest.approx(12e-18, rel=1e-9)
 
 
@@ -225,21 +228,19 @@ def test_radii_that_do_not_fit_are_refused(hole, rim):
 
 
 def test_a_wrong_solution_is_refused(monkeypatch):
-    def spoilt(*equations, **solving):
-        return lambda right: 1.7 * factorised(*equations, **solving)(right)
-
-    monkeypatch.setattr(red_black, "factorised", spoilt)
+    solve = red_black.RedBlackCells.solve
+    monkeypatch.setattr(red_black.RedBlackCells, "solve", lambda *of: 1.7 * solve(*of))
     with pytest.raises(FlowNotConverged, match="flow not solved") as refused:
         plane_flow(np.ones((8, 8)), (1, 1))
     again = pickle.loads(pickle.dumps(refused.value))
     assert (again.reason, again.imbalance) == (refused.value.reason, refused.value.imbalance)
 
 
-@pytest.mark.parametrize("cholmod", SOLVERS)
-def test_singular_equations_are_refused(cholmod):
+@pytest.mark.usefixtures("library")
+def test_singular_equations_are_refused():
     lower = sparse.coo_array(np.tril([[1.0, -1.0], [-1.0, 1.0]]))
     try:
-        found = factorised(lower, cholmod=cholmod)(np.ones(2))
+        found = red_black._factorised(lower)(np.ones(2))
     except ArithmeticError:
         return
     assert not np.isfinite(found).all() or np.abs(found).max() > 1e12

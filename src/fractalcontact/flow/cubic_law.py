@@ -13,9 +13,7 @@ from numpy.typing import ArrayLike
 from .network import Flow, network_flow
 
 
-def plane_flow(
-    gap: ArrayLike, spacing: tuple[float, float], axis: str = "x", *, cholmod: bool | None = None
-) -> Flow:
+def plane_flow(gap: ArrayLike, spacing: tuple[float, float], axis: str = "x") -> Flow:
     """Flow through a rectangular window from one side to the opposite one.
 
     Parameters
@@ -26,8 +24,6 @@ def plane_flow(
         Sides (dy, dx) of a cell, mm.
     axis : {"x", "y"}
         Along which the pressure falls.
-    cholmod : bool, optional
-        As of :func:`flow.cholesky.factorised`.
 
     Raises
     ------
@@ -37,8 +33,8 @@ def plane_flow(
         If a gap is negative or no gap of the window is known.
     """
     if axis == "y":
-        turned = plane_flow(np.transpose(gap), spacing[::-1], cholmod=cholmod)
-        return replace(turned, flux=turned.flux.T, pressure=turned.pressure.T)
+        turned = plane_flow(np.transpose(gap), spacing[::-1])
+        return replace(turned, flux=turned.flux.T)
     opening = _checked(gap)
     (ny, nx), (dy, dx) = opening.shape, spacing
     ends = np.zeros((2, 1, nx))
@@ -46,7 +42,7 @@ def plane_flow(
     ends[0, 0, 0] = ends[1, 0, -1] = 2 * dy / dx
     ends = np.broadcast_to(ends, (2, ny, nx))
     width = ny * dy
-    return network_flow(opening, ends, spacing, nx * dx / width, width, cholmod)
+    return network_flow(opening, ends, spacing, nx * dx / width, width)
 
 
 def radial_flow(
@@ -54,8 +50,6 @@ def radial_flow(
     spacing: tuple[float, float],
     hole: float,
     rim: float,
-    *,
-    cholmod: bool | None = None,
 ) -> Flow:
     """Flow from a hole in the middle of a disc to its rim, as laboratories test cores.
 
@@ -67,8 +61,6 @@ def radial_flow(
         Sides (dy, dx) of a cell, mm.
     hole, rim : float
         Radii, mm.
-    cholmod : bool, optional
-        As of :func:`flow.cholesky.factorised`.
 
     Returns
     -------
@@ -96,36 +88,30 @@ def radial_flow(
         raise ValueError(f"hole {hole:g} mm and rim {rim:g} mm: expected 0 < hole < rim in the gap")
     radius = np.hypot(y[:, np.newaxis], x)
     between = (radius > hole) & (radius < rim)
-    steps = _steps_to_circles(y, x, spacing, hole, rim)
-    sides = np.array([dy / dx, dy / dx, dx / dy, dx / dy])[:, np.newaxis, np.newaxis]
-    over = np.divide(sides, steps, where=steps > 0, out=np.zeros_like(steps))
-    opening, ends = np.where(between, opening, 0.0), over.sum(axis=1) * between
+    ends = _ends_at_circles(y[:, np.newaxis], x, spacing, (hole, rim)) * between
+    opening = np.where(between, opening, 0.0)
     around = 2 * np.pi
     length = np.log(rim / hole) / around
-    return network_flow(opening, ends, spacing, length, around * hole, cholmod)
+    return network_flow(opening, ends, spacing, length, around * hole)
 
 
 #: Smallest part of a cell that a circle cuts off: closer to it, a cell is on it.
 _MIN_STEP = 1e-3
 
 
-def _steps_to_circles(y, x, spacing, hole, rim):
-    """Cells to the circles along +x, -x, +y, -y, (circle, way, ny, nx), 0 where over one cell."""
+def _ends_at_circles(y, x, spacing, radii):
+    """Conductances over conductivity of cells to the hole and to the rim, (2, ny, nx)."""
     dy, dx = spacing
-    steps = np.zeros((2, 4, y.size, x.size))
-    for way, (step, along, across) in enumerate(
-        (sign * step, *lines)
-        for step, *lines in ((dx, x, y[:, np.newaxis]), (dy, y[:, np.newaxis], x))
-        for sign in (1, -1)
-    ):
-        for circle, radius in enumerate((hole, rim)):
-            half = np.sqrt(np.maximum(radius**2 - across**2, 0.0))
-            # The hole lies towards the middle, the rim away from it.
-            end = np.sign(step) * half * (-1 if circle == 0 else 1)
-            part = (end - along) / step
-            crossed = (half > 0) & (part > 0) & (part <= 1)
-            steps[circle, way] = np.where(crossed, np.maximum(part, _MIN_STEP), 0.0)
-    return steps
+    ends = np.zeros((2, y.size, x.size))
+    for end, radius, side in zip(ends, radii, (-1, 1), strict=True):
+        for down, right in ((0, dx), (0, -dx), (dy, 0), (-dy, 0)):
+            # A step enters the hole by its near side, and leaves the rim by its far one.
+            square, along = down**2 + right**2, y * down + x * right
+            root = along**2 - square * (y**2 + x**2 - radius**2)
+            part = (side * np.sqrt(np.maximum(root, 0)) - along) / square
+            crossed = (root > 0) & (part > 0) & (part <= 1)
+            end += np.where(crossed, dy * dx / square / np.maximum(part, _MIN_STEP), 0.0)
+    return ends
 
 
 def _checked(gap: ArrayLike) -> np.ndarray:

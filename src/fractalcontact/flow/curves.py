@@ -16,11 +16,6 @@ WAYS = ("along", "across")
 NO_PATH = "no path of open cells joins both sides"
 
 
-def axes_of(axis: str) -> dict[str, str]:
-    """Axis of the flow by way, of sliding along ``axis``."""
-    return dict(zip(WAYS, (axis, "y" if axis == "x" else "x"), strict=True))
-
-
 def flow_of(gap: np.ndarray, spacing: tuple[float, float], axis: str) -> tuple[Flow, str]:
     """Flow along an axis, and why it is zero or missing.
 
@@ -38,8 +33,7 @@ def flow_of(gap: np.ndarray, spacing: tuple[float, float], axis: str) -> tuple[F
     try:
         flow = plane_flow(gap, spacing, axis)
     except FlowNotConverged as error:
-        nothing = np.full(gap.shape, np.nan)
-        return Flow(np.nan, error.imbalance, np.nan, nothing, nothing), str(error)
+        return Flow(np.nan, error.imbalance, np.nan, np.full(gap.shape, np.nan)), str(error)
     return flow, "" if flow.transmissivity > 0 else NO_PATH
 
 

@@ -43,15 +43,12 @@ class Flow:
         The largest gap such that a path of gaps no smaller joins both ends, mm; 0 without a path.
     flux : (ny, nx) ndarray
         Flow per width in each cell over the mean flow per width of the window.
-    pressure : (ny, nx) ndarray
-        From 1 to 0; NaN where no path joins a cell to both ends.
     """
 
     transmissivity: float
     imbalance: float
     critical_gap: float
     flux: np.ndarray
-    pressure: np.ndarray
 
     @property
     def hydraulic_aperture(self) -> float:
@@ -93,7 +90,6 @@ def network_flow(
     spacing: tuple[float, float],
     length: float,
     width: float,
-    cholmod: bool | None,
 ) -> Flow:
     """Flow under a pressure of 1 at the inlet and 0 at the outlet, by the local cubic law.
 
@@ -109,8 +105,6 @@ def network_flow(
         Of the parallel plates of the same flow, in widths.
     width : float
         Of the mean flux, mm.
-    cholmod : bool or None
-        As of :func:`flow.cholesky.factorised`.
 
     Raises
     ------
@@ -126,14 +120,13 @@ def network_flow(
     """
     critical = critical_gap(gap, *(ends > 0))
     if not critical:
-        nothing = np.zeros_like(gap)
-        return Flow(0.0, 0.0, 0.0, nothing, np.full_like(nothing, np.nan))
+        return Flow(0.0, 0.0, 0.0, np.zeros_like(gap))
     # Over the widest gap: apertures cubed in mm would leave the range of the factors.
     widest = gap.max()
     relative = np.where(gap >= CLOSED_BELOW * critical, gap / widest, 0.0)
     cells = joined_cells(relative > 0, *(ends > 0))
     try:
-        network = RedBlackCells(relative * relative * relative, ends, cells, spacing, cholmod)
+        network = RedBlackCells(relative * relative * relative, ends, cells, spacing)
         p = network.solve(network.ends[0])
         solution = np.stack([p, 1 - p])
         for step in range(REFINEMENTS + 1):
@@ -154,12 +147,8 @@ def network_flow(
     dy, dx = spacing
     # A cell at an end has the flow of that end beside that of its face.
     flux = np.hypot(passing[0] / dx, passing[1] / dy) / 2 + flows.sum(axis=0) / (2 * dy)
-    flux, pressure = (
-        np.append(one, outside)[network.numbers]
-        for one, outside in ((flux, 0.0), (solution[0], np.nan))
-    )
-    transmissivity = float(outflow) * length * widest**3 / 12
-    return Flow(transmissivity, error, critical, flux * (width / float(outflow)), pressure)
+    flux = np.append(flux, 0.0)[network.numbers] * (width / float(outflow))
+    return Flow(float(outflow) * length * widest**3 / 12, error, critical, flux)
 
 
 def joined_cells(open_cells: np.ndarray, inlet: np.ndarray, outlet: np.ndarray) -> np.ndarray:

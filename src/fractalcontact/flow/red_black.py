@@ -2,14 +2,21 @@
 
 The star-mesh transform joins the four neighbours of an eliminated cell by conductances a b / sum.
 Equations of half the size remain, and no difference of nearly equal numbers is taken.
+The others are solved by CHOLMOD, which comes with `cvxopt`: that is under the GPL and therefore an
+optional dependency (the extra ``flow``). Without it SuperLU of scipy solves the same equations.
 """
 
 import numpy as np
 from scipy import sparse
+from scipy.sparse.linalg import splu
 
 from roughcontact.kernel_cache import njit
 
-from .cholesky import factorised
+try:
+    import cvxopt
+    import cvxopt.cholmod
+except ImportError:
+    cvxopt = None
 
 #: Steps in rows and columns to the neighbours of a cell: up, left, right, down.
 WAYS = ((-1, 0), (0, -1), (0, 1), (1, 0))
@@ -33,8 +40,6 @@ class RedBlackCells:
         Cells with an equation: of positive conductivity, each joined to an end.
     spacing : (float, float)
         Sides (dy, dx) of a cell, mm.
-    cholmod : bool or None
-        As of :func:`flow.cholesky.factorised`, whose errors it raises.
 
     Attributes
     ----------
@@ -46,6 +51,11 @@ class RedBlackCells:
         Numbers of these; 0 where none is.
     ends : (2, n) ndarray
         Conductances of the cells to the inlet and to the outlet.
+
+    Raises
+    ------
+    ArithmeticError
+        If a pivot is not positive: the equations are singular to the precision of the numbers.
     """
 
     def __init__(
@@ -54,7 +64,6 @@ class RedBlackCells:
         ends: np.ndarray,
         cells: np.ndarray,
         spacing: tuple[float, float],
-        cholmod: bool | None,
     ):
         self.numbers, n_red = _numbered(cells)
         dy, dx = spacing
@@ -71,7 +80,7 @@ class RedBlackCells:
         entries = [np.append(itself, of(*pair)) for of in (np.maximum, np.minimum)]
         values = np.append(diagonal, -later[red, place])
         lower = sparse.coo_array((values, entries), shape=(n_red, n_red))
-        self._solve_red = factorised(lower, cholmod=cholmod) if n_red else np.copy
+        self._solve_red = _factorised(lower) if n_red else np.copy
         each = np.arange(0, self.faces.size + 1, 4)
         self._joins = sparse.csr_array(
             (self.faces.ravel(), self.neighbours.ravel(), each), shape=(len(each) - 1, both.size)
@@ -86,6 +95,42 @@ class RedBlackCells:
         values[:n_red] = self._solve_red(values[:n_red])
         values[n_red:] += self._over * (self._joins @ values)
         return values
+
+
+def _factorised(lower):
+    """Solver of A x = b by the lower triangle of A, its rows eliminated as they are."""
+    return _by_cholmod(lower) if cvxopt else _by_superlu(lower)
+
+
+def _by_cholmod(lower):
+    cholmod, matrix = cvxopt.cholmod, cvxopt.spmatrix(lower.data, *lower.coords, lower.shape)
+    # Else it would compare the order with that of AMD, which takes as long as the factor.
+    stated = cholmod.options
+    cholmod.options = {**stated, "nmethods": 1, "postorder": False}
+    try:
+        factor = cholmod.symbolic(matrix, p=cvxopt.matrix(np.arange(lower.shape[0])))
+    finally:
+        cholmod.options = stated
+    cholmod.numeric(matrix, factor)
+
+    def solve(right: np.ndarray) -> np.ndarray:
+        solution = cvxopt.matrix(right)
+        cholmod.solve(factor, solution)
+        return np.array(solution)[:, 0]
+
+    return solve
+
+
+def _by_superlu(lower):
+    triangle = lower.tocsc()
+    matrix = triangle + sparse.tril(triangle, -1, format="csc").T
+    options = {"SymmetricMode": True}
+    try:
+        return splu(
+            matrix.tocsc(), permc_spec="NATURAL", diag_pivot_thresh=0.0, options=options
+        ).solve
+    except RuntimeError as error:
+        raise ArithmeticError(str(error)) from error
 
 
 @njit(cache=True)

@@ -23,7 +23,6 @@ from ..flow.aperture import (
 )
 from ..flow.curves import (
     WAYS,
-    axes_of,
     numbers_of_flow,
     percolation_pressures,
     transmissivity_of,
@@ -158,7 +157,8 @@ def flow_stages(
     """
     reported = Reported.read(closure)
     loading = JointLoading.of_joint(specimens, joints, reported.direction, settings, solver)
-    axes = axes_of("yx"[sliding_axis(reported.direction)] if loading.slides else "x")
+    across_x = loading.slides and "yx"[sliding_axis(reported.direction)] == "y"
+    axes = dict(zip(WAYS, "yx" if across_x else "xy", strict=True))
     dy, dx = map(float, loading.spacing)
     whole, grid = (_Grid((k * dy, k * dx), axes) for k in (1, reported.resolution))
     states = reported.states(closure)
