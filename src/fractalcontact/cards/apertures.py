@@ -56,15 +56,14 @@ def aperture_at(
             "first and the last, or add it to 'loads' of the study (without the folder 'contact' "
             "of its results, to 'dilatancy_loads')"
         )
-    nearest = int(np.argmin(np.abs(np.log(known / pressure))))
+    place = np.interp(np.log(pressure), np.log(known), np.arange(known.size))
+    low, nearest = int(place), round(place)
     if abs(known[nearest] - pressure) <= SAME * pressure:
         values, source = maps.values[nearest], f"computed at {pressure:.4g} MPa"
     else:
-        after = int(np.searchsorted(known, pressure))
-        low, high = known[after - 1], known[after]
-        share = np.log(pressure / low) / np.log(high / low)
-        values = (1 - share) * maps.values[after - 1] + share * maps.values[after]
-        source = f"interpolated in ln(pressure) between {low:.4g} and {high:.4g} MPa"
+        values = (low + 1 - place) * maps.values[low] + (place - low) * maps.values[low + 1]
+        ends = f"{known[low]:.4g} and {known[low + 1]:.4g} MPa"
+        source = f"interpolated in ln(pressure) between {ends}"
     y, x = (maps[dim].values for dim in maps.dims[1:])
     attrs = cf_attrs("mm", "aperture, 0 in contact") | {
         "specimen": name,

@@ -34,8 +34,9 @@ from ..mechanics.loading import JointLoading
 from ..mechanics.state_scalars import aperture
 from ..mechanics.states import MAP_GAP, OFFSET_GAP, with_pressure
 
-_LOADS: Dims = "normal_force"
-_STATES: Dims = ("branch", "normal_force")
+_LOADS = "normal_force"
+_STATES, _QUANTILES = ("branch", _LOADS), ("gap_probability", _LOADS)
+_MAP = ("flow_y", "flow_x")
 
 #: Why a load has no transmissivity.
 NOT_QUOTED = "solved under the reported loads alone"
@@ -45,49 +46,38 @@ _ESTIMATES = {
     "transmissivity": ("mm3", "transmissivity T = h_h^3/12 per unit viscosity"),
     "hydraulic_aperture": ("mm", "hydraulic aperture h_h"),
 }
-#: The others of each way.
-_OF_WAY: dict[str, tuple[Dims, str, str]] = {
-    "critical_gap": (_LOADS, "mm", "narrowest gap of the widest passage"),
-    "channel_fraction": (_LOADS, "1", "fraction of the window that carries 90 % of the flow"),
-    "flow_imbalance": (_LOADS, "1", "bound on the relative error of T by the mass balance"),
-    "flow_reason": (_LOADS, "1", "why T is zero or missing"),
-    "series_bound": (_LOADS, "mm3", "lower bound of T: strips along the flow, cells in series"),
-    "parallel_bound": (
-        _LOADS,
-        "mm3",
-        "upper bound of T: strips across the flow, cells side by side",
-    ),
-    "gap_correlation_length": (
-        _LOADS,
-        "mm",
-        "lag at which the correlation of the gap falls to 1/e",
-    ),
-    "hydraulic_ratio": (_LOADS, "1", "hydraulic aperture over the mean gap"),
-    "transmissivity_grid_error": (
-        _LOADS,
-        "mm3",
-        "change of T where every second cell is left out, no interval",
-    ),
-    "transmissivity_separation_error": (
-        _LOADS,
-        "mm3",
-        "change of T with the total error of the separation, no interval",
-    ),
-    "reynolds_gradient": (
-        _LOADS,
-        "MPa/mm",
-        "pressure gradient of water at 20 degrees at which the Reynolds number is 1",
-    ),
-    "branch_transmissivity": (_STATES, "mm3", "T on loading, unloading and reloading"),
-    "offset_transmissivity": ("offset", "mm3", "T under the reference load"),
-    "unloaded_transmissivity": ((), "mm3", "T at first touch, before any load"),
-    "last_open_pressure": ((), "MPa", "largest pressure on loading with a path through the gap"),
-    "first_closed_pressure": ((), "MPa", "smallest pressure on loading without such a path"),
-    "flux_map": (
-        ("flow_y", "flow_x"),
-        "1",
-        "flow per width over its mean, under the reference load",
-    ),
+#: The others of each way, by dimension: unit, long name.
+_OF_WAY: dict[Dims, dict[str, tuple[str, str]]] = {
+    _LOADS: {
+        "critical_gap": ("mm", "narrowest gap of the widest passage"),
+        "channel_fraction": ("1", "fraction of the window that carries 90 % of the flow"),
+        "flow_imbalance": ("1", "bound on the relative error of T by the mass balance"),
+        "flow_reason": ("1", "why T is zero or missing"),
+        "series_bound": ("mm3", "lower bound of T: strips along the flow, cells in series"),
+        "parallel_bound": ("mm3", "upper bound of T: strips across the flow, cells side by side"),
+        "gap_correlation_length": ("mm", "lag at which the correlation of the gap falls to 1/e"),
+        "hydraulic_ratio": ("1", "hydraulic aperture over the mean gap"),
+        "transmissivity_grid_error": (
+            "mm3",
+            "change of T where every second cell is left out, no interval",
+        ),
+        "transmissivity_separation_error": (
+            "mm3",
+            "change of T with the total error of the separation, no interval",
+        ),
+        "reynolds_gradient": (
+            "MPa/mm",
+            "pressure gradient of water at 20 degrees at which the Reynolds number is 1",
+        ),
+    },
+    _STATES: {"branch_transmissivity": ("mm3", "T on loading, unloading and reloading")},
+    "offset": {"offset_transmissivity": ("mm3", "T under the reference load")},
+    (): {
+        "unloaded_transmissivity": ("mm3", "T at first touch, before any load"),
+        "last_open_pressure": ("MPa", "largest pressure on loading with a path through the gap"),
+        "first_closed_pressure": ("MPa", "smallest pressure on loading without such a path"),
+    },
+    _MAP: {"flux_map": ("1", "flow per width over its mean, under the reference load")},
 }
 _TABLE: dict[str, tuple[Dims, str, str]] = {
     **{
@@ -99,14 +89,11 @@ _TABLE: dict[str, tuple[Dims, str, str]] = {
     **{
         f"{name}_{way}": (dims, unit, f"{words}, {way} the sliding")
         for way in WAYS
-        for name, (dims, unit, words) in _OF_WAY.items()
+        for dims, rows in _OF_WAY.items()
+        for name, (unit, words) in rows.items()
     },
     "gap_slope": (_LOADS, "1", "rms slope of the open gap"),
-    "gap_quantile": (
-        ("gap_probability", "normal_force"),
-        "mm",
-        "quantile of the gap over the window",
-    ),
+    "gap_quantile": (_QUANTILES, "mm", "quantile of the gap over the window"),
     "zimmerman_aperture": (_LOADS, "mm", "hydraulic aperture by Zimmerman and Bodvarsson's law"),
     "barton_aperture": (_LOADS, "mm", "hydraulic aperture by Barton's law"),
     "effective_stress_coefficient": (_LOADS, "1", "effective-stress coefficient 1 - A_r/A_0"),

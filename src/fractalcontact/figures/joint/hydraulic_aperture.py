@@ -1,5 +1,6 @@
 """Hydraulic against mechanical aperture with empirical laws; transmissivity over load, offset."""
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -12,7 +13,6 @@ from ...core.subject import Subject
 from ..kit.axes import label_short_span, offset_axis
 from ..kit.caption import caption
 from ..kit.drawing import WIDTH, Drawing, colour_of
-from ..kit.empty import say_empty
 from ..kit.laboratory import draw_tests, test_words
 from ..kit.legends import entries, legends_below
 from ..kit.panel import Panel, table_of
@@ -26,19 +26,17 @@ NEEDS = ("specimens", "closure", "flow", "measured")
 ORDER = 46
 SECTION = "flow"
 
-#: Ways of the flow with their style.
+#: Ways of the flow with their style; both have the same abscissae, so that ends of bars differ.
 _WAYS: dict[str, dict[str, Any]] = {
-    "along": {"color": colour_of(0), "marker": "o"},
-    "across": {"color": colour_of(1), "marker": "s", "mfc": "none"},
+    "along": {"color": colour_of(0), "marker": "o", "caps": 6.0},
+    "across": {"color": colour_of(1), "marker": "s", "mfc": "none", "caps": 3.0},
 }
 _LAWS: dict[str, tuple[str, dict[str, Any]]] = {
     "zimmerman_aperture": ("Zimmerman and Bodvarsson", {"color": colour_of(2), "ls": "--"}),
     "barton_aperture": ("Barton", {"color": colour_of(3), "ls": "-."}),
 }
 _BRANCHES = (("load", "loading", "-"), ("reload", "unloading and reloading", ":"))
-#: Ends of the bars, points: both ways have the same abscissae.
-_CAPS = {"along": 6.0, "across": 3.0}
-_NO_FLOW = "no load has a path of open gap from side to side"
+_TITLES = ("hydraulic aperture", "transmissivity", "$T$ (mm³), reference load")
 
 
 def draw(atlas: DataTree, name: str) -> Drawing:
@@ -47,34 +45,44 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     flow, closure = subject.states("flow"), subject.states("closure")
     states = flow.assign(mean_gap=closure["mean_gap"])
     figure = Figure(figsize=(WIDTH, 4.0))
-    titles = ("hydraulic aperture", "transmissivity", "$T$ under the reference load")
     axes = figure.subplots(1, 3 if subject.direction != "none" else 2)
-    panels = [Panel(*one) for one in zip(axes, "abc", titles, strict=False)]
-    a, b, *offsets = panels
+    a, b, *offsets = panels = [Panel(*one) for one in zip(axes, "abc", _TITLES, strict=False)]
     _draw_apertures(a, states)
     _draw_branches(b, flow)
     draw_tests(b, subject, "flow")
     for c in offsets:
-        _draw_offsets(c, subject["flow"])
+        flow = subject["flow"]
+        _draw_ways(c, flow, "offset", "offset_transmissivity", "", "-", ["offset_mean_gap"])
+        c.axes.set_yscale("log")
+        label_short_span(c.axes.yaxis)
+        offset_axis(c.axes, flow["offset"].values)
     legends_below(figure, entries(a.axes), entries(b.axes))
     headline(figure, subject.label, place(subject.direction, subject.offset))
     words = {"tests": test_words(subject, "flow"), **_words(subject, states)}
     return Drawing(figure, table_of(*panels), caption(__name__, **words))
 
 
-def _draw_apertures(panel: Panel, states: xr.Dataset) -> None:
-    kept = ("nominal_pressure", "critical_gap_along", "channel_fraction_along")
+def _draw_ways(
+    panel: Panel, data: xr.Dataset, x: str, name: str, label: str, ls: str, kept: Sequence[str]
+) -> None:
+    """A variable against x along and across the sliding, without zeros: logarithms have none."""
     for way, style in _WAYS.items():
+        variable = data[f"{name}_{way}"]
+        shown = variable.where(variable > 0).assign_attrs(variable.attrs)
         panel.curve(
-            _open(states, f"hydraulic_aperture_{way}"),
-            "mean_gap",
-            f"hydraulic_aperture_{way}",
+            data.assign({f"{name}_{way}": shown}),
+            x,
+            f"{name}_{way}",
             keep=kept if way == "along" else (),
-            label=f"cubic law, {way} ({states.attrs[f'flow_axis_{way}']})",
-            ls="none",
-            caps=_CAPS[way],
+            label=label and f"{label}, {way} ({data.attrs[f'flow_axis_{way}']})",
+            ls=ls,
             **style,
         )
+
+
+def _draw_apertures(panel: Panel, states: xr.Dataset) -> None:
+    kept = ("nominal_pressure", "critical_gap_along", "channel_fraction_along")
+    _draw_ways(panel, states, "mean_gap", "hydraulic_aperture", "cubic law", "none", kept)
     if states[names_of("hydraulic_aperture_along")[1]].notnull().any():
         panel.axes.plot([], [], "|", color="0.4", ms=10, label="95 % interval, mean over windows")
     # Laws go on where no path is left: they are drawn beside what was computed.
@@ -94,44 +102,16 @@ def _draw_apertures(panel: Panel, states: xr.Dataset) -> None:
 
 
 def _draw_branches(panel: Panel, flow: xr.Dataset) -> None:
-    for way, style in _WAYS.items():
-        variable = f"branch_transmissivity_{way}"
-        branches = _open(flow, variable)
-        load, reload = (branches[variable].sel(branch=one) for one in ("load", "reload"))
-        # Where nothing yields, there is one curve.
-        crushed = bool((reload.notnull() & (reload != load)).any())
-        for branch, words, line in _BRANCHES[: 1 + crushed]:
-            panel.curve(
-                branches.sel(branch=branch),
-                "nominal_pressure",
-                variable,
-                keep=("branch",),
-                label=f"{words}, {way}",
-                ls=line,
-                **style,
-            )
-    if not (flow["transmissivity_along"] > 0).any():
-        say_empty(panel.axes, _NO_FLOW)
+    name = "branch_transmissivity"
+    load, reload = (flow[f"{name}_along"].sel(branch=branch) for branch in ("load", "reload"))
+    # Where nothing yields, there is one curve.
+    crushed = bool((reload.notnull() & (reload != load)).any())
+    for branch, words, line in _BRANCHES[: 1 + crushed]:
+        states = flow.sel(branch=branch)
+        _draw_ways(panel, states, "nominal_pressure", name, words, line, ["branch"])
     panel.axes.set(xscale="log", yscale="log", xlabel=f"{NOMINAL_PRESSURE} (MPa)")
     plain_decades(panel.axes.xaxis)
     panel.axes.set_ylabel("transmissivity $T = h_h^3/12$ (mm³)")
-
-
-def _draw_offsets(panel: Panel, flow: xr.Dataset) -> None:
-    for way, style in _WAYS.items():
-        variable = f"offset_transmissivity_{way}"
-        keep = ("offset_mean_gap",) if way == "along" else ()
-        panel.curve(_open(flow, variable), "offset", variable, keep=keep, ls="-", **style)
-    if not (flow["offset_transmissivity_along"] > 0).any():
-        say_empty(panel.axes, "no offset has a path of open gap from side to side")
-    panel.axes.set_yscale("log")
-    label_short_span(panel.axes.yaxis)
-    offset_axis(panel.axes, flow["offset"].values)
-
-
-def _open(data: xr.Dataset, name: str) -> xr.Dataset:
-    """Data without the zeros of a variable: a logarithmic axis has none."""
-    return data.assign({name: data[name].where(data[name] > 0).assign_attrs(data[name].attrs)})
 
 
 def _words(subject: Subject, states: xr.Dataset) -> dict[str, Any]:
