@@ -133,8 +133,8 @@ def barton_aperture(mechanical: ArrayLike, jrc: float) -> np.ndarray:
 WATER_VISCOSITY, WATER_DENSITY = 1.002e-9, 9.982e-10
 
 
-def reynolds_gradient(transmissivity: ArrayLike, reynolds: float = 1.0) -> np.ndarray:
-    """Pressure gradient of water at 20 degrees that gives a Reynolds number, MPa/mm.
+def reynolds_gradient(transmissivity: ArrayLike) -> np.ndarray:
+    """Pressure gradient of water at 20 degrees that gives a Reynolds number of 1, MPa/mm.
 
     Re = rho Q/(mu W) with Q/W = T grad p/mu. The cubic law holds for Re well below 1 (Zimmerman
     and Bodvarsson 1996).
@@ -143,8 +143,7 @@ def reynolds_gradient(transmissivity: ArrayLike, reynolds: float = 1.0) -> np.nd
     ----------
     transmissivity : array_like
         T, mm3; 0 has no gradient.
-    reynolds : float, optional
     """
     transmissivity = np.asarray(transmissivity, float)
     open_gap = np.where(transmissivity > 0, transmissivity, np.nan)
-    return reynolds * WATER_VISCOSITY**2 / (WATER_DENSITY * open_gap)
+    return WATER_VISCOSITY**2 / (WATER_DENSITY * open_gap)

@@ -75,13 +75,12 @@ class FlowNotConverged(RuntimeError):
     """
 
     def __init__(self, reason: str, imbalance: float):
-        super().__init__(
-            f"flow not solved: {reason}; the mass balance leaves {imbalance:.3g} of it open"
-        )
+        super().__init__(reason, imbalance)
         self.reason, self.imbalance = reason, imbalance
 
-    def __reduce__(self):
-        return type(self), (self.reason, self.imbalance)
+    def __str__(self) -> str:
+        left = f"the mass balance leaves {self.imbalance:.3g} of it open"
+        return f"flow not solved: {self.reason}; {left}"
 
 
 def network_flow(

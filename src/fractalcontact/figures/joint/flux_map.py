@@ -45,28 +45,20 @@ def draw(atlas: DataTree, name: str) -> Drawing:
         a.axes, contact_domain(subject, subject.reported.resolution, reference), sides, ticks=3
     )
     gap = contact["map_gap"].isel(normal_force=reference).values
-    top = float(np.nanquantile(gap, 0.99)) or 1.0
-    drawn = draw_map(b.axes, gap, sides, ticks=3, cmap="viridis", vmin=0, vmax=top)
-    below: dict[str, Any] = {"orientation": "horizontal"}
-    figure.colorbar(drawn, cax=bars[1], label="gap $g$ (mm)", extend="max", **below)
     flux = flow["flux_map_along"].values
     flows = bool((flux > 0).any())
-    if flows:
-        drawn = draw_map(
-            c.axes,
-            np.maximum(flux, _LEAST),
-            sides,
-            ticks=3,
-            cmap="cividis",
-            norm=LogNorm(_LEAST, _MOST),
-        )
-        label = "flow per width over its mean (1)"
-        figure.colorbar(drawn, cax=bars[2], label=label, extend="both", **below)
-    else:
-        bars[2].remove()
-        say_empty(c.axes, str(flow["flow_reason_along"].values[reference]), ticks=False)
-    for panel in (b, c):
+    top = float(np.nanquantile(gap, 0.99)) or 1.0
+    of_gap: dict[str, Any] = {"cmap": "viridis", "vmin": 0, "vmax": top}
+    of_flux: dict[str, Any] = {"cmap": "cividis", "norm": LogNorm(_LEAST, _MOST)}
+    for panel, bar, values, style, label, extend in (
+        (b, bars[1], gap, of_gap, "gap $g$ (mm)", "max"),
+        (c, bars[2], np.maximum(flux, _LEAST), of_flux, "flow per width over its mean (1)", "both"),
+    ):
+        drawn = draw_map(panel.axes, values, sides, ticks=3, **style)
+        figure.colorbar(drawn, cax=bar, label=label, extend=extend, orientation="horizontal")
         panel.axes.set_ylabel("")
+    if not flows:
+        say_empty(c.axes, str(flow["flow_reason_along"].values[reference]), ticks=False)
     at = flow.isel(normal_force=reference)
     c.keep(at, "channel_fraction_along", "critical_gap_along", "transmissivity_along", "gap_slope")
     pressure = pressure_label(float(at["nominal_pressure"]))

@@ -13,6 +13,7 @@ from ...core.subject import Subject
 from ..kit.axes import label_short_span, offset_axis
 from ..kit.caption import caption
 from ..kit.drawing import WIDTH, Drawing, colour_of
+from ..kit.empty import say_empty
 from ..kit.laboratory import draw_tests, test_words
 from ..kit.legends import entries, legends_below
 from ..kit.panel import Panel, table_of
@@ -66,6 +67,7 @@ def _draw_ways(
     panel: Panel, data: xr.Dataset, x: str, name: str, label: str, ls: str, kept: Sequence[str]
 ) -> None:
     """A variable against x along and across the sliding, without zeros: logarithms have none."""
+    flows = False
     for way, style in _WAYS.items():
         variable = data[f"{name}_{way}"]
         shown = variable.where(variable > 0).assign_attrs(variable.attrs)
@@ -78,6 +80,9 @@ def _draw_ways(
             ls=ls,
             **style,
         )
+        flows |= bool(shown.notnull().any())
+    if not flows:
+        say_empty(panel.axes, "no path of open gap\njoins both sides")
 
 
 def _draw_apertures(panel: Panel, states: xr.Dataset) -> None:
@@ -105,7 +110,7 @@ def _draw_branches(panel: Panel, flow: xr.Dataset) -> None:
     name = "branch_transmissivity"
     load, reload = (flow[f"{name}_along"].sel(branch=branch) for branch in ("load", "reload"))
     # Where nothing yields, there is one curve.
-    crushed = bool((reload.notnull() & (reload != load)).any())
+    crushed = bool(((reload > 0) & (reload != load)).any())
     for branch, words, line in _BRANCHES[: 1 + crushed]:
         states = flow.sel(branch=branch)
         _draw_ways(panel, states, "nominal_pressure", name, words, line, ["branch"])
