@@ -12,11 +12,8 @@ from fractalcontact.flow.aperture import (
     transmissivity_bounds,
     zimmerman_bodvarsson_aperture,
 )
-from fractalcontact.flow.curves import (
-    NO_PATH,
-    flow_of,
-    percolation_pressures,
-)
+from fractalcontact.flow.curves import NO_PATH, flow_of
+from fractalcontact.stages.flow import _percolation_pressures
 
 
 def test_the_correlation_length_of_filtered_noise_is_twice_its_filter():
@@ -71,8 +68,8 @@ def test_water_reaches_a_reynolds_number_of_one_at_ten_kilopascals_a_metre():
 
 def test_pressures_of_percolation_lie_between_loads():
     pressure = np.array([1.0, 2.0, 5.0, 10.0])
-    assert percolation_pressures(pressure, np.array([3.0, 1.0, 0.0, 0.0])) == (2.0, 5.0)
-    opened, closed = percolation_pressures(pressure, np.array([3.0, 1.0, np.nan, 1e-9]))
+    assert _percolation_pressures(pressure, np.array([3.0, 1.0, 0.0, 0.0])) == (2.0, 5.0)
+    opened, closed = _percolation_pressures(pressure, np.array([3.0, 1.0, np.nan, 1e-9]))
     assert opened == 10
     assert np.isnan(closed)
 

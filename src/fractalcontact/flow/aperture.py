@@ -68,14 +68,9 @@ def transmissivity_bounds(gap: np.ndarray, axis: int) -> tuple[float, float]:
         each its cells side by side, in series. More walls never let more pass, fewer never less.
     """
     cubed = np.moveaxis(gap, axis, -1) ** 3 / 12
-    lower = float(_harmonic_mean(cubed).mean())
-    return lower, float(_harmonic_mean(cubed.mean(axis=0)))
-
-
-def _harmonic_mean(values):
-    """Harmonic mean along the last axis; 0 where any is 0."""
-    with np.errstate(divide="ignore"):
-        return 1 / (1 / values).mean(axis=-1)
+    with np.errstate(divide="ignore"):  # a wall in a strip makes its harmonic mean 0
+        lower, upper = (1 / (1 / one).mean(axis=-1) for one in (cubed, cubed.mean(axis=0)))
+    return float(lower.mean()), float(upper)
 
 
 def zimmerman_bodvarsson_aperture(

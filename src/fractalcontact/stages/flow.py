@@ -17,16 +17,13 @@ from ..core.window import nominal_area
 from ..flow.aperture import (
     QUANTILES,
     barton_aperture,
+    correlation_length,
     reynolds_gradient,
     rms_slope,
+    transmissivity_bounds,
     zimmerman_bodvarsson_aperture,
 )
-from ..flow.curves import (
-    WAYS,
-    numbers_of_flow,
-    percolation_pressures,
-    transmissivity_of,
-)
+from ..flow.curves import WAYS, flow_of, transmissivity_of, window_interval
 from ..flow.network import hydraulic_aperture
 from ..mechanics.joint import prefractal, sliding_axis
 from ..mechanics.jrc import profile_roughness
@@ -203,32 +200,60 @@ def _over_loads(gaps, grid, way, states, error, reported):
     # What does not slide has no across: a second direction, at the loads that are quoted.
     every = way == WAYS[0] or reported.direction != "none"
     rows = {
-        load: numbers_of_flow(gap, grid.spacing, grid.axes[way], errors=load in reported.quoted)
+        load: _numbers(gap, grid.spacing, grid.axes[way], errors=load in reported.quoted)
         for load, gap in enumerate(gaps)
         if every or load in reported.quoted
     }
-    flux = rows[reported.reference]["flux"].astype(np.float32)
-    nothing = {name: np.nan for name in rows[reported.reference] if name != "flux"}
+    flux = rows[reported.reference]["flux_map"].astype(np.float32)
+    nothing = dict.fromkeys(rows[reported.reference], np.nan)
     nothing |= {"transmissivity": NO_ESTIMATE, "flow_reason": NOT_QUOTED}
     of_loads = [rows.get(load, nothing) for load in range(len(gaps))]
-    values = {name: np.array([one[name] for one in of_loads]) for name in nothing}
+    values = {
+        name: np.array([one[name] for one in of_loads]) for name in nothing if name != "flux_map"
+    }
     flow = Estimate.stack(values.pop("transmissivity"))
-    aperture_ = flow.mapped(hydraulic_aperture)
+    hydraulic = flow.mapped(hydraulic_aperture)
     mean = states["mean_gap"].where(states["mean_gap"] > 0).values
-    pressures = percolation_pressures(states["nominal_pressure"].values, flow.value)
+    opened, closed = _percolation_pressures(states["nominal_pressure"].values, flow.value)
     values |= {
-        "hydraulic_ratio": aperture_.value / mean,
+        "hydraulic_ratio": hydraulic.value / mean,
         "transmissivity_separation_error": _separation_error(mean, flow.value, error),
         "reynolds_gradient": reynolds_gradient(flow.value),
         "flux_map": flux,
-        "last_open_pressure": pressures[0],
-        "first_closed_pressure": pressures[1],
+        "last_open_pressure": opened,
+        "first_closed_pressure": closed,
     }
     return {
         **{f"{name}_{way}": value for name, value in values.items()},
         **flow.columns(f"transmissivity_{way}"),
-        **aperture_.columns(f"hydraulic_aperture_{way}"),
+        **hydraulic.columns(f"hydraulic_aperture_{way}"),
     }
+
+
+def _numbers(gap, spacing, axis, *, errors):
+    """Numbers of the flow through a gap; with the errors of T, which take six more solves."""
+    flow, reason = flow_of(gap, spacing, axis)
+    number, whole, (dy, dx) = "yx".index(axis), flow.transmissivity, spacing
+    lower, upper = transmissivity_bounds(gap, number)
+    coarse = transmissivity_of(gap[::2, ::2], (2 * dy, 2 * dx), axis) if errors else np.nan
+    return {
+        "transmissivity": window_interval(gap, spacing, axis, whole) if errors else Estimate(whole),
+        "transmissivity_grid_error": abs(coarse - whole),
+        "critical_gap": flow.critical_gap,
+        "channel_fraction": flow.channel_fraction,
+        "flux_map": flow.flux,
+        "flow_imbalance": flow.imbalance,
+        "flow_reason": reason,
+        "series_bound": lower,
+        "parallel_bound": upper,
+        "gap_correlation_length": correlation_length(gap, spacing[number], number),
+    }
+
+
+def _percolation_pressures(pressure, flows):
+    """Largest pressure with a path through the gap, and the smallest without one; NaN for none."""
+    opened, closed = pressure[flows > 0], pressure[flows == 0]
+    return np.append(np.nan, opened)[-1], np.append(closed, np.nan)[0]
 
 
 def _laws(states, specimens, loading):
