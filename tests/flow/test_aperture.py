@@ -12,7 +12,7 @@ from fractalcontact.flow.aperture import (
     transmissivity_bounds,
     zimmerman_bodvarsson_aperture,
 )
-from fractalcontact.flow.curves import NO_PATH, flow_of
+from fractalcontact.flow.cubic_law import NO_PATH, flow_of
 from fractalcontact.stages.flow import _percolation_pressures
 
 

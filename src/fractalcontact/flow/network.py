@@ -180,11 +180,9 @@ def critical_gap(gap: np.ndarray, inlet: np.ndarray, outlet: np.ndarray) -> floa
     unseen, waiting, n = gap > 0, np.empty(gap.size, np.int32), 0
     # Cells below the level wait for it to fall to the widest of them.
     level, below = np.inf, [(0.0, 0) for _ in range(0)]
-    for row in range(ny):
-        for column in range(nx):
-            if inlet[row, column] and unseen[row, column]:
-                unseen[row, column] = False
-                heappush(below, (-gap[row, column], row * nx + column))
+    for row, column in np.argwhere(inlet & unseen):
+        unseen[row, column] = False
+        heappush(below, (-gap[row, column], row * nx + column))
     while below:
         height, waiting[0] = heappop(below)
         level, n = min(level, -height), 1

@@ -1,7 +1,8 @@
 """Flow through a joint: transmissivity over loads, branches and offsets of the reported state."""
 
 from collections.abc import Sequence
-from typing import Any, NamedTuple
+from functools import partial
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -23,7 +24,7 @@ from ..flow.aperture import (
     transmissivity_bounds,
     zimmerman_bodvarsson_aperture,
 )
-from ..flow.curves import WAYS, flow_of, transmissivity_of, window_interval
+from ..flow.cubic_law import WAYS, flow_of, transmissivity_of, window_interval
 from ..flow.network import hydraulic_aperture
 from ..mechanics.joint import prefractal, sliding_axis
 from ..mechanics.jrc import profile_roughness
@@ -144,26 +145,29 @@ def flow_stages(
     across_x = loading.slides and "yx"[sliding_axis(reported.direction)] == "y"
     axes = dict(zip(WAYS, "yx" if across_x else "xy", strict=True))
     dy, dx = map(float, loading.spacing)
-    whole, grid = (_Grid((k * dy, k * dx), axes) for k in (1, reported.resolution))
+    whole, spacing = ((k * dy, k * dx) for k in (1, reported.resolution))
+    both = partial(_both_ways, axes, spacing)
     states = reported.states(closure)
     error = error_budget["total"].sel(quantity="separation").values
     gaps = next(part for part in parts if MAP_GAP in part)[MAP_GAP].values.astype(float)
     values: dict[str, Any] = {
-        "gap_slope": [rms_slope(gap, grid.spacing) for gap in gaps],
+        "gap_slope": [rms_slope(gap, spacing) for gap in gaps],
         "gap_quantile": np.quantile(gaps, QUANTILES, axis=(1, 2)),
         **_laws(states, specimens, loading),
     }
-    for way in WAYS:
-        values |= _over_loads(gaps, grid, way, states, error, reported)
+    for way, axis in axes.items():
+        values |= _over_loads(way, axis, gaps, spacing, states, error, reported)
     loaded = {"mean_gap": states["mean_gap"].values}
     loaded |= {of: values[of] for of in (f"transmissivity_{way}" for way in WAYS)}
     (cells,) = loading.at_map_offset().cells
     composite = loading.composite(int(cells))
     kept = prefractal(composite, reported.resolution)
     for prefix, numbers in {
-        "branch": _of_branches(composite, loading, branches, whole, loaded),
-        "offset": _over_offsets(parts, closure["offset"].values, grid, reported, loaded),
-        "unloaded": grid.numbers(kept.max() - kept),
+        "branch": _of_branches(
+            composite, loading, branches, partial(_both_ways, axes, whole), loaded
+        ),
+        "offset": _over_offsets(parts, closure["offset"].values, both, reported, loaded),
+        "unloaded": both(kept.max() - kept),
     }.items():
         values |= {f"{prefix}_{name}": value for name, value in numbers.items()}
     probability = cf_attrs("1", "fraction of the window with a smaller gap")
@@ -181,36 +185,26 @@ def flow_stages(
     return {"flow": with_pressure(stage, nominal_area(specimens))}
 
 
-class _Grid(NamedTuple):
-    """Sides (dy, dx) of the cells, mm, and the axes of both ways of the flow."""
-
-    spacing: tuple[float, float]
-    axes: dict[str, str]
-
-    def numbers(self, gap: np.ndarray) -> dict[str, float]:
-        """Mean gap and transmissivities of a gap."""
-        return {"mean_gap": float(gap.mean())} | {
-            f"transmissivity_{way}": transmissivity_of(gap, self.spacing, axis)
-            for way, axis in self.axes.items()
-        }
+def _both_ways(axes, spacing, gap):
+    """Mean gap and transmissivities of a gap."""
+    flows = {way: transmissivity_of(gap, spacing, axis) for way, axis in axes.items()}
+    return {"mean_gap": float(gap.mean())} | {f"transmissivity_{way}": flows[way] for way in axes}
 
 
-def _over_loads(gaps, grid, way, states, error, reported):
+def _over_loads(way, axis, gaps, spacing, states, error, reported):
     """Numbers of the flow one way on loading, and the flux map under the reference load."""
     # What does not slide has no across: a second direction, at the loads that are quoted.
     every = way == WAYS[0] or reported.direction != "none"
     rows = {
-        load: _numbers(gap, grid.spacing, grid.axes[way], errors=load in reported.quoted)
+        load: _numbers(gap, spacing, axis, errors=load in reported.quoted)
         for load, gap in enumerate(gaps)
         if every or load in reported.quoted
     }
-    flux = rows[reported.reference]["flux_map"].astype(np.float32)
+    flux = rows[reported.reference].pop("flux_map").astype(np.float32)
     nothing = dict.fromkeys(rows[reported.reference], np.nan)
     nothing |= {"transmissivity": NO_ESTIMATE, "flow_reason": NOT_QUOTED}
     of_loads = [rows.get(load, nothing) for load in range(len(gaps))]
-    values = {
-        name: np.array([one[name] for one in of_loads]) for name in nothing if name != "flux_map"
-    }
+    values = {name: np.array([one[name] for one in of_loads]) for name in nothing}
     flow = Estimate.stack(values.pop("transmissivity"))
     hydraulic = flow.mapped(hydraulic_aperture)
     mean = states["mean_gap"].where(states["mean_gap"] > 0).values
@@ -258,14 +252,13 @@ def _percolation_pressures(pressure, flows):
 
 def _laws(states, specimens, loading):
     """Empirical laws and the effective-stress coefficient over loads."""
-    mean, contact = states["mean_gap"].values, states["area_share"].values
+    names = ("mean_gap", "gap_deviation", "area_share")
+    mean, deviation, contact = (states[name].values for name in names)
     jrc = np.nan
     if loading.slides:
         jrc = float(profile_roughness(specimens, loading.direction)["jrc_used"])
     return {
-        "zimmerman_aperture": zimmerman_bodvarsson_aperture(
-            mean, states["gap_deviation"].values, contact
-        ),
+        "zimmerman_aperture": zimmerman_bodvarsson_aperture(mean, deviation, contact),
         "barton_aperture": barton_aperture(mean, jrc),
         "effective_stress_coefficient": 1 - contact,
     }
@@ -283,7 +276,7 @@ def _separation_error(gap, flow, total):
     return error
 
 
-def _of_branches(composite, loading, branches, grid, loaded):
+def _of_branches(composite, loading, branches, both, loaded):
     """Numbers of all branches: on loading as given, else NaN above the largest load."""
     held, top = branches["permanent_set"].values, branches["normal_force"].values[-1]
     forces = loading.forces(loading.settings.loads)
@@ -297,20 +290,20 @@ def _of_branches(composite, loading, branches, grid, loaded):
             state = solve_contact(
                 pressed, space, force=float(forces[load]), start=state, rtol=loading.solver.rtol
             )
-            for name, value in grid.numbers(aperture(state)).items():
+            for name, value in both(aperture(state)).items():
                 values[name][1:, load] = value
     return values
 
 
-def _over_offsets(parts, offsets, grid, reported, loaded):
+def _over_offsets(parts, offsets, both, reported, loaded):
     """Numbers over the offsets under the reference load; those of the reported one are loaded."""
-    values = {name: np.full(offsets.size, np.nan) for name in loaded}
+    at_reference = {name: one[reported.reference] for name, one in loaded.items()}
+    of_reported = offsets == reported.offset
+    values = {name: np.where(of_reported, one, np.nan) for name, one in at_reference.items()}
     for part in (part for part in parts if OFFSET_GAP in part):
         for gap, offset in zip(part[OFFSET_GAP].values, part["offset"].values, strict=True):
             number = int(np.argmin(np.abs(offsets - offset)))
-            found = {name: one[reported.reference] for name, one in loaded.items()}
-            if offsets[number] != reported.offset:
-                found = grid.numbers(gap.astype(float))
-            for name, value in found.items():
-                values[name][number] = value
+            if not of_reported[number]:
+                for name, value in both(gap.astype(float)).items():
+                    values[name][number] = value
     return values

@@ -5,7 +5,7 @@ import pytest
 from ensembles import ensemble
 from scipy import ndimage
 
-from fractalcontact.flow.curves import transmissivity_of, window_interval
+from fractalcontact.flow.cubic_law import transmissivity_of, window_interval
 
 STEP = (1.0, 1.0)
 
