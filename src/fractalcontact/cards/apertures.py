@@ -64,7 +64,6 @@ def aperture_at(
         values = (low + 1 - place) * maps.values[low] + (place - low) * maps.values[low + 1]
         ends = f"{known[low]:.4g} and {known[low + 1]:.4g} MPa"
         source = f"interpolated in ln(pressure) between {ends}"
-    y, x = (maps[dim].values for dim in maps.dims[1:])
     attrs = cf_attrs("mm", "aperture, 0 in contact") | {
         "specimen": name,
         "nominal_pressure_MPa": pressure,
@@ -73,8 +72,8 @@ def aperture_at(
         "source": source,
     }
     coords = {
-        "y": ("y", y, cf_attrs("mm", "y of the node") | {"axis": "Y"}),
-        "x": ("x", x, cf_attrs("mm", "x of the node") | {"axis": "X"}),
+        axis: (axis, maps[dim].values, cf_attrs("mm", f"{axis} of the node") | {"axis": letter})
+        for axis, letter, dim in zip("yx", "YX", maps.dims[1:], strict=True)
     }
     return xr.DataArray(values.astype(np.float32), coords, ("y", "x"), "aperture", attrs)
 

@@ -97,9 +97,8 @@ def radial_flow(
     between = (radius > hole) & (radius < rim)
     ends = _ends_at_circles(y[:, np.newaxis], x, spacing, (hole, rim)) * between
     opening = np.where(between, opening, 0.0)
-    around = 2 * np.pi
-    length = np.log(rim / hole) / around
-    return network_flow(opening, ends, spacing, length, around * hole)
+    length, width = np.log(rim / hole) / (2 * np.pi), 2 * np.pi * hole
+    return network_flow(opening, ends, spacing, length, width)
 
 
 #: Smallest part of a cell that a circle cuts off: closer to it, a cell is on it.

@@ -36,9 +36,6 @@ _LOADS = "normal_force"
 _STATES, _QUANTILES = ("branch", _LOADS), ("gap_probability", _LOADS)
 _MAP = ("flow_y", "flow_x")
 
-#: Why a load has no transmissivity.
-NOT_QUOTED = "solved under the reported loads alone"
-
 #: Numbers of each way with an interval, that of the window.
 _ESTIMATES = {
     "transmissivity": ("mm3", "transmissivity T = h_h^3/12 per unit viscosity"),
@@ -145,8 +142,8 @@ def flow_stages(
     across_x = loading.slides and "yx"[sliding_axis(reported.direction)] == "y"
     axes = dict(zip(WAYS, "yx" if across_x else "xy", strict=True))
     dy, dx = map(float, loading.spacing)
-    whole, spacing = ((k * dy, k * dx) for k in (1, reported.resolution))
-    both = partial(_both_ways, axes, spacing)
+    spacing = reported.resolution * dy, reported.resolution * dx
+    of_scan, of_map = (partial(_both_ways, axes, sides) for sides in ((dy, dx), spacing))
     states = reported.states(closure)
     error = error_budget["total"].sel(quantity="separation").values
     gaps = next(part for part in parts if MAP_GAP in part)[MAP_GAP].values.astype(float)
@@ -163,11 +160,9 @@ def flow_stages(
     composite = loading.composite(int(cells))
     kept = prefractal(composite, reported.resolution)
     for prefix, numbers in {
-        "branch": _of_branches(
-            composite, loading, branches, partial(_both_ways, axes, whole), loaded
-        ),
-        "offset": _over_offsets(parts, closure["offset"].values, both, reported, loaded),
-        "unloaded": both(kept.max() - kept),
+        "branch": _of_branches(composite, loading, branches, of_scan, loaded),
+        "offset": _over_offsets(parts, closure["offset"].values, of_map, reported, loaded),
+        "unloaded": of_map(kept.max() - kept),
     }.items():
         values |= {f"{prefix}_{name}": value for name, value in numbers.items()}
     probability = cf_attrs("1", "fraction of the window with a smaller gap")
@@ -202,7 +197,10 @@ def _over_loads(way, axis, gaps, spacing, states, error, reported):
     }
     flux = rows[reported.reference].pop("flux_map").astype(np.float32)
     nothing = dict.fromkeys(rows[reported.reference], np.nan)
-    nothing |= {"transmissivity": NO_ESTIMATE, "flow_reason": NOT_QUOTED}
+    nothing |= {
+        "transmissivity": NO_ESTIMATE,
+        "flow_reason": "solved under the reported loads alone",
+    }
     of_loads = [rows.get(load, nothing) for load in range(len(gaps))]
     values = {name: np.array([one[name] for one in of_loads]) for name in nothing}
     flow = Estimate.stack(values.pop("transmissivity"))
