@@ -98,9 +98,8 @@ def aperture_at_points(aperture: xr.DataArray, path: Path | str) -> pd.DataFrame
         If the file cannot be read or has no such columns of numbers.
     """
     try:
-        read = pd.read_csv(path, skipinitialspace=True)
-        points = read[["x", "y"]].astype(float)
-    except (OSError, ValueError, KeyError) as error:
+        points = pd.read_csv(path, usecols=["x", "y"], dtype=float, skipinitialspace=True)
+    except (OSError, ValueError) as error:
         raise InputError(
             f"{path}: cannot be read as points ({error}); expected a CSV file whose first line "
             "is 'x,y', numbers in mm below it"
@@ -144,9 +143,8 @@ def write_aperture(aperture: xr.DataArray | pd.DataFrame, path: Path | str) -> N
 def _vtk(aperture: xr.DataArray) -> bytes:
     """A map in VTK's legacy format: nodes as structured points, big-endian."""
     x, y = aperture["x"].values, aperture["y"].values
-    title = f"aperture in mm, {aperture.attrs['source']}"
     header = f"""# vtk DataFile Version 3.0
-{title[:255]}
+aperture in mm, {aperture.attrs["source"]}
 BINARY
 DATASET STRUCTURED_POINTS
 DIMENSIONS {x.size} {y.size} 1

@@ -79,8 +79,7 @@ class FlowNotConverged(RuntimeError):
         self.reason, self.imbalance = reason, imbalance
 
     def __str__(self) -> str:
-        left = f"the mass balance leaves {self.imbalance:.3g} of it open"
-        return f"flow not solved: {self.reason}; {left}"
+        return f"flow not solved: {self.reason}; mass balance open by {self.imbalance:.3g} of it"
 
 
 def network_flow(

@@ -145,13 +145,12 @@ def _numbered(cells):
     numbers, n = np.full(cells.shape, -1, np.int32), cells.sum()
     # Places of the red cells on the grid of their diagonals.
     places = np.full(((ny + nx) // 2, (ny + nx + 1) // 2), -1, np.int32)
-    for row in range(ny):
-        for column in range(nx):
-            if cells[row, column] and (row + column) % 2:
-                n -= 1
-                numbers[row, column] = n
-            elif cells[row, column]:
-                places[(row + column) // 2, (row - column + nx) // 2] = row * nx + column
+    for (row, column), is_open in np.ndenumerate(cells):
+        if is_open and (row + column) % 2:
+            n -= 1
+            numbers[row, column] = n
+        elif is_open:
+            places[(row + column) // 2, (row - column + nx) // 2] = row * nx + column
     n_red, is_red = n, places >= 0
     boxes = [(0, places.shape[0], 0, places.shape[1])]
     while boxes:
@@ -192,19 +191,18 @@ def _assembled(conductivity, ends, numbers, n_red, n, ratios):
     faces, neighbours = np.zeros((n - n_red, 4)), np.zeros((n - n_red, 4), np.int32)
     of_ends = np.empty((2, n))
     ny, nx = numbers.shape
-    for row in range(ny):
-        for column in range(nx):
-            number, here = numbers[row, column], conductivity[row, column]
-            if number >= 0:
-                of_ends[:, number] = ends[:, row, column] * here
-            if number >= n_red:
-                for way in range(4):
-                    i, j = row + WAYS[way][0], column + WAYS[way][1]
-                    if 0 <= i < ny and 0 <= j < nx and numbers[i, j] >= 0:
-                        # The product of both would underflow where gaps are small: divide first.
-                        face = 2 * here / (1 + here / conductivity[i, j])
-                        faces[number - n_red, way] = ratios[way] * face
-                        neighbours[number - n_red, way] = numbers[i, j]
+    for (row, column), number in np.ndenumerate(numbers):
+        here = conductivity[row, column]
+        if number >= 0:
+            of_ends[:, number] = ends[:, row, column] * here
+        if number >= n_red:
+            for way in range(4):
+                i, j = row + WAYS[way][0], column + WAYS[way][1]
+                if 0 <= i < ny and 0 <= j < nx and numbers[i, j] >= 0:
+                    # The product of both would underflow where gaps are small: divide first.
+                    face = 2 * here / (1 + here / conductivity[i, j])
+                    faces[number - n_red, way] = ratios[way] * face
+                    neighbours[number - n_red, way] = numbers[i, j]
     return faces, neighbours, of_ends
 
 

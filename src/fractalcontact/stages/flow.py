@@ -37,13 +37,12 @@ _STATES, _QUANTILES = ("branch", _LOADS), ("gap_probability", _LOADS)
 _MAP = ("flow_y", "flow_x")
 
 #: Numbers of each way with an interval, that of the window.
-_ESTIMATES = {
-    "transmissivity": ("mm3", "transmissivity T = h_h^3/12 per unit viscosity"),
-    "hydraulic_aperture": ("mm", "hydraulic aperture h_h"),
-}
-#: The others of each way, by dimension: unit, long name.
+_WITH_INTERVAL = ("transmissivity", "hydraulic_aperture")
+#: Numbers of each way by dimension: unit, long name.
 _OF_WAY: dict[Dims, dict[str, tuple[str, str]]] = {
     _LOADS: {
+        "transmissivity": ("mm3", "transmissivity T = h_h^3/12 per unit viscosity"),
+        "hydraulic_aperture": ("mm", "hydraulic aperture h_h"),
         "critical_gap": ("mm", "narrowest gap of the widest passage"),
         "channel_fraction": ("1", "fraction of the window that carries 90 % of the flow"),
         "flow_imbalance": ("1", "bound on the relative error of T by the mass balance"),
@@ -76,16 +75,12 @@ _OF_WAY: dict[Dims, dict[str, tuple[str, str]]] = {
 }
 _TABLE: dict[str, tuple[Dims, str, str]] = {
     **{
-        row: (_LOADS, *words)
-        for way in WAYS
-        for name, (unit, of) in _ESTIMATES.items()
-        for row, words in rows_of(f"{name}_{way}", unit, f"{of}, {way} the sliding").items()
-    },
-    **{
-        f"{name}_{way}": (dims, unit, f"{words}, {way} the sliding")
+        row: (dims, *words)
         for way in WAYS
         for dims, rows in _OF_WAY.items()
-        for name, (unit, words) in rows.items()
+        for name, (unit, of) in rows.items()
+        for row, words in rows_of(f"{name}_{way}", unit, f"{of}, {way} the sliding").items()
+        if row == f"{name}_{way}" or name in _WITH_INTERVAL
     },
     "gap_slope": (_LOADS, "1", "rms slope of the open gap"),
     "gap_quantile": (_QUANTILES, "mm", "quantile of the gap over the window"),

@@ -38,8 +38,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     axes, bars = figure.subplots(2, 3, height_ratios=[1, 0.04])
     bars[0].remove()
     axis = subject["flow"].attrs["flow_axis_along"]
-    slides = subject.direction != "none"
-    titles = ("contact", "gap", "flow along the sliding" if slides else f"flow along {axis}")
+    titles = ("contact", "gap", f"flow along {axis}")
     a, b, c = (Panel(*one) for one in zip(axes, "abc", titles, strict=True))
     draw_domain(
         a.axes, contact_domain(subject, subject.reported.resolution, reference), sides, ticks=3
