@@ -37,7 +37,7 @@ def compliance_rises_at_first(joint: Joint) -> Finding:
 def curves_overlap(joint: Joint) -> Finding:
     """Range of the compliance of the interface beyond the correlation length, at every load.
 
-    With the bounds that the solver's error leaves of each compliance, and a margin.
+    The claim holds where the range, with the solver's error, lies within the margin.
     """
     v, margin = joint.offsets[joint.between], all_claims()["curves_overlap"].margin
 
@@ -51,9 +51,9 @@ def curves_overlap(joint: Joint) -> Finding:
 def compliance_rises_again(joint: Joint) -> Finding:
     """Change of the compliance as the correlation of the faces is lost, at every load.
 
-    The mean of its logarithm over the offsets, whose scatter gives the interval, with a margin.
-    Before are the offsets beyond the correlation length or, if none was solved there, the last
-    within.
+    Logarithms are averaged over the offsets before and after; their scatter gives the interval.
+    "Before" begins at the correlation length; if no offset lies beyond it, the last one within
+    counts. The claim holds where the interval lies above the margin.
     """
     before = joint.between
     if not before.any() and joint.initial.any():
@@ -67,7 +67,7 @@ def _rise(joint, force, before):
     known = np.isfinite(compliance)
     before, after = before & known, joint.unrelated & known
     if not after.any() or not before.any():
-        return Finding(UNDETERMINED, no_offsets("both before and after the faces lose correlation"))
+        return Finding(UNDETERMINED, "no offset before, or none after, the faces lose correlation")
     spread = joint.along("closure")["composite_spread"].values
     change, of_spread = (
         mean_difference(np.log(values[after]), np.log(values[before])).mapped(np.expm1)
@@ -79,24 +79,24 @@ def _rise(joint, force, before):
     return Finding(
         beyond_margin(change, all_claims()[name].margin, rising=True),
         f"compliance {percent:+.0f} %",
-        f"from v <= {ends[0]:.3g} to >= {ends[1]:.3g} mm, {margin_words(name)}; sigma_z of the "
-        f"composite topography {100 * of_spread.value:+.0f} %",
+        f"from v = {ends[0]:.3g} mm and less to {ends[1]:.3g} mm and more; {margin_words(name)}; "
+        f"sigma_z of the composite topography {100 * of_spread.value:+.0f} %",
     )
 
 
 def composite_dimension_rises(joint: Joint) -> Finding:
-    """Delta_g of the composite topography against offset: fixed by where it is fitted.
+    """Delta_g of the composite topography against offset, which the fitted lags decide.
 
-    For lags h the variogram of z(x + v) - z(x) is twice the face's where h is far below v, whose
-    dimension it then has at every v, and flat where h is far above v. A dimension fitted over a
-    fixed range of lags falls as v passes through that range, whatever the joint.
+    At lags far below v the composite topography z(x + v) - z(x) has the dimension of the face. At
+    lags far above v its variogram is flat. So the dimension fitted over given lags depends on v in
+    the same way for every joint.
     """
     joints = joint["joints"]
     dimension = joints["composite_dimension"].values
     known = np.isfinite(dimension) & (joint.offsets > 0)
     if not known.any():
         return Finding(
-            ILL_POSED, "fixed by the lags fitted: the variogram is flat above v, the face's below"
+            ILL_POSED, "the fitted lags decide it: the variogram is flat above v, the face's below"
         )
     v, fitted = joint.offsets[known], dimension[known]
     low = float(joints["composite_fit_min"].min())
@@ -105,24 +105,24 @@ def composite_dimension_rises(joint: Joint) -> Finding:
         ILL_POSED,
         f"Delta_g is {fitted[0]:.2f} at v = {v[0]:.3g} mm and {fitted[-1]:.2f} at {v[-1]:.3g} mm, "
         f"over lags of {low:.3g} to {high:.3g} mm",
-        "the variogram of the composite topography is flat above v, and that of the face below v",
+        "other lags would give other dimensions",
     )
 
 
 def compliance_goes_with_dimension(joint: Joint) -> Finding:
-    """Compliance against a dimension that the range of the fit decides."""
+    """Compliance against a dimension that the fitted lags decide."""
     return Finding(
         ILL_POSED,
         "it needs the dimension of the composite topography, which is ill-posed",
-        "a joint slid farther is more compliant since sigma_z grows",
+        "a joint slid farther is more compliant because sigma_z grows",
     )
 
 
 @of_a_kind
 def larger_samples_close_more(joint: Joint, evidence: Evidence) -> Finding:
-    """Exponent of the compliance of the interface against the size of sub-windows, with a margin.
+    """Exponent of the compliance of the interface against the size of sub-windows.
 
-    An exponent whose interval stays below the margin is none.
+    The claim holds where the interval lies above the margin, and fails where it lies below.
     """
     name = "larger_samples_close_more"
     exponent = evidence.size_exponent("compliance_exponent")
@@ -132,8 +132,8 @@ def larger_samples_close_more(joint: Joint, evidence: Evidence) -> Finding:
     return Finding(
         beyond_margin(exponent, all_claims()[name].margin, rising=True),
         f"x = {exponent:z.2f}",
-        f"compliance ~ b^x {evidence.reference}; {margin_words(name)}; closure from first contact "
-        f"(b^{closure:.2f} in this specimen) grows because it counts from the highest node",
+        f"compliance ~ b^x {evidence.reference}; {margin_words(name)}; closure from first touch "
+        f"grows as b^{closure:.2f} in this specimen, as it counts from the highest node",
     )
 
 
@@ -154,8 +154,8 @@ def area_is_linear(joint: Joint) -> Finding:
     return Finding(
         verdict,
         f"m = {ends}",
-        f"A_r ~ F^m; {near} of {value.size} exponents lie within {NEARLY:g} of 1, "
-        f"{apart or 'none'} surely outside",
+        f"A_r ~ F^m; {near} of {value.size} exponents lie within {NEARLY:g} of 1, the intervals "
+        f"of {apart or 'none'} outside",
     )
 
 
@@ -167,9 +167,9 @@ def area_falls(joint: Joint) -> Finding:
 
 @of_the_area
 def area_settles(joint: Joint) -> Finding:
-    """Range of the contact area beyond the correlation length, with a margin.
+    """Range of the contact area beyond the correlation length.
 
-    With the solver's error of each area.
+    The claim holds where the range, with the solver's error, lies within the margin.
     """
     beyond = joint.between | joint.unrelated
     area, error = (
@@ -183,9 +183,9 @@ def area_settles(joint: Joint) -> Finding:
 def refinement_changes_little(joint: Joint) -> Finding:
     """Change of closure and contact area from every second point of the scan to all points.
 
-    Closure counts from a seat, the lightest load that seats both: from first touch it would change
-    with the highest point, which any finer scan moves. Judged under every load above the seat, with
-    a margin; in part where one of the two changes by no more, or under some loads.
+    Closure counts from a seat that both grids resolve, as first touch depends on the highest point
+    alone. The claim holds where both changes lie within the margin at every load, and in part where
+    only one does, or at some loads.
     """
     margin = all_claims()["refinement_changes_little"].margin
     curves = joint.along("closure").sel(offset=joint.offset)
@@ -217,7 +217,7 @@ def refinement_changes_little(joint: Joint) -> Finding:
     )
     return Finding(
         share(sum(little.values()), 2 * n),
-        f"half the spacing changes {' and '.join(words)}",
+        f"all points in place of every second change {' and '.join(words)}",
         f"from a seat of {pressures[counts][0]:.3g} MPa",
     )
 

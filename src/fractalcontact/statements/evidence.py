@@ -148,7 +148,7 @@ class OfRealisations(Evidence):
         # A finding without a note has no number, but the reason why there is none.
         of = "mean of" if finding.note else "in"
         judged_on = f"{self.realisations} realisations"
-        return finding._replace(numbers=f"{finding.numbers}, {of} {judged_on}", judged_on=judged_on)
+        return finding._replace(numbers=f"{finding.numbers}; {of} {judged_on}", judged_on=judged_on)
 
     def size_exponent(self, name: str) -> Estimate:
         """Exponent against the side b of sub-windows under the reference load."""

@@ -15,7 +15,7 @@ from ..core.subject import Subject
 from ..core.verdicts import FAILS, HOLDS, ILL_POSED, PARTLY, UNDETERMINED
 
 #: Why a joint under a hardness may be asked nothing of its contact area.
-BY_CONSTRUCTION = "A_r = F/H by construction: all that touches yields"
+BY_CONSTRUCTION = "A_r = F/H, because all contacts yield"
 
 
 class Finding(NamedTuple):
@@ -230,7 +230,7 @@ def within_margin(difference: Estimate, margin: float) -> str:
 
 def margin_words(name: str) -> str:
     """The equivalence margin of a claim, in words."""
-    return f"changes below {all_claims()[name].margin:g} count as none"
+    return f"margin {all_claims()[name].margin:g}"
 
 
 def level(values: Estimate, symbol: str, v: np.ndarray, margin: float) -> Finding:
@@ -250,7 +250,7 @@ def level(values: Estimate, symbol: str, v: np.ndarray, margin: float) -> Findin
     return Finding(
         verdict,
         f"{symbol} varies by {spread.mapped(lambda end: 100 * end):.0f} % of its mean",
-        f"v = {v[0]:.3g} to {v[-1]:.3g} mm, the same within {100 * margin:g} %",
+        f"v = {v[0]:.3g} to {v[-1]:.3g} mm; margin {100 * margin:g} %",
     )
 
 

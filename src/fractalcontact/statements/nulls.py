@@ -53,16 +53,16 @@ def closure_is_hyperbolic(joint: Joint) -> Finding:
     return Finding(
         share(better, int(decided.sum())),
         f"the hyperbola fits better at {better or 'none'} of {decided.sum()} offsets",
-        f"median rms misfits are {misfits} of w_int = c + d ln sigma_0",
+        f"median rms misfits are {misfits} of the logarithm w_int = c + d ln sigma_0",
     )
 
 
 @of_a_kind
 def domains_are_fractal(joint: Joint, evidence: Evidence) -> Finding:
-    """Local slopes of the box counts, compared with random nodes, the cut and each other.
+    """Local slopes of the box counts, compared with random nodes and with the bearing-area cut.
 
-    A fractal set differs from random nodes, and has one slope over a decade of box sides or more.
-    One that differs from the bearing-area cut as well is no mere cut at one height.
+    The claim holds where the domain differs from both and has one slope over a decade of box sides.
+    It holds in part where slopes vary by up to ±0.25, or where only random nodes differ.
     """
     state = at_reference(joint, evidence)
     verdict = str(state["null_verdict"].item())
@@ -94,18 +94,17 @@ def _departure_words(state, null, words):
     return (
         f"{words}: largest departure at r = {side:.2g} mm, local slope {slope:.2f} against "
         f"{other:.2f}, p {f'= {p:.2g}' if p >= _LEAST_P else f'< {_LEAST_P:g}'}"
-        f"{f' (significant, but below {NEARLY:g}, which counts as none)' if small else ''}"
+        f"{f' (significant, but smaller than {NEARLY:g})' if small else ''}"
     )
 
 
 @of_a_kind
 def domains_differ_from_cuts(joint: Joint, evidence: Evidence) -> Finding:
-    """Elastic contact domain compared with the bearing-area cut of the topography, over the loads.
+    """Local slopes of the contact domain compared with those of the bearing-area cut, by load.
 
-    They coincide where the intervals of all differences of local slopes lie within the margin. They
-    differ where one slope differs by the margin or more, significantly among all loads and box
-    sides (Holm). They are unrelated where their box-counting or correlation dimensions differ
-    by more than a quarter, with an interval corrected for the number of loads.
+    Both sets coincide at a load where the intervals of all differences lie within the margin. They
+    differ where a slope differs significantly (Holm's test) and by the margin or more. The claim
+    fails if their dimensions surely differ by more than 0.25 at a load: they are then unrelated.
     """
     margin = all_claims()["domains_differ_from_cuts"].margin
     states = evidence.slopes()
@@ -130,8 +129,8 @@ def domains_differ_from_cuts(joint: Joint, evidence: Evidence) -> Finding:
     return Finding(
         verdict,
         f"local slopes differ from those of the cut at {loads_of(different, total)}",
-        f"{loads_of(int(alike.sum()), total)} with coincident slopes, where differences below "
-        f"{margin:g} count as none; Delta_sigma minus that of the cut is {' to '.join(ends)}",
+        f"slopes coincide within {margin:g} at {loads_of(int(alike.sum()), total)}; Delta_sigma "
+        f"minus that of the cut is {' to '.join(ends)}",
     )
 
 
@@ -159,17 +158,17 @@ def _any_beyond(difference, loads):
 def domains_are_isotropic(joint: Joint) -> Finding:
     """Probability of contact two nodes away from a node in contact, along the sliding and across.
 
-    What scales alike along both axes has the same probability along both.
+    An isotropic domain has the same probability along both.
     """
     measures = joint["domain_measures"].sel(normal_force=joint.force, method="nearest")
     along, across = (
         Estimate.read(measures, f"contact_at_lag_{way}") for way in ("along", "across")
     )
     if not (along.known and across.known) or along.value + across.value == 0:
-        return Finding(UNDETERMINED, "no node touches two nodes from another")
+        return Finding(UNDETERMINED, "no two nodes in contact lie two nodes apart")
     ways = _OF_SLIDING if slides(joint.settings["opposite"]) else ("along x", "along y")
     numbers = (
-        f"a node two nodes from contact touches with the probability {along:.2f} {ways[0]}, "
+        f"two nodes away from contact, contact has a probability of {along:.2f} {ways[0]} and "
         f"{across:.2f} {ways[1]}"
     )
     apart = max(along.low, across.low) > min(along.high, across.high)

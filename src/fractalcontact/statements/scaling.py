@@ -27,9 +27,9 @@ from .local_slopes import one_slope
 def area_is_lacunar(joint: Joint, evidence: Evidence) -> Finding:
     """Exponent of A_r over the resolutions at the reference load, and its change over them.
 
-    The area falls with refinement where 2 - Delta_sigma lies beyond the margin. If it falls, it
-    does so as one power law where the two finest resolutions and the two coarsest have the same
-    Delta_sigma within the margin; else the claim holds in part.
+    The area falls with refinement where 2 - Delta_sigma exceeds the margin. It follows one power
+    law where the two finest and the two coarsest resolutions give the same Delta_sigma within the
+    margin; otherwise the claim holds in part.
     """
     name = "area_is_lacunar"
     margin = all_claims()[name].margin
@@ -46,8 +46,8 @@ def area_is_lacunar(joint: Joint, evidence: Evidence) -> Finding:
         falls if one_power == HOLDS or falls != HOLDS else PARTLY,
         f"A_r ~ s^(2 - Delta_sigma), Delta_sigma = {delta:.2f}",
         f"{evidence.reference}; {words}: from the coarsest to the finest resolutions Delta_sigma "
-        f"changes by {bend:+z.2f}; {margin_words(name)}; at light load the exponent is that of the "
-        "slopes h'_rms(s) of the surface",
+        f"changes by {bend:+z.2f}; {margin_words(name)}; at light load the slopes h'_rms(s) of the "
+        "surface set this exponent",
     )
 
 
@@ -55,7 +55,7 @@ def area_is_lacunar(joint: Joint, evidence: Evidence) -> Finding:
 def boxes_follow_one_law(joint: Joint, evidence: Evidence) -> Finding:
     """Local slopes of the box counts at the reference load.
 
-    They show the curvature of the counts; how well one slope is known says nothing of it.
+    A power law has one slope at all box sides; a narrow interval of the mean slope is no proof.
     """
     found = one_slope(at_reference(joint, evidence))
     return found if found.verdict == UNDETERMINED else found._replace(note=evidence.reference)
@@ -64,7 +64,7 @@ def boxes_follow_one_law(joint: Joint, evidence: Evidence) -> Finding:
 @of_the_area
 @of_a_kind
 def estimates_agree(joint: Joint, evidence: Evidence) -> Finding:
-    """Delta_sigma by A_r(s) less that by boxes under every load, with a margin."""
+    """Delta_sigma by A_r(s) minus that by boxes under every load, compared with the margin."""
     name = "estimates_agree"
     difference, pressures = evidence.difference()
     if not pressures.size:
@@ -74,7 +74,7 @@ def estimates_agree(joint: Joint, evidence: Evidence) -> Finding:
     ends = " to ".join(dict.fromkeys(f"{d:+.2f}" for d in difference.value[[0, -1]]))
     return Finding(
         share(decided.count(HOLDS), len(decided)) if decided else UNDETERMINED,
-        f"Delta_sigma by A_r(s) minus that by boxes is {ends}, different at "
+        f"Delta_sigma by A_r(s) minus that by boxes is {ends}; they differ at "
         f"{loads_of(each.count(FAILS), len(each))}",
         f"{_between(pressures)}; {margin_words(name)}",
     )
@@ -83,17 +83,17 @@ def estimates_agree(joint: Joint, evidence: Evidence) -> Finding:
 @of_the_area
 @of_a_kind
 def dimension_rises_by_area(joint: Joint, evidence: Evidence) -> Finding:
-    """Slope of Delta_sigma from A_r(s) over the decades of F, with a margin."""
+    """Slope of Delta_sigma from A_r(s) over the decades of F, compared with the margin."""
     return _rise(evidence.trend("area"), "dimension_rises_by_area")
 
 
 @of_a_kind
 def dimension_rises_by_boxes(joint: Joint, evidence: Evidence) -> Finding:
-    """Slope of Delta_sigma by boxes over the decades of F, beside that of as many random nodes.
+    """Slope of Delta_sigma by boxes over the decades of F, compared with as many random nodes.
 
-    More nodes fill more boxes wherever they lie. The claim holds in part where the dimension rises,
-    but after subtraction of that of random nodes by no more than the margin. Where random nodes
-    are near 2 they leave no room to rise less, and these loads are not compared.
+    More nodes fill more boxes wherever they lie. So the claim holds only where Delta_sigma rises
+    faster than that of random nodes, by more than the margin; it holds in part where Delta_sigma
+    merely rises. Loads at which random nodes are near 2 are not compared.
     """
     name, trend = "dimension_rises_by_boxes", evidence.trend("box")
     found = _rise(trend, name)
@@ -110,16 +110,13 @@ def _beside_random(less: Estimate) -> str:
     """Rise of Delta_sigma less that of as many random nodes, in words."""
     if not less.known:
         return "not compared with random nodes, which are near 2"
-    if less.low <= 0 <= less.high:
-        return f"as fast as random nodes within the error ({less:+z.2f})"
-    how = "faster" if less.value > 0 else "slower"
-    return f"{how} than random nodes (difference {less:+z.2f})"
+    return f"by {less:+z.2f} after subtraction of random nodes"
 
 
 def _rise(trend: Trend, name: str) -> Finding:
     """Verdict on a slope over the decades of F."""
     if not trend.slope.known:
-        return Finding(UNDETERMINED, f"{trend.pressures.size} loads with a dimension, too few")
+        return Finding(UNDETERMINED, f"only {trend.pressures.size} loads have a dimension")
     return Finding(
         beyond_margin(trend.slope, all_claims()[name].margin, rising=True),
         f"Delta_sigma changes by {trend.slope:+z.2f} per decade of F",
@@ -129,7 +126,7 @@ def _rise(trend: Trend, name: str) -> Finding:
 
 @of_a_kind
 def dimension_spans_all(joint: Joint, evidence: Evidence) -> Finding:
-    """Smallest and largest Delta_sigma by box counts, near 0 and near 2 by their intervals."""
+    """Smallest and largest Delta_sigma by box counts, which the claim expects near 0 and near 2."""
     (delta, pressures), random = evidence.box_dimension()
     if not pressures.size:
         return Finding(UNDETERMINED, "no load with a dimension by boxes")
@@ -186,7 +183,7 @@ def by_design(joint: Joint) -> str:
     if not largest.size or largest.min() > largest.max() / 2:
         return full
     return (
-        f"; as boxes fill, the largest one fitted falls from {largest.max():.2g} to "
+        f"; as boxes fill, the largest fitted box shrinks from {largest.max():.2g} to "
         f"{largest.min():.2g} mm in this specimen{full}"
     )
 
@@ -194,11 +191,10 @@ def by_design(joint: Joint) -> str:
 @of_the_area
 @of_a_kind
 def size_effect_follows(joint: Joint, evidence: Evidence) -> Finding:
-    """Exponent of corrected A_r/A_0 less that of eq. 6, Delta_sigma - 2, with a margin.
+    """Exponent of corrected A_r/A_0 minus that of eq. 6, Delta_sigma - 2, by load and estimate.
 
-    By both estimates of Delta_sigma, of the window itself. Eq. 6 fails where the interval of the
-    difference leaves out zero and some of it lies beyond the margin, and holds where all of it lies
-    within.
+    Eq. 6 holds where the whole interval of this difference lies within the margin. Otherwise it
+    fails where the interval excludes zero.
     """
     name = "size_effect_follows"
     found = {words: evidence.beyond_eq6(by) for by, words in ESTIMATES.items()}
@@ -215,16 +211,16 @@ def size_effect_follows(joint: Joint, evidence: Evidence) -> Finding:
         for words, one in found.items()
     }
     pressures = np.unique(np.concatenate([one.pressures for one in found.values()]))
-    less = ", ".join(f"{one:+z.2f} {words}" for words, one in nearest.items())
+    less = " and ".join(f"{one:+z.2f} {words}" for words, one in nearest.items())
     exponent = evidence.size_exponent("area_exponent")
     law = f"A_r/A_0 ~ b^x, x = {exponent:z.2f}" if exponent.known else "A_r/A_0 ~ b^x"
-    agree = "no case (load, estimate) is decisive"
+    agree = "no load is decisive"
     if decided:
-        agree = f"{decided.count(HOLDS)} of {len(decided)} decisive cases (load, estimate) agree"
+        agree = f"eq. 6 agrees in {decided.count(HOLDS) or 'none'} of {len(decided)} decisive cases"
     return Finding(
         share(decided.count(HOLDS), len(decided)) if decided else UNDETERMINED,
-        f"{law}, x minus the exponent of eq. 6 is {less}",
-        f"{_between(pressures)}, {agree}, on windows within one joint; {margin_words(name)}",
+        f"{law}; x minus the exponent of eq. 6 is {less}",
+        f"{_between(pressures)}; {agree}, on windows within one joint; {margin_words(name)}",
     )
 
 
@@ -243,9 +239,9 @@ def _between(pressures: np.ndarray) -> str:
 @of_the_area
 @of_a_kind
 def larger_domains_are_less_dense(joint: Joint, evidence: Evidence) -> Finding:
-    """Exponent of corrected A_r/A_0 against the size of sub-windows, with a margin.
+    """Exponent of corrected A_r/A_0 against the size of sub-windows.
 
-    An exponent whose interval stays below the margin is none.
+    The claim holds where the interval lies below minus the margin, and fails where it lies above.
     """
     name = "larger_domains_are_less_dense"
     exponent = evidence.size_exponent("area_exponent")
@@ -261,8 +257,7 @@ def larger_domains_are_less_dense(joint: Joint, evidence: Evidence) -> Finding:
 def strength_falls_with_size(joint: Joint) -> Finding:
     """Exponents of shear strength against window size, at equal v/b and all loads.
 
-    Where a sub-window's angle is truncated its strength is no result, and the size has no strength:
-    what is left of the sizes decides, if three are.
+    Sizes with a truncated dilatancy angle are left out; at least three sizes must remain.
     """
     windows = joint["windows"]
     order = ("share", "normal_force")
@@ -279,7 +274,7 @@ def strength_falls_with_size(joint: Joint) -> Finding:
     exponents = _exponents(value, low, high, known)
     if 2 * known.sum() <= cases.sum():
         bounded = int((cases & truncated).sum())
-        bound = f"strengths are truncated in {bounded} of {cases.sum()} cases of v/b and F"
+        bound = f"angles are truncated at {bounded} of {cases.sum()} pairs of v/b and F"
         return Finding(UNDETERMINED, bound, exponents)
     falls, rises = int((high[known] < 0).sum()), int((low[known] > 0).sum())
     if falls == known.sum() or rises == known.sum():
@@ -295,6 +290,6 @@ def _exponents(value, low, high, known):
     ends = " to ".join(dict.fromkeys(f"{e:.2f}" for e in (value[known].min(), value[known].max())))
     falls, rises = int((high[known] < 0).sum()), int((low[known] > 0).sum())
     return (
-        f"tau ~ b^x at equal v/b, x = {ends}: tau surely falls in {falls or 'none'} of "
-        f"{known.sum()} cases and surely rises in {rises or 'none'}"
+        f"tau ~ b^x at equal v/b, x = {ends}: by its interval tau falls in {falls or 'none'} of "
+        f"{known.sum()} cases and rises in {rises or 'none'}"
     )

@@ -56,20 +56,20 @@ class Plateaus(NamedTuple):
     def finding(self, verdict: str) -> Finding:
         """Verdict with the number of level directions and their change; undetermined if one is."""
         rising = [self.directions[i] for i in np.flatnonzero(self.rising)]
-        more = f"; rising {', '.join(rising)}" if rising else ""
+        more = f", rising in {', '.join(rising)}" if rising else ""
         return Finding(
             UNDETERMINED if self.undecided else verdict,
-            f"{self.flat.sum()} of {self.change.size} directions level{more}"
+            f"level in {self.flat.sum() or 'none'} of {self.change.size} directions{more}"
             f"{f'; {self.undecided}' if self.undecided else ''}",
-            f"{100 * self.change.min():+.0f} to {100 * self.change.max():+.0f} % of the mean over "
-            f"the second half of v, level within {100 * LEVEL_CHANGE:g} %",
+            f"{100 * self.change.min():+.0f} to {100 * self.change.max():+.0f} % change over the "
+            f"second half of v; level: up to {100 * LEVEL_CHANGE:g} %",
         )
 
 
 def dilatancy_flattens(joint: Joint) -> Finding:
     """Change of the rigid dilatancy over the second half of the offsets, in every direction.
 
-    Where the faces still correlate a plateau may still follow, and the claim is undetermined.
+    The claim is undetermined while the faces still correlate, as a plateau may yet follow.
     """
     plateaus = Plateaus.of(joint["joints"])
     if not plateaus.change.size:
@@ -78,9 +78,9 @@ def dilatancy_flattens(joint: Joint) -> Finding:
 
 
 def dilatancy_flattens_in_two(joint: Joint) -> Finding:
-    """Numbers of directions with a plateau and of those that rise on, two of four each.
+    """Number of directions with a plateau, and of directions that rise on: two each.
 
-    Where the faces still correlate a plateau may still follow, and the claim is undetermined.
+    The claim is undetermined while the faces still correlate, as a plateau may yet follow.
     """
     plateaus = Plateaus.of(joint["joints"])
     if plateaus.change.size < DIRECTIONS:
@@ -94,9 +94,9 @@ def dilatancy_flattens_in_two(joint: Joint) -> Finding:
 def dilatancy_is_anisotropic(joint: Joint) -> Finding:
     """Difference of the slopes of the rigid dilatancy among directions, second half of v.
 
-    A tilt of the window opens one direction as much as it closes the opposite one, and is no
-    roughness. Where the even part over opposite directions does not differ between the axes, the
-    claim holds in part.
+    A tilt of the window raises the slope in one direction and lowers it in the opposite one by as
+    much. The mean of both is roughness alone. Where the two axes have the same mean, the claim
+    holds in part.
     """
     joints = joint["joints"]
     change = Plateaus.of(joints).change
@@ -106,7 +106,7 @@ def dilatancy_is_anisotropic(joint: Joint) -> Finding:
     even, tilts = joints["even_change"].values, joints["odd_slope"].values
     axes = [str(axis) for axis in joints["axis"].values]
     parts = "; ".join(
-        f"{axis} even part {100 * rise:+.0f} %, odd part {tilt:+.3f} v"
+        f"{axis} {100 * rise:+.0f} % in the mean of both directions, tilt {tilt:+.3f} v"
         for axis, rise, tilt in zip(axes, even, tilts, strict=True)
     )
     if len(axes) > 1 and verdict == HOLDS and _differs(np.ptp(even)) != HOLDS:
@@ -114,8 +114,8 @@ def dilatancy_is_anisotropic(joint: Joint) -> Finding:
     return Finding(
         verdict,
         f"delta_r changes by {100 * change.min():+.0f} to {100 * change.max():+.0f} % of its mean "
-        "over the second half of v, by direction",
-        f"{parts}; the even part is the roughness's, the odd one a tilt's" if parts else "",
+        "over the second half of v, depending on direction",
+        parts,
     )
 
 
@@ -140,4 +140,4 @@ def no_correlation_is_left(joint: Joint) -> Finding:
         too_small = "in so small a window chance may give as much"
         return Finding(UNDETERMINED, numbers, f"{where}; {too_small}")
     verdict = HOLDS if correlation <= limit else FAILS
-    return Finding(verdict, f"{numbers}, by chance up to {limit:.2f}", where)
+    return Finding(verdict, f"{numbers}; chance gives up to {limit:.2f}", where)

@@ -44,14 +44,13 @@ def judge_study(
 def size_exponent_grows_with_dimension(joints: Mapping[str, Joint]) -> Finding:
     """Exponent 2 - Delta_sigma by A_r(s) at the reference load, against Delta_g of the faces.
 
-    The paper says that the size effect is more pronounced for larger Delta_g, and means this
-    exponent; no size is varied here. Of surfaces against a plane where there are three: their
-    composite topography is the face, and one study loads them alike. Where each has an ensemble the
-    mean over its realisations, whose errors are those of the slope.
+    The paper calls this exponent the size effect; no size is varied here. At least three surfaces
+    against a plane are compared, whose composite topography is the face itself. Where each has
+    realisations, their means are compared.
     """
     flat = [joint for joint in joints.values() if not slides(joint.settings["opposite"])]
     if len(flat) < 3:
-        return Finding(UNDETERMINED, f"{len(flat)} surfaces against a plane, three needed")
+        return Finding(UNDETERMINED, "fewer than three surfaces against a plane")
     dimension = np.array([best_dimension(j["surface_dimension"]).value for j in flat])
     of_kinds = all(joint.realised for joint in flat)
     if of_kinds:
@@ -64,12 +63,11 @@ def size_exponent_grows_with_dimension(joints: Mapping[str, Joint]) -> Finding:
     order = np.argsort(dimension)
     if not slope.known:
         return Finding(UNDETERMINED, "fewer than three surfaces with Delta_g and Delta_sigma")
-    pairs = ", ".join(f"{effect[i]:.2f} at {dimension[i]:.2f}" for i in order)
+    pairs = ", ".join(f"{effect[i]:.2f} for Delta_g = {dimension[i]:.2f}" for i in order)
     return Finding(
         by_sign(slope, rising=True),
-        f"2 - Delta_sigma by A_r(s) {pairs}",
-        "at light load the exponent is the growth of the slopes h'_rms with resolution; whether "
-        "the area follows it as the size grows is judged under eq. 6",
+        f"2 - Delta_sigma is {pairs}",
+        "at light load this is the growth of the slopes h'_rms with resolution",
         "realisations of each" if of_kinds else "",
     )
 
@@ -82,13 +80,16 @@ def _slope(x: np.ndarray, y: np.ndarray, error: np.ndarray) -> Estimate:
 
 
 def area_falls_more_in_concrete(joints: Mapping[str, Joint]) -> Finding:
-    """Exponents of A_r against v, concrete's less rock's, with a margin."""
+    """Exponent of A_r against v in concrete minus that in rock, compared with the margin."""
     exponents = _by_material(joints, _area_exponent)
     return _compared(exponents, "area_falls_more_in_concrete", "A_r ~ v^x", rising=False)
 
 
 def contact_localises_more_in_concrete(joints: Mapping[str, Joint]) -> Finding:
-    """Exponents of Morisita's index against v, concrete's less rock's, with a margin."""
+    """Exponent of Morisita's index against v in concrete minus that in rock.
+
+    The claim holds where the interval lies above the margin.
+    """
     exponents, name = _by_material(joints, _localisation), "contact_localises_more_in_concrete"
     return _compared(exponents, name, "Morisita's index ~ v^x", rising=True)
 
@@ -128,8 +129,8 @@ def _compared(exponents, name, law, *, rising):
     less = Estimate(value, value - below, value + above)
     return Finding(
         beyond_margin(less, all_claims()[name].margin, rising=rising),
-        f"{law}, x = concrete {concrete:.2f}, rock {rock:.2f}",
-        f"concrete's less rock's {less:+z.2f}; {margin_words(name)}",
+        f"{law}: x = {concrete:.2f} in concrete, {rock:.2f} in rock",
+        f"difference {less:+z.2f}; {margin_words(name)}",
     )
 
 

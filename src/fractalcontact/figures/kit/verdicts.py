@@ -8,10 +8,10 @@ from xarray import DataTree
 from ...core.claims import all_claims
 from ...core.labels import printable
 from ...core.subject import Subject
-from ...core.verdicts import ILL_POSED
+from ...core.verdicts import ILL_POSED, UNDETERMINED
 
 #: Added to a verdict where the specimen was chosen for it: in a sentence, in a table.
-CIRCULAR, CIRCULAR_SHORT = "circular: the specimen was chosen for it", "circular"
+CIRCULAR, CIRCULAR_SHORT = "circular: the specimen was chosen to show it", "circular"
 
 
 def verdict_words(
@@ -68,7 +68,8 @@ def claim(
         As for :func:`verdict_words`.
     """
     words = verdict_words(atlas, name, statement, numbers=numbers, why=why)
-    return f"The paper's {all_claims()[statement].short}: {words}." if words else ""
+    words = f"is {words}" if words.startswith((ILL_POSED, UNDETERMINED)) else words
+    return f"The paper states that {all_claims()[statement].short}; this {words}." if words else ""
 
 
 def labels_by_verdict(
