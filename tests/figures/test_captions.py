@@ -29,7 +29,7 @@ STUDY = [
     for figure in study_figures_of([*paths_of(EXPERIMENT), "defaults", "comparison"])
 ]
 #: Half of the captions of a study have fewer words than this.
-MEDIAN_WORDS = 45
+MEDIAN_WORDS = 50
 #: Words of a verdict on the paper, which only the table of statements has.
 VERDICT = (
     r"\b(holds|not hold|holds? in part|ill-posed|established|refut\w+|support\w*|confirm\w*|"
@@ -163,10 +163,10 @@ def test_a_claim_is_quoted_with_its_numbers_and_what_makes_it_circular(atlas):
     changed["statements/sliding"] = xr.DataTree(table)
     verdict, numbers = judged["verdict"].item(), judged["numbers"].item()
     said = claim(atlas, "sliding", "area_falls")
-    assert said == f"The paper's fall of A_r as v^x: {verdict} ({numbers})."
-    assert claim(atlas, "sliding", "area_falls", numbers=False).endswith(f": {verdict}.")
+    assert said == f"The paper's claim that A_r falls as v rises {verdict} ({numbers})."
+    assert claim(atlas, "sliding", "area_falls", numbers=False).endswith(f"rises {verdict}.")
     circular = claim(changed, "sliding", "area_falls")
-    assert circular == f"The paper's fall of A_r as v^x: {verdict} ({numbers}; {CIRCULAR})."
+    assert circular == said.replace(f"{numbers})", f"{numbers}; {CIRCULAR})")
     assert claim(atlas, "flat", "area_falls") == ""
     with pytest.raises(KeyError):
         claim(atlas, "nobody", "area_falls")

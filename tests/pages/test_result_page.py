@@ -347,7 +347,8 @@ def test_page_summary_and_figure_quote_one_verdict_on_the_elastic_model(results,
         )
         with print_style():
             caption = drawer_of("fig08_prefractals")(atlas, name).caption
-        assert f"{found.reason}: the contact model is {found.verdict}" in caption
+        assert found.reason in caption
+        assert f"The contact model is {found.verdict}" in caption.heading
 
 
 def test_specimens_are_compared_at_one_nominal_pressure(results, atlas):
@@ -461,7 +462,8 @@ def test_the_verdict_on_the_elastic_model_is_that_of_the_atlas(results):
         assert (light.word, light.reason.split(", ")[1]) == ("partly", "it is told so")
         with print_style():
             caption = drawer_of("fig08_prefractals")(changed, name).caption
-        assert "it is told so: the contact model is partly good." in caption
+        assert "it is told so." in caption
+        assert caption.heading == "The contact model is partly good"
 
 
 def test_the_page_opens_with_numbers_and_verdicts(results):
@@ -516,7 +518,7 @@ def test_the_first_screen_says_what_no_interval_holds(results):
     assert fact.notes == [
         "range of 3 rules:",
         *("Barton 18.9", "dilatancy 26.8", "contact 45.5"),
-        "none by: Barton and Bandis",
+        "no value by: Barton and Bandis",
     ]
     contact = number | {"value": 0.0333, "low": 0.033, "high": 0.034, "hardest": 0.0111}
     of_surface = {"interval": "all errors of this surface", "values": [contact]}
@@ -529,18 +531,18 @@ def test_the_first_screen_says_what_no_interval_holds(results):
     assert fact.words == "3.33 %"
     assert fact.notes == [
         "[3.30,\u00a03.40] this surface",
-        "1.11 to 3.33 for H to 3\u00a0H",
+        "1.11 to 3.33 for hardness H to 3\u00a0H",
     ]
     (stiffness,) = (one for one in card["errors"] if one["quantity"] == "stiffness")
     stiffness["sources"]["resolution"] = 18.25
-    assert "± 18 at twice the spacing" in facts_of(card)[0].notes
+    assert "changes by 18 at twice the spacing" in facts_of(card)[0].notes
 
 
 @pytest.mark.parametrize(
     ("half", "synthetic", "words"),
     [
         (0.25, False, "± 0.25 for the whole joint"),
-        (3.2, False, "unknown for the whole joint (± 3.2; 'twins' narrows that)"),
+        (3.2, False, "unknown for the whole joint (± 3.2; 'twins' in the study would narrow it)"),
         (3.2, True, "unknown for the whole joint (± 3.2)"),
     ],
 )

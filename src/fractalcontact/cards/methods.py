@@ -80,7 +80,7 @@ def _laws(card):
 
 def _strength(card):
     if "missing" in card["entries"]["jrc"]:
-        return "Nothing slides here: no strength is stated."
+        return "Nothing slides here, so there is no strength."
     return (
         "Shear strength is sigma tan(phi_b + i) with the dilatancy angle i of the computed "
         "states. It is compared with Barton's law (Barton and Choubey 1977) with JRC from Z2 (Tse "

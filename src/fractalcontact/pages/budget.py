@@ -19,14 +19,15 @@ class Part:
         Its half-width, or why it has none.
     share : float
         Of the squares of those that make the total, in per cent of the bar.
-    counted : bool
-        Whether it is in the total of this surface.
+    counted, known : bool
+        Whether it is in the total of this surface, and whether it is a number.
     """
 
     source: str
     words: str
     share: float
     counted: bool
+    known: bool
 
 
 @dataclass(frozen=True)
@@ -60,6 +61,7 @@ def _bar(quantity: Quantity) -> Bar:
             words=_words(quantity, source),
             share=100 * known[source] ** 2 / squares if squares and source in known else 0.0,
             counted=source in OF_SURFACE,
+            known=_is_known(quantity, source),
         )
         for source in quantity.sources
     ]
@@ -77,9 +79,14 @@ def _bar(quantity: Quantity) -> Bar:
 
 
 def _words(quantity, source):
-    error = quantity.sources[source]
     note = quantity.reasons[source]
-    if math.isfinite(error) and not (error == 0 and note):
+    if _is_known(quantity, source):
         beside = f" ({note})" if source in ("estimator", TWINS) and note else ""
-        return quantity.error_words(error) + beside
+        return quantity.error_words(quantity.sources[source]) + beside
     return note or "not known"
+
+
+def _is_known(quantity, source):
+    # A source that does not apply is zero, with a note that says so.
+    error = quantity.sources[source]
+    return math.isfinite(error) and not (error == 0 and bool(quantity.reasons[source]))

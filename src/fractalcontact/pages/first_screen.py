@@ -193,7 +193,7 @@ def _strength(card, title, pressure):
     if len(known) > 1:
         lines.insert(0, f"range of {len(known)} rules:")
     if without := [words for words, row in rows.items() if "missing" in row]:
-        lines.append(f"none by: {', '.join(without)}")
+        lines.append(f"no value by: {', '.join(without)}")
     ends = dict.fromkeys(short(value) for value in (values[0], values[-1]))
     return Fact(title, f"{' to '.join(ends)} MPa", lines)
 
@@ -219,7 +219,7 @@ def _of_joint(card, row, size):
     half = short(size * row[_KIND], 2)
     if row[_KIND] <= abs(row["value"]):
         return f"± {half} for the whole joint"
-    remedy = "" if card["synthetic"] else "; 'twins' narrows that"
+    remedy = "" if card["synthetic"] else "; 'twins' in the study would narrow it"
     return f"unknown for the whole joint (± {half}{remedy})"
 
 
@@ -234,7 +234,7 @@ def _at_twice(card):
     """Change of the stiffness with the spacing, which no interval contains."""
     rows = [one["sources"] for one in card["errors"] if one["quantity"] == "stiffness"]
     change = rows[0].get("resolution") if rows else None
-    return f"± {short(change, 2)} at twice the spacing" if change else ""
+    return f"changes by {short(change, 2)} at twice the spacing" if change else ""
 
 
 def _harder(card, row, size):
@@ -244,4 +244,4 @@ def _harder(card, row, size):
     low, high = sorted((row["value"], row["hardest"]))
     ends = " to ".join(dict.fromkeys(short(size * end) for end in (low, high)))
     soft, hard = hardnesses_of(card)
-    return f"{ends} for H to {short(hard / soft)}{_NBSP}H"
+    return f"{ends} for hardness H to {short(hard / soft)}{_NBSP}H"

@@ -14,13 +14,15 @@ from ..core.verdicts import GOOD, HARDNESS, IN_PART, NOT_ASKED, POOR, STRENGTH, 
 from .words import with_unit
 
 #: What would make lights better.
-FINER_SCAN = "heights without the instrument's filter, or an instrument with less noise"
+FINER_SCAN = (
+    "measured points closer together, heights without the instrument's filter, or less noise"
+)
 MARKS = (
-    "faces scanned with common marks, and the same joint with 'outliers: fill' in its sidecar: "
-    "the change of the numbers is the error of the scans"
+    "faces scanned with common marks; or the same joint with 'outliers: fill' in its sidecar, "
+    "where the change of the numbers shows the error of the scans"
 )
 LIGHTER = "lighter loads, under which less of the window touches"
-STEEP = "a laboratory test laid over the computed curve, as no scan makes the surface less steep"
+STEEP = "a laboratory test beside the computed curve; a finer scan shows the same steep slopes"
 CRUSH = "a 'hardness' in the material, such as the joint wall strength, at which contacts crush"
 STATE = "'joint_wall_strength' of the rock in its material, at which contacts then crush"
 

@@ -29,7 +29,7 @@ _VERDICTS = {
     FAILS: "does not hold",
     UNDETERMINED: "is undetermined",
 }
-_ANSWERS = {HOLDS: "Yes", PARTLY: "Partly", FAILS: "No", UNDETERMINED: "Unknown"}
+_ANSWERS = {HOLDS: "yes", PARTLY: "partly", FAILS: "no", UNDETERMINED: "unknown"}
 _MODEL = {GOOD: "good", IN_PART: "partly good", POOR: "poor"}
 _KINDS = {"level": "levels off", "rising": "keeps rising", "falling": "falls"}
 
@@ -119,7 +119,7 @@ def _model(found: _At, under: str) -> Markup | None:
     shares = [at.contact_share for _, at in known]
     text = (
         f"{under} {_range(shares, percent)} of the window is in contact, at a real mean pressure "
-        f"of {_range([at.model.pressure for _, at in known], _pressure)}: {_tested(known, found)}"
+        f"of {_range([at.model.pressure for _, at in known], _pressure)}. {_tested(known, found)}"
     )
     return Markup(escape(text))
 
@@ -135,15 +135,13 @@ def _tested(known: _At, found: _At) -> str:
         slopes = [one.rms_slope for one, _ in tested if math.isfinite(one.rms_slope)]
         judged = " judged" if capped or few else ""
         parts.append(
-            f"the elastic model is {verdicts}{judged} ({_limits(tested)}{_slopes(slopes)})"
+            f"The elastic model is {verdicts}{judged} ({_limits(tested)}{_slopes(slopes)})."
         )
     if few:
-        parts.append(f"{_listed(few)} {'have' if few[1:] else 'has'} too few contact nodes for it")
+        parts.append(f"Too few nodes of {_listed(few)} touch to judge it.")
     if capped:
-        parts.append(
-            f"the hardness of {_listed(capped)} caps the pressure, which therefore tests nothing"
-        )
-    return f"{'; '.join(parts)}."
+        parts.append(f"In {_listed(capped)} the hardness bounds the pressure.")
+    return " ".join(parts)
 
 
 def _limits(tested: _At) -> str:
@@ -198,8 +196,8 @@ def _dilatancy(specimens: Sequence[Specimen], rows: Sequence[Row]) -> Markup | N
         return None
     plateaus = [row.cells for row in rows if row.name in _PLATEAUS]
     chosen = sorted(name for cells in plateaus for name in cells if cells[name].circular)
-    note = f"; this proves nothing for {_listed(chosen)}, chosen to show it" if chosen else ""
-    text = f"Over the second half of the offsets the rigid dilatancy {' and '.join(parts)}{note}."
+    note = f" This proves nothing for {_listed(chosen)}, chosen to show it." if chosen else ""
+    text = f"Over the second half of the offsets the rigid dilatancy {' and '.join(parts)}.{note}"
     return Markup(escape(text))
 
 
@@ -221,11 +219,8 @@ def _listed(names: Sequence[str], most: int = _LISTED) -> str:
     return " and ".join((", ".join(names[:-1]), names[-1])) if len(names) > 1 else names[0]
 
 
-#: What the paper's number is an exponent of, and what eq. 6 makes of it.
-_OF_THE_PAPER = (
-    "The paper's 1.39 is a box count, printed under a picture of areas A_r(s). The exponent of "
-    "eq. 6, Delta_sigma - 2, is -0.61 with it; with the larger Delta_sigma of areas it is nearer 0."
-)
+#: What the paper's number is an exponent of.
+_OF_THE_PAPER = "The paper's 1.39 is a box count, printed under a picture of areas A_r(s)."
 
 
 def _dimensions(found: _At, under: str, rows: Sequence[Row]) -> Markup:
@@ -238,11 +233,11 @@ def _dimensions(found: _At, under: str, rows: Sequence[Row]) -> Markup:
     text = f"{under} Delta_sigma is {by_boxes} by box counting and {by_areas} by A_r(s)"
     by_construction = [one.name for one, _ in found if one.name in yielded]
     if by_construction:
-        text += f"; all contacts of {_listed(by_construction)} yield, so that A_r(s) gives 2 there"
+        text += f". Where all contacts yield ({_listed(by_construction)}), A_r(s) gives 2"
     beside = [one for one in verdicts.get(_FRACTAL, {}).values() if one in _ANSWERS]
     question = ""
     if beside:
-        answer = _counted(beside, _ANSWERS)
+        answer = _counted(beside, _ANSWERS).capitalize()
         question = f" Is the contact a fractal set under its reference load? {answer}."
     return symbols(f"{text}. {_OF_THE_PAPER}{question}")
 

@@ -15,7 +15,6 @@ from .findings import (
     beyond_margin,
     level,
     margin_words,
-    no_offsets,
     of_the_area,
     share,
     trend,

@@ -116,7 +116,7 @@ def _beside_random(less: Estimate) -> str:
 def _rise(trend: Trend, name: str) -> Finding:
     """Verdict on a slope over the decades of F."""
     if not trend.slope.known:
-        return Finding(UNDETERMINED, f"only {trend.pressures.size} loads have a dimension")
+        return Finding(UNDETERMINED, "too few loads have a dimension")
     return Finding(
         beyond_margin(trend.slope, all_claims()[name].margin, rising=True),
         f"Delta_sigma changes by {trend.slope:+z.2f} per decade of F",

@@ -131,7 +131,7 @@ def test_figure_shows_the_table_and_says_what_holds(bias):
     for (name, hurst, size), value in shown.items():
         assert value == bias["bias"].sel(estimator=name, hurst=hurst, size=size).item()
     assert drawing.caption.startswith("Supplementary figure.")
-    assert "On rougher surfaces they reach 90 % too." in drawing.caption  # of H = 0.3
+    assert "On rougher surfaces all reach 90 % too." in drawing.caption  # of H = 0.3
 
 
 def test_verdict_follows_the_numbers(bias):
@@ -146,7 +146,7 @@ def test_verdict_follows_the_numbers(bias):
     bad["min_coverage"] = xr.full_like(least, 0.5)
     bad["rough_coverage"] = xr.full_like(least, 0.5)
     words = drawn(bad).caption
-    assert "On rougher surfaces 7 fall to 50 %" in words
+    assert "On rougher surfaces 7 estimators fall to 50 %" in words
     assert "has an rms error of 0.200, variogram 0.010" in words
     assert "contain H in 50 % or more" in words
 

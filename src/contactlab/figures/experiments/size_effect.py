@@ -65,16 +65,13 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
         axes.set_ylabel(r"exponent found: $\alpha=\mathrm{d}\ln(A_r/A_0)/\mathrm{d}\ln b$ (1)")
     bars = heading(f"bars: {100 * PROBABILITY:.0f} % intervals")
     legends_below(figure, [*_classes(test), bars], _loads(test), _lines())
-    classes, flat = test["overall"], test["no_size_effect"]
+    classes = test["overall"]
     words = caption(
         __name__,
         classes=classes.size,
         refuted=int((classes == REFUTED).sum()),
         supported=int((classes == UPHELD).sum()),
         largest=float(np.nanmax(abs(test["alpha"].values))),
-        limit=NO_EFFECT,
-        flat=int(flat.sum()),
-        cases=flat.size,
     )
     return Drawing(figure, rows(test, *_COLUMNS), words)
 

@@ -115,11 +115,9 @@ def _legend() -> list[list[Artist]]:
 
 
 def _words(test: xr.Dataset) -> dict[str, Any]:
-    """Exponents and their null models at one load, of the lowest and the highest H."""
+    """Exponents at one load, of the lowest and the highest H."""
     one = test.sel(reduced_pressure=_QUOTED, method="nearest")
-    exponents = {
-        of: one[of].values - less for name, less, *_, nulls in _EXPONENTS for of in (name, *nulls)
-    }
+    exponents = {name: one[name].values - less for name, less, *_ in _EXPONENTS}
     classes = [
         (hurst, {name: values[i] for name, values in exponents.items()})
         for i, hurst in enumerate(test["hurst"].values.tolist())

@@ -26,8 +26,8 @@ SOURCES = {
     "resolution": "every second node: another surface, in no total",
     "model": "three times the hardness: another model, in no total",
     "estimator": "ordinary box-counting slope: another estimator, in no total",
-    TWINS: "twins of the scan, in place of counting and windows",
-    REALISATIONS: "its realisations, in place of counting and windows",
+    TWINS: "spread of twins of the scan (replaces counting and windows)",
+    REALISATIONS: "spread of its realisations (replaces counting and windows)",
 }
 TOTALS = {
     "total": ("total for this very surface\n(solver, numerical, secant)", "-"),

@@ -16,13 +16,13 @@ from ..kit.words import force_label, percent
 
 #: The paper's stages of sliding: what each is said to do, and what decides about it.
 STAGES = {
-    "compliance_rises_at_first": ("it rises as v^x", ""),
+    "compliance_rises_at_first": ("compliance rises as v^x", ""),
     "curves_overlap": (
-        "it stays the same",
+        "compliance stays the same",
         f"margin {percent(all_claims()['curves_overlap'].margin)}",
     ),
     "compliance_rises_again": (
-        "it rises again on average",
+        "compliance rises again",
         f"margin {percent(all_claims()['compliance_rises_again'].margin, '+')}",
     ),
 }

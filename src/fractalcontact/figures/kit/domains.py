@@ -12,7 +12,7 @@ from ...core.labels import loads_of
 from ...core.subject import Subject
 from ...core.verdicts import BEYOND_BOTH, BEYOND_RANDOM, LIKE_CUT, UNDETERMINED
 from .drawing import COLOURS, MARKERS, spread
-from .verdicts import verdict_words
+from .verdicts import predicate, verdict_words
 
 #: Statements that judge the rise of Delta_sigma with the load, by estimate.
 RISES = {"area": "dimension_rises_by_area", "box": "dimension_rises_by_boxes"}
@@ -138,7 +138,7 @@ def departures(counts: xr.Dataset) -> dict[str, str]:
     return found
 
 
-def rise_words(atlas: DataTree, name: str, *, numbers: bool = True) -> str:
+def rise_words(atlas: DataTree, name: str) -> str:
     """Verdicts on the rise of Delta_sigma with the load, by both estimates.
 
     Parameters
@@ -147,11 +147,9 @@ def rise_words(atlas: DataTree, name: str, *, numbers: bool = True) -> str:
         With the stage ``statements``.
     name : str
         The specimen.
-    numbers : bool, optional
-        Whether the numbers follow that decide.
     """
     return ", ".join(
-        f"by {label} {verdict_words(atlas, name, RISES[key], numbers=numbers)}"
+        f"{predicate(verdict_words(atlas, name, RISES[key], numbers=False))} by {label}"
         for key, (label, _) in _ESTIMATORS.items()
     )
 

@@ -15,9 +15,9 @@ from .points import draw_points
 from .words import length_unit, short
 
 #: Legend of means whose friction angle is truncated in most sub-windows.
-TRUNCATED = f"hollow: truncated at {LARGEST_FRICTION_ANGLE:g}° in most, excluded"
+TRUNCATED = f"hollow: most angles truncated at {LARGEST_FRICTION_ANGLE:g}°, excluded"
 #: What the legends of :func:`draw_over_size` declare.
-BARS = "bars: 95 % intervals; none of the whole window"
+BARS = "bars: 95 % intervals; the whole window has none"
 SHIFTED = "pressures at one $b$ are drawn side by side"
 #: Why no strength is drawn.
 NO_STRENGTH = "no strength: the study states no basic\nfriction angle, or no offset fits"
@@ -59,11 +59,11 @@ def roughness_words(strength: xr.Dataset) -> str:
     jrc = float(strength["jrc"].sel(sampling=JRC_SAMPLING))
     used = float(strength["jrc_used"])
     step = float(strength["step"].sel(sampling=JRC_SAMPLING))
-    words = f"JRC {short(jrc)} (steps of {short(step)} mm)"
+    words = f"JRC is {short(jrc)} (steps of {short(step)} mm)"
     if used != jrc:
         words += f", {short(used)} used"
     if np.isfinite(used) and np.isnan(strength["scaled_roughness"]):
-        words += f"; scaled to this length it exceeds Barton's largest, {JRC_RANGE[1]:g}"
+        words += f"; scaled to this length it exceeds {JRC_RANGE[1]:g}, the largest of his law"
     return words
 
 

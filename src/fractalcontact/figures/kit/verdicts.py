@@ -68,8 +68,16 @@ def claim(
         As for :func:`verdict_words`.
     """
     words = verdict_words(atlas, name, statement, numbers=numbers, why=why)
-    words = f"is {words}" if words.startswith((ILL_POSED, UNDETERMINED)) else words
-    return f"The paper states that {all_claims()[statement].short}; this {words}." if words else ""
+    return (
+        f"The paper's claim that {all_claims()[statement].short} {predicate(words)}."
+        if words
+        else ""
+    )
+
+
+def predicate(verdict: str) -> str:
+    """Verdict as the end of a sentence: "holds", "is undetermined"."""
+    return f"is {verdict}" if verdict.startswith((ILL_POSED, UNDETERMINED)) else verdict
 
 
 def labels_by_verdict(

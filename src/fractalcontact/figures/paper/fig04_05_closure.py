@@ -93,7 +93,8 @@ def draw(atlas: DataTree, name: str) -> Drawing:
         "no_law": no_law(curves.isel(offset=-1)),
         "limit": percent(GOOD_FIT),
         "state": subject.state("closure"),
-        "claims": [claim(atlas, name, one) for one in ("closure_is_hyperbolic", "area_is_linear")],
+        "hyperbola": claim(atlas, name, "closure_is_hyperbolic", numbers=False),
+        "linear": claim(atlas, name, "area_is_linear"),
     }
     return Drawing(figure, pd.concat(table, ignore_index=True), caption(__name__, **words))
 

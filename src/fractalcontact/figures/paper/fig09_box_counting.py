@@ -72,8 +72,8 @@ def draw(atlas: DataTree, name: str) -> Drawing:
         sides=[float(counts[f"fit_{end}"]) for end in ("min", "max")],
         one_power=verdict_words(atlas, name, "boxes_follow_one_law", numbers=False),
         ordinary=ordinary,
-        one_law=claim(atlas, name, "boxes_follow_one_law", numbers=False),
-        fractal=claim(atlas, name, "domains_are_fractal"),
+        one_law=claim(atlas, name, "boxes_follow_one_law"),
+        fractal=claim(atlas, name, "domains_are_fractal", numbers=False),
     )
     return Drawing(figure, table_of(b, c), text)
 

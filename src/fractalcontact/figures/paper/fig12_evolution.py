@@ -9,7 +9,14 @@ from ...core.limits import MIN_NODES
 from ...core.subject import Subject
 from ...core.window import window_sides
 from ..kit.caption import caption
-from ..kit.domains import contact_domain, departures, estimates_of, rise_words, spread_loads
+from ..kit.domains import (
+    RISES,
+    contact_domain,
+    departures,
+    estimates_of,
+    rise_words,
+    spread_loads,
+)
 from ..kit.drawing import COLOURS, WIDTH, Drawing
 from ..kit.empty import say_empty
 from ..kit.ensembles import draw_band, members_of
@@ -20,6 +27,7 @@ from ..kit.measured import table_of as table_of_maps
 from ..kit.panel import Panel, table_of
 from ..kit.points import reach
 from ..kit.titles import headline, letter
+from ..kit.verdicts import row_of
 from ..kit.words import area_label, force_label, place, wrapped
 
 TITLE = "Fig. 12: contact domains and their dimension under growing load"
@@ -81,8 +89,8 @@ def draw(atlas: DataTree, name: str) -> Drawing:
         table = pd.concat([table, of_maps.assign(panel=panel.which)], ignore_index=True)
     text = caption(
         __name__,
-        rises=rise_words(atlas, name),
-        verdicts=rise_words(atlas, name, numbers=False),
+        rises=[row_of(atlas, "statements", name, one)["numbers"].item() for one in RISES.values()],
+        verdicts=rise_words(atlas, name),
         least=MIN_NODES,
         larger=larger,
         members=members_of(subject),

@@ -51,7 +51,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     columns[0].append(heading("bars at the ends: 95 % interval; thin, no bar: undetermined"))
     legends_below(figure, *columns, columnspacing=2)
     headline(figure, subject.label, place(subject.direction, subject.offset))
-    rises = rise_words(atlas, name, numbers=False)
+    rises = rise_words(atlas, name)
     return Drawing(figure, table_of(*panels), caption(__name__, rises=rises))
 
 
