@@ -147,7 +147,7 @@ def test_verdict_follows_the_numbers(bias):
     bad["rough_coverage"] = xr.full_like(least, 0.5)
     words = drawn(bad).caption
     assert "On rougher surfaces 7 estimators fall to 50 %" in words
-    assert "has an rms error of 0.200, variogram 0.010" in words
+    assert "has an rms error of 0.200, variogram one of 0.010" in words
     assert "contain H in 50 % or more" in words
 
 

@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.axis import Axis
 from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter
 
-from ...core.estimate import EXPONENT, Estimate
+from ...core.estimate import Estimate
 from ...core.limits import JRC_RANGE, JRC_SAMPLING, LARGEST_FRICTION_ANGLE
 from .drawing import MARKERS, colour_of
 from .points import draw_points
@@ -108,10 +108,11 @@ def name_exponents(axes: Axes, laws: xr.Dataset, name: str, of: str) -> None:
     truncated = (laws["truncated_fraction_at_equal_v_over_b"] > 0).any("part").values & (
         "strength" in name
     )
-    exponents = Estimate.read(laws, name, scale=EXPONENT)
+    exponents = Estimate.read(laws, name)
     for j, pressure in enumerate(laws["nominal_pressure"].values):
-        exponent = exponents[j].text()
-        words = f"{exponent} (truncated)" if truncated[j] and not exponents[j].known else exponent
+        # A wide interval too shows the sign that the caption states.
+        missing = "no fit (truncated)" if truncated[j] else "no fit"
+        words = f"{exponents[j]:z.2f}" if exponents[j].known else missing
         label = rf"$\sigma_0$ = {short(pressure)} MPa: ${of}\sim b^x$, $x$ = {words}"
         axes.plot([], [], ls="none", label=label, **series(j))
 

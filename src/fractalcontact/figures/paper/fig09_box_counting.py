@@ -95,7 +95,8 @@ def _draw_ensemble(panel: Panel, subject: Subject) -> list[Artist]:
     style: dict[str, Any] = {"color": COLOURS[1], "alpha": 0.2, "lw": 0}
     panel.axes.fill_between(stage["local_slope_side"], low, high, **style, zorder=0)
     panel.keep(stage, *(f"local_slope_{of}" for of in ("mean", "band_low", "band_high")))
-    return [Patch(**style, label=f"(c) 95 % of {members}")]
+    # One side alone makes no band.
+    return [Patch(**style, label=f"(c) 95 % of {members}")] if np.isfinite(low).sum() > 1 else []
 
 
 def _draw_counts(panel, counts, law, ordinary):
