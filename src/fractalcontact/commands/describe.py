@@ -268,8 +268,8 @@ def write_alike(scan: ScanFiles, like: Mapping[str, Any]) -> Described:
         relief, expected = sizes[-1].get("relief"), block.get("confirmed", {}).get("relief")
         if relief and expected and not 1 / ALIKE <= relief / expected <= ALIKE:
             sentence = (
-                f"{face.path}: a relief of {relief:g} where {expected:g} was confirmed is not of "
-                "the same kind; describe it by itself"
+                f"{face.path}: the relief is {relief:g}, but the sidecar was confirmed for "
+                f"{expected:g}; describe this scan by itself"
             )
             return Described(scan.name, "refused", sentences=[sentence])
     described = Described(scan.name, "written", [size_words(face) for face in faces])

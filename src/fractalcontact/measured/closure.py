@@ -39,7 +39,7 @@ OF_CLOSURE = {
     },
     "closure_datum": ("MPa", "pressure from which both closures count"),
     "closure_largest": ("MPa", "pressure that the joint had carried before"),
-    "closure_rock": ("mm/MPa", "displacement of the rock that was taken off"),
+    "closure_rock": ("mm/MPa", "displacement of the rock, which was subtracted"),
     "closure_status": ("1", "how the calibrated curve came about: computed, fitted or predicted"),
     "closure_ratio_calibrated": ("1", "calibrated over measured closure at the end"),
 }

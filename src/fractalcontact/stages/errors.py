@@ -63,5 +63,5 @@ def asked(solver: Solver) -> dict[str, tuple]:
     All states, at full cost, ask nothing of the grid: the usual error stands for it.
     """
     asks = solver.accuracy["closure"] if solver.accuracy else share(ACCURACY["closure"], "closure")
-    words = cf_attrs("1", "error of the closure that the study asks for, a fraction")
+    words = cf_attrs("1", "requested error of the closure, a fraction")
     return {"closure_accuracy": ((), asks, words)}

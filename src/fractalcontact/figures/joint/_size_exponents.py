@@ -50,7 +50,7 @@ def draw_predictions(axes: Axes, test: xr.Dataset, *, decided: bool = False) -> 
         if decided:
             decides, predicted = one["decides"].values, one["predicted_slope"].values
             agrees, count = int(one["agreeing_loads"]), int(one["deciding_loads"])
-            counted = f"decides, by {words}: eq. 6 agrees at {agrees or 'none'} of {count}"
+            counted = f"conclusive, by {words}: eq. 6 agrees at {agrees or 'none'} of {count}"
             named = counted if count else None
             axes.plot(pressure[decides], predicted[decides], "D", color=colour, ms=5, label=named)
     if decided and not test["decides"].any():
