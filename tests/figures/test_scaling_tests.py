@@ -161,7 +161,7 @@ def test_a_verdict_on_eq_6_carries_its_reason(atlas, verdict, reason, said):
     decides = test["decides"].sel(estimator=list(_size_test.ESTIMATORS))
     assert decides.sum() == (0 if verdict == "undecided" else decides.size)
     labels = [line.get_label() for line in drawing.figure.axes[1].lines]
-    assert any("decides, by" in str(label) for label in labels) == (verdict != "undecided")
+    assert any("conclusive, by" in str(label) for label in labels) == (verdict != "undecided")
 
 
 def test_measured_and_predicted_have_colours_of_their_own(atlas):

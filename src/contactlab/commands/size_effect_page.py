@@ -290,9 +290,8 @@ def _strength(test: xr.Dataset) -> list[str]:
         {test.attrs["roll_off"]:g} nodes) slide over their copies, with sides of
         {test.attrs["smallest_side"]} nodes and more. The exponent over b is that of τ/σ₀ =
         tan(φ_b + i), φ_b = {test.attrs["basic_friction_angle"]:g}°, i = atan(Δδ/Δv) between
-        successive displacements, not truncated: bounds of 0° and
-        {test.attrs["largest_friction_angle"]:g}° would meet {100 * truncated:.2g} % of the angles.
-        At equal v all intervals are taken together. The columns at equal v/b hold three exponents:
+        successive displacements. No angle is truncated; {100 * truncated:.2g} % of them lie outside
+        0° to {test.attrs["largest_friction_angle"]:g}°. At equal v all intervals are taken together. The columns at equal v/b hold three exponents:
         that of all joints, that of the largest joints alone at the same v, where size plays no
         part, and that of the height-difference function S(v). An asterisk marks exponents
         within {test.attrs["bound"]:g} of zero (no size effect), a question mark undetermined
@@ -380,8 +379,8 @@ def _questions(test: xr.Dataset) -> list[str]:
         "Correction of the area": f"""Ratio of raw to corrected area, median of all surfaces:
             {", ".join(f"{float(v):.3f}" for v in raw.median("surface"))} over the loads; a constant
             factor changes no exponent.""",
-        "Few contacts": f"""The sparsest state in an exponent has {float(nodes.min()):.0f} nodes (of
-            arm W in the mean over its windows).""",
+        "Few contacts": f"""The sparsest state in an exponent has {float(nodes.min()):.0f} nodes in
+            contact (in arm W, the mean over windows).""",
         "Loads": f"""p/(E\\* h'_rms) = {loads}, that is A_r/A_0 of
             {float(shares.min()):.2g} to {float(shares.max()):.2g}.""",
         "Errors": f"""Largest residual of the contact conditions:
