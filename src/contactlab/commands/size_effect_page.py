@@ -291,11 +291,11 @@ def _strength(test: xr.Dataset) -> list[str]:
         {test.attrs["smallest_side"]} nodes and more. The exponent over b is that of τ/σ₀ =
         tan(φ_b + i), φ_b = {test.attrs["basic_friction_angle"]:g}°, i = atan(Δδ/Δv) between
         successive displacements. No angle is truncated; {100 * truncated:.2g} % of them lie outside
-        0° to {test.attrs["largest_friction_angle"]:g}°. At equal v all intervals are taken together. The columns at equal v/b hold three exponents:
-        that of all joints, that of the largest joints alone at the same v, where size plays no
-        part, and that of the height-difference function S(v). An asterisk marks exponents
-        within {test.attrs["bound"]:g} of zero (no size effect), a question mark undetermined
-        ones."""
+        0° to {test.attrs["largest_friction_angle"]:g}°. At equal v all intervals are taken
+        together. The columns at equal v/b hold three exponents: that of all joints, that of the
+        largest joints alone at the same v, where size plays no part, and that of the
+        height-difference function S(v). An asterisk marks exponents within {test.attrs["bound"]:g}
+        of zero (no size effect), a question mark undetermined ones."""
     ends = test.isel(hurst=0, law=0, reduced_pressure=0)
     fractions = " | ".join(
         f"v/b = {float(low):.3g} to {float(high):.3g}"

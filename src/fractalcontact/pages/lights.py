@@ -14,9 +14,7 @@ from ..core.verdicts import GOOD, HARDNESS, IN_PART, NOT_ASKED, POOR, STRENGTH, 
 from .words import with_unit
 
 #: What would make lights better.
-FINER_SCAN = (
-    "measured points closer together, heights without the instrument's filter, or less noise"
-)
+FINER_SCAN = "points measured closer together, heights without the instrument's filter, less noise"
 MARKS = (
     "faces scanned with common marks; or the same joint with 'outliers: fill' in its sidecar, "
     "where the change of the numbers shows the error of the scans"

@@ -80,16 +80,13 @@ def _slope(x: np.ndarray, y: np.ndarray, error: np.ndarray) -> Estimate:
 
 
 def area_falls_more_in_concrete(joints: Mapping[str, Joint]) -> Finding:
-    """Exponent of A_r against v in concrete minus that in rock, compared with the margin."""
+    """Exponent of A_r against v, concrete's minus rock's, beyond the margin."""
     exponents = _by_material(joints, _area_exponent)
     return _compared(exponents, "area_falls_more_in_concrete", "A_r ~ v^x", rising=False)
 
 
 def contact_localises_more_in_concrete(joints: Mapping[str, Joint]) -> Finding:
-    """Exponent of Morisita's index against v in concrete minus that in rock.
-
-    The claim holds where the interval lies above the margin.
-    """
+    """Exponent of Morisita's index against v, concrete's minus rock's, beyond the margin."""
     exponents, name = _by_material(joints, _localisation), "contact_localises_more_in_concrete"
     return _compared(exponents, name, "Morisita's index ~ v^x", rising=True)
 

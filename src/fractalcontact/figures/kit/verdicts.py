@@ -67,12 +67,8 @@ def claim(
     atlas, name, statement, numbers, why
         As for :func:`verdict_words`.
     """
-    words = verdict_words(atlas, name, statement, numbers=numbers, why=why)
-    return (
-        f"The paper's claim that {all_claims()[statement].short} {predicate(words)}."
-        if words
-        else ""
-    )
+    words = predicate(verdict_words(atlas, name, statement, numbers=numbers, why=why))
+    return f"The paper's claim that {all_claims()[statement].short} {words}." if words else ""
 
 
 def predicate(verdict: str) -> str:
@@ -118,8 +114,3 @@ def row_of(atlas: DataTree, stage: str, name: str, statement: str) -> xr.Dataset
     table = atlas[f"{stage}/{name}"].to_dataset()
     asked = statement in table["statement"].values
     return table.sel(statement=statement) if asked else None
-
-
-def sentences(*parts: str) -> str:
-    """Sentences on one line, without empty ones."""
-    return " ".join(part for part in parts if part)
