@@ -171,8 +171,8 @@ class Estimate:
     def text(self, unit: str = "") -> str:
         """Value with its interval: "0.954 [0.912, 1.02] MPa"; of a single number.
 
-        "no fit" where there is none, :attr:`undetermined` where the interval leaves nearly
-        everything open.
+        "no fit" where there is none, :attr:`undetermined` where the interval is too wide
+        to be of use.
         """
         if not self.known:
             return "no fit" if self.scale.decimals is None else UNDETERMINED

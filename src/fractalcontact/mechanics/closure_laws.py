@@ -175,7 +175,7 @@ def undetermined_stiffness(hyperbola: Hyperbola, law: Law) -> str:
     -------
     str
         k_ni is a parameter of the hyperbola: it is undetermined where that is not the law of the
-        curve, and where its interval leaves nearly everything open.
+        curve, and where its interval is too wide to be of use.
     """
     if hyperbola.reason:
         return hyperbola.reason
@@ -184,7 +184,7 @@ def undetermined_stiffness(hyperbola: Hyperbola, law: Law) -> str:
         less = ", a logarithm less" if law.name == SEMI_LOGARITHMIC else ""
         return f"the hyperbola misses the curve by {missed}{less}"
     if not hyperbola.k_ni.determined:
-        return "its 95 % interval leaves nearly everything open"
+        return "its 95 % interval is too wide to be of use"
     return ""
 
 

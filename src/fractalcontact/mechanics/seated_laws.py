@@ -99,20 +99,21 @@ class _Fit:
 
     def _reason(self, seat: float) -> str:
         if np.isnan(seat):
-            return "no state is resolved from the seating pressure on: a finer scan would help"
+            return (
+                "ten nodes touch at no load from the seating pressure on; a finer scan would help"
+            )
         if self.seated_fit_points < MIN_CLOSURE_POINTS:
             return (
-                f"{self.seated_fit_points} states above the seating pressure, "
-                f"{MIN_CLOSURE_POINTS} needed: more loads up to {SEATED_SPAN * seat:.3g} MPa "
-                "would help"
+                f"fewer than {MIN_CLOSURE_POINTS} states lie above the seating pressure; "
+                f"more loads up to {SEATED_SPAN * seat:g} MPa would help"
             )
         if not self.seated_k_ni.known:
-            return "the closure does not bend enough to show an asymptote: heavier loads would help"
+            return "the closure does not bend enough to show an asymptote; heavier loads would help"
         if self.seated_hyperbola_misfit > LARGEST_MISFIT:
             missed = percent(self.seated_hyperbola_misfit)
             return f"the hyperbola misses the curve by {missed} rms of the largest closure"
         if not self.seated_k_ni.determined:
-            return "its 95 % interval leaves nearly everything open: more loads would help"
+            return "its 95 % interval is too wide to be of use; more loads would help"
         return ""
 
 

@@ -185,7 +185,7 @@ def _add_undetermined(numbers, stages):
             *(stages[one.stage][name] for name in names_of(one.variable)),
             vectorize=True,
         )
-        attrs = cf_attrs("1", "whether its interval leaves nearly everything open")
+        attrs = cf_attrs("1", "whether its interval is too wide to be of use")
         numbers.add(one.stage, "", (~says).assign_attrs(attrs), key=f"undetermined/{one.key}")
 
 

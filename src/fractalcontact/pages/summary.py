@@ -32,7 +32,7 @@ _OF_STIFFNESS = ("", *(f"error_{of}_" for of in TOTALS), "hardest_")
 _COLUMNS = {"closure": "interface_closure"}
 
 #: Why a number is undetermined where its stage gives no other reason.
-_WIDE = "its 95 % interval leaves nearly everything open"
+_WIDE = "its 95 % interval is too wide to be of use"
 
 
 def why(found: Estimate) -> str:

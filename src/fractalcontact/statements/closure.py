@@ -50,9 +50,9 @@ def curves_overlap(joint: Joint) -> Finding:
 def compliance_rises_again(joint: Joint) -> Finding:
     """Change of the compliance as the correlation of the faces is lost, at every load.
 
-    Logarithms are averaged over the offsets before and after; their scatter gives the interval.
-    "Before" begins at the correlation length; if no offset lies beyond it, the last one within
-    counts. The claim holds where the interval lies above the margin.
+    The mean logarithm over the offsets without correlation is compared with that over the offsets
+    beyond the correlation length at which the faces still correlate (if there is none, the last one
+    within that length). The claim holds where the interval lies above the margin.
     """
     before = joint.between
     if not before.any() and joint.initial.any():

@@ -33,7 +33,7 @@ class Constants:
         if "missing" in row:
             self.left_out[key] = f"{what}: {row['missing']}"
         elif not row.get("determined", True):
-            reason = row.get("note") or "its interval leaves nearly everything open"
+            reason = row.get("note") or "its interval is too wide to be of use"
             self.left_out[key] = f"{what} is undetermined ({in_words(entry, row)}): {reason}"
         else:
             self.values[key] = row["value"] * TO_SI[entry["unit"]]
