@@ -311,7 +311,7 @@ def test_the_estimates_are_compared_or_it_is_said_that_they_cannot_be(atlas):
 
 def test_no_fit_is_said_with_its_reason(atlas):
     caption = draw(atlas, "fig10_scaling", "pair").caption
-    assert "no fit: A_r is large enough at 1 of the 4 resolutions needed" in caption
+    assert "no fit, 1 of 4 resolutions have enough contact" in caption
 
 
 @pytest.mark.full

@@ -132,7 +132,7 @@ def larger_samples_close_more(joint: Joint, evidence: Evidence) -> Finding:
         beyond_margin(exponent, all_claims()[name].margin, rising=True),
         f"x = {exponent:z.2f}",
         f"compliance ~ b^x {evidence.reference}; {margin_words(name)}; closure from first touch "
-        f"grows as b^{closure:.2f} in this specimen, as it counts from the highest node",
+        f"~ b^{closure:.2f} in this specimen",
     )
 
 

@@ -26,7 +26,7 @@ from ._size_test import (
     shown_loads,
 )
 
-TITLE = "Eq. 6 in its own form: pressure that gives parts of the window the sigma* of the whole"
+TITLE = "Eq. 6 in its own form: pressure at which parts of the window have the sigma* of the whole"
 SUBJECT = "specimen"
 NEEDS = ("size_test", "windows", "statements")
 ORDER = 171
