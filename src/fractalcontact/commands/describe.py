@@ -234,7 +234,8 @@ def size_words(face: Face) -> str:
     size, values = face.measured.size, face.measured.values
     heights = values if face.measured.layout == "matrix" else values[:, 2]
     missing = percent(float(np.isnan(heights).mean()))
-    cells = f"{size['shape'][1]} x {size['shape'][0]}" if "shape" in size else f"{size['points']}"
+    ny, nx = size.get("shape", (0, 0))
+    cells = f"{nx} x {ny} cells" if nx else f"{size['points']} points"
     return f"{cells}, relief {size.get('relief', float('nan')):g}, missing {missing}"
 
 
@@ -373,7 +374,10 @@ def row_lines(row: Described) -> list[str]:
     """Lines of the table of drafts for one specimen."""
     fill = f"; fill in {', '.join(row.to_fill)}" if row.to_fill else ""
     first = f"{printable(row.name, 24):24} {row.state:9} {' | '.join(row.sizes)}{fill}"
-    return [first, *(f"    {printable(sentence, 300)}" for sentence in row.sentences)]
+    return [
+        first,
+        *(f"    {printable(sentence, 300)}" for sentence in dict.fromkeys(row.sentences)),
+    ]
 
 
 def _page(rows: Sequence[Described]) -> str:

@@ -70,8 +70,8 @@ def next_steps(path: Path, scans: Path, rows: Sequence[Described]) -> list[str]:
     first = f"enter your rock under materials in {path}"
     if drafts:
         first += (
-            f"; look at the picture and the draft of {listed(drafts, 3)} in {scans}, complete the "
-            "draft, and rename NAME.draft.yaml to NAME.yaml"
+            f"; compare the draft of {listed(drafts, 3)} in {scans} with its picture, complete it, "
+            "and rename NAME.draft.yaml to NAME.yaml"
         )
     if "refused" in [row.state for row in rows]:
         first += "; mend or remove the refused files"
