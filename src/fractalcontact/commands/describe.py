@@ -376,7 +376,7 @@ def row_lines(row: Described) -> list[str]:
     first = f"{printable(row.name, 24):24} {row.state:9} {' | '.join(row.sizes)}{fill}"
     return [
         first,
-        *(f"    {printable(sentence, 300)}" for sentence in dict.fromkeys(row.sentences)),
+        *(f"    {printable(one, 300)}" for one in dict.fromkeys(row.sentences)),
     ]
 
 
