@@ -105,8 +105,8 @@ def _nodes(subject):
     # A state that was not solved has none: the comparison is then false, as it should be.
     word = GOOD if nodes >= CORRECTED_NODES else IN_PART if nodes >= RESOLVED_NODES else POOR
     reason = (
-        f"{nodes:.0f} nodes are in contact under the reference load; a fit needs "
-        f"{RESOLVED_NODES} nodes, the correction of the area {CORRECTED_NODES}"
+        f"{nodes:.0f} nodes are in contact under the reference load; fits need "
+        f"{RESOLVED_NODES} nodes, area corrections {CORRECTED_NODES}"
     )
     helps = ""
     if word != GOOD:

@@ -118,7 +118,7 @@ def _model(found: _At, under: str) -> Markup | None:
         return None
     shares = [at.contact_share for _, at in known]
     text = (
-        f"{under} {_range(shares, percent)} of the window is in contact, at a real mean pressure "
+        f"{under}, {_range(shares, percent)} of the window is in contact at a real mean pressure "
         f"of {_range([at.model.pressure for _, at in known], _pressure)}. {_tested(known, found)}"
     )
     return Markup(escape(text))

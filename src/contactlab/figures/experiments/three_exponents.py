@@ -21,7 +21,7 @@ from fractalcontact.figures.kit.titles import letter
 from ...experiments.size_decision import NO_EFFECT, USUAL
 from ._reduced_pressure import load_axis
 
-TITLE = "Three exponents that one symbol carried"
+TITLE = "Three exponents for which the paper has one symbol"
 SUBJECT = "study"
 NEEDS = ("size_effect",)
 KEY = "size_effect"
