@@ -163,8 +163,8 @@ def test_a_claim_is_quoted_with_its_numbers_and_what_makes_it_circular(atlas):
     changed["statements/sliding"] = xr.DataTree(table)
     verdict, numbers = judged["verdict"].item(), judged["numbers"].item()
     said = claim(atlas, "sliding", "area_falls")
-    assert said == f"The paper's claim that A_r falls as v rises {verdict} ({numbers})."
-    assert claim(atlas, "sliding", "area_falls", numbers=False).endswith(f"rises {verdict}.")
+    assert said == f"The paper's claim that A_r falls with growing v {verdict} ({numbers})."
+    assert claim(atlas, "sliding", "area_falls", numbers=False).endswith(f"growing v {verdict}.")
     circular = claim(changed, "sliding", "area_falls")
     assert circular == said.replace(f"{numbers})", f"{numbers}; {CIRCULAR})")
     assert claim(atlas, "flat", "area_falls") == ""

@@ -66,7 +66,9 @@ def _rise(joint, force, before):
     known = np.isfinite(compliance)
     before, after = before & known, joint.unrelated & known
     if not after.any() or not before.any():
-        return Finding(UNDETERMINED, "no offset before, or none after, the faces lose correlation")
+        return Finding(
+            UNDETERMINED, "no offset lies before, or none after, the loss of correlation"
+        )
     spread = joint.along("closure")["composite_spread"].values
     change, of_spread = (
         mean_difference(np.log(values[after]), np.log(values[before])).mapped(np.expm1)
@@ -210,13 +212,13 @@ def refinement_changes_little(joint: Joint) -> Finding:
     little = {name: int((np.abs(change) <= margin).sum()) for name, change in changes.items()}
     n = int(counts.sum()) - 1
     words = (
-        f"{name} by {100 * change.min():+z.0f} to {100 * change.max():+z.0f} % (within "
+        f"{name} changes by {100 * change.min():+z.0f} to {100 * change.max():+z.0f} % (within "
         f"{100 * margin:g} % at {loads_of(little[name], n)})"
         for name, change in changes.items()
     )
     return Finding(
         share(sum(little.values()), 2 * n),
-        f"all points in place of every second change {' and '.join(words)}",
+        f"with all points in place of every second one, {' and '.join(words)}",
         f"from a seat of {pressures[counts][0]:.3g} MPa",
     )
 

@@ -261,4 +261,4 @@ def share(good: int, total: int) -> str:
 
 def no_offsets(needed: str) -> str:
     """Reason why a claim is undetermined."""
-    return f"too few offsets: {needed} needed"
+    return f"fewer than {needed} offsets"

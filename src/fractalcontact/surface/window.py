@@ -88,8 +88,8 @@ def place_window(specimen: xr.Dataset, request: WindowRequest) -> dict:
         notes.append("the largest square without holes")
     if shape != wanted.cells:
         notes.append(
-            f"cut from {wanted.cells[1]} x {wanted.cells[0]} to {shape[1]} x {shape[0]} cells, as "
-            f"the largest of 'resolutions', {multiple}, divides the sides"
+            f"cut from {wanted.cells[1]} x {wanted.cells[0]} to {shape[1]} x {shape[0]} cells, so "
+            f"that the largest of 'resolutions' ({multiple}) divides them"
         )
     return {
         "window_y0": corner[0],
