@@ -66,9 +66,7 @@ def _rise(joint, force, before):
     known = np.isfinite(compliance)
     before, after = before & known, joint.unrelated & known
     if not after.any() or not before.any():
-        return Finding(
-            UNDETERMINED, "no offset lies before, or none after, the loss of correlation"
-        )
+        return Finding(UNDETERMINED, "no offset lies before the loss of correlation, or none after")
     spread = joint.along("closure")["composite_spread"].values
     change, of_spread = (
         mean_difference(np.log(values[after]), np.log(values[before])).mapped(np.expm1)
