@@ -86,7 +86,7 @@ def test_files_of_one_instrument_take_the_sidecar_of_one(tmp_path, capsys):
     assert describe("--like", draft) == 1  # one is not alike
     out = capsys.readouterr().out
     assert "1 refused, 6 written" in out
-    assert "other.txt: a relief of" in out
+    assert "other.txt: the relief is" in out
     for number in range(6):
         keys, _ = read_sidecar(tmp_path / f"s{number}.yaml", SCHEMA)
         found = read_scan(tmp_path / f"s{number}.txt", keys)

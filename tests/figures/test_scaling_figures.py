@@ -247,7 +247,7 @@ def test_axes_and_captions_say_what_is_drawn(atlas, figure, specimen):
     assert drawing.caption.startswith(f"After Fig. {paper_number} of ")
     assert label in drawing.figure.get_suptitle()
     assert "nan" not in drawing.caption
-    assert len(re.findall(r"\.(?= [A-Z(]|$)", drawing.caption)) <= 6  # sentences
+    assert len(re.findall(r"\.(?= [A-Z(]|$)", drawing.caption)) <= 7  # sentences
     assert 0 < len(drawing.data) < 20_000
 
 
@@ -311,7 +311,7 @@ def test_the_estimates_are_compared_or_it_is_said_that_they_cannot_be(atlas):
 
 def test_no_fit_is_said_with_its_reason(atlas):
     caption = draw(atlas, "fig10_scaling", "pair").caption
-    assert "no fit, 1 of 4 resolutions have enough contact" in caption
+    assert "no fit: 1 of 4 resolutions have enough contact" in caption
 
 
 @pytest.mark.full

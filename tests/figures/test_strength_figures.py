@@ -199,7 +199,7 @@ def test_strengths_of_truncated_angles_are_marked_and_compared_with_nothing(atla
     # Where any angle is held, the strength there is the largest that there can be.
     valid = table[table["panel"] == "c"]["peak_strength_valid"].astype(bool)
     assert (valid.values == (strength["truncated_high"].values == 0)).all()
-    none = "every peak is truncated" in drawn(atlas, "sliding", "strength").caption
+    none = "Every peak is truncated" in drawn(atlas, "sliding", "strength").caption
     assert none == (not valid.any())
 
 
@@ -220,7 +220,7 @@ def test_both_figures_of_strength_word_the_roughness_alike(atlas):
     laws["barton_roughness"] = laws["barton_roughness"] * np.nan
     changed["windows/sliding"] = xr.DataTree(laws)
     words = roughness_words(strength.isel(contact_direction=0))
-    assert "scaled to this length it exceeds Barton's largest, 20" in words
+    assert "scaled to this length it exceeds 20, the largest of his law" in words
     for figure in ("strength", "fig11_slope_angle"):
         assert words in drawn(changed, "sliding", figure).caption
     known = strength.assign(scaled_roughness=strength["jrc_used"])

@@ -347,7 +347,7 @@ def _local_exponent(s, area):
 def _reasons(scaling, finest):
     """Reason why Delta_sigma or its interval is missing; empty if neither is."""
     counts = scaling["n"].values.flat
-    why = [f", {n} of {MIN_RESOLUTIONS} resolutions have enough contact" for n in counts]
+    why = [f": {n} of {MIN_RESOLUTIONS} resolutions have enough contact" for n in counts]
     area = scaling["n"].copy(data=np.reshape(np.array(why, object), scaling["n"].shape))
     area = xr.where(scaling["delta_sigma"].isnull(), "no fit", "no interval") + area
     no_box = finest["reason"].astype(object)

@@ -27,7 +27,6 @@ from ..kit.measured import table_of as table_of_maps
 from ..kit.panel import Panel, table_of
 from ..kit.points import reach
 from ..kit.titles import headline, letter
-from ..kit.verdicts import row_of
 from ..kit.words import area_label, force_label, place, wrapped
 
 TITLE = "Fig. 12: contact domains and their dimension under growing load"
@@ -89,7 +88,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
         table = pd.concat([table, of_maps.assign(panel=panel.which)], ignore_index=True)
     text = caption(
         __name__,
-        rises=[row_of(atlas, "statements", name, one)["numbers"].item() for one in RISES.values()],
+        rises=subject["statements"].sel(statement=[*RISES.values()])["numbers"].values.tolist(),
         verdicts=rise_words(atlas, name),
         least=MIN_NODES,
         larger=larger,
