@@ -166,7 +166,7 @@ def test_the_slope_of_the_synthetic_joints_is_that_of_the_atlas(atlas):
     drawing = drawn(told, "plateau", ["sliding"])
     shown = " ".join(text.get_text() for text in drawing.figure.findobj(Text))
     assert shown.count("slope 0.25 [0.2, 0.3] mm/mm") == 2
-    assert "synthetic joints falls, without it shows no trend" in drawing.caption
+    assert "synthetic joints falls; without it, it shows no trend" in drawing.caption
 
 
 def test_plateau_holds_every_direction_of_all_that_slides(atlas):
@@ -268,7 +268,7 @@ def test_caption_of_the_compliance_says_what_was_judged(atlas):
     ("verdict", "words"),
     representative(
         [
-            (WITHIN, "Every interval reaches theory's"),
+            (WITHIN, "Every interval reaches this range"),
             (BELOW, "(5 below, 0 above)"),
             (ABOVE, "(0 below, 5 above)"),
         ]
