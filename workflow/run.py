@@ -233,30 +233,18 @@ def _stop(number, frame):
 def _end(child, *, cluster):
     """Tell all processes of the run to end; those that do not are ended.
 
-    Jobs on a cluster are taken back by Snakemake alone, and only where it is interrupted.
+    Snakemake ends after its jobs. Jobs on a cluster are taken back by it alone, and only where it
+    is interrupted.
     """
-    deadline = time.monotonic() + (CLUSTER_GRACE if cluster else GRACE)
-    if cluster:
-        child.send_signal(signal.SIGINT)
-        left = True
-    else:
-        left = _tell(child, signal.SIGTERM)
-    while left and time.monotonic() < deadline:
-        time.sleep(0.05)
-        child.poll()  # one that has ended counts until somebody has asked
-        left = _tell(child, 0)
-    if left:
-        _tell(child, signal.SIGKILL)
+    with contextlib.suppress(ProcessLookupError, subprocess.TimeoutExpired):
+        if cluster:
+            child.send_signal(signal.SIGINT)
+        else:
+            os.killpg(child.pid, signal.SIGTERM)
+        child.wait(CLUSTER_GRACE if cluster else GRACE)
+    with contextlib.suppress(ProcessLookupError):
+        os.killpg(child.pid, signal.SIGKILL)
     child.wait()
-
-
-def _tell(child, number):
-    """Send a signal to all processes of a run; whether there are any."""
-    try:
-        os.killpg(child.pid, number)
-    except ProcessLookupError:
-        return False
-    return True
 
 
 def _name_own_study(study, source):
