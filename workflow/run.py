@@ -176,8 +176,7 @@ def _run(command, options, results):
     path += filter(None, [os.environ.get("PYTHONPATH")])
     told = {
         "PYTHONPATH": os.pathsep.join(path),
-        # That results were looked at here, where they are, and whether some may go.
-        "FRACTALCONTACT_CHECKED": "1",
+        # Where results are, and whether some may go.
         "FRACTALCONTACT_RESULTS": str(results),
         **({"FRACTALCONTACT_DROP": "1"} if options.drop else {}),
     }

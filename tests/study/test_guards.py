@@ -1,10 +1,10 @@
-"""Results that a run must not lose or read damaged."""
+"""Results that a run must not lose."""
 
 import pytest
 
 from fractalcontact.core import checksums
 from fractalcontact.core.errors import InputError
-from fractalcontact.study.guards import refuse_damage, refuse_loss
+from fractalcontact.study.guards import refuse_loss
 
 
 @pytest.fixture
@@ -35,11 +35,3 @@ def test_an_atlas_loses_no_specimen_without_a_word(results, listed, aside):
 def test_without_an_atlas_there_is_nothing_to_lose(results):
     (results / "atlas.nc").unlink()
     refuse_loss(results, [])
-
-
-def test_damage_is_refused_unless_a_killed_run_left_it(results):
-    refuse_damage(results, checksums.sha256)
-    for name in ("rock", "joint"):
-        (results / f"specimens/{name}.nc").write_text("other")
-    with pytest.raises(InputError, match=r"joint\.nc: damaged .* made, and 1 more files; run"):
-        refuse_damage(results, checksums.sha256)

@@ -122,7 +122,8 @@ def test_a_missing_scan_and_a_damaged_file_stop_everything(project):
     content = (project / ATLAS).read_bytes()
     specimen = project / "results/test/specimens/rock.nc"
     specimen.write_bytes(specimen.read_bytes()[:-1])
-    refused = run(project, STUDY)
+    (project / "results/test/contact/rock/0.0.0.nc").unlink()
+    refused = run(project, STUDY, ATLAS)
     assert refused.returncode != 0
     assert "specimens/rock.nc: damaged or replaced after it" in refused.stdout + refused.stderr
     for path in (project / "scans").iterdir():

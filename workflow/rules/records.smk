@@ -1,4 +1,4 @@
-# What a run looks at before its first job, and leaves behind after its last: guards of results, its
+# What a run looks at before its first job, and leaves behind after its last: a guard of results, its
 # plan, checksums, and what was made of what in linked data.
 import os
 
@@ -9,10 +9,6 @@ import _running
 
 from fractalcontact.core.atomic import atomic_write
 from fractalcontact.study import crate, guards
-
-#: Whether a killed run left jobs half done, whose files may be newer than their checksums: Snakemake
-#: runs those again itself. Known before more files are marked as theirs are.
-HALF_DONE = any(Path(".snakemake/incomplete").glob("*"))
 
 
 def remake_without_record():
@@ -38,13 +34,10 @@ def without_rate_limit():
 
 
 def begin():
-    """Refuse what would lose or misread results; else say that a run is at work, and its plan."""
+    """Refuse what would lose results; else say that a run is at work, and its plan."""
     _running.mark()
     try:
-        # Whoever runs it says these two, never a study: workflow/run.py, that it has set damaged
-        # files aside, and the user, that specimens may go.
-        if "FRACTALCONTACT_CHECKED" not in os.environ and not HALF_DONE:
-            guards.refuse_damage(RESULTS, DIGESTS.of)
+        # Only the user says that specimens may go, never a study.
         if "FRACTALCONTACT_DROP" not in os.environ:
             guards.refuse_loss(RESULTS, [*SETTINGS, *LABELS])
         with atomic_write(PLAN) as path:

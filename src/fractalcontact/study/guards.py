@@ -1,6 +1,6 @@
-"""Guards of the results of a study, checked before a run reads or replaces any."""
+"""Guard of the results of a study, checked before a run replaces any."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from pathlib import Path
 
 from ..core import checksums
@@ -40,27 +40,4 @@ def refuse_loss(results: Path | str, names: Iterable[str]) -> None:
             f"{results}/atlas.nc has specimens that the study no longer has: {', '.join(lost)}; "
             "put their scans back or, if they are to go, run 'make DROP=yes' (with snakemake: "
             "set FRACTALCONTACT_DROP=yes in the environment). The atlas was not changed"
-        )
-
-
-def refuse_damage(results: Path | str, digest_of: Callable) -> None:
-    """Refuse a damaged file before it is read, or results are removed to be remade from it.
-
-    Parameters
-    ----------
-    results : path-like
-        Folder of the study.
-    digest_of : callable
-        SHA-256 of a file: :meth:`core.checksums.Digests.of`.
-
-    Raises
-    ------
-    InputError
-    """
-    damaged = checksums.check(results, digest_of).damaged
-    if damaged:
-        raise InputError(
-            f"{damaged[0]}: damaged or replaced after it was made"
-            + (f", and {len(damaged) - 1} more files" if len(damaged) > 1 else "")
-            + "; run 'make', which sets it aside and makes it again, or remove it yourself"
         )
