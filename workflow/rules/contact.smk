@@ -178,8 +178,7 @@ for NAME, JOB in STAGE_JOBS.items():
 # A measured map of contact goes straight to the analysis of domains.
 rule contact_map:
     input:
-        scan=lambda wc: ancient(str(MAPS[wc.map].lower)),
-        coordinates=lambda wc: [ancient(str(path)) for path in MAPS[wc.map].coordinates],
+        lambda wc: [ancient(str(path)) for path in MAPS[wc.map].files],
     output:
         **outputs_of("contact_maps"),
     log:
@@ -189,11 +188,14 @@ rule contact_map:
     resources:
         **fixed(2000, 10),
     params:
-        options=lambda wc: OPTIONS[wc.map],
-        label=lambda wc: LABELS[wc.map],
+        **calling("contact_maps"),
+        arguments=lambda wc: {
+            "path": str(MAPS[wc.map].lower),
+            "options": OPTIONS[wc.map],
+            "label": LABELS[wc.map],
+        },
         digests=lambda wc: digests_of(MAPS[wc.map]),
-        code=code("contact_map"),
     message:
         "{wildcards.map}: measured contact map and its dimension"
     script:
-        "../scripts/contact_map.py"
+        "../scripts/stage.py"

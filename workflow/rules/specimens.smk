@@ -24,15 +24,20 @@ def scan_files(wildcards):
     """The faces of a specimen, wherever they come from. Their digests show changes."""
     scan = SCANS.get(wildcards.specimen)
     if scan is None:
-        return {"lower": rules.embedded.output.scan}
-    faces = {"lower": scan.lower, "upper": scan.upper}
-    return {face: ancient(str(path)) for face, path in faces.items() if path is not None}
+        return rules.embedded.output.scan
+    return [ancient(str(path)) for path in scan.files]
 
 
-def options_of(wildcards):
-    """How the scan of a specimen is read: the scan keys of its sidecar."""
-    name = wildcards.specimen
-    return OPTIONS[name] if name in SCANS else sidecar_of_matrix(recipe_named(name)["spacing"])
+def reading_of(wildcards, input):
+    """Arguments by which a scan is read, beside its settings."""
+    name = known(wildcards)
+    scanned = name in SCANS
+    return {
+        "files": list(input),
+        "options": OPTIONS[name] if scanned else sidecar_of_matrix(recipe_named(name)["spacing"]),
+        "name": name,
+        "digests": digests_of(SCANS[name]) if scanned else {},
+    }
 
 
 def memory_of_reading(wildcards, attempt):
@@ -48,7 +53,7 @@ def memory_of_reading(wildcards, attempt):
 # composite topographies, rigid dilatancy). Seconds of work, so one job.
 rule specimen:
     input:
-        unpack(scan_files),
+        scan_files,
     output:
         **outputs_of("specimens"),
     log:
@@ -58,14 +63,13 @@ rule specimen:
     resources:
         **(asked_for("specimen", grid=0) | {"mem_mb": memory_of_reading}),
     params:
-        settings=settings_read_by(stages.STAGES["specimens"].function),
-        options=options_of,
+        **calling("specimens"),
+        arguments=reading_of,
         digests=lambda wc: digests_of(SCANS[wc.specimen]) if wc.specimen in SCANS else {},
-        code=code("specimen"),
     message:
         "{wildcards.specimen}: levelled scan, its surface dimension and its joint"
     script:
-        "../scripts/specimen.py"
+        "../scripts/stage.py"
 
 
 # A scan that the study leaves out, with --keep-going: its job fails and says why, others go on.

@@ -21,7 +21,7 @@ from ..core import settings
 from ..core.packages import CHAIN, SOURCES, installed
 from ..core.stage import ENSEMBLE, GRAINS, JOINT, MAP, SPECIMEN, STUDY, TESTED, Stage
 
-_SPECIMEN_STAGES = "fractalcontact.stages.specimen:specimen_stages"
+_SPECIMEN_STAGES = "fractalcontact.stages.specimen:stages_of_scan"
 _STATE_STAGES = "fractalcontact.stages.states:state_stages"
 _WINDOW_STAGES = "fractalcontact.stages.windows:window_stages"
 #: Solves the contact of a specimen, the costly part: several jobs, and no stage of its own.
