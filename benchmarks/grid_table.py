@@ -28,6 +28,7 @@ from fractalcontact.mechanics.joint import describe_joint, prefractal
 from fractalcontact.mechanics.loading import JointLoading
 from fractalcontact.mechanics.subgrid import state_quantities, subgrid
 from fractalcontact.mechanics.sweep import load_steps
+from fractalcontact.stages.specimen import prepare_specimen
 from fractalcontact.study.checks import read_sidecar
 from fractalcontact.study.configuration import (
     resolve_embedded,
@@ -36,7 +37,6 @@ from fractalcontact.study.configuration import (
 )
 from fractalcontact.study.documents import read_study
 from fractalcontact.study.embedded import write_scan
-from fractalcontact.study.preparation import prepare_specimen
 from fractalcontact.study.scan_files import list_scans
 from fractalcontact.study.sidecar import sidecar_of_matrix
 from fractalcontact.surface.embedded import embedded_surface

@@ -47,11 +47,10 @@ from fractalcontact.study.checks import read_sidecar
 from fractalcontact.study.configuration import (
     resolve_settings,
     solver_settings,
-    window_arguments,
 )
 from fractalcontact.study.documents import read_study
 from fractalcontact.study.scan_files import list_scans
-from fractalcontact.surface.specimen import make_specimen
+from fractalcontact.surface.specimen import make_specimen, window_arguments
 
 #: Of the smaller window, to the automatic one; and how far the other window lies from it.
 SMALLER, ASIDE = 0.56, 0.35

@@ -24,8 +24,8 @@ from fractalcontact.mechanics.plan import solve_plan
 from fractalcontact.mechanics.states import combine, contact_domains
 from fractalcontact.mechanics.subgrid import state_quantities, subgrid
 from fractalcontact.mechanics.sweep import joint_states
-from fractalcontact.study.configuration import resolve_settings, solver_settings, window_arguments
-from fractalcontact.surface.specimen import make_specimen
+from fractalcontact.study.configuration import resolve_settings, solver_settings
+from fractalcontact.surface.specimen import make_specimen, window_arguments
 from fractalcontact.surface.synthesis import self_affine
 from roughcontact.contact.solve import solve_contact
 from roughcontact.elastic.halfspace import HalfSpace

@@ -21,8 +21,8 @@ from fractalcontact.mechanics.joint import describe_joint
 from fractalcontact.mechanics.loading import JointLoading
 from fractalcontact.mechanics.states import combine
 from fractalcontact.mechanics.sweep import contact_states
-from fractalcontact.study.configuration import resolve_settings, window_arguments
-from fractalcontact.surface.specimen import make_specimen
+from fractalcontact.study.configuration import resolve_settings
+from fractalcontact.surface.specimen import make_specimen, window_arguments
 from fractalcontact.surface.synthesis import self_affine
 
 E_STAR = 1e4  # MPa

@@ -16,8 +16,8 @@ from fractalcontact.mechanics.contact_strength import (
     friction_of_dips,
 )
 from fractalcontact.mechanics.joint import composite_topography
-from fractalcontact.study.configuration import solver_settings, window_arguments
-from fractalcontact.surface.specimen import make_specimen
+from fractalcontact.study.configuration import solver_settings
+from fractalcontact.surface.specimen import make_specimen, window_arguments
 from fractalcontact.surface.synthesis import self_affine
 
 SPACING, BASIC = 0.1, 30.0

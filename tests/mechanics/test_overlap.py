@@ -20,8 +20,8 @@ from fractalcontact.mechanics.overlap import (
     suspect_nodes,
 )
 from fractalcontact.mechanics.sweep import joint_states
-from fractalcontact.study.configuration import resolve_settings, solver_settings, window_arguments
-from fractalcontact.surface.specimen import make_specimen
+from fractalcontact.study.configuration import resolve_settings, solver_settings
+from fractalcontact.surface.specimen import make_specimen, window_arguments
 from fractalcontact.surface.synthesis import self_affine
 
 STUDY = {

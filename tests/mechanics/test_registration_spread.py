@@ -14,8 +14,8 @@ from fractalcontact.mechanics.registration_spread import (
 )
 from fractalcontact.registration.registration_scatter import motion_variables
 from fractalcontact.registration.surface_motion import Motion
-from fractalcontact.study.configuration import resolve_settings, solver_settings, window_arguments
-from fractalcontact.surface.specimen import make_specimen
+from fractalcontact.study.configuration import resolve_settings, solver_settings
+from fractalcontact.surface.specimen import make_specimen, window_arguments
 from fractalcontact.surface.synthesis import self_affine
 
 STUDY = {

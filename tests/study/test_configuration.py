@@ -17,10 +17,10 @@ from fractalcontact.study.configuration import (
     resolve_embedded,
     resolve_roll_off,
     resolve_settings,
-    window_arguments,
 )
 from fractalcontact.study.documents import read_study
 from fractalcontact.study.scan_files import ScanFiles
+from fractalcontact.surface.specimen import window_arguments
 
 SCHEMA = yaml.safe_load((ROOT / "config/schema/study.schema.yaml").read_text())
 PAPER = yaml.safe_load((ROOT / "config/paper.yaml").read_text())

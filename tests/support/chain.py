@@ -7,9 +7,9 @@ from materials import ROCK
 
 from fractalcontact.figures.draw import draw_figures
 from fractalcontact.stages.atlas import join_stages
+from fractalcontact.stages.specimen import prepare_specimen
 from fractalcontact.study.configuration import resolve_settings, solver_settings
 from fractalcontact.study.figure_list import figures_of
-from fractalcontact.study.preparation import prepare_specimen
 from fractalcontact.study.scan_files import ScanFiles
 
 SOLVER = solver_settings({}, "tiny")

@@ -10,9 +10,8 @@ from fractalcontact.stages.report import report_stages
 from fractalcontact.stages.specimen import specimen_stages
 from fractalcontact.stages.states import state_stages
 from fractalcontact.stages.windows import window_stages
-from fractalcontact.study.configuration import window_arguments
 from fractalcontact.study.stages import CONTACT, STAGES, read_by
-from fractalcontact.surface.specimen import make_specimen
+from fractalcontact.surface.specimen import make_specimen, window_arguments
 
 
 def scan(heights, spacing):

@@ -23,10 +23,10 @@ from ..roughness.dimension import surface_dimension
 from ..roughness.quality import scan_quality
 from ..roughness.quality_words import overlap_words, suspect_words
 from ..roughness.recommended import beyond_roll_off, dimension_words
+from ..stages.specimen import prepare_specimen
 from ..study.checks import check_study, read_scans
 from ..study.configuration import resolve_settings
 from ..study.documents import read_study
-from ..study.preparation import prepare_specimen
 from ..study.scan_groups import grouped_notes
 from ..study.sidecar import is_contact_map
 from .scan_words import gap_words, warnings_of_specimen

@@ -29,9 +29,8 @@ from ..size_effect.division import solvable_parts, spread_windows
 from ..size_effect.size_exponents import size_exponent, usable_sizes
 from ..size_effect.size_law import QUANTITIES
 from ..size_effect.windows import solved_windows
-from ..study.configuration import window_arguments
 from ..surface.embedded import embedded_surface
-from ..surface.specimen import make_specimen
+from ..surface.specimen import make_specimen, window_arguments
 from .null_slopes import NULL_SLOPES, null_slopes
 from .statistics import add_statistics, add_trends
 from .twins import twin_loadings

@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 
 import xarray as xr
 
@@ -9,9 +10,11 @@ from ..core.errors import InputError
 from ..core.settings import SpecimenSettings
 from ..core.window import spacing_of
 from ..mechanics.joint import describe_joint
+from ..registration.registration_scatter import motion_variables, scattered_motions
 from ..roughness.dimension import surface_dimension
 from ..roughness.quality import scan_quality
-from ..study.preparation import prepare_specimen
+from ..scan.read import read_faces
+from ..surface.specimen import make_specimen, window_arguments
 
 
 def stages_of_scan(
@@ -52,13 +55,50 @@ def stages_of_scan(
     return specimen_stages(specimen, settings)
 
 
+def prepare_specimen(
+    lower: Path | str,
+    upper: Path | str | None,
+    options: Mapping,
+    settings: SpecimenSettings,
+    name: str,
+) -> xr.Dataset:
+    """Read the faces of a specimen, level them and place the window.
+
+    Of two registered faces it also holds further motions that are statistically as good.
+
+    Parameters
+    ----------
+    lower, upper : path-like
+        ``upper`` is None if one face was scanned.
+    options : mapping
+        Scan keys of the sidecar.
+    settings : SpecimenSettings
+    name : str
+
+    Returns
+    -------
+    xr.Dataset
+        As :func:`surface.specimen.make_specimen` makes it.
+
+    Raises
+    ------
+    InputError
+        If a file cannot be read, or the window finds no place.
+    """
+    faces = read_faces(lower, upper, options)
+    specimen = make_specimen(*faces, name=name, **window_arguments(settings))
+    z_l, z_u = faces
+    motions = [] if z_u is None else scattered_motions(z_l, z_u)
+    return specimen.assign(motion_variables(motions)) if motions else specimen
+
+
 def specimen_stages(specimen: xr.Dataset, settings: SpecimenSettings) -> dict[str, xr.Dataset]:
     """Stages of one levelled specimen, itself among them.
 
     Parameters
     ----------
     specimen : xr.Dataset
-        From :func:`study.preparation.prepare_specimen`.
+        From :func:`prepare_specimen`.
     settings : SpecimenSettings
 
     Returns

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from ..core.directions import slides
 from ..core.errors import InputError
-from ..core.settings import Material, Settings, Solver, SpecimenSettings
+from ..core.settings import Material, Settings, Solver
 from ..core.tolerance import ACCURACY, tolerance
 from ..core.units import load, quantity, share
 from .measured import resolve_tests
@@ -212,25 +212,6 @@ def _refuse_contradictions(settings, where):
     for value, kind in settings.loads:
         if value <= 0:
             raise InputError(f"{where('loads')}: a {kind} of {value}; loads must be positive")
-
-
-def window_arguments(settings: SpecimenSettings) -> dict:
-    """Settings of cleaning and window for :func:`surface.specimen.make_specimen`.
-
-    The window is cut to whole cells of the coarsest pre-fractal, so that all resolutions cover the
-    same area, and placed where the offsets of the study can slide it.
-    """
-    centre = settings.window_centre
-    reach = max(settings.offsets or [0.0])
-    return {
-        "opposite": settings.opposite,
-        "outliers": settings.outliers,
-        "fill_holes": settings.fill_holes,
-        "window": settings.window,
-        "window_centre": None if centre is None else (centre[1], centre[0]),
-        "multiple": math.lcm(*settings.resolutions),
-        "reach": dict.fromkeys(settings.directions, reach) if slides(settings.opposite) else 0.0,
-    }
 
 
 def resolve_embedded(recipe: Mapping, where: str) -> dict:

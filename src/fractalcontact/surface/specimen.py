@@ -11,6 +11,7 @@ from ..core.datasets import labelled_dataset
 from ..core.directions import APERTURE, axis_and_sign, slides
 from ..core.errors import InputError
 from ..core.limits import STEEP_TILT
+from ..core.settings import SpecimenSettings
 from ..core.window import spacing_of, window_slices
 from .cleaning import clean_faces
 from .window import WindowRequest, place_window
@@ -126,6 +127,25 @@ def _provenance(scans) -> dict:
             provenance["registration"] = attrs.pop("registration")
         provenance[f"{face}_scan"] = json.dumps(attrs, sort_keys=True)
     return provenance
+
+
+def window_arguments(settings: SpecimenSettings) -> dict:
+    """Settings of cleaning and window for :func:`make_specimen`.
+
+    The window is cut to whole cells of the coarsest pre-fractal, so that all resolutions cover the
+    same area, and placed where the offsets of the study can slide it.
+    """
+    centre = settings.window_centre
+    reach = max(settings.offsets or [0.0])
+    return {
+        "opposite": settings.opposite,
+        "outliers": settings.outliers,
+        "fill_holes": settings.fill_holes,
+        "window": settings.window,
+        "window_centre": None if centre is None else (centre[1], centre[0]),
+        "multiple": math.lcm(*settings.resolutions),
+        "reach": dict.fromkeys(settings.directions, reach) if slides(settings.opposite) else 0.0,
+    }
 
 
 def largest_offset(specimen: xr.Dataset, direction: str) -> int:
