@@ -136,12 +136,16 @@ def test_every_rule_asks_for_more_at_a_second_attempt():
         for line in re.findall(r"^ +resources:\n +(.*)$", path.read_text(), re.MULTILINE)
     ]
     assert len(found) > 10
-    # All of these take the attempt: test_resources.py has what they make of it.
-    doubling = ("**fixed(", "**asked_for(", "**(asked_for(", "mem_mb=lambda wc, attempt:")
+    # All of these take the attempt.
+    doubling = ("**fixed(", "**asked_for(", "**(asked_for(", "mem_mb=doubled(")
     jobs = (ROOT / "workflow/rules/contact.smk").read_text()
     assert jobs.count(": StageJob(") == len(re.findall(r" (?:asked_for|fixed)\(", jobs))
     doubling += ("**JOB.resources",)
     assert not [f for f in found if not f[1].startswith(doubling)]
+    shared = (ROOT / "workflow/rules/common.smk").read_text()
+    exec(re.search(r"^def doubled.*?\n\n\n", shared, re.MULTILINE | re.DOTALL)[0], own := {})
+    asked = own["doubled"](lambda wildcards: 3)
+    assert [asked(None, attempt) for attempt in (1, 2, 3)] == [3, 6, 12]
 
 
 def test_why_the_cluster_ended_a_job_is_said_in_its_users_words():

@@ -94,31 +94,36 @@ def kept_states(wildcards):
     return resources.states_of(SETTINGS[wildcards.specimen], most_offsets(wildcards.specimen))
 
 
+def doubled(amount):
+    """Memory or time of a job, of its wildcards, twice as much at every further attempt.
+
+    So what a cluster has ended for its memory or its time is done by the next.
+    """
+    return lambda wildcards, attempt: amount(wildcards) * 2 ** (attempt - 1)
+
+
 def asked_for(job, grid=1, states=kept_states):
-    """Memory and minutes that the job of a rule asks for, twice as many at every further attempt.
+    """Memory and minutes that the job of a rule asks for.
 
     They follow from the nodes of the window, or with grid=0 of a face, and from a number of states
     or, of an ensemble, of realisations.
     """
 
-    def ask(amount):
-        return lambda wildcards, attempt: amount(
-            job,
-            nodes_of(known(wildcards))[grid],
-            states=states(wildcards),
-            attempt=attempt,
-        )
+    def by_grid(amount):
+        return lambda wildcards: amount(job, nodes_of(known(wildcards))[grid], states(wildcards))
 
-    return {"mem_mb": ask(resources.memory), "runtime": ask(resources.minutes)}
+    return {
+        "mem_mb": doubled(by_grid(resources.memory)),
+        "runtime": doubled(by_grid(resources.minutes)),
+    }
 
 
 def fixed(megabytes, minutes):
     """Both of a job whose grid says nothing of them."""
-
-    def ask(amount):
-        return lambda wildcards, attempt: amount * 2 ** (attempt - 1)
-
-    return {"mem_mb": ask(megabytes), "runtime": ask(minutes)}
+    return {
+        "mem_mb": doubled(lambda wildcards: megabytes),
+        "runtime": doubled(lambda wildcards: minutes),
+    }
 
 
 DIGESTS = checksums.Digests(".snakemake/fractalcontact-digests.json")
@@ -167,7 +172,6 @@ wildcard_constraints:
     directions=r"\d+",
     offsets=r"\d+",
     resolutions=r"\d+",
-    part=r"\d+",
     refused=r"\d+",
 
 

@@ -34,8 +34,8 @@ rule laboratory:
     priority: lambda wc: LABORATORY[wc.made].priority
     threads: lambda wc: workflow.cores if LABORATORY[wc.made].alone else 1
     resources:
-        mem_mb=lambda wc, attempt: LABORATORY[wc.made].megabytes * 2 ** (attempt - 1),
-        runtime=lambda wc, attempt: LABORATORY[wc.made].minutes * 2 ** (attempt - 1),
+        mem_mb=doubled(lambda wc: LABORATORY[wc.made].megabytes),
+        runtime=doubled(lambda wc: LABORATORY[wc.made].minutes),
     params:
         function=lambda wc: LABORATORY[wc.made].function,
         arguments=lambda wc: LABORATORY[wc.made].arguments,

@@ -40,12 +40,12 @@ def reading_of(wildcards, input):
     }
 
 
-def memory_of_reading(wildcards, attempt):
+def memory_of_reading(wildcards):
     """Megabytes that the job of a specimen asks for, by the size of its scan files."""
     name = known(wildcards)
     if name in SCANS:
-        return resources.reading_memory(SCANS[name].files, attempt)
-    return resources.memory("specimen", nodes_of(name)[0], attempt=attempt)
+        return resources.reading_memory(SCANS[name].files)
+    return resources.memory("specimen", nodes_of(name)[0])
 
 
 # The levelled specimen, and its joint before contact is solved: the dimension of its face, what the
@@ -61,7 +61,7 @@ rule specimen:
     benchmark:
         f"{RESULTS}/benchmarks/specimen/{{specimen}}.tsv"
     resources:
-        **(asked_for("specimen", grid=0) | {"mem_mb": memory_of_reading}),
+        **(asked_for("specimen", grid=0) | {"mem_mb": doubled(memory_of_reading)}),
     params:
         **calling("specimens"),
         arguments=reading_of,

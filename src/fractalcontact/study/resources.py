@@ -1,7 +1,7 @@
 """Memory and time requested by jobs, from models over the nodes of their grids.
 
-A job asks for :data:`ROOM` times what the model says, and for twice as much at every further
-attempt. ``docs/scaling.md`` has the measurements beside what is asked for.
+A job asks for :data:`ROOM` times what the model says. ``docs/scaling.md`` has the measurements
+beside what is asked for.
 
 What a scheduler counts is more than the script of a job takes: Snakemake runs twice around it, once
 to start the step of the job and once in it (:data:`AROUND`).
@@ -86,7 +86,7 @@ _NODE = {".npy": 4, ".xyz": 20, ".ply": 12, ".stl": 25, ".obj": 25}
 _PLAIN_NODE, _PACKED_NODE = 6, 4
 
 
-def memory(rule: str, nodes: float, *, states: int = 1, attempt: int = 1) -> int:
+def memory(rule: str, nodes: float, states: int = 1) -> int:
     """Requested memory of a job, MB.
 
     Parameters
@@ -97,17 +97,15 @@ def memory(rule: str, nodes: float, *, states: int = 1, attempt: int = 1) -> int
         Of its grid.
     states : int, optional
         Contact states that it keeps.
-    attempt : int, optional
-        1 at first.
     """
     cost = COSTS[rule]
     finer = OF_FINER * min(FINER * nodes, MAX_FINER) if rule == "analysis" else 0.0
     of_grid = finer + nodes * (cost.bytes_per_node + cost.state * states)
     needed = AROUND + cost.start + of_grid / 1e6
-    return max(MIN_MEMORY, round(ROOM * needed)) * 2 ** (attempt - 1)
+    return max(MIN_MEMORY, round(ROOM * needed))
 
 
-def seconds(rule: str, nodes: float, *, states: int = 1) -> float:
+def seconds(rule: str, nodes: float, states: int = 1) -> float:
     """Seconds that the model says a job takes on a core of its own.
 
     Parameters
@@ -123,35 +121,31 @@ def seconds(rule: str, nodes: float, *, states: int = 1) -> float:
     return cost.seconds + nodes * (cost.us_per_node + cost.solve * states) / 1e6
 
 
-def minutes(rule: str, nodes: float, *, states: int = 1, attempt: int = 1) -> int:
+def minutes(rule: str, nodes: float, states: int = 1) -> int:
     """Requested time of a job, minutes.
 
     Parameters
     ----------
     rule, nodes, states
         As of :func:`seconds`.
-    attempt : int, optional
-        1 at first.
     """
     needed = seconds(rule, nodes, states=states) / 60
-    return max(MIN_TIME, round(ROOM_OF_TIME * needed)) * 2 ** (attempt - 1)
+    return max(MIN_TIME, round(ROOM_OF_TIME * needed))
 
 
-def reading_memory(files: Iterable[Path | str], attempt: int = 1) -> int:
+def reading_memory(files: Iterable[Path | str]) -> int:
     """Requested memory, MB, to read, grid, clean and describe the faces of a specimen.
 
     Parameters
     ----------
     files : iterable of path-like
         One face or two. Those that are not there, which the job explains, count as empty.
-    attempt : int, optional
-        1 at first.
     """
     files = list(map(Path, files))
     read = sum(_size(path) * (_PLAIN if _is_plain(path) else _PACKED) for path in files) / 1e6
     described = memory("specimen", nodes_of_files(files))
     least = ROOM * AROUND + 2 * COSTS["specimen"].start
-    return max(described, round(least + read)) * 2 ** (attempt - 1)
+    return max(described, round(least + read))
 
 
 def nodes_of_files(files: Iterable[Path | str]) -> float:
