@@ -1,7 +1,7 @@
 """Calibration of the sampling errors of one window: `calibration_sampling.py`.
 
 Over seeds that nobody chose, the stated half-width of closure from a seat, mean gap, corrected
-area, tangent stiffness (the slope of the closure curve) and Delta_sigma over 1.96 standard
+area, tangent stiffness (the slope of the closure curve) and both Delta_sigma over 1.96 standard
 deviations of the values, and how often the interval holds their mean: as counts of contacts state
 it, and twins of the window.
 """
@@ -15,14 +15,26 @@ from types import SimpleNamespace
 import numpy as np
 import scipy.ndimage
 import xarray as xr
-from calibration import FIRST_SEED, PRESSURES, RMS, TWINS, calibration, write_rows
+from calibration import (
+    EXACT,
+    FIRST_SEED,
+    PRESSURES,
+    RESOLUTIONS,
+    RMS,
+    TWINS,
+    by_areas,
+    calibration,
+    write_rows,
+)
 
 from fractalcontact.domain.box_dimension import dimension_of_domain
 from fractalcontact.domain.clusters import NEIGHBOURS
 from fractalcontact.domain.random_nodes import band_of
-from fractalcontact.error_budget.error_budget import counting_error
+from fractalcontact.error_budget.counting import counting_error
 from fractalcontact.error_budget.refinement import LoadCurve
-from fractalcontact.mechanics.state_scalars import aperture
+from fractalcontact.mechanics.area_sampling import state_area_sampling
+from fractalcontact.mechanics.joint import prefractal
+from fractalcontact.mechanics.state_scalars import aperture, state_area
 from fractalcontact.mechanics.subgrid import state_quantities
 from fractalcontact.mechanics.sweep import load_steps
 from fractalcontact.roughness.twin_surface import twin_surface
@@ -34,13 +46,14 @@ JOINTS = {"sandstone": 30, "sandstone, capped": 20, "joint 2.1": 16}
 #: Load that closures count from, MPa.
 SEAT = 0.25
 #: Quantities, and the rows of `counting_error` that are stated of them: none of a closure from a
-#: seat.
+#: seat, and of Delta_sigma by A_r(s) its interval.
 QUANTITIES = {
     "closure from the seat": None,
     "mean gap": 1,
     "corrected area": 2,
     "stiffness": 3,
     "Delta_sigma": 4,
+    "Delta_sigma by A_r(s)": None,
 }
 
 
@@ -83,6 +96,7 @@ def states_of(joint, face):
         row = {
             "area_share": state.in_contact.mean(),
             "area_corrected": found["area_corrected"],
+            "area_sampling": state_area_sampling(state),
             "closure": state.closure,
             "stiffness": found["stiffness"],
             "interface_closure": found["closure"],
@@ -99,8 +113,21 @@ def states_of(joint, face):
     half = [none if row is None else counted[row] for row in QUANTITIES.values()]
     seated = curve["interface_closure"] - curve["interface_closure"][0]
     of_state = ("mean_gap", "area_corrected", "interface_stiffness", "delta_sigma")
-    values = [seated.values, *(curve[name].values for name in of_state)]
+    by_area, low, high = _by_areas(joint, composite, forces, solving)
+    half[-1] = (high - low) / 2
+    values = [seated.values, *(curve[name].values for name in of_state), by_area]
     return np.array(values)[:, 1:], np.array(half)[:, 1:]
+
+
+def _by_areas(joint, composite, forces, solving):
+    """Delta_sigma by A_r(s) with the ends of its interval, (3, load)."""
+    found = []
+    for k in RESOLUTIONS:
+        heights = prefractal(composite, k)
+        space = HalfSpace(heights.shape, (k * joint.spacing,) * 2, joint.modulus)
+        states = load_steps(heights, space, forces, solving, "calibration")
+        found.append([(state_area(s), s.in_contact.sum(), state_area_sampling(s)) for s in states])
+    return by_areas(joint.spacing, *np.moveaxis(np.array(found, float), -1, 0))
 
 
 def twin_half_widths(joint, face, seeds):
@@ -126,8 +153,10 @@ def rows(seeds, number):
             for k, quantity in enumerate(QUANTITIES):
                 value = values[:, k, load]
                 known = value[np.isfinite(value)]
+                if known.size < 2:
+                    continue
                 truth, sd = known.mean(), known.std(ddof=1)
-                if sd < 1e-6 * abs(truth):  # yielding contacts have the area F/H
+                if sd < EXACT * abs(truth):  # yielding contacts have the area F/H
                     continue
                 for by, half in (("counting", counted), ("twins", by_twins)):
                     ends = np.stack([value, value - half[:, k, load], value + half[:, k, load]])

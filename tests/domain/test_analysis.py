@@ -70,7 +70,9 @@ def test_missing_dimension_is_not_compared(fields):
 def curves_of(nodes, corrected=0.8):
     """Nodes of contact domains as the closure stage has them, corrected areas a fraction of raw."""
     area = nodes * (nodes["resolution"] * SPACING) ** 2
-    return xr.Dataset({"nodes": nodes, "area": area, "area_corrected": corrected * area})
+    sampling = 1 / np.sqrt(nodes)
+    table = {"nodes": nodes, "area": area, "area_corrected": corrected * area}
+    return xr.Dataset(table | {"area_sampling": sampling})
 
 
 def scaled(fields, nodes, corrected=0.8, **how):

@@ -15,7 +15,7 @@ from fractalcontact.core.fitting import fit_line
 from fractalcontact.core.limits import CORRECTED_NODES
 from fractalcontact.core.settings import Material, read
 from fractalcontact.core.subject import Subject
-from fractalcontact.domain.analysis import scaling_over_resolutions
+from fractalcontact.domain.analysis import NOT_SEPARATE, scaling_over_resolutions
 from fractalcontact.domain.box_dimension import ESTIMATORS
 from fractalcontact.domain.renormalisation import extrapolated_pressure
 from fractalcontact.figures import draw as figures
@@ -198,7 +198,7 @@ def test_interval_of_eq_6_brackets_its_line(atlas):
         slope = np.diff(np.log(value)) / np.diff(np.log(rows["eq6_side_mm"].values))
         np.testing.assert_allclose(slope, rows[f"delta_sigma_{key}"].values[0] - 2)
         rows = rows.dropna(subset="eq6_pressure_low_MPa")
-        assert len(rows) or key == "area"  # of three resolutions, without an interval
+        assert len(rows)
         value = rows["eq6_pressure_MPa"]
         assert (rows["eq6_pressure_low_MPa"] <= value * (1 + 1e-12)).all()
         assert (rows["eq6_pressure_high_MPa"] >= value * (1 - 1e-12)).all()
@@ -296,14 +296,14 @@ def test_eq_6_is_called_an_extrapolation(atlas, figure):
 
 def test_the_estimates_are_compared_or_it_is_said_that_they_cannot_be(atlas):
     verdict = r"(They disagree|Their intervals overlap)\.$"
-    four = atlas.copy()  # as if it had four resolutions, and so an interval
+    assert re.search(verdict, draw(atlas, "fig10_scaling", "flat").caption)
+    one = atlas.copy()  # as if its contacts were not separate
     scaling = atlas["scaling/flat"].to_dataset()
-    ends = {
-        f"difference_{end}": scaling["difference"] + by for end, by in (("low", -1), ("high", 1))
-    }
-    four["scaling/flat"] = xr.DataTree(scaling.assign(ends))
-    assert re.search(verdict, draw(four, "fig10_scaling", "flat").caption)
-    assert ", no interval: " in draw(atlas, "fig10_scaling", "flat").caption
+    ends = [f"{of}_{end}" for of in ("delta_sigma_area", "difference") for end in ("low", "high")]
+    unknown = {name: xr.full_like(scaling[name], np.nan) for name in ends}
+    reason = xr.full_like(scaling["delta_sigma_area_reason"], NOT_SEPARATE, dtype=object)
+    one["scaling/flat"] = xr.DataTree(scaling.assign(unknown | {"delta_sigma_area_reason": reason}))
+    assert f", {NOT_SEPARATE}" in draw(one, "fig10_scaling", "flat").caption
     # One resolution gives no A_r(s) to fit.
     assert np.isnan(Subject.of(atlas, "pair").states("scaling")["delta_sigma_area"]).all()
     assert "; by A_r(s): no fit: " in draw(atlas, "fig10_scaling", "pair").caption
@@ -311,7 +311,7 @@ def test_the_estimates_are_compared_or_it_is_said_that_they_cannot_be(atlas):
 
 def test_no_fit_is_said_with_its_reason(atlas):
     caption = draw(atlas, "fig10_scaling", "pair").caption
-    assert "no fit: 1 of 4 resolutions have enough contact" in caption
+    assert "no fit: enough contact at 1 of the 3 resolutions needed" in caption
 
 
 @pytest.mark.full

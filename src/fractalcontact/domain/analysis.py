@@ -8,6 +8,7 @@ import xarray as xr
 from ..core.arrays import padded
 from ..core.datasets import labelled_dataset
 from ..core.estimate import names_of, rows_of
+from ..core.fitting import MIN_POINTS
 from ..core.labels import cf_attrs
 from ..core.limits import CORRECTED_NODES, RESOLVED_NODES
 from ..core.ranges import within
@@ -17,7 +18,7 @@ from .cluster_laws import cluster_laws
 from .clusters import CLUSTER_FIELDS, cluster_statistics
 from .fitted_counts import fitted_counts
 from .mean_law import mean_sizes
-from .renormalisation import MIN_RESOLUTIONS, area_bend, compare_dimensions, renormalisation
+from .renormalisation import area_bend, compare_dimensions, renormalisation
 
 #: Numbers kept of every contact domain: name, unit, long name.
 DOMAIN_FIELDS = {
@@ -44,6 +45,9 @@ DOMAIN_FIELDS = {
     "ordinary_fit_n": ("1", "box sizes in the fit of the ordinary dimension"),
     **CLUSTER_FIELDS,
 }
+
+#: Why Delta_sigma by A_r(s) has no interval.
+NOT_SEPARATE = "no interval: at some resolution there are no three separate contacts"
 
 NOT_NEEDED = "not solved, since nothing shown needs it"
 
@@ -241,8 +245,8 @@ def scaling_over_resolutions(
     Parameters
     ----------
     curves : xr.Dataset
-        With ``area``, ``area_corrected`` and ``nodes`` over (direction, offset, resolution,
-        normal_force).
+        With ``area``, ``area_corrected``, ``area_sampling`` and ``nodes`` over (direction, offset,
+        resolution, normal_force).
     domains : xr.Dataset
         From :func:`analyse_domains`.
     spacing : float
@@ -317,9 +321,10 @@ def corrected_scaling(
     """
     s, nodes = _spacings(curves, spacing), _nodes_between(curves, spacing, fit_range)
     area = curves["area_corrected"]
-    result = renormalisation(s, area, curves["normal_force"], nodes, CORRECTED_NODES)
+    each = nodes, CORRECTED_NODES, curves["area_sampling"]
+    result = renormalisation(s, area, curves["normal_force"], *each)
     words = "Delta_sigma from the area of the two finest resolutions less that of the two coarsest"
-    bend = area_bend(s, area, nodes, CORRECTED_NODES)
+    bend = area_bend(s, area, *each)
     for (name, row), value in zip(rows_of("area_bend", "1", words).items(), bend.ends, strict=True):
         result[name] = value.assign_attrs(cf_attrs(*row))
     return result
@@ -346,10 +351,10 @@ def _local_exponent(s, area):
 
 def _reasons(scaling, finest):
     """Reason why Delta_sigma or its interval is missing; empty if neither is."""
-    counts = scaling["n"].values.flat
-    why = [f": {n} of {MIN_RESOLUTIONS} resolutions have enough contact" for n in counts]
+    of = f"of the {MIN_POINTS} resolutions needed"
+    why = [f"no fit: enough contact at {n} {of}" for n in scaling["n"].values.flat]
     area = scaling["n"].copy(data=np.reshape(np.array(why, object), scaling["n"].shape))
-    area = xr.where(scaling["delta_sigma"].isnull(), "no fit", "no interval") + area
+    area = area.where(scaling["delta_sigma"].isnull(), NOT_SEPARATE)
     no_box = finest["reason"].astype(object)
     missing = finest["delta_sigma"].isnull()
     reasons = {

@@ -4,19 +4,14 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from scipy import special
 
 from ..core.estimate import Estimate, names_of, rows_of
-from ..core.fitting import fit_line
+from ..core.fitting import fit_line, slope_error
+from ..core.intervals import t_quantile
 from ..core.labels import cf_attrs
-from ..core.limits import CONFIDENCE
-from ..core.slope_of_sums import wave_error
 
 #: The dimension along which resolutions s, 2s, 4s ... are stored.
 RESOLUTION = "resolution"
-
-#: Resolutions that the interval of the area's exponent needs: three leave none beside their bend.
-MIN_RESOLUTIONS = 4
 
 #: Nodes that a contact domain needs at a resolution for its number N_n to count.
 MIN_NODES_PER_RESOLUTION = 4
@@ -28,6 +23,7 @@ def renormalisation(
     force: xr.DataArray,
     nodes: xr.DataArray | None = None,
     fewest: int = MIN_NODES_PER_RESOLUTION,
+    sampling: xr.DataArray | None = None,
 ) -> xr.Dataset:
     """Dimension and fractal measure of the contact domain from its area over resolutions.
 
@@ -47,6 +43,10 @@ def renormalisation(
         N_n, where areas are corrected ones; by default A_n / s_n^2.
     fewest : int
         Nodes that a domain needs to count.
+    sampling : DataArray (resolution, ...), optional
+        Relative sampling errors of the areas, half-widths at 95 %, as
+        :func:`mechanics.area_sampling.area_sampling` states them; by default those of N_n nodes
+        that touch independently (Poisson), 1/sqrt(N_n).
 
     Returns
     -------
@@ -54,8 +54,8 @@ def renormalisation(
         On the other dimensions of `area`: `delta_sigma` with `_low`, `_high` (95 %), `n`
         resolutions fitted, `r2`; `hausdorff_measure` (geometric mean over resolutions, mm^Delta);
         `sigma_star` = F / H_D, N mm^-Delta. On (resolution, ...): `sigma_n` = F / A_n, MPa, at the
-        resolutions that count. NaN where fewer than three resolutions can be;
-        no interval with fewer than `MIN_RESOLUTIONS`.
+        resolutions that count. NaN where fewer than three resolutions can be; no interval where
+        one of the areas has no sampling error.
 
     Notes
     -----
@@ -64,10 +64,11 @@ def renormalisation(
     single node at every resolution would give exactly 0). From
     `MIN_NODES_PER_RESOLUTION` = 4 on it is 0.3.
 
-    The interval is of sampling: N_n nodes vary as sqrt(N_n) (as Poisson's law has it for nodes that
-    touch independently), and what waves about the smooth bend may tilt comes on top, in quadrature.
-    Value and interval lie between 0 and 2, the bounds of a set in the plane. The interval of the
-    regression would take the bend for an error: it was four times too wide on joints.
+    The interval is of sampling: that of the areas, as if those of different resolutions were
+    independent. Value and interval lie between 0 and 2, the bounds of a set in the plane. What is
+    left beside the line is a bend of the law, a finding (:func:`area_bend`) and no error: an
+    interval of the regression was four times too wide on joints, and of four points, of which a
+    bend leaves one degree of freedom, there is none.
 
     Raises
     ------
@@ -84,7 +85,7 @@ def renormalisation(
         _area_exponent,
         np.log(s),
         np.log(touching),
-        nodes,
+        _counting_error(nodes) if sampling is None else sampling,
         input_core_dims=[[RESOLUTION]] * 3,
         output_core_dims=[[]] * 5,
         vectorize=True,
@@ -122,25 +123,17 @@ def _described(values, words) -> xr.Dataset:
     return result
 
 
-def _area_exponent(log_s: np.ndarray, log_area: np.ndarray, nodes: np.ndarray) -> tuple[float, ...]:
+def _area_exponent(log_s: np.ndarray, log_area: np.ndarray, error: np.ndarray) -> tuple[float, ...]:
     """Slope of log A over log s with its interval, resolutions fitted and r2."""
     line = fit_line(log_s, log_area)
-    slope = line.slope.value
-    if line.n < MIN_RESOLUTIONS:
-        return slope, np.nan, np.nan, float(line.n), line.r2
-    fitted = np.isfinite(log_area)
-    law = line.intercept.value + slope * log_s
-    waves = wave_error(np.exp(log_s[fitted]), (log_area - law)[fitted])
-    half = np.hypot(_counting_error(log_s, log_area, nodes), waves)
+    slope, fitted = line.slope.value, np.isfinite(log_area)
+    half = slope_error(log_s[fitted], error[fitted])
     return slope, slope - half, slope + half, float(line.n), line.r2
 
 
-def _counting_error(log_s: np.ndarray, log_area: np.ndarray, nodes: np.ndarray) -> float:
-    """Half of the interval of the slope if each N varies as sqrt(N), hence log N as 1/sqrt(N)."""
-    counted = np.isfinite(log_area)
-    dx = log_s[counted] - log_s[counted].mean()
-    weighted = np.sum(dx**2 / nodes[counted])
-    return special.ndtri((1 + CONFIDENCE) / 2) * np.sqrt(weighted) / np.sum(dx**2)
+def _counting_error(nodes: xr.DataArray) -> xr.DataArray:
+    """Half of the interval of log N if N nodes vary as sqrt(N)."""
+    return t_quantile(np.inf) / np.sqrt(nodes.where(nodes > 0))
 
 
 def hausdorff_measure(s: Any, area: Any, delta_sigma: Any) -> Any:
@@ -295,16 +288,20 @@ _COMPARED = {
 
 
 def area_bend(
-    s: xr.DataArray, area: xr.DataArray, nodes: xr.DataArray, fewest: int = MIN_NODES_PER_RESOLUTION
+    s: xr.DataArray,
+    area: xr.DataArray,
+    nodes: xr.DataArray,
+    fewest: int = MIN_NODES_PER_RESOLUTION,
+    sampling: xr.DataArray | None = None,
 ) -> Estimate:
     """Delta_sigma of the two finest resolutions less that of the two coarsest, from their areas.
 
     It is zero for one power law A_n ~ s_n^(2 - Delta_sigma). The interval is of sampling, as that
-    of :func:`renormalisation`: N_n nodes vary as sqrt(N_n).
+    of :func:`renormalisation`.
 
     Parameters
     ----------
-    s, area, nodes, fewest
+    s, area, nodes, fewest, sampling
         As of :func:`renormalisation`, s ascending.
 
     Returns
@@ -318,7 +315,7 @@ def area_bend(
         _bend,
         np.log(s),
         log_area,
-        nodes,
+        _counting_error(nodes) if sampling is None else sampling,
         input_core_dims=[[RESOLUTION]] * 3,
         output_core_dims=[[]] * 2,
         vectorize=True,
@@ -326,7 +323,7 @@ def area_bend(
     return Estimate(value, value - half, value + half)
 
 
-def _bend(log_s: np.ndarray, log_area: np.ndarray, nodes: np.ndarray) -> tuple[float, float]:
+def _bend(log_s: np.ndarray, log_area: np.ndarray, error: np.ndarray) -> tuple[float, float]:
     """Difference of two slopes of log A over log s, and half of its interval."""
     counted = np.flatnonzero(np.isfinite(log_area))
     if counted.size < 3:
@@ -336,6 +333,5 @@ def _bend(log_s: np.ndarray, log_area: np.ndarray, nodes: np.ndarray) -> tuple[f
         step = sign / (log_s[coarse] - log_s[fine])
         weights[coarse] += step
         weights[fine] -= step
-    of_counts = np.sum(weights[counted] ** 2 / nodes[counted])
-    half = special.ndtri((1 + CONFIDENCE) / 2) * np.sqrt(of_counts)
+    half = np.sqrt(np.sum((weights[counted] * error[counted]) ** 2))
     return float(weights[counted] @ log_area[counted]), float(half)

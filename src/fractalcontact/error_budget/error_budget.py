@@ -8,16 +8,14 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from ..core.datasets import labelled_dataset
-from ..core.estimate import Estimate
-from ..core.intervals import t_quantile
 from ..core.labels import OF_SURFACE, REALISATIONS, TWINS, cf_attrs
-from ..core.limits import MAX_TOUCHING, MIN_NODES
+from ..core.limits import MIN_NODES
 from ..core.settings import StateSettings
 from ..mechanics.joint import prefractal
 from ..mechanics.loading import JointLoading
 from ..mechanics.subgrid import state_quantities
 from ..mechanics.sweep import load_steps
-from ..roughness.plane_spectrum import amplitude_error
+from .counting import counting_error
 from .derived import with_derived
 from .ensemble_spread import ensemble_spread, position_in_band, seated_spread
 from .hardness import of_the_hardest
@@ -45,9 +43,6 @@ SOURCES = (*OF_SURFACE, *OF_POPULATION, "resolution", "model", "estimator")
 #: chance differs from state to state. Then 95 to 100 % of 100 other joints were covered, else
 #: 68 to 92 %.
 WIDENED = 2.0
-
-#: Standard deviation of the largest of many heights whose tail falls by e over a length: Gumbel's.
-_LARGEST_SPREAD = np.pi / np.sqrt(6)
 
 _EACH, _ALL = ("quantity", "source", "normal_force"), ("quantity", "normal_force")
 _UNIT = "unit of the quantity"
@@ -321,53 +316,6 @@ def _secant(curve: LoadCurve) -> np.ndarray:
     scatter = curve.curve["interface_stiffness_scatter"].values
     spread[list(BUDGET_QUANTITIES).index("stiffness")] = np.nan_to_num(scatter)
     return spread
-
-
-def counting_error(curve: LoadCurve) -> np.ndarray:
-    """Error from the number of contacts, half-width at 95 %.
-
-    Returns
-    -------
-    (quantity, normal_force) ndarray
-
-    Notes
-    -----
-    N clusters that lie independently are known to 1/sqrt(N) of themselves (Poisson), and so are
-    their area and, as long as contacts act side by side, their stiffness. At a given separation the
-    force varies by as much, so that at a given force the separation does by
-    l/sqrt(N), l = sigma_0/(d sigma/d w_int) being the length over which the pressure falls by e.
-    The mean gap is also as uncertain as the amplitude of the waves of which the window holds few.
-    Closure also counts from the highest of the heights, whose tail falls over that length: the
-    largest of many such scatters by pi/sqrt(6) l (Gumbel). That of Delta_sigma is its published
-    interval, which leaves out parts of the window. Where more than half of the window
-    touches there are no separate contacts, and nothing but the area is known: f (1 - f) is the
-    variance of a fraction f.
-    """
-    clusters = np.maximum(curve.domains["clusters"].values, 1.0)
-    touching = curve.curve["area_share"].values
-    fraction = t_quantile(np.inf) / np.sqrt(clusters)
-    length = np.where(touching > MAX_TOUCHING, np.nan, curve.decay_length())
-    summit_spread = t_quantile(np.inf) * _LARGEST_SPREAD * length
-    _, _, area, stiffness, _ = curve.values()
-    value, low, high = Estimate.read(curve.domains, "delta_sigma").ends
-    return np.array(
-        [
-            np.hypot(fraction * length, summit_spread),
-            np.hypot(fraction * length, t_quantile(np.inf) * _amplitude_error(curve)),
-            fraction * np.sqrt(np.clip(1 - touching, 0, 1)) * area,
-            np.where(touching > MAX_TOUCHING, np.nan, fraction * stiffness),
-            np.fmax(high - value, value - low),
-        ]
-    )
-
-
-def _amplitude_error(curve: LoadCurve) -> np.ndarray:
-    """Standard deviation of the mean gap by the amplitude of the waves (normal_force), mm."""
-    try:
-        relative = amplitude_error(curve.composite, curve.space.spacing)
-    except ValueError:  # faces that are flush have none
-        relative = 0.0
-    return relative * curve.curve["mean_gap"].values
 
 
 def _window_spread(curve: LoadCurve) -> tuple[np.ndarray, int, float]:

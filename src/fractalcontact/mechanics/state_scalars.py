@@ -8,6 +8,7 @@ from roughcontact.contact.slope import Slope
 from roughcontact.contact.state import STIFFNESS_ERROR, ContactState
 
 from .area import EDGE_EXCESS, contact_perimeter, corrected_area
+from .area_sampling import state_area_sampling
 from .overlap import suspect_load_share
 from .states import SCALARS
 
@@ -51,6 +52,7 @@ def numbers_of(
         "extent": _extent(state.in_contact),
         "perimeter": contact_perimeter(state.in_contact, spacing),
         "area_corrected": state_area(state),
+        "area_sampling": state_area_sampling(state),
         "mean_gap": float(gap.mean()),
         "gap_deviation": float(gap.std()),
         "suspect_load_share": (

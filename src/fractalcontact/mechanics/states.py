@@ -23,6 +23,7 @@ SCALARS = {
     "extent": ("1", "fraction of the window within the smallest rectangle around the contact"),
     "perimeter": ("mm", "perimeter of the contact domain's cells inside the window"),
     "area_corrected": ("mm2", "real contact area less what the cells on its edge overstate"),
+    "area_sampling": ("1", "relative sampling error of it under its force, half-width at 95 %"),
     "stiffness": ("N/mm", "normal stiffness dF/dw"),
     "stiffness_scatter": ("N/mm", "scatter of the stiffness over the cells that come to yield"),
     "mean_gap": ("mm", "mean gap over the nominal area: the mechanical aperture"),

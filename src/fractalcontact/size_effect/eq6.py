@@ -114,7 +114,8 @@ def size_test(loading: JointLoading[WindowSettings]) -> xr.Dataset:
         return _dimensions(mapped, whole, domains, parts)
 
     states, _ = solve_sub_windows(mapped, PARTS, estimate)
-    of_windows = ["nodes", "nodes_error", "interface_closure", "whole_area", "bulk_compliance"]
+    of_windows = ["nodes", "nodes_error", "interface_closure", "bulk_compliance"]
+    of_windows += ["whole_area", "whole_area_sampling"]
     result = states.drop_vars([*of_windows, *OF_WINDOWS]).merge(size_law(states))
     result = result.merge(slopes_at_equal_star(states, result.sizes["normal_force"]))
     result = result.merge(size_verdicts(result))
@@ -182,7 +183,12 @@ def _by_area(loading: JointLoading[WindowSettings], whole: xr.Dataset, spacing: 
     if loading.settings.scaling_range is not None:
         areas = areas.where(within(s, *loading.settings.scaling_range))
     by_area = renormalisation(
-        s, areas["area_corrected"], whole["normal_force"], areas["nodes"], CORRECTED_NODES
+        s,
+        areas["area_corrected"],
+        whole["normal_force"],
+        areas["nodes"],
+        CORRECTED_NODES,
+        areas["area_sampling"],
     )
     return Estimate.read(by_area, "delta_sigma")
 

@@ -13,11 +13,12 @@ from ..core.limits import CORRECTED_NODES, RESOLVED_NODES
 from ..core.ranges import within
 from ..core.settings import JointSettings
 from ..domain.renormalisation import MIN_NODES_PER_RESOLUTION
+from ..mechanics.area_sampling import state_area_sampling
 from ..mechanics.closure import bulk_settlement, interface_closure
 from ..mechanics.joint import prefractal
 from ..mechanics.loading import JointLoading
 from ..mechanics.state_scalars import state_area
-from ..mechanics.states import SOLVER_ERROR
+from ..mechanics.states import SCALARS, SOLVER_ERROR
 from ..mechanics.sweep import load_steps
 from .division import PARTS, solvable_parts, split
 
@@ -58,8 +59,9 @@ def solve_sub_windows(
         What was estimated, and
         ``nodes`` (part, window, resolution, step) in contact and ``nodes_error``, those that the
         solver leaves ambiguous; ``interface_closure`` and :data:`OF_WINDOWS` (part, window, step)
-        at the finest resolution, ``whole_area`` (resolution, step), ``side`` b and ``windows``
-        (part), ``ladder_pressure`` (step) whose first steps are those of the loads. Steps that no
+        at the finest resolution, ``whole_area`` and ``whole_area_sampling`` (resolution, step),
+        ``side`` b and ``windows`` (part), ``ladder_pressure`` (step) whose first steps are those
+        of the loads. Steps that no
         window of a size needs are NaN.
     domains : (load, ny, nx) bool ndarray
         Contact domain of the whole window at the finest resolution.
@@ -145,6 +147,8 @@ class _LoadedSize:
         In contact, and those of which it is not certain; NaN for steps not solved yet.
     corrected : (window, resolution, step) ndarray
         Corrected real contact area, mm2; of several windows at the finest resolution alone.
+    sampling : (resolution, step) ndarray
+        Relative sampling error of that of a window alone.
     finest : dict of str to (window, step) ndarray
         ``interface_closure``, mm, and :data:`OF_WINDOWS`.
     domains : list of (ny, nx) bool ndarray
@@ -173,6 +177,7 @@ class _LoadedSize:
         names = ("interface_closure", *OF_WINDOWS)
         self.finest = {name: np.full((len(windows), len(pressures)), np.nan) for name in names}
         self.corrected = self.nodes.copy()
+        self.sampling = self.nodes[0].copy()
         self._compliant = compliant
         self.domains: list[np.ndarray] = []
         self.solved = 0
@@ -197,6 +202,8 @@ class _LoadedSize:
                 self.ambiguous[j, k, step] = state.ambiguous
                 if k == 0 or len(self.nodes) == 1:
                     self.corrected[j, k, step] = state_area(state)
+                if len(self.nodes) == 1:
+                    self.sampling[k, step] = state_area_sampling(state)
                 if k == 0:
                     for name, value in self._of_state(state, j, step).items():
                         self.finest[name][j, step] = value
@@ -267,6 +274,7 @@ _TABLE = {
         "mm2",
         "corrected real contact area of the whole window",
     ),
+    "whole_area_sampling": (("resolution", "step"), *SCALARS["area_sampling"]),
     "bulk_compliance": ("part", "mm/MPa", "bulk settlement of a sub-window over sigma_0"),
     "side": ("part", "mm", "side b of the sub-windows"),
     "windows": ("part", "1", "sub-windows solved of each size"),
@@ -302,6 +310,7 @@ def _labelled(
         "nodes": nodes,
         "nodes_error": ambiguous,
         "whole_area": sizes[0].corrected[0],
+        "whole_area_sampling": sizes[0].sampling,
         "bulk_compliance": [size.bulk_compliance for size in sizes],
         "side": [np.sqrt(size.sides.prod()) for size in sizes],
         "windows": np.square(parts),
@@ -357,29 +366,30 @@ def whole_areas(loading: JointLoading[JointSettings], states: xr.Dataset) -> xr.
     Returns
     -------
     xr.Dataset
-        ``area_corrected``, mm2, and ``nodes`` (resolution, normal_force).
+        ``area_corrected``, mm2, ``area_sampling`` and ``nodes`` (resolution, normal_force).
     """
     composite = loading.composite(loading.cells.item())
     factors, loads = loading.settings.resolutions, states["normal_force"]
     solved = states.sel(part=1).isel(window=0, step=slice(len(loads)))
     # That of solve_sub_windows is cut to whole cells of its coarsest resolution.
     uncut = not any(n % solved["resolution"].max() for n in composite.shape)
-    areas, nodes = [], []
+    rows: list[np.ndarray] = []
     for factor in factors:
         if uncut and factor in solved["resolution"]:
             known = solved.sel(resolution=factor)
-            areas.append(known["whole_area"].values)
-            nodes.append(known["nodes"].values)
+            names = ("whole_area", "whole_area_sampling", "nodes")
+            rows.append(np.array([known[name].values for name in names]))
             continue
         h = prefractal(composite, factor)
         space = loading.half_space(h.shape, factor)
         steps = load_steps(h, space, loads.values, loading.solving, f"resolution {factor}")
-        found = np.array([(state_area(state), state.in_contact.sum()) for state in steps])
-        areas.append(found[:, 0])
-        nodes.append(found[:, 1])
+        found = [(state_area(s), state_area_sampling(s), s.in_contact.sum()) for s in steps]
+        rows.append(np.transpose(found))
     dims = ("resolution", "normal_force")
+    columns = np.swapaxes(np.array(rows), 0, 1)
+    table = zip(("area_corrected", "area_sampling", "nodes"), columns, strict=True)
     coords = {"resolution": factors, "normal_force": loads}
-    return xr.Dataset({"area_corrected": (dims, areas), "nodes": (dims, nodes)}, coords)
+    return xr.Dataset({name: (dims, values) for name, values in table}, coords)
 
 
 def _ladder(pressures: np.ndarray, hardness: float) -> np.ndarray:

@@ -8,7 +8,6 @@ from ..core.fitting import MIN_POINTS
 from ..core.labels import loads_of
 from ..core.limits import NEAR_FULL, NEAR_POINTS
 from ..core.verdicts import FAILS, HOLDS, PARTLY, UNDETERMINED
-from ..domain.renormalisation import MIN_RESOLUTIONS
 from .evidence import ESTIMATES, Evidence, Trend, at_reference, of_a_kind
 from .findings import (
     Finding,
@@ -35,7 +34,8 @@ def area_is_lacunar(joint: Joint, evidence: Evidence) -> Finding:
     margin = all_claims()[name].margin
     delta, bend = evidence.area_dimension(), evidence.area_bend()
     if not np.isfinite(delta.width):
-        return Finding(UNDETERMINED, f"fewer than {MIN_RESOLUTIONS} usable resolutions")
+        few = "separate contacts" if delta.known else "usable resolutions"
+        return Finding(UNDETERMINED, f"fewer than {MIN_POINTS} {few}")
     # A_r ~ s^(2 - Delta_sigma): it falls with refinement where the exponent is positive.
     falls = beyond_margin(delta.mapped(lambda value: 2 - value, falling=True), margin, rising=True)
     one_power = within_margin(bend, margin)

@@ -1,0 +1,73 @@
+"""Sampling error from the number of contacts, of a window without others beside it."""
+
+import numpy as np
+
+from ..core.estimate import Estimate
+from ..core.intervals import t_quantile
+from ..core.limits import MAX_TOUCHING
+from ..roughness.plane_spectrum import amplitude_error
+from .refinement import LoadCurve
+
+#: Standard deviation of the largest of many heights whose tail falls by e over a length: Gumbel's.
+_LARGEST_SPREAD = np.pi / np.sqrt(6)
+
+
+def counting_error(curve: LoadCurve) -> np.ndarray:
+    """Error from the number of contacts, half-width at 95 %.
+
+    Returns
+    -------
+    (quantity, normal_force) ndarray
+
+    Notes
+    -----
+    N clusters that lie independently are known to 1/sqrt(N) of themselves (Poisson), and so is, as
+    long as contacts act side by side, their stiffness. Under a given force their area is known
+    better, :mod:`mechanics.area_sampling`. At a given separation the force varies by 1/sqrt(N), so
+    that at a given force the separation does by l/sqrt(N), l = sigma_0/(d sigma/d w_int) being the
+    length over which the pressure falls by e. The mean gap is also as uncertain as the amplitude of
+    the waves of which the window holds few, and so is the stiffness: K of heights a h under F is
+    that of h under F/a (exact of elastic half-spaces), so that ln K falls by d ln K/d ln F for
+    each unit of ln a. Closure also counts from the highest of the heights, whose tail falls over
+    the length l: the largest of many such scatters by pi/sqrt(6) l (Gumbel). The error of
+    Delta_sigma is its published interval, which leaves out parts of the window. Where more than
+    half of the window touches there are no separate contacts, and nothing but the area is known:
+    f (1 - f) is the variance of a fraction f.
+    """
+    clusters = np.maximum(curve.domains["clusters"].values, 1.0)
+    touching = curve.curve["area_share"].values
+    fraction = t_quantile(np.inf) / np.sqrt(clusters)
+    length = np.where(touching > MAX_TOUCHING, np.nan, curve.decay_length())
+    summit_spread = t_quantile(np.inf) * _LARGEST_SPREAD * length
+    _, _, area, stiffness, _ = curve.values()
+    apart = curve.curve["area_sampling"].values
+    together = fraction * np.sqrt(np.clip(1 - touching, 0, 1))
+    amplitude = t_quantile(np.inf) * _amplitude_error(curve)
+    of_stiffness = np.hypot(fraction, amplitude * _steepness(curve.forces, stiffness))
+    value, low, high = Estimate.read(curve.domains, "delta_sigma").ends
+    return np.array(
+        [
+            np.hypot(fraction * length, summit_spread),
+            np.hypot(fraction * length, amplitude * curve.curve["mean_gap"].values),
+            np.where(np.isnan(apart), together, apart) * area,
+            np.where(touching > MAX_TOUCHING, np.nan, of_stiffness * stiffness),
+            np.fmax(high - value, value - low),
+        ]
+    )
+
+
+def _amplitude_error(curve: LoadCurve) -> float:
+    """Relative standard deviation of the amplitude of the waves."""
+    try:
+        return amplitude_error(curve.composite, curve.space.spacing)
+    except ValueError:  # faces that are flush have none
+        return 0.0
+
+
+def _steepness(forces: np.ndarray, stiffness: np.ndarray) -> np.ndarray:
+    """d ln K / d ln F (normal_force); 1, as of K ~ F, where it is not known."""
+    if len(forces) < 2:
+        return np.ones(len(forces))
+    with np.errstate(all="ignore"):
+        slope = np.gradient(np.log(stiffness), np.log(forces))
+    return np.where(np.isfinite(slope), slope, 1.0)
