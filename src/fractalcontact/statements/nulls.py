@@ -168,7 +168,7 @@ def domains_are_isotropic(joint: Joint) -> Finding:
         return Finding(UNDETERMINED, "no two nodes in contact lie two nodes apart")
     ways = _OF_SLIDING if slides(joint.settings["opposite"]) else ("along x", "along y")
     numbers = (
-        f"two nodes away from contact, contact has a probability of {along:.2f} {ways[0]} and "
+        f"probability of contact two nodes from a node in contact: {along:.2f} {ways[0]}, "
         f"{across:.2f} {ways[1]}"
     )
     apart = max(along.low, across.low) > min(along.high, across.high)

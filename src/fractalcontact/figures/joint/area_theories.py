@@ -117,7 +117,7 @@ def _draw_slopes(axes, exponents, levels):
 def _words(atlas, name, laws, law):
     """Values of the caption: law of the area, kappa, the paper's claim."""
     reason, no_kappa = (str(law[f"no_corrected_{of}"].values) for of in ("law", "mean_kappa"))
-    many = "over all offsets" if laws.sizes["offset"] > 1 else ""
+    many = "at all offsets" if laws.sizes["offset"] > 1 else ""
     return {
         "reason": reason,
         "no_kappa": no_kappa,
@@ -126,7 +126,5 @@ def _words(atlas, name, laws, law):
         "kappa": "" if no_kappa else mean_kappa(law, "corrected_"),
         "beside": str(law["kappa_beside_theories"].values),
         "theories": law.attrs,
-        "linear": claim(
-            atlas, name, "area_is_linear", why="at other offsets" if many and reason else many
-        ),
+        "linear": claim(atlas, name, "area_is_linear", why=many),
     }
