@@ -52,12 +52,7 @@ def plane_flow(gap: ArrayLike, spacing: tuple[float, float], axis: str = "x") ->
     return network_flow(opening, ends, spacing, nx * dx / width, width)
 
 
-def radial_flow(
-    gap: ArrayLike,
-    spacing: tuple[float, float],
-    hole: float,
-    rim: float,
-) -> Flow:
+def radial_flow(gap: ArrayLike, spacing: tuple[float, float], hole: float, rim: float) -> Flow:
     """Flow from a hole in the middle of a disc to its rim, as laboratories test cores.
 
     Parameters
@@ -96,9 +91,8 @@ def radial_flow(
     radius = np.hypot(y[:, np.newaxis], x)
     between = (radius > hole) & (radius < rim)
     ends = _ends_at_circles(y[:, np.newaxis], x, spacing, (hole, rim)) * between
-    opening = np.where(between, opening, 0.0)
     length, width = np.log(rim / hole) / (2 * np.pi), 2 * np.pi * hole
-    return network_flow(opening, ends, spacing, length, width)
+    return network_flow(np.where(between, opening, 0.0), ends, spacing, length, width)
 
 
 #: Smallest part of a cell that a circle cuts off: closer to it, a cell is on it.

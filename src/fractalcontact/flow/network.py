@@ -83,11 +83,7 @@ class FlowNotConverged(RuntimeError):
 
 
 def network_flow(
-    gap: np.ndarray,
-    ends: np.ndarray,
-    spacing: tuple[float, float],
-    length: float,
-    width: float,
+    gap: np.ndarray, ends: np.ndarray, spacing: tuple[float, float], length: float, width: float
 ) -> Flow:
     """Flow under a pressure of 1 at the inlet and 0 at the outlet, by the local cubic law.
 
@@ -157,11 +153,9 @@ def joined_cells(open_cells: np.ndarray, inlet: np.ndarray, outlet: np.ndarray) 
     open_cells, inlet, outlet : (ny, nx) bool ndarray
         Open cells, and those of them at each end.
     """
-    labels, n = ndimage.label(open_cells)
-    joined = np.zeros(n + 1, bool)
-    joined[np.intersect1d(labels[inlet], labels[outlet])] = True
-    joined[0] = False
-    return joined[labels]
+    labels, _ = ndimage.label(open_cells)
+    joined = np.intersect1d(labels[inlet], labels[outlet])
+    return np.isin(labels, joined[joined > 0])
 
 
 @njit(cache=True)

@@ -76,8 +76,7 @@ class RedBlackCells:
         diagonal, later, joined = _mesh(self.faces, self.neighbours, both, self._over)
         red, place = np.nonzero(later)
         pair = red, joined[red, place]
-        itself = np.arange(n_red)
-        entries = [np.append(itself, of(*pair)) for of in (np.maximum, np.minimum)]
+        entries = [np.append(np.arange(n_red), of(*pair)) for of in (np.maximum, np.minimum)]
         values = np.append(diagonal, -later[red, place])
         lower = sparse.coo_array((values, entries), shape=(n_red, n_red))
         self._solve_red = _factorised(lower) if n_red else np.copy
@@ -123,12 +122,10 @@ def _by_cholmod(lower):
 
 def _by_superlu(lower):
     triangle = lower.tocsc()
-    matrix = triangle + sparse.tril(triangle, -1, format="csc").T
+    matrix = (triangle + sparse.tril(triangle, -1, format="csc").T).tocsc()
     options = {"SymmetricMode": True}
     try:
-        return splu(
-            matrix.tocsc(), permc_spec="NATURAL", diag_pivot_thresh=0.0, options=options
-        ).solve
+        return splu(matrix, permc_spec="NATURAL", diag_pivot_thresh=0.0, options=options).solve
     except RuntimeError as error:
         raise ArithmeticError(str(error)) from error
 

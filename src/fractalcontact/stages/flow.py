@@ -151,8 +151,7 @@ def flow_stages(
         values |= _over_loads(way, axis, gaps, spacing, states, error, reported)
     loaded = {"mean_gap": states["mean_gap"].values}
     loaded |= {of: values[of] for of in (f"transmissivity_{way}" for way in WAYS)}
-    (cells,) = loading.at_map_offset().cells
-    composite = loading.composite(int(cells))
+    composite = loading.composite(int(loading.at_map_offset().cells[0]))
     kept = prefractal(composite, reported.resolution)
     for prefix, numbers in {
         "branch": _of_branches(composite, loading, branches, of_scan, loaded),
@@ -191,8 +190,7 @@ def _over_loads(way, axis, gaps, spacing, states, error, reported):
         if every or load in reported.quoted
     }
     flux = rows[reported.reference].pop("flux_map").astype(np.float32)
-    nothing = dict.fromkeys(rows[reported.reference], np.nan)
-    nothing |= {
+    nothing = dict.fromkeys(rows[reported.reference], np.nan) | {
         "transmissivity": NO_ESTIMATE,
         "flow_reason": "solved under the reported loads alone",
     }
@@ -290,13 +288,12 @@ def _of_branches(composite, loading, branches, both, loaded):
 
 def _over_offsets(parts, offsets, both, reported, loaded):
     """Numbers over the offsets under the reference load; those of the reported one are loaded."""
-    at_reference = {name: one[reported.reference] for name, one in loaded.items()}
-    of_reported = offsets == reported.offset
-    values = {name: np.where(of_reported, one, np.nan) for name, one in at_reference.items()}
+    known, load = offsets == reported.offset, reported.reference
+    values = {name: np.where(known, one[load], np.nan) for name, one in loaded.items()}
     for part in (part for part in parts if OFFSET_GAP in part):
         for gap, offset in zip(part[OFFSET_GAP].values, part["offset"].values, strict=True):
             number = int(np.argmin(np.abs(offsets - offset)))
-            if not of_reported[number]:
+            if not known[number]:
                 for name, value in both(gap.astype(float)).items():
                     values[name][number] = value
     return values

@@ -107,13 +107,12 @@ def _draw_apertures(panel: Panel, states: xr.Dataset) -> None:
 
 
 def _draw_branches(panel: Panel, flow: xr.Dataset) -> None:
-    name = "branch_transmissivity"
+    x, name = "nominal_pressure", "branch_transmissivity"
     load, reload = (flow[f"{name}_along"].sel(branch=branch) for branch in ("load", "reload"))
     # Where nothing yields, there is one curve.
     crushed = bool(((reload > 0) & (reload != load)).any())
     for branch, words, line in _BRANCHES[: 1 + crushed]:
-        states = flow.sel(branch=branch)
-        _draw_ways(panel, states, "nominal_pressure", name, words, line, ["branch"])
+        _draw_ways(panel, flow.sel(branch=branch), x, name, words, line, ["branch"])
     panel.axes.set(xscale="log", yscale="log", xlabel=f"{NOMINAL_PRESSURE} (MPa)")
     plain_decades(panel.axes.xaxis)
     panel.axes.set_ylabel("transmissivity $T = h_h^3/12$ (mm³)")
