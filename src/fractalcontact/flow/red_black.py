@@ -74,10 +74,10 @@ class RedBlackCells:
         both = self.ends.sum(axis=0)
         self._over = 1 / (self.faces.sum(axis=1) + both[n_red:])
         diagonal, later, joined = _mesh(self.faces, self.neighbours, both, self._over)
-        red, place = np.nonzero(later)
-        pair = red, joined[red, place]
+        held = np.flatnonzero(later)
+        pair = held // 4, joined.ravel()[held]
         entries = [np.append(np.arange(n_red), of(*pair)) for of in (np.maximum, np.minimum)]
-        values = np.append(diagonal, -later[red, place])
+        values = np.append(diagonal, -later.ravel()[held])
         lower = sparse.coo_array((values, entries), shape=(n_red, n_red))
         self._solve_red = _factorised(lower) if n_red else np.copy
         each = np.arange(0, self.faces.size + 1, 4)
