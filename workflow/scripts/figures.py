@@ -4,6 +4,7 @@ Captions and failures stand in the log. Failures are listed in a file too, which
 any, and the job goes on: other figures stay, and the rule `all_drawn` ends the study with the list.
 """
 
+import gc
 from pathlib import Path
 
 from _job import job
@@ -12,6 +13,9 @@ from _stages import read_stages, warn_of_versions
 from fractalcontact.core import netcdf
 from fractalcontact.core.atomic import atomic_write
 from fractalcontact.stages.atlas import join_stages, row_of
+
+# The job ends with its figures: to collect what they leave takes half a second of eleven.
+gc.disable()
 
 with job(snakemake) as log:
     output, params = snakemake.output, snakemake.params

@@ -1,13 +1,12 @@
 """Small shaded reliefs, written into the page itself."""
 
 import base64
-import struct
 import warnings
-import zlib
 
 import numpy as np
 import xarray as xr
 
+from ..core.png import png
 from ..core.window import spacing_of, window_slices
 
 #: Pixels of the longer side.
@@ -65,16 +64,4 @@ def shaded(heights: np.ndarray, spacing: float) -> np.ndarray:
 
 def png_address(grey: np.ndarray) -> str:
     """A picture of 8-bit grey levels as a ``data:`` address."""
-    ny, nx = grey.shape
-    # Width, height, 8 bits of grey alone; before each row the number of its filter, which is none.
-    lines = np.hstack([np.zeros((ny, 1), np.uint8), grey.astype(np.uint8)]).tobytes()
-    chunks = (
-        (b"IHDR", struct.pack(">IIBBBBB", nx, ny, 8, 0, 0, 0, 0)),
-        (b"IDAT", zlib.compress(lines, 9)),
-        (b"IEND", b""),
-    )
-    picture = b"\x89PNG\r\n\x1a\n" + b"".join(
-        struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
-        for kind, data in chunks
-    )
-    return "data:image/png;base64," + base64.b64encode(picture).decode("ascii")
+    return "data:image/png;base64," + base64.b64encode(png(grey, 9)).decode("ascii")

@@ -30,9 +30,10 @@ def _ticks_remembered(axis):
 
     def ticks():
         nonlocal known, found
-        figure, bounds = axis.get_figure(root=True), axis.axes.bbox.bounds
-        # Only the last answer: the ticks themselves are moved, and none may be behind.
-        state = (*axis.get_view_interval(), *bounds, figure.dpi)
+        dpi, bounds = axis.get_figure(root=True).dpi, axis.axes.bbox.bounds
+        # In inches, and without the last digits: the SVG has those of the PNG. Only the last answer:
+        # the ticks themselves are moved, and none may be behind.
+        state = (*axis.get_view_interval(), *(round(side / dpi, 6) for side in bounds))
         if state != known:
             known, found = state, find()
         return found
