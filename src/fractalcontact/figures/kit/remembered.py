@@ -31,8 +31,8 @@ def _ticks_remembered(axis):
     def ticks():
         nonlocal known, found
         dpi, bounds = axis.get_figure(root=True).dpi, axis.axes.bbox.bounds
-        # In inches, and without the last digits: the SVG has those of the PNG. Only the last answer:
-        # the ticks themselves are moved, and none may be behind.
+        # In inches without the last digits, so that the SVG has the ticks of the PNG. Only the last
+        # answer: the ticks themselves are moved, and none may be behind.
         state = (*axis.get_view_interval(), *(round(side / dpi, 6) for side in bounds))
         if state != known:
             known, found = state, find()
