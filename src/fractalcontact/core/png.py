@@ -33,7 +33,7 @@ def png(picture: np.ndarray, level: int, dpi: float | None = None) -> bytes:
     rows = np.zeros((ny, 1 + nx * colours), np.uint8)
     for colour in range(colours):  # each at once: pixel by pixel numpy takes six times as long
         rows[:, 1 + colour :: colours] = np.atleast_3d(picture)[..., colour]
-    chunks += [(b"IDAT", zlib.compress(rows, level)), (b"IEND", b"")]
+    chunks += [(b"IDAT", zlib.compress(rows.tobytes(), level)), (b"IEND", b"")]
     return b"\x89PNG\r\n\x1a\n" + b"".join(
         struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data))
         for name, data in chunks
