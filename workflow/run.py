@@ -172,7 +172,8 @@ def _spoilt(results):
 
 def _run(command, options, results):
     """Exit code of Snakemake, whose whole family of processes ends with this one."""
-    path = [*(str(ROOT / "workflow" / name) for name in ("logger", "", "scripts"))]
+    folders = ("src", "workflow", "workflow/logger", "workflow/scripts")
+    path = [str(ROOT / folder) for folder in folders]
     path += filter(None, [os.environ.get("PYTHONPATH")])
     told = {
         "PYTHONPATH": os.pathsep.join(path),

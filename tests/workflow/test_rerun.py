@@ -226,6 +226,12 @@ def test_a_job_that_failed_with_a_new_scan_leaves_nothing_that_counts_as_made_of
     assert {"specimen", "contact", "atlas"} <= set(planned(project))
 
 
+def test_a_run_has_the_code_of_its_checkout_wherever_its_environment_was_made(project):
+    with open(project / "src/fractalcontact/study/figure_list.py", "a") as file:
+        file.write('raise ValueError("code of this checkout")\n')
+    assert "code of this checkout" in made(project, STUDY, "--dry-run").stderr
+
+
 def test_a_job_on_a_cluster_works_with_what_its_run_was_planned_with(project):
     specimen = project / "results/test/specimens/rock.nc"
     before = specimen.read_bytes()
