@@ -114,7 +114,7 @@ def by_areas(spacing, area, nodes, sampling):
         xr.DataArray(np.array(of, float), dims=("resolution", "load"))
         for of in (area, nodes, sampling)
     )
-    scaling = renormalisation(s, area, xr.DataArray(1.0), nodes, CORRECTED_NODES, sampling)
+    scaling = renormalisation(s, area, xr.DataArray(1.0), nodes, CORRECTED_NODES, sampling == 0)
     return np.array([scaling[f"delta_sigma{end}"].values for end in ("", "_low", "_high")])
 
 

@@ -208,24 +208,23 @@ def test_missing_dimension_never_disagrees():
     assert not result.disagree
 
 
-def test_interval_is_that_of_the_areas_and_no_bend_widens_it():
-    error = xr.DataArray([0.01, 0.02, 0.03, 0.04], dims="resolution")
-    nodes, weight = AREA / S**2, np.log(S) - np.log(S).mean()
-    straight = renormalisation(S, AREA, FORCE, nodes, sampling=error)
-    bent = renormalisation(S, AREA * np.exp(0.2 * weight**2), FORCE, nodes, sampling=error)
-    half = float(np.sqrt(((weight * error) ** 2).sum()) / (weight**2).sum())
+def test_no_bend_widens_the_interval_and_fixed_areas_have_none():
+    nodes = xr.full_like(AREA, 1e4)
+    weight = np.log(S) - np.log(S).mean()
+    straight, bent = (
+        renormalisation(S, area, FORCE, nodes) for area in (AREA, AREA * np.exp(0.2 * weight**2))
+    )
+    half = float(1.959964 * 0.01 / np.sqrt((weight**2).sum()))
     for found in (straight, bent):
-        np.testing.assert_allclose(found.delta_sigma_high - found.delta_sigma, half)
-        np.testing.assert_allclose(found.delta_sigma - found.delta_sigma_low, half)
-    # The bend has the interval of its own four areas, of which each octave takes two.
-    bend = area_bend(S, AREA, nodes, sampling=error)
-    of_octaves = np.sqrt((error**2).sum()) / np.log(2)
-    np.testing.assert_allclose(bend.high - bend.value, of_octaves)
-
-
-def test_an_area_without_a_sampling_error_leaves_no_interval():
-    error = xr.DataArray([0.1, np.nan, 0.1, 0.1], dims="resolution")
-    found = renormalisation(S, AREA, FORCE, AREA / S**2, sampling=error)
-    np.testing.assert_allclose(found.delta_sigma, DELTA)
-    assert np.isnan(found.delta_sigma_low).all()
-    assert np.isnan(found.delta_sigma_high).all()
+        np.testing.assert_allclose(found.delta_sigma_high - found.delta_sigma, half, rtol=1e-6)
+        np.testing.assert_allclose(found.delta_sigma - found.delta_sigma_low, half, rtol=1e-6)
+    # The bend is of four areas, of which each octave takes two.
+    bend = area_bend(S, AREA, nodes)
+    np.testing.assert_allclose(bend.high - bend.value, 1.959964 * 0.02 / np.log(2), rtol=1e-6)
+    fixed = xr.ones_like(AREA, dtype=bool)
+    known = renormalisation(S, AREA, FORCE, nodes, fixed=fixed)
+    np.testing.assert_allclose(known.delta_sigma_low, known.delta_sigma)
+    np.testing.assert_allclose(known.delta_sigma_high, known.delta_sigma)
+    some = renormalisation(S, AREA, FORCE, nodes, fixed=fixed & (S[0] < S))
+    assert (some.delta_sigma_high > some.delta_sigma).all()
+    assert (some.delta_sigma_high < straight.delta_sigma_high).all()

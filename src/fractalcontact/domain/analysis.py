@@ -46,9 +46,6 @@ DOMAIN_FIELDS = {
     **CLUSTER_FIELDS,
 }
 
-#: Why Delta_sigma by A_r(s) has no interval.
-NOT_SEPARATE = "no interval: at some resolution there are no three separate contacts"
-
 NOT_NEEDED = "not solved, since nothing shown needs it"
 
 #: Dimensions of the table of contact domains.
@@ -321,7 +318,7 @@ def corrected_scaling(
     """
     s, nodes = _spacings(curves, spacing), _nodes_between(curves, spacing, fit_range)
     area = curves["area_corrected"]
-    each = nodes, CORRECTED_NODES, curves["area_sampling"]
+    each = nodes, CORRECTED_NODES, curves["area_sampling"] == 0
     result = renormalisation(s, area, curves["normal_force"], *each)
     words = "Delta_sigma from the area of the two finest resolutions less that of the two coarsest"
     bend = area_bend(s, area, *each)
@@ -354,11 +351,11 @@ def _reasons(scaling, finest):
     of = f"of the {MIN_POINTS} resolutions needed"
     why = [f"no fit: enough contact at {n} {of}" for n in scaling["n"].values.flat]
     area = scaling["n"].copy(data=np.reshape(np.array(why, object), scaling["n"].shape))
-    area = area.where(scaling["delta_sigma"].isnull(), NOT_SEPARATE)
+    area = area.where(scaling["delta_sigma"].isnull(), "")
     no_box = finest["reason"].astype(object)
     missing = finest["delta_sigma"].isnull()
     reasons = {
-        "delta_sigma_area_reason": area.where(scaling["delta_sigma_low"].isnull(), ""),
+        "delta_sigma_area_reason": area,
         "delta_sigma_box_reason": xr.where(missing, "no dimension: " + no_box, no_box),
     }
     for name, reason in reasons.items():

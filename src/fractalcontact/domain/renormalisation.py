@@ -23,7 +23,7 @@ def renormalisation(
     force: xr.DataArray,
     nodes: xr.DataArray | None = None,
     fewest: int = MIN_NODES_PER_RESOLUTION,
-    sampling: xr.DataArray | None = None,
+    fixed: xr.DataArray | None = None,
 ) -> xr.Dataset:
     """Dimension and fractal measure of the contact domain from its area over resolutions.
 
@@ -43,10 +43,8 @@ def renormalisation(
         N_n, where areas are corrected ones; by default A_n / s_n^2.
     fewest : int
         Nodes that a domain needs to count.
-    sampling : DataArray (resolution, ...), optional
-        Relative sampling errors of the areas, half-widths at 95 %, as
-        :func:`mechanics.area_sampling.area_sampling` states them; by default those of N_n nodes
-        that touch independently (Poisson), 1/sqrt(N_n).
+    fixed : DataArray of bool (resolution, ...), optional
+        Areas that no sample changes, as F/H where all contacts yield; none by default.
 
     Returns
     -------
@@ -54,8 +52,7 @@ def renormalisation(
         On the other dimensions of `area`: `delta_sigma` with `_low`, `_high` (95 %), `n`
         resolutions fitted, `r2`; `hausdorff_measure` (geometric mean over resolutions, mm^Delta);
         `sigma_star` = F / H_D, N mm^-Delta. On (resolution, ...): `sigma_n` = F / A_n, MPa, at the
-        resolutions that count. NaN where fewer than three resolutions can be; no interval where
-        one of the areas has no sampling error.
+        resolutions that count. NaN where fewer than three resolutions can be.
 
     Notes
     -----
@@ -64,11 +61,12 @@ def renormalisation(
     single node at every resolution would give exactly 0). From
     `MIN_NODES_PER_RESOLUTION` = 4 on it is 0.3.
 
-    The interval is of sampling: that of the areas, as if those of different resolutions were
-    independent. Value and interval lie between 0 and 2, the bounds of a set in the plane. What is
-    left beside the line is a bend of the law, a finding (:func:`area_bend`) and no error: an
-    interval of the regression was four times too wide on joints, and of four points, of which a
-    bend leaves one degree of freedom, there is none.
+    The interval is of sampling: N_n nodes vary as sqrt(N_n), as Poisson's law has it for nodes that
+    touch independently, at each resolution for itself. Hills that carry more or less are the same
+    at all resolutions and leave the slope as it is. Value and interval lie between 0 and 2, the
+    bounds of a set in the plane. What is left beside the line is a bend of the law, a finding
+    (:func:`area_bend`) and no error: an interval of the regression was four times too wide on
+    joints, and beside their bend four points have one degree of freedom, too few for an interval.
 
     Raises
     ------
@@ -85,7 +83,7 @@ def renormalisation(
         _area_exponent,
         np.log(s),
         np.log(touching),
-        _counting_error(nodes) if sampling is None else sampling,
+        _counting_error(nodes, fixed),
         input_core_dims=[[RESOLUTION]] * 3,
         output_core_dims=[[]] * 5,
         vectorize=True,
@@ -131,9 +129,10 @@ def _area_exponent(log_s: np.ndarray, log_area: np.ndarray, error: np.ndarray) -
     return slope, slope - half, slope + half, float(line.n), line.r2
 
 
-def _counting_error(nodes: xr.DataArray) -> xr.DataArray:
-    """Half of the interval of log N if N nodes vary as sqrt(N)."""
-    return t_quantile(np.inf) / np.sqrt(nodes.where(nodes > 0))
+def _counting_error(nodes: xr.DataArray, fixed: xr.DataArray | None) -> xr.DataArray:
+    """Half of the interval of log N if N nodes vary as sqrt(N); 0 of fixed areas."""
+    error = t_quantile(np.inf) / np.sqrt(nodes.where(nodes > 0))
+    return error if fixed is None else error.where(~fixed, 0.0)
 
 
 def hausdorff_measure(s: Any, area: Any, delta_sigma: Any) -> Any:
@@ -292,7 +291,7 @@ def area_bend(
     area: xr.DataArray,
     nodes: xr.DataArray,
     fewest: int = MIN_NODES_PER_RESOLUTION,
-    sampling: xr.DataArray | None = None,
+    fixed: xr.DataArray | None = None,
 ) -> Estimate:
     """Delta_sigma of the two finest resolutions less that of the two coarsest, from their areas.
 
@@ -301,7 +300,7 @@ def area_bend(
 
     Parameters
     ----------
-    s, area, nodes, fewest, sampling
+    s, area, nodes, fewest, fixed
         As of :func:`renormalisation`, s ascending.
 
     Returns
@@ -315,7 +314,7 @@ def area_bend(
         _bend,
         np.log(s),
         log_area,
-        _counting_error(nodes) if sampling is None else sampling,
+        _counting_error(nodes, fixed),
         input_core_dims=[[RESOLUTION]] * 3,
         output_core_dims=[[]] * 2,
         vectorize=True,

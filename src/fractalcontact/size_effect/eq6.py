@@ -188,7 +188,7 @@ def _by_area(loading: JointLoading[WindowSettings], whole: xr.Dataset, spacing: 
         whole["normal_force"],
         areas["nodes"],
         CORRECTED_NODES,
-        areas["area_sampling"],
+        areas["area_sampling"] == 0,
     )
     return Estimate.read(by_area, "delta_sigma")
 

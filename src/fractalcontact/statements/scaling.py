@@ -34,8 +34,7 @@ def area_is_lacunar(joint: Joint, evidence: Evidence) -> Finding:
     margin = all_claims()[name].margin
     delta, bend = evidence.area_dimension(), evidence.area_bend()
     if not np.isfinite(delta.width):
-        few = "separate contacts" if delta.known else "usable resolutions"
-        return Finding(UNDETERMINED, f"fewer than {MIN_POINTS} {few}")
+        return Finding(UNDETERMINED, f"fewer than {MIN_POINTS} usable resolutions")
     # A_r ~ s^(2 - Delta_sigma): it falls with refinement where the exponent is positive.
     falls = beyond_margin(delta.mapped(lambda value: 2 - value, falling=True), margin, rising=True)
     one_power = within_margin(bend, margin)
