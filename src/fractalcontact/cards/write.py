@@ -22,7 +22,13 @@ from .page import page_of
 SCHEMA = Path(__file__).with_name("card.schema.json")
 
 
-def write_cards(path: Path | str, folder: Path | str, apertures: bool = True) -> list[str]:
+#: Stages that the cards and the aperture maps read.
+NEEDS = (*STAGES, "contact")
+
+
+def write_cards(
+    path: Path | str, folder: Path | str, apertures: bool = True, trees: Trees | None = None
+) -> list[str]:
     """Write the card of every specimen of an atlas: ``cards/NAME.yaml``, ``.json`` and ``.html``.
 
     Parameters
@@ -34,13 +40,15 @@ def write_cards(path: Path | str, folder: Path | str, apertures: bool = True) ->
     apertures : bool
         Whether to write ``apertures/NAME.csv``, ``.nc``, ``.vtk`` at the reference load too; never
         of an atlas in parts.
+    trees : Trees, optional
+        The atlas with at least the stages of :data:`NEEDS`, where it is read already.
 
     Returns
     -------
     list of str
         Specimens that have one.
     """
-    trees = Trees(path, without=ALL_STAGES.keys() - {*STAGES, "contact"})
+    trees = trees or Trees(path, without=ALL_STAGES.keys() - set(NEEDS))
     study, made = configuration_of(trees.root)["study"], made_of(trees.root.attrs)
     for name in trees.names:
         tree = trees.of(name, without={"contact"})[0]

@@ -101,7 +101,9 @@ class Place:
         return cls(results / "atlas.nc", results / "figures", results / "benchmarks", results)
 
 
-def write_specimen_pages(place: Place, explored: Collection[str]) -> None:
+def write_specimen_pages(
+    place: Place, explored: Collection[str], trees: Trees | None = None
+) -> None:
     """Write the pages of the specimens of an atlas, which may be that of one of a study.
 
     Parameters
@@ -110,8 +112,10 @@ def write_specimen_pages(place: Place, explored: Collection[str]) -> None:
         With their cards, if there are any.
     explored : collection of str
         Specimens that the explorer shows.
+    trees : Trees, optional
+        The atlas with at least the stages of :data:`NEEDS`, where it is read already.
     """
-    trees = Trees(place.atlas, without=STAGES.keys() - set(NEEDS))
+    trees = trees or Trees(place.atlas, without=STAGES.keys() - set(NEEDS))
     head = _head(place, trees.root) | {"explored": explored}
     blocks = {one.name: one for one in blocks_of(trees.names, place.folder)}
     for name in trees.names:
