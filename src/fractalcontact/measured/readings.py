@@ -82,8 +82,8 @@ def _require_branch(test: MeasuredTest, pressure: np.ndarray) -> None:
         way = "falls" if falls else "rises"
         raise InputError(
             f"{test.file}: 'branch: {test.branch}', but the pressure {way} in only "
-            f"{went:.0%} of its steps; give each branch a file of its "
-            "own with its readings in their order, or name the branch that this one is"
+            f"{went:.0%} of its steps; keep the readings in their order, write each branch into a "
+            "file of its own, and state its 'branch': load, unload or reload"
         )
 
 

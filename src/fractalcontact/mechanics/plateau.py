@@ -28,7 +28,7 @@ _WORDS = {
 }
 #: Whether the trend says anything of a plateau: dimensions, unit, long name.
 _UNDECIDED = {
-    "plateau_undecided": ("direction", "1", f"why the trend of the {_HALF} decides on no plateau")
+    "plateau_undecided": ("direction", "1", f"why there is no verdict on a plateau of the {_HALF}")
 }
 #: Opposite directions, by the axis that they lie on.
 AXES = {"E-W": ("E", "W"), "N-S": ("N", "S")}
