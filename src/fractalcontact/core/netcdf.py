@@ -5,6 +5,7 @@ the same configuration, scans, versions and machine give the same bytes.
 """
 
 import json
+from functools import cache
 from importlib import metadata
 from pathlib import Path
 from typing import Any
@@ -52,6 +53,7 @@ def read_with_versions(path: Path | str) -> tuple[xr.Dataset, dict[str, str]]:
     return dataset, json.loads(dataset.attrs.pop(_VERSIONS, "{}"))
 
 
+@cache
 def versions() -> dict[str, str]:
     """Versions of the libraries in use that can change a number, by name."""
     return {name: metadata.version(name) for name in _NUMBER_MAKERS}
