@@ -74,9 +74,9 @@ for NAME, OPPOSITE, HERE, OTHERS in (
         wildcard_constraints:
             specimen=kind_of(HERE, OTHERS),
         # After what the atlas of the study waits for: else, at the end, one core joins it and draws
-        # from it alone while the others have nothing to do. Of a campaign nobody wants to wait that
-        # long.
-        priority: 0 if IN_PARTS else -2
+        # from it alone while the others have nothing to do. The longer jobs first. Of a campaign
+        # nobody wants to wait that long.
+        priority: 0 if IN_PARTS else -2 if OPPOSITE == "match" else -3
         resources:
             **asked_for("figures" if drawn_of(OPPOSITE) else "atlas_part"),
         params:

@@ -24,7 +24,7 @@ rule explorer:
     benchmark:
         f"{RESULTS}/benchmarks/explorer.tsv"
     # After the figures: beside the result page, no core has nothing to do at the end.
-    priority: -3
+    priority: -4
     resources:
         **fixed(3000, 10),
     params:
