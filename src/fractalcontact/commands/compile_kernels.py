@@ -13,7 +13,9 @@ from roughcontact.elastic.split_convolution import MIN_SPLIT_SIDE
 
 from ..domain.correlation import pair_counts
 from ..domain.measures import measures_of_states
+from ..flow.cubic_law import plane_flow
 from ..mechanics.rigid_slide import slide
+from ..mechanics.state_scalars import aperture
 from ..roughness.dimension import surface_dimension
 from ..surface.synthesis import self_affine
 
@@ -21,6 +23,9 @@ from ..surface.synthesis import self_affine
 SIDE = 200
 #: And from here on those for light contact.
 LARGE_SIDE = 512
+#: Force, N, that one node carries: numbers of one node lie in memory in two ways at once, for which
+#: kernels are compiled of their own.
+ONE_NODE = 1e-6
 
 
 def compile_kernels() -> list[float]:
@@ -41,7 +46,7 @@ def compile_kernels() -> list[float]:
     states = []
     for hardness in (None, 1.0):
         state = None
-        for force in (2.0, 2000.0):
+        for force in (ONE_NODE, 2.0, 2000.0):
             state = solve_contact(surface, space, force=force, start=state, hardness=hardness)
             states.append(state)
     states += _light_states() + _large_states()
@@ -49,6 +54,7 @@ def compile_kernels() -> list[float]:
     small = [state for state in states if state.pressure.shape == surface.shape]
     domains = np.array([state.in_contact for state in small])
     pressures = np.array([state.pressure for state in small])
+    plane_flow(aperture(small[0]), (1.0, 1.0))
     measures_of_states(domains, pressures, 1.0, np.arange(1.0, len(small) + 1))
     # The places of one node, and of several, lie in memory in different ways.
     domain = np.zeros((9, 9), bool)
@@ -61,13 +67,16 @@ def compile_kernels() -> list[float]:
 def _light_states() -> list[ContactState]:
     """States of a window so large, under loads so light, that its candidates alone are solved.
 
-    The lightest has so few that pairs of them are summed directly.
+    The lightest have so few that pairs of them are summed directly, or one alone.
     """
     surface = self_affine((LARGE_SIDE, LARGE_SIDE), 1.0, 0.8, seed=1, rms=1.0)
     space = HalfSpace(surface.shape, (1.0, 1.0), 1.0)
     state = solve_contact(surface, space, force=20.0)
     step = solve_contact(surface, space, force=22.0, start=state)
-    return [state, step, solve_contact(surface, space, force=2.0)]
+    return [
+        *(state, step),
+        *(solve_contact(surface, space, force=force) for force in (2.0, ONE_NODE)),
+    ]
 
 
 def _large_states() -> list[ContactState]:
