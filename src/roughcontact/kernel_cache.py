@@ -155,13 +155,13 @@ class KernelCache(FunctionCache):
         return None
 
     def _announce(self):
-        """Report that kernels are compiled, which takes up to a minute.
+        """Report that kernels are compiled, which takes about a minute.
 
         Not of a kernel for other types, or one that was damaged, where the rest is on disk.
         """
         if not KernelCache._announced and not any(self._files(f"{self._digest[:16]}-*.nbc")):
             KernelCache._announced = True
-            LOG.warning("compiling kernels for this processor, once; this takes up to a minute")
+            LOG.warning("compiling kernels for this processor, once; this takes about a minute")
         LOG.info("compiling %s", self._stem)
 
     def _save_overload(self, sig, data):

@@ -19,6 +19,10 @@ NOT_RUN = {
     ("README.md", "make            # environment"): INSTALLS,
     ("README.md", "label: granite"): "a sidecar: read in tests/test_documents.py",
     (
+        "README.md",
+        "make new",
+    ): "run with other scans in tests/commands/test_new_study.py and tests/workflow/test_smoke.py",
+    (
         "docs/solver_speed.md",
         ".venv/bin/python benchmarks/beside_peers.py",
     ): f"{HOURS}, beside others",
