@@ -88,7 +88,10 @@ def solve_sub_windows(
     composite = loading.composite(loading.cells.item())
     parts = solvable_parts(parts, loading.shape)
     smallest = min(loading.shape) // max(parts)
-    factors = [k for k in settings.resolutions if k == 1 or smallest // k >= MIN_NODES_PER_SIDE]
+    finest = min(settings.resolutions)
+    factors = [
+        k for k in settings.resolutions if k == finest or smallest // k >= MIN_NODES_PER_SIDE
+    ]
     of_study = loading.forces(settings.loads) / area
     pressures = _ladder(of_study, loading.solving["hardness"])
     # Stiffness costs a solve of its own: at the loads whose closure is looked at.

@@ -138,7 +138,7 @@ def flow_stages(
     axes = dict(zip(WAYS, "yx" if across_x else "xy", strict=True))
     dy, dx = map(float, loading.spacing)
     spacing = reported.resolution * dy, reported.resolution * dx
-    of_scan, of_map = (partial(_both_ways, axes, sides) for sides in ((dy, dx), spacing))
+    both = partial(_both_ways, axes, spacing)
     states = reported.states(closure)
     error = error_budget["total"].sel(quantity="separation").values
     gaps = next(part for part in parts if MAP_GAP in part)[MAP_GAP].values.astype(float)
@@ -152,11 +152,12 @@ def flow_stages(
     loaded = {"mean_gap": states["mean_gap"].values}
     loaded |= {of: values[of] for of in (f"transmissivity_{way}" for way in WAYS)}
     composite = loading.composite(int(loading.at_map_offset().cells[0]))
-    kept = prefractal(composite, reported.resolution)
+    composite = prefractal(composite, reported.resolution)
+    space = loading.half_space(composite.shape, reported.resolution)
     for prefix, numbers in {
-        "branch": _of_branches(composite, loading, branches, of_scan, loaded),
-        "offset": _over_offsets(parts, closure["offset"].values, of_map, reported, loaded),
-        "unloaded": of_map(kept.max() - kept),
+        "branch": _of_branches(composite, space, loading, branches, both, loaded),
+        "offset": _over_offsets(parts, closure["offset"].values, both, reported, loaded),
+        "unloaded": both(composite.max() - composite),
     }.items():
         values |= {f"{prefix}_{name}": value for name, value in numbers.items()}
     probability = cf_attrs("1", "fraction of the window with a smaller gap")
@@ -216,7 +217,7 @@ def _over_loads(way, axis, gaps, spacing, states, error, reported):
 
 
 def _numbers(gap, spacing, axis, *, errors):
-    """Numbers of the flow through a gap; with the errors of T, which take six more solves."""
+    """Numbers of the flow through a gap; the errors of T take five more solves, of parts of it."""
     flow, reason = flow_of(gap, spacing, axis)
     number, whole, (dy, dx) = "yx".index(axis), flow.transmissivity, spacing
     lower, upper = transmissivity_bounds(gap, number)
@@ -267,7 +268,7 @@ def _separation_error(gap, flow, total):
     return error
 
 
-def _of_branches(composite, loading, branches, both, loaded):
+def _of_branches(composite, space, loading, branches, both, loaded):
     """Numbers of all branches: on loading as given, else NaN above the largest load."""
     held, top = branches["permanent_set"].values, branches["normal_force"].values[-1]
     forces = loading.forces(loading.settings.loads)
@@ -276,7 +277,7 @@ def _of_branches(composite, loading, branches, both, loaded):
         one[1:, forces > top] = np.nan
     # What has not crushed unloads and reloads as it was loaded.
     if held.any():
-        pressed, space, state = composite - held, loading.half_space(composite.shape), None
+        pressed, state = composite - held, None
         for load in np.flatnonzero(forces <= top)[::-1]:
             state = solve_contact(
                 pressed, space, force=float(forces[load]), start=state, rtol=loading.solver.rtol
