@@ -135,7 +135,13 @@ def test_shares_beyond_the_window_are_not_drawn(with_area):
 
 @pytest.mark.parametrize(
     ("value", "words"),
-    representative([(1.2, "below both"), (2.0, "lies between"), (3.0, "above both")]),
+    [
+        (1.2, "below both"),
+        (1.58, "agrees with Persson's 1.596 and lies below Bush's 2.507"),
+        (2.0, "lies between"),
+        (2.55, "lies above Persson's 1.596 and agrees with Bush's 2.507"),
+        (3.0, "above both"),
+    ],
 )
 def test_kappa_is_judged_by_the_theories(with_area, value, words):
     def set_mean(laws):

@@ -6,6 +6,7 @@ import numpy as np
 import xarray as xr
 
 from ..core.datasets import labelled
+from ..core.estimate import Estimate
 from ..core.labels import cf_attrs
 from ..core.verdicts import ABOVE, BELOW, WITHIN
 from . import theory
@@ -110,13 +111,14 @@ def add_comparison(result: xr.Dataset) -> None:
     result["archard_fits"] = ((low <= archard) & (archard <= high)).assign_attrs(
         cf_attrs("1", words)
     )
-    kappa = result["corrected_mean_kappa"]
+    kappa = Estimate.read(result, "corrected_mean_kappa")
     least, most = (result.attrs[f"{name}_kappa"] for name in ("persson", "bush_gibson_thomas"))
-    places = [np.isnan(kappa), kappa < least, kappa > most]
-    words = "where the mean kappa of the corrected area lies beside Persson's and Bush's"
-    result["kappa_beside_theories"] = kappa.copy(
-        data=np.select(places, ["", BELOW, ABOVE], WITHIN)
-    ).assign_attrs(cf_attrs("1", words))
+    first, second = ((kappa.low <= one) & (one <= kappa.high) for one in (least, most))
+    places = [~kappa.known, first & second, first, second, kappa.value < least, kappa.value > most]
+    beside = np.select(places, ["", "both", "Persson", "Bush", BELOW, ABOVE], WITHIN)
+    words = "which theories the mean kappa of the corrected area agrees with, or where it lies"
+    dims = result["corrected_mean_kappa"].dims
+    result["kappa_beside_theories"] = dims, beside, cf_attrs("1", words)
     fitted = result["reduced_pressure"].where(result["fitted"])
     ends = (getattr(fitted, end)(["offset", "normal_force"]).values for end in ("min", "max"))
     lines = [theory.persson_line(*pair) for pair in zip(*ends, strict=True)]
