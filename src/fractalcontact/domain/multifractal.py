@@ -26,6 +26,8 @@ PLACES = 16
 
 #: Orders q of the generalised dimensions.
 ORDERS = (-2.0, -1.0, 0.0, 1.0, 2.0, 3.0, 4.0)
+#: Powers of whole orders below this are made one from the other.
+_MAX_WHOLE = 64
 #: Of fewer nodes there is no D_q: each is a tenth of it. And gliding boxes meet those near a rim
 #: less often: a single one in a corner would have 1.8, and parts left out would not show it.
 FEWEST = 10
@@ -104,8 +106,10 @@ def _glide(nx, filled, size, lowest_y, lowest_x, parts_y, parts_x, orders, momen
     fraction, columns, starts = filled
     column = np.zeros(nx)
     before = np.zeros(nx + 1, np.int64)  # columns that are not empty, before each
-    whole, least = (orders == np.floor(orders)).all(), int(np.floor(orders.min()))
-    powers = np.empty(int(orders.max()) - least + 1)
+    whole = orders.size > 0 and np.abs(orders).max() < _MAX_WHOLE
+    whole = whole and (orders == np.floor(orders)).all()
+    least, most = (int(orders.min()), int(orders.max())) if whole else (0, 0)
+    powers = np.empty(most - least + 1)
     for y, part_y in zip(lowest_y, parts_y):  # noqa: B905  # numba knows no `strict`
         # Summed anew: differences of sums would leave a trace of mass where there is none.
         column[:] = 0.0

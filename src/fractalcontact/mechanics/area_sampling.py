@@ -39,10 +39,10 @@ def area_sampling(in_contact: ArrayLike, pressure: ArrayLike) -> float:
     (1/sqrt(n)) would also have the force vary, and state 1.6 to 2.3 times as much.
     """
     touching = np.asarray(in_contact, bool)
-    # Neighbours by side or corner are one contact.
-    labels, contacts = scipy.ndimage.label(touching, np.ones((3, 3)))
     if touching.all():
         return 0.0
+    # Neighbours by side or corner are one contact.
+    labels, contacts = scipy.ndimage.label(touching, np.ones((3, 3)))
     if contacts < MIN_POINTS or touching.mean() > MAX_TOUCHING:
         return np.nan
     around = np.pad(touching, 1, constant_values=True)
