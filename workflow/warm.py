@@ -39,8 +39,8 @@ FIRST_OF_SCRIPTS = "snakemake.iocontainers", "snakemake.logging"
 _SOCKET = "warm"
 #: What the libraries that are loaded take their number of threads from: that of a job.
 ONE_THREAD = ("OMP", "GOTO", "OPENBLAS", "MKL", "VECLIB_MAXIMUM", "NUMEXPR")
-#: Bytes up to which glibc takes memory from what a job has freed, and that it keeps of it: pages
-#: that the system clears anew for each array took a seventh of a flow.
+#: For glibc: arrays of up to 256 MB use again what the job has freed, of which up to 1 GB is kept.
+#: To clear new pages for each of them took a seventh of the time of a flow.
 MEMORY = {"MALLOC_MMAP_THRESHOLD_": str(2**28), "MALLOC_TRIM_THRESHOLD_": str(2**30)}
 
 

@@ -14,8 +14,8 @@ from fractalcontact.study.resources import memory
 from .experiments.size_tasks import size_jobs
 from .stages import STAGES
 
-#: Experiments that are one job each: minutes that they ask for (a partition may allow no more than
-#: an hour, and what needs more gets it at the second attempt), and their priority.
+#: Experiments that are one job each: minutes that they ask for (what needs more gets twice as many
+#: at the second attempt), and their priority.
 EXPERIMENTS = {
     "roll_off": (30, 1),
     "dimension_test": (60, 1),
@@ -45,9 +45,9 @@ class Job:
         1 of the longest: begun last they would keep one core busy and the others idle. -1 of short
         ones, which fill the core that has nothing else to do at the end.
     alone : bool
-        Whether a clock is running, so that it takes all cores.
+        Whether it measures time: it then takes all cores, so that nothing runs beside it.
     peers : tuple of str
-        Other codes that it measures: installed later, they are measured later.
+        Other codes that it measures: one that is installed later makes it run again.
     """
 
     function: str
@@ -66,7 +66,7 @@ class Job:
 
 
 def jobs_of(study: Mapping[str, Any], solver: Solver, source: str) -> dict[str, Job]:
-    """Jobs by the names of their files, "FOLDER/MEMBER", where a stage's folder has its name.
+    """Jobs by the names of their files, "FOLDER/MEMBER"; the folder of a stage has its name.
 
     Parameters
     ----------

@@ -15,7 +15,8 @@ import sys
 
 #: Where the address of the interpreter stands.
 ADDRESS = "FRACTALCONTACT_WARM"
-#: What Snakemake gives a job of one thread. The interpreter has loaded its libraries for one.
+#: Where Snakemake states the threads of a job. Only those of one are handed over: the interpreter
+#: has loaded its libraries for one.
 THREADS = "OMP_NUM_THREADS"
 _PASSED_ON = (signal.SIGTERM, signal.SIGINT, signal.SIGHUP, signal.SIGQUIT)
 

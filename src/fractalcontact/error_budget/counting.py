@@ -21,18 +21,22 @@ def counting_error(curve: LoadCurve) -> np.ndarray:
 
     Notes
     -----
-    N clusters that lie independently are known to 1/sqrt(N) of themselves (Poisson), and so is, as
-    long as contacts act side by side, their stiffness. Under a given force their area is known
-    better, :mod:`mechanics.area_sampling`. At a given separation the force varies by 1/sqrt(N), so
-    that at a given force the separation does by l/sqrt(N), l = sigma_0/(d sigma/d w_int) being the
-    length over which the pressure falls by e. The mean gap is also as uncertain as the amplitude of
-    the waves of which the window holds few, and so is the stiffness: K of heights a h under F is
-    that of h under F/a (exact of elastic half-spaces), so that ln K falls by d ln K/d ln F for
-    each unit of ln a. Closure also counts from the highest of the heights, whose tail falls over
-    the length l: the largest of many such scatters by pi/sqrt(6) l (Gumbel). The error of
-    Delta_sigma is its published interval, which leaves out parts of the window. Where more than
-    half of the window touches there are no separate contacts, and nothing but the area is known:
-    f (1 - f) is the variance of a fraction f.
+    The number N of independent clusters varies by 1/sqrt(N) of itself (Poisson). So does their
+    stiffness, as long as contacts act side by side. The area under a given force varies less
+    (:mod:`mechanics.area_sampling`).
+
+    At a given separation the force varies by 1/sqrt(N). So at a given force the separation varies
+    by l/sqrt(N), with l = sigma_0/(d sigma/d w_int), the length over which the pressure falls by e.
+    Closure also counts from the highest of the heights, whose tail falls over the same length: the
+    largest of many such heights scatters by pi/sqrt(6) l (Gumbel).
+
+    The window holds few of the long waves. The mean gap is as uncertain as their amplitude, and the
+    stiffness follows it: K of heights a h under F is that of h under F/a (exact of elastic
+    half-spaces), so that ln K falls by d ln K/d ln F for each unit of ln a.
+
+    The error of Delta_sigma is its published interval, which leaves out parts of the window. Where
+    more than half of the window touches there are no separate contacts. Then only the area has an
+    error: f (1 - f) is the variance of a fraction f.
     """
     clusters = np.maximum(curve.domains["clusters"].values, 1.0)
     touching = curve.curve["area_share"].values

@@ -17,8 +17,10 @@ def _is_one(bound):
 
 @lru_cache(maxsize=64)
 def _everywhere(bound):
-    """A number on all nodes of the largest grid. In small windows to make it takes as long as to
-    read it, and so parts of one are taken."""
+    """A number on all nodes of the largest grid, of which smaller ones take a part.
+
+    It takes no memory. In small windows, to make one of each size would take as long as to read it.
+    """
     return np.broadcast_to(bound, (MAX_CELLS,))
 
 

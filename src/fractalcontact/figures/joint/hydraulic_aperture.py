@@ -21,7 +21,7 @@ from ..kit.sizes import plain_decades
 from ..kit.titles import headline
 from ..kit.words import NOMINAL_PRESSURE, place
 
-TITLE = "Hydraulic aperture, and transmissivity against load and offset"
+TITLE = "Hydraulic aperture and transmissivity"
 SUBJECT = "specimen"
 NEEDS = ("specimens", "closure", "flow", "measured")
 ORDER = 46
