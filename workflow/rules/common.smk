@@ -14,6 +14,8 @@ from snakemake.logging import logger
 ROOT = Path(workflow.basedir)
 sys.path[:0] = [str(ROOT / "src"), str(ROOT / "workflow/scripts")]
 
+from _hashes import hash_once
+
 # Light modules, without xarray, numba or matplotlib: on a cluster every job reads the workflow.
 from fractalcontact.core import checksums
 from fractalcontact.core.code_digest import Code
@@ -36,6 +38,7 @@ PLAN = Path(".snakemake/fractalcontact-plan.pickle")
 #: SHA-256 of the scan files that the run was planned with.
 PLANNED = {}
 if workflow.is_main_process:
+    hash_once()
     schema = yaml.safe_load((ROOT / "config/schema/study.schema.yaml").read_text())
     # What is wrong with one scan stops only that where the user asks so on the command line, which
     # Snakemake itself looks at later.
