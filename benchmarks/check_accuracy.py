@@ -31,7 +31,6 @@ _STAGES = (
     "scaling",
     "domain_measures",
     "size_test",
-    "dimension_test",
     "area_slope",
 )
 #: How the solver worked, not its result.

@@ -18,7 +18,6 @@ from .stages import STAGES
 #: at the second attempt), and their priority.
 EXPERIMENTS = {
     "roll_off": (30, 1),
-    "dimension_test": (60, 1),
     "size_strength": (120, 1),
     "area_slope": (60, -1),
     "estimator_bias": (60, -1),

@@ -19,11 +19,6 @@ STAGES = (
         "contactlab.experiments.area_slope:area_slope",
     ),
     _experiment(
-        "dimension_test",
-        "both estimates of Delta_sigma on synthetic surfaces",
-        "contactlab.experiments.delta_sigma:dimension_test",
-    ),
-    _experiment(
         "estimator_bias",
         "estimators of Delta_g on surfaces of known dimension",
         "contactlab.experiments.delta_g:estimator_bias",

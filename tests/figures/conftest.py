@@ -10,7 +10,6 @@ from materials import ROCK
 
 from contactlab.experiments.area_slope import area_slope
 from contactlab.experiments.delta_g import estimator_bias
-from contactlab.experiments.delta_sigma import dimension_test
 from contactlab.experiments.roll_off import roll_off_effect
 from contactlab.experiments.size_effect_test import size_effect_test
 from contactlab.experiments.size_states import solve_task
@@ -63,16 +62,6 @@ STUDY = {
             "resolutions": [1],
         },
     },
-}
-DIMENSION_TEST = {
-    "dimensions": [2.2],
-    "sizes": [32, 64],
-    "seeds": [1, 2],
-    "loads": [0.02, 0.1],
-    "resolutions": [1, 2, 4],
-    "hardness": 0.5,
-    "capped_loads": [0.1, 0.5, 0.9],
-    "capped_size": 32,
 }
 ESTIMATOR_BIAS = {"hurst": [0.8], "sizes": [64], "seeds": [1, 2]}
 SIZE_EFFECT = {
@@ -150,7 +139,6 @@ def _experiments():
     """Stages that a study has once."""
     computed = {
         "area_slope": area_slope(AREA_SLOPE),
-        "dimension_test": dimension_test(DIMENSION_TEST),
         "estimator_bias": estimator_bias(ESTIMATOR_BIAS),
         "roll_off": roll_off_effect(ROLL_OFF, 4.8, [1, 2]),
         "size_effect": size_effect_test(

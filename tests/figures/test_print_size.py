@@ -16,7 +16,7 @@ from fractalcontact.figures.kit.maps import MAX_BLACK, MIN_DOT, enlarged, enlarg
 from fractalcontact.study.figure_list import all_figures, figures_of
 
 #: Those that changed last, or are crowded, come first: the quick suite draws them alone.
-FIRST = ("fig12_evolution", "fig04_05_closure", "size_strength", "errors", "dimension_difference")
+FIRST = ("fig12_evolution", "fig04_05_closure", "size_strength", "errors", "estimator_bias")
 #: Keys whose figures are drawn from measurements, in test_accuracy_figures.py.
 MEASURED = ("speed", "convergence", "stability")
 KINDS = [

@@ -7,7 +7,6 @@ import pytest
 import xarray as xr
 from cases import representative
 
-from contactlab.figures.experiments import dimension_difference, dimension_test
 from fractalcontact.core.subject import Subject
 from fractalcontact.figures.joint import _size_test, size_prediction, size_slopes, size_test
 from fractalcontact.figures.kit.drawing import print_style, save
@@ -190,53 +189,6 @@ def test_direct_test_without_a_slope(atlas):
 @pytest.mark.full
 def test_direct_test_is_the_same_twice(atlas, tmp_path):
     written_twice_alike(size_test, atlas, "sliding", tmp_path)
-
-
-# -- the two estimators ----------------------------------------------------------------------------
-
-
-def test_estimators_labels_table_and_caption(atlas):
-    drawing, compared = (
-        drawn(module, atlas, list(SPECIMENS)) for module in (dimension_test, dimension_difference)
-    )
-    for one in (drawing, compared):
-        one.figure.draw_without_rendering()
-        axes_labels_have_units(one.figure)
-    test = atlas["dimension_test/surfaces"].to_dataset()
-    np.testing.assert_array_equal(
-        drawing.data["mean_delta_sigma_area"], test["mean_delta_sigma_area"].values.ravel()
-    )
-    free = compared.data[compared.data["branch"] == "elastic"]
-    np.testing.assert_array_equal(free["mean_difference"], test["mean_difference"].values.ravel())
-    assert len(compared.data[compared.data["branch"] == "with hardness"]) == 3
-    assert "zero lies in" in compared.caption
-    assert "1.39" not in drawing.caption  # the paper's value is of another surface
-
-
-def test_estimators_beside_the_papers_value(atlas):
-    def as_in_fig_8(test):
-        return test.assign_coords(dimension=("dimension", [2.1], test["dimension"].attrs))
-
-    drawing = drawn(dimension_test, changed(atlas, "dimension_test/surfaces", as_in_fig_8), [])
-    assert "The paper has 1.39 at Delta_g = 2.1" in drawing.caption
-    assert "nan" not in drawing.caption
-
-
-def test_estimators_without_a_hardness(atlas):
-    def elastic(test):
-        test = test.drop_vars([n for n in test.variables if n.startswith("capped_")])
-        del test.attrs["hardness"]
-        return test
-
-    drawing = drawn(dimension_difference, changed(atlas, "dimension_test/surfaces", elastic), [])
-    drawing.figure.draw_without_rendering()
-    assert "yields" not in drawing.caption
-    assert "with hardness" not in set(drawing.data["branch"])
-
-
-@pytest.mark.full
-def test_estimators_are_the_same_twice(atlas, tmp_path):
-    written_twice_alike(dimension_test, atlas, list(SPECIMENS), tmp_path)
 
 
 # -- Fig. 11 ---------------------------------------------------------------------------------------

@@ -49,8 +49,6 @@ def test_figures_of_a_study(atlas_file, atlas, tmp_path):
         "size_strength",
         "plateau",
         "area_slope",
-        "dimension_test",
-        "dimension_difference",
         "estimator_bias",
     ]
     assert study_figures_of({"study": "x", "area_slope": {}}) == ["area_slope"]

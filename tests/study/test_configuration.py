@@ -156,7 +156,6 @@ def test_a_surface_has_as_many_nodes_per_side_wherever_a_study_asks_for_one():
     limits = [
         SCHEMA["$defs"]["sizes"]["items"],
         sections["area_slope"]["properties"]["nodes"],
-        sections["dimension_test"]["properties"]["capped_size"],
         sections["speed"]["properties"]["sizes"]["items"],
     ]
     assert {limit["maximum"] for limit in limits} == {MAX_NODES_PER_SIDE}

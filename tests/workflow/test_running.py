@@ -109,7 +109,7 @@ def test_the_lock_of_a_living_run_stays_however_it_was_started(project):
 def test_jobs_that_outlive_their_run_count_as_living(project):
     """Snakemake alone killed: what its jobs still write must not mix with what a new run does."""
     living = start(project, *command("config/smoke.yaml"))
-    wait_for(project / "results/smoke/logs/dimension_test/surfaces.log", living)
+    wait_for(project / "results/smoke/logs/size_strength/surfaces.log", living)
     for job in set(_at_work(project)) - {str(living.pid)}:
         os.kill(int(job), signal.SIGSTOP)  # so that it does not end while this looks
     os.kill(living.pid, signal.SIGKILL)
@@ -123,7 +123,7 @@ def test_jobs_that_outlive_their_run_count_as_living(project):
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT, signal.SIGHUP])
 def test_a_run_that_is_told_to_end_ends_its_jobs(project, number):
     running = start(project, *made_words("config/smoke.yaml"))
-    wait_for(project / "results/smoke/logs/dimension_test/surfaces.log", running)
+    wait_for(project / "results/smoke/logs/size_strength/surfaces.log", running)
     time.sleep(0.3)
     running.send_signal(number)
     running.wait(timeout=60)

@@ -6,8 +6,6 @@ slopes and dimensions come out the same whatever these are.
 
 #: Side of a cell, mm.
 SPACING = 1.0
-#: Side of a surface, mm, where its cells get smaller.
-SIDE = 1.0
 #: MPa.
 E_STAR = 1.0
 #: Root mean square height as a fraction of the side, where the surface is loaded.
