@@ -6,14 +6,15 @@ measured. Here the exponent alpha of A_r/A_0 over b is compared with that, class
 are over surfaces, not over a regression.
 """
 
-from collections.abc import Sequence
+from collections.abc import Hashable, Iterable, Sequence
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 from scipy import special
 
-from fractalcontact.core.estimate import Estimate, rows_of
+from fractalcontact.core.estimate import Estimate
+from fractalcontact.core.labels import cf_attrs
 
 #: Probability covered by the intervals that decide, and by those that are only shown.
 PROBABILITY, USUAL = 0.99, 0.95
@@ -42,6 +43,7 @@ class Exponent(Estimate):
     ``error`` is its standard error, ``half_width`` half of the interval of :data:`USUAL`.
     """
 
+    level: ClassVar[str] = f"{100 * PROBABILITY:g} %"
     error: Any = np.nan
     half_width: Any = np.nan
 
@@ -59,29 +61,28 @@ class Exponent(Estimate):
         usual = float(np.hypot(self.half_width, other.half_width))
         return Exponent(value, value - half, value + half, error=error, half_width=usual)
 
-    def columns(self, name: str, unit: str = "") -> dict[str, Any]:
-        """As those of an estimate, ``NAME_error`` and ``NAME_half_width``."""
-        beside = {f"{name}_{of}": getattr(self, of) for of in ("error", "half_width")}
-        return beside | super().columns(name, unit)
+    @classmethod
+    def stack(cls, estimates: Iterable[Estimate], shape: Sequence[int] = (-1,)) -> "Exponent":
+        """Exponents as one of arrays, in C order over ``shape``."""
+        each = list(estimates)
+        error, usual = (
+            np.reshape([getattr(one, name) for one in each], shape)
+            for name in ("error", "half_width")
+        )
+        return cls(*Estimate.stack(each, shape).ends, error=error, half_width=usual)
+
+    def variables(
+        self, name: str, dims: Hashable | Sequence[Hashable], units: str, long_name: str
+    ) -> dict[str, tuple[Any, Any, dict[str, str]]]:
+        """As those of an estimate, with ``NAME_error`` and ``NAME_half_width``."""
+        usual = f"{long_name}, half-width of the {100 * USUAL:g} % interval"
+        return super().variables(name, dims, units, long_name) | {
+            f"{name}_error": (dims, self.error, cf_attrs(units, f"{long_name}, standard error")),
+            f"{name}_half_width": (dims, self.half_width, cf_attrs(units, usual)),
+        }
 
 
 UNKNOWN = Exponent()
-
-
-def columns_of(
-    name: str, found: Sequence[Exponent], shape: Sequence[int] = (-1,)
-) -> dict[str, np.ndarray]:
-    """Variables of exponents, in C order over ``shape``."""
-    columns = [one.columns(name) for one in found]
-    return {of: np.reshape([one[of] for one in columns], shape) for of in UNKNOWN.columns(name)}
-
-
-def exponent_rows(name: str, words: str) -> dict[str, tuple[str, str]]:
-    """Unit and long name of the variables of an exponent, by their names."""
-    level = f"{100 * PROBABILITY:g} %"
-    usual = f"{words}, half-width of the {100 * USUAL:g} % interval"
-    error = {f"{name}_error": ("1", f"{words}, standard error"), f"{name}_half_width": ("1", usual)}
-    return error | rows_of(name, "1", words, level)
 
 
 def quantile(freedom: float, probability: float = PROBABILITY) -> float:

@@ -6,14 +6,13 @@ has surfaces of other constructions. What the classical theory (Persson's) says 
 beside it, from the spectrum that the surfaces of a class have in the mean.
 """
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
-from fractalcontact.core.datasets import labelled, labelled_dataset
+from fractalcontact.core.datasets import labelled
 from fractalcontact.core.estimate import Estimate, rows_of
 from fractalcontact.core.labels import cf_attrs
 from fractalcontact.mechanics.theory import (
@@ -30,10 +29,8 @@ from .size_decision import (
     UNKNOWN,
     Decision,
     Exponent,
-    columns_of,
     decide,
     differ,
-    exponent_rows,
     mean_exponent,
     overall,
     paired_exponent,
@@ -66,6 +63,24 @@ GEOMETRY = {
     "geometry_delta": "correlation dimension of the contact domain, other constructions",
     "geometry_cut": "the same of the bearing-area cut",
 }
+_OF_SURFACE = ("hurst", "reduced_pressure")
+_OF_CLASS = ("arm", *_OF_SURFACE)
+#: All exponents: dimensions and long name.
+_EXPONENTS: dict[str, tuple[tuple[str, ...], str]] = {
+    **{name: (_OF_CLASS, words) for name, words in OVER_SIDE.items()},
+    **{name: (_OF_SURFACE, words) for name, words in DIMENSIONS.items()},
+    **{name: (("construction", *_OF_SURFACE), words) for name, words in GEOMETRY.items()},
+}
+_VERDICTS: dict[str, tuple] = {
+    "verdict": (_OF_CLASS, "1", "verdict of alpha on eq. 6"),
+    "reason": (_OF_CLASS, "1", "why"),
+    "no_size_effect": (_OF_CLASS, "1", "the interval of alpha lies within 0.02 of zero"),
+    "overall": (_OF_CLASS[:2], "1", "verdict of all loads together on eq. 6"),
+    "published_pressure": ("published", "1", "p / (E* h'_rms) of published periodic areas"),
+    "published_share": ("published", "1", "published A_r / A_0 of periodic surfaces, H = 0.8"),
+}
+#: Estimators of Delta_sigma that eq. 6 is tried with: by the areas A_r(s), and by box counts.
+_ESTIMATORS = ("area", "box")
 
 
 def size_effect_test(parts: Sequence[xr.Dataset], recipe: Mapping[str, Any]) -> xr.Dataset:
@@ -85,7 +100,7 @@ def size_effect_test(parts: Sequence[xr.Dataset], recipe: Mapping[str, Any]) -> 
         :data:`DIMENSIONS` over (hurst, reduced_pressure), each with ``_error``, ``_low`` and
         ``_high`` over surfaces (99 %), as are :data:`GEOMETRY` over (construction, hurst,
         reduced_pressure) where there is an arm G; ``verdict``, ``reason`` and ``no_size_effect``
-        over (arm, hurst, reduced_pressure); ``overall`` over (arm, hurst). Attribute ``summary``.
+        over (arm, hurst, reduced_pressure); ``overall`` over (arm, hurst).
     """
     samples = xr.concat(parts, "surface")
     order = ["of_arm", "of_construction", "of_hurst", "of_size", "of_cut_off", "number"]
@@ -94,40 +109,54 @@ def size_effect_test(parts: Sequence[xr.Dataset], recipe: Mapping[str, Any]) -> 
     hursts, loads = np.unique(samples["of_hurst"]), samples["reduced_pressure"].values
     arms = [arm for arm in SIZE_ARMS if (samples["of_arm"] == arm).any()]
     smallest = MIN_ROLL_OFFS * recipe["roll_off"]
-    values: dict[str, np.ndarray] = {}
-    shape = len(hursts), len(loads)
-    for name, found in _dimensions(samples, hursts).items():
-        values |= columns_of(name, found, shape)
-    by_class = _over_side(samples, arms, hursts, smallest)
-    for name, found in by_class.items():
-        values |= columns_of(name, found, (len(arms), *shape))
     constructions = np.unique(samples["of_construction"].values[samples["of_arm"] == "G"])
-    for name, found in _geometry(samples, constructions, hursts).items():
-        values |= columns_of(name, found, (len(constructions), *shape))
-    decisions = _decisions(by_class["alpha"], values, (len(arms), *shape))
-    values |= {
-        "verdict": _texts(decisions, lambda one: one.verdict, (len(arms), *shape)),
-        "reason": _texts(decisions, lambda one: one.reason, (len(arms), *shape)),
-        "no_size_effect": np.reshape([one.no_size_effect for one in decisions], (-1, *shape)),
-        "overall": _overall(decisions, values, (len(arms), *shape)),
-        "published_pressure": np.array(list(PERIODIC_AREAS)) / PERIODIC_SLOPE,
-        "published_share": np.array(list(PERIODIC_AREAS.values())),
+    found = (
+        _over_side(samples, arms, hursts, smallest)
+        | _dimensions(samples, hursts)
+        | _geometry(samples, constructions, hursts)
+    )
+    lengths = {
+        "arm": len(arms),
+        "construction": len(constructions),
+        "hurst": len(hursts),
+        "reduced_pressure": len(loads),
     }
+    variables: dict[str, tuple] = {}
+    for name, (dims, words) in _EXPONENTS.items():
+        exponents = Exponent.stack(found[name], [lengths[dim] for dim in dims])
+        variables |= exponents.variables(name, dims, "1", words)
+    shape = len(arms), len(hursts), len(loads)
+    alphas = dict(zip(np.ndindex(shape), found["alpha"], strict=True))
+    wanted = [
+        dict(zip(np.ndindex(shape[1:]), map(_prediction, found[f"{name}_delta"]), strict=True))
+        for name in _ESTIMATORS
+    ]
+    decisions = {at: decide(alpha, *(of[at[1:]] for of in wanted)) for at, alpha in alphas.items()}
+    variables |= labelled(
+        _VERDICTS,
+        {
+            "verdict": np.reshape([one.verdict for one in decisions.values()], shape),
+            "reason": np.reshape([one.reason for one in decisions.values()], shape),
+            "no_size_effect": np.reshape([one.no_size_effect for one in decisions.values()], shape),
+            "overall": _overall(decisions, alphas, wanted[0], shape),
+            "published_pressure": np.array(list(PERIODIC_AREAS)) / PERIODIC_SLOPE,
+            "published_share": np.array(list(PERIODIC_AREAS.values())),
+        },
+    )
     coords = {
         "arm": arms,
         "construction": constructions,
         "hurst": ("hurst", hursts, cf_attrs("1", "Hurst exponent H")),
         "reduced_pressure": samples["reduced_pressure"],
     }
-    result = samples.merge(labelled_dataset(_table(), values, coords), join="exact")
+    result = samples.merge(xr.Dataset(variables, coords), join="exact")
     result.attrs = {
         "smallest_side": int(smallest),
         "published_scatter": PERIODIC_SCATTER,
         "cut_off": int(recipe["cut_off"]),
         "roll_off": float(recipe["roll_off"]),
     }
-    result = with_comparisons(with_resolution_law(result))
-    return result.assign_attrs(summary=summary(result))
+    return with_comparisons(with_resolution_law(result))
 
 
 def with_comparisons(result: xr.Dataset) -> xr.Dataset:
@@ -170,10 +199,6 @@ def with_comparisons(result: xr.Dataset) -> xr.Dataset:
     result = result.assign(labelled(table, values))
     attrs = cf_attrs("1", "source of Delta_sigma: the areas A_r(s), or box counts")
     return result.assign_coords(delta_estimator=("delta_estimator", list(_ESTIMATORS), attrs))
-
-
-#: Estimators of Delta_sigma that eq. 6 is tried with: by the areas A_r(s), and by box counts.
-_ESTIMATORS = ("area", "box")
 
 
 def with_resolution_law(result: xr.Dataset) -> xr.Dataset:
@@ -221,27 +246,6 @@ _RESOLUTION = {
     "weakened_kappa_low": ("theory", "1", f"{_WEAKENED_WORDS} = {_WEAKENED[0]:g}"),
     "weakened_kappa_high": ("theory", "1", f"{_WEAKENED_WORDS} = {_WEAKENED[1]:g}"),
 }
-
-
-def _table() -> dict[str, tuple]:
-    of_class, of_surface = ("arm", "hurst", "reduced_pressure"), ("hurst", "reduced_pressure")
-    table: dict[str, tuple] = {}
-    of_geometry = ("construction", *of_surface)
-    for words, dims in (
-        (OVER_SIDE, of_class),
-        (DIMENSIONS, of_surface),
-        (GEOMETRY, of_geometry),
-    ):
-        for name, long_name in words.items():
-            table |= {of: (dims, *row) for of, row in exponent_rows(name, long_name).items()}
-    return table | {
-        "verdict": (of_class, "1", "verdict of alpha on eq. 6"),
-        "reason": (of_class, "1", "why"),
-        "no_size_effect": (of_class, "1", "the interval of alpha lies within 0.02 of zero"),
-        "overall": (of_class[:2], "1", "verdict of all loads together on eq. 6"),
-        "published_pressure": ("published", "1", "p / (E* h'_rms) of published periodic areas"),
-        "published_share": ("published", "1", "published A_r / A_0 of periodic surfaces, H = 0.8"),
-    }
 
 
 def _persson(samples: xr.Dataset) -> xr.DataArray:
@@ -354,83 +358,43 @@ def _cut_off_slopes(fine: xr.Dataset, name: str) -> np.ndarray:
     return np.tensordot(x, logs, axes=(0, 0)) / np.sum(x**2)
 
 
-def _texts(
-    decisions: list[Decision], text: Callable[[Decision], str], shape: tuple[int, ...]
-) -> np.ndarray:
-    return np.reshape([text(one) for one in decisions], shape)
-
-
-def _prediction(values: Mapping[str, np.ndarray], name: str, at: tuple[int, int]) -> Exponent:
-    """-(2 - Delta_sigma) of an estimator, at (hurst, load)."""
-    delta = _read(values, name, at)
+def _prediction(delta: Exponent) -> Exponent:
+    """-(2 - Delta_sigma) of an estimate."""
     return delta.mapped(lambda value: value - 2) if delta.known else UNKNOWN
 
 
-def _read(values: Mapping[str, np.ndarray], name: str, at: tuple[int, ...]) -> Exponent:
-    """An exponent of the table."""
-    here = {of: float(values[of][at]) for of in UNKNOWN.columns(name)}
-    found = Exponent.read(here, name)
-    return replace(found, error=here[f"{name}_error"])
-
-
-def _decisions(alphas: list[Exponent], values: Mapping[str, np.ndarray], shape) -> list[Decision]:
-    predictions = [
-        [_prediction(values, name, at[1:]) for name in ("area_delta", "box_delta")]
-        for at in np.ndindex(shape)
-    ]
-    return [decide(alpha, *of) for alpha, of in zip(alphas, predictions, strict=True)]
-
-
-def _overall(decisions: list[Decision], values: Mapping[str, np.ndarray], shape) -> np.ndarray:
+def _overall(
+    decisions: Mapping[tuple[int, ...], Decision],
+    alphas: Mapping[tuple[int, ...], Exponent],
+    by_area: Mapping[tuple[int, ...], Exponent],
+    shape: tuple[int, int, int],
+) -> np.ndarray:
     """Verdict on every (arm, hurst), and on the change of alpha with H by eq. 6."""
-    table = np.empty(shape[:2], object)
-    rows = np.reshape(np.arange(len(decisions)), shape)
-    for i in range(shape[0]):
-        follows = _follows(values, i, shape)
-        for j in range(shape[1]):
-            table[i, j] = overall([decisions[k] for k in rows[i, j]], follows=follows)
-    return table.astype(str)
+    arms, hursts, loads = (range(n) for n in shape)
+    follows = [_follows(alphas, by_area, arm, shape) for arm in arms]
+    return np.array(
+        [
+            [overall([decisions[i, j, k] for k in loads], follows=follows[i]) for j in hursts]
+            for i in arms
+        ]
+    )
 
 
-def _follows(values: Mapping[str, np.ndarray], arm: int, shape) -> bool:
+def _follows(
+    alphas: Mapping[tuple[int, ...], Exponent],
+    by_area: Mapping[tuple[int, ...], Exponent],
+    arm: int,
+    shape: tuple[int, int, int],
+) -> bool:
     """True if alpha changes with H as -(2 - Delta_sigma) by A_r(s) does, at every load."""
-    if shape[1] < 2:
+    _, hursts, loads = shape
+    if hursts < 2:
         return False
-    for load in range(shape[2]):
-        ends = [_read(values, "alpha", (arm, j, load)) for j in (0, -1)]
-        wanted = [_prediction(values, "area_delta", (j, load)) for j in (0, -1)]
+    for load in range(loads):
+        ends = [alphas[arm, j, load] for j in (0, hursts - 1)]
+        wanted = [by_area[j, load] for j in (0, hursts - 1)]
         if not all(np.isfinite(one.error) for one in (*ends, *wanted)):
             return False
         if not differ(*wanted) or differ(*(of[1].less(of[0]) for of in (ends, wanted))):
             return False
     return True
-
-
-def summary(result: xr.Dataset) -> str:
-    """Alpha, the prediction of eq. 6 and the verdict in words, by arm and Hurst exponent.
-
-    Parameters
-    ----------
-    result : xr.Dataset
-        From :func:`size_effect_test`.
-    """
-    rows = []
-    for arm in result["arm"].values:
-        for hurst in result["hurst"].values:
-            one = result.sel(arm=arm, hurst=hurst)
-            alpha, error = one["alpha"].values, one["alpha_error"].values
-            if not np.isfinite(error).any():
-                continue
-            wanted = [2 - one[name].values for name in ("area_delta", "box_delta")]
-            text = ", ".join(
-                f"{a:+.3f} +- {e:.3f}" for a, e in zip(alpha, error, strict=True) if np.isfinite(e)
-            )
-            eq6 = "; ".join(
-                f"{-np.nanmax(w):.2f} to {-np.nanmin(w):.2f} by {name}"
-                for name, w in zip(("A_r(s)", "boxes"), wanted, strict=True)
-                if np.isfinite(w).any()
-            )
-            rows.append(
-                f"{arm}, H = {hurst:g}: alpha {text} (eq. 6: {eq6}): {one['overall'].item()}"
-            )
-    return "\n".join(rows)

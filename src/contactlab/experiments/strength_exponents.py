@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import xarray as xr
 
-from fractalcontact.core.datasets import labelled_dataset
+from fractalcontact.core.datasets import labelled
 from fractalcontact.core.labels import cf_attrs
 from fractalcontact.core.limits import LARGEST_FRICTION_ANGLE
 
@@ -17,8 +17,6 @@ from .size_decision import (
     NO_EFFECT,
     UNKNOWN,
     Exponent,
-    columns_of,
-    exponent_rows,
     paired_exponent,
     size_exponent,
 )
@@ -59,6 +57,17 @@ VERDICTS = {
     "pooled_exponent": "verdict on the strength at equal v, all intervals together",
     "scaled_strength_exponent": "verdict on the strength at equal v/b",
     "beyond_exponent": "verdict on the strength at equal v/b beyond what v alone makes of it",
+}
+#: Numbers without an interval: dimensions, unit and long name.
+NUMBERS: dict[str, tuple[tuple[str, ...], str, str]] = {
+    "truncated_share": (
+        _OF_SIZE,
+        "1",
+        f"fraction of joints whose phi_b + i passes {LARGEST_FRICTION_ANGLE:g} degrees or is "
+        "negative",
+    ),
+    "theory_strength": (_AT_V, "1", "tau/sigma_0 from S(v), the separation in its square root"),
+    "theory_exponent": (_AT_FRACTION, "1", "exponent of theory_strength over b at equal v/b"),
 }
 #: What decides a class, at equal v and at equal v/b.
 _DECIDING = ("pooled_exponent", "scaled_strength_exponent", "predicted_exponent")
@@ -123,22 +132,22 @@ def strength_exponents(states: xr.Dataset, recipe: Mapping[str, Any]) -> xr.Data
         "interval": len(offsets) - 1,
         "fraction": len(classes),
     }
-    values = _empty(sizes)
+    numbers = {
+        name: np.full([sizes[dim] for dim in dims], np.nan) for name, (dims, *_) in NUMBERS.items()
+    }
     basic = float(recipe["basic_friction_angle"])
-    found: dict[tuple[int, int], dict[str, list[Exponent]]] = {}
+    found: dict[str, dict[tuple[int, ...], Exponent]] = {name: {} for name in EXPONENTS}
     for (i, j, k), sample in _samples(states).items():
+        for name, each in _one_class(sample, sides, smallest, classes, basic).items():
+            middle = np.ndindex(*(sizes[dim] for dim in EXPONENTS[name][0][2:-1]))
+            places = ((i, j, *place, k) for place in middle)
+            found[name] |= dict(zip(places, each, strict=True))
+        numbers["truncated_share"][i, j, ..., k] = _truncated_share(sample, sides, basic)
         difference = states["height_difference"].values[i]
-        one_class = _one_class(sample, sides, smallest, classes, basic)
-        _fill(values, (i, j), k, one_class)
-        _fill(values, (i, j), k, _by_theory(sample, difference, offsets, classes, basic))
-        for name in _DECIDING:
-            found.setdefault((i, j), {}).setdefault(name, []).extend(one_class[name])
-    for at, exponents in found.items():
-        at_v, at_fraction, predicted = (exponents[name] for name in _DECIDING)
-        values["overall"][at] = joint_verdict(at_v, at_fraction, predicted)
-    result = states.merge(
-        labelled_dataset(_table(), values, _coords(offsets, sides, classes)), join="exact"
-    )
+        for name, each in _by_theory(sample, difference, offsets, classes, basic).items():
+            numbers[name][i, j, ..., k] = each
+    variables = _variables(found, sizes) | labelled(NUMBERS, numbers)
+    result = states.merge(xr.Dataset(variables, _coords(offsets, sides, classes)), join="exact")
     result.attrs = {
         "smallest_side": int(smallest),
         "bound": NO_EFFECT,
@@ -197,28 +206,6 @@ def equal_fractions(
     }
 
 
-def _table() -> dict[str, tuple]:
-    table: dict[str, tuple] = {
-        of: (dims, *row)
-        for name, (dims, words) in EXPONENTS.items()
-        for of, row in exponent_rows(name, words).items()
-    }
-    table |= {
-        f"{name}_verdict": (EXPONENTS[name][0], "1", words) for name, words in VERDICTS.items()
-    }
-    return table | {
-        "truncated_share": (
-            _OF_SIZE,
-            "1",
-            f"fraction of joints whose phi_b + i passes {LARGEST_FRICTION_ANGLE:g} degrees or is "
-            "negative",
-        ),
-        "overall": (_CLASS, "1", "whether the strength has a size effect, and of what"),
-        "theory_strength": (_AT_V, "1", "tau/sigma_0 from S(v), the separation in its square root"),
-        "theory_exponent": (_AT_FRACTION, "1", "exponent of theory_strength over b at equal v/b"),
-    }
-
-
 def _coords(
     offsets: np.ndarray, sides: np.ndarray, classes: Mapping[tuple[float, float], Any]
 ) -> dict[str, Any]:
@@ -239,30 +226,34 @@ def _coords(
     }
 
 
-def _empty(sizes: Mapping[Any, int]) -> dict[str, np.ndarray]:
-    values = {}
-    for name, (dims, _, _) in _table().items():
+def _variables(
+    found: Mapping[str, Mapping[tuple[int, ...], Exponent]], sizes: Mapping[Any, int]
+) -> dict[str, tuple]:
+    """:data:`EXPONENTS` by their places and the verdicts on them, as ``xr.Dataset`` takes them."""
+    variables: dict[str, tuple] = {}
+    for name, (dims, words) in EXPONENTS.items():
         shape = [sizes[dim] for dim in dims]
-        text = name.endswith("_verdict") or name == "overall"
-        values[name] = np.full(shape, "", object) if text else np.full(shape, np.nan)
-    return values
-
-
-def _fill(
-    values: dict[str, np.ndarray], at: tuple[int, int], load: int, found: Mapping[str, Any]
-) -> None:
-    """Store the values of one class at one load."""
-    for name, one in found.items():
-        where = (*at, ..., load)
-        if name not in EXPONENTS:
-            values[name][where] = one
-            continue
-        shape = values[name][where].shape
-        for of, column in columns_of(name, one, shape).items():
-            values[of][where] = column
+        each = [found[name][at] for at in np.ndindex(*shape)]
+        variables |= Exponent.stack(each, shape).variables(name, dims, "1", words)
         if name in VERDICTS:
-            verdicts = np.array([size_verdict(e) for e in one], object)
-            values[f"{name}_verdict"][where] = verdicts.reshape(shape)
+            verdicts = np.reshape(np.array([size_verdict(one) for one in each], object), shape)
+            variables[f"{name}_verdict"] = (dims, verdicts, cf_attrs("1", VERDICTS[name]))
+    overall = [[_verdict(found, i, j) for j in range(sizes["law"])] for i in range(sizes["hurst"])]
+    words = "whether the strength has a size effect, and of what"
+    return variables | {"overall": (_CLASS, np.array(overall, object), cf_attrs("1", words))}
+
+
+def _verdict(found: Mapping[str, Mapping[tuple[int, ...], Exponent]], i: int, j: int) -> str:
+    """Verdict of a Hurst exponent and law over all loads."""
+    deciding = ([one for at, one in found[name].items() if at[:2] == (i, j)] for name in _DECIDING)
+    return joint_verdict(*deciding)
+
+
+def _truncated_share(sample: _Sample, sides: np.ndarray, basic: float) -> list[np.ndarray]:
+    """Fraction of joints of each side whose phi_b + i Barton's law does not know."""
+    angles = basic + np.degrees(np.arctan(sample.rates))
+    out = (angles > LARGEST_FRICTION_ANGLE) | (angles < 0)
+    return [out[sample.sides == side].mean(axis=0) for side in sides]
 
 
 def _one_class(
@@ -271,12 +262,10 @@ def _one_class(
     smallest: float,
     classes: Mapping[tuple[float, float], Mapping[float, int]],
     basic: float,
-) -> dict[str, Any]:
+) -> dict[str, list[Exponent]]:
     """:data:`EXPONENTS` of one class at one load."""
     intervals = range(sample.rates.shape[1])
     of_side = {side: sample.rates[sample.sides == side] for side in sides}
-    angles = basic + np.degrees(np.arctan(sample.rates))
-    out = (angles > LARGEST_FRICTION_ANGLE) | (angles < 0)
     entering = sample.sides >= smallest
     one = _Sample(*(column[entering] for column in sample))
     linear = np.array([linear_strengths(one.sides, rate, basic) for rate in one.rates.T])
@@ -284,7 +273,6 @@ def _one_class(
         pooled = np.exp(np.log(linear).mean(axis=0))
     return {
         "strength": [mean_strength(of_side[s][:, k], basic) for s in sides for k in intervals],
-        "truncated_share": [out[sample.sides == side].mean(axis=0) for side in sides],
         "strength_exponent": [strength_exponent(one.sides, r, basic) for r in one.rates.T],
         "area_exponent": [size_exponent(one.sides, share) for share in one.shares.T],
         "separation_exponent": [size_exponent(one.sides, gap) for gap in one.separations.T],

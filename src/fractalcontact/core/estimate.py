@@ -7,7 +7,7 @@ In memory it is an :class:`Estimate`. On disk it is the variables, or columns, `
 from collections.abc import Callable, Hashable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from operator import attrgetter
-from typing import Any, NamedTuple, Self
+from typing import Any, ClassVar, NamedTuple, Self
 
 import numpy as np
 
@@ -69,8 +69,11 @@ class Estimate:
         Why there is no value, or what to know of it.
     scale : Scale
         What kind of quantity it is of.
+    level : str
+        Probability of the interval, in words; of its class.
     """
 
+    level: ClassVar[str] = _LEVEL
     value: Any = np.nan
     low: Any = np.nan
     high: Any = np.nan
@@ -241,7 +244,7 @@ class Estimate:
             Of the arrays; () for a number.
         units, long_name : str
         """
-        rows = rows_of(name, units, long_name)
+        rows = rows_of(name, units, long_name, self.level)
         return {
             of: (dims, value, cf_attrs(*row))
             for (of, row), value in zip(rows.items(), self.ends, strict=True)

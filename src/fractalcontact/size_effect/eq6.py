@@ -44,7 +44,7 @@ from .division import PARTS, split
 from .load_ladder import OF_WINDOWS, solve_sub_windows, whole_areas
 from .prediction import predict_whole
 from .size_law import size_law
-from .size_verdict import VERDICTS, size_verdicts
+from .size_verdict import size_verdicts
 from .slope import real_pressures, slopes_at_equal_star
 
 #: Estimators of Delta_sigma in the whole window under each load: its area over resolutions, boxes
@@ -122,7 +122,7 @@ def size_test(loading: JointLoading[WindowSettings]) -> xr.Dataset:
     result = result.merge(predict_whole(states, result["delta_sigma"], MIN_NODES_PER_RESOLUTION))
     add_decisions(result)
     opposite = loading.specimen.attrs["opposite"]
-    return result.assign_attrs(opposite=opposite, summary=summary(result))
+    return result.assign_attrs(opposite=opposite)
 
 
 # -- what eq. 6 predicts ---------------------------------------------------------------------------
@@ -262,30 +262,3 @@ def _verdict_reason(result):
         return f"inconclusive: {Counter(tested).most_common(1)[0][0]}"
     beyond = result["area_exponent"].notnull().any()
     return "the loads drawn lie beyond those of the study" if beyond else ""
-
-
-def summary(result: xr.Dataset) -> str:
-    """The verdicts in words: by estimator, the loads at which eq. 6 has the measured slope.
-
-    Parameters
-    ----------
-    result : xr.Dataset
-        From :func:`size_test`.
-    """
-    measured = np.isfinite(Estimate.read(result, "area_exponent").low)
-    if not measured.any():
-        return "no load at which two sizes hold nodes enough to be tested"
-    effect = int(result["size_effect"].values.sum())
-    tested = (result["slope_verdict"] != NOT_TESTED).any("estimator")
-    conditioned = int((tested & result["well_conditioned"]).sum())
-    rows = [
-        f"of {int(measured.sum())} loads tested A_r/A_0 differs between sizes at {effect}, and "
-        f"eq. 6's own form is well-conditioned at {conditioned}"
-    ]
-    for name, words in DELTA_SIGMA_ESTIMATORS.items():
-        verdicts = result["verdict"].sel(estimator=name).values
-        tested = verdicts[verdicts != NOT_TESTED]
-        counts = {v: int((tested == v).sum()) for v in VERDICTS[:-1]}
-        shown = ", ".join(f"{v} at {n}" for v, n in counts.items() if n)
-        rows.append(f"eq. 6 with Delta_sigma from {words}: {shown or 'not tested'}")
-    return "; ".join(rows)

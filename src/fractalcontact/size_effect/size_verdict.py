@@ -28,9 +28,6 @@ WIDEST_SLOPE = 1.0
 #: leaves open, 4 %, is then 40 % of sigma_0, or 0.3 of a slope over two octaves.
 WORST_CONDITION = 10.0
 
-#: What may come of one estimator of Delta_sigma under one load.
-VERDICTS = (AGREES, STEEPER, FLATTER, UNDECIDED, AMBIGUOUS, NOT_TESTED)
-
 #: Why nothing is decided, or on what grounds it is.
 TOO_WIDE = f"the predicted exponent is uncertain by more than {WIDEST_PREDICTION:g}"
 TOO_WIDE_MISSED = f"{TOO_WIDE}, though what is measured lies outside"
