@@ -1,11 +1,8 @@
-import importlib.util
-
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
-from places import BENCHMARKS
 
 from fractalcontact.domain.box_counts import (
     box_count,
@@ -121,16 +118,3 @@ def test_bad_arguments_are_refused():
         mean_count(np.ones((4, 4), dtype=bool), [0])
     with pytest.raises(ValueError, match="grid"):
         mean_count(np.ones(4, dtype=bool), [1])
-
-
-def test_benchmark_prints_time_and_growth(capsys):
-    spec = importlib.util.spec_from_file_location("box_counts", BENCHMARKS / "box_counts.py")
-    benchmark = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(benchmark)
-    benchmark.main(["--sizes", "64", "128"])
-    header, first, second = (line.split() for line in capsys.readouterr().out.splitlines())
-    assert header[0] == "cells"
-    assert (first[0], second[0]) == ("64", "128")
-    times, growth = (float(second[i]) for i in (1, 2))
-    assert times >= 0
-    assert growth >= 0
