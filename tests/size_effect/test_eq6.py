@@ -146,10 +146,7 @@ def test_joint_that_obeys_eq_6(delta):
     states = made_states(lambda p, b: 100 * (p * b ** (2 - delta)) ** 0.2)
     found = slopes_at_equal_star(states, 4)
     np.testing.assert_allclose(found["slope"], delta - 2, atol=1e-9)
-    np.testing.assert_allclose(found["window_slope"], delta - 2, atol=1e-9)
     np.testing.assert_allclose(found["sensitivity"], 0.2, atol=1e-9)
-    np.testing.assert_allclose(found["share_exponent"], -0.2 * (2 - delta), atol=1e-9)
-    assert (found["windows_unknown"] == 0).all()
 
 
 def test_its_whole_is_predicted_from_its_parts():
@@ -258,18 +255,6 @@ def test_measured_slope_does_not_know_delta(flat):
     difference = (found["slope"] - found["predicted_slope"]).transpose("estimator", "normal_force")
     np.testing.assert_allclose(found["slope_difference"], difference)
     np.testing.assert_allclose(found["predicted_slope"], found["delta_sigma"] - 2)
-
-
-def test_windows_are_all_accounted_for(flat):
-    found = flat[1]
-    tested = np.isfinite(found["equal_pressure"].sel(part=1)).values
-    lost = found["windows_below"] + found["windows_above"] + found["windows_unknown"]
-    assert tested.any()
-    assert (lost.values[tested] <= found["windows"].values).all()
-    assert (lost.values[~tested] == 0).all()
-    whole = found["windows_below"].sel(part=1)
-    assert (whole == 0).all()
-    np.testing.assert_array_equal(found["windows"], found["part"] ** 2)
 
 
 def test_whole_window_has_its_own_pressure(flat):
@@ -383,16 +368,14 @@ def test_undecided_nodes_are_passed_on():
     # sigma_n between them, and twice that of sigma_0.
     states = made_states(lambda p, b: 100 * p**0.5 * b**-0.1)
     exact = slopes_at_equal_star(states, 4)
-    for name in ("real_pressure", "equal_pressure", "window_pressure"):
+    for name in ("real_pressure", "equal_pressure"):
         np.testing.assert_allclose(exact[f"{name}_error"], 0 * exact[name], atol=1e-12)
     states["nodes_error"] = 0.01 * states["nodes"]
     found = slopes_at_equal_star(states, 4)
     xr.testing.assert_equal(found["equal_pressure"], exact["equal_pressure"])
-    of_parts = {"part": slice(1, None)}
-    for name in ("equal_pressure", "window_pressure"):
-        share = (found[f"{name}_error"] / found[name]).isel(of_parts).values
-        np.testing.assert_allclose(share[1:], 0.99**-4 - 1, rtol=1e-9)
-        assert (found[f"{name}_error"].isel(part=0) == 0).all()
+    share = (found["equal_pressure_error"] / found["equal_pressure"]).isel(part=slice(1, None))
+    np.testing.assert_allclose(share.values[1:], 0.99**-4 - 1, rtol=1e-9)
+    assert (found["equal_pressure_error"].isel(part=0) == 0).all()
     np.testing.assert_allclose(found["real_pressure_error"] / found["real_pressure"], 1 / 0.99 - 1)
     # With the nodes off by that, the pressures are off by no more.
     rng = np.random.default_rng(2)
@@ -409,18 +392,15 @@ def test_undecided_nodes_are_passed_on():
     # Nor where no node is certain; what was found stands all the same.
     states["nodes_error"] = states["nodes"]
     unsure = slopes_at_equal_star(states, 4)
-    for name in ("equal_pressure", "window_pressure"):
-        xr.testing.assert_equal(unsure[name], exact[name])
-        known = np.isfinite(exact[name])
-        assert np.isinf(unsure[f"{name}_error"]).where(known, True).all()
+    xr.testing.assert_equal(unsure["equal_pressure"], exact["equal_pressure"])
+    known = np.isfinite(exact["equal_pressure"])
+    assert np.isinf(unsure["equal_pressure_error"]).where(known, True).all()
 
 
 def test_few_nodes_say_nothing():
     states = made_states(lambda p, b: 100 * p**0.2 * b**0)
     states["nodes"] = states["nodes"] * 0 + 3.0
-    together, single = real_pressures(states)
-    assert np.isnan(together).all()
-    assert np.isnan(single).all()
+    assert np.isnan(real_pressures(states)).all()
 
 
 # -- real ------------------------------------------------------------------------------------------

@@ -74,25 +74,18 @@ def size_test(loading: JointLoading[WindowSettings]) -> xr.Dataset:
         From :func:`size_effect.size_law.size_law` and
         :func:`size_effect.size_verdict.size_verdicts`. Over (estimator, normal_force):
         ``delta_sigma``, ``sigma_star`` and ``predicted_slope`` of the whole window with intervals.
-        Over (normal_force): the measured ``slope`` of all windows of a size taken together and
-        ``window_slope`` of the median of windows one by one, each with ``_low``, ``_high``, ``_n``,
-        ``_b_min``, ``_b_max``; ``share_exponent`` and ``sensitivity``, which explain it. Over
-        (normal_force, part): ``equal_pressure``, ``window_pressure`` (each with an ``_error``, the
-        solver's, which is infinite where the value may not be reached at all), ``windows_below``,
-        ``windows_above``, ``windows_unknown``, ``crossings``; what is predicted for the whole
-        window, see :func:`size_effect.prediction.predict_whole`; what :func:`add_decisions` adds.
-        Loads ``beyond_study`` are
-        there while sub-windows hold too few nodes under those of the study, see
-        :data:`size_effect.load_ladder.TESTED_DOUBLINGS`.
+        Over (normal_force): the measured ``slope`` of all windows of a size taken together, with
+        ``_low``, ``_high``, ``_n``, ``_b_min``, ``_b_max``, and ``sensitivity``, which explains it.
+        Over (normal_force, part): ``equal_pressure`` (with an ``_error``, the solver's, which is
+        infinite where the value may not be reached at all), ``crossings``; what is predicted for
+        the whole window, see :func:`size_effect.prediction.predict_whole`; what
+        :func:`add_decisions` adds. Loads ``beyond_study`` are there while sub-windows hold too few
+        nodes under those of the study, see :data:`size_effect.load_ladder.TESTED_DOUBLINGS`.
 
     Notes
     -----
-    All windows of a size together have sigma_n = sum F / sum A_n. Windows one by one are what a
-    laboratory would test, but small ones hold few nodes: a window with fewer than
-    `MIN_NODES_PER_RESOLUTION` at a resolution has no sigma* that means anything, and a mean over
-    those that are left would be one over the few whose contacts are many and soft. So their median
-    is taken, with the windows whose place is only known to lie below or above the loads solved. It
-    is measured on all windows together; a size counts where they hold
+    All windows of a size together have sigma_n = sum F / sum A_n: of windows one by one, small ones
+    hold too few nodes for a sigma* that means anything. A size counts where its windows hold
     `MIN_NODES_PER_RESOLUTION` on the average. Without that rule the lightest loads show the
     slope -2 exactly: one node in every window.
 
@@ -135,8 +128,6 @@ _PREDICTED: dict[str, tuple] = {
         "N mm^-delta_sigma",
         "fractal mean pressure sigma* of the whole window",
     ),
-    "box_fit_min": ("normal_force", "mm", "smallest box fitted"),
-    "box_fit_max": ("normal_force", "mm", "largest box fitted"),
 }
 
 
@@ -159,16 +150,11 @@ def _dimensions(
     delta = Estimate.stack((by_estimator[name] for name in DELTA_SIGMA_ESTIMATORS), shape)
     slope = delta.mapped(lambda dimension: dimension - 2)
     star = slope.value  # sigma* = sigma_n s_n^(2 - Delta), geometric mean over the resolutions
-    star = real_pressures(whole)[0][0, : len(domains)] * np.exp(
+    star = real_pressures(whole)[0, : len(domains)] * np.exp(
         -star * np.log(whole["spacing"].values).mean()
     )
-    values = {
-        "sigma_star": star,
-        "box_fit_min": [box.over[0] for box in boxes],
-        "box_fit_max": [box.over[1] for box in boxes],
-    }
     coords = {"estimator": list(DELTA_SIGMA_ESTIMATORS)}
-    result = labelled_dataset(_PREDICTED, values, coords=coords)
+    result = labelled_dataset(_PREDICTED, {"sigma_star": star}, coords=coords)
     words = "dimension of the contact domain of the whole window"
     result.update(delta.variables("delta_sigma", _BY_LOAD, "1", words))
     words = "slope -(2 - Delta_sigma) of eq. 6"

@@ -80,9 +80,8 @@ def _draw_slopes(axes, test, loads):
 
 
 def _table(test):
-    windows = ("windows", "windows_below", "windows_above", "windows_unknown")
     tables = [
-        rows_of_loads(test, "equal_pressure", "window_pressure", "side", *windows, panel="a"),
+        rows_of_loads(test, "equal_pressure", "side", "windows", panel="a"),
         rows_of_loads(test, "slope", "slope_n", panel="b"),
         rows_predicted(test),
     ]
