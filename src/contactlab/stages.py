@@ -52,7 +52,7 @@ STAGES = (
         "convergence",
         "error against spacing where the solution is known, and Richardson's extrapolation",
         MEASUREMENT,
-        "contactlab.accuracy.stage:convergence",
+        "contactlab.accuracy.convergence:convergence",
         member="{problem}",
     ),
     Stage(

@@ -7,7 +7,7 @@ import pytest
 from ensembles import ensemble
 from print_size import faults
 
-from contactlab.accuracy.convergence import hertz_convergence, punch_convergence, richardson_trials
+from contactlab.accuracy.convergence import error_over_spacing, richardson_trials
 from contactlab.accuracy.elimination import elimination
 from contactlab.accuracy.growth import growth
 from contactlab.accuracy.reference import problems_of
@@ -38,9 +38,9 @@ def atlas_file(tmp_path_factory):
         "speed": scenes,
         "speed_growth": {"surfaces": growth(list(scenes.values()), 1e-2)},
         "convergence": {
-            "hertz": hertz_convergence((5, 8, 12), placements=2),
-            "punch": punch_convergence((5, 8, 12), placements=2),
-            "richardson": richardson_trials(3, (16, 20)),
+            "hertz": error_over_spacing("hertz", (5, 8, 12), 2),
+            "punch": error_over_spacing("punch", (5, 8, 12), 2),
+            "richardson": richardson_trials(3, (16, 20), seed=0),
         },
         "stability": {"scenes": stability(["H = 0.8", "one node, by force", "missing cell"], 3)},
         "elimination": {"scenes": elimination(4)},

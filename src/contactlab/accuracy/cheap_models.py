@@ -10,9 +10,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from roughcontact.arguments import whole_number
 from roughcontact.contact.preconditioner import forget_preconditioner
-from roughcontact.contact.solve import checked_hardness, checked_problem, solve_contact
+from roughcontact.contact.solve import checked_problem, solve_contact
 from roughcontact.elastic.halfspace import HalfSpace, rectangle_mean_displacement
 
 #: Tolerance of the coarse solves: far below what the coarse grid itself is off by.
@@ -45,14 +44,7 @@ class CheapState:
     area: float
 
 
-def bearing_area(
-    composite: ArrayLike,
-    space: HalfSpace,
-    *,
-    closure: float | None = None,
-    force: float | None = None,
-    hardness: float | None = None,
-) -> CheapState:
+def bearing_area(composite: ArrayLike, space: HalfSpace, *, closure: float) -> CheapState:
     """Contact without elasticity: the bearing area above a plane (Abbott and Firestone 1933).
 
     Parameters
@@ -61,35 +53,27 @@ def bearing_area(
         mm.
     space : HalfSpace
         Of which only the grid counts.
-    closure : float, optional
+    closure : float
         w, mm, from first touch: the plane's depth.
-    force : float, optional
-        N; needs a hardness, for the area is then F / H, to the nodes that lie at one depth.
-    hardness : float, optional
-        MPa: every node in contact carries it. Without it the force is not defined: NaN.
+
+    Returns
+    -------
+    CheapState
+        Without a force: none is defined.
 
     Raises
     ------
     ValueError
-        If the load makes no sense, a force is given without a hardness, or is more than the
-        hardness lets the window carry.
+        If the closure makes no sense.
     """
-    load, clearance = checked_problem(composite, space, closure, force, None, 0.5)
-    limit = checked_hardness(hardness, space, force)
-    if force is not None:
-        if hardness is None:
-            raise ValueError("the bearing area needs a hardness to carry a force: give hardness=")
-        nodes = min(round(load / (limit * space.cell_area)), clearance.size - 1)
-        load = float(np.sort(clearance, axis=None)[nodes])
-    in_contact = clearance < load
-    area = np.count_nonzero(in_contact) * space.cell_area
-    carried = np.nan if hardness is None else limit
+    closure, clearance = checked_problem(composite, space, closure, None, None, 0.5)
+    in_contact = clearance < closure
     return CheapState(
-        pressure=np.where(in_contact, carried, 0.0),
+        pressure=np.where(in_contact, np.nan, 0.0),
         in_contact=in_contact,
-        closure=load,
-        force=carried * area,
-        area=area,
+        closure=closure,
+        force=np.nan,
+        area=np.count_nonzero(in_contact) * space.cell_area,
     )
 
 
@@ -106,13 +90,7 @@ def foundation_modulus(space: HalfSpace) -> float:
     return space.modulus / rectangle_mean_displacement(*sides)
 
 
-def winkler(
-    composite: ArrayLike,
-    space: HalfSpace,
-    *,
-    closure: float | None = None,
-    force: float | None = None,
-) -> CheapState:
+def winkler(composite: ArrayLike, space: HalfSpace, *, closure: float) -> CheapState:
     """Contact on a Winkler foundation: every node gives way alone, p = k (w - c) where w > c.
 
     Parameters
@@ -121,44 +99,28 @@ def winkler(
         mm.
     space : HalfSpace
         Its grid and modulus make the foundation, see `foundation_modulus`.
-    closure : float, optional
-        w, mm, from first touch. Either this or ``force``.
-    force : float, optional
-        N.
+    closure : float
+        w, mm, from first touch.
 
     Raises
     ------
     ValueError
-        If the load makes no sense.
+        If the closure makes no sense.
     """
-    load, clearance = checked_problem(composite, space, closure, force, None, 0.5)
-    modulus = foundation_modulus(space)
-    if force is not None:
-        load = _winkler_closure(clearance, load / (modulus * space.cell_area))
-    pressure = modulus * np.maximum(load - clearance, 0.0)
+    closure, clearance = checked_problem(composite, space, closure, None, None, 0.5)
+    pressure = foundation_modulus(space) * np.maximum(closure - clearance, 0.0)
     in_contact = pressure > 0
     return CheapState(
         pressure=pressure,
         in_contact=in_contact,
-        closure=load,
+        closure=closure,
         force=float(pressure.sum()) * space.cell_area,
         area=np.count_nonzero(in_contact) * space.cell_area,
     )
 
 
-def _winkler_closure(clearance, total):
-    """Closure at which the overlaps add up to ``total``: linear between one node and the next."""
-    depth = np.sort(clearance, axis=None)
-    count = np.arange(1, depth.size + 1)
-    overlap = count * depth - np.cumsum(depth)
-    last = np.searchsorted(overlap, total, side="right") - 1
-    return float(depth[last] + (total - overlap[last]) / count[last])
-
-
-def coarse_grid(
-    composite: ArrayLike, space: HalfSpace, *, closure: float, factor: int = 2
-) -> CheapState:
-    """Elastic contact on every ``factor``-th node, extrapolated with the help of a coarser grid.
+def coarse_grid(composite: ArrayLike, space: HalfSpace, *, closure: float) -> CheapState:
+    """Elastic contact on every second node, extrapolated with the help of every fourth.
 
     Parameters
     ----------
@@ -167,8 +129,6 @@ def coarse_grid(
     space : HalfSpace
     closure : float
         w, mm, from first touch of the whole topography.
-    factor : int
-        The grids solved have the spacings ``factor`` s and 2 ``factor`` s.
 
     Returns
     -------
@@ -186,15 +146,13 @@ def coarse_grid(
     The force by an error of order `FORCE_ORDER` in s; the area by the power law A_r ~ s^a of
     self-affine surfaces (eq. 5 of the paper), which two spacings determine.
     """
-    factor = whole_number(factor, "factor", least=1, most=min(space.shape))
     closure, _ = checked_problem(composite, space, closure, None, None, COARSE_RTOL)
     height = np.asarray(composite, float)
-    finer, coarser = (_sampled(height, space, closure, k) for k in (factor, 2 * factor))
-    steps = np.log2(factor)
+    finer, coarser = (_sampled(height, space, closure, factor) for factor in (2, 4))
     ny, nx = space.shape
-    spread = np.repeat(np.repeat(finer.pressure, factor, axis=0), factor, axis=1)[:ny, :nx]
+    spread = np.repeat(np.repeat(finer.pressure, 2, axis=0), 2, axis=1)[:ny, :nx]
     force = finer.force + (finer.force - coarser.force) * (
-        (1 - 2.0 ** (-FORCE_ORDER * steps)) / (2.0**FORCE_ORDER - 1)
+        (1 - 2.0**-FORCE_ORDER) / (2.0**FORCE_ORDER - 1)
     )
     touching = coarser.area > 0
     return CheapState(
@@ -202,7 +160,7 @@ def coarse_grid(
         in_contact=finer.in_contact,
         closure=closure,
         force=force if touching else np.nan,
-        area=finer.area * (finer.area / coarser.area) ** steps if touching else np.nan,
+        area=finer.area * (finer.area / coarser.area) if touching else np.nan,
     )
 
 

@@ -1,6 +1,7 @@
 """Convergence of the discrete contact to exact solutions."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -29,61 +30,61 @@ QUANTITIES: dict[str, dict[str, float]] = {
     "punch": {"force": 1, "radius": 1.5},
 }
 _WORDS = {"force": "force", "radius": "contact radius", "peak_pressure": "peak pressure"}
+#: Tolerances of the solves, far below the errors of the grid.
+_RTOL, _TRIAL_RTOL = 1e-6, 1e-7
 
 
-def hertz_convergence(
-    cells_per_radius: Sequence[int] = (5, 10, 20, 40), *, placements: int = 4, rtol: float = 1e-6
-) -> xr.Dataset:
-    """Error of the Hertz contact against the number of cells across its radius.
-
-    The relative errors depend on no size or modulus: a paraboloid of radius of curvature 1 mm is
-    pressed until the contact radius is 0.1 mm, on E* = 1 MPa. The discrete contact domain is a
-    staircase whose area jumps with the position of the centre among the nodes, so each error is
-    the root mean square over ``placements`` x ``placements`` positions within a cell.
+def convergence(problem: str, recipe: Mapping[str, Any]) -> xr.Dataset:
+    """Error against spacing where the solution is known, or trials of Richardson's extrapolation.
 
     Parameters
     ----------
+    problem : {"hertz", "punch", "richardson"}
+    recipe : mapping
+        The study's ``convergence``.
+    """
+    if problem == "richardson":
+        return richardson_trials(recipe["trials"], recipe["trial_cells"], seed=recipe["seed"])
+    return error_over_spacing(problem, recipe["cells"], recipe["placements"])
+
+
+def error_over_spacing(
+    problem: str, cells_per_radius: Sequence[int], placements: int
+) -> xr.Dataset:
+    """Error of a contact with a known solution against the number of cells across its radius.
+
+    The relative errors depend on no size or modulus: a paraboloid of radius of curvature 1 mm, or
+    a flat circular punch, is pressed until the contact radius is 0.1 mm, on E* = 1 MPa. The
+    discrete contact domain is a staircase whose area jumps with the position of the centre among
+    the nodes, so each error is the root mean square over ``placements`` x ``placements`` positions
+    within a cell.
+
+    Parameters
+    ----------
+    problem : {"hertz", "punch"}
     cells_per_radius : sequence of int
         Cells across the contact radius, a / s.
     placements : int
         Positions of the centre in each direction.
-    rtol : float
-        Tolerance of the solver.
 
     Returns
     -------
     Dataset
         On ``cells_per_radius``: ``force_error``, ``radius_error`` (of the disc as large as the
-        contact domain) and ``peak_pressure_error``, relative to the exact value. For each also
-        the order with which it falls with s, and the interval of the order: ``force_order``,
-        ``force_order_low``, ``force_order_high`` and so on.
+        contact domain) and, of Hertz's, ``peak_pressure_error``, relative to the exact value; at
+        the edge of a punch the pressure is infinite. For each also the order with which it falls
+        with s, and the interval of the order: ``force_order``, ``force_order_low``,
+        ``force_order_high`` and so on.
 
     Notes
     -----
-    F = 4/3 E* R^(1/2) w^(3/2), a^2 = R w, p0 = 2 E* a / (pi R).
+    Hertz: F = 4/3 E* R^(1/2) w^(3/2), a^2 = R w, p0 = 2 E* a / (pi R). Punch: F = 2 E* a w
+    (Boussinesq).
     """
-    return _convergence("hertz", cells_per_radius, placements, rtol)
-
-
-def punch_convergence(
-    cells_per_radius: Sequence[int] = (5, 10, 20, 40), *, placements: int = 4, rtol: float = 1e-6
-) -> xr.Dataset:
-    """Error of the flat circular punch against the number of cells across its radius.
-
-    As `hertz_convergence`, for ``force`` and ``radius``; the pressure at the edge is infinite.
-
-    Notes
-    -----
-    F = 2 E* a w (Boussinesq).
-    """
-    return _convergence("punch", cells_per_radius, placements, rtol)
-
-
-def _convergence(problem, cells_per_radius, placements, rtol):
     within_cell = (np.arange(placements) + 0.5) / placements - 0.5
     centres = [(y, x) for y in within_cell for x in within_cell]
     errors = [
-        np.sqrt(np.mean([np.square(_ERRORS[problem](n, c, rtol)) for c in centres], axis=0))
+        np.sqrt(np.mean([np.square(_ERRORS[problem](n, c, _RTOL)) for c in centres], axis=0))
         for n in cells_per_radius
     ]
     cells = np.asarray(cells_per_radius)
@@ -148,11 +149,7 @@ _TRIALS: dict[str, tuple[str | tuple[str, ...], str, str]] = {
 }
 
 
-#: Tolerance of the solves, far below the errors of the grid.
-_RTOL = 1e-7
-
-
-def richardson_trials(cases: int, cells: tuple[float, float], *, seed: int = 0) -> xr.Dataset:
+def richardson_trials(cases: int, cells: tuple[float, float], *, seed: int) -> xr.Dataset:
     """Trials of Richardson's extrapolation: values within their own error bar of the exact one.
 
     Every case has its own place of the centre among the nodes and its own, not whole, number of
@@ -180,7 +177,7 @@ def richardson_trials(cases: int, cells: tuple[float, float], *, seed: int = 0) 
         # The centre is a place, the same on every grid.
         errors = np.array(
             [
-                [_ERRORS[problem](ratio / k, centre / k, _RTOL) for k in (1, 2, 4)]
+                [_ERRORS[problem](ratio / k, centre / k, _TRIAL_RTOL) for k in (1, 2, 4)]
                 for ratio, centre in zip(ratios, centres, strict=True)
             ]
         )

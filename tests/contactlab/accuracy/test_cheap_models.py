@@ -36,24 +36,6 @@ def test_bearing_area_of_a_slope_is_the_closure(space, slope):
     assert np.isnan(cut.pressure[cut.in_contact]).all()
 
 
-def test_bearing_area_carries_a_force_at_the_hardness(space, slope):
-    force = 0.3 * SIDE * 3.0 * 500.0
-    cut = bearing_area(slope, space, force=force, hardness=500.0)
-    assert cut.force == pytest.approx(force)
-    assert cut.area == pytest.approx(force / 500.0)
-    same = bearing_area(slope, space, closure=cut.closure, hardness=500.0)
-    assert np.array_equal(same.in_contact, cut.in_contact)
-
-
-@pytest.mark.parametrize(
-    ("load", "words"),
-    [({"force": 1.0}, "give hardness="), ({"force": 1e9, "hardness": 1.0}, "the window carries")],
-)
-def test_bearing_area_says_what_it_cannot_carry(space, slope, load, words):
-    with pytest.raises(ValueError, match=words):
-        bearing_area(slope, space, **load)
-
-
 def test_winkler_settles_a_flat_block_as_the_half_space_does_in_the_mean(space):
     flat = np.zeros(space.shape)
     pressed = winkler(flat, space, closure=0.01)
@@ -68,14 +50,6 @@ def test_winkler_is_exact_on_a_slope(space, slope):
     depth = 0.25 + 0.5 / 60 - (np.arange(60) / 60)
     exact = foundation_modulus(space) * depth.clip(0).sum() * SIDE * (3.0 / 60)
     assert pressed.force == pytest.approx(exact)
-
-
-@pytest.mark.parametrize("closure", [1e-4, 0.01, 0.1])
-def test_winkler_by_force_is_winkler_by_closure(rough, closure):
-    space = HalfSpace(rough.shape, (1 / 64, 1 / 64), E_STAR)
-    by_closure = winkler(rough, space, closure=closure)
-    by_force = winkler(rough, space, force=by_closure.force)
-    assert by_force.closure == pytest.approx(closure, rel=1e-12)
 
 
 def test_rigid_cut_holds_the_elastic_contact(rough):

@@ -4,14 +4,16 @@ import numpy as np
 import pytest
 from ensembles import ensemble
 
-from contactlab.accuracy.convergence import hertz_convergence, punch_convergence
+from contactlab.accuracy.convergence import error_over_spacing
 from fractalcontact import HalfSpace, solve_contact
 from fractalcontact.surface.synthesis import self_affine
+
+CELLS = (5, 10, 20, 40)
 
 
 @pytest.fixture(scope="module")
 def hertz():
-    return hertz_convergence(placements=ensemble("placements"))
+    return error_over_spacing("hertz", CELLS, ensemble("placements"))
 
 
 def labelled(dataset):
@@ -32,7 +34,7 @@ def test_hertz_error_falls_at_its_order(hertz, name, order):
 
 
 def test_punch_error_falls_at_its_order():
-    punch = punch_convergence(placements=ensemble("placements"))
+    punch = error_over_spacing("punch", CELLS, ensemble("placements"))
     assert (np.diff(punch["force_error"]) < 0).all()
     assert punch["force_order"] == pytest.approx(1, abs=0.25)
     assert punch["force_order_low"] < punch["force_order"] < punch["force_order_high"]
@@ -40,7 +42,7 @@ def test_punch_error_falls_at_its_order():
 
 
 def test_hertz_order_needs_three_resolutions():
-    assert np.isnan(hertz_convergence((5, 8), placements=1)["force_order"])
+    assert np.isnan(error_over_spacing("hertz", (5, 8), 1)["force_order"])
 
 
 def test_every_variable_is_labelled(hertz):
