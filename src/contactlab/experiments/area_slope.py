@@ -11,7 +11,6 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from fractalcontact.core.intervals import mean_interval
 from fractalcontact.core.labels import cf_attrs
 from fractalcontact.mechanics import theory
 from fractalcontact.mechanics.area import AREA_SLOPE, CORRECTED_AREA_SLOPE, corrected_area
@@ -39,8 +38,7 @@ def area_slope(recipe: Mapping[str, Any], rtol: float = 1e-6) -> xr.Dataset:
     xr.Dataset
         ``kappa`` and ``corrected_kappa`` over (surface, seed, load), where ``load`` is
         p / (E* h'_rms); ``area_share`` and ``corrected_share`` of the same; ``rms_slope``
-        (surface, seed); ``mean_kappa`` and ``corrected_mean_kappa`` over the seeds, with ``_low``
-        and ``_high`` (95 %, Student's t) and ``_deviation``, over (surface, load).
+        (surface, seed).
 
     Notes
     -----
@@ -100,13 +98,5 @@ def _labelled(
     ):
         name = f"{prefix}share" if prefix else "area_share"
         result[name] = (dims, fractions, cf_attrs("1", f"A_r/A_0 ({prefix.strip('_') or 'raw'})"))
-        kappa = fractions / loads
-        result[f"{prefix}kappa"] = (dims, kappa, cf_attrs("1", words))
-        mean = mean_interval(kappa, axis=1)
-        text = f"mean over seeds of {words}"
-        result.update(mean.variables(f"{prefix}mean_kappa", (dims[0], dims[2]), "1", text))
-        result[f"{prefix}mean_kappa_deviation"] = result[f"{prefix}kappa"].std("seed", ddof=1)
-        result[f"{prefix}mean_kappa_deviation"].attrs = cf_attrs(
-            "1", f"standard deviation between seeds of {words}"
-        )
+        result[f"{prefix}kappa"] = (dims, fractions / loads, cf_attrs("1", words))
     return result
