@@ -86,7 +86,7 @@ def jobs_of(study: Mapping[str, Any], solver: Solver, source: str) -> dict[str, 
         minutes, priority = EXPERIMENTS[name]
         arguments = {"recipe": study[name]}
         if name == "roll_off":
-            arguments = resolve_roll_off(study, source) or {}
+            arguments = resolve_roll_off(study, source)
         elif name != "estimator_bias":
             arguments["rtol"] = solver.rtol
         jobs[f"{name}/surfaces"] = Job(

@@ -178,8 +178,6 @@ def test_joints_with_and_without_a_roll_off_follow_an_embedded_specimen(study):
     joints = resolve_roll_off(study, "paper")
     assert joints["window"] == 20
     assert joints["recipe"]["roll_off"] == 5
-    del study["roll_off"]
-    assert resolve_roll_off(study, "paper") is None
 
 
 LONG = "a" * 240

@@ -18,6 +18,7 @@ from fractalcontact.core.atomic import atomic_write
 from fractalcontact.core.errors import InputError, said_in_one_line
 from fractalcontact.study.atlas import read_atlas
 
+from ..experiments import size_decision
 from ..experiments.size_tasks import ARMS
 
 _TEMPLATE = Path(__file__).with_name("size_effect.md.jinja")
@@ -52,6 +53,7 @@ def page(test: xr.Dataset, study: str, strength: xr.Dataset | None = None) -> st
         study=study,
         strength=strength,
         ARMS=ARMS,
+        rule=size_decision,
         product=itertools.product,
         cells=_cells,
         counted=_counted,

@@ -15,15 +15,11 @@ from scipy import special
 
 from fractalcontact.core.estimate import Estimate
 from fractalcontact.core.labels import cf_attrs
+from fractalcontact.size_effect.size_verdict import NO_EFFECT as NO_EFFECT
+from fractalcontact.size_effect.size_verdict import WIDEST_PREDICTION as WIDEST_PREDICTION
 
 #: Probability covered by the intervals that decide, and by those that are only shown.
 PROBABILITY, USUAL = 0.99, 0.95
-
-#: An exponent whose whole interval is smaller than this is no size effect.
-NO_EFFECT = 0.02
-
-#: A prediction whose interval is wider than this, end to end, decides nothing.
-WIDEST_PREDICTION = 0.4
 
 #: Loads at which a class must follow eq. 6 before it is supported.
 SUPPORTING_LOADS = 3

@@ -241,7 +241,8 @@ def check_study(config: Mapping, schema: Mapping, source: str) -> None:
     for name, recipe in config.get("embedded", {}).items():
         resolve_embedded(recipe, f"{source}: embedded.{name}")
         _check_statements(recipe.get("chosen_for", {}), f"{source}: embedded.{name}")
-    resolve_roll_off(config, source)
+    if "roll_off" in config:
+        resolve_roll_off(config, source)
     _check_figures(config.get("figures", ()), source)
 
 

@@ -252,16 +252,14 @@ def resolve_embedded(recipe: Mapping, where: str) -> dict:
     return numbers
 
 
-def resolve_roll_off(config: Mapping, source: str) -> dict | None:
-    """Recipe, window (mm) and seeds of synthetic joints with and without a roll-off; or None.
+def resolve_roll_off(config: Mapping, source: str) -> dict:
+    """Recipe, window (mm) and seeds of synthetic joints with and without a roll-off.
 
     Raises
     ------
     InputError
         If the specimen named is not embedded or has no roll-off.
     """
-    if "roll_off" not in config:
-        return None
     stated, where = config["roll_off"], f"{source}: roll_off"
     embedded = config.get("embedded", {})
     name = stated["embedded"]
