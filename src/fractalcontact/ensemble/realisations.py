@@ -26,7 +26,7 @@ from ..mechanics.separation import ROUNDING
 from ..mechanics.states import MAP_GAP, forces_of, with_pressure
 from ..mechanics.sweep import contact_states
 from ..size_effect.division import solvable_parts, spread_windows
-from ..size_effect.size_exponents import size_exponent, usable_sizes
+from ..size_effect.size_exponents import of_usable_sizes, size_exponent
 from ..size_effect.size_law import QUANTITIES
 from ..size_effect.windows import solved_windows
 from ..surface.embedded import embedded_surface
@@ -234,10 +234,7 @@ def _size_exponents(loading: JointLoading[EnsembleSettings]) -> dict:
     places = [spread_windows(n, MAX_WINDOWS) for n in parts]
     table, values = {}, {}
     for exponent, (name, fewest, words) in EXPONENTS.items():
-        each = windows[name].values
-        positive = ((each > 0) | np.isnan(each)).all(axis=1)
-        usable = usable_sizes(windows["nodes"].values, fewest) & positive
-        each = np.where(usable[:, np.newaxis], each, np.nan)
+        each = of_usable_sizes(windows[name].values, windows["nodes"].values, fewest)
         values[exponent] = size_exponent(parts, windows["side"].values, each, places).value
         table[exponent] = ((), "1", f"exponent of {words} against b at equal sigma_0")
     return labelled(table, values)

@@ -12,7 +12,7 @@ from ..core.ranges import within
 from ..core.settings import Friction
 from ..mechanics.jrc import profile_roughness
 from .division import spread_windows
-from .size_exponents import add_size_exponents, usable_sizes
+from .size_exponents import add_size_exponents, of_usable_sizes
 from .strength_laws import add_slope_trends, strength_by_size
 from .window_means import add_law, add_mean, power_through
 
@@ -144,9 +144,7 @@ def _add_exponents(result: xr.Dataset, states: xr.Dataset) -> None:
             for kept in (*names_of(name), f"{name}_error"):
                 result[kept] = result[kept].where(~below)
         values = states[name].transpose(*dims)
-        positive = ((values > 0) | values.isnull()).all("window")
-        usable = usable_sizes(nodes.values, fewest) & positive.values
-        values = values.where(xr.DataArray(usable, dims=("part", *dims[2:])))
+        values = values.copy(data=of_usable_sizes(values.values, nodes.values, fewest))
         add_size_exponents(result, exponent, values, places, words)
     add_fitted(result)
     add_lines(result)

@@ -13,8 +13,8 @@ import xarray as xr
 
 from ..core.estimate import Estimate
 from ..core.intervals import t_quantile
-from ..core.labels import cf_attrs
 from ..core.ranges import within
+from .power_laws import add_exponents
 
 #: Disjoint top-level pieces that are left out in turn.
 QUARTERS = 4
@@ -38,6 +38,20 @@ def kept_fractions(parts: int, places: np.ndarray) -> np.ndarray:
     first = np.clip(parts / 2 - np.arange(parts), 0, 1)  # in the first half, along one side
     y, x = first[places // parts], first[places % parts]
     return 1 - np.array([y * x, y * (1 - x), (1 - y) * x, (1 - y) * (1 - x)])
+
+
+def of_usable_sizes(values: np.ndarray, nodes: np.ndarray, fewest: int) -> np.ndarray:
+    """Values (part, window, ...) of usable sizes whose own are all positive, NaN of others.
+
+    Parameters
+    ----------
+    values : (part, window, ...) ndarray
+    nodes, fewest
+        As for :func:`usable_sizes`.
+    """
+    positive = ((values > 0) | np.isnan(values)).all(axis=1)
+    usable = usable_sizes(nodes, fewest) & positive
+    return np.where(usable[:, np.newaxis], values, np.nan)
 
 
 def usable_sizes(nodes: np.ndarray, fewest: int) -> np.ndarray:
@@ -77,8 +91,8 @@ def size_exponent(
     Returns
     -------
     Estimate
-        Over the sides used, mm; NaN with fewer than two sizes, or where no size has several
-        windows.
+        Over the logarithms of the sides used, mm; NaN with fewer than two sizes, or where no size
+        has several windows.
 
     Notes
     -----
@@ -111,8 +125,7 @@ def size_exponent(
     slope, *replicates = lever @ means
     variance += (QUARTERS - 1) * float(np.var(replicates))
     half = float(t_quantile(QUARTERS - 1)) * variance**0.5
-    first, last = np.exp([x.min(), x.max()])
-    return Estimate(slope, slope - half, slope + half, len(used), (first, last))
+    return Estimate(slope, slope - half, slope + half, len(used), (x.min(), x.max()))
 
 
 def add_size_exponents(
@@ -127,8 +140,7 @@ def add_size_exponents(
     Parameters
     ----------
     result : xr.Dataset
-        With ``part`` and ``side``. Gets ``name`` with ``_low``, ``_high``, the number of sizes
-        ``_n`` and the smallest and largest b, ``_b_min`` and ``_b_max``.
+        With ``part`` and ``side``, filled as by :func:`size_effect.power_laws.add_exponents`.
     values : xr.DataArray (part, window, ...)
         NaN where a size is not used.
     places : sequence of (n,) int ndarray
@@ -139,12 +151,8 @@ def add_size_exponents(
     values = values.transpose("part", "window", ...)
     dims, rows = values.dims[2:], values.values
     parts, sides = result["part"].values.tolist(), result["side"].values
-    each = (
+    each = [
         size_exponent(parts, sides, rows[(slice(None), slice(None), *index)], places)
         for index in np.ndindex(rows.shape[2:])
-    )
-    found = Estimate.stack(each, rows.shape[2:])
-    result.update(found.variables(name, dims, "1", words))
-    result[f"{name}_n"] = (dims, found.n, cf_attrs("1", f"{words}, sizes used"))
-    result[f"{name}_b_min"] = (dims, found.over[0], cf_attrs("mm", "smallest b used"))
-    result[f"{name}_b_max"] = (dims, found.over[1], cf_attrs("mm", "largest b used"))
+    ]
+    add_exponents(result, name, each, dims, words, "sizes used")

@@ -10,7 +10,7 @@ import xarray as xr
 from ..core.datasets import labelled_dataset
 from ..core.intervals import mean_interval
 from ..core.limits import CORRECTED_NODES, RESOLVED_NODES
-from .size_exponents import add_size_exponents, usable_sizes
+from .size_exponents import add_size_exponents, of_usable_sizes, usable_sizes
 
 #: Quantities of sub-windows: name, exponent, fewest nodes of every window of a size, what it is.
 QUANTITIES = {
@@ -76,10 +76,8 @@ def size_law(states: xr.Dataset) -> xr.Dataset:
         coords={"part": states["part"]},
     ).assign(side=states["side"])
     for name, (exponent, fewest, words) in QUANTITIES.items():
-        values = tested[name].transpose(*dims).drop_vars("normal_force", errors="ignore")
-        positive = (values > 0) | values.isnull()
-        usable = usable_sizes(nodes.values, fewest) & positive.all("window").values
-        values = values.where(xr.DataArray(usable, dims=("part", "normal_force")))
+        values = tested[name].transpose(*dims)
+        values = values.copy(data=of_usable_sizes(values.values, nodes.values, fewest))
         mean = mean_interval(values.values, axis=1).mapped(np.transpose)
         units = tested[name].attrs["units"]
         result.update(mean.variables(name, _OF_SIZE, units, f"mean {words} of sub-windows"))
