@@ -149,7 +149,7 @@ def add_size_exponents(
         What the exponent is of.
     """
     values = values.transpose("part", "window", ...)
-    dims, rows = values.dims[2:], values.values
+    dims, rows = tuple(map(str, values.dims[2:])), values.values
     parts, sides = result["part"].values.tolist(), result["side"].values
     each = [
         size_exponent(parts, sides, rows[(slice(None), slice(None), *index)], places)
