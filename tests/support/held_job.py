@@ -1,4 +1,6 @@
-"""On the PYTHONPATH of a study whose jobs are to be caught in mid-work: see held_faults.py.
+"""What every interpreter of a study does first whose jobs are to be caught in mid-work.
+
+held_faults.py writes it above workflow/scripts/sitecustomize.py.
 
 A job whose rule has an order in the folder HELD_JOBS stands still for as long as the order says
 "hold"; "memory 2000" makes it take 2000 MB more than it needs, and go on. The rule of a job is the
