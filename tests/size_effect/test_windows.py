@@ -11,6 +11,7 @@ from stated import read_faces
 from symmetries import LENGTH, STRESS, differences, grown, with_axes_exchanged
 
 from fractalcontact.core.estimate import Estimate
+from fractalcontact.core.fitting import fit_line
 from fractalcontact.core.mean_plane import without_mean_plane
 from fractalcontact.core.settings import Friction, Material, Solver, StrengthSettings
 from fractalcontact.core.window import window_sides
@@ -255,6 +256,44 @@ def test_a_trend_is_one_only_where_the_interval_of_its_exponent_says_so(laws):
     np.testing.assert_array_equal(trend == "rising", low > 0)
 
 
+def slid_by(states, opening):
+    """States without closure whose rigid opening is a function of v and b, mm."""
+    made = climbing(states, [1.0] * 4)
+    openings = opening(made["offset"], made["side"]).broadcast_like(made["rigid_opening"])
+    made["rigid_opening"] = openings.transpose("part", "window", "offset").where(
+        states["rigid_opening"].notnull()
+    )
+    return size_laws(made, ROCK, 12.0, DIMENSION)
+
+
+def test_a_slope_that_falls_with_v_alone_falls_with_b_at_one_v_over_b_and_not_at_one_v(states):
+    found = slid_by(states, lambda v, b: 0.3 * v**0.6 + 0 * b)
+    known = found["slope_at_equal_v_over_b_exponent"].notnull()
+    assert known.any()
+    assert (found["slope_at_equal_v_over_b_exponent_high"].where(known, -1) < 0).all()
+    whole, slope = found["slope_of_whole_at_equal_v"], found["slope_at_equal_v_over_b"]
+    np.testing.assert_allclose(slope.where(whole.notnull()), whole.transpose(*slope.dims))
+    at_one_v = found["slope_at_equal_v_exponent"]
+    np.testing.assert_allclose(at_one_v.where(at_one_v.notnull(), 0), 0, atol=1e-9)
+    assert set(found["slope_at_equal_v_trend"].values[at_one_v.notnull()]) == {"level"}
+
+
+def test_a_slope_that_falls_with_b_falls_at_one_v_too(states):
+    found = slid_by(states, lambda v, b: 0.3 * v * b**-0.4)
+    at_one_v = found["slope_at_equal_v_exponent"]
+    known = at_one_v.notnull().values
+    assert known.any()
+    np.testing.assert_allclose(at_one_v.values[known], -0.4)
+    assert set(found["slope_at_equal_v_trend"].values[known]) == {"falling"}
+
+
+def test_sizes_in_fewer_than_three_steps_of_sliding_have_no_law_at_one_v_over_b(states):
+    found = size_laws(states.isel(offset=[0, 5]), ROCK, 12.0, DIMENSION)
+    assert np.isfinite(found["slope_at_equal_v_over_b"]).any()
+    for name in ("slope_at_equal_v_over_b_exponent", "strength_at_equal_v_over_b_exponent"):
+        assert np.isnan(found[name]).all(), name
+
+
 def test_a_self_similar_climb_has_one_strength_at_one_share_of_the_side(states):
     # delta = b f(v/b): larger in all its lengths, so that sizes differ at one v but not at one v/b.
     made = states.copy(deep=True)
@@ -296,12 +335,28 @@ def test_no_exponent_goes_through_strengths_held_at_their_bound(states):
     np.testing.assert_allclose(found["strength_exponent"], 0, atol=1e-9)
     np.testing.assert_array_equal(found["strength_exponent_n"], 3)
     np.testing.assert_array_equal(found["truncated_fraction_at_peak"].sel(part=8), 1)
-    assert (found["strength_at_equal_v_over_b_exponent_n"] <= 3).all()
     # Where two sizes are left there is no exponent, though all have a strength.
     found = size_laws(climbing(states, [0.5, 0.5, 1.0, 1.0]), ROCK, 12.0, DIMENSION)
-    for name in ("strength_exponent", "strength_at_equal_v_over_b_exponent"):
-        assert np.isnan(found[name]).all(), name
+    assert np.isnan(found["strength_exponent"]).all()
     assert np.isfinite(found["peak_strength"]).all()
+
+
+def test_bounds_at_small_sizes_bound_the_exponent_at_one_v_over_b_from_above(states):
+    # The strengths of the two small sizes are bounds, whatever lies beyond.
+    slopes = [0.2, 0.5, 1.0, 1.0]
+    found = size_laws(climbing(states, slopes), ROCK, 12.0, DIMENSION).isel(share=-1)
+    name = "strength_at_equal_v_over_b_exponent"
+    assert np.isneginf(found[f"{name}_low"]).all()
+    strength = [np.tan(np.radians(min(30 + np.degrees(np.arctan(s)), 70))) for s in slopes]
+    most = fit_line(np.log(found["side"].values), np.log(strength)).slope
+    np.testing.assert_allclose(found[name], most.value)
+    np.testing.assert_allclose(found[f"{name}_high"], most.high)
+    steeper = np.polyfit(np.log(found["side"].values), np.log(strength * np.array([1, 1, 1, 9])), 1)
+    assert steeper[0] < most.value
+    # A bound at a size beyond the middle bounds nothing from above, and is left out.
+    found = size_laws(climbing(states, [0.5, 1.0, 0.5, 0.5]), ROCK, 12.0, DIMENSION)
+    np.testing.assert_array_equal(found[f"{name}_n"].isel(share=-1), 3)
+    np.testing.assert_allclose(found[name].isel(share=-1), 0, atol=1e-9)
 
 
 def test_one_held_sub_window_of_many_takes_its_size_out_of_the_fit(states):

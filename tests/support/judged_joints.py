@@ -4,6 +4,7 @@ import numpy as np
 import xarray as xr
 
 from fractalcontact.core.reported import Reported
+from fractalcontact.core.verdicts import FALLING
 from fractalcontact.domain.cluster_laws import localisation
 from fractalcontact.mechanics.plateau import opposite_parts, rigid_plateaus, undecided_plateaus
 
@@ -89,7 +90,8 @@ def stages(**changes):
         "eq6_half": 0.05,
         "beyond": [False, False],
         "strength_exponent": np.full((2, 1), -0.3),
-        "held": np.zeros((2, 1)),
+        "bounded": False,
+        "equal_v_exponent": -0.3,
         "length": 0.5,
         "uncorrelated": 2.0,
     } | changes
@@ -154,15 +156,14 @@ def stages(**changes):
         windows[f"area_exponent{end}"] = (("offset", "normal_force"), density)
         windows[f"strength_at_equal_v_over_b_exponent{end}"] = (
             ("share", "normal_force"),
-            values["strength_exponent"] + by,
+            np.asarray(-np.inf if values["bounded"] and by < 0 else by)
+            + values["strength_exponent"],
         )
+        at_one_v = np.full((2, 1), values["equal_v_exponent"] + by / 2)
+        windows[f"slope_at_equal_v_exponent{end}"] = ("share", "normal_force"), at_one_v
     windows["closure_exponent"] = ("offset", "normal_force"), np.full((len(V), 1), 0.5)
-    of_parts = ("share", "part", "normal_force")
-    windows["strength_at_equal_v_over_b"] = of_parts, np.ones((2, 3, 1))
-    windows["truncated_fraction_at_equal_v_over_b"] = (
-        of_parts,
-        np.repeat(np.asarray(values["held"])[:, np.newaxis], 3, 1),
-    )
+    trend = FALLING if values["equal_v_exponent"] < -0.05 else ""
+    windows["slope_at_equal_v_trend"] = ("share", "normal_force"), np.full((2, 1), trend)
     slid = slid.assign(rigid_plateaus(RIGID, values["dilatancy"], [*"WENS"]))
     lost = np.full(4, values["uncorrelated"])
     slid = slid.assign(undecided_plateaus(RIGID, slid["face_correlation"].values, lost))

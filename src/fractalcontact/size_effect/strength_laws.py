@@ -1,5 +1,6 @@
 """Shear strength over the side b of a joint, at one v and at one v/b (sect. 5)."""
 
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -8,12 +9,12 @@ from numpy.typing import ArrayLike
 
 from ..core.datasets import labelled
 from ..core.estimate import Estimate
-from ..core.fitting import MIN_POINTS
+from ..core.fitting import MIN_POINTS, fit_line
 from ..core.intervals import mean_interval
 from ..core.labels import cf_attrs
-from ..core.limits import JRC_RANGE, LARGEST_FRICTION_ANGLE, MOSTLY_TRUNCATED
+from ..core.limits import JRC_RANGE, LARGEST_FRICTION_ANGLE, MOSTLY_TRUNCATED, NEARLY
 from ..core.settings import Friction
-from ..core.verdicts import FALLING, RISING
+from ..core.verdicts import FALLING, LEVEL, RISING
 from ..mechanics.strength import (
     FIELDS,
     angles_with_errors,
@@ -24,6 +25,7 @@ from ..mechanics.strength import (
     strength_with_error,
 )
 from ..mechanics.theory import barton_strength, scaled_joint
+from .power_laws import add_exponents
 from .window_means import add_law, add_mean, power_through
 
 #: Offsets, as fractions of the side b, at which sizes are compared. Barton and Bandis put the peak
@@ -54,15 +56,21 @@ def strength_by_size(states: xr.Dataset, material: Friction, roughness: float) -
         At offsets in proportion to the size, v = (v/b) b, over (share, part, load): mean
         ``strength_at_equal_v_over_b`` and ``slope_at_equal_v_over_b`` (d delta/dv, not truncated),
         ``truncated_fraction_at_equal_v_over_b`` (the fraction of sub-windows whose angle was
-        truncated there) and their exponents (share, load). ``share`` holds the fractions v/b.
-        Besides those of :func:`with_slope_angles`.
+        truncated there) and their exponents (share, load), where the v of the sizes lie in three
+        steps of sliding or more. ``share`` holds the fractions v/b. ``slope_of_whole_at_equal_v``
+        (share, part, load) is the slope of the whole window at the same v, and
+        ``slope_at_equal_v_exponent`` (share, load) the exponent against b of the slope of the
+        sub-windows over it. Besides those of :func:`with_slope_angles`.
 
     Notes
     -----
-    A strength whose angle is truncated is a bound, and its size says nothing: no exponent is fitted
-    to a size of which a sub-window is truncated. ``peak_dilatancy_angle`` then says something. At
-    one v a large sub-window is at an earlier stage of its sliding than a small one; only at one v/b
-    are they alike. There a self-affine face has d delta/dv ~ b^(H - 1), which falls with size.
+    A strength whose angle is truncated is a lower bound. No exponent of peaks is fitted to a size
+    of which a sub-window is truncated; ``peak_dilatancy_angle`` then says something. At one v/b the
+    exponent is the largest that the bounds allow, and its interval has no lower end.
+
+    At one v/b both v and b grow, and a face without any effect of size has the slopes of its whole
+    window at these v: ``slope_at_equal_v_exponent`` is then 0. A self-affine face has
+    d delta/dv ~ v^(H - 1), which at one v/b falls as b^(H - 1).
 
     The largest of several noisy values grows with their noise, which is larger in a small
     sub-window, so part of any size effect on a peak is scatter itself, as in a laboratory.
@@ -101,18 +109,20 @@ def strength_by_size(states: xr.Dataset, material: Friction, roughness: float) -
         attrs = cf_attrs(*_SIMILAR[name])
         mean_of = xr.DataArray(values, dims=("share", *_DIMS), attrs=attrs)
         add_mean(result, name, mean_of, mean_of.copy(data=errors))
+    _add_whole_window(result, side, offset, slopes[0])
     attrs = cf_attrs("1", "offset as a fraction of the side, v/b")
     result["share"] = ("share", np.array(OFFSET_FRACTIONS), attrs)
     # Missing sub-windows, NaN, are truncated nowhere.
-    bounds = {
-        "strength_at_equal_v_over_b": (_at_fractions(offset, side.values, bound) > 0).any(axis=2),
-        "peak_strength": (peak(midpoint, truncated)[0] > 0).any(axis=1),
+    bounded = np.any(_at_fractions(offset, side.values, bound) > 0, axis=2)
+    apart = xr.DataArray(_in_three_steps(offset, side.values), dims="share")
+    _add_largest(result, side, result["strength_at_equal_v_over_b"].where(apart), bounded)
+    unbounded = result["peak_strength"].copy(data=~(peak(midpoint, truncated)[0] > 0).any(axis=1))
+    fitted = {
+        "slope_at_equal_v_over_b_exponent": result["slope_at_equal_v_over_b"].where(apart),
+        "strength_exponent": result["peak_strength"].where(unbounded),
     }
-    for name, exponent in _EXPONENTS.items():
-        fitted = result[name]
-        if name in bounds:
-            fitted = fitted.where(fitted.copy(data=~bounds[name]))
-        add_law(result, exponent, side, fitted, f"exponent of {name} against b")
+    for exponent, values in fitted.items():
+        add_law(result, exponent, side, values, f"exponent of {values.name} against b")
     of_truncated = {
         "truncated_fraction_at_peak": mean_interval(peak(midpoint, truncated)[0], axis=1).value,
         "truncated_fraction_at_equal_v_over_b": mean_interval(
@@ -168,17 +178,20 @@ def add_slope_trends(laws: xr.Dataset) -> None:
     Parameters
     ----------
     laws : xr.Dataset
-        Of :func:`size_effect.laws.size_laws`: gets ``slope_at_equal_v_over_b_trend`` (share,
-        normal_force) and ``slope_at_equal_v_over_b_expected`` (share, part), b^(H - 1) through the
-        mean over the loads of the sizes whose slopes are all positive, if three are.
+        Of :func:`size_effect.laws.size_laws`: gets ``slope_at_equal_v_over_b_trend`` and
+        ``slope_at_equal_v_trend`` (share, normal_force), of which the second may be level, and
+        ``slope_at_equal_v_over_b_expected`` (share, part), b^(H - 1) through the mean over the
+        loads of the sizes whose slopes are all positive, if three are.
     """
-    exponent = Estimate.read(laws, "slope_at_equal_v_over_b_exponent")
-    trend = np.where(exponent.high < 0, FALLING, np.where(exponent.low > 0, RISING, ""))
-    attrs = cf_attrs("1", f"{RISING}, {FALLING}, or empty where the exponent leaves it open")
-    laws["slope_at_equal_v_over_b_trend"] = laws["slope_at_equal_v_over_b_exponent"].copy(
-        data=trend
+    attrs = cf_attrs(
+        "1", f"{RISING}, {FALLING}, {LEVEL}, or empty where the exponent leaves it open"
     )
-    laws["slope_at_equal_v_over_b_trend"].attrs = attrs
+    for of, margin in (("slope_at_equal_v_over_b", -1.0), ("slope_at_equal_v", NEARLY)):
+        exponent = Estimate.read(laws, f"{of}_exponent")
+        trend = np.where(exponent.high < 0, FALLING, np.where(exponent.low > 0, RISING, ""))
+        level = np.maximum(abs(exponent.low), abs(exponent.high)) <= margin
+        laws[f"{of}_trend"] = laws[f"{of}_exponent"].copy(data=np.where(level, LEVEL, trend))
+        laws[f"{of}_trend"].attrs = attrs
     slope = laws["slope_at_equal_v_over_b"]
     everywhere = slope.where((slope > 0).all("normal_force"))
     middle = xr.ufuncs.exp(xr.ufuncs.log(everywhere).mean("normal_force"))
@@ -206,13 +219,6 @@ _DIMS = ("part", "window", "normal_force")
 _SIMILAR = {
     "strength_at_equal_v_over_b": ("MPa", "shear strength at one v/b"),
     "slope_at_equal_v_over_b": ("1", "slope d delta/dv at one v/b"),
-}
-
-#: Exponents against b by what they are of.
-_EXPONENTS = {
-    "strength_at_equal_v_over_b": "strength_at_equal_v_over_b_exponent",
-    "slope_at_equal_v_over_b": "slope_at_equal_v_over_b_exponent",
-    "peak_strength": "strength_exponent",
 }
 
 _TRUNCATED_FRACTION = f"fraction of sub-windows truncated at {LARGEST_FRICTION_ANGLE:g} degrees"
@@ -265,6 +271,64 @@ def _dilatancy_curves(states: xr.Dataset) -> tuple[np.ndarray, np.ndarray, np.nd
         offset, curve = from_flush(offset, curve)
         curve[:1][absent] = error[:1][absent] = np.nan
     return offset, curve, error
+
+
+def _add_largest(
+    result: xr.Dataset, side: xr.DataArray, strength: xr.DataArray, bounded: np.ndarray
+) -> None:
+    """Exponent of strengths (share, part, load), some of them lower bounds, into ``result``.
+
+    A line falls faster as values left of its middle rise. So a fit with bounds at small sizes is
+    the largest exponent that they allow; those at sizes beyond the middle are left out.
+    """
+    x, dims = np.log(side.values), ("share", "normal_force")
+    values = strength.transpose(*dims, "part").values
+    at_least = np.moveaxis(bounded, 1, 2)
+    exponents = []
+    for index in np.ndindex(values.shape[:-1]):
+        kept = values[index] > 0
+        while (beyond := kept & at_least[index] & (kept.sum() * x > x[kept].sum())).any():
+            kept &= ~beyond
+        slope = fit_line(x[kept], np.log(values[index][kept])).slope
+        held = slope.known and at_least[index][kept].any()
+        exponents.append(replace(slope, low=-np.inf) if held else slope)
+    name = "strength_at_equal_v_over_b"
+    words = f"exponent of {name} against b, the largest where angles are truncated"
+    add_exponents(result, f"{name}_exponent", exponents, dims, words, "sizes fitted")
+
+
+def _add_whole_window(
+    result: xr.Dataset, side: xr.DataArray, offset: np.ndarray, slopes: np.ndarray
+) -> None:
+    """Slope of the whole window at the v of each size, and the sub-windows' over it.
+
+    Parameters
+    ----------
+    result : xr.Dataset
+        With ``slope_at_equal_v_over_b``.
+    offset : (n,) ndarray
+        mm.
+    slopes : (n - 1, part, window, load) ndarray
+        Part 1 is the whole window.
+    """
+    of_sizes = result["slope_at_equal_v_over_b"]
+    of_whole = np.repeat(slopes[:, :1, :1], side.size, axis=1)
+    whole = of_sizes.copy(data=_at_fractions(offset, side.values, of_whole)[:, :, 0])
+    words = "slope d delta/dv of the whole window at the v of each size"
+    result["slope_of_whole_at_equal_v"] = whole.assign_attrs(cf_attrs("1", words))
+    ratio = (of_sizes / whole.where(whole > 0)).where(side < side.max())
+    words = "exponent against b of the slope of sub-windows over that of the whole window at one v"
+    add_law(result, "slope_at_equal_v_exponent", side, ratio, words)
+
+
+def _in_three_steps(offset: np.ndarray, side: np.ndarray) -> np.ndarray:
+    """True (share,) where the v of the sizes lie in three steps of sliding or more.
+
+    In two steps a law would be the one difference between them.
+    """
+    step = np.arange(offset.size - 1.0)[:, np.newaxis, np.newaxis, np.newaxis]
+    steps = _at_fractions(offset, side, np.repeat(step, side.size, axis=1))[:, :, 0, 0]
+    return np.array([np.unique(of[np.isfinite(of)]).size >= MIN_POINTS for of in steps], bool)
 
 
 def _by_barton(states: xr.Dataset, material: Friction, roughness: float) -> dict[str, np.ndarray]:

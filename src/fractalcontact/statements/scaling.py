@@ -7,7 +7,7 @@ from ..core.estimate import Estimate
 from ..core.fitting import MIN_POINTS
 from ..core.labels import loads_of
 from ..core.limits import NEAR_FULL, NEAR_POINTS
-from ..core.verdicts import FAILS, HOLDS, PARTLY, UNDETERMINED
+from ..core.verdicts import FAILS, FALLING, HOLDS, PARTLY, UNDETERMINED
 from .evidence import ESTIMATES, Evidence, Trend, at_reference, of_a_kind
 from .findings import (
     Finding,
@@ -254,41 +254,40 @@ def larger_domains_are_less_dense(joint: Joint, evidence: Evidence) -> Finding:
 
 
 def strength_falls_with_size(joint: Joint) -> Finding:
-    """Exponents of shear strength against window size, at equal v/b and all loads.
+    """Exponents of shear strength against window size at equal v/b, and of dilatancy at equal v.
 
-    Sizes with a truncated dilatancy angle are left out; at least three sizes must remain.
+    At equal v/b a larger window has also slid farther. So the claim holds only where the slope of
+    the dilatancy falls with size at equal v too, and in part where it does not. A truncated angle
+    makes a strength a lower bound; exponents are then the largest that the bounds allow.
     """
     windows = joint["windows"]
-    order = ("share", "normal_force")
-    exponent = Estimate.read(windows.transpose(*order, ...), "strength_at_equal_v_over_b_exponent")
-    value, low, high = exponent.ends
-    sizes = windows["strength_at_equal_v_over_b"].notnull().sum("part").transpose(*order).values
-    truncated = (
-        (windows["truncated_fraction_at_equal_v_over_b"] > 0).any("part").transpose(*order).values
-    )
-    cases = sizes >= MIN_POINTS
-    if not cases.any():
-        return Finding(UNDETERMINED, "no v/b has three sizes of window to compare")
-    known = cases & ~truncated & np.isfinite(value)
-    exponents = _exponents(value, low, high, known)
-    if 2 * known.sum() <= cases.sum():
-        bounded = int((cases & truncated).sum())
-        bound = f"angles are truncated at {bounded} of {cases.sum()} pairs of v/b and F"
-        return Finding(UNDETERMINED, bound, exponents)
-    falls, rises = int((high[known] < 0).sum()), int((low[known] > 0).sum())
-    if falls == known.sum() or rises == known.sum():
-        return Finding(HOLDS if falls else FAILS, exponents)
+    strength = Estimate.read(windows, "strength_at_equal_v_over_b_exponent")
+    strength = strength[np.isfinite(strength.value)]
+    cases = strength.value.size
+    if not cases:
+        return Finding(UNDETERMINED, "no v/b has three sizes of window in three steps of sliding")
+    falls, rises = int((strength.high < 0).sum()), int((strength.low > 0).sum())
+    slope = Estimate.read(windows, "slope_at_equal_v_exponent")
+    slope = slope[np.isfinite(slope.value)]
+    at_one_v = slope.value.size
+    falls_at_one_v = int((windows["slope_at_equal_v_trend"] == FALLING).sum())
     # Where nothing is sure in some cases, those that are decide.
-    return Finding(PARTLY if falls else FAILS if rises else UNDETERMINED, exponents)
-
-
-def _exponents(value, low, high, known):
-    """Exponents of strength in words; empty without any."""
-    if not known.any():
-        return ""
-    ends = " to ".join(dict.fromkeys(f"{e:.2f}" for e in (value[known].min(), value[known].max())))
-    falls, rises = int((high[known] < 0).sum()), int((low[known] > 0).sum())
-    return (
-        f"tau ~ b^x at equal v/b, x = {ends}: by its interval tau falls in {falls or 'none'} of "
-        f"{known.sum()} cases and rises in {rises or 'none'}"
+    verdict = PARTLY if falls else FAILS if rises else UNDETERMINED
+    if falls == cases and at_one_v and falls_at_one_v == at_one_v:
+        verdict = HOLDS
+    at_v = f"falls in {falls_at_one_v or 'none'} of {at_one_v}" if at_one_v else "has no law"
+    bounded = int(np.isneginf(strength.low).sum())
+    return Finding(
+        verdict,
+        f"at equal v/b tau falls with b in {falls or 'none'} of {cases} cases"
+        f"{f' and rises in {rises}' if rises else ''}; at equal v the dilatancy slope {at_v}",
+        f"x = {_ends(strength)} at equal v/b"
+        f"{f', bounds from above in {bounded} cases with truncated angles' if bounded else ''}"
+        f"{f'; {_ends(slope)} of the slope at equal v' if at_one_v else ''}",
     )
+
+
+def _ends(exponents: Estimate) -> str:
+    """Least and largest exponent in words."""
+    ends = (exponents.value.min(), exponents.value.max())
+    return " to ".join(dict.fromkeys(f"{end:.2f}" for end in ends))

@@ -15,7 +15,7 @@ from .points import draw_points
 from .words import length_unit, short
 
 #: Legend of means whose friction angle is truncated in most sub-windows.
-TRUNCATED = f"hollow: most angles truncated at {LARGEST_FRICTION_ANGLE:g}°, excluded"
+TRUNCATED = f"hollow: a lower bound, most angles truncated at {LARGEST_FRICTION_ANGLE:g}°"
 #: What the legends of :func:`draw_over_size` declare.
 BARS = "bars: 95 % intervals; the whole window has none"
 SHIFTED = "pressures at one $b$ are drawn side by side"
@@ -112,8 +112,10 @@ def name_exponents(axes: Axes, laws: xr.Dataset, name: str, of: str) -> None:
     for j, pressure in enumerate(laws["nominal_pressure"].values):
         # A wide interval too shows the sign that the caption states.
         missing = "no fit (truncated)" if truncated[j] else "no fit"
-        words = f"{exponents[j]:z.2f}" if exponents[j].known else missing
-        label = rf"$\sigma_0$ = {short(pressure)} MPa: ${of}\sim b^x$, $x$ = {words}"
+        words = f"= {exponents[j]:z.2f}" if exponents[j].known else f": {missing}"
+        if np.isneginf(exponents[j].low):
+            words = f"below {exponents[j].high:z.2f}"
+        label = rf"$\sigma_0$ = {short(pressure)} MPa: ${of}\sim b^x$, $x$ {words}"
         axes.plot([], [], ls="none", label=label, **series(j))
 
 

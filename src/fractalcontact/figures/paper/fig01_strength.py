@@ -51,10 +51,12 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     legends_below(figure, entries(strength), entries(slope))
     headline(figure, subject.label, place(str(laws["direction"].values)))
     known = drawn["slope_at_equal_v_over_b_exponent"].notnull()
+    at_one_v = drawn["slope_at_equal_v_exponent"].values
     words = caption(
         __name__,
         share=float(drawn["share"]),
         trends=drawn["slope_at_equal_v_over_b_trend"].values[known].tolist(),
+        at_one_v=sorted(at_one_v[np.isfinite(at_one_v)]),
         lost=int((drawn["slope_at_equal_v_over_b"] <= 0).sum()),
         claim=claim(atlas, name, "strength_falls_with_size"),
     )
@@ -85,6 +87,13 @@ def _draw_slope(axes, laws):
     b = laws["side"].values
     slopes = laws["slope_at_equal_v_over_b"].transpose("part", "normal_force").values
     draw_over_size(axes, laws, "slope_at_equal_v_over_b")
+    whole = laws["slope_of_whole_at_equal_v"].transpose("normal_force", "part")
+    for j, line in enumerate(whole.where(whole > 0).values):
+        axes.plot(b, line, color=series(j)["color"], lw=0.8)
+    if (whole > 0).any():
+        axes.plot(
+            [], [], color="0.4", lw=0.8, label="whole window at the same $v$: no effect of $b$"
+        )
     name_exponents(axes, laws, "slope_at_equal_v_over_b_exponent", r"d\delta/dv")
     expected, line = (
         float(laws["expected_hurst"]) - 1,
@@ -108,6 +117,7 @@ def _table(laws):
     means = (
         "strength_at_equal_v_over_b",
         "slope_at_equal_v_over_b",
+        "slope_of_whole_at_equal_v",
         "truncated_fraction_at_equal_v_over_b",
     )
     laws = laws.compute().transpose("normal_force", "share", "part", ...)
