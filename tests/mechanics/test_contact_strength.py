@@ -73,6 +73,12 @@ def test_a_solved_joint_of_saw_teeth_has_their_strength():
         np.testing.assert_allclose(tau, 5 * np.tan(np.radians(expected)), rtol=1e-4)
         assert (found["contact_truncated"] == (angle > 40)).all()
         assert (found["peak_contact_strength"] == tau.max()).all()
+        # What is truncated is a bound, whose interval does not pass it.
+        assert (found["peak_contact_valid"] == (angle < 40)).all()
+        reason = found["peak_contact_reason"].item()
+        assert reason == "" if angle < 40 else reason.startswith(f"at least {tau.max().item():.3g}")
+        bound = 5 * np.tan(np.radians(70))
+        assert not (found["peak_contact_strength_high"] > bound * (1 + 1e-6)).any()
 
 
 def test_flat_faces_have_the_basic_friction_angle():
@@ -121,3 +127,16 @@ def test_no_friction_angle_is_no_strength():
     found = contact_strength(dips, np.array([5.0]), np.nan)
     assert np.isnan(found["contact_strength"]).all()
     assert np.isnan(found["contact_truncated"]).all()
+
+
+def test_an_interval_ends_where_every_angle_is_truncated():
+    dims = ("offset", "normal_force", "dip_step", "force_part")
+    dips = np.zeros((1, 1, 2, PARTS))
+    dips[..., 0, :] = 39
+    found = contact_strength(xr.DataArray(dips, dims=dims), np.array([5.0]), BASIC)
+    ends = found["peak_contact_strength_low"], found["peak_contact_strength_high"]
+    half = 5 * (np.tan(np.radians(BASIC + 39)) - np.tan(np.radians(BASIC)))
+    most = 5 * np.tan(np.radians(70))
+    peak = 5 * np.tan(np.radians(BASIC + 39))
+    np.testing.assert_allclose(np.ravel(ends), [peak - half, most])
+    assert half + peak > most

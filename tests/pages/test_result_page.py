@@ -518,8 +518,13 @@ def test_the_first_screen_says_what_no_interval_holds(results):
     assert fact.notes == [
         "range of 3 rules:",
         *("Barton 18.9", "dilatancy 26.8", "contact 45.5"),
-        "no value by: Barton and Bandis",
+        "no value by Barton and Bandis: JRC_n is above 20",
     ]
+    bound = "at least 45.5 MPa, with 98 % of the force at angles truncated at 70 degrees"
+    card["entries"]["contact_strength"] = {"values": [{"missing": bound, "at": at}]}
+    fact = facts_of(card)[-1]
+    assert fact.words == "18.9 to 26.8 MPa"
+    assert f"no value by contact: {bound}" in fact.notes
     contact = number | {"value": 0.0333, "low": 0.033, "high": 0.034, "hardest": 0.0111}
     of_surface = {"interval": "all errors of this surface", "values": [contact]}
     card["entries"] |= {

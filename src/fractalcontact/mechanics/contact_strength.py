@@ -11,7 +11,8 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from ..core.datasets import labelled
-from ..core.limits import LARGEST_FRICTION_ANGLE
+from ..core.estimate import Estimate
+from ..core.limits import LARGEST_FRICTION_ANGLE, MOSTLY_TRUNCATED
 from ..core.window import faces, window_slices
 from .joint import DIRECTION_STEPS, direction_spacing, sliding_axis
 
@@ -43,8 +44,15 @@ TABLE = {
         "MPa",
         "largest shear strength from the contact itself over the offsets",
     ),
-    "peak_contact_strength_grid_error": (("normal_force",), "MPa", "grid error of it"),
+    "peak_contact_strength_low": (
+        ("normal_force",),
+        "MPa",
+        "lower end of it by the change of slopes over twice the spacing",
+    ),
+    "peak_contact_strength_high": (("normal_force",), "MPa", "upper end, at most by that angle"),
     "peak_contact_truncated": (("normal_force",), "1", "fraction of the force truncated there"),
+    "peak_contact_valid": (("normal_force",), "1", "at most half of the force is truncated there"),
+    "peak_contact_reason": (("normal_force",), "1", "why the peak is a lower bound and no result"),
 }
 
 
@@ -185,13 +193,27 @@ def contact_strength(dips: xr.DataArray, pressure: np.ndarray, angle: float) -> 
     error = np.abs(twice - tau)
     at = np.where(np.isnan(tau), -np.inf, tau).argmax(axis=0)
     peaks = [one[at, np.arange(tau.shape[1])] for one in (tau, error, truncated[0])]
+    most = pressure * np.tan(np.radians(LARGEST_FRICTION_ANGLE))
+    peak = Estimate.about(peaks[0], peaks[1], 0, most)
+    valid = ~(peaks[2] > MOSTLY_TRUNCATED)
     values = {
         "contact_strength": tau,
         "contact_strength_grid_error": error,
         "contact_dip": dips.values[0].mean(-1),
         "contact_truncated": truncated[0],
-        "peak_contact_strength": peaks[0],
-        "peak_contact_strength_grid_error": peaks[1],
+        **peak.columns("peak_contact_strength"),
         "peak_contact_truncated": peaks[2],
+        "peak_contact_valid": valid,
+        "peak_contact_reason": [
+            "" if fine else _bound(*of) for fine, *of in zip(valid, peaks[0], peaks[2], strict=True)
+        ],
     }
     return xr.Dataset(labelled(TABLE, values))
+
+
+def _bound(strength: float, truncated: float) -> str:
+    """A strength of mostly truncated angles, in words."""
+    return (
+        f"at least {strength:.3g} MPa, with {100 * truncated:.0f} % of the force at angles "
+        f"truncated at {LARGEST_FRICTION_ANGLE:g} degrees"
+    )

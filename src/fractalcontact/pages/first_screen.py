@@ -192,8 +192,11 @@ def _strength(card, title, pressure):
     ]
     if len(known) > 1:
         lines.insert(0, f"range of {len(known)} rules:")
-    if without := [words for words, row in rows.items() if "missing" in row]:
-        lines.append(f"no value by: {', '.join(without)}")
+    lines += [
+        f"no value by {words}: {row['missing']}"
+        for words, row in rows.items()
+        if words not in known
+    ]
     ends = dict.fromkeys(short(value) for value in (values[0], values[-1]))
     return Fact(title, f"{' to '.join(ends)} MPa", lines)
 

@@ -38,6 +38,11 @@ _SUMMARY: dict[str, tuple[str, dict[str, Any]]] = {
         {"ls": "-.", "color": "k"},
     ),
 }
+#: Which of them are results, and no bounds.
+_VALID = {
+    "peak_strength": "peak_strength_valid",
+    "peak_contact_strength": "peak_contact_valid",
+}
 
 
 def draw_summary(panel: Panel, strength: xr.Dataset) -> None:
@@ -45,21 +50,23 @@ def draw_summary(panel: Panel, strength: xr.Dataset) -> None:
     axes = panel.axes
     axes.set_xlabel(r"nominal pressure $\sigma_0$ (MPa)")
     axes.set_ylabel(r"shear strength $\tau$ (MPa)")
-    keep = ("peak_offset", "peak_strength_valid", *_SUMMARY)
+    keep = ("peak_offset", *_VALID.values(), *_SUMMARY)
     panel.keep(strength, *keep, "peak_over_barton")
     known = {name: strength[name].values for name in _SUMMARY if np.isfinite(strength[name]).any()}
     if not known:
         say_empty(axes, why_none(strength), ticks=False)
         return
     sigma = strength["nominal_pressure"].values
-    valid = strength["peak_strength_valid"].values
     for name, (words, style) in _SUMMARY.items():
         if name in known:
-            truncated = ~valid if name == "peak_strength" else np.zeros_like(valid)
+            truncated = np.zeros(sigma.shape, bool)
+            if name in _VALID:
+                truncated = ~strength[_VALID[name]].values.astype(bool)
             label = None if truncated.all() else words
             draw_points(axes, sigma, known[name], ~truncated, label=label, **style)
             if truncated.any():
-                hollow_entry(axes, f"{words}: excluded", **style)
+                why = "excluded" if name == "peak_strength" else "a lower bound"
+                hollow_entry(axes, f"{words}: {why}", **style)
     bars = Estimate.read(strength, "residual_strength").ends
     draw_bars(axes, sigma, *bars, _SUMMARY["residual_strength"][1]["color"])
     axes.set(xscale="log")

@@ -44,7 +44,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     strength = subject.along("strength").transpose("interval", "normal_force", ...)
     shown = strength.isel(normal_force=list(subject.reported.loads))
 
-    figure = Figure(figsize=(WIDTH, 6.9))
+    figure = Figure(figsize=(WIDTH, 7.2))
     (angles, curves), (summary, legends) = figure.subplots(2, 2)
     a = Panel(angles, "a", "dilatancy and friction angle")
     b = Panel(curves, "b", "shear strength")
