@@ -89,8 +89,9 @@ def _closure(found: _At, under: str, total: int) -> Markup | None:
 
 def _error(at):
     closure = at.quantities["closure"]
-    error = closure.errors["surface"]
-    return f", ± {closure.error_words(error)}" if math.isfinite(error) else ""
+    whose = {"surface": "for this surface", "population": "for the whole joint"}
+    known = {of: error for of, error in closure.errors.items() if math.isfinite(error)}
+    return "".join(f", ± {closure.error_words(known[of])} {whose[of]}" for of in known)
 
 
 def _ends(found, value_of):
@@ -196,7 +197,9 @@ def _dilatancy(specimens: Sequence[Specimen], rows: Sequence[Row]) -> Markup | N
         return None
     plateaus = [row.cells for row in rows if row.name in _PLATEAUS]
     chosen = sorted(name for cells in plateaus for name in cells if cells[name].circular)
-    note = f" This proves nothing for {_listed(chosen)}, chosen to show it." if chosen else ""
+    note = f" {_listed(chosen)} was chosen to show this, and proves nothing." if chosen else ""
+    if len(chosen) > 1:
+        note = note.replace("was chosen", "were chosen").replace("proves", "prove")
     text = f"Over the second half of the offsets the rigid dilatancy {' and '.join(parts)}.{note}"
     return Markup(escape(text))
 
@@ -228,8 +231,9 @@ def _dimensions(found: _At, under: str, rows: Sequence[Row]) -> Markup:
     verdicts = {row.name: {n: cell.verdict for n, cell in row.cells.items()} for row in rows}
     # Where all that touches yields, A_r(s) has the dimension 2 by construction.
     yielded = {name for name, one in verdicts.get(_LACUNAR, {}).items() if one == ILL_POSED}
-    by_boxes = _determined([at.delta_sigma_boxes for _, at in found])
-    by_areas = _determined([at.delta_sigma_areas for one, at in found if one.name not in yielded])
+    by_boxes = _determined([(at.delta_sigma_boxes, at.nulls) for _, at in found])
+    areas = [at.delta_sigma_areas for one, at in found if one.name not in yielded]
+    by_areas = _determined([(one, {}) for one in areas])
     text = f"{under} Delta_sigma is {by_boxes} by box counting and {by_areas} by A_r(s)"
     by_construction = [one.name for one, _ in found if one.name in yielded]
     if by_construction:
@@ -243,17 +247,28 @@ def _dimensions(found: _At, under: str, rows: Sequence[Row]) -> Markup:
 
 
 def _determined(estimates):
-    """Range of the estimates that are determined with its intervals, and how many are."""
-    known = sorted((one for one in estimates if one.determined), key=lambda one: one.value)
+    """Range of the estimates that are determined, each end with its interval and its null models.
+
+    And how many are determined. ``estimates`` are pairs of estimate and null models.
+    """
+    known = [one for one in estimates if one[0].determined]
     if not known:
         return "undetermined"
+    known.sort(key=lambda one: one[0].value)
     some = len(known) < len(estimates)
     counted = f" ({len(known)} of {len(estimates)} determined)" if some else ""
-    ends = [
-        f"{measured(one.value)} [{measured(one.low)}, {measured(one.high)}]"
-        for one in (known[0], known[-1])
+    return (
+        " to ".join(dict.fromkeys(_beside_nulls(*one) for one in (known[0], known[-1]))) + counted
+    )
+
+
+def _beside_nulls(estimate, nulls):
+    """A dimension with its interval, and those of the null models: a range shows no pattern."""
+    interval = f"[{measured(estimate.low)}, {measured(estimate.high)}"
+    beside = [
+        f"{words} {measured(value)}" for words, value in nulls.items() if math.isfinite(value)
     ]
-    return " to ".join(dict.fromkeys(ends)) + counted
+    return f"{measured(estimate.value)} {'; '.join([interval, *beside])}]"
 
 
 def _size_effect(rows: Sequence[Row]) -> Markup | None:

@@ -24,6 +24,8 @@ from .material import Material, material_of
 from .spacing import Doubled, doubled_spacing
 from .words import percent, with_unit
 
+#: Null models of a contact domain, by the endings of their variables, in words.
+NULLS = {"random": "random nodes", "cut": "bearing-area cut"}
 #: Errors of a quantity as a property of this surface, and of that which the window is cut from.
 TOTALS = {"surface": "total", "population": "total_of_population"}
 #: Columns of the stiffness at a pressure, by what stands in them.
@@ -104,6 +106,8 @@ class AtLoad:
         Corrected A_r/A_0.
     model : Validity
         Whether the elastic model is valid, with the real mean pressure.
+    nulls : dict of str to float
+        Delta_sigma by boxes of the null models of the contact domain, by their names in words.
     """
 
     number: int
@@ -115,6 +119,7 @@ class AtLoad:
     model: Validity
     quantities: dict[str, Quantity]
     dimensions: dict[str, Estimate]
+    nulls: dict[str, float]
 
     @property
     def real_pressure(self) -> float:
@@ -307,6 +312,10 @@ def _at_load(subject, curve, number):
             "domains/delta_sigma": _dimension(subject, "domains", state),
             "scaling/delta_sigma_area": _dimension(subject, "scaling", state),
         },
+        nulls={
+            words: float(subject.states("domains")[f"delta_sigma_{null}"].isel(state))
+            for null, words in NULLS.items()
+        },
     )
 
 
@@ -370,6 +379,8 @@ def _seated_closure(subject, number, budget):
     value = float(subject.states("closure")["seated_closure"].isel(normal_force=number))
     errors = {which: float(budget[f"seated_closure_{total}"]) for which, total in TOTALS.items()}
     missing = "" if math.isfinite(value) else "below the seat, or not solved"
+    if value == 0:
+        missing = "the seat, from which closure is counted"
     name, meaning = "seated_closure", "closure from the seat"
     hardest = float(budget["seated_closure_hardest"])
     return Quantity(name, meaning, "mm", False, value, errors, {}, {}, missing, hardest)
