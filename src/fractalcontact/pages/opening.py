@@ -197,9 +197,8 @@ def _dilatancy(specimens: Sequence[Specimen], rows: Sequence[Row]) -> Markup | N
         return None
     plateaus = [row.cells for row in rows if row.name in _PLATEAUS]
     chosen = sorted(name for cells in plateaus for name in cells if cells[name].circular)
-    note = f" {_listed(chosen)} was chosen to show this, and proves nothing." if chosen else ""
-    if len(chosen) > 1:
-        note = note.replace("was chosen", "were chosen").replace("proves", "prove")
+    be = "were" if len(chosen) > 1 else "was"
+    note = f" {_listed(chosen)} {be} chosen to show this: no evidence." if chosen else ""
     text = f"Over the second half of the offsets the rigid dilatancy {' and '.join(parts)}.{note}"
     return Markup(escape(text))
 

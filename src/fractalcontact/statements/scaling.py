@@ -275,12 +275,12 @@ def strength_falls_with_size(joint: Joint) -> Finding:
     verdict = PARTLY if falls else FAILS if rises else UNDETERMINED
     if falls == cases and at_one_v and falls_at_one_v == at_one_v:
         verdict = HOLDS
-    at_v = f"falls in {falls_at_one_v or 'none'} of {at_one_v}" if at_one_v else "has no law"
+    at_v = f"; dilatancy at equal v in {falls_at_one_v or 'none'} of {at_one_v}" if at_one_v else ""
     bounded = int(np.isneginf(strength.low).sum())
     return Finding(
         verdict,
-        f"at equal v/b tau falls with b in {falls or 'none'} of {cases} cases"
-        f"{f' and rises in {rises}' if rises else ''}; at equal v the dilatancy slope {at_v}",
+        f"tau falls at equal v/b in {falls or 'none'} of {cases} cases"
+        f"{f', rises in {rises}' if rises else ''}{at_v}",
         f"x = {_ends(strength)} at equal v/b"
         f"{f', bounds from above in {bounded} cases with truncated angles' if bounded else ''}"
         f"{f'; {_ends(slope)} of the slope at equal v' if at_one_v else ''}",
