@@ -1,13 +1,17 @@
 """Seconds and memory of calls, measured so that they can be compared."""
 
 import ctypes
-import multiprocessing
-import os
 import resource
 import sys
 import time
 from collections.abc import Callable, Sequence
+from functools import partial
 from typing import Any
+
+from fractalcontact.core.child_process import ChildFailed, in_child
+
+#: Seconds after which a call whose memory is measured is given up.
+LONGEST = 3600.0
 
 
 def timed(call: Callable[[], Any]) -> tuple[Any, float]:
@@ -53,15 +57,13 @@ def peak_memory(call: Callable[[], Any]) -> float:
     Returns
     -------
     float
-        NaN if the call ends in an error.
+        NaN if the call ends in an error, or takes longer than `LONGEST`.
     """
     _hand_back()
-    context = multiprocessing.get_context("fork")
-    memory = context.Value("d", float("nan"))
-    child = context.Process(target=_report_memory, args=(call, memory))
-    child.start()
-    child.join()
-    return memory.value
+    try:
+        return in_child(partial(_added_memory, call), seconds=LONGEST)
+    except ChildFailed:
+        return float("nan")
 
 
 def _hand_back():
@@ -71,11 +73,10 @@ def _hand_back():
         trim(0)
 
 
-def _report_memory(call, memory):
-    os.environ["OMP_NUM_THREADS"] = "1"
+def _added_memory(call):
     before = _largest_resident()
     call()
-    memory.value = _largest_resident() - before
+    return _largest_resident() - before
 
 
 def _largest_resident():

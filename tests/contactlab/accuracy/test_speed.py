@@ -192,9 +192,8 @@ def test_peak_memory_is_what_a_call_takes():
     assert 0.9 * megabytes < found / 1e6 < 1.3 * megabytes
 
 
-def test_peak_memory_of_a_call_that_fails_is_not_known(capfd):
+def test_peak_memory_of_a_call_that_fails_is_not_known():
     assert np.isnan(peak_memory(lambda: 1 / 0))
-    assert "ZeroDivisionError" in capfd.readouterr().err
 
 
 # -- growth ----------------------------------------------------------------------------------------
