@@ -54,31 +54,30 @@ MIN_BINS = 7
 class FractalRange(NamedTuple):
     """Fractal range of one spectrum: lengths and noise are NaN if not seen."""
 
-    form: Form | None
-    """Parts of the model; None where the spectrum has too few bins."""
-    hurst: Estimate
-    line: tuple[float, float]
-    """Level (mm3) at a wavelength of 1 mm and exponent of the self-affine line."""
-    noise_rms: Estimate
-    """Standard deviation of independent errors of the nodes, mm."""
-    noise_limit: float
-    """Upper bound: the lowest level of the spectrum, mm."""
-    noise_wavelength: Estimate
-    """Where the self-affine line meets the noise floor, mm."""
-    filter_wavelength: Estimate
-    """Where a filter halves the spectrum, mm."""
-    roll_off_wavelength: Estimate
-    """Above which the spectrum is flat, mm."""
-    end: Estimate
-    """Shortest wavelength of the fractal range: the longer of noise and filter, mm."""
-    misfit: float
-    """Root mean square of the logarithm of measured over fitted spectrum."""
+    level: np.ndarray
+    """The spectrum (k,) without strips that were left out, mm3."""
+    fitted: np.ndarray
+    """The model (k,), mm3; NaN without one."""
     left_out: float
     """Strips of profiles left out for spikes or steps, mean over the bins."""
-    level: np.ndarray
-    """The spectrum (k,) without them, mm3."""
-    fitted: np.ndarray
-    """The model (k,), mm3."""
+    noise_limit: float
+    """Upper bound of the noise: the lowest level of the spectrum, mm."""
+    form: Form | None = None
+    """Parts of the model; None where the spectrum has too few bins."""
+    line: tuple[float, float] = (np.nan, np.nan)
+    """Level (mm3) at a wavelength of 1 mm and exponent of the self-affine line."""
+    noise_rms: Estimate = NO_ESTIMATE
+    """Standard deviation of independent errors of the nodes, mm."""
+    noise_wavelength: Estimate = NO_ESTIMATE
+    """Where the self-affine line meets the noise floor, mm."""
+    filter_wavelength: Estimate = NO_ESTIMATE
+    """Where a filter halves the spectrum, mm."""
+    roll_off_wavelength: Estimate = NO_ESTIMATE
+    """Above which the spectrum is flat, mm."""
+    end: Estimate = NO_ESTIMATE
+    """Shortest wavelength of the fractal range: the longer of noise and filter, mm."""
+    misfit: float = np.nan
+    """Root mean square of the logarithm of measured over fitted spectrum."""
 
 
 def find_fractal_range(curve: Curve, spacing: float) -> FractalRange:
@@ -107,19 +106,19 @@ def find_fractal_range(curve: Curve, spacing: float) -> FractalRange:
     level = curve.measure()
     known = _above_leakage(curve.length, level)
     limit = float(np.sqrt(level[known].min() / spacing)) if known.any() else np.nan
+    fitted = np.full(len(level), np.nan)
     if known.sum() < MIN_BINS:
-        return _too_short(level, limit, left_out)
+        return FractalRange(level, fitted, left_out, limit)
     x = 2 * spacing / curve.length[known]
     parts = np.log(curve.without_each_part()[:, known])
     logs = np.log(level[known])
     error = np.hypot(jackknife_standard_error(parts), BIN_ERROR)
 
     form, fit, values = _most_likely(x, logs, error, parts)
-    fitted = np.full(len(level), np.nan)
     fitted[known] = np.exp(log_model(form, fit.x, x))
     misfit = float(np.sqrt(np.mean((logs - np.log(fitted[known])) ** 2)))
     if misfit > np.log(NO_POWER_LAW):
-        values = {"hurst": values["hurst"]}
+        values = {}
     lengths = {  # logarithms of x become wavelengths, infinite if a bound
         name: Estimate(*(2 * spacing * np.exp(-np.array([value, high, low]))))
         for name, (value, low, high) in values.items()
@@ -130,7 +129,6 @@ def find_fractal_range(curve: Curve, spacing: float) -> FractalRange:
     slope = fit.x[1]
     return FractalRange(
         form=form,
-        hurst=Estimate(*values["hurst"]),
         line=(float(np.exp(fit.x[0]) * (2 * spacing) ** -slope), float(slope)),
         noise_rms=rms,
         noise_limit=limit,
@@ -146,25 +144,6 @@ def find_fractal_range(curve: Curve, spacing: float) -> FractalRange:
         left_out=left_out,
         level=level,
         fitted=fitted,
-    )
-
-
-def _too_short(level, limit, left_out) -> FractalRange:
-    """Features of a spectrum with too few bins for a model."""
-    return FractalRange(
-        form=None,
-        hurst=NO_ESTIMATE,
-        line=(np.nan, np.nan),
-        noise_rms=NO_ESTIMATE,
-        noise_limit=limit,
-        noise_wavelength=NO_ESTIMATE,
-        filter_wavelength=NO_ESTIMATE,
-        roll_off_wavelength=NO_ESTIMATE,
-        end=NO_ESTIMATE,
-        misfit=np.nan,
-        left_out=left_out,
-        level=level,
-        fitted=np.full(len(level), np.nan),
     )
 
 
