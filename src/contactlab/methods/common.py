@@ -1,13 +1,12 @@
 """Problem, matrix, sums without FFT and final check shared by the comparison solvers."""
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from roughcontact.contact.solve import checked_hardness, checked_problem
-from roughcontact.contact.state import ContactState, unloaded_state
+from roughcontact.contact.state import ContactState
 from roughcontact.elastic.halfspace import HalfSpace
 from roughcontact.errors import NotConverged
 
@@ -58,10 +57,6 @@ class ContactProblem:
         """F, N, where it is given."""
         return self.load if self.by_force else None
 
-    def unloaded_state(self) -> ContactState:
-        """The state of first touch."""
-        return unloaded_state(self.space, self.clearance)
-
     def checked_state(
         self, pressure: np.ndarray, closure: float, *, iterations: int, reason: str
     ) -> ContactState:
@@ -81,8 +76,10 @@ class ContactProblem:
         Raises
         ------
         NotConverged
+            If a point in contact is not closed, a point outside penetrates, or the force is
+            another.
         """
-        return checked_state(
+        state = measured_state(
             self.space,
             self.clearance,
             pressure,
@@ -90,9 +87,10 @@ class ContactProblem:
             force=self.force,
             iterations=iterations,
             hardness=self.hardness,
-            rtol=self.rtol,
-            reason=reason,
         )
+        if not state.residual <= self.rtol:
+            raise NotConverged(reason, state, state.residual)
+        return state
 
 
 def posed_problem(
@@ -228,35 +226,3 @@ def measured_state(
         space=space,
         hardness=hardness,
     )
-
-
-def checked_state(
-    space: HalfSpace,
-    clearance: np.ndarray,
-    pressure: np.ndarray,
-    closure: float,
-    *,
-    rtol: float,
-    reason: str,
-    **about: Any,
-) -> ContactState:
-    """The state of a pressure, once its contact conditions have been verified.
-
-    Parameters
-    ----------
-    space, clearance, pressure, closure, **about
-        As of `measured_state`.
-    rtol : float
-        Largest violation allowed, as in `fractalcontact.solve_contact`.
-    reason : str
-        What to say if it is exceeded.
-
-    Raises
-    ------
-    NotConverged
-        If a point in contact is not closed, a point outside penetrates, or the force is another.
-    """
-    state = measured_state(space, clearance, pressure, closure, **about)
-    if not state.residual <= rtol:
-        raise NotConverged(reason, state, state.residual)
-    return state

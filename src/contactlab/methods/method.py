@@ -10,7 +10,7 @@ from typing import Any
 
 from numpy.typing import ArrayLike
 
-from roughcontact.contact.state import ContactState
+from roughcontact.contact.state import ContactState, unloaded_state
 from roughcontact.elastic.halfspace import HalfSpace
 
 from .common import NotOffered, has_holes, posed_problem
@@ -154,7 +154,7 @@ class Method:
             return solve_in_child(self.set_up, composite, space, rtol=rtol, **load)
         problem = posed_problem(composite, space, rtol=rtol, **load)
         if problem.load == 0:
-            return problem.unloaded_state()
+            return unloaded_state(problem.space, problem.clearance)
         state: ContactState = self.solver(problem)
         return state
 

@@ -1,11 +1,13 @@
 """All comparison solvers: Hertz, agreement with direct elimination, and honest failures."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from ensembles import ensemble
 
 from contactlab.methods import common, gauss_seidel, nnls, polonsky_keer
-from contactlab.methods.common import NotOffered, checked_state
+from contactlab.methods.common import ContactProblem, NotOffered
 from contactlab.methods.registry import METHODS
 from fractalcontact import HalfSpace, NotConverged
 from fractalcontact.surface.synthesis import self_affine
@@ -150,22 +152,24 @@ def test_final_check_finds_every_violation(largest_sum, monkeypatch):
     height, space = rough_problem(1, (24, 24), 0.8)
     clearance = height.max() - height
     right = METHODS["dense"](height, space, closure=0.2)
-    options = {"force": right.force, "iterations": 1, "rtol": 1e-6, "reason": "test"}
-    assert checked_state(space, clearance, right.pressure, 0.2, **options).residual < 1e-12
+    under_force = ContactProblem(space, clearance, right.force, True, np.inf, None, 1e-6)
+    at_closure = replace(under_force, load=0.2, by_force=False)
+    said = {"iterations": 1, "reason": "test"}
+    assert under_force.checked_state(right.pressure, 0.2, **said).residual < 1e-12
     released = right.pressure.copy()
     released[np.unravel_index(released.argmax(), released.shape)] = 0.0
     pushed = right.pressure.copy()
     pushed[np.unravel_index(clearance.argmax(), clearance.shape)] = 1.0
-    for pressure, closure, changes in [
-        (released, 0.2, {"force": None}),
-        (pushed, 0.2, {"force": None}),
-        (right.pressure, 0.201, {}),
-        (right.pressure, 0.199, {}),
-        (right.pressure, 0.2, {"force": 1.001 * right.force}),
-        (right.pressure, 0.2, {"hardness": 0.5 * right.pressure.max()}),
+    for problem, pressure, closure in [
+        (at_closure, released, 0.2),
+        (at_closure, pushed, 0.2),
+        (under_force, right.pressure, 0.201),
+        (under_force, right.pressure, 0.199),
+        (replace(under_force, load=1.001 * right.force), right.pressure, 0.2),
+        (replace(under_force, hardness=0.5 * right.pressure.max()), right.pressure, 0.2),
     ]:
         with pytest.raises(NotConverged, match="test"):
-            checked_state(space, clearance, pressure, closure, **(options | changes))
+            problem.checked_state(pressure, closure, **said)
 
 
 @pytest.mark.parametrize("method", METHODS)
