@@ -5,7 +5,7 @@ import pytest
 from ensembles import ensemble
 from scipy import ndimage
 
-from fractalcontact.flow.cubic_law import transmissivity_of, window_interval
+from fractalcontact.flow.cubic_law import flow_of, window_interval
 
 STEP = (1.0, 1.0)
 
@@ -19,7 +19,7 @@ def gap_of(seed, n=64, smooth=1.5, mean=1.5):
 
 def test_the_interval_over_windows_holds_their_mean_as_often_as_it_says():
     gaps = [gap_of(seed) for seed in range(ensemble("windows of one field"))]
-    flows = [transmissivity_of(gap, STEP, "x") for gap in gaps]
+    flows = [flow_of(gap, STEP, "x").transmissivity for gap in gaps]
     mean = np.exp(np.log(flows).mean())
     both = zip(gaps, flows, strict=True)
     low, high = np.transpose([window_interval(gap, STEP, "x", T).ends[1:] for gap, T in both])
@@ -28,7 +28,7 @@ def test_the_interval_over_windows_holds_their_mean_as_often_as_it_says():
 
 
 def test_an_even_gap_is_alike_in_all_windows():
-    flow = transmissivity_of(np.full((9, 12), 0.3), STEP, "y")
+    flow = flow_of(np.full((9, 12), 0.3), STEP, "y").transmissivity
     found = window_interval(np.full((9, 12), 0.3), STEP, "y", flow)
     assert found.ends == pytest.approx((flow, flow, flow))
 
@@ -36,6 +36,6 @@ def test_an_even_gap_is_alike_in_all_windows():
 def test_a_closed_quarter_leaves_the_interval_undetermined():
     gap = gap_of(1)
     gap[:32, 10] = 0  # a wall across two quarters
-    whole = transmissivity_of(gap, STEP, "x")
+    whole = flow_of(gap, STEP, "x").transmissivity
     assert whole > 0
     assert np.isnan(window_interval(gap, STEP, "x", whole).ends[1:]).all()

@@ -1,4 +1,4 @@
-"""Statistics of an aperture map: distribution, correlation length, slopes, bounds of its flow."""
+"""Aperture map: correlation length, slope, bounds of its transmissivity, empirical laws."""
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -8,20 +8,21 @@ QUANTILES = (0.05, 0.25, 0.5, 0.75, 0.95)
 
 
 def correlation_length(gap: np.ndarray, spacing: float, axis: int) -> float:
-    """Lag at which the autocorrelation of the gap along an axis falls to 1/e, mm.
+    """Correlation length of the gap along an axis, mm: the lag of an autocorrelation of 1/e.
 
     Parameters
     ----------
     gap : (ny, nx) ndarray
         mm.
     spacing : float
-        Of the cells along that axis, mm.
+        Distance of cells along that axis, mm.
     axis : int
 
     Returns
     -------
     float
-        Interpolated between lags; NaN where the gap is even, or correlated over half the window.
+        Interpolated linearly between lags. NaN where the gap is constant, or where the correlation
+        stays above 1/e over half the window.
     """
     deviation = np.moveaxis(gap - gap.mean(), axis, -1)
     n = deviation.shape[-1]
@@ -41,13 +42,13 @@ def correlation_length(gap: np.ndarray, spacing: float, axis: int) -> float:
 
 
 def rms_slope(gap: np.ndarray, spacing: tuple[float, float]) -> float:
-    """Rms slope of the open gap, over faces between two open cells; NaN without any."""
+    """Rms slope of the gap between neighbouring open cells; NaN where no two are neighbours."""
     sums, faces = 0.0, 0
     for axis, step in enumerate(spacing):
         turned = np.moveaxis(gap, axis, 0)
         slopes = np.diff(turned, axis=0)[(turned[1:] > 0) & (turned[:-1] > 0)] / step
         sums, faces = sums + float(slopes @ slopes), faces + slopes.size
-    # Each of both components has half of the faces.
+    # The mean square of each component, of half of the faces, counts once.
     return float(np.sqrt(2 * sums / faces)) if faces else np.nan
 
 
@@ -64,8 +65,9 @@ def transmissivity_bounds(gap: np.ndarray, axis: int) -> tuple[float, float]:
     Returns
     -------
     lower, upper : float
-        Strips along the flow, each its cells in series, side by side; and strips across the flow,
-        each its cells side by side, in series. More walls never let more pass, fewer never less.
+        The lower bound has walls between the rows of cells along the flow: in each row the cells
+        are in series, and the rows are parallel. The upper bound has even pressure across the
+        flow: the cells of each cross-section are parallel, and the cross-sections are in series.
     """
     cubed = np.moveaxis(gap, axis, -1) ** 3 / 12
     with np.errstate(divide="ignore"):  # a wall in a strip makes its harmonic mean 0
@@ -83,15 +85,15 @@ def zimmerman_bodvarsson_aperture(
     Parameters
     ----------
     mean, deviation : array_like
-        <g> and standard deviation s of the gap over the nominal area, mm, contact counted as 0.
-        Others take both over the open part alone, which gives larger apertures.
+        <g> and standard deviation s of the gap over the nominal area, mm, with 0 in contact. Means
+        over the open part alone, which some authors take, give larger apertures.
     contact : array_like
         Contact fraction c.
 
     Returns
     -------
     ndarray
-        NaN where the law has no positive value: s above 0.82 <g>, or half the area in contact.
+        NaN where the law has no positive value: where s > 0.82 <g> or c >= 0.5.
     """
     mean, deviation, contact = (np.asarray(one, float) for one in (mean, deviation, contact))
     with np.errstate(invalid="ignore", divide="ignore"):
@@ -115,7 +117,7 @@ def barton_aperture(mechanical: ArrayLike, jrc: float) -> np.ndarray:
     Returns
     -------
     ndarray
-        NaN where the law does not hold: it would give more than the mechanical aperture.
+        NaN where the law would give more than the mechanical aperture.
     """
     micrometres = 1e3 * np.asarray(mechanical, float)
     if not jrc > 0:
@@ -129,15 +131,15 @@ WATER_VISCOSITY, WATER_DENSITY = 1.002e-9, 9.982e-10
 
 
 def reynolds_gradient(transmissivity: ArrayLike) -> np.ndarray:
-    """Pressure gradient of water at 20 degrees that gives a Reynolds number of 1, MPa/mm.
+    """Pressure gradient at which water at 20 degrees has a Reynolds number of 1, MPa/mm.
 
-    Re = rho Q/(mu W) with Q/W = T grad p/mu. The cubic law holds for Re well below 1 (Zimmerman
-    and Bodvarsson 1996).
+    Re = rho Q/(mu W), where Q/W = T grad p/mu is the flow per unit width. The cubic law holds for
+    Re well below 1 (Zimmerman and Bodvarsson 1996).
 
     Parameters
     ----------
     transmissivity : array_like
-        T, mm3; 0 has no gradient.
+        T, mm3; NaN for T = 0.
     """
     transmissivity = np.asarray(transmissivity, float)
     open_gap = np.where(transmissivity > 0, transmissivity, np.nan)

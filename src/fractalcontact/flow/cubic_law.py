@@ -14,10 +14,8 @@ from ..core.estimate import Estimate
 from ..core.intervals import t_quantile
 from .network import Flow, FlowNotConverged, network_flow
 
-#: Ways of the flow: along the sliding, and across it.
+#: Directions of the flow relative to the sliding.
 WAYS = ("along", "across")
-#: Why a transmissivity is zero.
-NO_PATH = "no path of open cells joins both sides"
 
 
 def plane_flow(gap: ArrayLike, spacing: tuple[float, float], axis: str = "x") -> Flow:
@@ -124,30 +122,12 @@ def _checked(gap: ArrayLike) -> np.ndarray:
     return opening
 
 
-def flow_of(gap: np.ndarray, spacing: tuple[float, float], axis: str) -> tuple[Flow, str]:
-    """Flow along an axis, and why it is zero or missing.
-
-    Parameters
-    ----------
-    gap, spacing, axis
-        As of :func:`plane_flow`.
-
-    Returns
-    -------
-    flow : Flow
-        Of NaN where the solver gives none that balances.
-    reason : str
-    """
+def flow_of(gap: np.ndarray, spacing: tuple[float, float], axis: str) -> Flow:
+    """Flow as :func:`plane_flow` gives it, of NaN with the reason where it is not solved."""
     try:
-        flow = plane_flow(gap, spacing, axis)
+        return plane_flow(gap, spacing, axis)
     except FlowNotConverged as error:
-        return Flow(np.nan, error.imbalance, np.nan, np.full(gap.shape, np.nan)), str(error)
-    return flow, "" if flow.transmissivity > 0 else NO_PATH
-
-
-def transmissivity_of(gap: np.ndarray, spacing: tuple[float, float], axis: str) -> float:
-    """Transmissivity along an axis, mm3; NaN where the mass balance is not closed."""
-    return flow_of(gap, spacing, axis)[0].transmissivity
+        return Flow(np.nan, error.imbalance, np.nan, np.full(gap.shape, np.nan), str(error))
 
 
 def window_interval(
@@ -155,15 +135,15 @@ def window_interval(
 ) -> Estimate:
     """95 % interval of the geometric mean of T over windows of this size, mm3.
 
-    T is taken for the geometric mean of the four quarters: Student's t of their ln T, as of four
-    independent parts. They are that where the gap correlates over far less than a quarter.
+    Student's t of ln T of the four quarters, as of independent samples. They are independent
+    where the gap correlates over far less than a quarter.
 
     Parameters
     ----------
     gap, spacing, axis
-        As :func:`flow_of` takes them.
+        As of :func:`plane_flow`.
     whole : float
-        Transmissivity of the window, about which the interval lies.
+        Transmissivity of the window, the centre of the interval.
 
     Returns
     -------
@@ -176,7 +156,7 @@ def window_interval(
         for rows in (slice(ny), slice(-ny, None))
         for columns in (slice(nx), slice(-nx, None))
     ]
-    flows = np.array([transmissivity_of(quarter, spacing, axis) for quarter in quarters])
+    flows = np.array([flow_of(quarter, spacing, axis).transmissivity for quarter in quarters])
     if not (flows > 0).all():
         return Estimate(whole)
     factor = np.exp(t_quantile(3) * np.log(flows).std(ddof=1) / 2)

@@ -9,18 +9,20 @@ from scipy import ndimage
 
 from roughcontact.kernel_cache import njit
 
-from .red_black import WAYS, RedBlackCells
+from .red_black import NEIGHBOURS, RedBlackCells
 
-#: Gaps below this fraction of the widest passage's narrowest gap are closed: what they carry, a
-#: part in 1e9 of that passage, is beyond the precision of the equations.
+#: Gaps below this fraction of the critical gap are closed: they carry 1e-9 of the flow of the
+#: widest path, less than the precision of the equations.
 CLOSED_BELOW = 1e-3
 #: Fraction of the flow that the flow channels are said to carry.
 CHANNEL_FLOW = 0.9
-#: Largest error of a flow that the imbalance of its cells may make, a fraction of the flow.
+#: Largest relative error of a flow by the mass balance of its cells.
 MAX_IMBALANCE = 1e-6
-#: Such an error at which iterative refinement ends, and its steps.
+#: Error at which iterative refinement ends, and the most steps that it takes.
 AIMED_IMBALANCE = 1e-8
 REFINEMENTS = 2
+#: Reason of a transmissivity of zero.
+NO_PATH = "no path of open cells joins both sides"
 
 
 def hydraulic_aperture(transmissivity: ArrayLike) -> np.ndarray:
@@ -35,24 +37,27 @@ class Flow:
     Attributes
     ----------
     transmissivity : float
-        T = h_h^3 / 12, mm3: flow per width, pressure gradient and inverse viscosity. 0 where the
-        gap does not percolate.
+        T = h_h^3 / 12, mm3: the flow per unit width at unit pressure gradient and viscosity. 0
+        where no path of open cells joins both ends, NaN where the equations are not solved.
     imbalance : float
-        Bound on its relative error by the mass balance of the cells.
+        Bound on the relative error of T by the mass balance of the cells.
     critical_gap : float
-        The largest gap such that a path of gaps no smaller joins both ends, mm; 0 without a path.
+        Narrowest gap on the widest path between both ends, mm; 0 without a path.
     flux : (ny, nx) ndarray
-        Flow per width in each cell over the mean flow per width of the window.
+        Flow per unit width in each cell, divided by its mean over the window.
+    reason : str
+        Why T is zero or missing.
     """
 
     transmissivity: float
     imbalance: float
     critical_gap: float
     flux: np.ndarray
+    reason: str = ""
 
     @property
     def hydraulic_aperture(self) -> float:
-        """h_h of the transmissivity, mm."""
+        """Hydraulic aperture h_h, mm."""
         return float(hydraulic_aperture(self.transmissivity))
 
     @property
@@ -66,12 +71,12 @@ class Flow:
 
 
 class FlowNotConverged(RuntimeError):
-    """No flow whose mass balance closes was reached.
+    """The mass balance of the cells does not close.
 
     Attributes
     ----------
     imbalance : float
-        Bound on the error of the flow that the imbalance of its cells makes, a fraction of it.
+        Bound on the relative error of the flow.
     """
 
     def __init__(self, reason: str, imbalance: float):
@@ -92,13 +97,14 @@ def network_flow(
     gap : (ny, nx) ndarray
         g, mm, 0 where closed.
     ends : (2, ny, nx) ndarray
-        Conductance of a cell to the inlet and to the outlet over its conductivity, 0 inside.
+        Conductance from the middle of a cell to the inlet and to the outlet, divided by the
+        conductivity g^3 of the cell; 0 for cells inside.
     spacing : (float, float)
         Sides (dy, dx) of a cell, mm.
     length : float
-        Of the parallel plates of the same flow, in widths.
+        Length over width of parallel plates: T is that of plates with the same flow.
     width : float
-        Of the mean flux, mm.
+        Width that the flow is divided by for the mean of ``flux``, mm.
 
     Raises
     ------
@@ -107,15 +113,15 @@ def network_flow(
 
     Notes
     -----
-    The pressure p and its complement d = 1 - p are refined, each for itself: beside an end, the
-    smaller of both has all its digits, and so do the flows through faces there, however narrow the
-    passages elsewhere are. With r the imbalance of the cells, the outflow is off by sum(r d) of the
-    exact d, which is between 0 and 1: sum(abs(r)) bounds its error whatever solver gave p.
+    The pressure p and its complement d = 1 - p are stored and refined separately. Near an end one
+    of them is small; it keeps all its digits, and flows through faces are differences of the
+    smaller one. If r is the imbalance of each cell, the outflow has the error sum(r d) with the
+    exact d. As 0 <= d <= 1, sum(abs(r)) bounds that error for any solver.
     """
     critical = critical_gap(gap, *(ends > 0))
     if not critical:
-        return Flow(0.0, 0.0, 0.0, np.zeros_like(gap))
-    # Over the widest gap: apertures cubed in mm would leave the range of the factors.
+        return Flow(0.0, 0.0, 0.0, np.zeros_like(gap), NO_PATH)
+    # Scaled by the widest gap: cubes of apertures in mm can underflow in the factorisation.
     widest = gap.max()
     relative = np.where(gap >= CLOSED_BELOW * critical, gap / widest, 0.0)
     cells = joined_cells(relative > 0, *(ends > 0))
@@ -124,7 +130,7 @@ def network_flow(
         p = network.solve(network.ends[0])
         solution = np.stack([p, 1 - p])
         for step in range(REFINEMENTS + 1):
-            # Inflow by the complement, outflow by the pressure.
+            # The inlet is at d = 0, the outlet at p = 0: both flows are sums of small terms.
             flows = network.ends * solution[::-1]
             inflow, outflow = flows.sum(axis=1)
             balance, passing = _balance(network.faces, network.neighbours, solution, flows)
@@ -139,19 +145,19 @@ def network_flow(
     if not error <= MAX_IMBALANCE:
         raise FlowNotConverged("the passages differ too much in width", error)
     dy, dx = spacing
-    # A cell at an end has the flow of that end beside that of its face.
+    # Half the sum of the flows through opposite faces; ends are faces too.
     flux = np.hypot(passing[0] / dx, passing[1] / dy) / 2 + flows.sum(axis=0) / (2 * dy)
     flux = np.append(flux, 0.0)[network.numbers] * (width / float(outflow))
     return Flow(float(outflow) * length * widest**3 / 12, error, critical, flux)
 
 
 def joined_cells(open_cells: np.ndarray, inlet: np.ndarray, outlet: np.ndarray) -> np.ndarray:
-    """Open cells that a path of open cells joins to both ends, (ny, nx) bool.
+    """Mask (ny, nx) of the open cells in clusters that touch both ends.
 
     Parameters
     ----------
     open_cells, inlet, outlet : (ny, nx) bool ndarray
-        Open cells, and those of them at each end.
+        Open cells, cells at the inlet and cells at the outlet.
     """
     labels, _ = ndimage.label(open_cells)
     joined = np.intersect1d(labels[inlet], labels[outlet])
@@ -160,7 +166,10 @@ def joined_cells(open_cells: np.ndarray, inlet: np.ndarray, outlet: np.ndarray) 
 
 @njit(cache=True)
 def critical_gap(gap: np.ndarray, inlet: np.ndarray, outlet: np.ndarray) -> float:
-    """Narrowest gap of the widest passage between both ends, mm; 0 without a passage.
+    """Critical gap of percolation, mm: the narrowest gap on the widest path between both ends.
+
+    Cells are reached from the inlet, the widest first, until one lies at the outlet; the narrowest
+    of those reached is the critical gap. It is 0 where no path of open cells joins both ends.
 
     Parameters
     ----------
@@ -171,7 +180,7 @@ def critical_gap(gap: np.ndarray, inlet: np.ndarray, outlet: np.ndarray) -> floa
     """
     ny, nx = gap.shape
     unseen, waiting, n = gap > 0, np.empty(gap.size, np.int32), 0
-    # Cells below the level wait for it to fall to the widest of them.
+    # Neighbours narrower than the level wait in a heap until it falls to the widest of them.
     level, below = np.inf, [(0.0, 0) for _ in range(0)]
     for row, column in np.argwhere(inlet & unseen):
         unseen[row, column] = False
@@ -184,7 +193,7 @@ def critical_gap(gap: np.ndarray, inlet: np.ndarray, outlet: np.ndarray) -> floa
             row, column = divmod(waiting[n], nx)
             if outlet[row, column]:
                 return level
-            for down, right in WAYS:
+            for down, right in NEIGHBOURS:
                 i, j = row + down, column + right
                 if 0 <= i < ny and 0 <= j < nx and unseen[i, j]:
                     unseen[i, j] = False
@@ -197,7 +206,7 @@ def critical_gap(gap: np.ndarray, inlet: np.ndarray, outlet: np.ndarray) -> floa
 
 
 def _complementary(solution):
-    """Pressure and its complement, the larger of both computed from the smaller."""
+    """Pressure and complement; the larger of the two is one minus the smaller."""
     p, d = solution
     low = p < d
     return np.stack([np.where(low, p, 1 - d), np.where(low, 1 - p, d)])
@@ -205,9 +214,9 @@ def _complementary(solution):
 
 @njit(cache=True)
 def _balance(faces, neighbours, solution, flows):
-    """Net flow into each cell, and the sums of those through its two faces in y and x.
+    """Net flow into each cell (n,), and sums of the flows through its faces in y and x (2, n).
 
-    Differences are those of the pressure or of its complement, whichever is more exact.
+    A flow is the difference of p, or of d, whichever is smaller in the black cell.
     """
     net, passing = flows[0] - flows[1], np.zeros_like(flows)
     n_red = net.size - len(faces)
@@ -220,7 +229,7 @@ def _balance(faces, neighbours, solution, flows):
             flow = faces[black, way] * (drop if lower == 0 else -drop)
             net[cell] -= flow
             net[other] += flow
-            # Ways are up, left, right, down.
+            # NEIGHBOURS are up, left, right, down.
             onwards = flow if way > 1 else -flow
             direction = 0 if way in (0, 3) else 1
             passing[direction, cell] += onwards

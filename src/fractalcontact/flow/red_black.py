@@ -19,7 +19,7 @@ except ImportError:
     cvxopt = None
 
 #: Steps in rows and columns to the neighbours of a cell: up, left, right, down.
-WAYS = ((-1, 0), (0, -1), (0, 1), (1, 0))
+NEIGHBOURS = ((-1, 0), (0, -1), (0, 1), (1, 0))
 #: Place of the later of two neighbours of a black cell, seen from the earlier: each of the two has
 #: four later ones within two steps.
 _LATER = ((-1, 1, 2, 3), (-1, -1, 0, 2), (-1, -1, -1, 1))
@@ -194,7 +194,7 @@ def _assembled(conductivity, ends, numbers, n_red, n, ratios):
             of_ends[:, number] = ends[:, row, column] * here
         if number >= n_red:
             for way in range(4):
-                i, j = row + WAYS[way][0], column + WAYS[way][1]
+                i, j = row + NEIGHBOURS[way][0], column + NEIGHBOURS[way][1]
                 if 0 <= i < ny and 0 <= j < nx and numbers[i, j] >= 0:
                     # The product of both would underflow where gaps are small: divide first.
                     face = 2 * here / (1 + here / conductivity[i, j])

@@ -7,8 +7,6 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from roughcontact.contact.solve import solve_contact
-
 from ..core.datasets import Dims, labelled_dataset
 from ..core.estimate import NO_ESTIMATE, Estimate, rows_of
 from ..core.labels import cf_attrs
@@ -24,13 +22,14 @@ from ..flow.aperture import (
     transmissivity_bounds,
     zimmerman_bodvarsson_aperture,
 )
-from ..flow.cubic_law import WAYS, flow_of, transmissivity_of, window_interval
+from ..flow.cubic_law import WAYS, flow_of, window_interval
 from ..flow.network import hydraulic_aperture
 from ..mechanics.joint import prefractal, sliding_axis
 from ..mechanics.jrc import profile_roughness
 from ..mechanics.loading import JointLoading
 from ..mechanics.state_scalars import aperture
 from ..mechanics.states import MAP_GAP, OFFSET_GAP, with_pressure
+from ..mechanics.sweep import load_steps
 
 _LOADS = "normal_force"
 _STATES, _QUANTILES = ("branch", _LOADS), ("gap_probability", _LOADS)
@@ -177,8 +176,10 @@ def flow_stages(
 
 def _both_ways(axes, spacing, gap):
     """Mean gap and transmissivities of a gap."""
-    flows = {way: transmissivity_of(gap, spacing, axis) for way, axis in axes.items()}
-    return {"mean_gap": float(gap.mean())} | {f"transmissivity_{way}": flows[way] for way in axes}
+    return {"mean_gap": float(gap.mean())} | {
+        f"transmissivity_{way}": flow_of(gap, spacing, axis).transmissivity
+        for way, axis in axes.items()
+    }
 
 
 def _over_loads(way, axis, gaps, spacing, states, error, reported):
@@ -218,10 +219,10 @@ def _over_loads(way, axis, gaps, spacing, states, error, reported):
 
 def _numbers(gap, spacing, axis, *, errors):
     """Numbers of the flow through a gap; the errors of T take five more solves, of parts of it."""
-    flow, reason = flow_of(gap, spacing, axis)
+    flow = flow_of(gap, spacing, axis)
     number, whole, (dy, dx) = "yx".index(axis), flow.transmissivity, spacing
     lower, upper = transmissivity_bounds(gap, number)
-    coarse = transmissivity_of(gap[::2, ::2], (2 * dy, 2 * dx), axis) if errors else np.nan
+    coarse = flow_of(gap[::2, ::2], (2 * dy, 2 * dx), axis).transmissivity if errors else np.nan
     return {
         "transmissivity": window_interval(gap, spacing, axis, whole) if errors else Estimate(whole),
         "transmissivity_grid_error": abs(coarse - whole),
@@ -229,7 +230,7 @@ def _numbers(gap, spacing, axis, *, errors):
         "channel_fraction": flow.channel_fraction,
         "flux_map": flow.flux,
         "flow_imbalance": flow.imbalance,
-        "flow_reason": reason,
+        "flow_reason": flow.reason,
         "series_bound": lower,
         "parallel_bound": upper,
         "gap_correlation_length": correlation_length(gap, spacing[number], number),
@@ -277,11 +278,10 @@ def _of_branches(composite, space, loading, branches, both, loaded):
         one[1:, forces > top] = np.nan
     # What has not crushed unloads and reloads as it was loaded.
     if held.any():
-        pressed, state = composite - held, None
-        for load in np.flatnonzero(forces <= top)[::-1]:
-            state = solve_contact(
-                pressed, space, force=float(forces[load]), start=state, rtol=loading.solver.rtol
-            )
+        descending, elastic = np.flatnonzero(forces <= top)[::-1], {"rtol": loading.solver.rtol}
+        where = f"specimen {loading.specimen.attrs['name']}, unloading"
+        states = load_steps(composite - held, space, forces[descending], elastic, where)
+        for load, state in zip(descending, states, strict=True):
             for name, value in both(aperture(state)).items():
                 values[name][1:, load] = value
     return values
