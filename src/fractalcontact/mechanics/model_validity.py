@@ -38,6 +38,9 @@ FULL = 0.87
 #: The real mean pressure of a fully yielded contact is its hardness, to rounding.
 _ROUNDING = 1e-6
 
+#: What a hardness leaves out.
+DELETED = "what is crushed is taken away, so that its volume is lost"
+
 #: From the best to the worst.
 _GRADES = (GOOD, IN_PART, POOR)
 
@@ -135,6 +138,8 @@ def elastic_model_validity(
     verdict, by, _ = found[0]
     # A load that the window carries with ease is no reason.
     told = [words for grade, of, words in found if of != LOAD or grade == verdict]
+    if limits.criterion == HARDNESS:
+        told.append(DELETED)
     reason = "; ".join(told)
     return Validity(verdict, pressure, reason, "" if verdict == GOOD else by, limits)
 
