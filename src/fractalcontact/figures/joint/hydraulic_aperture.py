@@ -8,6 +8,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 from xarray import DataTree
 
+from ...core.directions import slides
 from ...core.estimate import Estimate, names_of
 from ...core.subject import Subject
 from ..kit.axes import label_short_span, offset_axis
@@ -140,6 +141,9 @@ def _words(subject: Subject, states: xr.Dataset) -> dict[str, Any]:
         "closing": float(at["transmissivity_separation_error_along"]) / flow,
         "walls": int((offsets == 0).sum()),
         "offsets": offsets.size,
+        "way": "the sliding" if slides(subject.settings["opposite"]) else "x",
+        "slope": float(at["gap_slope"]),
+        "first_offset": float(offsets["offset"][0]),
         "last_offset": float(offsets["offset"][-1]),
         "widening": float(last / first),
     }
