@@ -15,6 +15,7 @@ from ..kit.caption import caption
 from ..kit.drawing import WIDTH, Drawing, group
 from ..kit.line_breaks import in_lines, width_of
 from ..kit.tables import LINE_HEIGHT, draw_texts, wrap_rows
+from ..kit.words import formulas
 
 TITLE = "Statements of the paper over the specimens of the study"
 SUBJECT = "study"
@@ -23,7 +24,7 @@ KEY = "defaults"
 ORDER = 5
 
 #: Where the columns of words begin and end, as fractions of the width, and their letters.
-COLUMNS = {"figure": (0.01, 8), "claim": (0.07, 62)}
+COLUMNS = {"figure": (0.01, 12), "claim": (0.1, 58)}
 FIRST, LAST = 0.53, 0.99
 #: Of a specimen's label, upright: points of its letters, inches that a line is long and wide, how
 #: many letters a line holds of usual ones, and lines at most.
@@ -49,7 +50,8 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
     }
     whole = _whole(atlas)
     shown = [*rows.values(), *whole[["figure", "claim"]].to_dict("records")]
-    texts, lines = wrap_rows(shown, COLUMNS)
+    texts, lines = wrap_rows([row | {"figure": _place(row["figure"])} for row in shown], COLUMNS)
+    texts = [{key: formulas(text) for key, text in row.items()} for row in texts]
     heights = [n - LESS for n in lines]
     heads = _heads(atlas, list(tables))
     top = 1 + max(width_of(head, LABEL_SIZE) for head in heads.values()) / LINE_HEIGHT
@@ -118,6 +120,13 @@ def _head(label, most):
         if text.count("\n") < most:
             return text
         letters -= 2
+
+
+def _place(figures):
+    """Figures or section of the paper: "Figs. 4, 5" of "4, 5"."""
+    if figures.startswith("sect"):
+        return figures
+    return f"Fig{'s' if set(figures) & set(',-') else ''}. {figures}"
 
 
 def _counts(tables, whole):
