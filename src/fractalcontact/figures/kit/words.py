@@ -28,6 +28,7 @@ _FORMULAS = {
     "sigma*": r"$\sigma^*$",
     "sigma_0": r"$\sigma_0$",
     "A_r": "$A_r$",
+    "A_0": "$A_0$",
 }
 
 
