@@ -15,11 +15,13 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
+from fractalcontact.core.intervals import LEFT_OUT
 from fractalcontact.core.limits import CORRECTED_NODES
 from fractalcontact.domain.box_dimension import dimension_of_domain
 from fractalcontact.domain.renormalisation import renormalisation
 from fractalcontact.mechanics.area_sampling import state_area_sampling
 from fractalcontact.mechanics.joint import prefractal
+from fractalcontact.mechanics.left_out import fractions_left, part_ends
 from fractalcontact.mechanics.state_scalars import state_area
 from fractalcontact.surface.synthesis import self_affine
 from roughcontact.contact.solve import solve_contact
@@ -89,7 +91,7 @@ def states_of(twin, seed):
     y, x = ((twin.face - twin.window) // 2,) * 2
     rows = face[y : y + twin.window]
     composite = rows[:, x + twin.slid : x + twin.slid + twin.window] - rows[:, x : x + twin.window]
-    domains, found = {}, []
+    found = {}
     for k in RESOLUTIONS:
         heights, spacing = prefractal(composite, k), k * twin.spacing
         space = HalfSpace(heights.shape, (spacing, spacing), twin.modulus)
@@ -99,23 +101,27 @@ def states_of(twin, seed):
             state = solve_contact(
                 heights, space, force=force, start=state, rtol=1e-4, hardness=twin.hardness
             )
-            found.append((state_area(state), state.in_contact.sum(), state_area_sampling(state)))
-            if k == 1:
-                domains[pressure] = state.in_contact
-    found = np.reshape(found, (len(RESOLUTIONS), len(PRESSURES), 3))
-    by_area = by_areas(twin.spacing, *np.moveaxis(found, -1, 0))
-    return domains, dict(zip(PRESSURES, np.transpose(by_area), strict=True))
+            found.setdefault(pressure, []).append(state)
+    domains = {pressure: states[0].in_contact for pressure, states in found.items()}
+    return domains, {pressure: by_areas(states) for pressure, states in found.items()}
 
 
-def by_areas(spacing, area, nodes, sampling):
-    """Delta_sigma by A_r(s) with the ends of its interval, (3, load), from (resolution, load)."""
-    s = xr.DataArray(spacing * np.array(RESOLUTIONS), dims="resolution")
-    area, nodes, sampling = (
-        xr.DataArray(np.array(of, float), dims=("resolution", "load"))
-        for of in (area, nodes, sampling)
+def by_areas(states):
+    """Delta_sigma by A_r(s) with the ends of its interval, from states at `RESOLUTIONS`."""
+    domains = [state.in_contact for state in states]
+    ends = part_ends(domains[0], 1)
+    s = xr.DataArray([state.space.spacing[0] for state in states], dims="resolution")
+    area, nodes, sampling, left = (
+        xr.DataArray(np.array(values, float), dims=("resolution", LEFT_OUT)[: np.ndim(values)])
+        for values in (
+            [state_area(state) for state in states],
+            [domain.sum() for domain in domains],
+            [state_area_sampling(state) for state in states],
+            [fractions_left(*of, ends) for of in zip(domains, RESOLUTIONS, strict=True)],
+        )
     )
-    scaling = renormalisation(s, area, xr.DataArray(1.0), nodes, CORRECTED_NODES, sampling == 0)
-    return np.array([scaling[f"delta_sigma{end}"].values for end in ("", "_low", "_high")])
+    scaling = renormalisation(s, area, xr.DataArray(1.0), nodes, CORRECTED_NODES, left, sampling)
+    return [float(scaling[f"delta_sigma{end}"]) for end in ("", "_low", "_high")]
 
 
 def calibration(estimates, truth=None):

@@ -34,7 +34,7 @@ from fractalcontact.error_budget.counting import counting_error
 from fractalcontact.error_budget.refinement import LoadCurve
 from fractalcontact.mechanics.area_sampling import state_area_sampling
 from fractalcontact.mechanics.joint import prefractal
-from fractalcontact.mechanics.state_scalars import aperture, state_area
+from fractalcontact.mechanics.state_scalars import aperture
 from fractalcontact.mechanics.subgrid import state_quantities
 from fractalcontact.mechanics.sweep import load_steps
 from fractalcontact.roughness.twin_surface import twin_surface
@@ -125,9 +125,8 @@ def _by_areas(joint, composite, forces, solving):
     for k in RESOLUTIONS:
         heights = prefractal(composite, k)
         space = HalfSpace(heights.shape, (k * joint.spacing,) * 2, joint.modulus)
-        states = load_steps(heights, space, forces, solving, "calibration")
-        found.append([(state_area(s), s.in_contact.sum(), state_area_sampling(s)) for s in states])
-    return by_areas(joint.spacing, *np.moveaxis(np.array(found, float), -1, 0))
+        found.append(load_steps(heights, space, forces, solving, "calibration"))
+    return np.transpose([by_areas(states) for states in zip(*found, strict=True)])
 
 
 def twin_half_widths(joint, face, seeds):

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from fractalcontact.core.intervals import LEFT_OUT
 from fractalcontact.domain.analysis import analyse_domains, scaling_over_resolutions
 from fractalcontact.domain.box_dimension import ONE_NODE, dimension_of_domain
 from fractalcontact.surface.synthesis import self_affine
@@ -92,7 +93,9 @@ def test_dimension_is_that_of_the_corrected_area_and_the_raw_one_stands_beside_i
     nodes = np.array([6400, 1600, 400, 100])
     # An excess that grows with the spacing makes the raw area rise: its dimension is too low.
     corrected = xr.DataArray(factors**-0.1, dims="resolution")
-    result = scaled(fields, nodes * factors**0.4, corrected)
+    left = 1 - np.outer(1 / np.arange(20, 30), factors**0.1)
+    left = xr.DataArray(left, dims=(LEFT_OUT, "resolution"))
+    result = scaled(fields, nodes * factors**0.4, corrected, left=left)
     assert result["delta_sigma"].item() == pytest.approx(2 - 0.3)
     assert result["delta_sigma_raw"].item() == pytest.approx(2 - 0.4)
     assert result["delta_sigma_raw_low"] < result["delta_sigma_raw"]

@@ -3,6 +3,7 @@ import pytest
 import xarray as xr
 
 from fractalcontact.core.estimate import Estimate
+from fractalcontact.core.intervals import LEFT_OUT, t_quantile
 from fractalcontact.domain.renormalisation import (
     area_bend,
     compare_dimensions,
@@ -11,12 +12,22 @@ from fractalcontact.domain.renormalisation import (
     nominal_pressure,
     renormalisation,
 )
+from fractalcontact.mechanics.left_out import PARTS_LEFT_OUT
 
 S = xr.DataArray(0.08 * 2.0 ** np.arange(4), dims="resolution")
 DELTA = xr.DataArray([1.2, 1.5, 1.8], dims="normal_force")
 FORCE = xr.DataArray([100.0, 1000.0, 10000.0], dims="normal_force")
 MEASURE = xr.DataArray([3.0, 40.0, 200.0], dims="normal_force")
 AREA = MEASURE * S ** (2 - DELTA)
+
+
+def left_of(nodes):
+    """Fractions left of nodes (..., resolution, part) without each part."""
+    left = 1 - nodes / nodes.sum(axis=-1, keepdims=True)
+    return xr.DataArray(left, dims=("sample", "resolution", LEFT_OUT)[-np.ndim(nodes) :])
+
+
+LEFT = left_of(np.random.default_rng(1).poisson(30, (4, PARTS_LEFT_OUT)))
 
 
 def test_exact_fractal_gives_back_its_dimension_and_measure():
@@ -41,22 +52,37 @@ def test_one_power_law_does_not_bend():
     assert np.isnan(area_bend(S, bent, many).value)
 
 
-def test_interval_of_an_exact_fractal_is_that_of_counting_its_nodes():
-    result = renormalisation(S, AREA, FORCE)
-    nodes = AREA / S**2
-    weight = np.log(S) - np.log(S).mean()
-    weight = weight / (weight**2).sum()
-    half = 1.959964 * np.sqrt((weight**2 / nodes).sum("resolution"))
-    np.testing.assert_allclose(result.delta_sigma_high - result.delta_sigma, half, rtol=1e-6)
-    np.testing.assert_allclose(result.delta_sigma - result.delta_sigma_low, half, rtol=1e-6)
-    many = renormalisation(S, 1e8 * AREA, FORCE)
-    np.testing.assert_allclose(many.delta_sigma_low, DELTA, atol=1e-4)
+def test_interval_is_of_slopes_without_one_part_after_another():
+    result = renormalisation(S, AREA, FORCE, left=LEFT)
+    for load in range(3):
+        without = np.log(AREA[load] * LEFT).transpose("resolution", LEFT_OUT)
+        slopes = np.polyfit(np.log(S), without, 1)[0]
+        half = t_quantile(slopes.size - 1) * np.sqrt((slopes.size - 1) * slopes.var())
+        for end, sign in (("low", -1), ("high", 1)):
+            expected = np.clip(DELTA[load] + sign * half, 0, 2)
+            np.testing.assert_allclose(result[f"delta_sigma_{end}"][load], expected)
+
+
+def test_no_parts_leave_no_interval_and_one_that_holds_all_leaves_all_open():
+    assert np.isnan(renormalisation(S, AREA, FORCE).delta_sigma_low).all()
+    alone = LEFT.copy()
+    alone[-1] = np.arange(PARTS_LEFT_OUT) > 0
+    result = renormalisation(S, AREA, FORCE, left=alone)
+    np.testing.assert_allclose(result.delta_sigma, DELTA)
+    assert (result.delta_sigma_low == 0).all()
+    assert (result.delta_sigma_high == 2).all()
+
+
+def test_what_all_resolutions_share_is_no_error_of_the_slope():
+    shared = LEFT[0] * xr.ones_like(S)
+    result = renormalisation(S, AREA, FORCE, left=shared)
+    np.testing.assert_allclose(result.delta_sigma_high, DELTA)
 
 
 def test_no_dimension_and_no_interval_goes_beyond_a_plane():
     # An area that grows with refinement has an exponent beyond 2, one that falls by s^2 or more 0.
     for delta, stated in ((-0.1, 0), (0.0, 0), (1.95, 1.95), (2.0, 2), (2.1, 2)):
-        found = renormalisation(S, 40.0 * S ** (2 - delta) + 0 * FORCE, FORCE)
+        found = renormalisation(S, 40.0 * S ** (2 - delta) + 0 * FORCE, FORCE, left=LEFT)
         np.testing.assert_allclose(found.delta_sigma, stated, atol=1e-9)
         assert (found.delta_sigma_low >= 0).all()
         assert (found.delta_sigma_high <= 2).all()
@@ -85,8 +111,6 @@ def test_fit_agrees_with_numpy():
     for load in range(3):
         slope = np.polyfit(np.log(S), np.log(area[load]), 1)[0]
         assert result.delta_sigma[load].item() == pytest.approx(2 - slope)
-    assert (result.delta_sigma_low < result.delta_sigma).all()
-    assert (result.delta_sigma < result.delta_sigma_high).all()
 
 
 def test_resolutions_without_contact_are_left_out():
@@ -107,8 +131,6 @@ def test_few_nodes_have_no_dimension(nodes, fitted):
     assert result.n.item() == fitted
     if fitted:
         assert result.delta_sigma.item() == pytest.approx(0, abs=1e-9)
-        assert result.delta_sigma_low == 0
-        assert result.delta_sigma_high > 0.5
     else:
         assert np.isnan(result.delta_sigma)
         assert np.isnan(result.sigma_n).all()
@@ -125,11 +147,12 @@ def test_resolutions_of_few_nodes_are_left_out():
 
 def test_interval_holds_the_dimension_of_counts_that_scatter():
     rng = np.random.default_rng(0)
-    expected = 400 * 2.0 ** (-1.2 * np.arange(4))
-    nodes = xr.DataArray(rng.poisson(expected, (500, 4)), dims=("sample", "resolution"))
-    result = renormalisation(S, nodes * S**2, xr.DataArray(10.0))
+    expected = 400 * 2.0 ** (-1.2 * np.arange(4)) / PARTS_LEFT_OUT
+    parts = rng.poisson(expected[:, np.newaxis], (500, 4, PARTS_LEFT_OUT))
+    nodes = xr.DataArray(parts.sum(axis=-1), dims=("sample", "resolution"))
+    result = renormalisation(S, nodes * S**2, xr.DataArray(10.0), left=left_of(parts))
     inside = (result.delta_sigma_low <= 1.2) & (result.delta_sigma_high >= 1.2)
-    assert inside.mean() >= 0.95
+    assert 0.93 <= inside.mean() <= 0.97
 
 
 def test_more_dimensions_than_load():
@@ -208,23 +231,24 @@ def test_missing_dimension_never_disagrees():
     assert not result.disagree
 
 
-def test_no_bend_widens_the_interval_and_fixed_areas_have_none():
+def test_no_bend_widens_the_interval_and_areas_that_no_sample_changes_have_none():
     nodes = xr.full_like(AREA, 1e4)
     weight = np.log(S) - np.log(S).mean()
     straight, bent = (
-        renormalisation(S, area, FORCE, nodes) for area in (AREA, AREA * np.exp(0.2 * weight**2))
+        renormalisation(S, area, FORCE, nodes, left=LEFT)
+        for area in (AREA, AREA * np.exp(0.02 * weight**2))
     )
-    half = float(1.959964 * 0.01 / np.sqrt((weight**2).sum()))
-    for found in (straight, bent):
-        np.testing.assert_allclose(found.delta_sigma_high - found.delta_sigma, half, rtol=1e-6)
-        np.testing.assert_allclose(found.delta_sigma - found.delta_sigma_low, half, rtol=1e-6)
+    for end in ("low", "high"):
+        off = straight[f"delta_sigma_{end}"] - straight.delta_sigma
+        np.testing.assert_allclose(bent[f"delta_sigma_{end}"] - bent.delta_sigma, off)
     # The bend is of four areas, of which each octave takes two.
-    bend = area_bend(S, AREA, nodes)
-    np.testing.assert_allclose(bend.high - bend.value, 1.959964 * 0.02 / np.log(2), rtol=1e-6)
-    fixed = xr.ones_like(AREA, dtype=bool)
-    known = renormalisation(S, AREA, FORCE, nodes, fixed=fixed)
+    slopes = np.array([1, -1, -1, 1]) @ np.log(LEFT.values) / np.log(2)
+    half = t_quantile(slopes.size - 1) * np.sqrt((slopes.size - 1) * slopes.var())
+    bend = area_bend(S, AREA, nodes, left=LEFT)
+    np.testing.assert_allclose(bend.high - bend.value, half)
+    exact = xr.zeros_like(AREA)
+    known = renormalisation(S, AREA, FORCE, nodes, left=LEFT, sampling=exact)
     np.testing.assert_allclose(known.delta_sigma_low, known.delta_sigma)
     np.testing.assert_allclose(known.delta_sigma_high, known.delta_sigma)
-    some = renormalisation(S, AREA, FORCE, nodes, fixed=fixed & (S[0] < S))
-    assert (some.delta_sigma_high > some.delta_sigma).all()
-    assert (some.delta_sigma_high < straight.delta_sigma_high).all()
+    some = renormalisation(S, AREA, FORCE, nodes, left=LEFT, sampling=exact.where(S[0] < S, 0.1))
+    np.testing.assert_allclose(some.delta_sigma_high, straight.delta_sigma_high)

@@ -12,6 +12,7 @@ from cases import representative
 from matplotlib.figure import Figure
 
 from fractalcontact.core.fitting import fit_line
+from fractalcontact.core.intervals import LEFT_OUT
 from fractalcontact.core.limits import CORRECTED_NODES
 from fractalcontact.core.settings import Material, read
 from fractalcontact.core.subject import Subject
@@ -50,7 +51,9 @@ def atlas(atlas):
             curves[quantity] = (40 * curves[quantity]).assign_attrs(curves[quantity].attrs)
         curves["area_corrected_resolved"] = curves["nodes"] >= CORRECTED_NODES
         changed[f"closure/{name}"] = xr.DataTree(curves)
-        scaling = scaling_over_resolutions(curves, subject["domains"], 0.1)
+        left = np.random.default_rng(1).uniform(0.9, 1, (curves.sizes["resolution"], 9))
+        left = xr.DataArray(left, dims=("resolution", LEFT_OUT))
+        scaling = scaling_over_resolutions(curves, subject["domains"], 0.1, left=left)
         scaling = scaling.merge(extrapolated_pressure(scaling, np.sqrt(subject.area)))
         changed[f"scaling/{name}"] = xr.DataTree(with_pressure(scaling, subject.area))
     return changed

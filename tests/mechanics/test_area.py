@@ -11,6 +11,7 @@ from fractalcontact.mechanics import area, theory
 from fractalcontact.mechanics.area import (
     FULL_CONTACT,
     area_laws,
+    cell_areas,
     composite_statistics,
     contact_perimeter,
     corrected_area,
@@ -440,3 +441,10 @@ def test_statistics_of_other_offsets_are_refused(solved, statistics):
     _, _, curves, _ = solved
     with pytest.raises(ValueError, match=r"direction|offset"):
         area_laws(curves, statistics, 1.0, 2.2)
+
+
+def test_areas_of_cells_add_up_to_the_corrected_area():
+    domain = np.random.default_rng(0).random((40, 30)) < 0.3
+    found = cell_areas(domain)
+    assert found.shape == (np.count_nonzero(domain),)
+    assert found.sum() == pytest.approx(float(corrected_area(domain, 1.0)))

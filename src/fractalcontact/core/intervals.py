@@ -9,6 +9,9 @@ from scipy import special
 from .estimate import Estimate
 from .limits import CONFIDENCE
 
+#: Dimension of parts that a jackknife leaves out one by one.
+LEFT_OUT = "left_out"
+
 
 def t_quantile(freedom: ArrayLike) -> Any:
     """Half the width of a 95 % interval in standard errors, by Student's t.

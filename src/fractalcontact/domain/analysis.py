@@ -235,6 +235,7 @@ def scaling_over_resolutions(
     domains: xr.Dataset,
     spacing: float,
     *,
+    left: xr.DataArray | None = None,
     fit_range: tuple[float, float] | None = None,
 ) -> xr.Dataset:
     """Renormalisation over resolutions: Delta_sigma from A_r(s) beside that of the box counts.
@@ -248,6 +249,8 @@ def scaling_over_resolutions(
         From :func:`analyse_domains`.
     spacing : float
         Of the scan, mm.
+    left : DataArray, optional
+        From :func:`mechanics.left_out.left_of_fields`; no interval without it.
     fit_range : (float, float), optional
         Smallest and largest spacing s of the fits, mm; all by default.
 
@@ -274,7 +277,7 @@ def scaling_over_resolutions(
     """
     s, nodes = _spacings(curves, spacing), _nodes_between(curves, spacing, fit_range)
     force = curves["normal_force"]
-    result = corrected_scaling(curves, spacing, fit_range=fit_range)
+    result = corrected_scaling(curves, spacing, left=left, fit_range=fit_range)
     used = result["sigma_n"].notnull() & result["delta_sigma"].notnull()
     result["area_used"] = used.assign_attrs(cf_attrs("1", "resolution in the fit of delta_sigma"))
     # The pressure does not depend on which spacings are fitted.
@@ -286,7 +289,7 @@ def scaling_over_resolutions(
     result["sigma_n_raw"].attrs = cf_attrs("MPa", "F / A_r of the area not corrected for its edge")
     result["fitted_area"] = result["hausdorff_measure"] * s ** (2 - result["delta_sigma"])
     result["fitted_area"].attrs = cf_attrs("mm2", "contact area by the law of delta_sigma")
-    raw = renormalisation(s, curves["area"], force, nodes, RESOLVED_NODES)
+    raw = renormalisation(s, curves["area"], force, nodes, RESOLVED_NODES, left)
     for name, raw_name in zip(names_of("delta_sigma"), names_of("delta_sigma_raw"), strict=True):
         result[raw_name] = raw[name]
         result[raw_name].attrs["long_name"] = f"{raw[name].attrs['long_name']}, by the raw area"
@@ -302,13 +305,17 @@ def scaling_over_resolutions(
 
 
 def corrected_scaling(
-    curves: xr.Dataset, spacing: float, *, fit_range: tuple[float, float] | None = None
+    curves: xr.Dataset,
+    spacing: float,
+    *,
+    left: xr.DataArray | None = None,
+    fit_range: tuple[float, float] | None = None,
 ) -> xr.Dataset:
     """Renormalisation of the corrected areas alone, with the bend of their law.
 
     Parameters
     ----------
-    curves, spacing, fit_range
+    curves, spacing, left, fit_range
         As of :func:`scaling_over_resolutions`.
 
     Returns
@@ -318,7 +325,7 @@ def corrected_scaling(
     """
     s, nodes = _spacings(curves, spacing), _nodes_between(curves, spacing, fit_range)
     area = curves["area_corrected"]
-    each = nodes, CORRECTED_NODES, curves["area_sampling"] == 0
+    each = nodes, CORRECTED_NODES, left, curves["area_sampling"]
     result = renormalisation(s, area, curves["normal_force"], *each)
     words = "Delta_sigma from the area of the two finest resolutions less that of the two coarsest"
     bend = area_bend(s, area, *each)

@@ -6,8 +6,8 @@ import numpy as np
 import xarray as xr
 
 from ..core.estimate import Estimate, names_of, rows_of
-from ..core.fitting import fit_line, slope_error
-from ..core.intervals import t_quantile
+from ..core.fitting import fit_line
+from ..core.intervals import LEFT_OUT, jackknife_error
 from ..core.labels import cf_attrs
 
 #: The dimension along which resolutions s, 2s, 4s ... are stored.
@@ -23,7 +23,8 @@ def renormalisation(
     force: xr.DataArray,
     nodes: xr.DataArray | None = None,
     fewest: int = MIN_NODES_PER_RESOLUTION,
-    fixed: xr.DataArray | None = None,
+    left: xr.DataArray | None = None,
+    sampling: xr.DataArray | None = None,
 ) -> xr.Dataset:
     """Dimension and fractal measure of the contact domain from its area over resolutions.
 
@@ -43,8 +44,12 @@ def renormalisation(
         N_n, where areas are corrected ones; by default A_n / s_n^2.
     fewest : int
         Nodes that a domain needs to count.
-    fixed : DataArray of bool (resolution, ...), optional
-        Areas that no sample changes, as F/H where all contacts yield; none by default.
+    left : DataArray (resolution, ..., left_out), optional
+        Fraction of the area that is left without each part of the domain, from
+        :mod:`mechanics.left_out`; no interval without it.
+    sampling : DataArray (resolution, ...), optional
+        Sampling errors of the areas: where all that are fitted are 0, as those of F/H where all
+        contacts yield, the interval has no width.
 
     Returns
     -------
@@ -61,10 +66,10 @@ def renormalisation(
     single node at every resolution would give exactly 0). From
     `MIN_NODES_PER_RESOLUTION` = 4 on it is 0.3.
 
-    The interval is of sampling: N_n nodes vary as sqrt(N_n), as Poisson's law has it for nodes that
-    touch independently, at each resolution for itself. Hills that carry more or less are the same
-    at all resolutions and leave the slope as it is. Value and interval lie between 0 and 2, the
-    bounds of a set in the plane. What is left beside the line is a bend of the law, a finding
+    The interval is of sampling: one part of the contact after another is left out at all
+    resolutions together (jackknife), so that hills that carry more or less, which are the same at
+    all of them, leave the slope as it is. Value and interval lie between 0 and 2, the bounds of a
+    set in the plane. What is left beside the line is a bend of the law, a finding
     (:func:`area_bend`) and no error: an interval of the regression was four times too wide on
     joints, and beside their bend four points have one degree of freedom, too few for an interval.
 
@@ -79,16 +84,10 @@ def renormalisation(
         raise ValueError(f"a contact area cannot be negative: {float(area.min())} mm2")
     nodes = area / s**2 if nodes is None else nodes
     touching = area.where(nodes >= fewest - 1e-6)
-    *slope, n, r2 = xr.apply_ufunc(
-        _area_exponent,
-        np.log(s),
-        np.log(touching),
-        _counting_error(nodes, fixed),
-        input_core_dims=[[RESOLUTION]] * 3,
-        output_core_dims=[[]] * 5,
-        vectorize=True,
+    value, low, high, n, r2 = _of_resolutions(_area_exponent, 5, s, touching, left, sampling)
+    delta = (
+        Estimate(value, low, high).mapped(lambda exponent: 2 - exponent, falling=True).in_plane()
     )
-    delta = Estimate(*slope).mapped(lambda exponent: 2 - exponent, falling=True).in_plane()
     measure = hausdorff_measure(s, touching, delta.value)
     measure = np.exp(np.log(measure).mean(RESOLUTION))
     values = {
@@ -121,18 +120,40 @@ def _described(values, words) -> xr.Dataset:
     return result
 
 
-def _area_exponent(log_s: np.ndarray, log_area: np.ndarray, error: np.ndarray) -> tuple[float, ...]:
+def _of_resolutions(function, outputs, s, area, left, sampling) -> tuple[xr.DataArray, ...]:
+    """Numbers of a function of log s, log A, log of what is left, and whether A samples."""
+    left = xr.full_like(area, np.nan).expand_dims({LEFT_OUT: 1}) if left is None else left
+    free = xr.ones_like(area, dtype=bool) if sampling is None else sampling != 0
+    with np.errstate(divide="ignore"):  # one part may hold all nodes
+        logs = np.log(s), np.log(area), np.log(left)
+    return xr.apply_ufunc(
+        function,
+        *logs,
+        free,
+        input_core_dims=[[RESOLUTION], [RESOLUTION], [RESOLUTION, LEFT_OUT], [RESOLUTION]],
+        output_core_dims=[[]] * outputs,
+        vectorize=True,
+    )
+
+
+def _area_exponent(log_s, log_area, log_left, free) -> tuple[float, ...]:
     """Slope of log A over log s with its interval, resolutions fitted and r2."""
     line = fit_line(log_s, log_area)
     slope, fitted = line.slope.value, np.isfinite(log_area)
-    half = slope_error(log_s[fitted], error[fitted])
+    about = fitted * (log_s - np.average(log_s, weights=fitted + 1e-300))
+    half = _half(about / (about @ about or 1.0), log_left, free)
     return slope, slope - half, slope + half, float(line.n), line.r2
 
 
-def _counting_error(nodes: xr.DataArray, fixed: xr.DataArray | None) -> xr.DataArray:
-    """Half of the interval of log N if N nodes vary as sqrt(N); 0 of fixed areas."""
-    error = t_quantile(np.inf) / np.sqrt(nodes.where(nodes > 0))
-    return error if fixed is None else error.where(~fixed, 0.0)
+def _half(weights, log_left, free) -> float:
+    """Half of the interval of a weighted sum of log A; 0 of areas that no sample changes."""
+    counted = weights != 0
+    if not free[counted].any():
+        return 0.0
+    if np.isinf(log_left[counted]).any():  # one part holds all nodes: the sum may be anything
+        return np.inf
+    replicates = weights[counted] @ log_left[counted]
+    return jackknife_error(replicates) if np.isfinite(replicates).all() else np.nan
 
 
 def hausdorff_measure(s: Any, area: Any, delta_sigma: Any) -> Any:
@@ -291,7 +312,8 @@ def area_bend(
     area: xr.DataArray,
     nodes: xr.DataArray,
     fewest: int = MIN_NODES_PER_RESOLUTION,
-    fixed: xr.DataArray | None = None,
+    left: xr.DataArray | None = None,
+    sampling: xr.DataArray | None = None,
 ) -> Estimate:
     """Delta_sigma of the two finest resolutions less that of the two coarsest, from their areas.
 
@@ -300,7 +322,7 @@ def area_bend(
 
     Parameters
     ----------
-    s, area, nodes, fewest, fixed
+    s, area, nodes, fewest, left, sampling
         As of :func:`renormalisation`, s ascending.
 
     Returns
@@ -309,20 +331,11 @@ def area_bend(
         Of DataArrays on the other dimensions of `area`; NaN where fewer than three resolutions
         count.
     """
-    log_area = np.log(area.where(nodes >= fewest))
-    value, half = xr.apply_ufunc(
-        _bend,
-        np.log(s),
-        log_area,
-        _counting_error(nodes, fixed),
-        input_core_dims=[[RESOLUTION]] * 3,
-        output_core_dims=[[]] * 2,
-        vectorize=True,
-    )
+    value, half = _of_resolutions(_bend, 2, s, area.where(nodes >= fewest), left, sampling)
     return Estimate(value, value - half, value + half)
 
 
-def _bend(log_s: np.ndarray, log_area: np.ndarray, error: np.ndarray) -> tuple[float, float]:
+def _bend(log_s, log_area, log_left, free) -> tuple[float, float]:
     """Difference of two slopes of log A over log s, and half of its interval."""
     counted = np.flatnonzero(np.isfinite(log_area))
     if counted.size < 3:
@@ -332,5 +345,4 @@ def _bend(log_s: np.ndarray, log_area: np.ndarray, error: np.ndarray) -> tuple[f
         step = sign / (log_s[coarse] - log_s[fine])
         weights[coarse] += step
         weights[fine] -= step
-    half = np.sqrt(np.sum((weights[counted] * error[counted]) ** 2))
-    return float(weights[counted] @ log_area[counted]), float(half)
+    return float(weights[counted] @ log_area[counted]), _half(weights, log_left, free)

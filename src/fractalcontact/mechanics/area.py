@@ -88,6 +88,20 @@ def corrected_area(in_contact: ArrayLike, spacing: ArrayLike) -> np.ndarray:
     return np.maximum(nodes - EDGE_EXCESS * edges, 0.0) * dy * dx
 
 
+def cell_areas(in_contact: ArrayLike) -> np.ndarray:
+    """Corrected area of each node in contact, (n,), in cells; of all it is :func:`corrected_area`.
+
+    Parameters
+    ----------
+    in_contact : (ny, nx) bool array_like
+    """
+    touching = np.asarray(in_contact, bool)
+    around = np.pad(touching, 1, constant_values=True)
+    y, x = np.nonzero(touching)
+    beside = around[y, x + 1], around[y + 2, x + 1], around[y + 1, x], around[y + 1, x + 2]
+    return 1 - EDGE_EXCESS * (4 - np.sum(beside, axis=0))
+
+
 def _edges(in_contact: ArrayLike) -> tuple[np.ndarray, ...]:
     """Number of cell sides between contact and gap, along x (cells above each other) and y."""
     domain = np.asarray(in_contact, bool)

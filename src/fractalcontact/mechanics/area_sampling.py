@@ -9,7 +9,7 @@ from roughcontact.contact.state import ContactState
 from ..core.fitting import MIN_POINTS
 from ..core.intervals import t_quantile
 from ..core.limits import MAX_TOUCHING
-from .area import EDGE_EXCESS, corrected_area
+from .area import cell_areas, corrected_area
 
 
 def area_sampling(in_contact: ArrayLike, pressure: ArrayLike) -> float:
@@ -45,11 +45,8 @@ def area_sampling(in_contact: ArrayLike, pressure: ArrayLike) -> float:
     labels, contacts = scipy.ndimage.label(touching, np.ones((3, 3)))
     if contacts < MIN_POINTS or touching.mean() > MAX_TOUCHING:
         return np.nan
-    around = np.pad(touching, 1, constant_values=True)
-    beside = (around[:-2, 1:-1], around[2:, 1:-1], around[1:-1, :-2], around[1:-1, 2:])
-    edges = 4.0 - np.sum(beside, axis=0)
     of_contact = labels[touching] - 1
-    area = np.bincount(of_contact, 1 - EDGE_EXCESS * edges[touching])
+    area = np.bincount(of_contact, cell_areas(touching))
     force = np.bincount(of_contact, np.asarray(pressure)[touching])
     apart = area / area.sum() - force / force.sum()
     variance = contacts / (contacts - 1) * np.sum(apart**2)

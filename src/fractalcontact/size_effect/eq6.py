@@ -108,7 +108,7 @@ def size_test(loading: JointLoading[WindowSettings]) -> xr.Dataset:
 
     states, _ = solve_sub_windows(mapped, PARTS, estimate)
     of_windows = ["nodes", "nodes_error", "interface_closure", "bulk_compliance"]
-    of_windows += ["whole_area", "whole_area_sampling"]
+    of_windows += ["whole_area", "whole_area_sampling", "whole_left"]
     result = states.drop_vars([*of_windows, *OF_WINDOWS]).merge(size_law(states))
     result = result.merge(slopes_at_equal_star(states, result.sizes["normal_force"]))
     result = result.merge(size_verdicts(result))
@@ -142,7 +142,7 @@ def _dimensions(
     boxes = [dimension_of_domain(d, spacing, fit_range=settings.box_range) for d in domains]
     occupied = Estimate.stack(_slope_of_occupied(domain, parts) for domain in domains)
     by_estimator = {
-        "area": _by_area(loading, whole, spacing),
+        "area": _by_area(loading, whole, domains, spacing),
         "box": Estimate.stack(boxes),
         "box_sizes": occupied.mapped(np.negative, falling=True),
     }
@@ -162,9 +162,11 @@ def _dimensions(
     return result
 
 
-def _by_area(loading: JointLoading[WindowSettings], whole: xr.Dataset, spacing: float) -> Estimate:
+def _by_area(
+    loading: JointLoading[WindowSettings], whole: xr.Dataset, domains: np.ndarray, spacing: float
+) -> Estimate:
     """Delta_sigma (load) from the corrected area of the whole over resolutions."""
-    areas = whole_areas(loading, whole)
+    areas = whole_areas(loading, whole, domains)
     s = spacing * areas["resolution"]
     if loading.settings.scaling_range is not None:
         areas = areas.where(within(s, *loading.settings.scaling_range))
@@ -174,7 +176,8 @@ def _by_area(loading: JointLoading[WindowSettings], whole: xr.Dataset, spacing: 
         whole["normal_force"],
         areas["nodes"],
         CORRECTED_NODES,
-        areas["area_sampling"] == 0,
+        areas["left"],
+        areas["area_sampling"],
     )
     return Estimate.read(by_area, "delta_sigma")
 

@@ -8,6 +8,7 @@ import xarray as xr
 from roughcontact.contact.state import ContactState
 
 from ..core.datasets import labelled_dataset
+from ..core.intervals import LEFT_OUT
 from ..core.labels import cf_attrs
 from ..core.limits import CORRECTED_NODES, RESOLVED_NODES
 from ..core.ranges import within
@@ -16,6 +17,7 @@ from ..domain.renormalisation import MIN_NODES_PER_RESOLUTION
 from ..mechanics.area_sampling import state_area_sampling
 from ..mechanics.closure import bulk_settlement, interface_closure
 from ..mechanics.joint import prefractal
+from ..mechanics.left_out import PARTS_LEFT_OUT, fractions_left, part_ends
 from ..mechanics.loading import JointLoading
 from ..mechanics.state_scalars import state_area
 from ..mechanics.states import SCALARS, SOLVER_ERROR
@@ -59,7 +61,8 @@ def solve_sub_windows(
         What was estimated, and
         ``nodes`` (part, window, resolution, step) in contact and ``nodes_error``, those that the
         solver leaves ambiguous; ``interface_closure`` and :data:`OF_WINDOWS` (part, window, step)
-        at the finest resolution, ``whole_area`` and ``whole_area_sampling`` (resolution, step),
+        at the finest resolution, ``whole_area`` and ``whole_area_sampling`` (resolution, step)
+        and ``whole_left`` (resolution, step, left_out) of :mod:`mechanics.left_out`,
         ``side`` b and ``windows`` (part), ``ladder_pressure`` (step) whose first steps are those
         of the loads. Steps that no
         window of a size needs are NaN.
@@ -152,6 +155,8 @@ class _LoadedSize:
         Corrected real contact area, mm2; of several windows at the finest resolution alone.
     sampling : (resolution, step) ndarray
         Relative sampling error of that of a window alone.
+    left : (resolution, step, left_out) ndarray
+        Fractions of it, see :mod:`mechanics.left_out`.
     finest : dict of str to (window, step) ndarray
         ``interface_closure``, mm, and :data:`OF_WINDOWS`.
     domains : list of (ny, nx) bool ndarray
@@ -181,6 +186,7 @@ class _LoadedSize:
         self.finest = {name: np.full((len(windows), len(pressures)), np.nan) for name in names}
         self.corrected = self.nodes.copy()
         self.sampling = self.nodes[0].copy()
+        self.left = np.full((*self.sampling.shape, PARTS_LEFT_OUT), np.nan)
         self._compliant = compliant
         self.domains: list[np.ndarray] = []
         self.solved = 0
@@ -203,15 +209,17 @@ class _LoadedSize:
             for step, state in zip(following, rising, strict=False):
                 self.nodes[j, k, step] = np.count_nonzero(state.in_contact)
                 self.ambiguous[j, k, step] = state.ambiguous
+                if j == k == 0:
+                    self.domains.append(state.in_contact)
                 if k == 0 or len(self.nodes) == 1:
                     self.corrected[j, k, step] = state_area(state)
                 if len(self.nodes) == 1:
                     self.sampling[k, step] = state_area_sampling(state)
+                    ends = part_ends(self.domains[step], self.factors[0])
+                    self.left[k, step] = fractions_left(state.in_contact, self.factors[k], ends)
                 if k == 0:
                     for name, value in self._of_state(state, j, step).items():
                         self.finest[name][j, step] = value
-                    if j == 0:
-                        self.domains.append(state.in_contact)
         self.solved = following.stop
 
     def _of_state(self, state: ContactState, window: int, step: int) -> dict[str, float]:
@@ -278,6 +286,7 @@ _TABLE = {
         "corrected real contact area of the whole window",
     ),
     "whole_area_sampling": (("resolution", "step"), *SCALARS["area_sampling"]),
+    "whole_left": (("resolution", "step", LEFT_OUT), "1", "fraction of it without a part"),
     "bulk_compliance": ("part", "mm/MPa", "bulk settlement of a sub-window over sigma_0"),
     "side": ("part", "mm", "side b of the sub-windows"),
     "windows": ("part", "1", "sub-windows solved of each size"),
@@ -314,6 +323,7 @@ def _labelled(
         "nodes_error": ambiguous,
         "whole_area": sizes[0].corrected[0],
         "whole_area_sampling": sizes[0].sampling,
+        "whole_left": sizes[0].left,
         "bulk_compliance": [size.bulk_compliance for size in sizes],
         "side": [np.sqrt(size.sides.prod()) for size in sizes],
         "windows": np.square(parts),
@@ -356,7 +366,9 @@ def real_pressure(force: np.ndarray, nodes: np.ndarray, spacing: np.ndarray) -> 
     return np.exp(np.log(force[..., np.newaxis] / (nodes * spacing**2)).mean(axis=-1))
 
 
-def whole_areas(loading: JointLoading[JointSettings], states: xr.Dataset) -> xr.Dataset:
+def whole_areas(
+    loading: JointLoading[JointSettings], states: xr.Dataset, domains: np.ndarray
+) -> xr.Dataset:
     """Corrected real area of the whole window at all resolutions of the study.
 
     Parameters
@@ -365,34 +377,45 @@ def whole_areas(loading: JointLoading[JointSettings], states: xr.Dataset) -> xr.
         As for :func:`solve_sub_windows`.
     states : xr.Dataset
         From :func:`solve_sub_windows`, which has solved some of the resolutions.
+    domains : (load, ny, nx) bool ndarray
+        From there.
 
     Returns
     -------
     xr.Dataset
-        ``area_corrected``, mm2, ``area_sampling`` and ``nodes`` (resolution, normal_force).
+        ``area_corrected``, mm2, ``area_sampling`` and ``nodes`` (resolution, normal_force), and
+        ``left`` (resolution, normal_force, left_out) of :mod:`mechanics.left_out`.
     """
     composite = loading.composite(loading.cells.item())
     factors, loads = loading.settings.resolutions, states["normal_force"]
     solved = states.sel(part=1).isel(window=0, step=slice(len(loads)))
     # That of solve_sub_windows is cut to whole cells of its coarsest resolution.
     uncut = not any(n % solved["resolution"].max() for n in composite.shape)
-    rows: list[np.ndarray] = []
+    ends = [part_ends(domain, min(factors)) for domain in domains]
+    rows, left = [], []
     for factor in factors:
         if uncut and factor in solved["resolution"]:
             known = solved.sel(resolution=factor)
             names = ("whole_area", "whole_area_sampling", "nodes")
             rows.append(np.array([known[name].values for name in names]))
+            left.append(known["whole_left"].values)
             continue
         h = prefractal(composite, factor)
         space = loading.half_space(h.shape, factor)
         steps = load_steps(h, space, loads.values, loading.solving, f"resolution {factor}")
-        found = [(state_area(s), state_area_sampling(s), s.in_contact.sum()) for s in steps]
+        found, without = [], []
+        for state, of_load in zip(steps, ends, strict=True):
+            domain = state.in_contact
+            found.append((state_area(state), state_area_sampling(state), domain.sum()))
+            without.append(fractions_left(domain, factor, of_load))
         rows.append(np.transpose(found))
+        left.append(np.array(without))
     dims = ("resolution", "normal_force")
     columns = np.swapaxes(np.array(rows), 0, 1)
     table = zip(("area_corrected", "area_sampling", "nodes"), columns, strict=True)
+    areas = {name: (dims, values) for name, values in table}
     coords = {"resolution": factors, "normal_force": loads}
-    return xr.Dataset({name: (dims, values) for name, values in table}, coords)
+    return xr.Dataset(areas, coords).assign(left=((*dims, LEFT_OUT), np.array(left)))
 
 
 def _ladder(pressures: np.ndarray, hardness: float) -> np.ndarray:

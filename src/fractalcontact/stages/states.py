@@ -15,6 +15,7 @@ from ..domain.renormalisation import extrapolated_pressure
 from ..mechanics.area import area_laws, joint_statistics
 from ..mechanics.closure import closure_curves, elastic_dilatancy, full_contact_warning
 from ..mechanics.contact_fields import contact_fields
+from ..mechanics.left_out import left_of_fields
 from ..mechanics.overlap import load_warning, node_marks
 from ..mechanics.separation import prefractal_openings
 from ..mechanics.states import (
@@ -93,7 +94,9 @@ def state_stages(
     domains = analyse_domains(fields, spacing, fit_range=settings.box_range)
     nulls = nulls_of_map_states(mapped, spacing, joints["composite"], settings.box_range)
     domains = beside_domains(domains, nulls)
-    scaling = scaling_over_resolutions(curves, domains, spacing, fit_range=settings.scaling_range)
+    left = left_of_fields(fields)
+    fitted = settings.scaling_range
+    scaling = scaling_over_resolutions(curves, domains, spacing, left=left, fit_range=fitted)
     stages = {
         "closure": curves,
         "dilatancy": dilatancy,

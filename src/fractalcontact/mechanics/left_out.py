@@ -1,0 +1,103 @@
+"""Contact domains without one of their parts, the same ground at all resolutions (jackknife)."""
+
+import functools
+
+import numpy as np
+import xarray as xr
+
+from ..core.intervals import LEFT_OUT
+from .area import cell_areas
+
+#: Parts, which hold equally many nodes of the finest domain.
+PARTS_LEFT_OUT = 32
+
+
+def part_ends(domain: np.ndarray, factor: int) -> np.ndarray:
+    """Where parts of equally many nodes end along Morton's curve.
+
+    Parameters
+    ----------
+    domain : (ny, nx) bool ndarray
+        Nodes in contact at the finest resolution.
+    factor : int
+        Multiple k of the scan's spacing.
+
+    Returns
+    -------
+    (PARTS_LEFT_OUT - 1,) int ndarray
+        Empty without a node.
+
+    Notes
+    -----
+    Contact gathers on few hills, which squares of the window would cut unevenly, and leave empty
+    elsewhere. Morton's curve keeps neighbours together, so that its parts are compact.
+    """
+    places = np.sort(_places(domain, factor))
+    return (
+        places[np.arange(1, PARTS_LEFT_OUT) * places.size // PARTS_LEFT_OUT]
+        if places.size
+        else places
+    )
+
+
+def fractions_left(domain: np.ndarray, factor: int, ends: np.ndarray) -> np.ndarray:
+    """Fraction of the corrected area of a domain that is left without each part.
+
+    Parameters
+    ----------
+    domain, factor
+        As of :func:`part_ends`, at any resolution.
+    ends : (PARTS_LEFT_OUT - 1,) int ndarray
+        From :func:`part_ends` of the finest domain.
+
+    Returns
+    -------
+    (PARTS_LEFT_OUT,) ndarray
+        NaN without a node, or without ends.
+    """
+    places = _places(domain, factor)
+    if not (places.size and ends.size):
+        return np.full(PARTS_LEFT_OUT, np.nan)
+    part = np.searchsorted(ends, places, side="right")
+    area = np.bincount(part, cell_areas(domain), PARTS_LEFT_OUT)
+    return 1 - area / area.sum()
+
+
+def left_of_fields(fields: xr.Dataset) -> xr.DataArray:
+    """:func:`fractions_left` of all contact domains of a specimen.
+
+    Parameters
+    ----------
+    fields : xr.Dataset
+        ``in_contact_k`` as :func:`domain.analysis.analyse_domains` takes them.
+
+    Returns
+    -------
+    DataArray (direction, offset, resolution, normal_force, left_out)
+    """
+    names = [str(name) for name in fields.data_vars if str(name).startswith("in_contact_")]
+    domains = {int(name.removeprefix("in_contact_")): fields[name].values for name in names}
+    factors = sorted(domains)
+    n_direction, n_offset, n_load = domains[factors[0]].shape[:3]
+    left = np.empty((n_direction, n_offset, len(factors), n_load, PARTS_LEFT_OUT))
+    for direction, offset, load in np.ndindex(n_direction, n_offset, n_load):
+        of_state = [domains[k][direction, offset, load] for k in factors]
+        ends = part_ends(of_state[0], factors[0])
+        for i, (factor, domain) in enumerate(zip(factors, of_state, strict=True)):
+            left[direction, offset, i, load] = fractions_left(domain, factor, ends)
+    dims = ("direction", "offset", "resolution", "normal_force", LEFT_OUT)
+    coords = {name: fields[name] for name in ("direction", "offset", "normal_force")}
+    return xr.DataArray(left, dims=dims, coords={**coords, "resolution": factors})
+
+
+def _places(domain: np.ndarray, factor: int) -> np.ndarray:
+    """Places of the nodes of a domain along Morton's curve, on the grid of the scan."""
+    y, x = np.nonzero(domain)
+    spread = _spread(factor * max(domain.shape))
+    return 2 * spread[factor * y] + spread[factor * x]
+
+
+@functools.cache
+def _spread(n: int) -> np.ndarray:
+    """Numbers below n with a 0 before each of their binary digits."""
+    return np.array([int(f"{number:b}", 4) for number in range(n)])
