@@ -96,7 +96,7 @@ def _draw_apertures(panel: Panel, states: xr.Dataset) -> None:
     beside = states.isel(normal_force=np.flatnonzero(flows > 0))
     for law, (words, style) in _LAWS.items():
         if beside[law].notnull().any():
-            panel.curve(beside, "mean_gap", law, label=words, marker="none", **style)
+            panel.curve(beside, "mean_gap", law, label=words, marker=".", **style)
     gaps = beside["mean_gap"].values
     if gaps.size:
         ends = [gaps.min(), gaps.max()]
