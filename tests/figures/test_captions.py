@@ -25,12 +25,11 @@ SPECIMENS = [
     for figure in figures_of(opposite)
 ]
 STUDY = [
-    (figure, list(SUBJECTS))
-    for figure in study_figures_of([*paths_of(EXPERIMENT), "defaults", "comparison"])
+    (figure, list(SUBJECTS)) for figure in study_figures_of([*paths_of(EXPERIMENT), "comparison"])
 ]
 #: Half of the captions of a study have fewer words than this.
 MEDIAN_WORDS = 50
-#: Words of a verdict on the paper, which only the table of statements has.
+#: Words of a verdict on the paper, which only the tables of statements have.
 VERDICT = (
     r"\b(holds|not hold|holds? in part|ill-posed|established|refut\w+|support\w*|confirm\w*|"
     r"contradict\w*|disprov\w+|proves?|proven|(as|unlike|against) (in )?(the paper|eqs?\.))(?!\w)"
@@ -42,8 +41,6 @@ PRIVATE = (
     r"\b(nan|told|made|share|met|arm|jobs?|seeds?|held against|scenes?|bound of the solver|"
     r"atlas group|lanes?|twiddle|hats?|knots?)\b"
 )
-#: Figures that are tables of statements: they draw a sign for each verdict that there is.
-TABLES = ("statements", "study_statements")
 
 
 @pytest.fixture(scope="module")
@@ -63,14 +60,14 @@ def words_of(caption):
 
 
 @pytest.fixture(scope="module")
-def caption_of(atlas, marked):
+def caption_of(marked):
     """Caption of a figure, drawn once from no other stage of the atlas than those it states."""
     known = {}
 
     def draw(figure, subject):
         key = figure, str(subject)
         if key not in known:
-            needed = (atlas if figure in TABLES else marked).copy()
+            needed = marked.copy()
             for stage in STAGES.keys() - set(all_figures()[figure].needs):
                 if stage in needed.children:
                     del needed[stage]
@@ -92,9 +89,8 @@ def test_caption_is_short_and_quotes_its_verdicts(caption_of, figure, subject):
     assert "WARNING" not in caption  # the page states it once
     assert "  " not in caption
     assert not MARKUP.search(caption)
-    if figure not in TABLES:
-        said = {found[0] for found in re.finditer(VERDICT, caption)}
-        assert said <= DECIDED.get(figure, set()), caption
+    said = {found[0] for found in re.finditer(VERDICT, caption)}
+    assert said <= DECIDED.get(figure, set()), caption
 
 
 def test_half_of_the_captions_are_shorter_still(caption_of):
@@ -141,7 +137,7 @@ QUOTED = {
 
 def test_every_figure_that_reads_statements_says_which():
     reading = {name for name, figure in all_figures().items() if "statements" in figure.needs}
-    assert reading == QUOTED.keys() | set(TABLES)
+    assert reading == QUOTED.keys()
 
 
 @pytest.mark.parametrize("figure", representative(sorted(QUOTED), 4))

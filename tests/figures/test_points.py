@@ -7,7 +7,6 @@ from matplotlib.figure import Figure
 
 from fractalcontact.figures.kit.empty import MARK, say_empty, settle_empty_axes
 from fractalcontact.figures.kit.points import draw_points, hollow_entry, reach
-from fractalcontact.figures.kit.tables import draw_rows, draw_texts, wrap_rows
 
 
 def one_panel():
@@ -99,17 +98,3 @@ def test_an_empty_panel_says_why_once(ticks):
     if not ticks:
         assert not len(axes.get_xticks())
         assert not len(axes.get_yticks())
-
-
-def test_rows_stand_as_they_do_below_heads():
-    columns = {"claim": (0.1, 20), "numbers": (0.6, 10)}
-    rows = [{"claim": "a claim of some length, in lines", "numbers": "1 to 2"}] * 3
-    texts, lines = wrap_rows(rows, columns)
-    _, axes = one_panel()
-    below = draw_rows(axes, texts, lines, columns, dict.fromkeys(columns, "head"), 2.0)
-    _, other = one_panel()
-    places = draw_texts(other, texts, lines, columns, below[0])
-    assert places == below
-    assert np.diff(places) == pytest.approx(lines[:-1])
-    drawn = [(text.get_text(), text.get_position()) for text in axes.texts]
-    assert drawn[len(columns) :] == [(text.get_text(), text.get_position()) for text in other.texts]

@@ -21,7 +21,6 @@ OWN_STYLE = {"font.size": 14, "figure.dpi": 72, "axes.grid": True, "xtick.labels
 #: Cards of the pages and the settings under which their lines are run: the first stand for all.
 CARDS = [
     ("fig04_05_closure", "pair", {}),
-    ("study_statements", "", OWN_STYLE),
     *((figure, "pair", OWN_STYLE) for figure in figures_of("match")),
     *((figure, "", OWN_STYLE) for figure in ("comparison", "comparison_loads")),
 ]

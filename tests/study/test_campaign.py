@@ -47,11 +47,11 @@ def test_the_explorer_shows_few_specimens_all_and_of_many_those_named_that_are_t
 
 
 def test_figures_of_a_campaign_read_no_specimen_for_itself():
-    names = study_figures_of(["defaults", "comparison", "roll_off"])
+    names = study_figures_of(["comparison", "roll_off"])
     alone = of_study_alone(names)
     assert {"comparison", "comparison_loads"} <= set(alone)
-    assert "study_statements" in names
-    assert "study_statements" not in alone
+    assert "plateau" in names
+    assert "plateau" not in alone
 
 
 def test_a_figure_that_is_none_is_refused_with_the_nearest():

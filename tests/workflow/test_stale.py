@@ -260,7 +260,7 @@ def test_what_was_damaged_or_removed_is_made_again_by_the_same_command(project):
     results = project / "results/test"
     removed = (
         "figures/own/fig08_prefractals.svg",
-        "figures/rock/statements.txt",
+        "figures/rock/errors.txt",
         "embedded/own.yaml",
     )
     before = {name: (results / name).read_bytes() for name in (*KINDS, *removed)}

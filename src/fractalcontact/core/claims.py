@@ -37,7 +37,7 @@ class Claim:
     joints : str
         "one", or "several" where it needs them.
     shown_in : str
-        Figure that shows it.
+        Figure that shows it; empty where none does.
     """
 
     name: str
@@ -50,7 +50,7 @@ class Claim:
     slides: bool = True
     plastic: bool = False
     joints: str = "one"
-    shown_in: str = "statements"
+    shown_in: str = ""
 
 
 @cache

@@ -1,11 +1,12 @@
-"""One error bar a quantity, split by source."""
+"""One error bar a quantity, split by source, and the solve plan behind the errors."""
 
 import math
 from dataclasses import dataclass
 
 from ..core.labels import OF_SURFACE, TWINS
+from ..core.subject import Subject
 from .summary import Quantity, Specimen
-from .words import with_unit
+from .words import MISSING, percent, with_unit
 
 
 @dataclass(frozen=True)
@@ -46,6 +47,37 @@ class Bar:
 def bars_of(specimen: Specimen) -> list[Bar]:
     """Error bars of a specimen under the load of its contact maps."""
     return [_bar(quantity) for quantity in specimen.of_maps.quantities.values()]
+
+
+@dataclass(frozen=True)
+class Plan:
+    """Solve plan of a specimen: how many of its states were solved, how exactly, and why.
+
+    Attributes
+    ----------
+    asked : str
+        Accuracy that the study asks for.
+    solved, states : int
+    choices : list of (str, str, str, str)
+        Choice, value, reason and largest error in words.
+    """
+
+    asked: str
+    solved: int
+    states: int
+    choices: list[tuple[str, str, str, str]]
+
+
+def plan_of(subject: Subject) -> Plan:
+    """Solve plan that the stage ``choices`` states of a specimen."""
+    plan = subject["choices"]
+    rows = (plan[key].values.tolist() for key in ("choice", "value", "reason", "error", "error_of"))
+    choices = [
+        (choice, value, why, f"{percent(error)} of the {of}" if math.isfinite(error) else MISSING)
+        for choice, value, why, error, of in zip(*rows, strict=True)
+    ]
+    asked, solved, states = (plan.attrs[key] for key in ("asked", "states_solved", "states"))
+    return Plan(asked, solved, states, choices)
 
 
 def _bar(quantity: Quantity) -> Bar:

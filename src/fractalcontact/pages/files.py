@@ -2,9 +2,10 @@
 
 #: In the folder of the results of a study.
 INDEX, EXPLORER = "index.html", "explorer.html"
-SUMMARY, CURVES, TABLES, CONFIGURATION = "summary.csv", "curves.csv", "tables.zip", "study.yaml"
+SUMMARY, CURVES, STATEMENTS = "summary.csv", "curves.csv", "statements.csv"
+TABLES, CONFIGURATION = "tables.zip", "study.yaml"
 #: Those made with the index.
-FILES = (INDEX, SUMMARY, CURVES, TABLES, CONFIGURATION)
+FILES = (INDEX, SUMMARY, CURVES, STATEMENTS, TABLES, CONFIGURATION)
 #: Page of a specimen, below that folder.
 SPECIMEN_PAGE = "pages/{specimen}.html"
 #: Aperture map of a specimen under the reference load, and the endings that it has.

@@ -6,9 +6,11 @@ Verdicts are those of the stages ``statements`` and ``study_statements``; nothin
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
+import pandas as pd
 import xarray as xr
 
 from ..core.claims import claims_of
+from ..core.stage import SPECIMEN
 from ..core.verdicts import FAILS, HOLDS, ILL_POSED, PARTLY, UNDETERMINED
 from ..study.figure_list import all_figures
 
@@ -96,6 +98,27 @@ def of_study(atlas: xr.DataTree) -> list[Row]:
     return [_row(one, {"": table}) for one in claims_of("several").values()]
 
 
+def statement_table(study: str, rows: Iterable[Row]) -> pd.DataFrame:
+    """Verdicts as a table, one row a statement and specimen; of several together without a name."""
+    found = [
+        {
+            "study": study,
+            "specimen": specimen,
+            "statement": row.name,
+            "figure": row.figure,
+            "claim": row.claim,
+            "verdict": cell.verdict,
+            "numbers": cell.numbers,
+            "note": cell.note,
+            "judged_on": cell.judged_on,
+            "chosen_for": cell.circular,
+        }
+        for row in rows
+        for specimen, cell in row.cells.items()
+    ]
+    return pd.DataFrame(found) if found else pd.DataFrame(columns=["study", "specimen"])
+
+
 def _row(claim, tables):
     asked = {
         specimen: table.sel(statement=claim.name)
@@ -108,10 +131,10 @@ def _row(claim, tables):
 
 
 def _figure_of(claim, found):
-    """The figure that shows a statement: of a surface against a plane one that is drawn of it."""
-    drawn = all_figures()[claim.shown_in].subject
-    slides = found.attrs.get("direction", "") != "none"
-    return claim.shown_in if slides or drawn == "specimen" else "statements"
+    """The figure that shows a statement; of a surface against a plane many are not drawn."""
+    if not claim.shown_in or found.attrs.get("direction", "") != "none":
+        return claim.shown_in
+    return claim.shown_in if all_figures()[claim.shown_in].subject == SPECIMEN else ""
 
 
 def _cell(found, figure):

@@ -30,15 +30,24 @@ from ..core.tables import write_table
 from ..study.atlas_parts import Trees
 from ..study.figure_list import STUDY, all_figures
 from ..study.stages import STAGES
-from .budget import bars_of
+from .budget import bars_of, plan_of
 from .captions import symbols
 from .cards import SECTIONS, cards_of, section_of
 from .common_loads import common_loads, main_load
 from .curves import curves_table
-from .files import APERTURE, CONFIGURATION, CURVES, INDEX, SPECIMEN_PAGE, SUMMARY, TABLES
+from .files import (
+    APERTURE,
+    CONFIGURATION,
+    CURVES,
+    INDEX,
+    SPECIMEN_PAGE,
+    STATEMENTS,
+    SUMMARY,
+    TABLES,
+)
 from .first_screen import blocks_of
 from .material import opposite_words
-from .matrix import Row, counted, matrix_of, merged, of_study
+from .matrix import Row, counted, matrix_of, merged, of_study, statement_table
 from .opening import opening_of
 from .spacing import spacing_words
 from .summary import AtLoad, Quantity, Specimen, summarised, summary_table, why
@@ -160,6 +169,8 @@ def write_index(place: Place, explored: Collection[str]) -> list[str]:
         curves.append(curves_table(str(atlas.attrs["study"]), [subject]))
     matrix, first = merged(rows), main_load(loads, reported)
     table = _finite(pd.concat(curves) if curves else curves_table("", []))
+    judged = statement_table(str(atlas.attrs["study"]), [*matrix, *of_study(atlas)])
+    write_table(place.folder / STATEMENTS, judged)
     _write_files(place, atlas, specimens, table)
     values = _index_values(place, atlas, specimens, matrix, table, trees.held) | {
         "reliefs": reliefs,
@@ -371,6 +382,7 @@ def _specimen_values(
         "opposite": opposite_words(specimen.opposite),
         "sections": [(name.replace(" ", "-"), title, found) for name, title, found in sections],
         "bars": bars_of(specimen),
+        "plan": plan_of(subject),
         "statements": [(row, row.cells[subject.name]) for row in rows],
         "apertures": (place.folder / aperture).is_file(),
         "drawn": {card.name for card in cards},
@@ -398,8 +410,8 @@ def _write_configuration(path: Path, atlas: xr.DataTree) -> None:
 
 
 def _write_tables(place: Place) -> None:
-    """All numbers drawn in figures, with the summary and the curves, in one archive."""
-    members = [(place.folder / name, name) for name in (SUMMARY, CURVES)]
+    """All numbers drawn in figures, with those of the whole study, in one archive."""
+    members = [(place.folder / name, name) for name in (SUMMARY, CURVES, STATEMENTS)]
     for path in sorted(place.figures.rglob("*.csv")):
         members.append((path, f"figures/{path.relative_to(place.figures).as_posix()}"))
     stream = io.BytesIO()

@@ -51,6 +51,7 @@ _FILES = {
     "explorer.html": "explorer of all contact states",
     "summary.csv": "one row a specimen and pressure, or a measured contact map",
     "curves.csv": "curves against pressure",
+    "statements.csv": "one row a statement of the paper and specimen, with its verdict",
     "tables.zip": "numbers drawn in all figures",
     "study.yaml": "configuration of the study",
 }

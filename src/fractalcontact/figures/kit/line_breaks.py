@@ -38,22 +38,11 @@ def in_lines(words: str, size: float, width: float) -> str:
     width : float
         Of the longest line, inches.
     """
-    text = _alone(words, size)
-    _fill(text, width * text.get_figure(root=True).dpi)
-    return text.get_text()
-
-
-def width_of(words: str, size: float) -> float:
-    """Width in inches of words of ``size`` points, the longest line where there are several."""
-    text = _alone(words, size)
-    return _width(text, words) / text.get_figure(root=True).dpi
-
-
-def _alone(words, size):
-    """A text in a figure of its own."""
     figure = Figure(figsize=(1, 1))
     Canvas(figure)
-    return figure.text(0, 0, words, fontsize=size)
+    text = figure.text(0, 0, words, fontsize=size)
+    _fill(text, width * figure.dpi)
+    return text.get_text()
 
 
 def break_lines(figure: Figure) -> bool:
