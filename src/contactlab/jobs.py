@@ -58,11 +58,6 @@ class Job:
     alone: bool = False
     peers: tuple[str, ...] = ()
 
-    @property
-    def module(self) -> str:
-        """File of the function, below the folder of the packages."""
-        return f"{self.function.partition(':')[0].replace('.', '/')}.py"
-
 
 def jobs_of(study: Mapping[str, Any], solver: Solver, source: str) -> dict[str, Job]:
     """Jobs by the names of their files, "FOLDER/MEMBER"; the folder of a stage has its name.

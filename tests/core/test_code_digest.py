@@ -9,10 +9,11 @@ from parsed_imports import parsed_files
 from places import ROOT
 
 from fractalcontact.core.code_digest import Code
+from fractalcontact.core.stage import module_of
 from fractalcontact.study.stages import STAGES
 
 SRC, SCRIPTS = ROOT / "src", sorted((ROOT / "workflow/scripts").glob("[a-z]*.py"))
-MODULES = sorted({SRC / f"{stage.module}.py" for stage in STAGES.values()})
+MODULES = sorted({SRC / module_of(stage.function) for stage in STAGES.values()})
 CODE = Code(SRC, ROOT)
 
 

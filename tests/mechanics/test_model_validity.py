@@ -7,7 +7,7 @@ import pytest
 import xarray as xr
 from made_settings import made_settings
 
-from fractalcontact.core.verdicts import GOOD, IN_PART, NOT_ASKED, POOR
+from fractalcontact.core.verdicts import GOOD, IN_PART, NOT_JUDGED, POOR
 from fractalcontact.mechanics.model_validity import Validity, elastic_model_validity, model_validity
 
 NOTHING = replace(made_settings().material, modulus=20e3)
@@ -31,7 +31,7 @@ HARDNESS = replace(STRENGTH, hardness=1000.0)
         (NOTHING, 20.0, 0.1, GOOD),
         (NOTHING, 21.0, 0.1, IN_PART),
         (NOTHING, 301.0, 0.1, POOR),
-        (STRENGTH, np.nan, 0.1, NOT_ASKED),
+        (STRENGTH, np.nan, 0.1, NOT_JUDGED),
     ],
 )
 def test_the_worse_of_pressure_and_slope_counts(material, pressure, slope, verdict):
@@ -105,5 +105,5 @@ def test_the_stage_holds_the_verdict_of_every_state_at_the_finest_resolution(mat
         )
         state = found.isel(direction=i, offset=j, normal_force=k)
         np.testing.assert_equal(Validity.of(state), wanted)
-    assert found["verdict"].values[0, 0, 0] == NOT_ASKED
+    assert found["verdict"].values[0, 0, 0] == NOT_JUDGED
     assert all({"units", "long_name"} <= one.attrs.keys() for one in found.data_vars.values())

@@ -300,7 +300,7 @@ def test_lights_follow_what_the_stages_say(atlas):
     words = {
         name: {one.key: one.word for one in lights_of(Subject.of(atlas, name))} for name in NAMES
     }
-    assert words["flat.1"]["faces"] == "not asked"
+    assert words["flat.1"]["faces"] == "not judged"
     pair = Subject.of(atlas, "pair")
     note = overlap_words(pair["specimens"], pair["quality"])
     assert pair["quality"].attrs["overlap"] == note
@@ -350,7 +350,7 @@ def test_page_summary_and_figure_quote_one_verdict_on_the_elastic_model(results,
             .values.tolist()
             == few.tolist()
         )
-        assert (rows["elastic_model"] == "not asked").values.tolist() == few.tolist()
+        assert (rows["elastic_model"] == "not judged").values.tolist() == few.tolist()
         assert row.elastic_model_good_to_MPa == 80  # the joint wall strength of the study
         assert found.reason in "".join(pages[results / f"pages/{name}.html"].texts).replace(
             "σn", "sigma_n"

@@ -12,7 +12,16 @@ from places import ROOT
 
 from contactlab.jobs import jobs_of
 from fractalcontact.core.settings import Solver
-from fractalcontact.core.stage import EXPERIMENT, GRAINS, JOINT, MAP, MEASUREMENT, SPECIMEN, STUDY
+from fractalcontact.core.stage import (
+    EXPERIMENT,
+    GRAINS,
+    JOINT,
+    MAP,
+    MEASUREMENT,
+    SPECIMEN,
+    STUDY,
+    module_of,
+)
 from fractalcontact.study.stages import STAGES, made_together, needed_by, paths_of
 
 
@@ -27,7 +36,7 @@ def test_a_stage_names_a_function_that_takes_what_the_stage_needs(stage):
     takes_any = any(one.kind is one.VAR_KEYWORD for one in taken.values())
     if stage.grain in (SPECIMEN, JOINT, MAP, EXPERIMENT) and not takes_any:
         assert set(stage.needs) <= set(taken)
-    assert (ROOT / f"src/{stage.module}.py").is_file()
+    assert (ROOT / f"src/{module_of(stage.function)}").is_file()
     assert stage.grain in GRAINS
     assert stage.title
 

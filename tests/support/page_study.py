@@ -72,7 +72,7 @@ def write_study(folder):
 def write_pages(folder):
     """Write all pages of a study, as its jobs do; names of its specimens."""
     place = Place.of(folder)
-    configuration = configuration_of(Trees(place.atlas).root)
+    configuration = configuration_of(Trees(place.atlas, ()).root)
     shown = explored(configuration["study"], configuration["settings"])
     shown = shown if (place.folder / EXPLORER).is_file() else []
     write_specimen_pages(place, shown)

@@ -14,6 +14,7 @@ from stated import array_sidecar
 
 from fractalcontact.core.checksums import sha256
 from fractalcontact.core.code_digest import Code
+from fractalcontact.core.stage import module_of
 from fractalcontact.study.atlas import read_atlas
 from fractalcontact.study.stages import STAGES, paths_of
 
@@ -248,7 +249,7 @@ def test_a_job_on_a_cluster_works_with_what_its_run_was_planned_with(project):
 
 def _rooms_behind(*modules):
     """Rooms of the package whose files count for a stage, and its own modules."""
-    names = (ROOT / "workflow/scripts/stage.py", *(f"{name}.py" for name in modules))
+    names = (ROOT / "workflow/scripts/stage.py", *modules)
     code = Code(ROOT / "src", ROOT)
     files = {Path(path).relative_to(ROOT).parts for path in code.files_behind(*names)}
     return {parts[2] for parts in files if len(parts) > 3}, {"/".join(parts) for parts in files}
@@ -259,8 +260,8 @@ def test_the_script_of_all_stages_follows_from_the_function_that_it_calls():
     assert "workflow/scripts/_job.py" in files
     assert not {"stages", "study", "mechanics", "figures"} & rooms
     for stage in STAGES.values():
-        assert f"src/{stage.module}.py" in _rooms_behind(stage.module)[1]
-    rooms, files = _rooms_behind(STAGES["window_states"].module)
+        assert f"src/{module_of(stage.function)}" in _rooms_behind(module_of(stage.function))[1]
+    rooms, files = _rooms_behind(module_of(STAGES["window_states"].function))
     assert {"size_effect", "contact", "mechanics"} <= rooms
     # Neither the table of stages nor another stage makes it again, nor what stands above.
     assert not {"study", "figures", "pages"} & rooms

@@ -22,7 +22,7 @@ from fractalcontact.core.code_digest import Code
 from fractalcontact.core.directions import AUTOMATIC_OFFSETS, slides
 from fractalcontact.core.errors import InputError
 from fractalcontact.core.patterns import alternation
-from fractalcontact.core.stage import ENSEMBLE, GRAINS, JOINT, MAP, SPECIMEN, TESTED
+from fractalcontact.core.stage import ENSEMBLE, GRAINS, JOINT, MAP, SPECIMEN, TESTED, module_of
 from fractalcontact.study import campaign, resources, stages
 from fractalcontact.study.checks import resolve_study
 from fractalcontact.study.configuration import resolve_embedded
@@ -244,7 +244,7 @@ def calling(stage):
     given = {"settings": settings_read_by(function)} if stages.sections_of(function) else {}
     return {
         "function": function,
-        "code": code("stage", f"{stages.STAGES[stage].module}.py"),
+        "code": code("stage", module_of(function)),
         **given,
     }
 

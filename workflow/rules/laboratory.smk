@@ -40,7 +40,7 @@ rule laboratory:
         function=lambda wc: LABORATORY[wc.made].function,
         arguments=lambda wc: LABORATORY[wc.made].arguments,
         peers=lambda wc: LABORATORY[wc.made].peers,
-        code=lambda wc: code("stage", LABORATORY[wc.made].module)(wc),
+        code=lambda wc: code("stage", module_of(LABORATORY[wc.made].function))(wc),
     message:
         "laboratory: {wildcards.made}"
     script:

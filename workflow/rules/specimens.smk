@@ -65,7 +65,6 @@ rule specimen:
     params:
         **calling("specimens"),
         arguments=reading_of,
-        digests=lambda wc: digests_of(SCANS[wc.specimen]) if wc.specimen in SCANS else {},
     message:
         "{wildcards.specimen}: levelled scan, its surface dimension and its joint"
     script:

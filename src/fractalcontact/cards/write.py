@@ -13,7 +13,6 @@ from ..core.subject import Subject, configuration_of
 from ..pages.files import APERTURE, APERTURE_ENDINGS, CARD
 from ..pages.templating import write_page
 from ..study.atlas_parts import Trees
-from ..study.stages import STAGES as ALL_STAGES
 from .apertures import aperture_at, write_aperture
 from .card import FORM, STAGES, card_of, made_of
 from .page import page_of
@@ -48,7 +47,7 @@ def write_cards(
     list of str
         Specimens that have one.
     """
-    trees = trees or Trees(path, without=ALL_STAGES.keys() - set(NEEDS))
+    trees = trees or Trees(path, NEEDS)
     study, made = configuration_of(trees.root)["study"], made_of(trees.root.attrs)
     for name in trees.names:
         tree = trees.of(name, without={"contact"})[0]

@@ -43,7 +43,7 @@ class Stage:
         """Its file, or the pattern of its files, below the folder of the results."""
         return f"{self.name}/{self.member}.nc"
 
-    @property
-    def module(self) -> str:
-        """Path of the function's module below the folder of the packages, without ending."""
-        return self.function.partition(":")[0].replace(".", "/")
+
+def module_of(function: str) -> str:
+    """File of "package.room.module:function" below the folder of the packages."""
+    return f"{function.partition(':')[0].replace('.', '/')}.py"

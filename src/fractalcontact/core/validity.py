@@ -44,7 +44,7 @@ class Validity(NamedTuple):
     Attributes
     ----------
     verdict : str
-        :data:`GOOD`, :data:`IN_PART`, :data:`POOR` or :data:`NOT_ASKED`.
+        :data:`GOOD`, :data:`IN_PART`, :data:`POOR` or :data:`NOT_JUDGED`.
     pressure : float
         Real mean pressure that is judged, MPa; NaN where there is none.
     reason : str

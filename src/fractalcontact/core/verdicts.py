@@ -9,7 +9,7 @@ UNDETERMINED, ILL_POSED = "undetermined", "ill-posed"
 VERDICTS = (HOLDS, PARTLY, FAILS, UNDETERMINED, ILL_POSED)
 
 #: On the elastic model, best first; the last where there is no state to judge.
-GOOD, IN_PART, POOR, NOT_ASKED = "good", "partly", "poor", "not asked"
+GOOD, IN_PART, POOR, NOT_JUDGED = "good", "partly", "poor", "not judged"
 #: What its pressure is judged by.
 HARDNESS, STRENGTH, USUAL = "hardness", "joint wall strength", "usual strengths"
 
@@ -40,6 +40,9 @@ DECIDED = (AGREES, STEEPER, FLATTER)
 NO_PRESSURE = f"fewer than {CORRECTED_NODES} nodes in contact, too few for a real mean pressure"
 #: Why there is no Delta_sigma from the area where its stage gives no reason.
 TOO_FEW_RESOLUTIONS = "under this load too few resolutions have enough nodes in contact"
+
+#: Why a number is undetermined where nothing else is wrong with it.
+TOO_WIDE = "its 95 % interval is too wide to be of use"
 
 #: On where an estimate lies beside the values that theories give.
 BELOW, WITHIN, ABOVE = "below", "within", "above"

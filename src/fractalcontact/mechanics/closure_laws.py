@@ -17,7 +17,7 @@ from ..core.intervals import t_quantile
 from ..core.labels import cf_attrs, percent
 from ..core.limits import GOOD_FIT, RESOLVED_NODES
 from ..core.ranges import within
-from ..core.verdicts import HYPERBOLA, NEITHER, SEMI_LOGARITHMIC, UNDECIDED
+from ..core.verdicts import HYPERBOLA, NEITHER, SEMI_LOGARITHMIC, TOO_WIDE, UNDECIDED
 
 #: States a law of two parameters needs before its interval means anything.
 MIN_CLOSURE_POINTS = 4
@@ -184,7 +184,7 @@ def undetermined_stiffness(hyperbola: Hyperbola, law: Law) -> str:
         less = ", a logarithm less" if law.name == SEMI_LOGARITHMIC else ""
         return f"the hyperbola misses the curve by {missed}{less}"
     if not hyperbola.k_ni.determined:
-        return "its 95 % interval is too wide to be of use"
+        return TOO_WIDE
     return ""
 
 

@@ -15,7 +15,7 @@ from ..core.labels import percent
 from ..core.limits import MAX_TOUCHING
 from ..core.settings import Material
 from ..core.validity import LOAD, SLOPE, Limits, Validity, pressure_words
-from ..core.verdicts import GOOD, HARDNESS, IN_PART, NO_PRESSURE, NOT_ASKED, POOR, STRENGTH, USUAL
+from ..core.verdicts import GOOD, HARDNESS, IN_PART, NO_PRESSURE, NOT_JUDGED, POOR, STRENGTH, USUAL
 
 #: Rms slope of the composite topography up to which half-spaces are a fair model of its faces, and
 #: up to which they are one in part: chosen bounds, not measured ones. A surface of that rms slope
@@ -46,7 +46,7 @@ _GRADES = (GOOD, IN_PART, POOR)
 
 #: Verdicts of the states, over (direction, offset, load): unit and long name.
 _OF_STATES = {
-    "verdict": ("1", f"verdict on the elastic model: {GOOD}, {IN_PART}, {POOR} or {NOT_ASKED}"),
+    "verdict": ("1", f"verdict on the elastic model: {GOOD}, {IN_PART}, {POOR} or {NOT_JUDGED}"),
     "pressure": ("MPa", "real mean pressure sigma_n that is judged"),
     "reason": ("1", "pressure and slope, that which decides the verdict first"),
     "decided_by": ("1", f"cause of a verdict that is not good: {SLOPE}, {LOAD} or pressure"),
@@ -120,7 +120,7 @@ def elastic_model_validity(
     """
     limits = material_limits(material)
     if not np.isfinite(pressure):
-        return Validity(NOT_ASKED, pressure, NO_PRESSURE, "", limits)
+        return Validity(NOT_JUDGED, pressure, NO_PRESSURE, "", limits)
     ends = (limits.good_to * (1 + _ROUNDING), limits.poor_from * (1 + _ROUNDING))
     by_pressure = _graded(pressure, *ends)
     words = f"sigma_n = {pressure_words(pressure)}, {_place(pressure, by_pressure, limits)}"

@@ -14,6 +14,7 @@ from ..core.datasets import labelled
 from ..core.estimate import Estimate
 from ..core.labels import percent
 from ..core.limits import LARGEST_MISFIT, REFERENCE_PRESSURES, SEATED_SPAN
+from ..core.verdicts import TOO_WIDE
 from .closure_laws import MIN_CLOSURE_POINTS, at_twice, fit_hyperbola, fit_semi_logarithmic
 from .separation import ROUNDING
 
@@ -113,7 +114,7 @@ class _Fit:
             missed = percent(self.seated_hyperbola_misfit)
             return f"the hyperbola misses the curve by {missed} rms of the largest closure"
         if not self.seated_k_ni.determined:
-            return "its 95 % interval is too wide to be of use; more loads would help"
+            return f"{TOO_WIDE}; more loads would help"
         return ""
 
 

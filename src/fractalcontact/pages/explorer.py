@@ -9,7 +9,6 @@ from matplotlib.colors import to_hex
 
 from ..core.labels import printable
 from ..study.atlas_parts import Trees
-from ..study.stages import STAGES
 from .packed_states import packed_states
 from .templating import write_page
 
@@ -51,7 +50,7 @@ def write_explorer(
     OutputError
         If the disk is full or the folder cannot be written to.
     """
-    trees = Trees(atlas_path, without=STAGES.keys() - set(NEEDS))
+    trees = Trees(atlas_path, NEEDS)
     study = trees.root.attrs["study"]
     shown = trees.names if names is None else names
     specimens = [_specimen(trees.of(name)[0], name) for name in shown]

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from ..core.limits import CORRECTED_NODES, NEARLY, RESOLVED_NODES
 from ..core.subject import Subject
 from ..core.validity import SLOPE, Validity
-from ..core.verdicts import GOOD, HARDNESS, IN_PART, NOT_ASKED, POOR, STRENGTH, USUAL
+from ..core.verdicts import GOOD, HARDNESS, IN_PART, NOT_JUDGED, POOR, STRENGTH, USUAL
 from .words import with_unit
 
 #: What would make lights better.
@@ -25,7 +25,7 @@ CRUSH = "a 'hardness' in the material, such as the joint wall strength, at which
 STATE = "'joint_wall_strength' of the rock in its material, at which contacts then crush"
 
 #: A sign for each, so that no colour is needed.
-SIGNS = {GOOD: "●", IN_PART: "◐", POOR: "○", NOT_ASKED: "–"}
+SIGNS = {GOOD: "●", IN_PART: "◐", POOR: "○", NOT_JUDGED: "–"}
 
 
 @dataclass(frozen=True)
@@ -37,11 +37,11 @@ class Light:
     key, title : str
         Its name in the summary, and on the page.
     word : str
-        :data:`GOOD`, :data:`IN_PART`, :data:`POOR` or :data:`NOT_ASKED`.
+        :data:`GOOD`, :data:`IN_PART`, :data:`POOR` or :data:`NOT_JUDGED`.
     reason : str
         What decided it.
     help : str
-        What would make it better; empty where it is good or not asked.
+        What would make it better; empty where it is good or not judged.
     """
 
     key: str
@@ -91,7 +91,7 @@ def _scan(subject):
 def _faces(subject):
     key, title = "faces", "Fit of the faces"
     if not _is_pair(subject):
-        return Light(key, title, NOT_ASKED, "no second face was scanned")
+        return Light(key, title, NOT_JUDGED, "no second face was scanned")
     overlap = str(subject["quality"].attrs["overlap"])
     load = str(subject["closure"].attrs.get("warning", ""))
     if load:
@@ -133,7 +133,7 @@ def _grid(subject):
         error = float(budget["seated_closure_relative"])
     if math.isnan(error):
         why = str(here["reason"].sel(source="numerical").item()) or "no finer grid was solved"
-        return Light(key, title, NOT_ASKED, why)
+        return Light(key, title, NOT_JUDGED, why)
     word = GOOD if error <= asked else IN_PART if error <= NEARLY else POOR
     reason = (
         f"closure from {start} under the reference load is uncertain by {100 * error:.2g} % "

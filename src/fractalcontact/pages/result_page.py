@@ -29,7 +29,6 @@ from ..core.subject import Subject, configuration_of
 from ..core.tables import write_table
 from ..study.atlas_parts import Trees
 from ..study.figure_list import STUDY, all_figures
-from ..study.stages import STAGES
 from .budget import bars_of, plan_of
 from .captions import symbols
 from .cards import SECTIONS, cards_of, section_of
@@ -124,7 +123,7 @@ def write_specimen_pages(
     trees : Trees, optional
         The atlas with at least the stages of :data:`NEEDS`, where it is read already.
     """
-    trees = trees or Trees(place.atlas, without=STAGES.keys() - set(NEEDS))
+    trees = trees or Trees(place.atlas, NEEDS)
     head = _head(place, trees.root) | {"explored": explored}
     blocks = {one.name: one for one in blocks_of(trees.names, place.folder)}
     for name in trees.names:
@@ -152,7 +151,7 @@ def write_index(place: Place, explored: Collection[str]) -> list[str]:
     list of str
         Its specimens.
     """
-    trees = Trees(place.atlas, without=STAGES.keys() - set(NEEDS))
+    trees = Trees(place.atlas, NEEDS)
     atlas, names = trees.root, trees.names
     reported = [trees.closure(name) for name in names]
     loads = common_loads(reported, _comparison(atlas))

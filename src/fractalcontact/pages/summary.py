@@ -15,7 +15,7 @@ from ..core.measured_maps import map_table
 from ..core.quantities import Shown, Value, shown_in
 from ..core.subject import Subject
 from ..core.validity import Validity
-from ..core.verdicts import NO_PRESSURE, TOO_FEW_RESOLUTIONS
+from ..core.verdicts import NO_PRESSURE, TOO_FEW_RESOLUTIONS, TOO_WIDE
 from ..core.window import spacing_of, window_sides
 from .common_loads import CommonLoad
 from .laboratory import Test, calibration_of, tests_of
@@ -33,15 +33,12 @@ _OF_STIFFNESS = ("", *(f"error_{of}_" for of in TOTALS), "hardest_")
 #: Columns of the summary that are not called as the error budget calls their quantity.
 _COLUMNS = {"closure": "interface_closure"}
 
-#: Why a number is undetermined where its stage gives no other reason.
-_WIDE = "its 95 % interval is too wide to be of use"
-
 
 def why(found: Estimate) -> str:
     """Reason why an estimate is missing or undetermined, or a remark on it."""
     if found.reason or found.determined or not found.known:
         return str(found.reason)
-    return _WIDE if np.isfinite(found.low) else "its error is not known"
+    return TOO_WIDE if np.isfinite(found.low) else "its error is not known"
 
 
 @dataclass(frozen=True)

@@ -151,11 +151,18 @@ class Trees:
         Files of the specimens, below the folder of the atlas; empty where it is one file.
     held : frozenset of str
         Names of the groups of the file, those left out too.
+
+    Parameters
+    ----------
+    path : path-like
+        The atlas.
+    stages : collection of str
+        Stages to read, no others.
     """
 
-    def __init__(self, path: Path | str, without: Collection[str] = ()):
-        self.path, self._without = Path(path), without
-        self.root, self.held = read_named_atlas(path, without)
+    def __init__(self, path: Path | str, stages: Collection[str]):
+        self.path, self._without = Path(path), STAGES.keys() - set(stages)
+        self.root, self.held = read_named_atlas(path, self._without)
         self.parts: dict[str, str] = json.loads(self.root.attrs.get("parts", "{}"))
         self.names = sorted({*specimens_of(self.root), *self.parts})
 

@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+from ...core.verdicts import TOO_WIDE
 from ...pages.words import short
 
 #: Factors from the units of a card to metres and pascals.
@@ -33,7 +34,7 @@ class Constants:
         if "missing" in row:
             self.left_out[key] = f"{what}: {row['missing']}"
         elif not row.get("determined", True):
-            reason = row.get("note") or "its interval is too wide to be of use"
+            reason = row.get("note") or TOO_WIDE
             self.left_out[key] = f"{what} is undetermined ({in_words(entry, row)}): {reason}"
         else:
             self.values[key] = row["value"] * TO_SI[entry["unit"]]
