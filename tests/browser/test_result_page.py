@@ -175,7 +175,7 @@ def test_ticked_specimens_lie_over_each_other_and_over_another_study(
     open_page, results, tmp_path, shots
 ):
     with open_page("index.html") as page:
-        boxes, curves = page.locator(".pick"), page.locator("#chart polyline")
+        boxes, curves = page.locator(".pick"), page.locator("#chart g.curve")
         for box in boxes.all():
             box.uncheck()
         assert curves.count() == 0

@@ -143,6 +143,8 @@ function drawMark(parent, marker, x, y, size, style) {
     return svg("rect", { x: x - size, y: y - size, width: 2 * size, height: 2 * size, class: style }, parent);
   if (marker === "cross")
     return svg("path", { d: `M${x - size} ${y - size}l${2 * size} ${2 * size}m0 ${-2 * size}l${-2 * size} ${2 * size}`, class: style }, parent);
+  if (marker === "triangle")
+    return svg("path", { d: `M${x} ${y - 1.2 * size}l${1.1 * size} ${2 * size}h${-2.2 * size}Z`, class: style }, parent);
   if (marker === "diamond")
     return svg("path", { d: `M${x} ${y - size}L${x + size} ${y}L${x} ${y + size}L${x - size} ${y}Z`, class: style }, parent);
   return svg("circle", { cx: x, cy: y, r: size, class: style }, parent);
