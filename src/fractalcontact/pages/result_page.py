@@ -1,4 +1,4 @@
-"""The result page of a study: an index, a page a specimen, the summary, the curves and the tables.
+"""The result page of a study: an index, a page a specimen, and the tables beside them.
 
 All of it is static, links to nothing outside the folder of results, and opens from the disk.
 """
@@ -137,7 +137,7 @@ def write_specimen_pages(
 
 
 def write_index(place: Place, explored: Collection[str]) -> list[str]:
-    """Write the index of a study, and its summary, curves, tables and configuration beside it.
+    """Write the index of a study, and beside it the other files of :data:`files.FILES`.
 
     Parameters
     ----------
@@ -169,8 +169,7 @@ def write_index(place: Place, explored: Collection[str]) -> list[str]:
     matrix, first = merged(rows), main_load(loads, reported)
     table = _finite(pd.concat(curves) if curves else curves_table("", []))
     judged = statement_table(str(atlas.attrs["study"]), [*matrix, *of_study(atlas)])
-    write_table(place.folder / STATEMENTS, judged)
-    _write_files(place, atlas, specimens, table)
+    _write_files(place, atlas, specimens, {CURVES: table, STATEMENTS: judged})
     values = _index_values(place, atlas, specimens, matrix, table, trees.held) | {
         "reliefs": reliefs,
         "loads": loads,
@@ -304,6 +303,7 @@ def _index_values(
     curves: pd.DataFrame,
     groups: Collection[str],
 ) -> dict[str, Any]:
+    """Values of ``index.html`` but for those of :func:`_head`, from the rows of its tables."""
     own = [name for name, figure in all_figures().items() if figure.subject == STUDY]
     together = of_study(atlas)
     return {
@@ -360,6 +360,10 @@ def _specimen_values(
     rows: list[Row],
     held: tuple[str, Collection[str]],
 ) -> dict[str, Any]:
+    """Values of ``specimen.html`` but for those of :func:`_head`.
+
+    ``held`` is the path of its atlas, as typed, and the names of the groups in it.
+    """
     figures = all_figures()
     names = [name for name, one in figures.items() if one.subject in (SPECIMEN, JOINT)]
     cards = cards_of(
@@ -391,11 +395,14 @@ def _specimen_values(
 # -- the files beside them -------------------------------------------------------------------------
 
 
-def _write_files(place: Place, atlas: xr.DataTree, specimens: list[Specimen], curves: pd.DataFrame):
-    """Write summary, curves, configuration, and the archive of all tables."""
+def _write_files(
+    place: Place, atlas: xr.DataTree, specimens: list[Specimen], tables: Mapping[str, pd.DataFrame]
+) -> None:
+    """Write the summary, further tables by file, the configuration, and the archive of tables."""
     summary = summary_table(str(atlas.attrs["study"]), specimens, measured_maps(atlas))
     write_table(place.folder / SUMMARY, _finite(summary))
-    write_table(place.folder / CURVES, curves)
+    for name, table in tables.items():
+        write_table(place.folder / name, table)
     _write_configuration(place.folder / CONFIGURATION, atlas)
     _write_tables(place)
 
