@@ -75,8 +75,8 @@ def test_a_solved_joint_of_saw_teeth_has_their_strength():
         assert (found["peak_contact_strength"] == tau.max()).all()
         # What is truncated is a bound, whose interval does not pass it.
         assert (found["peak_contact_valid"] == (angle < 40)).all()
-        reason = found["peak_contact_reason"].item()
-        assert reason == "" if angle < 40 else reason.startswith(f"at least {tau.max().item():.3g}")
+        bound = "only a lower bound, as most angles are truncated at 70 degrees"
+        assert found["peak_contact_reason"].item() == ("" if angle < 40 else bound)
         bound = 5 * np.tan(np.radians(70))
         assert not (found["peak_contact_strength_high"] > bound * (1 + 1e-6)).any()
 

@@ -533,7 +533,7 @@ def test_the_first_screen_says_what_no_interval_holds(results):
         *("Barton 18.9", "dilatancy 26.8", "contact 45.5"),
         "no value by Barton and Bandis: JRC_n is above 20",
     ]
-    bound = "at least 45.5 MPa, with 98 % of the force at angles truncated at 70 degrees"
+    bound = "only a lower bound, as most angles are truncated at 70 degrees"
     card["entries"]["contact_strength"] = {"values": [{"missing": bound, "at": at}]}
     fact = facts_of(card)[-1]
     assert fact.words == "18.9 to 26.8 MPa"

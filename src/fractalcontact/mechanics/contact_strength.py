@@ -55,6 +55,9 @@ TABLE = {
     "peak_contact_reason": (("normal_force",), "1", "why the peak is a lower bound and no result"),
 }
 
+#: Why a peak is no result.
+A_BOUND = f"only a lower bound, as most angles are truncated at {LARGEST_FRICTION_ANGLE:g} degrees"
+
 
 def contact_dips(
     specimen: xr.Dataset, direction: str, cells: int, factor: int, step: int = 1
@@ -204,16 +207,6 @@ def contact_strength(dips: xr.DataArray, pressure: np.ndarray, angle: float) -> 
         **peak.columns("peak_contact_strength"),
         "peak_contact_truncated": peaks[2],
         "peak_contact_valid": valid,
-        "peak_contact_reason": [
-            "" if fine else _bound(*of) for fine, *of in zip(valid, peaks[0], peaks[2], strict=True)
-        ],
+        "peak_contact_reason": np.where(valid, "", A_BOUND),
     }
     return xr.Dataset(labelled(TABLE, values))
-
-
-def _bound(strength: float, truncated: float) -> str:
-    """A strength of mostly truncated angles, in words."""
-    return (
-        f"at least {strength:.3g} MPa, with {100 * truncated:.0f} % of the force at angles "
-        f"truncated at {LARGEST_FRICTION_ANGLE:g} degrees"
-    )
