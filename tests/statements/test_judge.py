@@ -204,7 +204,8 @@ ALIKE = [1 - np.exp(-RIGID)] * 4
         ("strength_falls_with_size", {"strength_exponent": np.array([[-0.3], [0.0]])}, PARTLY),
         ("strength_falls_with_size", {"strength_exponent": np.full((2, 1), 0.3)}, FAILS),
         ("strength_falls_with_size", {"strength_exponent": np.array([[0.3], [0.0]])}, FAILS),
-        ("strength_falls_with_size", {"strength_exponent": np.zeros((2, 1))}, UNDETERMINED),
+        ("strength_falls_with_size", {"strength_exponent": np.zeros((2, 1))}, FAILS),
+        ("strength_falls_with_size", {"strength_exponent": np.full((2, 1), -0.05)}, UNDETERMINED),
         # A bound from above that is negative says that strength falls; at equal v it may not.
         ("strength_falls_with_size", {"bounded": True}, HOLDS),
         ("strength_falls_with_size", {"bounded": True, "equal_v_exponent": 0.0}, PARTLY),

@@ -257,22 +257,25 @@ def strength_falls_with_size(joint: Joint) -> Finding:
     """Exponents of shear strength against window size at equal v/b, and of dilatancy at equal v.
 
     At equal v/b a larger window has also slid farther. So the claim holds only where the slope of
-    the dilatancy falls with size at equal v too, and in part where it does not. A truncated angle
-    makes a strength a lower bound; exponents are then the largest that the bounds allow.
+    the dilatancy falls with size at equal v too, and in part where it does not. An exponent that is
+    no fall beyond the margin is none. A truncated angle makes a strength a lower bound; exponents
+    are then the largest that the bounds allow.
     """
+    name = "strength_falls_with_size"
     windows = joint["windows"]
     strength = Estimate.read(windows, "strength_at_equal_v_over_b_exponent")
     strength = strength[np.isfinite(strength.value)]
     cases = strength.value.size
     if not cases:
         return Finding(UNDETERMINED, "no v/b has three sizes of window in three steps of sliding")
-    falls, rises = int((strength.high < 0).sum()), int((strength.low > 0).sum())
+    stays = strength.low >= -all_claims()[name].margin
+    falls, no_fall = int(((strength.high < 0) & ~stays).sum()), int(stays.sum())
     slope = Estimate.read(windows, "slope_at_equal_v_exponent")
     slope = slope[np.isfinite(slope.value)]
     at_one_v = slope.value.size
     falls_at_one_v = int((windows["slope_at_equal_v_trend"] == FALLING).sum())
     # Where nothing is sure in some cases, those that are decide.
-    verdict = PARTLY if falls else FAILS if rises else UNDETERMINED
+    verdict = PARTLY if falls else FAILS if no_fall else UNDETERMINED
     if falls == cases and at_one_v and falls_at_one_v == at_one_v:
         verdict = HOLDS
     at_v = f"; dilatancy at equal v in {falls_at_one_v or 'none'} of {at_one_v}" if at_one_v else ""
@@ -280,8 +283,8 @@ def strength_falls_with_size(joint: Joint) -> Finding:
     return Finding(
         verdict,
         f"tau falls at equal v/b in {falls or 'none'} of {cases} cases"
-        f"{f', rises in {rises}' if rises else ''}{at_v}",
-        f"x = {_ends(strength)} at equal v/b"
+        f"{f', surely not in {no_fall}' if no_fall else ''}{at_v}",
+        f"x = {_ends(strength)} at equal v/b; {margin_words(name)}"
         f"{f', bounds from above in {bounded} cases with truncated angles' if bounded else ''}"
         f"{f'; {_ends(slope)} of the slope at equal v' if at_one_v else ''}",
     )
