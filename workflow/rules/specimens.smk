@@ -65,6 +65,8 @@ rule specimen:
     params:
         **calling("specimens"),
         arguments=reading_of,
+        # Of what follows from the input Snakemake keeps no record.
+        scans=lambda wc: digests_of(SCANS[wc.specimen]) if wc.specimen in SCANS else {},
     message:
         "{wildcards.specimen}: levelled scan, its surface dimension and its joint"
     script:
