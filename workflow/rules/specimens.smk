@@ -28,12 +28,16 @@ def scan_files(wildcards):
     return [ancient(str(path)) for path in scan.files]
 
 
-def reading_of(wildcards, input):
-    """Arguments by which a scan is read, beside its settings."""
+def reading_of(wildcards):
+    """Arguments by which a scan is read, beside its settings.
+
+    Not from the rule's input: Snakemake keeps no record of parameters that follow from it.
+    """
     name = known(wildcards)
     scanned = name in SCANS
+    files = SCANS[name].files if scanned else [f"{RESULTS}/embedded/{name}.npy"]
     return {
-        "files": list(input),
+        "files": list(map(str, files)),
         "options": OPTIONS[name] if scanned else sidecar_of_matrix(recipe_named(name)["spacing"]),
         "name": name,
         "digests": digests_of(SCANS[name]) if scanned else {},
@@ -65,8 +69,6 @@ rule specimen:
     params:
         **calling("specimens"),
         arguments=reading_of,
-        # Of what follows from the input Snakemake keeps no record.
-        scans=lambda wc: digests_of(SCANS[wc.specimen]) if wc.specimen in SCANS else {},
     message:
         "{wildcards.specimen}: levelled scan, its surface dimension and its joint"
     script:

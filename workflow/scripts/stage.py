@@ -14,7 +14,7 @@ arguments = dict(snakemake.params.items())
 # Not from the table of stages: then a new one would make all others again.
 module, _, name = arguments.pop("function").partition(":")
 function = getattr(import_module(module), name)
-for key in ("code", "peers", "scans"):  # they only say when it is to be made again
+for key in ("code", "peers"):  # they only say when it is to be made again
     arguments.pop(key, None)
 digests = arguments.pop("digests", {})
 arguments |= settings.arguments(function, arguments.pop("settings", {}))
