@@ -119,6 +119,14 @@ def test_a_scan_replaced_by_an_older_file_is_read(project):
     assert reasons[specimen] == "its scan changed"
 
 
+def test_an_edited_sidecar_is_read_whatever_its_time(project):
+    sidecar = project / "scans/rock.yaml"
+    sidecar.write_text(array_sidecar(0.2))
+    os.utime(sidecar, (1_000_000_000, 1_000_000_000))
+    jobs = planned(project)
+    assert jobs["specimen"] == jobs["contact"] == jobs["analysis"] == 1
+
+
 def test_a_missing_scan_and_a_damaged_file_stop_everything(project):
     content = (project / ATLAS).read_bytes()
     specimen = project / "results/test/specimens/rock.nc"
