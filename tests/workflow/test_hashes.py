@@ -1,7 +1,6 @@
 """Inputs of many outputs are hashed once, and again when they change."""
 
 import asyncio
-import hashlib
 import os
 import sys
 from types import SimpleNamespace
@@ -9,23 +8,39 @@ from types import SimpleNamespace
 import pytest
 from places import ROOT
 
+from fractalcontact.core import checksums
+from fractalcontact.core.checksums import sha256
+
 sys.path.append(str(ROOT / "workflow/scripts"))
 import _hashes
 
 
 @pytest.fixture
-def hashing(monkeypatch):
-    """Snakemake's own file, which counts how often it is read."""
+def hashing(monkeypatch, tmp_path):
+    """Checksums as Snakemake asks for them, and the files that were read for them."""
     times = []
 
-    async def checksum(file, threshold=None):
-        times.append(file.file)
-        with open(file.file, "rb") as opened:
-            return "sha256:" + hashlib.file_digest(opened, "sha256").hexdigest()
+    def read(path):
+        times.append(path)
+        return sha256(path)
 
-    monkeypatch.setattr(_hashes._IOFile, "checksum", checksum)
-    _hashes.hash_once()
+    async def absent(file, *of):
+        raise FileNotFoundError(file.file)
+
+    monkeypatch.setattr(checksums, "sha256", read)
+    monkeypatch.setattr(checksums, "_SAME_TICK", 0)
+    monkeypatch.setattr(_hashes._IOFile, "checksum", absent)
+    _hashes.hash_once(checksums.Digests(tmp_path / "digests.json"))
     return SimpleNamespace(of=_hashes._IOFile.checksum, times=times)
+
+
+def file_at(path):
+    """What Snakemake has of a file."""
+
+    async def is_there(threshold):
+        return path.exists() and path.stat().st_size <= threshold
+
+    return SimpleNamespace(file=str(path), is_storage=False, is_checksum_eligible=is_there)
 
 
 def test_a_file_is_hashed_once_and_again_when_another_takes_its_place_and_its_time(
@@ -33,8 +48,9 @@ def test_a_file_is_hashed_once_and_again_when_another_takes_its_place_and_its_ti
 ):
     path, other = tmp_path / "a.nc", tmp_path / "b.nc"
     path.write_bytes(b"one")
-    file = SimpleNamespace(file=str(path))
+    file = file_at(path)
     first = {asyncio.run(hashing.of(file, 100)) for _ in range(120)}
+    assert first == {f"sha256:{sha256(path)}"}
     assert len(hashing.times) == 1
     other.write_bytes(b"two")
     os.utime(other, ns=2 * (path.stat().st_mtime_ns,))
@@ -47,4 +63,4 @@ def test_a_file_is_hashed_once_and_again_when_another_takes_its_place_and_its_ti
 
 def test_of_a_file_that_is_not_there_snakemake_says_what_it_says(hashing, tmp_path):
     with pytest.raises(FileNotFoundError):
-        asyncio.run(hashing.of(SimpleNamespace(file=str(tmp_path / "none.nc")), 100))
+        asyncio.run(hashing.of(file_at(tmp_path / "none.nc"), 100))

@@ -38,7 +38,6 @@ PLAN = Path(".snakemake/fractalcontact-plan.pickle")
 #: SHA-256 of the scan files that the run was planned with.
 PLANNED = {}
 if workflow.is_main_process:
-    hash_once()
     schema = yaml.safe_load((ROOT / "config/schema/study.schema.yaml").read_text())
     # What is wrong with one scan stops only that where the user asks so on the command line, which
     # Snakemake itself looks at later.
@@ -130,6 +129,8 @@ def fixed(megabytes, minutes):
 
 
 DIGESTS = checksums.Digests(".snakemake/fractalcontact-digests.json")
+if workflow.is_main_process:
+    hash_once(DIGESTS)
 
 
 @functools.cache

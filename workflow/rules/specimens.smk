@@ -35,7 +35,7 @@ def reading_of(wildcards):
     """
     name = known(wildcards)
     scanned = name in SCANS
-    files = SCANS[name].files if scanned else [f"{RESULTS}/embedded/{name}.npy"]
+    files = SCANS[name].files if scanned else expand(rules.embedded.output.scan, specimen=name)
     return {
         "files": list(map(str, files)),
         "options": OPTIONS[name] if scanned else sidecar_of_matrix(recipe_named(name)["spacing"]),

@@ -13,7 +13,7 @@ PARTS_LEFT_OUT = 32
 
 
 def part_ends(domain: np.ndarray, factor: int) -> np.ndarray:
-    """Where parts of equally many nodes end along Morton's curve.
+    """Ends of parts of equally many nodes along Morton's curve.
 
     Parameters
     ----------
@@ -33,11 +33,8 @@ def part_ends(domain: np.ndarray, factor: int) -> np.ndarray:
     elsewhere. Morton's curve keeps neighbours together, so that its parts are compact.
     """
     places = np.sort(_places(domain, factor))
-    return (
-        places[np.arange(1, PARTS_LEFT_OUT) * places.size // PARTS_LEFT_OUT]
-        if places.size
-        else places
-    )
+    first = np.arange(1, PARTS_LEFT_OUT) * places.size // PARTS_LEFT_OUT
+    return places[first] if places.size else places
 
 
 def fractions_left(domain: np.ndarray, factor: int, ends: np.ndarray) -> np.ndarray:

@@ -186,6 +186,7 @@ def add_slope_trends(laws: xr.Dataset) -> None:
     attrs = cf_attrs(
         "1", f"{RISING}, {FALLING}, {LEVEL}, or empty where the exponent leaves it open"
     )
+    # At one v/b there is no margin: v grows too, and a level slope would mean nothing.
     for of, margin in (("slope_at_equal_v_over_b", -1.0), ("slope_at_equal_v", NEARLY)):
         exponent = Estimate.read(laws, f"{of}_exponent")
         trend = np.where(exponent.high < 0, FALLING, np.where(exponent.low > 0, RISING, ""))
