@@ -492,7 +492,7 @@ def test_the_page_opens_with_numbers_and_verdicts(results):
     least = with_unit(at_maps["real_pressure_MPa"].min(), "MPa").split()[0]
     assert f"at a real mean pressure of {least}" in opening
     # A range of dimensions stands beside what has no pattern, an error beside that of the joint.
-    assert re.search(r"; random nodes [\d.]+; bearing-area cut [\d.]+\]", opening)
+    assert re.search(r"\] \(random nodes [\d.]+, bearing-area cut [\d.]+\)", opening)
     assert "for the whole joint" in opening
 
 

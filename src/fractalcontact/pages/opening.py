@@ -263,11 +263,11 @@ def _determined(estimates):
 
 def _beside_nulls(estimate, nulls):
     """A dimension with its interval, and those of the null models: a range shows no pattern."""
-    interval = f"[{measured(estimate.low)}, {measured(estimate.high)}"
-    beside = [
+    beside = ", ".join(
         f"{words} {measured(value)}" for words, value in nulls.items() if math.isfinite(value)
-    ]
-    return f"{measured(estimate.value)} {'; '.join([interval, *beside])}]"
+    )
+    interval = f"[{measured(estimate.low)}, {measured(estimate.high)}]"
+    return f"{measured(estimate.value)} {interval}{f' ({beside})' if beside else ''}"
 
 
 def _size_effect(rows: Sequence[Row]) -> Markup | None:
