@@ -112,10 +112,10 @@ def name_exponents(axes: Axes, laws: xr.Dataset, name: str, of: str) -> None:
     for j, pressure in enumerate(laws["nominal_pressure"].values):
         # A wide interval too shows the sign that the caption states.
         missing = "no fit (truncated)" if truncated[j] else "no fit"
-        words = f"= {exponents[j]:z.2f}" if exponents[j].known else f": {missing}"
+        words = f" = {exponents[j]:z.2f}" if exponents[j].known else f": {missing}"
         if np.isneginf(exponents[j].low):
-            words = f"below {exponents[j].high:z.2f}"
-        label = rf"$\sigma_0$ = {short(pressure)} MPa: ${of}\sim b^x$, $x$ {words}"
+            words = f" below {exponents[j].high:z.2f}"
+        label = rf"$\sigma_0$ = {short(pressure)} MPa: ${of}\sim b^x$, $x${words}"
         axes.plot([], [], ls="none", label=label, **series(j))
 
 
