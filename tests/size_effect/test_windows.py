@@ -369,6 +369,17 @@ def test_one_held_sub_window_of_many_takes_its_size_out_of_the_fit(states):
     np.testing.assert_allclose(found["strength_exponent"], 0, atol=1e-9)
 
 
+def test_a_strength_raised_to_0_is_no_lower_bound_and_takes_its_size_out_of_the_fit(states):
+    made = climbing(states, [0.5] * 4)
+    falling = made["rigid_opening"].copy()
+    falling.loc[{"part": 8, "window": 3}] = -made["offset"]
+    made["rigid_opening"] = falling
+    found = size_laws(made, ROCK, 12.0, DIMENSION).isel(share=-1)
+    name = "strength_at_equal_v_over_b_exponent"
+    np.testing.assert_array_equal(found[f"{name}_n"], 3)
+    np.testing.assert_allclose([found[name], found[f"{name}_low"]], 0, atol=1e-9)
+
+
 def test_bartons_law_ends_with_his_scale_of_roughness(states):
     found = size_laws(states, ROCK, 12.0, DIMENSION)
     scaled = scaled_joint(12.0, 100.0, states["side_along"].values)[0]

@@ -81,8 +81,7 @@ def strength_by_size(states: xr.Dataset, material: Friction, roughness: float) -
     friction = material.basic_friction_angle + angle
     pressure = states["nominal_pressure"].values
     strength, bound, off = strength_with_error(pressure, friction, angle_off)
-    truncated = np.where(np.isnan(strength), np.nan, bound == 1)
-    bound = (bound != 0).astype(float)
+    truncated, raised = (np.where(np.isnan(strength), np.nan, bound == end) for end in (1, -1))
 
     words = cf_attrs("mm", "middle of the interval of offsets")
     result = xr.Dataset(coords={"interval": ("interval", midpoint, words)})
@@ -113,9 +112,13 @@ def strength_by_size(states: xr.Dataset, material: Friction, roughness: float) -
     attrs = cf_attrs("1", "offset as a fraction of the side, v/b")
     result["share"] = ("share", np.array(OFFSET_FRACTIONS), attrs)
     # Missing sub-windows, NaN, are truncated nowhere.
-    bounded = np.any(_at_fractions(offset, side.values, bound) > 0, axis=2)
+    at_least, at_most = (
+        np.any(_at_fractions(offset, side.values, of) > 0, axis=2) for of in (truncated, raised)
+    )
     apart = xr.DataArray(_in_three_steps(offset, side.values), dims="share")
-    _add_largest(result, side, result["strength_at_equal_v_over_b"].where(apart), bounded)
+    strengths = result["strength_at_equal_v_over_b"]
+    strengths = strengths.where(apart & strengths.copy(data=~at_most))
+    _add_largest(result, side, strengths, at_least)
     unbounded = result["peak_strength"].copy(data=~(peak(midpoint, truncated)[0] > 0).any(axis=1))
     fitted = {
         "slope_at_equal_v_over_b_exponent": result["slope_at_equal_v_over_b"].where(apart),
@@ -275,7 +278,7 @@ def _dilatancy_curves(states: xr.Dataset) -> tuple[np.ndarray, np.ndarray, np.nd
 
 
 def _add_largest(
-    result: xr.Dataset, side: xr.DataArray, strength: xr.DataArray, bounded: np.ndarray
+    result: xr.Dataset, side: xr.DataArray, strength: xr.DataArray, at_least: np.ndarray
 ) -> None:
     """Exponent of strengths (share, part, load), some of them lower bounds, into ``result``.
 
@@ -284,7 +287,7 @@ def _add_largest(
     """
     x, dims = np.log(side.values), ("share", "normal_force")
     values = strength.transpose(*dims, "part").values
-    at_least = np.moveaxis(bounded, 1, 2)
+    at_least = np.moveaxis(at_least, 1, 2)
     exponents = []
     for index in np.ndindex(values.shape[:-1]):
         kept = values[index] > 0
