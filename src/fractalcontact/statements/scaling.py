@@ -257,9 +257,9 @@ def strength_falls_with_size(joint: Joint) -> Finding:
     """Exponents of shear strength against window size at equal v/b, and of dilatancy at equal v.
 
     At equal v/b a larger window has also slid farther. So the claim holds only where the slope of
-    the dilatancy falls with size at equal v too, and in part where it does not. An exponent that is
-    no fall beyond the margin is none. A truncated angle makes a strength a lower bound; exponents
-    are then the largest that the bounds allow.
+    the dilatancy falls with size at equal v too, and in part where it does not. It fails where some
+    exponent shows no fall beyond the margin and none shows a fall. A truncated angle makes a
+    strength a lower bound; exponents are then the largest that the bounds allow.
     """
     name = "strength_falls_with_size"
     windows = joint["windows"]
@@ -268,8 +268,9 @@ def strength_falls_with_size(joint: Joint) -> Finding:
     cases = strength.value.size
     if not cases:
         return Finding(UNDETERMINED, "no v/b has three sizes of window in three steps of sliding")
-    stays = strength.low >= -all_claims()[name].margin
-    falls, no_fall = int(((strength.high < 0) & ~stays).sum()), int(stays.sum())
+    margin = all_claims()[name].margin
+    each = [beyond_margin(strength[i], margin, rising=False) for i in range(cases)]
+    falls, no_fall = each.count(HOLDS) + each.count(PARTLY), each.count(FAILS)
     slope = Estimate.read(windows, "slope_at_equal_v_exponent")
     slope = slope[np.isfinite(slope.value)]
     at_one_v = slope.value.size
