@@ -46,7 +46,7 @@ def renormalisation(
         Nodes that a domain needs to count.
     left : DataArray (resolution, ..., left_out), optional
         Fraction of the area that is left without each part of the domain, from
-        :mod:`mechanics.left_out`; no interval without it.
+        :mod:`mechanics.left_out`; without it only areas that no sample changes have an interval.
     sampling : DataArray (resolution, ...), optional
         Sampling errors of the areas: where all that are fitted are 0, as those of F/H where all
         contacts yield, the interval has no width.
@@ -147,7 +147,7 @@ def _area_exponent(log_s, log_area, log_left, free) -> tuple[float, ...]:
 
 def _half(weights, log_left, free) -> float:
     """Half of the interval of a weighted sum of log A; 0 of areas that no sample changes."""
-    counted = weights != 0
+    counted = abs(weights) > 1e-12 * abs(weights).max()  # that of a middle is 0 to rounding
     if not free[counted].any():
         return 0.0
     if np.isinf(log_left[counted]).any():  # one part holds all nodes: the sum may be anything
