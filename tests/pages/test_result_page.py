@@ -549,7 +549,7 @@ def test_the_first_screen_says_what_no_interval_holds(results):
     assert fact.words == "3.33 %"
     assert fact.notes == [
         "[3.30,\u00a03.40] this surface",
-        "1.11 to 3.33 for hardness H to 3\u00a0H",
+        "3.33 to 1.11 for hardness H to 3\u00a0H",
     ]
     (stiffness,) = (one for one in card["errors"] if one["quantity"] == "stiffness")
     stiffness["sources"]["resolution"] = 18.25

@@ -278,7 +278,10 @@ _SOLVED = (
     "peak_dilatancy_angle",
 )
 #: Why a strength by dilatancy is no result.
-TRUNCATED = f"the friction angle exceeds the upper bound of {LARGEST_FRICTION_ANGLE:g} degrees"
+TRUNCATED = (
+    "friction and dilatancy angle together exceed the upper bound of "
+    f"{LARGEST_FRICTION_ANGLE:g} degrees"
+)
 FULL = "half of the window touches, so that the faces no longer ride on asperities"
 
 #: Unit and long name of each quantity.

@@ -241,10 +241,10 @@ def _at_twice(card):
 
 
 def _harder(card, row, size):
-    """Range of a number over the hardness of single contacts; empty where they are elastic."""
+    """A number at both ends of the hardness of single contacts; empty where they are elastic."""
     if "hardest" not in row:
         return ""
-    low, high = sorted((row["value"], row["hardest"]))
-    ends = " to ".join(dict.fromkeys(short(size * end) for end in (low, high)))
+    each = row["value"], row["hardest"]
+    ends = " to ".join(dict.fromkeys(short(size * value) for value in each))
     soft, hard = hardnesses_of(card)
     return f"{ends} for hardness H to {short(hard / soft)}{_NBSP}H"
