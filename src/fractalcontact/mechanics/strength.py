@@ -278,10 +278,7 @@ _SOLVED = (
     "peak_dilatancy_angle",
 )
 #: Why a strength by dilatancy is no result.
-TRUNCATED = (
-    "friction and dilatancy angle together exceed the upper bound of "
-    f"{LARGEST_FRICTION_ANGLE:g} degrees"
-)
+TRUNCATED = f"friction and dilatancy angles together exceed {LARGEST_FRICTION_ANGLE:g} degrees"
 FULL = "half of the window touches, so that the faces no longer ride on asperities"
 
 #: Unit and long name of each quantity.
