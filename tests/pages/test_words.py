@@ -1,4 +1,4 @@
-"""Numbers in words, pictures, and error bars."""
+"""Numbers in words, and pictures."""
 
 import base64
 import io
@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 from matplotlib.image import imread
 
-from fractalcontact.pages.budget import bars_of
 from fractalcontact.pages.summary import Quantity
 from fractalcontact.pages.thumbnails import png_address, reduced, shaded
 from fractalcontact.pages.words import (
@@ -60,40 +59,13 @@ def test_what_is_undetermined_is_shown_with_its_error():
     assert interval(math.nan, math.nan, math.nan) == "–"
 
 
-def quantity(unit="mm", value=2.0, *, absolute=False, **sources):
-    surface = sum(v**2 for k, v in sources.items() if k != "window" and v == v) ** 0.5
-    errors = {"surface": surface, "population": 1.0}
-    why = dict.fromkeys(sources, "why")
-    return Quantity("closure", "closure", unit, absolute, value, errors, sources, why)
-
-
-class OneLoad:
-    """What :func:`bars_of` reads of a specimen."""
-
-    def __init__(self, *quantities):
-        self.of_maps = self
-        self.quantities = {one.name: one for one in quantities}
-
-
-def test_parts_of_a_bar_are_squares_and_fill_it():
-    (bar,) = bars_of(OneLoad(quantity(solver=0.3, numerical=0.4, estimator=math.nan, window=9.0)))
-    shares = {part.source: part.share for part in bar.parts}
-    assert shares == pytest.approx({"solver": 36, "numerical": 64, "estimator": 0, "window": 0})
-    assert sum(shares.values()) == pytest.approx(100)
-    words = {part.source: part.words for part in bar.parts}
-    assert words == {"solver": "15 %", "numerical": "20 %", "estimator": "why", "window": "450 %"}
-    assert (bar.surface, bar.population) == ("25 %", "50 %")
-
-
 @pytest.mark.parametrize("value", [2.0, 1e-6, 0.0, -0.04])
 def test_what_may_cross_zero_has_its_errors_in_its_unit_whatever_its_value(value):
     """A dimension and a separation: the form of an error follows from the kind of the quantity."""
-    of_kind = {"absolute": True, "numerical": 0.25}
     for unit, words in (("1", "0.25"), ("mm", "250 µm")):
-        (bar,) = bars_of(OneLoad(quantity(unit, value, **of_kind)))
-        assert (bar.surface, bar.parts[0].words) == (words, words)
-    (bar,) = bars_of(OneLoad(quantity("mm", 0.04, numerical=0.25)))
-    assert bar.surface == "620 %"
+        found = Quantity("name", "meaning", unit, True, value, {}, {})
+        assert found.error_words(0.25) == words
+    assert Quantity("name", "meaning", "mm", False, 0.04, {}, {}).error_words(0.25) == "620 %"
 
 
 def test_relief_is_lit_from_the_upper_left_and_missing_cells_are_white():

@@ -10,9 +10,8 @@ from ..core.labels import printable
 from ..core.subject import Subject
 from ..core.window import spacing_of, window_sides
 from ..pages.lights import lights_of, trust_of
-from ..pages.material import material_of, opposite_words
 from ..pages.summary import quantities_at
-from ..pages.words import with_unit
+from ..pages.words import OPPOSITE, with_unit
 from .entries import entries, number, read_entry, rounded
 from .methods import methods_of, references_of
 
@@ -52,7 +51,7 @@ def card_of(subject: Subject, study: Mapping[str, Any], made: Mapping[str, Any])
     made : mapping
         ``versions`` by library and ``scan_checksums`` by specimen, attributes of the atlas.
     """
-    material, model = material_of(subject), model_of(subject)
+    model = model_of(subject)
     lights = lights_of(subject)
     card: dict[str, Any] = {
         "form": FORM,
@@ -61,8 +60,8 @@ def card_of(subject: Subject, study: Mapping[str, Any], made: Mapping[str, Any])
         "study": str(study.get("study", "")),
         "kind": "joint",
         "synthetic": is_synthetic(subject.name, study),
-        "faces": opposite_words(str(subject["specimens"].attrs["opposite"])),
-        "material": printable(material.name),
+        "faces": OPPOSITE[subject["specimens"].attrs["opposite"]],
+        "material": printable(subject.settings["material"]["name"]),
         "model": model,
         "direction": subject.direction,
         "geometry": geometry_of(subject),

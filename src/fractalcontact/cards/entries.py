@@ -14,7 +14,7 @@ import yaml
 from ..core.estimate import DIMENSION, SIZE, Estimate, names_of
 from ..core.settings import TEST_COLUMNS
 from ..core.subject import Subject
-from ..pages.material import opposite_words
+from ..pages.words import OPPOSITE
 
 _FILE = Path(__file__).with_name("entries.yaml")
 #: What stands for a dimension beside each row of a curve: its name there, its coordinate, its unit.
@@ -49,7 +49,7 @@ def _not_sliding(subject: Subject) -> str:
     """Reason for what needs faces that slide."""
     if "strength" in subject.stages:
         return ""
-    return f"nothing slides: {opposite_words(str(subject['specimens'].attrs['opposite']))}"
+    return f"nothing slides: {OPPOSITE[subject['specimens'].attrs['opposite']]}"
 
 
 def _no_jrc(subject: Subject) -> str:

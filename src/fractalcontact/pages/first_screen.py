@@ -3,7 +3,6 @@
 import json
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -34,41 +33,8 @@ class Fact(NamedTuple):
     notes: list[str]
 
 
-@dataclass(frozen=True)
-class Block:
-    """Block of one joint on the first screen.
-
-    Attributes
-    ----------
-    name, label : str
-    state : str
-        Offset of what is quoted, and what the contact was solved as.
-    window : str
-        Its sides, and how they were chosen.
-    facts : list of Fact
-    trust : mapping
-        ``word``, ``reason`` and ``help``, of the card.
-    synthetic : bool
-        Made by the study, and no scan.
-    methods : str
-        Paragraph on how the numbers were found, of the card.
-    references : list of str
-        What it cites.
-    """
-
-    name: str
-    label: str
-    state: str
-    window: str
-    facts: list[Fact]
-    trust: Mapping[str, str]
-    synthetic: bool
-    methods: str
-    references: list[str]
-
-
-def blocks_of(names: Sequence[str], folder: Path) -> list[Block]:
-    """Blocks of the specimens with a card, scans first.
+def blocks_of(names: Sequence[str], folder: Path) -> list[dict[str, Any]]:
+    """Cards of the specimens that have one, scans first, each with what its block prints.
 
     Parameters
     ----------
@@ -78,22 +44,13 @@ def blocks_of(names: Sequence[str], folder: Path) -> list[Block]:
     """
     paths = [folder / CARD.format(specimen=name, ending="json") for name in names]
     cards = [json.loads(path.read_text(encoding="utf-8")) for path in paths if path.is_file()]
-    return sorted((block_of(card) for card in cards), key=lambda one: one.synthetic)
+    return sorted((block_of(card) for card in cards), key=lambda one: one["synthetic"])
 
 
-def block_of(card: Mapping[str, Any]) -> Block:
-    """Block of one card."""
-    return Block(
-        name=card["name"],
-        label=card["label"],
-        state=f"{offset_of(card)}; contact {card['model']}",
-        window=window_of(card),
-        facts=facts_of(card),
-        trust=card["trust"],
-        synthetic=card["synthetic"],
-        methods=card["methods"],
-        references=card["references"],
-    )
+def block_of(card: Mapping[str, Any]) -> dict[str, Any]:
+    """A card with its state and window in words, and its ``facts``, a list of :class:`Fact`."""
+    state = f"{offset_of(card)}; contact {card['model']}"
+    return {**card, "state": state, "window": window_of(card), "facts": facts_of(card)}
 
 
 def window_of(card: Mapping[str, Any]) -> str:

@@ -29,7 +29,6 @@ from ..core.subject import Subject, configuration_of
 from ..core.tables import write_table
 from ..study.atlas_parts import Trees
 from ..study.figure_list import STUDY, all_figures
-from .budget import bars_of, plan_of
 from .captions import symbols
 from .cards import SECTIONS, cards_of, section_of
 from .common_loads import common_loads, main_load
@@ -45,14 +44,21 @@ from .files import (
     TABLES,
 )
 from .first_screen import blocks_of
-from .material import opposite_words
 from .matrix import Row, counted, matrix_of, merged, of_study, statement_table
-from .opening import opening_of
-from .spacing import spacing_words
 from .summary import AtLoad, Quantity, Specimen, summarised, summary_table, why
 from .templating import write_page
 from .thumbnails import relief_thumbnail
-from .words import MISSING, duration, interval, measured, percent, short, undetermined, with_unit
+from .words import (
+    MISSING,
+    OPPOSITE,
+    duration,
+    interval,
+    measured,
+    percent,
+    short,
+    undetermined,
+    with_unit,
+)
 
 #: Stages that the pages read; the fields of contact, the largest, are not among them.
 NEEDS = (
@@ -125,7 +131,7 @@ def write_specimen_pages(
     """
     trees = trees or Trees(place.atlas, NEEDS)
     head = _head(place, trees.root) | {"explored": explored}
-    blocks = {one.name: one for one in blocks_of(trees.names, place.folder)}
+    blocks = {one["name"]: one for one in blocks_of(trees.names, place.folder)}
     for name in trees.names:
         tree, groups, file = trees.of(name)
         subject, found = Subject.of(tree, name), matrix_of(tree, [name])
@@ -155,7 +161,8 @@ def write_index(place: Place, explored: Collection[str]) -> list[str]:
     atlas, names = trees.root, trees.names
     reported = [trees.closure(name) for name in names]
     loads = common_loads(reported, _comparison(atlas))
-    head, blocks = _head(place, atlas), {one.name: one for one in blocks_of(names, place.folder)}
+    head = _head(place, atlas)
+    blocks = {one["name"]: one for one in blocks_of(names, place.folder)}
     head["explored"] = explored
     specimens, curves, rows, reliefs = [], [], [], {}
     # One after the other: those of an atlas in parts would not all fit into memory.
@@ -176,8 +183,6 @@ def write_index(place: Place, explored: Collection[str]) -> list[str]:
         "first_load": first,
         "blocks": list(blocks.values()) if len(blocks) <= _BLOCKS else [],
         "with_card": blocks.keys(),
-        "opening": opening_of(specimens, first, matrix),
-        "over_spacing": spacing_words([one.doubled for one in specimens]),
     }
     write_page(place.folder / INDEX, "index.html", head | values)
     return names
@@ -364,7 +369,7 @@ def _specimen_values(
 
     ``held`` is the path of its atlas, as typed, and the names of the groups in it.
     """
-    figures = all_figures()
+    figures, choices = all_figures(), subject["choices"]
     names = [name for name, one in figures.items() if one.subject in (SPECIMEN, JOINT)]
     cards = cards_of(
         names,
@@ -382,10 +387,11 @@ def _specimen_values(
     return {
         "specimen": specimen,
         "label": printable(subject.label),
-        "opposite": opposite_words(specimen.opposite),
+        "opposite": OPPOSITE[specimen.opposite],
         "sections": [(name.replace(" ", "-"), title, found) for name, title, found in sections],
-        "bars": bars_of(specimen),
-        "plan": plan_of(subject),
+        "quantities": specimen.of_maps.quantities.values(),
+        "plan": choices.attrs,
+        "choices": choices[["value", "reason", "error", "error_of"]].to_dataframe().itertuples(),
         "statements": [(row, row.cells[subject.name]) for row in rows],
         "apertures": (place.folder / aperture).is_file(),
         "drawn": {card.name for card in cards},

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -10,7 +11,6 @@ import xarray as xr
 
 from ..core.determined import decided_by_scan
 from ..core.estimate import DIMENSION, Estimate, Judged, names_of
-from ..core.labels import TWINS
 from ..core.measured_maps import map_table
 from ..core.quantities import Shown, Value, shown_in
 from ..core.subject import Subject
@@ -20,12 +20,8 @@ from ..core.window import spacing_of, window_sides
 from .common_loads import CommonLoad
 from .laboratory import Test, calibration_of, tests_of
 from .lights import Light, lights_of, validity_at
-from .material import Material, material_of
-from .spacing import Doubled, doubled_spacing
 from .words import percent, with_unit
 
-#: Null models of a contact domain, by the endings of their variables, in words.
-NULLS = {"random": "random nodes", "cut": "bearing-area cut"}
 #: Errors of a quantity as a property of this surface, and of that which the window is cut from.
 TOTALS = {"surface": "total", "population": "total_of_population"}
 #: Columns of the stiffness at a pressure, by what stands in them.
@@ -57,10 +53,10 @@ class Quantity:
         Half-widths at 95 %, in the unit: for this surface, for the whole joint.
     sources : dict of str to float
         By source.
-    reasons : dict of str to str
-        Why a source has none.
     missing : str
         Why there is no value, where that is known.
+    within : str
+        Where the scan lies among its twins; empty without any.
     hardest : float
         Value if contacts are three times as hard, the other end of its range over hardness; NaN
         where they are elastic.
@@ -73,8 +69,8 @@ class Quantity:
     value: float
     errors: dict[str, float]
     sources: dict[str, float]
-    reasons: dict[str, str]
     missing: str = ""
+    within: str = ""
     hardest: float = math.nan
 
     @property
@@ -99,12 +95,8 @@ class AtLoad:
         Of the load among those of the study.
     shown : dict of str to Value
         Of the quantities of ``core/quantities.yaml`` that tables show, by "STAGE/VARIABLE".
-    contact_share : float
-        Corrected A_r/A_0.
     model : Validity
         Whether the elastic model is valid, with the real mean pressure.
-    nulls : dict of str to float
-        Delta_sigma by boxes of the null models of the contact domain, by their names in words.
     """
 
     number: int
@@ -112,11 +104,9 @@ class AtLoad:
     nominal_pressure: float
     of_maps: bool
     shown: dict[str, Value]
-    contact_share: float
     model: Validity
     quantities: dict[str, Quantity]
     dimensions: dict[str, Estimate]
-    nulls: dict[str, float]
 
     @property
     def real_pressure(self) -> float:
@@ -197,7 +187,7 @@ class Specimen:
     name: str
     label: str
     opposite: str
-    material: Material
+    material: Mapping[str, Any]
     direction: str
     offset: float
     window: tuple[float, float]
@@ -211,7 +201,7 @@ class Specimen:
     seat: float
     stiffness: dict[float, tuple[float, ...]]
     hardest: float
-    doubled: Doubled
+    changes: dict[str, float]
     closure_law: str
     dilatancy: Dilatancy
     loads: list[AtLoad]
@@ -248,7 +238,7 @@ def summarised(subject: Subject, common: Sequence[CommonLoad] = ()) -> Specimen:
         name=subject.name,
         label=subject.label,
         opposite=str(specimen.attrs["opposite"]),
-        material=material_of(subject),
+        material=subject.settings["material"],
         direction=subject.direction,
         offset=subject.offset,
         window=(side_x, side_y),
@@ -262,7 +252,10 @@ def summarised(subject: Subject, common: Sequence[CommonLoad] = ()) -> Specimen:
         seat=float(curve["seating_pressure"]),
         stiffness=_stated_stiffness(subject),
         hardest=float(subject["error_budget"]["hardest_hardness"]),
-        doubled=doubled_spacing(subject),
+        changes={
+            name: float(subject.state("closure")[f"{of}_change"])
+            for name, of in (("k_ni", "seated_k_ni"), ("stiffness", "interface_stiffness"))
+        },
         closure_law=str(curve["closure_law"].item()),
         dilatancy=dilatancy_of(subject),
         loads=[
@@ -302,16 +295,11 @@ def _at_load(subject, curve, number):
         nominal_pressure=float(curve["nominal_pressure"][number]),
         of_maps=number == subject.reported.reference,
         shown={one.key: one.at(subject, number) for one in shown_in("summary", "page", "index")},
-        contact_share=float(curve["area_corrected_share"].isel(state)),
         model=validity_at(subject, number),
         quantities=quantities_at(subject, number),
         dimensions={
             "domains/delta_sigma": _dimension(subject, "domains", state),
             "scaling/delta_sigma_area": _dimension(subject, "scaling", state),
-        },
-        nulls={
-            words: float(subject.states("domains")[f"delta_sigma_{null}"].isel(state))
-            for null, words in NULLS.items()
         },
     )
 
@@ -353,21 +341,10 @@ def quantities_at(subject: Subject, number: int) -> dict[str, Quantity]:
             value=float(one["published"]),
             errors={which: float(one[total]) for which, total in TOTALS.items()},
             sources=dict(zip(sources, map(float, one["error"].values), strict=True)),
-            reasons=dict(zip(sources, map(str, one["reason"].values), strict=True)),
             missing=missing.get(name, ""),
+            within=str(one["within_twins"].item()) if "within_twins" in one else "",
             hardest=float(one["hardest"]),
         )
-        if "within_twins" in one and (place := str(one["within_twins"].item())):
-            found[name].reasons[TWINS] = f"the scan lies {place}"
-    # Beside the dimension that is published, what other estimators give.
-    domains, scaling = (subject.states(stage) for stage in ("domains", "scaling"))
-    others = {
-        "by the ordinary slope": domains["delta_sigma_ordinary"],
-        "by A_r(s)": scaling["delta_sigma_area"],
-    }
-    values = {words: float(of.isel(normal_force=number)) for words, of in others.items()}
-    known = [f"{value:.2f} {words}" for words, value in values.items() if np.isfinite(value)]
-    found["delta_sigma"].reasons["estimator"] = ", ".join(known) or "no other estimate"
     return found
 
 
@@ -380,7 +357,7 @@ def _seated_closure(subject, number, budget):
         missing = "the seat, from which closure is counted"
     name, meaning = "seated_closure", "closure from the seat"
     hardest = float(budget["seated_closure_hardest"])
-    return Quantity(name, meaning, "mm", False, value, errors, {}, {}, missing, hardest)
+    return Quantity(name, meaning, "mm", False, value, errors, {}, missing, "", hardest)
 
 
 def dilatancy_of(subject: Subject) -> Dilatancy:
@@ -424,10 +401,10 @@ def _of_specimen(one):
         "specimen": one.name,
         "label": one.label,
         "opposite": one.opposite,
-        "material": one.material.name,
-        "modulus_MPa": one.material.modulus,
-        "poisson": one.material.poisson,
-        "hardness_MPa": one.material.hardness,
+        "material": one.material["name"],
+        "modulus_MPa": float(one.material["modulus"]),
+        "poisson": float(one.material["poisson"]),
+        "hardness_MPa": float(one.material["hardness"]),
         "hardest_hardness_MPa": one.hardest,
         "direction": one.direction,
         "offset_mm": one.offset,
@@ -447,8 +424,7 @@ def _of_specimen(one):
         **_columns("v_m_mm", one.v_m),
         **_columns("chi_mm", one.chi),
         "k_ni_reason": why(one.k_ni),
-        "k_ni_change_at_twice_the_spacing": one.doubled.k_ni,
-        "stiffness_change_at_twice_the_spacing": one.doubled.stiffness,
+        **{f"{of}_change_at_twice_the_spacing": part for of, part in one.changes.items()},
         "closure_law": one.closure_law,
         "dilatancy": one.dilatancy.kind,
         "dilatancy_undecided": one.dilatancy.undecided,

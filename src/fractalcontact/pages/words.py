@@ -13,6 +13,13 @@ _FORCES = ((1e6, "MN", 1e6), (1e3, "kN", 1e3), (0.0, "N", 1.0))
 _PRESSURES = ((1e3, "GPa", 1e3), (0.0, "MPa", 1.0))
 _SCALED = {"mm": _LENGTHS, "MPa/mm": _STIFFNESS, "N": _FORCES, "MPa": _PRESSURES}
 MISSING = "–"
+#: What stands for the other face, by the attribute ``opposite`` of the specimen.
+OPPOSITE = {
+    "scanned": "both faces scanned",
+    "match": "one face given, the other taken as its perfect match",
+    "flat": "one face given, against a rigid plane",
+    "aperture": "aperture map: the opening between both faces",
+}
 #: Ends of an interval that differ from even ones by less than this part of it are called even.
 _EVEN = 0.02
 
