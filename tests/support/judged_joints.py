@@ -4,7 +4,6 @@ import numpy as np
 import xarray as xr
 
 from fractalcontact.core.reported import Reported
-from fractalcontact.core.verdicts import FALLING
 from fractalcontact.domain.cluster_laws import localisation
 from fractalcontact.mechanics.plateau import opposite_parts, rigid_plateaus, undecided_plateaus
 
@@ -162,8 +161,6 @@ def stages(**changes):
         at_one_v = np.full((2, 1), values["equal_v_exponent"] + by / 2)
         windows[f"slope_at_equal_v_exponent{end}"] = ("share", "normal_force"), at_one_v
     windows["closure_exponent"] = ("offset", "normal_force"), np.full((len(V), 1), 0.5)
-    trend = FALLING if values["equal_v_exponent"] < -0.05 else ""
-    windows["slope_at_equal_v_trend"] = ("share", "normal_force"), np.full((2, 1), trend)
     slid = slid.assign(rigid_plateaus(RIGID, values["dilatancy"], [*"WENS"]))
     lost = np.full(4, values["uncorrelated"])
     slid = slid.assign(undecided_plateaus(RIGID, slid["face_correlation"].values, lost))

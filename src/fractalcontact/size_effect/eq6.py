@@ -28,24 +28,23 @@ import numpy as np
 import xarray as xr
 from scipy import special
 
-from ..core.datasets import labelled_dataset
 from ..core.estimate import Estimate
 from ..core.fitting import fit_line
 from ..core.labels import cf_attrs
-from ..core.limits import CONFIDENCE, CORRECTED_NODES
-from ..core.ranges import within
+from ..core.limits import CONFIDENCE
 from ..core.settings import WindowSettings
 from ..core.verdicts import AGREES, DECIDED, NOT_TESTED
 from ..core.window import cell_side
+from ..domain.analysis import corrected_scaling
 from ..domain.box_dimension import dimension_of_domain
-from ..domain.renormalisation import MIN_NODES_PER_RESOLUTION, renormalisation
+from ..domain.renormalisation import MIN_NODES_PER_RESOLUTION
 from ..mechanics.loading import JointLoading
 from .division import PARTS, split
 from .load_ladder import OF_WINDOWS, solve_sub_windows, whole_areas
 from .prediction import predict_whole
 from .size_law import size_law
 from .size_verdict import size_verdicts
-from .slope import real_pressures, slopes_at_equal_star
+from .slope import slopes_at_equal_star
 
 #: Estimators of Delta_sigma in the whole window under each load: its area over resolutions, boxes
 #: of all sizes at its finest resolution, and the number of sub-windows that its contact domain
@@ -73,7 +72,7 @@ def size_test(loading: JointLoading[WindowSettings]) -> xr.Dataset:
     xr.Dataset
         From :func:`size_effect.size_law.size_law` and
         :func:`size_effect.size_verdict.size_verdicts`. Over (estimator, normal_force):
-        ``delta_sigma``, ``sigma_star`` and ``predicted_slope`` of the whole window with intervals.
+        ``delta_sigma`` and ``predicted_slope`` of the whole window with intervals.
         Over (normal_force): the measured ``slope`` of all windows of a size taken together, with
         ``_low``, ``_high``, ``_n``, ``_b_min``, ``_b_max``, and ``sensitivity``, which explains it.
         Over (normal_force, part): ``equal_pressure`` (with an ``_error``, the solver's, which is
@@ -122,13 +121,6 @@ def size_test(loading: JointLoading[WindowSettings]) -> xr.Dataset:
 
 
 _BY_LOAD = ("estimator", "normal_force")
-_PREDICTED: dict[str, tuple] = {
-    "sigma_star": (
-        _BY_LOAD,
-        "N mm^-delta_sigma",
-        "fractal mean pressure sigma* of the whole window",
-    ),
-}
 
 
 def _dimensions(
@@ -137,7 +129,7 @@ def _dimensions(
     domains: np.ndarray,
     parts: Sequence[int],
 ) -> xr.Dataset:
-    """Delta_sigma of the whole window by every estimator, with sigma* and the slope predicted."""
+    """Delta_sigma of the whole window by every estimator, and the slope predicted."""
     settings, spacing = loading.settings, cell_side(loading.specimen)
     boxes = [dimension_of_domain(d, spacing, fit_range=settings.box_range) for d in domains]
     occupied = Estimate.stack(_slope_of_occupied(domain, parts) for domain in domains)
@@ -149,12 +141,7 @@ def _dimensions(
     shape = len(by_estimator), len(domains)
     delta = Estimate.stack((by_estimator[name] for name in DELTA_SIGMA_ESTIMATORS), shape)
     slope = delta.mapped(lambda dimension: dimension - 2)
-    star = slope.value  # sigma* = sigma_n s_n^(2 - Delta), geometric mean over the resolutions
-    star = real_pressures(whole)[0, : len(domains)] * np.exp(
-        -star * np.log(whole["spacing"].values).mean()
-    )
-    coords = {"estimator": list(DELTA_SIGMA_ESTIMATORS)}
-    result = labelled_dataset(_PREDICTED, {"sigma_star": star}, coords=coords)
+    result = xr.Dataset(coords={"estimator": list(DELTA_SIGMA_ESTIMATORS)})
     words = "dimension of the contact domain of the whole window"
     result.update(delta.variables("delta_sigma", _BY_LOAD, "1", words))
     words = "slope -(2 - Delta_sigma) of eq. 6"
@@ -166,20 +153,9 @@ def _by_area(
     loading: JointLoading[WindowSettings], whole: xr.Dataset, domains: np.ndarray, spacing: float
 ) -> Estimate:
     """Delta_sigma (load) from the corrected area of the whole over resolutions."""
-    areas = whole_areas(loading, whole, domains)
-    s = spacing * areas["resolution"]
-    if loading.settings.scaling_range is not None:
-        areas = areas.where(within(s, *loading.settings.scaling_range))
-    by_area = renormalisation(
-        s,
-        areas["area_corrected"],
-        whole["normal_force"],
-        areas["nodes"],
-        CORRECTED_NODES,
-        areas["left"],
-        areas["area_sampling"],
-    )
-    return Estimate.read(by_area, "delta_sigma")
+    areas, inside = whole_areas(loading, whole, domains), loading.settings.scaling_range
+    scaling = corrected_scaling(areas, spacing, left=areas["left"], fit_range=inside)
+    return Estimate.read(scaling, "delta_sigma")
 
 
 def _slope_of_occupied(domain: np.ndarray, parts: Sequence[int]) -> Estimate:

@@ -37,13 +37,13 @@ LARGEST_FRACTION = 0.98
 
 #: Takes the dataset of :func:`solve_sub_windows` of the whole window alone, its domains and the
 #: parts, and returns a dataset with ``delta_sigma`` (estimator, normal_force).
-Estimate = Callable[[xr.Dataset, np.ndarray, Sequence[int]], xr.Dataset]
+Dimensions = Callable[[xr.Dataset, np.ndarray, Sequence[int]], xr.Dataset]
 
 
 def solve_sub_windows(
     loading: JointLoading[JointSettings],
     parts: Sequence[int] = PARTS,
-    estimate: Estimate | None = None,
+    estimate: Dimensions | None = None,
 ) -> tuple[xr.Dataset, np.ndarray]:
     """States of all sub-windows of several sizes under the study's loads and some beyond.
 
@@ -160,7 +160,7 @@ class _LoadedSize:
     finest : dict of str to (window, step) ndarray
         ``interface_closure``, mm, and :data:`OF_WINDOWS`.
     domains : list of (ny, nx) bool ndarray
-        Of the first window at the finest resolution, a step each.
+        Of a window alone at the finest resolution, a step each.
     bulk_compliance : float
         Bulk settlement over sigma_0, mm/MPa.
     solved : int
@@ -189,6 +189,7 @@ class _LoadedSize:
         self.left = np.full((*self.sampling.shape, PARTS_LEFT_OUT), np.nan)
         self._compliant = compliant
         self.domains: list[np.ndarray] = []
+        self._ends: list[np.ndarray] = []
         self.solved = 0
         modulus = loading.settings.material.e_star
         self._settlement = bulk_settlement(self.loads, modulus, *self.sides)
@@ -209,14 +210,15 @@ class _LoadedSize:
             for step, state in zip(following, rising, strict=False):
                 self.nodes[j, k, step] = np.count_nonzero(state.in_contact)
                 self.ambiguous[j, k, step] = state.ambiguous
-                if j == k == 0:
-                    self.domains.append(state.in_contact)
                 if k == 0 or len(self.nodes) == 1:
                     self.corrected[j, k, step] = state_area(state)
                 if len(self.nodes) == 1:
+                    domain = state.in_contact
+                    if k == 0:
+                        self.domains.append(domain)
+                        self._ends.append(part_ends(domain, self.factors[0]))
                     self.sampling[k, step] = state_area_sampling(state)
-                    ends = part_ends(self.domains[step], self.factors[0])
-                    self.left[k, step] = fractions_left(state.in_contact, self.factors[k], ends)
+                    self.left[k, step] = fractions_left(domain, self.factors[k], self._ends[step])
                 if k == 0:
                     for name, value in self._of_state(state, j, step).items():
                         self.finest[name][j, step] = value

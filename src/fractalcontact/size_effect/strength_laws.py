@@ -12,15 +12,14 @@ from ..core.estimate import Estimate
 from ..core.fitting import MIN_POINTS, fit_line
 from ..core.intervals import mean_interval
 from ..core.labels import cf_attrs
-from ..core.limits import JRC_RANGE, LARGEST_FRICTION_ANGLE, MOSTLY_TRUNCATED, NEARLY
+from ..core.limits import JRC_RANGE, LARGEST_FRICTION_ANGLE, MOSTLY_TRUNCATED
 from ..core.settings import Friction
-from ..core.verdicts import FALLING, LEVEL, RISING
+from ..core.verdicts import FALLING, RISING
 from ..mechanics.strength import (
     FIELDS,
     angles_with_errors,
     from_flush,
     peak,
-    residual,
     slopes_apart,
     strength_with_error,
 )
@@ -34,7 +33,7 @@ OFFSET_FRACTIONS = (0.01, 0.02, 0.05, 0.1)
 
 
 def strength_by_size(states: xr.Dataset, material: Friction, roughness: float) -> xr.Dataset:
-    """Peak and residual strength of the sub-windows, each from its own elastic dilatancy curve.
+    """Strength of the sub-windows, each from its own elastic dilatancy curve.
 
     Parameters
     ----------
@@ -45,13 +44,11 @@ def strength_by_size(states: xr.Dataset, material: Friction, roughness: float) -
     -------
     xr.Dataset
         Means over sub-windows with ``_low``, ``_high`` and the ``_error`` of the solver:
-        ``peak_strength``, ``peak_dilatancy_angle`` (which is not truncated), ``residual_strength``
-        (part, normal_force) and ``shear_strength`` (interval, part, normal_force);
-        ``truncated_fraction_at_peak`` (part, normal_force), the fraction of sub-windows whose angle
-        was truncated there; ``strength_exponent`` (normal_force); ``barton_scaled_strength``
-        (part, normal_force) with the JRC and JCS of that size by Barton and Bandis' law (which was
-        measured on joints of 50 mm and more); none where that JRC is beyond Barton's scale of 0 to
-        20.
+        ``peak_strength`` (part, normal_force); ``truncated_fraction_at_peak`` (part,
+        normal_force), the fraction of sub-windows whose angle was truncated there;
+        ``barton_scaled_strength`` (part, normal_force) with the JRC and JCS of that size by Barton
+        and Bandis' law (which was measured on joints of 50 mm and more); none where that JRC is
+        beyond Barton's scale of 0 to 20.
 
         At offsets in proportion to the size, v = (v/b) b, over (share, part, load): mean
         ``strength_at_equal_v_over_b`` and ``slope_at_equal_v_over_b`` (d delta/dv, not truncated),
@@ -64,9 +61,8 @@ def strength_by_size(states: xr.Dataset, material: Friction, roughness: float) -
 
     Notes
     -----
-    A strength whose angle is truncated is a lower bound. No exponent of peaks is fitted to a size
-    of which a sub-window is truncated; ``peak_dilatancy_angle`` then says something. At one v/b the
-    exponent is the largest that the bounds allow, and its interval has no lower end.
+    A strength whose angle is truncated is a lower bound: the exponent at one v/b is the largest
+    that the bounds allow, and its interval has no lower end.
 
     At one v/b both v and b grow, and a face without any effect of size has the slopes of its whole
     window at these v: ``slope_at_equal_v_exponent`` is then 0. A self-affine face has
@@ -83,21 +79,10 @@ def strength_by_size(states: xr.Dataset, material: Friction, roughness: float) -
     strength, bound, off = strength_with_error(pressure, friction, angle_off)
     truncated, raised = (np.where(np.isnan(strength), np.nan, bound == end) for end in (1, -1))
 
-    words = cf_attrs("mm", "middle of the interval of offsets")
-    result = xr.Dataset(coords={"interval": ("interval", midpoint, words)})
-    largest = states["offset"].values[-1]
-    of_curves = {
-        "peak_strength": [peak(midpoint, values)[0] for values in (strength, off)],
-        "peak_dilatancy_angle": [peak(midpoint, values)[0] for values in (angle, angle_off)],
-        "residual_strength": [
-            residual(midpoint, values, largest).value for values in (strength, off)
-        ],
-        "shear_strength": [strength, off],
-    }
-    for name, (values, errors) in of_curves.items():
-        over = _DIMS if values.ndim == 3 else ("interval", *_DIMS)
-        mean_of = xr.DataArray(values, dims=over, attrs=cf_attrs(*FIELDS[name]))
-        add_mean(result, name, mean_of, mean_of.copy(data=errors))
+    result = xr.Dataset()
+    peaks, peaks_off = (peak(midpoint, values)[0] for values in (strength, off))
+    peaks = xr.DataArray(peaks, dims=_DIMS, attrs=cf_attrs(*FIELDS["peak_strength"]))
+    add_mean(result, "peak_strength", peaks, peaks.copy(data=peaks_off))
     slopes = [slopes_apart(offset, curve, sign * error) for sign in (0, 1)]
     similar = {
         "strength_at_equal_v_over_b": (strength, off),
@@ -119,13 +104,8 @@ def strength_by_size(states: xr.Dataset, material: Friction, roughness: float) -
     strengths = result["strength_at_equal_v_over_b"]
     strengths = strengths.where(apart & strengths.copy(data=~at_most))
     _add_largest(result, side, strengths, at_least)
-    unbounded = result["peak_strength"].copy(data=~(peak(midpoint, truncated)[0] > 0).any(axis=1))
-    fitted = {
-        "slope_at_equal_v_over_b_exponent": result["slope_at_equal_v_over_b"].where(apart),
-        "strength_exponent": result["peak_strength"].where(unbounded),
-    }
-    for exponent, values in fitted.items():
-        add_law(result, exponent, side, values, f"exponent of {values.name} against b")
+    values, words = result["slope_at_equal_v_over_b"].where(apart), "slope_at_equal_v_over_b"
+    add_law(result, f"{words}_exponent", side, values, f"exponent of {words} against b")
     of_truncated = {
         "truncated_fraction_at_peak": mean_interval(peak(midpoint, truncated)[0], axis=1).value,
         "truncated_fraction_at_equal_v_over_b": mean_interval(
@@ -181,21 +161,15 @@ def add_slope_trends(laws: xr.Dataset) -> None:
     Parameters
     ----------
     laws : xr.Dataset
-        Of :func:`size_effect.laws.size_laws`: gets ``slope_at_equal_v_over_b_trend`` and
-        ``slope_at_equal_v_trend`` (share, normal_force), of which the second may be level, and
-        ``slope_at_equal_v_over_b_expected`` (share, part), b^(H - 1) through the mean over the
-        loads of the sizes whose slopes are all positive, if three are.
+        Of :func:`size_effect.laws.size_laws`: gets ``slope_at_equal_v_over_b_trend`` (share,
+        normal_force), and ``slope_at_equal_v_over_b_expected`` (share, part), b^(H - 1) through the
+        mean over the loads of the sizes whose slopes are all positive, if three are.
     """
-    attrs = cf_attrs(
-        "1", f"{RISING}, {FALLING}, {LEVEL}, or empty where the exponent leaves it open"
-    )
-    # At one v/b there is no margin: v grows too, and a level slope would mean nothing.
-    for of, margin in (("slope_at_equal_v_over_b", -1.0), ("slope_at_equal_v", NEARLY)):
-        exponent = Estimate.read(laws, f"{of}_exponent")
-        trend = np.where(exponent.high < 0, FALLING, np.where(exponent.low > 0, RISING, ""))
-        level = np.maximum(abs(exponent.low), abs(exponent.high)) <= margin
-        laws[f"{of}_trend"] = laws[f"{of}_exponent"].copy(data=np.where(level, LEVEL, trend))
-        laws[f"{of}_trend"].attrs = attrs
+    exponent = Estimate.read(laws, "slope_at_equal_v_over_b_exponent")
+    trend = np.where(exponent.high < 0, FALLING, np.where(exponent.low > 0, RISING, ""))
+    attrs = cf_attrs("1", f"{RISING}, {FALLING}, or empty where the exponent leaves it open")
+    of = laws["slope_at_equal_v_over_b_exponent"]
+    laws["slope_at_equal_v_over_b_trend"] = of.copy(data=trend).assign_attrs(attrs)
     slope = laws["slope_at_equal_v_over_b"]
     everywhere = slope.where((slope > 0).all("normal_force"))
     middle = xr.ufuncs.exp(xr.ufuncs.log(everywhere).mean("normal_force"))

@@ -6,8 +6,8 @@ from ..core.claims import all_claims
 from ..core.estimate import Estimate
 from ..core.fitting import MIN_POINTS
 from ..core.labels import loads_of
-from ..core.limits import NEAR_FULL, NEAR_POINTS
-from ..core.verdicts import FAILS, FALLING, HOLDS, PARTLY, UNDETERMINED
+from ..core.limits import NEAR_FULL, NEAR_POINTS, NEARLY
+from ..core.verdicts import FAILS, HOLDS, PARTLY, UNDETERMINED
 from .evidence import ESTIMATES, Evidence, Trend, at_reference, of_a_kind
 from .findings import (
     Finding,
@@ -274,7 +274,7 @@ def strength_falls_with_size(joint: Joint) -> Finding:
     slope = Estimate.read(windows, "slope_at_equal_v_exponent")
     slope = slope[np.isfinite(slope.value)]
     at_one_v = slope.value.size
-    falls_at_one_v = int((windows["slope_at_equal_v_trend"] == FALLING).sum())
+    falls_at_one_v = int(((slope.high < 0) & (slope.low < -NEARLY)).sum())
     # Where nothing is sure in some cases, those that are decide.
     verdict = PARTLY if falls else FAILS if no_fall else UNDETERMINED
     if falls == cases and at_one_v and falls_at_one_v == at_one_v:
