@@ -160,7 +160,7 @@ test-slurm-accounting: $(VENV)/tests-installed $(VENV)/slurm-installed
 
 # Tables go to results/benchmarks. make bench BENCH=--quick, or --help, for other measurements.
 bench: $(VENV)/installed $(if $(PEERS),$(VENV)/peers-installed)
-	$(BIN)/python benchmarks/run.py $(BENCH)
+	$(BIN)/python benchmarks/beside_peers.py $(BENCH)
 
 # The flow solvers that are installed; with PEERS=1 also CHOLMOD and reynoldsflow. FLOW='--sizes 512', or --help.
 bench-flow: $(VENV)/installed $(if $(PEERS),$(VENV)/peers-installed)

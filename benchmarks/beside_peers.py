@@ -1,24 +1,28 @@
-"""Ours beside ASPHER over sizes and contact fractions, in pairs timed in turn.
+"""The contact solver beside other methods and other codes, in pairs timed in turn.
 
-    python benchmarks/beside_peers.py        512 to 4096, seven fractions, 1 and 2 threads: hours
-    python benchmarks/beside_peers.py --sizes 512 --fractions 0.5 8 --threads 1 --pairs 3
+    python benchmarks/beside_peers.py                  512 x 512, beside all installed codes
+    python benchmarks/beside_peers.py --quick          256 x 256: two minutes
+    python benchmarks/beside_peers.py --loads 16       sweeps of 16 loads, each from the one before
+    python benchmarks/beside_peers.py --peers dense gauss-seidel --sizes 64
     python benchmarks/beside_peers.py --alone --sizes 2048 4096 8192 --fractions 0.05 0.5
 
-Each cell of the table is one self-affine surface under the force at which a fraction of it touches,
-solved by ours and by every mode of the peer at a tolerance of 1e-6, each in a process of its own
-with that many threads. Ours is timed in turn with the peer, twice: with what belongs to the grid
-(kernel, transforms, operator between blocks) made anew in each solve, which is what the peer always
-does, and with that kept. Compiled kernels are loaded before, for both. One thread is compared by
-processor time, several by the clock. A ratio of times has its 95 % interval over the pairs, if more
-than one is worth waiting for.
+Each cell of the table is one self-affine surface loaded until a fraction of it touches, solved by
+ours under a force and by every peer under the load that it declares first, each in a process of its
+own with that many threads. Peers are public codes (``make bench PEERS=1`` installs them; ASPHER is
+built, see its module) and the package's own methods, by name. Ours is timed in turn with the peer,
+twice: with what belongs to the grid (kernel, transforms, operator between blocks) made anew in each
+solve, as it is for the peer, and with that kept. Compiled kernels are loaded before, for both. One
+thread is compared by processor time, several by the clock. A ratio of times has its 95 % interval
+over the pairs, if more than one is worth waiting for.
 
-An answer is judged before its time is read: by the closure that its pressure has under a
-convolution in double precision, against one of ours to 1e-8, and by its force (in windows of more
-than 4096 nodes along a side by the force alone). Beyond ``--error`` the row is disqualified; so is
-a peer that says that it failed, or takes longer than ``--limit``. Where ours does, the peer is
-timed alone, without a ratio. ``path`` are the counters that prove which way the last call went.
-Peak memory is that of the whole process, which holds the surface and, of the peer, what it is given
-and gives.
+Ours begins at a tolerance of 1e-6, a peer at a looser one than it is likely to need, and each goes
+to tighter ones until its answer is close enough: the closure that its pressure has under a
+convolution in double precision, against one of ours to 1e-8, and its force (in windows of more than
+4096 nodes along a side the force alone). Beyond ``--error`` the row is disqualified; so is a peer
+that says that it failed, or takes longer than ``--limit``. Where ours does, the peer is timed
+alone, without a ratio. ``path`` are the counters that prove which way the last call went;
+``applications`` are those a load, of a sweep after the first. Peak memory is that of the whole
+process, which holds the surface and, of the peer, what it is given and gives.
 
 Tables beside_peers.csv and .md go to ``--output``, after each cell; cells that are there are not
 measured again, so that a run that was ended goes on. The last lines are how time and memory grow
@@ -30,13 +34,33 @@ import json
 import sys
 from itertools import product
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 from peers_tables import read, write
 from peers_worker import MAPPED, OURS, TOO_LONG, Worker, run_once
 
-PEERS = ("ASPHER active set", "ASPHER fft")
+from contactlab.methods.registry import METHODS, installed_peers
+from fractalcontact import HalfSpace
+from fractalcontact.core.intervals import t_quantile
+
 BEYOND = "not tried: too long with fewer nodes or less contact"
+#: Tolerances are tried in these steps, as far as the tightest.
+RTOL, STEP, TIGHTEST = 1e-6, 10**0.5, 1e-10
+
+
+class Cell(NamedTuple):
+    """Problem of one cell of the table; ``contact`` is the part that touches, %."""
+
+    size: int
+    contact: float
+    threads: int = 1
+    hurst: float = 0.8
+    loads: int = 1
+
+    def row(self):
+        """Columns that name the cell."""
+        return self._asdict() | {"contact": f"{self.contact:g}"}
 
 
 def main():
@@ -44,14 +68,13 @@ def main():
     options = _options()
     options.output.mkdir(parents=True, exist_ok=True)
     rows = read(options.output)
-    known = {(row["size"], row["contact"], row["threads"]) for row in rows}
-    wanted = list(product(options.sizes, options.fractions, options.threads))
-    for size, percent, threads in wanted:
-        if (str(size), f"{percent:g}", str(threads)) in known:
-            continue
-        sys.stderr.write(f"{size}, {percent:g} % in contact, {threads} threads ...\n")
-        rows += _cell(size, percent, threads, options, rows)
-        write(options.output, rows)
+    known = {_cell_of(row) for row in rows}
+    every = options.sizes, options.fractions, options.threads, options.hurst, [options.loads]
+    for cell in (Cell(*one) for one in product(*every)):
+        if cell not in known:
+            sys.stderr.write(f"{', '.join(f'{k} {v}' for k, v in cell.row().items())} ...\n")
+            rows += _rows(cell, options, rows)
+            write(options.output, rows)
     sys.stdout.write(write(options.output, rows))
 
 
@@ -60,55 +83,83 @@ def _options():
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     add = parser.add_argument
-    add("--sizes", type=int, nargs="+", default=[512, 1024, 2048, 4096], help="nodes per side")
-    add("--fractions", type=float, nargs="+", default=[0.004, 0.05, 0.5, 2, 8, 20, 60], help="%%")
-    add("--threads", type=int, nargs="+", default=[1, 2])
+    add("--sizes", type=int, nargs="+", default=[512], help="nodes per side")
+    add("--fractions", type=float, nargs="+", default=[0.5, 2, 8, 20], help="in contact, %%")
+    add("--hurst", type=float, nargs="+", default=[0.8])
+    add("--loads", type=int, default=1, help="of a sweep: those that start from a load alone")
+    add("--threads", type=int, nargs="+", default=[1])
     add("--pairs", type=int, default=5, help="most of each cell")
     add("--patience", type=float, default=60, help="no further pair after this many seconds")
-    add("--limit", type=float, default=600, help="of one solve, seconds")
+    add("--limit", type=float, default=600, help="of one solve or sweep, seconds")
     add("--error", type=float, default=1e-5, help="of closure or force, relative, at most")
-    add("--peers", nargs="+", default=list(PEERS))
+    add("--peers", nargs="+", default=[*installed_peers()], choices=[*METHODS, *installed_peers()])
     add("--alone", dest="peers", action="store_const", const=[], help="ours only")
+    add("--quick", action="store_true", help="256 x 256, two fractions, three pairs")
     add("--seed", type=int, default=1)
     add("--output", type=Path, default=Path("results/benchmarks"))
-    return parser.parse_args()
+    options = parser.parse_args()
+    if options.quick:
+        options.sizes, options.fractions, options.pairs = [256], [2, 8], 3
+    return options
 
 
-def _cell(size, percent, threads, options, before):
-    """Rows of one cell: ours with and without set-up, and every mode of the peer.
+def _cell_of(row):
+    """Cell that a row of the table is of."""
+    types = int, float, int, float, int
+    return Cell(*(kind(row[name]) for kind, name in zip(types, Cell._fields, strict=True)))
+
+
+def _rows(cell, options, before):
+    """Rows of one cell: ours with and without set-up, and every peer that takes it.
 
     A solver that took too long ``before``, with no more nodes or contact, is not tried again.
     """
-    load = _load(size, percent, options)
-    row = {"size": size, "contact": f"{percent:g}", "threads": threads}
-    wanted = [*OURS, *(p for p in options.peers if "ASPHER" not in p or size & (size - 1) == 0)]
-    names = [name for name in wanted if not _beyond(name, size, percent, threads, before)]
-    rows = [row | {"solver": name, "note": BEYOND} for name in wanted if name not in names]
-    workers = {name: Worker(name, load, threads, options.limit) for name in names}
-    answers = {name: worker.solve(warm=True) for name, worker in workers.items()}
+    load, space = _load(cell, options), HalfSpace((cell.size, cell.size), 1 / cell.size, 1.0)
+    peers = {name: {**METHODS, **installed_peers()}[name] for name in options.peers}
+    wanted = [
+        *OURS,
+        *(n for n, peer in peers.items() if peer.takes(space) and (cell.loads == 1 or peer.warm)),
+    ]
+    names = [name for name in wanted if not _beyond(name, cell, before)]
+    rows = [cell.row() | {"solver": name, "note": BEYOND} for name in wanted if name not in names]
+    workers = {name: Worker(name, load, cell.threads, options.limit) for name in names}
+    loosest = {name: 10 ** (peer.likely + 1) for name, peer in peers.items()}
+    answers = {
+        name: _first(worker, loosest.get(name, RTOL), load, options.error)
+        for name, worker in workers.items()
+    }
     for name in [name for name in names if name not in OURS]:
-        rows.append(row | _peer(name, workers, answers, load, threads, options))
+        rows.append(cell.row() | _peer(name, workers, answers, load, cell.threads, options))
     for name in [name for name in names if name in OURS]:
-        rows.append(row | _ours(name, workers[name], answers[name], load, threads, options))
+        own = _ours(name, workers[name], answers[name], load, cell.threads, options)
+        rows.append(cell.row() | own)
     for worker in workers.values():
         worker.end()
     return rows
 
 
-def _beyond(name, size, percent, threads, rows):
+def _first(worker, tolerance, load, most):
+    """First answer that is close enough, at the loosest tolerance of those tried."""
+    while True:
+        answer = worker.judge(tolerance)
+        if "failed" in answer or tolerance < 2 * TIGHTEST or _error(answer, load) <= most:
+            return answer | {"tolerance": tolerance}
+        tolerance /= STEP
+
+
+def _beyond(name, cell, rows):
     """Whether a solver took too long in a cell of no more nodes and no more contact."""
-    return any(
-        row["solver"] == name
-        and int(row["size"]) <= size
-        and float(row["contact"]) <= percent
-        and int(row["threads"]) >= threads
-        and str(row.get("note", "")).startswith((TOO_LONG, BEYOND))
-        for row in rows
-    )
+    for row in rows:
+        if row["solver"] == name and str(row.get("note", "")).startswith((TOO_LONG, BEYOND)):
+            of = _cell_of(row)
+            more = of.size <= cell.size and of.contact <= cell.contact
+            if more and of.threads >= cell.threads and of.loads <= cell.loads:
+                return True
+    return False
 
 
 def _peer(name, workers, answers, load, threads, options):
-    """The row of a mode of the peer, in turn with ours with its set-up.
+    """The row of a peer, in turn with ours with its set-up.
 
     Where ours was not tried, or failed in its first solve, the peer is timed alone: no ratio.
     """
@@ -135,8 +186,6 @@ def _peer(name, workers, answers, load, threads, options):
 
 def _ratio(times):
     """Times of the peer over ours, (pairs, 2), and the 95 % interval, if there is more than one."""
-    from fractalcontact.core.intervals import t_quantile
-
     ratio = np.log(times[:, 0] / times[:, 1])
     found = {"times": float(np.exp(ratio.mean()))}
     if len(ratio) > 1:
@@ -171,29 +220,35 @@ def _time(found, threads):
     return found["processor" if threads == 1 else "clock"]
 
 
+def _error(found, load):
+    """Relative error of an answer: that of its closure or force, if more."""
+    exact = load["steps"][-1]
+    return max(abs(found[name] / exact[name] - 1) for name in ("closure", "force"))
+
+
 def _judged(found, load, options):
     """Error of an answer, its counters, and why its time is not to be read, if so."""
     if "failed" in found:
         return {"note": found["failed"]}
-    error = max(
-        abs(found["closure"] / load["closure"] - 1), abs(found["force"] / load["force"] - 1)
-    )
+    error = _error(found, load)
     return {
         "error": error,
         "note": "" if error <= options.error else "disqualified: its error is off",
+        "tolerance": found["tolerance"],
         "applications": found["applications"],
         "path": found["path"],
         "peak GB": found["peak"],
     }
 
 
-def _load(size, percent, options):
-    """Surface, force and exact closure of a cell: made once for all threads and solvers."""
-    name = options.output / f"surface_{size}_{options.seed}.npy"
-    kept = options.output / f"load_{size}_{options.seed}_{percent:g}.json"
+def _load(cell, options):
+    """Surface and exact loads of a cell: made once for all threads and solvers."""
+    of = f"{cell.size}_{cell.hurst:g}_{options.seed}"
+    name = options.output / f"surface_{of}.npy"
+    kept = options.output / f"load_{of}_{cell.contact:g}_{cell.loads}.json"
     if not kept.exists():
-        what = {"make": str(name), "size": size, "percent": percent, "seed": options.seed}
-        found = run_once({**what, "judge": size <= MAPPED})
+        what = {"make": str(name), **cell._asdict(), "seed": options.seed}
+        found = run_once({**what, "judge": cell.size <= MAPPED})
         kept.write_text(json.dumps({"heights": str(name), **found}))
     return json.loads(kept.read_text())
 

@@ -1,17 +1,26 @@
 """Tables of `beside_peers.py`: rows read and written, growth with the nodes, and a summary."""
 
 import csv
+import os
+import platform
+from importlib.metadata import PackageNotFoundError, version
 
 import numpy as np
 
+from contactlab.methods.registry import PEERS
+
 COLUMNS = (
-    *("size", "contact", "threads", "solver", "seconds", "ours", "times", "low", "high", "pairs"),
-    *("error", "note", "applications", "path", "peak GB"),
+    *("size", "contact", "threads", "hurst", "loads", "solver", "seconds", "ours", "times", "low"),
+    *("high", "pairs", "error", "note", "tolerance", "applications", "path", "peak GB"),
 )
 
 
+#: Columns that tell cells of one size apart.
+_KIND = ("contact", "threads", "hurst", "loads")
+
+
 def growth(rows, column):
-    """Exponent of the power law of a column over the nodes, of each solver, fraction and threads.
+    """Exponent of the power law of a column over the nodes, of each solver and kind of cell.
 
     Parameters
     ----------
@@ -22,14 +31,14 @@ def growth(rows, column):
 
     Yields
     ------
-    solver, contact, threads : str
+    solver, contact, threads, hurst, loads : str
     exponent, error : float
         The error is the standard error of a least-squares fit, NaN of two sizes.
     """
     groups: dict[tuple, list] = {}
     for row in rows:
         if row.get(column) not in (None, "") and not row.get("note"):
-            key = row["solver"], str(row["contact"]), str(row["threads"])
+            key = row["solver"], *(str(row[name]) for name in _KIND)
             groups.setdefault(key, []).append((2 * np.log(int(row["size"])), float(row[column])))
     for key, points in groups.items():
         x, y = np.array(points).T
@@ -57,34 +66,48 @@ def write(folder, rows):
         writer = csv.DictWriter(file, COLUMNS)
         writer.writeheader()
         writer.writerows(rows)
-    lines = ["| " + " | ".join(COLUMNS) + " |", "|" + "---|" * len(COLUMNS)]
+    lines = [_versions(), "", "| " + " | ".join(COLUMNS) + " |", "|" + "---|" * len(COLUMNS)]
     for row in rows:
         lines.append("| " + " | ".join(_text(row.get(column)) for column in COLUMNS) + " |")
     lines += ["", *(f"- {line}" for line in summary(rows)), ""]
     for column in ("seconds", "peak GB"):
-        for solver, contact, threads, exponent, error in growth(rows, column):
+        for solver, *kind, exponent, error in growth(rows, column):
             law = f"{column} grow as nodes^{exponent:.2f}"
             law += f" +- {error:.2f}" if np.isfinite(error) else ""
-            lines.append(f"- {solver}, {contact} %, {threads} threads: {law}")
+            of = ", ".join(f"{name} {value}" for name, value in zip(_KIND, kind, strict=True))
+            lines.append(f"- {solver}, {of}: {law}")
     text = "\n".join(lines) + "\n"
     (folder / "beside_peers.md").write_text(text)
     return text
 
 
 def summary(rows):
-    """How many times faster than the fastest mode of the peer, in the median of light and dense."""
+    """How many times faster than the fastest peer, in the median of light and dense contact."""
     best: dict[tuple, float] = {}
     for row in rows:
         if row.get("times") not in (None, "") and not row.get("note"):
-            key = int(row["size"]), float(row["contact"]), int(row["threads"])
+            key = tuple(float(row[name]) for name in ("size", *_KIND))
             best[key] = min(best.get(key, np.inf), float(row["times"]))
     for threads in sorted({key[2] for key in best}):
         here = {key: times for key, times in best.items() if key[2] == threads}
-        yield f"{threads} threads: least {min(here.values()):.2g} times, in {len(here)} cells"
+        yield f"{threads:g} threads: least {min(here.values()):.2g} times, in {len(here)} cells"
         for name, of in (("below 0.5 %", lambda f: f < 0.5), ("above 2 %", lambda f: f > 2)):
             some = [times for key, times in here.items() if of(key[1])]
             if some:
-                yield f"{threads} threads, {name}: {np.median(some):.2g} times in the median"
+                yield f"{threads:g} threads, {name}: {np.median(some):.2g} times in the median"
+
+
+def _versions():
+    """Programs that were measured, and the machine."""
+    packages = ["fractalcontact", "numpy", "scipy", "numba"]
+    packages += dict.fromkeys(package for peer in PEERS.values() for package in peer.packages)
+    named = [f"Python {platform.python_version()}, {os.cpu_count()} cores"]
+    for package in packages:
+        try:
+            named.append(f"{package} {version(package)}")
+        except PackageNotFoundError:
+            named.append(f"{package} not installed")
+    return ", ".join(named)
 
 
 def _text(value):

@@ -556,6 +556,7 @@ def test_two_faces_and_an_oblong_window():
     assert states["side"][0] == pytest.approx(np.sqrt(3.2 * 6.4))
     assert states["side_along"][0] == pytest.approx(6.4)
     found = size_laws(states, ROCK, 12.0, DIMENSION)
+    assert np.isfinite(found["peak_strength"]).all()
     assert (states["interface_closure"].isel(offset=0, window=0) > 0).all()
 
 

@@ -245,26 +245,10 @@ def _as_it_is(state):
 
 def _press_peer(code: PublicCode, control: str, reference: Reference, rtol: float) -> np.ndarray:
     """Pressure of a public code at the reference's closure, or under its force."""
-    return code.solve(load_of(reference, control), rtol)
-
-
-def load_of(reference: Reference, control: str, start: np.ndarray | None = None) -> Load:
-    """Tolerance with which a public code reaches the state of a reference.
-
-    Parameters
-    ----------
-    reference : Reference
-    control : str
-        ``"closure"`` or ``"force"``.
-    start : (ny, nx) ndarray, optional
-        Pressure to start from, MPa.
-    """
-    nodes = np.count_nonzero(reference.state.in_contact)
-    return Load(
-        **{control: getattr(reference, control)},
-        pixel_force=reference.force / nodes,
-        start=start,
-    )
+    # For codes whose tolerance is on forces.
+    pixel_force = reference.force / np.count_nonzero(reference.state.in_contact)
+    load = Load(**{control: getattr(reference, control)}, pixel_force=pixel_force)
+    return code.solve(load, rtol)
 
 
 def _set_up_and_press(peer: Method, problem: ReferenceProblem, rtol: float) -> np.ndarray:
