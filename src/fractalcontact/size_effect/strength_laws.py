@@ -80,18 +80,18 @@ def strength_by_size(states: xr.Dataset, material: Friction, roughness: float) -
     truncated, raised = (np.where(np.isnan(strength), np.nan, bound == end) for end in (1, -1))
 
     result = xr.Dataset()
-    peaks, peaks_off = (peak(midpoint, values)[0] for values in (strength, off))
-    peaks = xr.DataArray(peaks, dims=_DIMS, attrs=cf_attrs(*FIELDS["peak_strength"]))
-    add_mean(result, "peak_strength", peaks, peaks.copy(data=peaks_off))
     slopes = [slopes_apart(offset, curve, sign * error) for sign in (0, 1)]
-    similar = {
+    at_peak = [peak(midpoint, of)[0] for of in (strength, off)]
+    at_fractions = {
         "strength_at_equal_v_over_b": (strength, off),
         "slope_at_equal_v_over_b": (slopes[0], slopes[1] - slopes[0]),
     }
-    for name, of_intervals in similar.items():
-        values, errors = (_at_fractions(offset, side.values, of) for of in of_intervals)
-        attrs = cf_attrs(*_SIMILAR[name])
-        mean_of = xr.DataArray(values, dims=("share", *_DIMS), attrs=attrs)
+    each: dict[str, tuple] = {"peak_strength": (_DIMS, at_peak)}
+    for name, of_intervals in at_fractions.items():
+        taken = [_at_fractions(offset, side.values, of) for of in of_intervals]
+        each[name] = ("share", *_DIMS), taken
+    for name, (dims, (values, errors)) in each.items():
+        mean_of = xr.DataArray(values, dims=dims, attrs=cf_attrs(*_MEANS[name]))
         add_mean(result, name, mean_of, mean_of.copy(data=errors))
     _add_whole_window(result, side, offset, slopes[0])
     attrs = cf_attrs("1", "offset as a fraction of the side, v/b")
@@ -104,8 +104,9 @@ def strength_by_size(states: xr.Dataset, material: Friction, roughness: float) -
     strengths = result["strength_at_equal_v_over_b"]
     strengths = strengths.where(apart & strengths.copy(data=~at_most))
     _add_largest(result, side, strengths, at_least)
-    values, words = result["slope_at_equal_v_over_b"].where(apart), "slope_at_equal_v_over_b"
-    add_law(result, f"{words}_exponent", side, values, f"exponent of {words} against b")
+    name = "slope_at_equal_v_over_b"
+    words = f"exponent of {name} against b"
+    add_law(result, f"{name}_exponent", side, result[name].where(apart), words)
     of_truncated = {
         "truncated_fraction_at_peak": mean_interval(peak(midpoint, truncated)[0], axis=1).value,
         "truncated_fraction_at_equal_v_over_b": mean_interval(
@@ -193,8 +194,9 @@ def slope_angle(strength: ArrayLike, pressure: ArrayLike) -> np.ndarray:
 
 _DIMS = ("part", "window", "normal_force")
 
-#: What is compared at one v/b: unit, long name.
-_SIMILAR = {
+#: Means over sub-windows: unit, long name.
+_MEANS = {
+    "peak_strength": FIELDS["peak_strength"],
     "strength_at_equal_v_over_b": ("MPa", "shear strength at one v/b"),
     "slope_at_equal_v_over_b": ("1", "slope d delta/dv at one v/b"),
 }
