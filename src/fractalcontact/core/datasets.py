@@ -58,3 +58,11 @@ def labelled_dataset(
     attrs : mapping, optional
     """
     return xr.Dataset(labelled(table, values), coords=coords, attrs=attrs)
+
+
+def domains_by_resolution(fields: xr.Dataset) -> dict[int, xr.DataArray]:
+    """Contact domains ``in_contact_k`` of a dataset by their resolution k, the finest first."""
+    start = "in_contact_"
+    names = (str(name) for name in fields.data_vars if str(name).startswith(start))
+    factors = sorted(int(name.removeprefix(start)) for name in names)
+    return {k: fields[f"{start}{k}"] for k in factors}

@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 
 from ..core.arrays import padded
-from ..core.datasets import labelled_dataset
+from ..core.datasets import domains_by_resolution, labelled_dataset
 from ..core.estimate import names_of, rows_of
 from ..core.fitting import MIN_POINTS
 from ..core.labels import cf_attrs
@@ -118,9 +118,8 @@ def analyse_domains(
     bound is the fraction of the nodes whose contact is ambiguous: in 95 to 98 % of 250 states of
     three twins, solved to 1e-5 to 1e-2, the dimension was off by no more than that.
     """
-    names = [name for name in fields.data_vars if str(name).startswith("in_contact_")]
-    factors = sorted(int(str(name).removeprefix("in_contact_")) for name in names)
-    domains = {k: fields[f"in_contact_{k}"].values for k in factors}
+    domains = {k: domain.values for k, domain in domains_by_resolution(fields).items()}
+    factors = list(domains)
     shapes = {k: domains[k].shape[-2:] for k in factors}
     sizes = {
         "box_side": [window_sizes(shapes[k]) * k * spacing for k in factors],

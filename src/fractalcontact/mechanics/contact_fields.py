@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 import xarray as xr
 
+from ..core.datasets import domains_by_resolution
 from ..core.labels import cf_attrs
 from ..core.settings import ContactSettings
 from .states import MAP_GAP, MAP_PRESSURE, forces_of
@@ -48,11 +49,10 @@ def contact_fields(
     netCDF's attributes, gives NaN; compare with 1 to select cells in contact.
     """
     result = domains.copy()
-    for name in domains.data_vars:
-        if str(name).startswith("in_contact_"):
-            factor = int(str(name).removeprefix("in_contact_"))
-            result[name] = _with_missing(domains[name], domains["solved"].sel(resolution=factor))
-            result = result.assign_coords(_coordinates(joint, factor))
+    for factor, domain in domains_by_resolution(domains).items():
+        solved = domains["solved"].sel(resolution=factor)
+        result[domain.name] = _with_missing(domain, solved)
+        result = result.assign_coords(_coordinates(joint, factor))
     part = next((part for part in parts if MAP_PRESSURE in part), None)
     if part is None:
         return result

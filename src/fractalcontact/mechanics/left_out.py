@@ -5,6 +5,7 @@ import functools
 import numpy as np
 import xarray as xr
 
+from ..core.datasets import domains_by_resolution
 from ..core.intervals import LEFT_OUT
 from .area import cell_areas
 
@@ -72,9 +73,8 @@ def left_of_fields(fields: xr.Dataset) -> xr.DataArray:
     -------
     DataArray (direction, offset, resolution, normal_force, left_out)
     """
-    names = [str(name) for name in fields.data_vars if str(name).startswith("in_contact_")]
-    domains = {int(name.removeprefix("in_contact_")): fields[name].values for name in names}
-    factors = sorted(domains)
+    domains = {k: domain.values for k, domain in domains_by_resolution(fields).items()}
+    factors = list(domains)
     n_direction, n_offset, n_load = domains[factors[0]].shape[:3]
     left = np.empty((n_direction, n_offset, len(factors), n_load, PARTS_LEFT_OUT))
     for direction, offset, load in np.ndindex(n_direction, n_offset, n_load):
