@@ -131,14 +131,14 @@ def test_every_number_has_its_mean_interval_and_spread(made):
         )
 
 
-def _made_up(delta, random):
+def _made_up(delta, cut):
     force = 10.0 ** np.arange(delta.shape[1])
     dims = ("realisation", "normal_force")
     attrs = {"units": "1", "long_name": "Delta_sigma"}
     return xr.Dataset(
         {
             "delta_sigma": (dims, delta, attrs),
-            "delta_sigma_random": (dims, random, attrs),
+            "delta_sigma_cut_difference": (dims, delta - cut, attrs),
             "delta_sigma_area": (dims, np.full(delta.shape, np.nan), attrs),
         },
         coords={"normal_force": force},

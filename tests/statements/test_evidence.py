@@ -54,7 +54,7 @@ def made(seed=0, **changes):
         "local_slope": [1.06, 1.1, 1.0, 1.08, 1.15],
         "local_slope_random": np.linspace(0, 2, 5),
         "local_slope_cut_difference": np.full(5, 0.2),
-        "delta_sigma_cut_difference": np.full(4, 0.05),
+        "delta_sigma_cut_difference": 0.15 * (np.arange(4) - 1.5),
     } | changes
     for name in ("local_slope", "local_slope_random", "local_slope_cut_difference"):
         means[name] = np.broadcast_to(means[name], (len(FORCES), 5))
@@ -125,20 +125,26 @@ def test_an_ensemble_as_the_paper_has_it(name):
         ("dimension_rises_by_area", {"delta_sigma_area": [1.9, 1.4, 0.8, 0.2]}, FAILS),
         ("dimension_rises_by_area", {"delta_sigma_area": [np.nan] * 3 + [1.4]}, UNDETERMINED),
         ("dimension_rises_by_area", {"delta_sigma_area": [1.2, 1.3, 1.4, 1.5]}, PARTLY),
-        ("dimension_rises_by_boxes", {"delta_sigma_random": [0.1, 0.8, 1.4, 1.7]}, FAILS),
-        # Random nodes near 2 cannot rise: a domain that reaches 2 as well rises no faster.
+        ("dimension_rises_by_boxes", {"delta_sigma_cut_difference": np.zeros(4)}, FAILS),
+        # A cut near 2 cannot rise: a domain that reaches 2 as well rises no faster.
         (
             "dimension_rises_by_boxes",
-            {"delta_sigma": [0.6, 1.0, 1.4, 2.0], "delta_sigma_random": [1.1, 1.55, 2.0, 2.0]},
+            {
+                "delta_sigma": [0.6, 1.0, 1.4, 2.0],
+                "delta_sigma_cut_difference": [-0.5, -0.55, -0.6, 0.0],
+            },
             FAILS,
         ),
         (
             "dimension_rises_by_boxes",
-            {"delta_sigma": [0.9, 1.3, 1.7, 2.0], "delta_sigma_random": [1.1, 1.9, 2.0, 2.0]},
+            {
+                "delta_sigma": [0.9, 1.3, 1.7, 2.0],
+                "delta_sigma_cut_difference": [-0.2, -0.6, -0.3, 0.0],
+            },
             UNDETERMINED,
         ),
-        # Faster than random nodes, by less than the margin.
-        ("dimension_rises_by_boxes", {"delta_sigma_random": [0.2, 0.72, 1.25, 1.7]}, FAILS),
+        # Faster than the cut, by less than the margin.
+        ("dimension_rises_by_boxes", {"delta_sigma_cut_difference": 0.05 * np.arange(4)}, FAILS),
         ("boxes_follow_one_law", {"local_slope": [1.0, 1.1, 1.2, 1.3, 1.3]}, PARTLY),
         ("boxes_follow_one_law", {"local_slope": [0.5, 0.5, 0.7, 1.2, 1.8]}, FAILS),
         ("boxes_follow_one_law", {"local_slope": [1.6, 1.8, 1.9, 2.0, 2.0]}, FAILS),

@@ -67,7 +67,7 @@ def stages(**changes):
         "box_sides": 0.1 * 2.0 ** np.arange(6),
         "random_p": 0.005,
         "cut_p": 0.01,
-        "cut_less": 0.1,
+        "cut_less": 0.15 * (np.arange(4) - 1.5),
         "random": np.array([0.1, 0.5, 0.9, 1.2]),
         "along": 0.2,
         "across": 0.2,
@@ -212,7 +212,7 @@ def stages(**changes):
                 "delta_sigma_cut": over_boxes(box - values["cut_less"]),
                 **{
                     f"{name}_cut_difference{end}": over_boxes(
-                        np.full(4, values["cut_less"]) + np.sign(by) * values["cut_half"]
+                        values["cut_less"] + np.sign(by) * values["cut_half"] * np.ones(4)
                     )
                     for name in ("delta_sigma", "correlation_dimension")
                     for end, by in ends.items()

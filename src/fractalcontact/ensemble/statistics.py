@@ -19,15 +19,14 @@ _ALIKE = {
         "delta_sigma",
     ),
 }
-#: Trends with the load: quantity, and what is taken from it or None; what the trend is of.
+#: Trends with the load: quantity, and what the trend is of.
 TRENDS = {
-    "delta_sigma_trend": ("delta_sigma", None, "Delta_sigma by boxes"),
+    "delta_sigma_trend": ("delta_sigma", "Delta_sigma by boxes"),
     "departure_trend": (
-        "delta_sigma",
-        "delta_sigma_random",
-        "Delta_sigma by boxes less that of random nodes",
+        "delta_sigma_cut_difference",
+        "Delta_sigma by boxes less that of the bearing-area cut",
     ),
-    "delta_sigma_area_trend": ("delta_sigma_area", None, "Delta_sigma by A_r(s)"),
+    "delta_sigma_area_trend": ("delta_sigma_area", "Delta_sigma by A_r(s)"),
 }
 
 
@@ -43,15 +42,15 @@ def add_trends(result: xr.Dataset) -> None:
     Notes
     -----
     Loads at which a realisation has no value are left out of all: realisations would else be
-    compared over different loads. What is compared with random nodes is so where these are no
-    more than near 2: beyond, both tend to 2, and what began lower would seem to rise faster. Two
-    loads are enough for a slope, for its error is that of the mean over the realisations.
+    compared over different loads. What is compared with the cut is so where that is no more than
+    near 2: beyond, both tend to 2, and what began lower would seem to rise faster. Two loads are
+    enough for a slope, for its error is that of the mean over the realisations.
     """
     decades = np.log10(result["normal_force"].values)
-    for name, (quantity, less, words) in TRENDS.items():
+    for name, (quantity, words) in TRENDS.items():
         values = result[quantity]
-        if less is not None:
-            values = values - result[less].where(result[less] <= NEAR_FULL)
+        if quantity == "delta_sigma_cut_difference":
+            values = values.where(result["delta_sigma"] - values <= NEAR_FULL)
         rows = values.transpose("realisation", "normal_force").values
         used = np.isfinite(rows).all(axis=0)
         slopes = np.full(len(rows), np.nan)

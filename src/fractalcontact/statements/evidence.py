@@ -45,7 +45,7 @@ class Trend:
     Attributes
     ----------
     slope, departure : Estimate
-        Of Delta_sigma, and of what it has more than random nodes where these are not near 2.
+        Of Delta_sigma, and of what it has more than the bearing-area cut where that is not near 2.
     pressures : (n,) ndarray
         Nominal pressures of the fit, MPa.
     """
@@ -106,12 +106,12 @@ class Evidence:
         """
         states = self.joint.states({"area": "scaling", "box": "domains"}[by])
         delta = Estimate.read(states, "delta_sigma")
-        random = np.full(delta.value.shape, np.nan)
+        cut = np.full(delta.value.shape, np.nan)
         if by == "box":
-            of_random = states["delta_sigma_random"].values
-            random = np.where(of_random <= NEAR_FULL, of_random, np.nan)
+            cut = delta.value - states["delta_sigma_cut_difference"].values
+            cut = np.where(cut <= NEAR_FULL, cut, np.nan)
         forces, known = states["normal_force"].values, np.isfinite(delta.width)
-        trend = pressure_trend(forces, np.where(known, delta.value, np.nan), random)
+        trend = pressure_trend(forces, np.where(known, delta.value, np.nan), cut)
         of_values = slope_error(np.log10(forces[known]), delta.width[known] / 2)
         line, departure = (_widened(one.slope, of_values) for one in (trend.line, trend.departure))
         return Trend(line, departure, self._pressures[known])

@@ -88,12 +88,12 @@ def dimension_rises_by_area(joint: Joint, evidence: Evidence) -> Finding:
 
 @of_a_kind
 def dimension_rises_by_boxes(joint: Joint, evidence: Evidence) -> Finding:
-    """Slope of Delta_sigma by boxes over the decades of F, less that of as many random nodes.
+    """Slope of Delta_sigma by boxes over the decades of F, less that of the bearing-area cut.
 
-    More nodes fill more boxes wherever they lie, so a rise as fast as that of random nodes is none
-    of the contact domain. The claim holds where Delta_sigma rises faster than theirs by more than
-    the margin, and fails where it does not. Loads at which random nodes are near 2 are not
-    compared.
+    More nodes fill more boxes wherever they lie, so a rise as fast as that of as many of the
+    highest nodes is none of the contact domain. The claim holds where Delta_sigma rises faster than
+    theirs by more than the margin, and fails where it does not. Loads at which the cut is near 2
+    are not compared.
     """
     name, trend = "dimension_rises_by_boxes", evidence.trend("box")
     found = _rise(trend, name)
@@ -101,15 +101,15 @@ def dimension_rises_by_boxes(joint: Joint, evidence: Evidence) -> Finding:
         return found
     return found._replace(
         verdict=beyond_margin(trend.departure, all_claims()[name].margin, rising=True),
-        numbers=f"{found.numbers}, {_beside_random(trend.departure)}",
+        numbers=f"{found.numbers}, {_beside_cut(trend.departure)}",
     )
 
 
-def _beside_random(less: Estimate) -> str:
-    """Rise of Delta_sigma less that of as many random nodes, in words."""
+def _beside_cut(less: Estimate) -> str:
+    """Rise of Delta_sigma less that of the bearing-area cut, in words."""
     if not less.known:
-        return "not compared with random nodes, which are near 2"
-    return f"by {less:+z.2f} after subtraction of random nodes"
+        return "not compared with the bearing-area cut, which is near 2 or has no dimension"
+    return f"by {less:+z.2f} after subtraction of the bearing-area cut"
 
 
 def _rise(trend: Trend, name: str) -> Finding:
