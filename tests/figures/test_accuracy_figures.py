@@ -33,7 +33,7 @@ FIGURES = study_figures_of(("speed", "convergence", "stability"))
 
 @pytest.fixture(scope="module")
 def atlas_file(tmp_path_factory):
-    scenes = {n: error_against_time(s, RECIPE) for n, s in problems_of(RECIPE).items()}
+    scenes = {n: error_against_time(s(), RECIPE) for n, s in problems_of(RECIPE).items()}
     parts = {
         "speed": scenes,
         "speed_growth": {"surfaces": growth(list(scenes.values()), 1e-2)},

@@ -5,10 +5,10 @@ until a given fraction of the nodes touches; the paraboloid of Hertz and the fla
 reach a fixed closure.
 """
 
-from abc import ABC, abstractmethod
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, partial
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -44,35 +44,31 @@ PUNCH_STEP = 10.0
 
 @dataclass(frozen=True)
 class Reference:
-    """Reference solution at one load, of known error.
+    """Reference solution, of known error.
 
     Attributes
     ----------
-    closure, force : float
-        mm and N.
-    stiffness : float
-        dF/dw, N/mm.
-    fraction : float
-        Of the nodes, in contact.
+    state : ContactState
     tolerance : float
         The solver's own.
-    state : ContactState
     """
 
-    closure: float
-    force: float
-    stiffness: float
-    fraction: float
-    tolerance: float
     state: ContactState = field(repr=False)
+    tolerance: float
+
+    @property
+    def fraction(self) -> float:
+        """Fraction of the nodes in contact."""
+        return float(self.state.in_contact.mean())
 
     def error(self, answer: ContactState | CheapState) -> float:
         """Relative error of the force, whichever of closure and force the solver was given.
 
         An error of the closure counts as the force it stands for, by dF/dw.
         """
-        change = answer.force - self.force - self.stiffness * (answer.closure - self.closure)
-        return abs(change) / self.force
+        exact = self.state
+        change = answer.force - exact.force - exact.stiffness * (answer.closure - exact.closure)
+        return abs(change) / exact.force
 
     def own_error(self, height: np.ndarray) -> float:
         """Bound of the reference's own relative error of the force.
@@ -83,48 +79,55 @@ class Reference:
         convolution that is not the solver's, the state lies between those at w (1 - v) and
         w (1 + v), as F rises with w: the error is at most v w dF/dw.
         """
-        wrong, _ = violation(self.state, height)
-        return float(wrong * self.closure * self.stiffness / self.force)
+        exact, (wrong, _) = self.state, violation(self.state, height)
+        return float(wrong * exact.closure * exact.stiffness / exact.force)
 
 
-class ReferenceProblem(ABC):
-    """A test problem on a square window, with its reference solution."""
+@dataclass(frozen=True, eq=False)
+class ReferenceProblem:
+    """A test problem on a square window, with its reference solution.
 
-    #: Nodes per side.
-    size: int
+    Attributes
+    ----------
+    name : str
+        In messages.
+    height : (size, size) ndarray
+        Composite topography, mm.
+    closure : float
+        w, mm.
+    hurst, fraction : float
+        Of a rough surface, and of its nodes to be in contact.
+    """
+
+    name: str
+    height: np.ndarray = field(repr=False)
+    closure: float
+    hurst: float = np.nan
+    fraction: float = np.nan
 
     @property
-    @abstractmethod
-    def name(self) -> str:
-        """Name of the problem in messages."""
-
-    @property
-    @abstractmethod
-    def height(self) -> np.ndarray:
-        """Composite topography (size, size), mm."""
-
-    @property
-    @abstractmethod
-    def closure(self) -> float:
-        """w, mm."""
+    def size(self) -> int:
+        """Nodes per side."""
+        return len(self.height)
 
     @cached_property
     def space(self) -> HalfSpace:
         """The half-space it is pressed on."""
-        return HalfSpace((self.size, self.size), (SIDE / self.size, SIDE / self.size), E_STAR)
+        return _unit_space(self.size)
 
     @cached_property
     def single(self) -> Reference:
-        """The reference solution."""
-        state, tolerance = _tightest(self.height, self.space, self.closure, None)
-        return Reference(
-            closure=state.closure,
-            force=state.force,
-            stiffness=state.stiffness,
-            fraction=np.count_nonzero(state.in_contact) / state.pressure.size,
-            tolerance=tolerance,
-            state=state,
-        )
+        """The reference at the tightest of `REFERENCE_TOLERANCES` that can be verified."""
+        start = None
+        for tolerance in REFERENCE_TOLERANCES:
+            try:
+                state = solve_contact(
+                    self.height, self.space, closure=self.closure, start=start, rtol=tolerance
+                )
+                return Reference(state, tolerance)
+            except NotConverged as error:
+                failure, start = error, error.state
+        raise failure
 
     @property
     def overlapping(self) -> int:
@@ -139,118 +142,56 @@ class ReferenceProblem(ABC):
         if self.overlapping > ELIMINATED:
             return np.nan
         exact = METHODS["dense"](self.height, self.space, closure=self.closure)
-        return abs(self.single.force / exact.force - 1)
-
-    @cached_property
-    def _centred(self):
-        """Coordinates (y, x) of the nodes from the middle of the window, mm."""
-        along = (np.arange(self.size) + 0.5) / self.size * SIDE - SIDE / 2
-        return along[:, np.newaxis], along[np.newaxis, :]
+        return abs(self.single.state.force / exact.force - 1)
 
 
-@dataclass(frozen=True)
-class RoughProblem(ReferenceProblem):
+def rough_problem(size: int, hurst: float, fraction: float, seed: int) -> ReferenceProblem:
     """A self-affine surface, loaded until a fraction of its nodes is in contact."""
-
-    size: int
-    hurst: float
-    fraction: float
-    seed: int
-
-    @property
-    def name(self) -> str:
-        """Name of the problem in messages."""
-        return f"{self.size}, H = {self.hurst:g}, {100 * self.fraction:g} %"
-
-    @cached_property
-    def height(self) -> np.ndarray:
-        """Heights of the surface, mm."""
-        return self_affine(
-            (self.size, self.size), SIDE / self.size, self.hurst, rms=RMS, seed=self.seed
-        )
-
-    @cached_property
-    def closure(self) -> float:
-        """w, mm, at which the fraction is in contact."""
-        return closure_at_fraction(self.height, self.space, self.fraction)
+    height = self_affine((size, size), SIDE / size, hurst, rms=RMS, seed=seed)
+    closure = closure_at_fraction(height, _unit_space(size), fraction)
+    name = f"{size}, H = {hurst:g}, {100 * fraction:g} %"
+    return ReferenceProblem(name, height, closure, hurst, fraction)
 
 
-@dataclass(frozen=True)
-class HertzProblem(ReferenceProblem):
+def hertz_problem(size: int) -> ReferenceProblem:
     """A paraboloid of radius of curvature 1 mm: a^2 = R w."""
-
-    size: int
-
-    @property
-    def name(self) -> str:
-        """Name of the problem in messages."""
-        return f"{self.size}, Hertz"
-
-    @cached_property
-    def height(self) -> np.ndarray:
-        """Heights of the paraboloid, mm."""
-        y, x = self._centred
-        return -(y**2 + x**2) / 2
-
-    @property
-    def closure(self) -> float:
-        """w, mm."""
-        return (REACH * SIDE / 2) ** 2
+    height = -(_radius(size) ** 2) / 2
+    return ReferenceProblem(f"{size}, Hertz", height, (REACH * SIDE / 2) ** 2)
 
 
-@dataclass(frozen=True)
-class PunchProblem(ReferenceProblem):
+def punch_problem(size: int) -> ReferenceProblem:
     """A flat circular punch."""
-
-    size: int
-
-    @property
-    def name(self) -> str:
-        """Name of the problem in messages."""
-        return f"{self.size}, flat punch"
-
-    @cached_property
-    def height(self) -> np.ndarray:
-        """Zero on the punch, far below around it, mm."""
-        y, x = self._centred
-        return np.where(np.hypot(y, x) < REACH * SIDE / 2, 0.0, -PUNCH_STEP * self.closure)
-
-    @property
-    def closure(self) -> float:
-        """w, mm."""
-        return PUNCH_CLOSURE * REACH * SIDE / 2
+    closure = PUNCH_CLOSURE * REACH * SIDE / 2
+    height = np.where(_radius(size) < REACH * SIDE / 2, 0.0, -PUNCH_STEP * closure)
+    return ReferenceProblem(f"{size}, flat punch", height, closure)
 
 
-def problems_of(recipe: Mapping[str, Any]) -> dict[str, ReferenceProblem]:
-    """Test problems of a study by name, computed when they are used.
+def _unit_space(size):
+    return HalfSpace((size, size), (SIDE / size, SIDE / size), E_STAR)
+
+
+def _radius(size):
+    """Distance of the nodes from the middle of the window, mm."""
+    along = (np.arange(size) + 0.5) / size * SIDE - SIDE / 2
+    return np.hypot(along[:, np.newaxis], along)
+
+
+def problems_of(recipe: Mapping[str, Any]) -> dict[str, Callable[[], ReferenceProblem]]:
+    """Test problems of a study by name, to be made when they are used.
 
     Parameters
     ----------
     recipe : mapping
         ``sizes`` (nodes per side), ``hurst``, ``contact`` (fractions of the nodes) and ``seed``.
     """
-    problems: dict[str, ReferenceProblem] = {}
+    problems: dict[str, Callable[[], ReferenceProblem]] = {}
     for size in sorted(recipe["sizes"]):
-        problems[f"n{size}_hertz"] = HertzProblem(size)
-        problems[f"n{size}_punch"] = PunchProblem(size)
-        for hurst in recipe["hurst"]:
-            for fraction in recipe["contact"]:
-                problem = RoughProblem(size, hurst, fraction, recipe["seed"])
-                problems[f"n{size}_h{hurst:g}_c{100 * fraction:g}"] = problem
+        problems[f"n{size}_hertz"] = partial(hertz_problem, size)
+        problems[f"n{size}_punch"] = partial(punch_problem, size)
+        for hurst, fraction in product(recipe["hurst"], recipe["contact"]):
+            problem = partial(rough_problem, size, hurst, fraction, recipe["seed"])
+            problems[f"n{size}_h{hurst:g}_c{100 * fraction:g}"] = problem
     return problems
-
-
-def _tightest(height, space, closure, start):
-    """The state at the tightest of `REFERENCE_TOLERANCES` that can be verified, and which it is."""
-    for tolerance in REFERENCE_TOLERANCES:
-        try:
-            state = solve_contact(height, space, closure=closure, start=start, rtol=tolerance)
-        except NotConverged as error:
-            failure = error
-            start = error.state
-        else:
-            return state, tolerance
-    raise failure
 
 
 def closure_at_fraction(height: np.ndarray, space: HalfSpace, fraction: float) -> float:

@@ -29,7 +29,7 @@ from ..methods.method import Method
 from ..methods.peers import PATIENCE, Load, PublicCode, clearance_of, state_of
 from ..methods.registry import METHODS, installed_peers
 from .cheap_models import CheapState, bearing_area, coarse_grid, winkler
-from .reference import HertzProblem, Reference, ReferenceProblem, problems_of
+from .reference import Reference, ReferenceProblem, hertz_problem, problems_of
 from .timing import peak_memory, repeated, timed
 
 OURS = "fractalcontact"
@@ -98,7 +98,7 @@ def speed(problem: str, recipe: Mapping[str, Any]) -> xr.Dataset:
     recipe : mapping
         The study's ``speed``.
     """
-    return error_against_time(problems_of(recipe)[problem], recipe)
+    return error_against_time(problems_of(recipe)[problem](), recipe)
 
 
 def error_against_time(problem: ReferenceProblem, recipe: Mapping[str, Any]) -> xr.Dataset:
@@ -246,8 +246,9 @@ def _as_it_is(state):
 def _press_peer(code: PublicCode, control: str, reference: Reference, rtol: float) -> np.ndarray:
     """Pressure of a public code at the reference's closure, or under its force."""
     # For codes whose tolerance is on forces.
-    pixel_force = reference.force / np.count_nonzero(reference.state.in_contact)
-    load = Load(**{control: getattr(reference, control)}, pixel_force=pixel_force)
+    exact = reference.state
+    pixel_force = exact.force / np.count_nonzero(exact.in_contact)
+    load = Load(**{control: getattr(exact, control)}, pixel_force=pixel_force)
     return code.solve(load, rtol)
 
 
@@ -258,13 +259,13 @@ def _set_up_and_press(peer: Method, problem: ReferenceProblem, rtol: float) -> n
 
 def _peer_state(control, problem, pressure):
     """State of a public code's pressure."""
-    load = {control: getattr(problem.single, control)}
+    load = {control: getattr(problem.single.state, control)}
     return state_of(problem.space, pressure, clearance_of(problem.height), **load)
 
 
 def _warm_up(recipe):
     """Every method once on a few nodes: compiled code is loaded before the clock starts."""
-    _first_runs(HertzProblem(16), {**recipe, "tolerances": recipe["tolerances"][:1]})
+    _first_runs(hertz_problem(16), {**recipe, "tolerances": recipe["tolerances"][:1]})
 
 
 def errors_of(
@@ -370,8 +371,8 @@ def _about_problem(problem):
     return {
         "scene": problem.name,
         "size": problem.size,
-        "hurst": getattr(problem, "hurst", np.nan),
-        "contact": getattr(problem, "fraction", np.nan),
+        "hurst": problem.hurst,
+        "contact": problem.fraction,
         "contact_reached": float(reference.fraction),
         "overlapping": int(problem.overlapping),
         "reference_tolerance": reference.tolerance,

@@ -9,7 +9,7 @@ import xarray as xr
 
 from contactlab.accuracy import speed
 from contactlab.accuracy.growth import growth
-from contactlab.accuracy.reference import HertzProblem, PunchProblem, RoughProblem, problems_of
+from contactlab.accuracy.reference import hertz_problem, problems_of, punch_problem, rough_problem
 from contactlab.accuracy.speed import (
     ERRORS,
     MODELS,
@@ -38,7 +38,7 @@ RECIPE = {
 
 @pytest.fixture(scope="module")
 def problem():
-    return problems_of(RECIPE)["n24_h0.8_c10"]
+    return problems_of(RECIPE)["n24_h0.8_c10"]()
 
 
 @pytest.fixture(scope="module")
@@ -94,7 +94,7 @@ def test_others_are_ahead_only_below_the_error_and_on_the_front():
 
 
 @pytest.mark.parametrize(
-    "small", [RoughProblem(40, 0.5, 0.1, 2), HertzProblem(40), PunchProblem(41)]
+    "small", [rough_problem(40, 0.5, 0.1, 2), hertz_problem(40), punch_problem(41)]
 )
 def test_reference_is_as_close_to_elimination_as_it_says(small):
     own = small.single.own_error(small.height)
@@ -103,7 +103,7 @@ def test_reference_is_as_close_to_elimination_as_it_says(small):
 
 
 def test_surfaces_are_loaded_to_the_fraction_asked_for():
-    problem = problems_of(RECIPE)["n32_h0.8_c10"]
+    problem = problems_of(RECIPE)["n32_h0.8_c10"]()
     assert problem.single.fraction == pytest.approx(0.1, abs=1.1 / 32**2 + 0.02 * 0.1)
 
 

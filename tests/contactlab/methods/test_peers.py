@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from contactlab.accuracy.hard_problems import hard_problem
-from contactlab.accuracy.reference import RoughProblem
+from contactlab.accuracy.reference import rough_problem
 from contactlab.methods import peers
 from contactlab.methods.common import NotOffered
 from contactlab.methods.registry import installed_peers
@@ -25,12 +25,12 @@ needs_aspher = pytest.mark.skipif(
 
 @pytest.fixture(scope="module")
 def problem():
-    return RoughProblem(32, 0.8, 0.1, 1)
+    return rough_problem(32, 0.8, 0.1, 1)
 
 
 def load_of(name, reference):
     control = PEERS[name].loads[0]
-    return {control: getattr(reference, control)}
+    return {control: getattr(reference.state, control)}
 
 
 @needs_peers
@@ -67,7 +67,7 @@ def test_a_peer_has_our_operator(shape, spacing):
 def test_constrained_gradients_take_a_force_and_a_hardness(problem, load):
     reference = problem.single
     control = "force" if "force" in load else "closure"
-    given = {control: getattr(reference, control)}
+    given = {control: getattr(reference.state, control)}
     if "hardness" in load:
         given["hardness"] = 0.5 * reference.state.pressure.max()
     exact = solve_contact(problem.height, problem.space, rtol=1e-9, **given)
@@ -109,7 +109,7 @@ def test_aspher_takes_dyadic_squares_only(shape):
 def test_aspher_says_which_way_it_went(problem, name):
     code = PEERS[name].set_up(problem.height, problem.space)
     assert code.path == ""
-    pressure = code.solve(peers.Load(force=problem.single.force), 1e-8)
+    pressure = code.solve(peers.Load(force=problem.single.state.force), 1e-8)
     assert code.closure(pressure) == pytest.approx(problem.closure, rel=1e-4)
     assert ("(active)" in code.path) == (name == ASPHER)
     assert "finest:32" in code.path
