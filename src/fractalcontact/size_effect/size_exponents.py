@@ -14,7 +14,7 @@ import xarray as xr
 from ..core.estimate import Estimate
 from ..core.intervals import t_quantile
 from ..core.ranges import within
-from .power_laws import add_exponents
+from .window_means import add_exponents
 
 #: Disjoint top-level pieces that are left out in turn.
 QUARTERS = 4
@@ -140,7 +140,7 @@ def add_size_exponents(
     Parameters
     ----------
     result : xr.Dataset
-        With ``part`` and ``side``, filled as by :func:`size_effect.power_laws.add_exponents`.
+        With ``part`` and ``side``, filled as by :func:`size_effect.window_means.add_exponents`.
     values : xr.DataArray (part, window, ...)
         NaN where a size is not used.
     places : sequence of (n,) int ndarray

@@ -8,7 +8,7 @@ from ..core.datasets import labelled_dataset
 from ..core.fitting import fit_line
 from ..mechanics.states import SOLVER_ERROR
 from .load_ladder import real_pressure
-from .power_laws import add_exponents
+from .window_means import add_exponents
 
 
 def equal_pressure(pressures: ArrayLike, values: ArrayLike, target: float) -> tuple[float, int]:

@@ -24,8 +24,7 @@ from ..mechanics.strength import (
     strength_with_error,
 )
 from ..mechanics.theory import barton_strength, scaled_joint
-from .power_laws import add_exponents
-from .window_means import add_law, add_mean, power_through
+from .window_means import add_exponents, add_law, add_mean, power_through
 
 #: Offsets, as fractions of the side b, at which sizes are compared. Barton and Bandis put the peak
 #: of a laboratory joint at 1 to 3 % of its length (L/500 (JRC/L)^0.33, in m).

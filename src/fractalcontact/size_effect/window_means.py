@@ -1,13 +1,15 @@
 """Means over the sub-windows of each size, and their power laws, into a dataset."""
 
+from collections.abc import Sequence
+
 import numpy as np
 import xarray as xr
 
+from ..core.estimate import Estimate
 from ..core.fitting import fit_line
 from ..core.intervals import mean_interval
 from ..core.labels import cf_attrs
 from ..mechanics.states import error_attrs
-from .power_laws import add_exponents
 
 
 def add_mean(
@@ -42,7 +44,7 @@ def add_law(
     Parameters
     ----------
     result : xr.Dataset
-        As :func:`size_effect.power_laws.add_exponents` fills it.
+        As :func:`add_exponents` fills it.
     side : xr.DataArray (size,)
         b, mm, along the dimension of the sizes.
     values : xr.DataArray (..., size, ...)
@@ -86,3 +88,36 @@ def power_through(
     level = (xr.ufuncs.log(positive) - powers).mean(size)
     line = xr.ufuncs.exp(powers + level).where(positive.notnull())
     return line.transpose(*values.dims).assign_attrs(cf_attrs(values.attrs["units"], words))
+
+
+def add_exponents(
+    result: xr.Dataset,
+    name: str,
+    exponents: Sequence[Estimate],
+    dims: str | tuple[str, ...],
+    words: str,
+    points: str = "points fitted",
+) -> None:
+    """Exponents by lines through logarithms over log b, into ``result``.
+
+    Parameters
+    ----------
+    result : xr.Dataset
+        Gets ``name`` with the ends of its interval, ``_n`` and the smallest and largest b fitted,
+        ``_b_min`` and ``_b_max``.
+    exponents : sequence of Estimate
+        Fitted over log b, b in mm; in the order of a C array over ``dims``.
+    dims : str or tuple of str
+        Of ``result``.
+    words : str
+        What the exponent is of.
+    points : str
+        What was fitted.
+    """
+    over = (dims,) if isinstance(dims, str) else dims
+    found = Estimate.stack(exponents, tuple(result.sizes[dim] for dim in over))
+    first, last = np.exp(found.over)
+    result.update(found.variables(name, over, "1", words))
+    result[f"{name}_n"] = (over, found.n, cf_attrs("1", f"{words}, {points}"))
+    result[f"{name}_b_min"] = (over, first, cf_attrs("mm", "smallest b of that fit"))
+    result[f"{name}_b_max"] = (over, last, cf_attrs("mm", "largest b of that fit"))
