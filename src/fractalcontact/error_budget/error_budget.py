@@ -13,7 +13,6 @@ from ..core.limits import MIN_NODES
 from ..core.settings import StateSettings
 from ..mechanics.joint import prefractal
 from ..mechanics.loading import JointLoading
-from ..mechanics.subgrid import state_quantities
 from ..mechanics.sweep import load_steps
 from .counting import counting_error
 from .derived import with_derived
@@ -25,8 +24,8 @@ from .refinement import (
     BUDGET_QUANTITIES,
     LoadCurve,
     Refinement,
+    budget_values,
     chosen_loads,
-    domain_dimension,
     refine,
 )
 
@@ -335,9 +334,7 @@ def _window_spread(curve: LoadCurve) -> tuple[np.ndarray, int, float]:
             composite, curve.space, curve.forces[places], loading.solving, f"{curve.where}, windows"
         )
         for place, state in zip(places, states, strict=True):
-            numbers = state_quantities(state, float(composite.max()), mated)
-            dimension = domain_dimension(state, limits)
-            found[i, :, place] = [*numbers.values(), dimension]
+            found[i, :, place] = budget_values(state, float(composite.max()), mated, limits)
     spread[:, places] = window_spread(found[:, :, places], effective)
     return spread, len(found), effective
 

@@ -9,9 +9,8 @@ import numpy as np
 from ..core.datasets import labelled
 from ..mechanics.seated_laws import at_reference_pressures
 from ..mechanics.state_scalars import aperture
-from ..mechanics.subgrid import state_quantities
 from ..mechanics.sweep import load_steps
-from .refinement import BUDGET_QUANTITIES, LoadCurve, domain_dimension
+from .refinement import BUDGET_QUANTITIES, LoadCurve, budget_values
 
 #: Hardness of rough contacts over the joint wall strength: between 1 and this (Tabor's 3).
 HARDEST = 3.0
@@ -80,9 +79,8 @@ def _solved(curve: LoadCurve, hardness: float) -> tuple[np.ndarray, np.ndarray]:
     where, highest = f"{curve.where}, hardness x {HARDEST:g}", float(curve.composite.max())
     states = load_steps(curve.composite, curve.space, curve.forces, solving, where)
     for place, state in enumerate(states):
-        numbers = state_quantities(state, highest, curve.reference)
-        dimension = domain_dimension(state, curve.loading.settings.box_range)
-        values[:, place] = [*numbers.values(), dimension]
+        limits = curve.loading.settings.box_range
+        values[:, place] = budget_values(state, highest, curve.reference, limits)
         gaps[place] = aperture(state).mean()
     return values, gaps
 

@@ -221,17 +221,23 @@ def _solved(curve, factor, places):
     forces = curve.forces[places]
     states = subgrid_states(curve.composite, curve.space, factor, forces, solving, curve.where)
     for place, (state, highest) in zip(places, states, strict=True):
-        numbers = state_quantities(state, highest, curve.reference)
         limits = tuple(float(curve.domains[f"fit_{end}"][place]) for end in ("min", "max"))
-        yield [*numbers.values(), domain_dimension(state, limits)]
+        yield budget_values(state, highest, curve.reference, limits)
 
 
-def domain_dimension(state: ContactState, limits: tuple[float, float] | None) -> float:
-    """Delta_sigma of a state by box counting, over a range of boxes in mm; NaN without one."""
-    if limits is not None and not np.isfinite(limits).all():
-        return np.nan
-    side = float(np.sqrt(state.space.cell_area))
-    return dimension_of_domain(state.in_contact, side, fit_range=limits).dimension
+def budget_values(
+    state: ContactState, highest: float, reference: float, limits: tuple[float, float] | None
+) -> list[float]:
+    """Values of :data:`BUDGET_QUANTITIES` of a state.
+
+    ``highest`` and ``reference`` as for :func:`mechanics.subgrid.state_quantities`; ``limits`` are
+    the smallest and largest box of Delta_sigma, mm, which is NaN if they are not finite.
+    """
+    dimension = np.nan
+    if limits is None or np.isfinite(limits).all():
+        side = float(np.sqrt(state.space.cell_area))
+        dimension = dimension_of_domain(state.in_contact, side, fit_range=limits).dimension
+    return [*state_quantities(state, highest, reference).values(), dimension]
 
 
 def _errors(curve, levels, finest) -> Refinement:
