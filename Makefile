@@ -44,7 +44,7 @@ PIP    := $(BIN)/python -m pip --disable-pip-version-check --quiet --require-vir
 # Read from the environment, so that a shell never sees what stands in them.
 export STUDY SCANS FILE LIKE
 # Looks at the study and the results first, then runs Snakemake, and ends it when told to end.
-RUN = exec $(BIN)/python workflow/run.py "$$STUDY" $(if $(filter yes y true 1,$(DROP)),--drop) \
+RUN = exec $(if $(filter yes y true 1,$(DROP)),env FRACTALCONTACT_DROP=yes) $(BIN)/python workflow/run.py "$$STUDY" \
   $(if $(filter yes y true 1,$(VERBOSE)),--verbose)
 OPTIONS = -- --cores $(CORES)
 
@@ -72,7 +72,7 @@ slurm: $(VENV)/slurm-installed
 	@$(RUN) --profile slurm -- -- $(TARGET)
 
 verify: $(VENV)/installed
-	@$(BIN)/python -m fractalcontact.commands.verify "$$STUDY" || { rm -f .snakemake/fractalcontact-digests.json; exit 1; }
+	@$(BIN)/python -m fractalcontact.commands.verify "$$STUDY"
 
 # The experiment on the size effect in minutes, and its page in results/size_effect_small.
 size-effect-small: override STUDY = config/size_effect_small.yaml

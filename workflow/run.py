@@ -1,14 +1,11 @@
 """What `make` runs: Snakemake on a study, after all that can be known beforehand was looked at.
 
-python workflow/run.py STUDY [--dry-run] [--profile NAME] [--drop] [--full] [--verbose] -- WORDS
+python workflow/run.py STUDY [--dry-run] [--profile NAME] [--full] [--verbose] -- WORDS
 
-WORDS are options and targets of Snakemake.
-
-The study is read as plain data first: Snakemake itself runs Python that stands in a study which
-says `__use_yte__: true`. A lock that a killed run left is taken away, that of a living run never.
-Files that were damaged since they were made are set aside, so that Snakemake makes them again. Told
-to end, it ends all jobs. The terminal gets a line a job, from the logger plugin in workflow/logger;
-Snakemake's own words are in .snakemake/log, or, with --verbose, in the terminal instead.
+WORDS are options and targets of Snakemake. The study is read as plain data first, as Snakemake runs
+Python that stands in one which says `__use_yte__: true`. What a killed run left is taken away, and
+damaged files are set aside. Told to end, it ends all jobs. The terminal gets a line a job, from the
+logger plugin in workflow/logger; Snakemake's own words are in .snakemake/log.
 """
 
 import argparse
@@ -19,7 +16,6 @@ import shutil
 import signal
 import subprocess
 import sys
-import threading
 import time
 from pathlib import Path
 
@@ -45,8 +41,6 @@ WAIT, GRACE, CLUSTER_GRACE = 3, 20, 120
 SPLITS = r"[\s'\"\\$`&;|<>()*?\[\]#!{}]"
 #: Bytes free below which a study is not begun: the default one makes some 100 MB.
 MIN_FREE_BYTES = 50 * 2**20
-#: Seconds that are waited for the last words of jobs, which may outlive Snakemake.
-LAST_WORDS = 2
 SIGNALS = (signal.SIGTERM, signal.SIGINT, signal.SIGHUP, signal.SIGQUIT)
 
 
@@ -63,16 +57,16 @@ def main():
         if options.dry_run:
             for path, why in _spoilt(results):
                 _say(f"{path}: {why}; a run sets it aside, and makes it again if needed")
-            sys.exit(_run([*_command(options, name), "--dry-run", *passed], options, results))
-        _require_room(results)
-        _clean(options, results)
+        else:
+            _require_room(results)
+            _clean(options, results)
         status = _run([*_command(options, name), *passed], options, results)
-        if status == 0:
+        if not (status or options.dry_run):
             _name_leftovers(results)
             _name_page(results)
     except (InputError, OSError) as error:  # a result, the guard or a folder that cannot be used
         sys.exit(f"error: {error}")
-    if status:
+    if status and not options.dry_run:
         _say("the study did not finish; what is done is kept, and 'make' goes on from there")
     sys.exit(status)
 
@@ -81,7 +75,6 @@ def _options():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("study", type=Path)
     parser.add_argument("--profile", default="default", help="of workflow/profiles")
-    parser.add_argument("--drop", action="store_true", help="the atlas may lose specimens")
     parser.add_argument("--full", action="store_true", help="at full cost, beside the study")
     parser.add_argument("--dry-run", action="store_true", help="say what would be done")
     parser.add_argument("--verbose", action="store_true", help="all that Snakemake says")
@@ -91,10 +84,13 @@ def _options():
 
 
 def _command(options, name):
-    command = [sys.executable, "-m", "snakemake", "--configfile", str(options.study)]
-    command += ["--workflow-profile", f"workflow/profiles/{options.profile}"]
-    command += [] if options.verbose else ["--logger", "fractalcontact"]
-    return command + (["--config", f"study={name}_full", "accuracy=full"] if options.full else [])
+    return [
+        *(sys.executable, "-m", "snakemake", "--configfile", str(options.study)),
+        *("--workflow-profile", f"workflow/profiles/{options.profile}"),
+        *(() if options.verbose else ("--logger", "fractalcontact")),
+        *(("--config", f"study={name}_full", "accuracy=full") if options.full else ()),
+        *(("--dry-run",) if options.dry_run else ()),
+    ]
 
 
 def _require_plain_path():
@@ -108,12 +104,11 @@ def _require_plain_path():
 
 def _require_past(scans):
     """A result would be older than a scan from the future, which Snakemake takes for an error."""
-    now = time.time()
     for path in sorted(scans.glob("*")):
-        if path.is_file() and (ahead := path.stat().st_mtime - now) > 1:
+        if path.is_file() and path.stat().st_mtime > time.time() + 1:
             raise InputError(
-                f"{path}: dated {ahead:.0f} s ahead of this machine's clock, so that no result "
-                f"could be younger than it; set the clock, or date the file today: touch '{path}'"
+                f"{path}: dated ahead of this machine's clock, so that no result could be younger "
+                f"than it; set the clock, or date the file today: touch '{path}'"
             )
 
 
@@ -163,7 +158,7 @@ def _spoilt(results):
     path : pathlib.Path
     why : str
     """
-    digests = checksums.Digests(".snakemake/fractalcontact-digests.json")
+    digests = checksums.Digests()
     checked = checksums.check(results, digests.of)
     digests.save()
     yield from ((path, "damaged or replaced after it was made") for path in checked.damaged)
@@ -172,14 +167,13 @@ def _spoilt(results):
 
 def _run(command, options, results):
     """Exit code of Snakemake, whose whole family of processes ends with this one."""
-    folders = ("src", "workflow", "workflow/logger", "workflow/scripts")
-    path = [str(ROOT / folder) for folder in folders]
-    path += filter(None, [os.environ.get("PYTHONPATH")])
+    folders = [
+        str(ROOT / name) for name in ("src", "workflow", "workflow/logger", "workflow/scripts")
+    ]
+    path = [*folders, *filter(None, [os.environ.get("PYTHONPATH")])]
     told = {
-        "PYTHONPATH": os.pathsep.join(path),
-        # Where results are, and whether some may go.
+        "PYTHONPATH": os.pathsep.join(filter(None, path)),
         "FRACTALCONTACT_RESULTS": str(results),
-        **({"FRACTALCONTACT_DROP": "1"} if options.drop else {}),
     }
     cluster, child = options.profile != "default", None
     with contextlib.ExitStack() as warmth:
@@ -189,18 +183,17 @@ def _run(command, options, results):
             # Jobs of a cluster run elsewhere; only Linux surely forks what libraries have loaded.
             if not cluster and sys.platform == "linux" and not options.dry_run:
                 told[ADDRESS] = warmth.enter_context(warm.started())
-            words = None if options.verbose else subprocess.PIPE
             child = subprocess.Popen(
-                command, env=os.environ | told, stderr=words, start_new_session=True
+                command, env=os.environ | told, stderr=subprocess.PIPE, start_new_session=True
             )
-            listener = threading.Thread(target=_pass_on, args=(child.stderr,), daemon=True)
-            listener.start()
+            for line in child.stderr:
+                if options.verbose or not line.startswith(b"Using workflow specific profile"):
+                    sys.stderr.buffer.write(line)
+                    sys.stderr.flush()
             status = child.wait()
-            listener.join(LAST_WORDS)
         except _Stopped as stopped:
             for number in SIGNALS:
                 signal.signal(number, signal.SIG_IGN)
-            _muted.set()
             _say("interrupted: jobs end, and 'make' goes on from there")
             if child is not None:
                 _end(child, cluster=cluster)
@@ -208,18 +201,6 @@ def _run(command, options, results):
     for number in SIGNALS:
         signal.signal(number, signal.SIG_DFL)
     return status if status >= 0 else 128 - status
-
-
-#: Set once jobs are told to end: what they say then is of no use.
-_muted = threading.Event()
-
-
-def _pass_on(stream):
-    """Say what Snakemake says, but for the profile that it was given."""
-    for line in stream or ():
-        if not _muted.is_set() and not line.startswith(b"Using workflow specific profile"):
-            sys.stderr.buffer.write(line)
-            sys.stderr.flush()
 
 
 class _Stopped(Exception):

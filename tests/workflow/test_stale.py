@@ -162,7 +162,7 @@ def test_a_missing_folder_of_scans_keeps_the_atlas(project):
     # A lock that a killed run left is in nobody's way then either.
     (project / ".snakemake/locks").mkdir(exist_ok=True)
     (project / ".snakemake/locks/0.output.lock").write_text("results/test/atlas.nc\n")
-    told = made(project, STUDY, "--drop", targets=ATLAS)
+    told = made(project, STUDY, targets=ATLAS, FRACTALCONTACT_DROP="yes")
     assert told.returncode == 0, told.stderr[-3000:]
     assert "results/test keeps files of rock, which the study no longer has" in told.stderr
     assert list(read_atlas(project / ATLAS[0])["specimens"].children) == ["own"]

@@ -128,7 +128,7 @@ def fixed(megabytes, minutes):
     }
 
 
-DIGESTS = checksums.Digests(".snakemake/fractalcontact-digests.json")
+DIGESTS = checksums.Digests()
 if workflow.is_main_process:
     hash_once(DIGESTS)
 

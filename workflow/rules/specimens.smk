@@ -40,7 +40,6 @@ def reading_of(wildcards):
         "files": list(map(str, files)),
         "options": OPTIONS[name] if scanned else sidecar_of_matrix(recipe_named(name)["spacing"]),
         "name": name,
-        "digests": digests_of(SCANS[name]) if scanned else {},
     }
 
 
@@ -69,6 +68,7 @@ rule specimen:
     params:
         **calling("specimens"),
         arguments=reading_of,
+        digests=lambda wc: digests_of(SCANS[wc.specimen]) if wc.specimen in SCANS else {},
     message:
         "{wildcards.specimen}: levelled scan, its surface dimension and its joint"
     script:

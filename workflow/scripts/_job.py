@@ -35,7 +35,7 @@ def job(snakemake):
     Where the input is at fault, or the disk is full, its log has one clear line and no traceback.
     What a further attempt on a cluster would find again it says at once, without working again.
     The log's last line says what the job spent on its work, imports not counted, and of that on
-    contact solves: ``benchmarks/study_cost.py`` adds them up.
+    contact solves: ``benchmarks/study_cost.py`` and the result page add them up.
 
     Parameters
     ----------
@@ -48,19 +48,18 @@ def job(snakemake):
     """
     found_before = _found_before(snakemake)
     _begin_log(snakemake.log[0])
-    results = Path("results") / snakemake.config["study"]
+    results, begin = Path("results") / snakemake.config["study"], time.perf_counter()
     signal.signal(signal.SIGTERM, _stop)
-    begin = time.perf_counter()
-    if found_before:
-        _end_with(found_before, certain=True)
     try:
-        with _running.marked():
-            for path in _below(results, snakemake.input):
-                checksums.require_intact(results, path)
-            yield log
-            if _told_to_stop:  # the work may have taken the interrupt for an error of its own
-                raise KeyboardInterrupt
-            checksums.record(results, _below(results, snakemake.output))
+        if found_before:
+            raise InputError(found_before)
+        _running.mark()
+        for path in _below(results, snakemake.input):
+            checksums.require_intact(results, path)
+        yield log
+        if _told_to_stop:  # the work may have taken the interrupt for an error of its own
+            raise KeyboardInterrupt
+        checksums.record(results, _below(results, snakemake.output))
         signal.signal(signal.SIGTERM, signal.SIG_IGN)  # done: it ends at once anyway
         log.info(
             "worked %.3f s, of which %.3f s on %d contact problems; processor time %.3f s",
@@ -70,8 +69,10 @@ def job(snakemake):
             time.process_time(),  # imports counted, but where a warm interpreter had them
         )
     except (InputError, NotConverged, OutputError) as error:
-        said = "; ".join([str(error), *getattr(error, "__notes__", [])])
-        _end_with(f"error: {said}", certain=not isinstance(error, OutputError))
+        _say_error("; ".join([str(error), *getattr(error, "__notes__", [])]))
+        if not isinstance(error, OutputError):
+            log.info(CERTAIN)
+        sys.exit(1)
     except (Exception, KeyboardInterrupt) as error:
         # Inside a compiled kernel the interrupt ends as an error of another kind.
         if isinstance(error, KeyboardInterrupt) or _told_to_stop:
@@ -96,14 +97,12 @@ def _begin_log(path):
         sys.exit(f"error: {path}: cannot be written ({error.strerror}); mend that and run again")
 
 
-def _end_with(message, *, certain):
-    logging.raiseExceptions = False  # the log may stand on the same full disk
-    log.error(message)
-    if message not in Path(logging.getLogger().handlers[0].baseFilename).read_text("utf-8"):
-        os.write(_terminal, f"{message}\n".encode())
-    if certain:
-        log.info(CERTAIN)
-    sys.exit(1)
+def _say_error(said):
+    """In the log, or in the terminal where the log stands on the same full disk."""
+    logging.raiseExceptions = False
+    log.error("error: %s", said)
+    if said not in Path(logging.getLogger().handlers[0].baseFilename).read_text("utf-8"):
+        os.write(_terminal, f"error: {said}\n".encode())
 
 
 def _found_before(snakemake):
@@ -112,7 +111,7 @@ def _found_before(snakemake):
     if snakemake.resources.get("attempt", 1) == 1 or not path.is_file():
         return ""
     *before, last = path.read_text(encoding="utf-8").splitlines() or [""]
-    errors = [line for line in before if line.startswith("error: ")]
+    errors = [line.removeprefix("error: ") for line in before if line.startswith("error: ")]
     return errors[-1] if errors and last == CERTAIN else ""
 
 

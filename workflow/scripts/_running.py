@@ -6,7 +6,6 @@ one file for as long as it lives, however it ends. Who gets that file for itself
 nothing is at work here. (A job that still waits in a cluster's queue is not.)
 """
 
-import contextlib
 import errno
 import fcntl
 import os
@@ -17,35 +16,9 @@ FILE = ".snakemake.guard"
 _NO_LOCKS = (errno.ENOLCK, errno.ENOSYS, errno.EOPNOTSUPP)
 
 
-def _locked(handle, kind):
-    """Whether a lock was got; None where the file system knows none."""
-    try:
-        fcntl.flock(handle, kind | fcntl.LOCK_NB)
-    except BlockingIOError:
-        return False
-    except OSError as error:
-        if error.errno in _NO_LOCKS:
-            return None
-        raise
-    return True
-
-
 def mark():
-    """Say that this process is at work, until it ends or closes the file descriptor given back."""
-    handle = os.open(FILE, os.O_RDWR | os.O_CREAT, 0o666)
-    while _locked(handle, fcntl.LOCK_SH) is False:
-        time.sleep(0.05)  # held alone for a moment, by a run that looks whether others live
-    return handle
-
-
-@contextlib.contextmanager
-def marked():
-    """The same for a block."""
-    handle = mark()
-    try:
-        yield
-    finally:
-        os.close(handle)
+    """Say that this process is at work, until it ends."""
+    share(os.open(FILE, os.O_RDWR | os.O_CREAT, 0o666))
 
 
 def alone(seconds):
@@ -63,14 +36,14 @@ def alone(seconds):
     has_locks : bool
         Whether the file system has locks. Where it has none, others may be at work.
     """
-    handle = os.open(FILE, os.O_RDWR | os.O_CREAT, 0o666)
-    end = time.monotonic() + seconds
-    while (locked := _locked(handle, fcntl.LOCK_EX)) is False:
-        if time.monotonic() > end:
-            os.close(handle)
-            return None, True
-        time.sleep(0.1)
-    return handle, locked is not None
+    handle, end = os.open(FILE, os.O_RDWR | os.O_CREAT, 0o666), time.monotonic() + seconds
+    while time.monotonic() < end:
+        try:
+            return handle, _locked(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            time.sleep(0.1)
+    os.close(handle)
+    return None, True
 
 
 def share(handle):
@@ -80,3 +53,15 @@ def share(handle):
     just left behind: nothing that it could harm.
     """
     _locked(handle, fcntl.LOCK_SH)
+
+
+def _locked(handle, kind):
+    """Whether the file system knows locks; then the file has one."""
+    try:
+        fcntl.flock(handle, kind)
+    except OSError as error:
+        if error.errno not in _NO_LOCKS:
+            raise
+    else:
+        return True
+    return False

@@ -7,7 +7,7 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from ..core.checksums import check
+from ..core.checksums import KNOWN, check
 from ..core.errors import InputError, said_in_one_line
 from ..study.documents import read_study, study_name
 
@@ -26,6 +26,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     words = ("intact", "damaged", "unrecorded", "missing")
     counts = [f"{len(getattr(checked, word))} {word}" for word in words]
     wrong = not checked.intact or any(getattr(checked, word) for word in words[1:])
+    if wrong:
+        KNOWN.unlink(missing_ok=True)  # it did not show it
     advice = "; 'make' makes again all files that the study needs" if wrong else ""
     sys.stdout.write(f"{results}: {', '.join(counts)}{advice}\n")
     return int(wrong)

@@ -26,6 +26,8 @@ _READ = (".nc", ".npy")
 MANIFEST = "manifest.sha256"
 #: Folder of a study to which damaged files are moved.
 ASIDE = "damaged"
+#: Where a checkout keeps checksums that were computed.
+KNOWN = Path(".snakemake/fractalcontact-digests.json")
 #: Nanoseconds after a change within which a file may change again without its times showing it.
 _SAME_TICK = 2_000_000_000
 
@@ -44,11 +46,11 @@ class Digests:
 
     Parameters
     ----------
-    cache : path-like
+    cache : path-like, optional
         Where they are kept; damaged or missing, it is made anew.
     """
 
-    def __init__(self, cache: Path | str):
+    def __init__(self, cache: Path | str = KNOWN):
         self._cache, self._new = Path(cache), False
         self._known: dict[str, list] = {}
         with contextlib.suppress(OSError, UnicodeDecodeError):  # only a cache

@@ -1,12 +1,10 @@
 """Stages of a specimen before contact: dimension, scan quality, sliding joint."""
 
-import json
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import xarray as xr
 
-from ..core.errors import InputError
 from ..core.settings import SpecimenSettings
 from ..core.window import spacing_of
 from ..mechanics.joint import describe_joint
@@ -22,7 +20,6 @@ def stages_of_scan(
     options: Mapping,
     settings: SpecimenSettings,
     name: str,
-    digests: Mapping[str, str],
 ) -> dict[str, xr.Dataset]:
     """Stages of one specimen from its scan files.
 
@@ -34,8 +31,6 @@ def stages_of_scan(
         Scan keys of the sidecar.
     settings : SpecimenSettings
     name : str
-    digests : mapping of str to str
-        SHA-256 of the files when the study was planned; none of a scan that the study makes.
 
     Returns
     -------
@@ -45,14 +40,10 @@ def stages_of_scan(
     Raises
     ------
     InputError
-        If a file cannot be read or is another one by now, or the window finds no place.
+        If a file cannot be read, or the window finds no place.
     """
     lower, upper = files[0], files[1] if len(files) > 1 else None
-    specimen = prepare_specimen(lower, upper, options, settings, name)
-    for face, file, digest in zip(("lower", "upper"), files, digests.values(), strict=False):
-        if json.loads(specimen.attrs[f"{face}_scan"])["sha256"] != digest:
-            raise InputError(f"{file}: changed while it was read; run the study again")
-    return specimen_stages(specimen, settings)
+    return specimen_stages(prepare_specimen(lower, upper, options, settings, name), settings)
 
 
 def prepare_specimen(
