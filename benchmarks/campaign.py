@@ -171,7 +171,7 @@ def measure(folder: Path, names: list[str]) -> None:
     found["copies"] = {"s": time.perf_counter() - begin}
     found["gather and figures"] = snakemake(folder)
     for job in ("atlas", "study_figures"):
-        found[job] = _benchmark(results / f"benchmarks/{job}.tsv")
+        found[job] = _spent(results / f"logs/{job}.log")
     found["rerun without work"] = snakemake(folder, "--quiet", "all")
     found["results"], found["metadata"] = _files(results), _files(folder / ".snakemake")
     found["one more"] = _one_more(folder, len(names))
@@ -248,10 +248,10 @@ def _records(folder):
     return sorted((folder / ".snakemake/metadata").iterdir())
 
 
-def _benchmark(path):
-    head, row = (line.split("\t") for line in path.read_text().splitlines()[:2])
-    told = dict(zip(head, row, strict=True))
-    return {"s": float(told["s"]), "MB": float(told["max_rss"])}
+def _spent(log):
+    line = log.read_text(encoding="utf-8").splitlines()[-1]
+    seconds, *_, megabytes = re.findall(r"([\d.]+) (?:s|MB)\b", line)
+    return {"s": float(seconds), "MB": float(megabytes)}
 
 
 def _files(folder):

@@ -99,7 +99,7 @@ def print_numbers(ours, full, tolerance):
 
 def print_seconds(*results):
     """Seconds of solving in each stage of two studies, and their ratio."""
-    ours, full = ({stage: row[3] for stage, row in stages_of(path)[0].items()} for path in results)
+    ours, full = ({stage: row[2] for stage, row in stages_of(path)[0].items()} for path in results)
     for stage, seconds in full.items():
         if seconds > 0:
             print(f"solving {stage:18s}{ours.get(stage, 0.0):9.2f} s of {seconds:9.2f} s")

@@ -167,14 +167,9 @@ def _spoilt(results):
 
 def _run(command, options, results):
     """Exit code of Snakemake, whose whole family of processes ends with this one."""
-    folders = [
-        str(ROOT / name) for name in ("src", "workflow", "workflow/logger", "workflow/scripts")
-    ]
-    path = [*folders, *filter(None, [os.environ.get("PYTHONPATH")])]
-    told = {
-        "PYTHONPATH": os.pathsep.join(filter(None, path)),
-        "FRACTALCONTACT_RESULTS": str(results),
-    }
+    path = [str(ROOT / name) for name in ("src", "workflow", "workflow/logger", "workflow/scripts")]
+    path += filter(None, [os.environ.get("PYTHONPATH")])
+    told = {"PYTHONPATH": os.pathsep.join(path), "FRACTALCONTACT_RESULTS": str(results)}
     cluster, child = options.profile != "default", None
     with contextlib.ExitStack() as warmth:
         try:

@@ -40,8 +40,10 @@ def results(tmp_path_factory):
             (figures / f"{figure}.csv").write_text("a,b\n1,2\n")
             label = settings[name].label
             (figures / f"{figure}.txt").write_text(f"Supplementary figure: {label}. It. Found.\n")
-    (folder / "benchmarks").mkdir()
-    (folder / "benchmarks/one.tsv").write_text("s\th:m:s\n61.5\t0:01:01\n")
+    (folder / "logs").mkdir()
+    (folder / "logs/one.log").write_text(
+        "worked 61.500 s, of which 2.000 s on 9 contact problems\n"
+    )
     write_cards(folder / "atlas.nc", folder)
     assert write_pages(folder) == ["flat.1", "pair"]
     return folder

@@ -31,8 +31,6 @@ rule atlas:
         names=f"{RESULTS}/specimens.txt",
     log:
         f"{RESULTS}/logs/atlas.log",
-    benchmark:
-        f"{RESULTS}/benchmarks/atlas.tsv"
     resources:
         **fixed(4000, 10),
     params:

@@ -28,8 +28,6 @@ rule contact:
         f"{RESULTS}/contact/{{specimen}}/{{directions}}.{{offsets}}.{{resolutions}}.nc",
     log:
         f"{RESULTS}/logs/contact/{{specimen}}/{{directions}}.{{offsets}}.{{resolutions}}.log",
-    benchmark:
-        f"{RESULTS}/benchmarks/contact/{{specimen}}/{{directions}}.{{offsets}}.{{resolutions}}.tsv"
     resources:
         **asked_for("contact"),
     params:
@@ -159,8 +157,6 @@ for NAME, JOB in STAGE_JOBS.items():
             **outputs_of(JOB.stage, JOB.grains),
         log:
             f"{RESULTS}/logs/{NAME}/{{specimen}}.log",
-        benchmark:
-            f"{RESULTS}/benchmarks/{NAME}/{{specimen}}.tsv"
         wildcard_constraints:
             specimen=JOB.specimens,
         priority: JOB.priority
@@ -183,8 +179,6 @@ rule contact_map:
         **outputs_of("contact_maps"),
     log:
         f"{RESULTS}/logs/contact_map/{{map}}.log",
-    benchmark:
-        f"{RESULTS}/benchmarks/contact_map/{{map}}.tsv"
     resources:
         **fixed(2000, 10),
     params:

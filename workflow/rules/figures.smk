@@ -69,8 +69,6 @@ for NAME, OPPOSITE, HERE, OTHERS in (
             undrawn=UNDRAWN,
         log:
             f"{RESULTS}/logs/figures/{{specimen}}.log",
-        benchmark:
-            f"{RESULTS}/benchmarks/figures/{{specimen}}.tsv"
         wildcard_constraints:
             specimen=kind_of(HERE, OTHERS),
         # After what the atlas of the study waits for: else, at the end, one core joins it and draws
@@ -99,8 +97,6 @@ rule study_figures:
         undrawn=f"{RESULTS}/undrawn_of_study.txt",
     log:
         f"{RESULTS}/logs/study_figures.log",
-    benchmark:
-        f"{RESULTS}/benchmarks/study_figures.tsv"
     resources:
         **fixed(4000, 10),
     params:
@@ -127,8 +123,6 @@ rule all_drawn:
         f"{RESULTS}/all_drawn.txt",
     log:
         f"{RESULTS}/logs/all_drawn.log",
-    benchmark:
-        f"{RESULTS}/benchmarks/all_drawn.tsv"
     resources:
         **fixed(500, 5),
     params:

@@ -27,8 +27,6 @@ rule laboratory:
         f"{RESULTS}/{{made}}.nc",
     log:
         f"{RESULTS}/logs/{{made}}.log",
-    benchmark:
-        f"{RESULTS}/benchmarks/{{made}}.tsv"
     wildcard_constraints:
         made=alternation(LABORATORY),
     priority: lambda wc: LABORATORY[wc.made].priority

@@ -21,8 +21,6 @@ rule explorer:
         f"{RESULTS}/explorer.html",
     log:
         f"{RESULTS}/logs/explorer.log",
-    benchmark:
-        f"{RESULTS}/benchmarks/explorer.tsv"
     # After the figures: beside the result page, no core has nothing to do at the end.
     priority: -4
     resources:
@@ -54,8 +52,6 @@ rule specimen_page:
         *([] if IN_PARTS else files_of_card(page_files.APERTURE, page_files.APERTURE_ENDINGS)),
     log:
         f"{RESULTS}/logs/specimen_page/{{specimen}}.log",
-    benchmark:
-        f"{RESULTS}/benchmarks/specimen_page/{{specimen}}.tsv"
     resources:
         **fixed(1500, 10),
     params:
@@ -90,8 +86,6 @@ rule result_page:
         [f"{RESULTS}/{name}" for name in page_files.FILES],
     log:
         f"{RESULTS}/logs/result_page.log",
-    benchmark:
-        f"{RESULTS}/benchmarks/result_page.tsv"
     resources:
         **fixed(2000, 10),
     params:

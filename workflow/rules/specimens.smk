@@ -7,8 +7,6 @@ rule embedded:
         sidecar=f"{RESULTS}/embedded/{{specimen}}.yaml",
     log:
         f"{RESULTS}/logs/embedded/{{specimen}}.log",
-    benchmark:
-        f"{RESULTS}/benchmarks/embedded/{{specimen}}.tsv"
     resources:
         **asked_for("embedded", grid=0),
     params:
@@ -61,8 +59,6 @@ rule specimen:
         **outputs_of("specimens"),
     log:
         f"{RESULTS}/logs/specimen/{{specimen}}.log",
-    benchmark:
-        f"{RESULTS}/benchmarks/specimen/{{specimen}}.tsv"
     resources:
         **(asked_for("specimen", grid=0) | {"mem_mb": doubled(memory_of_reading)}),
     params:

@@ -3,6 +3,7 @@
 import contextlib
 import logging
 import os
+import resource
 import signal
 import sys
 import time
@@ -25,6 +26,8 @@ from roughcontact.errors import NotConverged
 STOPPED, STOPPED_CODE = "stopped before it was done", 143
 #: What stands in a log below an error that every further attempt would find again.
 CERTAIN = "no further attempt can do better"
+#: What systems count memory in.
+_KILOBYTE = 1 if sys.platform == "darwin" else 1024
 log = logging.getLogger("fractalcontact")
 
 
@@ -62,11 +65,13 @@ def job(snakemake):
         checksums.record(results, _below(results, snakemake.output))
         signal.signal(signal.SIGTERM, signal.SIG_IGN)  # done: it ends at once anyway
         log.info(
-            "worked %.3f s, of which %.3f s on %d contact problems; processor time %.3f s",
+            "worked %.3f s, of which %.3f s on %d contact problems; processor time %.3f s, "
+            "memory %.0f MB",
             time.perf_counter() - begin,
             SOLVING.seconds,
             SOLVING.problems,
             time.process_time(),  # imports counted, but where a warm interpreter had them
+            resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * _KILOBYTE / 1e6,
         )
     except (InputError, NotConverged, OutputError) as error:
         _say_error("; ".join([str(error), *getattr(error, "__notes__", [])]))

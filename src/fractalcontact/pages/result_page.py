@@ -3,7 +3,6 @@
 All of it is static, links to nothing outside the folder of results, and opens from the disk.
 """
 
-import csv
 import datetime
 import io
 import json
@@ -85,6 +84,8 @@ NEEDS = (
 _ZIP_TIME = (1980, 1, 1, 0, 0, 0)
 #: Letters of a label in a table.
 _LONGEST = 120
+#: What the log of a job ends with.
+_WORKED = re.compile(r"^worked ([\d.]+) s", re.MULTILINE)
 #: Joints up to which each has a block on the first screen, and verdicts a column each.
 _BLOCKS, _COLUMNS = 12, 30
 
@@ -98,21 +99,21 @@ class Place:
     atlas : pathlib.Path
     figures : pathlib.Path
         Folder of the figures.
-    benchmarks : pathlib.Path
-        Folder of the times of jobs; may be missing.
+    logs : pathlib.Path
+        Folder of the logs of jobs, whose last lines say how long they worked; may be missing.
     folder : pathlib.Path
         Where the pages go: they name figures, atlas and explorer as what stands there.
     """
 
     atlas: Path
     figures: Path
-    benchmarks: Path
+    logs: Path
     folder: Path
 
     @classmethod
     def of(cls, results: Path) -> "Place":
         """The folder of the results of a study."""
-        return cls(results / "atlas.nc", results / "figures", results / "benchmarks", results)
+        return cls(results / "atlas.nc", results / "figures", results / "logs", results)
 
 
 def write_specimen_pages(
@@ -193,14 +194,12 @@ def write_index(place: Place, explored: Collection[str]) -> list[str]:
 
 def _head(place, atlas):
     """Context of the templates: study, date, versions, duration, formatting functions."""
-    seconds, jobs = _work(place.benchmarks)
     made = datetime.datetime.fromtimestamp(place.atlas.stat().st_mtime, datetime.UTC)
     return {
         "study": printable(atlas.attrs["study"]),
         "date": f"{made:%Y-%m-%d %H:%M} UTC",
         "versions": json.loads(atlas.attrs["versions"]),
         "versions_differ": json.loads(atlas.attrs.get("versions_differ", "{}")),
-        "work": f"{duration(seconds)} of work in {jobs} jobs" if jobs else "",
         "atlas_size": f"{place.atlas.stat().st_size / 1e6:.0f} MB",
         "atlas_path": _as_typed(place.atlas),
         "short": short,
@@ -284,17 +283,11 @@ def _in_paper(figures):
     return f"Figs. {figures}" if len(re.findall(r"\d+", figures)) > 1 else f"Fig. {figures}"
 
 
-def _work(benchmarks: Path) -> tuple[float, int]:
-    """Seconds that the jobs of a study took in all, and how many there were.
-
-    Only an extra: what is not there, or cannot be read, counts nothing.
-    """
-    seconds, jobs = 0.0, 0
-    for path in sorted(benchmarks.rglob("*.tsv")):
-        with open(path, encoding="utf-8", newline="") as file:
-            for row in csv.DictReader(file, delimiter="\t"):
-                seconds, jobs = seconds + float(row["s"]), jobs + 1
-    return seconds, jobs
+def _work(logs: Path) -> str:
+    """What the jobs of a study took in all, and how many there were; nothing without logs."""
+    texts = (path.read_text(encoding="utf-8", errors="replace") for path in logs.rglob("*.log"))
+    seconds = [float(last) for text in texts for last in _WORKED.findall(text)[-1:]]
+    return f"{duration(sum(seconds))} of work in {len(seconds)} jobs" if seconds else ""
 
 
 # -- the pages -------------------------------------------------------------------------------------
@@ -313,6 +306,7 @@ def _index_values(
     together = of_study(atlas)
     return {
         "specimens": specimens,
+        "work": _work(place.logs),
         "columns": _columns(),
         "longest": _LONGEST,
         "matrix": rows,

@@ -24,19 +24,24 @@ RESULTS = "FRACTALCONTACT_RESULTS"
 #: Rules that make nothing themselves: what they ask for is made when they come.
 _TARGETS = ("all", "pages")
 _FULL = ("No space left on device", "Disk quota exceeded", "no space left on its disk")
-#: What Snakemake's reasons begin with, and what is said of them; the first that fits.
+#: In what Snakemake says of params: digests of code, of both runs or of one.
+_DIGESTS = "(?:'?[0-9a-f]{16}'?,?|<nothing exclusive>)+"
+#: What is found in Snakemake's reasons, and what is said of them; the first that fits.
 _REASONS = {
     "Missing output files": "not made yet",
     "Forced execution": "left incomplete, or asked for",
     "Set of input files": "is made of other files than before",
     "Updated input files": "a file that it is made of is newer",
     "Input files updated by another job": "what it is made of is made again",
+    r"Params have changed.*\b[0-9a-f]{64}\b": "its scan changed",
+    f"Params have changed.* before: {_DIGESTS} +now: {_DIGESTS} *(;|$)": (
+        "its code, or a library, changed"
+    ),
     "Params have changed": "settings changed",
 }
-#: In a reason, the checksum of a scan; the digest of code; what would do things to a terminal.
-_CHECKSUM, _DIGEST = re.compile(r"\b[0-9a-f]{64}\b"), re.compile(r"'?[0-9a-f]{16}'?")
 #: Where in the workflow an error was noticed, before what it says.
 _PLACE = re.compile(r"\w+(?: in (?:rule .*|file \".*\", line \d+))?:")
+#: What would do things to a terminal.
 _CONTROL = re.compile(r"[\x00-\x08\x0b-\x1f\x7f-\x9f]")
 
 
@@ -49,7 +54,7 @@ class LogHandler(LogHandlerBase):
     def __post_init__(self):
         """Begin with nothing said."""
         self.results = os.environ.get(RESULTS, "results")
-        self.dry_run, self.begin = self.common_settings.dryrun, (time.monotonic(), time.time())
+        self.dry_run, self.begin = self.common_settings.dryrun, time.time()
         #: Jobs by number: title, rule, logs, reason; when those at work began; those that failed.
         self.jobs, self.running, self.failed = {}, {}, {}
         self.total, self.done, self.errors, self.warnings = 0, 0, [], {}
@@ -66,7 +71,8 @@ class LogHandler(LogHandlerBase):
         elif str(record.msg).startswith("Nothing to be done"):
             self.nothing = True
         elif record.levelname == "WARNING":
-            self._wrapped(f"warning: {record.msg}")
+            for line in _wrapped(f"warning: {record.msg}"):
+                self._say(line, self.err)
 
     def _run_info(self, record):
         if not self.total:  # a dry run counts twice
@@ -82,7 +88,7 @@ class LogHandler(LogHandlerBase):
 
     def _job_started(self, record):
         for number in record.jobs:
-            self.running[number] = time.monotonic()
+            self.running[number] = time.time()
             self.failed.pop(number, None)  # on a cluster, begun again with more memory
 
     def _job_finished(self, record):
@@ -93,7 +99,7 @@ class LogHandler(LogHandlerBase):
         for line in self._lines_of(logs):
             if line.startswith("warning: "):
                 self.warnings.setdefault(line[len("warning: ") :], title.partition(": ")[0])
-        took = f" ({_duration(time.monotonic() - self.running.pop(record.job_id))})"
+        took = f" ({_took(self.running.pop(record.job_id))})"
         count = f"[{self.done:>{len(str(self.total))}}/{self.total}] "
         self._say(count + _cut(title, WIDTH - len(count) - len(took)) + took)
 
@@ -117,7 +123,7 @@ class LogHandler(LogHandlerBase):
         """Text that a job wrote into its logs in this run."""
         for path in map(Path, logs):
             try:
-                if path.stat().st_mtime >= self.begin[1] - 2:
+                if path.stat().st_mtime >= self.begin - 2:
                     yield from path.read_text(encoding="utf-8", errors="replace").splitlines()
             except OSError:
                 continue
@@ -135,12 +141,9 @@ class LogHandler(LogHandlerBase):
         place = self.results if os.path.isdir(self.results) else "."
         if _is_full(lines) or shutil.disk_usage(place).free < MIN_FREE_BYTES:
             return f"{self.results}: no space left on its disk; make room there and run again"
-        if not any(os.access(path, os.W_OK) for path in logs):
-            return "ended before it could write its log"
         if "error in the program" in lines:
             return f"a fault of the program, not of the input: {lines[-1]}"
-        unwritten = "ended without an error message: killed, or out of memory"
-        return ended_by_cluster(lines) or unwritten
+        return ended_by_cluster(lines) or "ended without an error message: killed, or out of memory"
 
     def close(self):
         """Say how the run ended: what there is to know of the data, or why it did not finish."""
@@ -150,9 +153,8 @@ class LogHandler(LogHandlerBase):
         self.closed = True
         if self.failed:
             left = self.total - self.done - len(self.failed)
-            waiting = f"; {left} more were not begun" if left > 0 else ""
             done = f"{self.done} of {_counted(self.total)} done, {len(self.failed)} failed"
-            self._say(done + waiting, self.err)
+            self._say(done + (f"; {left} more were not begun" if left > 0 else ""), self.err)
         elif _is_full(self.errors):
             self._say("error: .snakemake: no space left on its disk; make room there", self.err)
         elif self.errors:
@@ -162,13 +164,15 @@ class LogHandler(LogHandlerBase):
         elif self.dry_run:
             self._list_jobs()
         elif self.total:  # not where something else was asked for, such as a report
-            took = _duration(time.monotonic() - self.begin[0])
-            self._say(f"{_counted(self.done)} done in {took}")
+            self._say(f"{_counted(self.done)} done in {_took(self.begin)}")
         self._say_warnings()
 
     def _list_jobs(self):
         """A table of what would be done, and why."""
-        rows = sorted((title, _reason(reason)) for title, _, reason in self.jobs.values())
+        rows = sorted(
+            (title, next((why for key, why in _REASONS.items() if re.search(key, reason)), reason))
+            for title, _, reason in self.jobs.values()
+        )
         room = WIDTH - 4 - max(len(why) for _, why in rows)
         width = min(room, max(len(title) for title, _ in rows))
         for title, why in rows:
@@ -176,45 +180,21 @@ class LogHandler(LogHandlerBase):
         self._say(f"{_counted(len(rows))} would be done; nothing was")
 
     def _say_warnings(self):
-        lines = [
-            f"  {line}"
-            for text, name in self.warnings.items()
-            for line in _lines(f"{name}: {text}", WIDTH - 2)
-        ]
+        said = [f"{name}: {text}" for text, name in self.warnings.items()]
+        lines = [line for text in said for line in _wrapped(text, "  ")]
         more = ["  and more, which the result page has"] if len(lines) > MAX_WARNINGS else []
         for line in ["warnings of the data:", *lines[:MAX_WARNINGS], *more] if lines else []:
             self._say(line, self.err)
 
-    def _wrapped(self, text):
-        for line in _lines(text, WIDTH):
-            self._say(line, self.err)
-
     def _say(self, line, stream=None):
-        if not self.stopped:
-            line = _CONTROL.sub(lambda found: f"\\x{ord(found[0]):02x}", line)
-            put(f"{line}\n", stream or self.out)
-
-
-def put(text, stream):
-    """Write to a terminal or a pipe; where nobody reads any more, the study goes on."""
-    try:
-        print(text, end="", file=stream, flush=True)
-    except BrokenPipeError:
-        # What is still in the stream would be an error at the end.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
-
-
-def _reason(text):
-    """Why a job is done, from the reasons that Snakemake gives."""
-    why = next((words for key, words in _REASONS.items() if key in text), text)
-    if "Params have changed" in text and why == "settings changed":
-        if _CHECKSUM.search(text):
-            return "its scan changed"
-        values = re.findall(r"(?:before|now): (.*?)(?= now: |;|$)", text)
-        kinds = [value.split(",") for value in values if "<nothing exclusive>" not in value]
-        if kinds and all(_DIGEST.fullmatch(one.strip()) for kind in kinds for one in kind):
-            return "its code, or a library, changed"
-    return why
+        if self.stopped:
+            return
+        stream = stream or self.out
+        try:
+            said = _CONTROL.sub(lambda found: f"\\x{ord(found[0]):02x}", line)
+            print(said, file=stream, flush=True)
+        except BrokenPipeError:  # nobody reads any more; what is left would be an error at the end
+            os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
 
 
 def _is_full(lines):
@@ -225,20 +205,22 @@ def _counted(n):
     return f"{n} job" if n == 1 else f"{n} jobs"
 
 
-def _lines(text, width):
-    return textwrap.wrap(text, width, subsequent_indent="  ", break_on_hyphens=False)
+def _wrapped(text, indent=""):
+    return textwrap.wrap(
+        text, WIDTH, initial_indent=indent, subsequent_indent=f"{indent}  ", break_on_hyphens=False
+    )
 
 
 def _cut(text, width):
     return text if len(text) <= width else text[: max(width - 1, 0)] + "…"
 
 
-def _duration(seconds):
-    """Seconds in words: 8 s, 2 min 10 s, 3 h 5 min."""
-    minutes, rest = divmod(round(seconds), 60)
-    hours = minutes // 60
-    if round(seconds) < 100:
-        return f"{round(seconds)} s"
+def _took(begin):
+    """Time since then in words: 8 s, 2 min 10 s, 3 h 5 min."""
+    seconds = round(time.time() - begin)
+    minutes, hours = seconds // 60, seconds // 3600
+    if seconds < 100:
+        return f"{seconds} s"
     if minutes < 10:
-        return f"{minutes} min {rest} s"
+        return f"{minutes} min {seconds % 60} s"
     return f"{hours} h {minutes % 60} min" if hours else f"{minutes} min"
