@@ -23,20 +23,10 @@ ENDED = {
 
 
 def left_in_queue(profile):
-    """Jobs of this folder that wait or run on the cluster of a profile.
+    """Numbers of the jobs of this folder that wait or run on the cluster of a profile.
 
     They would write what a new run writes too. Those that run hold the guard of ``_running``; those
-    that wait are known to the cluster alone.
-
-    Parameters
-    ----------
-    profile : path-like
-        Folder of the profile; where its executor is not SLURM, nothing is known.
-
-    Returns
-    -------
-    list of str
-        Their numbers.
+    that wait are known to the cluster alone. Where its executor is not SLURM, nothing is known.
 
     Raises
     ------
@@ -52,22 +42,19 @@ def left_in_queue(profile):
         done = subprocess.run(
             [*command, f"--states={states}"], capture_output=True, text=True, timeout=PATIENCE
         )
+        *_, why = done.stderr.strip().splitlines() or [f"exit code {done.returncode}"]
+        failed = done.returncode
     except OSError:
         return []  # there is no cluster: to submit a job says so, and why
     except subprocess.TimeoutExpired:
-        raise _unknown(f"no answer in {PATIENCE} s") from None
-    if done.returncode:
-        *_, why = done.stderr.strip().splitlines() or [f"exit code {done.returncode}"]
-        raise _unknown(why)
+        failed, why = True, f"no answer in {PATIENCE} s"
+    if failed:
+        raise InputError(
+            f"the cluster does not say what is in its queue (squeue: {why}), where jobs of a run "
+            "that was killed may still be; wait until 'squeue' answers, then begin again"
+        )
     jobs = (line.partition("|") for line in done.stdout.splitlines())
     return sorted({number for number, _, folder in jobs if folder == os.getcwd()}, key=int)
-
-
-def _unknown(why):
-    return InputError(
-        f"the cluster does not say what is in its queue (squeue: {why}), and jobs of a run that "
-        "was killed may still be there; wait until 'squeue' answers, then begin again"
-    )
 
 
 def ended_by_cluster(lines):

@@ -51,35 +51,29 @@ def started() -> Iterator[str]:
     What is wrong with a module that it cannot load, the jobs say that need it: they then load all
     by themselves.
     """
-    folder = tempfile.mkdtemp(prefix="fractalcontact-")
-    try:
-        process = _begun(folder)
-        try:
-            yield f"{folder}/{_SOCKET}"
-        finally:
-            process.terminate()
-            process.wait()
-            process.stdin.close()
-    finally:
-        shutil.rmtree(folder, ignore_errors=True)
-
-
-def _begun(folder):
-    # Jobs that begin while it loads wait: to load everything twice would take them longer.
-    with socket.socket(socket.AF_UNIX) as listener:
-        # By a short name, as that of a folder may be longer than the system takes here.
-        with contextlib.chdir(folder):
-            listener.bind(_SOCKET)
-        listener.listen(64)
-        return subprocess.Popen(
-            [sys.executable, __file__, folder, str(listener.fileno())],
-            env=os.environ | {f"{name}_NUM_THREADS": "1" for name in ONE_THREAD} | MEMORY,
-            stdin=subprocess.PIPE,
-            stdout=subprocess.DEVNULL,
-            stderr=subprocess.DEVNULL,
-            pass_fds=(listener.fileno(),),
-            start_new_session=True,
-        )
+    with tempfile.TemporaryDirectory(
+        prefix="fractalcontact-", ignore_cleanup_errors=True
+    ) as folder:
+        # Jobs that begin while it loads wait: to load everything twice would take them longer.
+        with socket.socket(socket.AF_UNIX) as listener:
+            # By a short name, as that of a folder may be longer than the system takes here.
+            with contextlib.chdir(folder):
+                listener.bind(_SOCKET)
+            listener.listen(64)
+            process = subprocess.Popen(
+                [sys.executable, __file__, folder, str(listener.fileno())],
+                env=os.environ | {f"{name}_NUM_THREADS": "1" for name in ONE_THREAD} | MEMORY,
+                stdin=subprocess.PIPE,
+                stdout=subprocess.DEVNULL,
+                stderr=subprocess.DEVNULL,
+                pass_fds=(listener.fileno(),),
+                start_new_session=True,
+            )
+        with process:
+            try:
+                yield f"{folder}/{_SOCKET}"
+            finally:
+                process.terminate()
 
 
 def main():
@@ -116,8 +110,7 @@ def _work(connection):
     """Be the job that was handed over; never return.
 
     What goes wrong before the number of this process is sent is said nowhere: the other end reads
-    that the connection is closed, and runs the job alone (``scripts/_warm.py``), which says what is
-    wrong with it, if anything is. Errors of the job itself are printed by `_run`.
+    that the connection is closed, and runs the job alone.
     """
     code = 1
     try:
@@ -151,8 +144,8 @@ def _run(script):
         runpy.run_path(script, run_name="__main__")
         code = 0
     except SystemExit as end:
-        code = end.code
-        if code is not None and not isinstance(code, int):
+        code = end.code or 0
+        if not isinstance(code, int):
             print(code, file=sys.stderr)
             code = 1
     except BaseException:
@@ -161,7 +154,7 @@ def _run(script):
     for stream in (sys.stdout, sys.stderr):
         with contextlib.suppress(OSError):
             stream.flush()
-    return int(code or 0) & 0xFF
+    return code & 0xFF
 
 
 if __name__ == "__main__":

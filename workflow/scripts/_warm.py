@@ -23,21 +23,12 @@ _PASSED_ON = (signal.SIGTERM, signal.SIGINT, signal.SIGHUP, signal.SIGQUIT)
 
 def hand_over():
     """Let a fork run the script of this process and end as it does; return where there is none."""
-    address = os.environ.get(ADDRESS)
-    if not address or os.environ.get(THREADS) != "1" or not sys.argv[0]:
+    environment = dict(os.environ)
+    address = environment.pop(ADDRESS, "")
+    if not address or environment.get(THREADS) != "1":
         return
     # Until the fork is known a signal waits: it would end this process and not be passed on.
     signal.pthread_sigmask(signal.SIG_BLOCK, _PASSED_ON)
-    code = _handed_over(address)
-    signal.pthread_sigmask(signal.SIG_UNBLOCK, _PASSED_ON)
-    if code is not None:
-        # Without a word: killed, and so this is too, that Snakemake says so.
-        os._exit(int(code) if code else 128 + signal.SIGKILL)
-
-
-def _handed_over(address):
-    """What the fork ended with, nothing where it was killed; None where there is no fork."""
-    environment = {key: value for key, value in os.environ.items() if key != ADDRESS}
     job = [sys.argv, sys.path, os.getcwd(), environment]
     life, alive = os.pipe()  # open for as long as this process lives, and no longer
     with socket.socket(socket.AF_UNIX) as connection, connection.makefile("r") as told:
@@ -49,13 +40,16 @@ def _handed_over(address):
         except OSError:  # there is none, or it ended without having read all of it
             number = ""
         os.close(life)
-        if not number.endswith("\n"):  # it ended before it began: nothing has been run
-            os.close(alive)
-            return None
-        for passed in _PASSED_ON:
-            signal.signal(passed, lambda received, frame: _pass_on(int(number), received))
-        signal.pthread_sigmask(signal.SIG_UNBLOCK, _PASSED_ON)
-        return told.readline()
+        if number.endswith("\n"):
+            for passed in _PASSED_ON:
+                signal.signal(passed, lambda received, frame: _pass_on(int(number), received))
+            signal.pthread_sigmask(signal.SIG_UNBLOCK, _PASSED_ON)
+            code = told.readline()
+            # Without a word: killed, and so this is too, that Snakemake says so.
+            os._exit(int(code) if code else 128 + signal.SIGKILL)
+    # It ended before it began: nothing has been run.
+    os.close(alive)
+    signal.pthread_sigmask(signal.SIG_UNBLOCK, _PASSED_ON)
 
 
 def _pass_on(process, number):
