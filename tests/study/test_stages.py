@@ -95,7 +95,7 @@ def test_files_of_a_job_are_those_of_the_stages_of_its_function():
     assert needed_by("window_states") == {
         stage: f"{stage}/{{specimen}}.nc" for stage in ("specimens", "joints")
     }
-    assert paths_of(MAP) == {"contact_maps": "contact_maps/{map}.nc"}
+    assert paths_of(MAP) == {"contact_maps": "contact_maps/{specimen}.nc"}
     assert paths_of(EXPERIMENT)["roll_off"] == "roll_off/surfaces.nc"
     assert made_together("statements") == made_together("windows")
 

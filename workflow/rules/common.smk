@@ -112,20 +112,14 @@ def asked_for(job, grid=1, states=kept_states):
     """
 
     def by_grid(amount):
-        return lambda wildcards: amount(job, nodes_of(known(wildcards))[grid], states(wildcards))
+        return doubled(lambda wc: amount(job, nodes_of(known(wc))[grid], states(wc)))
 
-    return {
-        "mem_mb": doubled(by_grid(resources.memory)),
-        "runtime": doubled(by_grid(resources.minutes)),
-    }
+    return {"mem_mb": by_grid(resources.memory), "runtime": by_grid(resources.minutes)}
 
 
 def fixed(megabytes, minutes):
     """Both of a job whose grid says nothing of them."""
-    return {
-        "mem_mb": doubled(lambda wildcards: megabytes),
-        "runtime": doubled(lambda wildcards: minutes),
-    }
+    return {"mem_mb": doubled(lambda wc: megabytes), "runtime": doubled(lambda wc: minutes)}
 
 
 DIGESTS = checksums.Digests()
@@ -147,32 +141,24 @@ def digest_of(path):
         return ""
 
 
-def digests_of(scan):
-    """SHA-256 of the scan files of a specimen, by path: parameters of the rules that read them.
+def digests_of(*files):
+    """SHA-256 of scan files or laboratory tests, by path: a parameter of the rules that read them.
 
     Times say nothing of a file that was moved, copied or unpacked over another.
     """
-    return {str(path): digest_of(str(path)) for path in scan.files}
-
-
-def test_digests(specimen):
-    """The same of the laboratory tests of a specimen."""
-    return {test.file: digest_of(test.file) for test in SETTINGS[specimen].measured}
+    return {str(path): digest_of(str(path)) for path in files}
 
 
 def scan_digests():
     """The same of all scan files and tests of the study."""
-    tests = {path: digest for name in SETTINGS for path, digest in test_digests(name).items()}
-    return tests | {
-        path: digest for scan in SCANS.values() for path, digest in digests_of(scan).items()
-    }
+    tests = [test.file for settings in SETTINGS.values() for test in settings.measured]
+    return digests_of(*tests, *(path for scan in SCANS.values() for path in scan.files))
 
 
 # Any name without a slash: to look for each file among ten thousand names takes minutes. Whoever
 # asks for a specimen that is none is told so by `known`.
 wildcard_constraints:
     specimen="[^/]+",
-    map=alternation(MAPS),
     directions=r"\d+",
     offsets=r"\d+",
     resolutions=r"\d+",
@@ -229,16 +215,6 @@ def files_of(paths):
     return {stage: f"{RESULTS}/{path}" for stage, path in paths.items()}
 
 
-def inputs_of(stage):
-    """Files of the stages that a stage needs, for the rule that makes it."""
-    return files_of(stages.needed_by(stage))
-
-
-def outputs_of(stage, grains=GRAINS):
-    """Files that the job of a stage makes: also of the other stages of its function."""
-    return files_of(stages.made_together(stage, grains))
-
-
 def calling(stage):
     """Parameters by which scripts/stage.py calls the function of a stage."""
     function = stages.STAGES[stage].function
@@ -257,11 +233,11 @@ def of_specimen(wildcards, *grains):
 
 
 # Measured contact maps stand in every atlas, beside the domains computed there.
-MAP_FILES = (
-    {stage: expand(path, map=MAPS) for stage, path in files_of(stages.paths_of(MAP)).items()}
+MAP_FILES = {
+    stage: expand(path, specimen=MAPS)
+    for stage, path in files_of(stages.paths_of(MAP)).items()
     if MAPS
-    else {}
-)
+}
 
 
 def grain(key, n):

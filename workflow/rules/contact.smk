@@ -22,8 +22,8 @@ def part_of(wildcards, key):
 
 rule contact:
     input:
-        specimen=rules.specimen.output.specimens,
-        joint=rules.specimen.output.joints,
+        specimen=f"{RESULTS}/specimens/{{specimen}}.nc",
+        joint=f"{RESULTS}/joints/{{specimen}}.nc",
     output:
         f"{RESULTS}/contact/{{specimen}}/{{directions}}.{{offsets}}.{{resolutions}}.nc",
     log:
@@ -56,20 +56,14 @@ def contact_parts(wildcards):
     return {"parts": contact_parts_of(wildcards.specimen)}
 
 
-def contact_and_ensemble(wildcards):
-    """Contact parts of a specimen, and its ensemble, whose spread is an error of them."""
-    return contact_parts(wildcards) | ensemble_of(wildcards)
+def ensemble_of(wildcards):
+    """Files of the ensemble of a specimen; none where the study wants none."""
+    return of_specimen(wildcards, ENSEMBLE)
 
 
 def strength_of(wildcards):
     """Strength of a joint that slides; none of a surface against a plane."""
-    sliding = wildcards.specimen in MEMBERS[JOINT]
-    return files_of({"strength": stages.STAGES["strength"].path} if sliding else {})
-
-
-def ensemble_of(wildcards):
-    """Files of the ensemble of a specimen; none where the study wants none."""
-    return of_specimen(wildcards, ENSEMBLE)
+    return {key: path for key, path in of_specimen(wildcards, JOINT).items() if key == "strength"}
 
 
 class StageJob(NamedTuple):
@@ -88,6 +82,32 @@ class StageJob(NamedTuple):
 #: Jobs, by the name of their rule, which is not that of a stage: "windows" makes window_states and
 #: size_test, "strength" makes windows, strength and the statements.
 STAGE_JOBS = {
+    # The levelled specimen, and its joint before contact is solved: the dimension of its face, what
+    # the instrument adds and which resolutions go below it, and one face slid over the other
+    # (offsets, composite topographies, rigid dilatancy). Seconds of work, so one job.
+    "specimen": StageJob(
+        "specimens",
+        "levelled scan, its surface dimension and its joint",
+        asked_for("specimen", grid=0) | {"mem_mb": doubled(memory_of_reading)},
+        inputs=scan_files,
+        extra={"arguments": reading_of, "digests": scan_digests_of},
+    ),
+    # A measured map of contact goes straight to the analysis of domains.
+    "contact_map": StageJob(
+        "contact_maps",
+        "measured contact map and its dimension",
+        fixed(2000, 10),
+        specimens=alternation(MAPS),
+        inputs=scan_files,
+        extra={
+            "arguments": lambda wc: {
+                "path": str(MAPS[wc.specimen].lower),
+                "options": OPTIONS[wc.specimen],
+                "label": LABELS[wc.specimen],
+            },
+            "digests": scan_digests_of,
+        },
+    ),
     # Closure curves and laws of area; box counts, dimension and clusters of every contact domain;
     # and the error of what is published, by source, for which some states are solved again on finer
     # grids and in other windows. Seconds of work, so one job.
@@ -95,7 +115,7 @@ STAGE_JOBS = {
         "closure",
         "closure, contact domains and their errors",
         asked_for("analysis"),
-        inputs=contact_and_ensemble,
+        inputs=lambda wc: contact_parts(wc) | ensemble_of(wc),
     ),
     # Sparse equations of all open cells, so a job of its own.
     "flow": StageJob(
@@ -142,7 +162,7 @@ STAGE_JOBS = {
         "laboratory tests beside computed curves",
         asked_for("analysis"),
         inputs=strength_of,
-        extra={"digests": lambda wc: test_digests(known(wc))},
+        extra={"digests": lambda wc: digests_of(*(t.file for t in SETTINGS[known(wc)].measured))},
     ),
 }
 for NAME, JOB in STAGE_JOBS.items():
@@ -152,9 +172,9 @@ for NAME, JOB in STAGE_JOBS.items():
             NAME
         input:
             unpack(JOB.inputs),
-            **inputs_of(JOB.stage),
+            **files_of(stages.needed_by(JOB.stage)),
         output:
-            **outputs_of(JOB.stage, JOB.grains),
+            **files_of(stages.made_together(JOB.stage, JOB.grains)),
         log:
             f"{RESULTS}/logs/{NAME}/{{specimen}}.log",
         wildcard_constraints:
@@ -169,27 +189,3 @@ for NAME, JOB in STAGE_JOBS.items():
             f"{{wildcards.specimen}}: {JOB.words}"
         script:
             "../scripts/stage.py"
-
-
-# A measured map of contact goes straight to the analysis of domains.
-rule contact_map:
-    input:
-        lambda wc: [ancient(str(path)) for path in MAPS[wc.map].files],
-    output:
-        **outputs_of("contact_maps"),
-    log:
-        f"{RESULTS}/logs/contact_map/{{map}}.log",
-    resources:
-        **fixed(2000, 10),
-    params:
-        **calling("contact_maps"),
-        arguments=lambda wc: {
-            "path": str(MAPS[wc.map].lower),
-            "options": OPTIONS[wc.map],
-            "label": LABELS[wc.map],
-        },
-        digests=lambda wc: digests_of(MAPS[wc.map]),
-    message:
-        "{wildcards.map}: measured contact map and its dimension"
-    script:
-        "../scripts/stage.py"

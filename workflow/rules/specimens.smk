@@ -1,4 +1,4 @@
-# From scan files, a user's or the study's own, to levelled specimens, their surfaces and joints.
+# Scan files, a user's or the study's own, and how they are read.
 
 
 rule embedded:
@@ -19,11 +19,16 @@ rule embedded:
 
 
 def scan_files(wildcards):
-    """The faces of a specimen, wherever they come from. Their digests show changes."""
+    """The faces of a specimen, or a measured map, wherever they come from. Digests show changes."""
     scan = SCANS.get(wildcards.specimen)
     if scan is None:
-        return rules.embedded.output.scan
+        return [rules.embedded.output.scan]
     return [ancient(str(path)) for path in scan.files]
+
+
+def scan_digests_of(wildcards):
+    """Digests of these, but of what the study makes itself."""
+    return digests_of(*SCANS[wildcards.specimen].files) if wildcards.specimen in SCANS else {}
 
 
 def reading_of(wildcards):
@@ -32,13 +37,13 @@ def reading_of(wildcards):
     Not from the rule's input: Snakemake keeps no record of parameters that follow from it.
     """
     name = known(wildcards)
-    scanned = name in SCANS
-    files = SCANS[name].files if scanned else expand(rules.embedded.output.scan, specimen=name)
-    return {
-        "files": list(map(str, files)),
-        "options": OPTIONS[name] if scanned else sidecar_of_matrix(recipe_named(name)["spacing"]),
-        "name": name,
-    }
+    if name in SCANS:
+        return {"files": list(map(str, SCANS[name].files)), "options": OPTIONS[name], "name": name}
+    files, spacing = (
+        expand(rules.embedded.output.scan, specimen=name),
+        recipe_named(name)["spacing"],
+    )
+    return {"files": files, "options": sidecar_of_matrix(spacing), "name": name}
 
 
 def memory_of_reading(wildcards):
@@ -47,28 +52,6 @@ def memory_of_reading(wildcards):
     if name in SCANS:
         return resources.reading_memory(SCANS[name].files)
     return resources.memory("specimen", nodes_of(name)[0])
-
-
-# The levelled specimen, and its joint before contact is solved: the dimension of its face, what the
-# instrument adds and which resolutions go below it, and one face slid over the other (offsets,
-# composite topographies, rigid dilatancy). Seconds of work, so one job.
-rule specimen:
-    input:
-        scan_files,
-    output:
-        **outputs_of("specimens"),
-    log:
-        f"{RESULTS}/logs/specimen/{{specimen}}.log",
-    resources:
-        **(asked_for("specimen", grid=0) | {"mem_mb": doubled(memory_of_reading)}),
-    params:
-        **calling("specimens"),
-        arguments=reading_of,
-        digests=lambda wc: digests_of(SCANS[wc.specimen]) if wc.specimen in SCANS else {},
-    message:
-        "{wildcards.specimen}: levelled scan, its surface dimension and its joint"
-    script:
-        "../scripts/stage.py"
 
 
 # A scan that the study leaves out, with --keep-going: its job fails and says why, others go on.

@@ -120,7 +120,6 @@ _TABLE = (
         "measured contact maps, one group per map",
         MAP,
         "fractalcontact.domain.measured_map:read_contact_map",
-        member="{map}",
     ),
     _of_report(
         "elastic_model",
