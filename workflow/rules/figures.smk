@@ -1,25 +1,16 @@
 # Figures of every specimen: PNG, SVG, numbers as CSV, caption as text.
 
 # Measured contact maps ask for their figures themselves, and so do several specimens.
-STUDY_FIGURES = study_figures_of(
-    [
-        *config,
-        *MAP_FILES,
-        *([campaign.COMPARISON] if len(SPECIMENS) > 1 else []),
-        *(
-            [CAPPED_VARIANTS]
-            if any(record["capped_variant"] for record in RECORDS.values())
-            else []
-        ),
-    ]
-)
+ASKED = [*config, *MAP_FILES]
+if len(SPECIMENS) > 1:
+    ASKED.append(campaign.COMPARISON)
+if any(record["capped_variant"] for record in RECORDS.values()):
+    ASKED.append(CAPPED_VARIANTS)
+STUDY_FIGURES = study_figures_of(ASKED)
 if IN_PARTS:
     STUDY_FIGURES = campaign.of_study_alone(STUDY_FIGURES)
-
-
-def drawn_of(opposite):
-    """Names of the figures of each specimen that the study asks for."""
-    return campaign.drawn_of(config, SPECIMENS, opposite)
+#: Names of the figures of each specimen that the study asks for, by what is on the other side.
+DRAWN = {opposite: campaign.drawn_of(config, SPECIMENS, opposite) for opposite in ("match", "flat")}
 
 
 def drawings(names, folder="{specimen}/", category="{specimen}"):
@@ -63,7 +54,7 @@ for NAME, OPPOSITE, HERE, OTHERS in (
         input:
             unpack(stages_of),
         output:
-            *drawings(drawn_of(OPPOSITE)),
+            *drawings(DRAWN[OPPOSITE]),
             **({"row": SPECIMEN_ROW} if IN_PARTS else {}),
             atlas=SPECIMEN_ATLAS,
             undrawn=UNDRAWN,
@@ -76,9 +67,9 @@ for NAME, OPPOSITE, HERE, OTHERS in (
         # nobody wants to wait that long.
         priority: 0 if IN_PARTS else -2 if OPPOSITE == "match" else -3
         resources:
-            **asked_for("figures" if drawn_of(OPPOSITE) else "atlas_part"),
+            **asked_for("figures" if DRAWN[OPPOSITE] else "atlas_part"),
         params:
-            names=drawn_of(OPPOSITE),
+            names=DRAWN[OPPOSITE],
             folder=lambda wildcards: f"{RESULTS}/figures/{wildcards.specimen}",
             configuration=configuration_of,
             code=code("figures", "fractalcontact/figures"),
@@ -134,24 +125,17 @@ rule all_drawn:
         "../scripts/all_drawn.py"
 
 
-def figures_of_specimens(opposite, specimens, endings=("png", "svg", "csv", "txt")):
-    """Files of the figures of some specimens, that one which is removed is made again."""
-    return expand(
-        f"{RESULTS}/figures/{{specimen}}/{{name}}.{{ending}}",
-        specimen=specimens,
-        name=drawn_of(opposite),
-        ending=endings,
-    )
+def figure_files(specimen, endings=("png", "svg", "csv", "txt")):
+    """Files of the figures of a specimen, that one which is removed is made again."""
+    names = DRAWN["match" if specimen in MEMBERS[JOINT] else "flat"]
+    files = [f"{RESULTS}/figures/{specimen}/{name}" for name in names]
+    return [f"{file}.{ending}" for file in files for ending in endings]
 
 
 def all_figure_files():
     """Every file of the figures of a study."""
-    study = list(rules.study_figures.output) if STUDY_FIGURES else []
-    return [
-        *study,
-        *figures_of_specimens("match", SLIDING),
-        *figures_of_specimens("flat", FLAT),
-    ]
+    of_specimens = [path for specimen in SPECIMENS for path in figure_files(specimen)]
+    return [*(rules.study_figures.output if STUDY_FIGURES else []), *of_specimens]
 
 
 def collect_everything(wildcards):
@@ -163,11 +147,10 @@ def collect_everything(wildcards):
     made = [*LABORATORY_FILES.values(), *rules.all_drawn.output, *all_figure_files(), *RESULT_PAGE]
     if IN_PARTS:
         return made
+    parts = [*files_of_all().values(), *MAP_FILES.values(), *map(contact_parts_of, SPECIMENS)]
     return [
-        *(path for paths in files_of_all().values() for path in paths),
+        *(path for paths in parts for path in paths),
         *expand(list(rules.embedded.output), specimen=set(SPECIMENS) - set(SCANS)),
-        *(path for paths in MAP_FILES.values() for path in paths),
-        *(path for specimen in SPECIMENS for path in contact_parts_of(specimen)),
         *expand(SPECIMEN_ATLAS, specimen=SPECIMENS),
         *made,
     ]

@@ -2,15 +2,13 @@
 # index, a page a specimen and tables beside them.
 from fractalcontact.pages import files as page_files
 
-#: Files with the stages of each specimen that are not in the atlas of the study.
-PARTS = expand(SPECIMEN_ATLAS, specimen=SPECIMENS) if IN_PARTS else []
 #: Specimens that the explorer shows.
 EXPLORED = campaign.explored(config, SPECIMENS)
 
 
-def files_of_card(path, endings):
+def with_endings(path, endings):
     """Files of a specimen, one an ending, below the folder of the results."""
-    return [f"{RESULTS}/{path.format(specimen='{specimen}', ending=ending)}" for ending in endings]
+    return expand(f"{RESULTS}/{path}", specimen="{specimen}", ending=endings)
 
 
 rule explorer:
@@ -41,15 +39,13 @@ rule specimen_page:
     input:
         SPECIMEN_ATLAS,
         # Captions stand for the pictures, of which no page is made: the same job leaves both.
-        lambda wildcards: figures_of_specimens(
-            "match" if known(wildcards) in SLIDING else "flat", [wildcards.specimen], ["txt"]
-        ),
+        lambda wildcards: figure_files(known(wildcards), ["txt"]),
         # Aperture maps are those of the jobs of contact, which the atlas rounds.
         lambda wildcards: [] if IN_PARTS else contact_parts_of(known(wildcards)),
     output:
         f"{RESULTS}/{page_files.SPECIMEN_PAGE}",
-        *files_of_card(page_files.CARD, page_files.CARD_ENDINGS),
-        *([] if IN_PARTS else files_of_card(page_files.APERTURE, page_files.APERTURE_ENDINGS)),
+        *with_endings(page_files.CARD, page_files.CARD_ENDINGS),
+        *([] if IN_PARTS else with_endings(page_files.APERTURE, page_files.APERTURE_ENDINGS)),
     log:
         f"{RESULTS}/logs/specimen_page/{{specimen}}.log",
     resources:
@@ -68,22 +64,19 @@ rule specimen_page:
 PAGES = expand(list(rules.specimen_page.output), specimen=SPECIMENS)
 # None of measured contact maps alone, nor of many specimens of which the study names none.
 EXPLORER = list(rules.explorer.output) if EXPLORED else []
-RESULT_PAGE = [
-    *(f"{RESULTS}/{name}" for name in page_files.FILES),
-    *EXPLORER,
-    *PAGES,
-]
+INDEX = [f"{RESULTS}/{name}" for name in page_files.FILES]
+RESULT_PAGE = [*INDEX, *EXPLORER, *PAGES]
 
 
 rule result_page:
     input:
         rules.atlas.output[0],
-        PARTS,
+        expand(SPECIMEN_ATLAS, specimen=SPECIMENS) if IN_PARTS else [],
         lambda wildcards: [path for path in all_figure_files() if path.endswith(".txt")],
         # Its first screen is that of the cards.
         PAGES,
     output:
-        [f"{RESULTS}/{name}" for name in page_files.FILES],
+        INDEX,
     log:
         f"{RESULTS}/logs/result_page.log",
     resources:

@@ -13,9 +13,9 @@ from fractalcontact.study import crate, guards
 
 def remake_without_record():
     """Mark results that Snakemake would take for up to date though its record of them is lost."""
-    if not workflow.is_main_process:
-        return
-    if again := _provenance.mark_without_provenance(RESULTS, workflow.workflow_settings):
+    if workflow.is_main_process and (
+        again := _provenance.mark_without_provenance(RESULTS, workflow.workflow_settings)
+    ):
         logger.warning(
             f"{RESULTS}: {again} of its files will be made again, since Snakemake's record of "
             "how a file was made (in .snakemake), or a file that it was made from, is missing "

@@ -19,15 +19,7 @@ from fractalcontact.core import checksums
 
 
 def mark_without_provenance(results, settings):
-    """Number of such results, which are marked as incomplete, as those of killed jobs are.
-
-    Parameters
-    ----------
-    results : str
-        Folder of the study.
-    settings : snakemake.settings.types.WorkflowSettings
-        The backend of the records.
-    """
+    """Number of such results, which are marked as incomplete, as those of killed jobs are."""
     if settings.persistence_backend is PersistenceBackend.DB:
         records = DbPersistence(db_url=settings.persistence_backend_db_url)
     else:
