@@ -48,8 +48,7 @@ MEMORY = {"MALLOC_MMAP_THRESHOLD_": str(2**28), "MALLOC_TRIM_THRESHOLD_": str(2*
 def started() -> Iterator[str]:
     """The address of such an interpreter, which ends with the block.
 
-    What is wrong with a module that it cannot load, the jobs say that need it: they then load all
-    by themselves.
+    Where it cannot load a module, jobs load all by themselves, and say what is wrong.
     """
     with tempfile.TemporaryDirectory(
         prefix="fractalcontact-", ignore_cleanup_errors=True

@@ -117,12 +117,13 @@ rule all_drawn:
     resources:
         **fixed(500, 5),
     params:
-        logs=f"the logs in {RESULTS}/logs/figures",
-        code=code("all_drawn"),
+        reason="not drawn, because of an error of the program: NAMES; their pictures say so, the "
+        f"logs in {RESULTS}/logs/figures hold the whole error; everything else is done",
+        code=code("refused"),
     message:
         "the study: whether all figures were drawn"
     script:
-        "../scripts/all_drawn.py"
+        "../scripts/refused.py"
 
 
 def figure_files(specimen, endings=("png", "svg", "csv", "txt")):

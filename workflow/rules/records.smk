@@ -26,8 +26,8 @@ def remake_without_record():
 def without_rate_limit():
     """Begin jobs on this machine as soon as cores are free, without a limit to jobs a second.
 
-    To keep its limit of 100, Snakemake looks at all jobs that wait anew each second, and once more
-    in each for every job that has ended: of 77 jobs on two cores that took a tenth of the time.
+    To keep it Snakemake looks at all waiting jobs each second, once more for each that has ended:
+    a tenth of the time of 77 jobs on two cores.
     """
     if workflow.local_exec:
         workflow.scheduler.job_rate_limiter = None
