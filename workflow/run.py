@@ -39,9 +39,8 @@ from fractalcontact.study.scan_files import list_scans
 WAIT, GRACE, CLUSTER_GRACE = 3, 20, 120
 #: What a shell does not take as it is.
 SPLITS = r"[\s'\"\\$`&;|<>()*?\[\]#!{}]"
-#: Bytes free below which a study is not begun: the default one makes some 100 MB.
-MIN_FREE_BYTES = 50 * 2**20
-SIGNALS = (signal.SIGTERM, signal.SIGINT, signal.SIGHUP, signal.SIGQUIT)
+#: Megabytes free below which a study is not begun: the default one makes some 100.
+MIN_FREE = 50
 
 
 def main():
@@ -117,11 +116,11 @@ def _require_room(results):
     folder = next(path for path in (results, *results.parents) if path.exists())
     if not folder.is_dir() or not os.access(folder, os.W_OK | os.X_OK):
         raise InputError(f"{folder}: no folder that can be written to; allow it (chmod u+w)")
-    free = shutil.disk_usage(folder).free
-    if free < MIN_FREE_BYTES:
+    free = shutil.disk_usage(folder).free / 2**20
+    if free < MIN_FREE:
         raise InputError(
-            f"{folder}: {free / 2**20:.0f} MB free on its disk, less than the "
-            f"{MIN_FREE_BYTES / 2**20:.0f} MB that a study needs at least; make room"
+            f"{folder}: {free:.0f} MB free on its disk, less than the {MIN_FREE} MB that a study "
+            "needs at least; make room"
         )
 
 
@@ -173,8 +172,7 @@ def _run(command, options, results):
     cluster, child = options.profile != "default", None
     with contextlib.ExitStack() as warmth:
         try:
-            for number in SIGNALS:
-                signal.signal(number, _stop)
+            _answer_signals(_stop)
             # Jobs of a cluster run elsewhere; only Linux surely forks what libraries have loaded.
             if not cluster and sys.platform == "linux" and not options.dry_run:
                 told[ADDRESS] = warmth.enter_context(warm.started())
@@ -187,14 +185,12 @@ def _run(command, options, results):
                     sys.stderr.flush()
             status = child.wait()
         except _Stopped as stopped:
-            for number in SIGNALS:
-                signal.signal(number, signal.SIG_IGN)
+            _answer_signals(signal.SIG_IGN)
             _say("interrupted: jobs end, and 'make' goes on from there")
             if child is not None:
                 _end(child, cluster=cluster)
             sys.exit(128 + stopped.args[0])
-    for number in SIGNALS:
-        signal.signal(number, signal.SIG_DFL)
+    _answer_signals(signal.SIG_DFL)
     return status if status >= 0 else 128 - status
 
 
@@ -206,11 +202,15 @@ def _stop(number, frame):
     raise _Stopped(number)
 
 
+def _answer_signals(how):
+    for number in (signal.SIGTERM, signal.SIGINT, signal.SIGHUP, signal.SIGQUIT):
+        signal.signal(number, how)
+
+
 def _end(child, *, cluster):
     """Tell all processes of the run to end; those that do not are ended.
 
-    Snakemake ends after its jobs. Jobs on a cluster are taken back by it alone, and only where it
-    is interrupted.
+    Jobs on a cluster are taken back by Snakemake alone, and only where it is interrupted.
     """
     with contextlib.suppress(ProcessLookupError, subprocess.TimeoutExpired):
         if cluster:

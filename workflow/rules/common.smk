@@ -244,23 +244,15 @@ def grain(key, n):
     """Slices of n things for as many jobs as the study's grain asks for."""
     stated = config.get("grain", {}).get(key, "all")
     size = n if stated == "all" else stated
-    return [[start, min(start + size, n)] for start in range(0, n, size)]
+    return [slice(start, min(start + size, n)) for start in range(0, n, size)]
 
 
-CODE = Code(ROOT / "src", ROOT)
-digest_of_code = functools.cache(CODE.digest)
+digest_of_code = functools.cache(Code(ROOT / "src", ROOT).digest)
 
 
 def code(script, *names):
-    """Parameter that changes with the code that a script runs: its change makes again what it made.
+    """Parameter that changes with the code that a script of workflow/scripts runs.
 
-    Parameters
-    ----------
-    script : str
-        Of workflow/scripts.
-    *names : str
-        Modules, or whole rooms, of the package that are imported by names which only exist when it
-        runs, such as "fractalcontact/figures".
+    Named are modules, or whole rooms, that it imports by names which only exist when it runs.
     """
-    path = ROOT / f"workflow/scripts/{script}.py"
-    return lambda wildcards: digest_of_code(path, *names)
+    return lambda wildcards: digest_of_code(ROOT / f"workflow/scripts/{script}.py", *names)

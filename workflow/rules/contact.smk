@@ -16,7 +16,7 @@ def parts_of(specimen):
 
 
 def part_of(wildcards, key):
-    """Start and stop of the directions, offsets or resolutions that a contact job takes."""
+    """The directions, offsets or resolutions that a contact job takes."""
     return parts_of(wildcards.specimen)[key][int(wildcards[key])]
 
 
@@ -33,11 +33,9 @@ rule contact:
     params:
         function=stages.CONTACT,
         settings=settings_read_by(stages.CONTACT),
-        directions=lambda wc: SETTINGS[wc.specimen].contact_directions[
-            slice(*part_of(wc, "directions"))
-        ],
-        offsets=lambda wc: slice(*part_of(wc, "offsets")),
-        resolutions=lambda wc: SETTINGS[wc.specimen].resolutions[slice(*part_of(wc, "resolutions"))],
+        directions=lambda wc: SETTINGS[wc.specimen].contact_directions[part_of(wc, "directions")],
+        offsets=lambda wc: part_of(wc, "offsets"),
+        resolutions=lambda wc: SETTINGS[wc.specimen].resolutions[part_of(wc, "resolutions")],
         code=code("stage", "fractalcontact/mechanics/sweep.py"),
     message:
         "{wildcards.specimen}: contact states, part {wildcards.directions}.{wildcards.offsets}.{wildcards.resolutions}"
