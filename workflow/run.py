@@ -150,13 +150,7 @@ def _clean(options, results):
 
 
 def _spoilt(results):
-    """Files that are not any more as their jobs left them, or of which nothing says what they are.
-
-    Yields
-    ------
-    path : pathlib.Path
-    why : str
-    """
+    """Files that are not any more as their jobs left them, or that nothing is known of, and why."""
     digests = checksums.Digests()
     checked = checksums.check(results, digests.of)
     digests.save()

@@ -40,9 +40,8 @@ def configuration_of(wildcards):
 UNDRAWN = f"{RESULTS}/undrawn/{{specimen}}.txt"
 
 
-# The figures of a specimen are drawn from an atlas of its own, made just before: so a new scan draws
-# only its own, one bad scan does not keep the others from theirs, and the atlas of the study and
-# these are made side by side. A surface against a plane does not slide: it has fewer figures.
+# From an atlas of its own, made just before: so a new scan draws only its own, one bad scan does not
+# keep the others from theirs. A surface against a plane does not slide: it has fewer figures.
 for NAME, OPPOSITE, HERE, OTHERS in (
     ("figures", "match", SLIDING, FLAT),
     ("figures_against_plane", "flat", FLAT, SLIDING),
@@ -62,9 +61,8 @@ for NAME, OPPOSITE, HERE, OTHERS in (
             f"{RESULTS}/logs/figures/{{specimen}}.log",
         wildcard_constraints:
             specimen=kind_of(HERE, OTHERS),
-        # After what the atlas of the study waits for: else, at the end, one core joins it and draws
-        # from it alone while the others have nothing to do. The longer jobs first. Of a campaign
-        # nobody wants to wait that long.
+        # After what the atlas of the study waits for: else, at the end, one core draws from it alone.
+        # The longer jobs first. Of a campaign nobody wants to wait that long.
         priority: 0 if IN_PARTS else -2 if OPPOSITE == "match" else -3
         resources:
             **asked_for("figures" if DRAWN[OPPOSITE] else "atlas_part"),

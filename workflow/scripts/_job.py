@@ -39,15 +39,6 @@ def job(snakemake):
     What a further attempt on a cluster would find again it says at once, without working again.
     The log's last line says what the job spent on its work, imports not counted, and of that on
     contact solves: ``benchmarks/study_cost.py`` and the result page add them up.
-
-    Parameters
-    ----------
-    snakemake : object
-        What Snakemake puts into every script.
-
-    Yields
-    ------
-    logging.Logger
     """
     found_before = _found_before(snakemake)
     _begin_log(snakemake.log[0])
@@ -135,17 +126,9 @@ def _below(folder, paths):
 
 
 def require_unchanged(digests):
-    """Refuse what was made of scan files that are no longer those the study was planned with.
+    """Refuse what was made of scan files whose digests are no longer those of the plan.
 
-    Parameters
-    ----------
-    digests : mapping of str to str
-        SHA-256 by path, taken when the run was planned.
-
-    Raises
-    ------
-    InputError
-        If one is another by now: the results would not belong to it, and nothing would show it.
+    The results would not belong to them, and nothing would show it.
     """
     for path, digest in digests.items():
         if digest and (not Path(path).is_file() or checksums.sha256(path) != digest):

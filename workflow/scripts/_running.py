@@ -22,19 +22,9 @@ def mark():
 
 
 def alone(seconds):
-    """Keep everybody else from working.
+    """Keep everybody else from working: a handle for `share`, None if others are at work so long.
 
-    Parameters
-    ----------
-    seconds : float
-        How long to wait for others.
-
-    Returns
-    -------
-    handle : int or None
-        For :func:`share`; None if others are at work.
-    has_locks : bool
-        Whether the file system has locks. Where it has none, others may be at work.
+    And whether the file system has locks. Where it has none, others may be at work.
     """
     handle, end = os.open(FILE, os.O_RDWR | os.O_CREAT, 0o666), time.monotonic() + seconds
     while time.monotonic() < end:
