@@ -14,7 +14,7 @@ from ..core.datasets import Dims, labelled_dataset
 from ..core.directions import NO_SLIDING
 from ..core.settings import ContactSettings, Solver
 from ..core.tolerance import SHARE_OF_CLOSURE, SHARE_OF_DIMENSION, tolerance
-from .states import SOLVER_ERROR, forces_of
+from .states import forces_of
 
 
 def solved_loads(
@@ -88,9 +88,7 @@ def solve_plan(
     -------
     xr.Dataset
         ``value``, ``reason``, ``error_of`` and ``error`` (a fraction; NaN where there is none) over
-        ``choice``; ``closure_error_of_solver`` and ``closure_error_of_grid``, the largest of them,
-        and ``accuracy_limited_by``, the larger one's source; the requested accuracy as attribute
-        ``asked``.
+        ``choice``; the requested accuracy as attribute ``asked``.
     """
     solved, requested = curves["solved"], solver.accuracy
     rows = [
@@ -103,16 +101,9 @@ def solve_plan(
     if budget is not None:
         rows.append(_of_spacing(budget, requested))
     columns = (list(column) for column in zip(*rows, strict=True))
-    errors = {of: error for *_, of, error in rows}
-    of_solver, of_grid = (errors.get(of, np.nan) for of in (_OF_SOLVER, _OF_GRID))
-    limits = {
-        "closure_error_of_solver": of_solver,
-        "closure_error_of_grid": of_grid,
-        "accuracy_limited_by": _limited_by(of_solver, of_grid),
-    }
     return labelled_dataset(
-        _COLUMNS | _LIMITS,
-        dict(zip(_COLUMNS, columns, strict=True)) | limits,
+        _COLUMNS,
+        dict(zip(_COLUMNS, columns, strict=True)),
         attrs={
             "asked": _requested(requested),
             "states": int(solved.size),
@@ -128,21 +119,6 @@ _COLUMNS: dict[str, tuple[Dims, str, str]] = {
     "error_of": ("choice", "1", "quantity of the error"),
     "error": ("choice", "1", "largest error it is estimated to make, a fraction"),
 }
-
-#: Of what the errors are that limit the accuracy of the closure.
-_OF_SOLVER, _OF_GRID = "interface closure", "interface closure, by the grid (same surface)"
-_LIMITS: dict[str, tuple[Dims, str, str]] = {
-    "closure_error_of_solver": ((), "1", f"largest {SOLVER_ERROR} of a closure, a fraction of it"),
-    "closure_error_of_grid": ((), "1", "largest error of a closure by the grid, a fraction of it"),
-    "accuracy_limited_by": ((), "1", "solver or grid, whose error of a closure is larger"),
-}
-
-
-def _limited_by(of_solver: float, of_grid: float) -> str:
-    """Source of the larger error; empty if one is unknown."""
-    if not np.isfinite([of_solver, of_grid]).all():
-        return ""
-    return "grid" if of_grid > of_solver else "solver"
 
 
 def _requested(accuracy: Mapping[str, float] | None) -> str:
@@ -167,7 +143,7 @@ def _of_tolerance(curves, solver: Solver, requested):
         "requested"
     )
     error = abs(curves["closure_error"] / curves["interface_closure"].where(lambda w: w != 0))
-    return "solver tolerance", f"{solver.rtol:.1g}", reason, _OF_SOLVER, _largest(error)
+    return "solver tolerance", f"{solver.rtol:.1g}", reason, "interface closure", _largest(error)
 
 
 def _of_loads(curves, dilatancy, requested):
@@ -270,4 +246,10 @@ def _of_spacing(budget, requested):
             else f"cannot be reached at this spacing at {known.sum() - reached} of {known.sum()} "
             "loads"
         )
-    return name, value, reason, _OF_GRID, float(of_known.max())
+    return (
+        name,
+        value,
+        reason,
+        "interface closure, by the grid (same surface)",
+        float(of_known.max()),
+    )

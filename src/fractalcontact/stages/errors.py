@@ -11,7 +11,6 @@ from ..mechanics.branches import joint_branches
 from ..mechanics.loading import JointLoading
 from ..mechanics.plan import solve_plan
 from ..mechanics.registration_spread import registration_spread
-from ..mechanics.stated_errors import stated_errors
 from ..mechanics.states import with_pressure
 
 
@@ -53,7 +52,7 @@ def error_stages(
     return {
         "branches": joint_branches(loading, closure, mapped),
         "error_budget": with_pressure(budget, joint.area),
-        "choices": plan.merge(stated_errors(closure, domains, direction)).assign(asked(solver)),
+        "choices": plan.assign(asked(solver)),
     }
 
 
