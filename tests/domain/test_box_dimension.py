@@ -9,7 +9,7 @@ from known_sets import cantor_dust, percolation_cluster, sierpinski_carpet
 
 from fractalcontact.core.limits import MIN_NODES
 from fractalcontact.domain.box_counts import box_count, box_sizes
-from fractalcontact.domain.box_dimension import box_dimension, dimension_of_domain, local_slopes
+from fractalcontact.domain.box_dimension import box_dimension, dimension_of_domain
 from fractalcontact.domain.mean_law import law_of_means
 from fractalcontact.surface.synthesis import self_affine
 
@@ -486,13 +486,6 @@ def test_bend_of_the_counts_is_no_error_of_the_slope():
     heights = self_affine((256, 256), 1.0, 0.8, rms=1.0, seed=5)
     result = dimension_of_domain(heights > np.quantile(heights, 0.97), 0.1)
     assert result.large_boxes < result.dimension < result.small_boxes
-
-
-def test_local_slopes_of_a_power_law():
-    r = np.array([1, 1.5, 2, 3, 4, 6, 8.0])
-    middle, slope = local_slopes(r, r**-1.4)
-    np.testing.assert_allclose(slope, 1.4)
-    np.testing.assert_allclose(middle, r[:5] * np.sqrt(2))
 
 
 def test_bad_arguments_are_refused():

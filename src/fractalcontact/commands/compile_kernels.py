@@ -52,10 +52,9 @@ def compile_kernels() -> list[float]:
     states += _light_states() + _large_states()
     stiffness = [state.stiffness for state in states]
     small = [state for state in states if state.pressure.shape == surface.shape]
-    domains = np.array([state.in_contact for state in small])
     pressures = np.array([state.pressure for state in small])
     plane_flow(aperture(small[0]), (1.0, 1.0))
-    measures_of_states(domains, pressures, 1.0, np.arange(1.0, len(small) + 1))
+    measures_of_states(pressures, 1.0, np.arange(1.0, len(small) + 1))
     # The places of one node, and of several, lie in memory in different ways.
     domain = np.zeros((9, 9), bool)
     for place in ((4, 4), (3, 5)):

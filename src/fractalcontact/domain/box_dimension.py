@@ -398,28 +398,6 @@ def _slopes_of_parts(x: np.ndarray, y: np.ndarray) -> np.ndarray:
     return np.sum(dx * dy, axis=1) / np.sum(dx * dx, axis=1)
 
 
-def local_slopes(r: np.ndarray, count: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Local slope -d log N / d log r of box counts, over an octave.
-
-    Neighbouring sizes are so close that whole counts make their slopes jump.
-
-    Parameters
-    ----------
-    r, count : (k,) array_like
-        Ascending box sides and N(r).
-
-    Returns
-    -------
-    middle, slope : (j,) ndarray
-        Geometric middle of each pair of sides, and the slope between them.
-    """
-    r, count = np.asarray(r, float), np.asarray(count, float)
-    start = np.flatnonzero(2 * r <= r[-1] * (1 + 1e-9)) if r.size else np.empty(0, int)
-    end = np.searchsorted(r, 2 * r[start] * (1 - 1e-9))
-    slope = -np.log(count[end] / count[start]) / np.log(r[end] / r[start])
-    return np.sqrt(r[start] * r[end]), slope
-
-
 def no_dimension(r: np.ndarray, count: np.ndarray, reason: str) -> BoxDimension:
     """Box counts without a dimension, and why.
 

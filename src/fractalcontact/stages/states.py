@@ -106,7 +106,7 @@ def state_stages(
             node_marks(specimens, joints)
         ),
         "scaling": scaling.merge(extrapolated_pressure(scaling, float(np.sqrt(area)))),
-        "domain_measures": measures_of_map_states(mapped, spacing, settings.box_range),
+        "domain_measures": measures_of_map_states(mapped, spacing),
     }
     stages = {name: with_pressure(stage, area) for name, stage in stages.items()}
     return stages | error_stages(

@@ -42,6 +42,8 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     at = np.flatnonzero(some == reference)
     chosen = some[spread_loads(some.size, MAX_LOADS, int(at[0]) if at.size else None)]
     shown = measures.isel(normal_force=chosen)
+    counts = subject.states("domains").sel(normal_force=shown["normal_force"])
+    counts = counts.set_coords("local_slope_side")
     force = subject.reported.force
 
     figure = Figure(figsize=(WIDTH, 3.4))
@@ -52,11 +54,11 @@ def draw(atlas: DataTree, name: str) -> Drawing:
         "pressure: level if monofractal",
     )
     a, b, c = (Panel(*one) for one in zip(axes, "abc", titles, strict=True))
-    _draw_loads(a, shown, "slope_side", "local_slope")
+    _draw_loads(a, counts, "local_slope_side", "local_slope", force)
     _draw_loads(b, shown, "gliding_side", "lacunarity", force)
     _draw_loads(c, shown, "order", "generalised_dimension", force)
     _finish(a.axes, b.axes, c.axes, shown)
-    legends_below(figure, entries(b.axes), _greys(), [_band_entry(shown, force)])
+    legends_below(figure, entries(c.axes), _greys(), [_band_entry(shown, force)])
     headline(figure, subject.label, place(subject.direction, subject.offset))
     words = _values(measures.isel(normal_force=reference), subject.state("domains"))
     return Drawing(figure, table_of(a, b, c), caption(__name__, force=force, **words))
@@ -67,7 +69,7 @@ def _colours(shown):
     return {float(force): colour_of(n) for n, force in enumerate(shown["normal_force"].values)}
 
 
-def _draw_loads(panel, shown, x, y, banded=None):
+def _draw_loads(panel, shown, x, y, banded):
     """A curve a load; the interval of one alone."""
     axes = panel.axes
     panel.keep(shown, y)
@@ -75,7 +77,7 @@ def _draw_loads(panel, shown, x, y, banded=None):
         state = shown.sel(normal_force=force)
         style = {"color": colour, "marker": MARKERS[n % len(MARKERS)], "ls": LINES[n % len(LINES)]}
         label = f"$F$ = {force_label(force)}"
-        label += "" if np.isfinite(state["generalised_dimension"]).any() else ": no $D_q$"
+        label += "" if np.isfinite(state[y]).any() else ": no $D_q$"
         axes.plot(state[x], state[y], ms=3, lw=0.8, label=label, **style)
         if force == banded:
             _, low, high = Estimate.read(state, y).ends
@@ -122,13 +124,14 @@ def _band_entry(shown, force):
 
 def _values(state, counts):
     """Values of the caption, at the reference load."""
-    slopes = counts.isel(null_octave=np.isfinite(counts["local_slope"]).values)
-    complete = slopes.sizes["null_octave"] == counts.sizes["null_octave"] > 1
-    spectrum = state["generalised_dimension"].sel(order=[0.0, 4.0]).values
+    slopes, spectrum = counts["local_slope"], state["generalised_dimension"]
+    complete = slopes.size > 1 and bool(slopes.notnull().all())
+    spectrum = spectrum.sel(order=[0.0, 4.0]).values
+    sides = counts["local_slope_side_min"].min(), counts["local_slope_side_max"].max()
     return {
-        "slopes": [float(f(slopes["local_slope"])) for f in (np.min, np.max)] if complete else [],
-        "sides": [slopes["local_slope_side_min"].min(), slopes["local_slope_side_max"].max()],
-        "boxes": Estimate.read(state, "delta_sigma", scale=DIMENSION),
+        "slopes": [float(slopes.min()), float(slopes.max())] if complete else [],
+        "sides": sides,
+        "boxes": Estimate.read(counts, "delta_sigma", scale=DIMENSION),
         "pairs": Estimate.read(state, "correlation_dimension", scale=DIMENSION),
         "spectrum": spectrum if np.isfinite(spectrum).all() else [],
         "falls": bool(state["dimensions_fall"]),
