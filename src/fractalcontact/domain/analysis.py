@@ -7,10 +7,10 @@ import xarray as xr
 
 from ..core.arrays import padded
 from ..core.datasets import domains_by_resolution, labelled_dataset
-from ..core.estimate import names_of, rows_of
+from ..core.estimate import rows_of
 from ..core.fitting import MIN_POINTS
 from ..core.labels import cf_attrs
-from ..core.limits import CORRECTED_NODES, RESOLVED_NODES
+from ..core.limits import CORRECTED_NODES
 from ..core.ranges import within
 from .box_counts import window_sizes
 from .box_dimension import ESTIMATORS, dimension_of_domain
@@ -258,24 +258,20 @@ def scaling_over_resolutions(
     xr.Dataset
         The renormalisation of :func:`domain.renormalisation.renormalisation` over (direction,
         offset, load), and both estimates of Delta_sigma with their difference; the box counts are
-        those at the scan's own resolution. ``delta_sigma_raw``, with its interval and ``_n``, is
-        that of the raw area; ``area``, ``area_corrected`` and ``nodes`` are those of the states.
-        ``sigma_n`` is F / A_r of the corrected area wherever `CORRECTED_NODES` touch,
+        those at the scan's own resolution; ``area``, ``area_corrected`` and ``nodes`` are those of
+        the states. ``sigma_n`` is F / A_r of the corrected area wherever `CORRECTED_NODES` touch,
         ``sigma_n_raw`` that of the raw one; ``area_used`` says which areas Delta_sigma is fitted
         to, ``fitted_area`` is their law. ``delta_sigma_area_reason`` and ``delta_sigma_box_reason``
         say why there is no estimate, or no interval; ``area_bend`` is how much more Delta_sigma the
-        two finest resolutions have than the two coarsest, ``area_local_exponent`` that of the area
-        from each resolution to the next coarser one.
+        two finest resolutions have than the two coarsest.
 
     Notes
     -----
     Areas are those corrected for the cells on their edge, at resolutions where `CORRECTED_NODES`
     touch: the raw area exceeds the true one by a fraction that grows with the spacing, which lowers
-    Delta_sigma. Mixing both would put a step into the line where one takes over from the other. The
-    raw areas that are fitted are those of `RESOLVED_NODES` or more.
+    Delta_sigma. Mixing both would put a step into the line where one takes over from the other.
     """
-    s, nodes = _spacings(curves, spacing), _nodes_between(curves, spacing, fit_range)
-    force = curves["normal_force"]
+    s, force = _spacings(curves, spacing), curves["normal_force"]
     result = corrected_scaling(curves, spacing, left=left, fit_range=fit_range)
     used = result["sigma_n"].notnull() & result["delta_sigma"].notnull()
     result["area_used"] = used.assign_attrs(cf_attrs("1", "resolution in the fit of delta_sigma"))
@@ -288,15 +284,9 @@ def scaling_over_resolutions(
     result["sigma_n_raw"].attrs = cf_attrs("MPa", "F / A_r of the area not corrected for its edge")
     result["fitted_area"] = result["hausdorff_measure"] * s ** (2 - result["delta_sigma"])
     result["fitted_area"].attrs = cf_attrs("mm2", "contact area by the law of delta_sigma")
-    raw = renormalisation(s, curves["area"], force, nodes, RESOLVED_NODES, left)
-    for name, raw_name in zip(names_of("delta_sigma"), names_of("delta_sigma_raw"), strict=True):
-        result[raw_name] = raw[name]
-        result[raw_name].attrs["long_name"] = f"{raw[name].attrs['long_name']}, by the raw area"
-    result["delta_sigma_raw_n"] = raw["n"]
     finest = domains.sel(resolution=domains["resolution"].min())
     result = result.merge(compare_dimensions(result, finest), compat="override", join="exact")
     result.update(_reasons(result, finest))
-    result["area_local_exponent"] = _local_exponent(s, curves["area_corrected"].where(enough))
     result["spacing"] = s
     for name in ("area", "area_corrected", "nodes"):
         result[name] = curves[name]
@@ -341,15 +331,6 @@ def _nodes_between(curves, spacing, fit_range):
     """Nodes in contact at the spacings that are fitted, else missing."""
     inside = True if fit_range is None else within(_spacings(curves, spacing), *fit_range)
     return curves["nodes"].where(inside)
-
-
-def _local_exponent(s, area):
-    """Exponent of the area between each resolution and the next coarser one."""
-    log_s, log_area = np.log(s), np.log(area)
-    coarser = {"resolution": -1}
-    exponent = (log_area.shift(coarser) - log_area) / (log_s.shift(coarser) - log_s)
-    words = "d ln A_r / d ln s from this resolution to the next coarser one: 2 - Delta_sigma"
-    return exponent.assign_attrs(cf_attrs("1", words))
 
 
 def _reasons(scaling, finest):

@@ -10,20 +10,15 @@ from ..core.intervals import t_quantile
 from ..core.settings import Load
 from ..registration.registration_scatter import stored_motions
 from ..registration.surface_motion import Motion, Surface, grid_nodes
-from .closure import bulk_settlement, interface_closure, interface_stiffness
 from .loading import JointLoading
 from .separation import ROUNDING
-from .state_scalars import numbers_of
+from .subgrid import QUANTITIES as OF_STATES
+from .subgrid import state_quantities
 from .sweep import load_steps
 
-#: Quantities whose spread is computed: unit, long name.
-QUANTITIES = {
-    "closure": ("mm", "interface closure w_int"),
-    "seated_closure": ("mm", "interface closure from the first load at the seat or beyond"),
-    "separation": ("mm", "separation of the mean planes"),
-    "area_corrected": ("mm2", "real contact area, corrected for its edge"),
-    "stiffness": ("MPa/mm", "stiffness of the interface d sigma / d w_int"),
-}
+#: Quantities whose spread is computed: those of :mod:`mechanics.subgrid`, and the closure from the
+#: first load at the seat or beyond, mm.
+QUANTITIES = (*OF_STATES, "seated_closure")
 
 
 def moved_specimen(specimen: xr.Dataset, motion: Motion) -> xr.Dataset:
@@ -77,9 +72,6 @@ def registration_values(
     (cells,) = loading.cells
     forces = loading.forces(loading.settings.loads if loads is None else loads)
     space = loading.half_space(loading.shape)
-    settlement = bulk_settlement(
-        forces, space.modulus, *(n * s for n, s in zip(space.shape, space.spacing, strict=True))
-    )
     seating = loading.settings.seating_pressure * loading.area * (1 - ROUNDING)
     seat = min(int(np.searchsorted(forces, seating)), len(forces) - 1)
     rows = []
@@ -88,25 +80,10 @@ def registration_values(
         composite = moved.composite(int(cells))
         where = f"specimen {loading.specimen.attrs['name']}, another registration"
         states = load_steps(composite, space, forces, loading.solving, where)
-        found = [numbers_of(state) for state in states]
-        closure, stiffness, area = (
-            np.array([numbers[name] for numbers in found], float)
-            for name in ("closure", "stiffness", "area_corrected")
-        )
-        bulk = forces / loading.area / settlement
-        of_interface = interface_stiffness(
-            xr.DataArray(stiffness / loading.area), xr.DataArray(bulk)
-        )
-        of_interface_closure = interface_closure(closure, settlement)
-        rows.append(
-            {
-                "closure": of_interface_closure,
-                "seated_closure": of_interface_closure - of_interface_closure[seat],
-                "separation": composite.max() - composite.mean() - closure,
-                "area_corrected": area,
-                "stiffness": of_interface.values,
-            }
-        )
+        datum = float(composite.max()), float(composite.mean())
+        found = [state_quantities(state, *datum) for state in states]
+        row = {name: np.array([one[name] for one in found]) for name in OF_STATES}
+        rows.append(row | {"seated_closure": row["closure"] - row["closure"][seat]})
     return {
         name: np.array([row[name] for row in rows]).reshape(len(rows), len(forces))
         for name in QUANTITIES
