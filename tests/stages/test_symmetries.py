@@ -28,7 +28,7 @@ MADE_OF_SPECIMEN = [name for name, stage in STAGES.items() if stage.grain in ("s
 #: 1 MPa; stiffnesses at 1, 5 and 10 MPa; a spacing in words; Barton's hydraulic aperture, a law in
 #: micrometres, and the gradient at which water, whose viscosity does not scale, reaches Re = 1.
 ABSOLUTE = {
-    *("step", "z2", "jrc", "jrc_used", "jrc_note", "barton_roughness", "barton_strength"),
+    *("step", "z2", "jrc", "jrc_used", "barton_roughness", "barton_strength"),
     *("fit_step", "jrc_by_fit"),  # published at steps in mm
     *("scaled_roughness", "scaled_wall_strength", "barton_scaled_strength", "line_level"),
     *("barton_slope_angle", "peak_over_barton"),

@@ -203,7 +203,7 @@ def area_laws(
         Over (direction, offset): the statistics; the law A_r ~ F^m as :data:`LAW` has it, and with
         ``corrected_`` before its name that of the corrected area; ``departure``, the largest
         deviation of A_r/F from its geometric mean over the loads fitted; means of kappa at light
-        load; ``no_law`` and ``no_mean_kappa``, reasons; the asperities. Over (direction, offset,
+        load; ``no_law`` and ``no_mean_kappa``, reasons. Over (direction, offset,
         load): ``fitted``, ``light``, ``reduced_pressure``, ``kappa`` and ``corrected_kappa``, and
         the fractions A_r/A_0 of the theories; what :func:`mechanics.area_theories.add_comparison`
         and :func:`add_area_offset` add. ``departure`` and the kappas have an ``_error``, the

@@ -16,10 +16,6 @@ FLUSH = 1e-9
 
 #: What the theories make of every composite topography: unit, long name.
 _OF_THEORIES = {
-    "summit_density": ("mm-2", "summits per area"),
-    "summit_radius": ("mm", "mean radius R of the summits"),
-    "summit_deviation": ("mm", "standard deviation sigma_s of summit heights"),
-    "fractal_scale": ("mm", "Majumdar and Bhushan's G, from S at one cell's lag"),
     "persson_share": ("1", "A_r/A_0 by Persson"),
     "bush_gibson_thomas_share": ("1", "A_r/A_0 by Bush, Gibson and Thomas"),
     "greenwood_williamson_share": ("1", "A_r/A_0 by Greenwood-Williamson"),
@@ -28,12 +24,6 @@ _OF_THEORIES = {
 
 #: What they say whatever the topography.
 _EXPONENTS = {
-    "profile_dimension": ((), "1", "D = Delta_g - 1 of the profiles"),
-    "majumdar_bhushan_exponent": (
-        (),
-        "1",
-        "exponent 2/(3-D) of area against force by Majumdar and Bhushan",
-    ),
     "no_majumdar_bhushan": ((), "1", "why there is no area by Majumdar and Bhushan"),
     "archard_exponent": (
         "archard_level",
@@ -47,7 +37,7 @@ _EXPONENTS = {
 def add_theories(
     result: xr.Dataset, curves: xr.Dataset, e_star: float, dimension: float, spacing: float
 ) -> None:
-    """Add asperities and fractal parameters of the surface, and the theories' areas, to the laws.
+    """Add the areas that theories make of the surface to the laws.
 
     Parameters
     ----------
@@ -66,16 +56,11 @@ def add_theories(
     force, pressure = curves["normal_force"], curves["nominal_pressure"]
     nominal, slope = force / pressure, rough["rms_slope"]
     summits = theory.asperities(rough["m0"], rough["m2"], rough["m4"])
-    deviation = result["m0"].copy(data=summits.height_deviation)
     profile = float(dimension) - 1
     scale = theory.roughness_scale(rough["m2"] * spacing**2, spacing, profile)
-    greenwood = theory.greenwood_williamson_area(force, e_star, summits.radius, deviation)
+    greenwood = theory.greenwood_williamson_area(force, e_star, *summits)
     majumdar = theory.majumdar_bhushan_area(force, e_star, profile, scale)
     values: dict[str, Any] = {
-        "summit_density": summits.density,
-        "summit_radius": summits.radius,
-        "summit_deviation": deviation,
-        "fractal_scale": scale,
         "persson_share": theory.persson_area(pressure, e_star, slope),
         "bush_gibson_thomas_share": theory.linear_area(
             pressure, e_star, slope, theory.BUSH_GIBSON_THOMAS_KAPPA
@@ -87,8 +72,6 @@ def add_theories(
         result[name] = values[name].assign_attrs(cf_attrs(*words))
     levels = np.arange(1, 4)
     exponents = {
-        "profile_dimension": profile,
-        "majumdar_bhushan_exponent": 2 / (3 - profile) if 1 < profile < 1.5 else np.nan,
         "no_majumdar_bhushan": theory.no_majumdar_bhushan(profile),
         "archard_exponent": theory.archard_exponent(levels),
         "archard_level": levels,

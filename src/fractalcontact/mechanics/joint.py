@@ -52,11 +52,17 @@ def composite_topography(specimen: xr.Dataset, direction: str, cells: int) -> np
     if direction != "none" and cells > largest_offset(specimen, direction):
         raise InputError(_too_far(specimen, direction, cells))
     z_l, z_u = faces(specimen)
-    window_y, window_x = window_slices(specimen)
-    step_y, step_x = (step * int(cells) for step in DIRECTION_STEPS[direction])
-    slid_y = slice(window_y.start + step_y, window_y.stop + step_y)
-    slid_x = slice(window_x.start + step_x, window_x.stop + step_x)
-    return z_l[slid_y, slid_x] - z_u[window_y, window_x]
+    window = window_slices(specimen)
+    return z_l[slid_window(window, direction, cells)] - z_u[window]
+
+
+def slid_window(window: tuple[slice, slice], direction: str, cells: int) -> tuple[slice, slice]:
+    """Rows and columns of the lower face below the window, rows and columns, at an offset."""
+    rows, columns = (
+        slice(part.start + step * int(cells), part.stop + step * int(cells))
+        for part, step in zip(window, DIRECTION_STEPS[direction], strict=True)
+    )
+    return rows, columns
 
 
 def prefractal(composite: np.ndarray, factor: int) -> np.ndarray:

@@ -35,14 +35,6 @@ FITS: dict[str, tuple[float, Callable[[Any], Any]]] = {
 }
 #: A step of whole cells that differs by more than this part from a fit's is not that fit's.
 _NEAR = 0.25
-#: A window with fewer steps than this along it is called small for its sampling.
-MIN_STEPS = 10
-
-
-def _range_words() -> str:
-    return f"{JRC_RANGE[0]:g}-{JRC_RANGE[1]:g}"
-
-
 _TABLE = {
     "step": ("sampling", "mm", "step of Z2, whole cells"),
     "z2": ("sampling", "1", "rms slope Z2 of profiles along the sliding"),
@@ -53,8 +45,7 @@ _TABLE = {
         "1",
         "JRC by each published fit; missing where no step is near the fit's",
     ),
-    "jrc_used": ((), "1", f"JRC at {JRC_SAMPLING}, kept within {_range_words()}"),
-    "jrc_note": ((), "1", "remarks on the JRC used"),
+    "jrc_used": ((), "1", f"JRC at {JRC_SAMPLING}, kept within {JRC_RANGE[0]:g}-{JRC_RANGE[1]:g}"),
 }
 
 
@@ -85,8 +76,8 @@ def profile_roughness(specimen: xr.Dataset, direction: str) -> xr.Dataset:
         over that step, with every place of the first sample; both faces if two were scanned) and
         `jrc` as Tse & Cruden's relation gives it. Over `fit` (:data:`FITS`) the `jrc_by_fit`, each
         at its `fit_step`. `jrc_used`, the one of :data:`JRC_SAMPLING` kept within
-        :data:`JRC_RANGE`, and `jrc_note`, remarks on it. `grasselli_theta_max`, `_c`, `_a_0` and
-        `_roughness` of :func:`roughness.grasselli.grasselli`.
+        :data:`JRC_RANGE`. `grasselli_theta_max`, `_c`, `_a_0` and `_roughness` of
+        :func:`roughness.grasselli.grasselli`.
 
     Notes
     -----
@@ -117,15 +108,11 @@ def roughness_of_profiles(levelled: list[np.ndarray], spacing: float) -> xr.Data
     spacing : float
         Along the first axis, mm.
     """
-    cells = len(levelled[0])
     lags = [1 if step is None else max(1, round(step / spacing)) for step in JRC_SAMPLINGS.values()]
     z2 = np.array([_rms_slope(levelled, lag, spacing) for lag in lags])
     jrc = np.array([joint_roughness(value) if value > 0 else np.nan for value in z2])
     steps, by_fit = _by_fits(levelled, spacing)
     chosen = list(JRC_SAMPLINGS).index(JRC_SAMPLING)
-    note = _sampling_note(lags[chosen] * spacing, cells * spacing)
-    if not JRC_RANGE[0] <= jrc[chosen] <= JRC_RANGE[1]:
-        note.append(f"JRC {jrc[chosen]:.3g} lies outside of Barton's {_range_words()}")
     values = {
         "step": spacing * np.array(lags),
         "z2": z2,
@@ -133,7 +120,6 @@ def roughness_of_profiles(levelled: list[np.ndarray], spacing: float) -> xr.Data
         "fit_step": steps,
         "jrc_by_fit": by_fit,
         "jrc_used": np.clip(jrc[chosen], *JRC_RANGE),
-        "jrc_note": "; ".join(note),
     }
     return labelled_dataset(
         _TABLE, values, coords={"sampling": list(JRC_SAMPLINGS), "fit": list(FITS)}
@@ -157,15 +143,3 @@ def _by_fits(profiles: list[np.ndarray], spacing: float) -> tuple[np.ndarray, np
         if abs(lag * spacing / step - 1) <= _NEAR and z2 > 0:
             found[i] = fit(z2)
     return spacing * np.array(lags), found
-
-
-def _sampling_note(step: float, side: float) -> list[str]:
-    """Notes on a step coarser than the nominal one, or on a small window."""
-    note = []
-    if step > 1.25 * JRC_STEP:
-        note.append(
-            f"the scan's spacing of {step:.3g} mm is coarser than the {JRC_STEP:g} mm wanted"
-        )
-    if side < MIN_STEPS * step:
-        note.append(f"the window of {side:.3g} mm holds fewer than {MIN_STEPS} steps")
-    return note

@@ -8,11 +8,11 @@ import numpy as np
 import xarray as xr
 
 from ..core.determined import decided_by_scan
-from ..core.directions import axis_and_sign
 from ..core.labels import cf_attrs
 from ..core.limits import RESOLVED_NODES
 from ..core.reported import Reported
 from ..core.window import window_slices
+from .joint import slid_window
 
 
 def suspect_nodes(specimen: xr.Dataset, direction: str, cells: int) -> np.ndarray:
@@ -96,27 +96,6 @@ def node_marks(specimen: xr.Dataset, joint: xr.Dataset) -> dict[str, tuple]:
     words = "cells below a node: 2 in the overlap of the faces, 1 otherwise suspicious, 0 sound"
     dims = ("direction", "offset", "y_1", "x_1")
     return {"node_mark": (dims, np.array(marks, np.int8), cf_attrs("1", words))}
-
-
-def slid_window(window: tuple[slice, slice], direction: str, cells: int) -> tuple[slice, slice]:
-    """Rows and columns of the lower face below the window at an offset.
-
-    Parameters
-    ----------
-    window : tuple of slice
-        Rows and columns of the upper block.
-    direction : {"E", "N", "W", "S", "none"}
-    cells : int
-        Offset in cells of the scan.
-    """
-    if direction == "none":
-        return window
-    axis, sign = axis_and_sign(direction)
-    rows, columns = (
-        slice(part.start + sign * cells, part.stop + sign * cells) if axis == name else part
-        for name, part in zip("yx", window, strict=True)
-    )
-    return rows, columns
 
 
 def suspect_load_share(pressure: np.ndarray, suspicious: np.ndarray) -> float:

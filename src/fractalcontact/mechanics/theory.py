@@ -53,8 +53,6 @@ LABORATORY_LENGTH = 100.0
 class Asperities(NamedTuple):
     """Summits of a random surface as Greenwood and Williamson see them."""
 
-    density: Numbers
-    """Summits per area, mm-2."""
     radius: Numbers
     """Mean radius R of the summits, mm."""
     height_deviation: Numbers
@@ -151,16 +149,13 @@ def asperities(m0: Numbers, m2: Numbers, m4: Numbers) -> Asperities:
     Notes
     -----
     McCool, Wear 107 (1986) 37, after Nayak, J. Lubr. Technol. 93 (1971) 398, with
-    alpha = m0 m4 / m2^2: density m4 / (6 pi sqrt 3 m2), R = (3/8) sqrt(pi / m4),
-    sigma_s^2 = (1 - 0.8968 / alpha) m0. A surface has alpha > 1.5; NaN below 0.8968.
+    alpha = m0 m4 / m2^2: R = (3/8) sqrt(pi / m4), sigma_s^2 = (1 - 0.8968 / alpha) m0. A surface
+    has alpha > 1.5; NaN below 0.8968.
     """
     alpha = m0 * m4 / m2**2
-    variance = np.where(alpha > 0.8968, (1 - 0.8968 / alpha) * m0, np.nan)
-    return Asperities(
-        density=m4 / (6 * np.pi * np.sqrt(3) * m2),
-        radius=3 / 8 * np.sqrt(np.pi / m4),
-        height_deviation=np.sqrt(variance),
-    )
+    # xr.where would drop the attributes of the coordinates.
+    variance = (1 - 0.8968 / alpha) * m0 * np.where(alpha > 0.8968, 1.0, np.nan)
+    return Asperities(radius=3 / 8 * np.sqrt(np.pi / m4), height_deviation=np.sqrt(variance))
 
 
 def greenwood_williamson_area(
