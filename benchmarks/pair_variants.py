@@ -32,7 +32,6 @@ from fractalcontact.core.settings import Settings, Solver
 from fractalcontact.core.window import cell_side, window_sides
 from fractalcontact.mechanics.closure import closure_curves
 from fractalcontact.mechanics.closure_laws import fit_hyperbola
-from fractalcontact.mechanics.first_contact import highest_node_scatter
 from fractalcontact.mechanics.joint import describe_joint, prefractal
 from fractalcontact.mechanics.loading import JointLoading
 from fractalcontact.mechanics.overlap import fits_undetermined
@@ -125,7 +124,9 @@ def numbers(specimen, settings: Settings, solver: Solver, wanted: float) -> dict
         for k, state in ((1, at), (2, coarse))
     )
     counting = 1.96 / np.sqrt(max(float(at["nodes"]), 1.0))
-    highest = highest_node_scatter(heights)
+    # Of the highest node, as error_budget/counting.py has it: a length over which pressures fall by e.
+    decay = float(at["nominal_pressure"]) / values["stiffness"]
+    highest = 1.96 * np.pi / np.sqrt(6) * decay
     own = {
         "stiffness": counting * values["stiffness"],
         "area_corrected": counting * values["area_corrected"],
