@@ -124,7 +124,7 @@ def numbers(specimen, settings: Settings, solver: Solver, wanted: float) -> dict
         for k, state in ((1, at), (2, coarse))
     )
     counting = 1.96 / np.sqrt(max(float(at["nodes"]), 1.0))
-    # Of the highest node, as error_budget/counting.py has it: a length over which pressures fall by e.
+    # Scatter of the highest node, as of error_budget/counting.py.
     decay = float(at["nominal_pressure"]) / values["stiffness"]
     highest = 1.96 * np.pi / np.sqrt(6) * decay
     own = {
