@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from fractalcontact.core.intervals import jackknife_error
-from fractalcontact.core.slope_of_sums import halves, slope_of_sums, wave_error
+from fractalcontact.core.slope_of_sums import slope_of_sums, wave_error
 
 
 def test_jackknife_of_a_mean_is_its_t_interval():
@@ -22,14 +22,6 @@ def test_jackknife_of_two_divisions_pools_them():
     left = [(x.sum() - x) / 3 for x in (rows, columns)]
     assert jackknife_error(*left) == pytest.approx(expected)
     assert jackknife_error(left[0], [1.0]) == pytest.approx(jackknife_error(left[0]))
-
-
-@pytest.mark.parametrize("n", range(2, 12))
-def test_halves_are_equal_and_share_their_middle(n):
-    lower, upper = (set(range(n)[part]) for part in halves(n))
-    assert lower | upper == set(range(n))
-    assert len(lower) == len(upper)
-    assert lower & upper == {(n - 1) // 2, n // 2}
 
 
 def test_jackknife_with_too_little():

@@ -12,11 +12,9 @@ from fractalcontact.domain.clusters import (
     CLUSTER_FIELDS,
     cluster_sizes,
     cluster_statistics,
-    half_share,
     morisita_index,
     octave_counts,
     quadrat_counts,
-    random_half_share,
     size_exponent,
 )
 from fractalcontact.surface.synthesis import self_affine
@@ -50,37 +48,31 @@ def test_full_contact():
     assert found["cluster_area_mean"] == pytest.approx(6.4**2)
     assert found["cluster_octaves"].tolist() == [0] * 12 + [1]
     assert (found["morisita"], found["morisita_scatter"]) == (1, 0)
-    assert found["half_share"] == found["half_share_random"] == 0.5
 
 
 def test_one_node():
     found = cluster_statistics(block((64, 64), 20, 3), 0.5)
     assert found["clusters"] == found["largest_share"] == 1
     assert found["cluster_area_mean"] == 0.25
-    assert found["half_share"] == 1 / 128  # half of one quadrat in 64
     assert np.isnan([found["morisita"], found["morisita_scatter"]]).all()
 
 
 def test_all_contact_in_one_quadrat():
     found = cluster_statistics(block((64, 64), slice(8, 14), slice(0, 6)), 1.0)
     assert found["morisita"] == pytest.approx(4095 / 63)
-    assert found["half_share"] == 1 / 128
     assert found["morisita"] > 1 + 10 * found["morisita_scatter"]
 
 
 def test_checkerboard_of_cells_is_one_cluster_more_regular_than_chance():
     found = cluster_statistics(np.indices((64, 64)).sum(axis=0) % 2 == 0, 1.0)
     assert found["clusters"] == 1  # joined over the corners
-    assert found["half_share"] == 0.5
     assert found["morisita"] < 1
-    assert found["half_share"] > found["half_share_random"]
 
 
-def test_checkerboard_of_quadrats_holds_its_half_in_a_quarter():
+def test_checkerboard_of_quadrats_is_localised():
     contact, cells = quadrat_counts(np.indices((64, 64)).sum(axis=0) // 8 % 2 == 0)
     assert contact.shape == cells.shape == (64,)
     found = cluster_statistics(np.kron(np.indices((8, 8)).sum(axis=0) % 2 == 0, np.ones((8, 8))), 1)
-    assert found["half_share"] == 0.25
     assert found["morisita"] == pytest.approx(4095 / 2047)
     assert found["clusters"] == 1
 
@@ -180,25 +172,11 @@ def test_mean_and_scatter_of_morisita_over_all_sets_of_few_nodes():
 def test_random_nodes_read_as_random(shape, nodes):
     draws = ensemble("random domains")
     found = [cluster_statistics(random_domain(shape, nodes, seed), 1.0) for seed in range(draws)]
-    index, share = (np.array([f[name] for f in found]) for name in ("morisita", "half_share"))
+    index = np.array([f["morisita"] for f in found])
     scatter = found[0]["morisita_scatter"]
     assert index.mean() == pytest.approx(1, abs=4 * scatter / np.sqrt(draws))
     # Of 200 draws the standard deviation is known within 5 %, so this is four times that.
     assert index.std() == pytest.approx(scatter, rel=0.2 * np.sqrt(200 / draws))
-    assert share.mean() == pytest.approx(found[0]["half_share_random"], rel=0.05)
-
-
-def test_half_share_agrees_with_trying_all_choices():
-    contact = np.array([5, 0, 3, 9, 1, 1, 0, 1])
-    cells = np.full(8, 10)
-    fewest = min(
-        len(chosen)
-        for n in range(1, 9)
-        for chosen in itertools.combinations(range(8), n)
-        if contact[list(chosen)].sum() >= 10
-    )
-    assert fewest == 2
-    assert half_share(contact, cells) == pytest.approx((1 + (10 - 9) / 5) / 8)
 
 
 @pytest.mark.parametrize("beta", [0.6, 1.0, 1.5])
@@ -260,7 +238,6 @@ def test_localised_contact_is_told_from_contact_spread_evenly():
         packed[y // 3 : y // 3 + 2, x // 3 : x // 3 + 2] = True
     even, corner = (cluster_statistics(domain, 1.0) for domain in (spread, packed))
     assert corner["morisita"] > 3 * even["morisita"]
-    assert corner["half_share"] < even["half_share"] < 0.5
 
 
 def test_unit_of_length_changes_only_areas():
@@ -274,8 +251,7 @@ def test_halved_cells_leave_clusters_as_they_are():
     domain = self_affine((96, 96), 1.0, 0.7, rms=1.0, seed=4)[:, :64] > 0.8
     whole = cluster_statistics(domain, 0.3)
     halved = cluster_statistics(np.kron(domain, np.ones((2, 2), bool)), 0.15)
-    of_area = ["clusters", "largest_share", "cluster_area_mean"]
-    for name in (*of_area, "half_share"):
+    for name in ("clusters", "largest_share", "cluster_area_mean"):
         assert halved[name] == pytest.approx(whole[name], rel=1e-12)
 
 
@@ -309,12 +285,7 @@ def test_tables_of_one_window_fit_together():
 def test_windows_smaller_than_the_quadrats():
     for shape in ((1, 1), (1, 9), (5, 3), (9, 7)):
         found = cluster_statistics(np.ones(shape, bool), 1.0)
-        assert found["half_share"] == pytest.approx(0.5)
+        assert found["clusters"] == 1
         contact, cells = quadrat_counts(np.ones(shape, bool))
         np.testing.assert_array_equal(contact, cells)
         assert cells.min() >= 1
-
-
-def test_random_share_of_a_large_window_is_almost_a_half():
-    # By quadrat, not by node: a window of 17 million nodes takes no longer than a small one.
-    assert 0.49 < random_half_share(10**6, np.full(64, 512 * 512)) < 0.5

@@ -14,7 +14,6 @@ from fractalcontact.core.verdicts import (
 )
 from fractalcontact.domain.box_counts import mean_count, whole_sizes
 from fractalcontact.domain.box_dimension import dimension_of_domain
-from fractalcontact.domain.correlation import pair_counts, pair_distances
 from fractalcontact.domain.departure import departure_of
 from fractalcontact.domain.mean_law import find_law
 from fractalcontact.domain.null_models import bearing_area_cut, null_models
@@ -109,16 +108,6 @@ def test_expected_counts_are_the_mean_of_draws():
     error = counts.std(axis=0, ddof=1) / np.sqrt(draws)
     expected = expected_mean_counts(shape, nodes, sizes)
     assert (np.abs(counts.mean(axis=0) - expected) <= 4 * error + 1e-9).all()
-
-
-def test_pairs_compared_are_those_transformed(monkeypatch):
-    domain = scattered((48, 64), 300, 0)
-    distances = pair_distances(domain.shape)
-    compared, lags = pair_counts(domain, distances)
-    monkeypatch.setattr("fractalcontact.domain.correlation._MAX_COMPARED", 0)
-    transformed, same = pair_counts(domain, distances)
-    np.testing.assert_allclose(compared, transformed)
-    np.testing.assert_array_equal(lags, same)
 
 
 # -- properties ------------------------------------------------------------------------------------

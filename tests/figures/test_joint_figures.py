@@ -57,7 +57,7 @@ def test_clusters_drawn_are_those_of_the_contact_domains(atlas, name):
     columns = {
         "a": ("clusters",),
         "b": ("largest_share",),
-        "c": ("morisita", "half_share", "morisita_scatter"),
+        "c": ("morisita", "morisita_scatter"),
     }
     points = table[table["panel"] != "d"]
     assert set(points["panel"]) == set(columns)

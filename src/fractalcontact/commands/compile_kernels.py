@@ -11,7 +11,6 @@ from roughcontact.contact.state import ContactState
 from roughcontact.elastic.halfspace import HalfSpace
 from roughcontact.elastic.split_convolution import MIN_SPLIT_SIDE
 
-from ..domain.correlation import pair_counts
 from ..domain.measures import measures_of_states
 from ..flow.cubic_law import plane_flow
 from ..mechanics.rigid_slide import slide
@@ -55,11 +54,6 @@ def compile_kernels() -> list[float]:
     pressures = np.array([state.pressure for state in small])
     plane_flow(aperture(small[0]), (1.0, 1.0))
     measures_of_states(pressures, 1.0, np.arange(1.0, len(small) + 1))
-    # The places of one node, and of several, lie in memory in different ways.
-    domain = np.zeros((9, 9), bool)
-    for place in ((4, 4), (3, 5)):
-        domain[place] = True
-        pair_counts(domain, np.array([1.0, 2.0]))
     return stiffness
 
 

@@ -3,8 +3,7 @@
 Counts at many scales of one set are no independent points, and the error of a regression alone is
 far too small. Here parts of the window are left out one by one (the jackknife), and the waves of
 the sums about their smooth bend are added in quadrature. The bend itself is no error: that a slope
-changes with the scale is a finding of its own, which local slopes and the slopes of both halves of
-the range show.
+changes with the scale is a finding of its own, which local slopes show.
 """
 
 from collections.abc import Callable
@@ -19,7 +18,7 @@ from .intervals import jackknife_error
 #: Parts of the window along each axis, left out one by one.
 BLOCKS = 4
 
-#: Points a slope needs, and each half of its range for the half's own slope.
+#: Points that a slope needs.
 MIN_SCALES = 4
 
 
@@ -49,12 +48,6 @@ def wave_error(scales: np.ndarray, residuals: np.ndarray) -> float:
     powers = np.vander(x, _BEND + 1)
     about = residuals - powers @ np.linalg.lstsq(powers, residuals, rcond=None)[0]
     return float(2 * np.sqrt(2 * np.sum(about**2) / freedom) / x[-1])
-
-
-def halves(n: int) -> tuple[slice, slice]:
-    """The lower and the upper half of n scales, the middle in both."""
-    half = n // 2
-    return slice(half + 1), slice(-half - 1, None)
 
 
 def slope_of_sums(

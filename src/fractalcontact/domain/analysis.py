@@ -24,8 +24,6 @@ from .renormalisation import area_bend, compare_dimensions, renormalisation
 DOMAIN_FIELDS = {
     **rows_of("delta_sigma", "1", "box-counting dimension Delta_sigma of the contact domain"),
     "delta_sigma_error": ("1", "Delta_sigma, solver error bound"),
-    "delta_sigma_small_boxes": ("1", "Delta_sigma by the smaller half of the box sizes fitted"),
-    "delta_sigma_large_boxes": ("1", "Delta_sigma by the larger half of the box sizes fitted"),
     "fit_min": ("mm", "smallest box fitted"),
     "fit_max": ("mm", "largest box fitted"),
     "fit_n": ("1", "box sizes fitted"),
@@ -195,8 +193,6 @@ def _row(domain, spacing, ambiguous, **how) -> dict:
     return {
         **box.columns("delta_sigma"),
         "delta_sigma_error": ambiguous / domain.sum() if box.known else np.nan,
-        "delta_sigma_small_boxes": box.small_boxes,
-        "delta_sigma_large_boxes": box.large_boxes,
         "fit_min": box.over[0],
         "fit_max": box.over[1],
         "fit_n": box.n,

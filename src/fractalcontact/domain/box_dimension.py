@@ -13,7 +13,7 @@ from ..core.estimate import DIMENSION, IN_PLANE, Estimate, Scale
 from ..core.fitting import MIN_POINTS, LineFit, fit_line
 from ..core.limits import MIN_NODES
 from ..core.ranges import in_cells, within
-from ..core.slope_of_sums import BLOCKS, MIN_SCALES, halves, wave_error
+from ..core.slope_of_sums import BLOCKS, MIN_SCALES, wave_error
 from .box_counts import RATIOS, box_count, box_sizes, cropped, mean_count, window_sizes
 from .count_law import NO_TERMS, LawTerms
 from .cut_offs import between_cut_offs
@@ -60,9 +60,6 @@ class BoxDimension(Estimate):
         One of :data:`ESTIMATORS`.
     misfit : float
         Relative, rms, of the law that was fitted.
-    small_boxes, large_boxes : float
-        The dimension by the smaller and by the larger half of the sizes; NaN where they are too
-        few.
     terms : LawTerms
     means : MeanCounts
     ordinary : OrdinarySlope or None
@@ -73,8 +70,6 @@ class BoxDimension(Estimate):
     used: np.ndarray
     estimator: str = ""
     misfit: float = float("nan")
-    small_boxes: float = float("nan")
-    large_boxes: float = float("nan")
     terms: LawTerms = NO_TERMS
     means: MeanCounts = NO_MEANS
     ordinary: OrdinarySlope | None = None
@@ -156,10 +151,10 @@ def box_dimension(
     `BLOCKS` parts of the domain or strips of `BLOCKS` parts left out one by one, whichever is
     wider, and what waves of the counts about their smooth bend may tilt, in quadrature. The counts
     belong to one set and are no independent points: the error of a regression alone is far too
-    small. A bend of the counts is no error of the value but a finding: `small_boxes` and
-    `large_boxes` are the slopes of both halves of the range. Fewer than `MIN_NODES` nodes have a
-    value and no interval. An exact value has the slopes of every run of sizes over half of the
-    range or more instead. How often intervals hold the truth: docs/calibration.md.
+    small. A bend of the counts is no error of the value but a finding: the local slopes of
+    :mod:`domain.slope_curves` show it. Fewer than `MIN_NODES` nodes have a value and no interval.
+    An exact value has the slopes of every run of sizes over half of the range or more instead. How
+    often intervals hold the truth: docs/calibration.md.
 
     Known bias: percolation clusters of 512 and 1024 read 0.016 to 0.02 low in the mean. Sets marked
     by whole cells read up to 0.1 high where their waves hide that: state `whole_cells`. Levy dusts
@@ -176,8 +171,8 @@ def box_dimension(
     Figures apart, as two squares: once boxes are larger than a figure or than the gap, what is
     counted is no outline any more. With more of it than `count_law.MAX_OUTLINE` allows they read
     1.3 to 1.9, as a strip of 5 x 1 does, and where the gap is wide their intervals end short of 2:
-    `small_boxes` and `large_boxes` show the bend. Without that limit they are exact, but cascades
-    of 1.2 read 0.12 high. So with a set that is cut off so that copies of several sizes are left: a
+    local slopes show the bend. Without that limit they are exact, but cascades of 1.2 read 0.12
+    high. So with a set that is cut off so that copies of several sizes are left: a
     dust of 650 of its 729 cells reads 0.09 low, inside its interval.
     """
     domain = np.asarray(domain, dtype=bool)
@@ -304,8 +299,6 @@ def _of_law(cover: _Cover, law: FittedLaw, spacing) -> BoxDimension:
         used=cover.used & within(cover.sizes, law.sizes[0], law.sizes[-1]),
         estimator="mean",
         misfit=law.law.misfit,
-        small_boxes=law.of_halves[0],
-        large_boxes=law.of_halves[1],
         terms=terms._replace(node_width=terms.node_width * spacing, extent=terms.extent * spacing),
     )
 
@@ -345,12 +338,6 @@ def _of_cover(cover: _Cover, ladder, estimator, extent) -> BoxDimension:
     line = _line(r, count, ladder)
     slope, intercept = line.slope.value, line.intercept.value
     law = np.exp(intercept + slope * np.log(r[ladder]))
-    small, large = (
-        0.0 - _line(r, count, np.flatnonzero(ladder)[half]).slope.value
-        if line.n // 2 >= MIN_SCALES
-        else np.nan
-        for half in halves(line.n)
-    )
     return BoxDimension(
         value=0.0 - slope,  # a constant count gives 0, not -0
         n=line.n,
@@ -360,8 +347,6 @@ def _of_cover(cover: _Cover, ladder, estimator, extent) -> BoxDimension:
         used=ladder,
         estimator=estimator,
         misfit=float(np.sqrt(np.mean((law / count[ladder] - 1) ** 2))),
-        small_boxes=small,
-        large_boxes=large,
         terms=LawTerms(float(np.exp(intercept + slope * np.log(extent))), 0.0, 0.0, 0.0, extent),
     )
 

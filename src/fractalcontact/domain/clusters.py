@@ -25,8 +25,6 @@ CLUSTER_FIELDS = {
     ),
     "morisita": ("1", "Morisita's index of the contact over quadrats, 1 if spread at random"),
     "morisita_scatter": ("1", "standard deviation of Morisita's index of as many random nodes"),
-    "half_share": ("1", "smallest fraction of the window whose quadrats hold half of the contact"),
-    "half_share_random": ("1", "that fraction for as many random nodes"),
 }
 
 #: Contact is counted in equal parts of the window, this many each way (fewer where cells are few).
@@ -72,8 +70,6 @@ def cluster_statistics(domain: ArrayLike, spacing: float) -> dict[str, Any]:
         **size_exponent(octaves, sizes, cell),
         "morisita": index,
         "morisita_scatter": scatter,
-        "half_share": half_share(contact, cells),
-        "half_share_random": random_half_share(contact.sum(), cells),
         "cluster_octaves": octaves,
     }
 
@@ -225,65 +221,3 @@ def morisita_index(contact: ArrayLike, cells: ArrayLike) -> tuple[float, float]:
 def _falling(n, k):
     """n (n-1) ... (n-k+1), the ordered choices of k out of n."""
     return np.prod([n - i for i in range(k)], axis=0)
-
-
-def half_share(contact: ArrayLike, cells: ArrayLike) -> float:
-    """Smallest fraction of the window whose quadrats hold half of the contact.
-
-    Parameters
-    ----------
-    contact, cells : (quadrats,) array_like
-        Contact and extent of each quadrat.
-
-    Returns
-    -------
-    float
-        1/2 for contact as dense everywhere, less where it is localised, NaN without contact. The
-        last quadrat needed counts in proportion to what is needed of it.
-    """
-    contact, cells = np.asarray(contact, float), np.asarray(cells, float)
-    if not contact.any():
-        return np.nan
-    densest = np.argsort(-contact / cells, kind="stable")
-    held = np.cumsum(contact[densest]) / contact.sum()
-    extent = np.cumsum(cells[densest]) / cells.sum()
-    return float(np.interp(0.5, np.r_[0, held], np.r_[0, extent]))
-
-
-def random_half_share(nodes: float, cells: ArrayLike) -> float:
-    """:func:`half_share` of nodes drawn at random, for many quadrats as large as the mean one.
-
-    Parameters
-    ----------
-    nodes : int
-        In contact.
-    cells : (quadrats,) int array_like
-
-    Returns
-    -------
-    float
-        NaN for no nodes.
-    """
-    window, nodes = float(np.sum(cells)), float(nodes)
-    if nodes == 0:
-        return np.nan
-    quadrat = window / np.size(cells)
-    # Nodes in one quadrat: a hypergeometric distribution, of which the ends do not matter.
-    mean = nodes * quadrat / window
-    deviation = np.sqrt(mean * (1 - nodes / window))
-    reach = 10 * (deviation + 1)
-    first, last = (
-        max(mean - reach, 0, quadrat - (window - nodes)),
-        min(mean + reach, quadrat, nodes),
-    )
-    count = np.arange(np.ceil(first - 1e-9), np.floor(last + 1e-9) + 1)
-    if len(count) < 2:
-        return 0.5
-    weight = _log_choices(quadrat, count) + _log_choices(window - quadrat, nodes - count)
-    share = np.exp(weight - weight.max())
-    return half_share(count * share, share)
-
-
-def _log_choices(n, k):
-    """Logarithm of the number of choices of k out of n."""
-    return special.gammaln(n + 1) - special.gammaln(k + 1) - special.gammaln(n - k + 1)

@@ -3,8 +3,6 @@
 import numpy as np
 from scipy import fft
 
-from roughcontact.kernel_cache import njit
-
 from ..core.estimate import Estimate
 from ..core.fitting import fit_line
 from ..core.slope_of_sums import BLOCKS, MIN_SCALES, slope_of_sums
@@ -14,14 +12,11 @@ from .box_counts import geometric_sizes
 SMALLEST_DISTANCE = 2
 LARGEST_DISTANCE = 1 / 8
 
-#: So many comparisons of two nodes cost no more than the Fourier transforms of a window.
-_MAX_COMPARED = 3e7
-
 
 def pair_counts(domain: np.ndarray, distances: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Pairs of nodes within some distances, by the part of the window of the first node.
 
-    Exact: pair by pair where nodes are few, else by fast Fourier transform.
+    Exact, by fast Fourier transform.
 
     Parameters
     ----------
@@ -41,59 +36,7 @@ def pair_counts(domain: np.ndarray, distances: np.ndarray) -> tuple[np.ndarray, 
     reach = int(distances[-1])
     lag_y, lag_x = np.mgrid[-reach : reach + 1, -reach : reach + 1]
     inside = (1 - np.abs(lag_y) / domain.shape[0]) * (1 - np.abs(lag_x) / domain.shape[1])
-    ring = _rings(lag_y, lag_x, distances)
-    rings, lags = len(distances) + 1, _lags_of(distances)
-    nodes = np.nonzero(domain)
-    if nodes[0].size ** 2 * min(reach / domain.shape[0], 1) < _MAX_COMPARED:
-        part = np.zeros(domain.shape, np.int64)
-        for i, where in enumerate(_parts(domain.shape)):
-            part[where] = i
-        corner = slice(reach, None), slice(reach, None)
-        by_ring = _compare_pairs(*nodes, part[nodes], ring[corner], 1 / inside[corner], rings)
-        return np.cumsum(by_ring[:-1], axis=0), lags
-    return _transformed_pairs(domain, ring, inside, len(distances)), lags
-
-
-def _lags_of(distances: np.ndarray) -> np.ndarray:
-    """Number of non-zero lags of the grid within each distance, (k,) int64."""
-    reach = int(distances[-1])
-    lag_y, lag_x = np.mgrid[-reach : reach + 1, -reach : reach + 1]
-    ring = _rings(lag_y, lag_x, distances)
-    return np.cumsum(np.bincount(ring.ravel(), minlength=len(distances) + 1)[:-1])
-
-
-def _rings(lag_y, lag_x, distances):
-    """Bin of each lag's distance among the distances; lags that are no pair lie beyond."""
-    lag = np.hypot(lag_y, lag_x)
-    # The small number keeps a lag at its own distance.
-    ring = np.searchsorted(np.asarray(distances) + 1e-9, lag)
-    ring[lag == 0] = len(distances)
-    return ring
-
-
-@njit(cache=True)
-def _compare_pairs(y, x, part, ring, weight, rings):
-    """Pairs of each ring, weighted and as they are, by the part of their first node."""
-    pairs = np.zeros((rings, 2, BLOCKS**2))
-    reach = ring.shape[0] - 1
-    for i in range(y.size):
-        for j in range(i + 1, y.size):
-            dy = y[j] - y[i]
-            if dy > reach:
-                break
-            dx = abs(x[j] - x[i])
-            if dx <= reach:
-                at = ring[dy, dx]
-                for first in (part[i], part[j]):
-                    pairs[at, 0, first] += weight[dy, dx]
-                    pairs[at, 1, first] += 1
-    return pairs
-
-
-def _transformed_pairs(domain, ring, inside, n):
-    """Pairs up to each of n distances, weighted and as they are, by Fourier transform."""
-    reach = len(ring) // 2
-    lag_y, lag_x = np.mgrid[-reach : reach + 1, -reach : reach + 1]
+    ring, n = _rings(lag_y, lag_x, distances), len(distances)
     pairs = np.zeros((n, 2, BLOCKS**2))
     for i, part in enumerate(_parts(domain.shape)):
         # Of a part and all around it that its nodes pair with; zeros fill up what the window lacks,
@@ -110,7 +53,16 @@ def _transformed_pairs(domain, ring, inside, n):
             for j, weighted in enumerate((counts / inside, counts)):
                 by_ring = np.bincount(ring.ravel(), weights=weighted.ravel(), minlength=n + 1)
                 pairs[:, j, i] = np.cumsum(by_ring[:-1])
-    return pairs
+    return pairs, np.cumsum(np.bincount(ring.ravel(), minlength=n + 1)[:-1])
+
+
+def _rings(lag_y, lag_x, distances):
+    """Bin of each lag's distance among the distances; lags that are no pair lie beyond."""
+    lag = np.hypot(lag_y, lag_x)
+    # The small number keeps a lag at its own distance.
+    ring = np.searchsorted(np.asarray(distances) + 1e-9, lag)
+    ring[lag == 0] = len(distances)
+    return ring
 
 
 def _parts(shape):

@@ -12,7 +12,7 @@ import numpy as np
 from ..core.fitting import MIN_POINTS
 from ..core.intervals import jackknife_error
 from ..core.ranges import within
-from ..core.slope_of_sums import BLOCKS, MIN_SCALES, halves, wave_error
+from ..core.slope_of_sums import BLOCKS, MIN_SCALES, wave_error
 from .box_counts import cropped, mean_count, whole_sizes
 from .count_law import (
     SMALLEST,
@@ -48,8 +48,6 @@ class FittedLaw(NamedTuple):
     """(k,), cells."""
     terms: LawTerms
     """In cells."""
-    of_halves: tuple[float, float]
-    """Dimension by the smaller and by the larger half of the sizes; NaN where they are too few."""
 
 
 NO_MEANS = MeanCounts(np.empty(0, np.int64), np.empty(0))
@@ -102,14 +100,8 @@ def law_of_means(
         error = block_error(parts, lambda left: count_slope(left, sizes))
     waves = wave_error(sizes, np.log(count / law_count(sizes, law.dimension, terms)))
     half = float(np.hypot(error, waves))
-    of_halves = (np.nan, np.nan)
-    if sizes.size // 2 >= MIN_SCALES:
-        small, large = (
-            law_dimension(law, sizes[part], count[part], side) for part in halves(sizes.size)
-        )
-        of_halves = small, large
     ends = law.dimension - half, law.dimension + half
-    return FittedLaw(law, ends, sizes, terms, of_halves), means
+    return FittedLaw(law, ends, sizes, terms), means
 
 
 def _fitted(means, extent, limits, whole_cells):

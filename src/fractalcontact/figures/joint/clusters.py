@@ -35,7 +35,7 @@ _DRAWN = {
     "largest_share": (),
     "morisita": (
         *("morisita_by_chance_low", "morisita_by_chance_high", "morisita_cut", "morisita_used"),
-        *("morisita_exponent", "morisita_scatter", "half_share", "half_share_random"),
+        *("morisita_exponent", "morisita_scatter"),
     ),
 }
 
