@@ -16,7 +16,7 @@ from .box_counts import window_sizes
 from .box_dimension import ESTIMATORS, dimension_of_domain
 from .cluster_laws import cluster_laws
 from .clusters import CLUSTER_FIELDS, cluster_statistics
-from .fitted_counts import fitted_counts
+from .count_law import law_count
 from .mean_law import mean_sizes
 from .renormalisation import area_bend, compare_dimensions, renormalisation
 
@@ -74,6 +74,16 @@ _TABLE = {
     ),
     "box_side": (("resolution", "scale"), "mm", "side of the boxes r"),
     "mean_count": ((*_ORDER, "mean_scale"), "1", "occupied boxes N(r), mean over all grid origins"),
+    "law_count": (
+        (*_ORDER, "mean_scale"),
+        "1",
+        "box counts by the law that Delta_sigma is fitted with",
+    ),
+    "ordinary_count": (
+        (*_ORDER, "scale"),
+        "1",
+        "box counts by the line that the ordinary dimension is fitted with",
+    ),
     "mean_side": (("resolution", "mean_scale"), "mm", "side of the boxes of the mean counts r"),
 }
 
@@ -106,9 +116,9 @@ def analyse_domains(
         :data:`DOMAIN_FIELDS`, ``reason`` (why there is no dimension, or no interval) and
         ``determined`` over (direction, offset, resolution, load); ``box_count`` and ``box_used``
         with a last dimension scale, ``mean_count`` with mean_scale, ``cluster_octaves`` with
-        octave; ``box_side`` and ``mean_side`` (resolution, ...) in mm; the curves of the laws that
-        are fitted, by :func:`domain.fitted_counts.fitted_counts` and
-        :func:`domain.cluster_laws.cluster_laws`.
+        octave; ``box_side`` and ``mean_side`` (resolution, ...) in mm; over the
+        sides fitted ``law_count`` of the count law and ``ordinary_count`` of the ordinary slope;
+        what :func:`domain.cluster_laws.cluster_laws` finds.
 
     Notes
     -----
@@ -161,7 +171,7 @@ def analyse_domains(
     }
     coords |= {"resolution": multiples, "octave": octaves}
     result = labelled_dataset(_TABLE, table, coords=coords)
-    return result.merge(fitted_counts(result)).merge(cluster_laws(result, nodes, spacing))
+    return result.merge(cluster_laws(result, nodes, spacing))
 
 
 def _solver_state(fields, shape):
@@ -183,13 +193,17 @@ def _empty_table(shape, n_scales, n_means, n_octaves) -> dict[str, np.ndarray]:
         "box_count": np.full((*shape, n_scales), np.nan),
         "box_used": np.zeros((*shape, n_scales), bool),
         "ordinary_used": np.zeros((*shape, n_scales), bool),
-        "mean_count": np.full((*shape, n_means), np.nan),
+        **{name: np.full((*shape, n_means), np.nan) for name in ("mean_count", "law_count")},
+        "ordinary_count": np.full((*shape, n_scales), np.nan),
     }
 
 
 def _row(domain, spacing, ambiguous, **how) -> dict:
     """Row of the table for one domain; ``how`` chooses the estimator of its dimension."""
     box = dimension_of_domain(domain, spacing, **how)
+    sides = mean_sizes(domain.shape) * spacing
+    with np.errstate(invalid="ignore"):  # of a box as large as what a node stands for, to rounding
+        law = law_count(sides, box.dimension, box.terms)
     return {
         **box.columns("delta_sigma"),
         "delta_sigma_error": ambiguous / domain.sum() if box.known else np.nan,
@@ -206,6 +220,7 @@ def _row(domain, spacing, ambiguous, **how) -> dict:
         "box_count": box.count,
         "box_used": box.used,
         "mean_count": box.means.counts,
+        "law_count": np.where(within(sides, *box.over), law, np.nan),
     }
 
 
@@ -215,6 +230,12 @@ def _ordinary(box, spacing) -> dict:
     if slope is None:
         return {}
     used = np.isin(np.round(box.r / spacing), slope.sizes[slope.used])
+    line = np.full(box.r.shape, np.nan)
+    if used.any():
+        # Through the mean of the logarithms of the counts fitted.
+        level = np.mean(np.log(box.count[used]) + slope.value * np.log(box.r[used]))
+        inside = within(box.r, *(end * spacing for end in slope.over))
+        line = np.where(inside, np.exp(level) * box.r**-slope.value, np.nan)
     return {
         **slope.columns("delta_sigma_ordinary"),
         "ordinary_fit_min": slope.over[0] * spacing,
@@ -222,6 +243,7 @@ def _ordinary(box, spacing) -> dict:
         "ordinary_fit_n": slope.n,
         "ordinary_determined": slope.determined,
         "ordinary_used": used,
+        "ordinary_count": line,
     }
 
 
