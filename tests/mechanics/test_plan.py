@@ -180,7 +180,7 @@ def test_a_study_solves_less_and_says_so(specimen):
     spacing = np.isfinite(found["closure_spacing_error"])
     assert spacing.any("normal_force").sum() == 2
     dilatancy = elastic_dilatancy(found, describe_joint(specimen, SETTINGS))
-    table = solve_plan(found, dilatancy, SETTINGS, solver).set_index(choice="choice")
+    table = solve_plan(found, dilatancy, solver).set_index(choice="choice")
     assert table.attrs["states_solved"] == 20
     assert table.attrs["states"] == 48
     assert float(table["error"].sel(choice="solver tolerance")) < 2e-3

@@ -67,7 +67,6 @@ def solved_loads(
 def solve_plan(
     curves: xr.Dataset,
     dilatancy: xr.Dataset,
-    settings: ContactSettings,
     solver: Solver,
     budget: xr.Dataset | None = None,
 ) -> xr.Dataset:
@@ -79,7 +78,6 @@ def solve_plan(
         From :func:`mechanics.closure.closure_curves`.
     dilatancy : xr.Dataset
         From :func:`mechanics.closure.elastic_dilatancy`.
-    settings : ContactSettings
     solver : Solver
     budget : xr.Dataset, optional
         Stage ``error_budget``: with it the plan says what the spacing leaves uncertain.
@@ -94,7 +92,7 @@ def solve_plan(
     rows = [
         _of_tolerance(curves, solver, requested),
         _of_loads(curves, dilatancy, requested),
-        _of_directions(curves, settings),
+        _of_directions(curves),
         _of_resolutions(curves),
         _of_extent(curves),
     ]
@@ -163,26 +161,14 @@ def _of_loads(curves, dilatancy, requested):
     return "load steps", value, reason, "interface closure, if every second were left out", np.nan
 
 
-def _of_directions(curves, settings: ContactSettings):
-    first, *others = settings.contact_directions
-    if first == "none":
-        return (
-            "directions",
-            "none",
-            f"{NO_SLIDING} does not slide",
-            "",
-            np.nan,
-        )
-    if not others:
-        return "directions", first, "the only direction whose contact is requested", "", np.nan
-    finest = curves["solved"].sel(resolution=curves["resolution"].min())
-    loads = int(finest.sel(direction=others[0]).any("offset").sum())
-    value = f"{first}: all loads; {', '.join(others)}: {loads}"
-    reason = (
-        "the study requests all"
-        if loads == finest.sizes["normal_force"]
-        else "the others show dilatancy alone, under its loads"
+def _of_directions(curves):
+    solved = curves["solved"].sel(resolution=curves["resolution"].min())
+    counts = solved.any("offset").sum("normal_force")
+    value = "; ".join(
+        f"{NO_SLIDING} does not slide" if direction == "none" else f"{direction}: {int(n)} loads"
+        for direction, n in zip(curves["direction"].values, counts.values, strict=True)
     )
+    reason = "directions after the first show dilatancy alone, under its loads"
     return "directions", value, reason, "", np.nan
 
 
@@ -235,21 +221,11 @@ def _of_spacing(budget, requested):
     spacings = budget["finest_spacing"].values[refined]
     value = f"refined at {refined.sum()} of {len(refined)} loads, down to {spacings.min():.3g} mm"
     of_known = errors[known]
-    least, most = f"{of_known.min():.2g}", f"{of_known.max():.2g}"
-    reason = f"at this spacing {100 * float(least):g} to {100 * float(most):g} %"
+    least, most = (100 * float(f"{end:.2g}") for end in (of_known.min(), of_known.max()))
+    reason = f"at this spacing {least:g} to {most:g} %"
     if requested is not None:
         asked = requested["closure"]
         reached = int(np.count_nonzero(of_known <= asked))
-        reason += f", asked {100 * asked:g} %: " + (
-            "reached"
-            if reached == known.sum()
-            else f"cannot be reached at this spacing at {known.sum() - reached} of {known.sum()} "
-            "loads"
-        )
-    return (
-        name,
-        value,
-        reason,
-        "interface closure, by the grid (same surface)",
-        float(of_known.max()),
-    )
+        reason += f"; {100 * asked:g} % reached under {reached} of {known.sum()} loads"
+    of = "interface closure, by the grid (same surface)"
+    return name, value, reason, of, float(of_known.max())

@@ -48,7 +48,7 @@ def error_stages(
     loading = joint.at_map_offset()
     spread = registration_spread(loading)
     budget = error_budget(loading, closure, domains, registration_spread=spread, ensemble=ensemble)
-    plan = solve_plan(closure, dilatancy, settings, solver, budget)
+    plan = solve_plan(closure, dilatancy, solver, budget)
     return {
         "branches": joint_branches(loading, closure, mapped),
         "error_budget": with_pressure(budget, joint.area),
