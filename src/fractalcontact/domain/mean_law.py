@@ -13,7 +13,7 @@ from ..core.fitting import MIN_POINTS
 from ..core.intervals import jackknife_error
 from ..core.ranges import within
 from ..core.slope_of_sums import BLOCKS, MIN_SCALES, wave_error
-from .box_counts import cropped, mean_count, whole_sizes
+from .box_counts import cropped, mean_count, minimal_cover, whole_sizes
 from .count_law import (
     SMALLEST,
     SMALLEST_SEPARATING,
@@ -182,6 +182,45 @@ def find_law(
     law, between = found
     separating = sizes[between]
     return FoundLaw(law, separating[separating >= SMALLEST], separating, max(extent.shape))
+
+
+def dimension_by_means(
+    domain: np.ndarray,
+    cover_sizes: np.ndarray,
+    *,
+    limits: tuple[float, float] = (0, np.inf),
+    whole_cells: bool | None = None,
+) -> tuple[float, np.ndarray]:
+    """Dimension by the law of the mean counts without its interval, and the minimal cover.
+
+    Parameters
+    ----------
+    domain : (ny, nx) bool ndarray
+    cover_sizes : (k,) int64 ndarray
+        Box sides in cells of the minimal cover.
+    limits, whole_cells
+        As :func:`law_of_means` takes them.
+
+    Returns
+    -------
+    dimension : float
+        Where too few sizes lie between the cut-offs the limit that the counts have reached: 2 where
+        every box is occupied, 0 where every node is alone; NaN where neither.
+    cover : (k,) int64
+    """
+    extent = cropped(domain)
+    sizes = mean_sizes(extent.shape)
+    cover, count = minimal_cover(extent, cover_sizes), mean_count(extent, sizes).ravel()
+    means = MeanCounts(sizes, count)
+    found = _fitted(means, extent, limits, whole_cells)
+    if found is not None:
+        return found[0].dimension, cover
+    alone, full = (
+        np.count_nonzero(beyond[sizes > 1]) for beyond in _beyond_cut_offs(means, extent)
+    )
+    if max(alone, full) < MIN_SCALES:
+        return np.nan, cover
+    return 2.0 if full >= alone else 0.0, cover
 
 
 def block_error(

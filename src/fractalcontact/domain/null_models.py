@@ -248,9 +248,7 @@ def _row(domain, spacing, composite, fit_range, mask, how) -> dict[str, Any]:
     ours = counted(domain)
     box, nodes = ours.box, int(np.count_nonzero(domain))
     law = ours.law if box.estimator == "mean" else None
-    bands, counts = random_bands(
-        domain.shape, nodes, mask=mask, whole_cells=how["whole_cells"], law=law
-    )
+    bands, counts = random_bands(domain.shape, nodes, mask=mask, law=law, **how)
     of_cut = dict.fromkeys(QUANTITIES, np.nan)
     beyond_cut = dict.fromkeys(_COMPARED["_cut_difference"], NO_ESTIMATE)
     count = np.full(dyadic_sizes(domain.shape).size, np.nan)

@@ -8,7 +8,7 @@ from ..core.intervals import t_quantile
 from ..core.ranges import in_cells
 from .box_counts import mean_count, minimal_cover
 from .clusters import NEIGHBOURS
-from .mean_law import FoundLaw, find_law
+from .mean_law import FoundLaw, dimension_by_means, find_law
 from .ordinary_slope import dyadic_sizes
 
 #: Draws of random nodes. The band allows for their number.
@@ -45,6 +45,7 @@ def random_bands(
     nodes: int,
     *,
     mask: np.ndarray | None = None,
+    limits: tuple[float, float] = (0.0, np.inf),
     whole_cells: bool | None = False,
     law: FoundLaw | None = None,
     draws: int = DRAWS,
@@ -59,11 +60,13 @@ def random_bands(
         To draw; with fewer than two there is nothing to compare.
     mask : (ny, nx) bool ndarray, optional
         Cells that nodes may lie in; all by default.
+    limits : (float, float)
+        Smallest and largest box side that may be fitted, cells.
     whole_cells : bool, optional
         As :func:`domain.count_law.best_law` takes it.
     law : FoundLaw, optional
-        Law of the domain that is compared: the draws' laws are fitted over the same boxes. Without
-        one there is no ``delta_sigma``.
+        Law of the domain that is compared: the draws' laws are fitted over the same boxes. By
+        default each draw has its own range, between its own cut-offs.
     draws : int
 
     Returns
@@ -77,7 +80,8 @@ def random_bands(
     -----
     The same shape and number draw the same nodes on every run. Nodes at random cross over from
     points alone to full boxes, a slope of 2 + ln f / ln R over R cells at a fraction f in contact:
-    what a domain is compared with is that slope over its own boxes.
+    what a domain is compared with is that slope over its own boxes. A draw of its own range without
+    one, for its nodes are alone or its boxes full at all sizes, has the limit 0 or 2.
     """
     sizes = dyadic_sizes(shape)
     cells = np.arange(np.prod(shape)) if mask is None else np.flatnonzero(mask)
@@ -85,10 +89,15 @@ def random_bands(
     covers = []
     for seed in range(draws if nodes > 1 else 0):
         domain = random_nodes(shape, nodes, cells, seed)
-        covers.append(minimal_cover(domain, sizes))
-        dimension = np.nan
-        if law is not None:
-            dimension = law.refound(mean_count(domain, law.separating).ravel(), whole_cells)
+        if law is None:
+            dimension, cover = dimension_by_means(
+                domain, sizes, limits=limits, whole_cells=whole_cells
+            )
+        else:
+            cover = minimal_cover(domain, sizes)
+            mean = mean_count(domain, law.separating).ravel()
+            dimension = law.refound(mean, whole_cells)
+        covers.append(cover)
         rows["delta_sigma"].append(dimension)
         rows["clusters"].append(scipy.ndimage.label(domain, NEIGHBOURS)[1])
     if not covers:
