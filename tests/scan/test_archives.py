@@ -1,7 +1,6 @@
-"""Zip archives made to do harm are refused before any library opens them."""
+"""Zip archives that are damaged or made to do harm are refused, none is unpacked to disk."""
 
 import io
-import stat
 import struct
 import zipfile
 
@@ -10,8 +9,8 @@ import pytest
 from stated import read_scan
 
 from fractalcontact.core.errors import InputError
-from fractalcontact.scan import archives
-from fractalcontact.scan.archives import check_archive
+from fractalcontact.scan import files
+from fractalcontact.scan.files import inflated_size, require_whole
 
 
 def pack(path, members, method=zipfile.ZIP_DEFLATED):
@@ -27,28 +26,13 @@ def npy_bytes():
     return buffer.getvalue()
 
 
-@pytest.mark.parametrize(
-    "name", ["/etc/passwd", "../z.npy", "a/../../z.npy", "C:\\z.npy", "..\\z.npy", "\\z.npy"]
-)
-def test_members_outside_the_archive_are_refused(tmp_path, name):
-    path = pack(tmp_path / "rock.npz", [("z.npy", npy_bytes()), (name, b"1")])
-    with pytest.raises(
-        InputError, match=r"rock\.npz: its member .* points to a path outside the archive"
-    ):
+@pytest.mark.parametrize("name", ["/etc/passwd", "../z.npy", "C:\\z.npy", "bindata\\z.npy"])
+def test_no_member_is_written_anywhere(tmp_path, name):
+    path = pack(tmp_path / "rock.npz", [(name, b"1")])
+    require_whole(path)
+    with pytest.raises(InputError, match=r"rock\.npz: "):
         read_scan(path, {"unit": "mm", "spacing": 1})
-
-
-def test_backslashes_that_only_part_folders_pass(tmp_path):
-    """Windows programs write them, and the standard of X3P names vendors' files so."""
-    check_archive(pack(tmp_path / "rock.zip", [("bindata\\data.bin", b"1")]))
-
-
-def test_links_are_refused(tmp_path):
-    link = zipfile.ZipInfo("z.npy")
-    link.external_attr = (stat.S_IFLNK | 0o777) << 16
-    path = pack(tmp_path / "rock.npz", [(link, "/etc/passwd")])
-    with pytest.raises(InputError, match="is a link"):
-        check_archive(path)
+    assert [path.name for path in tmp_path.iterdir()] == ["rock.npz"]
 
 
 def test_encrypted_members_are_refused(tmp_path):
@@ -58,38 +42,18 @@ def test_encrypted_members_are_refused(tmp_path):
         content[content.index(signature) + offset] |= 1
     path.write_bytes(content)
     with pytest.raises(InputError, match="is encrypted"):
-        check_archive(path)
-
-
-def test_one_name_twice_is_refused(tmp_path):
-    with pytest.warns(UserWarning, match="Duplicate"):
-        path = pack(tmp_path / "rock.npz", [("z.npy", npy_bytes())] * 2)
-    with pytest.raises(InputError, match=r"two members 'z\.npy'"):
-        check_archive(path)
-
-
-def test_uncommon_methods_are_refused(tmp_path):
-    path = pack(tmp_path / "rock.npz", [("z.npy", npy_bytes())], zipfile.ZIP_LZMA)
-    with pytest.raises(InputError, match="'deflate'"):
-        check_archive(path)
-
-
-def test_too_many_members_are_refused(tmp_path, monkeypatch):
-    monkeypatch.setattr(archives, "MAX_MEMBERS", 5)
-    path = pack(tmp_path / "rock.npz", [(f"{i}.npy", b"") for i in range(6)])
-    with pytest.raises(InputError, match="6 members"):
-        check_archive(path)
+        require_whole(path)
 
 
 def test_a_bomb_is_refused_by_its_ratio_alone(tmp_path):
-    path = pack(tmp_path / "rock.npz", [("z.npy", bytes(archives.UNSUSPICIOUS + 1))])
+    path = pack(tmp_path / "rock.npz", [("z.npy", bytes(files.UNSUSPICIOUS + 1))])
     assert path.stat().st_size < 100_000
     with pytest.raises(InputError, match=r"inflates \d+ times"):
-        check_archive(path)
+        inflated_size(path)
 
 
-@pytest.mark.parametrize(("change", "message"), [(-50, "more than"), (+50, "less than")])
-def test_a_directory_that_lies_about_a_size_is_found_out(tmp_path, change, message):
+@pytest.mark.parametrize("change", [-50, +50])
+def test_a_directory_that_lies_about_a_size_is_found_out(tmp_path, change):
     path = pack(tmp_path / "rock.npz", [("z.npy", npy_bytes())])
     content = bytearray(path.read_bytes())
     for signature, offset in ((b"PK\x03\x04", 22), (b"PK\x01\x02", 24)):  # uncompressed size
@@ -97,8 +61,12 @@ def test_a_directory_that_lies_about_a_size_is_found_out(tmp_path, change, messa
         (size,) = struct.unpack_from("<I", content, at)
         struct.pack_into("<I", content, at, size + change)
     path.write_bytes(content)
-    with pytest.raises(InputError, match=message):
-        check_archive(path)
+    if change < 0:
+        with pytest.raises(InputError, match="Bad CRC-32|is damaged"):
+            require_whole(path)
+    else:
+        heights = read_scan(path, {"unit": "mm", "spacing": 1})  # all that was stored is there
+        np.testing.assert_array_equal(heights, np.load(io.BytesIO(npy_bytes())))
 
 
 def test_flipped_bytes_are_found_by_the_checksum(tmp_path):
@@ -106,28 +74,30 @@ def test_flipped_bytes_are_found_by_the_checksum(tmp_path):
     content = bytearray(path.read_bytes())
     content[200] ^= 0xFF
     path.write_bytes(content)
-    with pytest.raises(InputError, match="Bad CRC-32"):
-        check_archive(path)
+    with pytest.raises(InputError, match="Bad CRC-32|is damaged"):
+        require_whole(path)
+
+
+def laughs(depth=30):
+    entities = "".join(f'<!ENTITY a{i} "{f"&a{i - 1};" * 10 if i else "ha"}">' for i in range(depth))
+    return f"<!DOCTYPE a [{entities}]><ISO5436_2>&a{depth - 1};</ISO5436_2>"
 
 
 @pytest.mark.parametrize(
-    ("xml", "message"),
-    [
-        ('<!DOCTYPE a [<!ENTITY b "c">]><a>&b;</a>', "declares entities"),
-        ('<!DOCTYPE a SYSTEM "file:///etc/passwd"><a/>', "declares entities"),
-        ("<a>" * 200 + "</a>" * 200, "nested more than 100"),
-        ("<a><b></a>", "not a readable archive"),
-    ],
+    "xml",
+    [laughs(), '<!DOCTYPE a SYSTEM "file:///etc/passwd"><a/>', "<a>" * 10**6, "<a><b></a>"],
+    ids=["laughs", "outside", "deep", "broken"],
 )
-@pytest.mark.parametrize("encoding", ["utf-8", "utf-16"])
-def test_xml_that_would_make_a_parser_run_away_is_refused(tmp_path, xml, message, encoding):
-    """Also in members of formats that other libraries parse, such as .plux."""
-    path = pack(tmp_path / "rock.plux", [("index.xml", xml.encode(encoding))])
-    with pytest.raises(InputError, match=message):
-        check_archive(path)
+@pytest.mark.parametrize("name", ["rock.x3p", "rock.plux"])
+def test_xml_that_would_make_a_parser_run_away_is_refused(tmp_path, xml, name):
+    members = [("main.xml", xml), ("index.xml", xml), ("LAYER_0.raw", bytes(100))]
+    path = pack(tmp_path / name, members)
+    with pytest.raises(InputError, match=rf"{name}: "):
+        read_scan(path)
 
 
 def test_what_is_no_archive_passes(tmp_path):
     path = tmp_path / "rock.txt"
     path.write_text("1 2 3\n")
-    check_archive(path)
+    require_whole(path)
+    assert inflated_size(path) == 6

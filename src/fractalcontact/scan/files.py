@@ -9,6 +9,11 @@ from pathlib import Path
 from ..core.errors import InputError
 from .raw import reading, refuse_larger
 
+#: No measured heights deflate better than this; a bomb does, up to 1 : 1032.
+LARGEST_RATIO = 200
+#: A few constant or empty members may: the ratio counts above this many bytes only.
+UNSUSPICIOUS = 64 * 1024**2
+
 
 def regular_file(path: Path) -> os.stat_result:
     """Size and identity of a file that can be read.
@@ -42,19 +47,46 @@ def is_unchanged(before: os.stat_result, after: os.stat_result) -> bool:
 
 
 def inflated_size(path: Path) -> int:
-    """Size of a file, or its stated inflated size, bytes.
+    """Size of a file, or what its directory says that an archive (.npz, .x3p, ...) inflates to.
+
+    Returns
+    -------
+    int
+        Bytes.
 
     Raises
     ------
     InputError
-        If those are far too many, or the archive is damaged.
+        If those are far too many, more than measured heights deflate to, or the archive is damaged.
     """
     size = path.stat().st_size
     if zipfile.is_zipfile(path):
         with reading(path, "archive"), zipfile.ZipFile(path) as archive:
-            size = max(size, sum(member.file_size for member in archive.infolist()))
+            inflated = sum(member.file_size for member in archive.infolist())
+            packed = sum(member.compress_size for member in archive.infolist())
+        if inflated > UNSUSPICIOUS and inflated > LARGEST_RATIO * packed:
+            raise InputError(
+                f"{path}: the archive inflates {inflated / max(packed, 1):.0f} times, as no "
+                "measured surface does; export the scan again"
+            )
+        size = max(size, inflated)
     refuse_larger(size, path)
     return size
+
+
+def require_whole(path: Path) -> None:
+    """Refuse an archive with a member that is damaged, encrypted or not as long as promised.
+
+    No member's name matters: nothing is ever unpacked to disk.
+
+    Raises
+    ------
+    InputError
+    """
+    if zipfile.is_zipfile(path):
+        with reading(path, "archive"), zipfile.ZipFile(path) as archive:
+            if damaged := archive.testzip():
+                raise InputError(f"{path}: its member {damaged!r} is damaged; export it again")
 
 
 def sha256(path: Path) -> str:

@@ -8,7 +8,7 @@ from pathlib import Path
 from ..core.errors import InputError
 from ..core.modules import modules_of
 from . import readers
-from .archives import check_archive
+from .files import require_whole
 from .format import Format
 from .options import ScanOptions
 from .raw import RawScan
@@ -88,7 +88,7 @@ def _read(form: Format, path: Path, options: ScanOptions) -> RawScan:
 
 
 def _read_by_format(path: Path, options: ScanOptions) -> RawScan:
-    check_archive(path)
+    require_whole(path)
     extension = path.suffix.lower()
     for form in _declared(extension):
         if form.takes is None or form.takes(path):
