@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from fractalcontact.core.strips import blocks, stacked, strips
+from fractalcontact.core.strips import blocks, strips
 
 
 @pytest.mark.parametrize("count", [0, 1, 7, 100])
@@ -17,14 +17,3 @@ def test_blocks_take_everything_once_and_hold_no_more_than_allowed(count, number
 
 def test_strips_are_whole_rows():
     assert list(strips((5, 10), 2, most=45)) == [slice(0, 2), slice(2, 4), slice(4, 5)]
-
-
-@pytest.mark.parametrize("count", [1, 2, 5])
-def test_stacked_tables_are_those_of_concatenate(count):
-    rng = np.random.default_rng(count)
-    parts = [np.asfortranarray(rng.normal(size=(n + 1, 3))) for n in range(count)]
-    expected = np.concatenate(parts)
-    table = stacked(parts)
-    np.testing.assert_array_equal(table, expected)
-    assert table.flags.c_contiguous
-    assert parts == []

@@ -2,8 +2,6 @@
 
 from collections.abc import Iterator
 
-import numpy as np
-
 #: Numbers held at once: 32 MB of them.
 _NUMBERS = 4_000_000
 
@@ -41,28 +39,3 @@ def strips(shape: tuple[int, ...], numbers: int = 1, most: int = _NUMBERS) -> It
         As for :func:`blocks`.
     """
     return blocks(shape[0], numbers * shape[1], most)
-
-
-def stacked(parts: list[np.ndarray]) -> np.ndarray:
-    """Tables one above the other, as ``numpy.concatenate`` has them, in hardly more memory.
-
-    Parameters
-    ----------
-    parts : list of (n_i, columns) ndarray
-        Of one type; the list is emptied, so that each part is freed once it is copied.
-
-    Returns
-    -------
-    (sum of n_i, columns) ndarray
-    """
-    if len(parts) == 1:
-        return np.ascontiguousarray(parts.pop())
-    rows = sum(len(part) for part in parts)
-    table = np.empty((rows, parts[0].shape[1]), parts[0].dtype)
-    parts.reverse()
-    start = 0
-    while parts:
-        part = parts.pop()
-        table[start : start + len(part)] = part
-        start += len(part)
-    return table

@@ -185,29 +185,20 @@ def _require_units(raw: RawScan, options: ScanOptions, unit_xy, unit_z, path: Pa
     needs_unit_xy = raw.layout != "matrix" or (
         not lacks_spacing and not has_own_units(options.spacing)
     )
-    lacks_unit = unit_z is None or (needs_unit_xy and unit_xy is None)
-    if not (lacks_unit or lacks_spacing):
-        return
-    lacking = _lacking_unit(unit_xy, unit_z, needs_unit_xy) if lacks_unit else ()
-    what = " and ".join(filter(None, (*lacking[:1], "spacing" if lacks_spacing else "")))
-    lines = list(lacking[1:])
+    lacks = []
+    if unit_z is None:
+        lacks.append("unit" if unit_xy is None else "unit_z")
+    elif needs_unit_xy and unit_xy is None:
+        lacks.append("unit_xy")
     if lacks_spacing:
-        lines.append(draft_line("spacing", None))
-    name, _ = split_file_name(path.name)
-    raise IncompleteSidecar(
-        f"{path}: the file states no {what}. Write into {path.with_name(name + '.yaml')}, with "
-        "your own values:",
-        "\n".join(f"    {line}" for line in lines),
-    )
-
-
-def _lacking_unit(unit_xy, unit_z, needs_unit_xy: bool) -> tuple[str, str]:
-    """Unit that is missing, and the line of a sidecar that states it."""
-    if unit_z is None and unit_xy is not None:
-        return "unit of heights", draft_line("unit_z", None)
-    if unit_z is not None and needs_unit_xy:
-        return "unit of x and y", draft_line("unit_xy", None)
-    return "unit", draft_line("unit", None)
+        lacks.append("spacing")
+    if lacks:
+        name, _ = split_file_name(path.name)
+        raise IncompleteSidecar(
+            f"{path}: the file states no {' and '.join(lacks)}. Write into "
+            f"{path.with_name(name + '.yaml')}, with your own values:",
+            "\n".join(f"    {draft_line(key, None)}" for key in lacks),
+        )
 
 
 def _choose_spacing(raw, options, unit_xy, path: Path, overrides: list) -> tuple[float, float]:

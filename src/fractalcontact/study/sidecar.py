@@ -128,13 +128,15 @@ class _Loader(yaml.SafeLoader):
     """PyYAML's safe loader, reduced to the needs of a sidecar."""
 
     yaml_implicit_resolvers: ClassVar[dict] = {}
-    yaml_constructors: ClassVar[dict] = {}
     depth = 0
 
     def compose_node(self, parent, index):
         event = self.peek_event()
         if isinstance(event, yaml.AliasEvent) or event.anchor:
             raise _refusal("anchors (&) and aliases (*) have no use here; write it out", event)
+        if event.tag:
+            problem = f"{event.tag[:40]!r} has no use here; write plain words and numbers"
+            raise _refusal(problem, event)
         self.depth += 1
         if self.depth > DEEPEST_SIDECAR:
             raise _refusal(f"nested more than {DEEPEST_SIDECAR} deep", event)
@@ -142,46 +144,26 @@ class _Loader(yaml.SafeLoader):
         self.depth -= 1
         return node
 
+    def construct_mapping(self, node, deep=False):
+        found = set()
+        for key, _ in node.value:
+            if not key.tag.endswith(":str"):
+                raise _refusal(f"the key {str(key.value)[:40]!r} is no word", key)
+            if key.value in found:
+                raise _refusal(f"the key {key.value[:40]!r} stands here a second time", key)
+            found.add(key.value)
+        return super().construct_mapping(node, deep)
+
+    def construct_yaml_int(self, node):
+        """Decimal, also with a zero in front; one of many digits is a number like any other."""
+        of = int if len(node.value) <= _LONGEST_INTEGER else float
+        return of(node.value)
+
 
 def _refusal(problem: str, where) -> yaml.MarkedYAMLError:
     return yaml.constructor.ConstructorError(problem=problem, problem_mark=where.start_mark)
 
 
-def _mapping(loader, node):
-    pairs = {}
-    for key_node, value_node in node.value:
-        key = loader.construct_object(key_node, deep=True)
-        if not isinstance(key, str):
-            raise _refusal(f"the key {str(key)[:40]!r} is no word", key_node)
-        if key in pairs:
-            raise _refusal(f"the key {key[:40]!r} stands here a second time", key_node)
-        pairs[key] = loader.construct_object(value_node, deep=True)
-    return pairs
-
-
-def _sequence(loader, node):
-    return [loader.construct_object(item, deep=True) for item in node.value]
-
-
-def _integer(loader, node):
-    return int(node.value) if len(node.value) <= _LONGEST_INTEGER else float(node.value)
-
-
-def _float(loader, node):
-    return float(node.value.replace(".inf", "inf").replace(".nan", "nan"))
-
-
-def _unknown(loader, node):
-    raise _refusal(f"{node.tag[:40]!r} has no use here; write plain words and numbers", node)
-
-
 for _name, _pattern in _WORDS:
     _Loader.add_implicit_resolver(_STANDARD + _name, re.compile(rf"(?:{_pattern})\Z"), None)
-_Loader.add_constructor(_STANDARD + "null", lambda loader, node: None)
-_Loader.add_constructor(_STANDARD + "bool", lambda loader, node: node.value.lower() == "true")
-_Loader.add_constructor(_STANDARD + "int", _integer)
-_Loader.add_constructor(_STANDARD + "float", _float)
-_Loader.add_constructor(_STANDARD + "str", lambda loader, node: node.value)
-_Loader.add_constructor(_STANDARD + "seq", _sequence)
-_Loader.add_constructor(_STANDARD + "map", _mapping)
-_Loader.add_constructor(None, _unknown)
+_Loader.add_constructor(_STANDARD + "int", _Loader.construct_yaml_int)

@@ -10,7 +10,6 @@ import numpy as np
 
 from ...core.errors import InputError
 from ...core.labels import printable
-from ...core.strips import stacked
 from ..format import Format
 from ..options import DELIMITERS, ScanOptions
 from ..raw import RawScan
@@ -127,7 +126,8 @@ class _Reading:
                 f"{self.path}: no line of numbers after its header of {self.options.header} "
                 "lines; write the number of lines above the first number, 'header: 1'"
             )
-        table = stacked(self._parts)
+        table = np.concatenate(self._parts)
+        self._parts.clear()
         breaks = [row for row in dict.fromkeys(self._breaks) if 0 < row < len(table)]
         above = None if self._above is None else self._coordinates(self._above)
         return table, TextParts(self._names(), above, breaks), notes
