@@ -10,7 +10,12 @@ from ..core.strips import strips
 from ..core.window import spacing_of
 from .suspect import Suspects, find_suspects
 
-OUTLIERS = ("keep", "mask", "fill")
+#: What becomes of outlying cells, by the key ``outliers``.
+_TREATED = {
+    "keep": "kept",
+    "mask": "made missing",
+    "fill": "filled, with lone spikes and deep overlaps",
+}
 #: A cell is compared with the 7 x 7 cells around it, of which a cluster of 3 x 3 spikes is a
 #: minority that can be set aside; this many must be present that some remain.
 _SIDE = 7
@@ -68,8 +73,8 @@ def clean_faces(
     InputError
         If a setting is none of those allowed, or every cell would be masked.
     """
-    if outliers not in OUTLIERS:
-        allowed = ", ".join(repr(value) for value in OUTLIERS)
+    if outliers not in _TREATED:
+        allowed = ", ".join(repr(value) for value in _TREATED)
         raise InputError(f"{name}: key 'outliers' is {outliers!r}; expected one of {allowed}")
     if isinstance(largest_hole, bool) or not isinstance(largest_hole, int) or largest_hole < 0:
         raise InputError(
@@ -144,31 +149,12 @@ def _sparse(scan: xr.DataArray) -> np.ndarray:
 
 
 def _in_words(attrs: dict, largest_hole: int, missing: int) -> str:
-    """Treatment of the faces, and the key that would change it."""
-    count, spikes = attrs["outlier_count"], attrs["spike_count"]
-    if count == 0:
-        words = "no outliers"
-    elif attrs["outliers"] == "mask":
-        words = f"{count} outlying cells made missing"
-    elif attrs["outliers"] == "keep":
-        words = f"{count} outlying cells kept as they are ('outliers: mask' makes them missing)"
-    else:
-        words = f"{count} outlying cells"
-    if spikes and attrs["outliers"] == "fill":
-        words += f"; {spikes} lone spikes"
-    elif spikes:
-        words += f"; {spikes} lone spikes kept ('outliers: fill' fills them and deep overlaps)"
-    if attrs["outliers"] == "fill":
-        words += f"; {attrs['filled_count']} cells filled in their place"
-        words += " and of deep overlaps" + (", and in small holes" if largest_hole else "")
-    elif largest_hole:
-        words += f"; {attrs['filled_count']} cells filled harmonically, in holes of up to "
-        words += f"{largest_hole} x {largest_hole} cells; {missing} cells stay missing"
-    elif missing:
-        words += f"; {missing} cells missing, none filled ('fill_holes: 5' fills holes of up to 5)"
-    else:
-        words += "; no cells missing"
-    return words
+    """Treatment of the faces, and the keys that change it."""
+    return (
+        f"{attrs['outlier_count']} outlying cells {_TREATED[attrs['outliers']]} ('outliers: "
+        f"{attrs['outliers']}'); {attrs['spike_count']} lone spikes; {attrs['filled_count']} cells "
+        f"filled ('fill_holes: {largest_hole}'), {missing} missing"
+    )
 
 
 def find_outliers(heights: np.ndarray) -> np.ndarray:
