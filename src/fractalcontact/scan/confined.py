@@ -14,6 +14,8 @@ import subprocess
 import sys
 import threading
 from dataclasses import asdict
+from multiprocessing.connection import Connection
+from multiprocessing.reduction import recv_handle
 from pathlib import Path
 
 from ..core.errors import InputError
@@ -54,7 +56,9 @@ def read_confined(path: Path, options: ScanOptions) -> RawScan:
     ReaderBug
         For any other exception of the reader.
     """
-    request = {"path": str(path), "folder": _folder_for(path), "options": asdict(options)}
+    # The reader process may have another present folder.
+    folder = "/" if path.is_absolute() else os.getcwd()
+    request = {"path": str(path), "folder": folder, "options": asdict(options)}
     lines, raw, status = _ask(request, path)
     limits: dict = next((line for line in reversed(lines) if line["outcome"] == "limits"), {})
     last = lines[-1] if lines else {"outcome": "limits"}
@@ -85,11 +89,6 @@ def _how_it_ended(outcome: str, status: int, limits: dict) -> str:
     return f"the reader crashed (signal {number})"
 
 
-def _folder_for(path: Path) -> str:
-    """Base folder of relative paths; the reader process may have another one."""
-    return "/" if path.is_absolute() else os.getcwd()
-
-
 def _ask(request: dict, path: Path):
     """Read in the reader process, which is started if needed."""
     global _server
@@ -116,7 +115,8 @@ class _Server:
     """The reader process and the socket to it."""
 
     def __init__(self):
-        self.control, other = socket.socketpair()
+        mine, other = socket.socketpair()
+        self.control = Connection(mine.detach())
         search_path = json.dumps([folder for folder in sys.path if folder])
         one_thread = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
         with other:
@@ -133,16 +133,15 @@ class _Server:
 
     def read(self, request: dict, path: Path) -> tuple[list[dict], RawScan | None, int]:
         """Lines of the answer, the scan if there is one, and the status of the fork."""
-        message = to_text(request)
-        self.control.sendall(reader_process.REQUEST_LENGTH.pack(len(message)) + message)
-        _, descriptors, _, _ = socket.recv_fds(self.control, 1, 1)
-        if not descriptors:
-            raise RuntimeError(f"{path}: the reader process ended; its error message is above")
-        with open(descriptors[0], "rb") as stream:
+        self.control.send_bytes(to_text(request))
+        try:
+            answer = recv_handle(self.control)
+        except EOFError:
+            message = f"{path}: the reader process ended; its error message is above"
+            raise RuntimeError(message) from None
+        with open(answer, "rb") as stream:
             lines, raw = _read_answer(stream)
-        size = reader_process.STATUS.size
-        answer = self.control.recv(size, socket.MSG_WAITALL)
-        status, peak, seconds = reader_process.STATUS.unpack(answer)
+        status, peak, seconds = from_text(self.control.recv_bytes())["used"]
         used = "%s: status %d, peak memory %d, %.2f s"
         logging.getLogger(__name__).debug(used, path, status, peak, seconds)
         return lines, raw, status

@@ -11,13 +11,13 @@ import gc
 import os
 import resource
 import signal
-import socket
-import struct
 import sys
 import traceback
 from collections.abc import Sequence
 from dataclasses import dataclass
 from importlib import import_module
+from multiprocessing.connection import Connection
+from multiprocessing.reduction import send_handle
 from pathlib import Path
 
 from ..core.errors import InputError
@@ -38,11 +38,6 @@ _MAX_FILES = 64
 #: Characters; sentences of this program are far shorter, whatever they quote.
 _LONGEST_MESSAGE = 1600
 _LONGEST_DRAFT = 6000
-
-REQUEST_LENGTH = struct.Struct("!I")
-#: How the fork ended, as `os.wait4` gives it; the most memory it had (kB, on macOS bytes); its
-#: seconds of processor time.
-STATUS = struct.Struct("!iqd")
 
 
 @dataclass(frozen=True)
@@ -71,10 +66,14 @@ def limits_for(size: int, formats: Sequence[Format]) -> Limits:
 
 def serve() -> None:
     """Read files for the process at the other end of standard input until it closes."""
-    control = socket.socket(fileno=os.dup(0))
+    control = Connection(os.dup(0))
     _close_standard_streams(0)
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the parent, which then hangs up
-    while (request := _receive(control)) is not None:
+    while True:
+        try:
+            request = from_text(control.recv_bytes())
+        except EOFError:
+            return
         _import_libraries(Path(request["path"]).suffix.lower())
         readable, writable = os.pipe()
         pid = os.fork()
@@ -83,20 +82,12 @@ def serve() -> None:
             os.close(readable)
             _read_and_exit(request, writable)
         os.close(writable)
-        socket.send_fds(control, [b"."], [readable])
+        send_handle(control, readable, pid)
         os.close(readable)
         _, status, usage = os.wait4(pid, 0)
-        seconds = usage.ru_utime + usage.ru_stime
-        control.sendall(STATUS.pack(status, usage.ru_maxrss, seconds))
-
-
-def _receive(control: socket.socket) -> dict | None:
-    """One request, or None if the other side has hung up."""
-    head = control.recv(REQUEST_LENGTH.size, socket.MSG_WAITALL)
-    if len(head) < REQUEST_LENGTH.size:
-        return None
-    (length,) = REQUEST_LENGTH.unpack(head)
-    return from_text(control.recv(length, socket.MSG_WAITALL))
+        # Memory in kB, on macOS in bytes.
+        used = status, usage.ru_maxrss, usage.ru_utime + usage.ru_stime
+        control.send_bytes(to_text({"used": used}))
 
 
 def _import_libraries(extension: str) -> None:
