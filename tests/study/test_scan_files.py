@@ -5,11 +5,15 @@ import re
 import unicodedata
 
 import pytest
+import yaml
+from places import ROOT
 
 from fractalcontact.core.errors import InputError
 from fractalcontact.core.file_names import specimen_name
-from fractalcontact.study.checks import with_coordinates
+from fractalcontact.study.checks import read_scans
 from fractalcontact.study.scan_files import folder_notes, list_scans
+
+SCHEMA = yaml.safe_load((ROOT / "config/schema/study.schema.yaml").read_text())
 
 
 def find_scans(folder):
@@ -203,14 +207,16 @@ def test_a_folder_with_the_name_of_a_scan_file_is_refused_others_are_passed_over
 def test_files_of_coordinates_belong_to_their_map(tmp_path):
     for name in ("film.csv", "film_x.csv", "film_y.csv", "other.csv", "slab.csv"):
         (tmp_path / name).write_text("1")
-    scans = find_scans(tmp_path)
-    keys = {"kind": "contact-map", "x": "film_x.csv", "y": "film_y.csv"}
-    found = with_coordinates(scans, {"film": keys})
+    sidecar, config = tmp_path / "film.yaml", {"study": "films", "scans": str(tmp_path)}
+    sidecar.write_text("kind: contact-map\nx: film_x.csv\ny: film_y.csv\n")
+    found, _, refused = read_scans(config, SCHEMA)
+    assert refused == {}
     assert sorted(found) == ["film", "other", "slab"]
     assert [path.name for path in found["film"].files] == ["film.csv", "film_x.csv", "film_y.csv"]
     assert found["slab"].files == (tmp_path / "slab.csv",)
-    with pytest.raises(InputError, match=r"x: no file absent\.csv beside it"):
-        with_coordinates(scans, {"film": keys | {"x": "absent.csv"}})
+    sidecar.write_text("kind: contact-map\nx: absent.csv\ny: film_y.csv\n")
+    refused = read_scans(config, SCHEMA)[2]
+    assert "x: no file absent.csv beside it" in str(refused["film"])
 
 
 LEFT = ["rock.npy~", "Thumbs.db", "desktop.ini", "~$table.csv", "rock.npy.bak", "._rock.npy"]

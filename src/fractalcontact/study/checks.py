@@ -15,7 +15,7 @@ from .configuration import resolve_embedded, resolve_roll_off, resolve_settings,
 from .figure_list import figures_of
 from .idle_keys import refuse_idle_keys
 from .measured import require_files, test_files
-from .scan_files import ScanFiles
+from .scan_files import ScanFiles, refuse_outside_link
 from .scan_groups import list_grouped
 from .schema import nearest, shortened, validate
 from .sidecar import is_contact_map, read_yaml
@@ -131,10 +131,11 @@ def read_scans(
             if scan.shared not in shared:
                 shared[scan.shared] = read_sidecar(scan.shared, schema)
             said = _stated_of(scan, shared[scan.shared], schema)
-            with_coordinates(scans, {name: said[0]})
+            scans[name] = replace(scan, coordinates=_coordinates(scan, said[0]))
             stated[name] = said
-    scans = with_coordinates(scans, {name: keys for name, (keys, _) in stated.items()})
-    scans = without_tests(scans, {name: own for name, (_, own) in stated.items()}, config)
+    named = {path for scan in scans.values() for path in scan.coordinates}
+    named |= _test_files(scans, {name: own for name, (_, own) in stated.items()}, config)
+    scans = {name: scan for name, scan in scans.items() if scan.lower not in named}
     return scans, {name: stated[name] for name in stated if name in scans}, refused
 
 
@@ -158,61 +159,26 @@ def _refusing(refused: dict[str, InputError], name: str) -> Iterator[None]:
         refused.setdefault(name, error)
 
 
-def with_coordinates(
-    scans: Mapping[str, ScanFiles], options: Mapping[str, Mapping]
-) -> dict[str, ScanFiles]:
-    """Scans with the files of x and y that their sidecars name, which are no scans themselves.
-
-    Parameters
-    ----------
-    scans : mapping of str to ScanFiles
-        From :func:`study.scan_files.list_scans`, which lists every file for itself.
-    options : mapping of str to mapping
-        Scan keys of their sidecars.
-
-    Raises
-    ------
-    InputError
-        If a sidecar names a file that is not there, or one that is no plain name.
-    """
-    found, taken = dict(scans), set()
-    maps = [name for name, keys in options.items() if is_contact_map(keys)]
-    if not maps:
-        return found
-    listed = {scan.lower: name for name, scan in scans.items() if scan.upper is None}
-    for name in maps:
-        scan = scans[name]
-        files = coordinate_files(scan.lower, options[name])
-        for key, path in files.items():
-            if path in listed:
-                taken.add(listed[path])
-            # A table names maps alone, not what goes with them.
-            elif not (scan.row_of and path.is_file() and not path.is_symlink()):
-                raise InputError(f"{scan.said_in}: {key}: no file {path.name} beside it")
-        found[name] = replace(scan, coordinates=tuple(files.values()))
-    return {name: scan for name, scan in found.items() if name not in taken}
+def _coordinates(scan: ScanFiles, keys: Mapping) -> tuple[Path, ...]:
+    """Files of x and y that the sidecar of a map names, which are no scans themselves."""
+    files = coordinate_files(scan.lower, keys) if is_contact_map(keys) else {}
+    for key, path in files.items():
+        if not path.is_file():
+            raise InputError(f"{scan.said_in}: {key}: no file {path.name} beside it")
+        refuse_outside_link(path, path.parent)
+    return tuple(files.values())
 
 
-def without_tests(
+def _test_files(
     scans: Mapping[str, ScanFiles], own: Mapping[str, Mapping], config: Mapping
-) -> dict[str, ScanFiles]:
-    """Scans without the files of laboratory tests, which sidecars or the study name.
-
-    Parameters
-    ----------
-    scans : mapping of str to ScanFiles
-        Every file that no sidecar has claimed so far.
-    own : mapping of str to mapping
-        Settings of their sidecars.
-    config : mapping
-        A study that passed the schema.
-    """
+) -> set[Path]:
+    """Files of laboratory tests, which sidecars or the study name: no scans either."""
     files: set[Path] = set()
     for name, stated in ({name: {} for name in config.get("embedded", {})} | dict(own)).items():
         folder = scans[name].lower.parent if name in scans else Path(config.get("scans") or ".")
         for said in (stated, config.get("specimens", {}).get(name, {})):
             files |= {*test_files(said.get("measured", {}), folder)}
-    return {name: scan for name, scan in scans.items() if scan.lower not in files}
+    return files
 
 
 def check_study(config: Mapping, schema: Mapping, source: str) -> None:
