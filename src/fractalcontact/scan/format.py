@@ -1,6 +1,6 @@
 """Declaration of a scan format: endings, reader, limits of reading."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -31,8 +31,6 @@ class Format:
         every file with these endings is.
     refusal : str
         What is wrong with a file with these endings that no format takes.
-    more_endings : callable or None
-        Further endings, which only a library knows: asked where no declared ending serves.
     libraries : tuple of str
         Modules that take long to import: the reader process imports them once, not for each file.
     memory_per_byte : int
@@ -46,11 +44,6 @@ class Format:
     keys: tuple[str, ...] = ()
     takes: Callable[[Path], bool] | None = None
     refusal: str = ""
-    more_endings: Callable[[], Iterable[str]] | None = None
     libraries: tuple[str, ...] = ()
     memory_per_byte: int = MEMORY_PER_BYTE
     seconds_per_megabyte: int = SECONDS_PER_MEGABYTE
-
-    def learned_endings(self) -> tuple[str, ...]:
-        """Extensions known to a library only, which may import it."""
-        return () if self.more_endings is None else tuple(self.more_endings())

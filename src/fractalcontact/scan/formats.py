@@ -27,26 +27,15 @@ _NOT_READ = {
 }
 #: Keys of a sidecar that say how some formats are laid out: idle for the others.
 _LAYOUT_KEYS = frozenset(key for form in FORMATS.values() for key in form.keys)
-#: Those that learn further endings from a library.
-_OPEN_ENDED = [form for form in FORMATS.values() if form.more_endings is not None]
 
 
 def known_extensions() -> list[str]:
     """Endings of the files that can be read, with their dot, in lower case."""
-    declared = (form.endings for form in FORMATS.values())
-    learned = (form.learned_endings() for form in _OPEN_ENDED)
-    return sorted({ending for endings in (*declared, *learned) for ending in endings})
+    return sorted({ending for form in FORMATS.values() for ending in form.endings})
 
 
 def likely_formats(extension: str) -> list[Format]:
-    """Formats that a file may have by its ending, those that look at its content first.
-
-    Where none declares the ending, those that learn further ones from a library.
-    """
-    return _declared(extension) or _OPEN_ENDED
-
-
-def _declared(extension: str) -> list[Format]:
+    """Formats that a file may have by its ending, those that look at its content first."""
     declared = (form for form in FORMATS.values() if extension in form.endings)
     return sorted(declared, key=lambda form: form.takes is None)
 
@@ -90,15 +79,13 @@ def _read(form: Format, path: Path, options: ScanOptions) -> RawScan:
 def _read_by_format(path: Path, options: ScanOptions) -> RawScan:
     require_whole(path)
     extension = path.suffix.lower()
-    for form in _declared(extension):
+    formats = likely_formats(extension)
+    for form in formats:
         if form.takes is None or form.takes(path):
-            return _read(form, path, options)
-    for form in _OPEN_ENDED:
-        if extension in form.learned_endings():
             return _read(form, path, options)
     if advice := _NOT_READ.get(extension):
         raise InputError(f"{path}: {advice}")
-    for form in _declared(extension):
+    for form in formats:
         if form.refusal:
             raise InputError(f"{path}: {form.refusal}")
     known = " ".join(known_extensions())

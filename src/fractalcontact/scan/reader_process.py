@@ -56,10 +56,10 @@ def limits_for(size: int, formats: Sequence[Format]) -> Limits:
     ----------
     size : int
     formats : sequence of Format
-        Those it may have, one at least: the most generous counts.
+        Those it may have: the most generous counts.
     """
-    memory_per_byte = max(form.memory_per_byte for form in formats)
-    seconds_per_megabyte = max(form.seconds_per_megabyte for form in formats)
+    memory_per_byte = max((form.memory_per_byte for form in formats), default=0)
+    seconds_per_megabyte = max((form.seconds_per_megabyte for form in formats), default=0)
     seconds = BASE_SECONDS + seconds_per_megabyte * size // 10**6
     return Limits(BASE_MEMORY + memory_per_byte * size, seconds, PATIENCE * seconds)
 

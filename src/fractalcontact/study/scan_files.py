@@ -209,7 +209,7 @@ def _is_named_like_a_scan(folder: Path) -> bool:
     """True if a folder is likely to be an archive that somebody unpacked."""
     if not folder.suffix:
         return False
-    from ..scan.formats import known_extensions  # takes a second, and is hardly ever needed
+    from ..scan.formats import known_extensions  # of all readers, and hardly ever needed
 
     return folder.suffix.lower() in known_extensions()
 

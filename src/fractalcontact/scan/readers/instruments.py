@@ -159,10 +159,15 @@ def _spacing(topography) -> tuple[float, float]:
     return dx, dy
 
 
-def _endings() -> list[str]:
-    return [f".{extension}" for extension in instrument_formats()]
-
+#: Those of SurfaceTopography, which takes a second to import.
+_ENDINGS = (
+    "001 002 003 004 005 al3d apx bcr bcrf cur dat datx di ezd frt hgt ibw jpk lext mdt mi mnt nid "
+    "nms oir opd opdx os3d plu plux poir qep sdf spm stp sur tif tiff tmd tom top vk3 vk4 vk6 vk7 "
+    "xlsx zip zmg zon"
+)
 
 FORMAT = Format(
-    read_instrument, more_endings=_endings, libraries=("netCDF4", "SurfaceTopography.IO")
+    read_instrument,
+    endings=tuple(f".{ending}" for ending in _ENDINGS.split()),
+    libraries=("netCDF4", "SurfaceTopography.IO"),
 )
