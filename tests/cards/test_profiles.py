@@ -11,7 +11,7 @@ from fractalcontact.commands.profile_card import main
 from fractalcontact.core.errors import InputError
 from fractalcontact.mechanics.jrc import FITS
 from fractalcontact.mechanics.profile import profile_coefficients
-from fractalcontact.scan.profile import read_profile
+from fractalcontact.scan.columns import read_profile
 
 
 def self_affine_profile(n, hurst, seed):

@@ -317,7 +317,7 @@ def alternating(n):
 
 
 SUSPICIOUS = {
-    "hold exactly 0, many": lambda z: np.where(np.indices(z.shape).min(axis=0) < 4, 0.0, z),
+    " x exactly 0, many": lambda z: np.where(np.indices(z.shape).min(axis=0) < 4, 0.0, z),
     "alternate columns of the lower": lambda z: z + alternating(len(z)),
     "alternate rows of the lower": lambda z: z + alternating(len(z))[:, np.newaxis],
     "52 % of the cells are missing": lambda z: np.where(np.arange(len(z)) > 30, np.nan, z),

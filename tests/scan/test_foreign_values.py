@@ -77,7 +77,7 @@ def test_points_have_marks_too(tmp_path):
     points = nodes(rough(), 0.1, 0.1)
     points[40:60, 2] = -9999.0
     path = saved(tmp_path / "rock.npy", points)
-    with pytest.raises(InputError, match=r"20 cells \(0\.9 %\) hold -9999.*'missing: -9999'"):
+    with pytest.raises(InputError, match=r"20 x -9999, far.*'missing: -9999'"):
         read_scan(path, CLOUD)
     heights = read_scan(path, CLOUD | {"missing": -9999})
     assert int(heights.isnull().sum()) == 20
@@ -104,7 +104,7 @@ def test_a_number_that_repeats_among_the_heights_is_warned_of(tmp_path, kind, di
     z[where] = mark
     path = saved(tmp_path / "rock.npy", z)
     found = warnings_for(path)
-    assert f"hold exactly {mark:g}, many times as often" in found
+    assert f" x exactly {mark:g}, many times as often" in found
     assert f"'missing: {mark:g}'" in found
     np.testing.assert_array_equal(read_scan(path, MATRIX), z)  # nothing is changed
     assert "many times" not in warnings_for(path, {**MATRIX, "missing": "none"})

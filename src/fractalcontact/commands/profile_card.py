@@ -16,7 +16,7 @@ from ..core.checksums import sha256
 from ..core.errors import said_in_one_line
 from ..core.file_names import specimen_name
 from ..mechanics.profile import profile_coefficients
-from ..scan.profile import read_profile
+from ..scan.columns import read_profile
 
 
 @said_in_one_line

@@ -1,4 +1,4 @@
-"""Columns of a text table whose first line names each with its unit, such as ``z [um]``."""
+"""Columns, or a profile, of a text table whose first line names each with its unit, ``z [um]``."""
 
 import re
 from collections.abc import Mapping
@@ -9,10 +9,13 @@ import numpy as np
 
 from ..core.errors import InputError
 from ..core.labels import printable
+from ..core.units import length_factor
 from .text_lines import open_text
 
 _NAMED = re.compile(r"(?P<name>[^\[(]*?)\s*[\[(]\s*(?P<unit>[^\])]+?)\s*[\])]")
 _DELIMITERS = ",;\t"
+#: Steps of a profile may differ from their mean by this part of it.
+_EVEN = 0.01
 _SPREADSHEETS = (".xls", ".xlsx", ".ods")
 
 
@@ -71,6 +74,38 @@ def read_columns(path: Path | str, wanted: Mapping[str, str]) -> dict[str, Colum
         cells = (line.split(delimiter) for line in lines[1:])
         found[name] = Column(_numbers(cells, number, delimiter, path), unit, f"{path}: {name}")
     return found
+
+
+def read_profile(path: Path | str) -> tuple[np.ndarray, float]:
+    """Heights of a profile in even steps.
+
+    Parameters
+    ----------
+    path : path-like
+        Text: a line such as ``x [mm], z [um]``, then numbers, x ascending in even steps.
+
+    Returns
+    -------
+    heights : (n,) ndarray
+        mm.
+    spacing : float
+        mm.
+
+    Raises
+    ------
+    InputError
+        As :func:`read_columns`, or if its x do not rise in even steps.
+    """
+    columns = read_columns(path, {"x": "x", "z": "z"}).values()
+    x, z = (one.values * length_factor(one.unit, one.where) for one in columns)
+    steps = np.diff(x)
+    even = x.size > 1 and steps.min() > 0 and np.ptp(steps) <= 2 * _EVEN * steps.mean()
+    if not even:
+        raise InputError(
+            f"{path}: x does not rise in even steps (within {100 * _EVEN:.0f} %); resample the "
+            "profile to even steps and fill its gaps"
+        )
+    return z, float(steps.mean())
 
 
 def _place(stated: str, headings: list[str]) -> tuple[int, str] | None:

@@ -1,6 +1,6 @@
 """Numbers that mark missing cells without the file saying so: -9999, 1e20, zeros around the rim."""
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -25,30 +25,17 @@ _MAX_MARKS = 4
 _SAME = 1e-6
 
 
-@dataclass(frozen=True)
-class Mark:
-    """A number that is likely to mark missing cells.
-
-    Attributes
-    ----------
-    value : float
-        In the file's own unit.
-    cells : int
-        That hold it.
-    share : float
-        Of all cells that hold a number.
-    outside : bool
-        Whether it lies far outside the others; else it is among them and repeats.
-    low, high : float
-        The others.
-    """
+class Mark(NamedTuple):
+    """A number that is likely to mark missing cells, in the file's own unit."""
 
     value: float
     cells: int
-    share: float
+    """That hold it."""
     outside: bool
+    """Whether it lies far outside the others; else it is among them and repeats."""
     low: float
     high: float
+    """The others."""
 
 
 def find_marks(heights: np.ndarray) -> list[Mark]:
@@ -65,7 +52,6 @@ def find_marks(heights: np.ndarray) -> list[Mark]:
         Those far outside first.
     """
     present = np.isfinite(heights)
-    total = int(present.sum())
     marks: list[Mark] = []
     while len(marks) < _MAX_MARKS and present.any():
         found = _far_outside(heights, present)
@@ -80,7 +66,7 @@ def find_marks(heights: np.ndarray) -> list[Mark]:
         if not present.any():
             break
         low, high = float(heights[present].min()), float(heights[present].max())
-        marks.append(Mark(found, cells, cells / total, outside, low, high))
+        marks.append(Mark(found, cells, outside, low, high))
     return marks
 
 
@@ -111,13 +97,13 @@ def refuse_or_warn(heights: np.ndarray, path: object) -> str:
     remedy = f"write '{key}' into the sidecar, or 'missing: none' if these are heights"
     if far:
         parts = "; ".join(
-            f"{_cells(mark)} {number(mark.value)}, far outside all others "
+            f"{mark.cells} x {number(mark.value)}, far outside all others "
             f"({number(mark.low)} to {number(mark.high)})"
             for mark in far
         )
         raise InputError(f"{path}: {parts}: probably a mark for missing cells; {remedy}")
     if marks:
-        parts = " and ".join(f"{_cells(mark)} exactly {number(mark.value)}" for mark in marks)
+        parts = " and ".join(f"{mark.cells} x exactly {number(mark.value)}" for mark in marks)
         return (
             f"{parts}, many times as often as any other height: probably cells without a "
             f"measurement, or heights cut off there; {remedy}"
@@ -130,13 +116,6 @@ def number(value: float) -> str:
     if value == round(value) and abs(value) < 1e15:
         return str(round(value))
     return f"{value:.7g}"
-
-
-def _cells(mark: Mark) -> str:
-    percent = 100 * mark.share
-    part = f" ({percent:.1f} %)" if 0.05 <= percent < 99.95 else ""
-    many = "1 cell" if mark.cells == 1 else f"{mark.cells} cells"
-    return f"{many}{part} hold{'s' * (mark.cells == 1)}"
 
 
 def _far_outside(heights: np.ndarray, present: np.ndarray) -> float | None:
