@@ -57,16 +57,14 @@ def scattered_motions(lower: xr.DataArray, upper: xr.DataArray) -> list[Motion]:
     for _ in range(MOTIONS):
         counts = np.bincount(rng.integers(len(normal), size=len(normal)), minlength=len(normal))
         step = _step(np.tensordot(counts, normal, 1), counts @ right) - whole
-        moved = dict(zip(PARAMETERS, np.pad(step, (0, 5 - len(step))), strict=True))
-        motions.append(
-            Motion(
-                middle,
-                (middle[0] + float(moved["end_x"]), middle[1] + float(moved["end_y"])),
-                float(moved["rotation"]),
-                (float(moved["slope_x"]), float(moved["slope_y"])),
-            )
-        )
+        motions.append(_about(middle, *np.pad(step, (0, len(PARAMETERS) - len(step)))))
     return motions
+
+
+def _about(pivot: tuple[float, float], *changes: float) -> Motion:
+    """Motion about a point, by the change of each of `PARAMETERS`."""
+    x, y, rotation, *slope = map(float, changes)
+    return Motion(pivot, (pivot[0] + x, pivot[1] + y), rotation, (slope[0], slope[1]))
 
 
 def _block_sums(usable, terms, weights, gap) -> tuple[np.ndarray, np.ndarray]:
@@ -141,15 +139,8 @@ def stored_motions(specimen: xr.Dataset) -> list[Motion]:
     """The motions that :func:`motion_variables` has stored in a specimen."""
     if "registration_shift_x" not in specimen:
         return []
-    shift_x, shift_y, rotation, slope_x, slope_y = (specimen[name].values for name in _TABLE)
+    columns = [specimen[name].values for name in _TABLE]
+    columns[2] = np.radians(columns[2])
     attrs = specimen["registration_shift_x"].attrs
     pivot = (float(attrs["pivot_x_mm"]), float(attrs["pivot_y_mm"]))
-    return [
-        Motion(
-            pivot,
-            (pivot[0] + float(shift_x[i]), pivot[1] + float(shift_y[i])),
-            float(np.radians(rotation[i])),
-            (float(slope_x[i]), float(slope_y[i])),
-        )
-        for i in range(len(shift_x))
-    ]
+    return [_about(pivot, *changes) for changes in zip(*columns, strict=True)]
