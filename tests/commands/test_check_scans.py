@@ -175,7 +175,7 @@ def test_a_file_of_coordinates_that_a_link_takes_elsewhere_is_not_read(folder, c
     (folder / "film.yaml").write_text(FILM)
     code, out = check()
     assert code == 1
-    assert "no file film_x.csv beside it" in " ".join(out.split())
+    assert "film_x.csv: this link leads out of" in " ".join(out.split())
     assert "A_0" not in out
 
 
