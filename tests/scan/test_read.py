@@ -419,7 +419,7 @@ def test_numbers_no_instrument_measures_are_refused_with_the_key_that_may_be_mis
     z = surface()
     z[5, 5] = 1.70141e38  # a mark of missing cells, and no other program's secret
     path = save_npy(tmp_path / "rock.npy", z)
-    with pytest.raises(InputError, match=r"rock\.npy: 1 cell .*1\.70141e\+38.*'missing: "):
+    with pytest.raises(InputError, match=r"rock\.npy: 1 x 1\.70141e\+38.*'missing: "):
         read_scan(path, {"unit": "mm", "spacing": 0.1, "missing": -1})
     heights = read_scan(path, {"unit": "mm", "spacing": 0.1, "missing": 1.70141e38})
     assert np.isnan(heights.values[5, 5])
