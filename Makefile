@@ -124,8 +124,8 @@ cost: study
 	@$(BIN)/python benchmarks/study_cost.py "$$STUDY"
 
 # A process for each core, which shares costly fixtures file by file. Threads of BLAS in all of them
-# would only wait for each other.
-PYTEST = OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -n auto
+# would only wait for each other. Bytecode of the tests is kept, whatever the environment says.
+PYTEST = OPENBLAS_NUM_THREADS=1 PYTHONDONTWRITEBYTECODE= $(BIN)/python -m pytest -n auto
 
 test: $(VENV)/tests-installed
 	$(PYTEST)

@@ -3,14 +3,16 @@
 What is marked ``browser`` is for ``make test-browser`` alone, which says where the browser is.
 """
 
+import gc
 import os
 
 import pytest
 from ensembles import EVERYTHING
 from xdist.scheduler import LoadScopeScheduling
 
-#: Folders whose files share costly fixtures: one process runs all of such a folder.
-SHARING = ("tests/browser", "tests/cards", "tests/figures", "tests/pages", "tests/workflow")
+#: Folders whose files share costly fixtures, by what one process runs all of.
+SHARING = {f"tests/{name}": name for name in ("browser", "figures", "pages", "workflow")}
+SHARING["tests/cards"] = "pages"
 
 
 class ByFile(LoadScopeScheduling):
@@ -18,8 +20,31 @@ class ByFile(LoadScopeScheduling):
 
     def _split_scope(self, nodeid):
         path = nodeid.partition("::")[0]
-        folder = path.rpartition("/")[0]
-        return folder if folder in SHARING else path
+        return SHARING.get(path.rpartition("/")[0], path)
+
+
+@pytest.fixture(scope="session")
+def cards_folder(tmp_path_factory):
+    """Folder of the results of a study of :mod:`page_study` with its cards, to be read alone."""
+    from page_study import write_study
+
+    from fractalcontact.cards.write import write_cards
+
+    folder = tmp_path_factory.mktemp("cards") / "results/tiny"
+    write_study(folder)
+    assert write_cards(folder / "atlas.nc", folder) == ["flat.1", "pair"]
+    return folder
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_collection():
+    """To look for garbage among the modules of all tests would take a tenth of all seconds."""
+    gc.disable()
+    found = yield
+    gc.freeze()
+    gc.set_threshold(10_000, 10, 10)
+    gc.enable()
+    return found
 
 
 @pytest.hookimpl(optionalhook=True)

@@ -65,24 +65,27 @@ def imports(path):
             assert not any(name.name.startswith(PACKAGES) for name in node.names), path
 
 
-MODULES = {
-    module_name(path): set(imports(path))
-    for package in PACKAGES
-    for path in (SOURCES / package).rglob("*.py")
-    if path.parent != SOURCES / package or path.stem != "__init__"
-}
+@pytest.fixture(scope="module")
+def modules():
+    """Every module of the packages, with those that it imports."""
+    return {
+        module_name(path): set(imports(path))
+        for package in PACKAGES
+        for path in (SOURCES / package).rglob("*.py")
+        if path.parent != SOURCES / package or path.stem != "__init__"
+    }
 
 
-def test_every_module_has_a_room_and_every_room_a_floor():
-    assert {room_of(module) for module in MODULES} == set(FLOOR)
+def test_every_module_has_a_room_and_every_room_a_floor(modules):
+    assert {room_of(module) for module in modules} == set(FLOOR)
     assert [path.name for path in SOURCES.glob("fractalcontact/*.py")] == ["__init__.py"]
 
 
 @pytest.mark.parametrize("room", FLOOR)
-def test_a_room_imports_from_lower_floors_alone(room):
+def test_a_room_imports_from_lower_floors_alone(modules, room):
     upward = [
         f"{'.'.join(module)} imports {'.'.join(other)}"
-        for module, others in MODULES.items()
+        for module, others in modules.items()
         for other in others
         if room_of(module) == room != room_of(other) and FLOOR[room_of(other)] >= FLOOR[room]
     ]
@@ -100,8 +103,8 @@ def test_the_solver_needs_nothing_but_numpy_scipy_and_numba():
     assert needed - sys.stdlib_module_names == {"numpy", "scipy", "numba", "llvmlite"}
 
 
-def test_no_import_goes_round_in_a_circle():
-    left = {module: others & MODULES.keys() for module, others in MODULES.items()}
+def test_no_import_goes_round_in_a_circle(modules):
+    left = {module: others & modules.keys() for module, others in modules.items()}
     while ready := {module for module, others in left.items() if not others}:
         left = {module: left[module] - ready for module in left.keys() - ready}
     assert left == {}
@@ -131,10 +134,10 @@ def beyond_reading(module, others):
     }
 
 
-def test_figures_and_pages_import_only_what_reads_an_atlas():
+def test_figures_and_pages_import_only_what_reads_an_atlas(modules):
     found = {
         ".".join(module): beyond_reading(module, others)
-        for module, others in MODULES.items()
+        for module, others in modules.items()
         if room_of(module) in READERS
     }
     assert {name: others for name, others in found.items() if others} == {}

@@ -34,7 +34,7 @@ RECIPE = {
 @pytest.fixture(scope="module")
 def with_area(atlas):
     """The small atlas with what these figures read, made by the package's own functions."""
-    whole = atlas.copy(deep=True)
+    whole = atlas.copy()
     for name in SPECIMENS:
         specimen, joint, curves = (
             atlas[f"{stage}/{name}"].to_dataset() for stage in ("specimens", "joints", "closure")
@@ -59,7 +59,7 @@ def slopes_drawn(atlas):
 
 def changed(atlas, group, change):
     """The atlas with one group put through a function of its dataset."""
-    other = atlas.copy(deep=True)
+    other = atlas.copy()
     other[group] = xr.DataTree(change(other[group].to_dataset()))
     return other
 

@@ -38,7 +38,7 @@ def drawn(atlas, figure, what):
 
 def with_changes(atlas, group, **change):
     """The atlas with some variables of a group made anew from its dataset."""
-    changed = atlas.copy(deep=True)
+    changed = atlas.copy()
     dataset = changed[group].to_dataset()
     for name, make in change.items():
         new = make(dataset) if callable(make) else make
@@ -325,7 +325,7 @@ def test_rounding_of_flush_faces_does_not_stretch_decades(atlas):
 
 
 def test_one_solved_offset_is_enough(atlas):
-    cut = atlas.copy(deep=True)
+    cut = atlas.copy()
     for stage in ("contact", "closure", "domains", "joints"):
         dataset = cut[f"{stage}/sliding"].to_dataset()
         cut[f"{stage}/sliding"] = xr.DataTree(dataset.isel(offset=[2]))

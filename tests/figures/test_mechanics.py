@@ -38,7 +38,7 @@ def drawn(atlas, specimen, figure):
 
 def with_changes(atlas, group, **variables):
     """The atlas with some variables of one group replaced by numbers."""
-    changed = atlas.copy(deep=True)
+    changed = atlas.copy()
     dataset = changed[group].to_dataset()
     for name, value in variables.items():
         dataset[name] = xr.full_like(dataset[name], value)
@@ -404,7 +404,7 @@ def test_a_dimension_out_of_bounds_is_not_recommended(atlas):
     ends = dict.fromkeys(
         ("recommended_dimension", "recommended_dimension_low", "recommended_dimension_high"), np.nan
     )
-    changed = atlas.copy(deep=True)
+    changed = atlas.copy()
     dataset = with_changes(atlas, group, **ends)[group].to_dataset()
     dataset["no_dimension"] = ((), "Delta_g 1.80 [1.70, 1.90] does not lie between 2 and 3")
     changed[group] = xr.DataTree(dataset)
@@ -415,7 +415,7 @@ def test_a_dimension_out_of_bounds_is_not_recommended(atlas):
 
 
 def test_one_solved_offset_is_enough(atlas):
-    cut = atlas.copy(deep=True)
+    cut = atlas.copy()
     for stage, dims in {
         "contact": ("offset",),
         "closure": ("offset",),
@@ -434,16 +434,16 @@ def test_one_solved_offset_is_enough(atlas):
 
 def without_statements(atlas, name):
     """The atlas of a specimen that nothing is asked of."""
-    unasked = atlas.copy(deep=True)
+    unasked = atlas.copy()
     judged = unasked[f"statements/{name}"].to_dataset()
     unasked[f"statements/{name}"] = xr.DataTree(judged.isel(statement=slice(0, 0)))
     return unasked
 
 
 def test_parts_may_have_a_strength_where_the_whole_has_none(atlas):
-    changed = atlas.copy(deep=True)
+    changed = atlas.copy()
     laws = changed["windows/sliding"].to_dataset()
-    strength = laws["strength_at_equal_v_over_b"].values
+    strength = laws["strength_at_equal_v_over_b"].values.copy()
     strength[:, 0] = np.nan
     strength[:, 1:] = 1.0
     laws["strength_at_equal_v_over_b"] = laws["strength_at_equal_v_over_b"].copy(data=strength)

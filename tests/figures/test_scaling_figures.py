@@ -346,7 +346,7 @@ def test_pressures_without_a_stated_strength_stand_beside_usual_ones(atlas):
 
 def test_an_interval_that_ends_far_below_the_axes_is_drawn(atlas, tmp_path):
     """Dashes of the edge of an area would be laid out over all its decades."""
-    changed = atlas.copy(deep=True)
+    changed = atlas.copy()
     scaling = changed["scaling/sliding"].to_dataset()
     for key in ("area", "box"):
         scaling[f"delta_sigma_{key}_low"] = scaling[f"delta_sigma_{key}_low"] * 0 - 80.0

@@ -24,7 +24,7 @@ def drawn(module, atlas, name):
 
 def changed(atlas, group, change):
     """The atlas with one group put through a function of its dataset."""
-    other = atlas.copy(deep=True)
+    other = atlas.copy()
     other[group] = xr.DataTree(change(other[group].to_dataset()))
     return other
 

@@ -33,7 +33,7 @@ def drawn(atlas, specimen, figure):
 
 def unstated(atlas):
     """The atlas of a study that states neither basic friction angle nor wall strength."""
-    changed = atlas.copy(deep=True)
+    changed = atlas.copy()
     lost = ("strength", "truncated", "barton", "scaled", "friction_angle", "joint_wall")
     for stage in ("strength", "windows"):
         for specimen in changed[stage].children:
@@ -162,7 +162,7 @@ def test_a_study_that_states_no_friction_angle_is_drawn_and_says_so(atlas, speci
 
 
 def test_no_fit_is_said_and_no_line_drawn(atlas):
-    changed = atlas.copy(deep=True)
+    changed = atlas.copy()
     laws = changed["windows/flat"].to_dataset()
     for name in list(laws.data_vars):
         if "exponent" in name or "hurst" in name:
@@ -212,7 +212,7 @@ def test_compliance_over_size_is_drawn_as_the_atlas_has_it(atlas):
 
 
 def test_both_figures_of_strength_word_the_roughness_alike(atlas):
-    changed = atlas.copy(deep=True)
+    changed = atlas.copy()
     strength = changed["strength/sliding"].to_dataset()
     strength["scaled_roughness"] = strength["scaled_roughness"] * np.nan
     changed["strength/sliding"] = xr.DataTree(strength)
@@ -239,7 +239,7 @@ def test_points_that_no_exponent_goes_through_are_hollow(atlas):
 
 
 def test_a_joint_that_was_not_slid_has_no_strength(atlas):
-    changed = atlas.copy(deep=True)
+    changed = atlas.copy()
     strength = changed["strength/sliding"].to_dataset().isel(interval=slice(0, 0))
     for name, values in strength.data_vars.items():
         if "interval" not in values.dims and values.dtype.kind == "f" and values.dims:

@@ -1,12 +1,12 @@
 """A small study with its result page: hostile labels, pictures of one dot."""
 
+import shutil
 import struct
 import zlib
 
 import pytest
-from page_study import write_pages, write_study
+from page_study import STUDY, write_pages
 
-from fractalcontact.cards.write import write_cards
 from fractalcontact.study.figure_list import figures_of
 
 
@@ -27,23 +27,22 @@ def png_of(path):
 
 
 @pytest.fixture(scope="session")
-def results(tmp_path_factory):
+def results(cards_folder, tmp_path_factory):
     """Folder of the results of a study of two scanned faces and of a surface against a plane."""
 
     folder = tmp_path_factory.mktemp("project") / "results/tiny"
-    settings = write_study(folder)
-    for name in settings:
+    shutil.copytree(cards_folder, folder)
+    for name, stated in STUDY["specimens"].items():
         figures = folder / "figures" / name
         figures.mkdir(parents=True)
         for figure in figures_of("flat" if name == "flat.1" else "match"):
             png_of(figures / f"{figure}.png")
             (figures / f"{figure}.csv").write_text("a,b\n1,2\n")
-            label = settings[name].label
-            (figures / f"{figure}.txt").write_text(f"Supplementary figure: {label}. It. Found.\n")
+            words = f"Supplementary figure: {stated['label']}. It. Found.\n"
+            (figures / f"{figure}.txt").write_text(words)
     (folder / "logs").mkdir()
     (folder / "logs/one.log").write_text(
         "worked 61.500 s, of which 2.000 s on 9 contact problems\n"
     )
-    write_cards(folder / "atlas.nc", folder)
     assert write_pages(folder) == ["flat.1", "pair"]
     return folder

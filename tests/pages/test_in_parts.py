@@ -77,7 +77,7 @@ def test_the_table_leads_to_the_card_of_each_and_to_the_states_of_chosen_ones(pa
 def test_verdicts_of_many_specimens_are_counted(results, parts, monkeypatch):
     monkeypatch.setattr(result_page, "_COLUMNS", 1)
     monkeypatch.setattr(result_page, "_BLOCKS", 1)
-    write_pages(parts)
+    result_page.write_index(result_page.Place.of(parts), ["pair"])
     html = (parts / "index.html").read_text(encoding="utf-8")
     assert "<template" not in html
     assert 'class="joint"' not in html

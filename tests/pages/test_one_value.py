@@ -16,7 +16,6 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
-from page_study import write_pages
 from published import (
     DIGITS,
     SUMMARY,
@@ -40,18 +39,15 @@ def published(results, tmp_path_factory):
     """Folder of a study with the numbers of its figures, its pages and its explorer."""
     if os.environ.get("RESULTS"):
         return Path(os.environ["RESULTS"]).absolute()
-    folder = tmp_path_factory.mktemp("published")
-    shutil.copy(results / "atlas.nc", folder)
+    folder = shutil.copytree(results, tmp_path_factory.mktemp("published") / "tiny")
     atlas = read_atlas(folder / "atlas.nc")
     for name in atlas["specimens"].children:
         numbers = folder / "figures" / name
-        numbers.mkdir(parents=True)
         for figure in figures_of(atlas[f"specimens/{name}"].attrs["opposite"]):
             with print_style():
                 drawing = drawer_of(figure)(atlas, name)
             drawing.data.to_csv(numbers / f"{figure}.csv", index=False, float_format="%.8g")
     write_explorer(folder / "atlas.nc", folder / "explorer.html")
-    write_pages(folder)
     return folder
 
 
