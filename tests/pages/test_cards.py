@@ -22,7 +22,7 @@ OWN_STYLE = {"font.size": 14, "figure.dpi": 72, "axes.grid": True, "xtick.labels
 CARDS = [
     ("fig04_05_closure", "pair", {}),
     *((figure, "pair", OWN_STYLE) for figure in figures_of("match")),
-    *((figure, "", OWN_STYLE) for figure in ("comparison", "comparison_loads")),
+    ("comparison", "", OWN_STYLE),
 ]
 #: To open an atlas takes seconds: one does for all figures.
 open_once = functools.cache(xr.open_datatree)

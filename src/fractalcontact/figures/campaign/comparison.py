@@ -1,133 +1,131 @@
-"""Specimens and groups of them compared under one nominal pressure, each with its errors."""
+"""Few specimens one by one, or means of groups: surface dimension, and contact over pressure."""
 
 from collections.abc import Sequence
+from textwrap import fill
 
 import numpy as np
+import pandas as pd
 from matplotlib.figure import Figure
 from xarray import DataTree
 
 from ...core.estimate import Estimate
+from ...core.labels import printable
+from ..kit.axes import label_short_span
 from ..kit.caption import caption
-from ..kit.drawing import WIDTH, Drawing, colour_of
+from ..kit.drawing import LINES, MARKERS, WIDTH, Drawing, colour_of
+from ..kit.empty import say_empty
+from ..kit.legends import entries
 from ..kit.panel import rows
 from ..kit.points import reach
-from ..kit.titles import TITLE_SIZE, letter
-from ..kit.words import pressure_label
-from ._groups import (
-    AXES,
-    MAX_NAMED,
-    TITLES,
-    alone,
-    group_labels,
-    least_and_largest,
-    means_of_groups,
-    settle_axis,
-    specimen_labels,
-    under_common_pressure,
-    values_range,
-)
+from ..kit.titles import letter
+from ..kit.words import NOMINAL_PRESSURE
 
-TITLE = "Specimens and groups compared: surface, stiffness, contact, dilatancy and size effect"
+TITLE = "Specimens or groups compared: surface, stiffness, contact, dilatancy and size effect"
 SUBJECT = "study"
 NEEDS = ("study_comparison",)
 KEY = "comparison"
 ORDER = 6
 
-#: Specimens of a group up to which each has its own error bar.
-MAX_BARS = 40
-#: Half the width that the specimens of a group take, of the distance between groups; where the
-#: mean stands.
-HALF_WIDTH, MEAN_AT = 0.25, 0.38
-#: Quantities whose ends the caption quotes.
-_QUOTED = ("delta_g", "stiffness")
-#: Letters of a line of a specimen's label along an axis.
-_LETTERS = 24
+#: Title and axis of every quantity: the first has one value a specimen, the others one a load.
+_QUANTITIES = {
+    "delta_g": ("surface", r"surface dimension $\Delta_g$ (1)"),
+    "stiffness": ("stiffness", r"$\mathrm{d}\sigma_0/\mathrm{d}w_\mathrm{int}$ (MPa/mm)"),
+    "delta_sigma": ("contact", r"$\Delta_\sigma$ by box counting (1)"),
+    "dilatancy": ("dilatancy", r"elastic dilatancy $\delta$ (mm)"),
+    "size_exponent": ("size effect", r"exponent of $A_r/A_0$ against $b$ (1)"),
+}
+#: What stands for a group in a study that states none.
+_UNGROUPED = "no group"
+#: Specimens or groups at most that are drawn: colours there are. The table has all of them.
+_MOST = 7
+#: Letters of a line of a label in the legend.
+_LETTERS = 28
 
 
 def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
-    """A strip of specimens for each group, and the mean of the group with its interval."""
-    comparison = atlas["study_comparison/study"].to_dataset()
-    under = under_common_pressure(comparison)
-    by_specimen = alone(comparison)
-    figure = Figure(figsize=(WIDTH, 6.4 if by_specimen else 5.2))
-    panels = figure.subplots(2, 3).ravel()
-    for axes, name, which in zip(panels, AXES, "abcde", strict=False):
-        if by_specimen:
-            _draw_specimens(axes, name, under, specimen_labels(comparison, _LETTERS))
-        else:
-            _draw_strip(axes, name, under)
-        quoted = by_specimen and name in _QUOTED
-        ends = values_range(under[name].values) if quoted else ""
-        letter(axes, which, "\n".join(filter(None, (TITLES[name], ends))))
-    _draw_key(panels[-1], under, by_specimen=by_specimen)
-    pressure = float(under["pressure"])
-    figure.suptitle(rf"under $\sigma_0$ = {pressure_label(pressure)}", fontsize=TITLE_SIZE)
-    table = rows(under, "group", *AXES)
-    labels = comparison["label"].values
-    words = caption(
+    """Quantities with their intervals; of groups the means and the spread of specimens.
+
+    Its data are the specimens under every load and, where it draws groups, their means.
+    """
+    compared = atlas["study_comparison/study"].to_dataset()
+    few = compared.sizes["specimen"] <= _MOST
+    single = few and set(compared["group"].values) == {_UNGROUPED}
+    of, along = ("", "specimen") if single else ("_mean", "group_name")
+    labels = [str(label) for label in compared["group_name" if of else "label"].values]
+    figure = Figure(figsize=(WIDTH, 4.6))
+    *panels, key = figure.subplots(2, 3).ravel()
+    for axes, which, (name, (title, words)) in zip(
+        panels, "abcde", _QUANTITIES.items(), strict=True
+    ):
+        letter(axes, which, title)
+        for n, label in enumerate(labels[:_MOST]):
+            _draw_one(axes, compared.isel({along: n}), f"{name}{of}", label, n)
+        if name != "delta_g":
+            axes.set_xscale("log")
+            axes.set_xlabel(f"{NOMINAL_PRESSURE} (MPa)")
+        axes.set_ylabel(words)
+        if not np.isfinite(compared[f"{name}{of}"]).any():
+            say_empty(axes, "no specimen\nhas a value", ticks=False)
+    surface, stiffness, contact, _, _ = panels
+    surface.set_xticks([])
+    stiffness.set_yscale("log", nonpositive="mask")
+    label_short_span(stiffness.yaxis)
+    contact.set_ylim(-0.05, 2.05)  # the interval of a mean of few goes far beyond
+    key.set_axis_off()
+    bars = (
+        "bars: 95 % intervals"
+        if single
+        else "bars: 95 % interval of the mean\nband: one standard deviation"
+    )
+    key.legend(handles=entries(surface), loc="center", title=bars, title_fontsize=7)
+    return Drawing(figure, _table(compared, of), _caption(compared, of, labels))
+
+
+def _draw_one(axes, one, name, label, n):
+    """A specimen; or the mean of a group in a band of one standard deviation."""
+    value, low, high = Estimate.read(one, name).ends
+    style = {"color": colour_of(n), "marker": MARKERS[n], "ls": LINES[n % len(LINES)]}
+    group = name.endswith("_mean")
+    x = n
+    if one[name].dims:
+        x = one["pressure" if group else "nominal_pressure"].values
+        style |= {"ms": 3, "lw": 0.9, "elinewidth": 0.5}
+    words = fill(printable(label, 2 * _LETTERS), _LETTERS).replace("$", r"\$")
+    axes.errorbar(x, value, reach(value, low, high), label=words, **style)
+    if group:
+        spread = one[name.replace("_mean", "_deviation")].values
+        ends = np.atleast_1d(value - spread), np.atleast_1d(value + spread)
+        across = np.atleast_1d(x) if one[name].dims else np.add(n, (-0.3, 0.3))
+        axes.fill_between(across, *ends, color=style["color"], alpha=0.15, lw=0)
+
+
+def _table(compared, of):
+    """Specimens under every load, and means of the groups if these are drawn."""
+    tables = [rows(compared, "group", "nominal_pressure", *_QUANTITIES)]
+    if of:
+        means = (f"{name}_{one}" for name in _QUANTITIES for one in ("mean", "deviation", "n"))
+        tables.append(rows(compared, *means))
+    return pd.concat(tables, ignore_index=True)
+
+
+def _caption(compared, of, labels):
+    """Least and largest Delta_g and stiffness, with the specimen or group that has each."""
+    pressure = float(compared["common_pressure"])
+    stiffness = compared["stiffness_at_common_pressure"]
+    if of:
+        stiffness = compared["stiffness_mean"].sel(pressure=pressure)
+    values = {"surface": compared[f"delta_g{of}"].values, "stiffness": stiffness.values}
+    return caption(
         __name__,
-        specimens=comparison.sizes["specimen"],
-        groups=comparison.sizes["group_name"],
-        alone=by_specimen,
+        specimens=compared.sizes["specimen"],
+        groups=len(labels) if of else 0,
         pressure=pressure,
-        ends={name: least_and_largest(under[name].values, labels) for name in _QUOTED},
-        means=means_of_groups(under, "delta_g"),
-        most=MAX_NAMED,
+        ends={name: _ends(found, labels) for name, found in values.items()},
     )
-    return Drawing(figure, table, words)
 
 
-def _draw_specimens(axes, name, under, labels):
-    """A bar for each specimen, at its label."""
-    found, low, high = Estimate.read(under, name).ends
-    axes.errorbar(
-        range(len(labels)), found, reach(found, low, high), fmt="o", lw=1, color=colour_of(1)
-    )
-    axes.set_xticks(range(len(labels)), labels, rotation=90, fontsize=6.5, linespacing=1)
-    axes.set_xlim(-0.6, len(labels) - 0.4)
-    axes.grid(axis="x", color="0.9", lw=0.6)
-    settle_axis(axes, name, drawn=bool(np.isfinite(found).any()))
-
-
-def _draw_strip(axes, name, under):
-    labels = group_labels(under)
-    for i, of_group in enumerate(under["group_name"].values):
-        members = ((under["group"] == of_group) & under[name].notnull()).values
-        found, low, high = Estimate.read(under, name)[members].ends
-        place = i + HALF_WIDTH * _spread(members.sum())
-        colour = colour_of(i + 1)
-        if members.sum() <= MAX_BARS:
-            bars = reach(found, low, high)
-            axes.errorbar(place, found, bars, fmt="o", ms=2.5, lw=0.5, color=colour, alpha=0.7)
-        else:
-            axes.plot(
-                place, found, "o", ms=1.5, color=colour, alpha=0.4, mec="none", rasterized=True
-            )
-        mean, low, high = (ends[i] for ends in Estimate.read(under, f"{name}_mean").ends)
-        if np.isfinite(low):
-            axes.errorbar(i + MEAN_AT, mean, reach(mean, low, high), fmt="D", color="k", capsize=3)
-    axes.set_xticks(range(len(labels)), labels, rotation=20 if len(labels) > 2 else 0)
-    axes.set_xlim(-0.6, len(labels) - 0.4)
-    settle_axis(axes, name, drawn=bool(np.isfinite(under[name]).any()))
-
-
-def _draw_key(axes, under, *, by_specimen):
-    """Legend of the signs, in the last panel."""
-    axes.set_axis_off()
-    axes.set(xlim=(0, 1.4), ylim=(0, 1))
-    if by_specimen:
-        axes.errorbar([0.1], [0.7], [0.06], fmt="o", lw=1, color=colour_of(1))
-        words = "a specimen with its 95 %\ninterval, where it is known;\nno point: no value there"
-        axes.text(0.2, 0.7, words, va="center")
-        return
-    many = np.unique(under["group"].values, return_counts=True)[1].max() > MAX_BARS
-    of_each = "one specimen" if many else "one specimen with its\n95 % interval"
-    axes.errorbar([0.1], [0.7], [0 if many else 0.06], fmt="o", ms=2.5, lw=0.5, color=colour_of(1))
-    axes.text(0.2, 0.7, of_each, va="center")
-    axes.errorbar([0.1], [0.45], [0.06], fmt="D", color="k", capsize=3)
-    axes.text(0.2, 0.45, "mean of the group, with the\n95 % interval of the mean", va="center")
-
-
-def _spread(n):
-    """Places of n points from -1 to 1, of one in the middle."""
-    return np.linspace(-1, 1, n) if n > 1 else np.zeros(n)
+def _ends(values, labels):
+    """Least and largest of the known values with their labels; one, or none, where that is all."""
+    known = np.flatnonzero(np.isfinite(values))
+    ends = known[[values[known].argmin(), values[known].argmax()]] if known.size else ()
+    return {printable(labels[i], 2 * _LETTERS): float(values[i]) for i in ends}
