@@ -216,10 +216,8 @@ def test_slope_angle_labels_table_and_caption(atlas, name):
 
 def test_slope_angle_names_what_is_quoted(atlas):
     figure = drawn(fig11_slope_angle, atlas, "sliding").figure
-    quoted = [line.get_label() for line in figure.axes[1].lines]
-    assert any(
-        "1.66 - 2" in label and "later work\nof the same school" in label for label in quoted
-    )
+    quoted = [line.get_label() for line in figure.axes[0].lines]
+    assert any("1.66 - 2, by later work of the same school" in label for label in quoted)
 
 
 def test_slope_angle_without_a_friction_angle(atlas):

@@ -110,14 +110,10 @@ def test_sizes_drawn_are_those_of_the_atlas(atlas, specimen):
 def test_strength_by_size_is_that_of_the_atlas(atlas):
     table = drawn(atlas, "sliding", "fig01_strength").data
     laws = atlas["windows/sliding"].to_dataset()
-    similar = table[table["at"] == "v/b"]
-    stored = (
-        laws["slope_at_equal_v_over_b"].transpose("normal_force", "share", "part").values.ravel()
-    )
-    np.testing.assert_array_equal(similar["slope_at_equal_v_over_b"], stored)
-    peak = table[table["at"] == "peak"]
-    stored = laws["peak_strength"].transpose("normal_force", "part").values.ravel()
-    np.testing.assert_array_equal(peak["peak_strength_MPa"], stored)
+    for name, unit in (("slope", ""), ("strength", "_MPa")):
+        for of in ("at_equal_v_over_b", "of_whole_at_equal_v"):
+            stored = laws[f"{name}_{of}"].transpose("normal_force", "share", "part").values.ravel()
+            np.testing.assert_array_equal(table[f"{name}_{of}{unit}"], stored)
 
 
 def test_the_right_axis_adds_the_basic_angle(atlas):

@@ -271,8 +271,9 @@ def test_a_slope_that_falls_with_v_alone_falls_with_b_at_one_v_over_b_and_not_at
     known = found["slope_at_equal_v_over_b_exponent"].notnull()
     assert known.any()
     assert (found["slope_at_equal_v_over_b_exponent_high"].where(known, -1) < 0).all()
-    whole, slope = found["slope_of_whole_at_equal_v"], found["slope_at_equal_v_over_b"]
-    np.testing.assert_allclose(slope.where(whole.notnull()), whole.transpose(*slope.dims))
+    for name in ("slope", "strength"):
+        whole, parts = found[f"{name}_of_whole_at_equal_v"], found[f"{name}_at_equal_v_over_b"]
+        np.testing.assert_allclose(parts.where(whole.notnull()), whole.transpose(*parts.dims))
     at_one_v = found["slope_at_equal_v_exponent"]
     np.testing.assert_allclose(at_one_v.where(at_one_v.notnull(), 0), 0, atol=1e-9)
 

@@ -53,10 +53,11 @@ def strength_by_size(states: xr.Dataset, material: Friction, roughness: float) -
         ``strength_at_equal_v_over_b`` and ``slope_at_equal_v_over_b`` (d delta/dv, not truncated),
         ``truncated_fraction_at_equal_v_over_b`` (the fraction of sub-windows whose angle was
         truncated there) and their exponents (share, load), where the v of the sizes lie in three
-        steps of sliding or more. ``share`` holds the fractions v/b. ``slope_of_whole_at_equal_v``
-        (share, part, load) is the slope of the whole window at the same v, and
-        ``slope_at_equal_v_exponent`` (share, load) the exponent against b of the slope of the
-        sub-windows over it. Besides those of :func:`with_slope_angles`.
+        steps of sliding or more. ``share`` holds the fractions v/b.
+        ``strength_of_whole_at_equal_v`` and ``slope_of_whole_at_equal_v`` (share, part, load) are
+        those of the whole window at the same v, and ``slope_at_equal_v_exponent`` (share, load) the
+        exponent against b of the slope of the sub-windows over it. Besides those of
+        :func:`with_slope_angles`.
 
     Notes
     -----
@@ -92,7 +93,7 @@ def strength_by_size(states: xr.Dataset, material: Friction, roughness: float) -
     for name, (dims, (values, errors)) in each.items():
         mean_of = xr.DataArray(values, dims=dims, attrs=cf_attrs(*_MEANS[name]))
         add_mean(result, name, mean_of, mean_of.copy(data=errors))
-    _add_whole_window(result, side, offset, slopes[0])
+    _add_whole_window(result, side, offset, {"strength": strength, "slope": slopes[0]})
     attrs = cf_attrs("1", "offset as a fraction of the side, v/b")
     result["share"] = ("share", np.array(OFFSET_FRACTIONS), attrs)
     # Missing sub-windows, NaN, are truncated nowhere.
@@ -120,7 +121,7 @@ def strength_by_size(states: xr.Dataset, material: Friction, roughness: float) -
 
 
 def with_slope_angles(laws: xr.Dataset, pressure: np.ndarray) -> xr.Dataset:
-    """Strengths at one v/b as limit slope angles, and over that of the whole window (Fig. 11).
+    """Strengths at one v/b as limit slope angles (Fig. 11).
 
     Parameters
     ----------
@@ -133,22 +134,18 @@ def with_slope_angles(laws: xr.Dataset, pressure: np.ndarray) -> xr.Dataset:
     Returns
     -------
     xr.Dataset
-        With ``limit_slope_angle``, ``relative_strength`` and ``strength_at_equal_v_over_b_valid``
-        (share, part, normal_force), and ``barton_slope_angle`` (part, normal_force).
+        With ``limit_slope_angle`` and ``strength_at_equal_v_over_b_valid`` (share, part,
+        normal_force), and ``barton_slope_angle`` (part, normal_force).
     """
     dims = ("share", *_DIMS[::2])
     strength = Estimate.read(laws.transpose(*dims, ...), "strength_at_equal_v_over_b")
     angle = strength.mapped(partial(slope_angle, pressure=pressure))
-    # Part 1 is the whole window.
-    relative = strength.mapped(lambda values: values / strength.value[:, :1])
     by_barton = slope_angle(laws["barton_scaled_strength"].values, pressure)
     valid = ~(
         laws["truncated_fraction_at_equal_v_over_b"].transpose(*dims).values > MOSTLY_TRUNCATED
     )
-    words = "shear strength at one v/b over that of the whole window"
     return laws.assign(
         angle.variables("limit_slope_angle", dims, "degree", "limit slope angle atan(tau/sigma_0)")
-        | relative.variables("relative_strength", dims, "1", words)
         | labelled(
             _ANGLES, {"barton_slope_angle": by_barton, "strength_at_equal_v_over_b_valid": valid}
         )
@@ -277,24 +274,30 @@ def _add_largest(
 
 
 def _add_whole_window(
-    result: xr.Dataset, side: xr.DataArray, offset: np.ndarray, slopes: np.ndarray
+    result: xr.Dataset,
+    side: xr.DataArray,
+    offset: np.ndarray,
+    over_offsets: dict[str, np.ndarray],
 ) -> None:
-    """Slope of the whole window at the v of each size, and the sub-windows' over it.
+    """Strength and slope of the whole window at the v of each size, and slopes over that.
 
     Parameters
     ----------
     result : xr.Dataset
-        With ``slope_at_equal_v_over_b``.
+        With ``strength_at_equal_v_over_b`` and ``slope_at_equal_v_over_b``.
     offset : (n,) ndarray
         mm.
-    slopes : (n - 1, part, window, load) ndarray
-        Part 1 is the whole window.
+    over_offsets : mapping of str to (n - 1, part, window, load) ndarray
+        ``strength``, MPa, and ``slope``. Part 1 is the whole window.
     """
-    of_sizes = result["slope_at_equal_v_over_b"]
-    of_whole = np.repeat(slopes[:, :1, :1], side.size, axis=1)
-    whole = of_sizes.copy(data=_at_fractions(offset, side.values, of_whole)[:, :, 0])
-    words = "slope d delta/dv of the whole window at the v of each size"
-    result["slope_of_whole_at_equal_v"] = whole.assign_attrs(cf_attrs("1", words))
+    for name, values in over_offsets.items():
+        of_sizes = result[f"{name}_at_equal_v_over_b"]
+        of_whole = np.repeat(values[:, :1, :1], side.size, axis=1)
+        whole = of_sizes.copy(data=_at_fractions(offset, side.values, of_whole)[:, :, 0])
+        words = f"{name} of the whole window at the v of each size"
+        whole.attrs = of_sizes.attrs | {"long_name": words}
+        result[f"{name}_of_whole_at_equal_v"] = whole
+    of_sizes, whole = result["slope_at_equal_v_over_b"], result["slope_of_whole_at_equal_v"]
     ratio = (of_sizes / whole.where(whole > 0)).where(side < side.max())
     words = "exponent against b of the slope of sub-windows over that of the whole window at one v"
     add_law(result, "slope_at_equal_v_exponent", side, ratio, words)

@@ -6,7 +6,7 @@ from matplotlib.axis import Axis
 from matplotlib.ticker import LogLocator, NullFormatter, NullLocator, StrMethodFormatter
 from numpy.typing import ArrayLike
 
-from .words import force_unit
+from .words import force_unit, short
 
 
 def force_axis(axis: Axis, forces: ArrayLike) -> float:
@@ -55,6 +55,14 @@ def offset_axis(axes: Axes, offsets: np.ndarray) -> None:
             axes.xaxis.set_minor_formatter(NullFormatter())
         axes.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
     axes.set_xlabel("offset $v$ (mm)")
+
+
+def spacing_axis(axes: Axes, spacings: ArrayLike) -> None:
+    """Logarithmic axis of the spacing s, mm, numbered at each."""
+    axes.set_xscale("log")
+    axes.set_xticks(spacings, [short(spacing) for spacing in np.asarray(spacings)])
+    axes.xaxis.set_minor_locator(NullLocator())
+    axes.set_xlabel("spacing $s$ (mm)")
 
 
 def label_short_span(axis: Axis, within: float = 100) -> None:

@@ -15,33 +15,44 @@ def members_of(subject: Subject) -> str:
     return f"{subject['ensemble'].sizes['realisation']} {subject.members}"
 
 
-def draw_band(panel: Panel, subject: Subject, name: str, colour: str, words: str) -> None:
-    """Band over the loads in which 95 % of the members of its ensemble lie, and their mean.
+def draw_band(
+    panel: Panel,
+    subject: Subject,
+    name: str,
+    colour: str,
+    words: str,
+    x: str = "normal_force",
+    **at: float,
+) -> None:
+    """Band in which 95 % of the members of its ensemble lie, and their mean.
 
-    Nothing is drawn of a specimen without an ensemble, nor under loads at which some member has no
-    value.
+    Nothing is drawn of a specimen without an ensemble, nor where some member has no value: the band
+    would be that of the others alone.
 
     Parameters
     ----------
     panel : Panel
-        Of forces, N, along x.
     subject : Subject
     name : str
         Of the quantity in the stage ``ensemble``.
     colour : str
     words : str
         What the quantity is from, for the legend.
+    x : str, optional
+        What the panel has along x.
+    **at
+        Where the quantity has more dimensions than one.
     """
     if not (members := members_of(subject)):
         return
-    stage = subject["ensemble"]
+    stage = subject["ensemble"].sel(at, method="nearest")
     every = stage[f"{name}_n"] == stage.sizes["realisation"]
-    shown = stage.isel(normal_force=np.flatnonzero(every))
-    if not shown.sizes["normal_force"]:
+    shown = stage.isel({every.dims[0]: np.flatnonzero(every)})
+    if not shown.sizes[every.dims[0]]:
         return
-    force, low, high = (shown[of] for of in ("normal_force", *(f"{name}_band_{e}" for e in _ENDS)))
+    force, low, high = (shown[of] for of in (x, *(f"{name}_band_{end}" for end in _ENDS)))
     label = f"band of {members}, {words}"
-    panel.axes.fill_between(force, low, high, color=colour, alpha=0.2, lw=0, label=label)
+    panel.axes.fill_between(force, low, high, color=colour, alpha=0.2, lw=0, label=label, zorder=0)
     panel.axes.plot(
         force, shown[f"{name}_mean"], color=colour, lw=0.8, ls=":", label=f"their mean, {words}"
     )

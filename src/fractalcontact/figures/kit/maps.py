@@ -7,7 +7,6 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.image import AxesImage
-from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, Rectangle
 from matplotlib.patheffects import withStroke
 from matplotlib.ticker import MaxNLocator
@@ -112,7 +111,7 @@ def draw_domain(
     *,
     ticks: int = 5,
     times: int | None = None,
-) -> bool:
+) -> None:
     """Contact domain in black, with nodes enlarged for print and rings around the few.
 
     Parameters
@@ -126,11 +125,6 @@ def draw_domain(
     times : int, optional
         How many times as wide nodes are drawn, the same in maps that are compared with each other;
         by default what one map asks for.
-
-    Returns
-    -------
-    bool
-        Whether nodes are drawn enlarged, which the figure or its caption then says.
     """
     # No cell is missing in a window, and a node smaller than a pixel must not vanish.
     grey: dict[str, Any] = {"cmap": "Greys", "vmin": 0, "vmax": 1, "interpolation": "auto"}
@@ -143,12 +137,6 @@ def draw_domain(
     if len(nodes) < FEW_NODES and max(domain.shape) > FINE_NODES:
         y, x = node_position(nodes.T, domain.shape, sides)
         axes.plot(x, y, clip_on=False, **_RING)
-    return drawn is not domain
-
-
-def ring_entry(label: str) -> Line2D:
-    """Entry of a legend for the rings round few nodes."""
-    return Line2D([], [], label=label, **_RING)
 
 
 def enlarged(domain: np.ndarray, points: float) -> np.ndarray:

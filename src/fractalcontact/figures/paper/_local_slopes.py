@@ -46,9 +46,6 @@ def draw_slopes(panel: Panel, counts: xr.Dataset) -> None:
     axes.set_ylim(-0.1, 2.3)
     axes.set(xlabel="box side $r$ (mm)", ylabel=r"local slope $-$d log $N$ / d log $r$ (1)")
     label_short_span(axes.xaxis)
-    extremes = (slope.value.min(), slope.value.max()) if middle.size else ()
-    words = dict.fromkeys(f"{end:.2f}" for end in extremes)
-    panel.title(f"local slopes: {' to '.join(words)}" if words else "no local slopes")
 
 
 def band_of(colour: str) -> dict[str, Any]:

@@ -4,12 +4,11 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from matplotlib.ticker import NullLocator
 
 from ...core.subject import Subject
 from ...core.verdicts import UNDETERMINED
 from ...core.window import cell_side
-from ..kit.axes import label_short_span
+from ..kit.axes import label_short_span, spacing_axis
 from ..kit.drawing import MARKERS
 from ..kit.empty import TOO_FULL, different_reasons, missing_lines, say_empty
 from ..kit.panel import Panel
@@ -59,7 +58,8 @@ def draw_stiffness(panel: Panel, curves: xr.Dataset) -> list[str]:
         words = f"\n{UNDETERMINED}, {numbers}" if doubted else f" {numbers}"
         style["label"] = f"$k_{{ni}}$ from first touch, bars 95 %:{words}"
     panel.curve(curves, "spacing", "hyperbola_k_ni", **style)
-    _finish(axes, curves["spacing"].values)
+    spacing_axis(axes, curves["spacing"])
+    axes.set_ylabel(r"stiffness $\mathrm{d}\sigma_0/\mathrm{d}w_\mathrm{int}$ (MPa/mm)")
     reasons = curves["interface_stiffness_reason"]
     if not (tangent.notnull().any() or initial.notnull().any()):
         say_empty(axes, "\n".join(different_reasons(reasons)) or TOO_FULL)
@@ -67,14 +67,6 @@ def draw_stiffness(panel: Panel, curves: xr.Dataset) -> list[str]:
     axes.set_yscale("log")
     label_short_span(axes.yaxis)
     return missing_lines(reasons, "d")
-
-
-def _finish(axes, spacings):
-    axes.set_xscale("log")
-    axes.set_xticks(spacings, [short(spacing) for spacing in spacings])
-    axes.xaxis.set_minor_locator(NullLocator())
-    axes.set_xlabel("spacing $s$ (mm)")
-    axes.set_ylabel(r"stiffness $\mathrm{d}\sigma_0/\mathrm{d}w_\mathrm{int}$ (MPa/mm)")
 
 
 def _numbers(state, name):

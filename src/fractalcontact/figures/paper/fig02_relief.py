@@ -90,7 +90,6 @@ def _draw_dimensions(axes, dimension):
             value, bars = found.value[of], reach(*found[of].ends)
             style |= {"fmt": "o", "capsize": 2, "label": label}
             handles.append(axes.errorbar(value, places[of], xerr=bars, **style))
-    handles += _impossible(axes)
     known = float(dimension["known_dimension"])
     if np.isfinite(known):
         label = rf"known $\Delta_g$ {known:.3g}"
@@ -99,30 +98,17 @@ def _draw_dimensions(axes, dimension):
     return handles
 
 
-def _impossible(axes):
-    """Shade impossible dimensions where the axis reaches them; returns the legend entry."""
-    low, high = axes.get_xlim()
-    beyond = [(low, min(high, 2)), (max(low, 3), high)]
-    style = {"color": "0.88", "lw": 0, "zorder": 0, "label": "no dimension of a surface"}
-    shaded = [axes.axvspan(*ends, **style) for ends in beyond if ends[0] < ends[1]]
-    axes.set_xlim(low, high)
-    return shaded[:1]
-
-
 def _recommended(dimension):
     return Estimate.read(dimension, "recommended_dimension", scale=DIMENSION)
 
 
 def _range_words(dimension):
-    """Entries of a legend: lengths that give the recommended Delta_g, roll-off, both axes."""
+    """Entries of a legend: lengths that give the recommended Delta_g, and both axes."""
     words = []
     if _recommended(dimension).known:
         best = dimension.sel(estimator=dimension["recommended"].item())
         ends = " to ".join(f"{float(best[f'fit_{end}']):.3g}" for end in ("min", "max"))
         words.append(f"recommended: {best['length_kind'].item()}s {ends} mm")
-    roll_off = float(dimension["roll_off"])
-    if np.isfinite(roll_off):
-        words.append(f"roll-off of the face at {roll_off:.3g} mm")
     if compared := int(dimension["axes_compared"]):
         differing = f"{int(dimension['axes_differing'])} of {compared} estimators"
         words.append(f"Hurst exponent: $x$, $y$ differ by\n{differing}")

@@ -66,10 +66,9 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     _draw_elastic(b, subject, curves, points)
     draw_tests(b, subject, "dilatancy")
     legends_below(top, key, entries(b.axes))
-    larger = _draw_domains(bottom, subject, curves, points)
+    _draw_domains(bottom, subject, curves, points)
     title = f"(c) contact domains at $F$ = {force_label(subject.reported.force)}"
-    title += "; nodes drawn enlarged" if larger else ""
-    bottom.suptitle(title, x=0.01, ha="left", fontsize=8)
+    bottom.suptitle(f"{title}, small nodes enlarged", x=0.01, ha="left", fontsize=8)
     headline(figure, subject.label)
     trends = dict(zip(plateaus["direction"].values, plateaus["plateau_trend"].values, strict=True))
     end = float(plateaus["rigid_offset"][-1])
@@ -120,17 +119,15 @@ def _draw_elastic(panel, subject, curves, points):
 
 
 def _draw_domains(figure, subject, curves, points):
-    """Contact domains of the reference load at some offsets; whether nodes are enlarged."""
+    """Contact domains of the reference load at some offsets."""
     load = {"normal_force": subject.reported.reference}
     fields = subject.along("contact")[f"in_contact_{subject.reported.resolution}"]
     panels = figure.subplots(-(-len(points) // COLUMNS), COLUMNS, squeeze=False).ravel()
-    larger = False
     for letter, axes, i in zip(LETTERS, panels, points, strict=False):
         domain = fields.isel({**load, "offset": i}).values
-        larger |= draw_domain(axes, domain, window_sides(subject["specimens"]))
+        draw_domain(axes, domain, window_sides(subject["specimens"]))
         state = curves.isel({**load, "offset": i})
         area = area_label(state)
         axes.set_title(f"{letter}: $v$ = {short(state['offset'])} mm, $A_r/A_0$ = {area}")
     for axes in panels[len(points) :]:
         axes.remove()
-    return larger

@@ -1,13 +1,12 @@
 """Fig. 8: the contact domain at coarser and coarser resolution, and its real mean pressure."""
 
+from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
-from matplotlib.ticker import NullLocator
 from xarray import DataTree
 
 from ...core.subject import Subject
-from ...core.verdicts import USUAL
 from ...core.window import window_sides
-from ..kit.axes import label_short_span
+from ..kit.axes import label_short_span, spacing_axis
 from ..kit.caption import caption
 from ..kit.domains import contact_domain, estimates_of, prefractals
 from ..kit.drawing import COLOURS, WIDTH, Drawing
@@ -53,8 +52,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     title = rf"$\sigma_n = F/A_r$; {found}; rms slope of the surface {short(states['rms_slope'])}"
     panel = Panel(bottom.subplots(), _LETTERS[n], title)
     _draw_pressures(panel, states, model)
-    wide = "black: real contact area $A_r$ of the nominal $A_0$"
-    wide += f"; nodes drawn {times} times as wide in all maps" if times > 1 else ""
+    wide = f"black: real contact area $A_r$; nodes drawn {times} × as wide in all maps"
     where = place(subject.direction, subject.offset)
     headline(figure, subject.label, where, f"$F$ = {force_label(force)}", below=wide)
     words = {key: str(model[key].item()) for key in ("verdict", "reason")}
@@ -96,18 +94,11 @@ def _draw_pressures(panel, states, model):
     raw = {"mfc": "none", "ls": ":", "lw": 0.8, "label": "$A_r$ raw"}
     kept = [name for name in states if name not in ("spacing", "sigma_n_raw")]
     panel.curve(states, "spacing", "sigma_n_raw", keep=kept, **style, **raw)
-    low, high = (float(model[f"strength_{end}"]) for end in ("low", "high"))
-    criterion = str(model["criterion"].item())
-    if criterion == USUAL:
-        label = f"{USUAL}:\n{short(low)} to {short(high)} MPa"
-        axes.axhspan(low, high, color=COLOURS[2], alpha=0.2, lw=0, label=label)
-    else:
-        label = f"{criterion}: {short(low)} MPa"
-        axes.axhline(low, color=COLOURS[2], ls="--", label=label)
-    axes.set(xscale="log", yscale="log")
-    axes.set_xticks(states["spacing"], [short(s) for s in states["spacing"].values])
-    axes.xaxis.set_minor_locator(NullLocator())
+    ends = [float(model[f"strength_{end}"]) for end in ("low", "high")]
+    label = f"{model['criterion'].item()}:\n{' to '.join(dict.fromkeys(map(short, ends)))} MPa"
+    axes.axhspan(*ends, fc=to_rgba(COLOURS[2], 0.2), ec=COLOURS[2], ls="--", lw=1, label=label)
+    axes.set_yscale("log")
+    spacing_axis(axes, states["spacing"])
     label_short_span(axes.yaxis)
-    axes.set_xlabel("spacing $s$ (mm)")
     axes.set_ylabel(f"{REAL_PRESSURE} (MPa)")
     axes.legend(loc="center left", bbox_to_anchor=(1.01, 0.5), borderaxespad=0)

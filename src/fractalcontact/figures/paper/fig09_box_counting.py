@@ -3,7 +3,6 @@
 from typing import Any
 
 import numpy as np
-from matplotlib.artist import Artist
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 from xarray import DataTree
@@ -15,13 +14,13 @@ from ..kit.axes import label_short_span
 from ..kit.caption import caption
 from ..kit.domains import contact_domain
 from ..kit.drawing import COLOURS, WEAK, WIDTH, Drawing
-from ..kit.ensembles import members_of
-from ..kit.legends import heading
+from ..kit.ensembles import draw_band
+from ..kit.legends import entries, heading
 from ..kit.maps import draw_domain
 from ..kit.panel import Panel, table_of
 from ..kit.titles import headline, letter
 from ..kit.verdicts import claim, verdict_words
-from ..kit.words import force_label, place, short
+from ..kit.words import force_label, place
 from ._local_slopes import CUT, LAW, ORDINARY, RANDOM, band_of, draw_slopes
 
 TITLE = "Fig. 9: box counting of a contact domain"
@@ -36,6 +35,11 @@ _COUNTS = {
     "null_scale": ("null_side", "null_count_random", "null_count_cut"),
     "null_mean_scale": ("null_mean_side", "null_mean_count"),
 }
+#: The law of the counts in words.
+_LAW = (
+    "Count law in (b): the area $N r^2$ of the boxes,\nless that of a node's width and outline,\n"
+)
+_LAW += r"grows as $r^{2-\Delta_\sigma}$"
 _SEEN: dict[str, Any] = {"zorder": 4, "linewidth": 1.4}
 
 
@@ -49,18 +53,17 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     figure = Figure(figsize=(WIDTH, 3.7))
     axes = figure.subplots(1, 3)
     domain = contact_domain(subject, reported.resolution, reported.reference)
-    larger = draw_domain(axes[0], domain, window_sides(subject["specimens"]))
-    letter(axes[0], "a", "contact, nodes enlarged" if larger else "contact domain")
-    b, c = Panel(axes[1], "b", "box counts"), Panel(axes[2], "c")
+    draw_domain(axes[0], domain, window_sides(subject["specimens"]))
+    letter(axes[0], "a", "contact, small nodes enlarged")
+    b, c = Panel(axes[1], "b", "box counts"), Panel(axes[2], "c", "local slopes")
     _draw_counts(b, counts, rf"count law: $\Delta_\sigma$ {law.text()}", ordinary)
     draw_slopes(c, counts)
-    band = _draw_ensemble(c, subject)
-    handles, _ = axes[1].get_legend_handles_labels()
-    if np.isfinite(counts["law_count"]).any():
-        handles.append(heading(_law_form(counts)))
+    force = {"normal_force": reported.force}
+    draw_band(c, subject, "local_slope", COLOURS[1], "(c)", "local_slope_side", **force)
+    handles = [*entries(axes[1]), heading(_LAW)]
     handles.append(Patch(**band_of(LAW), label="(c) 95 % of the count law"))
     handles.append(Patch(**band_of(ORDINARY), label="(c) 95 % of the ordinary slope"))
-    handles += band
+    handles += entries(axes[2])
     narrow = {"columnspacing": 1.2, "handlelength": 1.8}
     figure.legend(handles=handles, loc="outside lower center", ncols=3, **narrow)
     where = place(subject.direction, subject.offset)
@@ -76,27 +79,6 @@ def draw(atlas: DataTree, name: str) -> Drawing:
         fractal=claim(atlas, name, "domains_are_fractal", numbers=False),
     )
     return Drawing(figure, table_of(b, c), text)
-
-
-def _draw_ensemble(panel: Panel, subject: Subject) -> list[Artist]:
-    """Band in which the local slopes of 95 % of an ensemble lie; its entry, if there is one.
-
-    Where a member has no slope, the band would be that of the others alone.
-    """
-    if not (members := members_of(subject)):
-        return []
-    stage = subject["ensemble"].sel(normal_force=subject.reported.force, method="nearest")
-    stage = stage.isel(
-        null_octave=np.flatnonzero(stage["local_slope_n"] == stage.sizes["realisation"])
-    )
-    if not stage.sizes["null_octave"]:
-        return []
-    low, high = (stage[f"local_slope_band_{end}"].values for end in ("low", "high"))
-    style: dict[str, Any] = {"color": COLOURS[1], "alpha": 0.2, "lw": 0}
-    panel.axes.fill_between(stage["local_slope_side"], low, high, **style, zorder=0)
-    panel.keep(stage, *(f"local_slope_{of}" for of in ("mean", "band_low", "band_high")))
-    # One side alone makes no band.
-    return [Patch(**style, label=f"(c) 95 % of {members}")] if np.isfinite(low).sum() > 1 else []
 
 
 def _draw_counts(panel, counts, law, ordinary):
@@ -128,17 +110,3 @@ def _draw_counts(panel, counts, law, ordinary):
     axes.set_ylim(0.7, float(counts["box_count"].max()) ** 1.1 * 2)
     axes.set(xlabel="box side $r$ (mm)", ylabel="occupied boxes $N(r)$ (1)")
     label_short_span(axes.xaxis)
-
-
-def _law_form(counts):
-    """The count law in words: its curve in (b), its level in (c)."""
-    width = float(counts["law_node_width"])
-    outline = any(float(counts[f"law_outline{end}"]) for end in ("", "_square"))
-    grows = f"$r$ less {short(width)} mm, a node's width," if width else "$r$"
-    return "\n".join(
-        [
-            "Count law in (b): the area $N r^2$ of all",
-            f"boxes grows as {grows}",
-            r"to the power $2-\Delta_\sigma$" + (", and with the outline" if outline else ""),
-        ]
-    )

@@ -3,10 +3,10 @@
 import numpy as np
 from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
-from matplotlib.ticker import NullLocator
 from xarray import DataTree
 
 from ...core.subject import Subject
+from ..kit.axes import spacing_axis
 from ..kit.caption import caption
 from ..kit.domains import estimates_of, prefractals, size_axes, spread_loads
 from ..kit.drawing import COLOURS, MARKERS, WEAK, WIDTH, Drawing
@@ -14,7 +14,7 @@ from ..kit.legends import entries, legends_below
 from ..kit.panel import Panel, table_of
 from ..kit.titles import headline
 from ..kit.verdicts import claim
-from ..kit.words import force_label, place, short
+from ..kit.words import force_label, place
 
 TITLE = "Fig. 10: real contact area over resolution, and eq. 6"
 SUBJECT = "specimen"
@@ -67,10 +67,8 @@ def _draw_areas(panel, states, by_area, reference):
         drawn[0].set_label(f"{force_label(forces[i])}: {by_area.entry(i)}")
         weak = {} if by_area.determined[i] else WEAK
         axes.plot(used["spacing"], used["fitted_area"], color=_LOAD_COLOURS[n], **weak)
-    axes.set(xscale="log", yscale="log")
-    axes.set_xticks(states["spacing"], [short(s) for s in states["spacing"].values])
-    axes.xaxis.set_minor_locator(NullLocator())
-    axes.set_xlabel("spacing $s$ (mm)")
+    axes.set_yscale("log")
+    spacing_axis(axes, states["spacing"])
     axes.set_ylabel("real contact area $A_r$ (mm$^2$)")
     grey = {"color": "0.3", "marker": "o", "ms": 4}
     axes.plot([], [], **grey, label="filled: corrected for the edge, fitted")

@@ -20,8 +20,7 @@ from ..kit.domains import (
 from ..kit.drawing import COLOURS, WIDTH, Drawing
 from ..kit.empty import say_empty
 from ..kit.ensembles import draw_band, members_of
-from ..kit.legends import entries
-from ..kit.maps import draw_domain, ring_entry
+from ..kit.maps import draw_domain
 from ..kit.measured import draw_over_force, measured_range, measured_series
 from ..kit.measured import table_of as table_of_maps
 from ..kit.panel import Panel, table_of
@@ -46,10 +45,10 @@ ORDER = 190
 #: Contact domains drawn.
 _MAX_MAPS = 6
 _LETTERS = "abcdefg"
-#: What a share of few nodes is.
-_RAW = "; raw: not corrected for the perimeter"
-#: Points of the letters above the maps.
-_ABOVE_MAPS = 8
+_ABOVE_MAPS = (
+    "force $F$ and real contact area $A_r/A_0$ of each domain (contact black,\n"
+    "small nodes enlarged, single ones in rings; raw: not corrected for the perimeter)"
+)
 #: The two estimates stand this factor of F apart, so that neither hides the other.
 _APART = {"area": 1 / 1.04, "box": 1.04}
 #: Estimates in the stage ``ensemble``.
@@ -65,22 +64,14 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     figure = Figure(figsize=(WIDTH, height + 3))
     top, bottom = figure.subfigures(2, 1, height_ratios=[height, 3])  # type: ignore[misc]  # an array
     maps = top.subplots(1, len(shown), squeeze=False, sharey=True)[0]
-    larger = _draw_maps(maps, subject, shown, sides)
-    above = "force $F$ and real contact area $A_r/A_0$ of each domain (contact black"
-    raw = "" if subject.states("closure")["area_corrected_resolved"][shown].all() else _RAW
-    top.suptitle(f"{above}{raw})", fontsize=_ABOVE_MAPS)
+    _draw_maps(maps, subject, shown, sides)
+    top.suptitle(_ABOVE_MAPS, fontsize=8)
     words = r"dimension $\Delta_\sigma$ of the contact domain"
     panel = Panel(bottom.subplots(), _LETTERS[len(shown)], words)
     _draw_nulls(panel, counts)
     _draw_dimensions(panel, subject)
     draw_over_force(panel.axes, series, subject.area)
-    handles = entries(panel.axes)
-    ringed = [which for which, axes in zip(_LETTERS, maps, strict=False) if axes.lines]
-    if ringed:
-        which = " to ".join(dict.fromkeys((ringed[0], ringed[-1])))
-        handles.append(ring_entry(f"ring: one node ({which})"))
-    right = (1.01, 1)
-    panel.axes.legend(handles=handles, loc="upper left", bbox_to_anchor=right, borderaxespad=0)
+    panel.axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1), borderaxespad=0)
     headline(figure, subject.label, place(subject.direction, subject.offset))
     table = table_of(panel)
     if series:
@@ -91,7 +82,6 @@ def draw(atlas: DataTree, name: str) -> Drawing:
         rises=subject["statements"].sel(statement=[*RISES.values()])["numbers"].values.tolist(),
         verdicts=rise_words(atlas, name),
         least=MIN_NODES,
-        larger=larger,
         members=members_of(subject),
         **departures(counts),
         **measured_range(series),
@@ -100,15 +90,14 @@ def draw(atlas: DataTree, name: str) -> Drawing:
 
 
 def _draw_maps(maps, subject, shown, sides):
-    """Domains at the finest resolution; whether nodes are drawn enlarged."""
-    states, larger = subject.states("closure"), False
+    """Domains at the finest resolution."""
+    states = subject.states("closure")
     for axes, which, i in zip(maps, _LETTERS, shown, strict=False):
         domain = contact_domain(subject, subject.reported.resolution, i)
-        larger |= draw_domain(axes, domain, sides, ticks=3)
+        draw_domain(axes, domain, sides, ticks=3)
         share = area_label(states.isel(normal_force=i))
         letter(axes, which, f"{force_label(subject.forces[i])}\n{share}")
         axes.label_outer()
-    return larger
 
 
 def _draw_nulls(panel, counts):
