@@ -11,8 +11,9 @@ from places import ROOT
 from print_size import faults, faults_of_study
 
 from fractalcontact.figures.draw import draw_figure, drawer_of
+from fractalcontact.figures.kit import maps
 from fractalcontact.figures.kit.drawing import print_style
-from fractalcontact.figures.kit.maps import MAX_BLACK, MIN_DOT, enlarged, enlargement
+from fractalcontact.figures.kit.maps import MAX_BLACK, MIN_DOT, enlargement
 from fractalcontact.study.figure_list import all_figures, figures_of
 
 #: Those that changed last, or are crowded, come first: the quick suite draws them alone.
@@ -129,6 +130,10 @@ def test_a_single_panel_has_no_letter(atlas):
 def test_nodes_are_enlarged_for_print_alone():
     domain = np.zeros((200, 200), bool)
     domain[50, 60] = domain[120, 130] = True
+
+    def enlarged(domain, points):
+        return maps.enlarged(domain, maps.enlargement([domain], points))
+
     assert enlarged(domain, MIN_DOT) is domain
     for points in (0.5, 0.3, 0.1):
         drawn = enlarged(domain, points)

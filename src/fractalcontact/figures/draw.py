@@ -6,19 +6,25 @@ a study the names of all its specimens; a :class:`figures.kit.drawing.Drawing` o
 """
 
 import importlib
+import textwrap
 import traceback
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+import pandas as pd
+from matplotlib.figure import Figure
 from xarray import DataTree
 
 from ..core.errors import InputError, OutputError
+from ..core.labels import printable
 from ..study.atlas import read_atlas
 from ..study.figure_list import all_figures
 from ..study.stages import STAGES
 from .kit.drawing import (
+    COLOURS,
+    WIDTH,
     Drawing,
     garbage_collection_paused,
     keep_style,
@@ -29,7 +35,6 @@ from .kit.drawing import (
 from .kit.layout import lay_out
 from .kit.remembered import layouts_remembered
 from .kit.titles import entitle
-from .kit.undrawn import undrawn
 
 #: A full disk, no memory, or an atlas that cannot be read fails every figure.
 _NOT_OF_THE_FIGURE = (InputError, OutputError, OSError, MemoryError)
@@ -169,8 +174,20 @@ def _draw(atlas, subject, folder, names):
                     raise
                 except Exception as error:
                     drawn.failures[name] = traceback.format_exc()
-                    drawing = undrawn(all_figures()[name].title, subject, error)
+                    drawing = _undrawn(all_figures()[name].title, subject, error)
                     save(drawing, folder, name)
             drawn.captions[name] = drawing.caption
             let_go(drawing.figure)
     return drawn
+
+
+def _undrawn(title: str, subject: str | list[str], error: BaseException) -> Drawing:
+    """Drawing of the reason in place of a figure that an error of the program kept from it."""
+    reason = printable(f"{type(error).__name__}: {error}", 300)
+    of = "" if isinstance(subject, list) else f" of {subject}"
+    words = f"Not drawn: {title}{of}, because of an error of the program ({reason})."
+    figure = Figure(figsize=(WIDTH, 1.6))
+    figure.set_layout_engine("none")  # there are no axes to lay out
+    style: dict[str, Any] = {"ha": "center", "va": "center", "color": COLOURS[2]}
+    figure.text(0.5, 0.5, textwrap.fill(words, 90), parse_math=False, **style)
+    return Drawing(figure, pd.DataFrame({"figure": [title], "not_drawn_because": [reason]}), words)

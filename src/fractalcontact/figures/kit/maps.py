@@ -129,31 +129,12 @@ def draw_domain(
     # No cell is missing in a window, and a node smaller than a pixel must not vanish.
     grey: dict[str, Any] = {"cmap": "Greys", "vmin": 0, "vmax": 1, "interpolation": "auto"}
     if times is None:
-        drawn = enlarged(domain, _node_points(axes, domain.shape, sides))
-    else:
-        drawn = _enlarged(domain, times)
-    draw_map(axes, drawn, sides, ticks=ticks, **grey)
+        times = enlargement([domain], _node_points(axes, domain.shape, sides))
+    draw_map(axes, enlarged(domain, times), sides, ticks=ticks, **grey)
     nodes = np.argwhere(domain)
     if len(nodes) < FEW_NODES and max(domain.shape) > FINE_NODES:
         y, x = node_position(nodes.T, domain.shape, sides)
         axes.plot(x, y, clip_on=False, **_RING)
-
-
-def enlarged(domain: np.ndarray, points: float) -> np.ndarray:
-    """A domain whose nodes are squares of several nodes, where one is too small for print.
-
-    Parameters
-    ----------
-    domain : (ny, nx) bool ndarray
-    points : float
-        How wide a node is in print, points.
-
-    Returns
-    -------
-    (ny, nx) bool ndarray
-        The domain itself where its nodes can be seen, or would fill the map.
-    """
-    return _enlarged(domain, enlargement([domain], points))
 
 
 def enlargement(domains: Sequence[np.ndarray], points: float, most: float = np.inf) -> int:
@@ -171,13 +152,13 @@ def enlargement(domains: Sequence[np.ndarray], points: float, most: float = np.i
     """
     wanted = int(min(np.ceil(MIN_DOT / points), most))
     for times in range(wanted, 1, -1):
-        if all(_enlarged(domain, times).mean() <= MAX_BLACK for domain in domains):
+        if all(enlarged(domain, times).mean() <= MAX_BLACK for domain in domains):
             return times
     return 1
 
 
-def _enlarged(domain, times):
-    """Contact domain whose nodes are drawn as squares of several cells per side."""
+def enlarged(domain: np.ndarray, times: int) -> np.ndarray:
+    """Contact domain (ny, nx) whose nodes are squares of several nodes per side."""
     return domain if times < 2 else maximum_filter(domain, times, mode="constant", cval=0)
 
 

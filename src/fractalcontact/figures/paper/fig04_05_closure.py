@@ -25,7 +25,6 @@ from ._closure_laws import (
     draw_closure,
     draw_light_loads,
     each_curve,
-    is_known,
     no_law,
     offset_words,
     second_axis,
@@ -47,6 +46,7 @@ _LEGEND = (
 _LEGEND_AREA = r"(c): exponent $m$ of $A_r \sim F^m$ [95 %]"
 
 _LEGEND_STIFFNESS = "(d): MPa/mm at the finest $s$ (change at $2s$)"
+_HOLLOW = f"hollow: under {RESOLVED_NODES} nodes, in (c) {CORRECTED_NODES} (area raw)"
 
 #: What the table has of the curves, besides the law of the area.
 _COLUMNS = (
@@ -81,10 +81,11 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     letter(panels["a"], "a", f"closure{some}")
     letter(panels["b"], "b", f"light loads{_softer(curves)}")
     letter(panels["c"], "c", "contact area")
-    of_laws = _keyed(_LEGEND, panels["a"], drawn, "semi_logarithmic", "hyperbola", "beyond")
-    of_areas = _keyed(_LEGEND_AREA, panels["c"], drawn, "area")
+    of_laws = _keyed(_LEGEND, panels["a"], "semi_logarithmic", "hyperbola", "beyond")
+    of_areas = _keyed(_LEGEND_AREA, panels["c"], "area")
     of_areas += [heading(_LEGEND_STIFFNESS), *entries(d.axes)] if d.axes.has_data() else []
-    of_areas += [*_hollow(drawn, stiffness), *(heading(line) for line in missing)]
+    of_areas += [mark(color="0.3", ls="none", marker="o", label=_HOLLOW, **OPEN)]
+    of_areas += [heading(line) for line in missing]
     legends_below(figure, of_laws, of_areas)
     headline(figure, subject.label, place(subject.direction))
     table = [rows(drawn, *_COLUMNS, panel="a, b, c"), table_of(d)]
@@ -125,18 +126,8 @@ def _draw_area(axes, drawn, subject):
     second_axis(axes, subject.area / 100, "$A_r$ (mm$^2$)")
 
 
-def _keyed(head, axes, drawn, *lines):
-    """Legend entries of axes with a heading and, if laws are fitted, the meaning of lines."""
-    known = [LINES[line] for line in lines if is_known(drawn, LINES[line][2])]
+def _keyed(head, axes, *lines):
+    """Legend entries of axes under a heading, and the meaning of lines."""
     style = {"color": "0.3", "lw": 0.9}
-    named = [mark(ls=line, label=words, **style) for line, words, _ in known]
-    return [heading(head), *entries(axes), *named] if named else entries(axes)
-
-
-def _hollow(drawn, stiffness):
-    """Entry of the legend for hollow markers, if any is drawn."""
-    flags = drawn["resolved"], drawn["area_corrected_resolved"], stiffness["resolved"]
-    if all(flag.all() for flag in flags):
-        return []
-    words = f"hollow: under {RESOLVED_NODES} nodes, in (c) {CORRECTED_NODES} (area raw)"
-    return [mark(color="0.3", ls="none", marker="o", label=words, **OPEN)]
+    named = [mark(ls=LINES[line][0], label=LINES[line][1], **style) for line in lines]
+    return [heading(head), *entries(axes), *named]

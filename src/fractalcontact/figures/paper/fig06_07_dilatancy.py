@@ -112,9 +112,7 @@ def _draw_elastic(panel, subject, curves, points):
         ends = curves["offset"].values[[0, -1]]
         axes.set_xlim(ends[0] / 1.3, ends[1] * 1.3)
         label_short_span(axes.xaxis)
-    axes.margins(y=0.12)
-    low, high = axes.get_ylim()
-    axes.set_ylim(low - 0.1 * (high - low), high)  # room for a letter below the lowest point
+    axes.margins(y=0.2)  # room for a letter below the lowest point
     axes.set_ylabel(r"dilatancy $\delta$ (mm)")
 
 

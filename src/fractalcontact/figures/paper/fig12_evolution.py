@@ -24,7 +24,7 @@ from ..kit.maps import draw_domain
 from ..kit.measured import draw_over_force, measured_range, measured_series
 from ..kit.measured import table_of as table_of_maps
 from ..kit.panel import Panel, table_of
-from ..kit.points import reach
+from ..kit.points import hollow_entry, reach
 from ..kit.titles import headline, letter
 from ..kit.words import area_label, force_label, place, wrapped
 
@@ -128,9 +128,7 @@ def _draw_dimensions(panel, subject):
         label = rf"$\Delta_\sigma$ by {one.symbol}"
         axes.plot(places[sure], one.value[sure], **style, label=label)
     axes.errorbar([], [], [], ls="none", color="0.4", capsize=2, label="bars: 95 % interval")
-    # The rise of a kind is that of its realisations.
-    faint = "faint: undetermined" + ("" if subject.realised else ", not in the rise")
-    axes.plot([], [], "s", color="0.4", mfc="white", alpha=0.35, label=faint)
+    hollow_entry(axes, "faint: undetermined", marker="s", alpha=0.35)
     if not any(one.known.any() for one in estimates):
         say_empty(axes, "\n".join(wrapped(one.reason[0]) for one in estimates))
     axes.set_xscale("log")
