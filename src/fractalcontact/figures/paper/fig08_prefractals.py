@@ -52,7 +52,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     title = rf"$\sigma_n = F/A_r$; {found}; rms slope of the surface {short(states['rms_slope'])}"
     panel = Panel(bottom.subplots(), _LETTERS[n], title)
     _draw_pressures(panel, states, model)
-    wide = f"black: real contact area $A_r$; nodes drawn {times} × as wide in all maps"
+    wide = "black: real contact area $A_r$; small nodes enlarged alike in all maps"
     where = place(subject.direction, subject.offset)
     headline(figure, subject.label, where, f"$F$ = {force_label(force)}", below=wide)
     words = {key: str(model[key].item()) for key in ("verdict", "reason")}
