@@ -162,7 +162,7 @@ def test_of_several_possible_reasons_a_card_prints_the_one_that_holds(subjects):
     )
     rows = read_entry(by_key["barton_scaled_strength"], known, "elastic")["values"]
     assert {row["missing"] for row in rows} <= {
-        "JRC_n is above 20, where Barton's law ends",
+        "JRC_n, JRC scaled to the window, is above 20, where Barton's law ends",
         "not solved under this load",
     }
 

@@ -89,7 +89,7 @@ def test_a_column_has_one_value_at_one_state_in_all_tables_and_in_the_atlas(comp
 #: Columns of the table of specimens that have a value for each load, by their words.
 COLUMNS = {
     "Nominal pressure": "nominal_pressure_MPa",
-    "Real pressure": "real_pressure_MPa",
+    "Mean pressure in contact": "real_pressure_MPa",
     "Closure from the seat": "seated_closure_mm",
     "Closure from first touch": "interface_closure_mm",
     "Tangent stiffness": "stiffness_MPa_per_mm",
@@ -213,7 +213,9 @@ def test_the_page_of_a_specimen_has_the_values_and_errors_of_the_summary(
                 assert said.endswith(unit_of_error), (one.name, words, said)
                 size = abs(value) if unit_of_error == "%" else 1.0
                 assert number_of(said) * size == pytest.approx(error, rel=0.051)
-        (pressure,) = (cells for words, cells in shown.items() if "real mean pressure" in words)
+        (pressure,) = (
+            cells for words, cells in shown.items() if "mean pressure in contact" in words
+        )
         if math.isnan(row["real_pressure_MPa"]):
             assert pressure[0]["text"] == row["real_pressure_reason"]
         else:

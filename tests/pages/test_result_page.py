@@ -526,9 +526,16 @@ def test_the_first_screen_says_what_no_interval_holds(results):
         "[3.30,\u00a03.40] this surface",
         "3.33 to 1.11 for hardness H to 3\u00a0H",
     ]
-    (stiffness,) = (one for one in card["errors"] if one["quantity"] == "stiffness")
-    stiffness["sources"]["resolution"] = 18.25
-    assert "changes by 18 at twice the spacing" in facts_of(card)[0].notes
+    card["entries"] |= {
+        "contact_fraction": {"values": [number | {"value": at["pressure"] / 150.0}]},
+        "stiffness_change": {"values": [number | {"value": -0.086}]},
+        "hydraulic_aperture": {"values": [number | {"value": 0.5}]},
+        "gap_slope": {"values": [number | {"value": 1.3}]},
+    }
+    facts = facts_of(card)
+    assert "changes by −8.6 % at twice the spacing" in facts[0].notes
+    assert facts[2].notes[-1].endswith("; cubic law not valid (gap slope 1.3)")
+    assert facts[3].notes[-1] == "all contacts crush: σ_0/H"
 
 
 @pytest.mark.parametrize(

@@ -3,6 +3,7 @@
 import json
 import math
 from collections.abc import Mapping
+from dataclasses import asdict
 from typing import Any
 
 from ..core.estimate import Estimate
@@ -68,10 +69,7 @@ def card_of(subject: Subject, study: Mapping[str, Any], made: Mapping[str, Any])
         "window": str(subject["specimens"].attrs["window_note"]),
         "entries": {one.key: read_entry(one, subject, model) for one in entries()},
         "errors": errors_of(subject),
-        "lights": [
-            {key: getattr(light, key) for key in ("key", "title", "word", "reason", "help")}
-            for light in lights
-        ],
+        "lights": [asdict(light) for light in lights],
         "trust": dict(zip(("word", "reason", "help"), trust_of(lights), strict=True)),
         "licence": LICENCE,
         "versions": dict(made["versions"]),

@@ -14,7 +14,7 @@ import yaml
 from ..core.estimate import DIMENSION, SIZE, Estimate, names_of
 from ..core.settings import TEST_COLUMNS
 from ..core.subject import Subject
-from ..pages.words import OPPOSITE
+from ..pages.words import OPPOSITE, percent
 
 _FILE = Path(__file__).with_name("entries.yaml")
 #: What stands for a dimension beside each row of a curve: its name there, its coordinate, its unit.
@@ -92,6 +92,7 @@ class Entry:
     range: tuple[str, ...] = ()
     flag: str = ""
     note: str = ""
+    misfit: str = ""
     reason: str = ""
     beside: tuple[str, ...] = ()
     needs: tuple[str, ...] = ()
@@ -236,6 +237,9 @@ def _rows(entry: Entry, subject: Subject) -> Iterator[tuple[dict[str, Any], dict
         elif "value" in row:
             row |= _known("of_its_population", _at(population, at))
             row |= _known("hardest", _at(hardest, at))
+            if entry.misfit and row["determined"]:
+                misfit = percent(_values(entry, subject, entry.misfit).item())
+                row["note"] = f"misses the curve by {misfit}"
         yield _beside(entry, data, at), row
 
 

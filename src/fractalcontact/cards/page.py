@@ -159,10 +159,11 @@ def missing_of(entries: Mapping[str, Any]) -> dict[str, list[str]]:
     """Titles of quantities without a number, or without one at some places, by the reason."""
     found: dict[str, list[str]] = {}
     for one in entries.values():
+        title = f"{one['title']} (in part)" if has_values(one) else one["title"]
         for row in (one, *one.get("values", ())):
             titles = found.setdefault(row["missing"], []) if "missing" in row else None
-            if titles is not None and one["title"] not in titles:
-                titles.append(one["title"])
+            if titles is not None and title not in titles:
+                titles.append(title)
     return found
 
 

@@ -123,7 +123,8 @@ def elastic_model_validity(
         return Validity(NOT_JUDGED, pressure, NO_PRESSURE, "", limits)
     ends = (limits.good_to * (1 + _ROUNDING), limits.poor_from * (1 + _ROUNDING))
     by_pressure = _graded(pressure, *ends)
-    words = f"sigma_n = {pressure_words(pressure)}, {_place(pressure, by_pressure, limits)}"
+    place = _place(pressure, by_pressure, limits)
+    words = f"the mean pressure in contact is {pressure_words(pressure)}, {place}"
     found = [(by_pressure, "pressure", f"{words} the {limits.words}")]
     if limits.criterion == HARDNESS and by_pressure == GOOD:
         share = nominal_pressure / limits.good_to

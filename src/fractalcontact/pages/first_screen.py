@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 from ..core.limits import JRC_SAMPLING
 from .files import CARD
-from .words import measured, short, with_unit
+from .words import measured, percent, short, with_unit
 
 #: Intervals as cards name them, in words.
 _ALONE = {"solver": " solver error alone", "all errors of this surface": " this surface"}
@@ -21,6 +21,10 @@ STRENGTH_RULES = {
     "barton_strength": "Barton",
     "barton_scaled_strength": "Barton and Bandis",
 }
+#: Rms slope of the gap above which the local cubic law is not valid.
+_STEEP_GAP = 1.0
+#: Relative difference from the area of contacts that all crush.
+_SAME = 0.01
 #: Where a card has the half-width of a number for other surfaces of its kind.
 _KIND = "of_its_population"
 
@@ -81,11 +85,16 @@ def facts_of(card: Mapping[str, Any]) -> list[Fact]:
     flowing = ""
     if "value" in hydraulic:
         flowing = f"hydraulic aperture {short(hydraulic['value'])} mm {_ends(hydraulic)}".rstrip()
+        slope = row_at(card["entries"]["gap_slope"], pressure).get("value", 0.0)
+        if slope > _STEEP_GAP:
+            flowing += f"; cubic law not valid (gap slope {short(slope, 2)})"
+    crushed = hardnesses_of(card)[0] * contact.get("value", math.nan)
+    by_load = "all contacts crush: σ_0/H" if abs(crushed / pressure - 1) < _SAME else ""
     facts = [
         _fact(card, f"normal stiffness {at}", stiffness, "MPa/mm", _at_twice(card)),
         _fact(card, f"closure {at}", seated, "mm", since),
         _fact(card, f"mean gap {at}", gap, "mm", flowing),
-        _fact(card, f"contact {at}", contact, "%"),
+        _fact(card, f"contact {at}", contact, "%", by_load),
     ]
     if card["direction"] != "none":
         facts.append(_fact(card, "JRC", *_jrc(card)))
@@ -192,9 +201,10 @@ def _ends(row, size=1.0, of=None):
 
 def _at_twice(card):
     """Change of the stiffness with the spacing, which no interval contains."""
-    rows = [one["sources"] for one in card["errors"] if one["quantity"] == "stiffness"]
-    change = rows[0].get("resolution") if rows else None
-    return f"changes by {short(change, 2)} at twice the spacing" if change else ""
+    change = row_at(card["entries"]["stiffness_change"], reference_of(card)).get("value")
+    return (
+        f"changes by {'+' * (change > 0)}{percent(change)} at twice the spacing" if change else ""
+    )
 
 
 def _harder(card, row, size):

@@ -20,7 +20,7 @@ MARKS = (
     "where the change of the numbers shows the error of the scans"
 )
 LIGHTER = "lighter loads, under which less of the window touches"
-STEEP = "a laboratory test beside the computed curve; a finer scan shows the same steep slopes"
+STEEP = "a laboratory test beside the computed curve; a finer scan would not help"
 CRUSH = "a 'hardness' in the material, such as the joint wall strength, at which contacts crush"
 STATE = "'joint_wall_strength' of the rock in its material, at which contacts then crush"
 

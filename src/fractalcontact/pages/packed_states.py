@@ -216,8 +216,6 @@ def _listed(words: xr.DataArray) -> dict[str, Any]:
 
 def _totals(subject, numbers):
     """Errors of all sources at the offset of the maps, by the quantity that has them."""
-    if "error_budget" not in subject.stages:
-        return None
     budget = subject["error_budget"]
     slides = budget.attrs["direction"] != "none"
     for one in shown_quantities():

@@ -151,9 +151,9 @@ def cells_words(specimen: xr.Dataset, quality: xr.Dataset) -> str:
     """A clause on cells missing, outlying, filled and suspicious."""
     missing = [f"{plain(100 * share, 2)} %" for share in quality["missing_share"].values]
     which = " (lower and upper face)" if len(missing) > 1 else ""
-    words = [f"{' and '.join(missing)} of the cells are missing{which}"]
+    words = [f"{' and '.join(missing)} of the cells have no height{which}"]
     if not quality["missing_share"].values.any():
-        words = ["no cell is missing"]
+        words = ["every cell has a height"]
     if outliers := specimen.attrs.get("outlier_count"):
         treated = {"keep": "kept", "mask": "masked", "fill": "filled"}
         how = treated.get(str(specimen.attrs.get("outliers")), "")

@@ -1,7 +1,7 @@
 """Constants for OpenGeoSys: parts of a project file with ``fracture_model``, in SI units.
 
 Its normal stress is K_n w (1 + ln^2(a / a_0)): a logarithmic penalty and no hyperbola. K_n is the
-tangent stiffness at the initial aperture a_0, so that under the card's reference pressure is
+tangent stiffness at the initial aperture a_0, so that under the card's reference load is
 given, with the mean gap there.
 """
 
