@@ -37,7 +37,7 @@ AMBIGUOUS, NOT_TESTED = "ambiguous", "not tested"
 DECIDED = (AGREES, STEEPER, FLATTER)
 
 #: Why there is no real mean pressure: the areas of fewer nodes are not corrected for their edge.
-NO_PRESSURE = f"fewer than {CORRECTED_NODES} nodes in contact, too few for a mean pressure in contact"
+NO_PRESSURE = f"fewer than {CORRECTED_NODES} nodes in contact, too few for their mean pressure"
 #: Why there is no Delta_sigma from the area where its stage gives no reason.
 TOO_FEW_RESOLUTIONS = "under this load too few resolutions have enough nodes in contact"
 
