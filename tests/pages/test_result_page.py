@@ -535,7 +535,7 @@ def test_the_first_screen_says_what_no_interval_holds(results):
     facts = facts_of(card)
     assert "changes by −8.6 % at twice the spacing" in facts[0].notes
     assert facts[2].notes[-1].endswith("; cubic law not valid (gap slope 1.3)")
-    assert facts[3].notes[-1] == "all contacts crush: σ_0/H"
+    assert facts[3].notes[-1] == "all contacts crush: sigma_0/H"
 
 
 @pytest.mark.parametrize(

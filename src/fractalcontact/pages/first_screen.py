@@ -87,9 +87,9 @@ def facts_of(card: Mapping[str, Any]) -> list[Fact]:
         flowing = f"hydraulic aperture {short(hydraulic['value'])} mm {_ends(hydraulic)}".rstrip()
         slope = row_at(card["entries"]["gap_slope"], pressure).get("value", 0.0)
         if slope > _STEEP_GAP:
-            flowing += f"; cubic law not valid (gap slope {short(slope, 2)})"
+            flowing += f"; cubic law not valid (gap slope {short(slope)})"
     crushed = hardnesses_of(card)[0] * contact.get("value", math.nan)
-    by_load = "all contacts crush: σ_0/H" if abs(crushed / pressure - 1) < _SAME else ""
+    by_load = "all contacts crush: sigma_0/H" if abs(crushed / pressure - 1) < _SAME else ""
     facts = [
         _fact(card, f"normal stiffness {at}", stiffness, "MPa/mm", _at_twice(card)),
         _fact(card, f"closure {at}", seated, "mm", since),
