@@ -129,7 +129,6 @@ QUOTED = {
     "clusters": {"domains_cluster"},
     "compliance": {"compliance_rises_at_first", "curves_overlap", "compliance_rises_again"},
     "plateau": {"dilatancy_flattens"},
-    "size_slopes": {"size_effect_follows"},
     "size_test": {"size_effect_follows"},
     "window_size": {"larger_samples_close_more"},
 }

@@ -8,7 +8,7 @@ import xarray as xr
 from cases import representative
 
 from fractalcontact.core.subject import Subject
-from fractalcontact.figures.joint import _size_test, size_prediction, size_slopes, size_test
+from fractalcontact.figures.joint import size_prediction, size_test
 from fractalcontact.figures.kit.drawing import print_style, save
 from fractalcontact.figures.paper import fig11_slope_angle
 from fractalcontact.size_effect.eq6 import add_decisions
@@ -55,7 +55,7 @@ def written_twice_alike(module, atlas, name, folder):
 
 @pytest.mark.parametrize("name", representative(SPECIMENS))
 def test_direct_test_labels_and_caption(atlas, name):
-    for module in (size_test, size_slopes, size_prediction):
+    for module in (size_test, size_prediction):
         drawing = drawn(module, atlas, name)
         drawing.figure.draw_without_rendering()
         axes_labels_have_units(drawing.figure)
@@ -66,23 +66,26 @@ def test_direct_test_labels_and_caption(atlas, name):
 @pytest.mark.parametrize("name", representative(SPECIMENS))
 def test_direct_test_points_are_those_of_the_atlas(atlas, name):
     test = atlas[f"size_test/{name}"].to_dataset()
-    fraction = drawn(size_test, atlas, name).data
-    fraction = fraction[fraction["panel"] == "a"]
-    np.testing.assert_array_equal(fraction["area_fraction"], test["area_fraction"].values.ravel())
-    data = drawn(size_slopes, atlas, name).data
-    equal = data[data["panel"] == "a"]
-    expected = test["equal_pressure"].values.ravel()
-    np.testing.assert_array_equal(equal["equal_pressure_MPa"], expected)
-    slopes = data[(data["panel"] == "b") & data["estimator"].isna()]
-    np.testing.assert_array_equal(slopes["slope"], test["slope"])
+    data = drawn(size_test, atlas, name).data
+    for panel, column, variable in (
+        ("a", "area_fraction", "area_fraction"),
+        ("b", "area_exponent", "area_exponent"),
+        ("c", "slope", "slope"),
+        ("b", "predicted_slope", "predicted_slope"),
+    ):
+        points = data[(data["panel"] == panel)]
+        if panel == "b":
+            points = points[points["estimator"].isna() == (column == "area_exponent")]
+        expected = test[variable].transpose("normal_force", ...).values.ravel()
+        np.testing.assert_array_equal(points[column], expected)
     said = data[data["estimator"].notna()]
-    expected = test["predicted_slope"].T.values.ravel()
-    np.testing.assert_array_equal(said["predicted_slope"], expected)
     assert list(said["verdict"]) == list(test["verdict"].T.values.ravel())
     predicted = drawn(size_prediction, atlas, name).data
-    assert ("strength" in set(predicted["quantity"])) == (name != "flat")
-    area = predicted[predicted["quantity"] == "area"]
-    np.testing.assert_array_equal(area["predicted_area"], test["predicted_area"].T.values.ravel())
+    area = predicted[predicted["predicted_area"].notna()]
+    known = test["predicted_area"].values
+    np.testing.assert_array_equal(
+        np.sort(area["predicted_area"]), np.sort(known[np.isfinite(known)])
+    )
 
 
 @pytest.mark.parametrize("name", representative(SPECIMENS))
@@ -95,7 +98,7 @@ def test_every_table_of_the_size_test_names_a_load_alike(atlas, name):
             strict=True,
         )
     }
-    for module in (size_test, size_slopes, size_prediction):
+    for module in (size_test, size_prediction):
         for row in drawn(module, atlas, name).data.itertuples():
             assert known[row.normal_force_N] == (row.nominal_pressure_MPa, row.beyond_study)
 
@@ -116,11 +119,10 @@ def test_prediction_is_headed_by_the_heaviest_load_of_the_study(atlas):
             atlas, "size_test/sliding", lambda test, beyond=beyond: predicted(test, beyond)
         )
         caption = drawn(size_prediction, tree, "sliding").caption
-        at = f"at {pressure[shown]:.3g} MPa"
-        assert ("beyond the study's loads" in caption) == (first == 0)
         beyond = ", beyond the study's loads," if first == 0 else ""
+        assert f"At {pressure[shown]:.3g} MPa{beyond} the predictions are" in caption
         for quantity in ("closure", "contact area"):
-            assert f"The best ratio of the {quantity} {at}{beyond} is 1.25 (" in caption
+            assert f"1.2 to 1.2 times the solved {quantity}" in caption
 
 
 def judged_as(atlas, verdict, reason):
@@ -158,18 +160,15 @@ def test_a_verdict_on_eq_6_carries_its_reason(atlas, verdict, reason, said):
     test = tree["size_test/sliding"].to_dataset()
     n = test["normal_force"].size
     assert said.format(n=n) in drawing.caption
-    decides = test["decides"].sel(estimator=list(_size_test.ESTIMATORS))
+    decides = test["decides"].sel(estimator=list(size_test.ESTIMATORS))
     assert decides.sum() == (0 if verdict == "undecided" else decides.size)
-    labels = [line.get_label() for line in drawing.figure.axes[1].lines]
-    assert any("conclusive, by" in str(label) for label in labels) == (verdict != "undecided")
 
 
 def test_measured_and_predicted_have_colours_of_their_own(atlas):
-    for module in (size_test, size_slopes):
-        for axes in drawn(module, atlas, "sliding").figure.axes:
-            laws = {line.get_color() for line in axes.lines if line.get_linestyle() in ("-", "--")}
-            points = {line.get_color() for line in axes.lines if line.get_marker() in "os^."}
-            assert not laws & points
+    for axes in drawn(size_test, atlas, "sliding").figure.axes:
+        laws = {line.get_color() for line in axes.lines if line.get_linestyle() in ("-", "--")}
+        points = {line.get_color() for line in axes.lines if line.get_marker() in "os^"}
+        assert not laws & points
 
 
 def test_direct_test_without_a_slope(atlas):
@@ -179,11 +178,10 @@ def test_direct_test_without_a_slope(atlas):
                 test[f"{name}{end}"] = test[f"{name}{end}"] * np.nan
         return test
 
-    for module in (size_test, size_slopes):
-        drawing = drawn(module, changed(atlas, "size_test/flat", nothing_found), "flat")
-        drawing.figure.draw_without_rendering()
-        assert "Parts hold too few nodes in contact" in drawing.caption
-        assert "nan" not in drawing.caption
+    drawing = drawn(size_test, changed(atlas, "size_test/flat", nothing_found), "flat")
+    drawing.figure.draw_without_rendering()
+    assert "Parts hold too few nodes in contact" in drawing.caption
+    assert "nan" not in drawing.caption
 
 
 @pytest.mark.full

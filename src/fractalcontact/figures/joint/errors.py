@@ -1,32 +1,59 @@
 """Error of each published quantity against load, split by source."""
 
+from typing import Any
+
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 from xarray import DataTree
 
+from ...core.labels import REALISATIONS, TWINS
 from ...core.subject import Subject
 from ..kit.axes import force_axis, label_short_span
 from ..kit.caption import caption
 from ..kit.drawing import LINES, MARKERS, WIDTH, Drawing, colour_of
 from ..kit.legends import entries
-from ..kit.panel import rows
+from ..kit.panel import Panel, table_of
+from ..kit.points import hollow_entry
 from ..kit.sizes import plain_decades
-from ..kit.titles import headline, letter
-from ..kit.words import force_label, length_unit, place
-from ._error_words import QUANTITIES, SOURCES, TOTALS, caption_values, totals_words
+from ..kit.titles import headline
+from ..kit.words import length_unit, percent, place, short
 
 TITLE = "Error of each quantity by source"
 SUBJECT = "specimen"
 NEEDS = ("error_budget", "closure")
 ORDER = 225
 
-INTERPOLATED = "numerical, interpolated between loads"
-#: What is smaller is drawn here: as a fraction of the value, and where errors are in the unit of
-#: the quantity as one of the largest error drawn.
+#: Quantities: title of the panel, and its word in the caption.
+QUANTITIES = {
+    "closure": ("interface closure", "closure"),
+    "separation": ("separation", "separation"),
+    "area_corrected": ("contact area", "area"),
+    "stiffness": ("tangent stiffness", "stiffness"),
+    "delta_sigma": ("$\\Delta_\\sigma$ by boxes", "Δσ"),
+}
+SOURCES = {
+    "solver": "solver",
+    "numerical": "numerical (same surface, finer grid)",
+    "secant": "scatter of a secant, where nodes yield",
+    "counting": "counting of contacts",
+    "window": "other windows of the scan",
+    "registration": "registration of the faces",
+    "resolution": "every second node: another surface, in no total",
+    "model": "three times the hardness: another model, in no total",
+    "estimator": "ordinary box-counting slope: another estimator, in no total",
+    TWINS: "spread of twins of the scan (replaces counting and windows)",
+    REALISATIONS: "spread of its realisations (replaces counting and windows)",
+}
+TOTALS = {
+    "total": "total for this very surface\n(solver, numerical, secant)",
+    "total_of_population": (
+        "total for any surface of its kind\n(also counting or windows, registration)"
+    ),
+}
+#: Smallest error in the frame: as a fraction of the value, or of the largest error drawn.
 LEAST = 1e-4
-#: Unit of errors that are fractions.
-_FRACTION = "% of the value"
+_KEPT = ("error", "relative_error", "unit", "numerical_from")
 
 
 def draw(atlas: DataTree, name: str) -> Drawing:
@@ -34,36 +61,27 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     subject = Subject.of(atlas, name)
     here = subject.state("error_budget")
     errors = _with_totals(subject["error_budget"])
-    force = force_label(float(here["normal_force"]))
     figure = Figure(figsize=(WIDTH, 6.6))
-    cut = False
-    *panels, legend = figure.subplots(3, 2, sharex=True).ravel()
-    for axes, which, (quantity, (title, _)) in zip(
-        panels, "abcde", QUANTITIES.items(), strict=True
-    ):
-        size = force_axis(axes.xaxis, subject.forces)
-        at_maps = {"color": "0.8", "lw": 3, "zorder": 0}
-        label = f"load of the totals above the panels\n(of this surface, of its kind): {force}"
-        axes.axvline(float(here["normal_force"]) / size, label=label, **at_maps)
-        cut |= _draw_errors(axes, errors.sel(quantity=quantity), size)
-        letter(axes, which, f"{title}: {totals_words(here.sel(quantity=quantity))}")
-        axes.set(xscale="log", yscale="log")
-        if which in "abc":
-            axes.set_xlabel("")
-        else:
-            axes.tick_params(labelbottom=True)
-    _scale_errors([axes for axes in panels if axes.get_ylabel().endswith(f"({_FRACTION})")])
-    for axes in panels:
+    *places, legend = figure.subplots(3, 2).ravel()
+    titles = [title for title, _ in QUANTITIES.values()]
+    panels = [Panel(*one) for one in zip(places, "abcde", titles, strict=True)]
+    for panel, quantity in zip(panels, QUANTITIES, strict=True):
+        axes, size = panel.axes, force_axis(panel.axes.xaxis, subject.forces)
+        load = float(here["normal_force"]) / size
+        axes.axvline(load, label="reference load", color="0.8", lw=3, zorder=0)
+        _draw_errors(panel, errors.sel(quantity=quantity), size)
+        label_short_span(axes.xaxis)
         plain_decades(axes.yaxis)
-    label_short_span(panels[0].xaxis)
-    figure.align_ylabels(panels)
-    _draw_legend(legend, panels, cut=cut)
+    hollow_entry(places[-1], "hollow: interpolated between loads", marker=MARKERS[2])
+    found = {entry.get_label(): entry for axes in places for entry in entries(axes)}
+    legend.set_axis_off()
+    legend.legend(handles=list(found.values()), loc="center", handlelength=3.5)
     headline(figure, subject.label, place(subject.direction, subject.offset))
-    return Drawing(figure, _table(errors), caption(__name__, **caption_values(here)))
+    return Drawing(figure, table_of(*panels), caption(__name__, **_words(here)))
 
 
-def _with_totals(budget):
-    """Errors by source, the totals among the sources, those without any left out."""
+def _with_totals(budget: xr.Dataset) -> xr.Dataset:
+    """Errors by source, the totals among the sources; whether each was found at its load."""
     errors = budget[["error", "relative_error", "unit", "absolute", "numerical_from"]]
     totals = [
         budget[[name, f"relative_{name}"]]
@@ -71,76 +89,50 @@ def _with_totals(budget):
         .expand_dims(source=[name])
         for name in TOTALS
     ]
-    named = xr.concat([errors, *totals], "source", data_vars="minimal").transpose(
-        "quantity", "source", "normal_force"
-    )
+    named = xr.concat([errors, *totals], "source", data_vars="minimal")
+    interpolated = np.char.startswith(named["numerical_from"].values.astype(str), "interpolated")
+    solved = (named["source"] != "numerical") | ~named["numerical_from"].copy(data=interpolated)
     error = named["error"].assign_attrs(units="1")  # each quantity has its own
-    return named.assign(error=error, drawn=(error > 0).any("normal_force"))
+    return named.assign(error=error, at_load=solved)
 
 
-def _table(errors):
-    """Errors drawn, one row a quantity, source and load."""
-    table = rows(errors, "error", "unit", "relative_error", "numerical_from", "drawn")
-    return table[table["drawn"]].drop(columns="drawn").reset_index(drop=True)
-
-
-def _draw_errors(axes, errors, size):
-    """Errors of a quantity, clipped at the bottom; True if some were clipped.
-
-    Fractions are drawn in per cent of the value, other errors in the unit of the quantity.
-    """
-    values, unit, scale, largest = errors["relative_error"], _FRACTION, 0.01, 1.0
+def _draw_errors(panel: Panel, errors: xr.Dataset, size: float) -> None:
+    """Errors of a quantity, in per cent of the value or else in the unit of the quantity."""
+    name, unit, scale, largest = "relative_error", "% of the value", 0.01, 1.0
     if errors["absolute"]:
-        values, unit = errors["error"], str(errors["unit"].values)
-        largest = float(values.max())
+        name, unit, largest = "error", str(errors["unit"].values), float(errors["error"].max())
         unit, scale = length_unit(largest) if unit == "mm" else (unit, 1.0)
-    least = LEAST * largest / scale
-    axes.set_ylabel(f"error, 95 % ({unit})")
-    heights = values.where(errors["drawn"]) / scale
-    force = errors["normal_force"].values / size
-    between = np.char.startswith(errors["numerical_from"].values.astype(str), "interpolated")
-
-    def line(source, words, **style):
-        if source not in errors["source"]:  # twins of a scan, where it has some
-            return
-        height = heights.sel(source=source).values
-        known = np.isfinite(height)
-        if known.any():
-            clipped = np.maximum(height, least)
-            axes.plot(force[known], clipped[known], label=words, **style)
-            if source == "numerical":
-                hollow = {"ls": "none", "mfc": "white", "zorder": 3, "label": INTERPOLATED}
-                shown = known & between
-                axes.plot(force[shown], clipped[shown], **style | hollow)
-
-    for i, (source, words) in enumerate(SOURCES.items()):
-        in_totals = source not in ("resolution", "model", "estimator")
-        style = {"color": colour_of(i + 1) if in_totals else "0.55", "ms": 3.5, "lw": 0.9}
-        style |= {"marker": MARKERS[(i + 1) % len(MARKERS)]}
-        style |= {"ls": LINES[i % 3] if in_totals else ":"}
-        line(source, words, **style)
-    for source, (words, dashes) in TOTALS.items():
-        line(source, words, color="black", lw=2.2, ls=dashes, zorder=1)
-    return bool((heights <= least).any())
+    for i, (source, words) in enumerate((SOURCES | TOTALS).items()):
+        if source in errors["source"] and (errors["error"].sel(source=source) > 0).any():
+            in_no_total = source in ("resolution", "model", "estimator")
+            style: dict[str, Any] = {
+                "color": "0.55" if in_no_total else colour_of(i + 1),
+                "marker": MARKERS[(i + 1) % len(MARKERS)],
+                "ls": ":" if in_no_total else LINES[i % 3],
+            }
+            style |= {"ms": 3.5, "lw": 0.9, "hollow": {"zorder": 3}}
+            if source in TOTALS:
+                line = LINES[list(TOTALS).index(source)]
+                style = {"color": "black", "lw": 2.2, "ls": line, "zorder": 1}
+            of = {"filled": "at_load", "unit": (size, scale), "keep": _KEPT, "label": words}
+            panel.curve(errors.sel(source=source), "normal_force", name, **of, **style)
+    panel.axes.set(xscale="log", yscale="log", ylabel=f"error, 95 % ({unit})")
+    panel.axes.set_ylim(bottom=LEAST * largest / scale)
 
 
-def _scale_errors(panels):
-    """One scale for all errors that are fractions: they can be compared."""
-    low, high = zip(*(axes.get_ylim() for axes in panels), strict=True)
-    for axes in panels:
-        axes.set_ylim(min(70 * LEAST, *low), max(high))
-
-
-def _draw_legend(axes, panels, *, cut):
-    """Every line of any panel, in the place of a panel."""
-    axes.set_axis_off()
-    found = {entry.get_label(): entry for panel in panels for entry in entries(panel)}
-    of_maps = [label for label in found if str(label).startswith("load of")]
-    order = [*SOURCES.values(), INTERPOLATED, *(words for words, _ in TOTALS.values()), *of_maps]
-    axes.legend(
-        handles=[found[words] for words in order if words in found],
-        loc="center",
-        title="lowest points of a panel: such errors and smaller ones" if cut else None,
-        title_fontsize=7,
-        handlelength=3.5,
-    )
+def _words(here: xr.Dataset) -> dict[str, Any]:
+    """Values of the caption: the total of each quantity for this surface, and its largest source."""
+    totals = []
+    for quantity, (_, words) in QUANTITIES.items():
+        errors = here.sel(quantity=quantity)
+        total, value = float(errors["total"]), float(errors["published"])
+        if value and not errors["absolute"]:
+            said = percent(total / abs(value))
+        elif errors["unit"] == "mm":
+            unit, size = length_unit(total)
+            said = f"{short(total / size, 2)} {unit}"
+        else:
+            said = short(total, 2)
+        if np.isfinite(total):
+            totals.append((words, said, str(errors["largest_source"].values)))
+    return {"totals": totals, "force": float(here["normal_force"])}

@@ -1,86 +1,126 @@
-"""The size test: A_r/A_0 over the side b of parts of the window at equal nominal pressure."""
+"""The size test of eq. 6 on parts of the window: at equal nominal pressure, and at equal sigma*."""
+
+from typing import Any
 
 import numpy as np
-import pandas as pd
+import xarray as xr
+from matplotlib.artist import Artist
 from matplotlib.figure import Figure
 from xarray import DataTree
 
+from ...core.estimate import DIMENSION, EXPONENT, Estimate
 from ...core.subject import Subject
+from ..kit.axes import label_short_span
 from ..kit.caption import caption
-from ..kit.drawing import WIDTH, Drawing
+from ..kit.drawing import COLOURS, MARKERS, WIDTH, Drawing, spread
 from ..kit.empty import say_empty
-from ..kit.legends import heading, legends_below
-from ..kit.sizes import plain_decades
-from ..kit.titles import headline, letter
+from ..kit.legends import entries, heading, legends_below, mark
+from ..kit.panel import Panel, table_of
+from ..kit.sizes import draw_bars, plain_decades, size_axis
+from ..kit.titles import headline
 from ..kit.verdicts import claim
-from ._size_exponents import draw_measured, draw_predictions, load_axis, size_legends
-from ._size_test import draw_over_side, place_of, rows_of_loads, rows_predicted, shown_loads
+from ..kit.words import place, pressure_label
 
-TITLE = "Size test: real contact area of parts of the window at equal pressure, beside eq. 6"
+TITLE = "Size test: parts of the window at equal pressure and at equal sigma*, beside eq. 6"
 SUBJECT = "specimen"
 NEEDS = ("size_test", "windows", "statements")
 ORDER = 170
 
-#: Exponents at equal sigma_0: name, and what they are of.
-_EXPONENTS = ("area_exponent", "compliance_exponent", "gap_exponent")
+#: Loads shown over the side b.
+MAX_LOADS = 3
+#: How each estimate of Delta_sigma is drawn where eq. 6 takes it; measured points alone are black.
+ESTIMATORS: dict[str, tuple[str, dict[str, Any]]] = {
+    "area": ("$A_r(s)$", {"color": COLOURS[1], "ls": "-"}),
+    "box": ("box counting", {"color": COLOURS[2], "ls": "--"}),
+}
+_TITLES = (
+    r"contact area at equal $\sigma_0$",
+    "exponent of the area",
+    r"exponent of $\sigma_0$ at equal $\sigma^*$",
+)
+_MEANS = ("area_fraction", "interface_compliance", "mean_gap", "side", "min_nodes", "central_load")
+_OTHERS = ("compliance_exponent", "gap_exponent", "beyond_study")
+_JUDGED = ("area_verdict", "area_reason", "slope_verdict", "slope_reason", "verdict", "reason")
 
 
 def draw(atlas: DataTree, name: str) -> Drawing:
-    """A_r/A_0 over b at some sigma_0, and its exponent over the load, beside eq. 6's.
+    """A_r/A_0 over b at some sigma_0; its exponent, and that of sigma_0 at equal sigma*, over load.
 
     Its data also have the exponents of the compliance and of the mean gap.
     """
     subject = Subject.of(atlas, name)
-    test = subject["size_test"]
-    loads = shown_loads(test, "area_exponent_low")
-    figure = Figure(figsize=(WIDTH, 3.9))
-    area, exponents = figure.subplots(1, 2)
-    measured = _draw_area(area, test, loads)
-    _draw_exponents(exponents, test, loads)
-    others, laws = size_legends(exponents)
-    legends_below(figure, measured + others, laws)
-    headline(figure, subject.label, place_of(test))
+    test = subject["size_test"].transpose("normal_force", ...)
+    figure = Figure(figsize=(WIDTH, 3.7))
+    axes = figure.subplots(1, 3)
+    a, b, c = (Panel(*one) for one in zip(axes, "abc", _TITLES, strict=True))
+    loads = _draw_area(a, test)
+    _draw_exponents(b, test, "area_exponent", test["normal_force"] == test["normal_force"])
+    _draw_exponents(c, test, "slope", test["well_conditioned"].astype(bool))
+    b.keep(test, "predicted_slope", *_JUDGED, "beyond_study")
+    b.axes.set_ylabel("exponent over $b$ (1)")
+    hollow = mark(color="k", marker="o", ls="none", mfc="white", label="hollow: decides nothing")
+    legends_below(figure, loads, [*entries(b.axes), hollow], columnspacing=3)
+    headline(figure, subject.label, place(str(test["direction"].values), float(test["offset"])))
     words = caption(
         __name__,
         claim=claim(atlas, name, "size_effect_follows", why=test.attrs["verdict_reason"]),
         measured=bool(np.isfinite(test["area_exponent_low"]).any()),
         effect=bool(test["size_effect"].any()),
     )
-    return Drawing(figure, _table(test), words)
+    return Drawing(figure, table_of(a, b, c), words)
 
 
-def _draw_area(axes, test, loads):
-    """A_r/A_0 over b at some sigma_0 with intervals, and eq. 6's prediction; legend entries."""
-    handles = draw_over_side(axes, test, "area_fraction", "area_exponent", loads)
+def _draw_area(panel: Panel, test: xr.Dataset) -> list[Artist]:
+    """A_r/A_0 over b under some loads with the lines of eq. 6; entries of a legend, one a load."""
+    axes, b = panel.axes, test["side"].values
+    panel.keep(test, *_MEANS, "beyond_study")
     axes.set_ylabel(r"real contact area $A_r/A_0$ (1)")
-    letter(axes, "a", "contact area at equal pressure")
-    if not len(loads):
+    size_axis(axes, b, "parts")
+    known = np.isfinite(test["area_exponent_low"].values)
+    of_study = known & ~test["beyond_study"].values.astype(bool)
+    loads = np.flatnonzero(of_study if of_study.any() else known)
+    if not loads.size:
         say_empty(axes, "no load at which two sizes\nhold enough nodes", ticks=False)
-        return []
-    axes.set_yscale("log")
-    drawn = test["area_fraction"].values[loads]
-    axes.set_ylim(np.nanmin(drawn) / 2.5, np.nanmax(drawn) * 8)
-    plain_decades(axes.yaxis)
-    return [heading("measured, exponent of $b$ [95 % interval]"), *handles]
+    found: list[Artist] = [heading("(a) exponent of $b$ [95 % interval]")]
+    for n, i in enumerate(loads[spread(loads.size, MAX_LOADS)]):
+        one = test.isel(normal_force=i)
+        means = Estimate.read(one, "area_fraction")
+        style: dict[str, Any] = {"color": "k", "marker": MARKERS[n], "ls": "none"}
+        axes.plot(b, means.value, **style)
+        draw_bars(axes, b, *means.ends, "k")
+        sides = b[means.known]
+        for estimator, (_, line) in ESTIMATORS.items():
+            slope = float(one["predicted_slope"].sel(estimator=estimator))
+            axes.plot(sides, means.value[0] * (sides / sides[0]) ** slope, lw=0.8, **line)
+        exponent = Estimate.read(one, "area_exponent", scale=DIMENSION).text()
+        found.append(mark(label=f"{pressure_label(one['nominal_pressure'])}: {exponent}", **style))
+        axes.set_yscale("log")
+        plain_decades(axes.yaxis)
+    return found
 
 
-def _draw_exponents(axes, test, loads):
-    """Exponent of A_r/A_0 over b, and those of eq. 6, over the load."""
-    draw_predictions(axes, test, decided=True)
-    draw_measured(axes, test, "area_exponent", loads)
-    load_axis(axes, test)
-    axes.set_ylabel("exponent of $A_r/A_0$ over $b$ (1)")
-    none = "" if np.isfinite(test["area_exponent"].values).any() else "; none measured"
-    letter(axes, "b", rf"exponent (0: no size effect; eq. 6: $\Delta_\sigma - 2$){none}")
+def _draw_exponents(panel: Panel, test: xr.Dataset, name: str, sure: xr.DataArray) -> None:
+    """A measured exponent over the load, beside -(2 - Delta_sigma) of eq. 6 by each estimator."""
+    axes, pressure = panel.axes, test["nominal_pressure"].values
+    measured = Estimate.read(test, name, scale=EXPONENT)
+    determined = [measured[i].determined for i in range(pressure.size)]
+    shown = test.assign(determined=sure & xr.DataArray(determined, dims="normal_force"))
+    style: dict[str, Any] = {"color": "k", "marker": "o", "ls": "none", "label": "measured; bar: 95 %"}
+    panel.curve(shown, "nominal_pressure", name, filled="determined", keep=_OTHERS, **style)
+    for estimator, (words, line) in ESTIMATORS.items():
+        value, low, high = Estimate.read(test.sel(estimator=estimator), "predicted_slope").ends
+        axes.plot(pressure, value, label=rf"eq. 6, $\Delta_\sigma$ by {words}; band: 95 %", **line)
+        axes.fill_between(pressure, low, high, color=line["color"], alpha=0.15, lw=0.8)
+    grey_beyond(axes, test)
+    axes.axhline(0, color="0.5", lw=0.6)
+    axes.set(xscale="log", xlim=(pressure[0] / 1.3, pressure[-1] * 1.3), ylim=(-2.3, 0.8))
+    axes.set_xlabel(r"$\sigma_0$ of the whole window (MPa)")
+    label_short_span(axes.xaxis)
 
 
-def _table(test):
-    means = ("area_fraction", "interface_compliance", "mean_gap")
-    exponents = [of for name in _EXPONENTS for of in (name, f"{name}_n")]
-    of_sizes = (*means, "side", "min_nodes", "central_load")
-    tables = [
-        rows_of_loads(test, *of_sizes, panel="a"),
-        rows_of_loads(test, *exponents, panel="b"),
-        rows_predicted(test),
-    ]
-    return pd.concat(tables, ignore_index=True)
+def grey_beyond(axes: Any, test: xr.Dataset) -> None:
+    """Grey ground under the loads beyond the study's, along an axis of sigma_0."""
+    beyond = test["nominal_pressure"].values[test["beyond_study"].values.astype(bool)]
+    if beyond.size:
+        style: dict[str, Any] = {"color": "0.93", "lw": 0, "zorder": 0}
+        axes.axvspan(beyond[0] / 1.15, beyond[-1] * 1.3, label="beyond the study's loads", **style)

@@ -116,7 +116,8 @@ class Panel:
             value, low, high = along.ends
             # A bar without an upper end leaves the frame.
             bars = reach(value, low, np.where(np.isposinf(high), _FAR * value, high))
-            self.axes.errorbar(across, value, bars, fmt="none", ecolor=colour, capsize=caps)
+            style_of_bars = {"fmt": "none", "ecolor": colour, "elinewidth": 0.8, "capsize": caps}
+            self.axes.errorbar(across, value, bars, **style_of_bars)
         draw_points(self.axes, across, along.value, trusted, hollow, **style)
         named = [name for name in (x, y, filled, *keep) if name and name not in data.dims]
         self.keep(data, *dict.fromkeys(named))
