@@ -17,7 +17,7 @@ from fractalcontact.core.fitting import fit_line
 from fractalcontact.core.verdicts import ABOVE, BELOW, WITHIN
 from fractalcontact.domain.clusters import cluster_sizes, cluster_statistics
 from fractalcontact.figures.draw import drawer_of
-from fractalcontact.figures.joint import _sliding_stages
+from fractalcontact.figures.joint import compliance
 from fractalcontact.figures.kit.axes import offset_axis
 from fractalcontact.figures.kit.drawing import print_style, save
 from fractalcontact.mechanics.conductance import add_conductance
@@ -259,8 +259,7 @@ def test_caption_of_the_compliance_says_what_was_judged(atlas):
     judged = atlas["statements/sliding"].to_dataset()
     for name in ("compliance_rises_at_first", "curves_overlap", "compliance_rises_again"):
         row = judged.sel(statement=name)
-        words, _ = _sliding_stages.STAGES[name]
-        said = f"{words}: {row['verdict'].item()} ({row['numbers'].item()}"
+        said = f"{compliance.STAGES[name]}: {row['verdict'].item()} ({row['numbers'].item()}"
         assert said in caption
 
 

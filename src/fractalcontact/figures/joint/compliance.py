@@ -1,7 +1,10 @@
 """Correlation of the faces, and closure and compliance of the interface, against the offset."""
 
+from typing import Any
+
 import numpy as np
-from matplotlib.artist import Artist
+import xarray as xr
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from xarray import DataTree
 
@@ -16,15 +19,22 @@ from ..kit.panel import Panel, table_of
 from ..kit.points import hollow_entry
 from ..kit.sizes import plain_decades
 from ..kit.titles import headline
-from ..kit.verdicts import row_of
-from ..kit.words import force_label, percent, place, pressure_label
-from ._face_correlation import draw_correlation
-from ._sliding_stages import number_stages, stage_column, stages_of_sliding
+from ..kit.verdicts import row_of, verdict_words
+from ..kit.words import force_label, place, pressure_label, short
 
 TITLE = "Figs. 4 and 5: correlation of the faces, closure and compliance against the offset"
 SUBJECT = "joint"
 NEEDS = ("specimens", "joints", "closure", "statements")
 ORDER = 70
+
+#: The paper's stages of sliding, and what each is said to do.
+STAGES = {
+    "compliance_rises_at_first": "compliance rises as v^x",
+    "curves_overlap": "compliance stays the same",
+    "compliance_rises_again": "compliance rises again",
+}
+#: Lines of the offsets between the stages.
+_ENDS = {"correlation 1/e": "--", "correlation lost": ":"}
 
 
 def draw(atlas: DataTree, name: str) -> Drawing:
@@ -34,97 +44,97 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     joint = subject["joints"]
     solved = joint.sel(direction=subject.direction)
     ends = float(solved["correlation_length"]), float(solved["uncorrelated_offset"])
-    force = subject["statements"].attrs["force"]
-    stages = stages_of_sliding(atlas, name, ends)
+    seated = bool((curves["closure_from_common_seat"] > 0).any())
+    seat = pressure_label(float(curves["common_seating_pressure"])) if seated else "first touch"
 
     figure = Figure(figsize=(WIDTH, 7.3))
     axes = figure.subplots(3, 1, sharex=True, height_ratios=[1.1, 1, 1.2])
-    titles = ("correlation of the faces", _seat(curves), _bars(curves))
+    titles = ("correlation of the faces", f"closure of the interface from {seat} on")
+    titles += ("compliance of the interface (bars: error of the solver)",)
     a, b, c = (Panel(*one) for one in zip(axes, "abc", titles, strict=True))
-    draw_correlation(a, joint, subject.direction, ends)
-    _draw_closures(b, c, curves)
-    for at, style in zip(ends, ("--", ":"), strict=True):
-        for panel in (b, c):
-            if np.isfinite(at):
-                panel.axes.axvline(at, color="0.4", lw=0.8, ls=style)
+    _draw_correlation(a, joint, subject.direction)
+    _draw_closures(b, curves, "closure_from_common_seat" if seated else "interface_closure")
+    _draw_compliances(c, curves)
+    for at, (words, style) in zip(ends, _ENDS.items(), strict=True):
+        if np.isfinite(at):
+            for panel in (a, b, c):
+                label = f"{words}: $v$ = {short(at)} mm" if panel is a else None
+                panel.axes.axvline(at, color="0.4", lw=0.8, ls=style, label=label)
     # The scale suits the offsets solved; the correlation is known at more.
     offset_axis(c.axes, curves["offset"].values)
     if c.axes.get_xscale() == "log":
         plain_decades(c.axes.xaxis)
-    columns: list[list[Artist]] = [entries(a.axes), entries(c.axes), *stage_column(stages, force)]
-    if np.isfinite(curves["interface_compliance"]).any():
-        number_stages(c.axes, stages)
-        why = missing_lines(curves["interface_stiffness_reason"], "c")
-        columns[-1] = columns[-1] + [heading(line) for line in why]
-    legends_below(figure, *columns, columnspacing=1.5)
+    judged = [one for one in STAGES if row_of(atlas, "statements", name, one) is not None]
+    if judged:
+        _number_stages(c.axes, ends)
+    why = missing_lines(curves["interface_stiffness_reason"], "c")
+    legends_below(figure, entries(a.axes), [*entries(c.axes), *map(heading, why)])
     headline(figure, subject.label, place(subject.direction))
-    decidable = np.isfinite(float(joint["correlation_limit"]))
-    first = row_of(atlas, "statements", name, "compliance_rises_at_first")
-    rises = "" if first is None else str(first["verdict"].item())
     words = {
-        "rises": rises,
+        "rises": verdict_words(atlas, name, "compliance_rises_at_first", numbers=False),
         "ends": ends,
-        "decidable": decidable,
         "end": float(joint["rigid_offset"][-1]),
-        "stages": [text for text, *_ in stages],
+        "stages": [f"{STAGES[one]}: {verdict_words(atlas, name, one)}" for one in judged],
+        "force": subject["statements"].attrs["force"],
     }
-    return Drawing(figure, table_of(a, b, c), caption(__name__, force=force, **words))
+    return Drawing(figure, table_of(a, b, c), caption(__name__, **words))
 
 
-def _seated(curves):
-    """True if some closure lies above the seat that all offsets have in common."""
-    return bool((curves["closure_from_common_seat"] > 0).any())
+def _draw_correlation(panel: Panel, joint: xr.Dataset, solved: str) -> None:
+    """The direction solved in black, all others in grey."""
+    kept = ("correlation_length", "uncorrelated_offset")
+    for direction in sorted(joint["direction"].values, key=lambda one: one == solved):
+        words = "the direction of (b), (c)" if direction == solved else "other directions"
+        known = {entry.get_label() for entry in entries(panel.axes)}
+        style: dict[str, Any] = {"color": "k" if direction == solved else "0.7", "ls": "-"}
+        style["label"] = None if words in known else words
+        one = joint.sel(direction=direction)
+        panel.curve(one, "rigid_offset", "face_correlation", keep=kept, **style)
+    limit = float(joint["correlation_limit"])
+    if np.isfinite(limit):
+        panel.axes.axhspan(-limit, limit, color="0.9", zorder=0, lw=0, label="by chance, 95 %")
+    panel.axes.axhline(np.exp(-1), color="0.4", lw=0.8, ls=_ENDS["correlation 1/e"])
+    panel.axes.set(ylim=(None, 1.05), ylabel="correlation of the faces (1)", xlabel="")
 
 
-def _draw_closures(closed, compliance, curves):
-    """Closure from the common seat of all offsets, or else from first touch, and compliance."""
-    labels = [f"$F$ = {force_label(force)}" for force in curves["normal_force"].values]
-    style = {"hue": "normal_force", "first": 1, "filled": "resolved", "ls": "-"}
-    high = curves["interface_compliance_high"]
-    kept = ("interface_stiffness_reason",)
-    compliance.curves(curves, "offset", "interface_compliance", labels=labels, keep=kept, **style)
-    closure = "closure_from_common_seat" if _seated(curves) else "interface_closure"
+def _draw_closures(panel: Panel, curves: xr.Dataset, name: str) -> None:
+    """Closure from the common seat of all offsets, or else from first touch."""
     kept = ("interface_closure", "closure_from_common_seat", "common_seating_pressure", "nodes")
     # Loads that seat the joint, or less, close it by nothing more.
-    loaded = curves[closure].where((curves[closure] > 0).any("offset") | (not _seated(curves)))
-    closed.curves(
-        curves.assign({closure: loaded.assign_attrs(curves[closure].attrs)}),
-        "offset",
-        closure,
-        keep=kept,
-        **style,
-    )
+    loaded = curves[name].where((curves[name] > 0).any("offset")).assign_attrs(curves[name].attrs)
+    style: dict[str, Any] = {"hue": "normal_force", "first": 1, "filled": "resolved", "ls": "-"}
+    panel.curves(curves.assign({name: loaded}), "offset", name, keep=kept, **style)
+    if not loaded.notnull().any():
+        say_empty(panel.axes, TOO_FULL)
+    panel.axes.set_ylim(bottom=min(0, float(loaded.fillna(0).min())))
+    panel.axes.set_ylabel(r"closure $w_\mathrm{int}$ (mm)")
+
+
+def _draw_compliances(panel: Panel, curves: xr.Dataset) -> None:
+    """Compliance under every load; bars without an end leave the frame."""
+    axes, reasons = panel.axes, curves["interface_stiffness_reason"]
+    labels = [f"$F$ = {force_label(force)}" for force in curves["normal_force"].values]
+    style: dict[str, Any] = {"hue": "normal_force", "first": 1, "filled": "resolved", "ls": "-"}
+    kept = ("interface_stiffness_reason",)
+    panel.curves(curves, "offset", "interface_compliance", labels=labels, keep=kept, **style)
     if not curves["resolved"].all():
-        hollow_entry(compliance.axes, f"hollow: fewer than {RESOLVED_NODES} nodes touch")
-    if not np.isfinite(curves["interface_compliance"]).any():
-        why = different_reasons(curves["interface_stiffness_reason"])
-        say_empty(compliance.axes, "\n".join(why) or TOO_FULL)
-    heights = loaded.values[np.isfinite(loaded.values)]
-    if heights.any():
-        closed.axes.set_ylim(bottom=min(0, *heights))
-    elif not heights.size:
-        say_empty(closed.axes, TOO_FULL)
-    closed.axes.set_ylabel(r"closure $w_\mathrm{int}$ (mm)")
-    compliance.axes.set_yscale("log")
-    tops = high.values[np.isfinite(high.values)]
-    if tops.size:
-        compliance.axes.set_ylim(top=1.3 * tops.max())
-    plain_decades(compliance.axes.yaxis)
-    compliance.axes.set_ylabel(r"compliance $\mathrm{d}w_\mathrm{int}/\mathrm{d}\sigma_0$ (mm/MPa)")
+        hollow_entry(axes, f"hollow: fewer than {RESOLVED_NODES} nodes touch")
+    axes.set_yscale("log")
+    if curves["interface_compliance"].notnull().any():
+        axes.set_ylim(top=3 * float(curves["interface_compliance"].max()))
+    else:
+        say_empty(axes, "\n".join(different_reasons(reasons)) or TOO_FULL)
+    plain_decades(axes.yaxis)
+    axes.set_ylabel(r"compliance $\mathrm{d}w_\mathrm{int}/\mathrm{d}\sigma_0$ (mm/MPa)")
 
 
-def _seat(curves):
-    """Title of the closures: from where they are counted."""
-    seat = pressure_label(float(curves["common_seating_pressure"]))
-    since = f"counted from {seat} on" if _seated(curves) else "counted from first touch"
-    return f"closure of the interface, {since}"
-
-
-def _bars(curves):
-    """Title of the compliances, with the meaning of visible bars."""
-    most = float((curves["interface_compliance_high"] / curves["interface_compliance"]).max()) - 1
-    words = (
-        f"up to {percent(most)}" if np.isfinite(most) else "unbounded where they leave the frame"
-    )
-    bars = f" (bars: error of the solver alone, {words})" if most > 0.001 else ""
-    return f"compliance of the interface{bars}"
+def _number_stages(axes: Axes, ends: tuple[float, float]) -> None:
+    """Numbers of the stages at the upper edge, between the offsets that bound them."""
+    log = axes.get_xscale() != "linear"
+    low, high = axes.dataLim.intervalx if log else axes.get_xlim()
+    bounds = [low, *(min(end, high) for end in ends if np.isfinite(end)), high]
+    style: dict[str, Any] = {"ha": "center", "va": "top", "fontweight": "bold"}
+    for n, (first, last) in enumerate(zip(bounds[:-1], bounds[1:], strict=True), 1):
+        if 0 <= first < last:
+            middle = np.sqrt(first * last) if log and first > 0 else (first + last) / 2
+            axes.text(middle, 0.97, f"{n}", transform=axes.get_xaxis_transform(), **style)
