@@ -103,13 +103,6 @@ def test_offset_of_the_maps_is_drawn(with_area):
     assert drawn(with_area, "sliding").data["offset_mm"].unique() == pytest.approx([0.4])
 
 
-def test_slopes_of_archard_are_straight_and_his(with_area):
-    axes = drawn(with_area, "sliding").figure.axes[0]
-    fan = [line for line in axes.lines if line.get_linestyle() == ":"]
-    slopes = [np.diff(np.log(line.get_ydata())) / np.diff(np.log(line.get_xdata())) for line in fan]
-    np.testing.assert_allclose(np.ravel(slopes), [2 / 3, 8 / 9, 26 / 27])
-
-
 def test_only_loads_with_enough_nodes_have_a_kappa(with_area):
     drawing = drawn(with_area, "sliding")
     kappa = [line for line in drawing.figure.axes[1].lines if line.get_marker() == "o"]
