@@ -42,7 +42,9 @@ def test_interpolated_errors_are_hollow(atlas):
         drawing = drawer_of("errors")(atlas, "sliding")
     axes = drawing.figure.axes[0]
     (hollow,) = [
-        line for line in axes.lines if line.get_markerfacecolor() == "white" and line.get_xdata().size
+        line
+        for line in axes.lines
+        if line.get_markerfacecolor() == "white" and line.get_xdata().size
     ]
     interpolated = budget["normal_force"][np.isnan(budget["finest_spacing"])]
     assert interpolated.size > 0

@@ -1,17 +1,17 @@
 """Bias and coverage of the estimators of Delta_g on synthetic surfaces of known H."""
 
 from collections.abc import Sequence
+from itertools import product
 
 import numpy as np
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
-from matplotlib.patches import Patch
 from xarray import DataTree
 
 from fractalcontact.figures.kit.caption import caption
-from fractalcontact.figures.kit.drawing import LINES, MARKERS, WIDTH, Drawing, colour_of
-from fractalcontact.figures.kit.legends import entries, heading, legends_below, mark
+from fractalcontact.figures.kit.drawing import MARKERS, WIDTH, Drawing, colour_of
+from fractalcontact.figures.kit.legends import entries, heading, legends_below
 from fractalcontact.figures.kit.panel import rows
+from fractalcontact.figures.kit.points import hollow_entry
 from fractalcontact.figures.kit.titles import letter
 
 TITLE = "Bias, scatter and coverage of the estimators of the surface dimension"
@@ -24,57 +24,42 @@ ORDER = 40
 def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
     """Bias with scatter, and coverage, by H, size, roll-off and estimator."""
     bias = atlas["estimator_bias/surfaces"].to_dataset()
-    sizes, roll_offs = bias["size"].values, bias["roll_off"].values
-    figure = Figure(figsize=(WIDTH, 0.8 + 4.8 * len(sizes)))
+    surfaces = list(product(bias["size"].values, bias["roll_off"].values))
+    columns = bias.sizes["roll_off"]
+    figure = Figure(figsize=(WIDTH, 0.8 + 4.8 * bias.sizes["size"]))
+    heights = [1.6, 1] * bias.sizes["size"]
     panels = figure.subplots(
-        2 * len(sizes),
-        len(roll_offs),
-        sharex=True,
-        sharey="row",
-        squeeze=False,
-        height_ratios=[1.6, 1] * len(sizes),
+        len(heights), columns, sharex=True, sharey="row", squeeze=False, height_ratios=heights
     )
     letters = iter("abcdefghijklmnopqrstuvwxyz")
-    for row, size in enumerate(sizes):
-        of_size = list(enumerate(roll_offs))
-        for column, roll_off in of_size:
-            panel = panels[2 * row, column]
-            _draw_bias(panel, bias.sel(size=size, roll_off=roll_off))
-            letter(panel, next(letters), f"bias, {_surface_words(size, roll_off)}")
-        for column, roll_off in of_size:
-            panel = panels[2 * row + 1, column]
-            _draw_coverage(panel, bias.sel(size=size, roll_off=roll_off))
-            letter(panel, next(letters), "95 % intervals that hold the true $H$")
-        panels[2 * row, 0].set_ylabel("estimated less true $H$ (1)")
-        panels[2 * row + 1, 0].set_ylabel("surfaces (%)")
+    for n, (size, roll_off) in enumerate(surfaces):
+        row, column = 2 * (n // columns), n % columns
+        one = bias.sel(size=size, roll_off=roll_off)
+        _draw_bias(panels[row, column], one)
+        _draw_coverage(panels[row + 1, column], one)
+        letter(panels[row, column], next(letters), f"bias, {_surface_words(size, roll_off)}")
+        letter(panels[row + 1, column], next(letters), "95 % intervals that hold the true $H$")
+    for upper, lower in zip(panels[::2, 0], panels[1::2, 0], strict=True):
+        upper.set_ylabel("estimated less true $H$ (1)")
+        lower.set_ylabel("surfaces (%)")
     places = np.arange(bias.sizes["hurst"])
     for panel in panels[-1]:
         panel.set_xlim(-0.5, bias.sizes["hurst"] - 0.5)
         panel.set_xticks(places, [f"{hurst:g}" for hurst in bias["hurst"].values])
         panel.set_xlabel("Hurst exponent $H$ of the surfaces (1)")
-    legends_below(figure, *_legends(panels[0, 0], panels[1, 0], bias.attrs["from_hurst"]))
-    figure.suptitle(
-        f"{bias.sizes['seed']} synthetic surfaces each, bars: standard deviation between surfaces; "
-        "estimators side by side",
-        fontsize=9,
+    aim, *estimators = entries(panels[0, 0])
+    head = heading(f"rms error of $H$, from $H$ = {bias.attrs['from_hurst']:g} on")
+    half = -(-len(estimators) // 2)
+    others = [aim, *entries(panels[1, 0]), heading("bars: sd between surfaces")]
+    legends_below(
+        figure,
+        [head, *estimators[:half]],
+        [heading(" "), *estimators[half:]],
+        others,
+        columnspacing=2,
     )
     table = rows(bias, "bias", "slope_bias", "scatter", "rms_error", "half_width", "coverage")
     return Drawing(figure, table, caption(__name__, **_words(bias)))
-
-
-def _legends(of_bias, of_coverage, start):
-    """Legend entries in two columns: estimators with their errors, then all others."""
-    estimators = [one for one in entries(of_bias) if not isinstance(one, Patch | Line2D)]
-    half = -(-len(estimators) // 2)
-    hollow = mark(color="0.3", marker="o", mfc="none", ls="none")
-    hollow.set_label("hollow: before known bias is taken off")
-    others = [one for one in entries(of_bias) if isinstance(one, Patch | Line2D)]
-    head = heading(f"rms error of $H$, from $H$ = {start:g} on")
-    return (
-        [head, *estimators[:half]],
-        [heading(" "), *estimators[half:]],
-        [hollow, *others, *entries(of_coverage)],
-    )
 
 
 def _surface_words(size, roll_off):
@@ -97,31 +82,28 @@ def _label(bias, name):
     return f"{words}: {error:.3f}" if np.isfinite(error) else words
 
 
+def _style(n):
+    return {"color": colour_of(n), "marker": MARKERS[n % len(MARKERS)], "ls": "none"}
+
+
 def _draw_bias(axes, bias):
     aim = bias.attrs["tolerated_bias"]
     axes.axhspan(-aim, aim, color="0.9", lw=0, label=rf"aim: bias within {aim:g}")
     for n, name in enumerate(bias["estimator"].values):
         one, x = bias.sel(estimator=name), _beside(bias, n)
-        style = {"color": colour_of(n), "marker": MARKERS[n % len(MARKERS)], "ls": "none"}
         label = _label(bias, name)
-        axes.errorbar(x, one["bias"], one["scatter"], capsize=2, lw=0.8, label=label, **style)
+        axes.errorbar(x, one["bias"], one["scatter"], capsize=2, lw=0.8, label=label, **_style(n))
         moved = np.abs(one["slope_bias"] - one["bias"]) > 1e-9
-        axes.plot(x[moved], one["slope_bias"][moved], mfc="none", mew=0.7, alpha=0.8, **style)
+        axes.plot(x[moved], one["slope_bias"][moved], mfc="none", mew=0.7, alpha=0.8, **_style(n))
 
 
 def _draw_coverage(axes, bias):
     aim = 100 * bias.attrs["promised_coverage"]
-    words = f"aim: {aim:.0f} % of the surfaces"
-    axes.axhline(aim, color="0.4", lw=0.8, ls=LINES[1], label=words)
+    axes.axhline(aim, color="0.4", lw=0.8, ls="--", label=f"aim: {aim:.0f} % of the surfaces")
     for n, name in enumerate(bias["estimator"].values):
-        axes.plot(
-            _beside(bias, n),
-            100 * bias["coverage"].sel(estimator=name),
-            color=colour_of(n),
-            marker=MARKERS[n % len(MARKERS)],
-            ls="none",
-        )
+        axes.plot(_beside(bias, n), 100 * bias["coverage"].sel(estimator=name), **_style(n))
     axes.set_ylim(min(45, 90 * float(bias["coverage"].min())), 105)
+    hollow_entry(axes, "hollow: before known bias is taken off")
 
 
 def _words(bias):

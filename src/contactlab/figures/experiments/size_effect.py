@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
@@ -15,9 +16,8 @@ from fractalcontact.core.estimate import Estimate
 from fractalcontact.figures.kit.caption import caption
 from fractalcontact.figures.kit.drawing import MARKERS, WIDTH, Drawing, colour_of
 from fractalcontact.figures.kit.legends import heading, legends_below, mark
-from fractalcontact.figures.kit.panel import rows
+from fractalcontact.figures.kit.panel import Panel, rows
 from fractalcontact.figures.kit.points import reach
-from fractalcontact.figures.kit.titles import letter
 
 from ...experiments.size_decision import NO_EFFECT, PROBABILITY, REFUTED, UPHELD
 
@@ -54,17 +54,12 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
     for axes in panels.ravel()[len(arms) :]:
         axes.remove()
     for which, axes, arm in zip("abcd", panels.ravel(), arms, strict=False):
+        Panel(axes, which if len(arms) > 1 else "", _ARMS[str(arm)])
         _draw_arm(axes, test.sel(arm=arm))
-        title = _ARMS[str(arm)]
-        if len(arms) > 1:
-            letter(axes, which, title)
-        else:
-            axes.set_title(title, loc="left")
         axes.set_xlabel(r"exponent wanted by eq. 6: $-(2-\Delta_\sigma)$ (1)")
     for axes in panels[:, 0]:
         axes.set_ylabel(r"exponent found: $\alpha=\mathrm{d}\ln(A_r/A_0)/\mathrm{d}\ln b$ (1)")
-    bars = heading(f"bars: {100 * PROBABILITY:.0f} % intervals")
-    legends_below(figure, [*_classes(test), bars], _loads(test), _lines())
+    legends_below(figure, *_legends(test))
     classes = test["overall"]
     words = caption(
         __name__,
@@ -95,35 +90,33 @@ def _draw_arm(axes: Axes, test: xr.Dataset) -> None:
             axes.errorbar(wanted.value, found.value, fmt=MARKERS[k], **style)
 
 
-def _classes(test: xr.Dataset) -> list:
-    return [
-        mark(color=colour_of(i), marker="o", ls="none", label=_class_words(test, hurst))
-        for i, hurst in enumerate(test["hurst"].values)
-    ]
-
-
-def _class_words(test: xr.Dataset, hurst: float) -> str:
-    """Hurst exponent, with the verdict on eq. 6 where all arms agree."""
-    decided = np.unique(test["overall"].sel(hurst=hurst).values)
-    words = f": {decided[0]}" if len(decided) == 1 else ""
-    return f"$H$ = {hurst:g}{words}"
-
-
-def _loads(test: xr.Dataset) -> list:
-    return [heading(r"pressure $p/(E^*h'_\mathrm{rms})$")] + [
+def _legends(test: xr.Dataset) -> list[list[Artist]]:
+    """Columns of the legend: classes, loads, estimators and lines."""
+    classes: list[Artist] = []
+    for i, hurst in enumerate(test["hurst"].values):
+        # With the verdict on eq. 6 where all arms agree.
+        decided = np.unique(test["overall"].sel(hurst=hurst).values)
+        words = f": {decided[0]}" if len(decided) == 1 else ""
+        label = f"$H$ = {hurst:g}{words}"
+        classes.append(mark(color=colour_of(i), marker="o", ls="none", label=label))
+    loads = [
         mark(color="0.3", marker=MARKERS[i], ls="none", label=f"{load:g}")
         for i, load in enumerate(test["reduced_pressure"].values)
     ]
-
-
-def _lines() -> list:
-    marks = [
-        mark(color="0.3", marker="o", ls="none", mfc=fill, label=r"$\Delta_\sigma$ by " + of)
-        for (_, of, filled) in _ESTIMATORS
-        for fill in ["0.3" if filled else "white"]
+    estimators = [
+        mark(
+            color="0.3",
+            marker="o",
+            ls="none",
+            mfc="0.3" if filled else "white",
+            label=r"$\Delta_\sigma$ by " + words,
+        )
+        for _, words, filled in _ESTIMATORS
     ]
-    return [
-        *marks,
+    lines = [
         mark(color="k", lw=1.2, ls="--", label="eq. 6 would lie here"),
         Patch(color="0.88", label=rf"no size effect: $|\alpha|$ < {NO_EFFECT:g}"),
     ]
+    bars = heading(f"bars: {100 * PROBABILITY:.0f} % intervals")
+    head = heading(r"pressure $p/(E^*h'_\mathrm{rms})$")
+    return [[*classes, bars], [head, *loads], [*estimators, *lines]]

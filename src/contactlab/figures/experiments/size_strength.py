@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 import xarray as xr
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
@@ -18,11 +19,11 @@ from fractalcontact.figures.kit.drawing import MARKERS, WIDTH, Drawing, colour_o
 from fractalcontact.figures.kit.legends import heading, legends_below, mark
 from fractalcontact.figures.kit.panel import rows
 from fractalcontact.figures.kit.points import reach
+from fractalcontact.figures.kit.sizes import plain_decades
 from fractalcontact.figures.kit.titles import letter
 from fractalcontact.figures.kit.words import number
 
 from ...experiments.size_decision import PROBABILITY
-from ._strength_exponents import ELASTIC, draw_exponents, faces_of, law_entries
 
 TITLE = "Size effect of the strength at equal displacement and at equal displacement over size"
 SUBJECT = "study"
@@ -30,8 +31,8 @@ NEEDS = ("size_strength",)
 KEY = "size_strength"
 ORDER = 8
 
-#: Labels of ticks stand at least this fraction of the axis apart.
-_CLEAR = 0.15
+#: Law of contact whose points are filled: the pressure of the other is capped.
+ELASTIC = "elastic"
 
 
 def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
@@ -44,13 +45,11 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
         upper, lower = panels[:, i]
         _draw_strength(upper, test.sel(hurst=hurst))
         letter(upper, "abcdefgh"[i], rf"$H$ = {hurst:g}: strength")
-        upper.set_xlabel("shear displacement $v$, middle of its interval (nodes)")
-        draw_exponents(lower, test.sel(hurst=hurst))
+        _draw_exponents(lower, test.sel(hurst=hurst))
         letter(lower, "abcdefgh"[i + len(hursts)], rf"$H$ = {hurst:g}: its exponent over the side")
-        lower.set_xlabel("at equal $v$ (nodes)  |  at equal $v/b$ (1)")
     panels[0, 0].set_ylabel(r"strength $\tau/\sigma_0$ (1)")
     panels[1, 0].set_ylabel(r"$\mathrm{d}\ln(\tau/\sigma_0)/\mathrm{d}\ln b$ (1)")
-    legends_below(figure, _side_entries(test), law_entries(test), _line_entries(test))
+    legends_below(figure, *_legends(test), columnspacing=3)
     return Drawing(figure, _table(test), caption(__name__, **_words(test)))
 
 
@@ -67,6 +66,12 @@ def _table(test: xr.Dataset) -> pd.DataFrame:
     return pd.concat(tables, ignore_index=True)
 
 
+def _draw(axes: Axes, x: Any, estimate: Estimate, law: str, **style: Any) -> None:
+    """Points with bars: filled where contact is elastic, hollow where its pressure is capped."""
+    face = style["color"] if law == ELASTIC else "white"
+    axes.errorbar(x, estimate.value, reach(*estimate.ends), mfc=face, elinewidth=0.7, **style)
+
+
 def _draw_strength(axes: Axes, test: xr.Dataset) -> None:
     """Strength over v at the lightest load; points at one v are shifted sideways."""
     test = test.isel(reduced_pressure=0)
@@ -74,51 +79,61 @@ def _draw_strength(axes: Axes, test: xr.Dataset) -> None:
     middles = np.sqrt(np.maximum(low, high / 4) * high)
     sides = test.sizes["side"]
     for law, i in product(test["law"].values, range(sides)):
-        one = Estimate.read(test.sel(law=law).isel(side=i), "strength")
         shift = 1.06 ** (i - (sides - 1) / 2) * (1.0 if law == ELASTIC else 1.03)
-        bars: dict[str, Any] = {"yerr": reach(*one.ends), "elinewidth": 0.7}
-        colour = colour_of(i + 1)
-        axes.errorbar(middles * shift, one.value, fmt=MARKERS[i], **faces_of(law, colour), **bars)
-    of_theory = test["theory_strength"].sel(law=ELASTIC)
-    axes.plot(middles, of_theory, "-", color="0.6", lw=1, zorder=0)
+        one = Estimate.read(test.sel(law=law).isel(side=i), "strength")
+        _draw(axes, middles * shift, one, law, color=colour_of(i + 1), fmt=MARKERS[i])
+    axes.plot(middles, test["theory_strength"].sel(law=ELASTIC), "-", color="0.6", lw=1, zorder=0)
     friction = np.tan(np.radians(test.attrs["basic_friction_angle"]))
     axes.axhline(friction, color="0.6", ls=":", lw=1, zorder=0)
     axes.set_xscale("log")
-    ticks = _apart(high)
-    axes.set_xticks(ticks, [f"{v:g}" for v in ticks])
-    axes.minorticks_off()
+    plain_decades(axes.xaxis)
+    axes.set_xlabel("shear displacement $v$, middle of its interval (nodes)")
 
 
-def _apart(ticks: np.ndarray) -> list[float]:
-    """Ticks of a logarithmic axis whose labels do not overlap."""
-    chosen: list[float] = []
-    least = (ticks.max() / ticks.min()) ** _CLEAR
-    for tick in np.sort(ticks):
-        if not chosen or tick >= least * chosen[-1]:
-            chosen.append(float(tick))
-    return chosen
+def _draw_exponents(axes: Axes, test: xr.Dataset) -> None:
+    """Exponents with their intervals, those at equal v to the left, at equal v/b to the right."""
+    intervals, fractions = test.sizes["interval"], test.sizes["fraction"]
+    places = np.arange(1 + intervals + fractions)
+    axes.axhspan(-test.attrs["bound"], test.attrs["bound"], color="0.9", lw=0, zorder=0)
+    groups = list(product(range(test.sizes["reduced_pressure"]), test["law"].values))
+    for n, (load, law) in enumerate(groups):
+        one = test.sel(law=law).isel(reduced_pressure=load)
+        x = places + 0.7 * ((n + 0.5) / len(groups) - 0.5)
+        names = ("pooled_exponent", "strength_exponent", "scaled_strength_exponent")
+        parts = [np.atleast_2d(np.stack(Estimate.read(one, name).ends).T) for name in names]
+        _draw(axes, x, Estimate(*np.concatenate(parts).T), law, color="k", fmt=MARKERS[load])
+        scaled = x[1 + intervals :]
+        axes.plot(scaled, one["predicted_exponent"], "_", color="k", ms=12, zorder=0)
+        axes.plot(scaled, one["theory_exponent"], "x", color="0.6", ms=5, zorder=0)
+    axes.axvline(intervals + 0.5, color="0.6", lw=0.8)
+    of_v = zip(test["interval_low"].values, test["interval_high"].values, strict=True)
+    of_b = zip(test["fraction_low"].values, test["fraction_high"].values, strict=True)
+    labels = ["all $v$", *(f"{low:g} to {high:g}" for low, high in of_v)]
+    labels += [f"1/{1 / low:.4g} to 1/{1 / high:.4g}" for low, high in of_b]
+    axes.set_xticks(places, labels, fontsize=7, rotation=90)
+    axes.set_xlabel("at equal $v$ (nodes)  |  at equal $v/b$ (1)")
 
 
-def _side_entries(test: xr.Dataset) -> list:
-    marks = [
+def _legends(test: xr.Dataset) -> list[list[Artist]]:
+    """Columns of the legend: sides of the strength, loads of the exponents, lines."""
+    sides = [
         mark(color=colour_of(i + 1), marker=MARKERS[i], ls="none", label=f"{side:g}")
         for i, side in enumerate(test["side"].values)
     ]
-    filled = [
-        mark(color="0.3", marker="o", ls="none", label="filled: elastic"),
-        mark(color="0.3", marker="o", mfc="white", ls="none", label="hollow: capped"),
+    loads = [
+        mark(color="k", marker=MARKERS[i], ls="none", label=f"{load:g}")
+        for i, load in enumerate(test["reduced_pressure"].values)
     ]
-    return [heading("strength: side $b$ (nodes)"), *marks, *filled]
-
-
-def _line_entries(test: xr.Dataset) -> list:
-    return [
+    hollow = mark(color="0.3", marker="o", mfc="white", ls="none", label="hollow: capped pressure")
+    lines = [
         mark(color="0.3", marker="_", ms=12, ls="none", label="as $v$ alone makes it"),
         mark(color="0.6", marker="x", ls="-", label="theory: height differences at $v$"),
         mark(color="0.6", ls=":", label=r"basic friction $\tan\varphi_b$"),
         Patch(color="0.9", label=f"no size effect: within {test.attrs['bound']:g}"),
         heading(f"side by side; bars: {100 * PROBABILITY:.0f} % intervals"),
     ]
+    of_loads = heading(r"exponent: $p/(E^* h'_\mathrm{rms})$")
+    return [[heading("strength: side $b$ (nodes)"), *sides], [of_loads, *loads, hollow], lines]
 
 
 def _words(test: xr.Dataset) -> dict[str, Any]:
@@ -134,8 +149,7 @@ def _words(test: xr.Dataset) -> dict[str, Any]:
     }
 
 
-def _range(values: np.ndarray) -> dict[str, None]:
+def _range(values: np.ndarray) -> list[str]:
     """Least and largest in words, once if they read alike; empty without any."""
-    return (
-        dict.fromkeys(number(end, 3) for end in (values.min(), values.max())) if len(values) else {}
-    )
+    ends = [number(end, 3) for end in (values.min(), values.max())] if values.size else []
+    return list(dict.fromkeys(ends))

@@ -6,7 +6,6 @@ from typing import Any
 import numpy as np
 import pandas as pd
 import xarray as xr
-from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
@@ -14,9 +13,8 @@ from xarray import DataTree
 
 from fractalcontact.figures.kit.caption import caption
 from fractalcontact.figures.kit.drawing import WIDTH, Drawing, colour_of
-from fractalcontact.figures.kit.legends import heading, legends_below, mark
-from fractalcontact.figures.kit.panel import rows
-from fractalcontact.figures.kit.titles import letter
+from fractalcontact.figures.kit.legends import entries, heading, legends_below
+from fractalcontact.figures.kit.panel import Panel, rows
 
 from ...experiments.size_decision import NO_EFFECT, USUAL
 from ._reduced_pressure import load_axis
@@ -27,31 +25,23 @@ NEEDS = ("size_effect",)
 KEY = "size_effect"
 ORDER = 4
 
-#: Of each exponent: variable, what is taken from it, marker, words, and null models with their
-#: lines and words.
-_EXPONENTS: tuple[tuple[str, float, str, str, dict[str, tuple[str, str]]], ...] = (
+#: Of each exponent: variable, what is taken from it, marker, words, and words of its null models.
+_EXPONENTS: tuple[tuple[str, float, str, str, dict[str, str]], ...] = (
     (
-        "area_delta",
-        2.0,
-        "o",
-        r"resolution $s$: $\Delta_\sigma-2$ by $A_r(s)$",
-        {"theory_delta": ("--", "rms slopes alone, by Persson")},
+        *("area_delta", 2.0, "o", r"resolution $s$: $\Delta_\sigma-2$ by $A_r(s)$"),
+        {"theory_delta": "rms slopes alone, by Persson"},
     ),
     (
-        "box_delta",
-        2.0,
-        "s",
-        r"contact domain: $\Delta_\sigma-2$ by boxes",
-        {"box_cut_delta": ("--", "bearing-area cut"), "random_delta": (":", "random nodes")},
+        *("box_delta", 2.0, "s", r"contact domain: $\Delta_\sigma-2$ by boxes"),
+        {"box_cut_delta": "bearing-area cut", "random_delta": "random nodes"},
     ),
     (
-        "alpha",
-        0.0,
-        "D",
-        r"side $b$: $\mathrm{d}\ln(A_r/A_0)/\mathrm{d}\ln b$",
-        {"theory_alpha": ("--", "rms slopes alone, by Persson")},
+        *("alpha", 0.0, "D", r"side $b$: $\mathrm{d}\ln(A_r/A_0)/\mathrm{d}\ln b$"),
+        {"theory_alpha": "rms slopes alone, by Persson"},
     ),
 )
+#: Lines of the null models.
+_NULLS = ("--", ":")
 #: Load at which the caption gives the three, p / (E* h'_rms).
 _QUOTED = 0.01
 
@@ -65,14 +55,13 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
     figure = Figure(figsize=(WIDTH, 4.2))
     panels = np.atleast_1d(figure.subplots(1, len(hursts), sharey=True))
     for which, axes, hurst in zip("abcdefgh", panels, hursts, strict=False):
+        Panel(axes, which if len(hursts) > 1 else "", f"$H$ = {hurst:g}")
         _draw_hurst(axes, test.sel(hurst=hurst))
-        title = f"$H$ = {hurst:g}"
-        if len(hursts) > 1:
-            letter(axes, which, title)
-        else:
-            axes.set_title(title, loc="left")
     panels[0].set_ylabel("exponent (1)")
-    legends_below(figure, *_legend())
+    no_effect = Patch(color="0.88", label=f"no size effect: within {NO_EFFECT:g} of 0")
+    bars = heading(f"bars: {100 * USUAL:.0f} % intervals")
+    size, *others = (entries(panels[0])[at] for at in (slice(0, 3), slice(3, 6), slice(6, None)))
+    legends_below(figure, size, *others[:-1], [*others[-1], no_effect, bars], columnspacing=3)
     tables = [
         rows(test[[name, f"{name}_half_width"]], name, f"{name}_half_width", exponent=name).rename(
             columns=lambda column, name=name: str(column).replace(name, "value")
@@ -84,34 +73,21 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
 
 
 def _draw_hurst(axes: Axes, one: xr.Dataset) -> None:
-    """Exponents of one class over the load."""
+    """Exponents of one class over the load, each beside its null models."""
     load = one["reduced_pressure"].values
     axes.axhspan(-NO_EFFECT, NO_EFFECT, color="0.88", lw=0, zorder=0)
-    limit = float(one["hurst"]) - 1
-    axes.axhline(limit, color=colour_of(1), lw=0.8, ls="-.", zorder=1)
-    for i, (name, less, marker, _, nulls) in enumerate(_EXPONENTS):
+    for i, (name, less, marker, words, nulls) in enumerate(_EXPONENTS):
         style: dict[str, Any] = {"marker": marker, "color": colour_of(i + 1), "zorder": 3}
-        half = one[f"{name}_half_width"].values
-        axes.errorbar(load, one[name].values - less, yerr=half, **style)
-        for null, (line, _) in nulls.items():
-            axes.plot(load, one[null].values - less, ls=line, lw=1, color=colour_of(i + 1))
+        axes.plot(load, one[name] - less, label=words, **style)
+        axes.errorbar(load, one[name] - less, one[f"{name}_half_width"], fmt="none", **style)
+        for line, (null, of) in zip(_NULLS, nulls.items(), strict=False):
+            axes.plot(load, one[null] - less, ls=line, lw=1, color=colour_of(i + 1), label=of)
+        if name == "area_delta":
+            limit = r"$H-1$, if cut-off $\ll$ roll-off"
+            at: dict[str, Any] = {"color": colour_of(i + 1), "lw": 0.8, "ls": "-."}
+            axes.axhline(float(one["hurst"]) - 1, zorder=1, label=limit, **at)
     load_axis(axes, load)
     axes.set_xlabel(r"reduced pressure $p/(E^* h'_\mathrm{rms})$ (1)")
-
-
-def _legend() -> list[list[Artist]]:
-    """Columns of the legend: one an exponent, with its null models."""
-    columns: list[list[Artist]] = []
-    for i, (_, _, marker, words, nulls) in enumerate(_EXPONENTS):
-        colour = colour_of(i + 1)
-        column: list[Artist] = [mark(color=colour, marker=marker, label=words)]
-        column += [mark(color=colour, lw=1, ls=ls, label=of) for ls, of in nulls.values()]
-        columns.append(column)
-    limit = {"color": colour_of(1), "lw": 0.8, "ls": "-."}
-    columns[0].append(mark(**limit, label=r"$H-1$, if cut-off $\ll$ roll-off"))
-    columns[2].append(Patch(color="0.88", label=f"no size effect: within {NO_EFFECT:g} of 0"))
-    columns[2].append(heading(f"bars: {100 * USUAL:.0f} % intervals"))
-    return columns
 
 
 def _words(test: xr.Dataset) -> dict[str, Any]:

@@ -121,7 +121,7 @@ def _draw_errors(panel: Panel, errors: xr.Dataset, size: float) -> None:
 
 
 def _words(here: xr.Dataset) -> dict[str, Any]:
-    """Values of the caption: the total of each quantity for this surface, and its largest source."""
+    """Values of the caption: totals for this surface, each with its largest source."""
     totals = []
     for quantity, (_, words) in QUANTITIES.items():
         errors = here.sel(quantity=quantity)

@@ -105,7 +105,12 @@ def _draw_exponents(panel: Panel, test: xr.Dataset, name: str, sure: xr.DataArra
     measured = Estimate.read(test, name, scale=EXPONENT)
     determined = [measured[i].determined for i in range(pressure.size)]
     shown = test.assign(determined=sure & xr.DataArray(determined, dims="normal_force"))
-    style: dict[str, Any] = {"color": "k", "marker": "o", "ls": "none", "label": "measured; bar: 95 %"}
+    style: dict[str, Any] = {
+        "color": "k",
+        "marker": "o",
+        "ls": "none",
+        "label": "measured; bar: 95 %",
+    }
     panel.curve(shown, "nominal_pressure", name, filled="determined", keep=_OTHERS, **style)
     for estimator, (words, line) in ESTIMATORS.items():
         value, low, high = Estimate.read(test.sel(estimator=estimator), "predicted_slope").ends
