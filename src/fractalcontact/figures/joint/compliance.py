@@ -1,5 +1,6 @@
 """Correlation of the faces, and closure and compliance of the interface, against the offset."""
 
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -134,7 +135,7 @@ def _number_stages(axes: Axes, ends: tuple[float, float]) -> None:
     low, high = axes.dataLim.intervalx if log else axes.get_xlim()
     bounds = [low, *(min(end, high) for end in ends if np.isfinite(end)), high]
     style: dict[str, Any] = {"ha": "center", "va": "top", "fontweight": "bold"}
-    for n, (first, last) in enumerate(zip(bounds[:-1], bounds[1:], strict=True), 1):
+    for n, (first, last) in enumerate(pairwise(bounds), 1):
         if 0 <= first < last:
             middle = np.sqrt(first * last) if log and first > 0 else (first + last) / 2
             axes.text(middle, 0.97, f"{n}", transform=axes.get_xaxis_transform(), **style)
