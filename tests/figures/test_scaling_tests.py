@@ -81,11 +81,12 @@ def test_direct_test_points_are_those_of_the_atlas(atlas, name):
     said = data[data["estimator"].notna()]
     assert list(said["verdict"]) == list(test["verdict"].T.values.ravel())
     predicted = drawn(size_prediction, atlas, name).data
-    area = predicted[predicted["predicted_area"].notna()]
-    known = test["predicted_area"].values
-    np.testing.assert_array_equal(
-        np.sort(area["predicted_area"]), np.sort(known[np.isfinite(known)])
-    )
+    area = predicted[predicted["panel"] == "b"].set_index(["predictor", "normal_force_N"])
+    for (predictor, force), row in area.iterrows():
+        stored = test.sel(predictor=predictor, normal_force=force)
+        np.testing.assert_array_equal(row["predicted_area"], stored["predicted_area"])
+        np.testing.assert_allclose(row["ratio"], 1 + stored["area_error"])
+    assert set(area.index.get_level_values(0)) == set(size_prediction.PREDICTORS)
 
 
 @pytest.mark.parametrize("name", representative(SPECIMENS))

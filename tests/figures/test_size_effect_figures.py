@@ -87,7 +87,9 @@ def test_exponents_drawn_are_those_of_the_atlas(atlas, test_of):
 
 
 def test_geometry_drawn_is_that_of_the_atlas(atlas, test_of):
-    table = drawn(contact_geometry, atlas).data.set_index(["hurst", "reduced_pressure"])
+    table = drawn(contact_geometry, atlas).data.dropna(subset="cut_delta")
+    table = table.set_index(["hurst", "reduced_pressure"])
+    assert len(table) == test_of["cut_delta"].notnull().sum()
     for (hurst, load), row in table.iterrows():
         one = test_of.sel(hurst=hurst, reduced_pressure=load)
         np.testing.assert_allclose(row["cut_delta"], one["cut_delta"])

@@ -166,7 +166,6 @@ def test_no_fit_is_said_and_no_line_drawn(atlas):
     changed["windows/flat"] = xr.DataTree(laws)
     drawing = drawn(changed, "flat", "window_size")
     assert "No fit of eq. 2" in drawing.caption
-    assert "No exponent" in drawing.caption
 
 
 @pytest.mark.full

@@ -13,10 +13,8 @@ from xarray import DataTree
 from fractalcontact.figures.kit.drawing import COLOURS, LINES, MARKERS, colour_of
 from fractalcontact.figures.kit.legends import entries
 
-from ...accuracy.speed import ERRORS, FRONTS, MODEL, OURS, PEER, SOLVER
+from ...accuracy.speed import ERRORS, MODEL, OURS, PEER, SOLVER
 
-#: Errors of zero are drawn here, and nothing below.
-SMALLEST = 1e-14
 #: How each quantity stands at an axis.
 AXES = {
     "force_error": "error of $F$ (1)",
@@ -61,14 +59,6 @@ def middle_contact(scenes: dict[str, xr.Dataset]) -> float:
     return shares[len(shares) // 2]
 
 
-def pick(scenes: dict[str, xr.Dataset], **wanted: object) -> xr.Dataset:
-    """The test problem whose attributes are these."""
-    for scene in scenes.values():
-        if all(scene.attrs[key] == value for key, value in wanted.items()):
-            return scene
-    raise KeyError(f"no test problem with {wanted}")
-
-
 def styles(scenes: dict[str, xr.Dataset]) -> dict[str, dict]:
     """Colour, marker and line of every method, in every figure alike; ours alone is black."""
     kinds: dict[str, str] = {}
@@ -82,27 +72,6 @@ def styles(scenes: dict[str, xr.Dataset]) -> dict[str, dict]:
         }
         found[method] = style | _OF_KIND[kind]
     return found
-
-
-def draw_points(axes: Axes, scene: xr.Dataset, quantity: str, looks: dict[str, dict]) -> None:
-    """Every method's error against its seconds, the front, and the reference's own error."""
-    for method, look in looks.items():
-        own = scene.isel(point=np.flatnonzero(scene["method"] == method))
-        known = np.isfinite(own[quantity].values) & np.isfinite(own["seconds"].values)
-        error = np.maximum(own[quantity].values[known], SMALLEST)
-        if known.any():
-            axes.plot(own["seconds"].values[known], error, **look, label=method, ms=3)
-    for name in (name for name, error in FRONTS.items() if error == quantity):
-        front = scene.isel(point=np.flatnonzero(scene[name])).sortby("seconds")
-        error = np.maximum(front[quantity].values, SMALLEST)
-        look = {"color": "0.75", "lw": 4, "zorder": 0}
-        axes.step(front["seconds"], error, where="post", label="Pareto front", **look)
-    if quantity == "force_error":
-        known_to = max(scene.attrs["reference_error"], SMALLEST)
-        axes.axhspan(SMALLEST / 10, known_to, color="0.92", lw=0, label="error of the reference")
-    axes.set_xscale("log")
-    axes.set_yscale("log")
-    axes.set_ylim(SMALLEST / 3, 30)
 
 
 def legend_of(figure: FigureBase, panels: Iterable[Axes], ncols: int = 4) -> None:

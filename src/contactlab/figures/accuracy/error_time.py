@@ -1,9 +1,12 @@
-"""Error of the force against time on the rough test problems, with the Pareto front."""
+"""Errors against time on the largest rough test problems, with the Pareto front."""
 
 from collections.abc import Sequence
+from itertools import product
 from typing import Any
 
+import numpy as np
 import xarray as xr
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from xarray import DataTree
 
@@ -11,72 +14,78 @@ from fractalcontact.figures.kit.caption import caption
 from fractalcontact.figures.kit.drawing import WIDTH, Drawing
 from fractalcontact.figures.kit.titles import letter
 
-from ...accuracy.speed import LEADS_BELOW, MODEL, OURS, ahead_of_ours
-from ._speed import (
-    AXES,
-    draw_points,
-    legend_of,
-    pick,
-    rough,
-    scenes_of,
-    styles,
-    table_of,
-    values_of,
-)
+from ...accuracy.speed import FRONTS, LEADS_BELOW, MODEL, OURS, ahead_of_ours
+from ._speed import AXES, legend_of, middle_contact, rough, scenes_of, styles, table_of, values_of
 
-TITLE = "Error of the force against wall time on rough surfaces, with the Pareto front"
+TITLE = "Errors of force, contact area, Delta_sigma and pressure against wall time"
 SUBJECT = "study"
 NEEDS = ("speed",)
 KEY = "speed"
 ORDER = 50
 
-_LETTERS = "abcdefghijklmnopqrstuvwxyz"
+#: Errors of zero are drawn here, and nothing below.
+SMALLEST = 1e-14
 
 
 def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
-    """A panel for each H and contact, at the smallest and at the largest size."""
+    """Rows of quantities, a column for each H, at the largest size and the middle contact."""
     scenes = rough(scenes_of(atlas))
     looks = styles(scenes)
-    sizes = sorted({values_of(scenes, "size")[0], values_of(scenes, "size")[-1]})
-    rows = [(hurst, size) for hurst in values_of(scenes, "hurst") for size in sizes]
-    columns = values_of(scenes, "contact")
-    figure = Figure(figsize=(WIDTH, 1.0 + 2.1 * len(rows)))
-    panels = figure.subplots(len(rows), len(columns), sharey=True, sharex="row", squeeze=False)
-    for i, (hurst, size) in enumerate(rows):
-        for j, contact in enumerate(columns):
-            axes = panels[i, j]
-            scene = pick(scenes, hurst=hurst, size=size, contact=contact)
-            draw_points(axes, scene, "force_error", looks)
-            axes.axhline(LEADS_BELOW, color="0.5", lw=0.6, ls=":", label=f"error {LEADS_BELOW:g}")
-            title = rf"$H$ = {hurst:g}, {100 * contact:g} %, {size}$^2$"
-            letter(axes, _LETTERS[(i * len(columns) + j) % len(_LETTERS)], title)
-        panels[i, 0].set_ylabel(AXES["force_error"])
-    for axes in panels[-1]:
-        axes.set_xlabel("wall time (s)")
+    size, contact = values_of(scenes, "size")[-1], middle_contact(scenes)
+    wanted = {"size": size, "contact": contact}
+    shown = [one for one in scenes.values() if wanted.items() <= one.attrs.items()]
+    figure = Figure(figsize=(WIDTH, 8.8))
+    panels = figure.subplots(len(AXES), len(shown), sharex=True, sharey="row", squeeze=False)
+    letters = iter("abcdefghijklmnopqrstuvwxyz")
+    for (i, quantity), (j, scene) in product(enumerate(AXES), enumerate(shown)):
+        _draw_points(panels[i, j], scene, quantity, looks)
+        letter(panels[i, j], next(letters), rf"$H$ = {scene.attrs['hurst']:g}")
+        panels[i, 0].set_ylabel(AXES[quantity])
+        panels[-1, j].set_xlabel("wall time (s)")
     legend_of(figure, panels.flat)
-    runs = int(max(scene["runs"].max() for scene in scenes.values()))
-    threads = next(iter(scenes.values())).attrs["threads"]
-    words = caption(__name__, runs=runs, threads=threads, **front(scenes, "force_error"))
+    words = caption(__name__, size=size, share=f"{100 * contact:g}", **_words(scenes))
     return Drawing(figure, table_of(scenes), words)
 
 
-def front(scenes: dict[str, xr.Dataset], quantity: str) -> dict[str, Any]:
-    """Counts of the problems on whose front ours is at every error below `LEADS_BELOW`.
+def _draw_points(axes: Axes, scene: xr.Dataset, quantity: str, looks: dict[str, dict]) -> None:
+    """Every method's error against its seconds, the front, and the reference's own error."""
+    for method, look in looks.items():
+        own = scene.isel(point=np.flatnonzero(scene["method"] == method))
+        known = np.isfinite(own[quantity].values) & np.isfinite(own["seconds"].values)
+        error = np.maximum(own[quantity].values[known], SMALLEST)
+        if known.any():
+            axes.plot(own["seconds"].values[known], error, **look, label=method, ms=3)
+    for name in (name for name, error in FRONTS.items() if error == quantity):
+        front = scene.isel(point=np.flatnonzero(scene[name])).sortby("seconds")
+        error = np.maximum(front[quantity].values, SMALLEST)
+        look = {"color": "0.75", "lw": 4, "zorder": 0}
+        axes.step(front["seconds"], error, where="post", label="Pareto front", **look)
+    if quantity == "force_error":
+        known_to = max(scene.attrs["reference_error"], SMALLEST)
+        axes.axhspan(SMALLEST / 10, known_to, color="0.92", lw=0, label="error of the reference")
+        axes.axhline(LEADS_BELOW, color="0.5", lw=0.6, ls=":", label=f"error {LEADS_BELOW:g}")
+    axes.set(xscale="log", yscale="log", ylim=(SMALLEST / 3, 30))
 
-    Parameters
-    ----------
-    scenes : dict
-    quantity : str
-        ``force_error`` or ``pressure_error``.
-    """
-    ahead = [ahead_of_ours(scene, quantity=quantity, models=False) for scene in scenes.values()]
-    with_models = [ahead_of_ours(scene, quantity=quantity) for scene in scenes.values()]
+
+def _words(scenes: dict[str, xr.Dataset]) -> dict[str, Any]:
+    """Counts of the problems on whose front ours is at every error below `LEADS_BELOW`."""
+    leads = {
+        quantity: sum(
+            not ahead_of_ours(scene, quantity=quantity, models=False).sizes["point"]
+            for scene in scenes.values()
+        )
+        for quantity in FRONTS.values()
+    }
+    ahead = [ahead_of_ours(scene, quantity="force_error") for scene in scenes.values()]
+    first, *_ = scenes.values()
     return {
         "ours": OURS,
         "below": f"{LEADS_BELOW:g}",
         "problems": len(scenes),
-        "leads": sum(not found.sizes["point"] for found in ahead),
-        "models": sum(bool((found["kind"] == MODEL).any()) for found in with_models),
+        "leads": leads,
+        "models": sum(bool((found["kind"] == MODEL).any()) for found in ahead),
         "alike": max(scene.attrs["resolvable_error"] for scene in scenes.values()),
         "worst": max(scene.attrs["reference_error"] for scene in scenes.values()),
+        "runs": int(max(scene["runs"].max() for scene in scenes.values())),
+        "threads": first.attrs["threads"],
     }

@@ -107,21 +107,18 @@ def _draw_coverage(axes, bias):
 
 
 def _words(bias):
-    """Errors and coverage of the estimators where their bias is known, and on rougher surfaces."""
+    """Errors and coverage of the estimators where their bias is known."""
     start = bias.attrs["from_hurst"]
     known = bias.sel(estimator=bias["worst_bias"].notnull())
     names = [_name(name) for name in known["estimator"].values]
     errors = dict(zip(names, known["overall_error"].values.tolist(), strict=True))
     least = dict(zip(names, known["min_coverage"].values.tolist(), strict=True))
-    rough = bias["rough_coverage"]
     return {
         "seeds": bias.sizes["seed"],
         "start": start,
         "name": _name(bias.attrs["recommended"]),
         "errors": errors,
         "least": least,
-        "promised": bias.attrs["promised_coverage"],
-        "rough": rough.values[rough.notnull()].tolist(),
     }
 
 

@@ -149,6 +149,5 @@ def _words(atlas, name, laws):
     return {
         "hurst": Estimate.read(laws, "face_hurst", scale=EXPONENT),
         "expected": Estimate.read(laws, "expected_hurst", scale=EXPONENT),
-        "closure": bool(np.isfinite(laws["closure_exponent"]).any()),
         "claim": claim(atlas, name, _CLAIM, why=why),
     }
