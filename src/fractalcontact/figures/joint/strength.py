@@ -1,35 +1,57 @@
 """Dilatancy angle, friction angle and shear strength over the offset, and Barton's law beside."""
 
+from typing import Any
+
 import numpy as np
+import xarray as xr
 from matplotlib.figure import Figure
 from xarray import DataTree
 
-from ...core.estimate import ANGLE, Estimate
+from ...core.estimate import Estimate
 from ...core.limits import LARGEST_FRICTION_ANGLE
 from ...core.subject import Subject
 from ..kit.axes import offset_axis
 from ..kit.caption import caption
-from ..kit.drawing import WIDTH, Drawing
+from ..kit.drawing import COLOURS, WIDTH, Drawing
 from ..kit.empty import say_empty
 from ..kit.laboratory import draw_tests, test_words
 from ..kit.legends import entries, heading
 from ..kit.panel import Panel, table_of
-from ..kit.points import hollow_entry
-from ..kit.sizes import logarithmic, plain_decades, roughness_words
+from ..kit.points import draw_points, hollow_entry
+from ..kit.sizes import NO_STRENGTH, draw_bars, logarithmic, plain_decades, roughness_words
 from ..kit.titles import headline
-from ..kit.words import place, short
-from ._peak_strength import draw_summary, scan_entries, why_none
+from ..kit.words import NOMINAL_PRESSURE, place, short
 
 TITLE = "Dilatancy angle, friction angle and shear strength, with Barton's criterion"
 SUBJECT = "joint"
 NEEDS = ("closure", "strength", "measured")
 ORDER = 110
 
-_OFFSET = "offset $v$, middle of the interval (mm)"
-#: Of strengths whose friction angle was truncated.
-_NO_RESULT = f"excluded: truncated at {LARGEST_FRICTION_ANGLE:g}°,\nor half of the window touches"
+_TITLES = ("dilatancy and friction angle", "shear strength", "peak and residual shear strength")
+_LIMIT = f"{LARGEST_FRICTION_ANGLE:g}°"
+#: What (c) shows: variable, words and style; which points are results and no bounds.
+_SUMMARY: dict[str, tuple[str, dict[str, Any]]] = {
+    "peak_strength": ("peak over the offsets", {"marker": "o", "ms": 6, "color": "k"}),
+    "peak_contact_strength": (
+        "peak from the contact itself",
+        {"marker": "^", "ms": 4, "color": COLOURS[1]},
+    ),
+    "residual_strength": (
+        "residual; bar: 95 % interval, if known",
+        {"marker": "D", "ms": 3.5, "color": COLOURS[4]},
+    ),
+    "barton_strength": (
+        f"peak by Barton, at most {_LIMIT}, JRC of the scan",
+        {"ls": "--", "color": "k"},
+    ),
+    "barton_scaled_strength": (
+        "peak by Barton and Bandis, for this length",
+        {"ls": "-.", "color": "k"},
+    ),
+}
+_VALID = {"peak_strength": "peak_strength_valid", "peak_contact_strength": "peak_contact_valid"}
 #: Of curves over the offset: hollow points stand above the lines of the other pressures.
-_CURVES = {
+_CURVES: dict[str, Any] = {
     "hue": "normal_force",
     "first": 1,
     "filled": "shear_strength_valid",
@@ -43,83 +65,90 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     subject = Subject.of(atlas, name)
     strength = subject.along("strength").transpose("interval", "normal_force", ...)
     shown = strength.isel(normal_force=list(subject.reported.loads))
-
     figure = Figure(figsize=(WIDTH, 7.2))
-    (angles, curves), (summary, legends) = figure.subplots(2, 2)
-    a = Panel(angles, "a", "dilatancy and friction angle")
-    b = Panel(curves, "b", "shear strength")
-    c = Panel(summary, "c", "peak and residual shear strength")
+    *places, legend = figure.subplots(2, 2).flat
+    a, b, c = (Panel(*one) for one in zip(places, "abc", _TITLES, strict=True))
     _draw_angles(a, shown)
     _draw_strength(b, shown)
     draw_tests(b, subject, "shear")
-    draw_summary(c, strength)
+    _draw_summary(c, strength)
     draw_tests(c, subject, "strength")
-    legends.axis("off")
-    style = {"labelspacing": 0.25}  # between the lines, in letters
-    shared = [*entries(angles), *entries(curves), *_residual_note(shown)]
-    legends.add_artist(legends.legend(handles=shared, loc="upper left", title="(a), (b)", **style))
-    if of_peaks := [*entries(summary), *scan_entries(strength)]:
-        legends.legend(handles=of_peaks, loc="lower left", title="(c)", **style)
+    legend.axis("off")
+    of_offsets = [heading("(a), (b)"), *entries(a.axes), *entries(b.axes)]
+    of_pressures = [heading(""), heading("(c)"), *entries(c.axes)]
+    legend.legend(handles=[*of_offsets, *of_pressures], loc="center left", labelspacing=0.35)
     headline(figure, subject.label, place(subject.direction))
     return Drawing(figure, table_of(a, b, c), caption(__name__, **_words(subject, strength, shown)))
 
 
-def _draw_angles(panel, strength):
+def _draw_angles(panel: Panel, strength: xr.Dataset) -> None:
     axes = panel.axes
-    rigid = {"color": "0.6", "lw": 1, "marker": ".", "ls": "-", "label": "rigid, $F$ = 0"}
-    panel.curve(strength.drop_dims("normal_force"), "midpoint", "rigid_dilatancy_angle", **rigid)
+    rigid: dict[str, Any] = {"color": "0.6", "lw": 1, "marker": ".", "ls": "-"}
+    panel.curve(
+        strength.drop_dims("normal_force"),
+        "midpoint",
+        "rigid_dilatancy_angle",
+        label="rigid, $F$ = 0",
+        **rigid,
+    )
     pressures = [short(pressure) for pressure in strength["nominal_pressure"].values]
     labels = [rf"nominal pressure $\sigma_0$ = {pressure} MPa" for pressure in pressures]
-    keep = {"keep": ("friction_angle", "nominal_pressure")}
-    panel.curves(strength, "midpoint", "dilatancy_angle", labels=labels, **keep, **_CURVES)
-    axes.axhline(0, color="0.8", lw=0.6, zorder=0)
+    keep = ("friction_angle", "nominal_pressure")
+    panel.curves(strength, "midpoint", "dilatancy_angle", labels=labels, keep=keep, **_CURVES)
     basic = float(strength["basic_friction_angle"])
     if np.isfinite(basic):
-        label = f"truncated above: friction angle {LARGEST_FRICTION_ANGLE:g}°"
+        label = f"truncated above: friction angle {_LIMIT}"
         axes.axhline(LARGEST_FRICTION_ANGLE - basic, color="0.4", lw=0.8, ls=":", label=label)
-        other = axes.secondary_yaxis(
-            "right", functions=(lambda i: i + basic, lambda angle: angle - basic)
-        )
+        functions = (lambda i: i + basic, lambda angle: angle - basic)
+        other = axes.secondary_yaxis("right", functions=functions)
         other.set_ylabel(r"friction angle $\varphi_b + i$ (degrees)")
-    _offset_axis(axes, strength)
+    _offset_axis(panel, strength)
     axes.set_ylabel("dilatancy angle $i$ (degrees)")
 
 
-def _draw_strength(panel, strength):
-    axes = panel.axes
-    axes.set_ylabel(r"shear strength $\tau$ (MPa)")
-    axes.set_xlabel(_OFFSET)
+def _draw_strength(panel: Panel, strength: xr.Dataset) -> None:
     panel.curves(strength, "midpoint", "shear_strength", **_CURVES)
-    if not np.isfinite(strength["shear_strength"]).any():
-        say_empty(axes, why_none(strength), ticks=False)
+    panel.axes.set_ylabel(r"shear strength $\tau$ (MPa)")
+    _offset_axis(panel, strength)
+    if not strength["shear_strength"].notnull().any():
+        say_empty(panel.axes, NO_STRENGTH, ticks=False)
         return
     if not strength["shear_strength_valid"].all():
-        hollow_entry(axes, _NO_RESULT)
-    _offset_axis(axes, strength)
-    logarithmic(axes, strength["shear_strength"].values)
+        hollow_entry(panel.axes, f"excluded: truncated at {_LIMIT},\nor half of the window touches")
+    logarithmic(panel.axes, strength["shear_strength"].values)
 
 
-def _offset_axis(axes, strength):
+def _offset_axis(panel: Panel, strength: xr.Dataset) -> None:
     """Axis of offsets, drawn last because its ticks follow the range drawn."""
-    offset_axis(axes, strength["midpoint"].values)
-    if axes.get_xscale() == "log":
-        plain_decades(axes.xaxis)
-    axes.set_xlabel(_OFFSET)
+    offset_axis(panel.axes, strength["midpoint"].values)
+    if panel.axes.get_xscale() == "log":
+        plain_decades(panel.axes.xaxis)
+    panel.axes.set_xlabel("offset $v$, middle of the interval (mm)")
 
 
-def _residual_note(strength):
-    """Entry of a legend: the residual angle under the largest of the loads shown, if known."""
-    one = strength.isel(normal_force=-1)
-    count = int(one["residual_n"])
-    if not strength.sizes["interval"] or not count:
-        return []
-    angle = Estimate.read(one, "residual_angle", scale=ANGLE)
-    words = f"{angle.text('degrees')}, {count} intervals"
-    words = words if count > 1 else f"{short(angle.value)} degrees (one interval)"
-    return [heading(rf"residual $i$ at {short(one['nominal_pressure'])} MPa:" + f"\n{words}")]
+def _draw_summary(panel: Panel, strength: xr.Dataset) -> None:
+    """Strengths by every law over sigma_0; hollow where it is no result."""
+    axes, sigma = panel.axes, strength["nominal_pressure"].values
+    axes.set_xlabel(f"{NOMINAL_PRESSURE} (MPa)")
+    axes.set_ylabel(r"shear strength $\tau$ (MPa)")
+    panel.keep(strength, "peak_offset", *_VALID.values(), *_SUMMARY, "peak_over_barton")
+    known = {name: strength[name].values for name in _SUMMARY if strength[name].notnull().any()}
+    if not known:
+        say_empty(axes, NO_STRENGTH, ticks=False)
+        return
+    for name, values in known.items():
+        words, style = _SUMMARY[name]
+        valid = strength[_VALID[name]].values if name in _VALID else np.ones(sigma.shape)
+        draw_points(axes, sigma, values, valid, label=words, **style)
+    if not all(strength[valid].all() for valid in _VALID.values()):
+        hollow_entry(axes, "hollow: truncated, no result but a bound")
+    bars = Estimate.read(strength, "residual_strength").ends
+    draw_bars(axes, sigma, *bars, _SUMMARY["residual_strength"][1]["color"])
+    axes.set(xscale="log")
+    logarithmic(axes, np.array(list(known.values())))
 
 
-def _words(subject, strength, shown):
+def _words(subject: Subject, strength: xr.Dataset, shown: xr.Dataset) -> dict[str, Any]:
     """Values of the caption: angles and strengths."""
     valid = strength["peak_strength_valid"] & (strength["peak_strength"] > 0)
     return {
