@@ -4,7 +4,6 @@ from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
-import pandas as pd
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import FigureBase
@@ -13,15 +12,8 @@ from xarray import DataTree
 from fractalcontact.figures.kit.drawing import COLOURS, LINES, MARKERS, colour_of
 from fractalcontact.figures.kit.legends import entries
 
-from ...accuracy.speed import ERRORS, MODEL, OURS, PEER, SOLVER
+from ...accuracy.speed import MODEL, OURS, PEER, SOLVER
 
-#: How each quantity stands at an axis.
-AXES = {
-    "force_error": "error of $F$ (1)",
-    "area_error": "error of $A_r$ (1)",
-    "delta_error": r"error of $\Delta_\sigma$ (1)",
-    "pressure_error": "error of $p$, rms (1)",
-}
 _COLOURS = tuple(colour_of(i) for i in range(1, len(COLOURS) - 1))
 #: Solvers have filled marks, public codes hollow ones on a line, models hollow ones alone.
 _OF_KIND: dict[str, dict[str, Any]] = {
@@ -29,7 +21,7 @@ _OF_KIND: dict[str, dict[str, Any]] = {
     PEER: {"mfc": "white", "ls": LINES[2], "lw": 0.8},
     MODEL: {"mfc": "none", "ls": "none"},
 }
-OURS_STYLE = {"color": COLOURS[0], "marker": MARKERS[0], "ls": "-", "lw": 1.6, "zorder": 3}
+_OURS = {"color": COLOURS[0], "marker": MARKERS[0], "ls": "-", "lw": 1.6, "zorder": 3}
 
 
 def scenes_of(atlas: DataTree) -> dict[str, xr.Dataset]:
@@ -64,7 +56,7 @@ def styles(scenes: dict[str, xr.Dataset]) -> dict[str, dict]:
     kinds: dict[str, str] = {}
     for scene in scenes.values():
         kinds |= dict(zip(scene["method"].values, scene["kind"].values, strict=True))
-    found = {OURS: OURS_STYLE}
+    found = {OURS: _OURS}
     for i, (method, kind) in enumerate((m, k) for m, k in kinds.items() if m != OURS):
         style: dict[str, Any] = {
             "color": _COLOURS[i % len(_COLOURS)],
@@ -78,16 +70,3 @@ def legend_of(figure: FigureBase, panels: Iterable[Axes], ncols: int = 4) -> Non
     """One legend below a figure with the entries of all its panels."""
     handles = {handle.get_label(): handle for axes in panels for handle in entries(axes)}
     figure.legend(handles=list(handles.values()), loc="outside lower center", ncols=ncols)
-
-
-def table_of(scenes: dict[str, xr.Dataset]) -> pd.DataFrame:
-    """One row a point drawn, every test problem below the other."""
-    columns = ["method", "kind", "tolerance", *ERRORS, "seconds", "seconds_low", "seconds_high"]
-    columns += ["runs", "memory", "on_front", "on_pressure_front", "said"]
-    frames = []
-    for name, scene in scenes.items():
-        frame = scene[columns].to_dataframe().reset_index(drop=True)
-        frame.insert(0, "test_problem", name)
-        frames.append(frame)
-    table = pd.concat(frames, ignore_index=True)
-    return table.rename(columns={"seconds": "seconds_s", "memory": "memory_B"})

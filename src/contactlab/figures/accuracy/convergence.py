@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 
-import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
 from xarray import DataTree
@@ -11,6 +10,7 @@ from fractalcontact.core.estimate import EXPONENT, Estimate
 from fractalcontact.figures.kit.axes import label_short_span
 from fractalcontact.figures.kit.caption import caption
 from fractalcontact.figures.kit.drawing import MARKERS, WIDTH, Drawing, colour_of, group
+from fractalcontact.figures.kit.panel import rows
 from fractalcontact.figures.kit.titles import letter
 
 from ...accuracy.convergence import QUANTITIES
@@ -21,7 +21,7 @@ NEEDS = ("convergence",)
 KEY = "convergence"
 ORDER = 90
 
-_TITLES = {"hertz": "paraboloid (Hertz)", "punch": "flat circular punch"}
+_TITLES = ("paraboloid (Hertz)", "flat circular punch", "Richardson's extrapolation")
 
 
 def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
@@ -30,33 +30,30 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
     panels = figure.subplots(1, 3)
     panels[1].sharey(panels[0])
     found = {problem: group(atlas, "convergence", problem) for problem in QUANTITIES}
-    for axes, which, (problem, result) in zip(panels, "ab", found.items(), strict=False):
-        _draw_errors(axes, result, QUANTITIES[problem])
-        letter(axes, which, _TITLES[problem])
-    panels[0].set_ylabel("relative error, rms over positions (1)")
     trials = group(atlas, "convergence", "richardson")
+    tables = [rows(trials, "error", "bar", "finest", problem="richardson")]
+    for axes, (problem, result) in zip(panels, found.items(), strict=False):
+        _draw_errors(axes, result, QUANTITIES[problem])
+        named = [f"{name}_{of}" for name in QUANTITIES[problem] for of in ("error", "order")]
+        tables.append(rows(result, *named, problem=problem))
     _draw_trials(panels[2], trials)
-    letter(panels[2], "c", "Richardson's extrapolation")
-    for axes in panels:
+    for axes, which, title in zip(panels, "abc", _TITLES, strict=True):
+        letter(axes, which, title)
+        axes.set(xscale="log", yscale="log")
         label_short_span(axes.xaxis, within=10)
         axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.2))
-    return Drawing(figure, _table(found, trials), caption(__name__, **_numbers(found, trials)))
+    panels[0].set_ylabel("relative error, rms over positions (1)")
+    table = pd.concat(tables, ignore_index=True)
+    return Drawing(figure, table, caption(__name__, **_numbers(found, trials)))
 
 
 def _draw_errors(axes, result, quantities):
     spacing = 1 / result["cells_per_radius"].values
     for i, name in enumerate(quantities):
-        order = Estimate.read(result, f"{name}_order").ends
-        label = f"{name.replace('_', ' ')}: order {Estimate(*order, scale=EXPONENT).text()}"
-        style = {"color": colour_of(i), "marker": MARKERS[i]}
-        axes.plot(spacing, result[f"{name}_error"], ls="none", label=label, **style)
-        if np.isfinite(order[0]):
-            logs = np.log(spacing), np.log(result[f"{name}_error"].values)
-            middle = [np.mean(values) for values in logs]
-            line = np.exp(middle[1] + order[0] * (logs[0] - middle[0]))
-            axes.plot(spacing, line, color=colour_of(i), lw=0.8)
-    axes.set_xscale("log")
-    axes.set_yscale("log")
+        order = Estimate.read(result, f"{name}_order", scale=EXPONENT).text()
+        style = {"color": colour_of(i), "marker": MARKERS[i], "lw": 0.8}
+        label = f"{name.replace('_', ' ')}: order {order}"
+        axes.plot(spacing, result[f"{name}_error"], label=label, **style)
     axes.set_xlabel("spacing over contact radius $s/a$ (1)")
 
 
@@ -64,43 +61,14 @@ def _draw_trials(axes, trials):
     cases = trials.sizes["case"]
     for i, name in enumerate(trials["quantity"].values):
         one = trials.sel(quantity=name)
+        style = {"ls": "none", "marker": MARKERS[i], "ms": 2, "color": colour_of(i)}
         label = f"{name}: {int(one['within'])} of {cases}"
-        axes.plot(
-            one["bar"],
-            one["error"],
-            ls="none",
-            marker=MARKERS[i],
-            ms=2,
-            color=colour_of(i),
-            label=label,
-        )
+        axes.plot(one["bar"], one["error"], label=label, **style)
     ends = [float(trials["bar"].min()), float(trials["bar"].max())]
     axes.plot(ends, ends, color="0.5", lw=0.8)
-    axes.set_xscale("log")
-    axes.set_yscale("log")
     axes.set_ylim(bottom=1e-3 * ends[0])
     axes.set_xlabel("its own error bar (1)")
     axes.set_ylabel("error of the extrapolated value (1)")
-
-
-def _table(found, trials):
-    """One row a problem, quantity and spacing; then one a quantity and trial."""
-    rows = [
-        {
-            "problem": problem,
-            "quantity": name,
-            "cells_per_radius": float(cells),
-            "error": float(result[f"{name}_error"].sel(cells_per_radius=cells)),
-            **Estimate.read(result, f"{name}_order").columns("order"),
-        }
-        for problem, result in found.items()
-        for name in QUANTITIES[problem]
-        for cells in result["cells_per_radius"].values
-    ]
-    tried = trials[["error", "bar", "finest"]].to_dataframe().reset_index()
-    tried = tried.rename(columns={"cells": "cells_per_radius", "finest": "error_at_finest"})
-    tried.insert(0, "problem", "richardson")
-    return pd.concat([pd.DataFrame(rows), tried], ignore_index=True)
 
 
 def _numbers(found, trials):

@@ -5,6 +5,7 @@ from itertools import product
 from typing import Any
 
 import numpy as np
+import pandas as pd
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -15,7 +16,7 @@ from fractalcontact.figures.kit.drawing import WIDTH, Drawing
 from fractalcontact.figures.kit.titles import letter
 
 from ...accuracy.speed import FRONTS, LEADS_BELOW, MODEL, OURS, ahead_of_ours
-from ._speed import AXES, legend_of, middle_contact, rough, scenes_of, styles, table_of, values_of
+from ._speed import legend_of, middle_contact, rough, scenes_of, styles, values_of
 
 TITLE = "Errors of force, contact area, Delta_sigma and pressure against wall time"
 SUBJECT = "study"
@@ -23,13 +24,21 @@ NEEDS = ("speed",)
 KEY = "speed"
 ORDER = 50
 
+#: How each quantity stands at an axis.
+AXES = {
+    "force_error": "error of $F$ (1)",
+    "area_error": "error of $A_r$ (1)",
+    "delta_error": r"error of $\Delta_\sigma$ (1)",
+    "pressure_error": "error of $p$, rms (1)",
+}
 #: Errors of zero are drawn here, and nothing below.
 SMALLEST = 1e-14
 
 
 def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
     """Rows of quantities, a column for each H, at the largest size and the middle contact."""
-    scenes = rough(scenes_of(atlas))
+    every = scenes_of(atlas)
+    scenes = rough(every)
     looks = styles(scenes)
     size, contact = values_of(scenes, "size")[-1], middle_contact(scenes)
     wanted = {"size": size, "contact": contact}
@@ -44,7 +53,7 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
         panels[-1, j].set_xlabel("wall time (s)")
     legend_of(figure, panels.flat)
     words = caption(__name__, size=size, share=f"{100 * contact:g}", **_words(scenes))
-    return Drawing(figure, table_of(scenes), words)
+    return Drawing(figure, _table(every), words)
 
 
 def _draw_points(axes: Axes, scene: xr.Dataset, quantity: str, looks: dict[str, dict]) -> None:
@@ -89,3 +98,12 @@ def _words(scenes: dict[str, xr.Dataset]) -> dict[str, Any]:
         "runs": int(max(scene["runs"].max() for scene in scenes.values())),
         "threads": first.attrs["threads"],
     }
+
+
+def _table(scenes: dict[str, xr.Dataset]) -> pd.DataFrame:
+    """One row a point, every test problem below the other, those not drawn too."""
+    columns = ["method", "kind", "tolerance", *AXES, "seconds", "seconds_low", "seconds_high"]
+    columns += ["runs", "memory", "on_front", "on_pressure_front", "said"]
+    tables = [scene[columns].to_dataframe().assign(test_problem=n) for n, scene in scenes.items()]
+    units = {"seconds": "seconds_s", "memory": "memory_B"}
+    return pd.concat(tables, ignore_index=True).rename(columns=units)
