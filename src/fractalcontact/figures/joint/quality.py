@@ -5,7 +5,6 @@ Of two faces also their gap, where they overlap, and how much of the load rests 
 
 import textwrap
 
-import pandas as pd
 from matplotlib.figure import Figure
 from xarray import DataTree
 
@@ -14,13 +13,20 @@ from ...core.window import face_words
 from ..kit.caption import caption
 from ..kit.drawing import WIDTH, Drawing
 from ..kit.maps import scan_extent
-from ..kit.panel import Panel, rows
+from ..kit.panel import Panel, table_of
 from ..kit.relief import draw_faces
-from ..kit.titles import headline, letter
+from ..kit.titles import headline
 from ._history import history
-from ._quality_pair import draw_gap, draw_gap_heights, draw_load_share, pair_entries
-from ._quality_panels import draw_histogram, draw_mask, draw_profile, profile
-from ._quality_spectra import draw_radial, draw_spectrum, spectrum_entries
+from ._quality_curves import (
+    curve_entries,
+    draw_gap_heights,
+    draw_histogram,
+    draw_load_share,
+    draw_profile,
+    draw_radial,
+    draw_spectrum,
+)
+from ._quality_maps import draw_gap, draw_mask
 
 TITLE = "Quality of the scan: relief, missing cells, spectra, noise and fractal range"
 SUBJECT = "specimen"
@@ -34,7 +40,7 @@ LETTERS, LINE = 126, 0.138
 def draw(atlas: DataTree, name: str) -> Drawing:
     """The quality sheet of a specimen.
 
-    Its data are spectra, histograms and profiles drawn, by `panel` and face.
+    Its data are spectra, histograms and profiles drawn, by panel and face.
     """
     subject = Subject.of(atlas, name)
     specimen, quality = subject["specimens"], subject["quality"]
@@ -44,52 +50,54 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     warnings = [warning for warning in warnings if warning]
     lines = _text_lines(specimen, quality, faces, warnings)
 
-    columns = len(faces) + 1
+    pair, columns = len(faces) == 2, len(faces) + 1
     maps = min(max(WIDTH / columns * 0.85 * sides[0] / sides[1], 1.3), 3.6) + 0.5
-    heights = [maps, 1.9, 2.5] + [maps] * (len(faces) == 2)
+    heights = [maps, 1.9, 2.5] + [maps] * pair
     text = LINE * (len(lines) + 1)
-    figure = Figure(figsize=(WIDTH, sum(heights) + text + 0.7))
-    panels, below = figure.subfigures(2, 1, height_ratios=[sum(heights) + 0.7, text])  # type: ignore[misc]  # an array
-    grid = panels.add_gridspec(len(heights), 6, height_ratios=heights)
-    width = 6 // columns
-    top, last, pair = (
-        [panels.add_subplot(grid[row, i * width : (i + 1) * width]) for i in range(columns)]
-        if row < len(heights)
-        else []
-        for row in (0, 2, 3)
-    )
-    middle = [panels.add_subplot(grid[1, 2 * i : 2 * i + 2]) for i in range(3)]
-
-    outline = draw_faces(panels, top[:-1], specimen, faces, sides)
-    marks = draw_mask(top[-1], specimen, faces, sides)
-    draw_histogram(middle[0], quality, faces)
-    for axes, axis in zip(middle[1:], "xy", strict=True):
-        draw_profile(axes, specimen, faces, axis)
-    for axes, face in zip(last[:-1], faces, strict=True):
-        draw_spectrum(axes, quality, face)
-    draw_radial(last[-1], quality, faces)
-    table = _table(specimen, quality, faces)
-    if pair:
-        marks += draw_gap(panels, pair[0], specimen, sides) + pair_entries()
-        draw_gap_heights(pair[1], quality)
-        shares = Panel(pair[2])
-        draw_load_share(shares, subject.curves())
-        table.append(rows(quality, "gap", "gap_cells", panel="gap").drop(columns="gap_bin"))
-        table += [record.assign(panel="load share") for record in shares.records]
+    high = sum(heights) + 0.7
+    figure = Figure(figsize=(WIDTH, high + text))
+    sheet, below = figure.subfigures(2, 1, height_ratios=[high, text])  # type: ignore[misc]  # an array
+    grid = sheet.add_gridspec(len(heights), 6, height_ratios=heights)
     named = {face: face_words(specimen, face) for face in faces}
     titles = [*named.values(), "mask", "heights", "along $x$", "along $y$"]
     titles += [*(f"spectra, {words}" for words in named.values()), "radial spectrum"]
-    titles += ["gap", "distribution of the gap", "load on suspicious cells"][: len(pair)]
-    for which, (axes, title) in enumerate(zip([*top, *middle, *last, *pair], titles, strict=True)):
-        letter(axes, "abcdefghijkl"[which], title)
-    entries = [outline, *marks, *spectrum_entries(quality, named)]
-    panels.legend(handles=entries, loc="outside lower center", ncols=4)
-    headline(panels, subject.label)
+    titles += ["gap", "distribution of the gap", "load on suspicious cells"][: 3 * pair]
+    width = 6 // columns
+    cells = [
+        grid[row, i : i + wide]
+        for row, wide in zip(range(len(heights)), (width, 2, width, 2), strict=False)
+        for i in range(0, 6, wide)
+    ]
+    panels = [
+        Panel(sheet.add_subplot(cell), which, title)
+        for cell, which, title in zip(cells, "abcdefghijkl", titles, strict=False)
+    ]
+    reliefs, (mask, heights_of, along_x, along_y), rest = (
+        panels[: len(faces)],
+        panels[len(faces) : columns + 3],
+        panels[columns + 3 :],
+    )
+    outline = draw_faces(sheet, [panel.axes for panel in reliefs], specimen, faces, sides)
+    marks = draw_mask(mask.axes, specimen, faces, sides)
+    draw_histogram(heights_of, quality, faces)
+    draw_profile(along_x, specimen, faces, "x")
+    draw_profile(along_y, specimen, faces, "y")
+    for panel, face in zip(rest, faces, strict=False):
+        draw_spectrum(panel, quality, face)
+    draw_radial(rest[len(faces)], quality, faces)
+    if pair:
+        gap, gap_heights, shares = rest[columns:]
+        marks += draw_gap(sheet, gap.axes, specimen, sides)
+        draw_gap_heights(gap_heights, quality)
+        draw_load_share(shares, subject.curves())
+    entries = [outline, *marks, *curve_entries(named, pair=pair)]
+    sheet.legend(handles=entries, loc="outside lower center", ncols=4)
+    headline(sheet, subject.label)
     style = {"va": "top", "fontsize": 7, "linespacing": 1.2, "parse_math": False}
     below.text(0.01, 1, "\n".join(lines), **style)
     words = {key: quality.attrs[key] for key in ("cells", "overlap")}
-    words |= {"warnings": len(warnings), "pair": bool(pair)}
-    return Drawing(figure, pd.concat(table, ignore_index=True), caption(__name__, **words))
+    words |= {"warnings": len(warnings), "pair": pair}
+    return Drawing(figure, table_of(*panels), caption(__name__, **words))
 
 
 def _text_lines(specimen, quality, faces, warnings):
@@ -105,25 +113,3 @@ def _text_lines(specimen, quality, faces, warnings):
         paragraphs.append(f"Gap in the window: mean {mean:.3g} mm, sd {sd:.3g} mm; {overlap}.")
     paragraphs += history(specimen, faces)
     return [line for text in paragraphs for line in textwrap.wrap(text, LETTERS)]
-
-
-def _table(specimen, quality, faces):
-    """One row a point drawn, of each panel its own columns."""
-    parts = []
-    heights = quality[["bin_height", "density"]].rename(bin_height="height")
-    radial = quality[["radial_wavelength", "radial_spectrum"]].rename(
-        radial_wavelength="wavelength"
-    )
-    for face in faces:
-        parts.append(rows(heights.sel(face=face), "height", "density", panel="histogram"))
-        for axis in "xy":
-            line = rows(profile(specimen, face, axis), "place", "height", panel="profile")
-            parts.append(line.assign(face=face, axis=axis).dropna(subset="height_mm"))
-            names = ("wavelength", "spectrum", "spectrum_model")
-            of_axis = quality.sel(face=face, axis=axis)
-            parts.append(rows(of_axis, *names, panel="spectrum").dropna(subset="wavelength_mm"))
-        names = ("wavelength", "radial_spectrum")
-        of_face = rows(radial.sel(face=face), *names, panel="radial")
-        parts.append(of_face.dropna(subset="wavelength_mm"))
-    places = ["bin", "node", "wave", "radial_wave"]
-    return [part.drop(columns=places, errors="ignore") for part in parts]
