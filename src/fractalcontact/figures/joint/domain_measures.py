@@ -3,8 +3,9 @@
 from typing import Any
 
 import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.patches import Patch
 from xarray import DataTree
 
 from ...core.estimate import DIMENSION, Estimate
@@ -12,8 +13,8 @@ from ...core.subject import Subject
 from ..kit.axes import label_short_span
 from ..kit.caption import caption
 from ..kit.domains import spread_loads
-from ..kit.drawing import LINES, MARKERS, WIDTH, Drawing, colour_of
-from ..kit.legends import entries, legends_below, mark
+from ..kit.drawing import WIDTH, Drawing
+from ..kit.legends import entries, heading, legends_below
 from ..kit.panel import Panel, table_of
 from ..kit.titles import headline
 from ..kit.words import force_label, place
@@ -27,11 +28,13 @@ ORDER = 150
 MAX_LOADS = 3
 
 #: What curves are compared with, in greys that no load has.
-_LINE: dict[str, Any] = {"color": "0.6", "ls": (0, (1, 1)), "lw": 1.2, "zorder": 0}
-_PLANE: dict[str, Any] = {"color": "0.6", "ls": "-", "lw": 1.2, "zorder": 0}
-_EVEN: dict[str, Any] = {"color": "0.6", "ls": (0, (6, 2)), "lw": 1.2, "zorder": 0}
-#: Opacity of intervals.
-_FAINT = 0.15
+_GREY: dict[str, Any] = {"color": "0.6", "lw": 1.2, "zorder": 0}
+_LINE, _PLANE, _EVEN = (_GREY | {"ls": ls} for ls in ((0, (1, 1)), "-", (0, (6, 2))))
+_TITLES = (
+    "box counts: level if fractal",
+    "lacunarity: 1 if even",
+    "pressure: level if monofractal",
+)
 
 
 def draw(atlas: DataTree, name: str) -> Drawing:
@@ -42,62 +45,36 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     at = np.flatnonzero(some == reference)
     chosen = some[spread_loads(some.size, MAX_LOADS, int(at[0]) if at.size else None)]
     shown = measures.isel(normal_force=chosen)
-    counts = subject.states("domains").sel(normal_force=shown["normal_force"])
-    counts = counts.set_coords("local_slope_side")
-    force = subject.reported.force
-
     figure = Figure(figsize=(WIDTH, 3.4))
-    axes = figure.subplots(1, 3)
-    titles = (
-        "box counts: level if fractal",
-        "lacunarity: 1 if even",
-        "pressure: level if monofractal",
-    )
-    a, b, c = (Panel(*one) for one in zip(axes, "abc", titles, strict=True))
-    _draw_loads(a, counts, "local_slope_side", "local_slope", force)
-    _draw_loads(b, shown, "gliding_side", "lacunarity", force)
-    _draw_loads(c, shown, "order", "generalised_dimension", force)
+    a, b, c = (Panel(*one) for one in zip(figure.subplots(1, 3), "abc", _TITLES, strict=True))
+    labels = [f"$F$ = {force_label(force)}" for force in shown["normal_force"].values]
+    of_loads: dict[str, Any] = {"hue": "normal_force", "labels": labels, "ls": "-"}
+    of_loads |= {"ms": 3, "lw": 0.8}
+    counts = subject.states("domains").sel(normal_force=shown["normal_force"])
+    a.curves(counts, "local_slope_side", "local_slope", **of_loads)
+    b.curves(shown, "gliding_side", "lacunarity", **of_loads)
+    c.curves(shown, "order", "generalised_dimension", **of_loads)
     _finish(a.axes, b.axes, c.axes, shown)
-    legends_below(figure, entries(c.axes), _greys(), [_band_entry(shown, force)])
+    greys = [one for panel in (a, b) for one in entries(panel.axes)[len(labels) :]]
+    loads = entries(a.axes)[: len(labels)]
+    legends_below(figure, loads, [*greys, heading("bars: 95 % intervals")])
     headline(figure, subject.label, place(subject.direction, subject.offset))
     words = _values(measures.isel(normal_force=reference), subject.state("domains"))
-    return Drawing(figure, table_of(a, b, c), caption(__name__, force=force, **words))
+    words["force"] = subject.reported.force
+    return Drawing(figure, table_of(a, b, c), caption(__name__, **words))
 
 
-def _colours(shown):
-    """Colour of each load, the same in all panels."""
-    return {float(force): colour_of(n) for n, force in enumerate(shown["normal_force"].values)}
-
-
-def _draw_loads(panel, shown, x, y, banded):
-    """A curve a load; the interval of one alone."""
-    axes = panel.axes
-    panel.keep(shown, y)
-    for n, (force, colour) in enumerate(_colours(shown).items()):
-        state = shown.sel(normal_force=force)
-        style = {"color": colour, "marker": MARKERS[n % len(MARKERS)], "ls": LINES[n % len(LINES)]}
-        label = f"$F$ = {force_label(force)}"
-        label += "" if np.isfinite(state[y]).any() else ": no $D_q$"
-        axes.plot(state[x], state[y], ms=3, lw=0.8, label=label, **style)
-        if force == banded:
-            _, low, high = Estimate.read(state, y).ends
-            # No lacunarity is less than 1, and none has a place below that.
-            low = low.clip(min=1) if y == "lacunarity" else low
-            axes.fill_between(state[x], low, high, color=colour, alpha=_FAINT, lw=0)
-
-
-def _finish(slopes, lacunarity, spectrum, shown):
+def _finish(slopes: Axes, lacunarity: Axes, spectrum: Axes, shown: xr.Dataset) -> None:
     """Axes and null models of the curves."""
-    slopes.set_xscale("log")
-    for level, style in ((1, _LINE), (2, _PLANE)):
-        slopes.axhline(level, **style)
-    slopes.set_ylim(-0.1, max(2.2, slopes.get_ylim()[1]))
+    slopes.axhline(1, label="(a) 1: as of a line", **_LINE)
+    slopes.axhline(2, label="(a), (c) 2: as of a filled plane", **_PLANE)
+    slopes.set(xscale="log", ylim=(-0.1, max(2.2, slopes.get_ylim()[1])))
     slopes.set(xlabel="box side $r$ (mm)", ylabel=r"local slope $-$d log $N$ / d log $r$ (1)")
+    lacunarity.axhline(1, label="(b) 1: evenly filled", **_EVEN)
     lacunarity.set(xscale="log", yscale="log", xlabel="side of the gliding box $r$ (mm)")
-    lacunarity.axhline(1, **_EVEN)
     lacunarity.set_ylabel(r"lacunarity $\langle M^2\rangle/\langle M\rangle^2$ (1)")
     if shown.sizes["normal_force"]:
-        # Bands may be open upwards where one part of the window holds nearly all contact.
+        # Bars may be open upwards where one part of the window holds nearly all contact.
         lacunarity.set_ylim(0.8, 3 * max(float(shown["lacunarity"].max()), 1.5))
     spectrum.axhline(2, **_PLANE)
     spectrum.set(xlabel="order $q$ (1)", ylabel="dimension $D_q$ of the pressure (1)")
@@ -105,24 +82,7 @@ def _finish(slopes, lacunarity, spectrum, shown):
         label_short_span(axes.xaxis)
 
 
-def _greys():
-    """Legend entries except the curves of loads."""
-    words = (
-        (_LINE, "(a) 1: as of a line"),
-        (_PLANE, "(a), (c) 2: as of a filled plane"),
-        (_EVEN, "(b) 1: evenly filled"),
-    )
-    return [mark(label=label, **style) for style, label in words]
-
-
-def _band_entry(shown, force):
-    """The interval, in the colour drawn; without a domain there nothing is."""
-    colour = _colours(shown).get(force, "0.5")
-    label = f"95 % interval, {force_label(force)} alone"
-    return Patch(color=colour, alpha=_FAINT, lw=0, label=label)
-
-
-def _values(state, counts):
+def _values(state: xr.Dataset, counts: xr.Dataset) -> dict[str, Any]:
     """Values of the caption, at the reference load."""
     slopes, spectrum = counts["local_slope"], state["generalised_dimension"]
     complete = slopes.size > 1 and bool(slopes.notnull().all())
