@@ -60,9 +60,9 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
     return Drawing(figure, table, words)
 
 
-def _draw_slopes(axes: Axes, table: pd.DataFrame) -> list[Artist]:
+def _draw_slopes(axes: Axes, table: pd.DataFrame) -> list[Any]:
     """kappa over the load: mean of the surfaces, bars from the least to the most of them."""
-    drawn: list[Artist] = []
+    drawn: list[Any] = []
     hursts, cut_offs = (sorted(table[of].unique()) for of in ("of_hurst", "of_cut_off"))
     for (i, hurst), (j, cut_off) in product(enumerate(hursts), enumerate(cut_offs)):
         chosen = (table["of_hurst"] == hurst) & (table["of_cut_off"] == cut_off)

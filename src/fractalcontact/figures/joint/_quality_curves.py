@@ -79,10 +79,10 @@ def draw_spectrum(panel: Panel, quality: xr.Dataset, face: str) -> None:
     """Spectra of profiles of one face with their models, floor and end."""
     axes, found = panel.axes, quality.sel(face=face)
     for axis, (colour, marker) in AXIS_STYLES.items():
-        one, style = found.sel(axis=axis), {"color": colour, "lw": 0.9}
-        kept = ("spectrum_model",)
-        points = {"color": colour, "marker": marker, **_POINTS}
-        panel.curve(one, "wavelength", "spectrum", keep=kept, **points)
+        one = found.sel(axis=axis)
+        style: dict[str, Any] = {"color": colour, "lw": 0.9}
+        points: dict[str, Any] = {"color": colour, "marker": marker, **_POINTS}
+        panel.curve(one, "wavelength", "spectrum", keep=("spectrum_model",), **points)
         axes.plot(one["wavelength"], one["spectrum_model"], **style)
         if one["form"].item():
             axes.plot(one["wavelength"], one["self_affine_line"], **style | {"ls": ":"})
@@ -125,9 +125,9 @@ def _finish(axes: Axes, quality: xr.Dataset, spectrum: xr.DataArray) -> None:
 def _range(quality: xr.Dataset) -> tuple[float, float]:
     """Wavelengths (mm) of the fractal range: those measured, from its end to any roll-off."""
     waves = [quality[f"{of}wavelength"].values.ravel() for of in ("", "radial_")]
-    waves = np.concatenate([*waves, 2 * quality["resolution"].values])
+    every = np.concatenate([*waves, 2 * quality["resolution"].values])
     end, off = quality["range_end"].item(), float(quality["roll_off_wavelength"].min())
-    low, high = 0.95 * np.nanmin(waves), 1.05 * np.nanmax(waves)  # markers there stand inside
+    low, high = 0.95 * np.nanmin(every), 1.05 * np.nanmax(every)  # markers there stand inside
     return end if np.isfinite(end) else low, off if np.isfinite(off) else high
 
 
@@ -138,8 +138,8 @@ def draw_gap_heights(panel: Panel, quality: xr.Dataset) -> None:
     panel.axes.stairs(counts, edges / size, color=COLOURS[0], lw=1)
     below = edges <= 0
     if below.sum() > 1:
-        style = {"color": OVERLAP, "fill": True}
-        panel.axes.stairs(counts[: below.sum() - 1], edges[below] / size, **style)
+        overlaps = counts[: below.sum() - 1]
+        panel.axes.stairs(overlaps, edges[below] / size, color=OVERLAP, fill=True)
     panel.axes.axvline(0, color="0.4", lw=0.6)
     panel.axes.set(xlabel=f"gap ({unit})", ylabel="cells (1)", yscale="log", ylim=(0.6, None))
     panel.keep(quality, "gap", "gap_cells")

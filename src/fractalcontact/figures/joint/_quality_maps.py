@@ -1,6 +1,7 @@
 """Maps of the quality sheet: missing and outlying cells, the gap of two faces."""
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -47,7 +48,7 @@ def draw_mask(
         _ring(axes, specimen["outlier"].values, sides)
     _, size = length_unit(max(sides))
     axes.add_patch(window_outline(specimen, size, lw=1))
-    line = {"color": "0.4", "lw": 0.7, "ls": (0, (6, 2, 1, 2))}
+    line: dict[str, Any] = {"color": "0.4", "lw": 0.7, "ls": (0, (6, 2, 1, 2))}
     y, x = node_position(middle(specimen), missing.shape, sides)
     axes.axhline(y, **line)
     axes.axvline(x, **line)
@@ -82,5 +83,12 @@ def _ring(
     if not 0 < cells.sum() <= FEW:
         return []
     y, x = node_position(np.nonzero(cells), cells.shape, sides)
-    ring = {"ls": "none", "marker": "o", "ms": 4, "mfc": "none", "mec": OVERLAP, "mew": 0.7}
+    ring: dict[str, Any] = {
+        "ls": "none",
+        "marker": "o",
+        "ms": 4,
+        "mfc": "none",
+        "mec": OVERLAP,
+        "mew": 0.7,
+    }
     return list(axes.plot(x, y, label=label, **ring))

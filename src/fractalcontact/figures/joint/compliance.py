@@ -50,8 +50,8 @@ def draw(atlas: DataTree, name: str) -> Drawing:
 
     figure = Figure(figsize=(WIDTH, 7.3))
     axes = figure.subplots(3, 1, sharex=True, height_ratios=[1.1, 1, 1.2])
-    titles = ("correlation of the faces", f"closure of the interface from {seat} on")
-    titles += ("compliance of the interface (bars: error of the solver)",)
+    titles = ["correlation of the faces", f"closure of the interface from {seat} on"]
+    titles.append("compliance of the interface (bars: error of the solver)")
     a, b, c = (Panel(*one) for one in zip(axes, "abc", titles, strict=True))
     _draw_correlation(a, joint, subject.direction)
     _draw_closures(b, curves, "closure_from_common_seat" if seated else "interface_closure")
@@ -71,14 +71,14 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     why = missing_lines(curves["interface_stiffness_reason"], "c")
     legends_below(figure, entries(a.axes), [*entries(c.axes), *map(heading, why)])
     headline(figure, subject.label, place(subject.direction))
-    words = {
+    values = {
         "rises": verdict_words(atlas, name, "compliance_rises_at_first", numbers=False),
         "ends": ends,
         "end": float(joint["rigid_offset"][-1]),
         "stages": [f"{STAGES[one]}: {verdict_words(atlas, name, one)}" for one in judged],
         "force": subject["statements"].attrs["force"],
     }
-    return Drawing(figure, table_of(a, b, c), caption(__name__, **words))
+    return Drawing(figure, table_of(a, b, c), caption(__name__, **values))
 
 
 def _draw_correlation(panel: Panel, joint: xr.Dataset, solved: str) -> None:

@@ -114,7 +114,12 @@ def _draw_errors(panel: Panel, errors: xr.Dataset, size: float) -> None:
             if source in TOTALS:
                 line = LINES[list(TOTALS).index(source)]
                 style = {"color": "black", "lw": 2.2, "ls": line, "zorder": 1}
-            of = {"filled": "at_load", "unit": (size, scale), "keep": _KEPT, "label": words}
+            of: dict[str, Any] = {
+                "filled": "at_load",
+                "unit": (size, scale),
+                "keep": _KEPT,
+                "label": words,
+            }
             panel.curve(errors.sel(source=source), "normal_force", name, **of, **style)
     panel.axes.set(xscale="log", yscale="log", ylabel=f"error, 95 % ({unit})")
     panel.axes.set_ylim(bottom=LEAST * largest / scale)

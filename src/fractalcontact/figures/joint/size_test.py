@@ -93,7 +93,8 @@ def _draw_area(panel: Panel, test: xr.Dataset) -> list[Artist]:
             slope = float(one["predicted_slope"].sel(estimator=estimator))
             axes.plot(sides, means.value[0] * (sides / sides[0]) ** slope, lw=0.8, **line)
         exponent = Estimate.read(one, "area_exponent", scale=DIMENSION).text()
-        found.append(mark(label=f"{pressure_label(one['nominal_pressure'])}: {exponent}", **style))
+        pressure = pressure_label(float(one["nominal_pressure"]))
+        found.append(mark(label=f"{pressure}: {exponent}", **style))
         axes.set_yscale("log")
         plain_decades(axes.yaxis)
     return found

@@ -96,7 +96,7 @@ def _draw_contact(panel: Panel, laws: xr.Dataset) -> None:
     of_curves: dict[str, Any] = {"hue": "normal_force", "first": 1, "labels": labels, "ls": "none"}
     kept = ("windows", law)
     panel.curves(laws, "side", name, filled=f"{name}_fitted", keep=kept, **of_curves)
-    for j in np.flatnonzero(exponents.known):
+    for j in np.flatnonzero(exponents.known).tolist():
         one = laws[f"{name}_law"].where(laws[f"{name}_fitted"]).isel(normal_force=j)
         line = {"color": series(j)["color"], "linewidth": 0.8}
         axes.plot(b, one, **line | ({} if exponents[j].determined else WEAK))
@@ -116,5 +116,7 @@ def _words(atlas: DataTree, name: str, laws: xr.Dataset) -> dict[str, Any]:
     return {
         "hurst": Estimate.read(laws, "face_hurst", scale=EXPONENT),
         "expected": Estimate.read(laws, "expected_hurst", scale=EXPONENT),
-        "claim": claim(atlas, name, _CLAIM, why=f"at {pressure_label(judged)}" if fitted else ""),
+        "claim": claim(
+            atlas, name, _CLAIM, why=f"at {pressure_label(float(judged))}" if fitted else ""
+        ),
     }

@@ -116,7 +116,12 @@ class Panel:
             value, low, high = along.ends
             # A bar without an upper end leaves the frame.
             bars = reach(value, low, np.where(np.isposinf(high), _FAR * value, high))
-            style_of_bars = {"fmt": "none", "ecolor": colour, "elinewidth": 0.8, "capsize": caps}
+            style_of_bars: dict[str, Any] = {
+                "fmt": "none",
+                "ecolor": colour,
+                "elinewidth": 0.8,
+                "capsize": caps,
+            }
             self.axes.errorbar(across, value, bars, **style_of_bars)
         draw_points(self.axes, across, along.value, trusted, hollow, **style)
         named = [name for name in (x, y, filled, *keep) if name and name not in data.dims]
