@@ -11,8 +11,8 @@ from fractalcontact.figures.kit.caption import caption
 from fractalcontact.figures.kit.drawing import MARKERS, WIDTH, Drawing, colour_of, group
 from fractalcontact.figures.kit.kappa import kappa_lines
 from fractalcontact.figures.kit.legends import entries, heading, legends_below
+from fractalcontact.figures.kit.panel import rows
 from fractalcontact.figures.kit.titles import letter
-from fractalcontact.figures.kit.words import number
 
 TITLE = "Real contact area of synthetic surfaces at light load, with and without a roll-off"
 SUBJECT = "study"
@@ -44,19 +44,16 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
         letter(axes, which, _TITLES[kind].format(share=share))
         axes.set_xlabel(r"reduced pressure $p/(E^* h'_\mathrm{rms})$ (1)")
     panels[0].set_ylabel(r"area slope $\kappa=(A_r/A_0)\,E^* h'_\mathrm{rms}/p$ (1)")
-    shown = entries(panels[0])
-    surfaces = [one for one in shown if str(one.get_label()).startswith(tuple(_KAPPAS.values()))]
-    theories = [one for one in shown if one not in surfaces]
+    shown, count = entries(panels[0]), len(_KAPPAS)
     each = heading(f"a line for each of {slopes.sizes['seed']} surfaces; no intervals")
-    legends_below(figure, [each, *surfaces], theories)
+    legends_below(figure, [each, *shown[:count]], shown[count:])
     nodes, dimension = slopes.attrs["nodes"], slopes.attrs["dimension"]
     figure.suptitle(
         rf"synthetic surfaces of {nodes} $\times$ {nodes} nodes, $\Delta_g$ = {dimension:g}",
         fontsize=9,
     )
-    return Drawing(
-        figure, _table(slopes), caption(__name__, kinds=list(_TITLES), **_counts(slopes))
-    )
+    table = rows(slopes, *_KAPPAS, "area_share", "corrected_share", "rms_slope")
+    return Drawing(figure, table, caption(__name__, kinds=list(_TITLES), **_counts(slopes)))
 
 
 def _draw_surfaces(axes, chosen):
@@ -71,18 +68,7 @@ def _draw_surfaces(axes, chosen):
         for (name, words), style in zip(_KAPPAS.items(), styles, strict=True):
             label = words if first else None
             axes.plot(one["reduced_pressure"], one[name], label=label, lw=0.7, ms=3, **style)
-    low, high = (number(end(chosen["corrected_kappa"].values)) for end in (np.min, np.max))
-    axes.text(
-        0.98, 0.98, f"corrected: {low} to {high}", transform=axes.transAxes, ha="right", va="top"
-    )
     axes.margins(y=0.12)
-
-
-def _table(slopes):
-    """One row a surface and load."""
-    columns = ["kappa", "corrected_kappa", "area_share", "corrected_share", "rms_slope"]
-    table = slopes[columns].to_dataframe().reset_index()
-    return table[["surface", "seed", "reduced_pressure", *columns]]
 
 
 def _counts(slopes):
@@ -97,12 +83,5 @@ def _counts(slopes):
         found["between"][kind] = "all" if within == n else f"{within} of {n}"
     corrected, (low, high) = slopes["corrected_kappa"].values, slopes.attrs["computed_kappa"]
     below, above = int((corrected < low).sum()), int((corrected > high).sum())
-    inside = corrected.size - below - above
-    counts = {"below": below, "within": inside, "above": above}
-    lie = [(n, words) for words, n in counts.items() if n]
-    where = f"All {lie[0][0]} values lie {lie[0][1]}"
-    if len(lie) > 1:
-        (n, first), *others = lie
-        rest = "".join(f", {m} {words}" for m, words in others)
-        where = f"{n} of {corrected.size} values lie {first}{rest}"
-    return found | {"where": where, "computed": (low, high)}
+    counts = {"below": below, "above": above, "within": corrected.size - below - above}
+    return found | counts | {"computed": (low, high)}
