@@ -94,8 +94,6 @@ def _words(scenes: dict[str, xr.Dataset]) -> dict[str, Any]:
         "leads": leads,
         "models": sum(bool((found["kind"] == MODEL).any()) for found in ahead),
         "alike": max(scene.attrs["resolvable_error"] for scene in scenes.values()),
-        "worst": max(scene.attrs["reference_error"] for scene in scenes.values()),
-        "runs": int(max(scene["runs"].max() for scene in scenes.values())),
         "threads": first.attrs["threads"],
     }
 
