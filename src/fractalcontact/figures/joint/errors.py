@@ -75,7 +75,9 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     hollow_entry(places[-1], "hollow: interpolated between loads", marker=MARKERS[2])
     found = {entry.get_label(): entry for axes in places for entry in entries(axes)}
     legend.set_axis_off()
-    legend.legend(handles=list(found.values()), loc="center", handlelength=3.5)
+    below = "errors below a frame are negligible"
+    style: dict[str, Any] = {"handlelength": 3.5, "title_fontsize": 7}
+    legend.legend(handles=list(found.values()), loc="center", title=below, **style)
     headline(figure, subject.label, place(subject.direction, subject.offset))
     return Drawing(figure, table_of(*panels), caption(__name__, **_words(here)))
 
