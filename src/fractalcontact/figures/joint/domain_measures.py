@@ -84,9 +84,9 @@ def _finish(slopes: Axes, lacunarity: Axes, spectrum: Axes, shown: xr.Dataset) -
 
 def _values(state: xr.Dataset, counts: xr.Dataset) -> dict[str, Any]:
     """Values of the caption, at the reference load."""
-    slopes, spectrum = counts["local_slope"], state["generalised_dimension"]
+    slopes = counts["local_slope"]
     complete = slopes.size > 1 and bool(slopes.notnull().all())
-    spectrum = spectrum.sel(order=[0.0, 4.0]).values
+    spectrum = state["generalised_dimension"].sel(order=[0.0, 4.0]).values
     sides = counts["local_slope_side_min"].min(), counts["local_slope_side_max"].max()
     return {
         "slopes": [float(slopes.min()), float(slopes.max())] if complete else [],
