@@ -83,10 +83,7 @@ def quantity(text: Any, kind: str, where: str) -> float:
     InputError
         If the unit is missing, unknown, or of another kind, or the value too small or too large.
     """
-    wanted = (
-        f"expected {_article(kind)} {kind} with its unit, such as '{_EXAMPLES[kind]}' "
-        f"({', '.join(_UNITS[kind])})"
-    )
+    wanted = f"expected {_article(kind)} {kind} with its unit, such as '{_EXAMPLES[kind]}'"
     try:
         value, dimension = _value(text)
     except InputError as error:
@@ -107,7 +104,8 @@ def _value(text: Any) -> tuple[float, tuple[int, ...]]:
     for operator, name, power in _FACTOR.findall(parts[2]):
         symbol = _symbol(name)
         if symbol is None:
-            raise InputError(f"{text!r} has the unit {name!r}, which is not known")
+            known = ", ".join(_KNOWN)
+            raise InputError(f"{text!r} has the unit {name!r}, which is none of {known}")
         kind, of = _KNOWN[symbol]
         times = int(power or 1) * (-1 if operator == "/" else 1)
         size *= of**times
