@@ -20,10 +20,6 @@ from fractalcontact.core.units import length_factor, length_unit, load, quantity
         ("10 kN", "force", 10e3),
         ("-1.5e-3mm", "length", -1.5e-3),
         ("2 N/mm^2", "pressure", 2),
-        ("2 N/mm2", "pressure", 2),
-        ("2 kN m^-2", "pressure", 2e-3),
-        ("1 kbar", "pressure", 100),
-        ("2 Megapascals", "pressure", 2),
         ("2 kgf / cm**2", "pressure", 0.196133),
     ],
 )
@@ -81,7 +77,7 @@ def test_lengths_have_many_names(units, mm):
 
 
 @pytest.mark.parametrize("unit", ["px", "point", "pica", "Mm", "yard", "light_year", "mil", "rod"])
-def test_what_may_mean_another_thing_is_no_length(unit):
+def test_what_only_the_library_calls_a_length_is_refused(unit):
     for text in (f"1 {unit}", f"0.5 {unit}"):
         with pytest.raises(InputError, match=r"k: .*'20 mm'"):
             quantity(text, "length", "k")

@@ -1,11 +1,12 @@
-"""Quantities as people write them ("20 GPa", "80 um") to the program's own mm, N and MPa.
+"""Quantities as people write them ("20 GPa", "80 um") to the program's own mm, N and MPa."""
 
-Units are those of a list: "point", "px" or "yard" may mean another thing to an instrument.
-"""
-
+import contextlib
 import math
 import re
+from functools import cache, lru_cache
 from typing import Any
+
+import pint
 
 from roughcontact.arguments import MAX_INPUT, MIN_INPUT
 
@@ -15,50 +16,43 @@ from .errors import InputError
 PROGRAM_UNITS = {"length": "mm", "force": "N", "pressure": "MPa", "angle": "degree"}
 
 _EXAMPLES = {"length": "20 mm", "force": "10 kN", "pressure": "25 MPa", "angle": "30 deg"}
-#: Units by kind, in m, N, Pa and degrees. A megametre, which "Mm" would be, measures no rock.
-_UNITS = {
-    "length": {
-        **{"fm": 1e-15, "pm": 1e-12, "nm": 1e-9, "um": 1e-6, "mm": 1e-3, "cm": 1e-2, "dm": 0.1},
-        **{"m": 1.0, "km": 1e3, "Å": 1e-10, "in": 0.0254, "ft": 0.3048},
+#: What an angle is to pint, which knows no such dimension.
+_DIMENSIONS = {"angle": "[]"}
+#: A number and a unit. The library would take any sum, and spend for ever on 9**9**9 mm.
+_WORD = r"[^\W\d_]+(?:(?:\^|\*\*)?-?\d)?"
+_NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
+_UNITS = rf"{_WORD}(?:(?:\s*[*/·]\s*|\s+){_WORD})*"
+_QUANTITY = re.compile(rf"\s*{_NUMBER}\s*(?:°|{_UNITS})?\s*")
+_LONGEST = 60  # characters
+#: What an instrument means by a length; the library also knows points, picas and pixels as parts
+#: of an inch, and light years. By symbol, as written, and by name, in any case and number.
+_LENGTH_SYMBOLS = {
+    **{
+        symbol: symbol
+        for symbol in ("fm", "pm", "nm", "um", "mm", "cm", "dm", "m", "km", "in", "ft")
     },
-    "force": {"mN": 1e-3, "N": 1.0, "kN": 1e3, "MN": 1e6, "kgf": 9.80665, "lbf": 4.4482216152605},
-    "pressure": {
-        **{"Pa": 1.0, "hPa": 100.0, "kPa": 1e3, "MPa": 1e6, "GPa": 1e9, "TPa": 1e12},
-        **{"mbar": 100.0, "bar": 1e5, "kbar": 1e8, "atm": 101325.0},
-        **{"psi": 6894.757293168361, "ksi": 6894757.293168361},
-    },
-    "angle": {"deg": 1.0, "rad": 180 / math.pi, "mrad": 0.18 / math.pi, "gon": 0.9, "grad": 0.9},
-}
-#: The program's unit of each kind, in those.
-_PROGRAM = {"length": 1e3, "force": 1.0, "pressure": 1e-6, "angle": 1.0}
-#: Powers of length, force and angle.
-_DIMENSIONS = {"length": (1, 0, 0), "force": (0, 1, 0), "pressure": (-2, 1, 0), "angle": (0, 0, 1)}
-_KNOWN = {
-    symbol: (kind, of * _PROGRAM[kind])
-    for kind, units in _UNITS.items()
-    for symbol, of in units.items()
-}
-#: Other signs for a symbol: Greek mu, and as programs write them that know capitals alone.
-_SIGNS = {
-    **{"µm": "um", "\u03bcm": "um", "\u212b": "Å", "°": "deg"},
+    **{"µm": "um", "\u03bcm": "um", "Å": "angstrom", "\u212b": "angstrom"},
+    # As programs that know capitals alone write them; a megametre measures no rock.
     **{"NM": "nm", "UM": "um", "MM": "mm", "CM": "cm"},
 }
-#: Names, in any case and number.
-_NAMES = {
-    **{"metre": "m", "meter": "m", "newton": "N", "pascal": "Pa", "micron": "um"},
-    **{"angstrom": "Å", "ångström": "Å", "ångstrom": "Å", "inch": "in", "inche": "in"},
-    **{"foot": "ft", "feet": "ft", "degree": "deg", "radian": "rad"},
+_METRE = re.compile(
+    r"(femto|pico|nano|micro|milli|centi|deci|kilo|)(?:metre|meter)s?", re.IGNORECASE
+)
+_LENGTH_NAMES = {
+    **{"micron": "micrometer", "microns": "micrometer", "angstrom": "angstrom"},
+    **{"angstroms": "angstrom", "ångström": "angstrom", "ångstrom": "angstrom"},
+    **{"inch": "inch", "inches": "inch", "foot": "foot", "feet": "foot"},
 }
-_PREFIXES = {
-    **{"femto": "f", "pico": "p", "nano": "n", "micro": "u", "milli": "m", "centi": "c"},
-    **{"deci": "d", "hecto": "h", "kilo": "k", "mega": "M", "giga": "G", "": ""},
-}
-_SPELLED = re.compile(rf"({'|'.join(_PREFIXES)})({'|'.join(_NAMES)})s?")
-_WORD = r"(?:[^\W\d_]+|°)(?:(?:\^|\*\*)?-?\d)?"
-_NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
-_QUANTITY = re.compile(rf"\s*({_NUMBER})\s*((?:{_WORD}(?:(?:\s*[*/·]\s*|\s+){_WORD})*)?)\s*")
-_FACTOR = re.compile(r"([*/·]?)\s*([^\W\d_]+|°)(?:(?:\^|\*\*)?(-?\d))?\s*")
-_LONGEST = 60  # characters
+_KNOWN_LENGTHS = "nm, um, mm, cm, m, inch or foot"
+
+
+class _OutOfRange(InputError):
+    """Error of a quantity of the right kind whose value is out of range."""
+
+
+@cache
+def _registry() -> pint.UnitRegistry:
+    return pint.UnitRegistry(cache_folder=None)
 
 
 def quantity(text: Any, kind: str, where: str) -> float:
@@ -83,61 +77,79 @@ def quantity(text: Any, kind: str, where: str) -> float:
     InputError
         If the unit is missing, unknown, or of another kind, or the value too small or too large.
     """
-    wanted = f"expected {_article(kind)} {kind} with its unit, such as '{_EXAMPLES[kind]}'"
+    if not isinstance(text, str):
+        raise InputError(f"{where}: {text!r} has no unit; {_wanted(kind)}")
     try:
-        value, dimension = _value(text)
+        return _magnitude(text, kind)
     except InputError as error:
-        raise InputError(f"{where}: {error}; {wanted}") from None
-    if dimension != _DIMENSIONS[kind]:
-        raise InputError(f"{where}: {text!r} is not {_article(kind)} {kind}; {wanted}")
-    return _in_range(value, text, kind, where)
+        raise type(error)(f"{where}: {error}") from None
 
 
-def _value(text: Any) -> tuple[float, tuple[int, ...]]:
-    """A quantity in the program's units, and its powers of length, force and angle."""
-    parts = _QUANTITY.fullmatch(text) if isinstance(text, str) and len(text) <= _LONGEST else None
-    if parts is None and isinstance(text, str):
-        raise InputError(f"{text[:_LONGEST]!r} is not a number with a unit")
-    if parts is None or not parts[2]:
-        raise InputError(f"{text!r} has no unit")
-    size, dimension = 1.0, [0, 0, 0]
-    for operator, name, power in _FACTOR.findall(parts[2]):
-        symbol = _symbol(name)
-        if symbol is None:
-            known = ", ".join(_KNOWN)
-            raise InputError(f"{text!r} has the unit {name!r}, which is none of {known}")
-        kind, of = _KNOWN[symbol]
-        times = int(power or 1) * (-1 if operator == "/" else 1)
-        size *= of**times
-        dimension = [d + times * p for d, p in zip(dimension, _DIMENSIONS[kind], strict=True)]
-    return float(parts[1]) * size, tuple(dimension)
-
-
-def _in_range(value: float, text: str, kind: str, where: str) -> float:
-    """The value, unless it is not finite, too small or too large."""
-    if value and not MIN_INPUT <= abs(value) <= MAX_INPUT:
-        raise InputError(
-            f"{where}: {text!r} is out of range, {MIN_INPUT:g} to {MAX_INPUT:g} "
-            f"{PROGRAM_UNITS[kind]}; write {_article(kind)} {kind} such as '{_EXAMPLES[kind]}'"
+@lru_cache(maxsize=4096)
+def _magnitude(text: str, kind: str) -> float:
+    """A quantity, kept: a campaign states the same few hundreds of times over."""
+    unit, wanted = PROGRAM_UNITS[kind], _wanted(kind)
+    if len(text) > _LONGEST or not _QUANTITY.fullmatch(text):
+        raise InputError(f"{text[:_LONGEST]!r} is not a number with a unit; {wanted}")
+    if kind == "length":
+        text = _with_known_length(text, wanted)
+    try:
+        value = _registry()(text)
+    except Exception as error:  # pint raises half a dozen unrelated types for malformed text
+        raise InputError(f"cannot read {text!r} ({error}); {wanted}") from None
+    if not isinstance(value, pint.Quantity) or value.unitless:
+        raise InputError(f"{text!r} has no unit; {wanted}")
+    if not value.check(_DIMENSIONS.get(kind, f"[{kind}]")):
+        raise InputError(f"{text!r} is not {_article(kind)} {kind}; {wanted}")
+    magnitude = float(value.to(unit).magnitude)
+    if not math.isfinite(magnitude):
+        raise _OutOfRange(f"{text!r} is not finite; {wanted}")
+    if magnitude and not MIN_INPUT <= abs(magnitude) <= MAX_INPUT:
+        raise _OutOfRange(
+            f"{text!r} is out of range, {MIN_INPUT:g} to {MAX_INPUT:g} {unit}; {wanted}"
         )
-    return value
+    return magnitude
 
 
-def _symbol(name: str) -> str | None:
-    """Symbol of a unit, as written or spelled in any case; None if it is unknown."""
-    symbol = _SIGNS.get(name, name)
-    if symbol not in _KNOWN and (spelled := _SPELLED.fullmatch(name.lower())):
-        symbol = _PREFIXES[spelled[1]] + _NAMES[spelled[2]]
-    return symbol if symbol in _KNOWN else None
+def _wanted(kind: str) -> str:
+    return f"expected {_article(kind)} {kind} with its unit, such as '{_EXAMPLES[kind]}'"
 
 
 def length_unit(text: str) -> str | None:
-    """Symbol of a unit of length; None if it is none.
+    """Name of a unit of length for the library of units; None if unknown.
 
-    Only lengths of the SI and their usual multiples, angstrom, inch and foot.
+    Only lengths of the SI and their usual multiples, angstrom, inch and foot: what other units are
+    called may mean another thing, as "point" and "px" do.
     """
-    symbol = _symbol(text)
-    return symbol if symbol in _UNITS["length"] else None
+    if text in _LENGTH_SYMBOLS:
+        return _LENGTH_SYMBOLS[text]
+    if match := _METRE.fullmatch(text):
+        return f"{match[1].lower()}meter"
+    return _LENGTH_NAMES.get(text.lower())
+
+
+def _with_known_length(text: str, wanted: str) -> str:
+    """A quantity with its unit as the library names it, if that is one word and a length.
+
+    Raises
+    ------
+    InputError
+        If its unit is a length to the library of units alone.
+    """
+    match = re.fullmatch(rf"\s*({_NUMBER})\s*({_WORD})\s*", text)
+    if not match:
+        return text
+    if name := length_unit(match[2]):
+        return f"{match[1]} {name}"
+    is_length = False
+    with contextlib.suppress(Exception):  # whatever else it may be is refused further on
+        is_length = _registry()(f"1 {match[2]}").check("[length]")
+    if is_length:
+        raise InputError(
+            f"{text!r} is in {match[2]!r}, no unit of length known here; {wanted} "
+            f"({_KNOWN_LENGTHS})"
+        )
+    return text
 
 
 def _article(noun):
@@ -158,17 +170,27 @@ def load(text: Any, where: str) -> tuple[float, str]:
     InputError
         If it is neither.
     """
-    try:
-        value, dimension = _value(text)
-    except InputError:
-        dimension = ()
-    for kind in ("force", "pressure"):
-        if dimension == _DIMENSIONS[kind]:
-            return _in_range(value, text, kind, where), kind
+    if isinstance(text, str):
+        try:
+            return _value_and_kind(text)
+        except _OutOfRange as error:
+            raise type(error)(f"{where}: {error}") from None
+        except InputError:
+            pass
     raise InputError(
         f"{where}: {text!r} is neither a force nor a nominal pressure; "
         "write for example '10 kN' or '25 MPa'"
     )
+
+
+@lru_cache(maxsize=4096)
+def _value_and_kind(text: str) -> tuple[float, str]:
+    try:
+        return _magnitude(text, "force"), "force"
+    except _OutOfRange:
+        raise
+    except InputError:
+        return _magnitude(text, "pressure"), "pressure"
 
 
 def share(value: Any, where: str) -> float:
