@@ -64,13 +64,13 @@ def inflated_size(path: Path) -> int:
         with reading(path, "archive"), zipfile.ZipFile(path) as archive:
             inflated = sum(member.file_size for member in archive.infolist())
             packed = sum(member.compress_size for member in archive.infolist())
+        size = max(size, inflated)
+        refuse_larger(size, path)
         if inflated > UNSUSPICIOUS and inflated > LARGEST_RATIO * packed:
             raise InputError(
                 f"{path}: the archive inflates {inflated / max(packed, 1):.0f} times, as no "
                 "measured surface does; export the scan again"
             )
-        size = max(size, inflated)
-    refuse_larger(size, path)
     return size
 
 
