@@ -23,7 +23,7 @@ import xarray as xr
 
 from fractalcontact.core.errors import InputError
 from fractalcontact.core.settings import Settings, Solver
-from fractalcontact.error_budget.refinement import domain_dimension
+from fractalcontact.domain.box_dimension import dimension_of_domain
 from fractalcontact.mechanics.joint import describe_joint, prefractal
 from fractalcontact.mechanics.loading import JointLoading
 from fractalcontact.mechanics.subgrid import state_quantities, subgrid
@@ -123,11 +123,13 @@ def rows_of(
                 carried, load_steps(grid, space, forces, solving, name), strict=True
             ):
                 numbers = state_quantities(state, float(grid.max()))
+                side = float(np.sqrt(space.cell_area))
+                domain = dimension_of_domain(state.in_contact, side, fit_range=settings.box_range)
                 seat = numbers["closure"] if pressure == pressures[0] else seat
                 yield {
                     "specimen": name,
                     "offset_mm": float(loading.offsets[0]),
-                    "spacing_mm": float(np.sqrt(space.cell_area)),
+                    "spacing_mm": side,
                     "model": model,
                     "grid": GRIDS[factor],
                     "pressure_MPa": pressure,
@@ -137,7 +139,7 @@ def rows_of(
                     "area_corrected": numbers["area_corrected"] / (space.cell_area * grid.size),
                     "stiffness_MPa_per_mm": numbers["stiffness"],
                     "stiffness_scatter": scatter_of(state, numbers["stiffness"]),
-                    "delta_sigma": domain_dimension(state, settings.box_range),
+                    "delta_sigma": domain.dimension,
                 }
 
 

@@ -41,7 +41,7 @@ CURVES = {
 #: Further columns that say what a row is about, no values themselves.
 COORDINATES = (
     *("side_mm", "scale_side_mm", "share", "b_mm", "box_side_mm", "mean_side_mm", "null_side_mm"),
-    *("null_mean_side_mm", "spacing_mm", "slope_side_mm", "gliding_side_mm", "order"),
+    *("null_mean_side_mm", "spacing_mm", "gliding_side_mm", "order"),
     *("eq6_side_mm", "cluster_area_mm2", "octave", "scale", "mean_scale", "null_scale"),
     *("null_mean_scale", "null_octave", "x_mm", "wavelength_mm"),
 )
@@ -162,7 +162,7 @@ def _add(found, source, variable, values, columns):
     if values.dims:
         rows = values.rename("value").to_dataframe().reset_index()
     names = {"offset": "offset_mm", "normal_force": "force_N", "value": column}
-    names |= {name: f"{name}_mm" for name in ("slope_side", "gliding_side", "eq6_side")}
+    names |= {name: f"{name}_mm" for name in ("gliding_side", "eq6_side")}
     found.setdefault(column, []).append(Table(source, rows.rename(columns=names)))
 
 

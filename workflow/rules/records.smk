@@ -27,7 +27,7 @@ def without_rate_limit():
     """Begin jobs on this machine as soon as cores are free, without a limit to jobs a second.
 
     To keep it Snakemake looks at all waiting jobs each second, once more for each that has ended:
-    a tenth of the time of 77 jobs on two cores.
+    a tenth of the time of a paper study on two cores.
     """
     if workflow.local_exec:
         workflow.scheduler.job_rate_limiter = None

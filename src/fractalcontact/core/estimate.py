@@ -44,8 +44,6 @@ class Scale(NamedTuple):
 SIZE = Scale()
 #: Exponents and slopes.
 EXPONENT = Scale(span=1.0)
-#: Angles in degrees.
-ANGLE = Scale(span=30.0)
 #: Least and largest dimension of a set in the plane.
 IN_PLANE = (0.0, 2.0)
 #: Fractal dimensions and their slopes, which lie within 2: any interval determines them, and each

@@ -43,7 +43,7 @@ def numbers_of(
     Raises
     ------
     NotConverged
-        As :attr:`contact.solve.ContactState.stiffness`.
+        As :attr:`contact.state.ContactState.stiffness`.
     """
     spacing, gap = state.space.spacing, aperture(state)
     slope = state.slope if stiff else Slope(np.nan, np.nan)

@@ -81,8 +81,8 @@ def surface_dimension(
         interval (mm; infinite where none is seen, `roll_off_low` then the shortest not excluded),
         the lags `range_min` and `range_max` and `range_reason`; the `recommended` estimator with
         its `reason`, `recommended_dimension` with its interval, or `no_dimension`, why there is
-        none (:func:`roughness.recommended.recommended`); `known_dimension`; of all estimators
-        together what :func:`roughness.recommended.variables_of_all` counts.
+        none (:func:`roughness.recommended.recommended_variables`); `known_dimension`; of all
+        estimators together what :func:`roughness.recommended.variables_of_all` counts.
 
     Raises
     ------

@@ -42,7 +42,7 @@ def join_stages(
     dict of str to list of str
         As :func:`study.atlas.write_atlas` gives it.
     """
-    # A label is only words: no job before this one has it, so that a new one solves nothing again.
+    # A label is only words: no job that solves has it, so that a new one solves nothing again.
     for name, dataset in stages.get("specimens", {}).items():
         settings = configuration["settings"][name]
         dataset.attrs["label"] = settings["label"]

@@ -173,7 +173,7 @@ def folder_notes(folder: Path | str) -> list[str]:
 
 
 def is_passed_over(name: str) -> bool:
-    """True if a file or folder of this name is looked at: hidden ones and README* are not."""
+    """True if a file or folder of this name is passed over: hidden ones, README*, drafts."""
     hidden = name.startswith(".") or name.upper().startswith(_IGNORED)
     return hidden or _is_left_behind(name) or name.lower().endswith(DRAFTS)
 
