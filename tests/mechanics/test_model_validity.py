@@ -78,8 +78,8 @@ def test_a_stated_strength_within_the_assumed_range_is_judged_no_better_at_its_e
 def test_the_reason_names_the_limit_and_both_numbers():
     found = elastic_model_validity(4880.0, 1.11, STRENGTH)
     assert found.reason == (
-        "the mean pressure in contact is 4880 MPa, beyond the joint wall strength (80 MPa); rms "
-        "slope 1.11, steeper than the model assumes"
+        "contacts bear 4880 MPa on average, beyond the joint wall strength (80 MPa); rms "
+        "slope 1.11, steeper than assumed"
     )
     assumed = elastic_model_validity(5.0, 0.1, NOTHING)
     assert "none being stated (E/1000 to E/200: 20 to 100 MPa)" in assumed.reason

@@ -124,7 +124,7 @@ def elastic_model_validity(
     ends = (limits.good_to * (1 + _ROUNDING), limits.poor_from * (1 + _ROUNDING))
     by_pressure = _graded(pressure, *ends)
     place = _place(pressure, by_pressure, limits)
-    words = f"the mean pressure in contact is {pressure_words(pressure)}, {place}"
+    words = f"contacts bear {pressure_words(pressure)} on average, {place}"
     found = [(by_pressure, "pressure", f"{words} the {limits.words}")]
     if limits.criterion == HARDNESS and by_pressure == GOOD:
         share = nominal_pressure / limits.good_to
@@ -133,7 +133,7 @@ def elastic_model_validity(
         found = [(_graded(share, MAX_TOUCHING, FULL), LOAD, words)]
     if np.isfinite(rms_slope):
         by_slope = _graded(rms_slope, SMALL_SLOPE, MODERATE_SLOPE)
-        size = "small" if by_slope == GOOD else "steeper than the model assumes"
+        size = "small" if by_slope == GOOD else "steeper than assumed"
         found.append((by_slope, SLOPE, f"rms slope {rms_slope:.3g}, {size}"))
     found.sort(key=lambda one: -_GRADES.index(one[0]))  # the worst first
     verdict, by, _ = found[0]
