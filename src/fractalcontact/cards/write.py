@@ -49,7 +49,7 @@ def write_cards(
     """
     trees = trees or Trees(path, NEEDS)
     study, made = configuration_of(trees.root)["study"], made_of(trees.root.attrs)
-    for name in trees.specimens:
+    for name in trees.names:
         tree = trees.of(name, without={"contact"})[0]
         write_card(card_of(Subject.of(tree, name), study, made), folder)
         if trees.parts or not apertures:
@@ -58,7 +58,7 @@ def write_cards(
         aperture = aperture_at(contact, None, name, folder)
         for ending in APERTURE_ENDINGS:
             write_aperture(aperture, Path(folder) / APERTURE.format(specimen=name, ending=ending))
-    return list(trees.specimens)
+    return trees.names
 
 
 def write_card(card: Mapping[str, Any], folder: Path | str) -> None:

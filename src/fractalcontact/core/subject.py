@@ -120,3 +120,8 @@ class Subject:
 def configuration_of(atlas: xr.DataTree) -> dict[str, Any]:
     """Study and settings, as an atlas keeps them."""
     return json.loads(atlas.attrs["configuration"])
+
+
+def specimens_of(atlas: xr.DataTree) -> list[str]:
+    """Names of the specimens, sorted, without measured contact maps."""
+    return sorted(atlas["specimens"].children) if "specimens" in atlas.children else []

@@ -52,7 +52,7 @@ def write_explorer(
     """
     trees = Trees(atlas_path, NEEDS)
     study = trees.root.attrs["study"]
-    shown = list(trees.specimens) if names is None else names
+    shown = trees.names if names is None else names
     specimens = [_specimen(trees.of(name)[0], name) for name in shown]
     values = {
         "title": f"Explorer of the study {study}",

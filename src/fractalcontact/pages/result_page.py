@@ -132,8 +132,8 @@ def write_specimen_pages(
     """
     trees = trees or Trees(place.atlas, NEEDS)
     head = _head(place, trees.root) | {"explored": explored}
-    blocks = {one["name"]: one for one in blocks_of(trees.specimens, place.folder)}
-    for name in trees.specimens:
+    blocks = {one["name"]: one for one in blocks_of(trees.names, place.folder)}
+    for name in trees.names:
         tree, groups, file = trees.of(name)
         subject, found = Subject.of(tree, name), matrix_of(tree, [name])
         values = _specimen_values(
@@ -159,7 +159,7 @@ def write_index(place: Place, explored: Collection[str]) -> list[str]:
         Its specimens.
     """
     trees = Trees(place.atlas, NEEDS)
-    atlas, names = trees.root, list(trees.specimens)
+    atlas, names = trees.root, trees.names
     reported = [trees.closure(name) for name in names]
     loads = common_loads(reported, _comparison(atlas))
     head = _head(place, atlas)

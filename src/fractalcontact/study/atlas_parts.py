@@ -8,7 +8,7 @@ from typing import Any
 import xarray as xr
 
 from ..core.errors import InputError
-from ..core.subject import Subject, configuration_of
+from ..core.subject import Subject, configuration_of, specimens_of
 from .atlas import read_named_atlas
 from .stages import STAGES
 
@@ -53,8 +53,6 @@ class Atlas:
         What it holds, of specimens or of the study.
     groups : dict of str to str
         Group of each specimen, as the study states it; empty where it states none.
-    parts : dict of str to str
-        Files of the specimens, below the folder of the atlas; empty where it is one file.
     """
 
     def __init__(self, path: Path):
@@ -62,14 +60,14 @@ class Atlas:
         self.attrs, self._own = _contents(path)
         if "configuration" not in self.attrs:
             raise InputError(f"{path}: no atlas; it lacks the attribute 'configuration'")
-        self.parts: dict[str, str] = json.loads(self.attrs.get("parts", "{}"))
+        self._parts: dict[str, str] = json.loads(self.attrs.get("parts", "{}"))
         own = self._own.get("specimens", ())
-        self.specimens: tuple[str, ...] = tuple(sorted({*own, *self.parts}))
+        self.specimens: tuple[str, ...] = tuple(sorted({*own, *self._parts}))
         settings: dict[str, Any] = json.loads(self.attrs["configuration"]).get("settings", {})
         self.groups = {name: settings.get(name, {}).get("group", "") for name in self.specimens}
 
     def __repr__(self) -> str:
-        where = f"in {len(self.parts)} parts" if self.parts else "in one file"
+        where = f"in {len(self._parts)} parts" if self._parts else "in one file"
         study, n = self.attrs["study"], len(self.specimens)
         return f"<Atlas of the study {study}: {n} specimens, {where}>"
 
@@ -77,7 +75,7 @@ class Atlas:
     def stages(self) -> tuple[str, ...]:
         """Stages of the study and those of its first specimen, in the order of an atlas."""
         held = set(self._own)
-        if self.parts:
+        if self._parts:
             held |= set(_contents(self._file(self.specimens[0]))[1])
         return tuple(name for name in STAGES if name in held)
 
@@ -92,7 +90,7 @@ class Atlas:
         stage, _, name = key.strip("/").partition("/")
         if name in self._own.get(stage, ()):
             return read_group(self.path, f"{stage}/{name}")[0]
-        if name not in self.parts:
+        if name not in self._parts:
             raise KeyError(f"{key}: the atlas {self.path} has no such stage and specimen")
         return read_group(self._file(name), f"{stage}/{name}")[0]
 
@@ -137,16 +135,20 @@ class Atlas:
         return xr.DataTree.from_dict({"/": tree.to_dataset(), **own})
 
     def _file(self, name):
-        return self.path.parent / self.parts[name] if name in self.parts else self.path
+        return self.path.parent / self._parts[name] if name in self._parts else self.path
 
 
-class Trees(Atlas):
+class Trees:
     """Atlas as trees in memory: one of all specimens, or one a specimen, read when asked for.
 
     Attributes
     ----------
     root : xr.DataTree
         All of the study, or what its specimens have together.
+    names : list of str
+        Specimens.
+    parts : dict of str to str
+        Files of the specimens, below the folder of the atlas; empty where it is one file.
     held : frozenset of str
         Names of the groups of the file, those left out too.
 
@@ -159,9 +161,10 @@ class Trees(Atlas):
     """
 
     def __init__(self, path: Path | str, stages: Collection[str]):
-        super().__init__(Path(path))
-        self._without = STAGES.keys() - set(stages)
+        self.path, self._without = Path(path), STAGES.keys() - set(stages)
         self.root, self.held = read_named_atlas(path, self._without)
+        self.parts: dict[str, str] = json.loads(self.root.attrs.get("parts", "{}"))
+        self.names = sorted({*specimens_of(self.root), *self.parts})
 
     def of(
         self, name: str, without: Collection[str] = ()
@@ -177,8 +180,14 @@ class Trees(Atlas):
 
     def closure(self, name: str) -> Subject:
         """A specimen with its closure curves alone, which say what is reported."""
-        settings = configuration_of(self.root)["settings"][name]
-        return Subject({"closure": self[f"closure/{name}"]}, settings, name)
+        if name in self.parts:
+            curves = read_group(self._file(name), f"closure/{name}")[0]
+        else:
+            curves = self.root[f"closure/{name}"].to_dataset()
+        return Subject({"closure": curves}, configuration_of(self.root)["settings"][name], name)
+
+    def _file(self, name):
+        return self.path.parent / self.parts[name]
 
 
 def read_group(path: Path | str, group: str) -> tuple[xr.Dataset, Mapping[str, Any]]:
