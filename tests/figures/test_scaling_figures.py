@@ -128,7 +128,7 @@ def test_areas_of_few_nodes_are_said_to_be_raw(atlas):
     assert drawing.data["sigma_n_MPa"].isna().all()
     titles = [axes.get_title(loc="left") for axes in drawing.figure.axes if axes.images]
     assert all("(raw)" in title for title in titles)
-    assert "Fewer than 30 nodes in contact" in drawing.caption
+    assert "fewer than 30 nodes in contact" in drawing.caption
 
 
 @pytest.mark.parametrize(
