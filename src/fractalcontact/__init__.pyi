@@ -9,10 +9,10 @@ from roughcontact.errors import NotConverged as NotConverged
 from .core.errors import InputError as InputError
 from .domain.box_dimension import BoxDimension as BoxDimension
 from .domain.box_dimension import box_dimension as box_dimension
-from .mechanics.closure import bulk_settlement as bulk_settlement
-from .mechanics.closure import interface_closure as interface_closure
 from .mechanics.closure_laws import Hyperbola as Hyperbola
 from .mechanics.closure_laws import fit_hyperbola as fit_hyperbola
+from .mechanics.settlement import bulk_settlement as bulk_settlement
+from .mechanics.settlement import interface_closure as interface_closure
 from .roughness.dimension import surface_dimension as surface_dimension
 from .roughness.recommended import best_dimension as best_dimension
 from .scan.read import read_faces as read_faces

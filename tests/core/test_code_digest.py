@@ -22,6 +22,13 @@ def test_all_that_the_parser_finds_counts(path):
     assert set(map(str, parsed_files(path, SRC / "fractalcontact"))) <= CODE.files_behind(path)
 
 
+def test_a_new_law_of_closure_area_or_strength_solves_nothing_again():
+    script, module = ROOT / "workflow/scripts/stage.py", "fractalcontact/mechanics/sweep.py"
+    names = {Path(file).stem for file in CODE.files_behind(script, module) if "/mechanics/" in file}
+    assert "settlement" in names
+    assert not {"closure", "closure_laws", "area", "area_theories", "strength", "theory"} & names
+
+
 def test_all_that_a_stage_has_loaded_when_it_is_called_counts():
     code = (
         "import sys, fractalcontact.stages.windows\n"

@@ -15,8 +15,8 @@ from fractalcontact.core.errors import InputError
 from fractalcontact.core.estimate import Estimate
 from fractalcontact.measured.curve import Curve, ratio, scatter
 from fractalcontact.measured.stage import measured_stage
-from fractalcontact.mechanics.closure import bulk_settlement
 from fractalcontact.mechanics.loading import JointLoading
+from fractalcontact.mechanics.settlement import bulk_settlement
 from fractalcontact.study.configuration import solver_settings
 from fractalcontact.study.measured import resolve_tests
 from fractalcontact.surface.synthesis import self_affine

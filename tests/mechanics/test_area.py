@@ -5,19 +5,23 @@ from scipy import fft
 from symmetries import LENGTH, STRESS, differences, grown
 
 from fractalcontact import HalfSpace, solve_contact
+from fractalcontact.core.limits import LIGHT_LOAD
 from fractalcontact.core.settings import Solver
 from fractalcontact.core.window import window_sides
-from fractalcontact.mechanics import area, theory
+from fractalcontact.mechanics import theory
 from fractalcontact.mechanics.area import (
     FULL_CONTACT,
     area_laws,
-    cell_areas,
     composite_statistics,
-    contact_perimeter,
-    corrected_area,
     joint_statistics,
 )
 from fractalcontact.mechanics.closure import closure_curves
+from fractalcontact.mechanics.corrected_area import (
+    EDGE_EXCESS,
+    cell_areas,
+    contact_perimeter,
+    corrected_area,
+)
 from fractalcontact.mechanics.joint import describe_joint
 from fractalcontact.mechanics.loading import JointLoading
 from fractalcontact.mechanics.states import combine
@@ -63,7 +67,7 @@ def test_many_domains_at_once():
 
 def test_correction_is_that_of_the_perimeter_on_square_cells():
     domain = np.random.default_rng(2).random((30, 30)) < 0.3
-    expected = domain.sum() * 0.01 - area.EDGE_EXCESS * contact_perimeter(domain, 0.1) * 0.1
+    expected = domain.sum() * 0.01 - EDGE_EXCESS * contact_perimeter(domain, 0.1) * 0.1
     assert corrected_area(domain, 0.1) == pytest.approx(expected)
 
 
@@ -324,7 +328,7 @@ def test_line_of_a_theory_is_its_kappa(statistics):
     assert found["departure"].item() == pytest.approx(0, abs=1e-9)
     assert found["mean_kappa"].item() == pytest.approx(kappa)
     assert found["corrected_mean_kappa_high"].item() == pytest.approx(0.9 * kappa)
-    assert found["mean_kappa_n"].item() == np.sum(np.geomspace(1e-3, 0.3, 12) <= area.LIGHT_LOAD)
+    assert found["mean_kappa_n"].item() == np.sum(np.geomspace(1e-3, 0.3, 12) <= LIGHT_LOAD)
 
 
 def test_theories_of_a_surface(statistics):

@@ -7,9 +7,9 @@ import pytest
 import xarray as xr
 
 from fractalcontact.core.settings import Solver
-from fractalcontact.mechanics.closure import interface_closure
 from fractalcontact.mechanics.joint import composite_topography, describe_joint, sliding_axis
 from fractalcontact.mechanics.loading import JointLoading
+from fractalcontact.mechanics.settlement import interface_closure
 from fractalcontact.study.configuration import resolve_settings
 from fractalcontact.surface.specimen import make_specimen
 from fractalcontact.surface.synthesis import self_affine

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from fractalcontact.mechanics.area import corrected_area
+from fractalcontact.mechanics.corrected_area import corrected_area
 from fractalcontact.mechanics.numerical_error import (
     UNCERTAIN,
     closure_error,

@@ -9,8 +9,8 @@ from made_settings import made_settings
 
 from fractalcontact.core.settings import Solver
 from fractalcontact.core.window import window_sides
-from fractalcontact.mechanics.area import contact_perimeter, corrected_area
 from fractalcontact.mechanics.closure import closure_curves, elastic_dilatancy
+from fractalcontact.mechanics.corrected_area import contact_perimeter, corrected_area
 from fractalcontact.mechanics.joint import (
     composite_topography,
     describe_joint,

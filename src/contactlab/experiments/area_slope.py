@@ -13,7 +13,8 @@ import xarray as xr
 
 from fractalcontact.core.labels import cf_attrs
 from fractalcontact.mechanics import theory
-from fractalcontact.mechanics.area import AREA_SLOPE, CORRECTED_AREA_SLOPE, corrected_area
+from fractalcontact.mechanics.area import AREA_SLOPE, CORRECTED_AREA_SLOPE
+from fractalcontact.mechanics.corrected_area import corrected_area
 from fractalcontact.mechanics.sweep import load_steps
 from fractalcontact.roughness.dimension import slope_statistics
 from fractalcontact.surface.synthesis import self_affine

@@ -15,7 +15,7 @@ import xarray as xr
 from fractalcontact.core.datasets import labelled_dataset
 from fractalcontact.core.errors import InputError
 from fractalcontact.core.labels import cf_attrs
-from fractalcontact.mechanics.area import corrected_area
+from fractalcontact.mechanics.corrected_area import corrected_area
 from fractalcontact.mechanics.states import SCALARS
 from fractalcontact.mechanics.sweep import load_steps
 from roughcontact.contact.state import ContactState

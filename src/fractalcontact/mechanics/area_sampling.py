@@ -9,7 +9,7 @@ from roughcontact.contact.state import ContactState
 from ..core.fitting import MIN_POINTS
 from ..core.intervals import t_quantile
 from ..core.limits import MAX_TOUCHING
-from .area import cell_areas, corrected_area
+from .corrected_area import cell_areas, corrected_area
 
 
 def area_sampling(in_contact: ArrayLike, pressure: ArrayLike) -> float:

@@ -13,11 +13,12 @@ from roughcontact.errors import NotConverged
 
 from ..core.datasets import labelled, labelled_dataset
 from ..core.labels import cf_attrs
-from .closure import bulk_settlement, interface_stiffness, stiffness_reason
+from .closure import interface_stiffness, stiffness_reason
 from .joint import prefractal
 from .loading import JointLoading
 from .seated_laws import at_reference_pressures, within_span
 from .separation import ROUNDING
+from .settlement import bulk_settlement
 
 _STATES = ("branch", "normal_force")
 

@@ -7,7 +7,7 @@ import xarray as xr
 
 from ..core.datasets import domains_by_resolution
 from ..core.intervals import LEFT_OUT
-from .area import cell_areas
+from .corrected_area import cell_areas
 
 #: Parts, which hold equally many nodes of the finest domain.
 PARTS_LEFT_OUT = 32

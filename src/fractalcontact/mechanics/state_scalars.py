@@ -7,8 +7,8 @@ import numpy as np
 from roughcontact.contact.slope import Slope
 from roughcontact.contact.state import STIFFNESS_ERROR, ContactState
 
-from .area import EDGE_EXCESS, contact_perimeter, corrected_area
 from .area_sampling import state_area_sampling
+from .corrected_area import EDGE_EXCESS, contact_perimeter, corrected_area
 from .overlap import suspect_load_share
 from .states import SCALARS
 

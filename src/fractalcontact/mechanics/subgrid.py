@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 from roughcontact.contact.state import ContactState
 from roughcontact.elastic.halfspace import HalfSpace
 
-from .closure import bulk_settlement, interface_closure
+from .settlement import bulk_settlement, interface_closure
 from .state_scalars import state_area
 from .sweep import load_steps
 

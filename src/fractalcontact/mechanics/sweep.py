@@ -15,11 +15,11 @@ from roughcontact.errors import NotConverged
 from ..core.datasets import labelled_dataset
 from ..core.labels import cf_attrs
 from ..core.settings import ContactSettings, Solver
-from .closure import bulk_settlement, interface_closure
 from .contact_strength import PARTS, STEPS, dips_by_force
 from .joint import prefractal, rigid_dilatancy
 from .loading import JointLoading
 from .plan import solved_loads
+from .settlement import bulk_settlement, interface_closure
 from .state_scalars import aperture, numbers_of
 from .states import (
     DIP,

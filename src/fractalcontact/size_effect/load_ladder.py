@@ -15,10 +15,10 @@ from ..core.ranges import within
 from ..core.settings import JointSettings
 from ..domain.renormalisation import MIN_NODES_PER_RESOLUTION
 from ..mechanics.area_sampling import state_area_sampling
-from ..mechanics.closure import bulk_settlement, interface_closure
 from ..mechanics.joint import prefractal
 from ..mechanics.left_out import PARTS_LEFT_OUT, fractions_left, part_ends
 from ..mechanics.loading import JointLoading
+from ..mechanics.settlement import bulk_settlement, interface_closure
 from ..mechanics.state_scalars import state_area
 from ..mechanics.states import SCALARS, SOLVER_ERROR
 from ..mechanics.sweep import load_steps

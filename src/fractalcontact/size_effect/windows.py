@@ -14,9 +14,9 @@ from roughcontact.elastic.halfspace import HalfSpace
 from ..core.datasets import labelled_dataset
 from ..core.labels import cf_attrs
 from ..core.settings import JointSettings
-from ..mechanics.closure import bulk_settlement, interface_closure
 from ..mechanics.joint import sliding_axis
 from ..mechanics.loading import JointLoading
+from ..mechanics.settlement import bulk_settlement, interface_closure
 from ..mechanics.state_scalars import state_area, state_errors
 from ..mechanics.states import SOLVER_ERROR
 from ..mechanics.sweep import load_steps

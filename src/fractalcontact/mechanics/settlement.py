@@ -1,0 +1,57 @@
+"""Closure of the interface: that of the window without the settlement of the blocks.
+
+Apart from the laws of closure, so that a new law solves no state again.
+"""
+
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike
+
+from roughcontact.elastic.halfspace import rectangle_mean_displacement
+
+_Numbers = float | np.ndarray | xr.DataArray
+
+
+def bulk_settlement(force: ArrayLike, e_star: float, side_y: float, side_x: float) -> np.ndarray:
+    """w_b, mm: mean settlement under the force spread evenly over the nominal window.
+
+    For a square of side b, w_b = 0.946402 F/(E* b).
+
+    Parameters
+    ----------
+    force : array_like
+        F, N.
+    e_star : float
+        E*, MPa.
+    side_y, side_x : float
+        Sides of the window, mm.
+    """
+    mean = rectangle_mean_displacement(side_y, side_x)
+    return np.asarray(force) / (side_y * side_x) * mean / e_star
+
+
+def interface_closure(closure: _Numbers, settlement: _Numbers, flush: Any = False) -> Any:
+    """Interface closure w_int = w - w_b, mm.
+
+    Parameters
+    ----------
+    closure : float, ndarray or xr.DataArray
+        w, mm.
+    settlement : float, ndarray or xr.DataArray
+        w_b, mm, from :func:`bulk_settlement`.
+    flush : bool, ndarray or xr.DataArray
+        Where faces match everywhere (a composite topography that is flat).
+
+    Returns
+    -------
+    ndarray or xr.DataArray
+        0 where faces are flush: they have nothing to close. The difference would be
+        -0.078 F/(E* b) there, because a flush window is loaded like a rigid punch and w_b belongs
+        to a uniform pressure.
+    """
+    closing = closure - settlement
+    if isinstance(closing, xr.DataArray):  # xr.where would drop the labels of the coordinates
+        return closing.where(~flush, 0.0)
+    return np.where(flush, 0.0, closing)
