@@ -42,8 +42,8 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
         share = f"1/{1 / slopes.attrs['roll_off_share']:.3g}"
         label_short_span(axes.xaxis)
         letter(axes, which, _TITLES[kind].format(share=share))
-        axes.set_xlabel(r"reduced pressure $p/(E^* h'_\mathrm{rms})$ (1)")
-    panels[0].set_ylabel(r"area slope $\kappa=(A_r/A_0)\,E^* h'_\mathrm{rms}/p$ (1)")
+        axes.set_xlabel(r"reduced pressure $p/(E^* h′_\mathrm{rms})$ (1)")
+    panels[0].set_ylabel(r"area slope $\kappa=(A_r/A_0)\,E^* h′_\mathrm{rms}/p$ (1)")
     shown, count = entries(panels[0]), len(_KAPPAS)
     each = heading(f"a line for each of {slopes.sizes['seed']} surfaces; no intervals")
     legends_below(figure, [each, *shown[:count]], shown[count:])

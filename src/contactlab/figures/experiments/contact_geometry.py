@@ -88,7 +88,7 @@ def _draw_curves(
         shown = one.assign(known=("reduced_pressure", known))
         panel.curve(shown, "reduced_pressure", name, filled="known", **style)
     load_axis(panel.axes, one["reduced_pressure"].values)
-    panel.axes.set_xlabel(r"reduced pressure $p/(E^* h'_\mathrm{rms})$ (1)")
+    panel.axes.set_xlabel(r"reduced pressure $p/(E^* h′_\mathrm{rms})$ (1)")
 
 
 def _words(test: xr.Dataset) -> dict[str, Any]:

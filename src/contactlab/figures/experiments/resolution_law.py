@@ -47,8 +47,8 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
     theories = _draw_theories(axes, test)
     classes = _draw_slopes(axes, table)
     axes.set_xscale("log")
-    axes.set_xlabel(r"reduced pressure $p/(E^* h'_\mathrm{rms}(s))$ (1)")
-    axes.set_ylabel(r"area slope $\kappa=(A_r/A_0)\,E^* h'_\mathrm{rms}(s)/p$ (1)")
+    axes.set_xlabel(r"reduced pressure $p/(E^* h′_\mathrm{rms}(s))$ (1)")
+    axes.set_ylabel(r"area slope $\kappa=(A_r/A_0)\,E^* h′_\mathrm{rms}(s)/p$ (1)")
     head = f"mean and range of {int(table['number'].max()) + 1} surfaces, side by side"
     legends_below(figure, theories, [heading(head), *classes])
     words = caption(

@@ -118,5 +118,5 @@ def _legends(test: xr.Dataset) -> list[list[Artist]]:
         Patch(color="0.88", label=rf"no size effect: $|\alpha|$ < {NO_EFFECT:g}"),
     ]
     bars = heading(f"bars: {100 * PROBABILITY:.0f} % intervals")
-    head = heading(r"pressure $p/(E^*h'_\mathrm{rms})$")
+    head = heading(r"pressure $p/(E^*h′_\mathrm{rms})$")
     return [[*classes, bars], [head, *loads], [*estimators, *lines]]

@@ -132,7 +132,7 @@ def _legends(test: xr.Dataset) -> list[list[Artist]]:
         Patch(color="0.9", label=f"no size effect: within {test.attrs['bound']:g}"),
         heading(f"side by side; bars: {100 * PROBABILITY:.0f} % intervals"),
     ]
-    of_loads = heading(r"exponent: $p/(E^* h'_\mathrm{rms})$")
+    of_loads = heading(r"exponent: $p/(E^* h′_\mathrm{rms})$")
     return [[heading("strength: side $b$ (nodes)"), *sides], [of_loads, *loads, hollow], lines]
 
 

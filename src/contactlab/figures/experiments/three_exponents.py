@@ -87,7 +87,7 @@ def _draw_hurst(axes: Axes, one: xr.Dataset) -> None:
             at: dict[str, Any] = {"color": colour_of(i + 1), "lw": 0.8, "ls": "-."}
             axes.axhline(float(one["hurst"]) - 1, zorder=1, label=limit, **at)
     load_axis(axes, load)
-    axes.set_xlabel(r"reduced pressure $p/(E^* h'_\mathrm{rms})$ (1)")
+    axes.set_xlabel(r"reduced pressure $p/(E^* h′_\mathrm{rms})$ (1)")
 
 
 def _words(test: xr.Dataset) -> dict[str, Any]:

@@ -117,8 +117,8 @@ def _draw_kappa(axes: Axes, laws: xr.Dataset, law: xr.Dataset) -> None:
         why = str(law["no_mean_kappa"].values)
         say_empty(axes, why or "no load with enough nodes in contact")
     axes.set_ylim(bottom=0)
-    axes.set_xlabel(r"reduced pressure $\sigma_0/(E^* h'_\mathrm{rms})$ (1)")
-    axes.set_ylabel(r"area slope $\kappa=(A_r/A_0)\,E^* h'_\mathrm{rms}/\sigma_0$ (1)")
+    axes.set_xlabel(r"reduced pressure $\sigma_0/(E^* h′_\mathrm{rms})$ (1)")
+    axes.set_ylabel(r"area slope $\kappa=(A_r/A_0)\,E^* h′_\mathrm{rms}/\sigma_0$ (1)")
 
 
 def _mean_kappa(law: xr.Dataset, prefix: str) -> str:

@@ -124,7 +124,9 @@ def _draw_errors(panel: Panel, errors: xr.Dataset, size: float) -> None:
             }
             panel.curve(errors.sel(source=source), "normal_force", name, **of, **style)
     panel.axes.set(xscale="log", yscale="log", ylabel=f"error, 95 % ({unit})")
-    panel.axes.set_ylim(bottom=LEAST * largest / scale)
+    drawn = errors[name].values / scale
+    most = np.max(drawn, where=np.isfinite(drawn), initial=LEAST * largest / scale)
+    panel.axes.set_ylim(LEAST * largest / scale, 3 * most)
 
 
 def _words(here: xr.Dataset) -> dict[str, Any]:

@@ -45,7 +45,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     for panel, quantity in zip(panels, _QUANTITIES, strict=True):
         _draw_ratios(panel, test, quantity)
     handles = entries(panels[0].axes)
-    legends_below(figure, handles[::4], handles[1:4], columnspacing=3)
+    legends_below(figure, handles[:3], handles[3:], columnspacing=3)
     headline(figure, subject.label, place(str(test["direction"].values), float(test["offset"])))
     return Drawing(figure, table_of(*panels), caption(__name__, **_words(test)))
 

@@ -58,7 +58,9 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     _draw_exponents(c, test, "slope", test["well_conditioned"].astype(bool))
     b.keep(test, "predicted_slope", *_JUDGED, "beyond_study")
     b.axes.set_ylabel("exponent over $b$ (1)")
-    hollow = mark(color="k", marker="o", ls="none", mfc="white", label="hollow: decides nothing")
+    hollow = mark(
+        color="k", marker="o", ls="none", mfc="white", label="hollow: not judged, too uncertain"
+    )
     legends_below(figure, loads, [*entries(b.axes), hollow], columnspacing=3)
     headline(figure, subject.label, place(str(test["direction"].values), float(test["offset"])))
     words = caption(
