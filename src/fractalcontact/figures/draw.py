@@ -117,11 +117,20 @@ def draw_figure(
     KeyError
         If no figure has this name.
     """
+    _read_stages(atlas, all_figures()[name].needs, subject)
     with print_style(style):
         drawing = drawer_of(name)(atlas, subject)
         lay_out(drawing.figure)
     keep_style(drawing.figure, style)
     return drawing
+
+
+def _read_stages(atlas, needs, subject):
+    """Read what a figure draws: xarray cannot turn words that still lie in a file."""
+    for stage in needs:
+        for name, node in atlas[stage].children.items() if stage in atlas.children else ():
+            if name == subject or not isinstance(subject, str):
+                node.load()
 
 
 def draw_figures(

@@ -94,7 +94,9 @@ def _draw_correlation(panel: Panel, joint: xr.Dataset, solved: str) -> None:
     limit = float(joint["correlation_limit"])
     if np.isfinite(limit):
         panel.axes.axhspan(-limit, limit, color="0.9", zorder=0, lw=0, label="by chance, 95 %")
-    panel.axes.axhline(np.exp(-1), color="0.4", lw=0.8, ls=_ENDS["correlation 1/e"])
+    reached = np.isfinite(joint["correlation_length"].sel(direction=solved))
+    dashed: dict[str, Any] = {"color": "0.4", "lw": 0.8, "ls": _ENDS["correlation 1/e"]}
+    panel.axes.axhline(np.exp(-1), label=None if reached else "1/e, not reached", **dashed)
     panel.axes.set(ylim=(None, 1.05), ylabel="correlation of the faces (1)", xlabel="")
 
 

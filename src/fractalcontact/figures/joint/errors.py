@@ -40,10 +40,10 @@ SOURCES = {
     "window": "other windows of the scan",
     "registration": "registration of the faces",
     "resolution": "every second node: another surface, in no total",
-    "model": "three times the hardness: another model, in no total",
-    "estimator": "ordinary box-counting slope: another estimator, in no total",
-    TWINS: "spread of twins of the scan (replaces counting and windows)",
-    REALISATIONS: "spread of its realisations (replaces counting and windows)",
+    "model": "three times the hardness: other model, in no total",
+    "estimator": "ordinary slope: another estimator, in no total",
+    TWINS: "twins of the scan, in place of counting, windows",
+    REALISATIONS: "realisations, in place of counting, windows",
 }
 TOTALS = {
     "total": "total for this very surface\n(solver, numerical, secant)",

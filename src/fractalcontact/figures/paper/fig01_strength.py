@@ -70,7 +70,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
         lost=int((drawn["slope_at_equal_v_over_b"] <= 0).sum()),
         claim=claim(atlas, name, "strength_falls_with_size"),
     )
-    table = rows(laws.compute().transpose("normal_force", "share", "part", ...), *_COLUMNS)
+    table = rows(laws.transpose("normal_force", "share", "part", ...), *_COLUMNS)
     return Drawing(figure, table, words)
 
 
