@@ -270,7 +270,8 @@ def strength_falls_with_size(joint: Joint) -> Finding:
         return Finding(UNDETERMINED, "no v/b has three sizes of window in three steps of sliding")
     margin = all_claims()[name].margin
     each = [beyond_margin(strength[i], margin, rising=False) for i in range(cases)]
-    falls, no_fall = each.count(HOLDS) + each.count(PARTLY), each.count(FAILS)
+    clear, no_fall = each.count(HOLDS), each.count(FAILS)
+    falls = clear + each.count(PARTLY)
     slope = Estimate.read(windows, "slope_at_equal_v_exponent")
     slope = slope[np.isfinite(slope.value)]
     at_one_v = slope.value.size
@@ -284,6 +285,7 @@ def strength_falls_with_size(joint: Joint) -> Finding:
     return Finding(
         verdict,
         f"tau falls at equal v/b in {falls or 'none'} of {cases} cases"
+        f"{f', by more than the margin in {clear}' if clear < falls else ''}"
         f"{f', surely not in {no_fall}' if no_fall else ''}{at_v}",
         f"x = {_ends(strength)} at equal v/b; {margin_words(name)}"
         f"{f', bounds from above in {bounded} cases with truncated angles' if bounded else ''}"
