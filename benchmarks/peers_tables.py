@@ -82,7 +82,7 @@ def write(folder, rows):
 
 
 def summary(rows):
-    """How many times faster than the fastest peer, in the median of light and dense contact."""
+    """Time of the fastest peer over ours, in the median of light and dense contact."""
     best: dict[tuple, float] = {}
     for row in rows:
         if row.get("times") not in (None, "") and not row.get("note"):

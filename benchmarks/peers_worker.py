@@ -58,7 +58,7 @@ class Worker:
         return self._answer({"rtol": rtol, "judge": True}, self.limit + JUDGING)
 
     def solve(self):
-        """What the process reports: its seconds, or how it failed."""
+        """Report of the process: its seconds, or how it failed."""
         return self._answer({"rtol": self.rtol, "judge": False}, self.limit)
 
     def _answer(self, question, wait):

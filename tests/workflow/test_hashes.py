@@ -35,7 +35,7 @@ def hashing(monkeypatch, tmp_path):
 
 
 def file_at(path):
-    """What Snakemake has of a file."""
+    """Checksum that Snakemake has of a file."""
 
     async def is_there(threshold):
         return path.exists() and path.stat().st_size <= threshold

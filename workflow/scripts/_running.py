@@ -46,7 +46,7 @@ def share(handle):
 
 
 def _locked(handle, kind):
-    """Whether the file system knows locks; then the file has one."""
+    """Lock the file; False where its file system has no locks."""
     try:
         fcntl.flock(handle, kind)
     except OSError as error:

@@ -284,7 +284,7 @@ def _in_paper(figures):
 
 
 def _work(logs: Path) -> str:
-    """What the jobs of a study took in all, and how many there were; nothing without logs."""
+    """Time and number of the jobs of a study, in words; empty without their logs."""
     texts = (path.read_text(encoding="utf-8", errors="replace") for path in logs.rglob("*.log"))
     seconds = [float(last) for text in texts for last in _WORKED.findall(text)[-1:]]
     return f"{duration(sum(seconds))} of work in {len(seconds)} jobs" if seconds else ""

@@ -30,9 +30,9 @@ class Mark(NamedTuple):
 
     value: float
     cells: int
-    """That hold it."""
+    """Cells that hold it."""
     outside: bool
-    """Whether it lies far outside the others; else it is among them and repeats."""
+    """True if it lies far outside the others; else it is among them and repeats."""
     low: float
     high: float
     """The others."""

@@ -27,7 +27,7 @@ AXIS_STYLES = {"x": (COLOURS[6], "o"), "y": (COLOURS[5], "s")}
 RANGE = COLOURS[3]
 _GAUSSIAN: dict[str, Any] = {"color": "0.6", "lw": 0.8}
 _POINTS: dict[str, Any] = {"ms": 2.5, "mfc": "none", "mew": 0.7}
-#: So many offsets get a line of their own.
+#: Offsets up to which each has a line of its own.
 _OFFSETS = 5
 
 
