@@ -85,7 +85,7 @@ def with_axes_exchanged(dataset: xr.Dataset) -> xr.Dataset:
 
 
 def is_leftover(name: str, variable: xr.DataArray) -> bool:
-    """A number that depends on where an iteration ended: error bounds of the solver and the like."""
+    """A number that depends on where an iteration ended: an error bound of the solver, say."""
     stated = SOLVER_ERROR in variable.attrs.get("long_name", "")
     return stated or _LEFTOVER.fullmatch(name) is not None
 
