@@ -1,5 +1,7 @@
 """Numbers along short logarithmic axes: two or more, and apart from each other."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
@@ -33,4 +35,4 @@ def test_numbers_of_a_short_logarithmic_axis_stand_apart(ratio):
         ]
         ends = sorted((box.x0, box.x1) for box in boxes)
         assert len(ends) >= 2, low
-        assert min(b[0] - a[1] for a, b in zip(ends, ends[1:], strict=False)) > GAP, low
+        assert min(b[0] - a[1] for a, b in pairwise(ends)) > GAP, low
