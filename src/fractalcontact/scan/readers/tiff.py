@@ -12,6 +12,7 @@ from ..options import ScanOptions
 from ..raw import RawScan, reading, refuse_larger, stated_unit
 from ..stated import Needs, require_stated
 from ..tables import choose_array
+from ..tiff_codecs import refuse_unknown_coding, use_codecs
 
 PARK_TAG = 50432  # Park Systems keep the heights of their microscopes in tags of their own
 _PIXEL_SCALE, _NODATA, _GDAL = 33550, 42113, 42112  # GeoTIFF's and GDAL's tags
@@ -32,6 +33,7 @@ def read_tiff(path: Path, options: ScanOptions) -> RawScan:
     """
     import tifffile
 
+    use_codecs()
     with reading(path, "TIFF file"), tifffile.TiffFile(path) as file:
         names = [f"page {number}" for number in range(1, len(file.pages) + 1)]
         page = file.pages[0 if options.variable not in names else names.index(options.variable)]
@@ -42,6 +44,7 @@ def read_tiff(path: Path, options: ScanOptions) -> RawScan:
         name = choose_array(names, options.variable, path)
         page = file.pages[names.index(name)]
         refuse_larger(math.prod(page.shape) * 8, path)
+        refuse_unknown_coding(page, path)
         values = page.asarray().astype(np.float64)
         if values.shape != page.shape:
             raise ValueError(f"pixels of shape {values.shape}, its header promises {page.shape}")
