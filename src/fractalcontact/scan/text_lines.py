@@ -17,6 +17,7 @@ _QUOTED = re.compile(r'"[^"]*"')
 _ORDINARY = re.compile(r"[-+0-9.,;eE \t]*")
 _ENDING = re.compile(r"(?:[.,](?P<decimals>\d*))?(?:[eEdD](?P<exponent>[-+]?\d*))?$")
 _BLOCK = 2**24  # bytes
+_LATEST = 60  # rows whose numbers are compared with the last one
 #: What programs call the sides of a matrix in its header.
 _SIDES = re.compile(
     r"[#%!/\s\"']*(?:(?P<x>nx|ncols|n_cols|columns)|(?P<y>ny|nrows|n_rows|rows))[\s:=,;\t]+"
@@ -87,26 +88,40 @@ def is_number(cell: str, options: ScanOptions) -> bool:
     return True
 
 
-def is_cut_off(rows: list[str], delimiter: str, layout: str | None) -> bool:
-    """True if the last number of a file without a final line end is shorter than others.
+def last_number_cut(rows: list[str], delimiter: str, layout: str | None) -> str:
+    """Judgement of the last number of a file without a final line end: cut, doubtful or "".
 
-    Only numbers of a fixed form tell: as many decimals each, or exponents of two digits. Of points
-    those of the last column, of a matrix all.
+    It is cut if it breaks off the form of the numbers above: as many decimals each, exponents of
+    two digits, or fewer characters than any of them. It is doubtful if it has fewer characters than
+    most. Of points those of the last column count, of a matrix all.
     """
     first = -1 if layout == "points" else 0
-    latest = [cells_of(row, delimiter)[first:] for row in rows[-60:]]
-    *others, last = [cell.strip() for cells in latest for cell in cells]
-    forms = [_form(other) for other in others if re.search(r"\d", other)]
-    if len(forms) < 3:
-        return False
-    decimals, digits = _form(last)
+    latest = [cells_of(row, delimiter)[first:] for row in rows[-_LATEST:]]
+    *others, last = [cell.strip().lstrip("+-") for cells in latest for cell in cells]
+    others = [other for other in others if re.search(r"\d", other)]
+    if len(others) < 3:
+        return ""
     if last and not re.search(r"[\d.,]$|^[a-zA-Z#]", last):  # ends in e, + or -
+        return "cut"
+    if last and not re.search(r"\d", last):  # a word
+        return ""
+    lengths = sorted(len(other) for other in others)
+    if _breaks_form(_form(last), [_form(other) for other in others]) or len(last) < lengths[0]:
+        return "cut"
+    return "doubtful" if len(last) < lengths[len(lengths) // 2] else ""
+
+
+def _breaks_form(last: tuple[int, int | None], forms: list[tuple[int, int | None]]) -> bool:
+    """True if a number lacks decimals or exponent digits that all others have."""
+    decimals, digits = last
+    of_exponents = [d for _, d in forms if d is not None]
+    if digits is not None and digits < min(of_exponents, default=0):
         return True
-    if digits is not None and digits < min((d for _, d in forms if d is not None), default=0):
+    if digits is None and len(of_exponents) == len(forms):
         return True
     least = min(decimal for decimal, _ in forms)
     is_fixed = least == max(decimal for decimal, _ in forms) and least > 0
-    return is_fixed and bool(re.search(r"\d", last)) and decimals < least
+    return is_fixed and decimals < least
 
 
 def _form(number: str) -> tuple[int, int | None]:

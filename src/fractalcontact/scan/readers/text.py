@@ -10,6 +10,7 @@ import numpy as np
 
 from ...core.errors import InputError
 from ...core.labels import printable
+from ...gridding.measured import NOTE
 from ..format import Format
 from ..options import DELIMITERS, ScanOptions
 from ..raw import RawScan
@@ -20,8 +21,8 @@ from ..text_lines import (
     COMMENT_MARKS,
     cells_of,
     cleaned,
-    is_cut_off,
     is_number,
+    last_number_cut,
     open_text,
     refuse_other_counts,
     wide_encoding,
@@ -31,6 +32,7 @@ _NAN = ("", "nan", "NaN", "NAN", "-nan", "-NaN", "+nan")
 #: Keys that say how a text is laid out; a table that describes itself needs none of them.
 LAYOUT_KEYS = ("delimiter", "decimal", "thousands", "header", "layout", "axes", "columns")
 _BLOCK = 2**24  # characters read at once
+_LATEST = 60  # lines that tell how the last number of a file is written
 _SAMPLE = 200  # lines that tell how many numbers stand in one
 _PLAIN = b"0123456789+-.,;eE \t\n"
 
@@ -90,6 +92,8 @@ class _Reading:
         self._rows = 0  # taken up so far
         self._lines = options.header or 0  # before the next block
         self._short: tuple[int, str, str] | None = None  # number, text and fault of a cut line
+        self._latest: list[str] = []  # lines of the blocks before
+        self._is_doubtful = False  # the last number is short, and no line end stands behind it
         self._above: list[str] | None = None  # cells of a first row of coordinates
         self._has_frame = options.layout != "points" and options.axes in ("both", "row")
 
@@ -109,6 +113,9 @@ class _Reading:
         else:
             self._take(self._parse(plain, self._width + self._trailing))
         self._lines += block.count("\n")
+        self._latest = [*self._latest, *block.rstrip("\n").rsplit("\n", _LATEST)[-_LATEST:]][
+            -_LATEST:
+        ]
 
     def finish(self) -> tuple[np.ndarray, TextParts, tuple[str, ...]]:
         """Table (rows, columns), the text around it, and the notes."""
@@ -121,6 +128,11 @@ class _Reading:
                     f"{self._width}: {line[-40:]!r}; the file is cut off, so export it again"
                 )
             notes = (f"the last line ({number}) was cut short and is left out",)
+        if self._is_doubtful:
+            notes = (
+                f"{NOTE}the last line has no line end, and its last number fewer characters than "
+                "most: the file may be cut off there; compare it with its source",
+            )
         if not self._parts:
             raise InputError(
                 f"{self.path}: no line of numbers after its header of {self.options.header} "
@@ -226,13 +238,17 @@ class _Reading:
                 continue
             rows.append(self.delimiter.join(cells))
             self._refuse_words(number, line, cells)
-        if (
-            rows
-            and not is_ended
-            and not self._short
-            and is_cut_off(rows, self.delimiter, self.options.layout)
-        ):
-            self._short = (data[-1][0], rows.pop(), "breaks off within a number")
+        if rows and not is_ended and not self._short:
+            above = (cells_of(line.strip(), self.delimiter) for line in self._latest)
+            whole = [
+                self.delimiter.join(cells[: self._width])
+                for cells in above
+                if len(cells) >= self._width and not any(map(str.strip, cells[self._width :]))
+            ]
+            cut = last_number_cut([*whole, *rows], self.delimiter, self.options.layout)
+            if cut == "cut":
+                self._short = (data[-1][0], rows.pop(), "breaks off within a number")
+            self._is_doubtful = cut == "doubtful"
         return rows
 
     def _refuse_words(self, number: int, line: str, cells: list[str]) -> None:
