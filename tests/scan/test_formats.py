@@ -344,6 +344,46 @@ def test_only_plain_matrices_of_mat_files_are_opened(tmp_path):
         read_scan(path, MATRIX)
 
 
+# --- Surfer --------------------------------------------------------------------------------------
+
+
+def surfer(path, heights, z_range):
+    """A text grid of Surfer."""
+    values = np.where(np.isnan(heights), 1.70141e38, heights)
+    lines = ["DSAA", "14 9", "0 13", "0 8", z_range]
+    lines += [" ".join(f"{value:.6e}" for value in row) for row in values]
+    path.write_text("\n".join(lines) + "\n")
+    return path
+
+
+SURFER = {"kind": "face", "unit": "mm", "heights": "up"}
+
+
+@pytest.mark.parametrize("end", ["", "\n"])
+def test_a_last_height_outside_the_range_of_its_header_is_cut_off(tmp_path, end):
+    heights = surface()
+    heights[-1, -1] = 1.234567e-3
+    path = surfer(tmp_path / "rock.grd", heights, "-0.2 0.2")
+    whole = path.read_text()
+    np.testing.assert_allclose(read.read_scan(path, SURFER), heights, rtol=1e-6)
+    assert whole.rstrip().endswith("e-03")
+    path.write_text(whole.rstrip()[:-4] + end)
+    reason = "its last one is 1.23457: the file is cut off" if end else "breaks off within a number"
+    with pytest.raises(InputError, match=reason):
+        read.read_scan(path, SURFER)
+
+
+def test_a_range_that_is_not_that_of_the_heights_is_noted(tmp_path):
+    """Scripts write 0 and 1 there."""
+    path = surfer(tmp_path / "rock.grd", surface(), "0 0.1")
+    heights = read.read_scan(path, SURFER)
+    np.testing.assert_allclose(heights, surface(), rtol=1e-6)
+    assert (
+        "states heights from 0 to 0.1, the file holds heights from -0.1" in heights.attrs["notes"]
+    )
+    assert heights.attrs["warnings"] == ""
+
+
 # --- TIFF --------------------------------------------------------------------------------------
 
 

@@ -214,6 +214,24 @@ def test_a_text_that_ends_inside_its_last_number(tmp_path, form, end, layout):
     assert np.isnan(heights.values[-1, -1])
 
 
+def test_a_mark_of_missing_cells_at_the_end_is_no_cut_number(tmp_path):
+    """It has a form of its own, and other marks hide no number that is cut."""
+    z = np.nan_to_num(surface(), nan=0.1234)
+    rows = [[f"{value:.4f}" for value in row] for row in z]
+    rows[-1][-1] = rows[-2][3] = "-9999"
+    path = tmp_path / "rock.txt"
+    stated = ARRAY | {"delimiter": "blank", "decimal": ".", "header": 0, "unit": "mm"}
+    stated |= {"spacing": 1, "missing": -9999}
+    path.write_text("\n".join(map(" ".join, rows)))
+    heights = read.read_scan(path, stated)
+    assert np.isnan(heights.values[-1, -1])
+    assert heights.attrs["warnings"] == ""
+    rows[-1][-1] = "0.12"
+    path.write_text("\n".join(map(" ".join, rows)))
+    with pytest.raises(InputError, match="breaks off within a number"):
+        read.read_scan(path, stated)
+
+
 def test_a_last_number_shorter_than_most_is_warned_of_without_a_line_end(tmp_path):
     """12 may be all of a number, or the beginning of 12345."""
     z = np.full((12, 15), 12_345) + np.arange(180).reshape(12, 15) ** 2 % 97

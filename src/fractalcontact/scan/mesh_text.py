@@ -9,8 +9,7 @@ from typing import BinaryIO, NamedTuple
 import numpy as np
 
 from ..core.errors import InputError
-from ..gridding.measured import NOTE
-from .text_lines import last_number_cut
+from .text_lines import notes_on_end
 
 _TYPES = {
     **dict.fromkeys(("char", "int8"), "i1"),
@@ -127,7 +126,7 @@ def read_ascii_ply(stream: BinaryIO, header: PlyHeader, path: Path) -> MeshText:
             vertices = _coordinates(fields, element, path)
         elif element.name == "face" and element.properties:
             triangles = _fan([_polygon(row, element) for row in fields])
-    notes = _end_notes([" ".join(words) for _, words in last], content, path)
+    notes = notes_on_end([" ".join(words) for _, words in last], content, path)
     return MeshText(vertices, triangles, notes)
 
 
@@ -218,7 +217,7 @@ def read_obj(path: Path) -> MeshText:
             )
     notes: tuple[str, ...] = ()
     if (ending := lines[-1].split()) and ending[0] in kinds:
-        notes = _end_notes(kinds[ending[0]], content, path)
+        notes = notes_on_end(kinds[ending[0]], content, path)
     points = np.array(vertices, dtype=np.float64).reshape(-1, 3)
     return MeshText(*_used_alone(points, triangles), notes)
 
@@ -246,21 +245,6 @@ def _fan(polygons: Sequence[Sequence[float]]) -> np.ndarray:
     ]
     corners = np.array(triangles, dtype=np.float64).reshape(-1, 3)
     return np.where(abs(corners) < MAX_VERTICES, corners, -1).astype(np.int64)
-
-
-def _end_notes(rows: list[str], content: str, path: Path) -> tuple[str, ...]:
-    """Note on a doubtful last number of a text without a final line end; a cut one is refused."""
-    if content.endswith("\n") or not rows:
-        return ()
-    cut = last_number_cut(rows, " ", "points")
-    if cut == "cut":
-        raise InputError(
-            f"{path}: its last line breaks off within a number: {rows[-1][-40:]!r}; the file is "
-            "cut off, so export it again; if it is whole, end its last line with a line break"
-        )
-    note = "its last line has no line end, and its last number fewer characters than most: the "
-    note += "file may be cut off there; compare it with its source"
-    return (f"{NOTE}{note}",) if cut else ()
 
 
 def refuse_cut_stl(path: Path) -> None:

@@ -10,7 +10,6 @@ import numpy as np
 
 from ...core.errors import InputError
 from ...core.labels import printable
-from ...gridding.measured import NOTE
 from ..format import Format
 from ..options import DELIMITERS, ScanOptions
 from ..raw import RawScan
@@ -19,6 +18,8 @@ from ..tables import TextParts, table_to_raw
 from ..text_hints import named_columns, text_hints
 from ..text_lines import (
     COMMENT_MARKS,
+    DOUBTFUL_END,
+    MAX_ROWS,
     cells_of,
     cleaned,
     is_number,
@@ -32,7 +33,6 @@ _NAN = ("", "nan", "NaN", "NAN", "-nan", "-NaN", "+nan")
 #: Keys that say how a text is laid out; a table that describes itself needs none of them.
 LAYOUT_KEYS = ("delimiter", "decimal", "thousands", "header", "layout", "axes", "columns")
 _BLOCK = 2**24  # characters read at once
-_LATEST = 60  # lines that tell how the last number of a file is written
 _SAMPLE = 200  # lines that tell how many numbers stand in one
 _PLAIN = b"0123456789+-.,;eE \t\n"
 
@@ -113,8 +113,8 @@ class _Reading:
         else:
             self._take(self._parse(plain, self._width + self._trailing))
         self._lines += block.count("\n")
-        self._latest = [*self._latest, *block.rstrip("\n").rsplit("\n", _LATEST)[-_LATEST:]][
-            -_LATEST:
+        self._latest = [*self._latest, *block.rstrip("\n").rsplit("\n", MAX_ROWS)[-MAX_ROWS:]][
+            -MAX_ROWS:
         ]
 
     def finish(self) -> tuple[np.ndarray, TextParts, tuple[str, ...]]:
@@ -129,10 +129,7 @@ class _Reading:
                 )
             notes = (f"the last line ({number}) was cut short and is left out",)
         if self._is_doubtful:
-            notes = (
-                f"{NOTE}the last line has no line end, and its last number fewer characters than "
-                "most: the file may be cut off there; compare it with its source",
-            )
+            notes = (DOUBTFUL_END,)
         if not self._parts:
             raise InputError(
                 f"{self.path}: no line of numbers after its header of {self.options.header} "
@@ -245,11 +242,21 @@ class _Reading:
                 for cells in above
                 if len(cells) >= self._width and not any(map(str.strip, cells[self._width :]))
             ]
-            cut = last_number_cut([*whole, *rows], self.delimiter, self.options.layout)
+            layout = self.options.layout
+            cut = last_number_cut([*whole, *rows], self.delimiter, layout, self._is_mark)
             if cut == "cut":
                 self._short = (data[-1][0], rows.pop(), "breaks off within a number")
             self._is_doubtful = cut == "doubtful"
         return rows
+
+    def _is_mark(self, cell: str) -> bool:
+        """True for the number that marks missing cells, which has a form of its own."""
+        if not self.options.marks or not is_number(cell, self.options):
+            return False
+        plain = cell.replace(self.options.thousands or "", "").replace(
+            self.options.decimal or ".", "."
+        )
+        return float(plain) in self.options.marks
 
     def _refuse_words(self, number: int, line: str, cells: list[str]) -> None:
         if not re.search(r"[^-+0-9.,;eE \t]", line):
