@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..core.errors import InputError
+from ..gridding.overhangs import is_closed
 
 #: A number is far outside if it lies this many quartile distances of the others from the nearest
 #: of them: the extremes of any relief, level or tilted, lie within a few of each other.
@@ -70,7 +71,7 @@ def find_marks(heights: np.ndarray) -> list[Mark]:
     return marks
 
 
-def refuse_or_warn(heights: np.ndarray, path: object) -> str:
+def refuse_or_warn(heights: np.ndarray, path: object, triangles: np.ndarray | None = None) -> str:
     """Refuse heights far outside the others; returns a sentence on a number that repeats.
 
     Parameters
@@ -79,6 +80,9 @@ def refuse_or_warn(heights: np.ndarray, path: object) -> str:
         As for `find_marks`.
     path : path-like
         The file, for errors.
+    triangles : (m, 3) int ndarray, optional
+        Of a mesh, whose number that repeats may be the flat bottom of a body. Nothing is suspected
+        of a closed one: gridding says what it is.
 
     Returns
     -------
@@ -91,6 +95,8 @@ def refuse_or_warn(heights: np.ndarray, path: object) -> str:
         With the key to write.
     """
     marks = find_marks(heights)
+    if marks and triangles is not None and is_closed(triangles):
+        return ""
     far = [mark for mark in marks if mark.outside]
     every = ", ".join(number(mark.value) for mark in marks)
     key = f"missing: {every}" if len(marks) == 1 else f"missing: [{every}]"
@@ -101,7 +107,10 @@ def refuse_or_warn(heights: np.ndarray, path: object) -> str:
             f"({number(mark.low)} to {number(mark.high)})"
             for mark in far
         )
-        raise InputError(f"{path}: {parts}: probably a mark for missing cells; {remedy}")
+        mark = "a mark for missing cells"
+        if triangles is not None:
+            mark = f"the flat bottom of a body, whose face you should cut out, or {mark}"
+        raise InputError(f"{path}: {parts}: probably {mark}; {remedy}")
     if marks:
         parts = " and ".join(f"{mark.cells} x exactly {number(mark.value)}" for mark in marks)
         return (
