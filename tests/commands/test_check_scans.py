@@ -529,3 +529,20 @@ def test_tables_of_embedded_specimens_are_read(folder, tmp_path):
     (folder / "load.csv").write_text(GOOD.replace("4,", "four,"))
     (row,) = check_scans(folder, study, schema, "study.yaml")
     assert "line 5, column 'pressure [MPa]': 'four' is no finite number" in row.refusal
+
+
+@pytest.mark.parametrize(
+    ("factor", "noise", "spacing", "warned"),
+    [(1, 0, 0.2, False), (1e-3, 0, 0.2, True), (1e-3, 0, 2e-4, True), (1, 0.8, 0.2, True)],
+)
+def test_a_unit_that_makes_no_rock_joint_is_warned_of(
+    folder, check, factor, noise, spacing, warned
+):
+    """Heights a thousand times too small, a side below 1 mm, slopes above 3: with the numbers."""
+    write_scan(folder / "slab.npy", surface(noise=noise) * factor, spacing, sidecar={})
+    _, out = check()
+    words = " ".join(out.split())
+    assert ("is this a rock joint? Its side is" in words) == warned
+    if warned:
+        assert "its rms height" in words
+        assert "its rms slope" in words
