@@ -133,3 +133,23 @@ def test_what_cannot_be_written_is_refused_in_a_sentence(folder, tmp_path, capsy
 def test_a_map_at_points_has_no_other_form_than_csv(tmp_path):
     with pytest.raises(InputError, match=r"apertures at points: write a file that ends in \.csv"):
         write_aperture(pd.DataFrame({"x": [0], "y": [0], "aperture": [0]}), tmp_path / "a.nc")
+
+
+def test_every_form_has_the_nodes_of_oblong_cells_at_their_places(tmp_path):
+    y, x = 0.3 + 0.25 * np.arange(4), -1.0 + 0.1 * np.arange(7)
+    values = np.arange(28, dtype=np.float32).reshape(4, 7)
+    aperture = xr.DataArray(values, {"y": y, "x": x}, ("y", "x"), "aperture", {"source": "made"})
+    for ending in ("csv", "nc", "vtk"):
+        write_aperture(aperture, tmp_path / f"map.{ending}")
+    table = pd.read_csv(tmp_path / "map.csv").pivot(index="y", columns="x", values="aperture")
+    with xr.open_dataset(tmp_path / "map.nc") as stored:
+        netcdf = stored["aperture"].load()
+    found = {
+        "csv": (table.values, table.columns.values, table.index.values),
+        "nc": (netcdf.values, netcdf["x"].values, netcdf["y"].values),
+        "vtk": read_vtk(tmp_path / "map.vtk"),
+    }
+    for ending, (read, at_x, at_y) in found.items():
+        np.testing.assert_allclose(read, values, err_msg=ending)
+        np.testing.assert_allclose(at_x, x, err_msg=ending)
+        np.testing.assert_allclose(at_y, y, err_msg=ending)

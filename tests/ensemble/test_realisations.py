@@ -10,7 +10,7 @@ from materials import ROCK
 
 from fractalcontact.core.estimate import Estimate
 from fractalcontact.core.settings import EnsembleSettings, read
-from fractalcontact.ensemble.realisations import EXPONENTS, STATES, ensemble
+from fractalcontact.ensemble.realisations import EXPONENTS, STATES, _add_eq6, ensemble
 from fractalcontact.ensemble.statistics import TRENDS, add_statistics, add_trends
 from fractalcontact.study.configuration import (
     resolve_embedded,
@@ -143,6 +143,21 @@ def _made_up(delta, cut):
         },
         coords={"normal_force": force},
     )
+
+
+def test_eq_6_is_missed_by_the_exponent_of_the_area_less_the_dimension_less_two():
+    """The difference is 0 where A_r/A_0 ~ b^(Delta_sigma - 2), and has the sign of what is more."""
+    attrs = {"units": "1", "long_name": "a number"}
+    made = xr.Dataset(
+        {
+            "area_exponent": ("realisation", [-0.5, -0.4, -0.7], attrs),
+            "delta_sigma_area": ("realisation", [1.5, 1.5, 1.5], attrs),
+            "delta_sigma": ("realisation", [1.6, 1.6, 1.6], attrs),
+        }
+    )
+    _add_eq6(made)
+    np.testing.assert_allclose(made["eq6_area"], [0.0, 0.1, -0.2], atol=1e-12)
+    np.testing.assert_allclose(made["eq6_box"], [-0.1, 0.0, -0.3], atol=1e-12)
 
 
 def test_trends_are_slopes_per_decade_over_the_loads_that_all_realisations_have():

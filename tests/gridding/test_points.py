@@ -508,6 +508,17 @@ def test_a_bad_line_in_a_later_block_is_named(tmp_path, monkeypatch, line, messa
         )
 
 
+def test_places_that_repeat_without_any_height_stay_missing():
+    # Two unmeasured, two measured and once not, one measured twice alike and once otherwise.
+    stacked = [[0, 0, np.nan], [0, 0, np.nan], [1, 0, 2], [1, 0, np.nan], [1, 0, 4]]
+    stacked += [[2, 0, 5], [2, 0, 8], [2, 0, 5], [0, 1, np.nan]]
+    for order in (range(9), range(8, -1, -1)):
+        merged, repeats = points.merge_points(np.array(stacked, float)[list(order)])
+        expected = [[0, 0, np.nan], [1, 0, 3], [2, 0, 6.5], [0, 1, np.nan]]
+        np.testing.assert_array_equal(merged, expected)
+        assert repeats == points.Repeats(duplicated=1, stacked=2)
+
+
 @pytest.mark.parametrize("share", [0.3, 3.0])
 def test_cells_are_far_from_points_whichever_side_of_theirs_is_longer(share):
     cell = 1.0, 4.0
