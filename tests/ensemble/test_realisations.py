@@ -174,6 +174,16 @@ def test_trends_are_slopes_per_decade_over_the_loads_that_all_realisations_have(
     assert float(result["delta_sigma_trend_mean"]) == pytest.approx(0.4)
 
 
+def test_departures_from_a_cut_that_fills_the_window_are_left_out():
+    cut = np.broadcast_to([1.2, 1.4, 1.6, 1.99], (3, 4))
+    away = np.array([0.1, 0.2, 0.3, 0.0])
+    result = _made_up(cut + away, cut)
+    add_trends(result)
+    np.testing.assert_array_equal(result["departure_trend_used"], [True, True, True, False])
+    np.testing.assert_allclose(result["departure_trend"], 0.1)
+    assert result["delta_sigma_trend_used"].all()
+
+
 def test_the_interval_of_the_mean_holds_it_in_95_of_100_ensembles():
     draws = np.random.default_rng(1).normal(3.0, 0.5, (12, 2000))
     result = xr.Dataset(

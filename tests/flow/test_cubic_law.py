@@ -151,6 +151,20 @@ def test_the_mean_flux_of_every_section_is_that_of_the_window():
     np.testing.assert_allclose(flow.flux.mean(axis=0), 1.0, rtol=1e-10)
 
 
+def test_with_x_for_y_the_flux_is_the_same_in_each_cell():
+    gap = contact_field(5, (20, 26), level=1.0)
+    along_x, along_y = plane_flow(gap, (0.3, 0.2)), plane_flow(gap.T, (0.2, 0.3), "y")
+    assert along_y.transmissivity == pytest.approx(along_x.transmissivity, rel=1e-9)
+    np.testing.assert_allclose(along_y.flux, along_x.flux.T, rtol=1e-6, atol=1e-9)
+
+
+def test_the_channel_fraction_counts_the_cells_that_carry_nine_tenths():
+    # Three alike channels of seven cells: 18.9 cells carry nine tenths, so 19 of 70 do.
+    gap = np.zeros((10, 7))
+    gap[[1, 4, 8]] = 0.2
+    assert plane_flow(gap, (1, 1)).channel_fraction == pytest.approx(19 / 70)
+
+
 # -- hard geometries -------------------------------------------------------------------------------
 
 
