@@ -30,7 +30,7 @@ def test_differences_are_those_of_the_domain_less_its_null_models():
     for null in ("random", "cut"):
         apart = found["local_slope"] - found[f"local_slope_{null}"]
         np.testing.assert_allclose(found[f"local_slope_{null}_difference"], apart)
-    # A line has a lower dimension than scattered patches of as many nodes, a rectangle a higher one.
+    # A line has a lower dimension than the patches of its cut, a rectangle a higher one.
     shapes = np.zeros((2, *SHAPE), bool)
     shapes[0, 60] = shapes[1, 20:100, 20:80] = True
     line, rectangle = null_slopes(shapes, HEIGHTS, 0.1)["delta_sigma_cut_difference"].values
