@@ -63,8 +63,9 @@ def test_an_exported_map_is_read_again_as_an_aperture_map(folder, contact):
 
 def test_between_two_loads_the_aperture_is_interpolated_in_the_logarithm(contact):
     low, high = (aperture_at(contact, p, "pair") for p in (125, 250))
-    middle = aperture_at(contact, np.sqrt(125 * 250), "pair")
+    middle, nearer = (aperture_at(contact, 125 * 2**part, "pair") for part in (0.5, 0.25))
     np.testing.assert_allclose(middle, (low + high) / 2, rtol=1e-5, atol=1e-9)
+    np.testing.assert_allclose(nearer, (3 * low + high) / 4, rtol=1e-5, atol=1e-9)
     assert middle.attrs["source"] == "interpolated in ln(pressure) between 125 and 250 MPa"
     with pytest.raises(InputError, match=r"no aperture at 0\.5 MPa; its maps are kept at 1, 125"):
         aperture_at(contact, 0.5, "pair")
