@@ -160,7 +160,7 @@ def test_a_header_line_of_numbers_is_no_header(tmp_path):
     path = save_text(tmp_path / "rock.xyz", points)
     keys = POINTS | {"delimiter": "blank"}
     np.testing.assert_array_equal(read.read_scan(path, keys).values, surface())
-    with pytest.raises(InputError, match=r"line 2, .* numbers; .*'header: 0'"):
+    with pytest.raises(InputError, match=r"line 2, .* numbers .*'header: 0'"):
         read.read_scan(path, keys | {"header": 2})
 
 
