@@ -399,7 +399,7 @@ def test_imagej_states_the_size_of_a_pixel(tmp_path):
     pixels = (1 / (DX * 1e3), 1 / (DY * 1e3))  # a um
     image = surface()[::-1].astype(np.float32)
     tiff(path, image, imagej=True, resolution=pixels, metadata={"unit": "um"})
-    heights = read_scan(path, {"unit_z": "mm"})
+    heights = read_scan(path, {"unit_z": "mm", "first_row": "top"})
     np.testing.assert_allclose(heights, surface(), atol=1e-7)
     assert heights.attrs["spacing_x"] == pytest.approx(DX, rel=1e-6)
     assert heights.attrs["spacing_y"] == pytest.approx(DY, rel=1e-6)

@@ -25,7 +25,7 @@ def _plain_rows(pen: Pen) -> list[list[str]]:
 def _header_over_rows_of_heights(pen: Pen) -> Sheet:
     rows = _plain_rows(pen)
     lines = int(pen.rng.integers(1, 4))
-    return Sheet(rows, sidecar={"header": lines}, expected="refused")
+    return Sheet(rows, sidecar={"header": lines}, expected="refused", surface=pen.surface)
 
 
 @dialect
@@ -98,8 +98,12 @@ def _wrapped_under_width_and_height(pen: Pen) -> Sheet:
 def _with_cell(pen: Pen, cell: str) -> Sheet:
     """One cell of a whole matrix that holds no height, and is not stated."""
     rows = _plain_rows(pen)
-    rows[pen.rng.integers(len(rows))][pen.rng.integers(1, len(rows[0]) - 1)] = cell
-    return Sheet(rows, sidecar={"missing": "none"}, expected="refused")
+    row, column = pen.rng.integers(len(rows)), pen.rng.integers(1, len(rows[0]) - 1)
+    rows[row][column] = cell
+    heights = pen.surface.heights.copy()
+    heights[row, column] = np.nan
+    surface = replace(pen.surface, heights=heights)
+    return Sheet(rows, sidecar={"missing": "none"}, expected="refused", surface=surface)
 
 
 @dialect

@@ -223,12 +223,15 @@ def _hints(variables: dict, names: list[str], options: ScanOptions) -> Hints:
         for name, variable in variables.items()
         if np.prod(variable.shape) == 1 and variable.dtype.kind in "fiu"
     }
-    words = [
-        (f"attribute {key} of {name}", f"{key} {value}")
-        for name, variable in variables.items()
-        for key, value in variable.attributes.items()
-        if key in ("units", "unit", "positive", "spacing")
-    ]
+    words = []
+    for name, variable in variables.items():
+        # Units of coordinates are those of x and y, whatever the array of heights is called.
+        axis = name.rpartition("/")[2].lower()
+        quantity = "z" if name in names else axis if axis in ("x", "y") else name
+        for key in ("units", "unit", "positive", "spacing"):
+            if key in variable.attributes:
+                text = f"{quantity} {key}: {variable.attributes[key]}"
+                words.append((f"attribute {key} of {name}", text))
     return array_hints(
         tables, options.variable, small, lambda name: decoded(variables[name])[0], words
     )

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from ...core.errors import InputError
-from ..draft import Hints, Suggestion
+from ..draft import Hints, image_hints
 from ..format import Format
 from ..options import ScanOptions
 from ..raw import RawScan, reading, refuse_larger, stated_unit
@@ -40,7 +40,7 @@ def read_tiff(path: Path, options: ScanOptions) -> RawScan:
         _refuse_images(page, options, path)
         stated = _imagej(file, page) or _geotiff(page)
         needs = Needs(arrays=names)
-        require_stated(path, options, needs, lambda: _hints(names, stated))
+        require_stated(path, options, needs, lambda: _hints(names, stated, page))
         name = choose_array(names, options.variable, path)
         page = file.pages[names.index(name)]
         refuse_larger(math.prod(page.shape) * 8, path)
@@ -126,9 +126,10 @@ def _gdal_scale(page, path: Path) -> tuple[float, float]:
     return found["scale"], found["offset"]
 
 
-def _hints(names: list[str], stated: dict) -> Hints:
+def _hints(names: list[str], stated: dict, page) -> Hints:
     """Hints of an image on its cells."""
-    hints = Hints({"first_row": Suggestion("top", "images begin at the top")})
+    refuse_larger(math.prod(page.shape) * 8, Path(page.parent.filename))
+    hints = image_hints(page.asarray().astype(np.float64), _nodata(page))
     hints.add("variable", names[0], f"the first of {len(names)} pages")
     if "spacing" in stated:
         unit = stated.get("unit_xy")
