@@ -91,7 +91,7 @@ def _missing_minus_one(pen: Pen) -> Sheet:
 @dialect
 def _missing_near_the_relief(pen: Pen) -> Sheet:
     value = float(f"{1.3 * np.nanmax(pen.heights):.2g}")
-    keys = _marked(pen, f"{value:f}", value)
+    keys = _marked(pen, f"{value:.9g}", value)
     return Sheet(pen.matrix(), sidecar=keys, surface=pen.surface)
 
 
