@@ -217,8 +217,6 @@ def _known(key: str, hints: Hints) -> str:
         said.append(f"it says {written(hints.keys[key].value)}, {hints.keys[key].source}")
     if key in ("spacing", "first_row") and "axes" in hints.doubts:
         said.append("delete this line if axes is both and its numbers are lengths")
-    if key == "unit_xy" and "spacing" not in hints.keys:
-        said.append("of a matrix, delete this line if spacing has a unit of its own")
     if key in ("unit_xy", "unit_z") and "unit" in hints.doubts and key not in hints.doubts:
         said.append(hints.doubts["unit"])
     return "".join(f"; {part}" for part in dict.fromkeys(said))
