@@ -56,8 +56,7 @@ def test_a_draft_shows_where_each_line_comes_from_and_is_kept_by_renaming(tmp_pa
     scans, refused = list_scans(tmp_path)
     assert (list(scans), refused) == (["granite"], {})
     assert scans["granite"].sidecar is None
-    mended = text.replace("spacing: ", "spacing: 0.1 mm ").replace("first_row: ", "first_row: top ")
-    draft.write_text(mended)
+    draft.write_text(filled(text))
     assert describe(tmp_path) == 0  # what was mended stays
     assert yaml.safe_load(draft.read_text())["spacing"] == "0.1 mm"
     draft.rename(tmp_path / "granite.yaml")
