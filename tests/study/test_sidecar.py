@@ -53,7 +53,12 @@ def test_encodings_that_editors_write(sidecar, encoding):
 
 
 def test_keys_are_the_texts_that_stand_there(sidecar):
-    assert read_yaml(sidecar("no: 1\n1: on\n'yes': 2\n~: 3\n")) == {"no": 1, "1": "on", "yes": 2, "~": 3}
+    assert read_yaml(sidecar("no: 1\n1: on\n'yes': 2\n~: 3\n")) == {
+        "no": 1,
+        "1": "on",
+        "yes": 2,
+        "~": 3,
+    }
 
 
 def test_an_empty_sidecar_says_nothing(sidecar):
