@@ -71,11 +71,11 @@ def test_rock_is_stated_by_length_and_modulus(tmp_path):
         ),
         (
             {"closure": [TEST | {"cycle": 0}]},
-            r"measured.closure.0.cycle: 0 .*a whole number from 1",
+            r"closure.0.cycle: 0 .*a whole number from 1",
         ),
         (
             {"closure": [TEST | {"gauge": {"lenght": "1 mm"}}]},
-            "gauge.lenght'; did you mean 'length'",
+            "lenght'; did you mean 'length'",
         ),
         ({"closure": [dict(TEST), dict(TEST)]}, "two tests are 'load, cycle 1'"),
         ({"flow": {"file": "load.csv", "branch": "load", "cycle": 1}}, "'way' is not stated"),

@@ -248,8 +248,8 @@ def refuse_unusable(name: str, path: Path) -> None:
         raise InputError(f"{path}: give the file a name with letters or digits in it")
     if name.lower().endswith(_DRAFT):
         raise InputError(
-            f"{path}: a specimen called {name}, whose sidecar {name}.yaml is taken for a draft that "
-            f"no study reads; rename the file, such as {name[: -len(_DRAFT)]}_draft{path.suffix}"
+            f"{path}: a specimen called {name}, whose sidecar {name}.yaml would be taken for a "
+            f"draft; rename the file, such as {name[: -len(_DRAFT)]}_draft{path.suffix}"
         )
     if len(name) > LONGEST_NAME:
         raise InputError(
