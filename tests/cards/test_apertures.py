@@ -131,3 +131,21 @@ def test_what_cannot_be_written_is_refused_in_a_sentence(folder, tmp_path, capsy
 def test_a_map_at_points_has_no_other_form_than_csv(tmp_path):
     with pytest.raises(InputError, match=r"apertures at points: write a file that ends in \.csv"):
         write_aperture(pd.DataFrame({"x": [0], "y": [0], "aperture": [0]}), tmp_path / "a.nc")
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "words"),
+    [
+        ("configuration", "{settings: ", "'configuration' is no JSON"),
+        ("configuration", "[1]", "'configuration' holds no mapping"),
+        ("parts", "x", "'parts' is no JSON"),
+    ],
+)
+def test_an_atlas_with_a_damaged_attribute_is_refused_in_a_line(
+    tmp_path, capsys, name, text, words
+):
+    attrs = {"study": "a", "configuration": "{}"} | {name: text}
+    xr.Dataset(attrs=attrs).to_netcdf(tmp_path / "atlas.nc")
+    assert main([str(tmp_path / "atlas.nc"), "pair", "--out", "a.csv"]) == 1
+    (line,) = capsys.readouterr().err.splitlines()
+    assert words in line
