@@ -14,6 +14,8 @@ from .text_lines import open_text
 
 _NAMED = re.compile(r"(?P<name>[^\[(]*?)\s*[\[(]\s*(?P<unit>[^\])]+?)\s*[\])]")
 _DELIMITERS = ",;\t"
+#: Characters of the line of headings, and of a heading; patterns take the cube of one, at worst.
+_MAX_HEADING, _MAX_CELL = 10_000, 100
 #: Steps of a profile may differ from their mean by this part of it.
 _EVEN = 0.01
 _SPREADSHEETS = (".xls", ".xlsx", ".ods")
@@ -58,9 +60,9 @@ def read_columns(path: Path | str, wanted: Mapping[str, str]) -> dict[str, Colum
             lines = [line.strip() for line in file if line.strip()]
     except (OSError, UnicodeDecodeError) as error:
         raise InputError(f"{path}: cannot be read ({error}); expected a text file") from None
-    head = lines[0].lstrip("#% ") if lines else ""
+    head = lines[0][:_MAX_HEADING].lstrip("#% ") if lines else ""
     delimiter = max(_DELIMITERS, key=head.count)
-    headings = [cell.strip().strip("\"'") for cell in head.split(delimiter)]
+    headings = [cell.strip().strip("\"'")[:_MAX_CELL] for cell in head.split(delimiter)]
     places = {name: _place(stated, headings) for name, stated in wanted.items()}
     if None in places.values():
         example = f"{delimiter} ".join(_with_unit(stated) for stated in wanted.values())

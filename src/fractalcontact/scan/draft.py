@@ -14,11 +14,12 @@ from ..core.directions import APERTURE
 from ..core.labels import listed, printable
 from ..core.units import length_unit
 from .options import NO_MARK, ScanOptions
+from .text_lines import words_of
 from .undeclared import find_marks, number
 
 _NUMBER = r"[-+]?(?:\d+(?:[.,]\d+)?|[.,]\d+)(?:[eE][-+]?\d+)?"
 _WORD = r"[^\W\d_]+"
-_LENGTH = re.compile(rf"({_NUMBER})(?:\s*[x×*]\s*({_NUMBER}))?\s*[\[(]?({_WORD})\b")
+_LENGTH = re.compile(rf"(?<!\d)({_NUMBER})(?:\s*[x×*]\s*({_NUMBER}))?\s*[\[(]?({_WORD})\b")
 _ALONE = re.compile(rf"(?:\bin\s+|[\[(]\s*|units?\b[\w ]*[\s:=,;]+)({_WORD})", re.IGNORECASE)
 _NO_DATA = re.compile(
     rf"(?:no[\s_-]?data|missing|invalid|fill|void|blank)[\w \t]*[\s:=,;\"']+({_NUMBER})\W*$",
@@ -102,8 +103,8 @@ def add_words(hints: Hints, lines: Iterable[tuple[str, str]]) -> None:
     def seen(key: str, value: Any, source: str) -> None:
         found.setdefault(key, []).append((value, source))
 
-    for where, text in lines:
-        source = f'{where}: "{printable(text.strip(), 50)}"'
+    for where, line in lines:
+        source, text = f'{where}: "{printable(line.strip(), 50)}"', words_of(line)
         lengths = [match for match in _LENGTH.finditer(text) if length_unit(match[3])]
         for match in lengths:
             steps = [step.replace(",", ".") for step in match.groups()[:2] if step]

@@ -10,12 +10,14 @@ import numpy as np
 from ..core.units import length_unit
 from .draft import Hints, add_words
 from .options import DELIMITERS, ScanOptions
-from .text_lines import COMMENT_MARKS, cells_of, cleaned, is_number, open_text
+from .text_lines import COMMENT_MARKS, cells_of, cleaned, is_number, open_text, words_of
 
 _MAX_LINES = 2_000
 _LONGEST_LINE = 200_000
 #: Lines of words in front of the numbers that a table which describes itself may have.
 _MAX_ABOVE = 200
+#: Characters of a line that names columns; patterns take the square of them, at worst.
+_MAX_HEADING = 2_000
 _NAMED = re.compile(r"([xyzXYZ])\s*[\[(]\s*([^\[\]()]+?)\s*[\])]")
 _GLUED = re.compile(r"[^\s\[(]+\s*[\[(][^\])]*[\])]")
 #: Numbers whose point may part thousands as well.
@@ -53,11 +55,13 @@ def named_columns(path: Path) -> tuple[dict[str, Any], dict[str, Any]] | None:
     if not number:
         return None
     line = lines[number - 1].lstrip("#%!/ ").rstrip()
+    if len(line) > _MAX_HEADING:
+        return None
     for name, delimiter in DELIMITERS.items():
         cells = _GLUED.findall(line) if delimiter == " " else line.split(delimiter)
         if delimiter == " " and "".join(cells).replace(" ", "") != line.replace(" ", ""):
             continue
-        found = [_NAMED.fullmatch(cell.strip().strip("\"'")) for cell in cells]
+        found = [_NAMED.fullmatch(words_of(cell).strip("\"'")) for cell in cells]
         axes = [match[1].lower() if match and length_unit(match[2]) else "" for match in found]
         if sorted(filter(None, axes)) != ["x", "y", "z"]:
             continue
@@ -208,7 +212,7 @@ def add_axes(hints: Hints, table: np.ndarray) -> None:
 
 def _add_field(hints: Hints, above: list[str], shape: tuple[int, ...]) -> None:
     """Suggest the spacing of a field whose width and height two lines state, as Gwyddion does."""
-    lengths = [_FIELD.fullmatch(line.strip()) for line in above]
+    lengths = [_FIELD.fullmatch(words_of(line)) for line in above]
     for n, (across, along) in enumerate(pairwise(lengths), 1):
         if across and along and length_unit(across[2]) and length_unit(along[2]):
             steps = [

@@ -17,6 +17,8 @@ _QUOTED = re.compile(r'"[^"]*"')
 _ORDINARY = re.compile(r"[-+0-9.,;eE \t]*")
 _ENDING = re.compile(r"(?:[.,](?P<decimals>\d*))?(?:[eEdD](?P<exponent>[-+]?\d*))?$")
 _BLOCK = 2**24  # bytes
+#: Characters of a line of words that are looked at: patterns take the square of them, at worst.
+MAX_WORDS = 200
 #: What programs call the sides of a matrix in its header.
 _SIDES = re.compile(
     r"[#%!/\s\"']*(?:(?P<x>nx|ncols|n_cols|columns)|(?P<y>ny|nrows|n_rows|rows))[\s:=,;\t]+"
@@ -57,6 +59,11 @@ def _encoding(path: Path) -> str:
         except UnicodeDecodeError:  # instruments in Europe still write this one
             return "latin-1"
     return "utf-8-sig"
+
+
+def words_of(line: str) -> str:
+    """The beginning of a line of words, with one blank for white space of any length."""
+    return " ".join(line[: 4 * MAX_WORDS].split())[:MAX_WORDS]
 
 
 def cells_of(line: str, delimiter: str) -> list[str]:
