@@ -38,7 +38,7 @@ def measures_of_map_states(states: xr.Dataset, spacing: float) -> xr.Dataset:
     direction, sides = str(states["direction"].item()), (spacing * factor, spacing * factor)
     ways = [interval_dimensions(p > 0, sides, direction) for p in pressures]
     by_load = {name: ("normal_force", *words) for name, words in INTERVAL_FIELDS.items()}
-    values = {}
+    values: dict[str, Any] = {}
     for way, found in zip(WAYS, zip(*ways, strict=True), strict=True):
         values |= Estimate.stack(found).columns(f"interval_dimension_{way}")
     measures = measures.assign(labelled(by_load, values))

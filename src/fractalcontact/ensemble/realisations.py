@@ -244,8 +244,8 @@ def _realisation(loading: JointLoading[EnsembleSettings]) -> xr.Dataset:
     reference = int(np.argmin(np.abs(result["normal_force"].values - _reference(loading))))
     sides = tuple(loading.spacing * finest)
     along, across = interval_dimensions(touching[reference], sides, loading.direction)
-    table = {name: ((), *words) for name, words in ISOTROPY.items()}
-    isotropy = labelled(table, {"interval_difference": across.value - along.value})
+    of_domain = {name: ((), *words) for name, words in ISOTROPY.items()}
+    isotropy = labelled(of_domain, {"interval_difference": across.value - along.value})
     return result.merge(slopes).assign(isotropy | _size_exponents(loading))
 
 
