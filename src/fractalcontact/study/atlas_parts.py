@@ -221,7 +221,7 @@ def read_group(path: Path | str, group: str) -> tuple[xr.Dataset, Mapping[str, A
         return dataset, {name: file.getncattr(name) for name in file.ncattrs()}
 
 
-def _mapping(attrs: Mapping[str, Any], name: str, path: Path) -> dict[str, Any]:
+def _mapping(attrs: Mapping[Any, Any], name: str, path: Path) -> dict[str, Any]:
     """An attribute of an atlas that holds a mapping as JSON; empty where there is none."""
     try:
         held = json.loads(attrs.get(name, "{}"))
