@@ -34,6 +34,7 @@
 # make fuzz FILES=5000     FILES damaged scan files, each read or refused in one sentence
 # make fuzz-dialects FILES=5000  FILES ways to write a known surface as text, each read right or refused
 # make lint   ruff, snakefmt, annotations and types, changing nothing; make format mends what it can
+# make schema   schemas for editors and the tables of keys, from the classes of keys
 # make lock   new pins for every package (needs uv)
 
 STUDY  ?= config/paper.yaml
@@ -54,7 +55,7 @@ OPTIONS = -- --cores $(CORES)
 # does it say nothing; and of that of a closed pipe no shell says anything.
 QUIETLY = || { kill -s PIPE $$PPID; exit 1; }
 
-.PHONY: new describe all study campaign report smoke size-effect-small keep-going slurm dry-run verify faults check-scans check-accuracy calibration keep same cost accuracy test test-all test-processors examples test-browser test-slurm test-slurm-accounting docs bench bench-flow problems grid-table extremes fuzz fuzz-dialects lint format lock clean
+.PHONY: new describe all study campaign report smoke size-effect-small keep-going slurm dry-run verify faults check-scans check-accuracy calibration keep same cost accuracy test test-all test-processors examples test-browser test-slurm test-slurm-accounting docs bench bench-flow problems grid-table extremes fuzz fuzz-dialects schema lint format lock clean
 # Two runs in one checkout would refuse each other.
 .NOTPARALLEL:
 all: study
@@ -198,6 +199,10 @@ fuzz: $(VENV)/tests-installed
 # What failed is kept in results/dialects.
 fuzz-dialects: $(VENV)/tests-installed
 	$(BIN)/python tests/support/dialect_fuzzing.py --files $(FILES) $(FUZZ)
+
+# Schemas for editors and tables of keys, from the classes of keys.
+schema: $(VENV)/installed
+	$(BIN)/python -m fractalcontact.commands.write_keys
 
 lint: $(VENV)/tests-installed
 	$(BIN)/python -m ruff check .

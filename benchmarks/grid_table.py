@@ -43,7 +43,6 @@ from fractalcontact.surface.embedded import embedded_surface
 from roughcontact.contact.state import ContactState
 
 ROOT = Path(__file__).parents[1]
-SCHEMA = ROOT / "config/schema/study.schema.yaml"
 TABLE, PAGE = ROOT / "docs/grid_table.csv", ROOT / "docs/verification.md"
 BEGIN, END = "<!-- grid table: make grid-table -->", "<!-- end of the grid table -->"
 #: Multiples of the scan's spacing, as they are called.
@@ -83,7 +82,7 @@ def specimen_of(study: Mapping, source: str, name: str) -> tuple[xr.Dataset, Set
     scans, refused = list_scans(study["scans"]) if study.get("scans") else ({}, {})
     if name not in scans:
         raise InputError(str(refused.get(name, f"{source}: no specimen {name}, embedded or scan")))
-    options, own = read_sidecar(scans[name].sidecar, read_study(SCHEMA))
+    options, own = read_sidecar(scans[name].sidecar)
     scan = scans[name]
     settings = resolve_settings(study, name, own, source, scan)
     return prepare_specimen(scan.lower, scan.upper, options, settings, name), settings

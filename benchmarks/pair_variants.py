@@ -62,7 +62,6 @@ QUANTITIES = {
     "separation": "mm",
     "area_corrected": "mm2",
 }
-SCHEMA = Path(__file__).parents[1] / "config" / "schema" / "study.schema.yaml"
 
 
 def variants(specimen, faces: int, points: bool) -> Iterator[tuple[str, dict, dict]]:
@@ -181,7 +180,7 @@ def table(study: Mapping, name: str, source: str, offset: float) -> Iterator[dic
     if name not in scans:
         raise InputError(str(refused.get(name, f"{study['scans']}: no scan {name}")))
     scan = scans[name]
-    options, own = read_sidecar(scan.sidecar, read_study(SCHEMA))
+    options, own = read_sidecar(scan.sidecar)
     solver = solver_settings(study, source)
 
     read: dict[str, tuple] = {}  # once in each way: that takes longer than the rest

@@ -7,7 +7,9 @@ import pytest
 import yaml
 from places import ROOT
 
+from fractalcontact.core.keys import schema_of
 from fractalcontact.study.checks import read_sidecar
+from fractalcontact.study.keys import SidecarKeys, StudyKeys
 from fractalcontact.study.sidecar import sidecar_of_matrix
 
 #: All but the changelog, which names things as they were called at its time.
@@ -31,14 +33,14 @@ def keys_of(node):
 
 
 def test_every_key_of_a_study_and_of_a_sidecar_is_explained():
-    schema = yaml.safe_load((ROOT / "config/schema/study.schema.yaml").read_text(encoding="utf-8"))
     explained = set()
     for line in (ROOT / "config/README.md").read_text(encoding="utf-8").splitlines():
         explained |= {part for key in KEY.findall(line) for part in key.split(".")}
         # Those of a mapping stand in braces: `{modulus, poisson}`.
         for group in re.findall(r"`\{([a-z_, ]+)\}`", line):
             explained |= set(group.split(", "))
-    assert set(keys_of(schema)) - explained == set()
+    schema = schema_of(StudyKeys), schema_of(SidecarKeys)
+    assert set(keys_of([*schema])) - explained == set()
 
 
 def block_of(name, first):
@@ -51,21 +53,16 @@ def block_of(name, first):
     return textwrap.dedent(lines[0])
 
 
-@pytest.fixture(scope="module")
-def schema():
-    return yaml.safe_load((ROOT / "config/schema/study.schema.yaml").read_text(encoding="utf-8"))
-
-
-def test_the_sidecar_of_the_first_hour_is_that_of_a_matrix(schema, tmp_path):
+def test_the_sidecar_of_the_first_hour_is_that_of_a_matrix(tmp_path):
     path = tmp_path / "granite.yaml"
     path.write_text(block_of("docs/first_hour.md", "kind: face"), encoding="utf-8")
-    assert read_sidecar(path, schema) == (sidecar_of_matrix(0.05), {})
+    assert read_sidecar(path) == (sidecar_of_matrix(0.05), {})
 
 
-def test_the_sidecar_of_the_readme_is_one(schema, tmp_path):
+def test_the_sidecar_of_the_readme_is_one(tmp_path):
     path = tmp_path / "rock.yaml"
     path.write_text(block_of("README.md", "label: granite"), encoding="utf-8")
-    keys, settings = read_sidecar(path, schema)
+    keys, settings = read_sidecar(path)
     assert keys == sidecar_of_matrix(0.05)
     assert set(settings["material"]) == {
         "modulus",

@@ -14,7 +14,7 @@ from fractalcontact.study.scan_files import list_scans
 from fractalcontact.surface.synthesis import self_affine
 
 SCANS = ROOT.parent / "shared" / "scans"
-ARGUMENTS = ("--study", "config/paper.yaml", "--schema", "config/schema/study.schema.yaml")
+ARGUMENTS = ("--study", "config/paper.yaml")
 
 
 @pytest.fixture
@@ -521,7 +521,6 @@ def test_tables_of_embedded_specimens_are_read(folder, tmp_path):
     }
     folder.mkdir()
     (folder / "load.csv").write_text(GOOD)
-    schema = read_study(ROOT / "config/schema/study.schema.yaml")
     (row,) = check_scans(folder, study, schema, "study.yaml")
     assert (row.name, row.refusal) == ("made", "")
     (folder / "load.csv").unlink()

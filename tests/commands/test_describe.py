@@ -13,9 +13,7 @@ from fractalcontact.scan.read import read_scan
 from fractalcontact.study.checks import read_sidecar
 from fractalcontact.study.scan_files import list_scans
 
-ARGUMENTS = ["--study", str(ROOT / "config/paper.yaml"),
-             "--schema", str(ROOT / "config/schema/study.schema.yaml")]  # fmt: skip
-SCHEMA = yaml.safe_load((ROOT / "config/schema/study.schema.yaml").read_text())
+ARGUMENTS = ["--study", str(ROOT / "config/paper.yaml")]
 
 
 def heights(seed=1, shape=(20, 30)):
@@ -60,7 +58,7 @@ def test_a_draft_shows_where_each_line_comes_from_and_is_kept_by_renaming(tmp_pa
     assert describe(tmp_path) == 0  # what was mended stays
     assert yaml.safe_load(draft.read_text())["spacing"] == "0.1 mm"
     draft.rename(tmp_path / "granite.yaml")
-    keys, _ = read_sidecar(tmp_path / "granite.yaml", SCHEMA)
+    keys, _ = read_sidecar(tmp_path / "granite.yaml")
     assert keys["confirmed"]["shape"] == [20, 30]
     np.testing.assert_allclose(
         read_scan(tmp_path / "granite.txt", keys), heights()[::-1], atol=1e-7
@@ -72,7 +70,7 @@ def test_an_empty_line_of_a_sidecar_is_named(tmp_path):
     describe(tmp_path)
     (tmp_path / "granite.draft.yaml").rename(tmp_path / "granite.yaml")
     with pytest.raises(InputError, match=r"granite\.yaml: key 'unit_xy' is empty; fill it in"):
-        read_sidecar(tmp_path / "granite.yaml", SCHEMA)
+        read_sidecar(tmp_path / "granite.yaml")
 
 
 def test_files_of_one_instrument_take_the_sidecar_of_one(tmp_path, capsys):
@@ -92,7 +90,7 @@ def test_files_of_one_instrument_take_the_sidecar_of_one(tmp_path, capsys):
     assert "1 refused, 6 written" in out
     assert "other.txt: the relief is" in out
     for number in range(6):
-        keys, _ = read_sidecar(tmp_path / f"s{number}.yaml", SCHEMA)
+        keys, _ = read_sidecar(tmp_path / f"s{number}.yaml")
         found = read_scan(tmp_path / f"s{number}.txt", keys)
         np.testing.assert_allclose(found, heights(number)[::-1], atol=1e-7)
     assert (tmp_path / "scans.draft.html").read_text().count("<img") == 6
@@ -162,7 +160,7 @@ def test_pairs_of_one_instrument_take_the_sidecar_of_one_face_by_face(tmp_path):
     draft = tmp_path / "a.draft.yaml"
     draft.write_text(filled(draft.read_text()))
     assert describe("--like", draft) == 0
-    keys, _ = read_sidecar(tmp_path / "b.yaml", SCHEMA)
+    keys, _ = read_sidecar(tmp_path / "b.yaml")
     for face in ("lower", "upper"):
         confirmed = of_face(keys, face)["confirmed"]
         own = read_scan(tmp_path / f"b.{face}.txt", of_face(keys, face))

@@ -5,13 +5,10 @@ import re
 import numpy as np
 import pytest
 import yaml
-from places import ROOT
 
 from fractalcontact.commands.new_study import main
 from fractalcontact.study.checks import resolve_study
 from fractalcontact.study.sidecar import sidecar_of_matrix
-
-SCHEMA = ROOT / "config/schema/study.schema.yaml"
 
 
 @pytest.fixture
@@ -22,7 +19,7 @@ def home(tmp_path, monkeypatch):
 
 
 def new(*arguments):
-    return main([*map(str, arguments), "--schema", str(SCHEMA)])
+    return main([*map(str, arguments)])
 
 
 def self_describing(folder, name, cells=12):
@@ -33,7 +30,7 @@ def self_describing(folder, name, cells=12):
 
 def resolved(path):
     config = yaml.safe_load(path.read_text())
-    return config, resolve_study(config, yaml.safe_load(SCHEMA.read_text()), str(path))
+    return config, resolve_study(config, str(path))
 
 
 @pytest.mark.parametrize("make", [True, False])
@@ -107,7 +104,7 @@ def test_hostile_names_of_files_and_folder_stay_words(home, capsys):
     assert new("--scans", folder.name) == 0
     config = yaml.safe_load((home / "config/mine.yaml").read_text())
     assert config["scans"] == folder.name
-    study = resolve_study(config, yaml.safe_load(SCHEMA.read_text()), "mine", leave_out=True)
+    study = resolve_study(config, "mine", leave_out=True)
     assert set(study.settings) >= {"null", "1e3"}
     assert len(study.settings) == 4
     told = capsys.readouterr().out

@@ -1,4 +1,4 @@
-"""scans/README.md: short, its table of keys that of the schema."""
+"""scans/README.md: short, with complete examples."""
 
 import yaml
 from places import ROOT
@@ -7,26 +7,6 @@ from fractalcontact.scan.options import ScanOptions
 from fractalcontact.scan.stated import Needs, required_keys
 
 README = (ROOT / "scans/README.md").read_text()
-SCHEMA = yaml.safe_load((ROOT / "config/schema/study.schema.yaml").read_text())
-MARKS = "<!-- keys: from config/schema/study.schema.yaml -->\n", "\n<!-- end of keys -->"
-#: Keys of contact maps, which have a section of their own.
-OF_MAPS = ("threshold", "outline", "series", "x", "y", "cells", "load")
-
-
-def table():
-    """Keys of a sidecar with their descriptions, as the schema has them."""
-    rows = ["| key | meaning |", "|---|---|"]
-    for key, stated in SCHEMA["$defs"]["scan"]["properties"].items():
-        described = SCHEMA["$defs"].get(stated.get("$ref", "").rpartition("/")[2], {}) | stated
-        if key not in OF_MAPS:
-            rows.append(f"| `{key}` | {described['description']} |")
-    return "\n".join(rows)
-
-
-def test_the_table_of_keys_is_that_of_the_schema():
-    start, end = MARKS
-    written = README[README.index(start) + len(start) : README.index(end)]
-    assert written == table()
 
 
 def test_it_is_a_reference_of_two_hundred_lines():

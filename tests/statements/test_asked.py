@@ -25,12 +25,11 @@ def chosen_for(study, name):
 
 
 def test_a_statement_that_there_is_not_is_refused_with_the_nearest(paper):
-    schema = yaml.safe_load((ROOT / "config/schema/study.schema.yaml").read_text())
-    check_study(paper, schema, "paper.yaml")
+    check_study(paper, "paper.yaml")
     paper["embedded"]["joint_2.1"]["chosen_for"] = {"area_fall": "by hand"}
     words = r"paper.yaml: embedded.joint_2.1.chosen_for: no statement 'area_fall'.*'area_falls'\?"
     with pytest.raises(InputError, match=words):
-        check_study(paper, schema, "paper.yaml")
+        check_study(paper, "paper.yaml")
 
 
 def test_the_twins_were_chosen_for_their_plateaus(paper):

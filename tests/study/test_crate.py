@@ -13,7 +13,7 @@ from fractalcontact.study.crate import FILE, Workflow, write_crate
 WORKFLOW = Workflow(
     folder=ROOT,
     main="Snakefile",
-    parts=("workflow/rules/*.smk", "config/schema/*.yaml", "LICENSE"),
+    parts=("workflow/rules/*.smk", "config/schema/*.json", "LICENSE"),
     language="Snakemake",
     url="https://snakemake.github.io",
     version="9.0",

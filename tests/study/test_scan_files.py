@@ -5,15 +5,11 @@ import re
 import unicodedata
 
 import pytest
-import yaml
-from places import ROOT
 
 from fractalcontact.core.errors import InputError
 from fractalcontact.core.file_names import specimen_name
 from fractalcontact.study.checks import read_scans
 from fractalcontact.study.scan_files import folder_notes, list_scans
-
-SCHEMA = yaml.safe_load((ROOT / "config/schema/study.schema.yaml").read_text())
 
 
 def find_scans(folder):
@@ -211,13 +207,13 @@ def test_files_of_coordinates_belong_to_their_map(tmp_path):
         (tmp_path / name).write_text("1")
     sidecar, config = tmp_path / "film.yaml", {"study": "films", "scans": str(tmp_path)}
     sidecar.write_text("kind: contact-map\nx: film_x.csv\ny: film_y.csv\n")
-    found, _, refused = read_scans(config, SCHEMA)
+    found, _, refused = read_scans(config)
     assert refused == {}
     assert sorted(found) == ["film", "other", "slab"]
     assert [path.name for path in found["film"].files] == ["film.csv", "film_x.csv", "film_y.csv"]
     assert found["slab"].files == (tmp_path / "slab.csv",)
     sidecar.write_text("kind: contact-map\nx: absent.csv\ny: film_y.csv\n")
-    refused = read_scans(config, SCHEMA)[2]
+    refused = read_scans(config)[2]
     assert "x: no file absent.csv beside it" in str(refused["film"])
 
 

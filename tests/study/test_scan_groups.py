@@ -1,15 +1,11 @@
 """Specimens in folders of groups, or named by a table: names, groups, what each is told, errors."""
 
-from pathlib import Path
-
 import pytest
-import yaml
 
 from fractalcontact.core.errors import InputError
 from fractalcontact.study.checks import resolve_study
 from fractalcontact.study.scan_groups import FOLDERS, grouped_notes, list_grouped
 
-SCHEMA = yaml.safe_load((Path(__file__).parents[2] / "config/schema/study.schema.yaml").read_text())
 STUDY = {
     "study": "test",
     "materials": {"rock": {"modulus": "20 GPa", "poisson": 0.2}},
@@ -25,7 +21,7 @@ def touch(folder, *names):
 
 
 def study(folder, **keys):
-    return resolve_study({**STUDY, "scans": str(folder), **keys}, SCHEMA, "test.yaml")
+    return resolve_study({**STUDY, "scans": str(folder), **keys}, "test.yaml")
 
 
 @pytest.fixture
@@ -167,7 +163,6 @@ def test_a_bad_row_leaves_out_itself_alone(table):
     table.write_text("file,group\na/s1.npy,x\na/s3.npy,y\n")
     found = resolve_study(
         {**STUDY, "scans": str(table.parent / "scans"), "groups": str(table)},
-        SCHEMA,
         "test.yaml",
         leave_out=True,
     )

@@ -9,7 +9,6 @@ from places import ROOT
 from fractalcontact.core.errors import InputError
 from fractalcontact.study.checks import resolve_study
 
-SCHEMA = yaml.safe_load((ROOT / "config/schema/study.schema.yaml").read_text())
 PAPER = yaml.safe_load((ROOT / "config/paper.yaml").read_text())
 
 
@@ -50,7 +49,7 @@ IDLE = [
 def test_a_key_that_changes_nothing_is_refused(study, tmp_path, names, text, key, why):
     scans(tmp_path, text, *names)
     with pytest.raises(InputError, match=rf"rock\.yaml: key '{key}' has no meaning .*{why}"):
-        resolve_study(study, SCHEMA, "here")
+        resolve_study(study, "here")
 
 
 @pytest.mark.parametrize(
@@ -65,7 +64,7 @@ def test_a_key_that_changes_nothing_is_refused(study, tmp_path, names, text, key
 )
 def test_keys_that_change_something_are_not(study, tmp_path, names, text):
     scans(tmp_path, text, *names)
-    assert list(resolve_study(study, SCHEMA, "here").scans) == ["rock"]
+    assert list(resolve_study(study, "here").scans) == ["rock"]
 
 
 @pytest.mark.parametrize("key", ["map_load", "dilatancy_loads"])
@@ -77,7 +76,7 @@ def test_loads_of_a_sidecar_do_not_blame_the_study(study, tmp_path, key):
         study["defaults"].pop(other, None)
     scans(tmp_path, "loads: [1 kN, 2 kN]", *ONE)
     with pytest.raises(InputError) as error:
-        resolve_study(study, SCHEMA, "here.yaml")
+        resolve_study(study, "here.yaml")
     words = str(error.value)
     assert words.startswith(f"{tmp_path / 'rock.yaml'}: loads: ")
     assert (
@@ -87,7 +86,7 @@ def test_loads_of_a_sidecar_do_not_blame_the_study(study, tmp_path, key):
         tmp_path, f"loads: [1 kN]\n{key}: {'[3 kN]' if key == 'dilatancy_loads' else '3 kN'}", *ONE
     )
     with pytest.raises(InputError, match=rf"rock\.yaml: {key}: '3 kN' is not among the loads"):
-        resolve_study(study, SCHEMA, "here.yaml")
+        resolve_study(study, "here.yaml")
 
 
 STRAY = {
@@ -108,8 +107,8 @@ def test_a_scan_with_which_something_is_wrong_is_left_out_alone(study, tmp_path,
     if kind in ("an idle key", "an unknown key"):
         (tmp_path / name).with_suffix(".npy").write_text("")
     with pytest.raises(InputError, match=said):
-        resolve_study(study, SCHEMA, "here")
-    found = resolve_study(study, SCHEMA, "here", leave_out=True)
+        resolve_study(study, "here")
+    found = resolve_study(study, "here", leave_out=True)
     (error,) = found.refused.values()
     assert said in str(error)
     good = {"good"} if kind == "two claims" else {"good", "rock"}

@@ -24,7 +24,6 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-import yaml
 from mutations import spoil
 from places import ROOT, SCANS
 from scan_writers import WRITERS, write
@@ -41,7 +40,6 @@ MAX_MEMORY = 2 * 1024**3
 LONGEST_MESSAGE = 1000
 LONGEST_DRAFT = 6100  # what the reader cuts it to, and what it puts in place
 _LARGEST_SEED = 2_500_000  # bytes of a real file that is worth spoiling a hundred times
-_SCHEMA = yaml.safe_load((ROOT / "config/schema/study.schema.yaml").read_text(encoding="utf-8"))
 _SIDECAR = (
     b"label: granite, tensile crack\nunit_xy: mm\nunit_z: um\nspacing: [0.1 mm, 0.2]\n"
     b"columns: [x, y, 2]\nmissing: -9999\nwindow: 20 mm\nloads: [10 kN, 25 MPa]\n"
@@ -145,7 +143,7 @@ def judge(chosen: Seed, content: bytes, folder: Path) -> Verdict:
 
 def _read(path: Path, chosen: Seed) -> None:
     if chosen.ending == ".yaml":
-        read_sidecar(path, _SCHEMA)
+        read_sidecar(path)
     else:
         read_scan(path, chosen.options)
 

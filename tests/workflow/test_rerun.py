@@ -67,7 +67,7 @@ def test_the_atlas_has_all_stages_of_the_table_and_a_second_run_nothing_to_do(pr
         assert list(group.children) == ([] if STAGES[name].grain == "joint" else ["rock"])
     assert (project / "results/test/specimens.txt").read_text() == "rock\n"
     # Copied, with the words of the schema and the times of the scan changed.
-    append(project, "config/schema/study.schema.yaml")
+    append(project, "config/schema/study.schema.json")
     (project / "scans/rock.npy").touch()
     assert planned(project) == {}
 

@@ -214,7 +214,7 @@ def test_a_changed_version_of_a_library_makes_again_what_imports_it(project):
 
 
 def test_words_alone_solve_nothing(project):
-    append(project / "config/schema/study.schema.yaml", "# a comment\n")
+    append(project / "config/schema/study.schema.json", "\n")
     assert planned(project) == {}
     study = yaml.safe_load((project / STUDY).read_text())
     study["embedded"]["own"]["label"] = "another name for it"

@@ -53,13 +53,12 @@ def read_again():
 
 
 if workflow.is_main_process:
-    schema = yaml.safe_load((ROOT / "config/schema/study.schema.yaml").read_text())
     # What is wrong with one scan stops only that where the user asks so on the command line, which
     # Snakemake itself looks at later.
     keep_going = bool({"-k", "--keep-going"} & set(sys.argv))
     try:
         read_again()
-        STUDY = resolve_study(config, schema, SOURCE, leave_out=keep_going)
+        STUDY = resolve_study(config, SOURCE, leave_out=keep_going)
     except InputError as error:
         raise WorkflowError(str(error))
 else:

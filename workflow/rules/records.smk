@@ -59,7 +59,7 @@ WORKFLOW = crate.Workflow(
     folder=ROOT,
     main="Snakefile",
     parts=(
-        *("workflow/*.py", "workflow/rules/*.smk", "workflow/scripts/*.py", "config/schema/*.yaml"),
+        *("workflow/*.py", "workflow/rules/*.smk", "workflow/scripts/*.py", "config/schema/*.json"),
         *("environment.yml", "requirements.lock", "CITATION.cff", "LICENSE"),
     ),
     language="Snakemake",

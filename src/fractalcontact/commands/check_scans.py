@@ -84,17 +84,14 @@ class Checked:
     refusal: str = ""
 
 
-def check_scans(
-    folder: Path | str, study: Mapping, schema: Mapping, source: str
-) -> Iterator[Checked]:
+def check_scans(folder: Path | str, study: Mapping, source: str) -> Iterator[Checked]:
     """Go through all scans of a folder, one after the other.
 
     Parameters
     ----------
     folder : path-like
     study : mapping
-        A study that passed its schema.
-    schema : mapping
+        A study that :func:`study.checks.check_study` has passed.
     source : str
         The file the study came from, for errors.
 
@@ -104,7 +101,7 @@ def check_scans(
         By name, numbers in names as numbers; what is wrong with one does not keep the others from
         being read.
     """
-    scans, stated, refused = read_scans({**study, "scans": folder}, schema)
+    scans, stated, refused = read_scans({**study, "scans": folder})
     for name in sorted(scans.keys() | refused.keys(), key=natural_key):
         scan = scans.get(name)
         try:
@@ -330,22 +327,19 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser = argparse.ArgumentParser(prog="check_scans", description=__doc__.split("\n")[0])
     parser.add_argument("folder", nargs="?", help="default: the study's")
     parser.add_argument("--study", default="config/paper.yaml")
-    parser.add_argument("--schema", default="config/schema/study.schema.yaml")
     options = parser.parse_args(arguments)
     # Names may hold what a terminal's encoding does not.
     sys.stdout.reconfigure(errors="backslashreplace")  # type: ignore[union-attr]  # a text file
-    study, schema = read_study(options.study), read_study(options.schema)
-    check_study(study, schema, options.study)
-    return _print_table(
-        Path(options.folder or study.get("scans") or "scans"), study, schema, options.study
-    )
+    study = read_study(options.study)
+    check_study(study, options.study)
+    return _print_table(Path(options.folder or study.get("scans") or "scans"), study, options.study)
 
 
-def _print_table(folder, study, schema, source):
+def _print_table(folder, study, source):
     """Print the content of each file of a folder; 1 if one was refused."""
     counts = {"ok": 0, "with warnings": 0, "refused": 0}
     _write([_row({key: key for key in COLUMNS}), "-" * WIDTH])
-    for checked in check_scans(folder, study, schema, source):
+    for checked in check_scans(folder, study, source):
         state = "refused" if checked.refusal else "with warnings" if checked.warnings else "ok"
         counts[state] += 1
         _write(table_lines(checked))

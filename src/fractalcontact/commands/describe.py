@@ -21,6 +21,7 @@ from ..core.labels import natural_key, percent, printable
 from ..core.units import length_factor
 from ..gridding.measured import Measured
 from ..scan.draft import written
+from ..scan.keys import ScanKeys
 from ..scan.options import FACES, NO_MARK, ScanOptions, of_face
 from ..scan.raw import IncompleteSidecar
 from ..scan.read import measure
@@ -101,18 +102,16 @@ class Face:
     among: list[float] = field(default_factory=list)
 
 
-def describe(scan: ScanFiles, schema: Mapping, *, always: bool = False) -> Described:
+def describe(scan: ScanFiles, *, always: bool = False) -> Described:
     """Draft the sidecar of a scan and draw what would be read.
 
     Parameters
     ----------
     scan : ScanFiles
-    schema : mapping
-        Of a study.
     always : bool, optional
         Draw also what needs no draft.
     """
-    stated = _stated(scan, schema)
+    stated = _stated(scan)
     faces = {"lower": scan.lower} | ({"upper": scan.upper} if scan.upper else {})
     drafts = {face: _draft_of(path, of_face(stated, face)) for face, path in faces.items()}
     shown = {face: _read_as_drafted(path, stated, face, drafts[face][1])
@@ -134,14 +133,14 @@ def describe(scan: ScanFiles, schema: Mapping, *, always: bool = False) -> Descr
     return described
 
 
-def _stated(scan: ScanFiles, schema: Mapping) -> dict[str, Any]:
+def _stated(scan: ScanFiles) -> dict[str, Any]:
     """Scan keys of a sidecar, or of a draft that its owner may have mended."""
     if scan.sidecar is not None:
-        return read_sidecar(scan.sidecar, schema)[0]
+        return read_sidecar(scan.sidecar)[0]
     draft = _beside(scan, ".yaml")
     if not draft.is_file():
         return {}
-    keys = schema["$defs"]["scan"]["properties"]
+    keys = ScanKeys.model_fields
     document = {key: value for key, value in read_yaml(draft).items() if value is not None}
     return {key: document[key] for key in document if key in keys and key != "confirmed"}
 
@@ -346,16 +345,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--file", type=Path, help="this scan alone, with its picture in any case")
     parser.add_argument("--like", type=Path, help="sidecar or draft that holds for all alike")
     parser.add_argument("--study", default="config/paper.yaml")
-    parser.add_argument("--schema", default="config/schema/study.schema.yaml")
     chosen = parser.parse_args(arguments)
     sys.stdout.reconfigure(errors="backslashreplace")  # type: ignore[union-attr]  # a text file
-    study, schema = read_study(chosen.study), read_study(chosen.schema)
+    study = read_study(chosen.study)
     one = chosen.file or chosen.like
     folder = one.parent if one else Path(chosen.folder or study.get("scans") or "scans")
-    return _run(folder, schema, chosen)
+    return _run(folder, chosen)
 
 
-def _run(folder: Path, schema: Mapping, chosen: argparse.Namespace) -> int:
+def _run(folder: Path, chosen: argparse.Namespace) -> int:
     scans, refused = list_scans(folder)
     names = sorted(scans, key=natural_key)
     if chosen.file:
@@ -371,7 +369,7 @@ def _run(folder: Path, schema: Mapping, chosen: argparse.Namespace) -> int:
     for name in names:
         scan = scans[name]
         if like is None:
-            row = describe_or_refuse(scan, schema, always=chosen.file is not None)
+            row = describe_or_refuse(scan, always=chosen.file is not None)
         elif scan.sidecar is None and scan.lower.suffix == like[1].lower.suffix:
             row = write_alike(scan, like[0])
         else:
@@ -389,10 +387,10 @@ def _run(folder: Path, schema: Mapping, chosen: argparse.Namespace) -> int:
     return int("refused" in counts)
 
 
-def describe_or_refuse(scan: ScanFiles, schema: Mapping, *, always: bool = False) -> Described:
+def describe_or_refuse(scan: ScanFiles, *, always: bool = False) -> Described:
     """Report on a scan as of :func:`describe`, or the sentence by which it is refused."""
     try:
-        return describe(scan, schema, always=always)
+        return describe(scan, always=always)
     except InputError as error:
         return Described(scan.name, "refused", sentences=[str(error)])
 

@@ -7,7 +7,7 @@ import argparse
 import math
 import string
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 
 import yaml
@@ -15,14 +15,14 @@ import yaml
 from ..core.atomic import atomic_write
 from ..core.errors import InputError, said_in_one_line
 from ..core.labels import listed, natural_key
-from ..study.documents import read_study, study_name
+from ..study.documents import study_name
 from ..study.scan_files import list_scans
 from .describe import Described, describe_or_refuse, row_lines
 
 TEMPLATE = Path(__file__).with_suffix(".yaml")
 
 
-def new_study(path: Path, scans: Path, schema: Mapping) -> list[Described]:
+def new_study(path: Path, scans: Path) -> list[Described]:
     """Write the study of a folder's scans, and draft sidecars beside them.
 
     Parameters
@@ -31,8 +31,6 @@ def new_study(path: Path, scans: Path, schema: Mapping) -> list[Described]:
         The study's file; its stem is the study's name.
     scans : Path
         The folder.
-    schema : mapping
-        Of a study.
 
     Returns
     -------
@@ -53,7 +51,7 @@ def new_study(path: Path, scans: Path, schema: Mapping) -> list[Described]:
             "formats), then: make new"
         )
     rows = [Described(key, "refused", sentences=[str(why)]) for key, why in refused.items()]
-    rows += [describe_or_refuse(found[key], schema) for key in sorted(found, key=natural_key)]
+    rows += [describe_or_refuse(found[key]) for key in sorted(found, key=natural_key)]
     text = string.Template(TEMPLATE.read_text(encoding="utf-8")).substitute(
         name=path.stem,
         scans=yaml.safe_dump({"scans": str(scans)}, width=math.inf).rstrip(),
@@ -89,11 +87,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--name", default="mine", help="name of the study")
     parser.add_argument("--scans", type=Path, default=Path("scans"), help="folder of the scans")
     parser.add_argument("--config", type=Path, default=Path("config"), help="folder of the studies")
-    parser.add_argument("--schema", default="config/schema/study.schema.yaml")
     chosen = parser.parse_args(arguments)
     sys.stdout.reconfigure(errors="backslashreplace")  # type: ignore[union-attr]  # a text file
     path = chosen.config / f"{study_name({'study': chosen.name}, 'NAME')}.yaml"
-    rows = new_study(path, chosen.scans, read_study(chosen.schema))
+    rows = new_study(path, chosen.scans)
     lines = [line for row in rows for line in row_lines(row)]
     lines += [f"{path}: written", *next_steps(path, chosen.scans, rows)]
     sys.stdout.write("\n".join(lines) + "\n")

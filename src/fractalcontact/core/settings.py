@@ -1,18 +1,56 @@
-"""Settings of a study, a class for each reader: the function of a stage names the one it takes.
+"""Settings of a specimen, a class for each reader: the function of a stage names the one it takes.
 
-Fields have the names of the keys of config/schema/study.schema.yaml; lengths are in mm, forces in
-N, pressures in MPa, angles in degrees, and None stands for "auto".
+A field with :func:`core.keys.key` is a key that a study or a sidecar may state; the others follow
+from them. Lengths are in mm, forces in N, pressures in MPa, angles in degrees, and None stands for
+"auto".
 """
 
 from collections.abc import Mapping
 from dataclasses import dataclass, fields, is_dataclass
-from typing import Any, TypeVar, get_args, get_origin, get_type_hints
+from typing import Annotated, Any, Literal, TypeVar, get_args, get_origin, get_type_hints
 
-#: Value and kind, "force" (N) or "pressure" (MPa).
-Load = tuple[float, str]
-#: Smallest and largest length, mm.
-Range = tuple[float, float] | None
+from pydantic import Field
+
+from .keys import (
+    LINE,
+    MAX_NODES_PER_SIDE,
+    Auto,
+    Direction,
+    Given,
+    Length,
+    Load,
+    Offset,
+    Pressure,
+    Range,
+    different,
+    key,
+)
+
 S = TypeVar("S")
+_Pair = Annotated[list[Length], Field(min_length=2, max_length=2)]
+_Loads = Annotated[list[Load], Field(min_length=1)]
+_Directions = Annotated[list[Direction], Field(min_length=1), *different]
+_Multiple = Annotated[
+    int, Field(ge=1, le=MAX_NODES_PER_SIDE, description="a whole number from 1 to 16384")
+]
+_Resolutions = Annotated[
+    list[_Multiple],
+    Field(min_length=1),
+    *different,
+    key(
+        "whole multiples k of the scan's spacing, such as [1, 2, 4, 8]",
+        doc="multiples k of the scan's spacing; every k-th node is kept",
+        unsaid="required in `defaults`",
+    ),
+]
+_ContactDirections = Annotated[
+    _Directions,
+    key(
+        "sliding directions whose contact is solved, some of E, N, W, S",
+        doc="those of them whose contact is solved; most figures show the first",
+        unsaid="`directions`",
+    ),
+]
 #: Columns of each kind of laboratory test: that of the curve's axis, then what is measured over it.
 TEST_COLUMNS = {
     "closure": ("pressure", "displacement"),
@@ -53,16 +91,99 @@ class SpecimenSettings:
     """Settings of the scan, the window and the offsets."""
 
     known_dimension: float
-    opposite: str
-    outliers: str
-    fill_holes: int
-    window: float | list[float] | None
-    window_centre: list[float] | None
-    directions: list[str]
-    contact_directions: list[str]
-    offsets: list[float] | None
-    resolutions: list[int]
-    surface_range: Range
+    opposite: Annotated[
+        Literal["match", "flat"],
+        key(
+            "match (the other face fits perfectly) or flat (a rigid plane)",
+            doc=(
+                "the face that was not scanned: `match` fits perfectly, `flat` is a rigid plane"
+                " (the surface then does not slide). Refused where both were scanned"
+            ),
+            unsaid="`match`",
+            default="match",
+        ),
+    ]
+    outliers: Annotated[
+        Literal["keep", "mask", "fill"],
+        key(
+            (
+                "keep (outlying cells stay), mask (they become missing) or fill (they, lone "
+                "spikes and deep overlaps are filled)"
+            ),
+            doc=(
+                "`keep`: outlying cells are counted and shown, not altered. `mask`: they become"
+                " missing. `fill`: outlying cells, lone spikes and deep overlaps of two faces "
+                "(`scans/README.md`) are filled from the cells around"
+            ),
+            unsaid="`keep`",
+            default="keep",
+        ),
+    ]
+    fill_holes: Annotated[
+        int,
+        Field(ge=0, le=MAX_NODES_PER_SIDE),
+        key(
+            "rows and columns of the largest hole to be filled, a whole number of cells from 0",
+            doc="side of the largest hole that is filled, rows or columns of cells; 0 fills none",
+            default=0,
+            unsaid="0",
+        ),
+    ]
+    window: Annotated[
+        Auto[Length],
+        key(
+            "auto, or the side of the square window such as 20 mm",
+            doc=(
+                "side of the square window, or `auto`: half of the largest square without "
+                "holes, so that it can slide"
+            ),
+            unsaid="`auto`",
+        ),
+    ]
+    window_centre: Annotated[
+        _Pair | None,
+        Given(),
+        key(
+            "two lengths [x, y] in the scan's own coordinates",
+            doc="`[x, y]` in the scan's own coordinates, within the scan",
+            unsaid="the middle",
+        ),
+    ]
+    directions: Annotated[
+        _Directions,
+        key(
+            "sliding directions of the rigid dilatancy, some of E, N, W, S",
+            doc="sliding directions of the rigid dilatancy, some of `E, N, W, S`",
+            unsaid="all four",
+            default=["E", "N", "W", "S"],
+        ),
+    ]
+    contact_directions: _ContactDirections
+    offsets: Annotated[
+        Auto[Annotated[list[Offset], Field(min_length=1)]],
+        key(
+            "auto, or a list of shear offsets v such as [0.1 mm, 0.3 mm]",
+            doc=(
+                "shear offsets v, rounded to whole cells of the scan; or `auto`: eight between "
+                "one cell and the largest possible, and zero where two faces were scanned"
+            ),
+            unsaid="`auto`",
+        ),
+    ]
+    resolutions: _Resolutions
+    surface_range: Annotated[
+        Range,
+        key(
+            "auto, or two lengths [smallest, largest] such as [0.2 mm, 2 mm]",
+            doc=(
+                "`[smallest, largest]` lag of the Delta_g fits, or `auto`: 4 cells to an eighth"
+                " of the side, or to a quarter of a roll-off that is seen (then from 2 cells if"
+                " need be). A stated range is used as it is, with a warning if it reaches "
+                "beyond that quarter"
+            ),
+            unsaid="`auto`",
+        ),
+    ]
 
 
 @dataclass(frozen=True)
@@ -70,18 +191,53 @@ class JointSettings:
     """Settings of every contact solve of a joint."""
 
     material: Elastic
-    loads: list[Load]
-    dilatancy_loads: list[Load]
-    resolutions: list[int]
-    contact_directions: list[str]
-    map_offset: float | None
+    loads: Annotated[
+        _Loads,
+        key(
+            "a list of forces (10 kN) or nominal pressures (25 MPa)",
+            doc=(
+                "forces, or nominal pressures F / A_0. A specimen leaves out pressures in "
+                "`defaults` of 0.95 H and more, which its hardness cannot carry"
+            ),
+            unsaid="required in `defaults`",
+        ),
+    ]
+    dilatancy_loads: Annotated[
+        _Loads,
+        key(
+            "loads, all of them in loads, whose elastic dilatancy is drawn",
+            doc=(
+                "loads of the elastic dilatancy curves, of strength and of sub-windows, among "
+                "`loads`"
+            ),
+            unsaid="the three largest",
+        ),
+    ]
+    resolutions: _Resolutions
+    contact_directions: _ContactDirections
+    map_offset: Annotated[
+        Length | None,
+        Given(),
+        key(
+            "a number with its unit, such as 20 mm, 10 kN or 25 MPa",
+            doc="offset of the contact maps over resolutions and loads",
+            unsaid="0 of two scanned faces, else the third",
+        ),
+    ]
 
 
 @dataclass(frozen=True)
 class ContactSettings(JointSettings):
     """Settings that choose the contact states."""
 
-    map_load: Load
+    map_load: Annotated[
+        Load,
+        key(
+            "a number with its unit, such as 20 mm, 10 kN or 25 MPa",
+            doc="load of the contact maps, among `loads`",
+            unsaid="the largest",
+        ),
+    ]
 
     @property
     def drawn_loads(self) -> list[Load]:
@@ -101,10 +257,49 @@ class WindowSettings(JointSettings):
 class StateSettings(ContactSettings):
     """Settings of the analysis of contact states: curves, laws, domains."""
 
-    box_range: Range
-    scaling_range: Range
-    hyperbola_range: list[Load] | None
-    seating_pressure: float
+    box_range: Annotated[
+        Range,
+        key(
+            "auto, or two lengths [smallest, largest] such as [0.2 mm, 2 mm]",
+            doc=(
+                "`[smallest, largest]` box of the box counts, or `auto`: all box sizes between "
+                "the cut-offs"
+            ),
+            unsaid="`auto`",
+        ),
+    ]
+    scaling_range: Annotated[
+        Range,
+        key(
+            "auto, or two lengths [smallest, largest] such as [0.2 mm, 2 mm]",
+            doc="`[smallest, largest]` spacing s of the fits of A_r(s), or `auto` for all",
+            unsaid="`auto`",
+        ),
+    ]
+    hyperbola_range: Annotated[
+        Auto[Annotated[list[Load], Field(min_length=2, max_length=2)]],
+        key(
+            "auto, or two loads [smallest, largest] between which closure laws are fitted",
+            doc=(
+                "`[smallest, largest]` load of the closure fits, or `auto` for all with 10 "
+                "nodes or more"
+            ),
+            unsaid="`auto`",
+        ),
+    ]
+    seating_pressure: Annotated[
+        Pressure,
+        key(
+            "a number with its unit, such as 20 mm, 10 kN or 25 MPa",
+            doc=(
+                "nominal pressure from which closure and its laws are counted, as a laboratory "
+                "seats its specimen. The seat is, at each offset, the first of `loads` from "
+                "this pressure on with 10 nodes or more"
+            ),
+            unsaid="`0.25 MPa`",
+            default="0.25 MPa",
+        ),
+    ]
 
 
 @dataclass(frozen=True)
@@ -181,8 +376,27 @@ class ReportSettings(StrengthSettings):
 
     material: Material
     opposite: str
-    label: str
-    group: str
+    label: Annotated[
+        str,
+        Field(pattern=LINE % 200),
+        key(
+            "what it is, in up to 200 characters on one line, without $",
+            doc="what it is, in words: one line of up to 200 characters, without `$`",
+            unsaid="its name",
+        ),
+    ]
+    group: Annotated[
+        str,
+        Field(pattern=LINE % 100),
+        key(
+            "the group of specimens it belongs to, up to 100 characters on one line, without $",
+            doc=(
+                "the group of specimens it belongs to, up to 100 characters: groups are "
+                "compared in figures and in `study_comparison` of the atlas"
+            ),
+            unsaid="its folder's name with `groups: folders`, else none",
+        ),
+    ]
     chosen_for: dict[str, str]
     capped_variant: bool
 
@@ -192,7 +406,20 @@ class Settings(SpecimenSettings, StateSettings, WindowSettings, MeasuredSettings
     """All settings of a specimen, as the atlas keeps them; ``twins`` of a scan, 0 for none."""
 
     material: Material
-    twins: int
+    twins: Annotated[
+        Literal[0] | Annotated[int, Field(ge=3, le=1000)],
+        key(
+            "0 for none, or a number of twins of the scan from 3 to 1000",
+            doc=(
+                "of a scan: number of twins (0, or 3 or more), random surfaces with the "
+                "measured spectrum, solved in the reported direction and offset alone. Their "
+                "spread says how far the scan's numbers may differ from those of the whole "
+                "joint ([Twins of a scan](../docs/conventions.md#twins-of-a-scan)). In "
+                "`defaults` it concerns scans alone; an embedded specimen has `realisations`"
+            ),
+            unsaid="0",
+        ),
+    ]
 
 
 @dataclass(frozen=True)

@@ -6,9 +6,7 @@ import re
 from functools import cache, lru_cache
 from typing import Any
 
-import pint
-
-from roughcontact.arguments import MAX_INPUT, MIN_INPUT
+from roughcontact.limits import MAX_INPUT, MIN_INPUT
 
 from .errors import InputError
 
@@ -51,7 +49,9 @@ class _OutOfRange(InputError):
 
 
 @cache
-def _registry() -> pint.UnitRegistry:
+def _registry() -> Any:
+    import pint  # with numpy, which a stage's table of settings does without
+
     return pint.UnitRegistry(cache_folder=None)
 
 
@@ -80,14 +80,17 @@ def quantity(text: Any, kind: str, where: str) -> float:
     if not isinstance(text, str):
         raise InputError(f"{where}: {text!r} has no unit; {_wanted(kind)}")
     try:
-        return _magnitude(text, kind)
+        return magnitude(text, kind)
     except InputError as error:
         raise type(error)(f"{where}: {error}") from None
 
 
 @lru_cache(maxsize=4096)
-def _magnitude(text: str, kind: str) -> float:
-    """A quantity, kept: a campaign states the same few hundreds of times over."""
+def magnitude(text: str, kind: str) -> float:
+    """A quantity, with errors that name no place.
+
+    Values are kept: a campaign states the same few hundreds of times over.
+    """
     unit, wanted = PROGRAM_UNITS[kind], _wanted(kind)
     if len(text) > _LONGEST or not _QUANTITY.fullmatch(text):
         raise InputError(f"{text[:_LONGEST]!r} is not a number with a unit; {wanted}")
@@ -97,7 +100,7 @@ def _magnitude(text: str, kind: str) -> float:
         value = _registry()(text)
     except Exception as error:  # pint raises half a dozen unrelated types for malformed text
         raise InputError(f"cannot read {text!r} ({error}); {wanted}") from None
-    if not isinstance(value, pint.Quantity) or value.unitless:
+    if not isinstance(value, _registry().Quantity) or value.unitless:
         raise InputError(f"{text!r} has no unit; {wanted}")
     if not value.check(_DIMENSIONS.get(kind, f"[{kind}]")):
         raise InputError(f"{text!r} is not {_article(kind)} {kind}; {wanted}")
@@ -170,30 +173,27 @@ def load(text: Any, where: str) -> tuple[float, str]:
     InputError
         If it is neither.
     """
-    if isinstance(text, str):
+    try:
+        return load_of(text)
+    except InputError as error:
+        raise type(error)(f"{where}: {error}") from None
+
+
+def load_of(text: Any) -> tuple[float, str]:
+    """A force or a nominal pressure and its kind, with errors that name no place."""
+    for kind in ("force", "pressure") if isinstance(text, str) else ():
         try:
-            return _value_and_kind(text)
-        except _OutOfRange as error:
-            raise type(error)(f"{where}: {error}") from None
+            return magnitude(text, kind), kind
+        except _OutOfRange:
+            raise
         except InputError:
-            pass
+            continue
     raise InputError(
-        f"{where}: {text!r} is neither a force nor a nominal pressure; "
-        "write for example '10 kN' or '25 MPa'"
+        f"{text!r} is neither a force nor a nominal pressure; write for example '10 kN' or '25 MPa'"
     )
 
 
-@lru_cache(maxsize=4096)
-def _value_and_kind(text: str) -> tuple[float, str]:
-    try:
-        return _magnitude(text, "force"), "force"
-    except _OutOfRange:
-        raise
-    except InputError:
-        return _magnitude(text, "pressure"), "pressure"
-
-
-def share(value: Any, where: str) -> float:
+def share_of(value: Any) -> float:
     """A share between 0 and 1, as a number or in per cent: 0.01 or "1 %".
 
     Raises
@@ -207,7 +207,7 @@ def share(value: Any, where: str) -> float:
         found = float(number) / (100 if text.endswith("%") else 1)
         if 0 < found < 1:
             return found
-    raise InputError(f"{where}: {text[:_LONGEST]!r} is no share; write for example '1 %' or 0.01")
+    raise InputError(f"{text[:_LONGEST]!r} is no share; write for example '1 %' or 0.01")
 
 
 def length_factor(unit: str, where: str) -> float:

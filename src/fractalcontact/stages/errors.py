@@ -5,7 +5,7 @@ import xarray as xr
 from ..core.labels import cf_attrs
 from ..core.settings import Solver, StateSettings
 from ..core.tolerance import ACCURACY
-from ..core.units import share
+from ..core.units import share_of
 from ..error_budget.error_budget import error_budget
 from ..mechanics.branches import joint_branches
 from ..mechanics.loading import JointLoading
@@ -61,6 +61,6 @@ def asked(solver: Solver) -> dict[str, tuple]:
 
     All states, at full cost, ask nothing of the grid: the usual error stands for it.
     """
-    asks = solver.accuracy["closure"] if solver.accuracy else share(ACCURACY["closure"], "closure")
+    asks = solver.accuracy["closure"] if solver.accuracy else share_of(ACCURACY["closure"])
     words = cf_attrs("1", "requested error of the closure, a fraction")
     return {"closure_accuracy": ((), asks, words)}

@@ -9,15 +9,17 @@ from ..core.claims import claims_of
 from ..core.directions import APERTURE
 from ..core.errors import InputError
 from ..core.file_names import specimen_name
+from ..core.keys import nearest, shortened, validate
 from ..core.settings import Settings, Solver
+from ..scan.keys import ScanKeys
 from ..scan.options import CONTACT_MAP, coordinate_files
 from .configuration import resolve_embedded, resolve_roll_off, resolve_settings, solver_settings
 from .figure_list import figures_of
 from .idle_keys import refuse_idle_keys
+from .keys import SidecarKeys, StudyKeys
 from .measured import require_files, test_files
 from .scan_files import ScanFiles, refuse_outside_link
 from .scan_groups import list_grouped
-from .schema import nearest, shortened, validate
 from .sidecar import is_contact_map, read_yaml
 
 #: Other words for the kinds of a file.
@@ -52,17 +54,13 @@ class Study:
     refused: dict[str, InputError] = field(default_factory=dict)
 
 
-def resolve_study(
-    config: Mapping, schema: Mapping, source: str, *, leave_out: bool = False
-) -> Study:
+def resolve_study(config: Mapping, source: str, *, leave_out: bool = False) -> Study:
     """Check a study with its scan files and sidecars, and work out all settings.
 
     Parameters
     ----------
     config : mapping
         The study as read from YAML.
-    schema : mapping
-        config/schema/study.schema.yaml.
     source : str
         The file the study came from, for errors.
     leave_out : bool, optional
@@ -73,8 +71,8 @@ def resolve_study(
     InputError
         For the first thing that is wrong.
     """
-    check_study(config, schema, source)
-    scans, stated, refused = read_scans(config, schema)
+    check_study(config, source)
+    scans, stated, refused = read_scans(config)
     folder = config.get("scans", "scans")
     check_names(scans, config, folder, source)
     known = {*scans, *refused, *config.get("embedded", {})}
@@ -103,16 +101,14 @@ def resolve_study(
 
 
 def read_scans(
-    config: Mapping, schema: Mapping
+    config: Mapping,
 ) -> tuple[dict[str, ScanFiles], dict[str, tuple[dict, dict]], dict[str, InputError]]:
     """Scan files of a study with their settings.
 
     Parameters
     ----------
     config : mapping
-        A study that passed the schema.
-    schema : mapping
-        config/schema/study.schema.yaml.
+        A study that :func:`check_study` has passed.
 
     Returns
     -------
@@ -129,8 +125,8 @@ def read_scans(
     for name, scan in scans.items():
         with _refusing(refused, name):
             if scan.shared not in shared:
-                shared[scan.shared] = read_sidecar(scan.shared, schema)
-            said = _stated_of(scan, shared[scan.shared], schema)
+                shared[scan.shared] = read_sidecar(scan.shared)
+            said = _stated_of(scan, shared[scan.shared])
             scans[name] = replace(scan, coordinates=_coordinates(scan, said[0]))
             stated[name] = said
     named = {path for scan in scans.values() for path in scan.coordinates}
@@ -139,10 +135,10 @@ def read_scans(
     return scans, {name: stated[name] for name in stated if name in scans}, refused
 
 
-def _stated_of(scan: ScanFiles, of_group: tuple[dict, dict], schema: Mapping) -> tuple[dict, dict]:
+def _stated_of(scan: ScanFiles, of_group: tuple[dict, dict]) -> tuple[dict, dict]:
     """Keys stated for one specimen; keys of its group need not apply to every member."""
-    of_file = read_sidecar(scan.sidecar, schema)
-    of_row = _split(dict(scan.row), schema, scan.row_of) if scan.row else ({}, {})
+    of_file = read_sidecar(scan.sidecar)
+    of_row = _split(dict(scan.row), scan.row_of) if scan.row else ({}, {})
     own = ({**of_file[0], **of_row[0]}, {**of_file[1], **of_row[1]})
     refuse_idle_keys(scan, *own)
     keys, settings = {**of_group[0], **own[0]}, {**of_group[1], **own[1]}
@@ -181,15 +177,13 @@ def _test_files(
     return files
 
 
-def check_study(config: Mapping, schema: Mapping, source: str) -> None:
-    """Check a study against its schema.
+def check_study(config: Mapping, source: str) -> None:
+    """Check a study: its keys, and whether they go with each other.
 
     Parameters
     ----------
     config : mapping
         The study as read from YAML.
-    schema : mapping
-        config/schema/study.schema.yaml.
     source : str
         The file it came from, for errors.
 
@@ -198,7 +192,7 @@ def check_study(config: Mapping, schema: Mapping, source: str) -> None:
     InputError
         For the first thing that is wrong: the file, the key, what was expected.
     """
-    validate(config, schema, source)
+    validate(StudyKeys, config, source)
     check_names({}, config, None, source)
     for name in config.get("specimens", {}):
         resolve_settings(config, name, {}, source)
@@ -240,7 +234,7 @@ def check_names(
     scans : iterable of str
         Names of the specimens that are scanned.
     config : mapping
-        A study that passed the schema.
+        A study that :func:`check_study` has passed.
     folder : path-like
         Where the scans are, for errors.
     source : str
@@ -270,15 +264,13 @@ def check_names(
             )
 
 
-def read_sidecar(path: Path | None, schema: Mapping) -> tuple[dict, dict]:
+def read_sidecar(path: Path | None) -> tuple[dict, dict]:
     """Scan keys and settings of a sidecar, checked.
 
     Parameters
     ----------
     path : Path or None
         None of a scan that has no sidecar.
-    schema : mapping
-        config/schema/study.schema.yaml.
 
     Returns
     -------
@@ -293,24 +285,16 @@ def read_sidecar(path: Path | None, schema: Mapping) -> tuple[dict, dict]:
     """
     if path is None:
         return {}, {}
-    return _split(read_yaml(path), schema, str(path))
+    return _split(read_yaml(path), str(path))
 
 
-def _split(document: dict, schema: Mapping, source: str) -> tuple[dict, dict]:
+def _split(document: dict, source: str) -> tuple[dict, dict]:
     """Scan keys and settings from a sidecar or a row of a table."""
-    definitions = schema["$defs"]
-    scan_keys = definitions["scan"]["properties"]
-    properties = {**scan_keys, **definitions["settings"]["properties"]}
-    sidecar_schema = {
-        "$defs": definitions,
-        "type": "object",
-        "additionalProperties": False,
-        "properties": properties,
-    }
+    scan_keys = ScanKeys.model_fields
     for key, value in document.items():
         if value is None and key in scan_keys:
             raise InputError(f"{source}: key '{key}' is empty; fill it in")
-    validate(document, sidecar_schema, source)
+    validate(SidecarKeys, document, source)
     document = {**document, **_OLD_KINDS.get(str(document.get("kind")), {})}
     scan = {key: value for key, value in document.items() if key in scan_keys}
     settings = {key: value for key, value in document.items() if key not in scan_keys}

@@ -2,33 +2,32 @@
 
 import math
 from collections.abc import Mapping
+from dataclasses import fields
 from pathlib import Path
 
 from ..core.directions import slides
 from ..core.errors import InputError
+from ..core.keys import MAX_NODES_PER_SIDE, nearest, validate
 from ..core.settings import Material, Settings, Solver
-from ..core.tolerance import ACCURACY, tolerance
-from ..core.units import load, quantity, share
+from ..core.tolerance import tolerance
+from .keys import (
+    AccuracyKeys,
+    EmbeddedKeys,
+    MaterialKeys,
+    RollOffKeys,
+    SettingsKeys,
+    SolverKeys,
+    stated,
+    unsaid_settings,
+)
 from .measured import resolve_tests
 from .scan_files import ScanFiles
-from .schema import nearest
 from .selection import BESIDE_SURFACE, is_capped_variant
 
-#: Nodes per side of an embedded specimen: a surface of that many takes some 35 GB to make.
-MIN_NODES_PER_SIDE, MAX_NODES_PER_SIDE = 2, 16384
-
-#: What a study that does not mention it gets; everything else must be stated.
-SPECIMEN = {
-    "opposite": "match",
-    "outliers": "keep",
-    "fill_holes": 0,
-    "directions": ["E", "N", "W", "S"],
-    "seating_pressure": "0.25 MPa",
-    "twins": 0,
-}
+#: Nodes per side of an embedded specimen.
+MIN_NODES_PER_SIDE = 2
 #: Of its hardness, up to which a specimen carries the loads that the study's defaults name.
 LARGEST_SHARE = 0.95
-SOLVER = {"kernel": "love"}
 #: Tolerance of a study that asks for everything.
 FULL_RTOL = 1e-6
 
@@ -56,52 +55,48 @@ def resolve_settings(
     InputError
         If a quantity has the wrong unit, a material no definition, or a needed key is missing.
     """
-    stated = _Stated(config, name, own, source, scan)
-    opposite = "match" if scan and scan.upper else stated["opposite"]
+    layers = _Layers(config, name, own, source, scan)
+    said = layers.values
+    opposite = "match" if scan and scan.upper else said["opposite"]
     flat = not slides(opposite)
-    directions = ["none"] if flat else stated["directions"]
-    where = stated.where("material")
-    material = _material(config, stated["material"], where, source, scanned=scan is not None)
-    loads = stated.solved_loads(material.hardness)
+    directions = ["none"] if flat else said["directions"]
+    material = _material(config, said["material"], layers.where("material"), scan is not None)
+    loads = layers.solved_loads(material.hardness)
     recipe = config.get("embedded", {}).get(name, {})
-    settings = Settings(
-        label=stated.get("label", recipe.get("label", name)),
-        group=stated.get("group", scan.group if scan else ""),
-        known_dimension=float(recipe.get("dimension", math.nan)),
-        chosen_for=dict(recipe.get("chosen_for", {})),
-        twins=stated.twins(),
-        capped_variant=is_capped_variant(config, name),
-        material=material,
-        opposite=opposite,
-        outliers=stated["outliers"],
-        fill_holes=stated["fill_holes"],
-        window=stated.lengths("window"),
-        window_centre=stated.lengths("window_centre"),
-        directions=directions,
-        contact_directions=directions if flat else stated.get("contact_directions", directions),
-        offsets=[0.0] if flat else stated.lengths("offsets"),
-        loads=loads,
-        resolutions=sorted(stated["resolutions"]),
-        dilatancy_loads=stated.chosen_loads("dilatancy_loads", loads),
-        map_load=stated.chosen_loads("map_load", loads)[-1],
-        map_offset=None if flat else stated.reported_offset(),
-        hyperbola_range=stated.loads("hyperbola_range"),
-        seating_pressure=stated.positive("seating_pressure", "pressure"),
-        surface_range=stated.range("surface_range"),
-        box_range=stated.range("box_range"),
-        scaling_range=stated.range("scaling_range"),
-        measured=resolve_tests(
-            stated.get("measured", {}),
-            stated.where("measured"),
-            scan.lower.parent if scan else Path(config.get("scans") or "."),
-        ),
-    )
-    _refuse_contradictions(settings, stated.where)
+    folder = scan.lower.parent if scan else Path(config.get("scans") or ".")
+    follows = {
+        "label": said.get("label", recipe.get("label", name)),
+        "group": said.get("group", scan.group if scan else ""),
+        "known_dimension": float(recipe.get("dimension", math.nan)),
+        "chosen_for": dict(recipe.get("chosen_for", {})),
+        "twins": layers.twins(),
+        "capped_variant": is_capped_variant(config, name),
+        "material": material,
+        "opposite": opposite,
+        "directions": directions,
+        "contact_directions": directions if flat else said.get("contact_directions", directions),
+        "offsets": [0.0] if flat else said.get("offsets"),
+        "loads": loads,
+        "resolutions": sorted(said["resolutions"]),
+        "dilatancy_loads": layers.chosen_loads("dilatancy_loads", loads),
+        "map_load": layers.chosen_loads("map_load", loads)[-1],
+        "map_offset": None if flat else layers.reported_offset(),
+        "measured": resolve_tests(said.get("measured"), layers.where("measured"), folder),
+    }
+    plain = {field.name: said.get(field.name) for field in fields(Settings)}
+    settings = Settings(**plain | follows)
+    _refuse_contradictions(settings, layers.where)
     return settings
 
 
-class _Stated(dict):
-    """Settings of one specimen as they are written: defaults, the study's own, its sidecar's."""
+class _Layers:
+    """Settings of one specimen by layer: defaults, the study's own, its sidecar's.
+
+    Attributes
+    ----------
+    values, texts : dict
+        By key, in mm, N and MPa, and as the user wrote them, of the last layer that states it.
+    """
 
     def __init__(self, config, name, own, source, scan):
         for key in ("materials", "defaults"):
@@ -112,56 +107,42 @@ class _Stated(dict):
                 )
         self._study, self._own = config.get("specimens", {}).get(name, {}), own
         self._name, self._source, self._scan = name, source, scan
-        super().__init__({**SPECIMEN, **config["defaults"], **self._study, **own})
+        layers = (
+            (unsaid_settings(), source, ""),
+            (config["defaults"], source, "defaults"),
+            (self._study, source, f"specimens.{name}"),
+            (own, self._said_in(), ""),
+        )
+        self.texts, self.values = {}, {}
+        for texts, said_in, above in layers:
+            self.texts |= texts
+            self.values |= stated(validate(SettingsKeys, texts, said_in, above))
         for key in ("material", "loads", "resolutions"):
-            if key not in self:
+            if key not in self.values:
                 raise InputError(f"{source}: missing key 'defaults.{key}'")
+
+    def _said_in(self):
+        return str(self._scan.said_in) if self._scan else f"sidecar of {self._name}"
 
     def where(self, key):
         """Place of a setting, for errors."""
         if key in self._own:
-            said_in = self._scan.said_in if self._scan else f"sidecar of {self._name}"
-            return f"{said_in}: {key}"
+            return f"{self._said_in()}: {key}"
         place = f"specimens.{self._name}" if key in self._study else "defaults"
         return f"{self._source}: {place}.{key}"
-
-    def lengths(self, key):
-        """None for "auto", one length, or a list of lengths, mm."""
-        return self._each(key, lambda text: quantity(text, "length", self.where(key)))
-
-    def range(self, key):
-        """None for "auto", or two lengths, mm."""
-        return None if self.get(key, "auto") == "auto" else tuple(self.lengths(key))
-
-    def positive(self, key, kind):
-        """A quantity above 0, MPa or mm."""
-        value = quantity(self[key], kind, self.where(key))
-        if value <= 0:
-            raise InputError(f"{self.where(key)}: {self[key]!r} must be positive")
-        return value
-
-    def loads(self, key):
-        """None for "auto", or a list of loads."""
-        return self._each(key, lambda text: load(text, self.where(key)))
-
-    def _each(self, key, resolved):
-        value = self.get(key, "auto")
-        if value == "auto":
-            return None
-        return [*map(resolved, value)] if isinstance(value, list) else resolved(value)
 
     def twins(self):
         """Number of twins of a scan, the defaults' too; embedded specimens have realisations."""
         if self._scan is None and "twins" in self._study:
             raise InputError(
                 f"{self.where('twins')}: {self._name} is no scan; write 'realisations: "
-                f"{self['twins']}' in embedded.{self._name}"
+                f"{self.values['twins']}' in embedded.{self._name}"
             )
-        return self["twins"] if self._scan else 0
+        return self.values.get("twins", 0) if self._scan else 0
 
     def solved_loads(self, hardness):
         """Loads that are solved; of the defaults only those that the hardness can carry."""
-        loads = self.loads("loads")
+        loads = self.values["loads"]
         if "loads" in self._own or "loads" in self._study:
             return loads
         most = LARGEST_SHARE * hardness
@@ -169,21 +150,22 @@ class _Stated(dict):
 
     def reported_offset(self):
         """Offset that is reported: of two faces as they were scanned, unless something is said."""
-        offsets = self.lengths("offsets")
+        offsets = self.values.get("offsets")
         as_scanned = self._scan and self._scan.upper and (offsets is None or 0.0 in offsets)
-        return 0.0 if as_scanned and "map_offset" not in self else self.lengths("map_offset")
+        return self.values.get("map_offset", 0.0 if as_scanned else None)
 
     def chosen_loads(self, key, loads):
         """Loads of a figure: the named ones, which must be solved, or the largest three.
 
         Of those that the study's defaults name, the ones that the hardness of a specimen can carry.
         """
-        if key not in self:
+        if key not in self.values:
             return loads[-3:]
-        named = self[key] if isinstance(self[key], list) else [self[key]]
-        chosen = [load(text, self.where(key)) for text in named]
-        for pair, text in zip(chosen, named, strict=True):
-            if pair not in self.loads("loads"):
+        chosen, texts = self.values[key], self.texts[key]
+        if not isinstance(chosen, list):
+            chosen, texts = [chosen], [texts]
+        for pair, text in zip(chosen, texts, strict=True):
+            if pair not in self.values["loads"]:
                 raise self._not_solved(key, text)
         return [pair for pair in chosen if pair in loads] or loads[-len(chosen) :]
 
@@ -191,14 +173,16 @@ class _Stated(dict):
         """Error of a load that is drawn but not solved, in the later file of both."""
         if "loads" in self._own and key not in self._own:
             return InputError(
-                f"{self.where('loads')}: {self['loads']} lacks {text!r}, which {self.where(key)} "
-                f"names; add it, or write '{key}' here too"
+                f"{self.where('loads')}: {self.texts['loads']} lacks {text!r}, which "
+                f"{self.where(key)} names; add it, or write '{key}' here too"
             )
-        return InputError(f"{self.where(key)}: {text!r} is not among the loads {self['loads']}")
+        return InputError(
+            f"{self.where(key)}: {text!r} is not among the loads {self.texts['loads']}"
+        )
 
 
 def _refuse_contradictions(settings, where):
-    """Refuse directions, offsets and loads that do not go with each other or with the problem."""
+    """Refuse contact in directions whose rigid dilatancy is not computed."""
     for direction in settings.contact_directions:
         if direction not in settings.directions:
             raise InputError(
@@ -206,12 +190,6 @@ def _refuse_contradictions(settings, where):
                 f"{settings.directions} of {where('directions')}; add it there, as its "
                 "rigid dilatancy is needed too"
             )
-    for offset in settings.offsets or ():
-        if offset < 0:
-            raise InputError(f"{where('offsets')}: {offset} mm is negative; slide the other way")
-    for value, kind in settings.loads:
-        if value <= 0:
-            raise InputError(f"{where('loads')}: a {kind} of {value}; loads must be positive")
 
 
 def resolve_embedded(recipe: Mapping, where: str) -> dict:
@@ -223,12 +201,9 @@ def resolve_embedded(recipe: Mapping, where: str) -> dict:
         If a length has no unit of length or is not positive, the nodes are too few or too many, or
         the construction has no such surface.
     """
-    numbers = {key: value for key, value in recipe.items() if key not in BESIDE_SURFACE}
-    for key in ("size", "spacing", "rms", "roll_off"):
-        if recipe.get(key) is not None:
-            numbers[key] = quantity(recipe[key], "length", f"{where}.{key}")
-            if numbers[key] <= 0:
-                raise InputError(f"{where}.{key}: {recipe[key]!r} must be positive")
+    source, _, above = where.rpartition(": ")
+    parsed = validate(EmbeddedKeys, recipe, source, above)
+    numbers = {key: getattr(parsed, key) for key in recipe if key not in BESIDE_SURFACE}
     nodes = numbers["size"] / numbers["spacing"]
     if not MIN_NODES_PER_SIDE <= round(nodes) <= MAX_NODES_PER_SIDE:
         raise InputError(
@@ -268,8 +243,8 @@ def resolve_roll_off(config: Mapping, source: str) -> dict:
     recipe = resolve_embedded(embedded[name], f"{source}: embedded.{name}")
     if recipe["roll_off"] is None:
         raise InputError(f"{where}.embedded: {name} has no roll_off; name one that has")
-    window = quantity(stated["window"], "length", f"{where}.window")
-    return {"recipe": recipe, "window": window, "seeds": stated["seeds"]}
+    parsed = validate(RollOffKeys, stated, source, "roll_off")
+    return {"recipe": recipe, "window": parsed.window, "seeds": parsed.seeds}
 
 
 def solver_settings(config: Mapping, source: str) -> Solver:
@@ -288,55 +263,40 @@ def solver_settings(config: Mapping, source: str) -> Solver:
         If an accuracy is no fraction.
     """
     stated = config.get("accuracy", {})
+    solver = dict(validate(SolverKeys, config.get("solver", {}), source, "solver"))
     if stated == "full":
         accuracy, rtol = None, FULL_RTOL
     else:
-        wanted = ACCURACY | stated
-        accuracy = {key: share(wanted[key], f"{source}: accuracy.{key}") for key in ACCURACY}
+        accuracy = dict(validate(AccuracyKeys, stated, source, "accuracy"))
         rtol = tolerance(accuracy)
-    return Solver(**{"rtol": rtol, **SOLVER, **config.get("solver", {})}, accuracy=accuracy)
+    if math.isnan(solver["rtol"]):
+        solver["rtol"] = rtol
+    return Solver(**solver, accuracy=accuracy)
 
 
-def _material(config, material, where, source, *, scanned: bool) -> Material:
+def _material(config, material, where, scanned: bool) -> Material:
     """Material with E* of two like bodies and its optional properties.
 
     The contacts of a scanned rock crush at the joint wall strength, unless its hardness is stated.
     """
-    if isinstance(material, Mapping):
-        label, definition = "own", material
-    else:
+    name = "own"
+    if isinstance(material, str):
         if material not in config["materials"]:
             raise InputError(
                 f"{where}: no material {material!r}{nearest(material, config['materials'])}"
             )
-        label, definition = material, config["materials"][material]
-        where = f"{source}: materials.{material}"
-    modulus = quantity(definition["modulus"], "pressure", f"{where}.modulus")
-    if modulus <= 0:
-        raise InputError(f"{where}.modulus: {definition['modulus']!r} must be positive")
-    poisson = float(definition["poisson"])
-    strength = _if_stated(definition, "joint_wall_strength", "pressure", where)
-    if definition.get("hardness") == "none":
-        hardness = math.inf
-    else:
-        unsaid = strength if scanned and math.isfinite(strength) else math.inf
-        hardness = _if_stated(definition, "hardness", "pressure", where, unsaid)
+        name, definition = material, config["materials"][material]
+        material = validate(MaterialKeys, definition, where.partition(": ")[0], f"materials.{name}")
+    modulus, poisson, strength = material.modulus, material.poisson, material.joint_wall_strength
+    hardness = math.inf if material.hardness == "none" else material.hardness
+    if math.isnan(hardness):
+        hardness = strength if scanned and math.isfinite(strength) else math.inf
     return Material(
-        name=label,
+        name=name,
         modulus=modulus,
         poisson=poisson,
         e_star=modulus / (2 * (1 - poisson**2)),
-        basic_friction_angle=_if_stated(definition, "basic_friction_angle", "angle", where),
+        basic_friction_angle=material.basic_friction_angle,
         joint_wall_strength=strength,
         hardness=hardness,
     )
-
-
-def _if_stated(definition, key, kind, where, otherwise=math.nan):
-    """Optional quantity; NaN or another default if it is not stated."""
-    if key not in definition:
-        return otherwise
-    value = quantity(definition[key], kind, f"{where}.{key}")
-    if not 0 < value < (90 if kind == "angle" else math.inf):
-        raise InputError(f"{where}.{key}: {definition[key]!r} must be positive, an angle below 90")
-    return value

@@ -7,8 +7,8 @@ from pathlib import Path
 import yaml
 
 from ..core.errors import InputError
+from ..core.keys import shortened
 from .plain_yaml import load_yaml
-from .schema import shortened
 
 _TEMPLATE = "__use_yte__"
 _MAX_VALUES = 100_000

@@ -13,9 +13,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..arguments import MAX_INPUT, MAX_RESULT, MIN_INPUT, MIN_RESULT, field, number, quoted
+from ..arguments import field, number, quoted
 from ..elastic.halfspace import HalfSpace
 from ..errors import NotConverged, interruptible
+from ..limits import MAX_INPUT, MAX_RESULT, MIN_INPUT, MIN_RESULT
 from .active_set import ActiveSetMethod
 from .bounds import Bounds
 from .candidates import (

@@ -13,9 +13,6 @@ from numpy.typing import ArrayLike
 from scipy import fft
 
 from ..arguments import (
-    MAX_INPUT,
-    MAX_RESULT,
-    MIN_INPUT,
     field,
     number,
     pair,
@@ -24,6 +21,7 @@ from ..arguments import (
     refuse_masked,
     whole_number,
 )
+from ..limits import MAX_INPUT, MAX_RESULT, MIN_INPUT
 from ..threads import computed_once
 from .convolution import Convolution, cosine_transform, fast_length
 from .influence import influence_table, spread

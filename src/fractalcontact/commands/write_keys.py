@@ -1,0 +1,121 @@
+"""Write what is made from the classes of keys: schemas for editors, and tables of keys.
+
+python -m fractalcontact.commands.write_keys
+"""
+
+import json
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+from ..core.atomic import atomic_write
+from ..core.keys import Section, schema_of
+from ..scan.keys import ScanKeys
+from ..study import keys, measured_keys
+
+#: Sections of one key of a study, whose keys stand in its table as ``solver.rtol``.
+_INSIDE = {"solver": keys.SolverKeys, "grain": keys.GrainKeys}
+#: Keys of contact maps, which scans/README.md explains in a section of their own.
+OF_MAPS = ("threshold", "outline", "series", "x", "y", "cells", "load")
+_MARKS = "<!-- keys: {name} -->\n", "<!-- end of keys -->"
+
+
+def schemas() -> dict[str, str]:
+    """Text of each schema by its file."""
+    sections = {"study": keys.StudyKeys, "sidecar": keys.SidecarKeys}
+    draft = {"$schema": "https://json-schema.org/draft/2020-12/schema"}
+    return {
+        f"config/schema/{name}.schema.json": json.dumps(
+            draft | schema_of(section), indent=1, ensure_ascii=False
+        )
+        + "\n"
+        for name, section in sections.items()
+    }
+
+
+def tables() -> dict[str, dict[str, str]]:
+    """Tables of keys in Markdown, by document and name."""
+    laboratory = {
+        "roll_off": keys.RollOffKeys,
+        "area_slope": keys.AreaSlopeKeys,
+        "size_effect": keys.SizeEffectKeys,
+        "size_strength": keys.SizeStrengthKeys,
+        "speed": keys.SpeedKeys,
+        "convergence": keys.ConvergenceKeys,
+        "stability": keys.StabilityKeys,
+    }
+    two, three = ("key", "what it is"), ("key", "what it is", "if left out")
+    study = {
+        "study": _table(three, _study_rows()),
+        "embedded": _table(two, _rows(keys.EmbeddedKeys)),
+        "settings": _table(three, _rows(keys.SettingsKeys)),
+        "measured": _table(("key", "what it is", "of"), _test_rows()),
+        **{name: _table(two, _rows(section)) for name, section in laboratory.items()},
+    }
+    scan = (row for row in _rows(ScanKeys) if row[0] not in OF_MAPS)
+    return {
+        "config/README.md": study,
+        "scans/README.md": {"scan": _table(("key", "meaning"), scan)},
+    }
+
+
+def written(document: str, made: dict[str, str]) -> str:
+    """Text of a document with its tables between their marks."""
+    for name, table in made.items():
+        start, end = (re.escape(mark.format(name=name)) for mark in _MARKS)
+        document, count = re.subn(
+            f"(?<={start})(.*?)(?={end})", lambda _, table=table: table, document, flags=re.DOTALL
+        )
+        if count != 1:
+            raise ValueError(f"{count} places for the table of keys {name!r}; expected one")
+    return document
+
+
+def main() -> int:
+    """Write all files."""
+    for path, text in schemas().items():
+        _write(path, text)
+    for path, made in tables().items():
+        _write(path, written(Path(path).read_text(encoding="utf-8"), made))
+    return 0
+
+
+def _write(path: str, text: str) -> None:
+    with atomic_write(Path(path)) as temporary:
+        temporary.write_text(text, encoding="utf-8")
+
+
+def _rows(section: type[Section], above: str = "") -> Iterator[tuple[str, str, str]]:
+    """Key, words and what holds without it."""
+    for name, node in schema_of(section)["properties"].items():
+        words = node.get("markdownDescription", node.get("description", ""))
+        yield f"{above}{name}", words, node.get("x-unsaid", "")
+
+
+def _study_rows() -> Iterator[tuple[str, str, str]]:
+    for row in _rows(keys.StudyKeys):
+        if row[0] in _INSIDE:
+            yield from _rows(_INSIDE[row[0]], f"{row[0]}.")
+        else:
+            yield row
+
+
+def _test_rows() -> Iterator[tuple[str, str, str]]:
+    """Keys of laboratory tests, and the kinds that have each."""
+    kinds = {kind: schema_of(of) for kind, of in measured_keys.KINDS.items()}
+    rows = {row[0]: row for of in measured_keys.KINDS.values() for row in _rows(of)}
+    for name, words, unsaid in rows.values():
+        having = [kind for kind, schema in kinds.items() if name in schema["properties"]]
+        of = "all" if len(having) == len(kinds) else ", ".join(having)
+        is_required = all(name in kinds[kind]["required"] for kind in having)
+        yield name, words, f"{of}{', required' * is_required}{unsaid and f'; unsaid, {unsaid}'}"
+
+
+def _table(head: tuple[str, ...], rows: Iterator[tuple[str, str, str]]) -> str:
+    lines = [f"| {' | '.join(head)} |", "|---" * len(head) + "|"]
+    lines += [f"| {' | '.join((f'`{row[0]}`', *row[1:])[: len(head)])} |" for row in rows]
+    return "\n".join(lines) + "\n"
+
+
+if __name__ == "__main__":
+    main()

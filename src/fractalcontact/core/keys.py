@@ -1,0 +1,324 @@
+"""Keys of a study and its sidecars: types of values with units, and errors that say what to write.
+
+A section is a pydantic class. Its fields are keys with type, unit, bounds, default and words;
+schemas, tables of keys and errors are made from them.
+"""
+
+import difflib
+import re
+from collections.abc import Iterable, Mapping
+from functools import cache
+from typing import Annotated, Any, Literal, TypeVar
+
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    PlainValidator,
+    ValidationError,
+    WithJsonSchema,
+)
+from pydantic.json_schema import GenerateJsonSchema
+from pydantic_core import PydanticCustomError
+
+from .errors import InputError
+from .units import load_of, magnitude, share_of
+
+_MAX_QUOTE = 80  # characters of what the user wrote, in a message
+#: Nodes per side of a surface, and cells of a map: one of that many takes some 35 GB to make.
+MAX_NODES_PER_SIDE = 16384
+
+
+class Section(BaseModel):
+    """Base of all sections: closed, frozen, nothing converted but quantities."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
+
+
+S = TypeVar("S", bound=Section)
+
+
+def key(words: str, doc: str = "", unsaid: str = "", default: Any = None) -> Any:
+    """Words on a key.
+
+    Parameters
+    ----------
+    words : str
+        The expected value, in errors: "expected {words}".
+    doc : str, optional
+        The cell of the key in tables of keys, in Markdown; `words` by default.
+    unsaid : str, optional
+        The cell of what holds where the key is left out.
+    default : optional
+        Value, as the user would write it, of a key that is left out.
+    """
+    extra = {"markdownDescription": doc, "x-unsaid": unsaid, "default": default}
+    return Field(
+        description=words, json_schema_extra={k: v for k, v in extra.items() if v not in ("", None)}
+    )
+
+
+# -- types of values -------------------------------------------------------------------------------
+
+
+def wrong(words: str = "") -> PydanticCustomError:
+    """Error of a value of the wrong form, with what was expected if no description says it."""
+    return PydanticCustomError("form", "{words}", {"words": words})
+
+
+def _quantity(kind: str, low: float = -float("inf"), high: float = float("inf")) -> Any:
+    """Validator of a quantity of a kind, between two values in the program's unit."""
+
+    def read(value: Any) -> float:
+        if not isinstance(value, str):
+            raise wrong()
+        number = magnitude(value, kind)
+        if not low < number < high:
+            below = f", an {kind} below {high:g}" if high < float("inf") else ""
+            raise InputError(f"{value!r} must be positive{below}")
+        return number
+
+    return PlainValidator(read)
+
+
+def _stated_as(words: str) -> WithJsonSchema:
+    return WithJsonSchema({"type": "string", "description": words})
+
+
+def _offset(value: Any) -> float:
+    if not isinstance(value, str):
+        raise wrong()
+    number = magnitude(value, "length")
+    if number < 0:
+        raise InputError(f"{value!r} is negative; slide the other way")
+    return number
+
+
+def _load(value: Any) -> tuple[float, str]:
+    if not isinstance(value, str):
+        raise wrong()
+    number, kind = load_of(value)
+    if number <= 0:
+        raise InputError(f"{value!r} must be positive")
+    return number, kind
+
+
+def _unique(values: list) -> list:
+    if any(value in values[:n] for n, value in enumerate(values)):
+        raise wrong()
+    return values
+
+
+def matching(pattern: str, words: str) -> BeforeValidator:
+    """Validator of a text that a pattern matches whole."""
+
+    def match(text: Any) -> str:
+        if not (isinstance(text, str) and re.fullmatch(pattern, text)):
+            raise wrong(words)
+        return text
+
+    return BeforeValidator(match)
+
+
+_LENGTH = _stated_as("a length with its unit, such as 20 mm")
+Length = Annotated[float, _quantity("length"), _LENGTH]
+PositiveLength = Annotated[float, _quantity("length", 0.0), _LENGTH]
+Offset = Annotated[float, PlainValidator(_offset), _LENGTH]
+Pressure = Annotated[
+    float, _quantity("pressure", 0.0), _stated_as("a pressure with its unit, such as 25 MPa")
+]
+Angle = Annotated[
+    float, _quantity("angle", 0.0, 90.0), _stated_as("an angle with its unit, such as 30 deg")
+]
+Load = Annotated[
+    tuple[float, str], PlainValidator(_load), _stated_as("a force or a pressure, 10 kN or 25 MPa")
+]
+Share = Annotated[
+    float,
+    PlainValidator(share_of),
+    WithJsonSchema({"type": ["string", "number"], "description": "a share, such as 1 % or 0.01"}),
+]
+#: Marks of a list whose values differ from each other.
+different = (AfterValidator(_unique), Field(json_schema_extra={"uniqueItems": True}))
+
+
+class Given:
+    """Marks a value that is None where its key is left out; a user cannot write null."""
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> Any:
+        return handler(source)["schema"]
+
+
+_none_for_auto = AfterValidator(lambda value: None if value == "auto" else value)
+T = TypeVar("T")
+#: "auto", which is None, or a value.
+Auto = Annotated[Literal["auto"] | T, _none_for_auto]
+Range = Auto[Annotated[list[Length], Field(min_length=2, max_length=2), AfterValidator(tuple)]]
+Natural = Annotated[int, Field(ge=1, description="a whole number from 1")]
+Direction = Annotated[Literal["E", "N", "W", "S"], Field(description="E, N, W or S")]
+#: Between dollars the figures would read mathematics.
+LINE = r"^[^$\x00-\x1f\x7f-\x9f]{1,%d}$"
+LABEL_WORDS = "what it is, in up to 200 characters on one line, without $"
+Label = Annotated[str, Field(pattern=LINE % 200, description=LABEL_WORDS)]
+
+
+# -- validation ------------------------------------------------------------------------------------
+
+
+def validate(section: type[S], document: Mapping, source: str, above: str = "") -> S:
+    """Section of a document.
+
+    Parameters
+    ----------
+    section : type
+    document : mapping
+        As read from YAML.
+    source : str
+        The file it came from, for errors.
+    above : str, optional
+        Keys that the section stands under, such as "embedded.NAME", for errors.
+
+    Raises
+    ------
+    InputError
+        For the first thing that is wrong: the file, the key, what stands there, what was expected.
+    """
+    try:
+        return section.model_validate(document)
+    except ValidationError as error:
+        faults = _faults(section, document, error.errors(include_url=False), above)
+        others = f" ({len(faults) - 1} more to see after this one)" if len(faults) > 1 else ""
+        raise InputError(f"{source}: {faults[0]}{others}") from None
+
+
+def shortened(text: object) -> str:
+    """A text of any length and content as one that fits into a message."""
+    text = str(text) if str(text).isprintable() else ascii(text)
+    return text if len(text) <= _MAX_QUOTE else f"{text[:_MAX_QUOTE]}..."
+
+
+def nearest(word: object, known: Iterable) -> str:
+    """Hint at the nearest known word, or at all words if none is near."""
+    near = difflib.get_close_matches(str(word), [str(k) for k in known], n=1)
+    return f"; did you mean '{near[0]}'?" if near else f"; known: {', '.join(map(str, known))}"
+
+
+class _Schema(GenerateJsonSchema):
+    """JSON schema with the defaults that :func:`key` states, not those that stand for None."""
+
+    def default_schema(self, schema: Any) -> Any:
+        return self.generate_inner(schema["schema"])
+
+
+@cache
+def schema_of(section: type[Section]) -> dict[str, Any]:
+    """JSON schema of a section."""
+    return section.model_json_schema(schema_generator=_Schema)
+
+
+#: Kinds of errors, from the one that says least of a value that has several forms.
+_RANKS = ("other", "value_error", "missing", "extra_forbidden")
+
+
+def _faults(section: type[Section], document: Mapping, errors: list, above: str) -> list[str]:
+    """Sentences on the faults of a document, in the order of their keys.
+
+    A value that may have several forms gives an error for each of them; the one farthest inside
+    says most.
+    """
+    groups: dict[tuple, list] = {}
+    for error in errors:
+        place, path = _place(document, error)
+        groups.setdefault(place, []).append((path, error))
+    chosen = []
+    for place, group in groups.items():
+        path, error = max(group, key=lambda one: (_rank(one[1]), len(one[0])))
+        says_little = _rank(error) == 0 and len(group) > 1
+        chosen.append((place if says_little and len(path) <= len(place) else path, error))
+    chosen.sort(key=lambda one: [str(part) for part in one[0]])
+    return [_sentence(section, document, path, error, above) for path, error in chosen]
+
+
+def _rank(error: Mapping) -> int:
+    return _RANKS.index(error["type"]) if error["type"] in _RANKS else 0
+
+
+def _place(document: Any, error: Mapping) -> tuple[tuple, tuple]:
+    """Keys down to the value with several forms in which an error lies, and down to the error."""
+    place, path, value, several = (), (), document, False
+    for part in error["loc"]:
+        inside = isinstance(value, Mapping) and part in value
+        inside |= isinstance(value, list) and isinstance(part, int) and part < len(value)
+        if inside:
+            path, value = (*path, part), value[part]
+        elif part == "[key]":
+            path, value = path[:-1], None
+        else:
+            several = True
+        place = place if several else path
+    if error["type"] == "missing":
+        path = (*path, error["loc"][-1])
+        place = place if several else path
+    return place, path
+
+
+def _sentence(
+    section: type[Section], document: Any, path: tuple, error: Mapping, above: str
+) -> str:
+    """Sentence on one error: the key, what stands there, the expected value, the nearest key."""
+    name = ".".join(filter(None, (above, *map(str, path))))
+    if error["type"] == "extra_forbidden":
+        known = _nodes(section, path[:-1])[-1].get("properties", {})
+        return f"unknown key '{shortened(name)}'{nearest(path[-1], known)}"
+    words = next((node["description"] for node in reversed(_nodes(section, path)[1:])
+                  if "description" in node), "")  # fmt: skip
+    if error["type"] == "missing":
+        own = _nodes(section, path)[-1].get("description", "")
+        return f"missing key '{name}'" + (f"; expected {own}" if own else "")
+    if error["type"] == "missing_key":
+        return error["msg"]
+    if error["type"] == "value_error":
+        return f"{name}: {error['ctx']['error']}"
+    is_key = error["loc"][-1] == "[key]"
+    value = error["input"] if is_key else _value(document, path)
+    words = error["msg"] if error["type"] == "form" and error["msg"] else words
+    return f"{name}: {shortened(repr(value))} is not right" + (f"; expected {words}" * bool(words))
+
+
+def _value(document: Any, path: tuple) -> Any:
+    for part in path:
+        document = document[part]
+    return document
+
+
+def _nodes(section: type[Section], path: tuple) -> list[dict]:
+    """Parts of the schema of a section along the keys of a path."""
+    schema = schema_of(section)
+    nodes = [schema]
+    for part in path:
+        below = [child for form in _forms(schema, nodes[-1]) if (child := _child(form, part))]
+        if not below:
+            return nodes
+        nodes.append(below[0] | {"properties": _properties(schema, below[0])})
+    return nodes
+
+
+def _forms(schema: dict, node: dict) -> list[dict]:
+    """Forms that a value may have: itself, and each of ``anyOf``, references followed."""
+    if "$ref" in node:
+        return _forms(schema, schema["$defs"][node["$ref"].rpartition("/")[2]])
+    return [node, *(form for one in node.get("anyOf", ()) for form in _forms(schema, one))]
+
+
+def _child(form: dict, part: Any) -> dict | None:
+    if isinstance(part, int):
+        return form.get("items")
+    more = form.get("additionalProperties")
+    return form.get("properties", {}).get(part) or (more if isinstance(more, dict) else None)
+
+
+def _properties(schema: dict, node: dict) -> dict:
+    found = (form["properties"] for form in _forms(schema, node) if form.get("properties"))
+    return next(found, {})

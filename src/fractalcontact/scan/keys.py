@@ -1,0 +1,176 @@
+"""Keys of a sidecar that determine how a scan file is read."""
+
+from typing import Annotated, Literal
+
+from pydantic import Field, model_validator
+
+from ..core.keys import Label, Load, Natural, PositiveLength, Section, key, wrong
+from .options import MAX_HEADER_LINES
+
+_Text = Annotated[str, Field(min_length=1)]
+_TwoSteps = Annotated[list[float | str], Field(min_length=2, max_length=2)]
+_Mark = Annotated[str, Field(max_length=40)]
+_Marks = Annotated[list[float | _Mark], Field(min_length=1, max_length=20)]
+_Point = Annotated[
+    list[float | str], Field(min_length=2, max_length=2, description="a place [x, y] in mm")
+]
+
+
+class ConfirmedKeys(Section):
+    """Shape and relief that the owner of a file looked at."""
+
+    shape: Annotated[
+        list[Natural], Field(min_length=2, max_length=2), key("two whole numbers [rows, columns]")
+    ] = []
+    points: Annotated[Natural, key("a whole number from 1")] = 1
+    relief: Annotated[float, Field(ge=0), key("a number from 0")] = 0.0
+
+
+class FaceKeys(Section):
+    """Keys that may differ between the two faces of a joint."""
+
+    unit: Annotated[str, key("the unit of x, y and z, such as mm")] = ""
+    unit_xy: Annotated[str, key("the unit of x and y, such as mm")] = ""
+    unit_z: Annotated[
+        str, key("the unit of the heights, such as um, or what one count is, 0.01 um")
+    ] = ""
+    spacing: Annotated[
+        Annotated[float, Field(gt=0)] | _Text | _TwoSteps,
+        key(
+            "the spacing of neighbouring cells: a number in the file's unit, a length such "
+            "as 0.1 mm, or a pair [dx, dy]"
+        ),
+    ] = ""
+    delimiter: Annotated[
+        Literal["comma", "semicolon", "tab", "blank"],
+        key(
+            "comma, semicolon, tab or blank (white space of any length): what parts the "
+            "numbers of a text"
+        ),
+    ] = "comma"
+    decimal: Annotated[Literal[".", ","], key("the decimal mark of a text, '.' or ','")] = "."
+    thousands: Annotated[
+        Literal[".", ",", "'"],
+        key(
+            "the mark between groups of three digits, where a text has one: '.', ',' or an "
+            "apostrophe"
+        ),
+    ] = "'"
+    header: Annotated[
+        int, Field(ge=0, le=MAX_HEADER_LINES), key("number of lines above the numbers of a text")
+    ] = 0
+    layout: Annotated[Literal["matrix", "points"], key("matrix or points")] = "matrix"
+    axes: Annotated[
+        Literal["none", "both", "row", "column"],
+        key(
+            "none, both, row or column: which of the first row and column of a matrix hold "
+            "coordinates or counts instead of heights; of both, without spacing, they are "
+            "the coordinates"
+        ),
+    ] = "none"
+    first_row: Annotated[
+        Literal["bottom", "top"],
+        key("bottom or top: whether the first row lies at the smallest y or the largest"),
+    ] = "bottom"
+    heights: Annotated[
+        Literal["up", "down"], key("up or down: whether larger numbers are higher, or deeper")
+    ] = "up"
+    variable: Annotated[str, key("the array, channel, layer or page of the heights")] = ""
+    columns: Annotated[
+        list[str | Annotated[int, Field(ge=0)]],
+        Field(min_length=3, max_length=3),
+        key("the columns of x, y, z, as names or counted from 0"),
+    ] = []
+    missing: Annotated[
+        float | _Mark | _Marks,
+        key('the number or word that marks missing cells ("" for empty ones), a list of them, or none'),
+    ] = "none"
+    confirmed: Annotated[
+        ConfirmedKeys,
+        key(
+            "what was read when the owner looked at it, {shape: [rows, columns], relief: "
+            "number} or {points: number, relief: number}"
+        ),
+    ] = ConfirmedKeys()
+
+
+class DiscKeys(Section):
+    """A disc."""
+
+    centre: Annotated[_Point, key("a place [x, y] in mm")] = []
+    diameter: Annotated[float | str, key("a length, in mm where it is a number")] = 0.0
+
+
+class OutlineKeys(Section):
+    """An outline; one of its keys."""
+
+    disc: Annotated[DiscKeys, key("a mapping with centre and diameter")] = DiscKeys()
+    polygon: Annotated[
+        list[_Point], Field(min_length=3, max_length=1000), key("three or more places [x, y]")
+    ] = []
+    mask: Annotated[float, key("the number of the cells outside")] = 0.0
+
+    @model_validator(mode="after")
+    def _is_one(self) -> "OutlineKeys":
+        if len(self.model_fields_set) != 1:
+            raise wrong()
+        return self
+
+
+_Thresholds = Annotated[list[float], Field(min_length=1, max_length=20)]
+_FileName = Annotated[str, Field(max_length=255)]
+
+
+class ScanKeys(FaceKeys):
+    """Keys that determine how a scan file is read."""
+
+    kind: Annotated[
+        Literal["face", "contact-map", "aperture", "profile", "surface", "contact_map"],
+        key(
+            "face, contact-map, aperture (the opening between two faces) or profile (which "
+            "has a card alone, by profile_card)"
+        ),
+    ] = "face"
+    lower: Annotated[FaceKeys, key("keys that hold for this face of two alone, {header: 0}")] = (
+        FaceKeys()
+    )
+    upper: Annotated[FaceKeys, key("keys that hold for this face of two alone, {header: 0}")] = (
+        FaceKeys()
+    )
+    threshold: Annotated[
+        float | _Thresholds,
+        key(
+            "the number above which a cell of a contact map is in contact, or a list of "
+            "such numbers"
+        ),
+    ] = 0.0
+    outline: Annotated[
+        Literal["disc", "rectangle"] | OutlineKeys,
+        key(
+            "disc, rectangle, or one of {disc: {centre: [x, y], diameter: d}}, {polygon: "
+            "[[x, y], ...]}, {mask: number}"
+        ),
+    ] = "disc"
+    series: Annotated[Label, key("what it is, in up to 200 characters on one line, without $")] = ""
+    x: Annotated[_FileName, key("the plain name of the file of x beside that of a contact map")] = (
+        ""
+    )
+    y: Annotated[_FileName, key("the plain name of the file of y beside that of a contact map")] = (
+        ""
+    )
+    cells: Annotated[
+        Literal["any contact", "contact at the centre"], key("any contact or contact at the centre")
+    ] = "any contact"
+    load: Annotated[Load, key("the force or the nominal pressure on the map, such as 85 MPa")] = (
+        0.0,
+        "",
+    )
+    grid: Annotated[
+        PositiveLength, key("the spacing to grid points at, 0.3 mm; unsaid, their own")
+    ] = 0.0
+    registration: Annotated[
+        Literal["rigid", "translation", "none"], key("rigid, translation or none")
+    ] = "rigid"
+    mirror_upper: Annotated[
+        Literal["x", "y"], key("x or y, the direction that runs the other way in the upper face")
+    ] = "x"

@@ -1,0 +1,60 @@
+"""Keys are typed once: what is made from them is up to date, and errors say what to write."""
+
+import copy
+import json
+
+import pytest
+import yaml
+from places import ROOT
+
+from fractalcontact.commands.write_keys import schemas, tables, written
+from fractalcontact.core.errors import InputError
+from fractalcontact.study.checks import check_study, read_sidecar
+from fractalcontact.study.documents import read_study
+
+#: What is wrong ("set" in config/paper.yaml, or the whole text), and the words for it; "before"
+#: those of version 1.0.0, where they differ.
+WRONG = yaml.safe_load((ROOT / "tests/study/wrong_inputs.yaml").read_text())
+PAPER = (ROOT / "config/paper.yaml").read_text()
+
+
+@pytest.mark.parametrize("path", schemas())
+def test_schemas_are_those_of_the_classes(path):
+    assert (ROOT / path).read_text(encoding="utf-8") == schemas()[path], "make schema"
+
+
+@pytest.mark.parametrize("path", tables())
+def test_tables_of_keys_are_those_of_the_classes(path):
+    document = (ROOT / path).read_text(encoding="utf-8")
+    assert document == written(document, tables()[path]), "make schema"
+
+
+def changed(document, keys, value):
+    """A document with one value set, or one key taken out."""
+    *parents, last = keys
+    inner = document
+    for key in parents:
+        inner = inner.setdefault(key, {})
+    inner[last] = value
+    if value == "(left out)":
+        del inner[last]
+    return document
+
+
+def named(case):
+    return json.dumps(case.get("set", case.get("text")))
+
+
+@pytest.mark.parametrize("case", WRONG, ids=named)
+def test_each_wrong_input_gets_its_words(tmp_path, case):
+    path = tmp_path / f"{'rock' if case['of'] == 'sidecar' else 'mine'}.yaml"
+    if "set" in case:
+        document = yaml.safe_load(PAPER)
+        for keys, value in case["set"]:
+            document = changed(copy.deepcopy(document), keys, value)
+        path.write_text(yaml.safe_dump(document, sort_keys=False))
+    else:
+        path.write_text(case["text"])
+    with pytest.raises(InputError) as error:
+        read_sidecar(path) if case["of"] == "sidecar" else check_study(read_study(path), str(path))
+    assert str(error.value).replace(f"{tmp_path}/", "") == case["words"]
