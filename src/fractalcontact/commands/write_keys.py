@@ -4,12 +4,12 @@ python -m fractalcontact.commands.write_keys
 """
 
 import json
-import re
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 from ..core.atomic import atomic_write
-from ..core.keys import Section, schema_of
+from ..core.keys import schema_of
 from ..scan.keys import ScanKeys
 from ..study import keys, measured_keys
 
@@ -62,12 +62,12 @@ def tables() -> dict[str, dict[str, str]]:
 def written(document: str, made: dict[str, str]) -> str:
     """Text of a document with its tables between their marks."""
     for name, table in made.items():
-        start, end = (re.escape(mark.format(name=name)) for mark in _MARKS)
-        document, count = re.subn(
-            f"(?<={start})(.*?)(?={end})", lambda _, table=table: table, document, flags=re.DOTALL
-        )
-        if count != 1:
-            raise ValueError(f"{count} places for the table of keys {name!r}; expected one")
+        start, end = (mark.format(name=name) for mark in _MARKS)
+        before, _, rest = document.partition(start)
+        _, mark, after = rest.partition(end)
+        if not mark:
+            raise ValueError(f"no place for the table of keys {name!r}")
+        document = f"{before}{start}{table}{mark}{after}"
     return document
 
 
@@ -85,7 +85,7 @@ def _write(path: str, text: str) -> None:
         temporary.write_text(text, encoding="utf-8")
 
 
-def _rows(section: type[Section], above: str = "") -> Iterator[tuple[str, str, str]]:
+def _rows(section: Any, above: str = "") -> Iterator[tuple[str, str, str]]:
     """Key, words and what holds without it."""
     for name, node in schema_of(section)["properties"].items():
         words = node.get("markdownDescription", node.get("description", ""))

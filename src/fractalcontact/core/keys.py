@@ -144,18 +144,26 @@ Share = Annotated[
 different = (AfterValidator(_unique), Field(json_schema_extra={"uniqueItems": True}))
 
 
-class Given:
-    """Marks a value that is None where its key is left out; a user cannot write null."""
+class StatedAs:
+    """Marks the form in which a user states a value of another type."""
+
+    def __init__(self, form: Any):
+        self.form = form
 
     def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> Any:
-        return handler(source)["schema"]
+        return handler.generate_schema(self.form)
 
 
-_none_for_auto = AfterValidator(lambda value: None if value == "auto" else value)
-T = TypeVar("T")
-#: "auto", which is None, or a value.
-Auto = Annotated[Literal["auto"] | T, _none_for_auto]
-Range = Auto[Annotated[list[Length], Field(min_length=2, max_length=2), AfterValidator(tuple)]]
+def auto(form: Any) -> StatedAs:
+    """Mark of a value that is stated in a form, or as "auto", which is None."""
+    none_for_auto = AfterValidator(lambda value: None if value == "auto" else value)
+    return StatedAs(Annotated[Literal["auto"] | form, none_for_auto])
+
+
+Range = Annotated[
+    tuple[float, float] | None,
+    auto(Annotated[list[Length], Field(min_length=2, max_length=2), AfterValidator(tuple)]),
+]
 Natural = Annotated[int, Field(ge=1, description="a whole number from 1")]
 Direction = Annotated[Literal["E", "N", "W", "S"], Field(description="E, N, W or S")]
 #: Between dollars the figures would read mathematics.
@@ -247,7 +255,9 @@ def _rank(error: Mapping) -> int:
 
 def _place(document: Any, error: Mapping) -> tuple[tuple, tuple]:
     """Keys down to the value with several forms in which an error lies, and down to the error."""
-    place, path, value, several = (), (), document, False
+    place: tuple = ()
+    path: tuple = ()
+    value, several = document, False
     for part in error["loc"]:
         inside = isinstance(value, Mapping) and part in value
         inside |= isinstance(value, list) and isinstance(part, int) and part < len(value)

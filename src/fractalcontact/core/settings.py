@@ -14,14 +14,14 @@ from pydantic import Field
 from .keys import (
     LINE,
     MAX_NODES_PER_SIDE,
-    Auto,
     Direction,
-    Given,
     Length,
     Load,
     Offset,
     Pressure,
     Range,
+    StatedAs,
+    auto,
     different,
     key,
 )
@@ -29,7 +29,9 @@ from .keys import (
 S = TypeVar("S")
 _Pair = Annotated[list[Length], Field(min_length=2, max_length=2)]
 _Loads = Annotated[list[Load], Field(min_length=1)]
-_Directions = Annotated[list[Direction], Field(min_length=1), *different]
+_Directions = Annotated[
+    list[str], StatedAs(Annotated[list[Direction], Field(min_length=1), *different])
+]
 _Multiple = Annotated[
     int, Field(ge=1, le=MAX_NODES_PER_SIDE, description="a whole number from 1 to 16384")
 ]
@@ -92,7 +94,8 @@ class SpecimenSettings:
 
     known_dimension: float
     opposite: Annotated[
-        Literal["match", "flat"],
+        str,
+        StatedAs(Literal["match", "flat"]),
         key(
             "match (the other face fits perfectly) or flat (a rigid plane)",
             doc=(
@@ -104,7 +107,8 @@ class SpecimenSettings:
         ),
     ]
     outliers: Annotated[
-        Literal["keep", "mask", "fill"],
+        str,
+        StatedAs(Literal["keep", "mask", "fill"]),
         key(
             (
                 "keep (outlying cells stay), mask (they become missing) or fill (they, lone "
@@ -130,7 +134,8 @@ class SpecimenSettings:
         ),
     ]
     window: Annotated[
-        Auto[Length],
+        float | None,
+        auto(Length),
         key(
             "auto, or the side of the square window such as 20 mm",
             doc=(
@@ -141,8 +146,8 @@ class SpecimenSettings:
         ),
     ]
     window_centre: Annotated[
-        _Pair | None,
-        Given(),
+        list[float] | None,
+        StatedAs(_Pair),
         key(
             "two lengths [x, y] in the scan's own coordinates",
             doc="`[x, y]` in the scan's own coordinates, within the scan",
@@ -160,7 +165,8 @@ class SpecimenSettings:
     ]
     contact_directions: _ContactDirections
     offsets: Annotated[
-        Auto[Annotated[list[Offset], Field(min_length=1)]],
+        list[float] | None,
+        auto(Annotated[list[Offset], Field(min_length=1)]),
         key(
             "auto, or a list of shear offsets v such as [0.1 mm, 0.3 mm]",
             doc=(
@@ -216,10 +222,10 @@ class JointSettings:
     resolutions: _Resolutions
     contact_directions: _ContactDirections
     map_offset: Annotated[
-        Length | None,
-        Given(),
+        float | None,
+        StatedAs(Length),
         key(
-            "a number with its unit, such as 20 mm, 10 kN or 25 MPa",
+            "a length with its unit, such as 0.3 mm",
             doc="offset of the contact maps over resolutions and loads",
             unsaid="0 of two scanned faces, else the third",
         ),
@@ -233,7 +239,7 @@ class ContactSettings(JointSettings):
     map_load: Annotated[
         Load,
         key(
-            "a number with its unit, such as 20 mm, 10 kN or 25 MPa",
+            "a force or a pressure among the loads, such as 25 MPa",
             doc="load of the contact maps, among `loads`",
             unsaid="the largest",
         ),
@@ -277,7 +283,8 @@ class StateSettings(ContactSettings):
         ),
     ]
     hyperbola_range: Annotated[
-        Auto[Annotated[list[Load], Field(min_length=2, max_length=2)]],
+        list[Load] | None,
+        auto(Annotated[list[Load], Field(min_length=2, max_length=2)]),
         key(
             "auto, or two loads [smallest, largest] between which closure laws are fitted",
             doc=(
@@ -290,7 +297,7 @@ class StateSettings(ContactSettings):
     seating_pressure: Annotated[
         Pressure,
         key(
-            "a number with its unit, such as 20 mm, 10 kN or 25 MPa",
+            "a pressure with its unit, such as 0.25 MPa",
             doc=(
                 "nominal pressure from which closure and its laws are counted, as a laboratory "
                 "seats its specimen. The seat is, at each offset, the first of `loads` from "
@@ -407,7 +414,8 @@ class Settings(SpecimenSettings, StateSettings, WindowSettings, MeasuredSettings
 
     material: Material
     twins: Annotated[
-        Literal[0] | Annotated[int, Field(ge=3, le=1000)],
+        int,
+        StatedAs(Literal[0] | Annotated[int, Field(ge=3, le=1000)]),
         key(
             "0 for none, or a number of twins of the scan from 3 to 1000",
             doc=(

@@ -64,58 +64,52 @@ _Surfaces = Annotated[
 class MaterialKeys(Section):
     """A material."""
 
-    modulus: Annotated[Pressure, key("a number with its unit, such as 20 mm, 10 kN or 25 MPa")]
+    modulus: Annotated[Pressure, key("a pressure with its unit, such as 20 GPa")]
     poisson: Annotated[float, Field(gt=-1, le=0.5), key("Poisson's ratio, above -1 and up to 0.5")]
-    basic_friction_angle: Annotated[
-        Angle, key("a number with its unit, such as 20 mm, 10 kN or 25 MPa")
-    ] = float("nan")
-    joint_wall_strength: Annotated[
-        Pressure, key("a number with its unit, such as 20 mm, 10 kN or 25 MPa")
-    ] = float("nan")
+    basic_friction_angle: Annotated[Angle, key("an angle with its unit, such as 30 deg")] = float(
+        "nan"
+    )
+    joint_wall_strength: Annotated[Pressure, key("a pressure with its unit, such as 80 MPa")] = (
+        float("nan")
+    )
     hardness: Annotated[Literal["none"] | Pressure, key('a quantity such as "80 MPa", or none')] = (
         float("nan")
     )
 
 
-#: Settings as a study or a sidecar states them: every key of :class:`core.settings.Settings`.
-SettingsKeys: Any = create_model(
-    "SettingsKeys",
-    __base__=Section,
-    __doc__="Settings of a specimen.",
-    **{
-        name: (hint, None)
-        for name, hint in get_type_hints(Settings, include_extras=True).items()
-        if hasattr(hint, "__metadata__")
-    },
-    material=(
-        Annotated[
-            str | MaterialKeys,
-            key(
-                "the name of a material of the study, or a mapping with modulus and poisson",
-                doc=(
-                    "a name from `materials`, or `{modulus, poisson, basic_friction_angle, "
-                    "joint_wall_strength, hardness}` as above, the last three optional"
-                ),
-                unsaid="required in `defaults`: it holds for a scan whose sidecar states none",
+_KEYS: Any = {
+    name: (hint, None)
+    for name, hint in get_type_hints(Settings, include_extras=True).items()
+    if hasattr(hint, "__metadata__")
+}
+_FromSettings: Any = create_model("_FromSettings", __base__=Section, **_KEYS)
+
+
+class SettingsKeys(_FromSettings):
+    """Settings of a specimen: every key of :class:`core.settings.Settings`."""
+
+    material: Annotated[
+        str | MaterialKeys,
+        key(
+            "the name of a material of the study, or a mapping with modulus and poisson",
+            doc=(
+                "a name from `materials`, or `{modulus, poisson, basic_friction_angle, "
+                "joint_wall_strength, hardness}` as above, the last three optional"
             ),
-        ],
-        None,
-    ),
-    measured=(
-        Annotated[
-            Tests,
-            key(
-                "laboratory tests by kind, closure, flow, dilatancy, shear or strength",
-                doc=(
-                    "laboratory tests of the specimen, by kind: `closure`, `flow`, `dilatancy`, "
-                    "`shear`, `strength`, each a test or a list of tests (below)"
-                ),
-                unsaid="none",
+            unsaid="required in `defaults`: it holds for a scan whose sidecar states none",
+        ),
+    ] = ""
+    measured: Annotated[
+        Tests,
+        key(
+            "laboratory tests by kind, closure, flow, dilatancy, shear or strength",
+            doc=(
+                "laboratory tests of the specimen, by kind: `closure`, `flow`, `dilatancy`, "
+                "`shear`, `strength`, each a test or a list of tests (below)"
             ),
-        ],
-        None,
-    ),
-)
+            unsaid="none",
+        ),
+    ] = Tests()
 
 
 class EmbeddedKeys(Section):
@@ -134,14 +128,14 @@ class EmbeddedKeys(Section):
     size: Annotated[
         PositiveLength,
         key(
-            "a number with its unit, such as 20 mm, 10 kN or 25 MPa",
+            "a length with its unit, such as 20 mm",
             doc="side of the square, or diameter of the disc: 2 to 16384 times the spacing",
         ),
     ]
     spacing: Annotated[
         PositiveLength,
         key(
-            "a number with its unit, such as 20 mm, 10 kN or 25 MPa",
+            "a length with its unit, such as 20 mm",
             doc="distance of neighbouring nodes",
         ),
     ]
@@ -168,7 +162,7 @@ class EmbeddedKeys(Section):
     rms: Annotated[
         PositiveLength,
         key(
-            "a number with its unit, such as 20 mm, 10 kN or 25 MPa",
+            "a length with its unit, such as 20 mm",
             doc="standard deviation of the heights",
         ),
     ]
@@ -234,7 +228,7 @@ class RollOffKeys(Section):
     ]
     window: Annotated[
         Length,
-        key("a number with its unit, such as 20 mm, 10 kN or 25 MPa", doc="side of the window"),
+        key("a length with its unit, such as 20 mm", doc="side of the window"),
     ]
     seeds: Annotated[Seeds, key("two or more different whole numbers", doc="two or more")]
 
