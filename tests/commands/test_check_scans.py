@@ -8,7 +8,6 @@ from places import ROOT
 from stated import COMMAS, CORONA, GRANITE, MAP, NANOVEA, POINTS, array_sidecar, sidecar
 
 from fractalcontact.commands.check_scans import WIDTH, check_scans, main
-from fractalcontact.study.documents import read_study
 from fractalcontact.study.embedded import write_scan
 from fractalcontact.study.scan_files import list_scans
 from fractalcontact.surface.synthesis import self_affine
@@ -521,13 +520,13 @@ def test_tables_of_embedded_specimens_are_read(folder, tmp_path):
     }
     folder.mkdir()
     (folder / "load.csv").write_text(GOOD)
-    (row,) = check_scans(folder, study, schema, "study.yaml")
+    (row,) = check_scans(folder, study, "study.yaml")
     assert (row.name, row.refusal) == ("made", "")
     (folder / "load.csv").unlink()
-    (row,) = check_scans(folder, study, schema, "study.yaml")
+    (row,) = check_scans(folder, study, "study.yaml")
     assert "no such file, which 'measured' names" in row.refusal
     (folder / "load.csv").write_text(GOOD.replace("4,", "four,"))
-    (row,) = check_scans(folder, study, schema, "study.yaml")
+    (row,) = check_scans(folder, study, "study.yaml")
     assert "line 5, column 'pressure [MPa]': 'four' is no finite number" in row.refusal
 
 
