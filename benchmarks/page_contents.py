@@ -12,6 +12,8 @@ import numpy as np
 MAY_DIFFER = (
     # The time at which a page was made.
     (re.compile(r"\d{4}-\d\d-\d\d \d\d:\d\d UTC"), "DATE"),
+    # What the jobs took.
+    (re.compile(r"[\d hmins]+ of work in \d+ jobs"), " TIME of work"),
     # Libraries that were installed, and the release of this package.
     (re.compile(r"Computed with fractalcontact[^;]*?\d(?=\.(\s|$))"), "Computed with VERSIONS"),
 )
