@@ -21,6 +21,7 @@ from spreadsheets import FORMULA, formulas_in
 
 from fractalcontact.core.claims import claims_of
 from fractalcontact.core.subject import Subject
+from fractalcontact.core.text import short, with_unit
 from fractalcontact.figures.draw import drawer_of
 from fractalcontact.figures.kit.drawing import print_style
 from fractalcontact.pages.common_loads import common_loads, main_load
@@ -33,7 +34,6 @@ from fractalcontact.pages.matrix import (
     of_study,
 )
 from fractalcontact.pages.summary import summarised, why
-from fractalcontact.pages.words import short, with_unit
 from fractalcontact.roughness.quality_words import overlap_words
 from fractalcontact.statements.comparison import compared_pressures
 from fractalcontact.statements.judge import rule_of

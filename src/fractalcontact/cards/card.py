@@ -9,10 +9,10 @@ from typing import Any
 from ..core.estimate import Estimate
 from ..core.labels import printable
 from ..core.subject import Subject
+from ..core.text import OPPOSITE, with_unit
 from ..core.window import spacing_of, window_sides
 from ..pages.lights import lights_of, trust_of
 from ..pages.summary import quantities_at
-from ..pages.words import OPPOSITE, with_unit
 from .entries import entries, number, read_entry, rounded
 from .methods import methods_of, references_of
 

@@ -14,7 +14,7 @@ import yaml
 from ..core.estimate import DIMENSION, SIZE, Estimate, names_of
 from ..core.settings import TEST_COLUMNS
 from ..core.subject import Subject
-from ..pages.words import OPPOSITE, percent
+from ..core.text import OPPOSITE, percent
 
 _FILE = Path(__file__).with_name("entries.yaml")
 #: What stands for a dimension beside each row of a curve: its name there, its coordinate, its unit.

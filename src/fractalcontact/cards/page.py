@@ -4,6 +4,7 @@ import math
 from collections.abc import Collection, Mapping
 from typing import Any
 
+from ..core.text import MISSING, measured, percent, short, with_unit
 from ..pages.captions import symbols
 from ..pages.first_screen import (
     STRENGTH_RULES,
@@ -13,7 +14,6 @@ from ..pages.first_screen import (
     row_at,
     window_of,
 )
-from ..pages.words import MISSING, measured, percent, short, with_unit
 
 #: Tables of curves over pressure, by title: the sections that share one.
 _AGAINST_PRESSURE = {

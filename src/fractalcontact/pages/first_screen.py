@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from ..core.limits import JRC_SAMPLING
+from ..core.text import measured, percent, short, with_unit
 from .files import CARD
-from .words import measured, percent, short, with_unit
 
 #: Intervals as cards name them, in words.
 _ALONE = {"solver": " solver error alone", "all errors of this surface": " this surface"}

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 
 from ..core.limits import CORRECTED_NODES, NEARLY, RESOLVED_NODES
 from ..core.subject import Subject
+from ..core.text import with_unit
 from ..core.validity import SLOPE, Validity
 from ..core.verdicts import GOOD, HARDNESS, IN_PART, NOT_JUDGED, POOR, STRENGTH, USUAL
-from .words import with_unit
 
 #: What would make lights better.
 FINER_SCAN = "points measured closer together, heights without the instrument's filter, less noise"

@@ -26,6 +26,17 @@ from ..core.quantities import Shown, shown_in
 from ..core.stage import JOINT, SPECIMEN
 from ..core.subject import Subject, configuration_of
 from ..core.tables import write_table
+from ..core.text import (
+    MISSING,
+    OPPOSITE,
+    duration,
+    interval,
+    measured,
+    percent,
+    short,
+    undetermined,
+    with_unit,
+)
 from ..study.atlas_parts import Trees
 from ..study.figure_list import STUDY, all_figures
 from .captions import symbols
@@ -47,17 +58,6 @@ from .matrix import Row, counted, matrix_of, merged, of_study, statement_table
 from .summary import AtLoad, Quantity, Specimen, summarised, summary_table, why
 from .templating import write_page
 from .thumbnails import relief_thumbnail
-from .words import (
-    MISSING,
-    OPPOSITE,
-    duration,
-    interval,
-    measured,
-    percent,
-    short,
-    undetermined,
-    with_unit,
-)
 
 #: Stages that the pages read; the fields of contact, the largest, are not among them.
 NEEDS = (

@@ -14,13 +14,13 @@ from ..core.estimate import DIMENSION, Estimate, Judged, names_of
 from ..core.measured_maps import map_table
 from ..core.quantities import Shown, Value, shown_in
 from ..core.subject import Subject
+from ..core.text import percent, with_unit
 from ..core.validity import Validity
 from ..core.verdicts import NO_PRESSURE, TOO_FEW_RESOLUTIONS, TOO_WIDE
 from ..core.window import spacing_of, window_sides
 from .common_loads import CommonLoad
 from .laboratory import Test, calibration_of, tests_of
 from .lights import Light, lights_of, validity_at
-from .words import percent, with_unit
 
 #: Errors of a quantity as a property of this surface, and of that which the window is cut from.
 TOTALS = {"surface": "total", "population": "total_of_population"}

@@ -9,8 +9,8 @@ from collections.abc import Mapping
 from typing import Any
 from xml.etree import ElementTree as xml
 
+from ...core.text import short
 from ...pages.first_screen import reference_of, row_at
-from ...pages.words import short
 from ._xml import comment, headed, text_of_element
 from .constants import Constants, over_pressure
 

@@ -2,7 +2,7 @@
 
 import math
 
-from ..core.labels import plain
+from .labels import plain
 
 #: Below and above these a number has an exponent.
 _PLAIN = (1e-4, 1e6)

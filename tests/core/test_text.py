@@ -9,9 +9,7 @@ import pytest
 import xarray as xr
 from matplotlib.image import imread
 
-from fractalcontact.pages.summary import Quantity
-from fractalcontact.pages.thumbnails import SIDE, relief_thumbnail, shaded
-from fractalcontact.pages.words import (
+from fractalcontact.core.text import (
     duration,
     interval,
     measured,
@@ -20,6 +18,8 @@ from fractalcontact.pages.words import (
     undetermined,
     with_unit,
 )
+from fractalcontact.pages.summary import Quantity
+from fractalcontact.pages.thumbnails import SIDE, relief_thumbnail, shaded
 
 
 @pytest.mark.parametrize(
