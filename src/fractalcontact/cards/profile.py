@@ -7,7 +7,7 @@ import xarray as xr
 from ..core.netcdf import versions
 from ..core.subject import Subject
 from .card import FORM, LICENCE
-from .entries import entries, read_entry, rounded
+from .entries import entries, entry_of, rounded
 
 _NO_CONTACT = "one profile has no contact: scan a face, or both"
 _METHODS = (
@@ -49,7 +49,7 @@ def card_of_profile(
         SHA-256 of its file.
     """
     subject = _Profile({"surface_dimension": found, "strength": found}, {"material": {}}, name)
-    read = {one.key: read_entry(one, subject, "none") for one in entries()}
+    read = {row.name: entry_of(row, subject, "none") for row in entries()}
     for key, one in read.items():
         if key == "rms_slope" or one["section"] not in ("roughness", "material"):
             one["missing"] = _NO_CONTACT

@@ -272,8 +272,13 @@ NO_ESTIMATE = Estimate()
 
 def names_of(name: str, unit: str = "") -> list[str]:
     """Names of an estimate's variables, or columns: the value's and both ends'."""
-    suffix = f"_{unit.replace('/', '_per_')}" if unit else ""
-    return [f"{name}{end}{suffix}" for end in _ENDS]
+    return [column_of(name, unit, end.lstrip("_")) for end in _ENDS]
+
+
+def column_of(name: str, unit: str = "", of: str = "") -> str:
+    """Name of a column: ``NAME``, ``NAME_OF`` such as ``NAME_low``, and the unit at its end."""
+    of = f"_{of}" if of else ""
+    return f"{name}{of}_{unit.replace('/', '_per_')}" if unit not in ("", "1") else f"{name}{of}"
 
 
 def rows_of(
