@@ -102,11 +102,6 @@ def test_whether_an_interval_determines_depends_on_the_kind_of_quantity(ends, sc
     assert Estimate(*ends, scale=scale).determined is says
 
 
-def test_a_format_is_that_of_each_number():
-    assert f"{Estimate(0.954, 0.9, 1.011):.2f}" == "0.95 [0.90, 1.01]"
-    assert f"{Estimate(-0.001, -0.2, 0.2):+z.2f}" == "+0.00 [-0.20, +0.20]"
-
-
 @pytest.mark.parametrize(
     ("ends", "words"),
     [

@@ -1,13 +1,20 @@
 """Numbers in words."""
 
+import ast
 import math
+import re
+from pathlib import Path
 
 import pytest
 
+from fractalcontact.core import text
+from fractalcontact.core.estimate import Estimate
 from fractalcontact.core.text import (
+    compact,
     duration,
     interval,
     measured,
+    number,
     percent,
     short,
     undetermined,
@@ -51,3 +58,57 @@ def test_what_is_undetermined_is_shown_with_its_error():
     assert undetermined(interval(212, 49.1, 914)) == "undetermined (212 [49.1, 914])"
     assert undetermined(interval(1.4, math.nan, math.nan)) == "undetermined (1.40, error not known)"
     assert interval(math.nan, math.nan, math.nan) == "–"
+
+
+@pytest.mark.parametrize(
+    ("fraction", "words"),
+    [
+        (0, "0 %"),
+        (3e-8, "<0.0001 %"),
+        (0.000512, "0.051 %"),
+        (0.032, "3.2 %"),
+        (0.62, "62 %"),
+        (0.994, "99.4 %"),
+        (0.9965, "99.7 %"),
+        (1, "100 %"),
+        (1.234, "120 %"),
+        (-0.06, "−6 %"),
+        (math.nan, "–"),
+    ],
+)
+def test_a_fraction_has_two_digits_and_three_near_all(fraction, words):
+    assert percent(fraction) == words
+
+
+def test_an_estimate_has_its_interval_in_the_form_of_the_number():
+    assert number(Estimate(0.954, 0.9, 1.011)) == "0.95 [0.90, 1.01]"
+    assert number(Estimate(-0.001, -0.2, 0.2), 2, "+") == "+0.00 [-0.20, +0.20]"
+    assert compact(Estimate(12345, 0.9, 1.2e7)) == "12300 [0.9, 1.2e+07]"
+
+
+#: Rooms that show numbers, and what a format of a number in their strings begins with.
+ROOMS = ("pages", "cards", "report", "figures", "statements")
+FORMAT = re.compile(r"\.\d+[fge%]|[+z]|^g$")
+
+
+def formats(path):
+    """Formats of numbers in the f-strings of a module, by line."""
+    for node in ast.walk(ast.parse(path.read_text())):
+        if isinstance(node, ast.FormattedValue) and node.format_spec is not None:
+            parts = node.format_spec.values
+            spec = "".join(part.value for part in parts if isinstance(part, ast.Constant))
+            if FORMAT.search(spec):
+                yield f"{path.name}:{node.lineno}: {spec}"
+
+
+@pytest.mark.parametrize("room", ROOMS)
+def test_a_number_becomes_text_in_one_module(room):
+    """No format, and no function of its own, makes a number text where it is shown."""
+    folder = Path(text.__file__).parents[1] / room
+    paths = sorted(folder.rglob("*.py"))
+    assert paths
+    assert [found for path in paths for found in formats(path)] == []
+    own = re.compile(
+        r"^def (percent|short|measured|with_unit|interval|number)\(.*(float|share)", re.M
+    )
+    assert [path.name for path in paths if own.search(path.read_text())] == []

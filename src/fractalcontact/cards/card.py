@@ -6,9 +6,9 @@ from collections.abc import Mapping
 from dataclasses import asdict
 from typing import Any
 
-from ..core.labels import printable
+from ..core.labels import OPPOSITE, printable
 from ..core.subject import Subject
-from ..core.text import OPPOSITE, with_unit
+from ..core.text import with_unit
 from ..core.window import spacing_of, window_sides
 from ..pages.lights import lights_of, trust_of
 from ..report.published import read, row_of, shown_in

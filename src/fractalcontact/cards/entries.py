@@ -3,8 +3,8 @@
 import math
 from typing import Any
 
+from ..core import text
 from ..core.subject import Subject
-from ..core.text import percent
 from ..report.published import UNITS_AT, Number, Row, array_of, fitted_over, read, shown_in
 
 #: Sections of a card, in their order.
@@ -72,13 +72,13 @@ def number(row: Row, subject: Subject, found: Number) -> dict[str, Any]:
             written[key] = rounded(value)
     misfit = array_of(row, subject, row.misfit)
     if misfit is not None and found.determined:
-        written["note"] = f"misses the curve by {percent(misfit.item())}"
+        written["note"] = f"misses the curve by {text.percent(misfit.item())}"
     return written
 
 
 def rounded(value: float) -> float | None:
     """A number with the digits of a card; None where it is not finite."""
-    return float(f"{float(value):.{_DIGITS}g}") if math.isfinite(value) else None
+    return text.rounded(value, _DIGITS) if math.isfinite(value) else None
 
 
 def _label(value: Any) -> Any:

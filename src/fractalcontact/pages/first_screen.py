@@ -202,9 +202,7 @@ def _ends(row, size=1.0, of=None):
 def _at_twice(card):
     """Change of the stiffness with the spacing, which no interval contains."""
     change = row_at(card["entries"]["stiffness_change"], reference_of(card)).get("value")
-    return (
-        f"changes by {'+' * (change > 0)}{percent(change)} at twice the spacing" if change else ""
-    )
+    return f"changes by {percent(change, sign='+')} at twice the spacing" if change else ""
 
 
 def _harder(card, row, size):

@@ -20,16 +20,16 @@ import yaml
 
 from ..core.atomic import atomic_write
 from ..core.determined import decided_by_scan
-from ..core.labels import printable
+from ..core.labels import OPPOSITE, printable
 from ..core.measured_maps import measured_maps
 from ..core.stage import JOINT, SPECIMEN
 from ..core.subject import Subject, configuration_of
 from ..core.tables import write_table
 from ..core.text import (
-    OPPOSITE,
     duration,
     interval,
     measured,
+    number,
     percent,
     short,
     undetermined,
@@ -202,7 +202,7 @@ def _head(place, atlas):
         "date": f"{made:%Y-%m-%d %H:%M} UTC",
         "versions": json.loads(atlas.attrs["versions"]),
         "versions_differ": json.loads(atlas.attrs.get("versions_differ", "{}")),
-        "atlas_size": f"{place.atlas.stat().st_size / 1e6:.0f} MB",
+        "atlas_size": f"{number(place.atlas.stat().st_size / 1e6, 0)} MB",
         "atlas_path": _as_typed(place.atlas),
         "short": short,
         "measured": measured,

@@ -5,8 +5,8 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 
+from ..core.labels import OPPOSITE
 from ..core.subject import Subject
-from ..core.text import OPPOSITE
 
 
 def _unstated(key: str, words: str) -> Callable[[Subject], str]:

@@ -5,8 +5,8 @@ import numpy as np
 from ..core.claims import all_claims
 from ..core.estimate import Estimate
 from ..core.intervals import mean_difference
-from ..core.labels import loads_of
 from ..core.limits import NEARLY
+from ..core.text import compact, loads_of, number
 from ..core.verdicts import FAILS, HOLDS, ILL_POSED, PARTLY, UNDETERMINED
 from .evidence import Evidence, of_a_kind
 from .findings import (
@@ -77,9 +77,10 @@ def _rise(joint, force, before):
     percent = change.mapped(lambda end: 100 * end)
     return Finding(
         beyond_margin(change, all_claims()[name].margin, rising=True),
-        f"compliance {percent:+.0f} %",
-        f"from v = {ends[0]:.3g} mm and less to {ends[1]:.3g} mm and more; {margin_words(name)}; "
-        f"sigma_z of the composite topography {100 * of_spread.value:+.0f} %",
+        f"compliance {number(percent, 0, '+')} %",
+        f"from v = {compact(ends[0])} mm and less to {compact(ends[1])} mm and more; "
+        f"{margin_words(name)}; "
+        f"sigma_z of the composite topography {number(100 * of_spread.value, 0, '+')} %",
     )
 
 
@@ -102,8 +103,9 @@ def composite_dimension_rises(joint: Joint) -> Finding:
     high = float(joints["composite_fit_max"].max())
     return Finding(
         ILL_POSED,
-        f"Delta_g is {fitted[0]:.2f} at v = {v[0]:.3g} mm and {fitted[-1]:.2f} at {v[-1]:.3g} mm, "
-        f"over lags of {low:.3g} to {high:.3g} mm",
+        f"Delta_g is {number(fitted[0])} at v = {compact(v[0])} mm and "
+        f"{number(fitted[-1])} at {compact(v[-1])} mm, "
+        f"over lags of {compact(low)} to {compact(high)} mm",
         "other lags would give other dimensions",
     )
 
@@ -130,9 +132,9 @@ def larger_samples_close_more(joint: Joint, evidence: Evidence) -> Finding:
     closure = float(joint.state("windows")["closure_exponent"])
     return Finding(
         beyond_margin(exponent, all_claims()[name].margin, rising=True),
-        f"x = {exponent:z.2f}",
+        f"x = {number(exponent)}",
         f"compliance ~ b^x {evidence.reference}; {margin_words(name)}; closure from first touch "
-        f"~ b^{closure:.2f} in this specimen",
+        f"~ b^{number(closure)} in this specimen",
     )
 
 
@@ -149,11 +151,12 @@ def area_is_linear(joint: Joint) -> Finding:
     apart = int(((exponent.high < 1 - NEARLY) | (exponent.low > 1 + NEARLY)).sum())
     verdict = FAILS if apart == value.size else PARTLY if apart else HOLDS
     verdict = UNDETERMINED if not apart and 2 * near <= value.size else verdict
-    ends = " to ".join(dict.fromkeys(f"{m:.2f}" for m in (value.min(), value.max())))
+    ends = " to ".join(dict.fromkeys(number(m) for m in (value.min(), value.max())))
     return Finding(
         verdict,
         f"m = {ends}",
-        f"A_r ~ F^m; {near} of {value.size} exponents lie within {NEARLY:g} of 1, the intervals "
+        f"A_r ~ F^m; {near} of {value.size} exponents lie within {compact(NEARLY, 6)} of "
+        "1, the intervals "
         f"of {apart or 'none'} outside",
     )
 
@@ -187,7 +190,7 @@ def refinement_changes_little(joint: Joint) -> Finding:
     only one does, or at some loads.
     """
     margin = all_claims()["refinement_changes_little"].margin
-    curves = joint.along("closure").sel(offset=joint.offset)
+    curves = joint.reported.at_offset(joint.along("closure"))
     finest = int(curves["resolution"].min())
     grids = [
         curves.sel(resolution=k) for k in (2 * finest, finest) if k in curves["resolution"].values
@@ -210,14 +213,15 @@ def refinement_changes_little(joint: Joint) -> Finding:
     little = {name: int((np.abs(change) <= margin).sum()) for name, change in changes.items()}
     n = int(counts.sum()) - 1
     words = (
-        f"{name} changes by {100 * change.min():+z.0f} to {100 * change.max():+z.0f} % (within "
-        f"{100 * margin:g} % at {loads_of(little[name], n)})"
+        f"{name} changes by {number(100 * change.min(), 0, '+')} to "
+        f"{number(100 * change.max(), 0, '+')} % (within "
+        f"{compact(100 * margin, 6)} % at {loads_of(little[name], n)})"
         for name, change in changes.items()
     )
     return Finding(
         share(sum(little.values()), 2 * n),
         f"with all points in place of every second one, {' and '.join(words)}",
-        f"from a seat of {pressures[counts][0]:.3g} MPa",
+        f"from a seat of {compact(pressures[counts][0])} MPa",
     )
 
 

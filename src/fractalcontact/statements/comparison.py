@@ -15,6 +15,7 @@ from ..core.estimate import Estimate, rows_of
 from ..core.intervals import t_quantile
 from ..core.labels import cf_attrs
 from ..core.reported import Reported
+from ..core.text import percent
 from ..core.window import nominal_area
 
 #: What is compared, each with its 95 % interval: unit and long name; the first once a specimen,
@@ -143,7 +144,7 @@ def compare_specimens(rows: Mapping[str, xr.Dataset]) -> xr.Dataset:
         "compared_pressure": (
             ("specimen", "load"),
             "MPa",
-            f"nominal pressure under which specimens are compared, one within {ALIKE:.0%}",
+            f"nominal pressure under which specimens are compared, one within {percent(ALIKE)}",
         ),
         "group": ("specimen", "1", "group of the specimen"),
         "label": ("specimen", "1", "label of the specimen"),

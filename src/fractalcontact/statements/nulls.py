@@ -7,8 +7,8 @@ from ..core.claims import all_claims
 from ..core.determined import differ_together, differs
 from ..core.directions import slides
 from ..core.estimate import Estimate
-from ..core.labels import loads_of
 from ..core.limits import CONFIDENCE, LOOSELY, NEARLY
+from ..core.text import compact, loads_of, number
 from ..core.verdicts import (
     FAILS,
     HOLDS,
@@ -46,7 +46,7 @@ def closure_is_hyperbolic(joint: Joint) -> Finding:
     if not decided.any():
         return Finding(UNDETERMINED, f"no law fits better at any of {slid.sum()} offsets")
     misfits = " against ".join(
-        f"{100 * np.nanmedian(curves[f'{law}_misfit'].values[slid][decided]):.2g} %"
+        f"{compact(100 * np.nanmedian(curves[f'{law}_misfit'].values[slid][decided]), 2)} %"
         for law in ("hyperbola", "semi_logarithmic")
     )
     better = int((laws[decided] == HYPERBOLA).sum())
@@ -92,9 +92,11 @@ def _departure_words(state, null, words):
     slope, other = (float(state[name][place]) for name in ("local_slope", f"local_slope_{null}"))
     small = differs(p) and abs(slope - other) < NEARLY
     return (
-        f"{words}: largest departure at r = {side:.2g} mm, local slope {slope:.2f} against "
-        f"{other:.2f}, p {f'= {p:.2g}' if p >= _LEAST_P else f'< {_LEAST_P:g}'}"
-        f"{f' (significant, but smaller than {NEARLY:g})' if small else ''}"
+        f"{words}: largest departure at r = {compact(side, 2)} mm, local slope "
+        f"{number(slope)} against "
+        f"{number(other)}, p "
+        f"{f'= {compact(p, 2)}' if p >= _LEAST_P else f'< {compact(_LEAST_P, 6)}'}"
+        f"{f' (significant, but smaller than {compact(NEARLY, 6)})' if small else ''}"
     )
 
 
@@ -125,11 +127,14 @@ def domains_differ_from_cuts(joint: Joint, evidence: Evidence) -> Finding:
         verdict = FAILS
     less = states["delta_sigma_cut_difference"].values
     less = less[np.isfinite(less)]
-    ends = dict.fromkeys(f"{end:+.2f}" for end in (less.min(), less.max())) if less.size else "-"
+    ends = (
+        dict.fromkeys(number(end, 2, "+") for end in (less.min(), less.max())) if less.size else "-"
+    )
     return Finding(
         verdict,
         f"local slopes differ from those of the cut at {loads_of(different, total)}",
-        f"slopes coincide within {margin:g} at {loads_of(int(alike.sum()), total)}; Delta_sigma "
+        f"slopes coincide within {compact(margin, 6)} at "
+        f"{loads_of(int(alike.sum()), total)}; Delta_sigma "
         f"minus that of the cut is {' to '.join(ends)}",
     )
 
@@ -168,8 +173,8 @@ def domains_are_isotropic(joint: Joint) -> Finding:
         return Finding(UNDETERMINED, "no two nodes in contact lie two nodes apart")
     ways = _OF_SLIDING if slides(joint.settings["opposite"]) else ("along x", "along y")
     numbers = (
-        f"probability of contact two nodes from a node in contact: {along:.2f} {ways[0]}, "
-        f"{across:.2f} {ways[1]}"
+        f"probability of contact two nodes from a node in contact: {number(along)} {ways[0]}, "
+        f"{number(across)} {ways[1]}"
     )
     apart = max(along.low, across.low) > min(along.high, across.high)
     difference = abs(across.value - along.value) / (across.value + along.value)

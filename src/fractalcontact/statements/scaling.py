@@ -5,8 +5,8 @@ import numpy as np
 from ..core.claims import all_claims
 from ..core.estimate import Estimate
 from ..core.fitting import MIN_POINTS
-from ..core.labels import loads_of
 from ..core.limits import NEAR_FULL, NEAR_POINTS, NEARLY
+from ..core.text import compact, loads_of, number
 from ..core.verdicts import FAILS, HOLDS, PARTLY, UNDETERMINED
 from .evidence import ESTIMATES, Evidence, Trend, at_reference, of_a_kind
 from .findings import (
@@ -43,9 +43,10 @@ def area_is_lacunar(joint: Joint, evidence: Evidence) -> Finding:
     )
     return Finding(
         falls if one_power == HOLDS or falls != HOLDS else PARTLY,
-        f"A_r ~ s^(2 - Delta_sigma), Delta_sigma = {delta:.2f}",
+        f"A_r ~ s^(2 - Delta_sigma), Delta_sigma = {number(delta)}",
         f"{evidence.reference}; {words}: from the coarsest to the finest resolutions Delta_sigma "
-        f"changes by {bend:+z.2f}; {margin_words(name)}; at light load the slopes h'_rms(s) of the "
+        f"changes by {number(bend, 2, '+')}; {margin_words(name)}; at light load the "
+        "slopes h'_rms(s) of the "
         "surface set this exponent",
     )
 
@@ -70,7 +71,7 @@ def estimates_agree(joint: Joint, evidence: Evidence) -> Finding:
         return Finding(UNDETERMINED, "no load has both estimates with their intervals")
     each = _each_within(difference, name)
     decided = [verdict for verdict in each if verdict != UNDETERMINED]
-    ends = " to ".join(dict.fromkeys(f"{d:+.2f}" for d in difference.value[[0, -1]]))
+    ends = " to ".join(dict.fromkeys(number(d, 2, "+") for d in difference.value[[0, -1]]))
     return Finding(
         share(decided.count(HOLDS), len(decided)) if decided else UNDETERMINED,
         f"Delta_sigma by A_r(s) minus that by boxes is {ends}; they differ at "
@@ -109,7 +110,7 @@ def _beside_cut(less: Estimate) -> str:
     """Rise of Delta_sigma less that of the bearing-area cut, in words."""
     if not less.known:
         return "not compared with the bearing-area cut, which is near 2 or has no dimension"
-    return f"by {less:+z.2f} after subtraction of the bearing-area cut"
+    return f"by {number(less, 2, '+')} after subtraction of the bearing-area cut"
 
 
 def _rise(trend: Trend, name: str) -> Finding:
@@ -118,7 +119,7 @@ def _rise(trend: Trend, name: str) -> Finding:
         return Finding(UNDETERMINED, "too few loads have a dimension")
     return Finding(
         beyond_margin(trend.slope, all_claims()[name].margin, rising=True),
-        f"Delta_sigma changes by {trend.slope:+z.2f} per decade of F",
+        f"Delta_sigma changes by {number(trend.slope, 2, '+')} per decade of F",
         f"{_between(trend.pressures)}; {margin_words(name)}",
     )
 
@@ -161,7 +162,7 @@ def span_finding(delta: Estimate, random: np.ndarray, pressures: np.ndarray, not
     return Finding(
         verdict,
         f"Delta_sigma by boxes goes from {_of_a_set(lower)} to {_of_a_set(upper)} up to "
-        f"{pressures[-1]:.3g} MPa",
+        f"{compact(pressures[-1])} MPa",
         note,
     )
 
@@ -169,7 +170,7 @@ def span_finding(delta: Estimate, random: np.ndarray, pressures: np.ndarray, not
 def _of_a_set(dimension: Estimate) -> str:
     """A dimension with its interval, if it has one."""
     known = np.isfinite(dimension.width)
-    return f"{dimension:.2f}" if known else f"{dimension.value:.2f} (no interval)"
+    return number(dimension) if known else f"{number(dimension.value)} (no interval)"
 
 
 def by_design(joint: Joint) -> str:
@@ -182,8 +183,8 @@ def by_design(joint: Joint) -> str:
     if not largest.size or largest.min() > largest.max() / 2:
         return full
     return (
-        f"; as boxes fill, the largest fitted box shrinks from {largest.max():.2g} to "
-        f"{largest.min():.2g} mm in this specimen{full}"
+        f"; as boxes fill, the largest fitted box shrinks from {compact(largest.max(), 2)} to "
+        f"{compact(largest.min(), 2)} mm in this specimen{full}"
     )
 
 
@@ -210,9 +211,9 @@ def size_effect_follows(joint: Joint, evidence: Evidence) -> Finding:
         for words, one in found.items()
     }
     pressures = np.unique(np.concatenate([one.pressures for one in found.values()]))
-    less = " and ".join(f"{one:+z.2f} {words}" for words, one in nearest.items())
+    less = " and ".join(f"{number(one, 2, '+')} {words}" for words, one in nearest.items())
     exponent = evidence.size_exponent("area_exponent")
-    law = f"A_r/A_0 ~ b^x, x = {exponent:z.2f}" if exponent.known else "A_r/A_0 ~ b^x"
+    law = f"A_r/A_0 ~ b^x, x = {number(exponent)}" if exponent.known else "A_r/A_0 ~ b^x"
     agree = "no load is decisive"
     if decided:
         agree = f"eq. 6 agrees in {decided.count(HOLDS) or 'none'} of {len(decided)} decisive cases"
@@ -231,7 +232,7 @@ def _each_within(differences: Estimate, name: str) -> list[str]:
 
 def _between(pressures: np.ndarray) -> str:
     """A range of nominal pressures in words; ascending."""
-    ends = dict.fromkeys(f"{end:.3g}" for end in (pressures[0], pressures[-1]))
+    ends = dict.fromkeys(compact(end) for end in (pressures[0], pressures[-1]))
     return f"{' to '.join(ends)} MPa"
 
 
@@ -248,7 +249,7 @@ def larger_domains_are_less_dense(joint: Joint, evidence: Evidence) -> Finding:
         return Finding(UNDETERMINED, "too few nodes in contact in sub-windows of two sizes")
     return Finding(
         beyond_margin(exponent, all_claims()[name].margin, rising=False),
-        f"x = {exponent:z.2f}",
+        f"x = {number(exponent)}",
         f"A_r/A_0 ~ b^x {evidence.reference}; {margin_words(name)}",
     )
 
@@ -296,4 +297,4 @@ def strength_falls_with_size(joint: Joint) -> Finding:
 def _ends(exponents: Estimate) -> str:
     """Least and largest exponent in words."""
     ends = (exponents.value.min(), exponents.value.max())
-    return " to ".join(dict.fromkeys(f"{end:.2f}" for end in ends))
+    return " to ".join(dict.fromkeys(number(end) for end in ends))

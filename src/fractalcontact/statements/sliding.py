@@ -6,6 +6,7 @@ import numpy as np
 import xarray as xr
 
 from ..core.limits import LEVEL_CHANGE, LOOSELY, NEARLY
+from ..core.text import compact, number
 from ..core.verdicts import FAILS, HOLDS, LEVEL, PARTLY, RISING, UNDETERMINED
 from .findings import Finding, Joint, no_offsets, power_of_offset, share
 
@@ -61,8 +62,9 @@ class Plateaus(NamedTuple):
             UNDETERMINED if self.undecided else verdict,
             f"level in {self.flat.sum() or 'none'} of {self.change.size} directions{more}"
             f"{f'; {self.undecided}' if self.undecided else ''}",
-            f"{100 * self.change.min():+.0f} to {100 * self.change.max():+.0f} % change over the "
-            f"second half of v; level: up to {100 * LEVEL_CHANGE:g} %",
+            f"{number(100 * self.change.min(), 0, '+')} to "
+            f"{number(100 * self.change.max(), 0, '+')} % change over the "
+            f"second half of v; level: up to {compact(100 * LEVEL_CHANGE, 6)} %",
         )
 
 
@@ -106,14 +108,16 @@ def dilatancy_is_anisotropic(joint: Joint) -> Finding:
     even, tilts = joints["even_change"].values, joints["odd_slope"].values
     axes = [str(axis) for axis in joints["axis"].values]
     parts = "; ".join(
-        f"{axis} {100 * rise:+.0f} % in the mean of both directions, tilt {tilt:+.3f} v"
+        f"{axis} {number(100 * rise, 0, '+')} % in the mean of both directions, tilt "
+        f"{number(tilt, 3, '+')} v"
         for axis, rise, tilt in zip(axes, even, tilts, strict=True)
     )
     if len(axes) > 1 and verdict == HOLDS and _differs(np.ptp(even)) != HOLDS:
         verdict = PARTLY
     return Finding(
         verdict,
-        f"delta_r changes by {100 * change.min():+.0f} to {100 * change.max():+.0f} % of its mean "
+        f"delta_r changes by {number(100 * change.min(), 0, '+')} to "
+        f"{number(100 * change.max(), 0, '+')} % of its mean "
         "over the second half of v, depending on direction",
         parts,
     )
@@ -135,9 +139,12 @@ def no_correlation_is_left(joint: Joint) -> Finding:
     limit = float(joint["joints"]["correlation_limit"])
     v = joint["joints"]["rigid_offset"].values
     correlation = joint.of_direction("face_correlation")[np.argmin(np.abs(v - joint.offsets[-1]))]
-    numbers, where = f"correlation {correlation:+.2f}", f"at v = {joint.offsets[-1]:.3g} mm"
+    numbers, where = (
+        f"correlation {number(correlation, 2, '+')}",
+        f"at v = {compact(joint.offsets[-1])} mm",
+    )
     if not np.isfinite(limit):
         too_small = "in so small a window chance may give as much"
         return Finding(UNDETERMINED, numbers, f"{where}; {too_small}")
     verdict = HOLDS if correlation <= limit else FAILS
-    return Finding(verdict, f"{numbers}; chance gives up to {limit:.2f}", where)
+    return Finding(verdict, f"{numbers}; chance gives up to {number(limit)}", where)

@@ -11,7 +11,7 @@ import xarray as xr
 
 from ..core.directions import DIRECTIONS, axis_and_sign, slides
 from ..core.errors import InputError
-from ..core.labels import percent
+from ..core.text import percent
 from ..core.window import spacing_of
 
 #: A side given in mm holds a whole number of cells within this fraction of one.

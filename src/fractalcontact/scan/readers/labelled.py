@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from ...core.errors import InputError
-from ...core.labels import percent
+from ...core.text import percent
 from ...core.units import length_factor
 from ...gridding.measured import NOTE
 from ..array_hints import array_hints
