@@ -91,7 +91,10 @@ class Comparison:
             elif name.endswith(".zip"):
                 self.archives(old / name, new / now, now)
             else:
-                self.files((old / name).read_text(), (new / now).read_text(), now)
+                ours, theirs = (
+                    path.read_text(encoding="utf-8") for path in (old / name, new / now)
+                )
+                self.files(ours, theirs, now)
         for name in _files(new, PICTURES):
             if (old / name).is_file() and (old / name).read_bytes() != (new / name).read_bytes():
                 self.pictures.append(name)
@@ -310,7 +313,9 @@ def main(arguments=None):
             for folder in results:
                 keep(folder, KEPT / folder.name)
             return 0
-        new_names = yaml.safe_load(options.renamed.read_text()) if options.renamed else {}
+        new_names = (
+            yaml.safe_load(options.renamed.read_text(encoding="utf-8")) if options.renamed else {}
+        )
         same = [compare(options.against / folder.name, folder, new_names) for folder in results]
     except (InputError, OSError) as error:
         sys.exit(f"error: {error}")

@@ -13,7 +13,7 @@ def test_what_may_cross_zero_has_its_errors_in_its_unit_whatever_its_value(value
     one = Number({}, Estimate(value))
     dimension = Row("name", "title", "stage/name", "1", dimension=True)
     separation = Row("name", "title", "stage/name", "mm", within=(-1, 1))
-    assert error_words(dimension, one, 0.25) == "0.25"
-    assert error_words(separation, one, 0.25) == "250 µm"
+    assert error_words(dimension, one, 0.25) == "± 0.25"
+    assert error_words(separation, one, 0.25) == "± 250 µm"
     gap = Row("name", "title", "stage/name", "mm")
-    assert error_words(gap, Number({}, Estimate(0.04)), 0.25) == "620 %"
+    assert error_words(gap, Number({}, Estimate(0.04)), 0.25) == "± 620 %"

@@ -1,5 +1,7 @@
 """Verdicts on the paper's statements: each rule on numbers made to meet it and to miss it."""
 
+from statistics import NormalDist
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -7,6 +9,7 @@ from judged_joints import RIGID, ROCK, SETTINGS, V, stages
 
 from fractalcontact.core.estimate import Estimate
 from fractalcontact.core.estimate import names_of as ends_of
+from fractalcontact.core.limits import LOOSELY
 from fractalcontact.core.verdicts import (
     FAILS,
     HOLDS,
@@ -330,8 +333,33 @@ def test_every_offset_belongs_to_one_part_of_the_sliding(length, uncorrelated):
 
 
 def test_flush_faces_are_left_out():
-    joint = Joint(stages(), SETTINGS)
-    assert not joint.initial[joint.offsets == 0].any()
+    def flush_first(law):
+        made, offsets = stages(law=[law, *["hyperbola"] * 6]), [0.0, *V[1:]]
+        at_zero = {
+            name: one.assign_coords(offset=offsets)
+            for name, one in made.items()
+            if one.sizes.get("offset") == len(V)
+        }
+        return Joint({**made, **at_zero}, SETTINGS)
+
+    joint = flush_first("")
+    np.testing.assert_array_equal(joint.offsets == 0, [True, *[False] * 6])
+    assert not joint.initial[0]
+    assert joint.initial.any()
+    assert nulls.closure_is_hyperbolic(flush_first("semi_logarithmic")).verdict == HOLDS
+
+
+@pytest.mark.parametrize("loads", [1, 12])
+@pytest.mark.parametrize("side", [1, -1])
+def test_a_difference_at_the_limit_is_called_beyond_it_in_few_joints_however_many_loads(
+    loads, side
+):
+    """Of joints whose difference is the limit itself 2.5 % are called beyond it, one side of 95."""
+    sigma, joints = 0.05, 4000
+    values = np.random.default_rng(3).normal(side * LOOSELY, sigma, (joints, loads))
+    half = NormalDist().inv_cdf(0.975) * sigma
+    called = [nulls._any_beyond(Estimate(v, v - half, v + half), loads) for v in values]
+    assert np.mean(called) == pytest.approx(0.025, abs=0.008)
 
 
 def test_a_variable_that_is_missing_is_an_error():

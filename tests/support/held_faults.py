@@ -76,7 +76,11 @@ class HeldStudy:
         self.scan = self.project / "scans/rock.npy"
         write_scan(self.project, "rock", rough_heights(n=64))
         first = self.project / "workflow/scripts/sitecustomize.py"
-        first.write_text((ROOT / "tests/support/held_job.py").read_text() + first.read_text())
+        first.write_text(
+            (ROOT / "tests/support/held_job.py").read_text(encoding="utf-8")
+            + first.read_text(encoding="utf-8"),
+            encoding="utf-8",
+        )
         self.reference = self._undisturbed()
         self.notes = []
 
@@ -91,7 +95,7 @@ class HeldStudy:
     def found(self):
         """The atlas, and the checksums of everything."""
         manifest = self.results / "manifest.sha256"
-        return (self.project / ATLAS).read_bytes(), manifest.read_text()
+        return (self.project / ATLAS).read_bytes(), manifest.read_text(encoding="utf-8")
 
     def fault(self, name):
         """One fault, from a study with no results to the comparison.
@@ -122,7 +126,7 @@ class HeldStudy:
         )
         told = {"HELD_JOBS": str(self.orders)}
         self.said = self.project / "said.txt"
-        with open(self.said, "w") as said:
+        with open(self.said, "w", encoding="utf-8") as said:
             return subprocess.Popen(
                 (sys.executable, "workflow/run.py", STUDY, *words, ATLAS),
                 cwd=self.project,
@@ -130,6 +134,10 @@ class HeldStudy:
                 stderr=said,
                 env=os.environ | told,
             )
+
+    def told(self):
+        """What the last run said."""
+        return self.said.read_text(encoding="utf-8")
 
     @contextlib.contextmanager
     def held(self, rule):
@@ -140,7 +148,7 @@ class HeldStudy:
             begun = self.orders / f"{rule}.begun"
             self.wait(lambda: begun.exists() or running.poll() is not None)
             if not begun.exists():
-                raise RuntimeError(f"{rule} never began: {self.said.read_text()[-2000:]}")
+                raise RuntimeError(f"{rule} never began: {self.told()[-2000:]}")
             yield running
         finally:
             self.release(rule)
@@ -150,7 +158,7 @@ class HeldStudy:
 
     def order(self, rule, text):
         """Tell the next job of a rule what to do; it reads the whole order or none."""
-        (self.orders / "written").write_text(text)
+        (self.orders / "written").write_text(text, encoding="utf-8")
         os.replace(self.orders / "written", self.orders / rule)
 
     def release(self, rule):
@@ -170,8 +178,8 @@ class HeldStudy:
         code = running.wait(PATIENCE)
         if code == 0:
             return "same" if self.is_same() else "WRONG"
-        sentences = [line for line in self.said.read_text().splitlines() if "error: " in line]
-        self.notes.append(f"refused: {sentences[0] if sentences else self.said.read_text()[-500:]}")
+        sentences = [line for line in self.told().splitlines() if "error: " in line]
+        self.notes.append(f"refused: {sentences[0] if sentences else self.told()[-500:]}")
         if not sentences or not refusals or self.verdict(refusals=refusals - 1) == "WRONG":
             return "WRONG"
         return "refused, then same"
@@ -234,7 +242,7 @@ class HeldStudy:
         shutil.rmtree(place, ignore_errors=True)
         place.mkdir()
         mount = ["mount", "-t", "tmpfs", "-o", "size=80m", "tmpfs", place]
-        mounted = subprocess.run(mount, capture_output=True, text=True)
+        mounted = subprocess.run(mount, capture_output=True, text=True, encoding="utf-8")
         if mounted.returncode:
             raise Skipped(f"no tmpfs can be mounted: {mounted.stderr.strip()}")
         try:
@@ -346,7 +354,7 @@ class HeldStudy:
             again = self.start()
             if again.wait(PATIENCE) == 0:
                 return "WRONG"  # it must not work beside jobs of the killed run
-            self.notes += [line for line in self.said.read_text().splitlines() if "error: " in line]
+            self.notes += [line for line in self.told().splitlines() if "error: " in line]
             self.release("contact")
             self.wait(lambda: not self.node.queue())
         before = {job.number for job in self.node.jobs()}
@@ -416,7 +424,7 @@ def replay(names, accounting=False):
 def _children(number):
     """Process ids of the children of a process."""
     path = Path(f"/proc/{number}/task/{number}/children")
-    return [int(word) for word in path.read_text().split()]
+    return [int(word) for word in path.read_text(encoding="utf-8").split()]
 
 
 def _allow(folders, *, allowed):

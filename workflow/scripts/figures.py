@@ -41,4 +41,6 @@ with job(snakemake) as log:
     for name, trace in failures.items():
         log.error("error in the program: figure %s was not drawn\n%s", name, trace)
     with atomic_write(output.undrawn) as path:
-        Path(path).write_text("".join(f"{specimen}/{name}\n".lstrip("/") for name in failures))
+        Path(path).write_text(
+            "".join(f"{specimen}/{name}\n".lstrip("/") for name in failures), encoding="utf-8"
+        )

@@ -2,7 +2,16 @@
 
 import math
 
-from ..core.text import MISSING, interval, measured, percent, short, undetermined, with_unit
+from ..core.text import (
+    MISSING,
+    interval,
+    measured,
+    percent,
+    plus_minus,
+    short,
+    undetermined,
+    with_unit,
+)
 from ..report.published import Number, Row
 from .summary import Sheet
 
@@ -24,9 +33,9 @@ def bare_words(one: Number) -> str:
 
 def error_words(row: Row, one: Number, error: float) -> str:
     """An error in per cent of the number, or in its unit where that may be zero or negative."""
-    if row.signed or not one.estimate.known or one.value == 0:
-        return with_unit(error, row.unit, 2)
-    return percent(abs(error / one.value))
+    in_unit = row.signed or not one.estimate.known or one.value == 0
+    words = with_unit(error, row.unit, 2) if in_unit else percent(abs(error / one.value))
+    return plus_minus(error, words)
 
 
 def estimate_words(one: Number) -> str:

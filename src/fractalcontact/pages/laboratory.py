@@ -21,6 +21,8 @@ class Test(NamedTuple):
     Attributes
     ----------
     words : str
+    note : str
+        What to know of its readings; empty if nothing is.
     ratio : Number
     status : str
         "computed", or "fitted" and "predicted" with the constant that is fitted to a test.
@@ -29,6 +31,7 @@ class Test(NamedTuple):
     """
 
     words: str
+    note: str
     ratio: Number
     status: str = "computed"
     calibrated: Number | None = None
@@ -44,7 +47,8 @@ def tests_of(subject: Subject) -> list[Test]:
             if kind == "closure":
                 status = str(subject["measured"]["closure_status"].values[i])
                 beside = (status, read(row_of("calibrated_over_measured"), subject)[i])
-            found.append(Test(f"{words}: {one.at['test']}", one, *beside))
+            note = str(subject["measured"][f"{kind}_note"].values[i])
+            found.append(Test(f"{words}: {one.at['test']}", note, one, *beside))
     return found
 
 
