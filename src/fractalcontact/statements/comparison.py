@@ -68,7 +68,7 @@ def specimen_row(stages: Mapping[str, xr.Dataset], settings: Mapping) -> xr.Data
     pressures = closure["normal_force"].values / nominal_area(stages["specimens"])
     found = {
         **Estimate.read(surface, "recommended_dimension").columns("delta_g"),
-        **_stiffness(stages["error_budget"], pressures.size),
+        **_stiffness(reported.states(closure), stages["error_budget"]),
         **Estimate.read(reported.states(stages["domains"]), "delta_sigma").columns("delta_sigma"),
         **_dilatancy(stages["dilatancy"], reported.direction, pressures.size),
         **_size_exponent(stages["size_test"], pressures),
@@ -86,11 +86,11 @@ def _around(name, value, half_width):
     return Estimate(value, value - half_width, value + half_width).columns(name)
 
 
-def _stiffness(budget, n_loads):
-    one = budget.sel(quantity="stiffness")
-    if one.sizes["normal_force"] != n_loads:
+def _stiffness(states, budget):
+    error = budget["total"].sel(quantity="stiffness")
+    if error.size != states.sizes["normal_force"]:
         raise ValueError("the error budget has other loads than the closure")
-    return _around("stiffness", one["published"].values, one["total"].values)
+    return _around("stiffness", states["interface_stiffness"].values, error.values)
 
 
 def _dilatancy(dilatancy, direction, n_loads):

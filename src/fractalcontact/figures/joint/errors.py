@@ -135,9 +135,9 @@ def _words(here: xr.Dataset) -> dict[str, Any]:
     totals = []
     for quantity, (_, words) in QUANTITIES.items():
         errors = here.sel(quantity=quantity)
-        total, value = float(errors["total"]), float(errors["published"])
-        if value and not errors["absolute"]:
-            said = percent(total / abs(value))
+        total, relative = float(errors["total"]), float(errors["relative_total"])
+        if np.isfinite(relative):
+            said = percent(relative)
         elif errors["unit"] == "mm":
             unit, size = length_unit(total)
             said = f"{compact(total / size, 2)} {unit}"
