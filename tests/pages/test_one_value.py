@@ -26,11 +26,13 @@ from published import (
     tables_of,
 )
 
+from fractalcontact.core.subject import Subject
 from fractalcontact.figures.draw import drawer_of
 from fractalcontact.figures.kit.drawing import print_style
 from fractalcontact.pages.captions import symbols
 from fractalcontact.pages.explorer import write_explorer
 from fractalcontact.report.published import BY_SCAN
+from fractalcontact.report.published import published as published_rows
 from fractalcontact.study.atlas import read_atlas
 from fractalcontact.study.figure_list import figures_of
 
@@ -300,3 +302,14 @@ def test_the_explorer_has_the_values_errors_and_words_of_the_summary(published, 
             words.add(row["by_scan"])
     assert compared > 50
     assert words == {True, False} or os.environ.get("RESULTS")
+
+
+def test_units_of_the_register_are_those_of_the_atlas(atlas, specimens):
+    compared = 0
+    for one in specimens:
+        subject = Subject.of(atlas, one.name)
+        for row in published_rows():
+            if row.stage in subject.stages and row.variable in subject[row.stage]:
+                assert subject[row.stage][row.variable].attrs["units"] == row.unit, row.name
+                compared += 1
+    assert compared > 50

@@ -1,13 +1,17 @@
 """The register of published numbers: each stands once, and one reader reads it."""
 
+import re
+from pathlib import Path
+
 import numpy as np
-import pytest
 import xarray as xr
 
+import fractalcontact
+from fractalcontact.core.estimate import Estimate
 from fractalcontact.core.subject import Subject
-from fractalcontact.core.verdicts import NO_PRESSURE, TOO_FEW_RESOLUTIONS, TOO_WIDE
+from fractalcontact.core.verdicts import NO_PRESSURE, TOO_WIDE
 from fractalcontact.report.columns import columns_of
-from fractalcontact.report.published import Row, published, read, row_of, shown_in
+from fractalcontact.report.published import Number, Row, published, read, row_of, shown_in
 
 DIMS = ("direction", "offset", "resolution", "normal_force")
 FORCES = [1.0, 2.0, 3.0]
@@ -149,8 +153,28 @@ def test_each_quantity_stands_once_and_is_shown_somewhere():
     assert all(row.budget and row.page for row in shown_in("errors"))
 
 
-@pytest.mark.parametrize(
-    ("name", "reason"), [("sigma_n", NO_PRESSURE), ("delta_sigma_area", TOO_FEW_RESOLUTIONS)]
-)
-def test_reasons_that_the_atlas_has_too_are_in_its_words(name, reason):
-    assert row_of(name).missing == reason
+def test_the_reason_for_no_pressure_is_that_of_the_elastic_model():
+    assert row_of("sigma_n").missing == NO_PRESSURE
+
+
+def test_one_reader_gives_numbers_to_pages_and_cards():
+    """No module of theirs reads an estimate, or a total of the error budget, by itself."""
+    own = re.compile(r"""Estimate\.read\(|\["total(_of_population)?"\]""")
+    source = Path(fractalcontact.__file__).parent
+    found = [
+        path.relative_to(source).as_posix()
+        for room in ("pages", "cards")
+        for path in (source / room).rglob("*.py")
+        if own.search(path.read_text(encoding="utf-8"))
+    ]
+    assert found == []
+
+
+def test_a_unit_is_the_last_word_of_a_column():
+    """But for the names of release 1.0, which stand beside the new ones once more."""
+    for one in shown_in("summary"):
+        for column in columns_of(one, Number({"pressure": 5.0, "test": "a b"}, Estimate(1.0))):
+            unit = one.unit.replace("/", "_per_")
+            words = ("determined", "reason")
+            assert one.unit == "1" or column.endswith((f"_{unit}", *words)), column
+            assert " " not in column
