@@ -10,7 +10,6 @@ from fractalcontact.core.estimate import (
     EXPONENT,
     SIZE,
     Estimate,
-    Judged,
     names_of,
     rows_of,
 )
@@ -147,10 +146,3 @@ def test_error_has_two_digits_however_small_or_large():
 )
 def test_an_estimate_in_words(ends, scale, unit, words):
     assert Estimate(*ends, scale=scale).text(unit) == words
-
-
-def test_a_number_that_something_else_determines_is_known_whatever_its_interval():
-    assert Judged(2.0, 0.01, 500.0, says=True).determined
-    assert Judged(2.0, says=True).determined
-    assert not Judged().determined
-    assert Judged(2.0, 0.01, 500.0, says=True).text("mm3") == "2 [0.01, 500] mm3"

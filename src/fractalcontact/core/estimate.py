@@ -228,18 +228,6 @@ class Estimate:
         }
 
 
-@dataclass(frozen=True)
-class Judged(Estimate):
-    """Estimate whose stage, not its interval, says if it is determined."""
-
-    says: bool = False
-
-    @property
-    def determined(self) -> bool:
-        """True if the stage says so."""
-        return self.says
-
-
 #: What is not known at all.
 NO_ESTIMATE = Estimate()
 
