@@ -4,9 +4,10 @@
     python benchmarks/same.py compare STUDY ... [--against RESULTS] [--renamed NAMES.yaml]
 
 `make keep` and `make same` make the studies first. Compared are all variables and attributes of the
-atlas, all tables and captions. Of pictures those that changed are listed, to be looked at.
-NAMES.yaml has a line `old: new` for each stage, variable, dimension, attribute, column or figure
-that was renamed.
+atlas, all tables, those in tables.zip too, captions, all values of the cards, the visible text of
+all pages, and the data in them: the arrays of the explorer number by number. Of pictures those that
+changed are listed, to be looked at. NAMES.yaml has a line `old: new` for each stage, variable,
+dimension, attribute, column, key or figure that was renamed.
 """
 
 import argparse
@@ -16,11 +17,13 @@ import json
 import re
 import shutil
 import sys
+import zipfile
 from collections import Counter
 from pathlib import Path
 
 import numpy as np
 import yaml
+from page_contents import leaves, page_contents, without_what_may_differ
 
 from fractalcontact.commands.verify import results_of
 from fractalcontact.core.errors import InputError
@@ -28,15 +31,17 @@ from fractalcontact.study.atlas import read_atlas
 
 KEPT = Path("results/same")
 #: Files that are compared; texts are captions, and reasons why a figure was not drawn.
-COMPARED = ("atlas.nc", "**/*.csv", "**/*.txt")
+COMPARED = ("atlas.nc", "**/*.csv", "**/*.txt", "*.zip", "cards/*.json", "**/*.html")
 PICTURES = ("**/*.png",)
-#: Attributes that differ between two commits of equal numbers, and why.
+#: Attributes, and keys of cards, that differ between two commits of equal numbers, and why.
 MAY_DIFFER = {
     "versions": "libraries that were installed, and the release of this package",
     "versions_differ": "the same, of parts made with other ones",
 }
 #: Words shown to either side of a difference between two texts.
 CONTEXT = 8
+#: Letters shown of a value.
+MAX_WORDS = 100
 
 
 class Comparison:
@@ -55,7 +60,7 @@ class Comparison:
     def __init__(self, new_names=None):
         self.new_names = new_names or {}
         self.differences, self.renamed, self.pictures = [], set(), []
-        self.compared = Counter(groups=0, variables=0, tables=0, texts=0)
+        self.compared = Counter(groups=0, variables=0, tables=0, texts=0, values=0)
 
     def differ(self, place, words):
         """Note a difference."""
@@ -83,18 +88,69 @@ class Comparison:
         for name, now in self.pairs(_files(old), _files(new), new.name, "file"):
             if name.endswith(".nc"):
                 self.atlases(_tree(old / name), _tree(new / now), now)
-            elif name.endswith(".csv"):
-                self.tables(old / name, new / now, now)
+            elif name.endswith(".zip"):
+                self.archives(old / name, new / now, now)
             else:
-                self.compared["texts"] += 1
-                self.texts(
-                    (old / name).read_text(encoding="utf-8"),
-                    (new / now).read_text(encoding="utf-8"),
-                    now,
+                ours, theirs = (
+                    path.read_text(encoding="utf-8") for path in (old / name, new / now)
                 )
+                self.files(ours, theirs, now)
         for name in _files(new, PICTURES):
             if (old / name).is_file() and (old / name).read_bytes() != (new / name).read_bytes():
                 self.pictures.append(name)
+
+    def files(self, old, new, place):
+        """Compare the texts of two files by what their ending says of them."""
+        if place.endswith(".csv"):
+            self.tables(old, new, place)
+        elif place.endswith(".json"):
+            self.data(json.loads(old), json.loads(new), place)
+        elif place.endswith(".html"):
+            (text, data), (new_text, new_data) = page_contents(old), page_contents(new)
+            self.compared["texts"] += 1
+            self.texts(text, new_text, place)
+            self.data(data, new_data, place)
+        else:
+            self.compared["texts"] += 1
+            self.texts(old, new, place)
+
+    def archives(self, old, new, place):
+        """Compare the texts in two archives."""
+        with zipfile.ZipFile(old) as ours, zipfile.ZipFile(new) as theirs:
+            for name, now in self.pairs(ours.namelist(), theirs.namelist(), place, "file"):
+                self.files(ours.read(name).decode(), theirs.read(now).decode(), f"{place} {now}")
+
+    def data(self, old, new, place):
+        """Compare nested data value by value, but for keys that may differ."""
+        ours, theirs = (
+            {path: leaf for path, leaf in leaves(data).items() if not _may_differ(path)}
+            for data in (old, new)
+        )
+        for path, now in self.pairs(ours, theirs, place, "value"):
+            self.compared["values"] += 1
+            self.values(ours[path], theirs[now], f"{place} {now}")
+
+    def values(self, old, new, place):
+        """Compare two arrays, two lists, or two words or numbers."""
+        if isinstance(old, np.ndarray) and isinstance(new, np.ndarray):
+            self.arrays(old, new, place)
+        elif isinstance(old, list) and isinstance(new, list) and len(old) == len(new):
+            wrong = [i for i, (a, b) in enumerate(zip(old, new, strict=True)) if not _equal(a, b)]
+            if wrong:
+                a, b = (_short(values[wrong[0]]) for values in (old, new))
+                count = f"{len(wrong)} of {len(old)} values differ, first at {wrong[0]}"
+                self.differ(place, f"{count}: {a} is now {b}")
+        elif not _equal(old, new):
+            self.differ(place, f"{_short(old)} is now {_short(new)}")
+
+    def arrays(self, old, new, place):
+        """Compare shapes and bits of two arrays."""
+        if old.shape != new.shape:
+            self.differ(place, f"{old.shape} is now {new.shape}")
+        elif not (same := _same_bits(old, new)).all():
+            first = tuple(int(i) for i in np.argwhere(~same)[0])
+            count = f"{np.count_nonzero(~same)} of {same.size} values differ, first at {first}"
+            self.differ(place, f"{count}: {old[first]!r} is now {new[first]!r}")
 
     def atlases(self, old, new, place):
         """Compare two atlases, {path of group: dataset}."""
@@ -131,24 +187,29 @@ class Comparison:
                 self.differ(place, f"attribute {now}: {a!r} is now {b!r}")
 
     def texts(self, old, new, place):
-        """Compare two texts word by word."""
-        if old == new:
-            return
+        """Compare two texts, first line by line, and lines that differ word by word."""
+        old, new = (without_what_may_differ(text).splitlines(keepends=True) for text in (old, new))
+        for kind, i, j, k, m in _steps(old, new):
+            if kind != "equal":
+                self.words("".join(old[i:j]), "".join(new[k:m]), place)
+
+    def words(self, old, new, place):
+        """Compare two passages word by word."""
         a, b = (re.findall(r"\s+|[\w.]+|.", text) for text in (old, new))
-        for kind, i, j, k, m in difflib.SequenceMatcher(None, a, b, autojunk=False).get_opcodes():
+        for kind, i, j, k, m in _steps(a, b):
             if kind != "equal":
                 before, after = a[max(i - CONTEXT, 0) : i], a[j : j + CONTEXT]
                 words = (*before, "[", *a[i:j], "] is now [", *b[k:m], "]", *after)
                 self.differ(place, "".join(words).replace("\n", "\\n"))
 
     def tables(self, old, new, place):
-        """Compare two tables, cell by cell where their bytes differ."""
+        """Compare the texts of two tables, cell by cell where they differ."""
         self.compared["tables"] += 1
-        if old.read_bytes() == new.read_bytes():
+        if old == new:
             return
         already = len(self.differences)
         (heads, *rows), (new_heads, *new_rows) = (
-            list(csv.reader(path.read_text(encoding="utf-8").splitlines())) for path in (old, new)
+            list(csv.reader(text.splitlines())) for text in (old, new)
         )
         if len(rows) != len(new_rows):
             self.differ(place, f"{len(rows)} rows are now {len(new_rows)}")
@@ -171,6 +232,30 @@ def _same_bits(a, b):
     if a.dtype.kind != "f" or b.dtype.kind != "f":
         return np.asarray(a == b)
     return (a == b) & (np.signbit(a) == np.signbit(b)) | np.isnan(a) & np.isnan(b)
+
+
+def _equal(a, b):
+    """Whether two words, numbers or lists are the same, type and sign of zero too."""
+    return repr(a) == repr(b) or (
+        isinstance(a, str)
+        and isinstance(b, str)
+        and without_what_may_differ(a) == without_what_may_differ(b)
+    )
+
+
+def _short(value):
+    """A value as a line can hold it; packed maps of the explorer are long."""
+    words = repr(value)
+    return words if len(words) <= MAX_WORDS else f"{words[:MAX_WORDS]}... ({len(words)} letters)"
+
+
+def _may_differ(path):
+    return not MAY_DIFFER.keys().isdisjoint(path.split("/"))
+
+
+def _steps(old, new):
+    """Steps from one sequence to another, as difflib names them."""
+    return difflib.SequenceMatcher(None, old, new, autojunk=False).get_opcodes()
 
 
 def _tree(path):

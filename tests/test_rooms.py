@@ -21,7 +21,7 @@ FLOORS = (
     ("roughness", "scan"),
     ("domain", "flow", "mechanics", "study"),
     ("size_effect", "error_budget", "measured", "statements"),
-    ("ensemble",),
+    ("ensemble", "report"),
     ("figures", "pages", "stages"),
     ("cards",),
     ("commands",),
@@ -121,14 +121,15 @@ def test_a_room_imports_nothing_but_what_is_asked_of_it(room):
 
 
 #: Figures, pages and cards read an atlas, and compute nothing of it. What they may import besides
-#: core and each other: tables of the study. Those of the laboratory may import its rooms.
+#: core, the report and each other: tables of the study. Those of the laboratory may import its
+#: rooms.
 READERS = ("figures", "pages", "cards")
 TABLES = {("study", name) for name in ("atlas", "atlas_parts", "campaign", "figure_list", "stages")}
 
 
 def beyond_reading(module, others):
     """Modules that one which only reads imports without leave."""
-    rooms = {"core", *READERS}
+    rooms = {"core", "report", *READERS}
     return {
         ".".join(other)
         for other in others

@@ -1,15 +1,20 @@
 """The comparison of results before and after a change finds a single changed bit."""
 
 import importlib.util
+import json
 import shutil
+import sys
+import zipfile
 
 import numpy as np
 import pytest
 import xarray as xr
 from places import BENCHMARKS
 
+from fractalcontact.pages.packed_states import packed
 from fractalcontact.study.atlas import write_atlas
 
+sys.path.insert(0, str(BENCHMARKS))
 SPEC = importlib.util.spec_from_file_location("same", BENCHMARKS / "same.py")
 same = importlib.util.module_from_spec(SPEC)
 SPEC.loader.exec_module(same)
@@ -28,6 +33,40 @@ def write(folder, closure, table="specimen,k_ni\na,1.5\nb,2.5\n", caption="A fit
     (folder / "summary.csv").write_text(table)
     (folder / "figures/fig04.txt").write_text(caption)
     (folder / "figures/fig04.png").write_bytes(b"drawn")
+
+
+#: A card, a page, an explorer, and a table in the archive.
+CARD = {
+    "versions": {"numpy": "1"},
+    "methods": "A window was compressed. Computed with fractalcontact 1.0.0, numpy 1.2.",
+    "entries": {"k_ni": {"value": 1.5, "low": 0.0}, "chi": {"values": [{"value": 2}]}},
+}
+PAGE = """<html><head><style>p { margin: 0; }</style></head><body>
+<h1 title="Joint">Joint&nbsp;A</h1>
+<p>Closure <b>0.12</b> mm.</p>
+<p>2026-11-24 10:00 UTC · 3 min 12 s of work in 32 jobs · end</p><script>draw(1);</script>
+<script type="application/json" id="index">{"rows": [{"name": "a", "value": 1.5}]}</script>
+"""
+NUMBERS = np.array([[0.1, np.nan, -0.0], [1 / 3, 2.0, 1e-300]])
+
+
+def write_pages(folder, card=None, page=PAGE, numbers=NUMBERS, cell="1.5"):
+    """Results with what people see of them."""
+    write(folder, dataset())
+    for name in ("cards", "pages"):
+        (folder / name).mkdir(exist_ok=True)
+    (folder / "cards/a.json").write_text(json.dumps(card or CARD))
+    (folder / "pages/a.html").write_text(page)
+    with zipfile.ZipFile(folder / "tables.zip", "w") as archive:
+        archive.writestr("figures/fig04.csv", f"load,k_ni\n1,{cell}\n")
+    arrays = {
+        "other": {"units": "mm", "shape": [1], "start": 0},
+        "closure/closure": {"units": "mm", "shape": [2, 3], "start": 1},
+    }
+    parts = np.concatenate([[7.0], np.ravel(numbers)]).astype("<f8")
+    states = json.dumps({"arrays": arrays, "numbers": packed(parts)})
+    explorer = f'<script type="application/json" id="states-0">{states}</script>'
+    (folder / "explorer.html").write_text(explorer)
 
 
 @pytest.fixture
@@ -50,7 +89,10 @@ def differences(old, new, new_names=None):
 def test_results_made_twice_are_the_same(old, new, capsys):
     write(new, dataset())
     assert same.compare(old, new)
-    assert "4 groups, 2 variables, 1 tables, 1 texts: all the same" in capsys.readouterr().out
+    assert (
+        "4 groups, 2 variables, 1 tables, 1 texts, 0 values: all the same"
+        in capsys.readouterr().out
+    )
 
 
 @pytest.mark.parametrize("at", [(0, 0), (1, 2)])
@@ -186,3 +228,87 @@ def test_who_kept_nothing_is_told_to(old, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     with pytest.raises(SystemExit, match=r"results/same/x: no atlas\.nc .* 'make keep'"):
         same.main(["compare", str(old)])
+
+
+def test_cards_pages_explorer_and_archive_made_twice_are_the_same(tmp_path):
+    for folder in ("old", "new"):
+        write_pages(tmp_path / folder)
+    assert differences(tmp_path / "old", tmp_path / "new") == []
+
+
+@pytest.mark.parametrize(
+    ("entry", "told"),
+    [
+        ({"value": np.nextafter(1.5, 2), "low": 0.0}, "value: 1.5 is now 1.5000000000000002"),
+        ({"value": 1.5, "low": -0.0}, "low: 0.0 is now -0.0"),
+        ({"value": 1.5, "low": None}, "low: 0.0 is now None"),
+        ({"value": 1.5}, "value entries/k_ni/low is lost"),
+        ({"value": 1.5, "low": 0.0, "high": 2}, "value entries/k_ni/high is new"),
+    ],
+)
+def test_each_value_of_a_card_is_compared(tmp_path, entry, told):
+    write_pages(tmp_path / "old")
+    card = {**CARD, "entries": {**CARD["entries"], "k_ni": entry}}
+    write_pages(tmp_path / "new", card)
+    (line,) = differences(tmp_path / "old", tmp_path / "new")
+    assert line.startswith("cards/a.json")
+    assert line.endswith(told)
+
+
+def test_a_row_of_a_card_that_changed_is_told_by_its_place(tmp_path):
+    write_pages(tmp_path / "old")
+    write_pages(tmp_path / "new", json.loads(json.dumps(CARD).replace('"value": 2', '"value": 3')))
+    assert differences(tmp_path / "old", tmp_path / "new") == [
+        "cards/a.json entries/chi/values/value: 1 of 1 values differ, first at 0: 2 is now 3"
+    ]
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "told"),
+    [
+        ("0.12", "0.13", "pages/a.html: Closure [0.12] is now [0.13] mm.\\n"),
+        ('title="Joint"', 'title="Face"', "pages/a.html: [[Joint] is now [Face]]Joint A"),
+        ("1.5", "1.6", "pages/a.html index/rows/value: 1 of 1 values differ, first at 0: 1.5 is"),
+    ],
+)
+def test_what_a_page_says_is_compared(tmp_path, before, after, told):
+    write_pages(tmp_path / "old")
+    write_pages(tmp_path / "new", page=PAGE.replace(before, after))
+    (line,) = differences(tmp_path / "old", tmp_path / "new")
+    assert line.startswith(told)
+
+
+def test_styles_times_and_versions_are_no_difference(tmp_path):
+    write_pages(tmp_path / "old")
+    card = {**CARD, "versions": {"numpy": "2"}, "methods": CARD["methods"].replace("1.2", "1.3.4")}
+    page = PAGE.replace("10:00", "11:30").replace("3 min 12 s", "54 s").replace("(1)", "(2)")
+    page = page.replace("margin: 0", "margin: 1px")
+    write_pages(tmp_path / "new", card, page)
+    assert differences(tmp_path / "old", tmp_path / "new") == []
+
+
+def test_one_bit_of_the_explorer_is_told_by_its_array(tmp_path):
+    write_pages(tmp_path / "old")
+    numbers = NUMBERS.copy()
+    numbers[1, 0] = np.nextafter(numbers[1, 0], 1)
+    write_pages(tmp_path / "new", numbers=numbers)
+    (line,) = differences(tmp_path / "old", tmp_path / "new")
+    place = "explorer.html states-0/arrays/closure/closure/values"
+    assert line.startswith(f"{place}: 1 of 6 values differ, first at (1, 0): ")
+
+
+def test_a_cell_of_a_table_in_the_archive_is_told(tmp_path):
+    write_pages(tmp_path / "old")
+    write_pages(tmp_path / "new", cell="1.6")
+    assert differences(tmp_path / "old", tmp_path / "new") == [
+        "tables.zip figures/fig04.csv: column k_ni: 1 of 1 cells differ, "
+        "first in row 1: '1.5' is now '1.6'"
+    ]
+
+
+def test_keep_copies_cards_pages_and_the_archive(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    write_pages(tmp_path / "x")
+    assert same.main(["keep", "x"]) == 0
+    write_pages(tmp_path / "x", page=PAGE.replace("0.12", "0.13"))
+    assert same.main(["compare", "x"]) == 1

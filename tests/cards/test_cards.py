@@ -13,7 +13,7 @@ from made_tests import PART
 from page_study import HOSTILE
 
 from fractalcontact.cards.card import errors_of, geometry_of, is_synthetic
-from fractalcontact.cards.entries import entries, read_entry
+from fractalcontact.cards.entries import entries, entry_of
 from fractalcontact.cards.page import page_of
 from fractalcontact.cards.write import SCHEMA, read_card, write_card
 from fractalcontact.core.errors import InputError
@@ -58,7 +58,7 @@ def test_the_form_refuses_a_number_without_unit_model_or_reason(cards):
 
 @pytest.mark.parametrize("name", NAMES)
 def test_every_number_has_a_unit_a_model_and_an_interval_around_it_or_a_reason(cards, name):
-    assert set(cards[name]["entries"]) == {entry.key for entry in entries()}
+    assert set(cards[name]["entries"]) == {row.name for row in entries()}
     known = 0
     for _, entry, row in numbers_of(cards[name]):
         assert entry["unit"]
@@ -139,7 +139,7 @@ def test_what_does_not_slide_has_no_strength_and_says_so(cards):
 
 def test_of_several_possible_reasons_a_card_prints_the_one_that_holds(subjects):
     pair, flat = subjects["pair"], subjects["flat.1"]
-    by_key = {entry.key: entry for entry in entries()}
+    by_key = {row.name: row for row in entries()}
 
     def stated(**material):
         settings = pair.settings | {"material": pair.settings["material"] | material}
@@ -154,13 +154,13 @@ def test_of_several_possible_reasons_a_card_prints_the_one_that_holds(subjects):
             "no basic friction angle is stated",
         ),
     ):
-        assert read_entry(by_key[key], subject, "elastic")["missing"] == reason
+        assert entry_of(by_key[key], subject, "elastic")["missing"] == reason
     known = stated(joint_wall_strength=80.0, basic_friction_angle=30.0)
     rough = {"barton_scaled_strength": pair["strength"]["barton_scaled_strength"] * np.nan}
     known = Subject(
         dict(known.stages) | {"strength": pair["strength"].assign(rough)}, known.settings, "pair"
     )
-    rows = read_entry(by_key["barton_scaled_strength"], known, "elastic")["values"]
+    rows = entry_of(by_key["barton_scaled_strength"], known, "elastic")["values"]
     assert {row["missing"] for row in rows} <= {
         "JRC_n, JRC scaled to the window, is above 20, where Barton's law ends",
         "not solved under this load",
@@ -256,8 +256,8 @@ def test_a_mean_gap_that_the_atlas_has_stands_on_the_card(folder, cards, subject
     )
     other = Subject(dict(other.stages) | {"flow": flow}, subject.settings, "pair")
     for entry in entries():
-        if entry.key in ("mean_gap", "hydraulic_aperture", "branch_mean_gap"):
-            found = read_entry(entry, other, "elastic")
+        if entry.name in ("mean_gap", "hydraulic_aperture", "branch_mean_gap"):
+            found = entry_of(entry, other, "elastic")
             assert {row["value"] for row in found["values"] if "value" in row} == {0.25}
 
 

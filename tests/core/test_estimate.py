@@ -10,7 +10,6 @@ from fractalcontact.core.estimate import (
     EXPONENT,
     SIZE,
     Estimate,
-    Judged,
     names_of,
     rows_of,
 )
@@ -102,11 +101,6 @@ def test_whether_an_interval_determines_depends_on_the_kind_of_quantity(ends, sc
     assert Estimate(*ends, scale=scale).determined is says
 
 
-def test_a_format_is_that_of_each_number():
-    assert f"{Estimate(0.954, 0.9, 1.011):.2f}" == "0.95 [0.90, 1.01]"
-    assert f"{Estimate(-0.001, -0.2, 0.2):+z.2f}" == "+0.00 [-0.20, +0.20]"
-
-
 @pytest.mark.parametrize(
     ("ends", "words"),
     [
@@ -152,10 +146,3 @@ def test_error_has_two_digits_however_small_or_large():
 )
 def test_an_estimate_in_words(ends, scale, unit, words):
     assert Estimate(*ends, scale=scale).text(unit) == words
-
-
-def test_a_number_that_something_else_determines_is_known_whatever_its_interval():
-    assert Judged(2.0, 0.01, 500.0, says=True).determined
-    assert Judged(2.0, says=True).determined
-    assert not Judged().determined
-    assert Judged(2.0, 0.01, 500.0, says=True).text("mm3") == "2 [0.01, 500] mm3"

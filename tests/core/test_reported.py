@@ -1,9 +1,13 @@
 """States that are published: chosen once, stored, and read again."""
 
+import re
+from pathlib import Path
+
 import numpy as np
 import pytest
 import xarray as xr
 
+import fractalcontact
 from fractalcontact.core.reported import Reported
 
 FORCES = np.array([1.0, 3.0, 10.0, 30.0])
@@ -53,3 +57,22 @@ def test_a_stage_is_cut_to_what_it_has_of_the_reported_state(curves, reported):
     sliding = curves.rename(direction="contact_direction").isel(resolution=0, offset=1)
     expected = expected.sel(offset=0.2)
     np.testing.assert_array_equal(reported.states(sliding)["closure"], expected)
+
+
+def test_the_reported_offset_of_a_variable_is_the_nearest(curves, reported):
+    found = reported.at_offset(curves["closure"])
+    np.testing.assert_array_equal(found, curves["closure"].sel(offset=0.2))
+    alone = curves["closure"].isel(offset=0)
+    assert reported.at_offset(alone) is alone
+
+
+def test_the_reported_state_is_selected_in_one_module():
+    """Whoever wants it asks Reported, or the subject, which does."""
+    asked = re.compile(r"\.sel\([^)]*offset\s*=\s*(self|subject|joint|reported)\b")
+    source = Path(fractalcontact.__file__).parent
+    found = [
+        path.relative_to(source).as_posix()
+        for path in source.rglob("*.py")
+        if asked.search(path.read_text(encoding="utf-8"))
+    ]
+    assert found == ["core/reported.py"]

@@ -15,9 +15,9 @@ from print_size import faults
 
 from fractalcontact.core import checksums
 from fractalcontact.core.subject import Subject
+from fractalcontact.core.text import compact
 from fractalcontact.figures.kit import caption
 from fractalcontact.figures.kit.drawing import print_style
-from fractalcontact.figures.kit.words import short
 from fractalcontact.mechanics.joint import composite_topography
 from fractalcontact.study.crate import Workflow, write_crate
 from fractalcontact.study.figure_list import read_figure
@@ -122,7 +122,7 @@ def test_the_figure_of_the_recipe_is_drawn(atlas, tmp_path, monkeypatch):
         np.testing.assert_array_equal(drawing.data["stiffness_N_per_mm"], states["stiffness"])
         assert drawing.caption.startswith("Supplementary figure.")
         stiffest = float(states["stiffness"].max())
-        assert f"at most {short(stiffest)} N/mm." in drawing.caption
+        assert f"at most {compact(stiffest)} N/mm." in drawing.caption
 
 
 def test_no_word_of_the_atlas_is_markup_of_docstrings(atlas):

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from cases import representative
 
+from fractalcontact.core.text import force_unit
 from fractalcontact.figures.draw import drawer_of
 from fractalcontact.figures.joint.errors import SOURCES, TOTALS
 from fractalcontact.figures.kit.drawing import print_style
-from fractalcontact.figures.kit.words import force_unit
 
 
 @pytest.mark.parametrize("name", representative(["sliding", "flat", "pair"], 3))

@@ -12,10 +12,10 @@ from matplotlib.text import Text
 from PIL import Image
 
 from contactlab.figures.experiments import plateau
+from fractalcontact.core.text import percent
 from fractalcontact.figures.draw import drawer_of
 from fractalcontact.figures.kit.drawing import WIDTH, Drawing, print_style, save
 from fractalcontact.figures.kit.titles import headline, letter
-from fractalcontact.figures.kit.words import percent
 from fractalcontact.study.figure_list import figures_of
 
 #: 200 letters, with dollar signs that begin no formula.
@@ -38,7 +38,7 @@ def drawn_texts(folder, name):
         (0.996, "99.6 %"),
         (1.0, "100 %"),
         (3.57, "360 %"),
-        (-1.04, "-100 %"),
+        (-1.04, "−100 %"),
     ],
 )
 def test_shares_in_per_cent_have_no_exponent(share, words):
@@ -46,7 +46,7 @@ def test_shares_in_per_cent_have_no_exponent(share, words):
 
 
 def test_a_change_in_per_cent_has_its_sign():
-    assert [percent(change, "+") for change in (0.02, -0.02)] == ["+2 %", "-2 %"]
+    assert [percent(change, sign="+") for change in (0.02, -0.02)] == ["+2 %", "−2 %"]
 
 
 def one_panel(width=4):

@@ -7,9 +7,9 @@ import pytest
 import xarray as xr
 from matplotlib.figure import Figure
 
+from fractalcontact.core.text import length_unit
 from fractalcontact.figures.kit.drawing import print_style
 from fractalcontact.figures.kit.maps import draw_map, node_position, window_outline
-from fractalcontact.figures.kit.words import length_unit
 
 
 @pytest.mark.parametrize("sides", [(3.0, 8.0), (8.0, 3.0), (4e-3, 1e-3)])

@@ -14,11 +14,11 @@ from matplotlib.text import Text
 
 from fractalcontact.core.fitting import fit_line
 from fractalcontact.core.subject import Subject
+from fractalcontact.core.text import force_label, force_unit, length_unit
 from fractalcontact.figures.draw import ENDINGS, draw_figures, drawer_of
 from fractalcontact.figures.kit.drawing import DPI, print_style, save, spread
 from fractalcontact.figures.kit.maps import MISSING
 from fractalcontact.figures.kit.relief import shaded
-from fractalcontact.figures.kit.words import force_label, force_unit, length_unit
 from fractalcontact.mechanics.joint import composite_topography
 from fractalcontact.study.figure_list import figures_of
 

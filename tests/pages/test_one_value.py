@@ -26,10 +26,13 @@ from published import (
     tables_of,
 )
 
+from fractalcontact.core.subject import Subject
 from fractalcontact.figures.draw import drawer_of
 from fractalcontact.figures.kit.drawing import print_style
 from fractalcontact.pages.captions import symbols
 from fractalcontact.pages.explorer import write_explorer
+from fractalcontact.report.published import BY_SCAN
+from fractalcontact.report.published import published as published_rows
 from fractalcontact.study.atlas import read_atlas
 from fractalcontact.study.figure_list import figures_of
 
@@ -96,11 +99,13 @@ COLUMNS = {
     "Δσ by boxes": "delta_sigma_boxes",
     "Δσ by area": "delta_sigma_areas",
     "Contact nodes": "contact_nodes",
-    "Mean gap (mm)": "mean_gap_mm",
+    "Mean gap": "mean_gap_mm",
     "Transmissivity (mm³)": "transmissivity_along_mm3",
 }
+#: Columns with the reason why a number is no result.
+REASONS = {"stiffness_MPa_per_mm": "stiffness_reason"}
 #: Of these, what suspicious cells of the scans leave undetermined.
-BY_SCAN = {
+SCANNED = {
     *("seated_closure_mm", "interface_closure_mm", "stiffness_MPa_per_mm"),
     *("mean_gap_mm", "transmissivity_along_mm3"),
 }
@@ -168,8 +173,13 @@ def test_the_table_of_specimens_has_the_values_of_the_summary(published, specime
             (row,) = summary[near].to_dict("records")
             for words, parts in cells.items():
                 column, part = COLUMNS[words], parts[i]
+                reason = row.get(REASONS.get(column))
+                if isinstance(reason, str) and reason != BY_SCAN:
+                    assert part["text"].startswith("–")
+                    assert part["data-sort"] == ""
+                    continue
                 known = row.get(f"{column}_determined", True) and not math.isnan(row[column])
-                scanned = column in BY_SCAN
+                scanned = column in SCANNED
                 by_scan = scanned and row["by_scan"]
                 assert part["text"].startswith("undetermined") == bool(
                     not math.isnan(row[column]) and (by_scan or not known)
@@ -197,14 +207,15 @@ def test_the_page_of_a_specimen_has_the_values_and_errors_of_the_summary(
             value = row[f"{column}_{unit}"]
             errors = [row[f"{column}_error_{of}_{unit}"] for of in ("surface", "population")]
             cells = [cell["text"] for cell in shown[words]]
+            why = row.get(f"{column}_reason")
+            if math.isnan(value) or (isinstance(why, str) and why != BY_SCAN):
+                assert cells[0].startswith("none (")
+                continue
             assert cells[0].startswith("undetermined (") == row["by_scan"]
             if row["by_scan"]:
                 undetermined += 1
                 cells = cells[0].removeprefix("undetermined (").split(" ± ")
                 errors = errors[:1]
-            if math.isnan(value):
-                assert cells[0].startswith("–")
-                continue
             assert number_of(cells[0]) == pytest.approx(value, rel=5.1e-3)
             for said, error in zip(cells[1:], errors, strict=True):
                 if math.isnan(error):
@@ -217,7 +228,7 @@ def test_the_page_of_a_specimen_has_the_values_and_errors_of_the_summary(
             cells for words, cells in shown.items() if "mean pressure in contact" in words
         )
         if math.isnan(row["real_pressure_MPa"]):
-            assert pressure[0]["text"] == row["real_pressure_reason"]
+            assert pressure[0]["text"] == f"none ({row['real_pressure_reason']})"
         else:
             assert number_of(pressure[0]["text"]) == pytest.approx(row["real_pressure_MPa"], 5.1e-3)
         assert float(shown["nodes in contact"][0]["text"]) == row["contact_nodes"]
@@ -291,3 +302,14 @@ def test_the_explorer_has_the_values_errors_and_words_of_the_summary(published, 
             words.add(row["by_scan"])
     assert compared > 50
     assert words == {True, False} or os.environ.get("RESULTS")
+
+
+def test_units_of_the_register_are_those_of_the_atlas(atlas, specimens):
+    compared = 0
+    for one in specimens:
+        subject = Subject.of(atlas, one.name)
+        for row in published_rows():
+            if row.stage in subject.stages and row.variable in subject[row.stage]:
+                assert subject[row.stage][row.variable].attrs["units"] == row.unit, row.name
+                compared += 1
+    assert compared > 50

@@ -21,6 +21,8 @@ from spreadsheets import FORMULA, formulas_in
 
 from fractalcontact.core.claims import claims_of
 from fractalcontact.core.subject import Subject
+from fractalcontact.core.text import short, with_unit
+from fractalcontact.core.verdicts import TOO_WIDE
 from fractalcontact.figures.draw import drawer_of
 from fractalcontact.figures.kit.drawing import print_style
 from fractalcontact.pages.common_loads import common_loads, main_load
@@ -32,8 +34,7 @@ from fractalcontact.pages.matrix import (
     matrix_of,
     of_study,
 )
-from fractalcontact.pages.summary import summarised, why
-from fractalcontact.pages.words import short, with_unit
+from fractalcontact.pages.summary import sheet_of
 from fractalcontact.roughness.quality_words import overlap_words
 from fractalcontact.statements.comparison import compared_pressures
 from fractalcontact.statements.judge import rule_of
@@ -428,28 +429,40 @@ def with_told(atlas, group, **values):
 
 def test_k_ni_is_as_determined_as_the_atlas_says(results, atlas):
     table = pd.read_csv(results / "summary.csv").set_index("specimen")
-    ends = {f"seated_k_ni{end}": x for end, x in (("", 100.0), ("_low", 1.0), ("_high", 1e4))}
     for name in NAMES:
-        for determined, reason in ((True, ""), (False, "it is told so")):
-            told = {"seated_k_ni_determined": determined, "seated_k_ni_reason": reason}
+        for high, says, determined, reason in (
+            (200.0, True, True, ""),
+            (200.0, False, False, "it is told so"),
+            (1e4, True, False, TOO_WIDE),
+        ):
+            ends = {"seated_k_ni": 100.0, "seated_k_ni_low": 90.0, "seated_k_ni_high": high}
+            why = "it is told so" if not says else ""
+            told = {"seated_k_ni_determined": says, "seated_k_ni_reason": why}
             changed = with_told(atlas, f"closure/{name}", **ends, **told)
-            found = summarised(Subject.of(changed, name)).k_ni
-            assert (found.value, found.low, found.high) == (100, 1, 1e4)
-            assert (found.determined, why(found)) == (determined, reason)
+            found = sheet_of(Subject.of(changed, name)).of("k_ni")
+            assert found.estimate.ends == (100, 90, high)
+            assert (found.determined, found.remark) == (determined, reason)
         row = table.loc[[name]].iloc[0]
         known = Subject.of(atlas, name).states("closure")
-        assert row["k_ni_MPa_per_mm_determined"] == known["seated_k_ni_determined"].item()
+        assert row["k_ni_determined"] == known["seated_k_ni_determined"].item()
         assert row["k_ni_reason"] == known["seated_k_ni_reason"].item()
 
 
 def test_the_dilatancy_of_the_summary_is_the_plateau_of_the_atlas(atlas):
     told = {"plateau_trend": "falling", "plateau_level": 0.7, "plateau_slope": -0.2}
-    found = summarised(Subject.of(with_told(atlas, "joints/pair", **told), "pair")).dilatancy
-    assert (found.kind, found.level, found.slope) == ("falling", 0.7, -0.2)
-    assert found.undecided == Subject.of(atlas, "pair").along("joints")["plateau_undecided"].item()
+    found = sheet_of(Subject.of(with_told(atlas, "joints/pair", **told), "pair"))
+    assert [found.of(f"dilatancy_{of}").value for of in ("level", "slope")] == [0.7, -0.2]
+    undecided = Subject.of(atlas, "pair").along("joints")["plateau_undecided"].item()
+    assert found.words["dilatancy"] == "falling"
+    assert found.words["dilatancy_undecided"] == undecided
     none = with_told(atlas, "joints/pair", plateau_trend="", plateau_level=np.nan)
-    assert summarised(Subject.of(none, "pair")).dilatancy.kind == "none"
-    assert summarised(Subject.of(atlas, "flat.1")).dilatancy.kind == "none"
+    for subject, why in (
+        (Subject.of(none, "pair"), "too few offsets"),
+        (Subject.of(atlas, "flat.1"), "does not slide"),
+    ):
+        found = sheet_of(subject)
+        assert found.words["dilatancy"] == "none"
+        assert found.of("dilatancy_level").missing == why
 
 
 def test_the_verdict_on_the_elastic_model_is_that_of_the_atlas(results):
@@ -458,12 +471,11 @@ def test_the_verdict_on_the_elastic_model_is_that_of_the_atlas(results):
     told = {"verdict": "partly", "reason": "it is told so", "pressure": 7.0, "good_to": 5.0}
     for name in NAMES:
         changed = with_told(atlas, f"elastic_model/{name}", **told)
-        specimen = summarised(Subject.of(changed, name))
-        assert {(at.model.verdict, at.model.reason) for at in specimen.loads} == {
-            ("partly", "it is told so")
+        sheet = sheet_of(Subject.of(changed, name))
+        assert {(one.verdict, one.reason, one.pressure) for one in sheet.models.values()} == {
+            ("partly", "it is told so", 7.0)
         }
-        assert {at.real_pressure for at in specimen.loads} == {7.0}
-        (light,) = [one for one in specimen.lights if one.key == "model"]
+        (light,) = [one for one in sheet.lights if one.key == "model"]
         assert (light.word, light.reason.split(", ")[1]) == ("partly", "it is told so")
         with print_style():
             caption = drawer_of("fig08_prefractals")(changed, name).caption
@@ -574,9 +586,10 @@ def test_the_summary_states_what_twice_the_spacing_changes(atlas):
         curves = curves.sel(offset=subject.offset, method="nearest")
         tangent = curves["interface_stiffness"].isel(normal_force=subject.reported.reference).values
         initial = curves["seated_k_ni"].values
-        found = summarised(subject).changes
-        assert found["stiffness"] == pytest.approx(tangent[1] / tangent[0] - 1)
-        assert found["k_ni"] == pytest.approx(initial[1] / initial[0] - 1, nan_ok=True)
+        found = sheet_of(subject)
+        assert found.of("stiffness_change").value == pytest.approx(tangent[1] / tangent[0] - 1)
+        change = found.of("k_ni_change").value
+        assert change == pytest.approx(initial[1] / initial[0] - 1, nan_ok=True)
 
 
 def test_a_page_states_material_and_opposite_face(results, pages):

@@ -8,7 +8,8 @@ from scan_writers import nodes
 from stated import ARRAY, COMMAS, POINTS, read_faces, read_scan
 
 from fractalcontact.core.errors import InputError
-from fractalcontact.core.labels import listed, on_one_line, percent, plain
+from fractalcontact.core.labels import listed, on_one_line
+from fractalcontact.core.text import percent, plain
 from fractalcontact.core.units import length_factor
 from fractalcontact.scan import read
 from fractalcontact.scan.undeclared import find_marks
@@ -170,7 +171,7 @@ DOUBTFUL = {
     "grooves": (0.2 * np.sin(GRID_X), "the same all along y: a profile"),
     "99 % missing": (
         np.where(np.indices((N, N)).max(axis=0) > 8, np.nan, rough()),
-        "96.5 % of the cells are missing",
+        "96 % of the cells are missing",
     ),
     "two thirds missing": (
         np.where(np.arange(N)[:, None] > 15, np.nan, rough()),
@@ -427,8 +428,9 @@ def test_a_cloud_beside_a_matrix_has_one_advice(tmp_path, swapped):
 
 
 def test_numbers_are_those_a_person_reads():
-    shares = {0: "0", 1e-6: "<0.01", 0.0005: "0.05", 0.004: "0.40", 0.032: "3.2", 0.5: "50"}
-    shares |= {0.62: "62", 0.9: "90", 0.91: "91.0", 0.994: "99.40", 0.9999: "99.99", 0.99999: "100"}
+    shares = {0: "0", 1e-7: "<0.0001", 0.000512: "0.051", 0.004: "0.4", 0.032: "3.2", 0.5: "50"}
+    shares |= {0.62: "62", 0.9: "90", 0.91: "91", 0.994: "99.4", 0.9965: "99.7", 1.234: "120"}
+    shares |= {0.99999: "100"}
     assert {share: percent(share) for share in shares} == {k: f"{v} %" for k, v in shares.items()}
     lengths = (12345.0, -300000.0, 0.00001234, 100.0, 99.96, 5e8, 0.0)
     assert [plain(length) for length in lengths] == [

@@ -11,6 +11,7 @@ from ..core.errors import InputError
 from ..core.labels import cf_attrs
 from ..core.netcdf import write
 from ..core.tables import write_table
+from ..core.text import exact
 
 #: Relative difference of two pressures that are one.
 SAME = 1e-6
@@ -51,18 +52,19 @@ def aperture_at(
         pressure = float(known[np.argmin(np.abs(maps["normal_force"].values - force))])
     if not known[0] * (1 - SAME) <= pressure <= known[-1] * (1 + SAME):
         raise InputError(
-            f"{name}: no aperture at {pressure:g} MPa; its maps are kept at "
-            f"{', '.join(f'{one:.4g}' for one in known)} MPa, so write a pressure between the "
+            f"{name}: no aperture at {exact(pressure)} MPa; its maps are kept at "
+            f"{', '.join(f'{exact(one, 4)}' for one in known)} MPa, so write a pressure "
+            "between the "
             "first and the last, or add it to 'loads' of the study (without the folder 'contact' "
             "of its results, to 'dilatancy_loads')"
         )
     place = np.interp(np.log(pressure), np.log(known), np.arange(known.size))
     low, nearest = int(place), round(place)
     if abs(known[nearest] - pressure) <= SAME * pressure:
-        values, source = maps.values[nearest], f"computed at {pressure:.4g} MPa"
+        values, source = maps.values[nearest], f"computed at {exact(pressure, 4)} MPa"
     else:
         values = (low + 1 - place) * maps.values[low] + (place - low) * maps.values[low + 1]
-        ends = f"{known[low]:.4g} and {known[low + 1]:.4g} MPa"
+        ends = f"{exact(known[low], 4)} and {exact(known[low + 1], 4)} MPa"
         source = f"interpolated in ln(pressure) between {ends}"
     attrs = cf_attrs("mm", "aperture, 0 in contact") | {
         "specimen": name,
@@ -115,7 +117,7 @@ def outside_words(aperture: xr.DataArray, points: pd.DataFrame) -> str:
     if inside.all():
         return ""
     ranges = " and ".join(
-        f"{axis} = {low:.6g} to {high:.6g}" for axis, (low, high) in limits.items()
+        f"{axis} = {exact(low)} to {exact(high)}" for axis, (low, high) in limits.items()
     )
     return (
         f"{np.count_nonzero(~inside)} of {len(points)} points lie outside the map, which covers "
@@ -163,8 +165,8 @@ aperture in mm, {aperture.attrs["source"]}
 BINARY
 DATASET STRUCTURED_POINTS
 DIMENSIONS {x.size} {y.size} 1
-ORIGIN {x[0]:.9g} {y[0]:.9g} 0
-SPACING {x[1] - x[0]:.9g} {y[1] - y[0]:.9g} 1
+ORIGIN {exact(x[0], 9)} {exact(y[0], 9)} 0
+SPACING {exact(x[1] - x[0], 9)} {exact(y[1] - y[0], 9)} 1
 POINT_DATA {aperture.size}
 SCALARS aperture float 1
 LOOKUP_TABLE default

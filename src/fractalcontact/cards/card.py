@@ -6,14 +6,13 @@ from collections.abc import Mapping
 from dataclasses import asdict
 from typing import Any
 
-from ..core.estimate import Estimate
-from ..core.labels import printable
+from ..core.labels import OPPOSITE, printable
 from ..core.subject import Subject
+from ..core.text import with_unit
 from ..core.window import spacing_of, window_sides
 from ..pages.lights import lights_of, trust_of
-from ..pages.summary import quantities_at
-from ..pages.words import OPPOSITE, with_unit
-from .entries import entries, number, read_entry, rounded
+from ..report.published import read, row_of, shown_in
+from .entries import entries, entry_of, number, rounded
 from .methods import methods_of, references_of
 
 #: Version of the form of a card; a change of ``card.schema.json`` that breaks readers raises it.
@@ -67,7 +66,7 @@ def card_of(subject: Subject, study: Mapping[str, Any], made: Mapping[str, Any])
         "direction": subject.direction,
         "geometry": geometry_of(subject),
         "window": str(subject["specimens"].attrs["window_note"]),
-        "entries": {one.key: read_entry(one, subject, model) for one in entries()},
+        "entries": {row.name: entry_of(row, subject, model) for row in entries()},
         "errors": errors_of(subject),
         "lights": [asdict(light) for light in lights],
         "trust": dict(zip(("word", "reason", "help"), trust_of(lights), strict=True)),
@@ -105,37 +104,48 @@ def geometry_of(subject: Subject) -> dict[str, Any]:
         "offset": subject.offset,
     }
     found = {name: {"value": rounded(one), "unit": "mm"} for name, one in lengths.items()}
-    seat = float(subject.states("closure")["seating_pressure"])
+    row = row_of("seating_pressure")
+    (seat,) = read(row, subject)
     return found | {
-        "seat": number(Estimate(seat), "no resolved state at the seat") | {"unit": "MPa"},
+        "seat": number(row, subject, seat) | {"unit": row.unit},
         "reference_pressure": {"value": reference_pressure_of(subject), "unit": "MPa"},
     }
 
 
 def reference_pressure_of(subject: Subject) -> float | None:
     """Nominal pressure of the reference load, MPa: first numbers, maps and exports are of it."""
-    return rounded(subject["closure"]["nominal_pressure"][subject.reported.reference])
+    return rounded(float(subject["closure"]["nominal_pressure"][subject.reported.reference]))
 
 
 def errors_of(subject: Subject) -> list[dict[str, Any]]:
     """Errors by source of the quantities under the reference load, half-widths at 95 %."""
-    reference = subject.reported.reference
-    pressure = reference_pressure_of(subject)
-    return [
-        {
-            "quantity": one.name,
-            "title": one.meaning,
-            "unit": one.unit,
-            "pressure": pressure,
-            "value": rounded(one.value),
-            "of_this_surface": rounded(one.errors["surface"]),
-            "of_its_population": rounded(one.errors["population"]),
-            "hardest": rounded(one.hardest),
-            "sources": {
-                of: rounded(error if error > _ROUNDING * abs(one.value) else 0.0)
-                for of, error in one.sources.items()
-                if error >= 0
-            },
-        }
-        for one in quantities_at(subject, reference).values()
-    ]
+    pressure, budget = reference_pressure_of(subject), subject.state("error_budget")
+    found = []
+    for row in shown_in("errors"):
+        one = read(row, subject)[subject.reported.reference]
+        found.append(
+            {
+                "quantity": row.budget,
+                "title": row.page,
+                "unit": row.unit,
+                "pressure": pressure,
+                "value": rounded(one.value),
+                "of_this_surface": rounded(one.error),
+                "of_its_population": rounded(one.population),
+                "hardest": rounded(one.hardest),
+                "sources": _by_source(budget, row.budget, abs(one.value)),
+            }
+        )
+    return found
+
+
+def _by_source(budget, quantity, size):
+    """Errors of a quantity by their source, zero where they are rounding."""
+    if quantity not in budget["quantity"]:
+        return {}
+    errors = budget["error"].sel(quantity=quantity)
+    return {
+        str(source): rounded(error if error > _ROUNDING * size else 0.0)
+        for source, error in zip(errors["source"].values, errors.values.tolist(), strict=True)
+        if error >= 0
+    }

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import Any
 
-from ..pages.words import short, with_unit
+from ..core.text import short, with_unit
 
 #: Sources that the paragraph may name.
 _SOURCES = (

@@ -4,6 +4,7 @@ import math
 from collections.abc import Collection, Mapping
 from typing import Any
 
+from ..core.text import MISSING, measured, percent, short, with_unit
 from ..pages.captions import symbols
 from ..pages.first_screen import (
     STRENGTH_RULES,
@@ -13,30 +14,16 @@ from ..pages.first_screen import (
     row_at,
     window_of,
 )
-from ..pages.words import MISSING, measured, percent, short, with_unit
+from ..report.published import row_of
 
 #: Tables of curves over pressure, by title: the sections that share one.
 _AGAINST_PRESSURE = {
     "Closure, contact and aperture": ("contact", "aperture"),
     "Shear strength": ("strength",),
 }
-#: Heads of its columns, and signs of units there.
-_HEADS = {
-    "seated_closure": "closure from the seat",
-    "interface_closure": "closure from first touch",
-    "contact_fraction": "contact A_r/A_0",
-    "mean_gap": "mean gap",
-    "hydraulic_aperture": "hydraulic aperture, along",
-    "hydraulic_aperture_across": "hydraulic aperture, across",
-    "peak_dilatancy_angle": "largest dilatancy angle",
-    "peak_strength": "peak τ by dilatancy",
-    "contact_strength": "peak τ from contact",
-    "barton_strength": "τ by Barton",
-    "barton_scaled_strength": "τ by Barton and Bandis",
-}
 _UNITS = {"1": "%", "degree": "°"}
-#: Heads of the rules for the strength, and of their range.
-_RULES, _RULES_HEAD = {_HEADS[key] for key in STRENGTH_RULES}, "peak τ, range of all rules"
+#: Head of the column of the range over the rules for the strength.
+_RULES_HEAD = "peak τ, range of all rules"
 
 
 def page_of(card: Mapping[str, Any]) -> dict[str, Any]:
@@ -78,13 +65,16 @@ def _tables(printed):
     """Title, heads with units and rows of the tables over pressure that have any number."""
     for title, sections in _AGAINST_PRESSURE.items():
         curves = {
-            _HEADS.get(key, one["title"]): one
+            key: one
             for key, one in printed.items()
             if one["section"] in sections and has_values(one)
         }
-        heads = [(head, _UNITS.get(one["unit"], one["unit"])) for head, one in curves.items()]
+        heads = [
+            (row_of(key).head or one["title"], _UNITS.get(one["unit"], one["unit"]))
+            for key, one in curves.items()
+        ]
         rows = over_pressure(list(curves.values()))
-        rules = [i for i, head in enumerate(curves) if head in _RULES]
+        rules = [i for i, key in enumerate(curves) if key in STRENGTH_RULES]
         if len(rules) > 1:
             heads.insert(0, (_RULES_HEAD, "MPa"))
             rows = [(at, [_over_rules([cells[i] for i in rules]), *cells]) for at, cells in rows]

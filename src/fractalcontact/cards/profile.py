@@ -6,12 +6,13 @@ import xarray as xr
 
 from ..core.netcdf import versions
 from ..core.subject import Subject
+from ..core.text import compact
 from .card import FORM, LICENCE
-from .entries import entries, read_entry, rounded
+from .entries import entries, entry_of, rounded
 
 _NO_CONTACT = "one profile has no contact: scan a face, or both"
 _METHODS = (
-    "The profile of {length:g} mm (spacing {spacing:g} mm) was levelled by its line. JRC is given "
+    "The profile of {length} mm (spacing {spacing} mm) was levelled by its line. JRC is given "
     "by published fits to Z2, the rms slope over the step of each fit; Delta_g = 3 - H holds for "
     "an isotropic surface with such profiles, with H by the roughness length (Malinverno 1990). "
     "Computed with {versions}."
@@ -49,7 +50,7 @@ def card_of_profile(
         SHA-256 of its file.
     """
     subject = _Profile({"surface_dimension": found, "strength": found}, {"material": {}}, name)
-    read = {one.key: read_entry(one, subject, "none") for one in entries()}
+    read = {row.name: entry_of(row, subject, "none") for row in entries()}
     for key, one in read.items():
         if key == "rms_slope" or one["section"] not in ("roughness", "material"):
             one["missing"] = _NO_CONTACT
@@ -76,7 +77,8 @@ def card_of_profile(
             "help": "several profiles in the direction of sliding, or a scan of the face",
         },
         "methods": _METHODS.format(
-            **lengths, versions=", ".join(f"{of} {which}" for of, which in used.items())
+            **{key: compact(one, 6) for key, one in lengths.items()},
+            versions=", ".join(f"{of} {which}" for of, which in used.items()),
         ),
         "references": _REFERENCES,
         "licence": LICENCE,

@@ -15,7 +15,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from ..core.errors import InputError, said_in_one_line
-from ..core.labels import length_words, natural_key, percent, plain, printable
+from ..core.labels import natural_key, printable
+from ..core.text import length_words, percent, plain
 from ..core.window import face_words, spacing_of, window_sides
 from ..domain.measured_map import read_contact_map
 from ..gridding.outline import outline_words

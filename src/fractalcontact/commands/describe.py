@@ -17,7 +17,8 @@ import yaml
 from ..core.directions import APERTURE
 from ..core.errors import InputError, said_in_one_line
 from ..core.file_names import split_file_name
-from ..core.labels import natural_key, percent, printable
+from ..core.labels import natural_key, printable
+from ..core.text import percent
 from ..core.units import length_factor
 from ..gridding.measured import Measured
 from ..scan.draft import written

@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 
 from ..core.directions import APERTURE
-from ..core.labels import percent, printable
+from ..core.labels import printable
+from ..core.text import percent
 
 _MAX_POINTS = 60_000
 _MAX_CELLS = 800  # along a side

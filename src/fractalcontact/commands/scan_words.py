@@ -7,8 +7,8 @@ import numpy as np
 import xarray as xr
 
 from ..core.directions import APERTURE
-from ..core.labels import length_words
 from ..core.limits import STEEP_TILT
+from ..core.text import length_words
 from ..roughness.quality_words import overlap_words
 from ..scan.draft import OPENING
 

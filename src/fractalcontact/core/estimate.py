@@ -11,8 +11,9 @@ from typing import Any, ClassVar, NamedTuple, Self
 
 import numpy as np
 
-from .determined import NO_WIDTH, determined
-from .labels import cf_attrs, plain
+from .determined import determined
+from .labels import cf_attrs
+from .text import compact, number, undetermined, with_error
 from .verdicts import UNDETERMINED
 
 #: Ends of an interval by the ending of their names, and what follows the long name there.
@@ -23,9 +24,6 @@ _ENDS = {
 }
 #: Probability of intervals, in words.
 _LEVEL = "95 %"
-
-#: Ends of an interval that differ from even ones by less than this part of it are called even.
-_EVEN = 0.02
 
 
 class Scale(NamedTuple):
@@ -143,11 +141,6 @@ class Estimate:
         )
         return Estimate(value, low, high, n, (first, last), reason, self.scale)
 
-    def __format__(self, spec: str) -> str:
-        """Value and interval, each number in this format: "0.96 [0.91, 1.02]"."""
-        value, low, high = (format(end, spec) for end in self.ends)
-        return f"{value} [{low}, {high}]"
-
     @property
     def ends(self) -> tuple[Any, Any, Any]:
         """Value, lower and upper end."""
@@ -179,10 +172,9 @@ class Estimate:
             return "no fit" if self.scale.decimals is None else UNDETERMINED
         if not self.determined:
             return self.undetermined(unit)
-        if self.scale.decimals is None:
-            return f"{self:.3g} {unit}".rstrip()
-        value, low, high = (_decimals(end, self.scale.decimals) for end in self.ends)
-        return f"{value} [{low}, {high}] {unit}".rstrip()
+        decimals = self.scale.decimals
+        words = compact(self) if decimals is None else number(self, decimals)
+        return f"{words} {unit}".rstrip()
 
     def undetermined(self, unit: str = "") -> str:
         """The word, then the value and its error in brackets.
@@ -191,20 +183,7 @@ class Estimate:
         """
         if not self.known:
             return UNDETERMINED
-        value, low, high = self.ends
-        half = self.width / 2
-        if not half > NO_WIDTH * max(abs(value), 1e-300) or not np.isfinite(half):
-            known = plain(value, limits=(1e-4, 1e6))
-            if self.scale.decimals is not None:  # rounding leaves 1e-16 of a slope of 0
-                known = _decimals(value, self.scale.decimals)
-            words = f"{known}, error not known"
-        else:
-            # Two digits of the error, and two decimals where it is of the order of one.
-            digits = max(1 - int(np.floor(np.log10(half))), 2 if half < 10 else 0)
-            shown, least, most, error = (_decimals(x, digits) for x in (value, low, high, half))
-            even = abs(high - value - (value - low)) <= _EVEN * self.width
-            words = f"{shown} ± {error}" if even else f"{shown} [{least}, {most}]"
-        return f"{UNDETERMINED} ({words}{f' {unit}' if unit else ''})"
+        return undetermined(with_error(*self.ends, self.scale.decimals, unit))
 
     def mapped(self, function: Callable[[Any], Any], *, falling: bool = False) -> Self:
         """Estimate of a monotone function of the quantity; a falling one exchanges the ends."""
@@ -249,31 +228,19 @@ class Estimate:
         }
 
 
-@dataclass(frozen=True)
-class Judged(Estimate):
-    """Estimate whose stage, not its interval, says if it is determined."""
-
-    says: bool = False
-
-    @property
-    def determined(self) -> bool:
-        """True if the stage says so."""
-        return self.says
-
-
-def _decimals(value: float, digits: int) -> str:
-    """A number to some decimals, never a negative zero."""
-    return f"{round(float(value), digits) + 0.0:.{digits}f}"
-
-
 #: What is not known at all.
 NO_ESTIMATE = Estimate()
 
 
 def names_of(name: str, unit: str = "") -> list[str]:
     """Names of an estimate's variables, or columns: the value's and both ends'."""
-    suffix = f"_{unit.replace('/', '_per_')}" if unit else ""
-    return [f"{name}{end}{suffix}" for end in _ENDS]
+    return [column_of(name, unit, end.lstrip("_")) for end in _ENDS]
+
+
+def column_of(name: str, unit: str = "", of: str = "") -> str:
+    """Name of a column: ``NAME``, ``NAME_OF`` such as ``NAME_low``, and the unit at its end."""
+    of = f"_{of}" if of else ""
+    return f"{name}{of}_{unit.replace('/', '_per_')}" if unit not in ("", "1") else f"{name}{of}"
 
 
 def rows_of(

@@ -6,12 +6,15 @@ pages, statements and comparisons read them there.
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import TypeVar
 
 import numpy as np
 import xarray as xr
 
 from .datasets import labelled
 
+#: A stage, or one of its variables.
+_States = TypeVar("_States", xr.Dataset, xr.DataArray)
 #: Variables they are stored as: dimensions, unit, long name.
 _VARIABLES = {
     "reported_direction": ((), "1", "direction of sliding whose states are reported"),
@@ -126,10 +129,13 @@ class Reported:
 
     def states(self, stage: xr.Dataset) -> xr.Dataset:
         """A stage in the reported direction, at the reported offset and resolution."""
-        curves = self.curves(stage)
-        if "offset" not in curves.dims:
-            return curves
-        return curves.sel(offset=self.offset, method="nearest")
+        return self.at_offset(self.curves(stage))
+
+    def at_offset(self, states: _States) -> _States:
+        """States at the reported offset, at every resolution that they are over."""
+        if "offset" not in states.dims:
+            return states
+        return states.sel(offset=self.offset, method="nearest")
 
     def state(self, stage: xr.Dataset) -> xr.Dataset:
         """A stage at the reported state under the reference load."""

@@ -38,8 +38,6 @@ DECIDED = (AGREES, STEEPER, FLATTER)
 
 #: Why there is no real mean pressure: the areas of fewer nodes are not corrected for their edge.
 NO_PRESSURE = f"fewer than {CORRECTED_NODES} nodes in contact, too few for their mean pressure"
-#: Why there is no Delta_sigma from the area where its stage gives no reason.
-TOO_FEW_RESOLUTIONS = "under this load too few resolutions have enough nodes in contact"
 
 #: Why a number is undetermined where nothing else is wrong with it.
 TOO_WIDE = "its 95 % interval is too wide to be of use"

@@ -5,18 +5,27 @@ from collections.abc import Sequence
 import numpy as np
 import xarray as xr
 
+from ..core.estimate import IN_PLANE
 from ..core.intervals import mean_interval
 from ..core.labels import cf_attrs
 from ..core.limits import NEAR_FULL
-from ..core.quantities import bounds_of
 from ..domain.random_nodes import band_of
 
-#: Variables that the register of quantities does not have, and those there whose bounds they share.
-_ALIKE = {
-    "closure_from_common_seat": "seated_closure",
+#: Bounds of quantities; others have none.
+_BOUNDS = {
     **dict.fromkeys(
-        ("delta_sigma_random", "local_slope", "local_slope_random", "local_slope_cut"),
-        "delta_sigma",
+        (
+            *("nodes", "interface_closure", "closure_from_common_seat", "mean_gap"),
+            *("area_corrected_share", "interface_stiffness"),
+        ),
+        (0.0, np.inf),
+    ),
+    **dict.fromkeys(
+        (
+            *("delta_sigma", "delta_sigma_random", "delta_sigma_area"),
+            *("local_slope", "local_slope_random", "local_slope_cut"),
+        ),
+        IN_PLANE,
     ),
 }
 #: Trends with the load: quantity, and what the trend is of.
@@ -73,8 +82,7 @@ def add_statistics(result: xr.Dataset, names: Sequence[str]) -> None:
         Of each name it gets ``NAME_mean`` with ``_low`` and ``_high``, by Student's t of the mean;
         ``NAME_spread``, the standard deviation over the realisations; ``NAME_band_low`` and
         ``NAME_band_high``, between which one more realisation lies with 95 % probability; and
-        ``NAME_n``, those that have a value. Intervals end at the bounds of the quantity, as
-        :func:`core.quantities.bounds_of` has them.
+        ``NAME_n``, those that have a value. Intervals end at the bounds of the quantity.
     names : sequence of str
         Variables over realisation.
     """
@@ -83,7 +91,7 @@ def add_statistics(result: xr.Dataset, names: Sequence[str]) -> None:
         values = result[name].transpose("realisation", ...)
         units, words = values.attrs["units"], values.attrs["long_name"]
         dims = values.dims[1:]
-        bounds = bounds_of(_ALIKE.get(name, name))
+        bounds = _BOUNDS.get(name, (-np.inf, np.inf))
         mean, band = (of(values.values).within(*bounds) for of in (mean_interval, band_of))
         found |= mean.variables(f"{name}_mean", dims, units, f"{words}, mean over realisations")
         for end, of_end, of_band in (("low", "lower", band.low), ("high", "upper", band.high)):

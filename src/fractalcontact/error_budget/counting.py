@@ -43,20 +43,19 @@ def counting_error(curve: LoadCurve) -> np.ndarray:
     fraction = t_quantile(np.inf) / np.sqrt(clusters)
     length = np.where(touching > MAX_TOUCHING, np.nan, curve.decay_length())
     summit_spread = t_quantile(np.inf) * _LARGEST_SPREAD * length
-    _, _, area, stiffness, _ = curve.values()
+    area = curve.curve["area_corrected"].values
+    stiffness = curve.curve["interface_stiffness"].values
     apart = curve.curve["area_sampling"].values
     together = fraction * np.sqrt(np.clip(1 - touching, 0, 1))
     amplitude = t_quantile(np.inf) * _amplitude_error(curve)
     of_stiffness = np.hypot(fraction, amplitude * _steepness(curve.forces, stiffness))
     value, low, high = Estimate.read(curve.domains, "delta_sigma").ends
-    return np.array(
-        [
-            np.hypot(fraction * length, summit_spread),
-            np.hypot(fraction * length, amplitude * curve.curve["mean_gap"].values),
-            np.where(np.isnan(apart), together, apart) * area,
-            np.where(touching > MAX_TOUCHING, np.nan, of_stiffness * stiffness),
-            np.fmax(high - value, value - low),
-        ]
+    return curve.over_quantities(
+        closure=np.hypot(fraction * length, summit_spread),
+        separation=np.hypot(fraction * length, amplitude * curve.curve["mean_gap"].values),
+        area_corrected=np.where(np.isnan(apart), together, apart) * area,
+        stiffness=np.where(touching > MAX_TOUCHING, np.nan, of_stiffness * stiffness),
+        delta_sigma=np.fmax(high - value, value - low),
     )
 
 

@@ -36,7 +36,7 @@ def ensemble_spread(curve: LoadCurve, ensemble: xr.Dataset) -> np.ndarray:
         In the quantity's unit; NaN under loads that were not solved, or at which a member has no
         value.
     """
-    half = np.full((len(BUDGET_QUANTITIES), len(curve.forces)), np.nan)
+    half = curve.over_quantities()
     for row, quantity in enumerate(BUDGET_QUANTITIES):
         low, high = _band(ensemble, quantity)
         size = curve.loading.area if quantity == "area_corrected" else 1.0

@@ -22,6 +22,7 @@ from .other_windows import MIN_EFFECTIVE, TOO_SMALL, other_composites, window_sp
 from .refinement import (
     ABSOLUTE,
     BUDGET_QUANTITIES,
+    PLACES,
     LoadCurve,
     Refinement,
     budget_values,
@@ -48,7 +49,6 @@ _UNIT = "unit of the quantity"
 _TABLE = {
     "error": (_EACH, _UNIT, "error by source, half-width at 95 %"),
     "relative_error": (_EACH, "1", "error by source, fraction of the quantity"),
-    "published": (_ALL, _UNIT, "value of the quantity at the finest resolution"),
     "total": (_ALL, _UNIT, "error of the number for this surface, half-width at 95 %"),
     "relative_total": (_ALL, "1", "that error, fraction of the quantity"),
     "total_of_population": (
@@ -71,6 +71,7 @@ _TABLE = {
         "1",
         "source of the numerical error: spacings solved, or interpolation",
     ),
+    "of": ("quantity", "1", "variable whose errors they are, STAGE/VARIABLE"),
     "unit": ("quantity", "1", "unit of the quantity"),
     "meaning": ("quantity", "1", "quantity"),
     "absolute": ("quantity", "1", "its errors are in its unit alone: it may be zero or negative"),
@@ -162,7 +163,7 @@ def error_budget(
         "numerical": over_loads(curve.forces, found.error, _scale(curve), WIDENED),
         "counting": counting_error(curve),
         "window": over_loads(curve.forces, windows, _scale(curve)),
-        "registration": _registration(registration_spread, len(curve.forces)),
+        "registration": curve.over_quantities(**(registration_spread or {})),
         "resolution": _resolution(loading, curves, domains, curve),
         "model": np.abs(hardest["hardest"][1] - values),
         "secant": _secant(curve),
@@ -203,7 +204,6 @@ def _budget(curve, values, errors, found, reasons, windows) -> xr.Dataset:
     table: dict[str, Any] = {
         "error": each,
         "relative_error": each / size[:, np.newaxis],
-        "published": values,
         "total": total,
         "relative_total": total / size,
         "total_of_population": of_population,
@@ -214,6 +214,7 @@ def _budget(curve, values, errors, found, reasons, windows) -> xr.Dataset:
         "observed_order": found.order,
         "finest_spacing": np.where(found.finest > 1, side / found.finest, np.nan),
         "numerical_from": [_FROM[n] if found.finest.max() > 1 else "" for n in found.finest],
+        "of": [PLACES[name] for name in BUDGET_QUANTITIES],
         "unit": [unit for unit, _ in BUDGET_QUANTITIES.values()],
         "meaning": [words for _, words in BUDGET_QUANTITIES.values()],
         "absolute": absolute,
@@ -280,41 +281,35 @@ def over_loads(
 
 def _scale(curve: LoadCurve) -> np.ndarray:
     """Scale of interpolated errors: the values, and of separations their length."""
-    scale = curve.values()
-    names = list(BUDGET_QUANTITIES)
     # A separation may pass through zero, the length over which the pressure falls does not.
-    scale[names.index("separation")] = curve.decay_length()
-    return scale
+    length = curve.over_quantities(separation=curve.decay_length())
+    is_separation = np.array(list(BUDGET_QUANTITIES)) == "separation"
+    return np.where(is_separation[:, np.newaxis], length, curve.values())
 
 
 def _solver(curve: LoadCurve) -> np.ndarray:
     """Solver error bounds, as the stages state them."""
     states = curve.curve
-    return np.array(
-        [
-            states["interface_closure_error"].values,
-            states["closure_error"].values,
-            states["area_corrected_error"].values,
-            (states["interface_stiffness_error"] - states["interface_stiffness_scatter"]).values,
-            curve.domains["delta_sigma_error"].values,
-        ]
+    stiffness = states["interface_stiffness_error"] - states["interface_stiffness_scatter"]
+    return curve.over_quantities(
+        closure=states["interface_closure_error"].values,
+        separation=states["closure_error"].values,
+        area_corrected=states["area_corrected_error"].values,
+        stiffness=stiffness.values,
+        delta_sigma=curve.domains["delta_sigma_error"].values,
     )
 
 
 def _estimator(curve: LoadCurve) -> np.ndarray:
     """Distance of the ordinary box-counting slope; only Delta_sigma has estimators to choose."""
-    spread = np.zeros((len(BUDGET_QUANTITIES), len(curve.forces)))
-    domains = curve.domains
-    spread[-1] = np.abs((domains["delta_sigma_ordinary"] - domains["delta_sigma"]).values)
-    return spread
+    distance = curve.domains["delta_sigma_ordinary"] - curve.domains["delta_sigma"]
+    return curve.over_quantities(0.0, delta_sigma=np.abs(distance.values))
 
 
 def _secant(curve: LoadCurve) -> np.ndarray:
     """Scatter of the secant that stands for the slope of a yielding contact."""
-    spread = np.zeros((len(BUDGET_QUANTITIES), len(curve.forces)))
     scatter = curve.curve["interface_stiffness_scatter"].values
-    spread[list(BUDGET_QUANTITIES).index("stiffness")] = np.nan_to_num(scatter)
-    return spread
+    return curve.over_quantities(0.0, stiffness=np.nan_to_num(scatter))
 
 
 def _window_spread(curve: LoadCurve) -> tuple[np.ndarray, int, float]:
@@ -339,12 +334,6 @@ def _window_spread(curve: LoadCurve) -> tuple[np.ndarray, int, float]:
     return spread, len(found), effective
 
 
-def _registration(spread: Mapping[str, ArrayLike] | None, loads: int) -> np.ndarray:
-    nothing = np.full(loads, np.nan)
-    rows = [np.asarray((spread or {}).get(name, nothing), float) for name in BUDGET_QUANTITIES]
-    return np.array([np.broadcast_to(row, loads) for row in rows])
-
-
 def _seated_sampling(curve, ensemble, registration) -> np.ndarray:
     """Sampling and registration error of the closure from the seat (normal_force), mm.
 
@@ -363,7 +352,7 @@ def _resolution(loading, curves, domains, curve: LoadCurve) -> np.ndarray:
     """Change from twice the spacing: of another surface, its every second node."""
     coarse = 2 * curve.resolution
     if coarse not in curves["resolution"]:
-        return np.full((len(BUDGET_QUANTITIES), len(curve.forces)), np.nan)
+        return curve.over_quantities()
     coarser = map_curve(loading, curves, domains, coarse)
     return np.abs(coarser.values() - curve.values())
 

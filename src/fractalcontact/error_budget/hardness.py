@@ -53,25 +53,22 @@ def of_the_hardest(curve: LoadCurve) -> dict[str, tuple]:
     """
     hardness = HARDEST * curve.loading.solving["hardness"]
     hardest, gap = _solved(curve, hardness)
-    area, separation, stiffness = (
-        hardest[list(BUDGET_QUANTITIES).index(name)]
-        for name in ("area_corrected", "separation", "stiffness")
-    )
+    of = dict(zip(BUDGET_QUANTITIES, hardest, strict=True))
     pressure = curve.curve["nominal_pressure"].values
     values = {
         "hardest_hardness": hardness if np.isfinite(hardness) else np.nan,
         "hardest": hardest,
         "mean_gap_hardest": gap,
-        "contact_fraction_hardest": area / curve.loading.area,
-        "seated_closure_hardest": _seated(curve, separation),
-        "reference_stiffness_hardest": at_reference_pressures(pressure, stiffness),
+        "contact_fraction_hardest": of["area_corrected"] / curve.loading.area,
+        "seated_closure_hardest": _seated(curve, of["separation"]),
+        "reference_stiffness_hardest": at_reference_pressures(pressure, of["stiffness"]),
     }
     return labelled(_TABLE, values)
 
 
 def _solved(curve: LoadCurve, hardness: float) -> tuple[np.ndarray, np.ndarray]:
     """Values (quantity, normal_force) at a hardness, and mean gaps; NaN if it is infinite."""
-    values = np.full((len(BUDGET_QUANTITIES), len(curve.forces)), np.nan)
+    values = curve.over_quantities()
     gaps = np.full(len(curve.forces), np.nan)
     if not np.isfinite(hardness):
         return values, gaps
@@ -92,6 +89,6 @@ def _seated(curve: LoadCurve, separation: np.ndarray) -> np.ndarray:
     there, less that at the seat.
     """
     seated = curve.curve["seated_closure"].values
-    wider = separation - curve.values()[list(BUDGET_QUANTITIES).index("separation")]
+    wider = separation - curve.separation
     seat = np.flatnonzero(seated == 0)
     return seated + (wider[seat[0]] - wider if seat.size else np.nan)

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import xarray as xr
+from numpy.typing import ArrayLike
 
 from roughcontact.contact.state import ContactState
 from roughcontact.elastic.halfspace import HalfSpace
@@ -33,6 +34,14 @@ FACTORS = (1, 2, 4)
 #: Quantities of the budget, in its order: unit, long name.
 _OTHERS = {"delta_sigma": ("1", "Delta_sigma by box counting")}
 BUDGET_QUANTITIES = QUANTITIES | _OTHERS
+#: Variables of the atlas that they are.
+PLACES = {
+    "closure": "closure/interface_closure",
+    "separation": "closure/separation",
+    "area_corrected": "closure/area_corrected",
+    "stiffness": "closure/interface_stiffness",
+    "delta_sigma": "domains/delta_sigma",
+}
 #: Those that may be zero or of either sign: an error of them is stated in their unit, never as a
 #: fraction. Faces pressed into each other have a separation below zero, single nodes no dimension.
 ABSOLUTE = ("separation", "delta_sigma")
@@ -77,18 +86,26 @@ class LoadCurve:
         """Name of the loaded specimen, for errors."""
         return f"specimen {self.loading.specimen.attrs['name']}, errors"
 
+    @property
+    def separation(self) -> np.ndarray:
+        """Separation of the mean planes (normal_force), mm."""
+        return self.composite.max() - self.reference - self.curve["closure"].values
+
     def values(self) -> np.ndarray:
-        """Published values (quantity, normal_force) of :data:`BUDGET_QUANTITIES`."""
+        """Values (quantity, normal_force) of :data:`BUDGET_QUANTITIES`."""
         curve = self.curve
-        return np.array(
-            [
-                curve["interface_closure"].values,
-                self.composite.max() - self.reference - curve["closure"].values,
-                curve["area_corrected"].values,
-                curve["interface_stiffness"].values,
-                self.domains["delta_sigma"].values,
-            ]
+        return self.over_quantities(
+            closure=curve["interface_closure"].values,
+            separation=self.separation,
+            area_corrected=curve["area_corrected"].values,
+            stiffness=curve["interface_stiffness"].values,
+            delta_sigma=self.domains["delta_sigma"].values,
         )
+
+    def over_quantities(self, otherwise: float = np.nan, /, **found: ArrayLike) -> np.ndarray:
+        """Numbers (quantity, normal_force) by the names of :data:`BUDGET_QUANTITIES`."""
+        rows = [np.asarray(found.get(name, otherwise), float) for name in BUDGET_QUANTITIES]
+        return np.array([np.broadcast_to(row, len(self.forces)) for row in rows])
 
     def decay_length(self) -> np.ndarray:
         """sigma_0/(d sigma/d w_int) (normal_force), mm: over it the pressure falls by e.

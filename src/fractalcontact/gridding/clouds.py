@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 
 from ..core.errors import InputError
-from ..core.labels import percent
 from ..core.limits import SMALLEST_SIDE
+from ..core.text import percent
 from ..registration.surface_motion import Motion
 from . import density as dense
 from . import levelling, overhangs

@@ -7,8 +7,8 @@ them need be wrong, all of them mostly are.
 import numpy as np
 
 from ..core.errors import InputError
-from ..core.labels import percent
 from ..core.mean_plane import without_mean_plane
+from ..core.text import percent
 
 #: Relief that arithmetic, or the seven digits of single precision, leaves of an exact plane.
 _PLANE = 1e-6

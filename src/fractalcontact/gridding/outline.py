@@ -13,7 +13,7 @@ from scipy.ndimage import binary_erosion, label
 from scipy.spatial import ConvexHull, QhullError
 
 from ..core.errors import InputError
-from ..core.labels import percent
+from ..core.text import percent
 from ..core.units import quantity
 
 #: A map whose rim is empty is suspicious where the convex hull of its contact takes less of the

@@ -14,9 +14,10 @@ from ..core.datasets import labelled
 from ..core.estimate import NO_ESTIMATE, Estimate
 from ..core.fitting import fit_line
 from ..core.intervals import t_quantile
-from ..core.labels import cf_attrs, percent
+from ..core.labels import cf_attrs
 from ..core.limits import GOOD_FIT, RESOLVED_NODES
 from ..core.ranges import within
+from ..core.text import percent
 from ..core.verdicts import HYPERBOLA, NEITHER, SEMI_LOGARITHMIC, TOO_WIDE, UNDECIDED
 
 #: States a law of two parameters needs before its interval means anything.

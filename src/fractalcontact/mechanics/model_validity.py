@@ -11,9 +11,9 @@ import numpy as np
 import xarray as xr
 
 from ..core.datasets import labelled_dataset
-from ..core.labels import percent
 from ..core.limits import MAX_TOUCHING
 from ..core.settings import Material
+from ..core.text import percent
 from ..core.validity import LOAD, SLOPE, Limits, Validity, pressure_words
 from ..core.verdicts import GOOD, HARDNESS, IN_PART, NO_PRESSURE, NOT_JUDGED, POOR, STRENGTH, USUAL
 

@@ -154,7 +154,7 @@ def load_warning(curves: xr.Dataset, reported: Reported) -> str:
     worst = float(mapped.max())
     if decided_by_scan(worst):
         where = _offset_words(mapped["offset"].values[decided_by_scan(mapped.values)])
-        at_maps = decided_by_scan(float(mapped.sel(offset=reported.offset)))
+        at_maps = decided_by_scan(float(reported.at_offset(mapped)))
         maps = ", the reported offset among them" if at_maps else ""
         parts.append(f"up to {worst:.0%} of the reference load (v = {where} mm{maps})")
     fitted = fits_undetermined(finest)

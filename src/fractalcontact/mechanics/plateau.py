@@ -10,8 +10,9 @@ from ..core.datasets import labelled
 from ..core.directions import NO_SLIDING
 from ..core.estimate import Estimate, rows_of
 from ..core.fitting import MIN_POINTS, LineFit, fit_line
-from ..core.labels import cf_attrs, length_words
+from ..core.labels import cf_attrs
 from ..core.limits import LEVEL_CHANGE
+from ..core.text import length_words
 from ..core.verdicts import FALLING, LEVEL, RISING
 
 _HALF = "rigid dilatancy over the second half of the offsets"

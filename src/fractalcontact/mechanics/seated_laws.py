@@ -12,8 +12,8 @@ import xarray as xr
 
 from ..core.datasets import labelled
 from ..core.estimate import Estimate
-from ..core.labels import percent
 from ..core.limits import LARGEST_MISFIT, REFERENCE_PRESSURES, SEATED_SPAN
+from ..core.text import percent
 from ..core.verdicts import TOO_WIDE
 from .closure_laws import MIN_CLOSURE_POINTS, at_twice, fit_hyperbola, fit_semi_logarithmic
 from .separation import ROUNDING

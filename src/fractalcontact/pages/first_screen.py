@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from ..core.limits import JRC_SAMPLING
+from ..core.text import measured, percent, short, with_unit
 from .files import CARD
-from .words import measured, percent, short, with_unit
 
 #: Intervals as cards name them, in words.
 _ALONE = {"solver": " solver error alone", "all errors of this surface": " this surface"}
@@ -202,9 +202,7 @@ def _ends(row, size=1.0, of=None):
 def _at_twice(card):
     """Change of the stiffness with the spacing, which no interval contains."""
     change = row_at(card["entries"]["stiffness_change"], reference_of(card)).get("value")
-    return (
-        f"changes by {'+' * (change > 0)}{percent(change)} at twice the spacing" if change else ""
-    )
+    return f"changes by {percent(change, sign='+')} at twice the spacing" if change else ""
 
 
 def _harder(card, row, size):

@@ -1,10 +1,9 @@
-"""Laboratory tests beside computed curves: rows of a specimen's page and columns of the summary."""
+"""Laboratory tests beside computed curves: rows of a specimen's page."""
 
-import re
-from dataclasses import dataclass
+from typing import NamedTuple
 
-from ..core.estimate import Estimate
 from ..core.subject import Subject
+from ..report.published import Number, read, row_of
 
 #: What each kind of test measures, in the order of the page.
 _WORDS = {
@@ -16,66 +15,50 @@ _WORDS = {
 }
 
 
-@dataclass(frozen=True)
-class Test:
+class Test(NamedTuple):
     """A test: computed over measured at the last computed state within it.
 
     Attributes
     ----------
-    kind, label, words : str
-    ratio : Estimate
-    calibrated : Estimate
-        The same with the constant that is fitted to a test; NaN without.
-    status : str
-        "computed", or "fitted" and "predicted" with that constant.
+    words : str
     note : str
-        What to know of its readings; "" if nothing is.
+        What to know of its readings; empty if nothing is.
+    ratio : Number
+    status : str
+        "computed", or "fitted" and "predicted" with the constant that is fitted to a test.
+    calibrated : Number or None
+        The same ratio with that constant; None without.
     """
 
-    kind: str
-    label: str
     words: str
-    ratio: Estimate
-    calibrated: Estimate
-    status: str
     note: str
-
-    @property
-    def columns(self) -> dict[str, float]:
-        """Columns of the summary, with the ends of the interval."""
-        name = re.sub(r"\W+", "_", f"computed_over_measured_{self.kind}_{self.label}")
-        return self.ratio.columns(name)
+    ratio: Number
+    status: str = "computed"
+    calibrated: Number | None = None
 
 
 def tests_of(subject: Subject) -> list[Test]:
     """Laboratory tests of a specimen; none of one without."""
     found = []
-    stage = subject.stages.get("measured")
     for kind, words in _WORDS.items():
-        if stage is None or f"{kind}_test" not in stage:
-            continue
-        for label in map(str, stage[f"{kind}_test"].values):
-            test = stage.sel({f"{kind}_test": label})
-            of_closure = kind == "closure"
-            found.append(
-                Test(
-                    kind,
-                    label,
-                    words,
-                    Estimate.read(test, f"{kind}_ratio_at_last"),
-                    Estimate.read(test, "closure_ratio_calibrated") if of_closure else Estimate(),
-                    str(test["closure_status"].item()) if of_closure else "computed",
-                    str(test[f"{kind}_note"].item()),
-                )
-            )
+        ratios = [one for one in read(row_of(f"{kind}_over_measured"), subject) if one.at]
+        for i, one in enumerate(ratios):
+            beside: tuple = ()
+            if kind == "closure":
+                status = str(subject["measured"]["closure_status"].values[i])
+                beside = (status, read(row_of("calibrated_over_measured"), subject)[i])
+            note = str(subject["measured"][f"{kind}_note"].values[i])
+            found.append(Test(f"{words}: {one.at['test']}", note, one, *beside))
     return found
 
 
-def calibration_of(subject: Subject) -> tuple[str, Estimate, str]:
+def calibration_of(subject: Subject) -> tuple[str, Number, str]:
     """Constant that is fitted to a test, its value, MPa, and what to know of it; "" without."""
     stage = subject.stages.get("measured")
+    (value,) = read(row_of("calibrated"), subject)
     if stage is None or "calibrated_constant" not in stage:
-        return "", Estimate(), ""
-    value = Estimate.read(stage, "calibrated_value")
-    constant = str(stage["calibrated_constant"].item())
-    return constant, value, str(stage["calibration_reason"].item())
+        return "", value, ""
+    constant, reason = (
+        str(stage[name].item()) for name in ("calibrated_constant", "calibration_reason")
+    )
+    return constant, value, reason

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 
 from ..core.limits import CORRECTED_NODES, NEARLY, RESOLVED_NODES
 from ..core.subject import Subject
+from ..core.text import compact, number, with_unit
 from ..core.validity import SLOPE, Validity
 from ..core.verdicts import GOOD, HARDNESS, IN_PART, NOT_JUDGED, POOR, STRENGTH, USUAL
-from .words import with_unit
 
 #: What would make lights better.
 FINER_SCAN = "points measured closer together, heights without the instrument's filter, less noise"
@@ -105,7 +105,7 @@ def _nodes(subject):
     # A state that was not solved has none: the comparison is then false, as it should be.
     word = GOOD if nodes >= CORRECTED_NODES else IN_PART if nodes >= RESOLVED_NODES else POOR
     reason = (
-        f"{nodes:.0f} nodes are in contact under the reference load; fits need "
+        f"{number(nodes, 0)} nodes are in contact under the reference load; fits need "
         f"{RESOLVED_NODES} nodes, area corrections {CORRECTED_NODES}"
     )
     helps = ""
@@ -136,8 +136,9 @@ def _grid(subject):
         return Light(key, title, NOT_JUDGED, why)
     word = GOOD if error <= asked else IN_PART if error <= NEARLY else POOR
     reason = (
-        f"closure from {start} under the reference load is uncertain by {100 * error:.2g} % "
-        f"({100 * asked:.2g} % requested, usable up to {100 * NEARLY:.0f} %)"
+        f"closure from {start} under the reference load is uncertain by "
+        f"{compact(100 * error, 2)} % "
+        f"({compact(100 * asked, 2)} % requested, usable up to {number(100 * NEARLY, 0)} %)"
     )
     helps = "" if word == GOOD else _finer(subject, error / asked, float(here["observed_order"]))
     return Light(key, title, word, reason, helps)

@@ -16,10 +16,9 @@ import xarray as xr
 from ..core.determined import decided_by_scan
 from ..core.estimate import DIMENSION, Estimate, names_of
 from ..core.labels import cf_attrs
-from ..core.quantities import shown_quantities
 from ..core.subject import Subject
-from ..core.verdicts import NO_PRESSURE, TOO_FEW_RESOLUTIONS
 from ..core.window import cell_side
+from ..report.published import shown_in, total_of
 
 #: Order of the dimensions of all that is packed; one-dimensional coordinates stand apart.
 ORDER = (
@@ -127,7 +126,7 @@ def packed_states(atlas: xr.DataTree, name: str) -> dict[str, Any]:
     closure = stages["closure"]
     stages["flow"] = _of_all_states(subject)
     numbers = _Numbers([], {})
-    rows = shown_quantities()
+    rows = shown_in("explorer")
     for stage, variable in (*((one.stage, one.variable) for one in rows), *CURVES):
         _add_with_bounds(numbers, stages[stage], stage, variable)
     numbers.add("domains", "law_count", stages["domains"]["law_count"], key="law_count")
@@ -141,8 +140,8 @@ def packed_states(atlas: xr.DataTree, name: str) -> dict[str, Any]:
             key: stages["dilatancy"][key].values.tolist()
             for key in ("rigid_direction", "rigid_offset")
         },
-        "rows": [one.key for one in rows],
-        "of_joint": [one.key for one in rows if one.by_scan],
+        "rows": [one.source for one in rows],
+        "of_joint": [one.source for one in rows if one.by_scan],
         "reasons": _reasons(stages),
         "totals": _totals(subject, numbers),
         "arrays": numbers.entries,
@@ -157,7 +156,7 @@ def packed_states(atlas: xr.DataTree, name: str) -> dict[str, Any]:
 def _of_all_states(subject: Subject) -> xr.Dataset:
     """Shown numbers of the flow over all states; missing but at the reported offset."""
     reported, closure = subject.reported, subject["closure"]
-    shown = [one.variable for one in shown_quantities() if one.stage == "flow"]
+    shown = [one.variable for one in shown_in("explorer") if one.stage == "flow"]
     flow = subject["flow"][shown].expand_dims(
         direction=[reported.direction],
         offset=[reported.offset],
@@ -179,31 +178,28 @@ def _add_undetermined(numbers, stages):
     by_scan = decided_by_scan(stages["closure"]["suspect_load_share"])
     attrs = cf_attrs("1", "whether suspicious cells of the scans decide what follows from contact")
     numbers.add("closure", "", by_scan.assign_attrs(attrs), key="undetermined/by_scan")
-    for one in (one for one in shown_quantities() if one.dimension):
+    for one in (one for one in shown_in("explorer") if one.dimension):
         says = xr.apply_ufunc(
             lambda *ends: Estimate(*ends, scale=DIMENSION).determined,
             *(stages[one.stage][name] for name in names_of(one.variable)),
             vectorize=True,
         )
         attrs = cf_attrs("1", "whether its interval is too wide to be of use")
-        numbers.add(one.stage, "", (~says).assign_attrs(attrs), key=f"undetermined/{one.key}")
+        numbers.add(one.stage, "", (~says).assign_attrs(attrs), key=f"undetermined/{one.source}")
 
 
 def _reasons(stages):
     """Reason why a number of a solved state is missing, as on the result page."""
-    missing: tuple[tuple[str, str, str], ...] = (
-        ("scaling", "sigma_n", NO_PRESSURE),
-        ("scaling", "delta_sigma_area", TOO_FEW_RESOLUTIONS),
-    )
-    missing += tuple(("flow", str(name), NO_FLOW) for name in stages["flow"].data_vars)
-    words = {
-        "domains/delta_sigma": stages["domains"]["reason"],
-        "closure/stiffness": stages["closure"]["interface_stiffness_reason"],
-        "closure/interface_stiffness": stages["closure"]["interface_stiffness_reason"],
-    }
-    for stage, variable, why in missing:
-        values = stages[stage][variable]
-        words[f"{stage}/{variable}"] = xr.where(np.isfinite(values), "", why)
+    words = {}
+    for one in shown_in("explorer"):
+        stage, _, variable = one.reason.partition("/")
+        if one.reason:
+            words[one.source] = stages[stage][variable]
+        elif one.why or one.stage == "flow":
+            values = stages[one.stage][one.variable]
+            words[one.source] = xr.where(
+                np.isfinite(values), "", one.missing if one.why else NO_FLOW
+            )
     return {key: _listed(of_states) for key, of_states in words.items()}
 
 
@@ -218,12 +214,12 @@ def _totals(subject, numbers):
     """Errors of all sources at the offset of the maps, by the quantity that has them."""
     budget = subject["error_budget"]
     slides = budget.attrs["direction"] != "none"
-    for one in shown_quantities():
-        if not one.budget or (one.stage == "dilatancy" and not slides):
+    for one in shown_in("explorer"):
+        total = total_of(one, subject)
+        if total is None or (one.stage == "dilatancy" and not slides):
             continue
-        total = one.total(budget) / (subject.area if one.key.endswith("_share") else 1.0)
-        total.attrs = cf_attrs(numbers.entries[one.key]["units"], "error of all sources")
-        numbers.add("error_budget", "total", total, key=f"total/{one.key}")
+        total = total.assign_attrs(cf_attrs(one.unit, "error of all sources"))
+        numbers.add("error_budget", "total", total, key=f"total/{one.source}")
     return {
         "direction": str(budget.attrs["direction"]),
         "offset": float(budget.attrs["offset_mm"]),

@@ -19,17 +19,28 @@ import xarray as xr
 import yaml
 
 from ..core.atomic import atomic_write
-from ..core.estimate import Estimate
-from ..core.labels import printable
+from ..core.determined import decided_by_scan
+from ..core.labels import OPPOSITE, printable
 from ..core.measured_maps import measured_maps
-from ..core.quantities import Shown, shown_in
 from ..core.stage import JOINT, SPECIMEN
 from ..core.subject import Subject, configuration_of
 from ..core.tables import write_table
+from ..core.text import (
+    duration,
+    interval,
+    measured,
+    number,
+    percent,
+    short,
+    undetermined,
+    with_unit,
+)
+from ..report.published import Number, Row, row_of, shown_in
 from ..study.atlas_parts import Trees
 from ..study.figure_list import STUDY, all_figures
 from .captions import symbols
 from .cards import SECTIONS, cards_of, section_of
+from .cells import absent, bare_words, error_words, estimate_words, shown, sort_value, value_words
 from .common_loads import common_loads, main_load
 from .curves import curves_table
 from .files import (
@@ -43,22 +54,12 @@ from .files import (
     TABLES,
 )
 from .first_screen import blocks_of
-from .matrix import Row, counted, matrix_of, merged, of_study, statement_table
-from .summary import AtLoad, Quantity, Specimen, summarised, summary_table, why
+from .laboratory import calibration_of, tests_of
+from .matrix import Row as Judged
+from .matrix import counted, matrix_of, merged, of_study, statement_table
+from .summary import Sheet, sheet_of, summary_table
 from .templating import write_page
 from .thumbnails import relief_thumbnail
-from .words import (
-    MISSING,
-    OPPOSITE,
-    duration,
-    interval,
-    measured,
-    percent,
-    plus_minus,
-    short,
-    undetermined,
-    with_unit,
-)
 
 #: Stages that the pages read; the fields of contact, the largest, are not among them.
 NEEDS = (
@@ -138,7 +139,7 @@ def write_specimen_pages(
         tree, groups, file = trees.of(name)
         subject, found = Subject.of(tree, name), matrix_of(tree, [name])
         values = _specimen_values(
-            place, subject, summarised(subject), found, (_as_typed(file), groups)
+            place, subject, sheet_of(subject), found, (_as_typed(file), groups)
         )
         path = place.folder / SPECIMEN_PAGE.format(specimen=name)
         write_page(path, "specimen.html", head | values | {"block": blocks.get(name)})
@@ -171,7 +172,7 @@ def write_index(place: Place, explored: Collection[str]) -> list[str]:
     for name in names:
         tree = trees.of(name)[0]
         subject = Subject.of(tree, name)
-        specimens.append(summarised(subject, loads))
+        specimens.append(sheet_of(subject, loads))
         rows.append(matrix_of(tree, [name]))
         reliefs[name] = relief_thumbnail(subject["specimens"])
         curves.append(curves_table(str(atlas.attrs["study"]), [subject]))
@@ -201,21 +202,24 @@ def _head(place, atlas):
         "date": f"{made:%Y-%m-%d %H:%M} UTC",
         "versions": json.loads(atlas.attrs["versions"]),
         "versions_differ": json.loads(atlas.attrs.get("versions_differ", "{}")),
-        "atlas_size": f"{place.atlas.stat().st_size / 1e6:.0f} MB",
+        "atlas_size": f"{number(place.atlas.stat().st_size / 1e6, 0)} MB",
         "atlas_path": _as_typed(place.atlas),
         "short": short,
         "measured": measured,
-        "plus_minus": plus_minus,
         "with_unit": with_unit,
         "percent": percent,
         "symbols": symbols,
-        "estimate": _estimate,
+        "absent": absent,
+        "value_words": value_words,
+        "bare_words": bare_words,
+        "error_words": error_words,
+        "estimate": estimate_words,
         "undetermined": undetermined,
-        "uncertain": lambda found: interval(found.value, found.low, found.high),
-        "sort_value": _sort_value,
-        "note_of": _note_of,
-        "why": why,
-        "shown": _shown,
+        "decided_by_scan": decided_by_scan,
+        "uncertain": lambda one: interval(*one.estimate.ends),
+        "sort_value": sort_value,
+        "shown": shown,
+        "row_of": row_of,
         "in_paper": _in_paper,
     }
 
@@ -226,52 +230,9 @@ def _as_typed(path):
     return "/".join(("results", folder.name, path.relative_to(folder).as_posix()))
 
 
-def _estimate(found):
-    """A number with its interval in words, as figures print it."""
-    if not found.known:
-        return MISSING
-    if not found.determined:
-        return undetermined(interval(found.value, found.low, found.high))
-    ends = f" [{measured(found.low)}, {measured(found.high)}]" if np.isfinite(found.low) else ""
-    return measured(found.value) + ends
-
-
-def _quoted(state: AtLoad, of: Shown | str) -> Quantity | Estimate | float:
-    """A quantity of the register, or a number of this name that is quoted under a load."""
-    return getattr(state, of) if isinstance(of, str) else state.quoted(of)
-
-
-def _sort_value(state: AtLoad | None, of: Shown | str) -> float | str:
-    """Sort key of a column: a number, empty where it is missing or undetermined."""
-    if state is None:
-        return ""
-    found = _quoted(state, of)
-    if isinstance(found, Estimate) and _of_dimension(of) and not found.determined:
-        return ""
-    by_scan = isinstance(of, Shown) and of.by_scan
-    if (isinstance(found, Quantity) or by_scan) and state.decided_by_scan:
-        return ""
-    return _shown(found.value if isinstance(found, Estimate | Quantity) else found)
-
-
-def _shown(value: float) -> float | str:
-    """A number as an attribute of the page: empty where it is missing."""
-    return value if np.isfinite(value) else ""
-
-
-def _note_of(state: AtLoad | None, of: Shown | str) -> str:
-    """Reason why a dimension is missing, or a remark on it."""
-    found = None if state is None else _quoted(state, of)
-    return why(found) if isinstance(found, Estimate) and _of_dimension(of) else ""
-
-
-def _of_dimension(of):
-    return isinstance(of, Shown) and of.dimension
-
-
-def _columns() -> dict[str, list[Shown]]:
+def _columns() -> dict[str, list[Row]]:
     """Columns of the table of specimens from the register, by the kind of their cells."""
-    columns: dict[str, list[Shown]] = {"dimension": [], "budget": [], "number": []}
+    columns: dict[str, list[Row]] = {"dimension": [], "budget": [], "number": []}
     for one in shown_in("index"):
         kind = "dimension" if one.dimension else "budget" if one.budget else "number"
         columns[kind].append(one)
@@ -298,8 +259,8 @@ def _work(logs: Path) -> str:
 def _index_values(
     place: Place,
     atlas: xr.DataTree,
-    specimens: list[Specimen],
-    rows: list[Row],
+    specimens: list[Sheet],
+    rows: list[Judged],
     curves: pd.DataFrame,
     groups: Collection[str],
 ) -> dict[str, Any]:
@@ -344,7 +305,7 @@ def _records(table: pd.DataFrame) -> list[dict[str, Any]]:
     return table.astype(object).where(table.notna(), None).to_dict("records")
 
 
-def _pictures(rows: Iterable[Row], place: Place) -> set[tuple[str, str]]:
+def _pictures(rows: Iterable[Judged], place: Place) -> set[tuple[str, str]]:
     """Specimens and figures of statements whose picture exists."""
     shown = {(name, cell.figure) for row in rows for name, cell in row.cells.items()}
     return {
@@ -357,8 +318,8 @@ def _pictures(rows: Iterable[Row], place: Place) -> set[tuple[str, str]]:
 def _specimen_values(
     place: Place,
     subject: Subject,
-    specimen: Specimen,
-    rows: list[Row],
+    sheet: Sheet,
+    rows: list[Judged],
     held: tuple[str, Collection[str]],
 ) -> dict[str, Any]:
     """Values of ``specimen.html`` but for those of :func:`_head`.
@@ -381,11 +342,14 @@ def _specimen_values(
         for name, title in SECTIONS.items()
     ]
     return {
-        "specimen": specimen,
+        "sheet": sheet,
+        "material": subject.settings["material"],
         "label": printable(subject.label),
-        "opposite": OPPOSITE[specimen.opposite],
+        "opposite": OPPOSITE[sheet.words["opposite"]],
+        "tests": tests_of(subject),
+        "calibration": calibration_of(subject),
         "sections": [(name.replace(" ", "-"), title, found) for name, title, found in sections],
-        "quantities": specimen.of_maps.quantities.values(),
+        "quantities": _quantities(subject, sheet),
         "plan": choices.attrs,
         "choices": choices[["value", "reason", "error", "error_of"]].to_dataframe().itertuples(),
         "statements": [(row, row.cells[subject.name]) for row in rows],
@@ -394,11 +358,24 @@ def _specimen_values(
     }
 
 
+def _quantities(subject: Subject, sheet: Sheet) -> list[tuple[Row, Number, str, str]]:
+    """Quantities of the specimen's page: row, number, name, and where the scan lies among twins."""
+    budget, found = subject.state("error_budget"), []
+    for row in shown_in("page"):
+        within = ""
+        if "within_twins" in budget and row.budget in budget["quantity"]:
+            within = str(budget["within_twins"].sel(quantity=row.budget).item())
+        several = "{" in row.page
+        numbers = sheet.numbers[row.name] if several else [sheet.of(row.name)]
+        found += [(row, one, row.page.format(**one.at), within) for one in numbers]
+    return found
+
+
 # -- the files beside them -------------------------------------------------------------------------
 
 
 def _write_files(
-    place: Place, atlas: xr.DataTree, specimens: list[Specimen], tables: Mapping[str, pd.DataFrame]
+    place: Place, atlas: xr.DataTree, specimens: list[Sheet], tables: Mapping[str, pd.DataFrame]
 ) -> None:
     """Write the summary, further tables by file, the configuration, and the archive of tables."""
     summary = summary_table(str(atlas.attrs["study"]), specimens, measured_maps(atlas))

@@ -9,9 +9,9 @@ import numpy as np
 import xarray as xr
 
 from ..core.errors import InputError
-from ..core.labels import percent, plain
 from ..core.limits import SMALLEST_SIDE
 from ..core.mean_plane import without_mean_plane
+from ..core.text import percent, plain
 from .face_match import LARGEST_ROTATION, for_comparison, mirror_images
 from .registration import biweight_limit, biweight_spread, find_motion
 from .surface_motion import Motion, Surface, correlation, grid_nodes

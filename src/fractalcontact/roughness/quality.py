@@ -15,7 +15,8 @@ from ..core.arrays import padded
 from ..core.datasets import labelled
 from ..core.directions import APERTURE
 from ..core.estimate import NO_ESTIMATE, Estimate
-from ..core.labels import cf_attrs, length_words
+from ..core.labels import cf_attrs
+from ..core.text import length_words
 from ..core.window import cell_side, face_words, spacing_of
 from .dimension import slope_statistics
 from .face_gap import REGIONS, gap_statistics

@@ -7,7 +7,7 @@ import numpy as np
 import xarray as xr
 
 from ..core.estimate import Estimate
-from ..core.labels import height_unit, length_words, percent, plain
+from ..core.text import height_unit, length_words, percent, plain
 from .fractal_range import NO_POWER_LAW
 from .spectra import STRIPS
 

@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 from scipy import stats
 
-from ..core.labels import length_words
+from ..core.text import length_words
 from .quality_words import AXES
 
 #: Nodes of a stretch across the lines; even, so that all begin with the same kind.

@@ -5,8 +5,8 @@ import numpy as np
 from ..core.claims import all_claims
 from ..core.estimate import Estimate
 from ..core.fitting import MIN_POINTS, fit_line
-from ..core.labels import loads_of
 from ..core.limits import NEARLY
+from ..core.text import compact, loads_of, number
 from ..core.verdicts import FAILS, HOLDS, PARTLY, UNDETERMINED
 from ..mechanics.lag_dimension import LAG_RANGES
 from .evidence import Evidence, of_a_kind
@@ -64,7 +64,9 @@ def curves_overlap(joint: Joint, evidence: Evidence) -> Finding:
             change, n = evidence.spread_over("compliance", part, force)
             if n >= MIN_POINTS and change.known:
                 found.append(level(change, _COMPLIANCE, v[part], margin))
-        wanted = f"no three offsets from v to {MIN_SPREAD:g} v beyond the correlation length"
+        wanted = (
+            f"no three offsets from v to {compact(MIN_SPREAD, 6)} v beyond the correlation length"
+        )
         order = (HOLDS, UNDETERMINED, FAILS)
         nothing = Finding(UNDETERMINED, wanted)
         return min(found, key=lambda one: order.index(one.verdict), default=nothing)
@@ -117,9 +119,9 @@ def _rise(joint, evidence, force, before, after):
     percent = change.mapped(lambda end: 100 * end)
     return Finding(
         beyond_margin(change, all_claims()[name].margin, rising=True),
-        f"compliance {percent:+.0f} %",
-        f"from v = {ends[0]:.3g} mm and less to {ends[1]:.3g} mm and more; {margin_words(name)}; "
-        f"sigma_z of the composite topography {100 * widened:+.0f} %",
+        f"compliance {number(percent, 0, '+')} %",
+        f"from v = {compact(ends[0])} mm and less to {compact(ends[1])} mm and more; {margin_words(name)}; "
+        f"sigma_z of the composite topography {number(100 * widened, 0, '+')} %",
     )
 
 
@@ -143,13 +145,13 @@ def composite_dimension_rises(joint: Joint, evidence: Evidence) -> Finding:
     each = [beyond_margin(one, margin, rising=True) for one in rise]
     low, high = (joint["joints"][f"lag_{end}"].values for end in ("min", "max"))
     also = ", ".join(
-        f"{first.value[i]:.2f} to {last.value[i]:.2f} over {low[i]:.2g} to {high[i]:.2g} mm"
+        f"{number(first.value[i])} to {number(last.value[i])} over {compact(low[i], 2)} to {compact(high[i], 2)} mm"
         for i in range(1, len(LAG_RANGES))
     )
     return Finding(
         share(sum(verdict in (HOLDS, PARTLY) for verdict in each), len(each)),
-        f"over lags of {low[0]:.2g} to {high[0]:.2g} mm it goes from {first.value[0]:.2f} at "
-        f"v = {v[0]:.3g} mm to {last.value[0]:.2f} at {v[-1]:.3g} mm",
+        f"over lags of {compact(low[0], 2)} to {compact(high[0], 2)} mm it goes from {number(first.value[0])} at "
+        f"v = {compact(v[0])} mm to {number(last.value[0])} at {compact(v[-1])} mm",
         f"{also}; {margin_words(name)}",
         explanation="far below a lag the composite topography is a derivative of the face, far "
         "above it has the face's dimension",
@@ -174,8 +176,8 @@ def compliance_goes_with_dimension(joint: Joint, evidence: Evidence) -> Finding:
         return Finding(UNDETERMINED, "no dimension or no compliance at some offset")
     wider = _exponent_of_spread(joint)
     numbers = (
-        f"as v grows from {v[0]:.3g} to {v[-1]:.3g} mm the dimension changes by "
-        f"{steeper.value:+.2f} and the compliance as v^x, x = {softer:z.2f}"
+        f"as v grows from {compact(v[0])} to {compact(v[-1])} mm the dimension changes by "
+        f"{number(steeper.value, 2, '+')} and the compliance as v^x, x = {number(softer)}"
     )
     margin, note = all_claims()[name].margin, margin_words(name)
     directions = [_sign(softer, margin), _sign(steeper, margin)]
@@ -185,7 +187,7 @@ def compliance_goes_with_dimension(joint: Joint, evidence: Evidence) -> Finding:
         HOLDS if directions[0] == directions[1] else FAILS,
         numbers,
         note,
-        explanation=f"sigma_z of the composite topography grows as v^{wider:.2f}: a joint slid "
+        explanation=f"sigma_z of the composite topography grows as v^{number(wider)}: a joint slid "
         "farther is more compliant because its gap is wider",
     )
 
@@ -227,7 +229,7 @@ def larger_samples_close_more(joint: Joint, evidence: Evidence) -> Finding:
     verdict = PARTLY if grows else FAILS if decided else UNDETERMINED
     return Finding(
         HOLDS if each == [HOLDS, HOLDS] else verdict,
-        " and ".join(f"{words} ~ b^x, x = {exponent:z.2f}" for words, exponent in found.items()),
+        " and ".join(f"{words} ~ b^x, x = {number(exponent)}" for words, exponent in found.items()),
         f"{evidence.reference}; {margin_words(name)}",
     )
 
@@ -245,11 +247,11 @@ def area_is_linear(joint: Joint) -> Finding:
     apart = int(((exponent.high < 1 - NEARLY) | (exponent.low > 1 + NEARLY)).sum())
     verdict = FAILS if apart == value.size else PARTLY if apart else HOLDS
     verdict = UNDETERMINED if not apart and 2 * near <= value.size else verdict
-    ends = " to ".join(dict.fromkeys(f"{m:.2f}" for m in (value.min(), value.max())))
+    ends = " to ".join(dict.fromkeys(f"{number(m)}" for m in (value.min(), value.max())))
     return Finding(
         verdict,
         f"m = {ends}",
-        f"A_r ~ F^m; {near} of {value.size} exponents lie within {NEARLY:g} of 1, the intervals "
+        f"A_r ~ F^m; {near} of {value.size} exponents lie within {compact(NEARLY, 6)} of 1, the intervals "
         f"of {apart or 'none'} outside",
     )
 
@@ -286,7 +288,7 @@ def refinement_changes_little(joint: Joint) -> Finding:
     only one does, or at some loads.
     """
     margin = all_claims()["refinement_changes_little"].margin
-    curves = joint.along("closure").sel(offset=joint.offset)
+    curves = joint.reported.at_offset(joint.along("closure"))
     finest = int(curves["resolution"].min())
     grids = [
         curves.sel(resolution=k) for k in (2 * finest, finest) if k in curves["resolution"].values
@@ -309,14 +311,14 @@ def refinement_changes_little(joint: Joint) -> Finding:
     little = {name: int((np.abs(change) <= margin).sum()) for name, change in changes.items()}
     n = int(counts.sum()) - 1
     words = (
-        f"{name} changes by {100 * change.min():+z.0f} to {100 * change.max():+z.0f} % (within "
-        f"{100 * margin:g} % at {loads_of(little[name], n)})"
+        f"{name} changes by {number(100 * change.min(), 0, '+')} to {number(100 * change.max(), 0, '+')} % (within "
+        f"{compact(100 * margin, 6)} % at {loads_of(little[name], n)})"
         for name, change in changes.items()
     )
     return Finding(
         share(sum(little.values()), 2 * n),
         f"with all points in place of every second one, {' and '.join(words)}",
-        f"from a seat of {pressures[counts][0]:.3g} MPa",
+        f"from a seat of {compact(pressures[counts][0])} MPa",
     )
 
 

@@ -15,6 +15,7 @@ from ..core.estimate import Estimate, rows_of
 from ..core.intervals import t_quantile
 from ..core.labels import cf_attrs
 from ..core.reported import Reported
+from ..core.text import percent
 from ..core.window import nominal_area
 
 #: What is compared, each with its 95 % interval: unit and long name; the first once a specimen,
@@ -67,7 +68,7 @@ def specimen_row(stages: Mapping[str, xr.Dataset], settings: Mapping) -> xr.Data
     pressures = closure["normal_force"].values / nominal_area(stages["specimens"])
     found = {
         **Estimate.read(surface, "recommended_dimension").columns("delta_g"),
-        **_stiffness(stages["error_budget"], pressures.size),
+        **_stiffness(reported.states(closure), stages["error_budget"]),
         **Estimate.read(reported.states(stages["domains"]), "delta_sigma").columns("delta_sigma"),
         **_dilatancy(stages["dilatancy"], reported.direction, pressures.size),
         **_size_exponent(stages["size_test"], pressures),
@@ -85,11 +86,11 @@ def _around(name, value, half_width):
     return Estimate(value, value - half_width, value + half_width).columns(name)
 
 
-def _stiffness(budget, n_loads):
-    one = budget.sel(quantity="stiffness")
-    if one.sizes["normal_force"] != n_loads:
+def _stiffness(states, budget):
+    error = budget["total"].sel(quantity="stiffness")
+    if error.size != states.sizes["normal_force"]:
         raise ValueError("the error budget has other loads than the closure")
-    return _around("stiffness", one["published"].values, one["total"].values)
+    return _around("stiffness", states["interface_stiffness"].values, error.values)
 
 
 def _dilatancy(dilatancy, direction, n_loads):
@@ -143,7 +144,7 @@ def compare_specimens(rows: Mapping[str, xr.Dataset]) -> xr.Dataset:
         "compared_pressure": (
             ("specimen", "load"),
             "MPa",
-            f"nominal pressure under which specimens are compared, one within {ALIKE:.0%}",
+            f"nominal pressure under which specimens are compared, one within {percent(ALIKE)}",
         ),
         "group": ("specimen", "1", "group of the specimen"),
         "label": ("specimen", "1", "label of the specimen"),

@@ -16,6 +16,7 @@ from ..core.estimate import Estimate
 from ..core.fitting import MIN_POINTS, fit_line, slope_error
 from ..core.intervals import mean_difference, mean_interval
 from ..core.limits import MIN_NODES, NEAR_FULL
+from ..core.text import compact
 from ..core.verdicts import UNDETERMINED
 from ..domain.departure import departure_of
 from ..domain.isotropy import WAYS
@@ -76,7 +77,7 @@ class Evidence:
     @property
     def reference(self) -> str:
         """The reference pressure in words."""
-        return f"at {self.joint.force / self.joint.area:.3g} MPa"
+        return f"at {compact(self.joint.force / self.joint.area)} MPa"
 
     def size_exponent(self, name: str) -> Estimate:
         """Exponent against the side b of sub-windows under the reference load."""

@@ -8,9 +8,9 @@ import numpy as np
 
 from ..core.claims import all_claims
 from ..core.estimate import Estimate, names_of
-from ..core.labels import loads_of
 from ..core.limits import RESOLVED_NODES
 from ..core.subject import Subject
+from ..core.text import compact, loads_of, number
 from ..core.verdicts import FAILS, HOLDS, ILL_POSED, PARTLY, UNDETERMINED
 
 #: Why a joint under a hardness may be asked nothing of its contact area.
@@ -146,8 +146,8 @@ def power_of_offset(
         return Finding(UNDETERMINED, no_offsets("three"))
     return Finding(
         beyond_margin(exponent, all_claims()[name].margin, rising=rising),
-        f"x = {exponent:z.2f}",
-        f"{symbol} ~ v^x, v = {v[0]:.3g} to {v[-1]:.3g} mm; {margin_words(name)}",
+        f"x = {number(exponent)}",
+        f"{symbol} ~ v^x, v = {compact(v[0])} to {compact(v[-1])} mm; {margin_words(name)}",
     )
 
 
@@ -172,13 +172,15 @@ def under_every_load(joint: Joint, rule: Callable[[float], Finding], forces: np.
     verdicts = [one.verdict for one in decided.values()]
     pressure = force / joint.area
     if len(found) == 1:
-        return decided[force]._replace(numbers=f"{decided[force].numbers} at {pressure:.3g} MPa")
+        return decided[force]._replace(
+            numbers=f"{decided[force].numbers} at {compact(pressure)} MPa"
+        )
     share_of = f"holds at {loads_of(verdicts.count(HOLDS), len(decided))}"
     if PARTLY in verdicts:
         share_of += f", in part at {loads_of(verdicts.count(PARTLY), len(decided))}"
     return decided[force]._replace(
         verdict=verdicts[0] if len(set(verdicts)) == 1 else PARTLY,
-        numbers=f"{decided[force].numbers} at {pressure:.3g} MPa; {share_of}",
+        numbers=f"{decided[force].numbers} at {compact(pressure)} MPa; {share_of}",
     )
 
 
@@ -233,15 +235,15 @@ def difference_of(first: Estimate, second: Estimate) -> Estimate:
 
 def margin_words(name: str) -> str:
     """The equivalence margin of a claim, in words."""
-    return f"margin {all_claims()[name].margin:g}"
+    return f"margin {compact(all_claims()[name].margin, 6)}"
 
 
 def level(spread: Estimate, symbol: str, v: np.ndarray, margin: float) -> Finding:
     """Verdict on a claim of constancy over offsets, by the range over the mean."""
     return Finding(
         HOLDS if spread.high <= margin else FAILS if spread.low > margin else UNDETERMINED,
-        f"{symbol} varies by {spread.mapped(lambda end: 100 * end):.0f} % of its mean",
-        f"v = {v[0]:.3g} to {v[-1]:.3g} mm; margin {100 * margin:g} %",
+        f"{symbol} varies by {number(spread.mapped(lambda end: 100 * end), 0)} % of its mean",
+        f"v = {compact(v[0])} to {compact(v[-1])} mm; margin {compact(100 * margin, 6)} %",
     )
 
 

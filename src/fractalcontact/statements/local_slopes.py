@@ -5,6 +5,7 @@ import xarray as xr
 
 from ..core.estimate import Estimate
 from ..core.limits import LOOSELY, NEARLY
+from ..core.text import compact, number
 from ..core.verdicts import FAILS, HOLDS, PARTLY, UNDETERMINED
 from .findings import Finding
 
@@ -32,8 +33,8 @@ def one_slope(state: xr.Dataset) -> Finding:
         return Finding(UNDETERMINED, str(state["null_reason"].item()))
     slopes, low, high = Estimate.read(state, "local_slope").ends
     first, last = (state[f"local_slope_side_{end}"].values for end in ("min", "max"))
-    ends = " to ".join(dict.fromkeys(f"{slope:.2f}" for slope in (slopes.min(), slopes.max())))
-    words = f"local slopes {ends} for boxes of {first[0]:.2g} to {last[-1]:.2g} mm"
+    ends = " to ".join(dict.fromkeys(number(slope) for slope in (slopes.min(), slopes.max())))
+    words = f"local slopes {ends} for boxes of {compact(first[0], 2)} to {compact(last[-1], 2)} mm"
     if np.max(low) - np.min(high) > 2 * LOOSELY:
         return Finding(FAILS, words)
     if slopes.max() >= FULL and np.max(low) - np.min(high) > NEARLY:

@@ -7,8 +7,8 @@ from ..core.claims import all_claims
 from ..core.determined import differ_together, differs
 from ..core.directions import slides
 from ..core.estimate import Estimate
-from ..core.labels import loads_of
 from ..core.limits import CONFIDENCE, LARGEST_MISFIT, LOOSELY, NEARLY
+from ..core.text import compact, loads_of, number
 from ..core.verdicts import (
     FAILS,
     HOLDS,
@@ -52,13 +52,13 @@ def closure_is_hyperbolic(joint: Joint) -> Finding:
     wins = int((close & (hyperbola < logarithm)).sum())
     first = np.nanmedian(curves["hyperbola_misfit"].values[fitted])
     ends = " to ".join(
-        dict.fromkeys(f"{100 * end:.2g}" for end in (hyperbola.min(), hyperbola.max()))
+        dict.fromkeys(f"{compact(100 * end, 2)}" for end in (hyperbola.min(), hyperbola.max()))
     )
     return Finding(
         HOLDS if wins == count else PARTLY if close.any() else FAILS,
         f"from the seat the hyperbola misses by {ends} % rms, by less than the logarithm at "
         f"{wins or 'none'} of {count} offsets",
-        f"from first contact it misses by {100 * first:.2g} % (median)",
+        f"from first contact it misses by {compact(100 * first, 2)} % (median)",
     )
 
 
@@ -96,9 +96,9 @@ def _departure_words(state, null, words):
     slope, other = (float(state[name][place]) for name in ("local_slope", f"local_slope_{null}"))
     small = differs(p) and abs(slope - other) < NEARLY
     return (
-        f"{words}: largest departure at r = {side:.2g} mm, local slope {slope:.2f} against "
-        f"{other:.2f}, p {f'= {p:.2g}' if p >= _LEAST_P else f'< {_LEAST_P:g}'}"
-        f"{f' (significant, but smaller than {NEARLY:g})' if small else ''}"
+        f"{words}: largest departure at r = {compact(side, 2)} mm, local slope {number(slope)} against "
+        f"{number(other)}, p {f'= {compact(p, 2)}' if p >= _LEAST_P else f'< {compact(_LEAST_P, 6)}'}"
+        f"{f' (significant, but smaller than {compact(NEARLY, 6)})' if small else ''}"
     )
 
 
@@ -129,11 +129,15 @@ def domains_differ_from_cuts(joint: Joint, evidence: Evidence) -> Finding:
         verdict = FAILS
     less = states["delta_sigma_cut_difference"].values
     less = less[np.isfinite(less)]
-    ends = dict.fromkeys(f"{end:+.2f}" for end in (less.min(), less.max())) if less.size else "-"
+    ends = (
+        dict.fromkeys(f"{number(end, 2, '+')}" for end in (less.min(), less.max()))
+        if less.size
+        else "-"
+    )
     return Finding(
         verdict,
         f"local slopes differ from those of the cut at {loads_of(different, total)}",
-        f"slopes coincide within {margin:g} at {loads_of(int(alike.sum()), total)}; Delta_sigma "
+        f"slopes coincide within {compact(margin, 6)} at {loads_of(int(alike.sum()), total)}; Delta_sigma "
         f"minus that of the cut is {' to '.join(ends)}",
     )
 
@@ -175,6 +179,6 @@ def domains_are_isotropic(joint: Joint, evidence: Evidence) -> Finding:
         ways = "along y less that along x"
     return Finding(
         within_margin(difference, all_claims()[name].margin),
-        f"the exponent of occupied intervals {ways} is {difference:+z.2f}",
+        f"the exponent of occupied intervals {ways} is {number(difference, 2, '+')}",
         f"{evidence.reference}; {margin_words(name)}",
     )

@@ -6,8 +6,8 @@ import xarray as xr
 from ..core.claims import all_claims
 from ..core.estimate import Estimate
 from ..core.fitting import MIN_POINTS
-from ..core.labels import loads_of
 from ..core.limits import NEAR_FULL, NEAR_POINTS, NEARLY
+from ..core.text import compact, loads_of, number
 from ..core.verdicts import FAILS, HOLDS, PARTLY, UNDETERMINED
 from .evidence import ESTIMATES, Evidence, Trend, at_reference, of_a_kind
 from .findings import (
@@ -50,9 +50,9 @@ def area_is_lacunar(joint: Joint, evidence: Evidence) -> Finding:
     )
     return Finding(
         falls if one_power == HOLDS or falls != HOLDS else PARTLY,
-        f"A_r ~ s^(2 - Delta_sigma), Delta_sigma = {delta:.2f}",
+        f"A_r ~ s^(2 - Delta_sigma), Delta_sigma = {number(delta)}",
         f"{evidence.reference}; {words}: from the coarsest to the finest resolutions Delta_sigma "
-        f"changes by {bend:+z.2f}; {margin_words(name)}; at light load the slopes h'_rms(s) of the "
+        f"changes by {number(bend, 2, '+')}; {margin_words(name)}; at light load the slopes h'_rms(s) of the "
         "surface set this exponent",
     )
 
@@ -77,7 +77,7 @@ def estimates_agree(joint: Joint, evidence: Evidence) -> Finding:
         return Finding(UNDETERMINED, "no load has both estimates with their intervals")
     each = _each_within(difference, name)
     decided = [verdict for verdict in each if verdict != UNDETERMINED]
-    ends = " to ".join(dict.fromkeys(f"{d:+.2f}" for d in difference.value[[0, -1]]))
+    ends = " to ".join(dict.fromkeys(f"{number(d, 2, '+')}" for d in difference.value[[0, -1]]))
     return Finding(
         share(decided.count(HOLDS), len(decided)) if decided else UNDETERMINED,
         f"Delta_sigma by A_r(s) minus that by boxes is {ends}; they differ at "
@@ -116,18 +116,18 @@ def _beside_cut(less: Estimate, margin: float) -> str:
         FAILS: "no faster than the bearing-area cut",
         HOLDS: "faster than the bearing-area cut",
     }.get(faster, "not surely faster than the bearing-area cut")
-    return f"{words}: the difference is {less:+z.2f} per decade"
+    return f"{words}: the difference is {number(less, 2, '+')} per decade"
 
 
 def _rise(trend: Trend, name: str) -> Finding:
     """Verdict on a slope over the decades of F; undetermined where the loads span less than one."""
     if not trend.slope.known:
         return Finding(UNDETERMINED, "too few loads have a dimension")
-    numbers = f"Delta_sigma changes by {trend.slope:+z.2f} per decade of F"
+    numbers = f"Delta_sigma changes by {number(trend.slope, 2, '+')} per decade of F"
     note = f"{_between(trend.pressures)}; {margin_words(name)}"
     decades = np.log10(trend.pressures[-1] / trend.pressures[0])
     if decades < MIN_DECADES:
-        few = f"the loads span {decades:.1f} decades, {MIN_DECADES:g} needed"
+        few = f"the loads span {number(decades, 1)} decades, {compact(MIN_DECADES, 6)} needed"
         return Finding(UNDETERMINED, f"{numbers}, but {few}", note)
     verdict = beyond_margin(trend.slope, all_claims()[name].margin, rising=True)
     return Finding(verdict, numbers, note)
@@ -186,7 +186,7 @@ def span_finding(
     return Finding(
         verdict,
         f"Delta_sigma by boxes goes from {_of_a_set(lower)} to {_of_a_set(upper)} up to "
-        f"{pressures[-1]:.3g} MPa",
+        f"{compact(pressures[-1])} MPa",
         note,
     )
 
@@ -194,7 +194,7 @@ def span_finding(
 def _of_a_set(dimension: Estimate) -> str:
     """A dimension with its interval, if it has one."""
     known = np.isfinite(dimension.width)
-    return f"{dimension:.2f}" if known else f"{dimension.value:.2f} (no interval)"
+    return f"{number(dimension)}" if known else f"{number(dimension.value)} (no interval)"
 
 
 def by_design(joint: Joint) -> str:
@@ -205,8 +205,8 @@ def by_design(joint: Joint) -> str:
     if not largest.size or largest.min() > largest.max() / 2:
         return full
     return (
-        f"; as boxes fill, the largest fitted box shrinks from {largest.max():.2g} to "
-        f"{largest.min():.2g} mm in this specimen{full}"
+        f"; as boxes fill, the largest fitted box shrinks from {compact(largest.max(), 2)} to "
+        f"{compact(largest.min(), 2)} mm in this specimen{full}"
     )
 
 
@@ -233,9 +233,9 @@ def size_effect_follows(joint: Joint, evidence: Evidence) -> Finding:
         for words, one in found.items()
     }
     pressures = np.unique(np.concatenate([one.pressures for one in found.values()]))
-    less = " and ".join(f"{one:+z.2f} {words}" for words, one in nearest.items())
+    less = " and ".join(f"{number(one, 2, '+')} {words}" for words, one in nearest.items())
     exponent = evidence.size_exponent("area_exponent")
-    law = f"A_r/A_0 ~ b^x, x = {exponent:z.2f}" if exponent.known else "A_r/A_0 ~ b^x"
+    law = f"A_r/A_0 ~ b^x, x = {number(exponent)}" if exponent.known else "A_r/A_0 ~ b^x"
     agree = "no load is decisive"
     if decided:
         agree = f"eq. 6 agrees in {decided.count(HOLDS) or 'none'} of {len(decided)} decisive cases"
@@ -254,7 +254,7 @@ def _each_within(differences: Estimate, name: str) -> list[str]:
 
 def _between(pressures: np.ndarray) -> str:
     """A range of nominal pressures in words; ascending."""
-    ends = dict.fromkeys(f"{end:.3g}" for end in (pressures[0], pressures[-1]))
+    ends = dict.fromkeys(f"{compact(end)}" for end in (pressures[0], pressures[-1]))
     return f"{' to '.join(ends)} MPa"
 
 
@@ -271,7 +271,7 @@ def larger_domains_are_less_dense(joint: Joint, evidence: Evidence) -> Finding:
         return Finding(UNDETERMINED, "too few nodes in contact in sub-windows of two sizes")
     return Finding(
         beyond_margin(exponent, all_claims()[name].margin, rising=False),
-        f"x = {exponent:z.2f}",
+        f"x = {number(exponent)}",
         f"A_r/A_0 ~ b^x {evidence.reference}; {margin_words(name)}",
     )
 
@@ -327,4 +327,4 @@ def _at_equal_v(windows: xr.Dataset) -> str:
 def _ends(exponents: Estimate) -> str:
     """Least and largest exponent in words."""
     ends = (exponents.value.min(), exponents.value.max())
-    return " to ".join(dict.fromkeys(f"{end:.2f}" for end in ends))
+    return " to ".join(dict.fromkeys(f"{number(end)}" for end in ends))

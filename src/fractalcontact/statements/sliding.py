@@ -7,6 +7,7 @@ import numpy as np
 import xarray as xr
 
 from ..core.limits import LEVEL_CHANGE, LOOSELY, NEARLY
+from ..core.text import compact, number
 from ..core.verdicts import FAILS, HOLDS, LEVEL, PARTLY, RISING, UNDETERMINED
 from .evidence import Evidence, of_a_kind
 from .findings import Finding, Joint, no_offsets, power_of_offset, share
@@ -120,8 +121,8 @@ def _of_plateaus(
     if not own.change.size:
         return Finding(UNDETERMINED, no_offsets("three rigid"))
     note = (
-        f"{100 * own.change.min():+.0f} to {100 * own.change.max():+.0f} % change over the second "
-        f"half of v; level: up to {100 * LEVEL_CHANGE:g} %"
+        f"{number(100 * own.change.min(), 0, '+')} to {number(100 * own.change.max(), 0, '+')} % change over the second "
+        f"half of v; level: up to {compact(100 * LEVEL_CHANGE, 6)} %"
     )
     members = [Plateaus.of(one) for one in evidence.rigid_slides()]
     if not members:
@@ -150,7 +151,7 @@ def dilatancy_is_anisotropic(joint: Joint, evidence: Evidence) -> Finding:
     if own.change.size < 2:
         return Finding(UNDETERMINED, "fewer than two directions")
     numbers = (
-        f"delta_r changes by {100 * own.change.min():+.0f} to {100 * own.change.max():+.0f} % of "
+        f"delta_r changes by {number(100 * own.change.min(), 0, '+')} to {number(100 * own.change.max(), 0, '+')} % of "
         "its mean over the second half of v, depending on direction"
     )
     members = evidence.rigid_slides()
@@ -160,7 +161,7 @@ def dilatancy_is_anisotropic(joint: Joint, evidence: Evidence) -> Finding:
     marked = sum(_differs(one) == HOLDS for one in ranges)
     return Finding(
         share(marked, len(ranges)),
-        f"the directions differ by more than {100 * LOOSELY:g} % in {marked or 'none'} of "
+        f"the directions differ by more than {compact(100 * LOOSELY, 6)} % in {marked or 'none'} of "
         f"{len(ranges)} realisations; this specimen: {numbers}",
         _odd_parts(joint["joints"]),
         explanation=f"the recipe is isotropic: {_scatter(members)} is chance of the highest points",
@@ -170,7 +171,7 @@ def dilatancy_is_anisotropic(joint: Joint, evidence: Evidence) -> Finding:
 def _odd_parts(joints: xr.Dataset) -> str:
     """Odd part of the slope by axis, and the tilt of the window's mean plane along it."""
     return "; ".join(
-        f"{axis}: odd part {odd:+.3f} v, tilt of the window {tilt:+.4f}"
+        f"{axis}: odd part {number(odd, 3, '+')} v, tilt of the window {number(tilt, 4, '+')}"
         for axis, odd, tilt in zip(
             joints["axis"].values,
             joints["odd_slope"].values,
@@ -185,7 +186,7 @@ def _scatter(members: Sequence[xr.Dataset]) -> str:
     odd = np.array([one["odd_slope"].values for one in members])
     axes = members[0]["axis"].values
     each = odd.std(axis=0, ddof=1)
-    parts = (f"{each[i]:.3f} v {axis}" for i, axis in enumerate(axes))
+    parts = (f"{number(each[i], 3)} v {axis}" for i, axis in enumerate(axes))
     return f"the scatter of the odd part over realisations, {' and '.join(parts)},"
 
 
@@ -205,9 +206,12 @@ def no_correlation_is_left(joint: Joint) -> Finding:
     limit = float(joint["joints"]["correlation_limit"])
     v = joint["joints"]["rigid_offset"].values
     correlation = joint.of_direction("face_correlation")[np.argmin(np.abs(v - joint.offsets[-1]))]
-    numbers, where = f"correlation {correlation:+.2f}", f"at v = {joint.offsets[-1]:.3g} mm"
+    numbers, where = (
+        f"correlation {number(correlation, 2, '+')}",
+        f"at v = {compact(joint.offsets[-1])} mm",
+    )
     if not np.isfinite(limit):
         too_small = "in so small a window chance may give as much"
         return Finding(UNDETERMINED, numbers, f"{where}; {too_small}")
     verdict = HOLDS if correlation <= limit else FAILS
-    return Finding(verdict, f"{numbers}; chance gives up to {limit:.2f}", where)
+    return Finding(verdict, f"{numbers}; chance gives up to {number(limit)}", where)

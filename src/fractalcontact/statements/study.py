@@ -9,6 +9,7 @@ from ..core.claims import all_claims, claims_of
 from ..core.directions import slides
 from ..core.estimate import Estimate
 from ..core.fitting import fit_line, slope_error
+from ..core.text import number
 from ..core.verdicts import UNDETERMINED
 from ..roughness.recommended import best_dimension
 from .evidence import evidence_of
@@ -63,7 +64,7 @@ def size_exponent_grows_with_dimension(joints: Mapping[str, Joint]) -> Finding:
     order = np.argsort(dimension)
     if not slope.known:
         return Finding(UNDETERMINED, "fewer than three surfaces with Delta_g and Delta_sigma")
-    pairs = ", ".join(f"{effect[i]:.2f} for Delta_g = {dimension[i]:.2f}" for i in order)
+    pairs = ", ".join(f"{number(effect[i])} for Delta_g = {number(dimension[i])}" for i in order)
     return Finding(
         by_sign(slope, rising=True),
         f"2 - Delta_sigma is {pairs}",
@@ -131,8 +132,8 @@ def _compared(found, name, law, *, rising):
     one_recipe = "; both are synthetic surfaces of one recipe" if of_recipe and also else ""
     return Finding(
         UNDETERMINED if one_recipe else verdict,
-        f"{law}: x = {concrete:.2f} in concrete, {rock:.2f} in rock{one_recipe}",
-        f"difference {less:+z.2f}; {margin_words(name)}",
+        f"{law}: x = {number(concrete)} in concrete, {number(rock)} in rock{one_recipe}",
+        f"difference {number(less, 2, '+')}; {margin_words(name)}",
     )
 
 

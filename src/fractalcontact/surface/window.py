@@ -12,7 +12,7 @@ from scipy import ndimage
 
 from ..core.directions import DIRECTIONS, axis_and_sign, slides
 from ..core.errors import InputError
-from ..core.labels import percent
+from ..core.text import percent
 from ..core.window import spacing_of
 
 #: A side given in mm holds a whole number of cells within this fraction of one.

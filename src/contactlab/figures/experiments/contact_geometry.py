@@ -9,12 +9,12 @@ from matplotlib.figure import Figure
 from xarray import DataTree
 
 from fractalcontact.core.estimate import Estimate
+from fractalcontact.core.text import number
 from fractalcontact.figures.kit.caption import caption
 from fractalcontact.figures.kit.drawing import WIDTH, Drawing, colour_of
 from fractalcontact.figures.kit.legends import entries, heading, legends_below
 from fractalcontact.figures.kit.panel import Panel, table_of
 from fractalcontact.figures.kit.points import hollow_entry
-from fractalcontact.figures.kit.words import number
 
 from ...experiments.size_decision import PROBABILITY
 from ._reduced_pressure import load_axis

@@ -14,6 +14,7 @@ from fractalcontact.core import directions
 from fractalcontact.core.estimate import EXPONENT, Estimate
 from fractalcontact.core.labels import printable
 from fractalcontact.core.subject import Subject, configuration_of
+from fractalcontact.core.text import compact
 from fractalcontact.core.units import quantity
 from fractalcontact.figures.kit.caption import caption
 from fractalcontact.figures.kit.drawing import LINES, WIDTH, Drawing, colour_of
@@ -21,7 +22,6 @@ from fractalcontact.figures.kit.legends import entries, heading, legends_below, 
 from fractalcontact.figures.kit.panel import Panel, rows
 from fractalcontact.figures.kit.sizes import plain_decades
 from fractalcontact.figures.kit.verdicts import labels_by_verdict
-from fractalcontact.figures.kit.words import short
 
 TITLE = "Rigid dilatancy of all joints: does a plateau need a roll-off of the spectrum?"
 SUBJECT = "study"
@@ -78,7 +78,7 @@ def _synthetic(joints: xr.Dataset) -> xr.Dataset:
     """Slides of synthetic joints with, or without, a roll-off; means of their directions."""
     rolled = joints["surface"].item() == "with_roll_off"
     length = float(joints.attrs["roll_off"]) if rolled else np.nan
-    words = f"with a roll-off at {short(length)} mm" if rolled else "without a roll-off"
+    words = f"with a roll-off at {compact(length)} mm" if rolled else "without a roll-off"
     slope = Estimate.read(joints, "slope", scale=EXPONENT)
     label = f"{joints.sizes['seed']} synthetic joints {words}"
     slide = joints[list(DRAWN.values())].rename({new: old for old, new in DRAWN.items()})
@@ -157,7 +157,7 @@ def _words(
     return {
         "with_it": with_it,
         "without": without,
-        "ratios": dict.fromkeys(map(short, ends)),
+        "ratios": dict.fromkeys(map(compact, ends)),
         "verdicts": said,
         "named": sum(map(len, said.values())) <= MAX_NAMED,
     }

@@ -14,6 +14,7 @@ from matplotlib.patches import Patch
 from xarray import DataTree
 
 from fractalcontact.core.estimate import Estimate
+from fractalcontact.core.text import number
 from fractalcontact.figures.kit.caption import caption
 from fractalcontact.figures.kit.drawing import MARKERS, WIDTH, Drawing, colour_of
 from fractalcontact.figures.kit.legends import heading, legends_below, mark
@@ -21,7 +22,6 @@ from fractalcontact.figures.kit.panel import rows
 from fractalcontact.figures.kit.points import reach
 from fractalcontact.figures.kit.sizes import plain_decades
 from fractalcontact.figures.kit.titles import letter
-from fractalcontact.figures.kit.words import number
 
 from ...experiments.size_decision import PROBABILITY
 

@@ -10,6 +10,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from ...core.limits import JRC_RANGE, JRC_SAMPLING
+from ...core.text import exact, number
 from ...pages.first_screen import reference_of, row_at
 from .constants import in_words
 
@@ -31,11 +32,11 @@ def discontinuity_of(card: Mapping[str, Any]) -> dict[str, tuple[str, str, str]]
     remarks = [f"contact {card['model']}", f"trust {card['trust']['word']}"]
     if jrc:
         remarks.append(
-            f"JRC of Tse and Cruden 1979, step {jrc[0]['at']['step']:g} mm, "
+            f"JRC of Tse and Cruden 1979, step {exact(jrc[0]['at']['step'])} mm, "
             f"towards {card['direction']}"
         )
     if "value" in gap:
-        remarks.append(f"aperture: mean gap at {gap['at']['pressure']:g} MPa")
+        remarks.append(f"aperture: mean gap at {exact(gap['at']['pressure'])} MPa")
     k_ni = entries["k_ni"]
     if k_ni.get("determined"):
         remarks.append(f"k_ni {in_words(k_ni, k_ni)}")
@@ -45,9 +46,9 @@ def discontinuity_of(card: Mapping[str, Any]) -> dict[str, tuple[str, str, str]]
         "DISC_BASE": ("m", "2DP", ""),
         "FRAC_SET": ("", "X", ""),
         "DISC_NUMB": ("", "X", "1"),
-        "DISC_JRC": ("", "0DP", f"{jrc[0]['value']:.0f}" if jrc else ""),
-        "DISC_APT": ("mm", "XN", f"{gap['value']:.3g}" if "value" in gap else ""),
-        "DISC_STR": ("MPa", "0DP", f"{wall['value']:.0f}" if "value" in wall else ""),
+        "DISC_JRC": ("", "0DP", number(jrc[0]["value"], 0) if jrc else ""),
+        "DISC_APT": ("mm", "XN", exact(gap["value"], 3) if "value" in gap else ""),
+        "DISC_STR": ("MPa", "0DP", number(wall["value"], 0) if "value" in wall else ""),
         "DISC_REM": ("", "X", "; ".join(remarks)),
     }
 

@@ -4,8 +4,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+from ...core.text import short
 from ...core.verdicts import TOO_WIDE
-from ...pages.words import short
 
 #: Factors from the units of a card to metres and pascals.
 TO_SI = {"MPa/mm": 1e9, "MPa": 1e6, "mm": 1e-3, "1": 1.0}

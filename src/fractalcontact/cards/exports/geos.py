@@ -10,6 +10,7 @@ from collections.abc import Mapping
 from typing import Any
 from xml.etree import ElementTree as xml
 
+from ...core.text import exact
 from ._xml import comment, headed, text_of_element
 from .constants import Constants
 
@@ -60,7 +61,7 @@ def text_of(card: Mapping[str, Any]) -> str:
         )
         functions = xml.SubElement(root, "Functions")
         columns = [
-            f"{{ {', '.join(f'{end:.6g}' for end in column)} }}"
+            f"{{ {', '.join(f'{exact(end)}' for end in column)} }}"
             for column in zip(*rows, strict=True)
         ]
         xml.SubElement(
@@ -74,7 +75,7 @@ def text_of(card: Mapping[str, Any]) -> str:
             )
         )
     if found.values:
-        attributes = {key: f"{value:.6g}" for key, value in found.values.items()}
+        attributes = {key: exact(value) for key, value in found.values.items()}
         laws.append(
             comment(
                 "takes the mechanical for the hydraulic aperture, which is "

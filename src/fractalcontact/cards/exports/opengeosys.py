@@ -9,8 +9,8 @@ from collections.abc import Mapping
 from typing import Any
 from xml.etree import ElementTree as xml
 
+from ...core.text import exact, short
 from ...pages.first_screen import reference_of, row_at
-from ...pages.words import short
 from ._xml import comment, headed, text_of_element
 from .constants import Constants, over_pressure
 
@@ -52,7 +52,7 @@ def text_of(card: Mapping[str, Any]) -> str:
         xml.SubElement(where, key).text = name
         parameter = xml.SubElement(parameters, "parameter")
         parameter.append(comment(found.notes[key]))
-        for tag, text in (("name", name), ("type", "Constant"), ("value", f"{value:.6g}")):
+        for tag, text in (("name", name), ("type", "Constant"), ("value", exact(value))):
             xml.SubElement(parameter, tag).text = text
     xml.SubElement(model, "tension_cutoff").text = "1"
     for key, why in found.left_out.items():

@@ -7,6 +7,7 @@ is k_ni and ``maximum_elastic_fracture_opening`` v_m.
 from collections.abc import Mapping
 from typing import Any
 
+from ...core.text import exact
 from .constants import Constants, head_of, over_pressure
 
 ENDING = "py"
@@ -21,7 +22,7 @@ def constants_of(card: Mapping[str, Any]) -> Constants:
     modulus, poisson = entries["modulus"], entries["poisson"]
     if "value" in modulus and "value" in poisson:
         young, nu = modulus["value"] * 1e6, poisson["value"]
-        of = f"Pa; intact rock, E = {modulus['value']:g} MPa, Poisson's ratio {nu:g}"
+        of = f"Pa; intact rock, E = {exact(modulus['value'])} MPa, Poisson's ratio {exact(nu)}"
         found.values["shear_modulus"] = young / (2 * (1 + nu))
         found.values["lame_lambda"] = young * nu / ((1 + nu) * (1 - 2 * nu))
         found.notes.update(dict.fromkeys(("shear_modulus", "lame_lambda"), of))

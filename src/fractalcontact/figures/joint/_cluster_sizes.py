@@ -5,10 +5,10 @@ from typing import Any
 import xarray as xr
 
 from ...core.estimate import EXPONENT, Estimate
+from ...core.text import compact
 from ..kit.axes import label_short_span
 from ..kit.drawing import COLOURS
 from ..kit.panel import Panel
-from ..kit.words import short
 
 #: Colours and markers of these; the loads have the others.
 _OFFSET_COLOURS = (COLOURS[3], COLOURS[4], COLOURS[5])
@@ -33,7 +33,7 @@ def draw_sizes(panel: Panel, sizes: xr.Dataset) -> None:
             "marker": _OFFSET_MARKERS[n],
             "ls": "none",
         }
-        area, label = domain["cluster_area"], f"$v$ = {short(offset)} mm: {words}"
+        area, label = domain["cluster_area"], f"$v$ = {compact(offset)} mm: {words}"
         axes.plot(area, domain["clusters_at_least"], label=label, **style)
         axes.plot(area, domain["cluster_law_count"], color=style["color"], lw=0.8)
     axes.set(xscale="log", yscale="log", xlabel="cluster area $a$ (mm$^2$)")
@@ -51,6 +51,6 @@ def size_laws(sizes: xr.Dataset) -> dict[str, Any]:
     if exponents.value.size < 2:
         words = exponents[0].text() if exponents.value.size else ""
     else:
-        words = f"{short(exponents.value.min())} to {short(exponents.value.max())}"
+        words = f"{compact(exponents.value.min())} to {compact(exponents.value.max())}"
     broken = fitted["offset"].values[~fitted["cluster_law_followed"].values]
-    return {"exponents": words, "broken": [short(v) for v in broken]}
+    return {"exponents": words, "broken": [compact(v) for v in broken]}

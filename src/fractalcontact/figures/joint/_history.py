@@ -7,6 +7,7 @@ import xarray as xr
 
 from ...core.labels import printable
 from ...core.limits import STEEP_TILT
+from ...core.text import compact
 from ...core.window import face_words, window_sides
 
 #: Longest file name and note that stand in a figure whole; of longer ones both ends are shown.
@@ -22,7 +23,7 @@ def history(specimen: xr.Dataset, faces: Sequence[str]) -> list[str]:
 def _file_words(specimen, face):
     """Name, reader, units, grid and every note of one face's file."""
     attrs = json.loads(specimen.attrs[f"{face}_scan"])
-    spacing = " × ".join(f"{specimen.attrs[f'spacing_{axis}']:.5g}" for axis in "xy")
+    spacing = " × ".join(f"{compact(specimen.attrs[f'spacing_{axis}'], 5)}" for axis in "xy")
     words = [
         f"{face_words(specimen, face).capitalize()}: {printable(attrs['source'], MAX_NAME)} "
         f"(SHA-256 {attrs['sha256'][:12]}…), "
@@ -33,10 +34,10 @@ def _file_words(specimen, face):
     if "points" in attrs:
         words.append(
             f"{attrs['points']} points, {attrs.get('duplicated_points', 0)} of them repeated, "
-            f"{attrs.get('points_per_cell', float('nan')):.3g} in a measured cell"
+            f"{compact(attrs.get('points_per_cell', float('nan')))} in a measured cell"
         )
     if attrs.get("levelled_degrees"):
-        words.append(f"turned by {attrs['levelled_degrees']:.3g} degrees before gridding")
+        words.append(f"turned by {compact(attrs['levelled_degrees'])} degrees before gridding")
     overrides = attrs.get("overrides", "")
     words.append(f"the sidecar overrides: {overrides}" if overrides else "")
     words += [attrs.get("gridding", ""), attrs.get("notes", "")]
@@ -51,12 +52,12 @@ def _faces_words(specimen):
     """Cleaning, registration, levelling and window."""
     attrs = specimen.attrs
     words = [attrs.get("cleaning", ""), _registration_words(attrs.get("registration"))]
-    steep = f" (above {STEEP_TILT:g} degrees heights are not normal to the plane)"
+    steep = f" (above {compact(STEEP_TILT, 6)} degrees heights are not normal to the plane)"
     words.append(f"Levelled: {attrs['levelling'].split('. NOTE')[0]}")
     words[-1] += steep if attrs["tilt_degrees"] > STEEP_TILT else ""
     sides = window_sides(specimen)
     note = f" ({attrs['window_note']})" if attrs["window_note"] else ""
-    words.append(f"Window {sides[1]:.4g} × {sides[0]:.4g} mm (x, y){note}")
+    words.append(f"Window {compact(sides[1], 4)} × {compact(sides[0], 4)} mm (x, y){note}")
     return ". ".join(_sentence(part).rstrip(".") for part in words if part) + "."
 
 
@@ -77,12 +78,15 @@ def _registration_words(text):
     if not found["applied"]:
         return f"Registration ({found['mode']}): upper face not moved; {gap}"
     return (
-        f"Registration ({found['mode']}): upper face moved by {found['shift_x_mm']:.4g} mm in x, "
-        f"{found['shift_y_mm']:.4g} mm in y, turned by {found['rotation_degrees']:.3g} degrees, "
-        f"tilted by {found['tilt_x_degrees']:.3g} and {found['tilt_y_degrees']:.3g} degrees; {gap}"
+        f"Registration ({found['mode']}): upper face moved by "
+        f"{compact(found['shift_x_mm'], 4)} mm in x, "
+        f"{compact(found['shift_y_mm'], 4)} mm in y, turned by "
+        f"{compact(found['rotation_degrees'])} degrees, "
+        f"tilted by {compact(found['tilt_x_degrees'])} and "
+        f"{compact(found['tilt_y_degrees'])} degrees; {gap}"
     )
 
 
 def _known(value):
     """A number before the faces had a common frame is not known."""
-    return "unknown" if value is None else f"{value:.4g}"
+    return "unknown" if value is None else compact(value, 4)

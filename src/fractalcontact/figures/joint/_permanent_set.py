@@ -6,11 +6,12 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import FigureBase
 
+from ...core.text import length_unit, pressure_label
 from ..kit.drawing import colour_of
 from ..kit.legends import entries, heading, legends_below
 from ..kit.maps import draw_map
 from ..kit.panel import Panel
-from ..kit.words import NOMINAL_PRESSURE, length_unit, pressure_label
+from ..kit.words import NOMINAL_PRESSURE
 
 #: Fractions of the loading branch: label, marker.
 _FRACTIONS = {

@@ -9,8 +9,8 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.patches import Patch
 
-from ...core.labels import length_words
 from ...core.limits import DECISIVE
+from ...core.text import compact, length_unit, length_words, number
 from ...core.window import window_slices
 from ..kit.axes import label_short_span
 from ..kit.drawing import COLOURS, spread
@@ -18,7 +18,7 @@ from ..kit.empty import say_empty
 from ..kit.legends import mark
 from ..kit.maps import scan_extent
 from ..kit.panel import Panel
-from ..kit.words import NOMINAL_PRESSURE, length_unit
+from ..kit.words import NOMINAL_PRESSURE
 from ._quality_maps import OVERLAP, middle
 
 FACE_COLOURS = {"lower": COLOURS[0], "upper": COLOURS[4]}
@@ -41,7 +41,9 @@ def draw_histogram(panel: Panel, quality: xr.Dataset, faces: Sequence[str]) -> N
         axes.stairs(one["density"] * size, edges / size, color=FACE_COLOURS[face], lw=1)
         panel.keep(one, "bin_height", "density")
         rms = length_words(float(one["rms"]))
-        words.append(f"{face}: rms {rms}\nskew {one['skewness']:.2f}, kurt. {one['kurtosis']:.1f}")
+        words.append(
+            f"{face}: rms {rms}\nskew {number(one['skewness'])}, kurt. {number(one['kurtosis'], 1)}"
+        )
     rms = quality.sel(face=faces[0])["rms"].item()
     axes.plot(
         edges / size,
@@ -148,7 +150,7 @@ def draw_gap_heights(panel: Panel, quality: xr.Dataset) -> None:
 def draw_load_share(panel: Panel, curves: xr.Dataset) -> None:
     """Fraction of the load on suspicious cells against the nominal pressure, by offset."""
     shown = curves.isel(offset=spread(curves.sizes["offset"], _OFFSETS))
-    labels = [f"{offset:.3g}" for offset in shown["offset"].values]
+    labels = [compact(offset) for offset in shown["offset"].values]
     style: dict[str, Any] = {"marker": "o", "ls": "-", "ms": 3, "lw": 0.9, "labels": labels}
     panel.curves(shown, "nominal_pressure", "suspect_load_share", hue="offset", **style)
     panel.axes.axhline(DECISIVE, color="0.4", lw=0.7, ls="-.")

@@ -11,11 +11,11 @@ from matplotlib.colors import Normalize, to_rgb
 from matplotlib.figure import FigureBase
 from matplotlib.patches import Patch
 
+from ...core.text import length_unit
 from ...core.window import window_slices
 from ..kit.drawing import COLOURS
 from ..kit.legends import mark
 from ..kit.maps import MISSING, draw_map, node_position, window_outline
-from ..kit.words import length_unit
 
 #: Up to this many outliers or overlaps are ringed, so that single cells can be seen.
 FEW = 400

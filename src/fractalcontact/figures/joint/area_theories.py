@@ -11,6 +11,7 @@ from xarray import DataTree
 from ...core.estimate import EXPONENT, Estimate
 from ...core.limits import LIGHT_LOAD
 from ...core.subject import Subject
+from ...core.text import compact
 from ..kit.axes import label_short_span
 from ..kit.caption import caption
 from ..kit.drawing import COLOURS, WIDTH, Drawing
@@ -21,7 +22,7 @@ from ..kit.panel import rows
 from ..kit.points import reach
 from ..kit.titles import headline, letter
 from ..kit.verdicts import claim
-from ..kit.words import NOMINAL_PRESSURE, place, short
+from ..kit.words import NOMINAL_PRESSURE, place
 
 TITLE = "Real contact area compared with the classical theories of section 2"
 SUBJECT = "specimen"
@@ -124,7 +125,7 @@ def _draw_kappa(axes: Axes, laws: xr.Dataset, law: xr.Dataset) -> None:
 def _mean_kappa(law: xr.Dataset, prefix: str) -> str:
     """Mean kappa at light load with its interval, if it has one."""
     mean = Estimate.read(law, f"{prefix}mean_kappa", scale=EXPONENT)
-    return mean.text() if np.isfinite(mean.low) else f"{short(mean.value)} (one load)"
+    return mean.text() if np.isfinite(mean.low) else f"{compact(mean.value)} (one load)"
 
 
 def _words(atlas: DataTree, name: str, laws: xr.Dataset, law: xr.Dataset) -> dict[str, Any]:

@@ -6,6 +6,7 @@ from xarray import DataTree
 from ...core.estimate import EXPONENT, Estimate
 from ...core.limits import LARGEST_DISTANCE, RESOLVED_NODES
 from ...core.subject import Subject
+from ...core.text import force_label
 from ..kit.axes import offset_axis
 from ..kit.caption import caption
 from ..kit.drawing import WIDTH, Drawing, colour_of, spread
@@ -14,7 +15,7 @@ from ..kit.panel import Panel, table_of
 from ..kit.points import hollow_entry
 from ..kit.titles import headline
 from ..kit.verdicts import claim
-from ..kit.words import force_label, place
+from ..kit.words import place
 from ._cluster_sizes import draw_sizes, size_laws
 
 TITLE = "Figs. 6 and 7: clusters of the contact domains, and their localisation with the offset"

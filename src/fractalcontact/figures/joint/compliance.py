@@ -11,6 +11,7 @@ from xarray import DataTree
 
 from ...core.limits import RESOLVED_NODES
 from ...core.subject import Subject
+from ...core.text import compact, force_label, pressure_label
 from ..kit.axes import offset_axis
 from ..kit.caption import caption
 from ..kit.drawing import WIDTH, Drawing
@@ -21,7 +22,7 @@ from ..kit.points import hollow_entry
 from ..kit.sizes import plain_decades
 from ..kit.titles import headline
 from ..kit.verdicts import row_of, verdict_words
-from ..kit.words import force_label, place, pressure_label, short
+from ..kit.words import place
 
 TITLE = "Figs. 4 and 5: correlation of the faces, closure and compliance against the offset"
 SUBJECT = "joint"
@@ -59,7 +60,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     for at, (words, style) in zip(ends, _ENDS.items(), strict=True):
         if np.isfinite(at):
             for panel in (a, b, c):
-                label = f"{words}: $v$ = {short(at)} mm" if panel is a else None
+                label = f"{words}: $v$ = {compact(at)} mm" if panel is a else None
                 panel.axes.axvline(at, color="0.4", lw=0.8, ls=style, label=label)
     # The scale suits the offsets solved; the correlation is known at more.
     offset_axis(c.axes, curves["offset"].values)

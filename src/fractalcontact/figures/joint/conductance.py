@@ -7,13 +7,14 @@ from xarray import DataTree
 from ...core.estimate import EXPONENT, Estimate
 from ...core.limits import CONDUCTANCE_EXPONENTS, RESOLVED_NODES
 from ...core.subject import Subject
+from ...core.text import compact
 from ..kit.caption import caption
 from ..kit.drawing import WIDTH, Drawing, colour_of, spread
 from ..kit.empty import TOO_FULL, different_reasons, missing_lines, say_empty
 from ..kit.legends import entries, heading, legends_below
 from ..kit.panel import Panel, table_of
 from ..kit.titles import headline
-from ..kit.words import NOMINAL_PRESSURE, place, short
+from ..kit.words import NOMINAL_PRESSURE, place
 
 TITLE = "Thermal or electrical conductance of the interface against pressure"
 SUBJECT = "specimen"
@@ -70,7 +71,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
 
 def _label(curve):
     """Offset and exponent of a curve."""
-    offset = f"$v$ = {short(float(curve['offset']))} mm"
+    offset = f"$v$ = {compact(float(curve['offset']))} mm"
     state = "without sliding" if curve["direction"] == "none" else offset
     if not np.isfinite(curve["conductance"]).any():
         return f"{state}: no stiffness of the interface"
@@ -97,7 +98,8 @@ def _draw_theory(axes, curves):
     height = np.log(curves["conductance"].where(fitted | ~fitted.any()))
     pressure = np.log(curves["nominal_pressure"]).where(np.isfinite(height))
     ends = np.array([float(pressure.min()), float(pressure.mean()), float(pressure.max())])
-    label = "theory: slopes {:g} and {:g} (at any height)".format(*CONDUCTANCE_EXPONENTS)
+    slopes = " and ".join(compact(slope) for slope in CONDUCTANCE_EXPONENTS)
+    label = f"theory: slopes {slopes} (at any height)"
     for slope, words in zip(CONDUCTANCE_EXPONENTS, (label, None), strict=True):
         line = np.exp(float(height.mean()) + slope * (ends - ends[1]))
         axes.plot(np.exp(ends), line, color="0.5", lw=1.2, ls="--", zorder=0, label=words)

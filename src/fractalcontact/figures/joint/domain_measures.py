@@ -10,6 +10,7 @@ from xarray import DataTree
 
 from ...core.estimate import DIMENSION, Estimate
 from ...core.subject import Subject
+from ...core.text import force_label
 from ..kit.axes import label_short_span
 from ..kit.caption import caption
 from ..kit.domains import spread_loads
@@ -17,7 +18,7 @@ from ..kit.drawing import WIDTH, Drawing
 from ..kit.legends import entries, heading, legends_below
 from ..kit.panel import Panel, table_of
 from ..kit.titles import headline
-from ..kit.words import force_label, place
+from ..kit.words import place
 
 TITLE = "Is the contact domain fractal: local slopes, lacunarity, dimensions of the pressure"
 SUBJECT = "specimen"

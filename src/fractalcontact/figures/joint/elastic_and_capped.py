@@ -13,6 +13,7 @@ from ...core.estimate import DIMENSION, Estimate
 from ...core.labels import printable
 from ...core.limits import RESOLVED_NODES
 from ...core.subject import Subject
+from ...core.text import compact
 from ..kit.caption import caption
 from ..kit.domains import prefractals
 from ..kit.drawing import MARKERS, WIDTH, Drawing, colour_of
@@ -78,7 +79,7 @@ def _scan(subject: Subject) -> str:
 def _model(subject: Subject) -> str:
     """A specimen by its largest pressure."""
     hardness = subject.settings["material"]["hardness"]
-    return "elastic" if not np.isfinite(hardness) else f"capped at {hardness:g} MPa"
+    return "elastic" if not np.isfinite(hardness) else f"capped at {compact(hardness, 6)} MPa"
 
 
 def _draw_closures(panel: Panel, subject: Subject) -> None:

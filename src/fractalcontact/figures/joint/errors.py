@@ -9,6 +9,7 @@ from xarray import DataTree
 
 from ...core.labels import REALISATIONS, TWINS
 from ...core.subject import Subject
+from ...core.text import compact, length_unit, percent
 from ..kit.axes import force_axis, label_short_span
 from ..kit.caption import caption
 from ..kit.drawing import LINES, MARKERS, WIDTH, Drawing, colour_of
@@ -17,7 +18,7 @@ from ..kit.panel import Panel, table_of
 from ..kit.points import hollow_entry
 from ..kit.sizes import plain_decades
 from ..kit.titles import headline
-from ..kit.words import length_unit, percent, place, short
+from ..kit.words import place
 
 TITLE = "Error of each quantity by source"
 SUBJECT = "specimen"
@@ -134,14 +135,14 @@ def _words(here: xr.Dataset) -> dict[str, Any]:
     totals = []
     for quantity, (_, words) in QUANTITIES.items():
         errors = here.sel(quantity=quantity)
-        total, value = float(errors["total"]), float(errors["published"])
-        if value and not errors["absolute"]:
-            said = percent(total / abs(value))
+        total, relative = float(errors["total"]), float(errors["relative_total"])
+        if np.isfinite(relative):
+            said = percent(relative)
         elif errors["unit"] == "mm":
             unit, size = length_unit(total)
-            said = f"{short(total / size, 2)} {unit}"
+            said = f"{compact(total / size, 2)} {unit}"
         else:
-            said = short(total, 2)
+            said = compact(total, 2)
         if np.isfinite(total):
             totals.append((words, said, str(errors["largest_source"].values)))
     return {"totals": totals, "force": float(here["normal_force"])}

@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 from xarray import DataTree
 
 from ...core.subject import Subject
+from ...core.text import pressure_label
 from ...core.window import window_sides
 from ..kit.caption import caption
 from ..kit.domains import contact_domain
@@ -16,7 +17,7 @@ from ..kit.empty import say_empty
 from ..kit.maps import draw_domain, draw_map
 from ..kit.panel import Panel, table_of
 from ..kit.titles import headline
-from ..kit.words import place, pressure_label
+from ..kit.words import place
 
 TITLE = "Contact, gap and flow"
 SUBJECT = "specimen"

@@ -9,6 +9,7 @@ from matplotlib.figure import Figure
 from xarray import DataTree
 
 from ...core.subject import Subject
+from ...core.text import compact
 from ...core.window import face_words
 from ..kit.caption import caption
 from ..kit.drawing import WIDTH, Drawing
@@ -111,5 +112,7 @@ def _text_lines(specimen, quality, faces, warnings):
     paragraphs.append(f"{quality.attrs['cells']}.")
     if overlap := quality.attrs["overlap"]:
         mean, sd = (float(quality[f"gap_{key}"].sel(region="window")) for key in ("mean", "sd"))
-        paragraphs.append(f"Gap in the window: mean {mean:.3g} mm, sd {sd:.3g} mm; {overlap}.")
+        paragraphs.append(
+            f"Gap in the window: mean {compact(mean)} mm, sd {compact(sd)} mm; {overlap}."
+        )
     return [line for text in paragraphs for line in textwrap.wrap(text, LETTERS)]

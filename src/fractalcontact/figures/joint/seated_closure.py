@@ -11,6 +11,7 @@ from xarray import DataTree
 from ...core.estimate import Estimate
 from ...core.limits import RESOLVED_NODES
 from ...core.subject import Subject
+from ...core.text import compact, pressure_label
 from ...core.window import window_sides
 from ..kit.caption import caption
 from ..kit.drawing import WIDTH, Drawing, colour_of
@@ -19,7 +20,7 @@ from ..kit.laboratory import draw_tests, test_words
 from ..kit.legends import entries, heading, legends_below
 from ..kit.panel import Panel, table_of
 from ..kit.titles import headline
-from ..kit.words import NOMINAL_PRESSURE, place, pressure_label, short
+from ..kit.words import NOMINAL_PRESSURE, place
 from ..paper._closure_laws import hyperbola, offset_words
 from ._permanent_set import draw_permanent_set
 
@@ -146,7 +147,7 @@ def _words(
         "misfits": [float(curve[f"seated_{law}_misfit"]) for law in ("hyperbola", "logarithm")],
         "reason": str(curve["seated_k_ni_reason"].item()),
         "stated": [
-            (short(float(pressure)), short(float(value), 3), short(float(error), 2))
+            (compact(float(pressure)), compact(float(value), 3), compact(float(error), 2))
             for pressure, value, error in zip(
                 known["reference_pressure"], known, errors, strict=True
             )

@@ -10,6 +10,7 @@ from xarray import DataTree
 
 from ...core.estimate import DIMENSION, EXPONENT, Estimate
 from ...core.subject import Subject
+from ...core.text import pressure_label
 from ..kit.axes import label_short_span
 from ..kit.caption import caption
 from ..kit.drawing import COLOURS, MARKERS, WIDTH, Drawing, spread
@@ -19,7 +20,7 @@ from ..kit.panel import Panel, table_of
 from ..kit.sizes import draw_bars, plain_decades, size_axis
 from ..kit.titles import headline
 from ..kit.verdicts import claim
-from ..kit.words import place, pressure_label
+from ..kit.words import place
 
 TITLE = "Size test: parts of the window at equal pressure and at equal sigma*, beside eq. 6"
 SUBJECT = "specimen"

@@ -10,6 +10,7 @@ from xarray import DataTree
 from ...core.estimate import Estimate
 from ...core.limits import LARGEST_FRICTION_ANGLE
 from ...core.subject import Subject
+from ...core.text import compact
 from ..kit.axes import offset_axis
 from ..kit.caption import caption
 from ..kit.drawing import COLOURS, WIDTH, Drawing
@@ -20,7 +21,7 @@ from ..kit.panel import Panel, table_of
 from ..kit.points import draw_points, hollow_entry
 from ..kit.sizes import NO_STRENGTH, draw_bars, logarithmic, plain_decades, roughness_words
 from ..kit.titles import headline
-from ..kit.words import NOMINAL_PRESSURE, place, short
+from ..kit.words import NOMINAL_PRESSURE, place
 
 TITLE = "Dilatancy angle, friction angle and shear strength, with Barton's criterion"
 SUBJECT = "joint"
@@ -28,7 +29,7 @@ NEEDS = ("closure", "strength", "measured")
 ORDER = 110
 
 _TITLES = ("dilatancy and friction angle", "shear strength", "peak and residual shear strength")
-_LIMIT = f"{LARGEST_FRICTION_ANGLE:g}°"
+_LIMIT = f"{compact(LARGEST_FRICTION_ANGLE, 6)}°"
 #: What (c) shows: variable, words and style; which points are results and no bounds.
 _SUMMARY: dict[str, tuple[str, dict[str, Any]]] = {
     "peak_strength": ("peak over the offsets", {"marker": "o", "ms": 6, "color": "k"}),
@@ -91,7 +92,7 @@ def _draw_angles(panel: Panel, strength: xr.Dataset) -> None:
         label="rigid, $F$ = 0",
         **rigid,
     )
-    pressures = [short(pressure) for pressure in strength["nominal_pressure"].values]
+    pressures = [compact(pressure) for pressure in strength["nominal_pressure"].values]
     labels = [rf"nominal pressure $\sigma_0$ = {pressure} MPa" for pressure in pressures]
     keep = ("friction_angle", "nominal_pressure")
     panel.curves(strength, "midpoint", "dilatancy_angle", labels=labels, keep=keep, **_CURVES)

@@ -9,6 +9,7 @@ from xarray import DataTree
 
 from ...core.estimate import EXPONENT, Estimate
 from ...core.subject import Subject
+from ...core.text import pressure_label
 from ..kit.caption import caption
 from ..kit.drawing import WEAK, WIDTH, Drawing
 from ..kit.empty import say_empty
@@ -17,7 +18,7 @@ from ..kit.panel import Panel, table_of
 from ..kit.sizes import BARS, logarithmic, series, size_axis
 from ..kit.titles import headline
 from ..kit.verdicts import claim
-from ..kit.words import place, pressure_label
+from ..kit.words import place
 
 TITLE = "Roughness (eq. 2), closure and compliance (section 5) against the size of the window"
 SUBJECT = "specimen"
@@ -43,7 +44,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     """sigma_z, closure and compliance of the interface against the side b of sub-windows."""
     subject = Subject.of(atlas, name)
     laws = subject["windows"]
-    shown = laws.sel(offset=subject.offset, method="nearest")
+    shown = subject.reported.at_offset(laws)
     where = place(subject.direction, float(shown["offset"]))
     figure = Figure(figsize=(WIDTH, 5.8))
     *places, legend = figure.subplots(2, 2).flat

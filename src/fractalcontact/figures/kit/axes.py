@@ -14,7 +14,7 @@ from matplotlib.ticker import (
 )
 from numpy.typing import ArrayLike
 
-from .words import force_unit, short
+from ...core.text import compact, force_unit
 
 
 def force_axis(axis: Axis, forces: ArrayLike) -> float:
@@ -61,14 +61,14 @@ def offset_axis(axes: Axes, offsets: np.ndarray) -> None:
         else:
             axes.set_xscale("log", nonpositive="mask")
             axes.xaxis.set_minor_formatter(NullFormatter())
-        axes.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
+        axes.set_xticks(ticks, [compact(tick, 6) for tick in ticks])
     axes.set_xlabel("offset $v$ (mm)")
 
 
 def spacing_axis(axes: Axes, spacings: ArrayLike) -> None:
     """Logarithmic axis of the spacing s, mm, numbered at each."""
     axes.set_xscale("log")
-    axes.set_xticks(spacings, [short(spacing) for spacing in np.asarray(spacings)])
+    axes.set_xticks(spacings, [compact(spacing) for spacing in np.asarray(spacings)])
     axes.xaxis.set_minor_locator(NullLocator())
     axes.set_xlabel("spacing $s$ (mm)")
 

@@ -21,7 +21,8 @@ import yaml
 from jinja2 import Environment, StrictUndefined
 
 from ...core.packages import SOURCES
-from .words import PAPER, force_label, number, percent, pressure_label, short
+from ...core.text import compact, force_label, number, percent, pressure_label
+from .words import PAPER
 
 
 class Caption(str):
@@ -89,7 +90,7 @@ def _environment() -> Environment:
     made = Environment(undefined=StrictUndefined, autoescape=False)  # plain text
     made.globals["paper"] = PAPER
     made.filters |= {
-        "short": short,
+        "short": compact,
         "number": number,
         "percent": percent,
         "force": force_label,

@@ -8,8 +8,8 @@ from matplotlib.axes import Axes
 from xarray import DataTree
 
 from ...core.estimate import DIMENSION, Estimate
-from ...core.labels import loads_of
 from ...core.subject import Subject
+from ...core.text import loads_of, number
 from ...core.verdicts import BEYOND_BOTH, BEYOND_RANDOM, LIKE_CUT, UNDETERMINED
 from .drawing import COLOURS, MARKERS, spread
 from .verdicts import predicate, verdict_words
@@ -47,7 +47,7 @@ class DeltaSigma(Estimate):
         """Delta_sigma under the i-th load in words, and why it or its interval is missing."""
         reason = str(self.reason[i])
         if reason and self.known[i]:
-            return f"{self.value[i]:.2f}, {reason}"
+            return f"{number(self.value[i])}, {reason}"
         return reason or self[i].text()
 
     @property
@@ -57,11 +57,11 @@ class DeltaSigma(Estimate):
 
     def number(self, i: int) -> str:
         """Delta_sigma under the i-th load for a sentence, without interval or reason."""
-        return f"{self.value[i]:.2f}" if self.known[i] else "none"
+        return number(self.value[i]) if self.known[i] else "none"
 
     def eq6_exponent(self, i: int) -> str:
         """Exponent of the side b in eq. 6, Delta_sigma - 2, under the i-th load."""
-        return f"{self.value[i] - 2:.2f}" if self.known[i] else "none"
+        return number(self.value[i] - 2) if self.known[i] else "none"
 
     def entry(self, i: int) -> str:
         """Delta_sigma under the i-th load for a legend, which has no room for the reason."""
@@ -104,8 +104,7 @@ def estimates_of(states: xr.Dataset) -> tuple[DeltaSigma, ...]:
 
 def prefractals(subject: Subject, stage: str) -> xr.Dataset:
     """A stage in the reported direction and at the reported offset, over resolutions and loads."""
-    states = subject.along(stage).sel(offset=subject.offset, method="nearest")
-    return states.sortby("resolution")
+    return subject.reported.at_offset(subject.along(stage)).sortby("resolution")
 
 
 def contact_domain(subject: Subject, resolution: int, load: int) -> np.ndarray:

@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 
-from .words import number
+from ...core.text import compact, number
 
 
 def kappa_lines(axes: Axes, stage: xr.Dataset, colours: Mapping[str, str] | None = None) -> None:
@@ -29,7 +29,7 @@ def kappa_lines(axes: Axes, stage: xr.Dataset, colours: Mapping[str, str] | None
     label = rf"Bush, Gibson and Thomas: $\sqrt{{2\pi}}$ = {number(bush, 3)}"
     constant = np.full(pressure.shape, bush)
     axes.plot(pressure, constant, "--", color=colours["bush"], lw=1, label=label)
-    label = f"computed values in the literature: {low:g} to {high:g}"
+    label = f"computed values in the literature: {compact(low, 6)} to {compact(high, 6)}"
     axes.fill_between(pressure, low, high, color="0.85", lw=0, zorder=0, label=label)
     light = number(stage.attrs["persson_kappa"], 3)
     label = rf"Persson: $\sqrt{{8/\pi}}$ = {light} at light load"

@@ -7,9 +7,9 @@ import numpy as np
 from ...core.estimate import Estimate
 from ...core.settings import TEST_COLUMNS
 from ...core.subject import Subject
+from ...core.text import compact
 from .drawing import COLOURS, MARKERS
 from .panel import Panel
-from .words import short
 
 
 def draw_tests(panel: Panel, subject: Subject, kind: str, *, turned: bool = False) -> None:
@@ -57,6 +57,6 @@ def test_words(subject: Subject, kind: str) -> list[str]:
         test = subject["measured"].sel({f"{kind}_test": label})
         last = Estimate.read(test, f"{kind}_ratio_at_last")
         if np.isfinite(last.value):
-            ends = f"{short(last.value)} [{short(last.low)}, {short(last.high)}]"
+            ends = f"{compact(last.value)} [{compact(last.low)}, {compact(last.high)}]"
             found.append(f"{label}: {ends}")
     return found

@@ -13,9 +13,9 @@ from matplotlib.ticker import MaxNLocator
 from numpy.typing import ArrayLike
 from scipy.ndimage import maximum_filter
 
+from ...core.text import length_unit
 from ...core.window import window_slices
 from .drawing import COLOURS
-from .words import length_unit
 
 #: Grey of cells that were not measured.
 MISSING = "0.7"

@@ -12,9 +12,9 @@ from xarray import DataTree
 
 from ...core.estimate import names_of
 from ...core.measured_maps import map_table, measured_maps
+from ...core.text import compact, number
 from .drawing import COLOURS, MARKERS
 from .points import reach
-from .words import short
 
 #: Letters of a label that a legend takes.
 _LONGEST = 34
@@ -132,7 +132,7 @@ def threshold_words(series: Sequence[Series]) -> str:
     if not stated:
         return "maps of 0 and 1"
     every = np.concatenate(stated)
-    ends = dict.fromkeys(short(end) for end in (every.min(), every.max()))
+    ends = dict.fromkeys(compact(end) for end in (every.min(), every.max()))
     return f"threshold{'s' if len(ends) > 1 else ''} {' to '.join(ends)}"
 
 
@@ -178,6 +178,6 @@ def measured_range(series: Sequence[Series]) -> dict[str, Any]:
     """Number of measured maps, their thresholds and the range of their Delta_sigma."""
     values = np.array([value for each in series for value in each.values("delta_sigma")], float)
     known = values[np.isfinite(values)]
-    ends = [f"{end:.2f}" for end in (known.min(), known.max())] if known.size else []
+    ends = [number(end) for end in (known.min(), known.max())] if known.size else []
     words = threshold_words(series) if series else ""
     return {"maps": values.size, "measured": list(dict.fromkeys(ends)), "thresholds": words}

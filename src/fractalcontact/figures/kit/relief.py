@@ -13,9 +13,9 @@ from matplotlib.patches import Rectangle
 from scipy.ndimage import distance_transform_edt
 
 from ...core.directions import APERTURE
+from ...core.text import length_unit
 from ...core.window import spacing_of
 from .maps import MISSING, draw_map, window_outline
-from .words import length_unit
 
 COLOUR_MAP = "cividis"
 #: Fraction of the heights beyond each end of the colours, so that a spike does not take them all.

@@ -10,12 +10,12 @@ from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter
 
 from ...core.estimate import Estimate
 from ...core.limits import JRC_RANGE, JRC_SAMPLING, LARGEST_FRICTION_ANGLE
+from ...core.text import compact, length_unit, number
 from .drawing import MARKERS, colour_of
 from .points import draw_points
-from .words import length_unit, short
 
 #: Legend of means whose friction angle is truncated in most sub-windows.
-TRUNCATED = f"hollow: a lower bound, most angles truncated at {LARGEST_FRICTION_ANGLE:g}°"
+TRUNCATED = f"hollow: a lower bound, most angles truncated at {compact(LARGEST_FRICTION_ANGLE, 6)}°"
 #: What the legends of :func:`draw_over_size` declare.
 BARS = "bars: 95 % intervals; the whole window has none"
 SHIFTED = "pressures at one $b$ are drawn side by side"
@@ -44,7 +44,7 @@ def size_axis(axes: Axes, b: np.ndarray, of: str) -> None:
         axes.set_xlim(b.min() / 1.3, b.max() * 1.3)
     name, size = length_unit(b.max(initial=1.0))
     plain_decades(axes.xaxis)
-    axes.xaxis.set_major_formatter(lambda value, _: f"{value / size:g}")
+    axes.xaxis.set_major_formatter(lambda value, _: compact(value / size, 6))
     axes.set_xlabel(f"side $b$ of the {of} ({name})")
 
 
@@ -59,11 +59,13 @@ def roughness_words(strength: xr.Dataset) -> str:
     jrc = float(strength["jrc"].sel(sampling=JRC_SAMPLING))
     used = float(strength["jrc_used"])
     step = float(strength["step"].sel(sampling=JRC_SAMPLING))
-    words = f"JRC is {short(jrc)} (steps of {short(step)} mm)"
+    words = f"JRC is {compact(jrc)} (steps of {compact(step)} mm)"
     if used != jrc:
-        words += f", {short(used)} used"
+        words += f", {compact(used)} used"
     if np.isfinite(used) and np.isnan(strength["scaled_roughness"]):
-        words += f"; scaled to this length it exceeds {JRC_RANGE[1]:g}, the largest of his law"
+        words += (
+            f"; scaled to this length it exceeds {compact(JRC_RANGE[1], 6)}, the largest of his law"
+        )
     return words
 
 
@@ -112,10 +114,10 @@ def name_exponents(axes: Axes, laws: xr.Dataset, name: str, of: str) -> None:
     for j, pressure in enumerate(laws["nominal_pressure"].values):
         # A wide interval too shows the sign that the caption states.
         missing = "no fit (truncated)" if truncated[j] else "no fit"
-        words = f" = {exponents[j]:z.2f}" if exponents[j].known else f": {missing}"
+        words = f" = {number(exponents[j])}" if exponents[j].known else f": {missing}"
         if np.isneginf(exponents[j].low):
-            words = f" below {exponents[j].high:z.2f}"
-        label = rf"$\sigma_0$ = {short(pressure)} MPa: ${of}\sim b^x$, $x${words}"
+            words = f" below {number(exponents[j].high)}"
+        label = rf"$\sigma_0$ = {compact(pressure)} MPa: ${of}\sim b^x$, $x${words}"
         axes.plot([], [], ls="none", label=label, **series(j))
 
 

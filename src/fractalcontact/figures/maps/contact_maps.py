@@ -6,13 +6,13 @@ from matplotlib.patches import Patch
 from xarray import DataTree
 
 from ...core.estimate import DIMENSION, Estimate
+from ...core.text import compact, percent
 from ...core.verdicts import BEYOND_RANDOM
 from ..kit.caption import caption
 from ..kit.drawing import WIDTH, Drawing, spread
 from ..kit.maps import draw_map, missing_patch
 from ..kit.measured import measured_series, table_of, threshold_words
 from ..kit.titles import headline
-from ..kit.words import percent, short
 
 TITLE = "Measured contact maps"
 SUBJECT = "study"
@@ -82,7 +82,7 @@ def _title(name, one):
     """Name, load, contact fraction and dimension of a map, a line each."""
     name = name if len(name) <= _LONGEST else f"{name[: _LONGEST - 1]}…"
     pressure = float(one["nominal_pressure"])
-    load = f"{short(pressure)} MPa" if np.isfinite(pressure) else "no load"
+    load = f"{compact(pressure)} MPa" if np.isfinite(pressure) else "no load"
     dimension = Estimate.read(one, "delta_sigma", scale=DIMENSION)
     words = rf"$\Delta_\sigma$ = {dimension.text()}" if dimension.known else "no dimension"
     share = percent(float(one["area_share"]))

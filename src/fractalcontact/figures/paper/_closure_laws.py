@@ -9,11 +9,12 @@ from matplotlib.axes import Axes
 
 from ...core.estimate import EXPONENT, Estimate
 from ...core.subject import Subject
+from ...core.text import compact, percent
 from ..kit.axes import force_axis, label_short_span
 from ..kit.drawing import MARKERS, colour_of
 from ..kit.empty import TOO_FULL, say_empty
 from ..kit.points import draw_points
-from ..kit.words import NOMINAL_PRESSURE, percent, short
+from ..kit.words import NOMINAL_PRESSURE
 
 #: One line for each law, whatever its curve and panel: style, words, what it is drawn from.
 LINES: dict[str, tuple[Any, str, str]] = {
@@ -129,7 +130,7 @@ def no_law(curve: xr.Dataset) -> str:
 
 def offset_words(subject: Subject, offset: float) -> str:
     """One of the states of a legend."""
-    return "without sliding" if subject.direction == "none" else f"$v$ = {short(offset)} mm"
+    return "without sliding" if subject.direction == "none" else f"$v$ = {compact(offset)} mm"
 
 
 def second_axis(axes: Axes, factor: float, label: str) -> None:

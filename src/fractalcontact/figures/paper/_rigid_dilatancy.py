@@ -8,10 +8,11 @@ from matplotlib.artist import Artist
 
 from ...core.estimate import Estimate
 from ...core.limits import LEVEL_CHANGE
+from ...core.text import compact, number, percent
 from ..kit.drawing import LINES, colour_of
 from ..kit.legends import entries, heading, mark
 from ..kit.panel import Panel
-from ..kit.words import TOWARDS, percent, short
+from ..kit.words import TOWARDS
 
 #: The fitted lines.
 _FITTED: dict[str, Any] = {"lw": 2.2, "alpha": 0.7}
@@ -36,7 +37,7 @@ def draw_rigid(panel: Panel, dilatancy: xr.Dataset, plateaus: xr.Dataset) -> lis
     panel.axes.set(xlabel="offset $v$ (mm)", ylabel=r"rigid dilatancy $\delta_r$ (mm)")
     panel.axes.set_ylim(bottom=min(0, lowest))
     panel.axes.set_xlim(left=0)
-    half = short(float(dilatancy["rigid_offset"][-1]) / 2)
+    half = compact(float(dilatancy["rigid_offset"][-1]) / 2)
     change = rf"change of fitted $\delta_r$ [95 %] in % of its mean, $v \geq$ {half} mm"
     level = f"fitted lines; level: change within {percent(LEVEL_CHANGE)}"
     fitted = mark(color="0.4", label=level, **_FITTED)
@@ -53,7 +54,10 @@ def _draw_parts(panel: Panel, plateaus: xr.Dataset) -> list[Artist]:
         panel.axes.plot(one["rigid_offset"], one["even_dilatancy"], **style, zorder=1)
         of_axis = plateaus.sel(axis=axis)
         change, tilt = float(of_axis["even_change"]), float(of_axis["odd_slope"])
-        label = f"mean of {axis}: {100 * change:+z.0f} %; half the difference {tilt:+z.3f} $v$"
+        label = (
+            f"mean of {axis}: {number(100 * change, 0, '+')} %; half the difference "
+            f"{number(tilt, 3, '+')} $v$"
+        )
         drawn.append(mark(**style, label=label))
     return drawn
 
@@ -69,4 +73,7 @@ def _change_words(plateau):
     if not change.known:
         return "no fit"
     value, low, high = change.ends
-    return f"{value:+z.0f} % [{low:+z.0f}, {high:+z.0f}], {plateau['plateau_trend'].item()}"
+    return (
+        f"{number(value, 0, '+')} % [{number(low, 0, '+')}, {number(high, 0, '+')}], "
+        f"{plateau['plateau_trend'].item()}"
+    )

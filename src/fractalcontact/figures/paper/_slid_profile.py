@@ -8,9 +8,9 @@ from matplotlib.axes import Axes
 
 from ...core.datasets import labelled_dataset
 from ...core.directions import axis_and_sign
+from ...core.text import compact, length_unit
 from ...core.window import faces, window_slices
 from ..kit.drawing import COLOURS
-from ..kit.words import length_unit
 
 #: The node that touches first.
 TOUCH: dict[str, Any] = {
@@ -78,7 +78,7 @@ def draw_profile(axes: Axes, profile: xr.Dataset, slid: xr.Dataset, *, before: b
     for tip, tail in ((corner, (start / size, bottom)), ((end / size, top), corner)):
         axes.annotate("", tip, tail, arrowprops=arrow)
     # The numbers stand in the legend: on the profile they would hide it.
-    label = rf"offset $v$ = {offset:.3g} mm, dilatancy $\delta_r$ = {opening:.3g} mm"
+    label = rf"offset $v$ = {compact(offset)} mm, dilatancy $\delta_r$ = {compact(opening)} mm"
     axes.plot([], [], color=COLOURS[3], lw=1.2, label=label)
     axes.plot(end / size, top, label="first touch", **TOUCH)
     axes.set_xlabel(f"${axis}$ ({unit})")

@@ -6,13 +6,13 @@ import numpy as np
 import xarray as xr
 
 from ...core.subject import Subject
+from ...core.text import compact, force_label, percent
 from ...core.verdicts import UNDETERMINED
 from ...core.window import cell_side
 from ..kit.axes import label_short_span, spacing_axis
 from ..kit.drawing import MARKERS
 from ..kit.empty import TOO_FULL, different_reasons, missing_lines, say_empty
 from ..kit.panel import Panel
-from ..kit.words import force_label, percent, short
 
 #: Greys and markers of the loads: colours and the other markers stand for offsets in this figure.
 _GREYS, _MARKERS = ("0.65", "0.45", "0.25", "0"), MARKERS[5:]
@@ -20,7 +20,7 @@ _GREYS, _MARKERS = ("0.65", "0.45", "0.25", "0"), MARKERS[5:]
 
 def over_spacing(subject: Subject) -> xr.Dataset:
     """Closure curves of the reported offset under the loads that are quoted, over the spacing."""
-    curves = subject.along("closure").sel(offset=subject.offset, method="nearest")
+    curves = subject.reported.at_offset(subject.along("closure"))
     curves = curves.isel(normal_force=subject.reported.quoted).sortby("resolution")
     spacing = curves["resolution"].values * cell_side(subject["specimens"])
     return curves.assign_coords(spacing=("resolution", spacing, {"units": "mm"}))
@@ -74,4 +74,5 @@ def _numbers(state, name):
     value, change = float(state[name]), float(state[f"{name}_change"])
     if not np.isfinite(value):
         return "not known"
-    return f"{short(value)} ({percent(change, '+')})" if np.isfinite(change) else short(value)
+    known = f" ({percent(change, sign='+')})" if np.isfinite(change) else ""
+    return f"{compact(value)}{known}"

@@ -7,6 +7,7 @@ from matplotlib.figure import Figure
 from xarray import DataTree
 
 from ...core.subject import Subject
+from ...core.text import compact, percent
 from ..kit.caption import caption
 from ..kit.drawing import WIDTH, Drawing
 from ..kit.empty import say_empty
@@ -26,7 +27,7 @@ from ..kit.sizes import (
 )
 from ..kit.titles import headline, letter
 from ..kit.verdicts import claim
-from ..kit.words import percent, place, short
+from ..kit.words import place
 
 TITLE = "Fig. 1b: shear strength against the size of the joint, at equal offset over size"
 SUBJECT = "joint"
@@ -93,7 +94,7 @@ def _draw_slope(axes: Axes, laws: xr.Dataset) -> None:
     name_exponents(axes, laws, "slope_at_equal_v_over_b_exponent", r"d\delta/dv")
     expected = laws["slope_at_equal_v_over_b_expected"]
     if expected.notnull().any():
-        exponent = short(float(laws["expected_hurst"]) - 1)
+        exponent = compact(float(laws["expected_hurst"]) - 1)
         label = rf"self-affine, Hurst exponent $H$: $x = H - 1$ = {exponent}"
         axes.plot(laws["side"], expected, color="0.5", ls=":", label=label)
     axes.set_ylabel(r"slope $d\delta/dv$ of the dilatancy curve (mm/mm)")

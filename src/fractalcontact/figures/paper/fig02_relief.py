@@ -8,6 +8,7 @@ from xarray import DataTree
 
 from ...core.estimate import DIMENSION, Estimate
 from ...core.subject import Subject
+from ...core.text import compact, length_unit
 from ...core.window import face_words, spacing_of
 from ..kit.caption import caption
 from ..kit.drawing import COLOURS, WIDTH, Drawing
@@ -18,7 +19,6 @@ from ..kit.panel import rows
 from ..kit.points import reach
 from ..kit.relief import draw_faces
 from ..kit.titles import headline, letter
-from ..kit.words import length_unit
 
 TITLE = "Fig. 2: shaded relief of the levelled faces, and the surface dimension"
 SUBJECT = "specimen"
@@ -92,7 +92,7 @@ def _draw_dimensions(axes, dimension):
             handles.append(axes.errorbar(value, places[of], xerr=bars, **style))
     known = float(dimension["known_dimension"])
     if np.isfinite(known):
-        label = rf"known $\Delta_g$ {known:.3g}"
+        label = rf"known $\Delta_g$ {compact(known)}"
         handles.append(axes.axvline(known, color=COLOURS[2], ls="--", lw=0.8, label=label))
     axes.grid(axis="x", color="0.9", lw=0.5)
     return handles
@@ -107,7 +107,7 @@ def _range_words(dimension):
     words = []
     if _recommended(dimension).known:
         best = dimension.sel(estimator=dimension["recommended"].item())
-        ends = " to ".join(f"{float(best[f'fit_{end}']):.3g}" for end in ("min", "max"))
+        ends = " to ".join(f"{compact(float(best[f'fit_{end}']))}" for end in ("min", "max"))
         words.append(f"recommended: {best['length_kind'].item()}s {ends} mm")
     if compared := int(dimension["axes_compared"]):
         differing = f"{int(dimension['axes_differing'])} of {compared} estimators"
@@ -118,8 +118,11 @@ def _range_words(dimension):
 def _size_words(specimen, sides):
     """Size and spacing of the scan; one number for the spacing where both agree."""
     name, size = length_unit(max(sides))
-    spacings = " and ".join(sorted({f"{spacing:.4g}" for spacing in spacing_of(specimen)}))
-    return f"{sides[1] / size:.4g} × {sides[0] / size:.4g} {name}, spacing {spacings} mm"
+    spacings = " and ".join(sorted({compact(spacing, 4) for spacing in spacing_of(specimen)}))
+    return (
+        f"{compact(sides[1] / size, 4)} × {compact(sides[0] / size, 4)} {name}, spacing "
+        f"{spacings} mm"
+    )
 
 
 def _caption(specimen, faces, dimension):

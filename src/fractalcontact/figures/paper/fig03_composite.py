@@ -5,6 +5,7 @@ from matplotlib.figure import Figure
 from xarray import DataTree
 
 from ...core.subject import Subject
+from ...core.text import length_unit, number
 from ...core.window import window_sides
 from ..kit.caption import caption
 from ..kit.drawing import COLOURS, WIDTH, Drawing
@@ -13,7 +14,7 @@ from ..kit.maps import HALO, draw_map, missing_patch, scan_extent, window_outlin
 from ..kit.panel import rows
 from ..kit.titles import headline, letter
 from ..kit.verdicts import claim
-from ..kit.words import length_unit, place
+from ..kit.words import place
 from ._slid_profile import TOUCH, draw_profile, slid_profile, way_of
 
 TITLE = "Fig. 3: the joint slid to its largest offset, dilatancy and composite topography"
@@ -47,8 +48,10 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     draw_profile(axes, profile, slid, before=specimen.attrs["opposite"] == "scanned")
     bottom.legend(handles=handles + entries(axes), loc="outside lower center", ncols=3)
     known = bool(np.isfinite(slid["correlation_limit"]))
-    chance = f", by chance up to {slid['correlation_limit']:.2f}" if known else f"\n{_TOO_SMALL}"
-    correlation = f"correlation of the faces {slid['face_correlation']:+.2f}{chance}"
+    chance = (
+        f", by chance up to {number(slid['correlation_limit'])}" if known else f"\n{_TOO_SMALL}"
+    )
+    correlation = f"correlation of the faces {number(slid['face_correlation'], 2, '+')}{chance}"
     letter(plan, "a", "lower face and window")
     letter(composite, "b", f"composite topography $h$\n{correlation}")
     letter(axes, "c", "profile through the point of first touch")

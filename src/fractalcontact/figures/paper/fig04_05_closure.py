@@ -10,6 +10,7 @@ from xarray import DataTree
 from ...core.estimate import EXPONENT, Estimate
 from ...core.limits import CORRECTED_NODES, GOOD_FIT, RESOLVED_NODES
 from ...core.subject import Subject
+from ...core.text import number, percent
 from ..kit.axes import force_axis
 from ..kit.caption import caption
 from ..kit.drawing import WIDTH, Drawing, spread
@@ -18,7 +19,7 @@ from ..kit.panel import Panel, rows, table_of
 from ..kit.points import draw_points
 from ..kit.titles import headline, letter
 from ..kit.verdicts import claim
-from ..kit.words import percent, place
+from ..kit.words import place
 from ._closure_laws import (
     LINES,
     OPEN,
@@ -114,7 +115,11 @@ def _draw_area(axes, drawn, subject):
     for curve, style in each_curve(drawn):
         enough = curve["area_corrected_resolved"].values
         exponent = Estimate.read(curve, "corrected_exponent", scale=EXPONENT)
-        words = exponent.text() if exponent.known else f"no fit: {curve['corrected_n']:.0f} loads"
+        words = (
+            exponent.text()
+            if exponent.known
+            else f"no fit: {number(curve['corrected_n'], 0)} loads"
+        )
         share = 100 * np.where(enough, curve["area_corrected_share"], curve["area_share"])
         label = f"{offset_words(subject, float(curve['offset']))}: {words}"
         draw_points(axes, force, share, enough, OPEN, label=label, **style)

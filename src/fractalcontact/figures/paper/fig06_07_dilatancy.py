@@ -5,6 +5,7 @@ from xarray import DataTree
 
 from ...core.limits import LEVEL_CHANGE, RESOLVED_NODES
 from ...core.subject import Subject
+from ...core.text import compact, force_label, percent
 from ...core.verdicts import FALLING, LEVEL, RISING
 from ...core.window import window_sides
 from ..kit.axes import label_short_span, offset_axis
@@ -17,7 +18,7 @@ from ..kit.panel import Panel, table_of
 from ..kit.points import hollow_entry
 from ..kit.titles import headline
 from ..kit.verdicts import claim
-from ..kit.words import TOWARDS, area_label, force_label, percent, place, short
+from ..kit.words import TOWARDS, area_label, place
 from ._rigid_dilatancy import direction_style, draw_rigid
 
 TITLE = "Figs. 6 and 7: rigid and elastic dilatancy, and contact domains along the curve"
@@ -126,6 +127,6 @@ def _draw_domains(figure, subject, curves, points):
         draw_domain(axes, domain, window_sides(subject["specimens"]))
         state = curves.isel({**load, "offset": i})
         area = area_label(state)
-        axes.set_title(f"{letter}: $v$ = {short(state['offset'])} mm, $A_r/A_0$ = {area}")
+        axes.set_title(f"{letter}: $v$ = {compact(state['offset'])} mm, $A_r/A_0$ = {area}")
     for axes in panels[len(points) :]:
         axes.remove()

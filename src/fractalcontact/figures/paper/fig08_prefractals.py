@@ -5,6 +5,7 @@ from matplotlib.figure import Figure
 from xarray import DataTree
 
 from ...core.subject import Subject
+from ...core.text import compact, force_label
 from ...core.window import window_sides
 from ..kit.axes import label_short_span, spacing_axis
 from ..kit.caption import caption
@@ -14,7 +15,7 @@ from ..kit.maps import draw_domain, enlargement
 from ..kit.panel import Panel, table_of
 from ..kit.titles import headline, letter
 from ..kit.verdicts import claim
-from ..kit.words import REAL_PRESSURE, area_label, force_label, place, short
+from ..kit.words import REAL_PRESSURE, area_label, place
 
 TITLE = "Fig. 8: contact domains of the pre-fractals under one load, and their mean pressure"
 SUBJECT = "specimen"
@@ -49,7 +50,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
         axes.remove()
     by_area, by_boxes = estimates_of(subject.states("scaling"))
     found = rf"$A_r \sim s^{{2-\Delta_\sigma}}$: {by_area.entry(load)}"
-    title = rf"$\sigma_n = F/A_r$; {found}; rms slope of the surface {short(states['rms_slope'])}"
+    title = rf"$\sigma_n = F/A_r$; {found}; rms slope of the surface {compact(states['rms_slope'])}"
     panel = Panel(bottom.subplots(), _LETTERS[n], title)
     _draw_pressures(panel, states, model)
     wide = "black: real contact area $A_r$; small nodes enlarged alike in all maps"
@@ -80,8 +81,8 @@ def _area_words(state):
     known = bool(state["area_corrected_resolved"])
     area, pressure = ("area_corrected", "sigma_n") if known else ("area", "sigma_n_raw")
     return (
-        f"$s$ = {short(state['spacing'])} mm\n$A_r$ = {short(state[area])} mm$^2$\n"
-        f"$A_r/A_0$ = {area_label(state)}\n$\\sigma_n$ = {short(state[pressure])} MPa"
+        f"$s$ = {compact(state['spacing'])} mm\n$A_r$ = {compact(state[area])} mm$^2$\n"
+        f"$A_r/A_0$ = {area_label(state)}\n$\\sigma_n$ = {compact(state[pressure])} MPa"
     )
 
 
@@ -95,7 +96,7 @@ def _draw_pressures(panel, states, model):
     kept = [name for name in states if name not in ("spacing", "sigma_n_raw")]
     panel.curve(states, "spacing", "sigma_n_raw", keep=kept, **style, **raw)
     ends = [float(model[f"strength_{end}"]) for end in ("low", "high")]
-    label = f"{model['criterion'].item()}:\n{' to '.join(dict.fromkeys(map(short, ends)))} MPa"
+    label = f"{model['criterion'].item()}:\n{' to '.join(dict.fromkeys(map(compact, ends)))} MPa"
     axes.axhspan(*ends, fc=to_rgba(COLOURS[2], 0.2), ec=COLOURS[2], ls="--", lw=1, label=label)
     axes.set_yscale("log")
     spacing_axis(axes, states["spacing"])

@@ -9,6 +9,7 @@ from xarray import DataTree
 
 from ...core.estimate import DIMENSION, Estimate
 from ...core.subject import Subject
+from ...core.text import force_label
 from ...core.window import window_sides
 from ..kit.axes import label_short_span
 from ..kit.caption import caption
@@ -20,7 +21,7 @@ from ..kit.maps import draw_domain
 from ..kit.panel import Panel, table_of
 from ..kit.titles import headline, letter
 from ..kit.verdicts import claim, verdict_words
-from ..kit.words import force_label, place
+from ..kit.words import place
 from ._local_slopes import CUT, LAW, ORDINARY, RANDOM, band_of, draw_slopes
 
 TITLE = "Fig. 9: box counting of a contact domain"

@@ -6,6 +6,7 @@ from matplotlib.figure import Figure
 from xarray import DataTree
 
 from ...core.subject import Subject
+from ...core.text import force_label
 from ..kit.axes import spacing_axis
 from ..kit.caption import caption
 from ..kit.domains import estimates_of, prefractals, size_axes, spread_loads
@@ -14,7 +15,7 @@ from ..kit.legends import entries, legends_below
 from ..kit.panel import Panel, table_of
 from ..kit.titles import headline
 from ..kit.verdicts import claim
-from ..kit.words import force_label, place
+from ..kit.words import place
 
 TITLE = "Fig. 10: real contact area over resolution, and eq. 6"
 SUBJECT = "specimen"

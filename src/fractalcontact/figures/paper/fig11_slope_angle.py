@@ -5,6 +5,7 @@ from matplotlib.figure import Figure
 from xarray import DataTree
 
 from ...core.subject import Subject
+from ...core.text import compact, percent
 from ..kit.caption import caption
 from ..kit.drawing import WIDTH, Drawing
 from ..kit.empty import say_empty
@@ -24,7 +25,7 @@ from ..kit.sizes import (
 )
 from ..kit.titles import headline
 from ..kit.verdicts import claim
-from ..kit.words import percent, place
+from ..kit.words import place
 
 TITLE = "Fig. 11: limit slope angle against the size of the joint, computed"
 SUBJECT = "joint"
@@ -90,7 +91,7 @@ def _draw_angle(axes, laws):
         hollow_entry(axes, TRUNCATED)
     if np.isfinite(laws["barton_slope_angle"]).any():
         axes.plot([], [], color="0.4", ls="--", lw=0.8, label="Barton and Bandis' scale law")
-    label = f"$x$ = {QUOTED_DELTA:g} - 2, by later work of the same school"
+    label = f"$x$ = {compact(QUOTED_DELTA, 6)} - 2, by later work of the same school"
     axes.plot([], [], color="0.4", ls=":", lw=0.8, label=label)
     size_axis(axes, b, "joint")
     axes.set_ylim(0, 90)

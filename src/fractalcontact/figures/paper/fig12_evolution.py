@@ -7,6 +7,7 @@ from xarray import DataTree
 from ...core.estimate import Estimate
 from ...core.limits import MIN_NODES
 from ...core.subject import Subject
+from ...core.text import force_label
 from ...core.window import window_sides
 from ..kit.caption import caption
 from ..kit.domains import (
@@ -26,7 +27,7 @@ from ..kit.measured import table_of as table_of_maps
 from ..kit.panel import Panel, table_of
 from ..kit.points import hollow_entry, reach
 from ..kit.titles import headline, letter
-from ..kit.words import area_label, force_label, place, wrapped
+from ..kit.words import area_label, place, wrapped
 
 TITLE = "Fig. 12: contact domains and their dimension under growing load"
 SUBJECT = "specimen"

@@ -7,6 +7,7 @@ from matplotlib.figure import Figure
 from xarray import DataTree
 
 from ...core.subject import Subject
+from ...core.text import force_label
 from ..kit.caption import caption
 from ..kit.domains import RISES, estimates_of, rise_words, size_axes, spread_loads
 from ..kit.drawing import COLOURS, MARKERS, WEAK, WIDTH, Drawing
@@ -16,7 +17,7 @@ from ..kit.panel import Panel, table_of
 from ..kit.sizes import plain_decades
 from ..kit.titles import headline
 from ..kit.verdicts import verdict_words
-from ..kit.words import force_label, place
+from ..kit.words import place
 
 TITLE = "Fig. 13: eq. 6 extrapolated to other sizes, load by load"
 SUBJECT = "specimen"

@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 
 from ...core.errors import InputError
-from ...core.labels import percent, printable
+from ...core.labels import printable
+from ...core.text import percent
 from ...core.units import length_factor
 from ...gridding.measured import NOTE
 from ..array_hints import array_hints

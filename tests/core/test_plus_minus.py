@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from fractalcontact.pages.words import MISSING, plus_minus, with_unit
+from fractalcontact.core.text import MISSING, plus_minus, with_unit
 
 
 @pytest.mark.parametrize("error", [np.nan, np.inf])

@@ -1,0 +1,1 @@
+"""Published numbers of a specimen: one register, one reader."""

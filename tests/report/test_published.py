@@ -1,0 +1,180 @@
+"""The register of published numbers: each stands once, and one reader reads it."""
+
+import re
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+
+import fractalcontact
+from fractalcontact.core.estimate import Estimate
+from fractalcontact.core.subject import Subject
+from fractalcontact.core.verdicts import NO_PRESSURE, TOO_WIDE
+from fractalcontact.report.columns import columns_of
+from fractalcontact.report.published import Number, Row, published, read, row_of, shown_in
+
+DIMS = ("direction", "offset", "resolution", "normal_force")
+FORCES = [1.0, 2.0, 3.0]
+
+
+def over_loads(values, units="mm"):
+    return DIMS, np.reshape(values, (1, 1, 1, 3)), {"units": units}
+
+
+def subject(budget=None, **closure):
+    """A specimen with one direction, offset and resolution, and three loads."""
+    stage = xr.Dataset(
+        {
+            **{name: over_loads(values) for name, values in closure.items()},
+            "solved": over_loads([True, True, "solved" not in closure], "1"),
+            "suspect_load_share": over_loads([0.0, 0.0, 0.9], "1"),
+            "reported_direction": "W",
+            "reported_offset": 0.1,
+            "reported_resolution": 1,
+            "reported_load": ("normal_force", [True, True, True]),
+            "reference_load": ("normal_force", [False, True, False]),
+        },
+        coords={
+            "direction": ["W"],
+            "offset": [0.1],
+            "resolution": [1],
+            "normal_force": FORCES,
+            "nominal_pressure": ("normal_force", [10.0, 20.0, 30.0]),
+        },
+    )
+    stages = {"closure": stage}
+    if budget is not None:
+        stages["error_budget"] = budget
+    return Subject(stages, {"material": {"modulus": 5.0, "hardness": np.inf}})
+
+
+def row(**keys):
+    return Row("width", "width", "closure/width", "mm", **keys)
+
+
+def test_a_row_is_all_that_a_quantity_needs():
+    numbers = read(row(), subject(width=[1, 2, 3]))
+    assert [(one.at, one.value, one.missing) for one in numbers] == [
+        ({"pressure": 10.0 * value}, value, "") for value in (1, 2, 3)
+    ]
+    assert columns_of(row(summary="breadth"), numbers[1]) == {"breadth_mm": 2}
+
+
+def test_columns_are_of_one_rule_whether_a_value_is_known_or_not():
+    of = row(summary="breadth", interval="fit", range=("a/b", "a/c"), why=True)
+    found = columns_of(of, read(of, subject(width=[1, np.nan, 3]))[1])
+    assert list(found) == [
+        *("breadth_mm", "breadth_low_mm", "breadth_high_mm"),
+        *("breadth_determined", "breadth_reason"),
+    ]
+    assert not found["breadth_determined"]
+
+
+def test_an_interval_is_its_own_or_from_the_error_of_the_budget_within_its_bounds():
+    ends = {"width": [1, 2, 3], "width_low": [0.5, 1, 2], "width_high": [2, np.nan, 4]}
+    assert read(row(), subject(**ends))[0].estimate.ends == (1, 0.5, 2)
+    errors = xr.Dataset(
+        {
+            "width_total": ("normal_force", [4.0, 0.5, np.nan]),
+            "width_total_of_population": ("normal_force", [5.0, 6.0, 7.0]),
+        },
+        coords={"normal_force": FORCES, "quantity": ["other"]},
+    )
+    first, second, third = read(row(budget="width"), subject(errors, width=[1, 2, 3]))
+    assert first.estimate.ends == (1, 0, 5)
+    assert (second.estimate.low, second.error, second.population) == (1.5, 0.5, 6.0)
+    assert np.isnan([third.estimate.low, third.error, third.hardest]).all()
+
+
+def test_a_quantity_of_the_budget_by_source_has_its_error_too():
+    budget = xr.Dataset(
+        {
+            kind: (("quantity", "normal_force"), [[0.1, 0.2, 0.3], [1.0, 2.0, 3.0]])
+            for kind in ("total", "total_of_population", "hardest")
+        },
+        coords={"quantity": ["other", "width"], "normal_force": FORCES},
+    )
+    found = read(row(budget="width"), subject(budget, width=[1, 2, 3]))
+    assert [(one.error, one.population, one.hardest) for one in found] == [
+        (error, error, error) for error in (1.0, 2.0, 3.0)
+    ]
+
+
+def test_of_several_reasons_for_no_number_the_nearest_is_given():
+    lacks = row(missing="none of this kind")
+    assert read(lacks, subject())[0].missing == "none of this kind"
+    assert [one.missing for one in read(lacks, subject(width=[1, np.nan, 3]))] == [
+        "",
+        "none of this kind",
+        "",
+    ]
+    unsolved = subject(width=[1, 2, np.nan], solved=[1, 1, 0])
+    assert read(lacks, unsolved)[2].missing == "not solved under this load"
+
+
+def test_what_is_no_result_is_missing_and_a_fit_that_is_none_is_undetermined():
+    flagged = {"width": [1, 2, 3], "says": [1, 0, np.nan]}
+    found = read(row(flag="closure/says", note="too few"), subject(**flagged))
+    assert [one.missing for one in found] == ["", "too few", "too few"]
+    ends = flagged | {"width_low": [0.9, 1.9, 2.9], "width_high": [1.1, 2.1, 3.1]}
+    fits = read(row(flag="closure/says", range=("a/b", "a/c")), subject(**ends))
+    assert [(one.missing, one.determined) for one in fits] == [("", True), ("", False), ("", False)]
+
+
+def test_the_scan_and_a_wide_interval_leave_a_number_undetermined():
+    found = read(row(by_scan=True), subject(width=[1, 2, 3]))
+    assert [one.determined for one in found] == [True, True, False]
+    ends = {"width": [1, 2, 1], "width_low": [0.9, 0.1, 0.5], "width_high": [1.1, 9, 1.5]}
+    found = read(row(range=("a/b", "a/c")), subject(**ends))
+    assert [one.determined for one in found] == [True, False, True]
+    assert found[1].remark == TOO_WIDE
+    # A dimension that is 2 needs no interval, and one over all dimensions says nothing.
+    ends = {"width": [2, 1, 1], "width_low": [2, -1, 0.9], "width_high": [2, 2.5, 1.1]}
+    found = read(row(dimension=True), subject(**ends))
+    assert [one.determined for one in found] == [True, False, True]
+
+
+def test_no_bound_on_the_pressure_is_no_number():
+    (hardness,) = read(row_of("hardness"), subject())
+    assert hardness.missing == row_of("hardness").missing
+    (modulus,) = read(row_of("modulus"), subject())
+    assert (modulus.value, modulus.missing) == (5, "")
+
+
+def test_each_quantity_stands_once_and_is_shown_somewhere():
+    names = [row.name for row in published()]
+    assert len(names) == len(set(names)) > 60
+    places = ("section", "summary", "curves", "explorer", "page", "index")
+    assert shown_in(*places) == published()
+    for place in ("summary", "curves", "page", "index"):
+        shown = [getattr(row, place) for row in shown_in(place)]
+        assert len(shown) == len(set(shown)) > 3
+    # A table by source has rows of the budget, which the page names.
+    assert all(row.budget and row.page for row in shown_in("errors"))
+
+
+def test_the_reason_for_no_pressure_is_that_of_the_elastic_model():
+    assert row_of("sigma_n").missing == NO_PRESSURE
+
+
+def test_one_reader_gives_numbers_to_pages_and_cards():
+    """No module of theirs reads an estimate, or a total of the error budget, by itself."""
+    own = re.compile(r"""Estimate\.read\(|\["total(_of_population)?"\]""")
+    source = Path(fractalcontact.__file__).parent
+    found = [
+        path.relative_to(source).as_posix()
+        for room in ("pages", "cards")
+        for path in (source / room).rglob("*.py")
+        if own.search(path.read_text(encoding="utf-8"))
+    ]
+    assert found == []
+
+
+def test_a_unit_is_the_last_word_of_a_column():
+    """But for the names of release 1.0, which stand beside the new ones once more."""
+    for one in shown_in("summary"):
+        for column in columns_of(one, Number({"pressure": 5.0, "test": "a b"}, Estimate(1.0))):
+            unit = one.unit.replace("/", "_per_")
+            words = ("determined", "reason")
+            assert one.unit == "1" or column.endswith((f"_{unit}", *words)), column
+            assert " " not in column
