@@ -120,7 +120,8 @@ def _rise(joint, evidence, force, before, after):
     return Finding(
         beyond_margin(change, all_claims()[name].margin, rising=True),
         f"compliance {number(percent, 0, '+')} %",
-        f"from v = {compact(ends[0])} mm and less to {compact(ends[1])} mm and more; {margin_words(name)}; "
+        f"from v = {compact(ends[0])} mm and less to {compact(ends[1])} mm and more; "
+        f"{margin_words(name)}; "
         f"sigma_z of the composite topography {number(100 * widened, 0, '+')} %",
     )
 
@@ -145,12 +146,14 @@ def composite_dimension_rises(joint: Joint, evidence: Evidence) -> Finding:
     each = [beyond_margin(one, margin, rising=True) for one in rise]
     low, high = (joint["joints"][f"lag_{end}"].values for end in ("min", "max"))
     also = ", ".join(
-        f"{number(first.value[i])} to {number(last.value[i])} over {compact(low[i], 2)} to {compact(high[i], 2)} mm"
+        f"{number(first.value[i])} to {number(last.value[i])} over {compact(low[i], 2)} to "
+        f"{compact(high[i], 2)} mm"
         for i in range(1, len(LAG_RANGES))
     )
     return Finding(
         share(sum(verdict in (HOLDS, PARTLY) for verdict in each), len(each)),
-        f"over lags of {compact(low[0], 2)} to {compact(high[0], 2)} mm it goes from {number(first.value[0])} at "
+        f"over lags of {compact(low[0], 2)} to {compact(high[0], 2)} mm it goes from "
+        f"{number(first.value[0])} at "
         f"v = {compact(v[0])} mm to {number(last.value[0])} at {compact(v[-1])} mm",
         f"{also}; {margin_words(name)}",
         explanation="far below a lag the composite topography is a derivative of the face, far "
@@ -251,7 +254,8 @@ def area_is_linear(joint: Joint) -> Finding:
     return Finding(
         verdict,
         f"m = {ends}",
-        f"A_r ~ F^m; {near} of {value.size} exponents lie within {compact(NEARLY, 6)} of 1, the intervals "
+        f"A_r ~ F^m; {near} of {value.size} exponents lie within {compact(NEARLY, 6)} of 1, the "
+        f"intervals "
         f"of {apart or 'none'} outside",
     )
 
@@ -311,7 +315,8 @@ def refinement_changes_little(joint: Joint) -> Finding:
     little = {name: int((np.abs(change) <= margin).sum()) for name, change in changes.items()}
     n = int(counts.sum()) - 1
     words = (
-        f"{name} changes by {number(100 * change.min(), 0, '+')} to {number(100 * change.max(), 0, '+')} % (within "
+        f"{name} changes by {number(100 * change.min(), 0, '+')} to "
+        f"{number(100 * change.max(), 0, '+')} % (within "
         f"{compact(100 * margin, 6)} % at {loads_of(little[name], n)})"
         for name, change in changes.items()
     )

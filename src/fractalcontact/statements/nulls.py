@@ -96,8 +96,9 @@ def _departure_words(state, null, words):
     slope, other = (float(state[name][place]) for name in ("local_slope", f"local_slope_{null}"))
     small = differs(p) and abs(slope - other) < NEARLY
     return (
-        f"{words}: largest departure at r = {compact(side, 2)} mm, local slope {number(slope)} against "
-        f"{number(other)}, p {f'= {compact(p, 2)}' if p >= _LEAST_P else f'< {compact(_LEAST_P, 6)}'}"
+        f"{words}: largest departure at r = {compact(side, 2)} mm, local slope {number(slope)} "
+        f"against {number(other)}, p "
+        f"{f'= {compact(p, 2)}' if p >= _LEAST_P else f'< {compact(_LEAST_P, 6)}'}"
         f"{f' (significant, but smaller than {compact(NEARLY, 6)})' if small else ''}"
     )
 
@@ -137,7 +138,8 @@ def domains_differ_from_cuts(joint: Joint, evidence: Evidence) -> Finding:
     return Finding(
         verdict,
         f"local slopes differ from those of the cut at {loads_of(different, total)}",
-        f"slopes coincide within {compact(margin, 6)} at {loads_of(int(alike.sum()), total)}; Delta_sigma "
+        f"slopes coincide within {compact(margin, 6)} at {loads_of(int(alike.sum()), total)}; "
+        f"Delta_sigma "
         f"minus that of the cut is {' to '.join(ends)}",
     )
 

@@ -52,7 +52,8 @@ def area_is_lacunar(joint: Joint, evidence: Evidence) -> Finding:
         falls if one_power == HOLDS or falls != HOLDS else PARTLY,
         f"A_r ~ s^(2 - Delta_sigma), Delta_sigma = {number(delta)}",
         f"{evidence.reference}; {words}: from the coarsest to the finest resolutions Delta_sigma "
-        f"changes by {number(bend, 2, '+')}; {margin_words(name)}; at light load the slopes h'_rms(s) of the "
+        f"changes by {number(bend, 2, '+')}; {margin_words(name)}; at light load the slopes "
+        f"h'_rms(s) of the "
         "surface set this exponent",
     )
 
