@@ -46,7 +46,7 @@ export STUDY SCANS FILE LIKE
 # Looks at the study and the results first, then runs Snakemake, and ends it when told to end.
 # Where it fails it ends make too, quietly, as QUIETLY does below.
 RUN = exec env FRACTALCONTACT_MAKE=$$PPID $(if $(filter yes y true 1,$(DROP)),FRACTALCONTACT_DROP=yes) $(BIN)/python workflow/run.py "$$STUDY" \
-  $(if $(filter yes y true 1,$(VERBOSE)),--verbose)
+  $(if $(filter yes y true 1,$(VERBOSE)),--verbose) $(if $(EXECUTOR),--executor $(EXECUTOR))
 OPTIONS = -- --cores $(CORES)
 # Below the sentence of a check that refuses, make would add "*** Error 1". Only where a signal ends it
 # does it say nothing; and of that of a closed pipe no shell says anything.

@@ -12,8 +12,8 @@ from places import ROOT
 from projects import project  # noqa: F401
 
 sys.path.append(str(ROOT / "workflow"))
-import cluster
-from cluster import ended_by_cluster, left_in_queue
+from engine import cluster
+from engine.cluster import ended_by_cluster, left_in_queue
 
 from fractalcontact.core.errors import InputError
 
@@ -164,8 +164,8 @@ def test_why_the_cluster_ended_a_job_is_said_in_its_users_words():
 SCRIPT = """
 import json, sys
 from types import SimpleNamespace
-sys.path[:0] = [{scripts!r}, {package!r}]
-from _job import job
+sys.path[:0] = [{workflow!r}, {package!r}]
+from engine.job import job
 from fractalcontact.core.errors import InputError, OutputError
 told = {{"resources": json.loads(sys.argv[1]), "config": {{"study": "test"}}}}
 snakemake = SimpleNamespace(log=["job.log"], input=[], output=[], **told)
@@ -185,7 +185,7 @@ with job(snakemake):
     ],
 )
 def test_further_attempt_repeats_an_error_that_it_would_find_again(tmp_path, error, attempt, works):
-    paths = {"scripts": str(ROOT / "workflow/scripts"), "package": str(ROOT / "src")}
+    paths = {"workflow": str(ROOT / "workflow"), "package": str(ROOT / "src")}
     command = [sys.executable, "-c", SCRIPT.format(error=error, **paths)]
     for number, expected in ((1, True), (attempt, works), (attempt, works)):
         # A run here has no such resource: that of workflow/profiles/slurm.

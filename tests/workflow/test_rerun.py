@@ -15,10 +15,12 @@ from projects import ROOT, copy_project, jobs_of, made, rough_heights, run, smal
 from stated import array_sidecar
 
 from fractalcontact.core.checksums import sha256
-from fractalcontact.core.code_digest import Code
 from fractalcontact.core.stage import module_of
 from fractalcontact.study.atlas import read_atlas
 from fractalcontact.study.stages import STAGES, paths_of
+
+sys.path.append(str(ROOT / "workflow"))
+from engine.code_digest import Code
 
 pytestmark = pytest.mark.workflow
 STUDY = "config/test.yaml"
@@ -292,14 +294,14 @@ def test_a_job_on_a_cluster_works_with_what_its_run_was_planned_with(project):
 def _rooms_behind(*modules):
     """Rooms of the package whose files count for a stage, and its own modules."""
     names = (ROOT / "workflow/scripts/stage.py", *modules)
-    code = Code(ROOT / "src", ROOT)
+    code = Code(ROOT / "src", ROOT, ROOT / "workflow")
     files = {Path(path).relative_to(ROOT).parts for path in code.files_behind(*names)}
     return {parts[2] for parts in files if len(parts) > 3}, {"/".join(parts) for parts in files}
 
 
 def test_the_script_of_all_stages_follows_from_the_function_that_it_calls():
     rooms, files = _rooms_behind()
-    assert "workflow/scripts/_job.py" in files
+    assert "workflow/engine/job.py" in files
     assert not {"stages", "study", "mechanics", "figures"} & rooms
     for stage in STAGES.values():
         assert f"src/{module_of(stage.function)}" in _rooms_behind(module_of(stage.function))[1]

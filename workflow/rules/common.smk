@@ -10,15 +10,16 @@ import yaml
 from snakemake.exceptions import WorkflowError
 from snakemake.logging import logger
 
-# The code of this checkout, wherever its environment was installed from: it may have been moved.
 ROOT = Path(workflow.basedir)
-sys.path[:0] = [str(ROOT / "src"), str(ROOT / "workflow/scripts")]
+sys.path.insert(0, str(ROOT / "workflow"))
 
-from _hashes import hash_once
+from engine import use_checkout
+from engine.code_digest import Code
+
+use_checkout(ROOT)
 
 # Light modules, without xarray, numba or matplotlib: on a cluster every job reads the workflow.
 from fractalcontact.core import checksums
-from fractalcontact.core.code_digest import Code
 from fractalcontact.core.directions import AUTOMATIC_OFFSETS, slides
 from fractalcontact.core.errors import InputError
 from fractalcontact.core.patterns import alternation
@@ -123,8 +124,6 @@ def fixed(megabytes, minutes):
 
 
 DIGESTS = checksums.Digests()
-if workflow.is_main_process:
-    hash_once(DIGESTS)
 
 
 @functools.cache
@@ -247,7 +246,7 @@ def grain(key, n):
     return [slice(start, min(start + size, n)) for start in range(0, n, size)]
 
 
-digest_of_code = functools.cache(Code(ROOT / "src", ROOT).digest)
+digest_of_code = functools.cache(Code(ROOT / "src", ROOT, ROOT / "workflow").digest)
 
 
 def code(script, *names):

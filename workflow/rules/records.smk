@@ -1,11 +1,8 @@
 # What a run looks at before its first job, and leaves behind after its last: a guard of results, its
 # plan, checksums, and what was made of what in linked data.
-import os
-
 import snakemake
 
-import _provenance
-import _running
+from engine import provenance, running
 
 from fractalcontact.core.atomic import atomic_write
 from fractalcontact.study import crate, guards
@@ -14,7 +11,7 @@ from fractalcontact.study import crate, guards
 def remake_without_record():
     """Mark results that Snakemake would take for up to date though its record of them is lost."""
     if workflow.is_main_process and (
-        again := _provenance.mark_without_provenance(RESULTS, workflow.workflow_settings)
+        again := provenance.mark_without_provenance(RESULTS, workflow.workflow_settings)
     ):
         logger.warning(
             f"{RESULTS}: {again} of its files will be made again, since Snakemake's record of "
@@ -23,19 +20,9 @@ def remake_without_record():
         )
 
 
-def without_rate_limit():
-    """Begin jobs on this machine as soon as cores are free, without a limit to jobs a second.
-
-    To keep it Snakemake looks at all waiting jobs each second, once more for each that has ended:
-    a tenth of the time of a paper study on two cores.
-    """
-    if workflow.local_exec:
-        workflow.scheduler.job_rate_limiter = None
-
-
 def begin():
     """Refuse what would lose results; else say that a run is at work, and its plan."""
-    _running.mark()
+    running.mark()
     try:
         # Only the user says that specimens may go, never a study.
         if "FRACTALCONTACT_DROP" not in os.environ:
@@ -59,7 +46,13 @@ WORKFLOW = crate.Workflow(
     folder=ROOT,
     main="Snakefile",
     parts=(
-        *("workflow/*.py", "workflow/rules/*.smk", "workflow/scripts/*.py", "config/schema/*.yaml"),
+        *(
+            "workflow/*.py",
+            "workflow/rules/*.smk",
+            "workflow/scripts/*.py",
+            "workflow/engine/**/*.py",
+            "config/schema/*.yaml",
+        ),
         *("environment.yml", "requirements.lock", "CITATION.cff", "LICENSE"),
     ),
     language="Snakemake",

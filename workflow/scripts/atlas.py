@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
-from _job import job
 from _stages import read_by_name, read_stages, warn_of_versions
+from engine.job import job
 
 from fractalcontact.core.atomic import atomic_write
 from fractalcontact.stages.atlas import join_rows, join_stages

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from _job import job
+from engine.job import job
 
 from fractalcontact.study.embedded import write_scan
 from fractalcontact.surface.embedded import embedded_surface

@@ -7,8 +7,8 @@ any, and the job goes on: other figures stay, and the rule `all_drawn` ends the 
 import gc
 from pathlib import Path
 
-from _job import job
 from _stages import read_stages, warn_of_versions
+from engine.job import job
 
 from fractalcontact.core import netcdf
 from fractalcontact.core.atomic import atomic_write

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from _job import job
+from engine.job import job
 
 from fractalcontact.pages.explorer import write_explorer
 from fractalcontact.pages.result_page import Place, write_index

@@ -3,7 +3,7 @@
 from dataclasses import replace
 from pathlib import Path
 
-from _job import job
+from engine.job import job
 
 from fractalcontact.cards.write import NEEDS as OF_CARDS
 from fractalcontact.cards.write import write_cards

@@ -6,7 +6,7 @@ gives are written to the outputs of their names.
 
 from importlib import import_module
 
-from _job import job, require_unchanged
+from engine.job import job, require_unchanged
 
 from fractalcontact.core import netcdf, settings
 

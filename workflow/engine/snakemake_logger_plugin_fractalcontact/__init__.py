@@ -12,8 +12,9 @@ import textwrap
 import time
 from pathlib import Path
 
-from cluster import ended_by_cluster
 from snakemake_interface_logger_plugins.base import LogHandlerBase
+
+from engine.cluster import ended_by_cluster
 
 #: Columns of the terminal; lines of warnings at the end, of which the result page has all.
 WIDTH, MAX_WARNINGS = 120, 24

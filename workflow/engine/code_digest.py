@@ -28,10 +28,13 @@ class Code:
         Where the packages lie.
     root : path-like
         Names of files count from there, so that a moved checkout stays the same.
+    beside : path-like, optional
+        Folder whose modules scripts import too, beside those of their own.
     """
 
-    def __init__(self, folder: Path | str, root: Path | str):
+    def __init__(self, folder: Path | str, root: Path | str, beside: Path | str = ""):
         self.folder, self.root = os.path.abspath(folder), os.path.abspath(root)
+        self.beside = os.path.abspath(beside) if beside else ""
         self._read = cache(_read)
 
     def digest(self, *names: Path | str) -> str:
@@ -108,8 +111,9 @@ class Code:
             target = f"{base}/{inner.replace('.', '/')}".rstrip("/")
             its = self._room_of(target)
             if its is None:
-                if room is None and os.path.isfile(beside := f"{home}/{inner}.py"):
-                    yield beside
+                near = [home, *([self.beside] if self.beside and not above else [])]
+                found = [f"{place}/{inner.replace('.', '/')}.py" for place in near]
+                yield from [path for path in found if room is None and os.path.isfile(path)]
                 continue
             if its == room and whole:
                 continue

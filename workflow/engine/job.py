@@ -9,18 +9,16 @@ import sys
 import time
 from pathlib import Path
 
-# The code of this checkout, wherever its environment was installed from: it may have been moved.
-sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "src"))
 # Read when numpy is imported. Two threads of BLAS that wait for each other make the L-BFGS-B of
 # another code four times slower; our own threads are another matter.
 os.environ["OPENBLAS_NUM_THREADS"] = "1"
-
-import _running
 
 from fractalcontact.core import checksums
 from fractalcontact.core.errors import InputError, OutputError
 from roughcontact.contact.effort import SOLVING
 from roughcontact.errors import NotConverged
+
+from . import running
 
 #: What a job says, and exits with, that is told to end.
 STOPPED, STOPPED_CODE = "stopped before it was done", 143
@@ -47,7 +45,7 @@ def job(snakemake):
     try:
         if found_before:
             raise InputError(found_before)
-        _running.mark()
+        running.mark()
         for path in _below(results, snakemake.input):
             checksums.require_intact(results, path)
         yield log
@@ -61,7 +59,7 @@ def job(snakemake):
             time.perf_counter() - begin,
             SOLVING.seconds,
             SOLVING.problems,
-            time.process_time(),  # imports counted, but where a warm interpreter had them
+            time.process_time(),  # imports counted, but where they were loaded before its fork
             resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * _KILOBYTE / 1e6,
         )
     except (InputError, NotConverged, OutputError) as error:

@@ -25,7 +25,7 @@ ENDED = {
 def left_in_queue(profile):
     """Numbers of the jobs of this folder that wait or run on the cluster of a profile.
 
-    They would write what a new run writes too. Those that run hold the guard of ``_running``; those
+    They would write what a new run writes too. Those that run hold the guard of ``running``; those
     that wait are known to the cluster alone. Where its executor is not SLURM, nothing is known.
 
     Raises
