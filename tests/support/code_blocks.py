@@ -43,8 +43,12 @@ NOT_RUN = {
     ): "a caption: tests/figures/test_atlas_examples.py",
     (
         "docs/extending_stages.md",
-        '"summits": StageJob(',
-    ): "a row of a rule file: run in tests/workflow/test_added_stage.py",
+        '"""Summits of the composite topographies of a specimen',
+    ): "a script: run in tests/workflow/test_added_stage.py",
+    (
+        "docs/extending_stages.md",
+        "rule summits:",
+    ): "a rule: run in tests/workflow/test_added_stage.py",
     (
         "docs/flow.md",
         "python -m fractalcontact.commands.export_aperture",

@@ -205,9 +205,9 @@ class HeldStudy:
 
     def scan_replaced(self):
         """The scan replaced, its times kept, while its job runs; then put back."""
-        with self.held("specimen") as running:
+        with self.held("roughness_and_composite") as running:
             content = self._replace_scan()
-            self.release("specimen")
+            self.release("roughness_and_composite")
             running.wait(PATIENCE)
             self.scan.write_bytes(content)
             return self.verdict(running)
@@ -222,10 +222,10 @@ class HeldStudy:
 
     def scan_removed(self):
         """The scan removed while its job runs; then put back."""
-        with self.held("specimen") as running:
+        with self.held("roughness_and_composite") as running:
             aside = self.scan.rename(self.project / "aside.npy")
             self.notes.append("scans/rock.npy: removed")
-            self.release("specimen")
+            self.release("roughness_and_composite")
             running.wait(PATIENCE)
             aside.rename(self.scan)
             return self.verdict(running)

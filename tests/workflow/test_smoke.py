@@ -13,13 +13,12 @@ import pytest
 import yaml
 from print_size import faults_of_study
 from projects import ROOT, command, project, run, small_study, write_scan
+from stage_names import EXPERIMENTS
 from stated import GRANITE, array_sidecar, sidecar
 
-from fractalcontact.core.stage import EXPERIMENT
 from fractalcontact.study.atlas import read_atlas
 from fractalcontact.study.figure_list import figures_of, study_figures_of
 from fractalcontact.study.scan_files import list_scans
-from fractalcontact.study.stages import paths_of
 
 __all__ = ["project"]  # a fixture
 SCANS = ROOT.parent / "shared" / "scans"
@@ -36,7 +35,7 @@ def test_smoke_study_ends_with_figures_and_a_killed_run_gives_the_same_atlas(pro
         drawn = {path.stem for path in (results / "figures" / name).glob("*.png")}
         assert drawn == set(figures_of(opposite))
     drawn = {path.stem for path in (results / "figures").glob("*.svg")}
-    assert drawn == set(study_figures_of([*paths_of(EXPERIMENT), "defaults", "comparison"]))
+    assert drawn == set(study_figures_of([*EXPERIMENTS, "defaults", "comparison"]))
     assert faults_of_study(results / "atlas.nc") == {}
     again = run(project, "config/smoke.yaml", "--dry-run")
     assert "Nothing to be done" in again.stdout + again.stderr

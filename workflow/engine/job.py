@@ -121,13 +121,3 @@ def _stop(number, frame):
 def _below(folder, paths):
     """Those files that the study itself makes."""
     return [path for path in map(Path, paths) if path.is_relative_to(folder)]
-
-
-def require_unchanged(digests):
-    """Refuse what was made of scan files whose digests are no longer those of the plan.
-
-    The results would not belong to them, and nothing would show it.
-    """
-    for path, digest in digests.items():
-        if digest and (not Path(path).is_file() or checksums.sha256(path) != digest):
-            raise InputError(f"{path}: changed while the study ran; run it again")

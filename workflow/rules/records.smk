@@ -1,11 +1,12 @@
 # What a run looks at before its first job, and leaves behind after its last: a guard of results, its
 # plan, checksums, and what was made of what in linked data.
+import os
+
 import snakemake
-
 from engine import provenance, running
-
-from fractalcontact.core.atomic import atomic_write
+from fractalcontact.core import checksums
 from fractalcontact.study import crate, guards
+from snakemake.logging import logger
 
 
 def remake_without_record():
@@ -27,17 +28,15 @@ def begin():
         # Only the user says that specimens may go, never a study.
         if "FRACTALCONTACT_DROP" not in os.environ:
             guards.refuse_loss(RESULTS, [*SETTINGS, *LABELS])
-        with atomic_write(PLAN) as path:
-            path.write_bytes(pickle.dumps((dict(config), STUDY, scan_digests())))
+        RUN.save()
     except InputError as error:
         raise WorkflowError(str(error))
-    DIGESTS.save()
 
 
 def end():
     """Write checksums of all that was made, and what it is: be everything done or not."""
     checksums.write_manifest(RESULTS)
-    scans = {path: digest for path, digest in scan_digests().items() if digest}
+    scans = {path: digest for path, digest in RUN.all_digests().items() if digest}
     crate.write_crate(RESULTS, WORKFLOW, config["study"], scans)
 
 

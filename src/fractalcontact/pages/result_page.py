@@ -23,11 +23,10 @@ from ..core.estimate import Estimate
 from ..core.labels import printable
 from ..core.measured_maps import measured_maps
 from ..core.quantities import Shown, shown_in
-from ..core.stage import JOINT, SPECIMEN
 from ..core.subject import Subject, configuration_of
 from ..core.tables import write_table
 from ..study.atlas_parts import Trees
-from ..study.figure_list import STUDY, all_figures
+from ..study.figure_list import JOINT, SPECIMEN, STUDY, all_figures
 from .captions import symbols
 from .cards import SECTIONS, cards_of, section_of
 from .common_loads import common_loads, main_load
