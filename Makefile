@@ -12,6 +12,8 @@
 # make describe   drafts a sidecar for each scan that needs one, with a picture of what would be read;
 #   SCANS=folder, FILE=one of them, LIKE=sidecar that is to hold for all files of one instrument
 # make test   what the tests need, then the tests; make test-all takes larger ensembles
+# make test-processors   the tests under four profiles of processor, and a table of what fails: 40 minutes;
+#   PROFILE=oldest one of them, FOLDERS='tests/stages tests/flow' these alone
 # make examples   each study of config/examples, run once: some minutes
 # make test-slurm   the smoke study on a real SLURM of one node, started for it: root on Debian alone
 # make test-slurm-accounting   the same on one that keeps accounts, which says what jobs asked for and used
@@ -52,7 +54,7 @@ OPTIONS = -- --cores $(CORES)
 # does it say nothing; and of that of a closed pipe no shell says anything.
 QUIETLY = || { kill -s PIPE $$PPID; exit 1; }
 
-.PHONY: new describe all study campaign report smoke size-effect-small keep-going slurm dry-run verify faults check-scans check-accuracy calibration keep same cost accuracy test test-all examples test-browser test-slurm test-slurm-accounting docs bench bench-flow problems grid-table extremes fuzz fuzz-dialects lint format lock clean
+.PHONY: new describe all study campaign report smoke size-effect-small keep-going slurm dry-run verify faults check-scans check-accuracy calibration keep same cost accuracy test test-all test-processors examples test-browser test-slurm test-slurm-accounting docs bench bench-flow problems grid-table extremes fuzz fuzz-dialects lint format lock clean
 # Two runs in one checkout would refuse each other.
 .NOTPARALLEL:
 all: study
@@ -135,6 +137,9 @@ test: $(VENV)/tests-installed
 
 test-all: $(VENV)/tests-installed
 	TESTS=all $(PYTEST)
+
+test-processors: $(VENV)/tests-installed
+	PYTHONDONTWRITEBYTECODE= $(BIN)/python tests/support/processors.py $(if $(PROFILE),--only $(PROFILE)) -- $(FOLDERS)
 
 examples: $(VENV)/tests-installed
 	EXAMPLES=yes $(BIN)/python -m pytest -q tests/workflow/test_examples.py

@@ -249,8 +249,8 @@ def _load(cell, options):
     if not kept.exists():
         what = {"make": str(name), **cell._asdict(), "seed": options.seed}
         found = run_once({**what, "judge": cell.size <= MAPPED})
-        kept.write_text(json.dumps({"heights": str(name), **found}))
-    return json.loads(kept.read_text())
+        kept.write_text(json.dumps({"heights": str(name), **found}), encoding="utf-8")
+    return json.loads(kept.read_text(encoding="utf-8"))
 
 
 if __name__ == "__main__":

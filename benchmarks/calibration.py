@@ -183,7 +183,7 @@ def main(arguments):
 def write_rows(path, names, found, line):
     """Write rows as CSV, and print each in the form of a line, as it is found."""
     path.parent.mkdir(parents=True, exist_ok=True)
-    with path.open("w", newline="") as file:
+    with path.open("w", newline="", encoding="utf-8") as file:
         table = csv.writer(file)
         table.writerow(names)
         for row in found:

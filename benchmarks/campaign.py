@@ -147,7 +147,7 @@ def _watched(child):
     status = Path(f"/proc/{child.pid}/status")
     while child.poll() is None:
         with contextlib.suppress(OSError):
-            found = re.search(r"VmHWM:\s+(\d+)", status.read_text())
+            found = re.search(r"VmHWM:\s+(\d+)", status.read_text(encoding="utf-8"))
             peak = max(peak, int(found[1]) / 1024 if found else 0.0)
         time.sleep(0.02)
     return child.returncode, peak
@@ -210,7 +210,7 @@ def _copy(origin, results, donor, name):
                         stage.move(donor, name)
             record = results / f"checksums/atlas/{name}.sha256"
             record.parent.mkdir(parents=True, exist_ok=True)
-            record.write_text(f"{checksums.sha256(target)}  atlas/{name}.nc\n")
+            record.write_text(f"{checksums.sha256(target)}  atlas/{name}.nc\n", encoding="utf-8")
         else:
             os.link(path, target)
     for path in [
@@ -220,7 +220,9 @@ def _copy(origin, results, donor, name):
         target = results / str(path.relative_to(origin)).replace(donor, name)
         if path.parent.name != "atlas":
             target.parent.mkdir(parents=True, exist_ok=True)
-            target.write_text(path.read_text().replace(donor, name))
+            target.write_text(
+                path.read_text(encoding="utf-8").replace(donor, name), encoding="utf-8"
+            )
 
 
 def _copy_records(origin, folder, donor, name, study):
@@ -240,7 +242,7 @@ def _copy_records(origin, folder, donor, name, study):
         target = folder / ".snakemake/metadata" / base64.urlsafe_b64encode(made.encode()).decode()
         if not target.exists():
             target.parent.mkdir(parents=True, exist_ok=True)
-            target.write_text(text)
+            target.write_text(text, encoding="utf-8")
 
 
 @cache

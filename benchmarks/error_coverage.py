@@ -101,7 +101,7 @@ def main(arguments):
     found = np.array(
         [stated_and_true(joint(s, cells_of(s, options.cells)), options.loads) for s in seeds]
     )
-    with options.output.open("w", newline="") as file:
+    with options.output.open("w", newline="", encoding="utf-8") as file:
         rows = csv.writer(file)
         rows.writerow(["seed", "quantity", "load", "stated", "stated from s/2", "true"])
         for (i, j, k), true in np.ndenumerate(found[:, 2]):

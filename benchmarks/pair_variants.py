@@ -265,7 +265,7 @@ def main() -> int:
         return 1
     options.output.mkdir(parents=True, exist_ok=True)
     path = options.output / f"pair_variants_{options.specimen}_{options.offset:g}.csv"
-    with path.open("w", newline="") as file:
+    with path.open("w", newline="", encoding="utf-8") as file:
         writer = csv.DictWriter(file, list(flat(rows[0])))
         writer.writeheader()
         writer.writerows(map(flat, rows))

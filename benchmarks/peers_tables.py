@@ -56,13 +56,13 @@ def read(folder):
     path = folder / "beside_peers.csv"
     if not path.exists():
         return []
-    with path.open(newline="") as file:
+    with path.open(newline="", encoding="utf-8") as file:
         return list(csv.DictReader(file))
 
 
 def write(folder, rows):
     """Both tables; returns that for reading."""
-    with (folder / "beside_peers.csv").open("w", newline="") as file:
+    with (folder / "beside_peers.csv").open("w", newline="", encoding="utf-8") as file:
         writer = csv.DictWriter(file, COLUMNS)
         writer.writeheader()
         writer.writerows(rows)
@@ -77,7 +77,7 @@ def write(folder, rows):
             of = ", ".join(f"{name} {value}" for name, value in zip(_KIND, kind, strict=True))
             lines.append(f"- {solver}, {of}: {law}")
     text = "\n".join(lines) + "\n"
-    (folder / "beside_peers.md").write_text(text)
+    (folder / "beside_peers.md").write_text(text, encoding="utf-8")
     return text
 
 

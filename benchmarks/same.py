@@ -87,7 +87,11 @@ class Comparison:
                 self.tables(old / name, new / now, now)
             else:
                 self.compared["texts"] += 1
-                self.texts((old / name).read_text(), (new / now).read_text(), now)
+                self.texts(
+                    (old / name).read_text(encoding="utf-8"),
+                    (new / now).read_text(encoding="utf-8"),
+                    now,
+                )
         for name in _files(new, PICTURES):
             if (old / name).is_file() and (old / name).read_bytes() != (new / name).read_bytes():
                 self.pictures.append(name)
@@ -144,7 +148,7 @@ class Comparison:
             return
         already = len(self.differences)
         (heads, *rows), (new_heads, *new_rows) = (
-            list(csv.reader(path.read_text().splitlines())) for path in (old, new)
+            list(csv.reader(path.read_text(encoding="utf-8").splitlines())) for path in (old, new)
         )
         if len(rows) != len(new_rows):
             self.differ(place, f"{len(rows)} rows are now {len(new_rows)}")
@@ -224,7 +228,9 @@ def main(arguments=None):
             for folder in results:
                 keep(folder, KEPT / folder.name)
             return 0
-        new_names = yaml.safe_load(options.renamed.read_text()) if options.renamed else {}
+        new_names = (
+            yaml.safe_load(options.renamed.read_text(encoding="utf-8")) if options.renamed else {}
+        )
         same = [compare(options.against / folder.name, folder, new_names) for folder in results]
     except (InputError, OSError) as error:
         sys.exit(f"error: {error}")

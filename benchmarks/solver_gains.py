@@ -182,7 +182,7 @@ def main() -> None:
         rows += measured(problem, "cold", COLD, options.rtol, options.runs)
         rows += measured(problem, "step", _steps_of(size), options.rtol, options.runs)
         write_table(options.output, rows)
-    sys.stdout.write((options.output / "solver_gains.md").read_text())
+    sys.stdout.write((options.output / "solver_gains.md").read_text(encoding="utf-8"))
     for name, changes in YIELD_PARTS.items():
         with left_out(changes):
             states = [_yielding_state(draw) for draw in range(YIELDING)]
@@ -297,7 +297,7 @@ def coarse_applications(shape: tuple[int, int]) -> Iterator[list[float]]:
 def write_table(folder: Path, rows: list[dict]) -> None:
     """Write solver_gains.csv, and the same for reading as solver_gains.md."""
     folder.mkdir(parents=True, exist_ok=True)
-    with (folder / "solver_gains.csv").open("w", newline="") as file:
+    with (folder / "solver_gains.csv").open("w", newline="", encoding="utf-8") as file:
         writer = csv.DictWriter(file, COLUMNS)
         writer.writeheader()
         writer.writerows(rows)
@@ -318,7 +318,7 @@ def write_table(folder: Path, rows: list[dict]) -> None:
             head + f"| {row['applications']}{ratios[0]} | {row['coarse']:g} "
             f"| {row['seconds']:.3g}{ratios[1]} |"
         )
-    (folder / "solver_gains.md").write_text("\n".join(lines) + "\n")
+    (folder / "solver_gains.md").write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
 if __name__ == "__main__":

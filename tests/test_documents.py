@@ -31,9 +31,9 @@ def keys_of(node):
 
 
 def test_every_key_of_a_study_and_of_a_sidecar_is_explained():
-    schema = yaml.safe_load((ROOT / "config/schema/study.schema.yaml").read_text())
+    schema = yaml.safe_load((ROOT / "config/schema/study.schema.yaml").read_text(encoding="utf-8"))
     explained = set()
-    for line in (ROOT / "config/README.md").read_text().splitlines():
+    for line in (ROOT / "config/README.md").read_text(encoding="utf-8").splitlines():
         explained |= {part for key in KEY.findall(line) for part in key.split(".")}
         # Those of a mapping stand in braces: `{modulus, poisson}`.
         for group in re.findall(r"`\{([a-z_, ]+)\}`", line):
@@ -44,25 +44,27 @@ def test_every_key_of_a_study_and_of_a_sidecar_is_explained():
 def block_of(name, first):
     """The indented block of a document that begins with this line, as text."""
     lines = re.search(
-        rf"^    {re.escape(first)}.*\n(?:    .+\n)*", (ROOT / name).read_text(), re.MULTILINE
+        rf"^    {re.escape(first)}.*\n(?:    .+\n)*",
+        (ROOT / name).read_text(encoding="utf-8"),
+        re.MULTILINE,
     )
     return textwrap.dedent(lines[0])
 
 
 @pytest.fixture(scope="module")
 def schema():
-    return yaml.safe_load((ROOT / "config/schema/study.schema.yaml").read_text())
+    return yaml.safe_load((ROOT / "config/schema/study.schema.yaml").read_text(encoding="utf-8"))
 
 
 def test_the_sidecar_of_the_first_hour_is_that_of_a_matrix(schema, tmp_path):
     path = tmp_path / "granite.yaml"
-    path.write_text(block_of("docs/first_hour.md", "kind: face"))
+    path.write_text(block_of("docs/first_hour.md", "kind: face"), encoding="utf-8")
     assert read_sidecar(path, schema) == (sidecar_of_matrix(0.05), {})
 
 
 def test_the_sidecar_of_the_readme_is_one(schema, tmp_path):
     path = tmp_path / "rock.yaml"
-    path.write_text(block_of("README.md", "label: granite"))
+    path.write_text(block_of("README.md", "label: granite"), encoding="utf-8")
     keys, settings = read_sidecar(path, schema)
     assert keys == sidecar_of_matrix(0.05)
     assert set(settings["material"]) == {
@@ -76,9 +78,9 @@ def test_the_sidecar_of_the_readme_is_one(schema, tmp_path):
 
 def test_the_readme_states_the_material_that_scans_get():
     """That of the default study, where nothing else is stated."""
-    study = yaml.safe_load((ROOT / "config/paper.yaml").read_text())
+    study = yaml.safe_load((ROOT / "config/paper.yaml").read_text(encoding="utf-8"))
     material = study["materials"][study["defaults"]["material"]]
-    text = " ".join((ROOT / "README.md").read_text().split())
+    text = " ".join((ROOT / "README.md").read_text(encoding="utf-8").split())
     strength = material["joint_wall_strength"]
     for words in (f"E = {material['modulus']}", f"ratio {material['poisson']}", strength):
         assert words in text
@@ -88,8 +90,10 @@ def test_the_readme_states_the_material_that_scans_get():
 
 @pytest.mark.parametrize("path", DOCUMENTS, ids=lambda path: str(path.relative_to(ROOT)))
 def test_commands_files_and_links_of_a_document_exist(path):
-    text = path.read_text()
-    phony = re.search(r"^\.PHONY: (.+)$", (ROOT / "Makefile").read_text(), re.MULTILINE)
+    text = path.read_text(encoding="utf-8")
+    phony = re.search(
+        r"^\.PHONY: (.+)$", (ROOT / "Makefile").read_text(encoding="utf-8"), re.MULTILINE
+    )
     # After `make` and settings such as NAME=value: at the start of code or of an indented line.
     call = r"(?:`|^ {4}(?:\w+=\w+ )*)make(?: [A-Z]+=[^\s`]+)* ([a-z-]+)"
     targets = re.findall(call, text, re.MULTILINE)

@@ -49,7 +49,7 @@ def room_of(module):
 def imports(path):
     """Modules of the packages that one imports, as tuples, lazily or not."""
     here = module_name(path)[:-1]
-    for node in ast.walk(ast.parse(path.read_text())):
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
         if isinstance(node, ast.ImportFrom):
             inner = tuple(node.module.split(".")) if node.module else ()
             if node.level:
@@ -95,7 +95,7 @@ def test_a_room_imports_from_lower_floors_alone(modules, room):
 def test_the_solver_needs_nothing_but_numpy_scipy_and_numba():
     needed = set()
     for path in (SOURCES / "roughcontact").rglob("*.py"):
-        for node in ast.walk(ast.parse(path.read_text())):
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
             if isinstance(node, ast.Import):
                 needed |= {name.name.partition(".")[0] for name in node.names}
             elif isinstance(node, ast.ImportFrom) and not node.level:
@@ -114,7 +114,9 @@ def test_no_import_goes_round_in_a_circle(modules):
 def test_a_room_imports_nothing_but_what_is_asked_of_it(room):
     """Its ``__init__``, which every import of one of its modules runs, is a docstring."""
     folder = room if "." in room else f"fractalcontact.{room}"
-    body = ast.parse((SOURCES / folder.replace(".", "/") / "__init__.py").read_text()).body
+    body = ast.parse(
+        (SOURCES / folder.replace(".", "/") / "__init__.py").read_text(encoding="utf-8")
+    ).body
     assert [type(node) for node in body] == [ast.Expr]
 
 

@@ -69,7 +69,7 @@ def test_examples_of_the_library_run_and_find_what_was_put_in(tmp_path, monkeypa
         touch - state.closure + state.displacement.mean(), rel=1e-6
     )
     assert names["dimension"].low <= names["dimension"].dimension <= names["dimension"].high
-    used = set(re.findall(r"\b\w+\b", (DOCS / "library.md").read_text()))
+    used = set(re.findall(r"\b\w+\b", (DOCS / "library.md").read_text(encoding="utf-8")))
     functions = [name for name in fractalcontact.__all__ if name[0].islower()]
     assert set(functions) <= used
 
@@ -99,17 +99,21 @@ def test_hertz_of_the_gallery_is_close_and_the_rough_faces_close():
 
 
 def test_every_script_of_the_gallery_is_on_its_page():
-    text = (DOCS / "gallery.md").read_text()
+    text = (DOCS / "gallery.md").read_text(encoding="utf-8")
     for path in GALLERY.glob("*.py"):
         assert f"{{literalinclude}} gallery/{path.name}" in text
         assert f".venv/bin/python docs/gallery/{path.name}" in text
 
 
 def test_every_command_of_the_verification_table_selects_a_test():
-    commands = re.findall(r"`(tests/\S+\.py) -k (\w+)`", (DOCS / "verification.md").read_text())
+    commands = re.findall(
+        r"`(tests/\S+\.py) -k (\w+)`", (DOCS / "verification.md").read_text(encoding="utf-8")
+    )
     assert len(commands) > 20
     for path, word in commands:
-        names = re.findall(r"^def (test_\w+)", (ROOT / path).read_text(), re.MULTILINE)
+        names = re.findall(
+            r"^def (test_\w+)", (ROOT / path).read_text(encoding="utf-8"), re.MULTILINE
+        )
         assert any(word in name for name in names), (path, word)
 
 
@@ -117,13 +121,15 @@ def test_pictures_are_small_and_every_page_is_in_the_contents():
     pictures = [*DOCS.glob("*.png")]
     assert pictures
     assert [path.name for path in pictures if path.stat().st_size > 200_000] == []
-    trees = re.findall(r"^```\{toctree\}\n(.+?)^```$", (DOCS / "index.md").read_text(), re.M | re.S)
+    trees = re.findall(
+        r"^```\{toctree\}\n(.+?)^```$", (DOCS / "index.md").read_text(encoding="utf-8"), re.M | re.S
+    )
     listed = {line for tree in trees for line in tree.splitlines() if line and line[0] != ":"}
     assert listed == {path.stem for path in DOCS.glob("*.md")} - {"index"}
 
 
 def test_every_function_of_the_package_is_in_the_reference():
-    text = (DOCS / "api.md").read_text()
+    text = (DOCS / "api.md").read_text(encoding="utf-8")
     assert set(fractalcontact.__all__) == set(re.findall(r"auto\w+:: fractalcontact\.(\w+)", text))
 
 
@@ -132,8 +138,10 @@ def test_every_function_of_the_package_is_in_the_reference():
 @pytest.mark.parametrize("link", ["[to](no_such_page.md)", "[to](atlas.md#no-such-heading)"])
 def test_a_broken_link_fails_the_build(tmp_path, link):
     for name in ("conf.py", "atlas.md"):
-        (tmp_path / name).write_text((DOCS / name).read_text())
-    (tmp_path / "index.md").write_text(f"# Start\n\n{link}\n\n```{{toctree}}\natlas\n```\n")
+        (tmp_path / name).write_text((DOCS / name).read_text(encoding="utf-8"), encoding="utf-8")
+    (tmp_path / "index.md").write_text(
+        f"# Start\n\n{link}\n\n```{{toctree}}\natlas\n```\n", encoding="utf-8"
+    )
     command = [
         sys.executable,
         "-m",
@@ -146,7 +154,7 @@ def test_a_broken_link_fails_the_build(tmp_path, link):
         tmp_path / "site",
     ]
     paths = {"PYTHONPATH": str(ROOT / "src"), **os.environ}
-    done = subprocess.run(command, capture_output=True, text=True, env=paths)
+    done = subprocess.run(command, capture_output=True, text=True, env=paths, encoding="utf-8")
     assert done.returncode != 0
     assert "no" in done.stderr
     assert "such" in done.stderr

@@ -34,13 +34,13 @@ def table(monkeypatch, tmp_path):
     import grid_table
 
     study, page, rows = (tmp_path / name for name in ("study.yaml", "page.md", "rows.csv"))
-    study.write_text(yaml.safe_dump(STUDY))
-    page.write_text(PAGE.format(begin=grid_table.BEGIN, end=grid_table.END))
+    study.write_text(yaml.safe_dump(STUDY), encoding="utf-8")
+    page.write_text(PAGE.format(begin=grid_table.BEGIN, end=grid_table.END), encoding="utf-8")
 
     def made(*names):
         files = ["--study", str(study), "--table", str(rows), "--page", str(page)]
         grid_table.main([*files, "--specimens", *names])
-        return pd.read_csv(rows), page.read_text()
+        return pd.read_csv(rows), page.read_text(encoding="utf-8")
 
     return made
 

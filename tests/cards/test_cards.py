@@ -39,14 +39,14 @@ def numbers_of(card):
 
 @pytest.mark.parametrize("name", NAMES)
 def test_a_card_is_of_the_stated_form_in_both_files(folder, cards, name):
-    schema = json.loads(SCHEMA.read_text())
+    schema = json.loads(SCHEMA.read_text(encoding="utf-8"))
     jsonschema.Draft202012Validator.check_schema(schema)
     jsonschema.Draft202012Validator(schema).validate(cards[name])
-    assert json.loads((folder / f"cards/{name}.json").read_text()) == cards[name]
+    assert json.loads((folder / f"cards/{name}.json").read_text(encoding="utf-8")) == cards[name]
 
 
 def test_the_form_refuses_a_number_without_unit_model_or_reason(cards):
-    validator = jsonschema.Draft202012Validator(json.loads(SCHEMA.read_text()))
+    validator = jsonschema.Draft202012Validator(json.loads(SCHEMA.read_text(encoding="utf-8")))
     for key in ("unit", "model", "title"):
         broken = json.loads(json.dumps(cards["pair"]))
         del broken["entries"]["delta_g"][key]
@@ -82,13 +82,13 @@ def test_tests_and_grasselli_s_parameters_stand_on_the_card(folder, cards):
     for key in ("closure_over_measured", "dilatancy_over_measured"):
         (row,) = entries[key]["values"]
         assert row["value"] == pytest.approx(1 / PART, rel=0.02), key
-    page = (folder / "cards/pair.html").read_text()
+    page = (folder / "cards/pair.html").read_text(encoding="utf-8")
     assert "Laboratory tests" in page
     assert "Grasselli, towards" in page
     (row,) = entries["grasselli"]["values"]
     law = [entries[f"grasselli_{name}"]["values"][0]["value"] for name in ("theta_max", "c")]
     assert row["value"] == pytest.approx(law[0] / (law[1] + 1), rel=1e-4)
-    assert "Laboratory tests" not in (folder / "cards/flat.1.html").read_text()
+    assert "Laboratory tests" not in (folder / "cards/flat.1.html").read_text(encoding="utf-8")
     assert "missing" in cards["flat.1"]["entries"]["grasselli"]
 
 
@@ -202,7 +202,7 @@ class Cells(HTMLParser):
 
 @pytest.mark.parametrize("name", NAMES)
 def test_the_page_prints_the_numbers_of_the_card_and_asks_for_nothing(folder, cards, name):
-    page = Cells((folder / f"cards/{name}.html").read_text())
+    page = Cells((folder / f"cards/{name}.html").read_text(encoding="utf-8"))
     text = " ".join(page.texts)
     assert not [tag for tag, _ in page.tags if tag in ("script", "img")]
     assert "MPa/mm" in text
@@ -217,7 +217,7 @@ def test_the_page_prints_the_numbers_of_the_card_and_asks_for_nothing(folder, ca
 
 def test_a_hostile_label_is_text_on_the_page_and_in_the_files(folder, cards):
     assert cards["pair"]["label"] == printable(HOSTILE)
-    assert "<script>alert" not in (folder / "cards/pair.html").read_text()
+    assert "<script>alert" not in (folder / "cards/pair.html").read_text(encoding="utf-8")
 
 
 def test_methods_name_versions_and_references_of_what_they_say(cards):
@@ -232,7 +232,7 @@ def test_methods_name_versions_and_references_of_what_they_say(cards):
 def test_what_is_no_card_is_refused_in_a_sentence(tmp_path):
     for text in ("a: 1", "[1, 2]", "form: 2\nentries: {}", "a: [", "\x00"):
         path = tmp_path / "card.yaml"
-        path.write_text(text)
+        path.write_text(text, encoding="utf-8")
         with pytest.raises(InputError, match="card"):
             read_card(path)
     with pytest.raises(InputError, match="cannot be read"):

@@ -43,7 +43,7 @@ def test_a_saw_has_the_roughness_of_its_slope_whatever_its_units(tmp_path):
     np.testing.assert_allclose(heights, saw, atol=1e-12)
     assert main([str(path), "--out", str(tmp_path)]) == 0
     card = read_card(tmp_path / "cards/saw.yaml")
-    jsonschema.Draft202012Validator(json.loads(SCHEMA.read_text())).validate(card)
+    jsonschema.Draft202012Validator(json.loads(SCHEMA.read_text(encoding="utf-8"))).validate(card)
     rows = {row["at"]["fit"]: row for row in card["entries"]["jrc_by_fit"]["values"]}
     step, fit = FITS["Yu and Vayssade 1991, 0.25 mm"]
     assert step == spacing
@@ -51,7 +51,7 @@ def test_a_saw_has_the_roughness_of_its_slope_whatever_its_units(tmp_path):
     assert card["kind"] == "profile"
     for key in ("k_ni", "tangent_stiffness", "peak_strength", "mean_gap"):
         assert "no contact" in card["entries"][key]["missing"]
-    page = (tmp_path / "cards/saw.html").read_text()
+    page = (tmp_path / "cards/saw.html").read_text(encoding="utf-8")
     assert "No contact" in page
     assert "Normal stiffness" not in page
 
@@ -70,7 +70,7 @@ def test_a_saw_has_the_roughness_of_its_slope_whatever_its_units(tmp_path):
 )
 def test_what_is_no_profile_is_refused_in_a_sentence(tmp_path, capsys, text, words):
     path = tmp_path / "one.csv"
-    path.write_text(text)
+    path.write_text(text, encoding="utf-8")
     assert main([str(path), "--out", str(tmp_path)]) == 1
     assert words in capsys.readouterr().err
     assert not (tmp_path / "cards").exists()

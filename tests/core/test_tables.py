@@ -50,14 +50,16 @@ def test_numbers_and_verdicts_are_written_as_they_are(tmp_path):
 
 def test_a_table_without_rows_has_its_header(tmp_path):
     write_table(tmp_path / "t.csv", pd.DataFrame({"study": [], "specimen": []}))
-    assert (tmp_path / "t.csv").read_text() == "study,specimen\n"
+    assert (tmp_path / "t.csv").read_text(encoding="utf-8") == "study,specimen\n"
 
 
 def test_no_other_function_writes_a_table():
     writes = re.compile(r"\bto_csv\b|\bto_excel\b|csv\.writer|DictWriter|\bsavetxt\b|\.tofile\(")
     paths = [*ROOT.glob("src/**/*.py"), *ROOT.glob("workflow/**/*"), ROOT / "Snakefile"]
     found = [
-        p for p in paths if p.is_file() and p.suffix != ".pyc" and writes.search(p.read_text())
+        p
+        for p in paths
+        if p.is_file() and p.suffix != ".pyc" and writes.search(p.read_text(encoding="utf-8"))
     ]
     assert [path.relative_to(ROOT).as_posix() for path in found] == [
         "src/fractalcontact/core/tables.py"

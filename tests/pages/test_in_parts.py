@@ -54,7 +54,8 @@ def test_tables_are_those_of_one_file(results, parts, table):
 @pytest.mark.parametrize("name", NAMES)
 def test_cards_are_those_of_one_file(results, parts, name):
     one, other = (
-        json.loads((folder / f"cards/{name}.json").read_text()) for folder in (results, parts)
+        json.loads((folder / f"cards/{name}.json").read_text(encoding="utf-8"))
+        for folder in (results, parts)
     )
     assert one == other
 

@@ -474,7 +474,7 @@ def test_the_verdict_on_the_elastic_model_is_that_of_the_atlas(results):
 def test_the_first_screen_says_of_each_joint_what_its_card_says(results):
     html = (results / "index.html").read_text(encoding="utf-8")
     for name in NAMES:
-        card = json.loads((results / f"cards/{name}.json").read_text())
+        card = json.loads((results / f"cards/{name}.json").read_text(encoding="utf-8"))
         block = block_of(card)
         shown = re.search(rf'id="joint-{re.escape(name)}">(.*?)</article>', html, re.DOTALL)[1]
         assert f"Trust: {card['trust']['word']}." in shown
@@ -494,7 +494,7 @@ def test_the_first_screen_says_of_each_joint_what_its_card_says(results):
 
 def test_the_first_screen_says_what_no_interval_holds(results):
     """Hardness of single contacts, the rules of strength, the spacing."""
-    card = json.loads((results / "cards/pair.json").read_text())
+    card = json.loads((results / "cards/pair.json").read_text(encoding="utf-8"))
     at = {"pressure": card["geometry"]["reference_pressure"]["value"]}
     number = {"low": None, "high": None, "at": at}
     tau = {"peak_strength": 26.8, "barton_strength": 18.9, "contact_strength": 45.5}
@@ -547,7 +547,9 @@ def test_the_first_screen_says_what_no_interval_holds(results):
     ],
 )
 def test_an_error_larger_than_its_number_leaves_it_unknown(results, half, synthetic, words):
-    card = json.loads((results / "cards/pair.json").read_text()) | {"synthetic": synthetic}
+    card = json.loads((results / "cards/pair.json").read_text(encoding="utf-8")) | {
+        "synthetic": synthetic
+    }
     at = {"pressure": card["geometry"]["reference_pressure"]["value"]}
     gap = {"value": 0.434, "low": None, "high": None, "at": at, "of_its_population": half}
     card["entries"]["mean_gap"] = {"values": [gap]}
@@ -557,9 +559,9 @@ def test_an_error_larger_than_its_number_leaves_it_unknown(results, half, synthe
 def test_synthetic_joints_stand_behind_scanned_ones_under_their_own_heading(results, tmp_path):
     (tmp_path / "cards").mkdir()
     for name in NAMES:
-        card = json.loads((results / f"cards/{name}.json").read_text())
+        card = json.loads((results / f"cards/{name}.json").read_text(encoding="utf-8"))
         card["synthetic"] = name == "flat.1"
-        (tmp_path / f"cards/{name}.json").write_text(json.dumps(card))
+        (tmp_path / f"cards/{name}.json").write_text(json.dumps(card), encoding="utf-8")
     assert [one["name"] for one in blocks_of(NAMES, tmp_path)] == ["pair", "flat.1"]
     assert blocks_of(["none"], tmp_path) == []
 

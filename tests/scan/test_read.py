@@ -49,7 +49,7 @@ def save_npy(path, values):
 def save_text(path, rows, delimiter=" ", header="", end="", decimal="."):
     lines = [delimiter.join("nan" if np.isnan(v) else f"{v:.10g}" for v in row) for row in rows]
     text = "\n".join(line.replace(".", decimal) + end for line in lines)
-    path.write_text(header + text + "\n")
+    path.write_text(header + text + "\n", encoding="utf-8")
     return path
 
 
@@ -169,7 +169,7 @@ def test_repeated_header_and_short_last_line(tmp_path):
     lines = [",".join(f"{v:.10g}" for v in row) for row in points]
     lines = ["x,y,z", "x,y,z", *(f"{line}," for line in lines[:50]), "x,y,z", *lines[50:], "1.5,2"]
     path = tmp_path / "rock.txt"
-    path.write_text("\r\n".join(lines))
+    path.write_text("\r\n".join(lines), encoding="utf-8")
     heights = read_scan(path, {"unit": "mm"})
     np.testing.assert_array_equal(heights.values, surface())
     assert "cut short" in heights.attrs["notes"]
@@ -476,11 +476,11 @@ def test_a_truncated_npy_is_named(tmp_path):
 
 def test_unreadable_text_is_named_with_its_line(tmp_path):
     path = save_text(tmp_path / "rock.txt", surface())
-    path.write_text(path.read_text() + "and then it broke\n")
+    path.write_text(path.read_text(encoding="utf-8") + "and then it broke\n", encoding="utf-8")
     with pytest.raises(InputError, match=r"rock\.txt: line 13 holds 'and', which is no number"):
         read_scan(path, {"unit": "mm", "spacing": 0.1, "missing": "none"})
-    lines = save_text(path, surface()).read_text().splitlines()
-    path.write_text("\n".join([*lines[:5], lines[5] + " 1.0", *lines[6:]]))
+    lines = save_text(path, surface()).read_text(encoding="utf-8").splitlines()
+    path.write_text("\n".join([*lines[:5], lines[5] + " 1.0", *lines[6:]]), encoding="utf-8")
     with pytest.raises(InputError, match="line 6 has 16 values, earlier lines have 15"):
         read_scan(path, {"unit": "mm", "spacing": 0.1})
 

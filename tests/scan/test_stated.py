@@ -66,10 +66,10 @@ def test_words_of_a_header_never_change_what_is_read(tmp_path):
     rng = np.random.default_rng(0)
     path = tmp_path / "rock.csv"
     keys = write(path, surface(), DX, DY)
-    plain, numbers = read_scan(path, keys), path.read_text()
+    plain, numbers = read_scan(path, keys), path.read_text(encoding="utf-8")
     for mark in ("# ", "", "% "):
         lines = [f"{mark}{line}" for line in foreign_lines(rng, len(WORDS))]
-        path.write_text("\n".join(lines) + "\n" + numbers)
+        path.write_text("\n".join(lines) + "\n" + numbers, encoding="utf-8")
         under = read_scan(path, keys | {"header": len(lines)})
         np.testing.assert_array_equal(under, plain)
         with pytest.raises(IncompleteSidecar):
@@ -92,7 +92,7 @@ def test_columns_named_with_their_units_need_no_sidecar(tmp_path):
         "# X [mm];Y [mm];Z [µm]",
         'made by hand\n"x (mm)";y (mm);z(um)',
     ):
-        path.write_text(table(names))
+        path.write_text(table(names), encoding="utf-8")
         heights = read_scan(path)
         np.testing.assert_allclose(heights, np.nan_to_num(surface()), atol=1e-8)
         assert heights.attrs["spacing_x"] == pytest.approx(0.1)
@@ -113,7 +113,7 @@ def test_columns_named_with_their_units_need_no_sidecar(tmp_path):
 )
 def test_columns_that_leave_anything_open_need_one(tmp_path, text):
     path = tmp_path / "rock.csv"
-    path.write_text(text)
+    path.write_text(text, encoding="utf-8")
     with pytest.raises(IncompleteSidecar):
         read_scan(path)
 
@@ -147,7 +147,7 @@ def test_what_is_said_of_one_face_holds_for_it_alone(tmp_path):
         points = np.column_stack([0.1 * x.ravel(), 0.1 * y.ravel(), z.ravel() + gap])
         paths[face] = tmp_path / f"rock.{face}.txt"
         lines = "\n".join(",".join(f"{v:.9g}" for v in row) for row in points)
-        paths[face].write_text(header + lines)
+        paths[face].write_text(header + lines, encoding="utf-8")
     stated = {**POINTS, "header": 2, "upper": {"header": 0}, "registration": "none"}
     lower, upper = read_faces(paths["lower"], paths["upper"], stated)
     np.testing.assert_allclose(upper - lower, 0.5, atol=1e-8)
@@ -168,7 +168,7 @@ def test_texts_of_sidecars_are_yaml():
 
 def test_a_cell_of_a_thousand_signs_does_not_fill_the_message(tmp_path):
     path = tmp_path / "rock.xyz"
-    path.write_text("0 0 0.1\n1 0 0.2\n2 0 " + "0.3" + "," * 1000 + "\n")
+    path.write_text("0 0 0.1\n1 0 0.2\n2 0 " + "0.3" + "," * 1000 + "\n", encoding="utf-8")
     keys = {"kind": "face", "unit": "mm", "heights": "up", "missing": "none", "layout": "points"}
     keys |= {"delimiter": "blank", "decimal": ".", "header": 0, "columns": [0, 1, 2]}
     with pytest.raises(InputError, match="do not fit its sidecar") as caught:

@@ -162,7 +162,8 @@ def run(numbers, seed: int, kept: Path | None = None) -> list[Judgement]:
                 stem = f"{seed}-{number}"
                 (kept / f"{stem}{written.ending}").write_bytes(written.content)
                 (kept / f"{stem}.fault").write_text(
-                    f"{written.dialect}\n{written.sidecar}\n{judgement.fault}\n"
+                    f"{written.dialect}\n{written.sidecar}\n{judgement.fault}\n",
+                    encoding="utf-8",
                 )
     return judgements
 

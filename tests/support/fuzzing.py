@@ -41,7 +41,7 @@ MAX_MEMORY = 2 * 1024**3
 LONGEST_MESSAGE = 1000
 LONGEST_DRAFT = 6100  # what the reader cuts it to, and what it puts in place
 _LARGEST_SEED = 2_500_000  # bytes of a real file that is worth spoiling a hundred times
-_SCHEMA = yaml.safe_load((ROOT / "config/schema/study.schema.yaml").read_text())
+_SCHEMA = yaml.safe_load((ROOT / "config/schema/study.schema.yaml").read_text(encoding="utf-8"))
 _SIDECAR = (
     b"label: granite, tensile crack\nunit_xy: mm\nunit_z: um\nspacing: [0.1 mm, 0.2]\n"
     b"columns: [x, y, 2]\nmissing: -9999\nwindow: 20 mm\nloads: [10 kN, 25 MPa]\n"
@@ -192,7 +192,7 @@ class _Watch(logging.Handler):
         self.logger.propagate = False
         self.seconds, self.reader_peak = -time.process_time(), 0
         with contextlib.suppress(OSError):  # Linux forgets the peak so far; others grow only
-            Path("/proc/self/clear_refs").write_text("5")
+            Path("/proc/self/clear_refs").write_text("5", encoding="utf-8")
         self.own_peak = _own_peak()
 
     def emit(self, record):
@@ -210,7 +210,7 @@ class _Watch(logging.Handler):
 def _own_peak() -> int:
     """Most memory this process had, in bytes."""
     with contextlib.suppress(FileNotFoundError):
-        status = Path("/proc/self/status").read_text()
+        status = Path("/proc/self/status").read_text(encoding="utf-8")
         return int(re.search(r"VmHWM:\s+(\d+)", status)[1]) * 1024
     return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
 
@@ -254,7 +254,9 @@ def run(numbers, seed: int, kept: Path | None = None, real: bool = True) -> list
                 kept.mkdir(parents=True, exist_ok=True)
                 name = f"{seed}-{number}{chosen.ending}"
                 (kept / name).write_bytes(content)
-                (kept / f"{name}.fault").write_text(f"{chosen.options}\n{verdict.fault}\n")
+                (kept / f"{name}.fault").write_text(
+                    f"{chosen.options}\n{verdict.fault}\n", encoding="utf-8"
+                )
     return verdicts
 
 

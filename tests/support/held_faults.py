@@ -77,10 +77,10 @@ class HeldStudy:
         write_scan(self.project, "rock", rough_heights(n=64))
         engine = self.project / "workflow/engine"
         shutil.copy(ROOT / "tests/support/held_job.py", engine)
-        begun, text = "    found_before = ", (engine / "job.py").read_text()
+        begun, text = "    found_before = ", (engine / "job.py").read_text(encoding="utf-8")
         assert text.count(begun) == 1
         held = f"    from engine.held_job import hold\n\n    hold(snakemake.log[0])\n{begun}"
-        (engine / "job.py").write_text(text.replace(begun, held))
+        (engine / "job.py").write_text(text.replace(begun, held), encoding="utf-8")
         self.reference = self._undisturbed()
         self.notes = []
 
@@ -95,7 +95,7 @@ class HeldStudy:
     def found(self):
         """The atlas, and the checksums of everything."""
         manifest = self.results / "manifest.sha256"
-        return (self.project / ATLAS).read_bytes(), manifest.read_text()
+        return (self.project / ATLAS).read_bytes(), manifest.read_text(encoding="utf-8")
 
     def fault(self, name):
         """One fault, from a study with no results to the comparison.
@@ -126,7 +126,7 @@ class HeldStudy:
         )
         told = {"HELD_JOBS": str(self.orders)}
         self.said = self.project / "said.txt"
-        with open(self.said, "w") as said:
+        with open(self.said, "w", encoding="utf-8") as said:
             return subprocess.Popen(
                 (sys.executable, "workflow/run.py", STUDY, *words, ATLAS),
                 cwd=self.project,
@@ -134,6 +134,10 @@ class HeldStudy:
                 stderr=said,
                 env=os.environ | told,
             )
+
+    def told(self):
+        """What the last run said."""
+        return self.said.read_text(encoding="utf-8")
 
     @contextlib.contextmanager
     def held(self, rule):
@@ -144,7 +148,7 @@ class HeldStudy:
             begun = self.orders / f"{rule}.begun"
             self.wait(lambda: begun.exists() or running.poll() is not None)
             if not begun.exists():
-                raise RuntimeError(f"{rule} never began: {self.said.read_text()[-2000:]}")
+                raise RuntimeError(f"{rule} never began: {self.told()[-2000:]}")
             yield running
         finally:
             self.release(rule)
@@ -154,7 +158,7 @@ class HeldStudy:
 
     def order(self, rule, text):
         """Tell the next job of a rule what to do; it reads the whole order or none."""
-        (self.orders / "written").write_text(text)
+        (self.orders / "written").write_text(text, encoding="utf-8")
         os.replace(self.orders / "written", self.orders / rule)
 
     def release(self, rule):
@@ -174,8 +178,8 @@ class HeldStudy:
         code = running.wait(PATIENCE)
         if code == 0:
             return "same" if self.is_same() else "WRONG"
-        sentences = [line for line in self.said.read_text().splitlines() if "error: " in line]
-        self.notes.append(f"refused: {sentences[0] if sentences else self.said.read_text()[-500:]}")
+        sentences = [line for line in self.told().splitlines() if "error: " in line]
+        self.notes.append(f"refused: {sentences[0] if sentences else self.told()[-500:]}")
         if not sentences or not refusals or self.verdict(refusals=refusals - 1) == "WRONG":
             return "WRONG"
         return "refused, then same"
@@ -238,7 +242,7 @@ class HeldStudy:
         shutil.rmtree(place, ignore_errors=True)
         place.mkdir()
         mount = ["mount", "-t", "tmpfs", "-o", "size=80m", "tmpfs", place]
-        mounted = subprocess.run(mount, capture_output=True, text=True)
+        mounted = subprocess.run(mount, capture_output=True, text=True, encoding="utf-8")
         if mounted.returncode:
             raise Skipped(f"no tmpfs can be mounted: {mounted.stderr.strip()}")
         try:
@@ -350,7 +354,7 @@ class HeldStudy:
             again = self.start()
             if again.wait(PATIENCE) == 0:
                 return "WRONG"  # it must not work beside jobs of the killed run
-            self.notes += [line for line in self.said.read_text().splitlines() if "error: " in line]
+            self.notes += [line for line in self.told().splitlines() if "error: " in line]
             self.release("contact")
             self.wait(lambda: not self.node.queue())
         before = {job.number for job in self.node.jobs()}
@@ -420,7 +424,7 @@ def replay(names, accounting=False):
 def _children(number):
     """Process ids of the children of a process."""
     path = Path(f"/proc/{number}/task/{number}/children")
-    return [int(word) for word in path.read_text().split()]
+    return [int(word) for word in path.read_text(encoding="utf-8").split()]
 
 
 def _allow(folders, *, allowed):

@@ -17,9 +17,9 @@ SEEN = 5
 
 
 def _obey(order):
-    order.with_suffix(".begun").write_text(str(os.getpid()))
+    order.with_suffix(".begun").write_text(str(os.getpid()), encoding="utf-8")
     while order.exists():
-        verb, *words = order.read_text().split() or ["hold"]
+        verb, *words = order.read_text(encoding="utf-8").split() or ["hold"]
         if verb == "memory":
             _ballast.append(bytearray(b"x") * (int(words[0]) * MB))
             time.sleep(SEEN)

@@ -39,7 +39,7 @@ def eat_within_a_library():
 
 def write_files():
     try:
-        Path("written.txt").write_text("more than nothing")
+        Path("written.txt").write_text("more than nothing", encoding="utf-8")
     except OSError as error:
         raise InputError(f"could not write: {error}") from error
 
@@ -74,7 +74,7 @@ WAYS = {
 def read(path, options):
     if path.suffix == ".npz":
         return read_npz(path, options)
-    way = path.read_text()
+    way = path.read_text(encoding="utf-8")
     if way == "stack":
         return RawScan(np.zeros((2, 8, 10)), "matrix", "the test's own")
     if way in WAYS:

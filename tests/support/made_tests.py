@@ -60,7 +60,7 @@ def with_tests(stages, settings, solver, folder):
         places = np.linspace(x[known][0], x[known][-1], 30)
         rows = zip(places, PART * np.interp(places, x[known], y[known]), strict=True)
         text = "\n".join([heads[kind], *(f"{a!s}, {b!s}" for a, b in rows)])
-        Path(folder, f"{kind}.csv").write_text(text)
+        Path(folder, f"{kind}.csv").write_text(text, encoding="utf-8")
         stated[kind] = stated[kind] | {"file": f"{kind}.csv"}
     settings = replace(settings, measured=resolve_tests(stated, "made: measured", Path(folder)))
     needed = ("specimens", "joints", "closure", "dilatancy", "error_budget", "flow", "strength")

@@ -43,7 +43,12 @@ def command(study, *options):
 
 def run(project, study="config/smoke.yaml", *options):
     return subprocess.run(
-        command(study, *options), cwd=project, capture_output=True, text=True, timeout=900
+        command(study, *options),
+        cwd=project,
+        capture_output=True,
+        text=True,
+        timeout=900,
+        encoding="utf-8",
     )
 
 
@@ -57,6 +62,7 @@ def made(project, study, *options, targets=(), **environment):
         text=True,
         timeout=900,
         env=os.environ | environment,
+        encoding="utf-8",
     )
 
 
@@ -72,13 +78,13 @@ def jobs_of(planned):
 
 def small_study(project, **changes):
     """A study of scans alone, as fast as one can be."""
-    study = yaml.safe_load((project / "config/smoke.yaml").read_text())
+    study = yaml.safe_load((project / "config/smoke.yaml").read_text(encoding="utf-8"))
     study |= {"study": "test", "scans": "scans", "embedded": {}, "specimens": {}}
     for experiment in EXPERIMENTS:
         study.pop(experiment, None)
     study["defaults"] |= {"window": "auto", "offsets": "auto", "loads": ["1 MPa", "10 MPa"]}
     study |= changes
-    (project / "config/test.yaml").write_text(yaml.safe_dump(study))
+    (project / "config/test.yaml").write_text(yaml.safe_dump(study), encoding="utf-8")
     return "config/test.yaml"
 
 
@@ -90,5 +96,5 @@ def write_scan(project, name, heights=None):
     """A scan with its sidecar in the project's folder."""
     heights = rough_heights() if heights is None else heights
     np.save(project / f"scans/{name}.npy", heights)
-    (project / f"scans/{name}.yaml").write_text(array_sidecar(0.1))
+    (project / f"scans/{name}.yaml").write_text(array_sidecar(0.1), encoding="utf-8")
     return heights

@@ -145,7 +145,9 @@ class Node:
 
     def is_idle(self):
         """Whether the node says that it takes jobs."""
-        found = subprocess.run(["sinfo", "-h", "-o", "%T"], capture_output=True, text=True)
+        found = subprocess.run(
+            ["sinfo", "-h", "-o", "%T"], capture_output=True, text=True, encoding="utf-8"
+        )
         return found.stdout.strip() in ("idle", "mixed", "allocated")
 
     def restart_slurmd(self, seconds=1.0):
@@ -160,13 +162,13 @@ class Node:
 
     def queue(self):
         """Jobs that wait or run, a line each."""
-        done = subprocess.run(["squeue", "-h"], capture_output=True, text=True)
+        done = subprocess.run(["squeue", "-h"], capture_output=True, text=True, encoding="utf-8")
         return done.stdout.strip().splitlines()
 
     def jobs(self, rule=""):
         """All jobs that it knows, of one rule or of all, in the order in which they came."""
         command = ["squeue", "-h", "--states=all", "--sort=i", "--format=%i|%k|%T|%m|%l"]
-        done = subprocess.run(command, capture_output=True, text=True, check=True)
+        done = subprocess.run(command, capture_output=True, text=True, check=True, encoding="utf-8")
         lines = (line.split("|") for line in done.stdout.splitlines())
         jobs = (
             Job(
@@ -240,7 +242,7 @@ class Node:
 
     def _configure(self):
         ours = CONFIGURATION / "slurm.conf"
-        if ours.is_file() and ours.read_text(errors="replace").startswith(OURS):
+        if ours.is_file() and ours.read_text(errors="replace", encoding="utf-8").startswith(OURS):
             shutil.rmtree(CONFIGURATION)
         elif CONFIGURATION.exists():
             self.kept = self.folder / "etc-slurm-before"
@@ -256,10 +258,10 @@ class Node:
             "partition": PARTITION,
             "accounting": WITH_ACCOUNTING if self.accounting else NO_ACCOUNTING,
         }
-        (CONFIGURATION / "slurm.conf").write_text(SLURM_CONF.format(**words))
+        (CONFIGURATION / "slurm.conf").write_text(SLURM_CONF.format(**words), encoding="utf-8")
         if self.accounting:
             path = CONFIGURATION / "slurmdbd.conf"
-            path.write_text(SLURMDBD_CONF.format(**words))
+            path.write_text(SLURMDBD_CONF.format(**words), encoding="utf-8")
             path.chmod(0o600)
 
     def _start_munge(self):
@@ -325,7 +327,7 @@ def _alive():
     found = set()
     for entry in filter(str.isdigit, os.listdir("/proc")):
         with contextlib.suppress(OSError):  # it has ended
-            name = Path(f"/proc/{entry}/comm").read_text().strip()
+            name = Path(f"/proc/{entry}/comm").read_text(encoding="utf-8").strip()
             if name.startswith(("slurm", "munged", "mariadbd")):
                 found.add(f"{entry} {name}")
     return found
@@ -346,7 +348,7 @@ def _minutes(text):
 def _is_of(number, folder):
     """Whether a process is a step of a job of SLURM, or works in it in a folder."""
     try:
-        if Path(f"/proc/{number}/comm").read_text().startswith("slurmstepd"):
+        if Path(f"/proc/{number}/comm").read_text(encoding="utf-8").startswith("slurmstepd"):
             return True
         environment = Path(f"/proc/{number}/environ").read_bytes()
         return b"SLURM_JOB_ID=" in environment and os.readlink(f"/proc/{number}/cwd") == str(folder)
@@ -360,7 +362,9 @@ def _end_with_parent():
 
 
 def _tail(path):
-    return f"{path.name}:\n" + "\n".join(path.read_text(errors="replace").splitlines()[-15:])
+    return f"{path.name}:\n" + "\n".join(
+        path.read_text(errors="replace", encoding="utf-8").splitlines()[-15:]
+    )
 
 
 def _succeeds(*command):
@@ -368,7 +372,7 @@ def _succeeds(*command):
 
 
 def _require(*command):
-    done = subprocess.run(command, capture_output=True, text=True)
+    done = subprocess.run(command, capture_output=True, text=True, encoding="utf-8")
     if done.returncode:
         raise RuntimeError(f"{' '.join(command)}: {done.stdout[-1000:]}{done.stderr[-1000:]}")
 

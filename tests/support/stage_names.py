@@ -4,7 +4,8 @@ import re
 
 from places import ROOT
 
-_RULES = "".join(path.read_text() for path in sorted(ROOT.glob("workflow/rules/*.smk")))
+_FILES = sorted(ROOT.glob("workflow/rules/*.smk"))
+_RULES = "".join(path.read_text(encoding="utf-8") for path in _FILES)
 _OUTPUTS = re.findall(r'(?m)^ {8}(?:\w+=)?f"\{RESULTS\}/(\w+)/[^"/]*\.nc"', _RULES)
 #: Stages that a study has once where it has their key, on synthetic surfaces; of measurements.
 EXPERIMENTS = ("roll_off", "size_strength", "area_slope", "estimator_bias", "size_effect")

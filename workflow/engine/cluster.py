@@ -40,7 +40,11 @@ def left_in_queue(profile):
     command = ["squeue", "--noheader", "--format=%F|%Z", f"--user={os.getuid()}"]
     try:
         done = subprocess.run(
-            [*command, f"--states={states}"], capture_output=True, text=True, timeout=PATIENCE
+            [*command, f"--states={states}"],
+            capture_output=True,
+            text=True,
+            timeout=PATIENCE,
+            encoding="utf-8",
         )
         *_, why = done.stderr.strip().splitlines() or [f"exit code {done.returncode}"]
         failed = done.returncode

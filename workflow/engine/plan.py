@@ -81,7 +81,8 @@ class Plan:
 
 def checked(config, root, source):
     """A study that passed all checks; what its user should know is said."""
-    schema = yaml.safe_load((root / "config/schema/study.schema.yaml").read_text())
+    stated = (root / "config/schema/study.schema.yaml").read_text(encoding="utf-8")
+    schema = yaml.safe_load(stated)
     # What is wrong with one scan stops only that where the user asks so on the command line, which
     # Snakemake itself looks at later.
     keep_going = bool({"-k", "--keep-going"} & set(sys.argv))

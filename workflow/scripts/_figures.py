@@ -17,4 +17,5 @@ def say_drawn(drawn, undrawn, folder, log):
     for name, trace in failures.items():
         log.error("error in the program: figure %s was not drawn\n%s", name, trace)
     with atomic_write(undrawn) as path:
-        Path(path).write_text("".join(f"{folder}{name}\n" for name in failures))
+        text = "".join(f"{folder}{name}\n" for name in failures)
+        Path(path).write_text(text, encoding="utf-8")

@@ -9,8 +9,10 @@ from fractalcontact.core.errors import InputError
 
 with job(snakemake):
     undrawn = snakemake.input.get("undrawn")
-    names = [name for path in undrawn or [] for name in Path(path).read_text().split()]
+    names = [
+        name for path in undrawn or [] for name in Path(path).read_text(encoding="utf-8").split()
+    ]
     if names or undrawn is None:
         raise InputError(snakemake.params.reason.replace("NAMES", ", ".join(names)))
     with atomic_write(snakemake.output[0]) as path:
-        path.write_text("")
+        path.write_text("", encoding="utf-8")

@@ -203,7 +203,7 @@ def _lower(limit: int, value: int) -> None:
 def _address_space() -> int:
     """Bytes of address space this process has; 0 where the system does not state it."""
     try:
-        pages = int(Path("/proc/self/statm").read_text().split()[0])
+        pages = int(Path("/proc/self/statm").read_text(encoding="utf-8").split()[0])
     except FileNotFoundError:  # macOS, which does not enforce RLIMIT_AS either
         return 0
     return pages * resource.getpagesize()
