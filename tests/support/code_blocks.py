@@ -71,6 +71,11 @@ NOT_RUN = {
     ("docs/verification.md", "make grid-table"): BY_CI,
     ("docs/solver.md", "p, u, w <- a start"): "pseudo-code",
     (
+        "docs/workflow.md",
+        ".venv/bin/python -m snakemake --cores 2",
+    ): "options on another study: tests/workflow/test_snakemake_user.py",
+    ("docs/workflow.md", "module fractalcontact:"): "tests/workflow/test_snakemake_user.py",
+    (
         "docs/solver_parts.md",
         "python benchmarks/solver_gains.py",
     ): "takes minutes of a quiet machine",

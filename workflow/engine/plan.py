@@ -29,9 +29,12 @@ class Plan:
 
     Parameters
     ----------
-    workflow : snakemake.workflow.Workflow
+    is_main : bool
+        True in the process that plans the jobs, False in a job of a cluster.
     config : dict
         The study as its user wrote it; in a job of a cluster it becomes that of the plan.
+    root : pathlib.Path
+        Folder of the workflow.
     source : str
         Its file, for errors.
 
@@ -40,10 +43,10 @@ class Plan:
     study : fractalcontact.study.checks.Study
     """
 
-    def __init__(self, workflow, config, source):
+    def __init__(self, is_main, config, root, source):
         self._config, self._computed, self._known = config, Digests(), {}
-        if workflow.is_main_process:
-            self.study = checked(config, Path(workflow.basedir), source)
+        if is_main:
+            self.study = checked(config, root, source)
         else:
             planned, self.study, self._known = pickle.loads(FILE.read_bytes())
             config.clear()

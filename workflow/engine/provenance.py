@@ -20,6 +20,8 @@ from snakemake.settings.enums import PersistenceBackend
 
 from fractalcontact.core import checksums
 
+from . import running
+
 
 def mark_without_provenance(results, settings):
     """Number of such results, which are marked as incomplete, as those of killed jobs are."""
@@ -56,7 +58,15 @@ def _has_provenance(file, records, results, is_there):
 def _is_put_back(file, record, sums):
     """True of a file whose job, the last of Snakemake's record, failed: it has left no checksums.
 
-    Both times are younger than the checksums then; in a copy of a folder neither need be in order.
+    Both times are younger than the checksums then, as they are after ``--touch``; but its log does
+    not say that it is done.
     """
     left = os.stat(sums).st_mtime
-    return (record.starttime or 0) > left and os.stat(file).st_mtime > left
+    if (record.starttime or 0) <= left or os.stat(file).st_mtime <= left:
+        return False
+    return not any(_is_done(Path(log)) for log in record.log or ())
+
+
+def _is_done(log):
+    text = log.read_text(encoding="utf-8", errors="replace") if log.is_file() else ""
+    return any(line.startswith(running.DONE) for line in text.splitlines()[-1:])

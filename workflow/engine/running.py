@@ -12,6 +12,8 @@ import os
 import time
 
 FILE = ".snakemake.guard"
+#: First word of the last line of a job's log: it is done.
+DONE = "worked"
 #: File systems that know no such locks: nothing can be told there.
 _NO_LOCKS = (errno.ENOLCK, errno.ENOSYS, errno.EOPNOTSUPP)
 

@@ -7,7 +7,8 @@ from pathlib import Path
 
 from snakemake.exceptions import WorkflowError
 
-ROOT = Path(workflow.basedir)
+# Of this workflow, also where another imports it as a module.
+ROOT = Path(workflow.current_basedir.get_path_or_uri(secret_free=True)).parents[1]
 sys.path.insert(0, str(ROOT / "workflow"))
 
 from engine import use_checkout
@@ -24,7 +25,7 @@ from fractalcontact.study import campaign, resources
 from fractalcontact.study.configuration import resolve_embedded
 
 SOURCE = str(workflow.configfiles[-1]) if workflow.configfiles else "config/paper.yaml"
-RUN = Plan(workflow, config, SOURCE)
+RUN = Plan(workflow.is_main_process, config, ROOT, SOURCE)
 STUDY = RUN.study
 RESULTS = f"results/{config['study']}"
 SCANS, SETTINGS, OPTIONS, LABELS = STUDY.scans, STUDY.settings, STUDY.options, STUDY.labels

@@ -160,7 +160,7 @@ rule speed:
         f"{RESULTS}/logs/speed/{{scene}}.log",
     wildcard_constraints:
         scene=alternation(SCENES),
-    threads: workflow.cores
+    threads: lambda wildcards: workflow.cores
     resources:
         mem_mb=doubled(4000),
         runtime=doubled(30),
