@@ -54,7 +54,8 @@ def job(snakemake):
         checksums.record(results, _below(results, snakemake.output))
         signal.signal(signal.SIGTERM, signal.SIG_IGN)  # done: it ends at once anyway
         log.info(
-            "%s %.3f s, of which %.3f s on %d contact problems; processor time %.3f s, memory %.0f MB",
+            "%s %.3f s, of which %.3f s on %d contact problems; processor time %.3f s, "
+            "memory %.0f MB",
             running.DONE,
             time.perf_counter() - begin,
             SOLVING.seconds,
