@@ -63,8 +63,9 @@ def test_an_exported_map_is_read_again_as_an_aperture_map(folder, contact):
 
 def test_between_two_loads_the_aperture_is_interpolated_in_the_logarithm(contact):
     low, high = (aperture_at(contact, p, "pair") for p in (125, 250))
-    middle = aperture_at(contact, np.sqrt(125 * 250), "pair")
+    middle, nearer = (aperture_at(contact, 125 * 2**part, "pair") for part in (0.5, 0.25))
     np.testing.assert_allclose(middle, (low + high) / 2, rtol=1e-5, atol=1e-9)
+    np.testing.assert_allclose(nearer, (3 * low + high) / 4, rtol=1e-5, atol=1e-9)
     assert middle.attrs["source"] == "interpolated in ln(pressure) between 125 and 250 MPa"
     with pytest.raises(InputError, match=r"no aperture at 0\.5 MPa; its maps are kept at 1, 125"):
         aperture_at(contact, 0.5, "pair")
@@ -101,7 +102,9 @@ def test_apertures_at_ones_own_points(folder, contact, tmp_path, capsys):
     asked = ["--points", str(tmp_path / "points.csv"), "--pressure", "125 MPa"]
     out = tmp_path / "apertures.csv"
     assert main([str(folder), "pair", "--out", str(out), *asked]) == 0
-    assert capsys.readouterr().out.endswith("aperture in mm, computed at 125 MPa\n")
+    said = capsys.readouterr().out
+    assert "aperture in mm, computed at 125 MPa\n" in said
+    assert "points.csv: 1 of 3 points lie outside the map, which covers x = " in said
     found = pd.read_csv(out)["aperture"].values
     at = grid.values[2]
     np.testing.assert_allclose(found, [at[3], (at[3] + at[4]) / 2, np.nan], rtol=1e-5, atol=1e-9)
@@ -131,3 +134,41 @@ def test_what_cannot_be_written_is_refused_in_a_sentence(folder, tmp_path, capsy
 def test_a_map_at_points_has_no_other_form_than_csv(tmp_path):
     with pytest.raises(InputError, match=r"apertures at points: write a file that ends in \.csv"):
         write_aperture(pd.DataFrame({"x": [0], "y": [0], "aperture": [0]}), tmp_path / "a.nc")
+
+
+def test_every_form_has_the_nodes_of_oblong_cells_at_their_places(tmp_path):
+    y, x = 0.3 + 0.25 * np.arange(4), -1.0 + 0.1 * np.arange(7)
+    values = np.arange(28, dtype=np.float32).reshape(4, 7)
+    aperture = xr.DataArray(values, {"y": y, "x": x}, ("y", "x"), "aperture", {"source": "made"})
+    for ending in ("csv", "nc", "vtk"):
+        write_aperture(aperture, tmp_path / f"map.{ending}")
+    table = pd.read_csv(tmp_path / "map.csv").pivot(index="y", columns="x", values="aperture")
+    with xr.open_dataset(tmp_path / "map.nc") as stored:
+        netcdf = stored["aperture"].load()
+    found = {
+        "csv": (table.values, table.columns.values, table.index.values),
+        "nc": (netcdf.values, netcdf["x"].values, netcdf["y"].values),
+        "vtk": read_vtk(tmp_path / "map.vtk"),
+    }
+    for ending, (read, at_x, at_y) in found.items():
+        np.testing.assert_allclose(read, values, err_msg=ending)
+        np.testing.assert_allclose(at_x, x, err_msg=ending)
+        np.testing.assert_allclose(at_y, y, err_msg=ending)
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "words"),
+    [
+        ("configuration", "{settings: ", "'configuration' is no JSON"),
+        ("configuration", "[1]", "'configuration' holds no mapping"),
+        ("parts", "x", "'parts' is no JSON"),
+    ],
+)
+def test_an_atlas_with_a_damaged_attribute_is_refused_in_a_line(
+    tmp_path, capsys, name, text, words
+):
+    attrs = {"study": "a", "configuration": "{}"} | {name: text}
+    xr.Dataset(attrs=attrs).to_netcdf(tmp_path / "atlas.nc")
+    assert main([str(tmp_path / "atlas.nc"), "pair", "--out", "a.csv"]) == 1
+    (line,) = capsys.readouterr().err.splitlines()
+    assert words in line

@@ -12,7 +12,7 @@ from code_blocks import run_code
 from made_tests import PART
 from page_study import HOSTILE
 
-from fractalcontact.cards.card import is_synthetic
+from fractalcontact.cards.card import errors_of, geometry_of, is_synthetic
 from fractalcontact.cards.entries import entries, read_entry
 from fractalcontact.cards.page import page_of
 from fractalcontact.cards.write import SCHEMA, read_card, write_card
@@ -265,6 +265,30 @@ def test_the_documented_lines_read_a_card(tmp_path, cards, monkeypatch):
     write_card(cards["pair"] | {"name": "small_twin"}, tmp_path / "results/smoke")
     monkeypatch.chdir(tmp_path)
     assert run_code("docs/card.md")["card"]["entries"] == cards["pair"]["entries"]
+
+
+def test_the_window_of_oblong_cells_has_its_own_sides(subjects):
+    pair = subjects["pair"]
+    sides = {"spacing_y": 0.25, "spacing_x": 0.1, "window_ny": 40, "window_nx": 30}
+    oblong = {**pair.stages, "specimens": pair["specimens"].assign_attrs(sides)}
+    found = geometry_of(Subject(oblong, pair.settings, pair.name))
+    lengths = [found[name]["value"] for name in ("window_x", "window_y", "spacing")]
+    assert lengths == [3.0, 10.0, 0.25]
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_errors_stand_under_the_sample_that_they_are_of(subjects, name):
+    budget, compared = subjects[name].state("error_budget"), 0
+    names = {"of_this_surface": "total", "of_its_population": "total_of_population"}
+    for row in errors_of(subjects[name]):
+        if row["quantity"] not in budget["quantity"].values:
+            continue  # of numbers that the budget has under a name of their own
+        errors = budget.sel(quantity=row["quantity"])
+        for of, variable in names.items():
+            if row[of] is not None:
+                assert row[of] == pytest.approx(float(errors[variable]), rel=1e-4), (row, of)
+                compared += 1
+    assert compared
 
 
 def test_what_a_study_makes_itself_is_synthetic_and_a_scan_of_a_like_name_is_not(cards):

@@ -62,9 +62,9 @@ def test_a_saw_has_the_roughness_of_its_slope_whatever_its_units(tmp_path):
         ("1,2\n3,4\n", "expected their names and units"),
         ("x,z\n1,2\n2,3\n", "expected their names and units"),
         ("x [mm], z [MPa]\n1,2\n2,3\n", "z"),
-        ("x [mm], z [um]\n1,2\n2,b\n", "does not hold numbers"),
+        ("x [mm], z [um]\n1,2\n2,b\n", "line 3, column 'z [um]': 'b' is no finite number"),
         ("x [mm], z [um]\n1,2\n2,3\n4,4\n", "even steps"),
-        ("x [mm], z [um]\n1,2\n2,nan\n3,4\n", "not finite"),
+        ("x [mm], z [um]\n1,2\n2,nan\n3,4\n", "'nan' is no finite number"),
         ("", "expected their names and units"),
     ],
 )

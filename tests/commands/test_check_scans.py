@@ -7,7 +7,8 @@ import pytest
 from places import ROOT
 from stated import COMMAS, CORONA, GRANITE, MAP, NANOVEA, POINTS, array_sidecar, sidecar
 
-from fractalcontact.commands.check_scans import WIDTH, main
+from fractalcontact.commands.check_scans import WIDTH, check_scans, main
+from fractalcontact.study.documents import read_study
 from fractalcontact.study.embedded import write_scan
 from fractalcontact.study.scan_files import list_scans
 from fractalcontact.surface.synthesis import self_affine
@@ -72,6 +73,7 @@ def test_faces_that_overlap_are_warned_of(folder, check):
     assert "1 ok, 1 with warnings" in out
     assert "the faces overlap in no cell of the window (0 in the whole scan)" in out
     assert "WARNING: the faces overlap as scanned in 1 cell of the window" in out
+    assert out.count("the faces overlap as scanned") == 1
     assert "suspicious: 1 lone spikes" in out
 
 
@@ -464,3 +466,84 @@ def test_a_pair_in_one_frame_that_registration_moves_is_warned_of(folder, check)
     assert "registration moves the upper one by" in moved
     assert "write 'registration: none' if the files share one frame" in moved
     assert "registration moves the upper one by" not in still
+
+
+CLOSURE = {"file": "load.csv", "gauge": "joint", "seat": "0.25 MPa", "branch": "load", "cycle": 1}
+GOOD = "pressure [MPa], displacement [um]\n" + "".join(
+    f"{n},{np.log(n):.3f}\n" for n in range(1, 9)
+)
+HELD = {"file": "load.csv", "pressure": "25 MPa", "direction": "W"}
+SLIDING = "displacement [mm], dilation [mm]\n" + "".join(f"{n},{{}}{n}\n" for n in range(6))
+
+
+@pytest.mark.parametrize(
+    ("stated", "text", "words"),
+    [
+        ({"closure": CLOSURE}, GOOD.replace("4,", "04. Apr,"), "line 5, column 'pressure [MPa]'"),
+        ({"closure": CLOSURE}, GOOD.replace("[um]", "[m]"), "more than the relief of its faces"),
+        ({"closure": CLOSURE | {"branch": "unload"}}, GOOD, "rises again from 1 MPa (line 2)"),
+        ({"dilatancy": HELD}, SLIDING.format(*"------"), "the dilation falls while the joint"),
+        ({"dilatancy": HELD | {"pressure": "900 MPa"}}, SLIDING.format(*6 * [""]), "lies outside"),
+        ({"dilatancy": HELD | {"direction": "E"}}, SLIDING.format(*6 * [""]), "towards E was not"),
+    ],
+)
+def test_a_table_that_would_stop_the_study_is_refused(folder, check, stated, text, words):
+    write_scan(folder / "slab.npy", surface(), 0.2, sidecar={"measured": stated})
+    (folder / "load.csv").write_text(text)
+    code, out = check()
+    assert code == 1
+    assert "0 ok, 0 with warnings, 1 refused" in out
+    assert words in " ".join(out.split())
+
+
+def test_tables_are_listed_and_what_is_odd_in_them_is_said(folder, check):
+    stated = {"closure": CLOSURE, "dilatancy": HELD | {"file": "slid.csv"}}
+    write_scan(folder / "slab.npy", surface(), 0.2, sidecar={"measured": stated})
+    (folder / "load.csv").write_text(GOOD + "7.9,2.07\n")
+    (folder / "slid.csv").write_text(SLIDING.format(*6 * [""]))
+    code, out = check()
+    out = " ".join(out.split())
+    assert code == 0
+    assert "0 ok, 1 with warnings, 0 refused" in out
+    assert "closure test load, cycle 1: load.csv, 9 readings" in out
+    assert "falls back from one reading to the next in 1 of 8 steps" in out
+    assert "slid.csv: the dilation equals the displacement" in out
+
+
+def test_tables_of_embedded_specimens_are_read(folder, tmp_path):
+    study = {
+        "study": "made",
+        "scans": str(folder),
+        "materials": {"rock": {"modulus": "20 GPa", "poisson": 0.2}},
+        "defaults": {"material": "rock", "loads": ["1 MPa"], "resolutions": [1]},
+        "embedded": {"made": {"grid": 64, "spacing": "0.2 mm", "hurst": 0.8, "rms": "0.1 mm"}},
+        "specimens": {"made": {"measured": {"closure": CLOSURE}}},
+    }
+    folder.mkdir()
+    (folder / "load.csv").write_text(GOOD)
+    schema = read_study(ROOT / "config/schema/study.schema.yaml")
+    (row,) = check_scans(folder, study, schema, "study.yaml")
+    assert (row.name, row.refusal) == ("made", "")
+    (folder / "load.csv").unlink()
+    (row,) = check_scans(folder, study, schema, "study.yaml")
+    assert "no such file, which 'measured' names" in row.refusal
+    (folder / "load.csv").write_text(GOOD.replace("4,", "four,"))
+    (row,) = check_scans(folder, study, schema, "study.yaml")
+    assert "line 5, column 'pressure [MPa]': 'four' is no finite number" in row.refusal
+
+
+@pytest.mark.parametrize(
+    ("factor", "noise", "spacing", "warned"),
+    [(1, 0, 0.2, False), (1e-3, 0, 0.2, True), (1e-3, 0, 2e-4, True), (1, 0.8, 0.2, True)],
+)
+def test_a_unit_that_makes_no_rock_joint_is_warned_of(
+    folder, check, factor, noise, spacing, warned
+):
+    """Heights a thousand times too small, a side below 1 mm, slopes above 3: with the numbers."""
+    write_scan(folder / "slab.npy", surface(noise=noise) * factor, spacing, sidecar={})
+    _, out = check()
+    words = " ".join(out.split())
+    assert ("is this a rock joint? Its side is" in words) == warned
+    if warned:
+        assert "its rms height" in words
+        assert "its rms slope" in words

@@ -29,6 +29,13 @@ def export(folder, name, z):
     (folder / f"{name}.txt").write_text(lines + rows + "\n")
 
 
+def filled(text):
+    """A draft with its empty lines filled in."""
+    for key, value in {"unit_xy": "mm", "spacing": "0.1 mm", "first_row": "top"}.items():
+        text = text.replace(f"{key}: ", f"{key}: {value} ")
+    return text
+
+
 def describe(*arguments):
     return main([*map(str, arguments), *ARGUMENTS])
 
@@ -42,17 +49,14 @@ def test_a_draft_shows_where_each_line_comes_from_and_is_kept_by_renaming(tmp_pa
     assert 'line 1: "# joint spacing: 20 mm"' in text  # a wrong one is seen
     assert 'line 2: "# z in um"' in text
     assert "first_row:" in text
-    assert "fill in first_row" in out
+    assert "fill in unit_xy, spacing, first_row\n" in out
     assert "30 x 20" in out
     assert (tmp_path / "granite.draft.png").read_bytes().startswith(b"\x89PNG")
     # Neither a sidecar nor a scan to any study.
     scans, refused = list_scans(tmp_path)
     assert (list(scans), refused) == (["granite"], {})
     assert scans["granite"].sidecar is None
-    mended = text.replace("spacing: 20 mm ", "spacing: 0.1 mm").replace(
-        "first_row: ", "first_row: top "
-    )
-    draft.write_text(mended)
+    draft.write_text(filled(text))
     assert describe(tmp_path) == 0  # what was mended stays
     assert yaml.safe_load(draft.read_text())["spacing"] == "0.1 mm"
     draft.rename(tmp_path / "granite.yaml")
@@ -67,7 +71,7 @@ def test_an_empty_line_of_a_sidecar_is_named(tmp_path):
     export(tmp_path, "granite", heights())
     describe(tmp_path)
     (tmp_path / "granite.draft.yaml").rename(tmp_path / "granite.yaml")
-    with pytest.raises(InputError, match=r"granite\.yaml: key 'first_row' is empty; fill it in"):
+    with pytest.raises(InputError, match=r"granite\.yaml: key 'unit_xy' is empty; fill it in"):
         read_sidecar(tmp_path / "granite.yaml", SCHEMA)
 
 
@@ -79,9 +83,9 @@ def test_files_of_one_instrument_take_the_sidecar_of_one(tmp_path, capsys):
     assert describe("--file", tmp_path / "s0.txt") == 0
     draft = tmp_path / "s0.draft.yaml"
     assert not (tmp_path / "s1.draft.yaml").exists()
-    text = draft.read_text().replace("20 mm ", "0.1 mm").replace("first_row: ", "first_row: top ")
+    text = filled(draft.read_text())
     assert describe("--like", draft) == 1  # a line is empty
-    assert "'first_row' is empty" in capsys.readouterr().err
+    assert "'unit_xy' is empty" in capsys.readouterr().err
     draft.write_text(text)
     assert describe("--like", draft) == 1  # one is not alike
     out = capsys.readouterr().out
@@ -156,8 +160,7 @@ def test_pairs_of_one_instrument_take_the_sidecar_of_one_face_by_face(tmp_path):
             export(tmp_path, f"{name}.{face}", (1 + 3 * (face == "upper")) * heights(seed))
     assert describe("--file", tmp_path / "a.lower.txt") == 0
     draft = tmp_path / "a.draft.yaml"
-    text = draft.read_text().replace("spacing: 20 mm ", "spacing: 0.1 mm")
-    draft.write_text(text.replace("first_row: ", "first_row: top "))
+    draft.write_text(filled(draft.read_text()))
     assert describe("--like", draft) == 0
     keys, _ = read_sidecar(tmp_path / "b.yaml", SCHEMA)
     for face in ("lower", "upper"):

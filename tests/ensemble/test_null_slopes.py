@@ -25,6 +25,19 @@ def test_slopes_are_those_that_one_domain_is_compared_by():
     )
 
 
+def test_differences_are_those_of_the_domain_less_its_null_models():
+    found = null_slopes(OTHERS, HEIGHTS, 0.1)
+    for null in ("random", "cut"):
+        apart = found["local_slope"] - found[f"local_slope_{null}"]
+        np.testing.assert_allclose(found[f"local_slope_{null}_difference"], apart)
+    # A line has a lower dimension than the patches of its cut, a rectangle a higher one.
+    shapes = np.zeros((2, *SHAPE), bool)
+    shapes[0, 60] = shapes[1, 20:100, 20:80] = True
+    line, rectangle = null_slopes(shapes, HEIGHTS, 0.1)["delta_sigma_cut_difference"].values
+    assert line < -0.02
+    assert rectangle > 0.1
+
+
 def test_a_cut_does_not_differ_from_itself():
     found = null_slopes(CUTS, HEIGHTS, 0.1)
     assert not found["local_slope_cut_difference"].any()

@@ -10,7 +10,7 @@ from materials import ROCK
 
 from fractalcontact.core.estimate import Estimate
 from fractalcontact.core.settings import EnsembleSettings, read
-from fractalcontact.ensemble.realisations import EXPONENTS, STATES, ensemble
+from fractalcontact.ensemble.realisations import EXPONENTS, STATES, _add_eq6, ensemble
 from fractalcontact.ensemble.statistics import TRENDS, add_statistics, add_trends
 from fractalcontact.study.configuration import (
     resolve_embedded,
@@ -145,6 +145,21 @@ def _made_up(delta, cut):
     )
 
 
+def test_eq_6_is_missed_by_the_exponent_of_the_area_less_the_dimension_less_two():
+    """The difference is 0 where A_r/A_0 ~ b^(Delta_sigma - 2), and has the sign of what is more."""
+    attrs = {"units": "1", "long_name": "a number"}
+    made = xr.Dataset(
+        {
+            "area_exponent": ("realisation", [-0.5, -0.4, -0.7], attrs),
+            "delta_sigma_area": ("realisation", [1.5, 1.5, 1.5], attrs),
+            "delta_sigma": ("realisation", [1.6, 1.6, 1.6], attrs),
+        }
+    )
+    _add_eq6(made)
+    np.testing.assert_allclose(made["eq6_area"], [0.0, 0.1, -0.2], atol=1e-12)
+    np.testing.assert_allclose(made["eq6_box"], [-0.1, 0.0, -0.3], atol=1e-12)
+
+
 def test_trends_are_slopes_per_decade_over_the_loads_that_all_realisations_have():
     slopes = np.array([0.2, 0.4, 0.6])
     delta = 0.5 + slopes[:, np.newaxis] * np.arange(4)
@@ -157,6 +172,16 @@ def test_trends_are_slopes_per_decade_over_the_loads_that_all_realisations_have(
     np.testing.assert_allclose(result["departure_trend"], slopes - 0.3)
     assert result["delta_sigma_area_trend"].isnull().all()
     assert float(result["delta_sigma_trend_mean"]) == pytest.approx(0.4)
+
+
+def test_departures_from_a_cut_that_fills_the_window_are_left_out():
+    cut = np.broadcast_to([1.2, 1.4, 1.6, 1.99], (3, 4))
+    away = np.array([0.1, 0.2, 0.3, 0.0])
+    result = _made_up(cut + away, cut)
+    add_trends(result)
+    np.testing.assert_array_equal(result["departure_trend_used"], [True, True, True, False])
+    np.testing.assert_allclose(result["departure_trend"], 0.1)
+    assert result["delta_sigma_trend_used"].all()
 
 
 def test_the_interval_of_the_mean_holds_it_in_95_of_100_ensembles():

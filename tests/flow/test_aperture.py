@@ -25,6 +25,17 @@ def test_the_correlation_length_of_filtered_noise_is_twice_its_filter():
     assert correlation_length(gap, 0.1, 1) == pytest.approx(1.2, rel=0.1)
 
 
+@pytest.mark.parametrize("axis", [0, 1])
+def test_the_correlation_of_a_wave_is_not_lowered_by_the_end_of_the_window(axis):
+    # Beside each other waves of all phases: their autocorrelation is cos(k lag), to the last lag.
+    n, phases = 256, 8
+    k = 2 * np.pi / n
+    wave = np.cos(k * np.arange(n)[:, np.newaxis] + 2 * np.pi * np.arange(phases) / phases)
+    gap = 1 + 0.5 * np.moveaxis(wave, 0, axis)
+    found = correlation_length(gap, 0.25, axis)
+    assert found == pytest.approx(0.25 * np.arccos(np.exp(-1)) / k, rel=1e-3)
+
+
 def test_an_even_gap_and_one_slope_have_no_correlation_length():
     assert np.isnan(correlation_length(np.ones((5, 8)), 0.1, 1))
 

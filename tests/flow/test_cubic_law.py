@@ -7,7 +7,7 @@ import pytest
 from ensembles import ensemble
 from scipy import ndimage, sparse
 
-from fractalcontact.flow import red_black
+from fractalcontact.flow import network, red_black
 from fractalcontact.flow.aperture import transmissivity_bounds
 from fractalcontact.flow.cubic_law import plane_flow, radial_flow
 from fractalcontact.flow.network import (
@@ -151,6 +151,20 @@ def test_the_mean_flux_of_every_section_is_that_of_the_window():
     np.testing.assert_allclose(flow.flux.mean(axis=0), 1.0, rtol=1e-10)
 
 
+def test_with_x_for_y_the_flux_is_the_same_in_each_cell():
+    gap = contact_field(5, (20, 26), level=1.0)
+    along_x, along_y = plane_flow(gap, (0.3, 0.2)), plane_flow(gap.T, (0.2, 0.3), "y")
+    assert along_y.transmissivity == pytest.approx(along_x.transmissivity, rel=1e-9)
+    np.testing.assert_allclose(along_y.flux, along_x.flux.T, rtol=1e-6, atol=1e-9)
+
+
+def test_the_channel_fraction_counts_the_cells_that_carry_nine_tenths():
+    # Three alike channels of seven cells: 18.9 cells carry nine tenths, so 19 of 70 do.
+    gap = np.zeros((10, 7))
+    gap[[1, 4, 8]] = 0.2
+    assert plane_flow(gap, (1, 1)).channel_fraction == pytest.approx(19 / 70)
+
+
 # -- hard geometries -------------------------------------------------------------------------------
 
 
@@ -199,6 +213,77 @@ def test_windows_of_few_cells_are_solved_whichever_cells_are_eliminated(shape):
     # A window as long as a cell: each open cell joins both ends.
     through = 0.3**3 / 2 if shape == (6, 1) else 0
     assert 12 * plane_flow(gap, (1, 2)).transmissivity == pytest.approx(through)
+
+
+def slit(n, narrow):
+    """Row of n open cells, and beside it one with a narrow cell in its middle; T of both along x.
+
+    Cells of one row are in series: 12 T is the inverse of their mean g^-3. Rows are parallel.
+    """
+    gap = np.ones((3, n))
+    gap[1], gap[2, n // 2] = 0, narrow
+    return gap, (1 + n / (n - 1 + narrow**-3)) / 36
+
+
+def serpentine(n, wall):
+    """Channel one cell wide that turns n // 2 times, with walls of a gap between its reaches."""
+    gap = np.ones((n, n))
+    gap[:-1, 1::4] = gap[1:, 3::4] = wall
+    return gap
+
+
+@pytest.mark.parametrize("narrow", [9e-4, 4e-5, 1e-5])
+def test_a_slit_beside_a_channel_adds_what_it_carries(narrow):
+    gap, exact = slit(400, narrow)
+    flow = plane_flow(gap, (1, 1))
+    assert flow.transmissivity == pytest.approx(exact, rel=1e-12)
+    assert abs(flow.transmissivity / exact - 1) <= flow.imbalance + 1e-15
+
+
+def test_the_walls_of_a_serpentine_leak_as_by_dense_equations():
+    # Ten reaches of ten cells: walls of a thousandth already leak a part in ten million.
+    gap = serpentine(21, 9e-4)
+    closed = plane_flow(serpentine(21, 0.0), (1, 1)).transmissivity
+    leak = by_dense_equations(gap, (1, 1)) / closed - 1
+    assert leak == pytest.approx(4e-7, rel=0.1)
+    assert plane_flow(gap, (1, 1)).transmissivity / closed - 1 == pytest.approx(leak, rel=1e-3)
+
+
+def closed_below(fraction, gap, spacing, monkeypatch):
+    """Flow with gaps below a fraction of the critical gap closed, whatever error it states."""
+    with monkeypatch.context() as stated:
+        stated.setattr(network, "CLOSED_BELOW", fraction)
+        stated.setattr(network, "MAX_IMBALANCE", np.inf)
+        return plane_flow(gap, spacing)
+
+
+def test_the_stated_error_bounds_what_closed_gaps_carry(monkeypatch):
+    for seed in range(ensemble("fields solved densely")):
+        # Widths of six decades: pools behind narrow gaps, and narrow gaps at both ends.
+        noise = contact_field(seed, (14, 17), smooth=1.0, level=3.0)
+        gap = np.where(noise > 2, 10 ** (2 * (noise - 3)), 0)
+        whole, part = (closed_below(one, gap, (0.3, 0.2), monkeypatch) for one in (0, 0.3))
+        if whole.transmissivity:
+            lost = whole.transmissivity / part.transmissivity - 1
+            assert -whole.imbalance <= lost <= part.imbalance + whole.imbalance
+
+
+@pytest.mark.parametrize(
+    ("gap", "fraction", "loosest"),
+    [(slit(40, 0.01)[0], 0.1, 1.01), (serpentine(41, 2e-3), 1e-2, 4)],
+    ids=["slit", "serpentine"],
+)
+def test_the_stated_error_is_near_what_closed_gaps_carry(gap, fraction, loosest, monkeypatch):
+    whole, part = (closed_below(one, gap, (1, 1), monkeypatch) for one in (0, fraction))
+    lost = whole.transmissivity / part.transmissivity - 1
+    assert lost <= part.imbalance <= loosest * lost
+
+
+def test_flow_is_refused_where_closed_gaps_could_carry_too_much(monkeypatch):
+    monkeypatch.setattr(network, "CLOSED_BELOW", 0.3)
+    with pytest.raises(FlowNotConverged, match="narrow gaps") as refused:
+        plane_flow(slit(40, 0.1)[0], (1, 1))
+    assert refused.value.imbalance > network.MAX_IMBALANCE
 
 
 @pytest.mark.full

@@ -39,3 +39,12 @@ def test_a_closed_quarter_leaves_the_interval_undetermined():
     whole = flow_of(gap, STEP, "x").transmissivity
     assert whole > 0
     assert np.isnan(window_interval(gap, STEP, "x", whole).ends[1:]).all()
+
+
+def test_the_interval_is_student_s_of_four_quarters():
+    gaps = np.array([[0.1, 0.2], [0.4, 0.1]])
+    gap = np.kron(gaps, np.ones((6, 8)))
+    spread = np.std(3 * np.log(gaps), ddof=1)
+    found = window_interval(gap, (0.1, 0.1), "x", 1.0)
+    assert found.high == pytest.approx(np.exp(3.182446 * spread / 2), rel=1e-5)
+    assert found.low == pytest.approx(1 / found.high)

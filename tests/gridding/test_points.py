@@ -508,6 +508,68 @@ def test_a_bad_line_in_a_later_block_is_named(tmp_path, monkeypatch, line, messa
         )
 
 
+def test_places_that_repeat_without_any_height_stay_missing():
+    # Two unmeasured, two measured and once not, one measured twice alike and once otherwise.
+    stacked = [[0, 0, np.nan], [0, 0, np.nan], [1, 0, 2], [1, 0, np.nan], [1, 0, 4]]
+    stacked += [[2, 0, 5], [2, 0, 8], [2, 0, 5], [0, 1, np.nan]]
+    for order in (range(9), range(8, -1, -1)):
+        merged, repeats = points.merge_points(np.array(stacked, float)[list(order)])
+        expected = [[0, 0, np.nan], [1, 0, 3], [2, 0, 6.5], [0, 1, np.nan]]
+        np.testing.assert_array_equal(merged, expected)
+        assert repeats == points.Repeats(duplicated=1, stacked=2)
+
+
+@pytest.mark.parametrize("pitch", [(0.5, 2.0), (2.0, 0.5)])
+@pytest.mark.parametrize("share", [1.0, 0.1])
+def test_the_points_of_a_cell_are_counted_whichever_side_of_it_is_longer(pitch, share):
+    dx, dy = pitch
+    lattice = points.Lattice(1.0, -3.0, dx, dy, 30, 20)
+    measured = np.zeros((20, 30), bool)
+    measured.flat[: round(share * measured.size)] = True
+    rows, columns = np.nonzero(measured)
+    one = np.column_stack([1 + dx * columns, -3 + dy * rows, 0 * rows])
+    beside = np.array([0.4 * dx, 0.4 * dy, 0.0])
+    three = np.concatenate([one - beside, one, one + beside])
+    heights = np.where(measured, 0.0, np.nan)
+    for cloud, expected in ((one, 1), (three, 3)):
+        assert density.points_per_cell(cloud, heights, lattice) == expected
+
+
+def test_a_cell_is_far_from_points_by_the_larger_of_its_side_and_theirs():
+    lattice = points.Lattice(0.0, 0.0, 1.0, 1.0, 8, 1)
+    first = np.zeros((1, 3))
+    for area, reach in ((0.01, 1.5), (1.0, 1.5), (4.0, 3.0), (9.0, 4.5)):
+        far = density.far_from_points(first, lattice, area)
+        np.testing.assert_array_equal(far, [np.arange(8) >= reach])
+
+
+@pytest.mark.parametrize(("shift", "kept"), [(3.0, True), (-2.0, True), (0.3, False)])
+def test_clouds_on_one_lattice_stay_on_their_nodes(tmp_path, shift, kept):
+    y, x = (part.ravel() * 0.5 for part in np.mgrid[:40, :40])
+    for name, by in (("rock_lower.npy", 0.0), ("rock_upper.npy", 0.5 * shift)):
+        saved(tmp_path, np.column_stack([x + by, y, waves(x + by, y)]), name)
+    options = {"unit": "mm", "registration": "none"}
+    faces = read_faces(tmp_path / "rock_lower.npy", tmp_path / "rock_upper.npy", options)
+    for face in faces:
+        assert face.attrs["gridding"].startswith("the points lie on a regular grid") == kept
+
+
+@pytest.mark.parametrize(
+    ("lower", "upper", "expected"),
+    [((0.5, 0.8), (0.5, 0.8), 0.5), ((0.8, 0.5), (0.8, 0.5), 0.5), ((0.5, 0.5), (0.7, 0.7), 0.7)],
+)
+def test_clouds_on_two_lattices_get_the_finer_side_of_the_coarser_one(
+    tmp_path, lower, upper, expected
+):
+    for name, (dx, dy), by in (("lower", lower, 0.0), ("upper", upper, 0.15)):
+        rows, columns = (part.ravel() for part in np.mgrid[:40, :40])
+        x, y = by + dx * columns, dy * rows
+        saved(tmp_path, np.column_stack([x, y, waves(x, y)]), f"rock_{name}.npy")
+    options = {"unit": "mm", "registration": "none"}
+    for face in read_faces(tmp_path / "rock_lower.npy", tmp_path / "rock_upper.npy", options):
+        assert face.attrs["spacing_x"] == face.attrs["spacing_y"] == pytest.approx(expected)
+
+
 @pytest.mark.parametrize("share", [0.3, 3.0])
 def test_cells_are_far_from_points_whichever_side_of_theirs_is_longer(share):
     cell = 1.0, 4.0

@@ -5,9 +5,10 @@ from unittest import mock
 
 import numpy as np
 import pytest
+import xarray as xr
 from made_stages import scan, stages_of
 
-from fractalcontact.mechanics.branches import OF_BRANCHES, OF_CYCLE, branches
+from fractalcontact.mechanics.branches import OF_BRANCHES, OF_CYCLE, _solved_states, branches
 from fractalcontact.study.configuration import resolve_settings, solver_settings
 from fractalcontact.surface.synthesis import self_affine
 from roughcontact.contact import path as path_module
@@ -89,6 +90,26 @@ def test_a_failure_names_what_is_loaded(joint, loaded):
     with pytest.raises(NotConverged) as caught:
         branches(joint[0], loaded, SOLVING | {"rtol": 1e-17}, "offset 0.3 mm")
     assert "offset 0.3 mm" in caught.value.__notes__[0]
+
+
+@pytest.mark.parametrize("hardness", [100.1, 100.3])
+def test_nodes_at_the_hardness_are_at_it_after_single_precision(joint, hardness):
+    """In single precision the first hardness is rounded down, the second one up."""
+    state = solve_contact(*joint, force=FORCES[-1], hardness=hardness, rtol=1e-7)
+    capped = state.pressure == hardness
+    assert capped.any()
+    assert float(np.float32(hardness)) != hardness
+    curve = xr.Dataset(
+        {"closure": ("normal_force", [state.closure]), "residual": ("normal_force", [1e-8])},
+        {"normal_force": [state.force]},
+    )
+    stored = state.pressure.astype(np.float32)[np.newaxis]
+    mapped = xr.Dataset({"pressure": (("normal_force", "y", "x"), stored)}, curve.coords)
+    (again,) = _solved_states(*joint, curve, mapped, hardness)
+    np.testing.assert_array_equal(again.pressure == hardness, capped)
+    assert again.pressure.max() == hardness
+    np.testing.assert_allclose(again.pressure, state.pressure, rtol=1e-7)
+    np.testing.assert_allclose(again.gap, state.gap, atol=1e-6 * np.abs(state.gap).max())
 
 
 def test_branches_solve_only_what_loading_did_not(joint, loaded):

@@ -213,6 +213,33 @@ def test_nodes_of_oblong_cells_stand_at_their_places(atlas):
     assert window["cell_side"] ** 2 == pytest.approx(np.prod(window["spacing"]))
 
 
+def test_numbers_are_undetermined_where_the_atlas_says_so(atlas):
+    tree = atlas.copy()
+    closure, domains = (tree[f"{stage}/pair"].to_dataset() for stage in ("closure", "domains"))
+    share = closure["suspect_load_share"]
+    suspect = np.resize([0.0, 0.9, 0.3, np.nan, 1.0], share.shape)
+    half = np.resize([0.01, 3.0], domains["delta_sigma"].shape)
+    known = np.isfinite(domains["delta_sigma"].values)
+    assert {0.01, 3.0} == set(half[known])
+    tree["closure/pair"] = xr.DataTree(closure.assign(suspect_load_share=share.copy(data=suspect)))
+    ends = {
+        f"delta_sigma_{end}": domains["delta_sigma"] + sign * half
+        for end, sign in (("low", -1), ("high", 1))
+    }
+    tree["domains/pair"] = xr.DataTree(domains.assign(ends))
+    states = packed_states(tree, "pair")
+    numbers = unpacked(states["numbers"], "<f8")
+
+    def mask(key, dims):
+        entry = states["arrays"][f"undetermined/{key}"]
+        values = numbers[entry["start"] :][: np.prod(entry["shape"])].reshape(entry["shape"])
+        return xr.DataArray(values, dims=entry["dims"]).transpose(*dims).values
+
+    np.testing.assert_array_equal(mask("by_scan", share.dims) == 1, suspect > 0.5)
+    wide = mask("domains/delta_sigma", domains["delta_sigma"].dims) == 1
+    np.testing.assert_array_equal(wide[known], half[known] == 3.0)
+
+
 def test_the_page_is_one_file_that_runs_nothing_of_a_label(atlas_file, tmp_path):
     write_explorer(atlas_file, tmp_path / "explorer.html")
     assert [path.name for path in tmp_path.iterdir()] == ["explorer.html"]

@@ -53,6 +53,17 @@ def test_units_suit_the_number():
     assert [duration(s) for s in (47, 192, 7500)] == ["47 s", "3 min 12 s", "2 h 5 min"]
 
 
+def test_a_length_is_in_micrometres_from_one_of_them_to_a_thousand():
+    lengths = (1.0, 0.5, 0.005, 1e-3, 5e-4)
+    words = ["1 mm", "500 µm", "5 µm", "1 µm", "500 nm"]
+    assert [with_unit(one, "mm") for one in lengths] == words
+
+
+def test_uneven_ends_stand_in_brackets():
+    assert interval(1.0, 0.9, 1.13) == "1.00 [0.900, 1.13]"
+    assert interval(1.0, 0.9, 1.1) == "1.00 ± 0.10"
+
+
 def test_what_is_undetermined_is_shown_with_its_error():
     assert undetermined(interval(0.96, 0.02, 1.9)) == "undetermined (0.960 ± 0.94)"
     assert undetermined(interval(212, 49.1, 914)) == "undetermined (212 [49.1, 914])"

@@ -1,6 +1,7 @@
 """The motion between two faces is found and undone, and nothing else is."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -11,7 +12,13 @@ from stated import read_faces
 from fractalcontact.core.errors import InputError
 from fractalcontact.core.mean_plane import without_mean_plane
 from fractalcontact.registration.pairs import register
-from fractalcontact.registration.registration import biweight_limit, biweight_spread, find_motion
+from fractalcontact.registration.registration import (
+    PARAMETERS,
+    biweight_limit,
+    biweight_spread,
+    find_motion,
+    linearised,
+)
 from fractalcontact.registration.surface_motion import Motion, Surface, grid_nodes
 from fractalcontact.surface.specimen import make_specimen
 from fractalcontact.surface.synthesis import self_affine
@@ -163,6 +170,28 @@ def test_rectangular_cells():
     moved = motion((0.35, -0.47), 3.0, (0.01, 0.02), centre=(9.6, 19.2))
     lower, upper = joint(moved, 0.8, spacing=(0.1, 0.2))
     assert_found(find_motion(lower, upper)[0], moved)
+
+
+@pytest.mark.parametrize("spacing", [(0.1, 0.25), (0.25, 0.1)])
+def test_the_first_order_change_of_a_gap_is_that_of_small_motions_on_oblong_cells(spacing):
+    x, y = grid_nodes(labelled(np.zeros((48, 64)), spacing=spacing))
+    lower = labelled(np.sin(0.5 * x) + np.cos(0.3 * y + 0.2 * x), spacing=spacing)
+    upper = Surface(lower + 0.5)
+    at = Motion((x.mean(), y.mean()), (x.mean(), y.mean()))
+    usable, terms, _ = linearised(lower, np.full(lower.shape, 0.5), at, np.inf, "rigid")
+    assert usable.all()
+    small, inside = 1e-4, (slice(4, -4), slice(4, -4))
+    for name, term in zip(PARAMETERS, terms, strict=False):
+        moved = {
+            "end_x": replace(at, end=(at.end[0] + small, at.end[1])),
+            "end_y": replace(at, end=(at.end[0], at.end[1] + small)),
+            "rotation": replace(at, rotation=small),
+            "slope_x": replace(at, slope=(small, 0.0)),
+            "slope_y": replace(at, slope=(0.0, small)),
+        }[name]
+        change = (upper(*moved.back(x, y)) + moved.rise(x, y) - lower.values - 0.5) / small
+        expected, found = change[inside], term.reshape(lower.shape)[inside]
+        np.testing.assert_allclose(found, expected, atol=0.01 * np.abs(expected).max())
 
 
 def test_with_x_for_y_the_motion_is_the_same():

@@ -59,6 +59,14 @@ def test_a_smoother_gap_determines_more_and_a_rerun_the_same():
     np.testing.assert_array_equal(numbers(again), numbers(scattered_motions(*rough[:2])))
 
 
+def test_motions_scatter_about_none_although_the_motion_is_not_the_best():
+    lower, moved, *_ = registered(1)
+    x, y = grid_nodes(moved)
+    beside = moved.copy(data=Surface(moved)(x - 0.03, y + 0.02))
+    motions = numbers(scattered_motions(lower, beside))[:2]
+    assert (np.abs(motions.mean(axis=1)) < motions.std(axis=1)).all()
+
+
 def test_faces_in_one_frame_or_without_a_match_have_none():
     lower, moved, *_ = registered(1)
     for record in ({"mode": "none", "note": ""}, {"mode": "rigid", "note": "they do not match"}):

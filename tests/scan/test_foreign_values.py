@@ -266,6 +266,79 @@ def test_two_faces_in_one_file_are_named(tmp_path):
     assert "two faces or scans in one file" in warnings_for(path, {"unit": "mm"})
 
 
+def sheet(heights, step=0.5):
+    """Vertices and triangles of a face on a grid."""
+    ny, nx = heights.shape
+    first = (np.arange(ny - 1)[:, None] * nx + np.arange(nx - 1)).ravel()
+    halves = [[first, first + 1, first + nx + 1], [first, first + nx + 1, first + nx]]
+    return nodes(heights, step, step), np.concatenate([np.transpose(half) for half in halves])
+
+
+def together(*parts):
+    """One mesh of several."""
+    before = np.cumsum([0, *(len(points) for points, _ in parts)])
+    triangles = [part + n for (_, part), n in zip(parts, before, strict=False)]
+    return np.concatenate([points for points, _ in parts]), np.concatenate(triangles)
+
+
+@pytest.mark.parametrize("shift", [0.0, 0.13, 0.25])
+@pytest.mark.parametrize("wound", [1, -1])
+def test_two_faces_in_one_mesh_are_refused(tmp_path, shift, wound):
+    """At the same x, y, between them, and on one finer lattice; wound alike or not."""
+    lower, (points, triangles) = sheet(rough(1)), sheet(rough(1) + 1.3)
+    upper = points + np.array([shift, shift, 0.0]), triangles[:, ::wound]
+    path = write_stl(tmp_path / "two.stl", *together(lower, upper))
+    with pytest.raises(
+        InputError, match=r"two\.stl: the mesh has (1\.9|2\.\d) heights at each x, y"
+    ):
+        read_scan(path, {"unit": "mm"})
+    beside = points + np.array([100.0, 0.0, 0.0]), triangles
+    side_by_side = read_scan(
+        write_stl(tmp_path / "beside.stl", *together(lower, beside)), {"unit": "mm"}
+    )
+    assert side_by_side.attrs["missing_share"] > 0.5
+
+
+def block(heights, depth, step=0.5):
+    """A face on a box with a flat bottom, which is one sheet of as many vertices."""
+    ny, nx = heights.shape
+    top, bottom = sheet(heights, step), sheet(np.full(heights.shape, -depth), step)
+    rim = np.arange(nx * ny).reshape(ny, nx)
+    rim = np.concatenate([rim[0], rim[1:, -1], rim[-1, -2::-1], rim[-2:0:-1, 0]])
+    following, below = np.roll(rim, -1), nx * ny
+    walls = np.concatenate(
+        [np.column_stack([rim, rim + below, following]),
+         np.column_stack([following, rim + below, following + below])]
+    )  # fmt: skip
+    points, triangles = together(top, (bottom[0], bottom[1][:, ::-1]))
+    return points, np.concatenate([triangles, walls]), walls
+
+
+def test_the_flat_bottom_of_a_body_is_no_mark_of_missing_cells(tmp_path):
+    """A closed block is read from above with a warning; one without walls is named a body."""
+    heights = rough(1)
+    points, triangles, walls = block(heights, 60.0)
+    path = write_stl(tmp_path / "block.stl", points, triangles)
+    assert "a closed body, such as a boulder" in warnings_for(path, {"unit": "mm"})
+    read = read_scan(path, {"unit": "mm"})
+    inner = read.values[2:-2, 2:-2]
+    assert np.ptp(inner) == pytest.approx(np.ptp(heights[2:-2, 2:-2]), rel=1e-5)
+    path = write_stl(tmp_path / "open.stl", points, triangles[: -len(walls)])
+    with pytest.raises(InputError, match=r"probably the flat bottom of a body, whose face you"):
+        read_scan(path, {"unit": "mm"})
+
+
+@pytest.mark.parametrize("axes", [[0, 1], [0], [1]])
+def test_points_on_one_place_or_line_are_refused(tmp_path, axes):
+    """As single precision leaves coordinates of a country's grid: no division by their distance."""
+    points = nodes(rough(1), 0.001, 0.001)
+    points[:, axes] = np.array([500_000.1, 5_800_000.0])[axes]
+    path = saved(tmp_path / "one.npy", points.astype(np.float32))
+    reason = "stand on one place, x = 500000" if len(axes) == 2 else "one line|one place|points"
+    with pytest.raises(InputError, match=reason):
+        read_scan(path, {"unit": "m"})
+
+
 # --- steep scans, units ------------------------------------------------------------------------
 
 

@@ -344,6 +344,46 @@ def test_only_plain_matrices_of_mat_files_are_opened(tmp_path):
         read_scan(path, MATRIX)
 
 
+# --- Surfer --------------------------------------------------------------------------------------
+
+
+def surfer(path, heights, z_range):
+    """A text grid of Surfer."""
+    values = np.where(np.isnan(heights), 1.70141e38, heights)
+    lines = ["DSAA", "14 9", "0 13", "0 8", z_range]
+    lines += [" ".join(f"{value:.6e}" for value in row) for row in values]
+    path.write_text("\n".join(lines) + "\n")
+    return path
+
+
+SURFER = {"kind": "face", "unit": "mm", "heights": "up"}
+
+
+@pytest.mark.parametrize("end", ["", "\n"])
+def test_a_last_height_outside_the_range_of_its_header_is_cut_off(tmp_path, end):
+    heights = surface()
+    heights[-1, -1] = 1.234567e-3
+    path = surfer(tmp_path / "rock.grd", heights, "-0.2 0.2")
+    whole = path.read_text()
+    np.testing.assert_allclose(read.read_scan(path, SURFER), heights, rtol=1e-6)
+    assert whole.rstrip().endswith("e-03")
+    path.write_text(whole.rstrip()[:-4] + end)
+    reason = "its last one is 1.23457: the file is cut off" if end else "breaks off within a number"
+    with pytest.raises(InputError, match=reason):
+        read.read_scan(path, SURFER)
+
+
+def test_a_range_that_is_not_that_of_the_heights_is_noted(tmp_path):
+    """Scripts write 0 and 1 there."""
+    path = surfer(tmp_path / "rock.grd", surface(), "0 0.1")
+    heights = read.read_scan(path, SURFER)
+    np.testing.assert_allclose(heights, surface(), rtol=1e-6)
+    assert (
+        "states heights from 0 to 0.1, the file holds heights from -0.1" in heights.attrs["notes"]
+    )
+    assert heights.attrs["warnings"] == ""
+
+
 # --- TIFF --------------------------------------------------------------------------------------
 
 
@@ -359,7 +399,7 @@ def test_imagej_states_the_size_of_a_pixel(tmp_path):
     pixels = (1 / (DX * 1e3), 1 / (DY * 1e3))  # a um
     image = surface()[::-1].astype(np.float32)
     tiff(path, image, imagej=True, resolution=pixels, metadata={"unit": "um"})
-    heights = read_scan(path, {"unit_z": "mm"})
+    heights = read_scan(path, {"unit_z": "mm", "first_row": "top"})
     np.testing.assert_allclose(heights, surface(), atol=1e-7)
     assert heights.attrs["spacing_x"] == pytest.approx(DX, rel=1e-6)
     assert heights.attrs["spacing_y"] == pytest.approx(DY, rel=1e-6)
@@ -394,6 +434,74 @@ def test_a_page_of_a_tiff_is_named(tmp_path):
         read.read_scan(path, write(tmp_path / "other.tif", surface(), DX, DY))
     heights = read_scan(path, MATRIX | {"variable": "page 2", "first_row": "bottom"})
     np.testing.assert_allclose(heights, surface() + 1, atol=1e-7)
+
+
+def libtiff(path, image, compression, predictor):
+    """A file of libtiff, which GDAL and ArcGIS use, in strips of 17 rows."""
+    from PIL import Image
+
+    picture = Image.fromarray(image)
+    picture.save(path, compression=compression, tiffinfo={317: predictor, 278: 17})
+    return path
+
+
+@pytest.mark.parametrize("compression", ["tiff_lzw", "tiff_adobe_deflate"])
+@pytest.mark.parametrize(
+    ("kind", "predictor"), [(np.uint16, 1), (np.uint16, 2), (np.float32, 1), (np.float32, 3)]
+)
+def test_compressions_and_predictors_of_libtiff(tmp_path, compression, kind, predictor):
+    """Cells in single steps and of one value everywhere: codes of all widths, and full tables."""
+    generator = np.random.default_rng(7)
+    steps = np.cumsum(generator.integers(-3, 4, (90, 140)), axis=1) + 30_000
+    steps[40:60, 20:90] = 31_000
+    image = (steps * (1 if kind is np.uint16 else 0.37)).astype(kind)
+    path = libtiff(tmp_path / "rock.tif", image, compression, predictor)
+    stated = {"unit_z": "um", "spacing": "0.1 mm", "first_row": "top"}
+    heights = read_scan(path, stated)
+    np.testing.assert_allclose(heights, image[::-1].astype(float) * 1e-3, rtol=1e-12)
+
+
+@pytest.mark.parametrize("byteorder", "<>")
+def test_predictor_3_of_either_byte_order(tmp_path, byteorder):
+    """Bytes of all numbers stand highest first, whatever the order of the file is."""
+    image = np.random.default_rng(5).normal(0, 1, (12, 15)).astype(np.float32)
+    planes = image.astype(">f4").view(np.uint8).reshape(12, 15, 4).swapaxes(1, 2).reshape(12, 60)
+    stored = np.diff(planes, axis=1, prepend=np.uint8(0)).view(f"{byteorder}f4")
+    own_tag = [(65000, "H", 1, 3, True)]
+    keys = {"byteorder": byteorder, "compression": "zlib", "extratags": own_tag}
+    path = tiff(tmp_path / "rock.tif", stored, **keys)
+    tags = [struct.pack(f"{byteorder}HHI", tag, 3, 1) for tag in (65000, 317)]
+    path.write_bytes(path.read_bytes().replace(*tags))
+    heights = read_scan(path, {"unit": "mm", "spacing": 1, "first_row": "top"})
+    np.testing.assert_array_equal(heights, image[::-1])
+
+
+def test_a_compression_without_decoder_is_refused_with_a_remedy(tmp_path):
+    path = tiff(tmp_path / "rock.tif", surface().astype(np.float32))
+    damaged = bytearray(path.read_bytes())
+    place = damaged.index(struct.pack("<HHI", 259, 3, 1))
+    damaged[place + 8 : place + 10] = struct.pack("<H", 34887)  # LERC
+    path.write_bytes(damaged)
+    with pytest.raises(InputError, match=r"compression LERC .*gdal_translate -co COMPRESS=DEFLATE"):
+        read_scan(path, MATRIX | {"first_row": "top"})
+
+
+@pytest.mark.parametrize(
+    ("first", "reason"),
+    [
+        (b"\0\1", "do not begin as TIFF 6.0 says"),  # as programs before 1993 wrote
+        (bytes([0b10000000, 0b01001011, 0]), "LZW code 300 is not defined"),  # 256, 300, ...
+        (bytes([0b10000000, 0b01000000, 0b01000000]), "corrupted strip"),  # 256, 257: no cells
+    ],
+)
+def test_damaged_lzw_codes_are_refused(tmp_path, first, reason):
+    image = np.random.default_rng(1).integers(0, 60_000, (40, 60)).astype(np.uint16)
+    path = libtiff(tmp_path / "rock.tif", image, "tiff_lzw", 2)
+    content = bytearray(path.read_bytes())
+    content[8 : 8 + len(first)] = first
+    path.write_bytes(content)
+    with pytest.raises(InputError, match=reason):
+        read_scan(path, {"unit_z": "um", "spacing": "0.1 mm", "first_row": "top"})
 
 
 # --- Gwyddion ----------------------------------------------------------------------------------

@@ -160,7 +160,7 @@ def test_a_header_line_of_numbers_is_no_header(tmp_path):
     path = save_text(tmp_path / "rock.xyz", points)
     keys = POINTS | {"delimiter": "blank"}
     np.testing.assert_array_equal(read.read_scan(path, keys).values, surface())
-    with pytest.raises(InputError, match=r"line 2, .* numbers; .*'header: 0'"):
+    with pytest.raises(InputError, match=r"line 2, .* numbers .*'header: 0'"):
         read.read_scan(path, keys | {"header": 2})
 
 
@@ -173,6 +173,76 @@ def test_repeated_header_and_short_last_line(tmp_path):
     heights = read_scan(path, {"unit": "mm"})
     np.testing.assert_array_equal(heights.values, surface())
     assert "cut short" in heights.attrs["notes"]
+
+
+#: Forms of numbers, and what is left where the file breaks off inside the last one.
+CUT = {
+    "exponent": ("%.6e", -4),
+    "digits of an exponent": ("%.6e", -1),
+    "decimals": ("%.6f", -2),
+    "counts": ("%d", -2),
+    "varying decimals": ("%.6g", -5),
+}
+
+
+@pytest.mark.parametrize(("form", "end"), CUT.values(), ids=CUT.keys())
+@pytest.mark.parametrize("layout", ["matrix", "points"])
+def test_a_text_that_ends_inside_its_last_number(tmp_path, form, end, layout):
+    """1.234567e-03 would be read as 1.234567: no point of it is kept, and no matrix is read."""
+    z = np.round(surface() * 1e3) if form == "%d" else surface()
+    z = np.nan_to_num(z, nan=0.1234) + (20_000 if form == "%d" else 1.0)
+    z[-1, -1] = 12_345 if form == "%d" else 1.23456789
+    rows = z if layout == "matrix" else lattice_points(z, pitch=(2, 1))
+    path = tmp_path / "rock.txt"
+    text = "\n".join(" ".join(form % value for value in row) for row in rows)
+    stated = {"unit": "um", "spacing": "1 mm", "axes": "none", "first_row": "bottom"}
+    if layout == "points":
+        stated = {"unit_xy": "mm", "unit_z": "um", "columns": [0, 1, 2]}
+    stated |= {"kind": "face", "layout": layout, "delimiter": "blank", "decimal": ".", "header": 0}
+    stated |= {"heights": "up", "missing": "none"}
+    path.write_text(text)
+    whole = read.read_scan(path, stated)
+    assert "cut" not in whole.attrs["notes"]
+    path.write_text(text[:end])
+    if layout == "matrix":
+        with pytest.raises(InputError, match=r"last line \(12\) breaks off within a number"):
+            read.read_scan(path, stated)
+        return
+    heights = read.read_scan(path, stated)
+    assert "the last line (180) was cut short and is left out" in heights.attrs["notes"]
+    np.testing.assert_array_equal(heights.values.ravel()[:-1], whole.values.ravel()[:-1])
+    assert np.isnan(heights.values[-1, -1])
+
+
+def test_a_mark_of_missing_cells_at_the_end_is_no_cut_number(tmp_path):
+    """It has a form of its own, and other marks hide no number that is cut."""
+    z = np.nan_to_num(surface(), nan=0.1234)
+    rows = [[f"{value:.4f}" for value in row] for row in z]
+    rows[-1][-1] = rows[-2][3] = "-9999"
+    path = tmp_path / "rock.txt"
+    stated = ARRAY | {"delimiter": "blank", "decimal": ".", "header": 0, "unit": "mm"}
+    stated |= {"spacing": 1, "missing": -9999}
+    path.write_text("\n".join(map(" ".join, rows)))
+    heights = read.read_scan(path, stated)
+    assert np.isnan(heights.values[-1, -1])
+    assert heights.attrs["warnings"] == ""
+    rows[-1][-1] = "0.12"
+    path.write_text("\n".join(map(" ".join, rows)))
+    with pytest.raises(InputError, match="breaks off within a number"):
+        read.read_scan(path, stated)
+
+
+def test_a_last_number_shorter_than_most_is_warned_of_without_a_line_end(tmp_path):
+    """12 may be all of a number, or the beginning of 12345."""
+    z = np.full((12, 15), 12_345) + np.arange(180).reshape(12, 15) ** 2 % 97
+    z[-2, 3], z[-1, -1] = 7, 12
+    path = tmp_path / "rock.txt"
+    stated = ARRAY | {"delimiter": "blank", "decimal": ".", "header": 0, "unit": "um"}
+    text = "\n".join(" ".join(map(str, row)) for row in z)
+    for end, warned in (("", True), ("\n", False)):
+        path.write_text(text + end)
+        heights = read.read_scan(path, stated | {"spacing": "10 mm"})
+        assert ("compare it with its source" in heights.attrs["warnings"]) == warned
 
 
 @pytest.mark.parametrize("language", [("Width", "Height"), ("Breite", "Höhe")])

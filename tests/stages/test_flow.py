@@ -2,10 +2,14 @@
 
 import numpy as np
 import pytest
+import xarray as xr
 from chain import SMALL_STUDY, SOLVER
 from made_stages import scan, stages_of
 from materials import ROCK
+from scipy import ndimage
 
+from fractalcontact.flow.aperture import correlation_length
+from fractalcontact.flow.cubic_law import plane_flow
 from fractalcontact.study.configuration import resolve_settings
 from fractalcontact.surface.synthesis import self_affine
 
@@ -33,3 +37,64 @@ def test_what_has_crushed_unloads_on_the_reported_grid(resolutions):
     loaded = flow["branch_mean_gap"].sel(branch="load").values[known]
     assert (gap[known] <= loaded * (1 + 1e-6)).all()
     assert (gap[known][:-1] < loaded[:-1]).any()
+    for name in ("branch_mean_gap", "branch_transmissivity_along"):
+        unload, reload = (flow[name].sel(branch=branch).values for branch in ("unload", "reload"))
+        np.testing.assert_array_equal(unload, reload)
+
+
+@pytest.fixture(scope="module")
+def sheared():
+    """Stages of a joint on oblong cells that has slid North; its gap is longer along x."""
+    rough = np.random.default_rng(5).normal(size=(64, 80))
+    lower, upper = (
+        ndimage.gaussian_filter(rough, sides, mode="wrap") for sides in ((2, 3), (2, 6))
+    )
+    heights = 0.1 * lower / lower.std(), 0.1 * upper / upper.std() + 0.02
+    coords = {"y": 0.15 * (np.arange(64) + 0.5), "x": 0.1 * (np.arange(80) + 0.5)}
+    attrs = {"spacing_y": 0.15, "spacing_x": 0.1, "source": "made"}
+    faces = [xr.DataArray(z, coords, ("y", "x"), attrs=attrs) for z in heights]
+    own = {
+        "material": ROCK,
+        "loads": ["0.5 MPa", "2 MPa", "8 MPa"],
+        "window": ["7.5 mm", "7.2 mm"],
+        **{"resolutions": [1], "offsets": ["0.3 mm"], "directions": ["N"]},
+        "contact_directions": ["N"],
+    }
+    settings = resolve_settings(SMALL_STUDY, None, own, "made")
+    return stages_of("sheared", faces, settings, SOLVER, later=("closure", "flow"))
+
+
+def gap_under_the_reference_load(stages):
+    """Gap (ny, nx) in mm, and the index of that load."""
+    contact = stages["contact"]
+    load = int(np.abs(contact["normal_force"].values - contact.attrs["map_load"]).argmin())
+    return contact["map_gap"].values[load].astype(float), load
+
+
+@pytest.mark.parametrize(("way", "axis"), [("along", "y"), ("across", "x")])
+def test_numbers_of_each_way_are_those_of_the_gap_along_its_axis(sheared, way, axis):
+    flow = sheared["flow"]
+    gap, load = gap_under_the_reference_load(sheared)
+    spacing, number = (0.15, 0.1), "yx".index(axis)
+    assert flow.attrs[f"flow_axis_{way}"] == axis
+    whole = plane_flow(gap, spacing, axis)
+    coarse = plane_flow(gap[::2, ::2], (0.3, 0.2), axis)
+    expected = {
+        "transmissivity": whole.transmissivity,
+        "critical_gap": whole.critical_gap,
+        "transmissivity_grid_error": abs(coarse.transmissivity - whole.transmissivity),
+        "gap_correlation_length": correlation_length(gap, spacing[number], number),
+    }
+    for name, value in expected.items():
+        found = float(flow[f"{name}_{way}"][load])
+        assert found == pytest.approx(value, rel=1e-3), name
+    lengths = [float(flow[f"gap_correlation_length_{one}"][load]) for one in ("along", "across")]
+    assert abs(lengths[0] / lengths[1] - 1) > 0.2
+
+
+def test_the_error_of_the_separation_moves_the_transmissivity_along_its_curve(sheared):
+    flow, error = sheared["flow"], sheared["error_budget"]["total"].sel(quantity="separation")
+    gap, found = sheared["closure"]["mean_gap"].values.ravel(), flow["transmissivity_along"].values
+    slope = (found[0] - found[1]) / (gap[0] - gap[1])
+    first = float(flow["transmissivity_separation_error_along"][0])
+    assert first == pytest.approx(abs(slope) * float(error[0]), rel=1e-6)

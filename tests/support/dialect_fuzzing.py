@@ -15,7 +15,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from unittest import mock
 
-import dialects_of_matrices  # noqa: F401  # enter their dialects
+import dialects_of_contradictions  # noqa: F401  # enter their dialects
+import dialects_of_doubt  # noqa: F401
+import dialects_of_matrices  # noqa: F401
 import dialects_of_meaning  # noqa: F401
 import dialects_of_points  # noqa: F401
 import numpy as np
@@ -34,8 +36,10 @@ _ADVICE = re.compile(r"\b(export|write|save|say|remove|mend|set|name)\b|'[a-z_]+
 LONGEST_MESSAGE = 1200
 
 
-#: Keys that only the owner of a file can know: a draft may leave them empty.
-FILLED = ("unit", "unit_xy", "unit_z", "spacing", "first_row")
+#: A line of one unit, filled with two where the owner knows two.
+_UNITS = ("unit_xy", "unit_z")
+#: A draft that asks further keys is filled this often.
+MAX_DRAFTS = 3
 
 
 @dataclass(frozen=True)
@@ -51,7 +55,8 @@ class Judgement:
     fault : str
         What must not have happened; "" if all is well.
     drafted : str
-        The outcome by its draft, confirmed unread; "" where there is none.
+        The outcome by its draft, its empty lines filled truly and all others accepted; "" where
+        there is none.
     mistaken : tuple of str
         Keys in which the draft differs from the truth, where it was read wrong.
     """
@@ -92,14 +97,31 @@ def _judge(written: Written, path: Path) -> Judgement:
         outcome, fault = "wrong", fault or "read, but holds no surface or contradicts itself"
     if not draft:
         return Judgement(written, outcome, message, fault)
-    truth = written.sidecar
-    filled = {key: truth[key] for key in FILLED if draft.get(key) is None and key in truth}
-    drafted = {key: value for key, value in draft.items() if value is not None} | filled
+    drafted = _completed(path, draft, written.sidecar)
     by_draft, _ = _read(path, written, drafted)
-    mistaken = tuple(
-        key for key in sorted(drafted.keys() | truth.keys()) if drafted.get(key) != truth.get(key)
-    )
+    keys = sorted(drafted.keys() | written.sidecar.keys())
+    mistaken = tuple(key for key in keys if drafted.get(key) != written.sidecar.get(key))
     return Judgement(written, outcome, message, fault, by_draft, mistaken)
+
+
+def _completed(path: Path, draft: dict, truth: dict) -> dict:
+    """A sidecar as an owner makes it of drafts: empty lines filled truly, the rest accepted."""
+    drafted: dict = {}
+    for _ in range(MAX_DRAFTS):
+        drafted |= {key: value for key, value in draft.items() if value is not None}
+        empty = {key for key, value in draft.items() if value is None}
+        if "unit" in empty:
+            empty |= set(_UNITS)
+        drafted |= {key: truth[key] for key in empty if key in truth and key not in drafted}
+        try:
+            read.read_scan(path, drafted)
+        except IncompleteSidecar as error:
+            draft = yaml.safe_load(error.draft)
+        except InputError:
+            break
+        else:
+            break
+    return drafted
 
 
 def _without_sidecar(written: Written, path: Path) -> tuple[str, dict]:
@@ -169,21 +191,21 @@ def run(numbers, seed: int, kept: Path | None = None) -> list[Judgement]:
 
 
 def table(judgements: list[Judgement]) -> str:
-    """By dialect: files, outcomes by the true sidecar and by the unread draft, and faults."""
+    """By dialect: files, outcomes by the true sidecar and by the completed draft, and faults."""
     groups = defaultdict(list)
     for judgement in judgements:
         groups[judgement.written.dialect].append(judgement)
     groups["all"] = judgements
     outcomes = ("right", "refused", "wrong")
     head = "".join(f"{outcome:>8}" for outcome in outcomes)
-    lines = [f"{'dialect':40}{'files':>6} by sidecar:{head} unread draft:{head}  faults"]
+    lines = [f"{'dialect':40}{'files':>6} by sidecar:{head} by draft:{head}  faults"]
     for name, group in groups.items():
         true = "".join(f"{sum(j.outcome == o for j in group):8}" for o in outcomes)
         draft = "".join(f"{sum(j.drafted == o for j in group):8}" for o in outcomes)
         faults = sum(bool(j.fault) for j in group)
         keys = Counter(key for j in group if j.drafted == "wrong" for key in j.mistaken)
         why = ", ".join(f"{key} {count}" for key, count in keys.most_common(4))
-        lines.append(f"{name:40}{len(group):6}{'':12}{true}{'':14}{draft}{faults:8}  {why}")
+        lines.append(f"{name:40}{len(group):6}{'':12}{true}{'':10}{draft}{faults:8}  {why}")
     return "\n".join(lines)
 
 

@@ -258,8 +258,8 @@ def true_sidecar(pen: Pen, sheet: Sheet) -> dict:
         stated |= {"first_row": "bottom"}
         if own.get("axes") == "both" and "spacing" not in own:
             del stated["spacing"], stated["first_row"]
-    is_marked = np.isnan(pen.heights).any() and style.mark not in ("", "nan", "NaN", "-nan")
-    mark = -9999 if style.mark == "-9999" else style.mark
+    is_marked = np.isnan(pen.heights).any() and style.mark not in ("nan", "NaN", "-nan")
+    mark = -9999 if style.mark == "-9999" else style.mark  # "" for empty cells
     stated |= {"heights": "up", "missing": mark if is_marked else "none"} | own
     return {key: value for key, value in stated.items() if value is not None}
 

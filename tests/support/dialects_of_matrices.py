@@ -136,7 +136,7 @@ def _coordinates_and_a_pixel_size(pen: Pen) -> Sheet:
 def _coordinates_behind(pen: Pen) -> Sheet:
     rows = [[*row, side] for row, side in zip(pen.matrix(), _places(pen, pen.y), strict=True)]
     restyle(pen, trailing=False)
-    return Sheet(rows, sidecar=UNSTATABLE, expected="refused")
+    return Sheet(rows, sidecar={**UNSTATABLE, "axes": None}, expected="refused")
 
 
 @dialect

@@ -143,7 +143,7 @@ _ARRAY = {"kind": "face", "layout": "matrix", "axes": "none", "first_row": "bott
           "heights": "up", "missing": "none"}  # fmt: skip
 
 
-def _array_keys(pen: Pen, **more) -> dict:
+def array_keys(pen: Pen, **more) -> dict:
     return {**_ARRAY, **pen.matrix_sidecar(), **more}
 
 
@@ -151,14 +151,14 @@ def _array_keys(pen: Pen, **more) -> dict:
 def _array(pen: Pen) -> Sheet:
     stream = io.BytesIO()
     np.save(stream, pen.heights)
-    return Sheet([], content=stream.getvalue(), ending=".npy", sidecar=_array_keys(pen))
+    return Sheet([], content=stream.getvalue(), ending=".npy", sidecar=array_keys(pen))
 
 
 @dialect
 def _arrays_in_an_archive(pen: Pen) -> Sheet:
     stream = io.BytesIO()
     np.savez(stream, depth=pen.heights[::-1], Z=pen.heights, x=pen.x, dx=3.0)
-    keys = _array_keys(pen, variable="Z")
+    keys = array_keys(pen, variable="Z")
     return Sheet([], content=stream.getvalue(), ending=".npz", sidecar=keys)
 
 
@@ -168,10 +168,10 @@ def _matlab_file_with_another_dx(pen: Pen) -> Sheet:
 
     stream = io.BytesIO()
     savemat(stream, {"Z": pen.heights, "dx": 7.0})
-    return Sheet([], content=stream.getvalue(), ending=".mat", sidecar=_array_keys(pen))
+    return Sheet([], content=stream.getvalue(), ending=".mat", sidecar=array_keys(pen))
 
 
-def _netcdf(write) -> bytes:
+def netcdf(write) -> bytes:
     """Bytes of a netCDF file that a function fills."""
     import netCDF4
 
@@ -206,7 +206,7 @@ def _labelled(pen: Pen, *, packed=False, **attributes) -> Sheet:
         sign = -1 if attributes.get("positive") == "down" else 1
         z[:] = np.ma.masked_invalid(sign * surface.heights)
 
-    content = _netcdf(write)
+    content = netcdf(write)
     return Sheet([], content=content, ending=".nc", describes_itself=True)
 
 
@@ -252,7 +252,7 @@ def _netcdf_unsigned(pen: Pen) -> Sheet:
         stored = np.nan_to_num(levels, nan=65535).astype(np.uint16).view(np.int16)
         z[:] = stored
 
-    sheet = Sheet([], content=_netcdf(write), ending=".nc", describes_itself=True)
+    sheet = Sheet([], content=netcdf(write), ending=".nc", describes_itself=True)
     return replace(sheet, surface=pen.surface)
 
 
@@ -264,7 +264,7 @@ def _netcdf_without_units(pen: Pen) -> Sheet:
             file.createVariable(name, "f8", (name,))[:] = np.arange(n)
         file.createVariable("z", "f8", ("y", "x"), fill_value=np.nan)[:] = pen.heights
 
-    return Sheet([], content=_netcdf(write), ending=".nc", sidecar=_array_keys(pen))
+    return Sheet([], content=netcdf(write), ending=".nc", sidecar=array_keys(pen))
 
 
 def _tiff(pen: Pen, tags: list, stored: np.ndarray, **keys) -> Sheet:
@@ -272,7 +272,7 @@ def _tiff(pen: Pen, tags: list, stored: np.ndarray, **keys) -> Sheet:
 
     stream = io.BytesIO()
     tifffile.imwrite(stream, stored, extratags=tags)
-    stated = {key: value for key, value in _array_keys(pen, **keys).items()
+    stated = {key: value for key, value in array_keys(pen, **keys).items()
               if key not in ("layout", "axes")}  # fmt: skip
     return Sheet([], content=stream.getvalue(), ending=".tif", sidecar=stated)
 
@@ -306,7 +306,7 @@ def _png_of_grey_levels(pen: Pen) -> Sheet:
     surface = replace(pen.surface, heights=levels * quantum)
     stream = io.BytesIO()
     Image.fromarray(levels.astype(np.uint16)).save(stream, format="png")
-    keys = _array_keys(pen, unit_z=f"{quantum:.12g} mm")
+    keys = array_keys(pen, unit_z=f"{quantum:.12g} mm")
     stated = {key: value for key, value in keys.items() if key not in ("layout", "axes")}
     sheet = Sheet([], content=stream.getvalue(), ending=".png", sidecar=stated)
     return replace(sheet, surface=surface)

@@ -93,6 +93,7 @@ ENSEMBLES: dict[str, tuple] = {
     # scan
     "spoilt scan files": (44, 300),
     "files of every dialect": (1, 6),
+    "drafted files": (150, 400),
     "sound scan files": (("npy", "stl", "x3p", "nc"), None),
     "scattered points": (2500, 6000),
     "registered pairs": (4, 20),

@@ -10,7 +10,8 @@ from fractalcontact.scan import read
 from fractalcontact.scan.raw import IncompleteSidecar
 
 #: What the writers of the tests mean, where a file does not say it.
-FILLED = {"first_row": "bottom", "heights": "up", "missing": "none"}
+FILLED = {"kind": "face", "decimal": ".", "columns": [0, 1, 2], "axes": "none",
+          "first_row": "bottom", "heights": "up", "missing": "none"}  # fmt: skip
 
 
 def drafted(path, options=None):
@@ -21,6 +22,10 @@ def drafted(path, options=None):
     except IncompleteSidecar as error:
         draft = yaml.safe_load(error.draft)
         filled = {key: FILLED.get(key) if value is None else value for key, value in draft.items()}
+        if filled.get("layout") == "points" and not (
+            options.get("spacing") or draft.get("spacing")
+        ):
+            filled.pop("first_row", None)
         return {key: value for key, value in filled.items() if value is not None} | options
     except InputError:
         pass

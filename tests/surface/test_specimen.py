@@ -263,3 +263,20 @@ def test_a_specimen_survives_netcdf(tmp_path):
         assert largest_offset(again, "E") == largest_offset(specimen, "E")
     for variable in specimen.variables.values():
         assert {"units", "long_name"} <= set(variable.attrs) or variable.name in "xy"
+
+
+@pytest.mark.parametrize("window", [None, 6.0])
+def test_the_key_that_fills_holes_is_named_where_holes_leave_no_window(window):
+    """A tenth of the cells are missing singly; the refusal's own key gives a window."""
+    rng = np.random.default_rng(3)
+    z = rng.normal(0, 0.01, (60, 60))
+    z[1:-1, 1:-1][rng.random((58, 58)) < 0.1] = np.nan
+    at = 0.25 * np.arange(60)
+    attrs = {"spacing_x": 0.25, "spacing_y": 0.25, "source": "holes.xyz"}
+    lower = xr.DataArray(z, {"y": at, "x": at}, ("y", "x"), attrs=attrs)
+    stated = {"window": window, "multiple": 8}
+    with pytest.raises(InputError, match="'fill_holes: ") as error:
+        make_specimen(lower, **stated)
+    largest = int(re.search(r"'fill_holes: (\d+)'", str(error.value))[1])
+    filled = make_specimen(lower, fill_holes=largest, **stated)
+    assert filled.attrs["window_nx"] >= 8

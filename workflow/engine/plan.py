@@ -13,11 +13,13 @@ from pathlib import Path
 import yaml
 from snakemake.exceptions import WorkflowError
 from snakemake.logging import logger
+from snakemake.utils import update_config
 
 from fractalcontact.core.atomic import atomic_write
 from fractalcontact.core.checksums import Digests
 from fractalcontact.core.errors import InputError
 from fractalcontact.study.checks import resolve_study
+from fractalcontact.study.documents import read_study
 from fractalcontact.study.scan_groups import grouped_notes
 
 #: Of the checkout in which a run works.
@@ -29,8 +31,7 @@ class Plan:
 
     Parameters
     ----------
-    is_main : bool
-        True in the process that plans the jobs, False in a job of a cluster.
+    workflow : snakemake.workflow.Workflow
     config : dict
         The study as its user wrote it; in a job of a cluster it becomes that of the plan.
     root : pathlib.Path
@@ -43,10 +44,14 @@ class Plan:
     study : fractalcontact.study.checks.Study
     """
 
-    def __init__(self, is_main, config, root, source):
+    def __init__(self, workflow, config, root, source):
         self._config, self._computed, self._known = config, Digests(), {}
-        if is_main:
-            self.study = checked(config, root, source)
+        if workflow.is_main_process:
+            try:
+                read_again(workflow, config)
+                self.study = checked(config, root, source)
+            except InputError as error:
+                raise WorkflowError(str(error)) from None
         else:
             planned, self.study, self._known = pickle.loads(FILE.read_bytes())
             config.clear()
@@ -82,6 +87,20 @@ class Plan:
         self._computed.save()
 
 
+def read_again(workflow, config):
+    """Replace the configuration by the study as the program itself reads it.
+
+    Snakemake takes the last of two equal keys without a word, and a specimen called ``no`` for
+    false. What another workflow hands over to this one, as its module, stays.
+    """
+    if config != workflow.config:
+        return
+    config.clear()
+    for path in workflow.configfiles:
+        update_config(config, read_study(path))
+    update_config(config, workflow.config_settings.config)
+
+
 def checked(config, root, source):
     """A study that passed all checks; what its user should know is said."""
     stated = (root / "config/schema/study.schema.yaml").read_text(encoding="utf-8")
@@ -89,10 +108,7 @@ def checked(config, root, source):
     # What is wrong with one scan stops only that where the user asks so on the command line, which
     # Snakemake itself looks at later.
     keep_going = bool({"-k", "--keep-going"} & set(sys.argv))
-    try:
-        study = resolve_study(config, schema, source, leave_out=keep_going)
-    except InputError as error:
-        raise WorkflowError(str(error)) from None
+    study = resolve_study(config, schema, source, leave_out=keep_going)
     if folder := config.get("scans", "scans"):
         if not study.scans:
             made_alone = "no scan files there; only what the study itself makes is used"

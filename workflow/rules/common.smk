@@ -25,7 +25,7 @@ from fractalcontact.study import campaign, resources
 from fractalcontact.study.configuration import resolve_embedded
 
 SOURCE = str(workflow.configfiles[-1]) if workflow.configfiles else "config/paper.yaml"
-RUN = Plan(workflow.is_main_process, config, ROOT, SOURCE)
+RUN = Plan(workflow, config, ROOT, SOURCE)
 STUDY = RUN.study
 RESULTS = f"results/{config['study']}"
 SCANS, SETTINGS, OPTIONS, LABELS = STUDY.scans, STUDY.settings, STUDY.options, STUDY.labels

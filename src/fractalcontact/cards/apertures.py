@@ -108,6 +108,21 @@ def aperture_at_points(aperture: xr.DataArray, path: Path | str) -> pd.DataFrame
     return points.assign(aperture=aperture.interp(places).values)
 
 
+def outside_words(aperture: xr.DataArray, points: pd.DataFrame) -> str:
+    """Number of points outside a map, whose aperture is missing; "" without any."""
+    limits = {axis: (float(aperture[axis].min()), float(aperture[axis].max())) for axis in "xy"}
+    inside = np.logical_and(*(points[axis].between(*limits[axis]).values for axis in "xy"))
+    if inside.all():
+        return ""
+    ranges = " and ".join(
+        f"{axis} = {low:.6g} to {high:.6g}" for axis, (low, high) in limits.items()
+    )
+    return (
+        f"{np.count_nonzero(~inside)} of {len(points)} points lie outside the map, which covers "
+        f"{ranges} mm: their aperture is missing"
+    )
+
+
 def write_aperture(aperture: xr.DataArray | pd.DataFrame, path: Path | str) -> None:
     """Write an aperture map, or apertures at points, whole or not at all.
 

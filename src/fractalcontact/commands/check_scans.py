@@ -1,5 +1,7 @@
 """Check of the scans of a folder: each is read as by a study and described, without a solve.
 
+Laboratory tables that sidecars or the study name are read too.
+
 python -m fractalcontact.commands.check_scans [FOLDER] [--study config/paper.yaml]
 """
 
@@ -17,6 +19,8 @@ from ..core.labels import length_words, natural_key, percent, plain, printable
 from ..core.window import face_words, spacing_of, window_sides
 from ..domain.measured_map import read_contact_map
 from ..gridding.outline import outline_words
+from ..measured.beforehand import check_tests
+from ..measured.readings import read_test
 from ..mechanics.joint import choose_offsets
 from ..mechanics.states import hardness_of
 from ..roughness.dimension import surface_dimension
@@ -25,8 +29,9 @@ from ..roughness.quality_words import overlap_words, suspect_words
 from ..roughness.recommended import beyond_roll_off, dimension_words
 from ..stages.specimen import prepare_specimen
 from ..study.checks import check_study, read_scans
-from ..study.configuration import resolve_settings
+from ..study.configuration import resolve_settings, solver_settings
 from ..study.documents import read_study
+from ..study.measured import require_files
 from ..study.scan_groups import grouped_notes
 from ..study.sidecar import is_contact_map
 from .scan_words import gap_words, warnings_of_specimen
@@ -111,6 +116,21 @@ def check_scans(
                 yield Checked(name, refusal=str(error))
                 continue
             yield Checked(name, lines=[_file_names(scan)], refusal=_shown(error, scan))
+    yield from _embedded(study, source)
+
+
+def _embedded(study, source):
+    """Laboratory tests of specimens that the study makes itself; what else they are is known."""
+    for name in sorted(study.get("embedded", {}), key=natural_key):
+        row, tests = Checked(name, lines=[f"embedded in {source}"]), []
+        try:
+            tests = resolve_settings(study, name, {}, source).measured
+            require_files(tests)
+            _add_tests(row, [(test, read_test(test)) for test in tests])
+        except InputError as error:
+            row.refusal = str(error)
+        if tests or row.refusal:
+            yield row
 
 
 def _check(scan, study, source, stated):
@@ -123,10 +143,13 @@ def _check(scan, study, source, stated):
     settings = resolve_settings(study, scan.name, own, source, scan)
     specimen = prepare_specimen(scan.lower, scan.upper, options, settings, scan.name)
     _require_solvable(specimen, settings)
+    require_files(settings.measured)
     dimension = surface_dimension(
         specimen["lower"].values, spacing_of(specimen), fit_range=settings.surface_range
     )
+    tests = check_tests(specimen, settings, solver_settings(study, source))
     row = _specimen_row(scan, specimen, scan_quality(specimen, settings.resolutions))
+    _add_tests(row, tests)
     doubtful = dimension["no_dimension"].item() or beyond_roll_off(dimension)
     (row.warnings if doubtful else row.lines).append(dimension_words(dimension))
     return row
@@ -137,6 +160,15 @@ def _require_solvable(specimen, settings):
     every = dict.fromkeys([*settings.directions, *settings.contact_directions])
     choose_offsets(specimen, settings.offsets, list(every))
     hardness_of(settings, specimen)
+
+
+def _add_tests(row, tests):
+    """Add a sentence on each laboratory test, and what to look at in its readings."""
+    for test, read in tests:
+        name = printable(Path(test.file).name)
+        row.lines.append(f"{test.kind} test {test.label}: {name}, {read.curve.x.size} readings")
+        row.lines += filter(None, (read.note,))
+        row.warnings += filter(None, (read.warning,))
 
 
 def _specimen_row(scan, specimen, quality):
@@ -164,11 +196,14 @@ def _specimen_row(scan, specimen, quality):
         lines.append("; ".join(filter(None, (stated, file["notes"]))))
         if file.get("overrides"):
             lines.append(f"{words}, the sidecar overrides: {file['overrides']}")
+    warnings = warnings_of_specimen(specimen, quality)
     if len(faces) == 2:
-        lines.append(f"{gap_words(specimen)}; {overlap_words(specimen, quality)}")
+        overlap = overlap_words(specimen, quality)
+        is_warned_of = any(overlap in warning for warning in warnings)
+        lines.append(gap_words(specimen) if is_warned_of else f"{gap_words(specimen)}; {overlap}")
     if suspicious := suspect_words(specimen):
         lines.append(f"suspicious: {suspicious}")
-    return Checked(scan.name, cells, lines, warnings_of_specimen(specimen, quality))
+    return Checked(scan.name, cells, lines, warnings)
 
 
 def _noise(quality):

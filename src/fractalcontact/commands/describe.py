@@ -24,7 +24,7 @@ from ..scan.draft import written
 from ..scan.options import FACES, NO_MARK, ScanOptions, of_face
 from ..scan.raw import IncompleteSidecar
 from ..scan.read import measure
-from ..scan.undeclared import find_marks, number
+from ..scan.undeclared import find_marks, number, possible_marks
 from ..study.checks import read_sidecar
 from ..study.documents import read_study
 from ..study.scan_files import ScanFiles, list_scans
@@ -34,7 +34,13 @@ from .describe_picture import draw_faces
 DRAFT = ".draft"
 PAGE = f"scans{DRAFT}.html"
 #: What is shown where a line is not filled in yet; the picture says so.
-_SHOWN = {"unit": "mm", "unit_xy": "mm", "unit_z": "mm", "spacing": "1 mm", "first_row": "bottom"}
+_SHOWN = {
+    **{"unit": "mm", "unit_xy": "mm", "unit_z": "mm", "spacing": "1 mm", "first_row": "bottom"},
+    **{"kind": "face", "decimal": ".", "layout": "matrix", "columns": [0, 1, 2], "axes": "none"},
+    **{"heights": "up", "missing": NO_MARK},
+}
+#: Numbers that may mark missing cells, named at most.
+_MAX_NAMED = 4
 #: Files of one instrument may differ in relief by this factor from the one that was looked at.
 ALIKE = 5.0
 _HEAD = """\
@@ -84,12 +90,15 @@ class Face:
         None if it is refused.
     notes : list of str
         What its picture says beside it.
+    among : list of float
+        Numbers among the heights that may mark missing cells, where the draft names none.
     """
 
     path: Path
     options: dict[str, Any]
     measured: Measured | None = None
     notes: list[str] = field(default_factory=list)
+    among: list[float] = field(default_factory=list)
 
 
 def describe(scan: ScanFiles, schema: Mapping, *, always: bool = False) -> Described:
@@ -110,6 +119,7 @@ def describe(scan: ScanFiles, schema: Mapping, *, always: bool = False) -> Descr
              for face, path in faces.items()}  # fmt: skip
     lines, values = drafts["lower"]
     to_fill = [key for key, value in values.items() if value is None]
+    to_fill += ["missing"] * bool(lines and shown["lower"].among)
     described = Described(scan.name, "draft" if lines else "complete", to_fill=to_fill)
     described.sizes = [size_words(face) for face in shown.values()]
     described.sentences = [note for face in shown.values() for note in face.notes]
@@ -154,6 +164,8 @@ def _read_as_drafted(path: Path, stated: Mapping, face: str, draft: Mapping[str,
     filled = {key: value for key, value in draft.items() if value is not None}
     options = {**of_face(stated, face), **filled}
     options |= {key: _SHOWN[key] for key in blanks if key in _SHOWN}
+    if options.get("layout") == "points" and "spacing" in blanks:  # shown as lengths, not as cells
+        options = {key: options[key] for key in options if key not in ("spacing", "first_row")}
     shown = Face(path, options)
     shown.notes = [f"NOT STATED: {key}, shown as {_SHOWN.get(key, 'nothing')}" for key in blanks]
     kind = options.get("kind")
@@ -171,6 +183,8 @@ def _read_as_drafted(path: Path, stated: Mapping, face: str, draft: Mapping[str,
     marks = [mark for mark, is_outside in every.items() if is_outside]
     if every:
         shown.notes.append(f"is {' and '.join(map(number, every))} the mark of missing cells?")
+    if draft.get("missing") == NO_MARK:
+        shown.among = [mark for mark, is_outside in every.items() if not is_outside]
     if marks and draft.get("missing") == NO_MARK:
         options["missing"] = marks if len(marks) > 1 else marks[0]
         shown.measured = measure(path, options, are_heights=False)
@@ -187,8 +201,13 @@ def _marks(face: Face) -> dict[float, bool]:
     unit = options.get("unit_z") or options.get("unit") or "mm"
     sign = -1 if options.get("heights") == "down" or options.get("kind") == APERTURE else 1
     factor = sign * length_factor(str(unit), str(face.path))
-    marks = find_marks(heights)
-    return {float(f"{mark.value / factor:.7g}"): mark.outside for mark in marks}
+    # In the file's own unit, without what the conversion leaves in the last digits.
+    own = np.round(heights / factor, 9 - int(np.log10(np.nanmax(np.abs(heights / factor)) + 1)))
+    if options.get("kind") == APERTURE:
+        own = own[own != 0]
+    found = {float(f"{mark.value:.7g}"): mark.outside for mark in find_marks(own)}
+    rest = np.where(np.isin(own, [mark for mark, outside in found.items() if outside]), np.nan, own)
+    return found | {float(f"{value:.7g}"): False for value, _ in possible_marks(rest)}
 
 
 def _draft_text(scan: ScanFiles, lines: list[str], drafts: Mapping, shown: Mapping) -> str:
@@ -212,6 +231,14 @@ def _draft_text(scan: ScanFiles, lines: list[str], drafts: Mapping, shown: Mappi
 def _with_marks(lines: list[str], face: Face) -> list[str]:
     """Lines with the marks of missing cells that all of the file shows, not its first lines."""
     missing = face.options.get("missing")
+    if face.among and missing == NO_MARK:
+        numbers = ", ".join(map(number, face.among[:_MAX_NAMED]))
+        return [
+            f"missing:                  # FILL IN: none, or the mark of missing cells: {numbers}?"
+            if line.startswith("missing:")
+            else line
+            for line in lines
+        ]
     return [
         f"missing: {written(missing):<16} # the file holds it as no height could be"
         if line.startswith(f"missing: {NO_MARK}") and missing not in (None, NO_MARK)

@@ -10,7 +10,7 @@ import argparse
 import sys
 from collections.abc import Sequence
 
-from ..cards.apertures import aperture_at, aperture_at_points, write_aperture
+from ..cards.apertures import aperture_at, aperture_at_points, outside_words, write_aperture
 from ..core.errors import InputError, said_in_one_line
 from ..core.units import quantity
 from ..study.atlas_parts import open_atlas
@@ -38,6 +38,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     points = given.points and aperture_at_points(aperture, given.points)
     write_aperture(points if given.points else aperture, given.out)
     sys.stdout.write(f"{given.out}: aperture in mm, {aperture.attrs['source']}\n")
+    if given.points and (words := outside_words(aperture, points)):
+        sys.stdout.write(f"{given.points}: {words}\n")
     return 0
 
 

@@ -121,6 +121,7 @@ def grid_cloud(cloud: Cloud, lattice: pts.Lattice) -> tuple[np.ndarray, str]:
         heights = interpolate_mesh(
             cloud.mesh.vertices, cloud.mesh.triangles, lattice, across, where
         )
+        _refuse_several_faces(cloud.mesh, heights, lattice, where)
         holes = "where no triangle is, cells are missing"
     else:
         points = cloud.points[np.isfinite(cloud.points[:, 2])]
@@ -145,8 +146,21 @@ def place_cloud(cloud: Cloud) -> tuple[np.ndarray, str]:
     if mesh is None:
         return heights, gridding + "nodes without one are missing"
     between = interpolate_mesh(mesh.vertices, mesh.triangles, lattice, 1, str(cloud.path))
+    _refuse_several_faces(mesh, between, lattice, str(cloud.path))
     heights = np.where(np.isfinite(heights), heights, between)
     return heights, gridding + "nodes without one lie on the mesh's triangles or are missing"
+
+
+def _refuse_several_faces(mesh: Mesh, heights: np.ndarray, lattice: pts.Lattice, where: str):
+    """Refuse a mesh of two faces above each other; of a closed body a note says what is read."""
+    cell = lattice.dx * lattice.dy
+    layers = overhangs.mean_layers(mesh.vertices, mesh.triangles, heights, cell)
+    if layers >= overhangs.SEVERAL_FACES and not overhangs.is_closed(mesh.triangles):
+        raise InputError(
+            f"{where}: the mesh has {layers:.1f} heights at each x, y on average: two faces or "
+            "scans in one file, or a body; save each face in a file of its own, two faces as "
+            "NAME.lower and NAME.upper, as seen from above"
+        )
 
 
 def _merge(scan: Measured) -> Cloud:

@@ -4,6 +4,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from .density import sample_points
+from .triangles import doubled_area
 
 #: Neighbours in the plane that are looked at. Where two layers overlap there are 18 of each, and
 #: by chance those above leave half a circle free once in a thousand points.
@@ -31,6 +32,9 @@ _OPEN_EDGES = 0.2
 #: A point lies over another layer if its neighbour in the plane is this many times as far above or
 #: below it as the nearest point in space is away.
 _OTHER_LAYER = 10.0
+#: From this mean number of layers on, a mesh that is no closed body holds more than one face. The
+#: cells at its rim, of which some are missing, and overhangs add some hundredths.
+SEVERAL_FACES = 1.5
 #: From this share on a cloud has several layers: by chance one point in some thousand does so.
 SEVERAL_LAYERS = 0.1
 
@@ -106,6 +110,25 @@ def layered_share(points: np.ndarray, tree: cKDTree) -> float:
     rise = np.abs(points[neighbours[:, 1:], 2] - sample[:, 2:])
     nearest = np.hypot(distances[:, 1:], rise).min(axis=1)
     return float((rise[:, 0] > _OTHER_LAYER * nearest).mean())
+
+
+def mean_layers(
+    vertices: np.ndarray, triangles: np.ndarray, heights: np.ndarray, cell: float
+) -> float:
+    """Mean number of triangles above each other where a mesh is: 1 of a surface, 2 of two faces.
+
+    Parameters
+    ----------
+    vertices : ndarray, shape (n, 3)
+    triangles : (m, 3) int ndarray
+    heights : (ny, nx) ndarray
+        Of the mesh on a grid; NaN where no triangle is.
+    cell : float
+        Area of a cell of the grid, mm2.
+    """
+    covered = np.count_nonzero(np.isfinite(heights)) * cell
+    area = float(doubled_area(vertices[:, :2], triangles).sum()) / 2
+    return area / covered if covered else np.nan
 
 
 def is_closed(triangles: np.ndarray) -> bool:

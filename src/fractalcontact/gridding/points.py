@@ -94,6 +94,28 @@ def _in_rows(points: np.ndarray) -> bool:
     return True
 
 
+def refuse_one_place(points: np.ndarray, path: object) -> None:
+    """Refuse points that all stand at one x, y: rounded coordinates, nearly always.
+
+    Parameters
+    ----------
+    points : ndarray, shape (n, 3)
+    path : path-like
+        The file, for errors.
+
+    Raises
+    ------
+    InputError
+    """
+    low, high = (f.reduce(points[:, :2], axis=0) for f in (np.fmin, np.fmax))
+    if len(points) > 1 and (low == high).all():
+        raise InputError(
+            f"{path}: all {len(points)} points stand on one place, x = {low[0]:.10g}, "
+            f"y = {low[1]:.10g}: coordinates this far from 0 may have been rounded to single "
+            "precision; export coordinates nearer to 0, or in double precision"
+        )
+
+
 def single_precision_note(points: np.ndarray) -> str:
     """Sentence on the rounding of x and y by single precision; "" if it is harmless.
 
@@ -115,7 +137,8 @@ def single_precision_note(points: np.ndarray) -> str:
     area = np.prod(np.sort(np.ptp(points, axis=0))[1:])
     distance = float(np.sqrt(area / len(points)))
     whole = np.all(points[:, :2] == np.round(points[:, :2]))
-    if whole or rounding <= COARSE_ROUNDING * distance:
+    # At a distance of 0 they lie on one line, and are refused for it.
+    if whole or distance == 0 or rounding <= COARSE_ROUNDING * distance:
         return ""
     return (
         f"x and y are in single precision, rounded to {rounding:.2g} of the file's unit, "

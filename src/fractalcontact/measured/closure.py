@@ -6,13 +6,12 @@ from typing import Any
 import numpy as np
 from scipy.interpolate import PchipInterpolator
 
-from roughcontact.contact.path import LOAD
-
 from ..core.errors import InputError
 from ..core.estimate import NO_ESTIMATE, Estimate
 from ..core.limits import SEATED_SPAN
 from ..core.settings import MeasuredTest
 from ..mechanics.closure_laws import fit_hyperbola, fit_semi_logarithmic
+from .beforehand import require_calibration, require_relief
 from .calibration import NEAR, fit_factor
 from .computed import CARRIED, Joint
 from .curve import Curve, compared, ratio
@@ -80,11 +79,7 @@ def compare_closure(
     NotConverged
     """
     for test, one in zip(tests, readings, strict=True):
-        if (closed := float(np.ptp(one.y))) > joint.relief:
-            raise InputError(
-                f"{test.file}: the joint closes by {closed:.3g} mm, more than the relief of its "
-                f"faces, {joint.relief:.3g} mm; check the unit of the displacement"
-            )
+        require_relief(test, one, joint.relief)
     calibrated = _Calibrated(joint, tests, readings)
     rows = [_row(joint, test, one, calibrated) for test, one in zip(tests, readings, strict=True)]
     return rows, calibrated.described()
@@ -105,17 +100,7 @@ class _Calibrated:
         if self.test is None:
             return
         one = readings[tests.index(self.test)]
-        crushes = np.isfinite(joint.hardness)
-        if self.test.calibrate == "hardness" and not crushes:
-            raise InputError(
-                f"{self.test.file}: 'calibrate: hardness', but the joint is elastic; state a "
-                "hardness in the material, or calibrate the modulus"
-            )
-        if self.test.calibrate == "modulus" and crushes and self.test.branch != LOAD:
-            raise InputError(
-                f"{self.test.file}: 'calibrate: modulus' on the branch '{self.test.branch}' of a "
-                "joint that crushes; calibrate it on loading, or calibrate the hardness"
-            )
+        require_calibration(self.test, joint.hardness)
         fitted = self._ladder(one) if self.test.calibrate == "hardness" else self._scaled(one)
         self.factor = fit_factor(one.where(one.x >= self.test.seat), *fitted)
 

@@ -3,9 +3,9 @@
 import numpy as np
 import xarray as xr
 
-from ..core.errors import InputError
 from ..core.reported import Reported
 from ..core.settings import MeasuredTest
+from .beforehand import NEAR, require_direction, require_pressure
 from .curve import Curve
 
 #: Why a kind of test has no computed value to compare with.
@@ -17,9 +17,6 @@ WHY_NONE = {
     "strength": "the study states no basic friction angle, or every angle was truncated",
 }
 NOTHING = Curve.of([], [], [])
-
-#: Pressures this near to each other, as a fraction, are one.
-_NEAR = 0.01
 
 
 def computed_curve(
@@ -47,14 +44,9 @@ def computed_curve(
     """
     if test.kind == "flow":
         return _flow(test, flow, reported)
-    if strength is None:
-        raise InputError(f"{test.file}: a surface against a plane does not slide; remove the test")
-    known = [str(one) for one in strength["contact_direction"].values]
-    if test.direction not in known:
-        raise InputError(
-            f"{test.file}: sliding towards {test.direction} was not computed, only towards "
-            f"{', '.join(known)}; add it to 'contact_directions'"
-        )
+    known = [] if strength is None else [str(one) for one in strength["contact_direction"].values]
+    require_direction(test, known)
+    assert strength is not None  # otherwise no direction is known
     if test.kind == "dilatancy":
         along = dilatancy.sel(contact_direction=test.direction)
         curve = _under(test, along, "elastic_dilatancy", "offset_on_grid")
@@ -94,14 +86,7 @@ def _under(test: MeasuredTest, along: xr.Dataset, name: str, x: str) -> Curve:
     offsets = np.isfinite(values.values).sum(axis=0)
     solved = (offsets > 0) & (2 * offsets > offsets.max())
     pressure = along["nominal_pressure"].values[solved]
-    if not pressure.size or not (
-        pressure[0] * (1 - _NEAR) <= test.pressure <= pressure[-1] * (1 + _NEAR)
-    ):
-        ends = ", ".join(f"{one:.3g}" for one in pressure) or "none"
-        raise InputError(
-            f"{test.file}: {test.pressure:g} MPa lies outside of the pressures at which "
-            f"{test.kind} was computed ({ends} MPa); add it to 'loads' and 'dilatancy_loads'"
-        )
+    require_pressure(test, pressure)
     of = along[[name, f"{name}_error"]].isel(normal_force=solved)
     place = float(np.interp(np.log(test.pressure), np.log(pressure), range(pressure.size)))
     low, part = int(np.floor(place)), place % 1
@@ -109,6 +94,6 @@ def _under(test: MeasuredTest, along: xr.Dataset, name: str, x: str) -> Curve:
 
     def between(each: xr.DataArray) -> np.ndarray:
         first, second = (each.isel(normal_force=one).values for one in (low, high))
-        return first if part < _NEAR else (1 - part) * first + part * second
+        return first if part < NEAR else (1 - part) * first + part * second
 
     return Curve.of(along[x].values, between(of[name]), between(of[f"{name}_error"]), log_x=False)

@@ -85,7 +85,8 @@ def measured_stage(
         tests = [test for test in settings.measured if test.kind == kind]
         if not tests:
             continue
-        readings = [read_test(test) for test in tests]
+        read = [read_test(test) for test in tests]
+        readings = [one.curve for one in read]
         if kind == "closure":
             rows, calibration = compare_closure(joint, tests, readings)
             found.update(_labelled(calibration, OF_CALIBRATION, ()))
@@ -94,6 +95,7 @@ def measured_stage(
                 _beside(test, one, computed_curve(test, flow, dilatancy, strength, reported))
                 for test, one in zip(tests, readings, strict=True)
             ]
+        rows = [row | {"note": one.said} for row, one in zip(rows, read, strict=True)]
         found = found.merge(_of_kind(kind, tests, rows))
     return {"measured": found}
 
@@ -156,6 +158,8 @@ def _of_kind(kind: str, tests: Sequence[MeasuredTest], rows: Sequence[Mapping]) 
     )
     why = [row.get("reason", "") for row in rows]
     variables[f"{kind}_reason"] = (test, why, cf_attrs("1", "why nothing is compared"))
+    notes = [row["note"] for row in rows]
+    variables[f"{kind}_note"] = (test, notes, cf_attrs("1", "what to know of the readings"))
     data = xr.Dataset(variables, {test: [one.label for one in tests]})
     data.update(
         {

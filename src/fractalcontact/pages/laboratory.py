@@ -28,6 +28,8 @@ class Test:
         The same with the constant that is fitted to a test; NaN without.
     status : str
         "computed", or "fitted" and "predicted" with that constant.
+    note : str
+        What to know of its readings; "" if nothing is.
     """
 
     kind: str
@@ -36,6 +38,7 @@ class Test:
     ratio: Estimate
     calibrated: Estimate
     status: str
+    note: str
 
     @property
     def columns(self) -> dict[str, float]:
@@ -62,6 +65,7 @@ def tests_of(subject: Subject) -> list[Test]:
                     Estimate.read(test, f"{kind}_ratio_at_last"),
                     Estimate.read(test, "closure_ratio_calibrated") if of_closure else Estimate(),
                     str(test["closure_status"].item()) if of_closure else "computed",
+                    str(test[f"{kind}_note"].item()),
                 )
             )
     return found

@@ -20,7 +20,7 @@ from ..core.window import spacing_of, window_sides
 from .common_loads import CommonLoad
 from .laboratory import Test, calibration_of, tests_of
 from .lights import Light, lights_of, validity_at
-from .words import percent, with_unit
+from .words import percent, plus_minus, with_unit
 
 #: Errors of a quantity as a property of this surface, and of that which the window is cut from.
 TOTALS = {"surface": "total", "population": "total_of_population"}
@@ -80,6 +80,9 @@ class Quantity:
 
     def error_words(self, error: float) -> str:
         """An error in per cent of the value where the quantity has fractions, else in its unit."""
+        return plus_minus(error, self._size_of(error))
+
+    def _size_of(self, error: float) -> str:
         if self.absolute or not self.known or self.value == 0:
             return with_unit(error, self.unit, 2)
         return percent(abs(error / self.value))

@@ -69,6 +69,11 @@ def interval(value: float, low: float, high: float) -> str:
     return f"{measured(value)} [{measured(low)}, {measured(high)}]"
 
 
+def plus_minus(error: float, words: str) -> str:
+    """An error, said in words, behind its sign; where it is not finite, that it is not known."""
+    return f"± {words}" if math.isfinite(error) else "error not known"
+
+
 def undetermined(value: str) -> str:
     """Undetermined number: the word, with the value and its error in brackets."""
     return f"undetermined ({value})"

@@ -13,9 +13,11 @@ import xarray as xr
 
 from ..core.arrays import padded
 from ..core.datasets import labelled
+from ..core.directions import APERTURE
 from ..core.estimate import NO_ESTIMATE, Estimate
-from ..core.labels import cf_attrs
+from ..core.labels import cf_attrs, length_words
 from ..core.window import cell_side, face_words, spacing_of
+from .dimension import slope_statistics
 from .face_gap import REGIONS, gap_statistics
 from .fractal_range import FractalRange, find_fractal_range
 from .quality_words import AXES, file_warnings, interval_words, statements
@@ -24,6 +26,9 @@ from .spectra import STRIPS, profile_spectra, radial_spectrum
 
 #: Fractions of the cells below a height, in percent.
 PERCENTILES = (0.1, 1.0, 5.0, 25.0, 50.0, 75.0, 95.0, 99.0, 99.9)
+#: mm, and rms slopes at the spacing of the scan, beyond which a unit is wrong, nearly always.
+MIN_SIDE = 1.0
+MIN_SLOPE, MAX_SLOPE = 0.01, 3.0
 #: Bins of the histogram, between the outer two percentiles and a quarter beyond on either side.
 BINS = 60
 #: Levels of a quantised surface are at least this many times fewer than its cells, or the step is
@@ -92,9 +97,32 @@ def scan_quality(specimen: xr.Dataset, resolutions: Sequence[int]) -> xr.Dataset
     result = result.assign(_compared_with_range(end, np.array(resolutions), side))
     result.attrs = {"ended_by": end.reason}
     warnings = [*file_warnings(specimen), *scan_line_warnings(result), _warning(result)]
+    warnings.append(_doubtful_unit(specimen, heights, spacing))
     result.attrs["warning"] = "; ".join(filter(None, warnings))
     result.attrs |= {f"spacing_{axis}": specimen.attrs[f"spacing_{axis}"] for axis in AXES}
     return result.assign_attrs(statements(specimen, result))
+
+
+def _doubtful_unit(specimen, heights, spacing) -> str:
+    """Warning of a side or slope that rock joints hardly have: a wrong unit, nearly always.
+
+    The slope of an aperture map is not judged: it is no face.
+    """
+    side = min(n * s for n, s in zip(heights[0].shape, spacing, strict=True))
+    found = [slope_statistics(z, spacing) for z in heights]
+    rms = max(found, key=lambda one: one["rms_height"].item())["rms_height"].item()
+    slopes = [one["rms_slope"].item() for one in found]
+    is_slope = specimen.attrs["opposite"] != APERTURE and any(
+        not MIN_SLOPE <= slope <= MAX_SLOPE for slope in slopes if math.isfinite(slope)
+    )
+    if side >= MIN_SIDE and not is_slope:
+        return ""
+    words = " and ".join(f"{slope:.2g}" for slope in slopes)
+    return (
+        f"is this a rock joint? Its side is {length_words(side)}, its rms height "
+        f"{length_words(rms)}, its rms slope {words}; check 'unit', 'unit_xy', 'unit_z' and "
+        "'spacing' in the sidecar"
+    )
 
 
 _POINTS = {

@@ -6,7 +6,8 @@ from collections.abc import Callable, Mapping
 import numpy as np
 
 from .draft import Hints, add_words
-from .text_hints import add_axes
+from .table_hints import add_axes, add_columns, coordinate_columns
+from .text_lines import words_of
 
 _HEIGHTS = re.compile(r"(?:^|[^a-z])(?:z|heights?|topo\w*|elev\w*|surf\w*|data)(?:[^a-z]|$)")
 #: A larger array is not looked into.
@@ -37,7 +38,7 @@ def array_hints(
         Attributes of the file: where each stands, and its text.
     """
     hints = Hints()
-    names = sorted(tables, key=lambda name: (not _HEIGHTS.search(name.lower()), name))
+    names = sorted(tables, key=lambda name: (not _HEIGHTS.search(words_of(name.lower())), name))
     name = wanted if wanted in tables else names[0] if names else None
     if name is None:
         return hints
@@ -45,6 +46,10 @@ def array_hints(
         f"{other} of {tables[other][0]} x {tables[other][1]}" for other in names if other != name
     ]
     hints.add("variable", name, f"an array of {tables[name][0]} x {tables[name][1]}", others)
+    named = [other for other in names if _HEIGHTS.search(other.lower())]
+    if wanted not in tables and len(names) > 1 and len(named) != 1:
+        hints.ask("variable", "which of them holds the heights?")
+    add_words(hints, [(f"the name of {name!r}", name.replace("_", " "))])
     _add_spacing(hints, small)
     add_words(hints, words or [])
     if np.prod(tables[name]) > _MAX_CELLS:
@@ -52,8 +57,10 @@ def array_hints(
     values = np.asarray(read(name), dtype=float)
     if values.shape[1] < 8:
         hints.add("layout", "points", f"{values.shape[1]} columns")
-        hints.add("columns", [0, 1, 2], "in the order of the file; check the order")
-        hints.heights = values[:, min(2, values.shape[1] - 1)]
+        add_columns(hints, [], values, "")
+        lateral = coordinate_columns(values)
+        rest = [n for n in range(values.shape[1]) if n not in lateral]
+        hints.heights = values[:, rest[0] if len(rest) == 1 else min(2, values.shape[1] - 1)]
     else:
         hints.add("layout", "matrix", f"{values.shape[1]} columns")
         add_axes(hints, values)
@@ -62,11 +69,8 @@ def array_hints(
 
 
 def _add_spacing(hints: Hints, small: Mapping[str, float]) -> None:
-    """Suggest single numbers that are called as a spacing is."""
+    """Name single numbers that are called as a spacing is; their unit is nowhere said."""
     steps = {name: value for name, value in small.items() if _STEP.fullmatch(name.lower())}
-    by_axis = {match[1]: name for name in steps if (match := _STEP.fullmatch(name.lower()))}
-    source = ", ".join(f"{name} = {value:g}" for name, value in steps.items())
-    if {"x", "y"} <= by_axis.keys():
-        hints.add("spacing", [steps[by_axis["x"]], steps[by_axis["y"]]], f"in the file: {source}")
-    elif steps:
-        hints.add("spacing", next(iter(steps.values())), f"in the file: {source}")
+    if steps:
+        numbers = ", ".join(f"{name} = {value:g}" for name, value in steps.items())
+        hints.ask("spacing", f"the file holds {numbers}, without a unit")

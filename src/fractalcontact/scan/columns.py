@@ -1,30 +1,85 @@
 """Columns, or a profile, of a text table whose first line names each with its unit, ``z [um]``."""
 
+import csv
+import math
 import re
-from collections.abc import Mapping
+import unicodedata
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 
 from ..core.errors import InputError
 from ..core.labels import printable
-from ..core.units import length_factor
-from .text_lines import open_text
+from ..core.units import length_factor, length_unit
+from .text_lines import cleaned, open_text
 
-_NAMED = re.compile(r"(?P<name>[^\[(]*?)\s*[\[(]\s*(?P<unit>[^\])]+?)\s*[\])]")
 _DELIMITERS = ",;\t"
+_WORDS_OF = {",": "comma", ";": "semicolon", "\t": "tab"}
 #: Steps of a profile may differ from their mean by this part of it.
 _EVEN = 0.01
 _SPREADSHEETS = (".xls", ".xlsx", ".ods")
+#: What old programs write at the end of a text.
+_END_OF_FILE = "\x1a"
+_NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
+_MONTHS = (
+    "jan|feb|fev|fév|mar|mär|mrz|apr|avr|abr|may|mai|mag|jun|juin|giu|jul|juil|lug|aug|aoû|ago|"
+    "sep|set|oct|okt|out|ott|nov|dec|dez|déc|dic"
+)
+#: Days and times as spreadsheets show them: 01. Jan, 3.Mrz, Jan 25, 1/2/2024, 2024-01-02, 12:30.
+_DATE = re.compile(
+    rf"(?:\d{{1,4}}[-./ ]{{0,2}})?(?:{_MONTHS})[^\W\d]{{0,8}}[-./ ]{{0,2}}\d{{0,4}}"
+    r"|\d{1,4}[-./]\d{1,2}[-./]\d{1,4}.{0,16}|\d{1,2}/\d{1,2}|\d{1,2}:\d\d.{0,9}",
+    re.IGNORECASE,
+)
 
 
-class Column(NamedTuple):
-    """Numbers of a column in the unit that its heading states; ``where`` is for errors."""
+@dataclass(frozen=True, eq=False)
+class Column:
+    """Numbers of a column in the unit that its heading states.
+
+    Attributes
+    ----------
+    values : (n,) ndarray
+    unit : str
+    file : Path
+    heading : str
+        As it stands in the file.
+    lines : (n + 1,) int ndarray
+        Numbers of the lines, that of the heading first.
+    """
 
     values: np.ndarray
     unit: str
-    where: str
+    file: Path
+    heading: str
+    lines: np.ndarray
+
+    @property
+    def where(self) -> str:
+        """Place of the heading, for errors."""
+        return self._place(0)
+
+    def at(self, reading: int) -> str:
+        """Place of a reading and its number, for errors."""
+        return f"{self._place(reading + 1)}: {self.said(reading)}"
+
+    def said(self, reading: int) -> str:
+        """Number of a reading with its unit."""
+        return f"{self.values[reading] + 0.0:.6g} {self.unit}"  # no -0
+
+    def at_lowest(self) -> str:
+        """The lowest number and its line, for errors."""
+        lowest = int(np.argmin(self.values))
+        return f"{self.said(lowest)} in line {self.line(lowest)}"
+
+    def line(self, reading: int) -> int:
+        """Number of the line of a reading."""
+        return int(self.lines[reading + 1])
+
+    def _place(self, number: int) -> str:
+        return _place_of(self.file, int(self.lines[number]), self.heading)
 
 
 def read_columns(path: Path | str, wanted: Mapping[str, str]) -> dict[str, Column]:
@@ -38,6 +93,7 @@ def read_columns(path: Path | str, wanted: Mapping[str, str]) -> dict[str, Colum
     wanted : mapping of str to str
         Heading with its unit by name, ``{"pressure": "sn [MPa]"}``. A heading without brackets
         stands for ``x [UNIT]`` with any unit; the file's may lack the unit that is stated here.
+        Signs that look alike, as the micro sign and the Greek mu, are one.
 
     Returns
     -------
@@ -47,32 +103,25 @@ def read_columns(path: Path | str, wanted: Mapping[str, str]) -> dict[str, Colum
     Raises
     ------
     InputError
-        If the file is a spreadsheet, cannot be read, lacks a heading or its unit, or a line holds
-        something else than finite numbers.
+        If the file is a spreadsheet, cannot be read, lacks a heading or its unit or has it twice,
+        a line has more cells than the heading, or a cell is no finite number.
     """
     path = Path(path)
     if path.suffix.lower() in _SPREADSHEETS:
         raise InputError(f"{path}: a spreadsheet; save the sheet as CSV")
-    try:
-        with open_text(path) as file:
-            lines = [line.strip() for line in file if line.strip()]
-    except (OSError, UnicodeDecodeError) as error:
-        raise InputError(f"{path}: cannot be read ({error}); expected a text file") from None
-    head = lines[0].lstrip("#% ") if lines else ""
-    delimiter = max(_DELIMITERS, key=head.count)
-    headings = [cell.strip().strip("\"'") for cell in head.split(delimiter)]
-    places = {name: _place(stated, headings) for name, stated in wanted.items()}
-    if None in places.values():
-        example = f"{delimiter} ".join(_with_unit(stated) for stated in wanted.values())
-        raise InputError(
-            f"{path}: the first line does not name these columns, it is '{printable(head, 60)}'; "
-            f"expected their names and units, such as '{example}', and numbers in every other line"
-        )
+    lines = _lines(path)
+    head_line, head = lines[0] if lines else (1, "")
+    delimiter, headings, places = _places(path, head_line, head.lstrip("#% "), wanted)
+    rows = list(_rows(path, lines[1:], delimiter, headings))
+    numbers = np.array([head_line, *(number for number, _ in rows)])
     found = {}
-    for name, place in places.items():
-        number, unit = place  # type: ignore[misc]
-        cells = (line.split(delimiter) for line in lines[1:])
-        found[name] = Column(_numbers(cells, number, delimiter, path), unit, f"{path}: {name}")
+    for name, (place, unit) in places.items():
+        heading = headings[place]
+        values = [
+            _number(row[place] if place < len(row) else None, delimiter, (path, line, heading))
+            for line, row in rows
+        ]
+        found[name] = Column(np.array(values, float), unit, path, heading, numbers)
     return found
 
 
@@ -108,38 +157,153 @@ def read_profile(path: Path | str) -> tuple[np.ndarray, float]:
     return z, float(steps.mean())
 
 
-def _place(stated: str, headings: list[str]) -> tuple[int, str] | None:
-    """Number and unit of the column that a heading names; None without."""
-    parts = _NAMED.fullmatch(stated.strip())
-    name, unit = (parts["name"], parts["unit"]) if parts else (stated.strip(), "")
-    for number, heading in enumerate(headings):
-        of_file = _NAMED.fullmatch(heading)
-        if heading.lower() == name.lower() and unit:
-            return number, unit
-        if of_file and of_file["name"].lower() == name.lower():
-            if unit and of_file["unit"] != unit:
-                continue
-            return number, of_file["unit"]
+def _lines(path: Path) -> list[tuple[int, str]]:
+    """Lines that are not blank, with their numbers."""
+    try:
+        with open_text(path) as file:
+            lines = [(number, line.strip()) for number, line in enumerate(file, 1)]
+    except (OSError, UnicodeDecodeError) as error:
+        raise InputError(f"{path}: cannot be read ({error}); expected a text file") from None
+    lines = [(number, line) for number, line in lines if line]
+    if lines and lines[-1][1].endswith(_END_OF_FILE):
+        number, last = lines.pop()
+        if last := last.rstrip(_END_OF_FILE).strip():
+            lines.append((number, last))
+    return lines
+
+
+def _places(
+    path: Path, line: int, head: str, wanted: Mapping[str, str]
+) -> tuple[str, list[str], dict[str, tuple[int, str]]]:
+    """Delimiter and headings of a table; number and unit of each column that is wanted.
+
+    Raises
+    ------
+    InputError
+        If no delimiter, or more than one column, gives a heading.
+    """
+    by_count = sorted(_DELIMITERS, key=head.count, reverse=True)
+    for delimiter in by_count:
+        headings = _cells(path, line, head, delimiter)
+        matches = {name: _matches(stated, headings) for name, stated in wanted.items()}
+        if all(matches.values()):
+            break
+    else:
+        delimiter = by_count[0]
+        example = f"{delimiter} ".join(_with_unit(stated) for stated in wanted.values())
+        raise InputError(
+            f"{path}: line {line} does not name these columns, it is '{printable(head, 60)}'; "
+            f"expected their names and units, such as '{example}', and numbers in every other line"
+        )
+    for name, found in matches.items():
+        if len(found) > 1:
+            numbers = " and ".join(str(place + 1) for place, _ in found)
+            raise InputError(
+                f"{path}: line {line}: columns {numbers} are both '{wanted[name]}'; rename one, or "
+                f"state the heading with its unit in 'columns: {{{name}: ...}}'"
+            )
+    return delimiter, headings, {name: found[0] for name, found in matches.items()}
+
+
+def _matches(stated: str, headings: list[str]) -> list[tuple[int, str]]:
+    """Numbers and units of the columns that a heading names; those in the same case before all."""
+    exact = [same for number, one in enumerate(headings) if (same := _same(stated, one, number))]
+    return [one for one in exact if _plain(headings[one[0]]) == _plain(stated)] or exact
+
+
+def _same(stated: str, heading: str, number: int) -> tuple[int, str] | None:
+    """Number and unit of a column if its heading is the one stated; either may lack the unit."""
+    stated, heading = _plain(stated), _plain(heading)
+    (name, unit), (of_file, file_unit) = _name_and_unit(stated), _name_and_unit(heading)
+    if unit and heading.lower() == name.lower():
+        return number, unit
+    if file_unit and of_file.lower() == stated.lower():
+        return number, file_unit
+    if file_unit and of_file.lower() == name.lower() and _same_unit(unit, file_unit):
+        return number, file_unit
     return None
+
+
+def _name_and_unit(heading: str) -> tuple[str, str]:
+    """Name and unit of a heading; the unit stands in its last brackets."""
+    start = max(heading.rfind("["), heading.rfind("("))
+    unit = heading[start + 1 : -1].strip()
+    if start < 0 or not unit or not heading.endswith(("]", ")")):
+        return heading, ""
+    return heading[:start].rstrip(), unit
+
+
+def _same_unit(stated: str, of_file: str) -> bool:
+    """True if nothing else is stated than the unit of a file, however a length is written."""
+    known = length_unit(stated)
+    return stated in ("", of_file) or (known is not None and known == length_unit(of_file))
+
+
+def _plain(text: str) -> str:
+    """Text with one sign for those that look alike, and single blanks."""
+    return " ".join(unicodedata.normalize("NFKC", text).split())
 
 
 def _with_unit(stated: str) -> str:
     """Heading with its unit, or one as an example."""
     unit = "MPa" if "pressure" in stated or "str" in stated else "mm"
-    return stated if _NAMED.fullmatch(stated) else f"{stated} [{unit}]"
+    return stated if _name_and_unit(stated)[1] else f"{stated} [{unit}]"
 
 
-def _numbers(cells, number: int, delimiter: str, path: Path) -> np.ndarray:
+def _rows(
+    path: Path, lines: list[tuple[int, str]], delimiter: str, headings: list[str]
+) -> Iterator[tuple[int, list[str]]]:
+    """Cells of each line; blank ones may follow the last heading."""
+    for number, line in lines:
+        row = _cells(path, number, cleaned(line, delimiter), delimiter)
+        if any(row[len(headings) :]):
+            commas = (
+                "numbers with decimal commas want semicolons between the columns, in the first "
+                "line too"
+                if delimiter == ","
+                else "give every column a heading"
+            )
+            raise InputError(
+                f"{path}: line {number}: {len(row)} cells below {len(headings)} headings, it is "
+                f"'{printable(line, 60)}'; {commas}"
+            )
+        yield number, row
+
+
+def _cells(path: Path, number: int, line: str, delimiter: str) -> list[str]:
     try:
-        column = [row[number] for row in cells]
-        if delimiter != ",":
-            column = [cell.replace(",", ".") for cell in column]
-        values = np.array([float(cell) for cell in column])
-    except (ValueError, IndexError):
-        values = np.array([np.nan])
-    if not np.isfinite(values).all():
+        (row,) = csv.reader([line], delimiter=delimiter, skipinitialspace=True)
+    except (csv.Error, ValueError) as error:
         raise InputError(
-            f"{path}: a line does not hold numbers for these columns, or one is not finite; write "
-            "numbers with a decimal point and the same delimiter as in the first line"
+            f"{path}: line {number} cannot be split into cells ({error}); write each row in a line"
+        ) from None
+    return [cell.strip().strip("\"'") for cell in row]
+
+
+def _number(cell: str | None, delimiter: str, place: tuple[Path, int, str]) -> float:
+    text = cell or ""
+    if delimiter != ",":
+        text = text.replace(",", ".")
+    value = float(text) if _NUMBER.fullmatch(text) else math.nan
+    if math.isfinite(value):
+        return value
+    if not cell:
+        missing = "the line ends before this column" if cell is None else "the cell is empty"
+        words = f"{missing}; write its number, or remove the line"
+    elif _DATE.fullmatch(cell):
+        words = (
+            f"'{printable(cell, 40)}' is a date, which a spreadsheet makes of a number such as "
+            "1.2; format the column as numbers there, write the number again, and save as CSV"
         )
-    return values
+    else:
+        comma = "" if delimiter == "," else ", or a decimal comma"
+        words = (
+            f"'{printable(cell, 40)}' is no finite number; write numbers with a decimal point"
+            f"{comma}, and between the columns a {_WORDS_OF[delimiter]} as in the first line"
+        )
+    raise InputError(f"{_place_of(*place)}: {words}")
+
+
+def _place_of(path: Path, line: int, heading: str) -> str:
+    """File, line and column, for errors."""
+    return f"{path}: line {line}, column '{printable(heading, 40)}'"

@@ -12,39 +12,29 @@ import numpy as np
 
 from ..core.directions import APERTURE
 from ..core.labels import listed, printable
-from ..core.units import length_unit
 from .options import NO_MARK, ScanOptions
-from .undeclared import find_marks, number
+from .statements import statements
+from .undeclared import find_marks, number, possible_marks
 
 _NUMBER = r"[-+]?(?:\d+(?:[.,]\d+)?|[.,]\d+)(?:[eE][-+]?\d+)?"
-_WORD = r"[^\W\d_]+"
-_LENGTH = re.compile(rf"({_NUMBER})(?:\s*[x×*]\s*({_NUMBER}))?\s*[\[(]?({_WORD})\b")
-_ALONE = re.compile(rf"(?:\bin\s+|[\[(]\s*|units?\b[\w ]*[\s:=,;]+)({_WORD})", re.IGNORECASE)
-_NO_DATA = re.compile(
-    rf"(?:no[\s_-]?data|missing|invalid|fill|void|blank)[\w \t]*[\s:=,;\"']+({_NUMBER})\W*$",
-    re.IGNORECASE,
-)
-_SPACING = re.compile(
-    r"spacing|step|pitch|pixel|cell ?size|sampling|increment|interval|\bd[xy]\b", re.IGNORECASE
-)
 #: Words that a sidecar would read as a number, a truth or nothing.
 _READ_AS_ANOTHER = re.compile(
     rf"{_NUMBER}|[.\d]+e[-+]?\d+|\.?(?:nan|inf)|null|true|false|yes|no|on|off", re.IGNORECASE
 )
-_UP = re.compile(r"\b(z|heights?|values?|data|elevations?|depths?|vertical)\b", re.IGNORECASE)
-_LATERAL = re.compile(r"\b(x|y|xy|lateral|coordinates?|positions?|width)\b", re.IGNORECASE)
-_ROWS = re.compile(r"\b(?:first row|origin)\b.*\b(top|upper|bottom|lower)\b", re.IGNORECASE)
-_DOWN = re.compile(r"\bdepths?\b|\bdown(?:wards?)?\b", re.IGNORECASE)
 #: Words for an opening and no face.
 OPENING = re.compile(r"apertures?|(?<![a-z])(gaps?|openings?)(?![a-z])", re.IGNORECASE)
 #: Columns in which the comments of a draft begin.
 _COMMENT_AT = 26
-_MAX_OTHERS = 3
+#: Numbers that may be marks, named at most.
+_MAX_MARKS = 4
+#: Keys whose mention alone leaves open what would be taken for granted.
+_ASKED = ("heights", "kind", "missing", "first_row", "spacing", "unit", "unit_z")
 #: What to write where the file says nothing, by key.
 _TO_FILL = {
     "kind": "face, aperture or contact-map",
     "delimiter": "comma, semicolon, tab or blank",
     "decimal": "'.' or ','",
+    "thousands": "the mark between groups of three digits",
     "header": "lines above the first number",
     "layout": "matrix (rows of heights) or points (x, y, z in columns)",
     "variable": "the array of the heights",
@@ -76,20 +66,59 @@ class Hints:
     Attributes
     ----------
     keys : dict of str to Suggestion
+    doubts : dict of str to str
+        What the file leaves open of a key, and what the choices are: its line stays empty.
+    optional : set of str
+        Keys that a draft has a line for though not every such file needs them.
+    lengths : list of (str, list of float, str, str)
+        Lengths that the file states: name, numbers, unit, line.
     heights : ndarray or None
         Some of its numbers, in which marks of missing cells are looked for.
     """
 
     keys: dict[str, Suggestion] = field(default_factory=dict)
+    doubts: dict[str, str] = field(default_factory=dict)
+    optional: set[str] = field(default_factory=set)
+    lengths: list[tuple[str, list[float], str, str]] = field(default_factory=list)
     heights: np.ndarray | None = None
 
     def add(self, key: str, value: Any, source: str, others: Sequence[str] = ()) -> None:
         """Suggest a value for a key without one."""
         self.keys.setdefault(key, Suggestion(value, source, tuple(others)))
 
+    def ask(self, key: str, choices: str) -> None:
+        """Leave a key open, whatever is suggested for it."""
+        said = self.doubts.get(key)
+        self.doubts[key] = f"{said}; {choices}" if said else choices
+
+    def ask_openings(self) -> None:
+        """Leave the kind open where many numbers are 0 and none is below: openings, or heights."""
+        present = () if self.heights is None else self.heights[np.isfinite(self.heights)]
+        zeros = int(np.sum(np.equal(present, 0)))
+        if zeros > 2 and np.min(present) == 0 and "kind" not in self.keys:
+            self.ask("kind", f"{zeros} cells hold 0 and none less, as in a map of apertures")
+
+    def state(self, key: str, value: Any, source: str) -> None:
+        """Suggest a value in place of any other, without a doubt."""
+        self.forget(key)
+        self.add(key, value, source)
+
+    def forget(self, *keys: str) -> None:
+        """Take back what was suggested and left open of keys."""
+        for key in keys:
+            self.keys.pop(key, None)
+            self.doubts.pop(key, None)
+
+
+def image_hints(values: np.ndarray, mark: float | None = None) -> Hints:
+    """Hints of a matrix of grey levels; cells of a stated mark are missing already."""
+    hints = Hints(heights=values if mark is None else np.where(values == mark, np.nan, values))
+    hints.ask("first_row", "a picture begins at the top, an array saved as one may not")
+    return hints
+
 
 def add_words(hints: Hints, lines: Iterable[tuple[str, str]]) -> None:
-    """Suggest units, spacing, rows, heights and missing cells from words in the file.
+    """Suggest what lines state of units, spacing, rows, heights and missing cells; ask the rest.
 
     Parameters
     ----------
@@ -97,56 +126,31 @@ def add_words(hints: Hints, lines: Iterable[tuple[str, str]]) -> None:
     lines : iterable of (str, str)
         Where a line stands ("line 3", "attribute units"), and its text.
     """
-    found: dict[str, list[tuple[Any, str]]] = {}
-
-    def seen(key: str, value: Any, source: str) -> None:
-        found.setdefault(key, []).append((value, source))
-
-    for where, text in lines:
-        source = f'{where}: "{printable(text.strip(), 50)}"'
-        lengths = [match for match in _LENGTH.finditer(text) if length_unit(match[3])]
-        for match in lengths:
-            steps = [step.replace(",", ".") for step in match.groups()[:2] if step]
-            value = [f"{step} {match[3]}" for step in steps]
-            key = "spacing" if _SPACING.search(text) else "length"
-            seen(key, value if len(value) == 2 else value[0], source)
-        if not lengths:
-            begin = 0
-            for match in _ALONE.finditer(text):
-                if length_unit(match[1]):
-                    seen(_unit_key(text[begin : match.start(1)]), match[1], source)
-                begin = match.end()
-        if marked := _NO_DATA.search(text):
-            seen("missing", float(marked[1].replace(",", ".")), source)
-        if rows := _ROWS.search(text):
-            seen("first_row", "top" if rows[1].lower() in ("top", "upper") else "bottom", source)
-        if _DOWN.search(text):
-            seen("heights", "down", source)
-        if OPENING.search(text):
-            seen("kind", APERTURE, source)
-    for key, values in found.items():
-        others = [f"{written(value)} ({source})" for value, source in values[1:]]
-        hints.add(key, values[0][0], values[0][1], others[:_MAX_OTHERS])
-
-
-def _unit_key(before: str) -> str:
-    """Quantity of a unit, by the words before it."""
-    up, lateral = _UP.search(before), _LATERAL.search(before)
-    if bool(up) == bool(lateral):
-        return "unit"
-    return "unit_z" if up else "unit_xy"
+    stated = statements(lines)
+    hints.lengths += stated.lengths
+    for key in dict.fromkeys([*stated.values, *stated.mentions]):
+        only = stated.only(key)
+        # A line on depths or openings, or on a factor, leaves open what another line states.
+        is_open = key in stated.mentions and key in ("heights", "unit_z", "kind")
+        if only and not is_open:
+            hints.add(key, *only)
+        elif key in stated.values or key in _ASKED:
+            hints.ask(key, f"the file says {stated.quoted(key)}")
+    if "unit_z" in stated.mentions:
+        hints.ask("unit", f"the file says {stated.quoted('unit_z')}")
 
 
 def drafted_options(options: ScanOptions, hints: Hints) -> ScanOptions:
     """Options of the sidecar, completed by hints in the file."""
     changes: dict[str, Any] = {}
     for key, suggestion in hints.keys.items():
-        if key in _TO_FILL and getattr(options, key) is None and suggestion.value is not None:
+        is_open = key in hints.doubts or getattr(options, key) is not None
+        if key in _TO_FILL and not is_open and suggestion.value is not None:
             value = suggestion.value
             changes[key] = tuple(value) if isinstance(value, list) else value
     if options.unit is not None or ("unit" in changes and "unit_z" not in changes):
         changes.pop("unit_xy", None)
-    if options.kind is None:
+    if options.kind is None and "kind" not in hints.doubts:
         changes.setdefault("kind", "face")
     layout = options.layout or changes.get("layout")
     if layout == "points":
@@ -183,43 +187,70 @@ def draft_lines(
             lines.append(draft_line(key, value, "as stated"))
             continue
         value = getattr(drafted, key)
-        if key not in required and (value is None or not key.startswith("unit")):
-            continue
-        lines += _drafted_line(key, value, hints, arrays)
+        is_known = key.startswith("unit") and value is not None
+        if key in required or key in hints.optional or is_known:
+            lines += _drafted_line(key, drafted, hints, arrays)
     return lines
 
 
-def _drafted_line(key: str, value: Any, hints: Hints, arrays: Sequence[str]) -> list[str]:
+def _drafted_line(key: str, drafted: ScanOptions, hints: Hints, arrays: Sequence[str]) -> list[str]:
     """The line of a key that is not stated, and others that might be meant."""
-    suggestion = hints.keys.get(key)
-    if key == "missing" and suggestion is None:
-        value, source = _marks(hints.heights)
-        return [draft_line(key, value, source)]
-    if key == "heights" and suggestion is None:
+    suggestion, value = hints.keys.get(key), getattr(drafted, key)
+    if key == "missing":
+        return [draft_line(key, *_missing(hints, drafted.kind))]
+    if key == "heights" and value is None and key not in hints.doubts:
         return [draft_line(key, "up", "nothing in the file says that they are depths")]
-    if key == "kind" and suggestion is None:
-        return [draft_line(key, "face", "a file of heights")]
+    if key == "kind" and suggestion is None and value is not None:
+        return [draft_line(key, value, "a file of heights")]
     if value is None:
         names = f": {listed(arrays)}" if key == "variable" else ""
-        lengths = hints.keys.get("length")
-        other = lengths and key in ("unit", "unit_xy", "spacing")
-        said = f"; it says {written(lengths.value)}, {lengths.source}" if lengths and other else ""
-        return [draft_line(key, None, f"FILL IN: {_TO_FILL[key]}{names}{said}")]
+        return [draft_line(key, None, f"FILL IN: {_TO_FILL[key]}{names}{_known(key, hints)}")]
     assert suggestion is not None  # it has given the value
     lines = [draft_line(key, value, suggestion.source)]
     return lines + [f"#   {key}: {other}" for other in suggestion.others]
 
 
-def _marks(heights: np.ndarray | None) -> tuple[Any, str]:
-    """Numbers that are likely to mark missing cells."""
-    if heights is None:
-        return NO_MARK, "every number is a height"
-    marks = find_marks(heights)
-    if not marks:
-        return NO_MARK, "no unusual number in the part that was read"
-    values = [float(mark.value) for mark in marks]
-    where = "; ".join(f"{mark.cells} cells hold {number(mark.value)}" for mark in marks)
-    return values if len(values) > 1 else values[0], where
+def _known(key: str, hints: Hints) -> str:
+    """The choices of an open key, and what the file says of it."""
+    said = [hints.doubts[key]] if key in hints.doubts else []
+    if key in hints.doubts and key in hints.keys:
+        said.append(f"it says {written(hints.keys[key].value)}, {hints.keys[key].source}")
+    if key in ("spacing", "first_row") and "axes" in hints.doubts:
+        said.append("delete this line if axes is both and its numbers are lengths")
+    if key in ("unit_xy", "unit_z") and "unit" in hints.doubts and key not in hints.doubts:
+        said.append(hints.doubts["unit"])
+    return "".join(f"; {part}" for part in dict.fromkeys(said))
+
+
+def _missing(hints: Hints, kind: str | None) -> tuple[Any, str]:
+    """Marks of missing cells; None, and what may be one, where the file leaves that open."""
+    suggestion = hints.keys.get("missing")
+    marks = () if suggestion is None else suggestion.value
+    marks = list(marks) if isinstance(marks, list | tuple) else [marks]
+    said = [] if suggestion is None else [suggestion.source]
+    suspects: list[tuple[float, int]] = []
+    if hints.heights is not None:
+        heights = np.array(hints.heights, dtype=float)
+        for mark in marks:
+            if isinstance(mark, float):
+                heights[np.isclose(heights, mark, rtol=1e-6, atol=0)] = np.nan
+        if kind == APERTURE:
+            heights[heights == 0] = np.nan
+            said.append("zeros of an aperture map are contact")
+        for mark in find_marks(heights):
+            if mark.outside:
+                marks.append(float(mark.value))
+                said.append(f"{mark.cells} cells hold {number(mark.value)}")
+                heights[np.isclose(heights, mark.value, rtol=1e-6, atol=0)] = np.nan
+        suspects = possible_marks(heights)
+    if not suspects and "missing" not in hints.doubts:
+        found = marks if len(marks) > 1 else marks[0] if marks else NO_MARK
+        return found, "; ".join(said) or "no unusual number in the part that was read"
+    choices = [f"{cells} cells hold {number(value)}" for value, cells in suspects[:_MAX_MARKS]]
+    if any(value == 0 for value, _ in suspects) and kind is None:
+        choices.append("zeros of an aperture map are contact")
+    doubt = [hints.doubts["missing"]] if "missing" in hints.doubts else []
+    return None, f"FILL IN: {_TO_FILL['missing']}; {'; '.join([*choices, *doubt, *said])}"
 
 
 def draft_line(key: str, value: Any, comment: str = "") -> str:

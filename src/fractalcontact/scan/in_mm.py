@@ -12,7 +12,7 @@ from ..core.file_names import split_file_name
 from ..core.units import length_factor
 from ..gridding.measured import NOTE, Measured, warnings_of
 from ..gridding.plausible import check_spacing
-from ..gridding.points import single_precision_note
+from ..gridding.points import refuse_one_place, single_precision_note
 from .draft import draft_line
 from .options import (
     MATRIX_KEYS,
@@ -66,7 +66,8 @@ def in_mm(file: ScanFile, options: ScanOptions, *, are_heights: bool = True) -> 
     _refuse_unconfirmed(size, raw, options, path)
     # Zeros of an aperture map are contact, however many there are.
     judged = heights[heights != 0] if is_aperture else heights
-    if are_heights and missing != NO_MARK and (doubt := refuse_or_warn(judged, path)):
+    judges = are_heights and missing != NO_MARK
+    if judges and (doubt := refuse_or_warn(judged, path, raw.triangles)):
         notes.append(f"{NOTE}{doubt}")
     down = _choose("heights", raw.heights, options, overrides) == "down"
     sign = -1 if down or is_aperture else 1
@@ -77,6 +78,7 @@ def in_mm(file: ScanFile, options: ScanOptions, *, are_heights: bool = True) -> 
             values = values[::-1].copy()
         spacing = _choose_spacing(raw, options, unit_xy, path, overrides)
     else:
+        refuse_one_place(raw.values, path)
         if note := single_precision_note(raw.values):
             notes.append(note)
         assert unit_xy is not None  # points were required to have one

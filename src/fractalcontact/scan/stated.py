@@ -70,7 +70,11 @@ def require_stated(
         return
     found = hints()
     if word := OPENING.search(path.stem):
-        found.add("kind", APERTURE, f"its name says {word[0]!r}")
+        if word[0].lower().startswith(APERTURE):
+            found.state("kind", APERTURE, f"its name says {word[0]!r}")
+        else:
+            found.ask("kind", f"its name says {word[0]!r}")
+    found.ask_openings()
     complete = drafted_options(options, found)
     required = set(required_keys(complete, needs))
     # A layout that only the draft knows asks for keys of its own.

@@ -1,7 +1,7 @@
 """Tables of numbers as heights or points, by the layout and axes of the sidecar."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +15,8 @@ from .raw import RawScan
 
 #: Numbered columns and rows may leave at most this many empty cells for each cell that they fill.
 MAX_EMPTY_PER_POINT = 20
+#: Lines that part more blocks of points than this part scan lines.
+_MAX_CLOUDS = 4
 #: Coordinates may stray this fraction of a step from equal steps: rounding in the export.
 EVEN = 0.1
 
@@ -74,13 +76,13 @@ class TextParts:
         Cells of the last header line.
     above : ndarray or None
         The row of coordinates in front of the table, where the sidecar says there is one.
-    breaks : sequence of int
-        Rows before which an empty line, a comment or a header stands.
+    breaks : mapping of int to int
+        Rows before which an empty line, a comment or a header stands, and the number of that line.
     """
 
     names: list[str] | None = None
     above: np.ndarray | None = None
-    breaks: Sequence[int] = ()
+    breaks: Mapping[int, int] = field(default_factory=dict)
 
 
 def table_to_raw(
@@ -111,9 +113,10 @@ def table_to_raw(
     if options.layout != "points":
         return _matrix(table, options, where, parts, stated)
     chosen = options.columns or (0, 1, 2)
-    columns = [_column_index(c, parts.names, table.shape[1], where) for c in chosen]
+    columns = [column_index(c, parts.names, table.shape[1], where) for c in chosen]
     points = table if columns == list(range(table.shape[1])) else table[:, columns]
     _refuse_repeated(points, parts.breaks, where)
+    _refuse_overlapping(points, parts.breaks, options, where)
     if options.spacing is not None:
         return RawScan(_by_cell(points, where), "matrix", **stated)
     return RawScan(np.ascontiguousarray(points), "points", **stated)
@@ -124,7 +127,7 @@ def _matrix(
 ) -> RawScan:
     """Heights without the coordinates, or counts, in the first row and column of a matrix."""
     axes, above, beside = options.axes, parts.above, None
-    _refuse_stacked(len(table), parts.breaks, where)
+    _refuse_stacked(len(table), parts.breaks, options, where)
     if axes in ("both", "row") and above is None:
         above, table = table[0], table[1:]
     if axes in ("both", "column"):
@@ -189,14 +192,52 @@ def _by_cell(points: np.ndarray, where: str) -> np.ndarray:
     return heights
 
 
-def _refuse_stacked(rows: int, breaks: Sequence[int], where: str) -> None:
-    """Refuse matrices of one size under one another, parted by lines."""
+def _refuse_stacked(rows: int, breaks: Mapping[int, int], options: ScanOptions, where: str) -> None:
+    """Refuse what may be several tables under one another, parted by lines.
+
+    Lines between rows in even steps part none. What else they part is read if the sidecar confirms
+    the size of the whole.
+    """
     sizes = np.diff([0, *breaks, rows])
-    if len(sizes) > 1 and np.ptp(sizes) == 0 and sizes[0] >= SMALLEST_SIDE:
+    if len(sizes) < 2 or options.confirmed is not None:
+        return
+    if np.ptp(sizes) == 0 and sizes[0] >= SMALLEST_SIDE:
         raise _stacked(where, len(sizes), int(sizes[0]))
+    step = int(sizes[1])
+    is_even = len(sizes) > 3 and np.ptp(sizes[1:-1]) == 0 and step < SMALLEST_SIDE
+    if not (is_even and max(sizes[0], sizes[-1]) <= step):
+        raise _below(where, breaks, rows, f"confirmed: {{shape: [{rows}, NUMBER OF COLUMNS]}}")
 
 
-def _refuse_repeated(points: np.ndarray, breaks: Sequence[int], where: str) -> None:
+def _below(where: str, breaks: Mapping[int, int], rows: int, key: str) -> InputError:
+    row, line = list(breaks.items())[-1]
+    return InputError(
+        f"{where}: line {line} holds no numbers, and {rows - row} more rows follow it, as a row of "
+        "means or a second table does; remove them, or that line if they belong to the same "
+        f"surface, or write '{key}' into the sidecar"
+    )
+
+
+def _refuse_overlapping(
+    points: np.ndarray, breaks: Mapping[int, int], options: ScanOptions, where: str
+) -> None:
+    """Refuse a cloud below a line that lies where the points above that line lie."""
+    sizes = np.diff([0, *breaks, len(points)])
+    if not 1 < len(sizes) <= _MAX_CLOUDS or options.confirmed is not None:
+        return
+    key = f"confirmed: {{points: {len(points)}}}"
+    if sizes[-1] <= 2 < min(sizes[:-1]):
+        raise _below(where, breaks, len(points), key)
+    if min(sizes) < SMALLEST_SIDE**2 or not np.isfinite(points[:, :2]).all():
+        return
+    blocks = [block[:, :2] for block in np.split(points, list(breaks))]
+    low, high = blocks[-1].min(axis=0), blocks[-1].max(axis=0)
+    inside = [((block >= low) & (block <= high)).all(axis=1).sum() for block in blocks[:-1]]
+    if max(inside) > sizes[-1] / 2:
+        raise _below(where, breaks, len(points), key)
+
+
+def _refuse_repeated(points: np.ndarray, breaks: Mapping[int, int], where: str) -> None:
     """Refuse clouds under one another: parted by a line, at the same places."""
     sizes = np.diff([0, *breaks, len(points)])
     if len(sizes) < 2 or np.ptp(sizes) or sizes[0] < SMALLEST_SIDE**2:
@@ -214,7 +255,8 @@ def _stacked(where: str, count: int, rows: int) -> InputError:
     )
 
 
-def _column_index(column: int | str, names: list[str] | None, n_columns: int, where: str) -> int:
+def column_index(column: int | str, names: list[str] | None, n_columns: int, where: str) -> int:
+    """Number of a column, by its number or its name in the last header line."""
     if isinstance(column, str):
         if names is None or names.count(column) != 1:
             has = f"it has {listed(names)}" if names else "there is no header line"

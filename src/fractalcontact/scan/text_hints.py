@@ -1,7 +1,7 @@
 """Hints in the first lines of a text file: named columns, and remarks in other lines."""
 
 import re
-from itertools import islice, pairwise
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
@@ -10,24 +10,24 @@ import numpy as np
 from ..core.units import length_unit
 from .draft import Hints, add_words
 from .options import DELIMITERS, ScanOptions
-from .text_lines import COMMENT_MARKS, cells_of, cleaned, is_number, open_text
+from .table_hints import add_axes, add_columns, axis_of, coordinate_columns
+from .text_lines import COMMENT_MARKS, cells_of, cleaned, is_number, open_text, words_of
+from .text_style import add_style
 
 _MAX_LINES = 2_000
 _LONGEST_LINE = 200_000
 #: Lines of words in front of the numbers that a table which describes itself may have.
 _MAX_ABOVE = 200
+#: Characters of a line that names columns; patterns take the square of them, at worst.
+_MAX_HEADING = 2_000
 _NAMED = re.compile(r"([xyzXYZ])\s*[\[(]\s*([^\[\]()]+?)\s*[\])]")
 _GLUED = re.compile(r"[^\s\[(]+\s*[\[(][^\])]*[\])]")
 #: Numbers whose point may part thousands as well.
 _MAYBE_GROUPED = re.compile(r"[-+]?[1-9]\d{0,2}(\.\d{3})+")
-_WORDS_OF = {
-    "x": ("x", "east"),
-    "y": ("y", "north"),
-    "z": ("z", "height", "elev", "topo", "h", "aperture", "gap", "opening"),
-}
 #: The width or height of a field, as programs write it in a line of its own.
 _FIELD = re.compile(r"#?\s*[^:=]+:\s*([-+]?\d+(?:[.,]\d+)?(?:[eE][-+]?\d+)?)\s*([^\W\d]+)")
-_NO_NUMBER = re.compile(r"[A-Za-z#*?-][\w#/.*? -]*")
+_MAX_WORDS = 4
+_MAX_WORD = 40
 
 
 def first_lines(path: Path) -> list[str]:
@@ -53,11 +53,13 @@ def named_columns(path: Path) -> tuple[dict[str, Any], dict[str, Any]] | None:
     if not number:
         return None
     line = lines[number - 1].lstrip("#%!/ ").rstrip()
+    if len(line) > _MAX_HEADING:
+        return None
     for name, delimiter in DELIMITERS.items():
         cells = _GLUED.findall(line) if delimiter == " " else line.split(delimiter)
         if delimiter == " " and "".join(cells).replace(" ", "") != line.replace(" ", ""):
             continue
-        found = [_NAMED.fullmatch(cell.strip().strip("\"'")) for cell in cells]
+        found = [_NAMED.fullmatch(words_of(cell).strip("\"'")) for cell in cells]
         axes = [match[1].lower() if match and length_unit(match[2]) else "" for match in found]
         if sorted(filter(None, axes)) != ["x", "y", "z"]:
             continue
@@ -92,37 +94,76 @@ def _first_numbers(lines: list[str]) -> int | None:
 
 
 def text_hints(path: Path) -> Hints:
-    """Hints in the first lines of a text on its layout."""
+    """Hints in the first lines of a text on its layout, and what they leave open."""
     lines, hints = first_lines(path), Hints()
     start = _table_start(lines)
     above, data = lines[:start], [line for line in lines[start:] if line.strip()]
     known = set(above)
     data = [line for line in data if not line.startswith(COMMENT_MARKS) and line not in known]
-    name, decimal = _style(data)
+    name, decimal, thousands = add_style(hints, data, f"in the numbers of line {start + 1}")
     delimiter = DELIMITERS[name]
-    hints.add("delimiter", name, f"between the numbers of line {start + 1}")
-    hints.add("decimal", decimal, f"in the numbers of line {start + 1}")
+    form = ScanOptions(delimiter=name, decimal=decimal, thousands=thousands or None)
+    rows = [cells_of(cleaned(line, delimiter).rstrip(" ;,\t"), delimiter) for line in data]
+    width = int(np.median([len(row) for row in rows])) if rows else 0
+    if above and _is_coordinates(cells_of(above[-1].strip(), delimiter), width, form):
+        rows.insert(0, cells_of(above.pop().strip(), delimiter))
+        start -= 1
     first = f"line {start + 1} is the first of numbers"
     if _first_numbers(lines) is None:
         first = "no line holds numbers alone: is this a scan?"
     hints.add("header", start, first)
-    form = ScanOptions(delimiter=name, decimal=decimal)
-    rows = [cells_of(cleaned(line, delimiter).rstrip(" ;,\t"), delimiter) for line in data]
-    width = int(np.median([len(row) for row in rows])) if rows else 0
     names = _names(above, delimiter, width)
-    _layout(hints, names, rows, width, start)
-    _words_in_cells(hints, rows, form)
-    add_words(hints, [(f"line {n}", line) for n, line in enumerate(above, 1) if line.strip()])
     table = _numbers(rows, width, form)
-    if hints.keys["layout"].value == "matrix":
-        add_axes(hints, table)
-        if len(lines) < _MAX_LINES:
-            _add_field(hints, above, table.shape)
+    _layout(hints, names, table, start, path)
+    _words_in_cells(hints, rows, width, form)
+    add_words(hints, [(f"line {n}", line) for n, line in enumerate(above, 1) if line.strip()])
+    layout = hints.keys.get("layout")
+    if layout and layout.value == "matrix":
+        _add_matrix(hints, rows, table, above, len(lines) < _MAX_LINES)
     if table.size:
-        columns = hints.keys["columns"].value if "columns" in hints.keys else None
-        z = columns[2] if columns else table.shape[1]
-        hints.heights = table[:, z] if z < table.shape[1] else table
+        hints.heights = _heights_of(hints, table)
     return hints
+
+
+def _is_coordinates(cells: list[str], width: int, form: ScanOptions) -> bool:
+    """True for a row of numbers behind a word in the corner."""
+    return (
+        len(cells) == width > 4
+        and not is_number(cells[0], form)
+        and not cells[0].startswith(COMMENT_MARKS)
+        and all(is_number(cell, form) for cell in cells[1:])
+    )
+
+
+def _add_matrix(
+    hints: Hints, rows: list[list[str]], table: np.ndarray, above: list[str], is_whole: bool
+) -> None:
+    """Suggest axes of a matrix, and its spacing by the length of its sides."""
+    lacks_corner = len(rows[0]) == table.shape[1] - 1
+    if lacks_corner:
+        hints.ask("axes", "its first row holds a number less than the others, as one of both does")
+    else:
+        add_axes(hints, table)
+    if not is_whole:
+        return
+    axes = hints.keys["axes"].value if "axes" in hints.keys else "none"
+    ny = len(table) - (axes in ("both", "row"))
+    nx = table.shape[1] - (axes in ("both", "column") or lacks_corner)
+    _add_field(hints, above, (ny, nx))
+    _ask_lengths(hints, (ny, nx))
+
+
+def _heights_of(hints: Hints, table: np.ndarray) -> np.ndarray:
+    """Numbers that may be heights."""
+    layout = hints.keys["layout"].value if "layout" in hints.keys else ""
+    if layout == "points":
+        if "columns" in hints.keys and "columns" not in hints.doubts:
+            return table[:, hints.keys["columns"].value[2]]
+        lateral = coordinate_columns(table)
+        rest = [n for n in range(table.shape[1]) if n not in lateral]
+        return table[:, rest[0] if len(rest) == 1 else min(2, table.shape[1] - 1)]
+    axes = hints.keys["axes"].value if "axes" in hints.keys else "both"
+    return table[axes in ("both", "row") :, axes in ("both", "column") :]
 
 
 def _table_start(lines: list[str]) -> int:
@@ -135,19 +176,6 @@ def _table_start(lines: list[str]) -> int:
     return 0
 
 
-def _style(data: list[str]) -> tuple[str, str]:
-    """Delimiter and decimal mark of most lines."""
-    sample = data[:200]
-    for name in ("tab", "semicolon"):
-        if 2 * sum(DELIMITERS[name] in line.strip() for line in sample) > len(sample):
-            return name, "," if any("," in line for line in sample) else "."
-    if 2 * sum("," in line for line in sample) <= len(sample):
-        return "blank", "."
-    text = "\n".join(sample)
-    has_blanks = re.search(r"\d[ \t]+[-+]?\d", text) and not re.search(r",\s|\.\d", text)
-    return ("blank", ",") if has_blanks else ("comma", ".")
-
-
 def _names(above: list[str], delimiter: str, width: int) -> list[str]:
     """Cells of the last line above the numbers, if it has one for each column."""
     if not above:
@@ -157,69 +185,87 @@ def _names(above: list[str], delimiter: str, width: int) -> list[str]:
     return cells if len(cells) == width else []
 
 
-def _layout(hints: Hints, names: list[str], rows: list[list[str]], width: int, start: int) -> None:
+def _layout(hints: Hints, names: list[str], table: np.ndarray, start: int, path: Path) -> None:
     """Points or a matrix, by the names or the number of the columns."""
-    found = {
-        axis: [n for n, name in enumerate(names) if name.lower().startswith(words)]
-        for axis, words in _WORDS_OF.items()
-    }
+    width = table.shape[1]
     source = f"{width} numbers in line {start + 1}"
-    if all(found.values()) and width < 32:
-        columns = [found[axis][0] for axis in "xyz"]
-        hints.add("layout", "points", f'line {start}: "{", ".join(names)[:40]}"')
-        hints.add("columns", columns, f"its columns {', '.join(names[c] for c in columns)[:40]}")
-    elif width == 2:
+    named = [axis for axis, _ in map(axis_of, names) if axis]
+    if width == 2:
         hints.add("kind", "profile", f"{source}, distance and height")
         hints.add("layout", "points", source)
-    elif width < 8:
-        hints.add("layout", "points", source)
-        hints.add("columns", [0, 1, 2], "in the order of the file; check the order")
+    elif width < 8 or (width < 32 and {"x", "y", "z"} <= set(named)):
+        hints.add("layout", "points", f"line {start}" if named else source)
+        add_columns(hints, names, table, f"line {start}")
+        if path.suffix.lower() == ".xyz" and width == 3 and not names:
+            hints.state("columns", [0, 1, 2], "its name ends in .xyz")
+    elif coordinate_columns(table):
+        hints.ask("layout", f"{source}, of which two hold the places of a grid")
     else:
         hints.add("layout", "matrix", source)
+        words = {name.lower() for name in names if re.fullmatch(r"[A-Za-z]{3,}.*[A-Za-z]", name)}
+        if len(words) > width / 2:
+            hints.ask("kind", f"its columns are called {', '.join(names)[:60]}")
 
 
-def _words_in_cells(hints: Hints, rows: list[list[str]], form: ScanOptions) -> None:
-    """Words that stand in place of numbers."""
-    words = {cell.strip() for row in rows for cell in row}
-    words = {w for w in words if _NO_NUMBER.fullmatch(w) and not is_number(w, form)}
-    if 0 < len(words) <= 4:
+def _words_in_cells(hints: Hints, rows: list[list[str]], width: int, form: ScanOptions) -> None:
+    """Words that stand in place of numbers, and empty cells."""
+    cells = [cell.strip() for row in rows[1:] if len(row) == width for cell in row]
+    cells += [cell.strip() for cell in (rows[0] if rows else [])[1:]]
+    words = {cell[:_MAX_WORD] for cell in cells if not is_number(cell, form)}
+    if 0 < len(words) <= _MAX_WORDS:
         value = sorted(words) if len(words) > 1 else words.pop()
         hints.add("missing", value, "in place of numbers")
 
 
 def _numbers(rows: list[list[str]], width: int, form: ScanOptions) -> np.ndarray:
     """The rows of most numbers, NaN where there is none."""
-    mark = form.decimal or "."
-    table = [[float(cell.replace(mark, ".")) if is_number(cell, form) else np.nan for cell in row]
-             for row in rows if len(row) == width]  # fmt: skip
+    mark, thousands = form.decimal or ".", form.thousands
+    table = []
+    for row in rows:
+        if len(row) == width:
+            plain = [cell.replace(thousands, "") if thousands else cell for cell in row]
+            table.append([float(cell.replace(mark, ".")) if is_number(cell, form) else np.nan
+                          for cell in plain])  # fmt: skip
     return np.array(table, dtype=float).reshape(-1, max(width, 1))
 
 
-def add_axes(hints: Hints, table: np.ndarray) -> None:
-    """Suggest whether the first row and column run evenly, as coordinates and counts do."""
-    row = _is_even(table[0, 1:]) if table.size else False
-    column = _is_even(table[1:, 0]) if table.size else False
-    name = {(True, True): "both", (True, False): "row", (False, True): "column"}.get((row, column))
-    if name is None:
-        hints.add("axes", "none", "its first row and column do not run in equal steps")
-    else:
-        hints.add("axes", name, "equal steps, as of coordinates or counts", ["none"])
+def _add_field(hints: Hints, above: list[str], shape: tuple[int, int]) -> None:
+    """Suggest the spacing of a field as Gwyddion states it: channel, width, height, unit.
+
+    Its width is that of all cells, and its first row the top.
+    """
+    if len(above) != 4 or not all(line.startswith("# ") and ":" in line for line in above):
+        return
+    across, along = (_FIELD.fullmatch(words_of(line)) for line in above[1:3])
+    unit = above[3].rpartition(":")[2].strip()
+    if not (across and along and length_unit(across[2]) and length_unit(along[2])):
+        return
+    if not length_unit(unit) or _FIELD.fullmatch(words_of(above[0])):
+        return
+    steps = [
+        f"{float(match[1].replace(',', '.')) / count:.9g} {match[2]}"
+        for match, count in ((across, shape[1]), (along, shape[0]))
+    ]
+    hints.state("spacing", steps, f"lines 2 and 3, over {shape[1]} and {shape[0]} cells: Gwyddion")
+    hints.state("first_row", "top", "as Gwyddion writes it, by its four lines")
+    hints.state("unit_z", unit, f'line 4: "{above[3][:40]}"')
+    hints.forget("unit", "unit_xy")
 
 
-def _add_field(hints: Hints, above: list[str], shape: tuple[int, ...]) -> None:
-    """Suggest the spacing of a field whose width and height two lines state, as Gwyddion does."""
-    lengths = [_FIELD.fullmatch(line.strip()) for line in above]
-    for n, (across, along) in enumerate(pairwise(lengths), 1):
-        if across and along and length_unit(across[2]) and length_unit(along[2]):
-            steps = [
-                f"{float(match[1].replace(',', '.')) / count:.9g} {match[2]}"
-                for match, count in ((across, shape[1]), (along, shape[0]))
-            ]
-            source = f"lines {n} and {n + 1}, divided by {shape[1]} and {shape[0]} cells"
-            hints.add("spacing", steps, source)
-            hints.add("first_row", "top", "as programs that state width and height write it")
-
-
-def _is_even(numbers: np.ndarray) -> bool:
-    steps = np.diff(numbers)
-    return bool(len(steps) > 3 and steps[0] != 0 and np.allclose(steps, steps[0], rtol=0.2))
+def _ask_lengths(hints: Hints, shape: tuple[int, int]) -> None:
+    """Name both spacings of a length that is stated: over whole cells, and over intervals."""
+    if "spacing" in hints.keys and "spacing" not in hints.doubts:
+        return
+    said = []
+    for number, (name, lengths, unit, source) in enumerate(hints.lengths[:2]):
+        sides = [shape[1], shape[0]]
+        if len(lengths) == 1:
+            axis = re.search(r"[xy]$|^[xy]\b|height|along", name.lower())
+            is_y = axis[0] in ("y", "height", "along") if axis else number == 1
+            sides = [shape[0]] if is_y else [shape[1]]
+        for length, count in zip(lengths, sides, strict=True):
+            whole, between = length / count, length / max(1, count - 1)
+            said.append(f"{source}: over {count} points {between:.6g} {unit} from the first to the "
+                        f"last, {whole:.6g} {unit} if it spans whole cells")  # fmt: skip
+    if said:
+        hints.ask("spacing", "; ".join(said))

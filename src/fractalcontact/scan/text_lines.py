@@ -3,11 +3,12 @@
 import codecs
 import math
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TextIO
 
 from ..core.errors import InputError
+from ..gridding.measured import NOTE
 from .options import ScanOptions
 
 COMMENT_MARKS = ("#", "%", "//", "!")
@@ -17,6 +18,13 @@ _QUOTED = re.compile(r'"[^"]*"')
 _ORDINARY = re.compile(r"[-+0-9.,;eE \t]*")
 _ENDING = re.compile(r"(?:[.,](?P<decimals>\d*))?(?:[eEdD](?P<exponent>[-+]?\d*))?$")
 _BLOCK = 2**24  # bytes
+MAX_ROWS = 60  # last rows whose numbers tell how the last one is written
+DOUBTFUL_END = (
+    f"{NOTE}the last line has no line end, and its last number fewer characters than most: the "
+    "file may be cut off there; compare it with its source"
+)
+#: Characters of a line of words that are looked at: patterns take the square of them, at worst.
+MAX_WORDS = 200
 #: What programs call the sides of a matrix in its header.
 _SIDES = re.compile(
     r"[#%!/\s\"']*(?:(?P<x>nx|ncols|n_cols|columns)|(?P<y>ny|nrows|n_rows|rows))[\s:=,;\t]+"
@@ -59,6 +67,11 @@ def _encoding(path: Path) -> str:
     return "utf-8-sig"
 
 
+def words_of(line: str) -> str:
+    """The beginning of a line of words, with one blank for white space of any length."""
+    return " ".join(line[: 4 * MAX_WORDS].split())[:MAX_WORDS]
+
+
 def cells_of(line: str, delimiter: str) -> list[str]:
     """Cells of a line; the delimiter ``" "`` is white space of any length."""
     return line.split() if delimiter == " " else line.split(delimiter)
@@ -87,26 +100,68 @@ def is_number(cell: str, options: ScanOptions) -> bool:
     return True
 
 
-def is_cut_off(rows: list[str], delimiter: str, layout: str | None) -> bool:
-    """True if the last number of a file without a final line end is shorter than others.
+def last_number_cut(
+    rows: Sequence[str],
+    delimiter: str,
+    layout: str | None,
+    is_mark: Callable[[str], bool] = lambda cell: False,
+) -> str:
+    """Judgement of the last number of a file without a final line end: cut, doubtful or "".
 
-    Only numbers of a fixed form tell: as many decimals each, or exponents of two digits. Of points
-    those of the last column, of a matrix all.
+    It is cut if it breaks off the form of the numbers above: as many decimals each, exponents of
+    two digits, or fewer characters than any of them. It is doubtful if it has fewer characters than
+    most. Of points those of the last column count, of a matrix all; marks of missing cells do not.
     """
     first = -1 if layout == "points" else 0
-    latest = [cells_of(row, delimiter)[first:] for row in rows[-60:]]
+    latest = [cells_of(row, delimiter)[first:] for row in rows[-MAX_ROWS:]]
     *others, last = [cell.strip() for cells in latest for cell in cells]
-    forms = [_form(other) for other in others if re.search(r"\d", other)]
-    if len(forms) < 3:
-        return False
-    decimals, digits = _form(last)
+    others = [other for other in others if re.search(r"\d", other) and not is_mark(other)]
+    if len(others) < 3 or is_mark(last):
+        return ""
     if last and not re.search(r"[\d.,]$|^[a-zA-Z#]", last):  # ends in e, + or -
+        return "cut"
+    if not re.search(r"\d", last):  # a word, or empty
+        return ""
+    last, others = last.lstrip("+-"), [other.lstrip("+-") for other in others]
+    lengths = sorted(map(len, others))
+    if _breaks_form(_form(last), [_form(other) for other in others]) or len(last) < lengths[0]:
+        return "cut"
+    return "doubtful" if len(last) < lengths[len(lengths) // 2] else ""
+
+
+def notes_on_end(rows: Sequence[str], content: str, path: Path) -> tuple[str, ...]:
+    """Notes on the last number of a text between blanks; one that is cut off is refused.
+
+    Parameters
+    ----------
+    rows : list of str
+        The last lines that hold as many numbers each; the last numbers of the lines are compared.
+    content : str
+        The file, of which only the end counts.
+    path : Path
+    """
+    if content.endswith("\n") or not rows:
+        return ()
+    cut = last_number_cut(rows, " ", "points")
+    if cut == "cut":
+        raise InputError(
+            f"{path}: its last line breaks off within a number: {rows[-1][-40:]!r}; the file is "
+            "cut off, so export it again; if it is whole, end its last line with a line break"
+        )
+    return (DOUBTFUL_END,) if cut else ()
+
+
+def _breaks_form(last: tuple[int, int | None], forms: list[tuple[int, int | None]]) -> bool:
+    """True if a number lacks decimals or exponent digits that all others have."""
+    decimals, digits = last
+    of_exponents = [d for _, d in forms if d is not None]
+    if digits is not None and digits < min(of_exponents, default=0):
         return True
-    if digits is not None and digits < min((d for _, d in forms if d is not None), default=0):
+    if digits is None and len(of_exponents) == len(forms):
         return True
     least = min(decimal for decimal, _ in forms)
     is_fixed = least == max(decimal for decimal, _ in forms) and least > 0
-    return is_fixed and bool(re.search(r"\d", last)) and decimals < least
+    return is_fixed and decimals < least
 
 
 def _form(number: str) -> tuple[int, int | None]:

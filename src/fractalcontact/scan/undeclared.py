@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..core.errors import InputError
+from ..gridding.overhangs import is_closed
 
 #: A number is far outside if it lies this many quartile distances of the others from the nearest
 #: of them: the extremes of any relief, level or tilted, lie within a few of each other.
@@ -19,6 +20,14 @@ _REPEATED, _DOMINANT = 30, 10.0
 _SAMPLE = 500_000
 #: Fewer different heights are those of a synthetic surface of a few levels.
 _MIN_LEVELS = 16
+#: Numbers on either side that the count of a number is compared with, and numbers looked at.
+_BESIDE, _MAX_LOOKED_AT = 5, 200
+#: Fewer whole numbers than this are expected by chance where one is a rarity.
+_RARE = 0.3
+#: A number lies apart from the others by this part of their range.
+_APART = 0.2
+#: Ends of grey levels and counts that instruments set.
+_ENDS_OF_COUNTS = (0.0, 255.0, 65535.0, -32768.0, 32767.0)
 #: This many marks are looked for.
 _MAX_MARKS = 4
 #: A mark comes back from text and single precision not quite the same.
@@ -70,7 +79,69 @@ def find_marks(heights: np.ndarray) -> list[Mark]:
     return marks
 
 
-def refuse_or_warn(heights: np.ndarray, path: object) -> str:
+def possible_marks(heights: np.ndarray) -> list[tuple[float, int]]:
+    """Numbers among the heights that may mark missing cells, and may be heights.
+
+    Those are 0, -1, the usual marks, and the lowest and highest number, where they occur more often
+    than the numbers next to them; a whole number among many of more digits; any number that occurs
+    several times as often as those next to it.
+
+    Parameters
+    ----------
+    heights : ndarray
+        In the file's unit; NaN where missing.
+
+    Returns
+    -------
+    list of (float, int)
+        Number and cells that hold it, the most frequent first.
+    """
+    z = heights[np.isfinite(heights)]
+    levels, counts = np.unique(z, return_counts=True)
+    if levels.size < 3:
+        return []
+    is_whole = levels == np.round(levels)
+    in_counts = 2 * int(counts[is_whole].sum()) > z.size
+    # Of numbers of two decimals one in a hundred is whole: then a whole number is no rarity.
+    digits = next((d for d in range(7) if _has_digits(levels, d)), 7)
+    is_rare = not in_counts and z.size * 10.0**-digits < _RARE
+    usual = np.isin(levels, (0.0, -1.0, *_USUAL))
+    ends = np.zeros(levels.size, bool)
+    ends[[0, -1]] = True
+    looked_at = np.flatnonzero(ends | usual | (counts >= _FEWEST) | (is_rare & is_whole))
+    looked_at = looked_at[np.argsort(-counts[looked_at], kind="stable")][:_MAX_LOOKED_AT]
+    # Numbers of few digits meet by chance: then many occur as often as the most frequent ones.
+    most = 2 * int(np.median(np.sort(counts)[-_MAX_LOOKED_AT // 10 :]))
+    found = []
+    for n in map(int, looked_at):
+        beside = np.r_[counts[max(0, n - _BESIDE) : n], counts[n + 1 : n + 1 + _BESIDE]].max()
+        is_special = ends[n] or usual[n]
+        often = counts[n] > max(beside, 1) if is_special else counts[n] > max(2 * beside, most)
+        is_lone = is_rare and (is_special or counts[n] > 1)
+        lone = is_whole[n] and (is_lone or (in_counts and _is_apart(levels, n)))
+        of_counts = in_counts and ends[n] and levels[n] in _ENDS_OF_COUNTS
+        if often or lone or of_counts or levels[n] in _USUAL:
+            found.append((float(levels[n]), int(counts[n])))
+    return found
+
+
+def _has_digits(levels: np.ndarray, digits: int) -> bool:
+    """True if nearly all numbers have this many decimals at most."""
+    scaled = levels * 10.0**digits
+    return bool(
+        np.mean(np.abs(scaled - np.round(scaled)) < 1e-6 * np.maximum(1, abs(scaled))) > 0.9
+    )
+
+
+def _is_apart(levels: np.ndarray, n: int) -> bool:
+    """True for the lowest or highest number, if it lies far from the next."""
+    if n not in (0, levels.size - 1):
+        return False
+    others = np.delete(levels, n)
+    return bool(np.abs(others - levels[n]).min() > _APART * np.ptp(others))
+
+
+def refuse_or_warn(heights: np.ndarray, path: object, triangles: np.ndarray | None = None) -> str:
     """Refuse heights far outside the others; returns a sentence on a number that repeats.
 
     Parameters
@@ -79,6 +150,9 @@ def refuse_or_warn(heights: np.ndarray, path: object) -> str:
         As for `find_marks`.
     path : path-like
         The file, for errors.
+    triangles : (m, 3) int ndarray, optional
+        Of a mesh, whose number that repeats may be the flat bottom of a body. Nothing is suspected
+        of a closed one: gridding says what it is.
 
     Returns
     -------
@@ -91,17 +165,27 @@ def refuse_or_warn(heights: np.ndarray, path: object) -> str:
         With the key to write.
     """
     marks = find_marks(heights)
+    if not marks and np.isin(heights, _USUAL).any():
+        z = heights[np.isfinite(heights)]
+        ends = float(z.min()), float(z.max())
+        found = [(value, cells) for value, cells in possible_marks(z) if value in _USUAL]
+        marks = [Mark(value, cells, True, *ends) for value, cells in found]
+    if marks and triangles is not None and is_closed(triangles):
+        return ""
     far = [mark for mark in marks if mark.outside]
     every = ", ".join(number(mark.value) for mark in marks)
     key = f"missing: {every}" if len(marks) == 1 else f"missing: [{every}]"
     remedy = f"write '{key}' into the sidecar, or 'missing: none' if these are heights"
     if far:
         parts = "; ".join(
-            f"{mark.cells} x {number(mark.value)}, far outside all others "
+            f"{mark.cells} x {number(mark.value)}, {_where(mark)} "
             f"({number(mark.low)} to {number(mark.high)})"
             for mark in far
         )
-        raise InputError(f"{path}: {parts}: probably a mark for missing cells; {remedy}")
+        mark = "a mark for missing cells"
+        if triangles is not None:
+            mark = f"the flat bottom of a body, whose face you should cut out, or {mark}"
+        raise InputError(f"{path}: {parts}: probably {mark}; {remedy}")
     if marks:
         parts = " and ".join(f"{mark.cells} x exactly {number(mark.value)}" for mark in marks)
         return (
@@ -109,6 +193,14 @@ def refuse_or_warn(heights: np.ndarray, path: object) -> str:
             f"measurement, or heights cut off there; {remedy}"
         )
     return ""
+
+
+def _where(mark: Mark) -> str:
+    return (
+        "a usual mark among others"
+        if mark.low <= mark.value <= mark.high
+        else "far outside all others"
+    )
 
 
 def number(value: float) -> str:

@@ -44,7 +44,7 @@ _OF_WAY: dict[Dims, dict[str, tuple[str, str]]] = {
         "hydraulic_aperture": ("mm", "hydraulic aperture h_h"),
         "critical_gap": ("mm", "narrowest gap of the widest passage"),
         "channel_fraction": ("1", "fraction of the window that carries 90 % of the flow"),
-        "flow_imbalance": ("1", "bound on the relative error of T by the mass balance"),
+        "flow_imbalance": ("1", "bound on the relative error of T by mass balance and closed gaps"),
         "flow_reason": ("1", "why T is zero or missing"),
         "series_bound": ("mm3", "lower bound of T: strips along the flow, cells in series"),
         "parallel_bound": ("mm3", "upper bound of T: strips across the flow, cells side by side"),

@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
+from scipy import ndimage
 
 from ..core.directions import DIRECTIONS, axis_and_sign, slides
 from ..core.errors import InputError
@@ -16,6 +17,8 @@ from ..core.window import spacing_of
 
 #: A side given in mm holds a whole number of cells within this fraction of one.
 _ROUNDING = 1e-6
+#: Percent of the holes that the proposed key fills.
+_MOST_HOLES = 99.9
 
 #: One number for both axes, or a pair (y, x); mm.
 Length = float | tuple[float, float]
@@ -169,7 +172,7 @@ def _require_room(specimen, wanted: _Wanted, shape, multiple) -> None:
         raise InputError(
             f"{name}: a window of {sides[1]:.4g} x {sides[0]:.4g} mm holds {cells[1]} x {cells[0]} "
             f"cells (x, y), fewer than the multiple of {multiple} that the resolutions need; write "
-            "a larger 'window' or fewer resolutions"
+            f"a larger 'window' or fewer resolutions{_hole_words(specimen)}"
         )
 
 
@@ -303,7 +306,26 @@ def _no_place(specimen, shape) -> InputError:
         f"x = {x[columns.min()]:.4g} and {x[columns.max()]:.4g} mm and "
         f"y = {y[rows.min()]:.4g} and {y[rows.max()]:.4g} mm. The largest hole-free square has "
         f"a side of {side:.6g} mm, centred on x = {centre[1]:.4g}, y = {centre[0]:.4g} mm; write "
-        f"'window: {side:.6g} mm' or less"
+        f"'window: {side:.6g} mm' or less{_hole_words(specimen)}"
+    )
+
+
+def _hole_words(specimen) -> str:
+    """Clause that names the key which fills the holes inside a scan; "" without any."""
+    missing = ~specimen["valid"].values
+    labels, _ = ndimage.label(missing)
+    boxes = ndimage.find_objects(labels)
+    inner = [
+        max(part.stop - part.start for part in box)
+        for box in boxes
+        if all(part.start > 0 and part.stop < n for part, n in zip(box, missing.shape, strict=True))
+    ]
+    if not inner:
+        return ""
+    largest = int(np.ceil(np.percentile(inner, _MOST_HOLES)))
+    return (
+        f"; {percent(float(missing.mean()))} of the cells are missing, and {len(inner)} holes lie "
+        f"inside the scan: 'fill_holes: {largest}' fills those of up to {largest} rows and columns"
     )
 
 

@@ -97,11 +97,12 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     below.text(0.01, 1, "\n".join(lines), **style)
     words = {key: quality.attrs[key] for key in ("cells", "overlap")}
     words |= {"warnings": len(warnings), "pair": pair}
-    return Drawing(figure, table_of(*panels), caption(__name__, **words))
+    said = [caption(__name__, **words), *history(specimen, faces)]
+    return Drawing(figure, table_of(*panels), " ".join(said))
 
 
 def _text_lines(specimen, quality, faces, warnings):
-    """History and findings of a scan, broken into lines; the warnings first."""
+    """Findings of a scan, broken into lines; the warnings first."""
     paragraphs = [f"WARNING: {warning}." for warning in warnings]
     paragraphs += [
         f"{face_words(specimen, face).capitalize()}: {quality.attrs[f'{face}_face']}."
@@ -111,5 +112,4 @@ def _text_lines(specimen, quality, faces, warnings):
     if overlap := quality.attrs["overlap"]:
         mean, sd = (float(quality[f"gap_{key}"].sel(region="window")) for key in ("mean", "sd"))
         paragraphs.append(f"Gap in the window: mean {mean:.3g} mm, sd {sd:.3g} mm; {overlap}.")
-    paragraphs += history(specimen, faces)
     return [line for text in paragraphs for line in textwrap.wrap(text, LETTERS)]

@@ -1,9 +1,17 @@
 """Axes of forces and offsets, and labels of logarithmic ones that are short."""
 
+from collections.abc import Sequence
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
-from matplotlib.ticker import LogLocator, NullFormatter, NullLocator, StrMethodFormatter
+from matplotlib.ticker import (
+    LogLocator,
+    MaxNLocator,
+    NullFormatter,
+    NullLocator,
+    StrMethodFormatter,
+)
 from numpy.typing import ArrayLike
 
 from .words import force_unit, short
@@ -75,5 +83,21 @@ def label_short_span(axis: Axis, within: float = 100) -> None:
     low, high = axis.get_view_interval()
     axis.set_minor_formatter(NullFormatter())
     if high < within * low:
-        axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+        axis.set_major_locator(_FewPlaces(subs=(1, 2, 5)))
         axis.set_major_formatter(StrMethodFormatter("{x:g}"))
+
+
+class _FewPlaces(LogLocator):
+    """Places at 1, 2 and 5; where fewer than two of them lie on the axis, a few even ones.
+
+    Matplotlib takes up to nine even ones there, whose labels run into each other.
+    """
+
+    def tick_values(self, vmin: float, vmax: float) -> Sequence[float]:
+        low, high = sorted((vmin, vmax))
+        decades = 10 ** np.arange(np.floor(np.log10(low)), np.ceil(np.log10(high)) + 1)
+        places = np.outer(decades, (1, 2, 5)).ravel()
+        inside = places[(places >= low * (1 - 1e-9)) & (places <= high * (1 + 1e-9))]
+        if inside.size > 1:
+            return inside.tolist()
+        return list(MaxNLocator(3, steps=[1, 2, 5, 10]).tick_values(low, high))

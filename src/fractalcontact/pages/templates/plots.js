@@ -79,9 +79,10 @@ function drawPlot(figure, { x, y, series, dots, key, empty }) {
   const width = Math.max(260, box.clientWidth);
   const height = Math.round(Math.min(300, Math.max(220, 0.68 * width)));
   const points = series.flatMap((one) => one.points);
-  const frame = { left: MARGIN.left, right: width - MARGIN.right, top: MARGIN.top, bottom: height - MARGIN.bottom };
-  const across = new Scale(points.map((p) => p.x), x, frame.left, frame.right);
+  const frame = { right: width - MARGIN.right, top: MARGIN.top, bottom: height - MARGIN.bottom };
   const up = new Scale(points.flatMap((p) => [p.y]), y, frame.bottom, frame.top);
+  frame.left = leftOf(up.ticks(ticksAlong(frame.bottom - frame.top)));
+  const across = new Scale(points.map((p) => p.x), x, frame.left, frame.right);
   const drawing = svg("svg", { viewBox: `0 0 ${width} ${height}`, width, height, role: "img" });
   drawing.setAttribute("aria-label", `${figure.querySelector("figcaption").textContent}: ${y.label} over ${x.label}`);
   drawAxes(drawing, frame, across, up, x, y);
@@ -95,6 +96,16 @@ function drawPlot(figure, { x, y, series, dots, key, empty }) {
   drawing.addEventListener("click", (event) => choose(event, drawing, points, across, up));
   box.replaceChildren(drawing);
   figure.querySelector(".key").replaceChildren(...key.map(([style, words]) => keyEntry(style, words)));
+}
+
+/** Number of ticks along y. */
+function ticksAlong(height) {
+  return height / 45;
+}
+
+/** Place of the axis y: right of its title and of its longest number, whose digits are 7 wide. */
+function leftOf(ticks) {
+  return Math.max(MARGIN.left, 28 + 7 * Math.max(0, ...ticks.map(([, label]) => label.length)));
 }
 
 function keyEntry(style, words) {
@@ -111,7 +122,7 @@ function drawAxes(drawing, frame, across, up, x, y) {
     svg("line", { x1: place, x2: place, y1: frame.bottom, y2: frame.top, class: "grid" }, drawing);
     svg("text", { x: place, y: frame.bottom + 16, "text-anchor": "middle" }, drawing, label);
   }
-  for (const [value, label] of up.ticks((frame.bottom - frame.top) / 45)) {
+  for (const [value, label] of up.ticks(ticksAlong(frame.bottom - frame.top))) {
     const place = up.at(value);
     svg("line", { x1: frame.left, x2: frame.right, y1: place, y2: place, class: "grid" }, drawing);
     svg("text", { x: frame.left - 6, y: place + 4, "text-anchor": "end" }, drawing, label);

@@ -1,5 +1,6 @@
 """Height maps in netCDF and HDF5 files: by the CF conventions, or as their sidecar says."""
 
+import re
 import warnings
 from dataclasses import dataclass
 from pathlib import Path
@@ -8,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ...core.errors import InputError
-from ...core.labels import percent
+from ...core.labels import percent, printable
 from ...core.units import length_factor
 from ...gridding.measured import NOTE
 from ..array_hints import array_hints
@@ -45,15 +46,17 @@ def read_labelled(path: Path, options: ScanOptions) -> RawScan:
     """Read one 2-D variable of a netCDF or HDF5 file.
 
     A variable whose attribute ``units``, and those of the coordinates x and y of its dimensions,
-    are units of length describes itself; ``positive: down`` of it is honoured. Any other is read
-    as its sidecar says. Packing, fill values and valid ranges are decoded (CF conventions); where a
-    variable ``mask`` is not zero, cells are missing (SurfaceTopography's convention).
+    are units of length describes itself; ``positive: down`` of it is honoured, in any case. Any
+    other is read as its sidecar says. Packing, fill values and valid ranges are decoded (CF
+    conventions); where a variable ``mask`` is not zero, cells are missing (SurfaceTopography's
+    convention).
 
     Raises
     ------
     InputError
-        If the file is damaged, the wanted variable absent or ambiguous, a coordinate irregular, the
-        data lie in another file, or the sidecar does not state all that is needed.
+        If the file is damaged, the wanted variable absent or ambiguous, a coordinate irregular or
+        contradicting itself, ``positive`` neither up nor down, the data lie in another file, or the
+        sidecar does not state all that is needed.
     """
     with reading(path, "netCDF or HDF5 file"), open_variables(path) as variables:
         names = table_names(variables)
@@ -85,8 +88,22 @@ def read_labelled(path: Path, options: ScanOptions) -> RawScan:
         spacing=(abs(columns.step), dy),
         # The coordinates say where the rows lie, and they ascend by now.
         first_row="bottom",
-        heights="down" if str(attributes.get("positive", "up")).lower() == "down" else "up",
+        heights=_direction(attributes, options, f"{path}: variable {name!r}"),
         notes=notes,
+    )
+
+
+def _direction(attributes: dict, options: ScanOptions, where: str) -> str:
+    """Which way heights grow by the attribute ``positive``, up where it is not there."""
+    said = str(attributes.get("positive", "up")).strip("\0 ").lower()
+    for direction in ("up", "down"):
+        if re.fullmatch(rf"{direction}(wards?)?", said):
+            return direction
+    if options.heights is not None:
+        return options.heights
+    raise InputError(
+        f"{where} is positive {printable(said, 40)!r}, which is neither up nor down; write "
+        "'heights: up' or 'heights: down' into the sidecar"
     )
 
 
@@ -175,8 +192,16 @@ def _axis(dimension: str, variables: dict, path: Path) -> Axis | None:
     if coordinate is None or len(coordinate.shape) != 1 or coordinate.dtype.kind not in "fiu":
         return None
     attributes, unit = coordinate.attributes, _unit(coordinate)
-    called = str(attributes.get("axis") or name)[:1].lower()
-    letter = _LETTERS.get(str(attributes.get("standard_name")), called)
+    axis = str(attributes.get("axis", "")).strip().lower()[:1]
+    standard = str(attributes.get("standard_name", "")).strip().lower()
+    by_standard = _LETTERS.get(standard, "")
+    letter = by_standard or axis or name[:1].lower()
+    if axis and by_standard and axis != by_standard:
+        raise InputError(
+            f"{path}: coordinate {name!r} is of axis {axis.upper()!r} and of standard name "
+            f"{standard!r}, which contradict each other; correct one of the two attributes, or "
+            "export x, y, z as text"
+        )
     if unit is None or letter not in ("x", "y") or coordinate.shape[0] < 2:
         return None
     places, _ = decoded(coordinate)
@@ -198,12 +223,15 @@ def _hints(variables: dict, names: list[str], options: ScanOptions) -> Hints:
         for name, variable in variables.items()
         if np.prod(variable.shape) == 1 and variable.dtype.kind in "fiu"
     }
-    words = [
-        (f"attribute {key} of {name}", f"{key} {value}")
-        for name, variable in variables.items()
-        for key, value in variable.attributes.items()
-        if key in ("units", "unit", "positive", "spacing")
-    ]
+    words = []
+    for name, variable in variables.items():
+        # Units of coordinates are those of x and y, whatever the array of heights is called.
+        axis = name.rpartition("/")[2].lower()
+        quantity = "z" if name in names else axis if axis in ("x", "y") else name
+        for key in ("units", "unit", "positive", "spacing"):
+            if key in variable.attributes:
+                text = f"{quantity} {key}: {variable.attributes[key]}"
+                words.append((f"attribute {key} of {name}", text))
     return array_hints(
         tables, options.variable, small, lambda name: decoded(variables[name])[0], words
     )

@@ -1,35 +1,46 @@
 """Vertices and triangles of STL, PLY and OBJ files."""
 
 from pathlib import Path
+from typing import BinaryIO
 
 import numpy as np
 
 from ...core.errors import InputError
 from ..format import Format
+from ..mesh_text import (
+    MeshText,
+    binary_stream,
+    read_ascii_ply,
+    read_obj,
+    read_ply_header,
+    refuse_cut_stl,
+)
 from ..options import ScanOptions
 from ..raw import RawScan, reading
 
 
 def read_mesh(path: Path, options: ScanOptions) -> RawScan:
-    """Read a mesh, or the points of a PLY cloud.
+    """Read a mesh, or the points of a PLY or OBJ cloud.
 
     STL repeats each vertex in every triangle that meets there; the repeats are joined.
 
     Raises
     ------
     InputError
-        If the file is damaged or holds no vertices.
+        If the file is damaged, contradicts its counts or holds no vertices.
     """
-    import trimesh
-
     file_type = path.suffix.lstrip(".").lower()
-    if file_type == "stl":
-        _refuse_wrong_count(path)
-    with reading(path, "mesh"), open(path, "rb") as stream:
-        # From a stream, without a resolver: no other file it may name is opened.
-        loaded = trimesh.load(stream, file_type=file_type, process=False, resolver=None)
-        parts = list(loaded.geometry.values()) if hasattr(loaded, "geometry") else [loaded]
-        vertices, triangles = _concatenate(parts)
+    with open(path, "rb") as stream:
+        if file_type == "obj":
+            mesh, reader = read_obj(path), "OBJ / text"
+        elif file_type == "stl":
+            _refuse_wrong_count(path)
+            mesh, reader = _by_trimesh(stream, path, file_type)
+        elif (header := read_ply_header(stream, path)).is_ascii:
+            mesh, reader = read_ascii_ply(stream, header, path), "PLY / text"
+        else:
+            mesh, reader = _by_trimesh(binary_stream(stream, header), path, file_type)
+    vertices, triangles, notes = mesh
     if not len(vertices):
         raise InputError(f"{path}: the mesh is empty: it holds no vertices")
     if len(triangles) and not (triangles.min() >= 0 and triangles.max() < len(vertices)):
@@ -39,20 +50,32 @@ def read_mesh(path: Path, options: ScanOptions) -> RawScan:
     return RawScan(
         vertices,
         "mesh",
-        reader=f"trimesh {trimesh.__version__}",
+        reader=reader,
+        notes=notes,
         triangles=triangles if len(triangles) else None,
     )
 
 
+def _by_trimesh(stream: BinaryIO, path: Path, file_type: str) -> tuple[MeshText, str]:
+    """Vertices and triangles of all parts, and the reader."""
+    import trimesh
+
+    with reading(path, "mesh"):
+        # From a stream, without a resolver: no other file it may name is opened.
+        loaded = trimesh.load(stream, file_type=file_type, process=False, resolver=None)
+        parts = list(loaded.geometry.values()) if hasattr(loaded, "geometry") else [loaded]
+        return MeshText(*_concatenate(parts), ()), f"trimesh {trimesh.__version__}"
+
+
 def _refuse_wrong_count(path: Path) -> None:
-    """Refuse a binary STL file whose number of triangles contradicts its header."""
+    """Refuse an STL file whose triangles are others than its header or its lines say."""
     with open(path, "rb") as stream:
         head = stream.read(84)
     held, rest = divmod(path.stat().st_size - 84, 50)
-    if head.lstrip().startswith(b"solid") or len(head) < 84 or rest:
-        return
     stated = int.from_bytes(head[80:], "little")
-    if stated != held:
+    if head.lstrip().startswith(b"solid") and (rest or stated != held):
+        refuse_cut_stl(path)
+    elif len(head) == 84 and not rest and stated != held:
         raise InputError(
             f"{path}: its header states {stated} triangles, the file holds {held}; export it again"
         )

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 
 from ...core.errors import InputError
-from ..draft import Hints, Suggestion
+from ..draft import image_hints
 from ..format import Format
 from ..options import ScanOptions
 from ..raw import RawScan, reading, refuse_larger
@@ -29,9 +29,8 @@ def read_png(path: Path, options: ScanOptions) -> RawScan:
         refuse_larger(8 * image.width * image.height, path)
         if image.mode not in _GREY:
             raise InputError(f"{path}: a colour image, no heights; export the heights themselves")
-        first = {"first_row": Suggestion("top", "images begin at the top")}
-        require_stated(path, options, Needs(), lambda: Hints(first))
         values = np.asarray(image, dtype=np.float64)
+        require_stated(path, options, Needs(), lambda: image_hints(values))
     notes = ("8 bits: heights in 256 steps at most",) if image.mode == "L" else ()
     return RawScan(values, "matrix", reader=f"Pillow {PIL.__version__} / png", notes=notes)
 

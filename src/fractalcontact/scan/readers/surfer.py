@@ -10,10 +10,12 @@ from ..format import Format
 from ..options import ScanOptions
 from ..raw import RawScan, reading, refuse_larger
 from ..stated import Needs, require_stated
+from ..text_lines import MAX_ROWS, notes_on_end
 
 _MARK = b"DSAA"
 _BLANK = 1.70141e38  # of a cell without height; versions differ in the last digits
 _HEAD = 9  # words in front of the heights
+_ROUNDED = 1e-3  # of the range that a header states: programs round it
 
 
 def read_surfer(path: Path, options: ScanOptions) -> RawScan:
@@ -25,10 +27,11 @@ def read_surfer(path: Path, options: ScanOptions) -> RawScan:
         If the file is damaged, or holds more or fewer heights than it says.
     """
     with reading(path, "Surfer text grid"):
-        words = path.read_text(encoding="latin-1").replace(",", " ").split()
+        content = path.read_text(encoding="latin-1")
+        words = content.replace(",", " ").split()
         nx, ny = int(words[1]), int(words[2])
         refuse_larger(8 * nx * ny, path)
-        x_low, x_high, y_low, y_high = map(float, words[3:7])
+        x_low, x_high, y_low, y_high, z_low, z_high = map(float, words[3:_HEAD])
         values = np.array(words[_HEAD:], dtype=float)
     if min(nx, ny) < 2 or values.size != nx * ny:
         raise InputError(
@@ -36,7 +39,13 @@ def read_surfer(path: Path, options: ScanOptions) -> RawScan:
             "heights; export it again"
         )
     require_stated(path, options, Needs(grid=True), Hints)
+    notes: tuple[str, ...] = ()
+    if values[-1] < _BLANK * (1 - 1e-4):
+        latest = zip(words[_HEAD:][-MAX_ROWS:], values[-MAX_ROWS:], strict=True)
+        known = [word for word, value in latest if value < _BLANK * (1 - 1e-4)]
+        notes = notes_on_end(known, content, path)
     values[values >= _BLANK * (1 - 1e-4)] = np.nan
+    notes += _notes_on_range(values, z_low, z_high, path)
     spacing = (x_high - x_low) / (nx - 1), (y_high - y_low) / (ny - 1)
     return RawScan(
         values.reshape(ny, nx),
@@ -44,7 +53,28 @@ def read_surfer(path: Path, options: ScanOptions) -> RawScan:
         reader="Surfer / DSAA",
         spacing=spacing,
         first_row="bottom",
+        notes=notes,
     )
+
+
+def _notes_on_range(values: np.ndarray, low: float, high: float, path: Path) -> tuple[str, ...]:
+    """Note on heights outside the range that the header states.
+
+    The last height alone outside it is one that is cut off, and refused. Where more are, the range
+    itself is hardly one of these heights.
+    """
+    margin = _ROUNDED * max(high - low, abs(low), abs(high))
+    outside = (values < low - margin) | (values > high + margin)
+    if not outside.any():
+        return ()
+    words = f"its header states heights from {low:g} to {high:g}"
+    if outside[-1] and outside.sum() == 1:
+        raise InputError(
+            f"{path}: {words}, its last one is {values[-1]:g}: the file is cut off within this "
+            "number, so export it again"
+        )
+    held = f"from {np.nanmin(values):g} to {np.nanmax(values):g}"
+    return (f"{words}, the file holds heights {held}",)
 
 
 def is_surfer(path: Path) -> bool:

@@ -11,21 +11,24 @@ import numpy as np
 from ...core.errors import InputError
 from ...core.labels import printable
 from ..format import Format
-from ..options import DELIMITERS, ScanOptions
+from ..options import DELIMITERS, NO_MARK, ScanOptions
 from ..raw import RawScan
 from ..stated import Needs, require_stated
-from ..tables import TextParts, table_to_raw
+from ..tables import TextParts, column_index, table_to_raw
 from ..text_hints import named_columns, text_hints
 from ..text_lines import (
     COMMENT_MARKS,
+    DOUBTFUL_END,
+    MAX_ROWS,
     cells_of,
     cleaned,
-    is_cut_off,
     is_number,
+    last_number_cut,
     open_text,
     refuse_other_counts,
     wide_encoding,
 )
+from ..wrapped_rows import refuse_wrapped
 
 _NAN = ("", "nan", "NaN", "NAN", "-nan", "-NaN", "+nan")
 #: Keys that say how a text is laid out; a table that describes itself needs none of them.
@@ -65,6 +68,7 @@ def read_text(path: Path, options: ScanOptions) -> RawScan:
     table, parts, notes = reading.finish()
     reading.refuse_numbers_above()
     refuse_other_counts(reading.header, table.shape, options, str(path))
+    refuse_wrapped(reading.header, table.shape, options, str(path))
     return table_to_raw(table, options, str(path), parts, reader=_reader(), notes=notes, **units)
 
 
@@ -85,11 +89,14 @@ class _Reading:
         self.header: list[str] = []
         self._width = 0  # numbers in a line
         self._trailing = False  # lines end with a delimiter that parts nothing
-        self._breaks: list[int] = []  # rows before which something else than numbers stands
+        #: By row before which something else than numbers stands, the number of that line.
+        self._breaks: dict[int, int] = {}
         self._parts: list[np.ndarray] = []
         self._rows = 0  # taken up so far
         self._lines = options.header or 0  # before the next block
         self._short: tuple[int, str, str] | None = None  # number, text and fault of a cut line
+        self._latest: list[str] = []  # lines of the blocks before
+        self._is_doubtful = False  # the last number is short, and no line end stands behind it
         self._above: list[str] | None = None  # cells of a first row of coordinates
         self._has_frame = options.layout != "points" and options.axes in ("both", "row")
 
@@ -98,7 +105,7 @@ class _Reading:
         # The quick way passes no line it has not understood; what it refuses is read line by line.
         plain = None
         if not self._width and not self._has_frame:
-            breaks = list(self._breaks)
+            breaks = dict(self._breaks)
             if first := self._data_lines(block.split("\n", _SAMPLE)[:_SAMPLE]):
                 self._measure([line for _, line in first])
             self._breaks = breaks
@@ -107,8 +114,15 @@ class _Reading:
         if plain is None:
             self._add_lines(block)
         else:
-            self._take(self._parse(plain, self._width + self._trailing))
+            part = self._parse(plain, self._width + self._trailing)
+            if self._doubted(part).any():
+                self._add_lines(block)
+            else:
+                self._take(part)
         self._lines += block.count("\n")
+        self._latest = [*self._latest, *block.rstrip("\n").rsplit("\n", MAX_ROWS)[-MAX_ROWS:]][
+            -MAX_ROWS:
+        ]
 
     def finish(self) -> tuple[np.ndarray, TextParts, tuple[str, ...]]:
         """Table (rows, columns), the text around it, and the notes."""
@@ -121,6 +135,8 @@ class _Reading:
                     f"{self._width}: {line[-40:]!r}; the file is cut off, so export it again"
                 )
             notes = (f"the last line ({number}) was cut short and is left out",)
+        if self._is_doubtful:
+            notes = (DOUBTFUL_END,)
         if not self._parts:
             raise InputError(
                 f"{self.path}: no line of numbers after its header of {self.options.header} "
@@ -128,21 +144,38 @@ class _Reading:
             )
         table = np.concatenate(self._parts)
         self._parts.clear()
-        breaks = [row for row in dict.fromkeys(self._breaks) if 0 < row < len(table)]
+        breaks = {row: line for row, line in self._breaks.items() if 0 < row < len(table)}
         above = None if self._above is None else self._coordinates(self._above)
         return table, TextParts(self._names(), above, breaks), notes
 
     def refuse_numbers_above(self) -> None:
-        """Refuse a header that ends in a point, as a sidecar shared by two files may say."""
-        if self.options.layout != "points" or not self.header:
-            return
-        cells = [cell.strip() for cell in cells_of(self.header[-1].strip(), self.delimiter)]
-        if len(cells) >= max(2, self._width) and all(is_number(c, self.options) for c in cells):
-            number = len(self.header)
+        """Refuse a header that ends in rows of numbers, as the sidecar of two files may say."""
+        last, first = 0, len(self.header) + 1
+        for number in range(len(self.header), 0, -1):
+            line = self.header[number - 1].strip()
+            if line and not line.startswith(COMMENT_MARKS):
+                if not self._is_row(line):
+                    break
+                last, first = max(last, number), number
+        if last:
             raise InputError(
-                f"{self.path}: line {number}, the last of its header, already holds numbers; "
-                "write a smaller number, 'header: 0' (for one of two faces below 'upper:')"
+                f"{self.path}: line {last}, the last of its header, already holds as many numbers "
+                f"as the lines below; write a smaller number, 'header: {first - 1}' (for one of "
+                "two faces below 'upper:'), or # in front of that line if it holds no heights"
             )
+
+    def _is_row(self, line: str) -> bool:
+        """True if a line holds as many numbers as those that were read, or coordinates above."""
+        words = self.options.missing_words
+        line = cleaned(line, self.delimiter, words)
+        cells = [cell.strip() for cell in cells_of(line, self.delimiter)]
+        if len(cells) > self._width and not cells[-1]:
+            cells.pop()
+        empty = sum(cell in (*_NAN, *words) for cell in cells)
+        numbers = sum(is_number(cell, self.options) for cell in cells)
+        widths = (self._width, self._width - 1) if self._has_frame else (self._width,)
+        is_whole = all(cell in (*_NAN, *words) or is_number(cell, self.options) for cell in cells)
+        return is_whole and len(cells) in widths and numbers >= max(2, empty)
 
     def _take(self, part: np.ndarray) -> None:
         self._parts.append(part)
@@ -169,12 +202,38 @@ class _Reading:
             return
         if self._has_frame and self._above is None:
             self._above = cells_of(data.pop(0)[1], self.delimiter)
-            self._breaks = [max(row - 1, 0) for row in self._breaks]
+            self._breaks = {max(row - 1, 0): line for row, line in self._breaks.items()}
         if not self._width and data:
             self._measure([line for _, line in data])
         rows = self._whole_rows(data, block.endswith("\n"))
         if rows:
-            self._take(self._parse("\n".join(rows), self._width))
+            part = self._parse("\n".join(rows), self._width)
+            self._refuse_no_height(part, rows, [number for number, _ in data])
+            self._take(part)
+
+    def _doubted(self, part: np.ndarray) -> np.ndarray:
+        """Cells (rows, columns) that are infinite, or without a number though none is missing."""
+        doubted = np.isinf(part)
+        if self.options.missing == NO_MARK and self.delimiter != " ":
+            doubted |= np.isnan(part)
+        if doubted.any() and self.options.layout == "points":
+            chosen, names = self.options.columns or (0, 1, 2), self._names()
+            used = [column_index(c, names, part.shape[1], str(self.path)) for c in chosen]
+            doubted[:, np.setdiff1d(range(part.shape[1]), used)] = False
+        return doubted
+
+    def _refuse_no_height(self, part: np.ndarray, rows: list[str], numbers: list[int]) -> None:
+        """Refuse a cell that is empty or infinite, and no mark of missing cells."""
+        for row, column in np.argwhere(self._doubted(part)):
+            cell = cells_of(rows[row], self.delimiter)[column].strip()
+            if not cell or np.isinf(part[row, column]):
+                mark = cell or '""'
+                raise InputError(
+                    f"{self.path}: line {numbers[row]}, cell {column + 1} "
+                    f"{f'is {cell[:40]!r}, no finite number' if cell else 'is empty'}, and its "
+                    f"sidecar does not say that such cells are missing; write 'missing: {mark}' if "
+                    "they are, else export the file again"
+                )
 
     def _measure(self, lines: list[str]) -> None:
         """Take the width from the first lines, and whether each ends with a delimiter."""
@@ -193,7 +252,7 @@ class _Reading:
     def _data_lines(self, lines: list[str]) -> list[tuple[int, str]]:
         """Number and text of the lines of numbers; the places of all other lines are kept."""
         data: list[tuple[int, str]] = []
-        words = self.options.missing_words
+        words = tuple(word for word in self.options.missing_words if word)
         header = set(self.header)
         for number, line in enumerate(lines, self._lines + 1):
             line = line.strip(" \r\x1a\f")
@@ -202,7 +261,7 @@ class _Reading:
             tabs = self.delimiter == "\t" and self._width > 1
             is_empty_row = tabs and line.count("\t") == self._width - 1 + self._trailing
             if (not line.strip() and not is_empty_row) or is_comment or line in header:
-                self._breaks.append(self._rows + len(data))
+                self._breaks[self._rows + len(data)] = number
                 continue
             data.append((number, cleaned(line, self.delimiter, words)))
         return data
@@ -226,14 +285,28 @@ class _Reading:
                 continue
             rows.append(self.delimiter.join(cells))
             self._refuse_words(number, line, cells)
-        if (
-            rows
-            and not is_ended
-            and not self._short
-            and is_cut_off(rows, self.delimiter, self.options.layout)
-        ):
-            self._short = (data[-1][0], rows.pop(), "breaks off within a number")
+        if rows and not is_ended and not self._short:
+            above = (cells_of(line.strip(), self.delimiter) for line in self._latest)
+            whole = [
+                self.delimiter.join(cells[: self._width])
+                for cells in above
+                if len(cells) >= self._width and not any(map(str.strip, cells[self._width :]))
+            ]
+            layout = self.options.layout
+            cut = last_number_cut([*whole, *rows], self.delimiter, layout, self._is_mark)
+            if cut == "cut":
+                self._short = (data[-1][0], rows.pop(), "breaks off within a number")
+            self._is_doubtful = cut == "doubtful"
         return rows
+
+    def _is_mark(self, cell: str) -> bool:
+        """True for the number that marks missing cells, which has a form of its own."""
+        if not self.options.marks or not is_number(cell, self.options):
+            return False
+        plain = cell.replace(self.options.thousands or "", "").replace(
+            self.options.decimal or ".", "."
+        )
+        return float(plain) in self.options.marks
 
     def _refuse_words(self, number: int, line: str, cells: list[str]) -> None:
         if not re.search(r"[^-+0-9.,;eE \t]", line):

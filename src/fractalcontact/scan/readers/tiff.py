@@ -6,12 +6,13 @@ from pathlib import Path
 import numpy as np
 
 from ...core.errors import InputError
-from ..draft import Hints, Suggestion
+from ..draft import Hints, image_hints
 from ..format import Format
 from ..options import ScanOptions
 from ..raw import RawScan, reading, refuse_larger, stated_unit
 from ..stated import Needs, require_stated
 from ..tables import choose_array
+from ..tiff_codecs import refuse_unknown_coding, use_codecs
 
 PARK_TAG = 50432  # Park Systems keep the heights of their microscopes in tags of their own
 _PIXEL_SCALE, _NODATA, _GDAL = 33550, 42113, 42112  # GeoTIFF's and GDAL's tags
@@ -32,16 +33,18 @@ def read_tiff(path: Path, options: ScanOptions) -> RawScan:
     """
     import tifffile
 
+    use_codecs()
     with reading(path, "TIFF file"), tifffile.TiffFile(path) as file:
         names = [f"page {number}" for number in range(1, len(file.pages) + 1)]
         page = file.pages[0 if options.variable not in names else names.index(options.variable)]
         _refuse_images(page, options, path)
         stated = _imagej(file, page) or _geotiff(page)
         needs = Needs(arrays=names)
-        require_stated(path, options, needs, lambda: _hints(names, stated))
+        require_stated(path, options, needs, lambda: _hints(names, stated, page))
         name = choose_array(names, options.variable, path)
         page = file.pages[names.index(name)]
         refuse_larger(math.prod(page.shape) * 8, path)
+        refuse_unknown_coding(page, path)
         values = page.asarray().astype(np.float64)
         if values.shape != page.shape:
             raise ValueError(f"pixels of shape {values.shape}, its header promises {page.shape}")
@@ -123,9 +126,10 @@ def _gdal_scale(page, path: Path) -> tuple[float, float]:
     return found["scale"], found["offset"]
 
 
-def _hints(names: list[str], stated: dict) -> Hints:
+def _hints(names: list[str], stated: dict, page) -> Hints:
     """Hints of an image on its cells."""
-    hints = Hints({"first_row": Suggestion("top", "images begin at the top")})
+    refuse_larger(math.prod(page.shape) * 8, Path(page.parent.filename))
+    hints = image_hints(page.asarray().astype(np.float64), _nodata(page))
     hints.add("variable", names[0], f"the first of {len(names)} pages")
     if "spacing" in stated:
         unit = stated.get("unit_xy")

@@ -1,0 +1,38 @@
+"""Errors of curves, of their ratio and of a fitted constant, by exact cases."""
+
+import numpy as np
+import pytest
+from scipy import stats
+
+from fractalcontact.core.estimate import Estimate
+from fractalcontact.measured.calibration import fit_factor
+from fractalcontact.measured.curve import Curve, ratio
+
+
+def test_values_counted_from_a_point_have_the_errors_of_both_ends():
+    curve = Curve.of([1.0, 2.0, 4.0, 8.0], [0.0, 1.0, 2.0, 3.0], [0.3, 0.3, 0.3, 0.4])
+    counted = curve.since(2.0)
+    np.testing.assert_array_equal(counted.x, [2, 4, 8])
+    np.testing.assert_allclose(counted.y, [0, 1, 2], atol=1e-12)
+    np.testing.assert_allclose(counted.error, np.hypot([0.3, 0.3, 0.4], 0.3))
+
+
+def test_a_ratio_is_lowest_where_its_divisor_is_highest():
+    found = ratio(Estimate(1.0, 0.8, 1.3), Estimate(2.0, 1.0, 3.0))
+    assert found.value == 0.5
+    assert found.low == pytest.approx(0.5 * np.exp(-np.hypot(np.log(0.8), np.log(3 / 2))))
+    assert found.high == pytest.approx(0.5 * np.exp(np.hypot(np.log(1.3), np.log(2))))
+
+
+def test_the_interval_of_a_factor_is_that_of_the_slope_of_a_line():
+    # Closure as the factor times ln x, from a datum that is fitted too: linear regression.
+    x = np.geomspace(1, 20, 14)
+    noise = 0.02 * np.random.default_rng(2).normal(size=x.size)
+    line = stats.linregress(np.log(x), 0.1 + 1.2 * np.log(x) + noise)
+    readings = Curve.of(x, 0.1 + 1.2 * np.log(x) + noise, 0.0)
+    dense = np.geomspace(0.9, 22, 400)
+    found = fit_factor(readings, lambda f: Curve.of(dense, f * np.log(dense), 0.0), (1 / 3, 3))
+    half = stats.t.ppf(0.975, x.size - 2) * line.stderr
+    assert found.value == pytest.approx(line.slope, rel=1e-4)
+    assert found.value - found.low == pytest.approx(half, rel=0.03)
+    assert found.high - found.value == pytest.approx(half, rel=0.03)
