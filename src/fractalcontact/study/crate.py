@@ -318,8 +318,9 @@ def _description(results: Path, name: str) -> str:
         return f"{kind.get(path.suffix, 'figure')}: {title}{of}"
     if first in _FOLDERS:
         return _FOLDERS[first].format(stem=path.stem)
-    if path.suffix == ".nc" and (title := _title_of(results / first)):
-        return f"{title}, {'/'.join(path.with_suffix('').parts[1:])}"
+    if path.suffix == ".nc":
+        words = _title_of(results / first) or first
+        return f"{words}, {'/'.join(path.with_suffix('').parts[1:])}"
     return name
 
 
