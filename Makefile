@@ -1,41 +1,33 @@
-# make        environment, then the default study (config/paper.yaml)
-# make STUDY=config/mine.yaml   another study; DROP=yes lets its atlas lose specimens that it had
-# make new      writes config/mine.yaml, a small study of the scans in scans/ alone, with drafts of the sidecars
-#   that they lack; SCANS=folder, NAME=other for config/other.yaml
-# make dry-run  says what would be done, and why; VERBOSE=yes for any of these shows all Snakemake says
-# make keep-going   one bad scan does not keep the others from their figures
-# make slurm    the same on a cluster
-# make report   the result page alone, and what it is made of
-# make verify   every result against its checksum
-# make faults   kills, damage, full disks and more, replayed; FAULTS=--quick for a few of each, FAULTS=--slurm on a SLURM
-# make check-scans   reads everything in scans/ and says what it holds, solving nothing
-# make describe   drafts a sidecar for each scan that needs one, with a picture of what would be read;
-#   SCANS=folder, FILE=one of them, LIKE=sidecar that is to hold for all files of one instrument
-# make test   what the tests need, then the tests; make test-all takes larger ensembles
-# make test-processors   the tests under four profiles of processor, and a table of what fails: 40 minutes;
-#   PROFILE=oldest one of them, FOLDERS='tests/stages tests/flow' these alone
-# make examples   each study of config/examples, run once: some minutes
-# make test-slurm   the smoke study on a real SLURM of one node, started for it: root on Debian alone
-# make test-slurm-accounting   the same on one that keeps accounts, which says what jobs asked for and used
-# make test-browser   the pages in Debian's chromium, which it installs where it may
-# make docs   the documentation in results/docs, every warning and broken link an error
-# make accuracy   error against time, order of convergence, cheaper models; PEERS=1 takes in other codes
-# make check-accuracy  the study against itself at full cost: numbers within their errors, and seconds
-# make keep, before a change, and make same, after it: what differs, bit for bit, in the smoke study
-#   and the default one (or STUDY); AGAINST=folder of other results; RENAMED=file of new names
-# make calibration   stated half-widths over those seen, and coverage: Delta_sigma, closure, gap, area, stiffness (20 minutes)
-# make cost   where the time of the study went
-# make campaign SPECIMENS=1000   the scans and the study of that many small twins, in results/campaigns
-# make bench  the contact solver timed; with PEERS=1 also against other codes, installed for it
-# make grid-table   elastic and capped contact on four grids: the table of docs/verification.md
-# make bench-flow  the flow through gaps timed, with PEERS=1 also against reynoldsflow
-# make problems PROBLEMS=5000   PROBLEMS random contact problems, each state verified
-# make extremes   synthetic extremes and real scans through the whole chain, all figures: many minutes
-# make fuzz FILES=5000     FILES damaged scan files, each read or refused in one sentence
-# make fuzz-dialects FILES=5000  FILES ways to write a known surface as text, each read right or refused
-# make lint   ruff, snakefmt, annotations and types, changing nothing; make format mends what it can
-# make schema   schemas for editors and the tables of keys, from the classes of keys
-# make lock   new pins for every package (needs uv)
+#: Yours: make does the first, `make help` prints these lines
+#:   make all                   the study config/paper.yaml, or STUDY=file; VERBOSE=yes, DROP=yes lets specimens go, EXECUTOR=local
+#:   make new                   config/mine.yaml, a small study of the scans in scans/ alone; SCANS=folder, NAME=other
+#:   make check-scans           what everything in scans/, or SCANS=folder, holds; nothing is solved
+#:   make describe              a draft of a sidecar for each scan that needs one; SCANS=folder, FILE=one, LIKE=sidecar
+#:   make dry-run               what would be done, and why
+#:   make keep-going            the study, where one bad scan does not keep the others from their figures
+#:   make smoke                 the small study config/smoke.yaml
+#:   make slurm                 the study on a cluster
+#:   make report                the result page alone, and what it is made of
+#:   make verify                every result against its checksum
+#:
+#: A developer's
+#:   make test                  what the tests need, then the tests
+#:   make test-all              the tests with larger ensembles
+#:   make test-processors       the tests under four profiles of processor; PROFILE=one, FOLDERS='tests/flow tests/scan'
+#:   make test-slurm            the smoke study on a real SLURM of one node: root on Debian alone
+#:   make test-slurm-accounting the same on one that keeps accounts of what jobs used
+#:   make test-browser          the pages in Debian's chromium
+#:   make examples              each study of config/examples, run once
+#:   make faults                kills, damage, full disks and more, replayed; FAULTS=--quick, FAULTS=--slurm
+#:   make lint                  ruff, snakefmt, annotations and types, changing nothing
+#:   make format                what lint finds, mended where it can be
+#:   make docs                  the documentation in results/docs; warnings and broken links are errors
+#:   make rule-graph            the picture of the rules, docs/chain.svg
+#:   make keep                  before a change: keeps the results of smoke and paper, or of STUDY
+#:   make same                  after it: what differs from those, bit for bit; AGAINST=folder, RENAMED=file
+#:   make schema                schemas for editors and the tables of keys, from the classes of keys
+#:   make lock                  new pins for every package
+#:   make clean                 results and Snakemake's records are removed
 
 STUDY  ?= config/paper.yaml
 CORES  ?= all
@@ -49,16 +41,19 @@ export STUDY SCANS FILE LIKE
 # Looks at the study and the results first, then runs Snakemake, and ends it when told to end.
 # Where it fails it ends make too, quietly, as QUIETLY does below.
 RUN = exec env FRACTALCONTACT_MAKE=$$PPID $(if $(filter yes y true 1,$(DROP)),FRACTALCONTACT_DROP=yes) $(BIN)/python workflow/run.py "$$STUDY" \
-  $(if $(filter yes y true 1,$(VERBOSE)),--verbose)
+  $(if $(filter yes y true 1,$(VERBOSE)),--verbose) $(if $(EXECUTOR),--executor $(EXECUTOR))
 OPTIONS = -- --cores $(CORES)
 # Below the sentence of a check that refuses, make would add "*** Error 1". Only where a signal ends it
 # does it say nothing; and of that of a closed pipe no shell says anything.
 QUIETLY = || { kill -s PIPE $$PPID; exit 1; }
 
-.PHONY: new describe all study campaign report smoke size-effect-small keep-going slurm dry-run verify faults check-scans check-accuracy calibration keep same cost accuracy test test-all test-processors examples test-browser test-slurm test-slurm-accounting docs bench bench-flow problems grid-table extremes fuzz fuzz-dialects schema lint format lock clean
+.PHONY: help all study new check-scans describe dry-run keep-going smoke slurm report verify test test-all test-processors test-slurm test-slurm-accounting test-browser examples faults lint format docs schema rule-graph keep same lock clean
 # Two runs in one checkout would refuse each other.
 .NOTPARALLEL:
 all: study
+
+help:
+	@sed -n 's/^#: \{0,1\}//p' Makefile benchmarks/Makefile
 
 smoke: override STUDY = config/smoke.yaml
 study smoke: $(VENV)/installed
@@ -80,13 +75,6 @@ slurm: $(VENV)/slurm-installed
 verify: $(VENV)/installed
 	@$(BIN)/python -m fractalcontact.commands.verify "$$STUDY" $(QUIETLY)
 
-# The experiment on the size effect in minutes, and its page in results/size_effect_small.
-size-effect-small: override STUDY = config/size_effect_small.yaml
-size-effect-small: $(VENV)/installed
-	@$(RUN) $(OPTIONS) $(TARGET)
-	@$(BIN)/python -m contactlab.commands.size_effect_page \
-	  results/size_effect_small/atlas.nc results/size_effect_small/size_effect.md
-
 # SCANS=folder for another one than the study's.
 check-scans: $(VENV)/installed
 	@$(BIN)/python -m fractalcontact.commands.check_scans $${SCANS:+"$$SCANS"} --study "$$STUDY" $(QUIETLY)
@@ -100,16 +88,6 @@ describe: $(VENV)/installed
 	@$(BIN)/python -m fractalcontact.commands.describe $${SCANS:+"$$SCANS"} $${FILE:+--file "$$FILE"} \
 	  $${LIKE:+--like "$$LIKE"} --study "$$STUDY" $(QUIETLY)
 
-# Times are compared: let nothing else run meanwhile.
-accuracy: STUDY := $(if $(filter file,$(origin STUDY)),config/accuracy.yaml,$(STUDY))
-accuracy: $(VENV)/installed $(if $(PEERS),$(VENV)/peers-installed)
-	@$(RUN) $(OPTIONS) $(TARGET)
-
-# The study, then all of it at full cost beside it (results/NAME_full), then the two compared.
-check-accuracy: study
-	@$(RUN) --full $(OPTIONS) -- atlas
-	@$(BIN)/python benchmarks/check_accuracy.py "$$STUDY"
-
 COMPARED = $(if $(filter file,$(origin STUDY)),config/smoke.yaml config/paper.yaml,"$$STUDY")
 MAKE_COMPARED = @for study in $(COMPARED); do $(MAKE) --no-print-directory study STUDY="$$study" || exit; done
 export AGAINST RENAMED
@@ -121,13 +99,6 @@ same:
 	$(MAKE_COMPARED)
 	@$(BIN)/python benchmarks/same.py compare $(COMPARED) \
 	  $${AGAINST:+--against "$$AGAINST"} $${RENAMED:+--renamed "$$RENAMED"}
-
-calibration: $(VENV)/installed
-	@$(BIN)/python benchmarks/calibration.py --output results/calibration.csv
-	@$(BIN)/python benchmarks/calibration_sampling.py --output results/calibration_sampling.csv
-
-cost: study
-	@$(BIN)/python benchmarks/study_cost.py "$$STUDY"
 
 # A process for each core, which shares costly fixtures file by file. Threads of BLAS in all of them
 # would only wait for each other. Bytecode of the tests is kept, whatever the environment says.
@@ -158,6 +129,11 @@ docs: $(VENV)/docs-installed
 HAVE_DAEMON = command -v $(1) >/dev/null || { [ "$$(id -u)" = 0 ] && command -v apt-get >/dev/null && \
   DEBIAN_FRONTEND=noninteractive apt-get install --yes --quiet=2 --no-install-recommends $(2) >/dev/null; } || true
 
+# Of the small study, which has all rules of the chain: "dot" is of Debian's graphviz.
+rule-graph: $(VENV)/installed
+	@$(call HAVE_DAEMON,dot,graphviz)
+	@$(BIN)/python -m snakemake --configfile config/smoke.yaml --rulegraph dot -- pages 2>/dev/null | dot -Tsvg > docs/chain.svg
+
 test-slurm: $(VENV)/tests-installed $(VENV)/slurm-installed
 	@$(call HAVE_DAEMON,slurmctld,slurm-wlm munge)
 	SLURM=yes $(BIN)/python -m pytest -q tests/workflow/test_slurm.py
@@ -166,39 +142,6 @@ test-slurm-accounting: $(VENV)/tests-installed $(VENV)/slurm-installed
 	@$(call HAVE_DAEMON,slurmctld,slurm-wlm munge)
 	@$(call HAVE_DAEMON,slurmdbd,slurmdbd mariadb-server)
 	SLURM=accounting $(BIN)/python -m pytest -q -s tests/workflow/test_slurm.py
-
-# Tables go to results/benchmarks. make bench BENCH=--quick, or --help, for other measurements.
-bench: $(VENV)/installed $(if $(PEERS),$(VENV)/peers-installed)
-	$(BIN)/python benchmarks/beside_peers.py $(BENCH)
-
-# The flow solvers that are installed; with PEERS=1 also CHOLMOD and reynoldsflow. FLOW='--sizes 512', or --help.
-bench-flow: $(VENV)/installed $(if $(PEERS),$(VENV)/peers-installed)
-	$(BIN)/python benchmarks/flow.py $(FLOW)
-
-# CAMPAIGN=--measure: what the workflow takes for that many (after SPECIMENS=6 CAMPAIGN=--run).
-SPECIMENS ?= 100
-campaign: $(VENV)/installed
-	$(BIN)/python benchmarks/campaign.py $(SPECIMENS) $(CAMPAIGN)
-
-# Into docs/grid_table.csv and docs/verification.md; GRID_SPECIMENS=granite: of a scan of the study.
-grid-table: $(VENV)/installed
-	$(BIN)/python benchmarks/grid_table.py --study "$$STUDY" $(if $(GRID_SPECIMENS),--specimens $(GRID_SPECIMENS))
-
-extremes: $(VENV)/tests-installed
-	EXTREMES=all $(PYTEST) tests/figures/test_extremes.py
-
-PROBLEMS ?= 3000
-problems: $(VENV)/tests-installed
-	PROBLEMS=$(PROBLEMS) $(BIN)/python -m pytest -q tests/contactlab/accuracy/test_random_problems.py -k every_state
-
-# What failed is kept in results/fuzzing; FUZZ='--only 1234' judges one file again.
-FILES ?= 5000
-fuzz: $(VENV)/tests-installed
-	$(BIN)/python tests/support/fuzzing.py --files $(FILES) $(FUZZ)
-
-# What failed is kept in results/dialects.
-fuzz-dialects: $(VENV)/tests-installed
-	$(BIN)/python tests/support/dialect_fuzzing.py --files $(FILES) $(FUZZ)
 
 # Schemas for editors and tables of keys, from the classes of keys.
 schema: $(VENV)/installed
@@ -272,3 +215,5 @@ faults: $(VENV)/tests-installed $(if $(findstring --slurm,$(FAULTS)),$(VENV)/slu
 
 clean:
 	rm -rf results .snakemake .snakemake.guard
+
+include benchmarks/Makefile

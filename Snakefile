@@ -28,7 +28,6 @@ remake_without_record()
 
 
 onstart:
-    without_rate_limit()
     begin()
 
 

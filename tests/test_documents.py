@@ -85,16 +85,31 @@ def test_the_readme_states_the_material_that_scans_get():
     assert study["defaults"]["opposite"] == "match"
 
 
+MAKEFILES = [ROOT / "Makefile", ROOT / "benchmarks/Makefile"]
+TARGETS = {
+    target
+    for path in MAKEFILES
+    for line in re.findall(r"(?m)^\.PHONY: (.+)$", path.read_text(encoding="utf-8"))
+    for target in line.split()
+}
+
+
+def test_help_has_a_line_for_every_target():
+    lines = [
+        line
+        for path in MAKEFILES
+        for line in re.findall(r"(?m)^#: +make +([a-z-]+) ", path.read_text(encoding="utf-8"))
+    ]
+    assert sorted(lines) == sorted(TARGETS - {"help", "study", "moved"})
+
+
 @pytest.mark.parametrize("path", DOCUMENTS, ids=lambda path: str(path.relative_to(ROOT)))
 def test_commands_files_and_links_of_a_document_exist(path):
     text = path.read_text(encoding="utf-8")
-    phony = re.search(
-        r"^\.PHONY: (.+)$", (ROOT / "Makefile").read_text(encoding="utf-8"), re.MULTILINE
-    )
     # After `make` and settings such as NAME=value: at the start of code or of an indented line.
     call = r"(?:`|^ {4}(?:\w+=\w+ )*)make(?: [A-Z]+=[^\s`]+)* ([a-z-]+)"
     targets = re.findall(call, text, re.MULTILINE)
-    assert set(targets) - set(phony[1].split()) == set()
+    assert set(targets) <= TARGETS
 
     files = re.findall(r"`((?:[a-z_.]+/)+[a-z_0-9.-]+\.(?:py|md|yaml|smk|yml))`", text)
     files += [link for link in re.findall(r"\]\(([^)#]+)", text) if "://" not in link]

@@ -7,13 +7,12 @@ import numpy as np
 import pytest
 import xarray as xr
 from code_blocks import run_code
+from stage_names import STAGES
 
 from contactlab.methods.registry import METHODS
 from fractalcontact import HalfSpace
 from fractalcontact.core.fitting import fit_line
-from fractalcontact.core.stage import SPECIMEN, Stage
 from fractalcontact.scan.options import ScanOptions
-from fractalcontact.study.stages import STAGES
 from fractalcontact.surface.synthesis import self_affine
 
 
@@ -53,10 +52,7 @@ def test_the_scan_format_reads_what_its_writer_writes(tmp_path):
 
 
 def test_the_stage_counts_summits():
-    names = {"Stage": Stage, "SPECIMEN": SPECIMEN}
-    module = run_code(
-        "docs/extending_stages.md", "A stage", package="fractalcontact.mechanics", **names
-    )
+    module = run_code("docs/extending_stages.md", "A stage", package="fractalcontact.mechanics")
     y, x = np.meshgrid(*[np.linspace(0, 1, 41)] * 2, indexing="ij")
 
     def hills(*tops):

@@ -27,7 +27,7 @@ FLOORS = (
     ("commands",),
     ("contactlab.methods",),
     ("contactlab.accuracy", "contactlab.experiments"),
-    ("contactlab.figures", "contactlab.commands", "contactlab"),
+    ("contactlab.figures", "contactlab.commands"),
 )
 FLOOR = {room: floor for floor, rooms in enumerate(FLOORS) for room in rooms}
 PACKAGES = ("roughcontact", "fractalcontact", "contactlab")

@@ -22,11 +22,8 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[1]
 # The code of this checkout, wherever its environment was installed from: it may have been moved.
 sys.path.insert(0, str(ROOT / "src"))
-sys.path.append(str(ROOT / "workflow/scripts"))
-import _running
-import warm
-from _warm import ADDRESS
-from cluster import left_in_queue
+from engine import running
+from engine.cluster import left_in_queue
 
 from fractalcontact.core import checksums
 from fractalcontact.core.atomic import sweep
@@ -77,6 +74,9 @@ def _options():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("study", type=Path)
     parser.add_argument("--profile", default="default", help="of workflow/profiles")
+    # Only Linux surely forks what libraries have loaded.
+    forks = "fractalcontact" if sys.platform == "linux" else "local"
+    parser.add_argument("--executor", default=forks, help="or local, that of Snakemake")
     parser.add_argument("--full", action="store_true", help="at full cost, beside the study")
     parser.add_argument("--dry-run", action="store_true", help="say what would be done")
     parser.add_argument("--verbose", action="store_true", help="all that Snakemake says")
@@ -90,6 +90,7 @@ def _command(options, name):
         *(sys.executable, "-m", "snakemake", "--configfile", str(options.study)),
         *("--workflow-profile", f"workflow/profiles/{options.profile}"),
         *(() if options.verbose else ("--logger", "fractalcontact")),
+        *(("--executor", options.executor) if options.profile == "default" else ()),
         *(("--config", f"study={name}_full", "accuracy=full") if options.full else ()),
         *(("--dry-run",) if options.dry_run else ()),
     ]
@@ -129,7 +130,7 @@ def _require_room(results):
 
 def _clean(options, results):
     """Take away what a killed run left, where nothing is at work; set aside what is damaged."""
-    guard, has_locks = _running.alone(WAIT)
+    guard, has_locks = running.alone(WAIT)
     if guard is None:
         raise InputError(
             "another run is at work in this folder (or jobs that a killed one left, which end "
@@ -149,7 +150,7 @@ def _clean(options, results):
             _say(f"{path}: {why}; moved to {aside}, and made again if needed")
     else:
         _say("this file system knows no locks: what a killed run may have left stays")
-    _running.share(guard)
+    running.share(guard)
 
 
 def _spoilt(results):
@@ -163,30 +164,27 @@ def _spoilt(results):
 
 def _run(command, options, results):
     """Exit code of Snakemake, whose whole family of processes ends with this one."""
-    path = [str(ROOT / name) for name in ("src", "workflow", "workflow/logger", "workflow/scripts")]
+    # Where Snakemake finds its plugins, and those the modules beside them.
+    path = [str(ROOT / name) for name in ("src", "workflow", "workflow/engine")]
     path += filter(None, [os.environ.get("PYTHONPATH")])
     told = {"PYTHONPATH": os.pathsep.join(path), "FRACTALCONTACT_RESULTS": str(results)}
     cluster, child = options.profile != "default", None
-    with contextlib.ExitStack() as warmth:
-        try:
-            _answer_signals(_stop)
-            # Jobs of a cluster run elsewhere; only Linux surely forks what libraries have loaded.
-            if not cluster and sys.platform == "linux" and not options.dry_run:
-                told[ADDRESS] = warmth.enter_context(warm.started())
-            child = subprocess.Popen(
-                command, env=os.environ | told, stderr=subprocess.PIPE, start_new_session=True
-            )
-            for line in child.stderr:
-                if options.verbose or not line.startswith(b"Using workflow specific profile"):
-                    sys.stderr.buffer.write(line)
-                    sys.stderr.flush()
-            status = child.wait()
-        except _Stopped as stopped:
-            _answer_signals(signal.SIG_IGN)
-            _say("interrupted: jobs end, and 'make' goes on from there")
-            if child is not None:
-                _end(child, cluster=cluster)
-            sys.exit(128 + stopped.args[0])
+    try:
+        _answer_signals(_stop)
+        child = subprocess.Popen(
+            command, env=os.environ | told, stderr=subprocess.PIPE, start_new_session=True
+        )
+        for line in child.stderr:
+            if options.verbose or not line.startswith(b"Using workflow specific profile"):
+                sys.stderr.buffer.write(line)
+                sys.stderr.flush()
+        status = child.wait()
+    except _Stopped as stopped:
+        _answer_signals(signal.SIG_IGN)
+        _say("interrupted: jobs end, and 'make' goes on from there")
+        if child is not None:
+            _end(child, cluster=cluster)
+        sys.exit(128 + stopped.args[0])
     _answer_signals(signal.SIG_DFL)
     return status if status >= 0 else 128 - status
 

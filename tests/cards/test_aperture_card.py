@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 from made_stages import scan, stages_of
 from page_study import STUDY
+from stage_names import STAGES
 
 from fractalcontact.cards.write import read_card, write_cards
 from fractalcontact.core.window import window_slices
 from fractalcontact.stages.atlas import join_stages
 from fractalcontact.study.configuration import resolve_settings, solver_settings
 from fractalcontact.study.figure_list import figures_of
-from fractalcontact.study.stages import STAGES
 from fractalcontact.surface.synthesis import self_affine
 
 OPENING = 0.3 + self_affine((48, 48), 0.1, 0.8, rms=0.1, seed=4, roll_off=1.5)

@@ -7,6 +7,7 @@ import pytest
 from made_stages import scan, stages_of
 from made_tests import with_tests
 from materials import ROCK
+from stage_names import EXPERIMENTS, STAGES
 
 from contactlab.experiments.area_slope import area_slope
 from contactlab.experiments.delta_g import estimator_bias
@@ -15,11 +16,9 @@ from contactlab.experiments.size_effect_test import size_effect_test
 from contactlab.experiments.size_states import solve_task
 from contactlab.experiments.size_strength import size_strength
 from contactlab.experiments.size_tasks import size_tasks
-from fractalcontact.core.stage import EXPERIMENT
 from fractalcontact.stages.atlas import join_stages
 from fractalcontact.study.atlas import read_atlas
 from fractalcontact.study.configuration import resolve_settings, solver_settings
-from fractalcontact.study.stages import STAGES
 from fractalcontact.surface.synthesis import self_affine
 
 SPACING = 0.1  # mm
@@ -147,7 +146,7 @@ def _experiments():
         ),
         "size_strength": size_strength(SIZE_STRENGTH, 1e-4),
     }
-    assert computed.keys() <= {name for name, s in STAGES.items() if s.grain == EXPERIMENT}
+    assert computed.keys() <= set(EXPERIMENTS)
     return computed
 
 

@@ -7,14 +7,12 @@ import pytest
 import xarray as xr
 from cases import representative
 from markup import MARKUP
+from stage_names import EXPERIMENTS, STAGES
 
-from fractalcontact.core.stage import EXPERIMENT
 from fractalcontact.figures.draw import drawer_of
 from fractalcontact.figures.kit.drawing import print_style
 from fractalcontact.figures.kit.verdicts import CIRCULAR, claim
-from fractalcontact.study.atlas import STAGES
 from fractalcontact.study.figure_list import all_figures, figures_of, study_figures_of
-from fractalcontact.study.stages import paths_of
 
 #: A caption has fewer words than this; signs such as = and % are none.
 MAX_WORDS = 70
@@ -24,9 +22,7 @@ SPECIMENS = [
     for name, opposite in SUBJECTS.items()
     for figure in figures_of(opposite)
 ]
-STUDY = [
-    (figure, list(SUBJECTS)) for figure in study_figures_of([*paths_of(EXPERIMENT), "comparison"])
-]
+STUDY = [(figure, list(SUBJECTS)) for figure in study_figures_of([*EXPERIMENTS, "comparison"])]
 #: Half of the captions of a study have fewer words than this.
 MEDIAN_WORDS = 50
 #: Words of a verdict on the paper, which only the tables of statements have.
@@ -68,7 +64,7 @@ def caption_of(marked):
         key = figure, str(subject)
         if key not in known:
             needed = marked.copy()
-            for stage in STAGES.keys() - set(all_figures()[figure].needs):
+            for stage in set(STAGES) - set(all_figures()[figure].needs):
                 if stage in needed.children:
                     del needed[stage]
             with print_style():

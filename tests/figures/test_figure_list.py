@@ -4,18 +4,16 @@ import subprocess
 import sys
 
 import pytest
+from stage_names import EXPERIMENTS, STAGES
 
-from fractalcontact.core.stage import EXPERIMENT
 from fractalcontact.figures.draw import drawer_of
 from fractalcontact.study import figure_list
-from fractalcontact.study.atlas import STAGES
 from fractalcontact.study.figure_list import (
     all_figures,
     figures_of,
     read_figure,
     study_figures_of,
 )
-from fractalcontact.study.stages import paths_of
 
 STATED = """
 TITLE = (
@@ -61,7 +59,7 @@ def test_what_is_missing_or_wrong_is_named(tmp_path, old, new, words):
 
 def test_every_figure_needs_stages_that_there_are_and_can_be_drawn():
     figures = all_figures()
-    assert {stage for figure in figures.values() for stage in figure.needs} <= STAGES.keys()
+    assert {stage for figure in figures.values() for stage in figure.needs} <= set(STAGES)
     assert all(callable(drawer_of(name)) for name in figures)
     assert len({figure.title for figure in figures.values()}) == len(figures)
     with pytest.raises(KeyError):
@@ -73,7 +71,7 @@ def test_every_figure_is_of_some_subject_and_every_experiment_has_one():
     drawn = [*figures_of("match"), *study_figures_of(keys)]
     assert sorted(drawn) == sorted(all_figures())
     assert set(figures_of("flat")) < set(figures_of("match"))
-    assert all(study_figures_of([experiment]) for experiment in paths_of(EXPERIMENT))
+    assert all(study_figures_of([experiment]) for experiment in EXPERIMENTS)
     assert study_figures_of([]) == []
 
 

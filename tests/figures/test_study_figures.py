@@ -3,15 +3,14 @@
 import numpy as np
 import pandas as pd
 from PIL import Image
+from stage_names import EXPERIMENTS
 
-from fractalcontact.core.stage import EXPERIMENT
 from fractalcontact.figures.draw import draw_study_figures
 from fractalcontact.study.figure_list import study_figures_of
-from fractalcontact.study.stages import paths_of
 
 
 def test_figures_of_a_study(atlas_file, atlas, tmp_path):
-    names = study_figures_of(paths_of(EXPERIMENT))
+    names = study_figures_of(EXPERIMENTS)
     assert names == [
         "three_exponents",
         "size_effect",

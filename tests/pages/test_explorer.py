@@ -10,13 +10,13 @@ import numpy as np
 import pytest
 import xarray as xr
 from made_stages import scan, stages_of
+from stage_names import STAGES
 
 from fractalcontact.mechanics.overlap import overlapping_nodes, suspect_nodes
 from fractalcontact.pages.explorer import write_explorer
 from fractalcontact.pages.packed_states import GAP_STEPS, ORDER, packed, packed_states
 from fractalcontact.study.atlas import read_atlas, write_atlas
 from fractalcontact.study.configuration import resolve_settings, solver_settings
-from fractalcontact.study.stages import STAGES
 from fractalcontact.surface.synthesis import self_affine
 
 HOSTILE = "</script><script>alert(1)</script>"

@@ -9,13 +9,13 @@ import pytest
 import xarray as xr
 from made_stages import stages_of
 from materials import ROCK
+from stage_names import OF_SPECIMENS
 from symmetries import LENGTH, STRESS, differences, exchanged, grown, with_axes_exchanged
 
 from fractalcontact.mechanics.states import SOLVER_ERROR
 from fractalcontact.stages.report import OF_STRENGTH
 from fractalcontact.stages.strength import strength_stages
 from fractalcontact.study.configuration import resolve_settings, solver_settings
-from fractalcontact.study.stages import STAGES
 from fractalcontact.surface.synthesis import self_affine
 
 SPACING, WINDOW = (0.15, 0.1), (6.0, 4.8)  # (y, x), mm
@@ -23,7 +23,7 @@ OFFSETS, LOADS = (0.0, 0.3, 0.9), (2.0, 10.0, 30.0, 90.0)  # mm, MPa
 SOLVER = replace(solver_settings({}, "tiny"), rtol=1e-8)
 #: Relative change of the last digits of heights.
 ROUNDING = 1e-14
-MADE_OF_SPECIMEN = [name for name, stage in STAGES.items() if stage.grain in ("specimen", "joint")]
+MADE_OF_SPECIMEN = list(OF_SPECIMENS)
 
 #: What is stated at an absolute length or force: Tse and Cruden's JRC takes its steps in mm, and
 #: Barton's strength follows it; a spectrum at a wave of 1 mm; an area at 1 N; a conductance at

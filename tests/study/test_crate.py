@@ -5,9 +5,10 @@ from pathlib import Path
 from urllib.parse import quote, unquote
 
 import pytest
+import xarray as xr
 from places import ROOT
 
-from fractalcontact.core import checksums
+from fractalcontact.core import checksums, netcdf
 from fractalcontact.study.crate import FILE, Workflow, write_crate
 
 WORKFLOW = Workflow(
@@ -39,6 +40,7 @@ def results(tmp_path):
         path = folder / name
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(name)
+    netcdf.write(xr.Dataset(attrs={"title": "levelled faces"}), folder / "specimens/Stein 50%.nc")
     checksums.record(folder, [folder / name for name in FILES])
     return folder
 
@@ -103,6 +105,7 @@ def test_every_result_has_its_checksum_and_says_what_it_is(graph, results):
         entity = graph[quote(name)]
         assert entity["sha256"] == checksums.sha256(results / name)
         assert entity["description"] not in ("", name)
+    assert graph["specimens/Stein%2050%25.nc"]["description"] == "levelled faces, Stein 50%"
     quality = graph["figures/Stein%2050%25/quality.csv"]["description"]
     assert quality.startswith("numbers of the figure: ")
     assert quality.endswith(", Stein 50%")

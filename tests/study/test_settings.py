@@ -1,41 +1,54 @@
 """What a stage reads of the settings: what its function's annotations name, and nothing else."""
 
-import importlib
+import re
 from dataclasses import asdict, fields, replace
 from typing import get_type_hints
 
 import pytest
 from made_settings import made_settings
+from made_stages import given, is_section
+from places import ROOT
 
 from fractalcontact.core import settings
-from fractalcontact.core.stage import STUDY
+from fractalcontact.ensemble.realisations import ensemble
+from fractalcontact.measured.stage import measured_stage
+from fractalcontact.mechanics.sweep import joint_states
+from fractalcontact.stages.flow import flow_stages
+from fractalcontact.stages.report import report_stages
+from fractalcontact.stages.specimen import stages_of_scan
+from fractalcontact.stages.states import state_stages
+from fractalcontact.stages.windows import window_stages
 from fractalcontact.study.configuration import solver_settings
-from fractalcontact.study.stages import CONTACT, STAGES, read_by, sections_of
 
 SOLVER = solver_settings({}, "study")
-SPECIMEN, STATES, FLOW, WINDOWS, REPORT, ENSEMBLE, TESTS = (
-    STAGES[name].function
-    for name in ("joints", "closure", "flow", "size_test", "strength", "ensemble", "measured")
+SPECIMEN, CONTACT, STATES, FLOW, WINDOWS, REPORT, ENSEMBLE, TESTS = JOBS = (
+    *(stages_of_scan, joint_states, state_stages, flow_stages, window_stages, report_stages),
+    *(ensemble, measured_stage),
 )
-JOBS = (SPECIMEN, CONTACT, STATES, FLOW, WINDOWS, REPORT, ENSEMBLE, TESTS)
+#: Rules by what their scripts call.
+RULES = {
+    SPECIMEN: "roughness_and_composite",
+    CONTACT: "contact",
+    STATES: "closure_and_box_counts",
+    FLOW: "flow",
+    WINDOWS: "windows",
+    REPORT: "strength",
+    ENSEMBLE: "ensemble",
+    TESTS: "measured",
+}
 
 
-def taken_by(function):
-    """Parameters of a function that are settings, as Python itself has them."""
-    module, _, name = function.partition(":")
-    made = getattr(importlib.import_module(module), name)
-    return {key: of for key, of in get_type_hints(made).items() if of in vars(settings).values()}
-
-
-@pytest.mark.parametrize(
-    "function", sorted({CONTACT, *(s.function for s in STAGES.values() if s.grain != STUDY)})
-)
-def test_what_a_function_takes_is_known_without_importing_it(function):
-    taken = {
-        key: of for key, of in taken_by(function).items() if hasattr(of, "__dataclass_fields__")
-    }
-    assert sections_of(function) == taken
-    assert bool(taken) == (function in JOBS)
+@pytest.mark.parametrize("function", JOBS, ids=lambda function: function.__name__)
+def test_a_rule_states_the_settings_that_the_function_of_its_script_takes(function):
+    """And no others: a change of one makes nothing again that does not read it."""
+    rules = "".join(path.read_text() for path in ROOT.glob("workflow/rules/*.smk"))
+    rule = rules.partition(f"\nrule {RULES[function]}:\n")[2].partition("\n    script:")[0]
+    script = (ROOT / f"workflow/scripts/{RULES[function]}.py").read_text()
+    taken = {of.__name__ for of in get_type_hints(function).values() if is_section(of)}
+    named = set(re.findall(r"stated\(settings\.(\w+)\)", rule))
+    assert taken == named | ({"Solver"} if "solver=SOLVER" in rule else set())
+    assert set(re.findall(r"read\((\w+), given", script)) == named
+    assert f"{function.__name__}(" in script
 
 
 def test_a_section_holds_what_its_class_names_and_no_more():
@@ -68,12 +81,12 @@ def _material(**stated):
         ({"surface_range": (0.2, 1.0)}, (SPECIMEN, REPORT, ENSEMBLE)),
         ({"outliers": "mask"}, (SPECIMEN, ENSEMBLE)),
     ],
-    ids=str,
+    ids=lambda one: ", ".join(f.__name__ for f in one) if isinstance(one, tuple) else str(one),
 )
 def test_only_what_reads_a_setting_is_made_again_for_it(change, again):
     before = made_settings()
     after = replace(before, **change)
     assert before != after
     for function in JOBS:
-        same = repr(read_by(function, before, SOLVER)) == repr(read_by(function, after, SOLVER))
+        same = repr(given(function, before, SOLVER)) == repr(given(function, after, SOLVER))
         assert same == (function not in again), function

@@ -43,8 +43,12 @@ NOT_RUN = {
     ): "a caption: tests/figures/test_atlas_examples.py",
     (
         "docs/extending_stages.md",
-        '"summits": StageJob(',
-    ): "a row of a rule file: run in tests/workflow/test_added_stage.py",
+        '"""Summits of the composite topographies of a specimen',
+    ): "a script: run in tests/workflow/test_added_stage.py",
+    (
+        "docs/extending_stages.md",
+        "rule summits:",
+    ): "a rule: run in tests/workflow/test_added_stage.py",
     (
         "docs/flow.md",
         "python -m fractalcontact.commands.export_aperture",
@@ -66,6 +70,11 @@ NOT_RUN = {
     ("docs/laboratory.md", "# scans/granite.yaml"): "read in tests/study/test_measured.py",
     ("docs/verification.md", "make grid-table"): BY_CI,
     ("docs/solver.md", "p, u, w <- a start"): "pseudo-code",
+    (
+        "docs/workflow.md",
+        ".venv/bin/python -m snakemake --cores 2",
+    ): "options on another study: tests/workflow/test_snakemake_user.py",
+    ("docs/workflow.md", "module fractalcontact:"): "tests/workflow/test_snakemake_user.py",
     (
         "docs/solver_parts.md",
         "python benchmarks/solver_gains.py",

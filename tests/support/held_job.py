@@ -1,6 +1,6 @@
-"""What every interpreter of a study does first whose jobs are to be caught in mid-work.
+"""What every job of a study does first whose jobs are to be caught in mid-work.
 
-held_faults.py writes it above workflow/scripts/sitecustomize.py.
+held_faults.py writes it beside workflow/engine/job.py, which then calls it.
 
 A job whose rule has an order in the folder HELD_JOBS stands still for as long as the order says
 "hold"; "memory 2000" makes it take 2000 MB more than it needs, and go on. The rule of a job is the
@@ -8,7 +8,6 @@ folder of its log, which Snakemake writes into its script.
 """
 
 import os
-import sys
 import time
 from pathlib import Path
 
@@ -29,10 +28,10 @@ def _obey(order):
 
 
 _ballast = []
-if "HELD_JOBS" in os.environ:
-    for _word in sys.orig_argv:
-        if "/.snakemake/scripts/" in _word:
-            _script = Path(_word).read_text(encoding="utf-8")
-            for _order in Path(os.environ["HELD_JOBS"]).iterdir():
-                if not _order.suffix and f"/logs/{_order.name}/" in _script:
-                    _obey(_order)
+
+
+def hold(log):
+    """Obey the order of the rule that has this log, if there is one."""
+    for order in Path(os.environ["HELD_JOBS"]).iterdir() if "HELD_JOBS" in os.environ else ():
+        if not order.suffix and f"/logs/{order.name}/" in log:
+            _obey(order)

@@ -1,16 +1,18 @@
 """Stages of a specimen by the functions that the jobs of a study call, without Snakemake."""
 
+from dataclasses import asdict, is_dataclass
+from typing import get_type_hints
+
 import numpy as np
 import xarray as xr
 
-from fractalcontact.core.settings import arguments
+from fractalcontact.core import settings as sections
 from fractalcontact.mechanics.sweep import joint_states
 from fractalcontact.stages.flow import flow_stages
 from fractalcontact.stages.report import report_stages
 from fractalcontact.stages.specimen import specimen_stages
 from fractalcontact.stages.states import state_stages
 from fractalcontact.stages.windows import window_stages
-from fractalcontact.study.stages import CONTACT, STAGES, read_by
 from fractalcontact.surface.specimen import make_specimen, window_arguments
 
 
@@ -21,12 +23,20 @@ def scan(heights, spacing):
     return xr.DataArray(heights, dims=("y", "x"), coords=coordinates, attrs=attrs)
 
 
-#: Functions that make the stages after those of the specimen itself, by their first stage.
+_OF_JOINT = ("specimens", "surface_dimension", "joints")
+#: Functions that make the stages after those of the specimen itself, by their first stage, and the
+#: stages that each takes, as the rules of the workflow have them.
 LATER = {
-    "window_states": window_stages,
-    "closure": state_stages,
-    "flow": flow_stages,
-    "windows": report_stages,
+    "window_states": (window_stages, ("specimens", "joints")),
+    "closure": (state_stages, _OF_JOINT),
+    "flow": (flow_stages, ("specimens", "joints", "closure", "branches", "error_budget")),
+    "windows": (
+        report_stages,
+        (
+            *(*_OF_JOINT, "window_states", "size_test", "closure", "dilatancy", "area", "domains"),
+            *("scaling", "domain_measures", "error_budget"),
+        ),
+    ),
 }
 
 
@@ -38,23 +48,30 @@ def stages_of(name, faces, settings, solver, later=tuple(LATER)):
 
 def stages_of_specimen(specimen, settings, solver, later=tuple(LATER)):
     """Stages of a specimen, all by default, as the jobs of a study compute them."""
-
-    def given(name, function):
-        """What a rule hands over: the settings that the function names alone."""
-        return arguments(function, read_by(name, settings, solver))
-
-    known = specimen_stages(specimen, **given(STAGES["specimens"].function, specimen_stages))
+    known = specimen_stages(specimen, **given(specimen_stages, settings, solver))
     states = joint_states(
         specimen,
         known["joints"],
         settings.contact_directions,
         slice(None),
         resolutions=settings.resolutions,
-        **given(CONTACT, joint_states),
+        **given(joint_states, settings, solver),
     )
     for stage in later:
-        before = {need: known[need] for need in STAGES[stage].needs}
+        function, needs = LATER[stage]
+        before = {need: known[need] for need in needs}
         parts = {"parts": [states]} if stage in ("closure", "flow") else {}
-        function = LATER[stage]
-        known |= function(**before, **parts, **given(STAGES[stage].function, function))
+        known |= function(**before, **parts, **given(function, settings, solver))
     return known
+
+
+def given(function, settings, solver):
+    """What a rule hands over to a function: the settings that its annotations name alone."""
+    stated = asdict(settings) | asdict(solver)
+    named = get_type_hints(function)
+    return {key: sections.read(of, stated) for key, of in named.items() if is_section(of)}
+
+
+def is_section(of):
+    """True for a class of `core.settings`."""
+    return is_dataclass(of) and of.__module__ == sections.__name__

@@ -4,11 +4,10 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+from made_stages import given
 
-from fractalcontact.core.settings import arguments
 from fractalcontact.measured.stage import measured_stage
 from fractalcontact.study.measured import resolve_tests
-from fractalcontact.study.stages import STAGES, read_by
 
 #: Measured over computed.
 PART = 0.9
@@ -64,8 +63,7 @@ def with_tests(stages, settings, solver, folder):
         Path(folder, f"{kind}.csv").write_text(text, encoding="utf-8")
         stated[kind] = stated[kind] | {"file": f"{kind}.csv"}
     settings = replace(settings, measured=resolve_tests(stated, "made: measured", Path(folder)))
-    function = STAGES["measured"].function
-    needed = (*STAGES["measured"].needs, "strength")
-    given = arguments(measured_stage, read_by(function, settings, solver))
-    found = measured_stage(**{name: stages[name] for name in needed}, **given)
+    needed = ("specimens", "joints", "closure", "dilatancy", "error_budget", "flow", "strength")
+    sections = given(measured_stage, settings, solver)
+    found = measured_stage(**{name: stages[name] for name in needed}, **sections)
     return settings, stages | found

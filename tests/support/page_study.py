@@ -6,6 +6,7 @@ from made_stages import scan, stages_of
 from made_tests import with_tests
 from materials import ROCK
 from spreadsheets import FORMULA
+from stage_names import STAGES
 
 from fractalcontact.core.subject import configuration_of
 from fractalcontact.pages.files import EXPLORER
@@ -14,7 +15,6 @@ from fractalcontact.stages.atlas import join_stages
 from fractalcontact.study.atlas_parts import Trees
 from fractalcontact.study.campaign import explored
 from fractalcontact.study.configuration import resolve_settings, solver_settings
-from fractalcontact.study.stages import STAGES
 from fractalcontact.surface.synthesis import self_affine
 
 HOSTILE = "</script><script>alert(1)</script><img src='https://x.example/a.png'> $\\alpha$ \"q\""

@@ -10,10 +10,8 @@ import numpy as np
 import pytest
 import yaml
 from places import ROOT
+from stage_names import EXPERIMENTS
 from stated import array_sidecar
-
-from fractalcontact.core.stage import EXPERIMENT
-from fractalcontact.study.stages import paths_of
 
 
 def copy_project(folder):
@@ -82,7 +80,7 @@ def small_study(project, **changes):
     """A study of scans alone, as fast as one can be."""
     study = yaml.safe_load((project / "config/smoke.yaml").read_text(encoding="utf-8"))
     study |= {"study": "test", "scans": "scans", "embedded": {}, "specimens": {}}
-    for experiment in paths_of(EXPERIMENT):
+    for experiment in EXPERIMENTS:
         study.pop(experiment, None)
     study["defaults"] |= {"window": "auto", "offsets": "auto", "loads": ["1 MPa", "10 MPa"]}
     study |= changes

@@ -10,20 +10,17 @@ pytestmark = [pytest.mark.workflow, pytest.mark.full]
 
 
 def test_the_stage_of_the_recipe_is_made(project):
-    entry, module, row = (
+    module, script, rule = (
         block.text for block in blocks("docs/extending_stages.md") if block.heading == "A stage"
     )
-    package = project / "src/fractalcontact"
-    table = package / "study/stages.py"
-    before = '    Stage("joints", '
-    text = table.read_text(encoding="utf-8")
+    (project / "src/fractalcontact/mechanics/summits.py").write_text(module, encoding="utf-8")
+    (project / "workflow/scripts/summits.py").write_text(script, encoding="utf-8")
+    with open(project / "workflow/rules/contact.smk", "a", encoding="utf-8") as rules:
+        rules.write(f"\n\n{rule}")
+    atlas = project / "workflow/rules/atlas.smk"
+    text, before = atlas.read_text(encoding="utf-8"), "    *rules.flow.output,\n"
     assert text.count(before) == 1
-    table.write_text(text.replace(before, f"    {entry.strip()}\n{before}"), encoding="utf-8")
-    (package / "mechanics/summits.py").write_text(module, encoding="utf-8")
-    rules = project / "workflow/rules/contact.smk"
-    jobs = rules.read_text(encoding="utf-8")
-    assert jobs.count("STAGE_JOBS = {") == 1
-    rules.write_text(jobs.replace("STAGE_JOBS = {", f"STAGE_JOBS = {{\n{row}"), encoding="utf-8")
+    atlas.write_text(text.replace(before, f"{before}    *rules.summits.output,\n"))
     study = small_study(project)
     write_scan(project, "rock")
     target = "results/test/summits/rock.nc"

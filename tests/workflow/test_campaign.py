@@ -13,8 +13,9 @@ __all__ = ["project"]  # a fixture
 pytestmark = pytest.mark.workflow
 #: Jobs of every specimen.
 OF_SPECIMEN = (
-    *("specimen", "contact", "windows", "analysis", "flow", "strength", "figures"),
-    "specimen_page",
+    *("roughness_and_composite", "contact", "windows", "closure_and_box_counts", "flow"),
+    *("strength", "figures"),
+    "card_and_page",
 )
 
 #: Jobs of the study.

@@ -12,8 +12,8 @@ from places import ROOT
 from projects import project  # noqa: F401
 
 sys.path.append(str(ROOT / "workflow"))
-import cluster
-from cluster import ended_by_cluster, left_in_queue
+from engine import cluster
+from engine.cluster import ended_by_cluster, left_in_queue
 
 from fractalcontact.core.errors import InputError
 
@@ -131,21 +131,19 @@ def test_run_beside_jobs_of_a_killed_one_is_refused(answers, project):  # noqa: 
 def test_every_rule_asks_for_more_at_a_second_attempt():
     files = [ROOT / "Snakefile", *sorted((ROOT / "workflow/rules").glob("*.smk"))]
     found = [
-        (path.name, line)
+        (path.name, amount)
         for path in files
-        for line in re.findall(r"^ +resources:\n +(.*)$", path.read_text(), re.MULTILINE)
+        for amount in re.findall(r"(?m)^        (?:mem_mb|runtime)=(.*),$", path.read_text())
     ]
-    assert len(found) > 10
+    assert len(found) > 50
     # All of these take the attempt.
-    doubling = ("**fixed(", "**asked_for(", "**(asked_for(", "mem_mb=doubled(")
-    jobs = (ROOT / "workflow/rules/contact.smk").read_text()
-    assert jobs.count(": StageJob(") == len(re.findall(r" (?:asked_for|fixed)\(", jobs))
-    doubling += ("**JOB.resources",)
-    assert not [f for f in found if not f[1].startswith(doubling)]
+    assert not [f for f in found if not f[1].startswith(("doubled(", "memory(", "minutes("))]
     shared = (ROOT / "workflow/rules/common.smk").read_text()
     exec(re.search(r"^def doubled.*?\n\n\n", shared, re.MULTILINE | re.DOTALL)[0], own := {})
-    asked = own["doubled"](lambda wildcards: 3)
-    assert [asked(None, attempt) for attempt in (1, 2, 3)] == [3, 6, 12]
+    for amount in (3, lambda wildcards: 3):
+        asked = own["doubled"](amount)
+        assert [asked(None, attempt) for attempt in (1, 2, 3)] == [3, 6, 12]
+    assert shared.count("    return doubled(lambda wc: resources.") == 2  # memory and minutes
 
 
 def test_why_the_cluster_ended_a_job_is_said_in_its_users_words():
@@ -164,8 +162,8 @@ def test_why_the_cluster_ended_a_job_is_said_in_its_users_words():
 SCRIPT = """
 import json, sys
 from types import SimpleNamespace
-sys.path[:0] = [{scripts!r}, {package!r}]
-from _job import job
+sys.path[:0] = [{workflow!r}, {package!r}]
+from engine.job import job
 from fractalcontact.core.errors import InputError, OutputError
 told = {{"resources": json.loads(sys.argv[1]), "config": {{"study": "test"}}}}
 snakemake = SimpleNamespace(log=["job.log"], input=[], output=[], **told)
@@ -185,7 +183,7 @@ with job(snakemake):
     ],
 )
 def test_further_attempt_repeats_an_error_that_it_would_find_again(tmp_path, error, attempt, works):
-    paths = {"scripts": str(ROOT / "workflow/scripts"), "package": str(ROOT / "src")}
+    paths = {"workflow": str(ROOT / "workflow"), "package": str(ROOT / "src")}
     command = [sys.executable, "-c", SCRIPT.format(error=error, **paths)]
     for number, expected in ((1, True), (attempt, works), (attempt, works)):
         # A run here has no such resource: that of workflow/profiles/slurm.

@@ -57,12 +57,12 @@ def test_the_report_begins_with_a_page_of_its_own():
     assert '{{ snakemake.config["study"] }}' in (ROOT / start).read_text()
 
 
-def test_snakemake_has_the_limit_of_jobs_a_second_that_a_local_run_takes_off():
-    from snakemake.scheduling.job_scheduler import JobScheduler
-
-    assert "scheduler.job_rate_limiter = None" in (ROOT / "workflow/rules/records.smk").read_text()
-    for method in (JobScheduler.schedule, JobScheduler.job_selector):
-        assert "job_rate_limiter" in method.__code__.co_names
+def test_nothing_assigns_to_a_name_of_snakemake():
+    """A new version could take no notice of that, or break, without a word."""
+    files = [*ROOT.glob("workflow/**/*.py"), *ROOT.glob("workflow/**/*.smk"), ROOT / "Snakefile"]
+    assigned = re.compile(r"(?m)^\s*(?:workflow|snakemake|_?[A-Z]\w*)(?:\.\w+)+ *=[^=]|setattr\(")
+    found = {path.name: assigned.findall(path.read_text()) for path in files}
+    assert {name: lines for name, lines in found.items() if lines} == {}
 
 
 def test_snakemake_reads_a_study_as_the_program_does(project):

@@ -9,7 +9,7 @@ from types import SimpleNamespace
 import pytest
 from places import ROOT
 
-sys.path += [str(ROOT / "workflow"), str(ROOT / "workflow/logger")]
+sys.path += [str(ROOT / "workflow"), str(ROOT / "workflow/engine")]
 import snakemake_logger_plugin_fractalcontact as terminal
 
 LONG = "x" * 220

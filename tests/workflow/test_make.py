@@ -23,7 +23,9 @@ esac
 @pytest.fixture
 def project(tmp_path):
     """A folder with the Makefile and a finished installation of nothing."""
-    shutil.copy(ROOT / "Makefile", tmp_path)
+    for name in ("Makefile", "benchmarks/Makefile"):
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        shutil.copy(ROOT / name, tmp_path / name)
     for name in ("requirements.lock", "pyproject.toml"):
         (tmp_path / name).touch()
     python = tmp_path / ".venv/bin/python"

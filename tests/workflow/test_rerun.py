@@ -12,16 +12,18 @@ import numpy as np
 import pytest
 import yaml
 from projects import ROOT, copy_project, jobs_of, made, rough_heights, run, small_study, write_scan
+from stage_names import OF_SPECIMENS
 from stated import array_sidecar
 
 from fractalcontact.core.checksums import sha256
-from fractalcontact.core.code_digest import Code
-from fractalcontact.core.stage import module_of
 from fractalcontact.study.atlas import read_atlas
-from fractalcontact.study.stages import STAGES, paths_of
+
+sys.path.append(str(ROOT / "workflow"))
+from engine.code_digest import Code
 
 pytestmark = pytest.mark.workflow
 STUDY = "config/test.yaml"
+RULE = "roughness_and_composite"
 ATLAS, FIGURE = "results/test/atlas.nc", "results/test/figures/rock/fig02_relief.png"
 
 
@@ -59,12 +61,11 @@ def append(project, name):
 def test_the_atlas_has_all_stages_of_the_table_and_a_second_run_nothing_to_do(project):
     atlas = read_atlas(project / ATLAS)
     assert set(atlas.children) == {
-        *paths_of("specimen", "joint"),
-        *("statements", "comparison", "elastic_model"),
+        *(name for name in OF_SPECIMENS if name != "strength"),
     }
     for name, group in atlas.children.items():
-        assert group.attrs["description"] == STAGES[name].title
-        assert list(group.children) == ([] if STAGES[name].grain == "joint" else ["rock"])
+        assert group.attrs["description"]
+        assert list(group.children) == ["rock"], name
     assert (project / "results/test/specimens.txt").read_text() == "rock\n"
     # Copied, with the words of the schema and the times of the scan changed.
     append(project, "config/schema/study.schema.json")
@@ -97,15 +98,15 @@ def test_code_counts_by_rooms_and_what_is_no_code_makes_nothing_again(project):
     append(project, "src/fractalcontact/figures/kit/__init__.py")
     assert set(planned(project, ATLAS, FIGURE)) == {"figures_against_plane"}
     for name in (
-        "workflow/scripts/_stages.py",  # beside the script of the atlas
-        "src/fractalcontact/stages/windows.py",  # the function that a generic script calls
-        "src/fractalcontact/study/stages.py",  # the table, in which another stage stands
+        "workflow/scripts/atlas.py",
+        "src/fractalcontact/stages/windows.py",  # the function that a script calls
+        "src/fractalcontact/study/campaign.py",  # which the rules alone read
         "src/fractalcontact/statements/judge.py",
     ):
         append(project, name)
     assert set(planned(project)) == {"windows", "size_laws_against_plane", "atlas"}
     append(project, "src/fractalcontact/mechanics/__init__.py")
-    assert {"specimen", "contact", "analysis"} <= set(planned(project))
+    assert {"roughness_and_composite", "contact", "closure_and_box_counts"} <= set(planned(project))
 
 
 def test_a_scan_replaced_by_an_older_file_is_read(project):
@@ -114,10 +115,10 @@ def test_a_scan_replaced_by_an_older_file_is_read(project):
     os.utime(project / "other.npy", (1_000_000_000, 1_000_000_000))
     os.replace(project / "other.npy", scan)
     jobs = planned(project)
-    assert jobs["specimen"] == jobs["contact"] == jobs["analysis"] == 1
+    assert jobs["roughness_and_composite"] == jobs["contact"] == jobs["closure_and_box_counts"] == 1
     said = made(project, STUDY, "--dry-run", targets=[ATLAS]).stdout.splitlines()
     reasons = {title: why for title, _, why in (line.strip().rpartition("  ") for line in said)}
-    (specimen,) = (title for title in reasons if title.startswith("rock: levelled scan"))
+    (specimen,) = (title for title in reasons if title.startswith("rock: levelled faces"))
     assert reasons[specimen] == "its scan changed"
 
 
@@ -126,7 +127,7 @@ def test_an_edited_sidecar_is_read_whatever_its_time(project):
     sidecar.write_text(array_sidecar(0.2))
     os.utime(sidecar, (1_000_000_000, 1_000_000_000))
     jobs = planned(project)
-    assert jobs["specimen"] == jobs["contact"] == jobs["analysis"] == 1
+    assert jobs["roughness_and_composite"] == jobs["contact"] == jobs["closure_and_box_counts"] == 1
 
 
 def test_a_missing_scan_and_a_damaged_file_stop_everything(project):
@@ -187,7 +188,7 @@ def change_label(project):
 
 #: A file of each kind: its rule, and what is changed of what that rule reads.
 KINDS = {
-    "results/test/specimens/rock.nc": ("specimen", change_scan),
+    "results/test/specimens/rock.nc": ("roughness_and_composite", change_scan),
     "results/test/contact/rock/0.0.0.nc": ("contact", change_loads),
     ATLAS: ("atlas", change_label),
     FIGURE: ("figures_against_plane", change_label),
@@ -234,7 +235,7 @@ def test_a_job_that_failed_with_a_new_scan_leaves_nothing_that_counts_as_made_of
     assert run(project, STUDY, ATLAS).returncode != 0
     checksums.unlink()
     (project / "kept").rename(checksums)
-    assert {"specimen", "contact", "atlas"} <= set(planned(project))
+    assert {"roughness_and_composite", "contact", "atlas"} <= set(planned(project))
 
 
 def test_results_stay_whole_for_their_readers_until_the_new_ones_replace_them(project):
@@ -283,28 +284,25 @@ def test_a_job_on_a_cluster_works_with_what_its_run_was_planned_with(project):
     write_scan(project, "new")
     (project / STUDY).write_text("study: another\nscans: nowhere\n")
     # As the executor of a cluster calls it.
-    words = ("--mode", "remote", "--force", "--nolock", "--allowed-rules", "specimen")
-    done = run(project, STUDY, *words, "--target-jobs", "specimen:specimen=rock")
+    words = ("--mode", "remote", "--force", "--nolock", "--allowed-rules", RULE)
+    done = run(project, STUDY, *words, "--target-jobs", f"{RULE}:specimen=rock")
     assert done.returncode == 0, done.stderr[-3000:]
     assert specimen.read_bytes() == before
 
 
-def _rooms_behind(*modules):
-    """Rooms of the package whose files count for a stage, and its own modules."""
-    names = (ROOT / "workflow/scripts/stage.py", *modules)
-    code = Code(ROOT / "src", ROOT)
-    files = {Path(path).relative_to(ROOT).parts for path in code.files_behind(*names)}
+def _rooms_behind(script):
+    """Rooms of the package whose files count for a script, and the files that do."""
+    code = Code(ROOT / "src", ROOT, ROOT / "workflow")
+    found = code.files_behind(ROOT / f"workflow/scripts/{script}.py")
+    files = {Path(path).relative_to(ROOT).parts for path in found}
     return {parts[2] for parts in files if len(parts) > 3}, {"/".join(parts) for parts in files}
 
 
-def test_the_script_of_all_stages_follows_from_the_function_that_it_calls():
-    rooms, files = _rooms_behind()
-    assert "workflow/scripts/_job.py" in files
-    assert not {"stages", "study", "mechanics", "figures"} & rooms
-    for stage in STAGES.values():
-        assert f"src/{module_of(stage.function)}" in _rooms_behind(module_of(stage.function))[1]
-    rooms, files = _rooms_behind(module_of(STAGES["window_states"].function))
+def test_code_of_a_script_follows_from_the_function_that_it_calls():
+    rooms, files = _rooms_behind("windows")
+    assert {"workflow/engine/job.py", "workflow/scripts/_files.py"} <= files
+    assert "src/fractalcontact/stages/windows.py" in files
     assert {"size_effect", "contact", "mechanics"} <= rooms
-    # Neither the table of stages nor another stage makes it again, nor what stands above.
+    # Another stage does not make it again, nor what stands above.
     assert not {"study", "figures", "pages"} & rooms
     assert "src/fractalcontact/stages/report.py" not in files

@@ -90,7 +90,7 @@ def locks(project):
 @pytest.mark.full
 def test_the_lock_of_a_living_run_stays_however_it_was_started(project):
     living = start(project, *command("config/smoke.yaml"))
-    wait_for(project / "results/smoke/logs/embedded", living)
+    wait_for(project / "results/smoke/logs/synthetic_scan", living)
     held = locks(project)
     assert held
     second = made(project, "config/smoke.yaml")
@@ -229,7 +229,7 @@ def test_an_empty_folder_of_scans_is_a_warning_and_a_dry_run_a_table(project):
     *jobs, end = done.stdout.splitlines()
     assert end == f"{len(jobs)} jobs would be done; nothing was"
     assert any(
-        line.startswith("  small_twin: levelled scan") and line.endswith("  not made yet")
+        line.startswith("  small_twin: levelled faces") and line.endswith("  not made yet")
         for line in jobs
     )
     assert max(map(len, jobs)) <= 120

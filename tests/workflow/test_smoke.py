@@ -13,13 +13,12 @@ import pytest
 import yaml
 from print_size import faults_of_study
 from projects import ROOT, command, project, run, small_study, write_scan
+from stage_names import EXPERIMENTS
 from stated import GRANITE, array_sidecar, sidecar
 
-from fractalcontact.core.stage import EXPERIMENT
 from fractalcontact.study.atlas import read_atlas
 from fractalcontact.study.figure_list import figures_of, study_figures_of
 from fractalcontact.study.scan_files import list_scans
-from fractalcontact.study.stages import paths_of
 
 __all__ = ["project"]  # a fixture
 SCANS = ROOT.parent / "shared" / "scans"
@@ -36,7 +35,7 @@ def test_smoke_study_ends_with_figures_and_a_killed_run_gives_the_same_atlas(pro
         drawn = {path.stem for path in (results / "figures" / name).glob("*.png")}
         assert drawn == set(figures_of(opposite))
     drawn = {path.stem for path in (results / "figures").glob("*.svg")}
-    assert drawn == set(study_figures_of([*paths_of(EXPERIMENT), "defaults", "comparison"]))
+    assert drawn == set(study_figures_of([*EXPERIMENTS, "defaults", "comparison"]))
     assert faults_of_study(results / "atlas.nc") == {}
     again = run(project, "config/smoke.yaml", "--dry-run")
     assert "Nothing to be done" in again.stdout + again.stderr
@@ -104,9 +103,13 @@ def test_accuracy_is_a_study_of_its_own(project):
 def test_reading_the_workflow_imports_nothing_heavy():
     """Those of accuracy alone know the solver's jobs, where they are asked for."""
     rules = "\n".join(path.read_text() for path in sorted(ROOT.glob("workflow/rules/*.smk")))
-    statement = r"^from (?:fractalcontact|contactlab)[.\w]* import (?:\([^)]*\)|[^\n]+)"
-    imports = re.findall(statement, rules, re.MULTILINE)
-    assert "from fractalcontact.study.checks import resolve_study" in imports
+    statement = r"^from (?:fractalcontact|contactlab|engine)[.\w]* import (?:\([^)]*\)|[^\n]+)"
+    imports = [
+        "import sys",
+        f"sys.path.append({str(ROOT / 'workflow')!r})",
+        *re.findall(statement, rules, re.MULTILINE),
+    ]
+    assert "from engine.plan import Plan" in imports
     names = "import sys; print(sorted({'xarray', 'numba', 'matplotlib'} & set(sys.modules)))"
     code = "\n".join([*imports, names])
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

@@ -91,7 +91,7 @@ def test_a_scan_replaced_by_an_older_file_is_read_and_so_is_the_first_when_it_co
     for content in (second, first):
         replace_by_an_older_one(scan, content)
         jobs = planned(project)
-        assert jobs["specimen"] == jobs["contact"] == 1
+        assert jobs["roughness_and_composite"] == jobs["contact"] == 1
         done = made(project, STUDY, targets=[SPECIMEN])
         assert done.returncode == 0, done.stderr[-3000:]
         assert made_of(project) == sha256(scan)
@@ -102,7 +102,7 @@ def test_a_scan_replaced_by_an_older_file_is_read_and_so_is_the_first_when_it_co
 def test_a_sidecar_replaced_by_an_older_file_is_read(project):
     sidecar = project / "scans/rock.yaml"
     replace_by_an_older_one(sidecar, array_sidecar(0.2).encode())
-    assert planned(project)["specimen"] == 1
+    assert planned(project)["roughness_and_composite"] == 1
     replace_by_an_older_one(sidecar, b"# of x, y and z\n" + array_sidecar(0.1).encode())
     assert planned(project) == {}
 
@@ -116,7 +116,10 @@ def test_a_touched_scan_solves_nothing(project):
 def test_a_scan_replaced_while_its_job_runs_is_never_stale(project):
     scan = project / "scans/large.npy"
     write_scan_in(project, "large", rough_heights(n=900))
-    log, output = "results/test/logs/specimen/large.log", "results/test/specimens/large.nc"
+    log, output = (
+        "results/test/logs/roughness_and_composite/large.log",
+        "results/test/specimens/large.nc",
+    )
     running = subprocess.Popen(
         command(STUDY, output),
         cwd=project,
@@ -135,7 +138,7 @@ def test_a_scan_replaced_while_its_job_runs_is_never_stale(project):
     if running.returncode:
         assert "changed while" in said
         assert not (project / output).exists()
-    assert planned(project, output) == {"specimen": 1}
+    assert planned(project, output) == {"roughness_and_composite": 1}
     done = run(project, STUDY, output)
     assert done.returncode == 0, done.stderr[-3000:]
     assert planned(project, output) == {}
@@ -173,7 +176,7 @@ def test_results_that_snakemake_has_no_record_of_are_made_again(project):
     shutil.rmtree(project / ".snakemake")
     np.save(project / "scans/rock.npy", rough_heights(seed=1))
     jobs = planned(project)
-    assert {"embedded", "specimen", "contact", "figures_against_plane"} <= set(jobs)
+    assert {"synthetic_scan", "contact", "figures_against_plane"} <= set(jobs)
     assert jobs["contact"] == 2
     done = made(project, STUDY, targets=[SPECIMEN])
     assert done.returncode == 0, done.stderr[-3000:]
@@ -185,7 +188,7 @@ def test_results_that_snakemake_has_no_record_of_are_made_again(project):
 #: What words alone make again: nothing is solved.
 DRAWING = {
     *("atlas", "figures_against_plane", "study_figures", "explorer", "result_page"),
-    *("specimen_page", "all_drawn", "all"),
+    *("card_and_page", "all_drawn", "all"),
 }
 
 

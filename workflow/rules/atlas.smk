@@ -1,30 +1,35 @@
-# All stages of the study: in one file, or in one a specimen and one of what they have together.
+# All that was computed, in one file; or of many specimens in one a specimen, and one of what they
+# have together.
+
+#: What is made of every surface, by the rules above.
+OF_SPECIMEN = [
+    *rules.roughness_and_composite.output,
+    *rules.windows.output,
+    *rules.closure_and_box_counts.output,
+    *rules.flow.output,
+]
+MAP_FILES = expand(rules.contact_map.output, specimen=MAPS)
 SPECIMEN_ATLAS = f"{RESULTS}/atlas/{{specimen}}.nc"
 # What of a specimen is compared with others, beside its atlas, which takes long to open.
 SPECIMEN_ROW = f"{RESULTS}/rows/{{specimen}}.nc"
 
-
-def stages_of(wildcards):
-    """Files of all stages that an atlas of one specimen has."""
-    return of_specimen(wildcards, *MEMBERS) | ({} if IN_PARTS else MAP_FILES)
-
-
-def files_of_all():
-    """Files of the stages of all specimens, by stage; those of an optional grain where it has any."""
-    return {
-        stage: expand(path, specimen=names)
-        for grain, names in MEMBERS.items()
-        if names or grain in (SPECIMEN, JOINT)
-        for stage, path in files_of(stages.paths_of(grain)).items()
-    }
+#: What is made of all specimens.
+OF_SPECIMENS = [
+    *expand(OF_SPECIMEN, specimen=SPECIMENS),
+    *expand(list(rules.strength.output), specimen=SLIDING),
+    *expand(list(rules.size_laws_against_plane.output), specimen=FLAT),
+    *expand(list(rules.ensemble.output), specimen=ENSEMBLES),
+    *expand(list(rules.measured.output), specimen=TESTED),
+]
 
 
-# All stages, and what the paper says compared with them.
+# All that the rules above made, with the verdicts on what the paper says of several specimens.
 rule atlas:
     input:
-        **({"rows": expand(SPECIMEN_ROW, specimen=SPECIMENS)} if IN_PARTS else files_of_all()),
-        **MAP_FILES,
-        **STUDY_FILES,
+        stages=[] if IN_PARTS else OF_SPECIMENS,
+        rows=expand(SPECIMEN_ROW, specimen=SPECIMENS) if IN_PARTS else [],
+        maps=MAP_FILES,
+        laboratory=LABORATORY,
     output:
         # `update` here and below: Snakemake would remove what readers have before its job begins.
         update(f"{RESULTS}/atlas.nc"),
@@ -33,7 +38,8 @@ rule atlas:
     log:
         f"{RESULTS}/logs/atlas.log",
     resources:
-        **fixed(4000, 10),
+        mem_mb=doubled(4000),
+        runtime=doubled(10),
     params:
         configuration={"study": config, "settings": RECORDS},
         code=code("atlas"),

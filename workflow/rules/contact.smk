@@ -1,17 +1,22 @@
-# Contact solves, the costly part. One job takes one specimen, and as many directions, offsets and
-# resolutions as the study's `grain` says, with all their loads. And what follows from the states.
-from collections.abc import Callable, Collection
-from typing import NamedTuple
+# Contact of the composite topographies, the costly part, and what follows from its states: closure,
+# dilatancy, box counts and renormalisation; flow; strength (sections 4 to 6 of the paper).
 
 
-def parts_of(specimen):
-    """Slices of directions, of offsets and of resolutions that the jobs of a specimen take."""
-    settings = SETTINGS[specimen]
+def grain(key, n):
+    """Slices of n things for as many jobs as the study's `grain` asks for."""
+    size = config.get("grain", {}).get(key, "all")
+    size = max(n, 1) if size == "all" else size
+    return [slice(start, min(start + size, n)) for start in range(0, n, size)]
+
+
+def parts_of(name):
+    """Slices of directions, of offsets and of resolutions that the contact jobs of a specimen take."""
+    stated = SETTINGS[name]
     return {
-        "directions": grain("directions", len(settings.contact_directions)),
+        "directions": grain("directions", len(stated.contact_directions)),
         # Where there are fewer offsets, a job without any writes an empty part.
-        "offsets": grain("offsets", most_offsets(specimen)),
-        "resolutions": grain("resolutions", len(settings.resolutions)),
+        "offsets": grain("offsets", most_offsets(name)),
+        "resolutions": grain("resolutions", len(stated.resolutions)),
     }
 
 
@@ -20,170 +25,238 @@ def part_of(wildcards, key):
     return parts_of(wildcards.specimen)[key][int(wildcards[key])]
 
 
+# Offset x load states of the pre-fractals at several resolutions. One job takes as many directions,
+# offsets and resolutions as the study's `grain` says, with all their loads: its file has their numbers.
 rule contact:
     input:
-        specimen=f"{RESULTS}/specimens/{{specimen}}.nc",
-        joint=f"{RESULTS}/joints/{{specimen}}.nc",
+        specimen=rules.roughness_and_composite.output.specimens,
+        joint=rules.roughness_and_composite.output.joints,
     output:
         f"{RESULTS}/contact/{{specimen}}/{{directions}}.{{offsets}}.{{resolutions}}.nc",
     log:
         f"{RESULTS}/logs/contact/{{specimen}}/{{directions}}.{{offsets}}.{{resolutions}}.log",
     resources:
-        **asked_for("contact"),
+        mem_mb=memory("contact"),
+        runtime=minutes("contact"),
     params:
-        function=stages.CONTACT,
-        settings=settings_read_by(stages.CONTACT),
+        settings=stated(settings.ContactSettings),
+        solver=SOLVER,
         directions=lambda wc: SETTINGS[wc.specimen].contact_directions[part_of(wc, "directions")],
         offsets=lambda wc: part_of(wc, "offsets"),
         resolutions=lambda wc: SETTINGS[wc.specimen].resolutions[part_of(wc, "resolutions")],
-        code=code("stage", "fractalcontact/mechanics/sweep.py"),
+        code=code("contact"),
     message:
-        "{wildcards.specimen}: contact states, part {wildcards.directions}.{wildcards.offsets}.{wildcards.resolutions}"
+        "{wildcards.specimen}: contact states of pre-fractals, part {wildcards.directions}.{wildcards.offsets}.{wildcards.resolutions}"
     script:
-        "../scripts/stage.py"
+        "../scripts/contact.py"
 
 
-def contact_parts_of(specimen):
+def contact_files_of(name):
     """Files of the contact jobs of a specimen."""
-    counts = {key: range(len(slices)) for key, slices in parts_of(specimen).items()}
-    return expand(rules.contact.output, specimen=specimen, **counts)
+    parts = {key: range(len(slices)) for key, slices in parts_of(name).items()}
+    return expand(rules.contact.output, specimen=name, **parts)
 
 
-def contact_parts(wildcards):
-    """Files of the contact jobs of a specimen, as an input of stages that go through them."""
-    return {"parts": contact_parts_of(wildcards.specimen)}
+def contact_files(wildcards):
+    """The same, as an input of rules."""
+    return contact_files_of(known(wildcards))
 
 
-def ensemble_of(wildcards):
-    """Files of the ensemble of a specimen; none where the study wants none."""
-    return of_specimen(wildcards, ENSEMBLE)
+# Its seed and those that follow, or twins: their spread is an error of what is published. As long as
+# the sub-windows; all but those wait for it.
+rule ensemble:
+    input:
+        specimens=rules.roughness_and_composite.output.specimens,
+        joints=rules.roughness_and_composite.output.joints,
+    output:
+        f"{RESULTS}/ensemble/{{specimen}}.nc",
+    log:
+        f"{RESULTS}/logs/ensemble/{{specimen}}.log",
+    wildcard_constraints:
+        specimen=alternation(ENSEMBLES),
+    priority: 2
+    resources:
+        mem_mb=memory("ensemble", states=lambda name: ENSEMBLES[name]),
+        runtime=minutes("ensemble", states=lambda name: ENSEMBLES[name]),
+    params:
+        settings=stated(settings.EnsembleSettings),
+        solver=SOLVER,
+        recipe=lambda wc: None if wc.specimen in TWINS else recipe_named(known(wc)),
+        realisations=lambda wc: ENSEMBLES[wc.specimen],
+        code=code("ensemble"),
+    message:
+        "{wildcards.specimen}: its ensemble"
+    script:
+        "../scripts/ensemble.py"
 
 
-def strength_of(wildcards):
-    """Strength of a joint that slides; none of a surface against a plane."""
-    return {key: path for key, path in of_specimen(wildcards, JOINT).items() if key == "strength"}
+#: An input of rules: the ensemble of a specimen, where the study wants one.
+ENSEMBLE = branch(lambda wildcards: wildcards.specimen in ENSEMBLES, then=rules.ensemble.output[0])
 
 
-class StageJob(NamedTuple):
-    """Job that calls the function of stages of a specimen, and what it has beside their entries."""
+# And the errors of what is published, by source, for which some states are solved again on finer
+# grids and in other windows. Seconds of work, so one job.
+rule closure_and_box_counts:
+    input:
+        specimens=rules.roughness_and_composite.output.specimens,
+        surface_dimension=rules.roughness_and_composite.output.surface_dimension,
+        joints=rules.roughness_and_composite.output.joints,
+        parts=contact_files,
+        ensemble=ENSEMBLE,
+    output:
+        closure=f"{RESULTS}/closure/{{specimen}}.nc",
+        dilatancy=f"{RESULTS}/dilatancy/{{specimen}}.nc",
+        area=f"{RESULTS}/area/{{specimen}}.nc",
+        domains=f"{RESULTS}/domains/{{specimen}}.nc",
+        contact=f"{RESULTS}/contact/{{specimen}}.nc",
+        scaling=f"{RESULTS}/scaling/{{specimen}}.nc",
+        domain_measures=f"{RESULTS}/domain_measures/{{specimen}}.nc",
+        branches=f"{RESULTS}/branches/{{specimen}}.nc",
+        choices=f"{RESULTS}/choices/{{specimen}}.nc",
+        error_budget=f"{RESULTS}/error_budget/{{specimen}}.nc",
+    log:
+        f"{RESULTS}/logs/closure_and_box_counts/{{specimen}}.log",
+    resources:
+        mem_mb=memory("closure_and_box_counts"),
+        runtime=minutes("closure_and_box_counts"),
+    params:
+        settings=stated(settings.StateSettings),
+        solver=SOLVER,
+        code=code("closure_and_box_counts"),
+    message:
+        "{wildcards.specimen}: closure, dilatancy, box counts, renormalisation, and their errors"
+    script:
+        "../scripts/closure_and_box_counts.py"
 
-    stage: str  # one of those it makes
-    words: str  # in the terminal
-    resources: dict
-    specimens: str = "[^/]+"  # pattern of those that have it
-    inputs: Callable = lambda wildcards: {}  # beside the stages that it needs
-    extra: dict = {}  # parameters
-    grains: Collection = GRAINS  # of the stages that it makes
-    priority: int = 0
+
+# Sparse equations of all open cells, so a job of its own.
+rule flow:
+    input:
+        specimens=rules.roughness_and_composite.output.specimens,
+        joints=rules.roughness_and_composite.output.joints,
+        closure=rules.closure_and_box_counts.output.closure,
+        branches=rules.closure_and_box_counts.output.branches,
+        error_budget=rules.closure_and_box_counts.output.error_budget,
+        parts=contact_files,
+    output:
+        flow=f"{RESULTS}/flow/{{specimen}}.nc",
+    log:
+        f"{RESULTS}/logs/flow/{{specimen}}.log",
+    resources:
+        mem_mb=memory("flow"),
+        runtime=minutes("flow"),
+    params:
+        settings=stated(settings.JointSettings),
+        solver=SOLVER,
+        code=code("flow"),
+    message:
+        "{wildcards.specimen}: aperture and transmissivity"
+    script:
+        "../scripts/flow.py"
 
 
-#: Jobs, by the name of their rule, which is not that of a stage: "windows" makes window_states and
-#: size_test, "strength" makes windows, strength and the statements.
-STAGE_JOBS = {
-    # The levelled specimen, and its joint before contact is solved: the dimension of its face, what
-    # the instrument adds and which resolutions go below it, and one face slid over the other
-    # (offsets, composite topographies, rigid dilatancy). Seconds of work, so one job.
-    "specimen": StageJob(
-        "specimens",
-        "levelled scan, its surface dimension and its joint",
-        asked_for("specimen", grid=0) | {"mem_mb": doubled(memory_of_reading)},
-        inputs=scan_files,
-        extra={"arguments": reading_of, "digests": scan_digests_of},
-    ),
-    # A measured map of contact goes straight to the analysis of domains.
-    "contact_map": StageJob(
-        "contact_maps",
-        "measured contact map and its dimension",
-        fixed(2000, 10),
-        specimens=alternation(MAPS),
-        inputs=scan_files,
-        extra={
-            "arguments": lambda wc: {
-                "path": str(MAPS[wc.specimen].lower),
-                "options": OPTIONS[wc.specimen],
-                "label": LABELS[wc.specimen],
-            },
-            "digests": scan_digests_of,
-        },
-    ),
-    # Closure curves and laws of area; box counts, dimension and clusters of every contact domain;
-    # and the error of what is published, by source, for which some states are solved again on finer
-    # grids and in other windows. Seconds of work, so one job.
-    "analysis": StageJob(
-        "closure",
-        "closure, contact domains and their errors",
-        asked_for("analysis"),
-        inputs=lambda wc: contact_parts(wc) | ensemble_of(wc),
-    ),
-    # Sparse equations of all open cells, so a job of its own.
-    "flow": StageJob(
-        "flow", "aperture and transmissivity", asked_for("flow"), inputs=contact_parts
-    ),
-    # The longest of a specimen, and the others wait for it.
-    "windows": StageJob(
-        "window_states",
-        "contact states of sub-windows, and eq. 6",
-        asked_for("windows"),
-        priority=1,
-    ),
-    # Its seed and those that follow, or twins. As long as the sub-windows; all but those wait for it.
-    "ensemble": StageJob(
-        "ensemble",
-        "its ensemble",
-        asked_for("ensemble", states=lambda wc: ENSEMBLES[wc.specimen]),
-        specimens=alternation(ENSEMBLES),
-        extra={
-            "recipe": lambda wc: None if wc.specimen in TWINS else recipe_named(known(wc)),
-            "realisations": lambda wc: ENSEMBLES[wc.specimen],
-        },
-        priority=2,
-    ),
-    # The report. These two alone read friction angles, wall strengths and labels, and solve nothing.
-    "strength": StageJob(
-        "windows",
-        "strength, size laws and the paper's statements",
-        asked_for("strength"),
-        specimens=kind_of(SLIDING, FLAT),
-        inputs=ensemble_of,
-    ),
-    "size_laws_against_plane": StageJob(
-        "windows",
-        "size laws and the paper's statements",
-        asked_for("strength"),
-        specimens=kind_of(FLAT, SLIDING),
-        inputs=ensemble_of,
-        grains=[SPECIMEN],
-    ),
-    # Little is solved: another hardness, or what has crushed under the largest pressure of a test.
-    "measured": StageJob(
-        "measured",
-        "laboratory tests beside computed curves",
-        asked_for("analysis"),
-        inputs=strength_of,
-        extra={"digests": lambda wc: digests_of(*(t.file for t in SETTINGS[known(wc)].measured))},
-    ),
-}
-for NAME, JOB in STAGE_JOBS.items():
+# The longest of a specimen, and the others wait for it.
+rule windows:
+    input:
+        specimens=rules.roughness_and_composite.output.specimens,
+        joints=rules.roughness_and_composite.output.joints,
+    output:
+        window_states=f"{RESULTS}/window_states/{{specimen}}.nc",
+        size_test=f"{RESULTS}/size_test/{{specimen}}.nc",
+    log:
+        f"{RESULTS}/logs/windows/{{specimen}}.log",
+    priority: 1
+    resources:
+        mem_mb=memory("windows"),
+        runtime=minutes("windows"),
+    params:
+        settings=stated(settings.WindowSettings),
+        solver=SOLVER,
+        code=code("windows"),
+    message:
+        "{wildcards.specimen}: contact states of sub-windows, and eq. 6"
+    script:
+        "../scripts/windows.py"
 
-    rule:
-        name:
-            NAME
-        input:
-            unpack(JOB.inputs),
-            **files_of(stages.needed_by(JOB.stage)),
-        output:
-            **files_of(stages.made_together(JOB.stage, JOB.grains)),
-        log:
-            f"{RESULTS}/logs/{NAME}/{{specimen}}.log",
-        wildcard_constraints:
-            specimen=JOB.specimens,
-        priority: JOB.priority
-        resources:
-            **JOB.resources,
-        params:
-            **calling(JOB.stage),
-            **JOB.extra,
-        message:
-            f"{{wildcards.specimen}}: {JOB.words}"
-        script:
-            "../scripts/stage.py"
+
+# The report: this job alone reads friction angles, wall strengths and labels, and it solves nothing.
+rule strength:
+    input:
+        specimens=rules.roughness_and_composite.output.specimens,
+        surface_dimension=rules.roughness_and_composite.output.surface_dimension,
+        joints=rules.roughness_and_composite.output.joints,
+        window_states=rules.windows.output.window_states,
+        size_test=rules.windows.output.size_test,
+        closure=rules.closure_and_box_counts.output.closure,
+        dilatancy=rules.closure_and_box_counts.output.dilatancy,
+        area=rules.closure_and_box_counts.output.area,
+        domains=rules.closure_and_box_counts.output.domains,
+        scaling=rules.closure_and_box_counts.output.scaling,
+        domain_measures=rules.closure_and_box_counts.output.domain_measures,
+        error_budget=rules.closure_and_box_counts.output.error_budget,
+        ensemble=ENSEMBLE,
+    output:
+        windows=f"{RESULTS}/windows/{{specimen}}.nc",
+        strength=f"{RESULTS}/strength/{{specimen}}.nc",
+        elastic_model=f"{RESULTS}/elastic_model/{{specimen}}.nc",
+        statements=f"{RESULTS}/statements/{{specimen}}.nc",
+        comparison=f"{RESULTS}/comparison/{{specimen}}.nc",
+    log:
+        f"{RESULTS}/logs/strength/{{specimen}}.log",
+    wildcard_constraints:
+        specimen=names_of(SLIDING, FLAT),
+    resources:
+        mem_mb=memory("strength"),
+        runtime=minutes("strength"),
+    params:
+        settings=stated(settings.ReportSettings),
+        code=code("strength"),
+    message:
+        "{wildcards.specimen}: strength, size laws and the paper's statements"
+    script:
+        "../scripts/strength.py"
+
+
+# A surface against a plane does not slide: the same without its strength.
+use rule strength as size_laws_against_plane with:
+    output:
+        windows=f"{RESULTS}/windows/{{specimen}}.nc",
+        elastic_model=f"{RESULTS}/elastic_model/{{specimen}}.nc",
+        statements=f"{RESULTS}/statements/{{specimen}}.nc",
+        comparison=f"{RESULTS}/comparison/{{specimen}}.nc",
+    log:
+        f"{RESULTS}/logs/size_laws_against_plane/{{specimen}}.log",
+    wildcard_constraints:
+        specimen=names_of(FLAT, SLIDING),
+    message:
+        "{wildcards.specimen}: size laws and the paper's statements"
+
+
+# Little is solved: another hardness, or what has crushed under the largest pressure of a test.
+rule measured:
+    input:
+        specimens=rules.roughness_and_composite.output.specimens,
+        joints=rules.roughness_and_composite.output.joints,
+        closure=rules.closure_and_box_counts.output.closure,
+        dilatancy=rules.closure_and_box_counts.output.dilatancy,
+        error_budget=rules.closure_and_box_counts.output.error_budget,
+        flow=rules.flow.output.flow,
+        strength=branch(
+            lambda wildcards: wildcards.specimen in SLIDING, then=rules.strength.output.strength
+        ),
+    output:
+        measured=f"{RESULTS}/measured/{{specimen}}.nc",
+    log:
+        f"{RESULTS}/logs/measured/{{specimen}}.log",
+    resources:
+        mem_mb=memory("closure_and_box_counts"),
+        runtime=minutes("closure_and_box_counts"),
+    params:
+        settings=stated(settings.MeasuredSettings),
+        solver=SOLVER,
+        digests=lambda wc: RUN.digests(*(test.file for test in SETTINGS[known(wc)].measured)),
+        code=code("measured"),
+    message:
+        "{wildcards.specimen}: laboratory tests beside computed curves"
+    script:
+        "../scripts/measured.py"

@@ -1,7 +1,9 @@
 # Figures of every specimen: PNG, SVG, numbers as CSV, caption as text.
+from fractalcontact.study.figure_list import all_figures, study_figures_of
+from fractalcontact.study.selection import CAPPED_VARIANTS
 
 # Measured contact maps ask for their figures themselves, and so do several specimens.
-ASKED = [*config, *MAP_FILES]
+ASKED = [*config, *(["contact_maps"] if MAPS else [])]
 if len(SPECIMENS) > 1:
     ASKED.append(campaign.COMPARISON)
 if any(record["capped_variant"] for record in RECORDS.values()):
@@ -9,8 +11,9 @@ if any(record["capped_variant"] for record in RECORDS.values()):
 STUDY_FIGURES = study_figures_of(ASKED)
 if IN_PARTS:
     STUDY_FIGURES = campaign.of_study_alone(STUDY_FIGURES)
-#: Names of the figures of each specimen that the study asks for, by what is on the other side.
-DRAWN = {opposite: campaign.drawn_of(config, SPECIMENS, opposite) for opposite in ("match", "flat")}
+#: Names of the figures of each joint, and of each surface against a plane, that the study asks for.
+OF_JOINT = campaign.drawn_of(config, SPECIMENS, "match")
+OF_FLAT = campaign.drawn_of(config, SPECIMENS, "flat")
 
 
 def drawings(names, folder="{specimen}/", category="{specimen}"):
@@ -45,40 +48,61 @@ UNDRAWN = f"{RESULTS}/undrawn/{{specimen}}.txt"
 
 
 # From an atlas of its own, made just before: so a new scan draws only its own, one bad scan does not
-# keep the others from theirs. A surface against a plane does not slide: it has fewer figures.
-for NAME, OPPOSITE, HERE, OTHERS in (
-    ("figures", "match", SLIDING, FLAT),
-    ("figures_against_plane", "flat", FLAT, SLIDING),
-):
+# keep the others from theirs.
+rule figures:
+    input:
+        OF_SPECIMEN,
+        rules.strength.output,
+        ENSEMBLE,
+        branch(lambda wildcards: wildcards.specimen in TESTED, then=rules.measured.output.measured),
+        [] if IN_PARTS else MAP_FILES,
+    output:
+        *drawings(OF_JOINT),
+        **({"row": SPECIMEN_ROW} if IN_PARTS else {}),
+        atlas=update(SPECIMEN_ATLAS),
+        undrawn=UNDRAWN,
+    log:
+        f"{RESULTS}/logs/figures/{{specimen}}.log",
+    wildcard_constraints:
+        specimen=names_of(SLIDING, FLAT),
+    # After what the atlas of the study waits for: else, at the end, one core draws from it alone.
+    # The longer jobs first. Of a campaign nobody wants to wait that long.
+    priority: 0 if IN_PARTS else -2
+    resources:
+        mem_mb=memory("figures" if OF_JOINT else "atlas_part"),
+        runtime=minutes("figures" if OF_JOINT else "atlas_part"),
+    params:
+        names=OF_JOINT,
+        configuration=configuration_of,
+        code=code("figures", "fractalcontact/figures"),
+    message:
+        "{wildcards.specimen}: figures"
+    script:
+        "../scripts/figures.py"
 
-    rule:
-        name:
-            NAME
-        input:
-            unpack(stages_of),
-        output:
-            *drawings(DRAWN[OPPOSITE]),
-            **({"row": SPECIMEN_ROW} if IN_PARTS else {}),
-            atlas=update(SPECIMEN_ATLAS),
-            undrawn=UNDRAWN,
-        log:
-            f"{RESULTS}/logs/figures/{{specimen}}.log",
-        wildcard_constraints:
-            specimen=kind_of(HERE, OTHERS),
-        # After what the atlas of the study waits for: else, at the end, one core draws from it alone.
-        # The longer jobs first. Of a campaign nobody wants to wait that long.
-        priority: 0 if IN_PARTS else -2 if OPPOSITE == "match" else -3
-        resources:
-            **asked_for("figures" if DRAWN[OPPOSITE] else "atlas_part"),
-        params:
-            names=DRAWN[OPPOSITE],
-            folder=lambda wildcards: f"{RESULTS}/figures/{wildcards.specimen}",
-            configuration=configuration_of,
-            code=code("figures", "fractalcontact/figures"),
-        message:
-            "{wildcards.specimen}: figures"
-        script:
-            "../scripts/figures.py"
+
+# A surface against a plane does not slide: no strength, and fewer figures.
+use rule figures as figures_against_plane with:
+    input:
+        OF_SPECIMEN,
+        rules.size_laws_against_plane.output,
+        ENSEMBLE,
+        branch(lambda wildcards: wildcards.specimen in TESTED, then=rules.measured.output.measured),
+        [] if IN_PARTS else MAP_FILES,
+    output:
+        *drawings(OF_FLAT),
+        **({"row": SPECIMEN_ROW} if IN_PARTS else {}),
+        atlas=update(SPECIMEN_ATLAS),
+        undrawn=UNDRAWN,
+    log:
+        f"{RESULTS}/logs/figures_against_plane/{{specimen}}.log",
+    wildcard_constraints:
+        specimen=names_of(FLAT, SLIDING),
+    priority: 0 if IN_PARTS else -3
+    params:
+        names=OF_FLAT,
+        configuration=configuration_of,
+        code=code("figures", "fractalcontact/figures"),
 
 
 # What only the whole study shows.
@@ -91,15 +115,16 @@ rule study_figures:
     log:
         f"{RESULTS}/logs/study_figures.log",
     resources:
-        **fixed(4000, 10),
+        mem_mb=doubled(4000),
+        runtime=doubled(10),
     params:
         specimens=SPECIMENS,
         names=STUDY_FIGURES,
-        code=code("figures", "fractalcontact/figures", "contactlab/figures"),
+        code=code("study_figures", "fractalcontact/figures", "contactlab/figures"),
     message:
         "the study: figures over all specimens"
     script:
-        "../scripts/figures.py"
+        "../scripts/study_figures.py"
 
 
 # A figure that fails keeps no other from being drawn, of this specimen or another; but the study has
@@ -117,7 +142,8 @@ rule all_drawn:
     log:
         f"{RESULTS}/logs/all_drawn.log",
     resources:
-        **fixed(500, 5),
+        mem_mb=doubled(500),
+        runtime=doubled(5),
     params:
         reason="not drawn, because of an error of the program: NAMES; their pictures say so, the "
         f"logs in {RESULTS}/logs/figures hold the whole error; everything else is done",
@@ -130,7 +156,7 @@ rule all_drawn:
 
 def figure_files(specimen, endings=("png", "svg", "csv", "txt")):
     """Files of the figures of a specimen, that one which is removed is made again."""
-    names = DRAWN["match" if specimen in MEMBERS[JOINT] else "flat"]
+    names = OF_JOINT if specimen in SLIDING else OF_FLAT
     files = [f"{RESULTS}/figures/{specimen}/{name}" for name in names]
     return [f"{file}.{ending}" for file in files for ending in endings]
 
@@ -147,13 +173,14 @@ def collect_everything(wildcards):
     Of a campaign what its atlas is made of is not asked for, file by file: it would take minutes to
     find that nothing is to be done.
     """
-    made = [*LABORATORY_FILES.values(), *rules.all_drawn.output, *all_figure_files(), *RESULT_PAGE]
+    made = [*LABORATORY, *rules.all_drawn.output, *all_figure_files(), *RESULT_PAGE]
     if IN_PARTS:
         return made
-    parts = [*files_of_all().values(), *MAP_FILES.values(), *map(contact_parts_of, SPECIMENS)]
     return [
-        *(path for paths in parts for path in paths),
-        *expand(list(rules.embedded.output), specimen=set(SPECIMENS) - set(SCANS)),
-        *expand(SPECIMEN_ATLAS, specimen=SPECIMENS),
         *made,
+        *OF_SPECIMENS,
+        *MAP_FILES,
+        *(path for name in SPECIMENS for path in contact_files_of(name)),
+        *expand(list(rules.synthetic_scan.output), specimen=set(SPECIMENS) - set(SCANS)),
+        *expand(SPECIMEN_ATLAS, specimen=SPECIMENS),
     ]

@@ -22,46 +22,48 @@ rule explorer:
     # After the figures: beside the result page, no core has nothing to do at the end.
     priority: -4
     resources:
-        **fixed(3000, 10),
+        mem_mb=doubled(3000),
+        runtime=doubled(10),
     params:
         explored=EXPLORED,
-        code=code("pages", "fractalcontact/pages"),
+        code=code("explorer", "fractalcontact/pages"),
     message:
         "the study: explorer of all contact states"
     script:
-        "../scripts/pages.py"
+        "../scripts/explorer.py"
 
 
 # The card of a specimen, constants with their intervals which the page and other codes read; its
 # aperture map for other programs, which of many specimens `export_aperture` writes; and its page. All
 # from its own atlas: one more specimen writes no other's again.
-rule specimen_page:
+rule card_and_page:
     input:
         SPECIMEN_ATLAS,
         # Captions stand for the pictures, of which no page is made: the same job leaves both.
         lambda wildcards: figure_files(known(wildcards), ["txt"]),
         # Aperture maps are those of the jobs of contact, which the atlas rounds.
-        lambda wildcards: [] if IN_PARTS else contact_parts_of(known(wildcards)),
+        lambda wildcards: [] if IN_PARTS else contact_files_of(known(wildcards)),
     output:
         update(f"{RESULTS}/{page_files.SPECIMEN_PAGE}"),
         update(with_endings(page_files.CARD, page_files.CARD_ENDINGS)),
         update([] if IN_PARTS else with_endings(page_files.APERTURE, page_files.APERTURE_ENDINGS)),
     log:
-        f"{RESULTS}/logs/specimen_page/{{specimen}}.log",
+        f"{RESULTS}/logs/card_and_page/{{specimen}}.log",
     resources:
-        **fixed(1500, 10),
+        mem_mb=doubled(1500),
+        runtime=doubled(10),
     params:
         # Of itself alone: one specimen more or less changes no other's page.
         explored=lambda wildcards: [name for name in EXPLORED if name == wildcards.specimen],
         apertures=not IN_PARTS,
-        code=code("specimen_page", "fractalcontact/cards", "fractalcontact/pages"),
+        code=code("card_and_page", "fractalcontact/cards", "fractalcontact/pages"),
     message:
         "{wildcards.specimen}: card and page"
     script:
-        "../scripts/specimen_page.py"
+        "../scripts/card_and_page.py"
 
 
-PAGES = expand(list(rules.specimen_page.output), specimen=SPECIMENS)
+PAGES = expand(list(rules.card_and_page.output), specimen=SPECIMENS)
 # None of measured contact maps alone, nor of many specimens of which the study names none.
 EXPLORER = list(rules.explorer.output) if EXPLORED else []
 INDEX = [f"{RESULTS}/{name}" for name in page_files.FILES]
@@ -80,15 +82,16 @@ rule result_page:
     log:
         f"{RESULTS}/logs/result_page.log",
     resources:
-        **fixed(2000, 10),
+        mem_mb=doubled(2000),
+        runtime=doubled(10),
     params:
         # The index links to the explorer, which may be made after it or beside it.
         explored=EXPLORED,
-        code=code("pages", "fractalcontact/pages"),
+        code=code("result_page", "fractalcontact/pages"),
     message:
         "the study: result page"
     script:
-        "../scripts/pages.py"
+        "../scripts/result_page.py"
 
 
 # `make report`: the pages, and what they are made of.

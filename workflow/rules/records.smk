@@ -3,18 +3,16 @@
 import os
 
 import snakemake
-
-import _provenance
-import _running
-
-from fractalcontact.core.atomic import atomic_write
+from engine import provenance, running
+from fractalcontact.core import checksums
 from fractalcontact.study import crate, guards
+from snakemake.logging import logger
 
 
 def remake_without_record():
     """Mark results that Snakemake would take for up to date though its record of them is lost."""
     if workflow.is_main_process and (
-        again := _provenance.mark_without_provenance(RESULTS, workflow.workflow_settings)
+        again := provenance.mark_without_provenance(RESULTS, workflow.workflow_settings)
     ):
         logger.warning(
             f"{RESULTS}: {again} of its files will be made again, since Snakemake's record of "
@@ -23,34 +21,22 @@ def remake_without_record():
         )
 
 
-def without_rate_limit():
-    """Begin jobs on this machine as soon as cores are free, without a limit to jobs a second.
-
-    To keep it Snakemake looks at all waiting jobs each second, once more for each that has ended:
-    a tenth of the time of a paper study on two cores.
-    """
-    if workflow.local_exec:
-        workflow.scheduler.job_rate_limiter = None
-
-
 def begin():
     """Refuse what would lose results; else say that a run is at work, and its plan."""
-    _running.mark()
+    running.mark()
     try:
         # Only the user says that specimens may go, never a study.
         if "FRACTALCONTACT_DROP" not in os.environ:
             guards.refuse_loss(RESULTS, [*SETTINGS, *LABELS])
-        with atomic_write(PLAN) as path:
-            path.write_bytes(pickle.dumps((dict(config), STUDY, scan_digests())))
+        RUN.save()
     except InputError as error:
         raise WorkflowError(str(error))
-    DIGESTS.save()
 
 
 def end():
     """Write checksums of all that was made, and what it is: be everything done or not."""
     checksums.write_manifest(RESULTS)
-    scans = {path: digest for path, digest in scan_digests().items() if digest}
+    scans = {path: digest for path, digest in RUN.all_digests().items() if digest}
     crate.write_crate(RESULTS, WORKFLOW, config["study"], scans)
 
 
@@ -59,7 +45,13 @@ WORKFLOW = crate.Workflow(
     folder=ROOT,
     main="Snakefile",
     parts=(
-        *("workflow/*.py", "workflow/rules/*.smk", "workflow/scripts/*.py", "config/schema/*.json"),
+        *(
+            "workflow/*.py",
+            "workflow/rules/*.smk",
+            "workflow/scripts/*.py",
+            "workflow/engine/**/*.py",
+            "config/schema/*.json",
+        ),
         *("environment.yml", "requirements.lock", "CITATION.cff", "LICENSE"),
     ),
     language="Snakemake",

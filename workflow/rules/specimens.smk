@@ -1,49 +1,42 @@
-# Scan files, a user's or the study's own, and how they are read.
+# Scan files, a user's or the study's own; the levelled faces, their roughness, and the composite
+# topographies of one face slid over the other (section 4 of the paper).
+from fractalcontact.study.sidecar import sidecar_of_matrix
 
 
-rule embedded:
+rule synthetic_scan:
     output:
         scan=f"{RESULTS}/embedded/{{specimen}}.npy",
         sidecar=f"{RESULTS}/embedded/{{specimen}}.yaml",
     log:
-        f"{RESULTS}/logs/embedded/{{specimen}}.log",
+        f"{RESULTS}/logs/synthetic_scan/{{specimen}}.log",
     resources:
-        **asked_for("embedded", grid=0),
+        mem_mb=memory("synthetic_scan", face_nodes),
+        runtime=minutes("synthetic_scan", face_nodes),
     params:
-        recipe=lambda wc: recipe_named(known(wc)),
-        code=code("embedded"),
+        recipe=lambda wildcards: recipe_named(known(wildcards)),
+        code=code("synthetic_scan"),
     message:
         "{wildcards.specimen}: synthetic scan"
     script:
-        "../scripts/embedded.py"
+        "../scripts/synthetic_scan.py"
 
 
 def scan_files(wildcards):
     """The faces of a specimen, or a measured map, wherever they come from. Digests show changes."""
-    scan = SCANS.get(wildcards.specimen)
-    if scan is None:
-        return [rules.embedded.output.scan]
-    return [ancient(str(path)) for path in scan.files]
+    if wildcards.specimen not in SCANS:
+        return rules.synthetic_scan.output.scan
+    return [ancient(str(path)) for path in SCANS[wildcards.specimen].files]
 
 
-def scan_digests_of(wildcards):
+def scan_digests(wildcards):
     """Digests of these, but of what the study makes itself."""
-    return digests_of(*SCANS[wildcards.specimen].files) if wildcards.specimen in SCANS else {}
+    return RUN.digests(*SCANS[wildcards.specimen].files) if wildcards.specimen in SCANS else {}
 
 
-def reading_of(wildcards):
-    """Arguments by which a scan is read, beside its settings.
-
-    Not from the rule's input: Snakemake keeps no record of parameters that follow from it.
-    """
+def reading_options(wildcards):
+    """Scan keys of the sidecar of a specimen."""
     name = known(wildcards)
-    if name in SCANS:
-        return {"files": list(map(str, SCANS[name].files)), "options": OPTIONS[name], "name": name}
-    files, spacing = (
-        expand(rules.embedded.output.scan, specimen=name),
-        recipe_named(name)["spacing"],
-    )
-    return {"files": files, "options": sidecar_of_matrix(spacing), "name": name}
+    return OPTIONS[name] if name in SCANS else sidecar_of_matrix(recipe_named(name)["spacing"])
 
 
 def memory_of_reading(wildcards):
@@ -51,7 +44,60 @@ def memory_of_reading(wildcards):
     name = known(wildcards)
     if name in SCANS:
         return resources.reading_memory(SCANS[name].files)
-    return resources.memory("specimen", nodes_of(name)[0])
+    return resources.memory("roughness_and_composite", face_nodes(name))
+
+
+# Seconds of work, so one job: to read the scan is most of it.
+rule roughness_and_composite:
+    input:
+        scan_files,
+    output:
+        specimens=f"{RESULTS}/specimens/{{specimen}}.nc",
+        quality=f"{RESULTS}/quality/{{specimen}}.nc",
+        surface_dimension=f"{RESULTS}/surface_dimension/{{specimen}}.nc",
+        joints=f"{RESULTS}/joints/{{specimen}}.nc",
+    log:
+        f"{RESULTS}/logs/roughness_and_composite/{{specimen}}.log",
+    resources:
+        mem_mb=doubled(memory_of_reading),
+        runtime=minutes("roughness_and_composite", face_nodes),
+    params:
+        settings=stated(settings.SpecimenSettings),
+        options=reading_options,
+        digests=scan_digests,
+        code=code("roughness_and_composite"),
+    message:
+        "{wildcards.specimen}: levelled faces, Delta_g, composite topographies at all offsets"
+    script:
+        "../scripts/roughness_and_composite.py"
+
+
+# A measured map of contact goes straight to the analysis of domains.
+rule contact_map:
+    input:
+        scan_files,
+    output:
+        f"{RESULTS}/contact_maps/{{specimen}}.nc",
+    log:
+        f"{RESULTS}/logs/contact_map/{{specimen}}.log",
+    wildcard_constraints:
+        specimen=alternation(MAPS),
+    resources:
+        mem_mb=doubled(2000),
+        runtime=doubled(10),
+    params:
+        options=lambda wildcards: OPTIONS[wildcards.specimen],
+        label=lambda wildcards: LABELS[wildcards.specimen],
+        digests=scan_digests,
+        code=code("contact_map"),
+    message:
+        "{wildcards.specimen}: measured contact map and its dimension"
+    script:
+        "../scripts/contact_map.py"
+
+
+#: What is wrong with scans that are left out.
+REFUSED = [str(STUDY.refused[name]) for name in sorted(STUDY.refused)]
 
 
 # A scan that the study leaves out, with --keep-going: its job fails and says why, others go on.

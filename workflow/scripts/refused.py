@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from _job import job
+from engine.job import job
 
 from fractalcontact.core.atomic import atomic_write
 from fractalcontact.core.errors import InputError

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from fractalcontact.core.datasets import labelled_dataset
+from fractalcontact.core.datasets import labelled_dataset, titled
 from fractalcontact.core.fitting import fit_line
 from fractalcontact.core.labels import cf_attrs
 from roughcontact.contact.solve import solve_contact
@@ -34,6 +34,7 @@ _WORDS = {"force": "force", "radius": "contact radius", "peak_pressure": "peak p
 _RTOL, _TRIAL_RTOL = 1e-6, 1e-7
 
 
+@titled("error against spacing where the solution is known, and Richardson's extrapolation")
 def convergence(problem: str, recipe: Mapping[str, Any]) -> xr.Dataset:
     """Error against spacing where the solution is known, or trials of Richardson's extrapolation.
 

@@ -13,7 +13,7 @@ Complementarity Problem (1992), sect. 4.7.
 import numpy as np
 import xarray as xr
 
-from fractalcontact.core.datasets import labelled_dataset
+from fractalcontact.core.datasets import labelled_dataset, titled
 from fractalcontact.core.labels import cf_attrs
 from roughcontact.elastic.halfspace import RIGID_PLATE_SELF_TERMS, HalfSpace
 from roughcontact.errors import NotConverged
@@ -106,6 +106,7 @@ _ELIMINATION = {
 }
 
 
+@titled("whether dropping points alone reaches the right contact set")
 def elimination(draws: int = 200) -> xr.Dataset:
     """Frequency of wrong sets by the paper's algorithm, for each kernel.
 

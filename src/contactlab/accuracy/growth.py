@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 import xarray as xr
 
-from fractalcontact.core.datasets import labelled_dataset
+from fractalcontact.core.datasets import labelled_dataset, titled
 from fractalcontact.core.estimate import Estimate
 from fractalcontact.core.fitting import fit_line
 from fractalcontact.core.labels import cf_attrs
@@ -24,6 +24,7 @@ _GROWTH = {
 }
 
 
+@titled("time and memory of the solvers over sizes")
 def growth(problems: Sequence[xr.Dataset], error: float) -> xr.Dataset:
     """Time and memory over sizes at an error of the force, with the exponents of their growth.
 

@@ -15,7 +15,7 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from fractalcontact.core.child_process import ChildFailed, in_child
-from fractalcontact.core.datasets import labelled_dataset
+from fractalcontact.core.datasets import labelled_dataset, titled
 from fractalcontact.core.labels import cf_attrs
 from fractalcontact.domain.box_dimension import dimension_of_domain
 from roughcontact import threads
@@ -89,6 +89,7 @@ class _Way:
     from_scratch: Callable[[], Any]
 
 
+@titled("error against time of solvers and cheaper models, one group per test problem")
 def speed(problem: str, recipe: Mapping[str, Any]) -> xr.Dataset:
     """:func:`error_against_time` of one of a study's problems, named as in `reference.problems_of`.
 

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import xarray as xr
 
-from fractalcontact.core.datasets import labelled_dataset
+from fractalcontact.core.datasets import labelled_dataset, titled
 from roughcontact.contact.solve import solve_contact
 from roughcontact.contact.state import ContactState
 from roughcontact.errors import NotConverged
@@ -106,6 +106,7 @@ def stability(kinds: Sequence[str] | None = None, draws: int = 25) -> xr.Dataset
     )
 
 
+@titled("verdicts on the solvers by kind of test problem")
 def join(parts: Sequence[xr.Dataset]) -> xr.Dataset:
     """Verdicts on all kinds of problem, in the order of `hard_problems.KINDS`.
 

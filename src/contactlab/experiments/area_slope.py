@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from fractalcontact.core.datasets import titled
 from fractalcontact.core.labels import cf_attrs
 from fractalcontact.mechanics import theory
 from fractalcontact.mechanics.area import AREA_SLOPE, CORRECTED_AREA_SLOPE
@@ -23,6 +24,7 @@ from roughcontact.elastic.halfspace import HalfSpace
 from .units import E_STAR, RMS_FRACTION, SPACING, SURFACES
 
 
+@titled("real contact area at light load, on surfaces with and without a roll-off")
 def area_slope(recipe: Mapping[str, Any], rtol: float = 1e-6) -> xr.Dataset:
     """Area slopes of synthetic surfaces, raw and corrected, with and without a roll-off.
 

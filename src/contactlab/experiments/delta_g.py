@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from fractalcontact.core.datasets import labelled_dataset
+from fractalcontact.core.datasets import labelled_dataset, titled
 from fractalcontact.core.estimate import Estimate
 from fractalcontact.core.intervals import mean_interval
 from fractalcontact.core.labels import cf_attrs
@@ -34,6 +34,7 @@ FROM_HURST = 0.5
 TOLERATED, PROMISED = 0.03, 0.9
 
 
+@titled("estimators of Delta_g on surfaces of known dimension")
 def estimator_bias(recipe: Mapping[str, Any]) -> xr.Dataset:
     """Bias, scatter and coverage of every estimator on synthetic surfaces.
 

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from fractalcontact.core.datasets import labelled, labelled_dataset
+from fractalcontact.core.datasets import labelled, labelled_dataset, titled
 from fractalcontact.core.directions import DIRECTIONS
 from fractalcontact.core.fitting import fit_line
 from fractalcontact.core.intervals import mean_interval
@@ -37,6 +37,7 @@ from .units import SURFACES
 N_OFFSETS = 50
 
 
+@titled("rigid dilatancy of synthetic joints with and without a roll-off")
 def roll_off_effect(recipe: Mapping[str, Any], window: float, seeds: Sequence[int]) -> xr.Dataset:
     """Rigid dilatancy of embedded joints with their roll-off, and without.
 

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from fractalcontact.core.datasets import labelled
+from fractalcontact.core.datasets import labelled, titled
 from fractalcontact.core.estimate import Estimate, rows_of
 from fractalcontact.core.labels import cf_attrs
 from fractalcontact.mechanics.theory import (
@@ -83,6 +83,7 @@ _VERDICTS: dict[str, tuple] = {
 _ESTIMATORS = ("area", "box")
 
 
+@titled("which exponent carries the size effect: resolution, size and geometry one by one")
 def size_effect_test(parts: Sequence[xr.Dataset], recipe: Mapping[str, Any]) -> xr.Dataset:
     """Exponents of every class of surfaces, and the verdict on eq. 6.
 

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from fractalcontact.core.datasets import labelled_dataset
+from fractalcontact.core.datasets import labelled_dataset, titled
 from fractalcontact.core.errors import InputError
 from fractalcontact.core.labels import cf_attrs
 from fractalcontact.mechanics.corrected_area import corrected_area
@@ -56,6 +56,7 @@ SURFACES: dict[str, tuple] = {
 }
 
 
+@titled("strength of sliding mated joints over their side, at equal v and at equal v/b")
 def size_strength(recipe: Mapping[str, Any], rtol: float = 1e-6) -> xr.Dataset:
     """Strength, contact area and separation of sliding mated joints over their side.
 

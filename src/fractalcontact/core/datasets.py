@@ -1,7 +1,8 @@
 """Labelled datasets made from a table: of each variable its dimensions, unit and long name."""
 
-from collections.abc import Mapping, Sequence
-from typing import Any
+import functools
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, ParamSpec, TypeVar
 
 import xarray as xr
 
@@ -9,6 +10,36 @@ from .labels import cf_attrs
 
 #: A name, several of them, or () for a number.
 Dims = Sequence[str]
+Given = ParamSpec("Given")
+Made = TypeVar("Made", xr.Dataset, dict[str, xr.Dataset])
+
+
+def titled(
+    title: str = "", **titles: str
+) -> Callable[[Callable[Given, Made]], Callable[Given, Made]]:
+    """Decorator of the function of a stage, which gives its dataset a title.
+
+    The attribute ``title`` is the description of the stage's group in the atlas.
+
+    Parameters
+    ----------
+    title : str, optional
+        Of a function that gives one dataset.
+    **titles : str
+        By name, of a function that gives several.
+    """
+
+    def decorate(function: Callable[Given, Made]) -> Callable[Given, Made]:
+        @functools.wraps(function)
+        def make(*args: Given.args, **kwargs: Given.kwargs) -> Made:
+            made = function(*args, **kwargs)
+            if isinstance(made, xr.Dataset):
+                return made.assign_attrs(title=title)
+            return {name: one.assign_attrs(title=titles[name]) for name, one in made.items()}
+
+        return make
+
+    return decorate
 
 
 def labelled(

@@ -463,9 +463,3 @@ def _read(kind: Any, value: Any) -> Any:
     if get_origin(kind) is list and is_dataclass(of := get_args(kind)[0]):
         return [read(of, one) for one in value]  # type: ignore[arg-type]
     return read(kind, value) if is_dataclass(kind) else value  # type: ignore[arg-type]
-
-
-def arguments(function: object, stated: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
-    """Settings among the arguments of a function, built from the parameters of a job."""
-    types = get_type_hints(function)
-    return {parameter: read(types[parameter], part) for parameter, part in stated.items()}

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from ..core.datasets import labelled
+from ..core.datasets import labelled, titled
 from ..core.errors import InputError
 from ..core.estimate import names_of, rows_of
 from ..core.labels import cf_attrs
@@ -76,6 +76,7 @@ _LOADS = {
 }
 
 
+@titled("measured contact maps, one group per map")
 def read_contact_map(path: Path | str, options: Mapping[str, Any], *, label: str) -> xr.Dataset:
     """The contact domain of a map, its dimension and its clusters.
 

@@ -11,7 +11,7 @@ from dataclasses import replace
 import numpy as np
 import xarray as xr
 
-from ..core.datasets import labelled, labelled_dataset
+from ..core.datasets import labelled, labelled_dataset, titled
 from ..core.labels import REALISATIONS, TWINS, cf_attrs
 from ..core.limits import RESOLVED_NODES
 from ..core.settings import EnsembleSettings, Solver
@@ -83,6 +83,7 @@ EXPONENTS = {
 }
 
 
+@titled("realisations of an embedded specimen or twins of a scan, their mean and spread")
 def ensemble(
     specimens: xr.Dataset,
     joints: xr.Dataset,

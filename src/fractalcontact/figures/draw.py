@@ -21,7 +21,6 @@ from ..core.errors import InputError, OutputError
 from ..core.labels import printable
 from ..study.atlas import read_atlas
 from ..study.figure_list import all_figures
-from ..study.stages import STAGES
 from .kit.drawing import (
     COLOURS,
     WIDTH,
@@ -167,7 +166,7 @@ def draw_study_figures(
     """
     # To read the stages that none of them draws takes long.
     needs = {stage for name in names for stage in all_figures()[name].needs}
-    atlas = read_atlas(atlas_path, without=STAGES.keys() - needs)
+    atlas = read_atlas(atlas_path, only=needs)
     return _draw(atlas, list(specimens), folder, names)
 
 

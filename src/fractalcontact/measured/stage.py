@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 
 from ..core.arrays import padded
+from ..core.datasets import titled
 from ..core.errors import InputError
 from ..core.estimate import NO_ESTIMATE, Estimate
 from ..core.labels import cf_attrs
@@ -39,6 +40,7 @@ _OF_TESTS = {
 }
 
 
+@titled(measured="laboratory tests beside computed closure, flow, dilatancy and strength")
 def measured_stage(
     specimens: xr.Dataset,
     joints: xr.Dataset,

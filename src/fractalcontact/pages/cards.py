@@ -8,9 +8,7 @@ from urllib.parse import quote
 
 from markupsafe import Markup
 
-from ..core.stage import ENSEMBLE, JOINT, SPECIMEN, TESTED
 from ..study.figure_list import Figure, all_figures
-from ..study.stages import STAGES
 from .captions import symbols, take_apart
 
 #: Sections of a specimen's page, in order, by name and title.
@@ -135,7 +133,7 @@ def redrawn(name: str, specimen: str, atlas: str, groups: Collection[str]) -> st
     subject = repr(specimen)
     if not specimen:
         # A study of synthetic surfaces, or of measured maps, alone has no specimens to list.
-        of_specimens = any(STAGES[stage].grain in (SPECIMEN, JOINT) for stage in stages)
+        of_specimens = "specimens" in stages
         subject = "sorted(atlas['specimens'].children)" if of_specimens else "[]"
     of_stages = {stage: _group_of(stage, specimen) for stage in stages}
     read = [f"{stage} = atlas['{group}']" for stage, group in of_stages.items() if group in groups]
@@ -156,9 +154,8 @@ def redrawn(name: str, specimen: str, atlas: str, groups: Collection[str]) -> st
 
 
 def _group_of(stage, specimen):
-    """Group of a stage: the specimen's, where the stage has one of each; maps have their own."""
-    each = bool(specimen) and STAGES[stage].grain in (SPECIMEN, JOINT, ENSEMBLE, TESTED)
-    return f"{stage}/{specimen}" if each else stage
+    """Group of a stage: the specimen's, if there is one; measured maps have their own."""
+    return f"{stage}/{specimen}" if specimen and stage != "contact_maps" else stage
 
 
 def png_size(path: Path) -> tuple[int, int]:

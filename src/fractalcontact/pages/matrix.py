@@ -10,9 +10,8 @@ import pandas as pd
 import xarray as xr
 
 from ..core.claims import claims_of
-from ..core.stage import SPECIMEN
 from ..core.verdicts import FAILS, HOLDS, ILL_POSED, PARTLY, UNDETERMINED
-from ..study.figure_list import all_figures
+from ..study.figure_list import SPECIMEN, all_figures
 
 #: A sign for each verdict, and the class of its colour.
 SIGNS = {

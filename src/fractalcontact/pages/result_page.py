@@ -22,7 +22,6 @@ from ..core.atomic import atomic_write
 from ..core.determined import decided_by_scan
 from ..core.labels import OPPOSITE, printable
 from ..core.measured_maps import measured_maps
-from ..core.stage import JOINT, SPECIMEN
 from ..core.subject import Subject, configuration_of
 from ..core.tables import write_table
 from ..core.text import (
@@ -37,7 +36,7 @@ from ..core.text import (
 )
 from ..report.published import Number, Row, row_of, shown_in
 from ..study.atlas_parts import Trees
-from ..study.figure_list import STUDY, all_figures
+from ..study.figure_list import JOINT, SPECIMEN, STUDY, all_figures
 from .captions import symbols
 from .cards import SECTIONS, cards_of, section_of
 from .cells import absent, bare_words, error_words, estimate_words, shown, sort_value, value_words

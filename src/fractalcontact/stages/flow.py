@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from ..core.datasets import Dims, labelled_dataset
+from ..core.datasets import Dims, labelled_dataset, titled
 from ..core.estimate import NO_ESTIMATE, Estimate, rows_of
 from ..core.labels import cf_attrs
 from ..core.reported import Reported
@@ -92,6 +92,7 @@ _TABLE: dict[str, tuple[Dims, str, str]] = {
 }
 
 
+@titled(flow="aperture and transmissivity over loads, branches and offsets")
 def flow_stages(
     specimens: xr.Dataset,
     joints: xr.Dataset,

@@ -4,6 +4,7 @@ from dataclasses import asdict
 
 import xarray as xr
 
+from ..core.datasets import titled
 from ..core.settings import ReportSettings
 from ..mechanics.model_validity import model_validity
 from ..statements.comparison import specimen_row
@@ -21,6 +22,15 @@ OF_STRENGTH = (
 )
 
 
+@titled(
+    windows="closure, roughness and strength of sub-windows against their size",
+    strength="dilatancy and friction angles, shear strength",
+    elastic_model=(
+        "verdict on the elastic model: real mean pressure against strength, slope of the faces"
+    ),
+    statements="the paper's statements, and their verdicts",
+    comparison="quantities of a specimen for comparison with others, with their errors",
+)
 def report_stages(settings: ReportSettings, **stages: xr.Dataset) -> dict[str, xr.Dataset]:
     """Stages that solve nothing: a friction angle, wall strength or label makes these alone again.
 
@@ -28,7 +38,7 @@ def report_stages(settings: ReportSettings, **stages: xr.Dataset) -> dict[str, x
     ----------
     settings : ReportSettings
     **stages : xr.Dataset
-        Of one specimen by name, those that :class:`study.stages.Stage` ``needs``.
+        Of one specimen by name, those that the rule ``strength`` takes.
 
     Returns
     -------

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import xarray as xr
 
+from ..core.datasets import titled
 from ..core.settings import SpecimenSettings
 from ..core.window import spacing_of
 from ..mechanics.joint import describe_joint
@@ -83,6 +84,12 @@ def prepare_specimen(
     return specimen.assign(motion_variables(motions)) if motions else specimen
 
 
+@titled(
+    specimens="levelled faces, mask, window and where they came from",
+    quality="relief, spectra and noise floor of each face, and where its fractal range ends",
+    surface_dimension="Delta_g of each face by several estimators",
+    joints="offsets and composite topographies",
+)
 def specimen_stages(specimen: xr.Dataset, settings: SpecimenSettings) -> dict[str, xr.Dataset]:
     """Stages of one levelled specimen, itself among them.
 

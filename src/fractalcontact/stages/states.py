@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 import xarray as xr
 
+from ..core.datasets import titled
 from ..core.reported import Reported
 from ..core.settings import Solver, StateSettings
 from ..core.window import cell_side, nominal_area, window_sides
@@ -32,6 +33,18 @@ from ..roughness.recommended import best_dimension
 from .errors import error_stages
 
 
+@titled(
+    closure="closure curves, stiffness, real contact area",
+    dilatancy="rigid and elastic dilatancy",
+    area="laws of the real contact area, and the classical theories beside it",
+    domains="box counts, Delta_sigma and clusters of the contact domains",
+    contact="contact domains",
+    scaling="renormalisation over resolutions",
+    domain_measures="lacunarity and generalised dimensions of the contact at the map offset",
+    branches="closure of loading, unloading and reloading, at the reported offset",
+    choices="solve plan: states solved, accuracy, reasons, and resulting errors",
+    error_budget="error of the published quantities, split by source",
+)
 def state_stages(
     specimens: xr.Dataset,
     surface_dimension: xr.Dataset,

@@ -3,6 +3,7 @@
 import numpy as np
 import xarray as xr
 
+from ..core.datasets import titled
 from ..core.settings import Solver, WindowSettings
 from ..mechanics.loading import JointLoading
 from ..mechanics.states import with_pressure
@@ -10,6 +11,12 @@ from ..size_effect import windows
 from ..size_effect.eq6 import size_test
 
 
+@titled(
+    window_states="contact states of sub-windows, one by one",
+    size_test=(
+        "contact against size at equal nominal pressure, eq. 6's own form, and the whole predicted"
+    ),
+)
 def window_stages(
     specimens: xr.Dataset, joints: xr.Dataset, settings: WindowSettings, solver: Solver
 ) -> dict[str, xr.Dataset]:

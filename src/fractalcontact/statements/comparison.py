@@ -10,7 +10,7 @@ from functools import partial
 import numpy as np
 import xarray as xr
 
-from ..core.datasets import labelled_dataset
+from ..core.datasets import labelled_dataset, titled
 from ..core.estimate import Estimate, rows_of
 from ..core.intervals import t_quantile
 from ..core.labels import cf_attrs
@@ -116,6 +116,7 @@ def _size_exponent(size_test, pressures):
     return Estimate.read(size_test, "area_exponent").mapped(on_loads).columns("size_exponent")
 
 
+@titled("specimens side by side, and how groups of them spread")
 def compare_specimens(rows: Mapping[str, xr.Dataset]) -> xr.Dataset:
     """Rows of all specimens side by side, and how the quantities spread within each group.
 

@@ -6,6 +6,7 @@ import numpy as np
 import xarray as xr
 
 from ..core.claims import all_claims, claims_of
+from ..core.datasets import titled
 from ..core.directions import slides
 from ..core.estimate import Estimate
 from ..core.fitting import fit_line, slope_error
@@ -17,6 +18,7 @@ from .findings import Finding, Joint, beyond_margin, by_sign, difference_of, mar
 from .judge import material_of, table_of
 
 
+@titled("the paper's statements on several joints together, and their verdicts")
 def judge_study(
     stages: Mapping[str, Mapping[str, xr.Dataset]],
     settings: Mapping[str, Mapping],

@@ -9,7 +9,6 @@ import xarray as xr
 
 from ..core.atomic import atomic_write
 from ..core.netcdf import COMPRESSED_FROM, encoding, versions
-from .stages import STAGES
 
 #: Significant digits of the maps of pressure and gap, which the atlas has in single precision.
 FIELD_DIGITS = 3
@@ -34,7 +33,7 @@ def write_atlas(
     Parameters
     ----------
     parts : mapping of str to mapping of str to xr.Dataset
-        Stage to specimen to dataset; stages are those of :data:`study.stages.STAGES`.
+        Stage to specimen to dataset. Its attribute ``title`` describes the stage.
     path : path-like
     study : str
         Its name.
@@ -79,10 +78,12 @@ def write_atlas(
         root.attrs["versions_differ"] = json.dumps(differing, sort_keys=True)
     groups = {"/": root}
     for stage, specimens in parts.items():
-        groups[f"/{stage}"] = xr.Dataset(attrs={"description": STAGES[stage].title})
+        groups[f"/{stage}"] = xr.Dataset()
         for name, dataset in specimens.items():
             _demand_labels(dataset, f"{stage}/{name}")
-            groups[f"/{stage}/{name}"] = dataset
+            own = groups[f"/{stage}/{name}"] = dataset.copy(deep=False)
+            if title := own.attrs.pop("title", ""):  # that of its stage, once for all specimens
+                groups[f"/{stage}"].attrs["description"] = title
     with atomic_write(path) as temporary:
         _write_groups(groups, temporary)
     return differing
@@ -183,7 +184,9 @@ def _as_characters(dataset: xr.Dataset) -> dict[Hashable, dict]:
     return kept
 
 
-def read_atlas(path: Path | str, without: Collection[str] = ()) -> xr.DataTree:
+def read_atlas(
+    path: Path | str, without: Collection[str] = (), only: Collection[str] | None = None
+) -> xr.DataTree:
     """Atlas as an xarray DataTree, in memory.
 
     Parameters
@@ -191,6 +194,8 @@ def read_atlas(path: Path | str, without: Collection[str] = ()) -> xr.DataTree:
     path : path-like
     without : collection of str
         Stages to leave out.
+    only : collection of str, optional
+        Stages to read; all by default.
 
     Notes
     -----
@@ -198,17 +203,17 @@ def read_atlas(path: Path | str, without: Collection[str] = ()) -> xr.DataTree:
     a quarter of a second each, because all the others are gone through. What the process has
     opened before, with this or with xarray's ``open_datatree``, makes no difference.
     """
-    return read_named_atlas(path, without)[0]
+    return read_named_atlas(path, without, only)[0]
 
 
 def read_named_atlas(
-    path: Path | str, without: Collection[str] = ()
+    path: Path | str, without: Collection[str] = (), only: Collection[str] | None = None
 ) -> tuple[xr.DataTree, frozenset[str]]:
     """Atlas as :func:`read_atlas` gives it, and the names of all groups that hold anything.
 
     Parameters
     ----------
-    path, without
+    path, without, only
         As of :func:`read_atlas`.
 
     Returns
@@ -225,7 +230,7 @@ def read_named_atlas(
         for name, stage in file.groups.items():
             members = {group.path: group for group in (stage, *stage.groups.values())}
             held |= {at.strip("/") for at, one in members.items() if one.variables or one.groups}
-            if name not in without:
+            if name not in without and (only is None or name in only):
                 groups |= members
         loaded = {
             name: xr.open_dataset(xr.backends.NetCDF4DataStore(group)).load()

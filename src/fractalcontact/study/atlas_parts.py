@@ -10,7 +10,6 @@ import xarray as xr
 from ..core.errors import InputError
 from ..core.subject import Subject, configuration_of, specimens_of
 from .atlas import read_named_atlas
-from .stages import STAGES
 
 
 def open_atlas(path: Path | str) -> "Atlas":
@@ -74,10 +73,8 @@ class Atlas:
     @property
     def stages(self) -> tuple[str, ...]:
         """Stages of the study and those of its first specimen, in the order of an atlas."""
-        held = set(self._own)
-        if self._parts:
-            held |= set(_contents(self._file(self.specimens[0]))[1])
-        return tuple(name for name in STAGES if name in held)
+        first = _contents(self._file(self.specimens[0]))[1] if self._parts else {}
+        return tuple(dict.fromkeys([*first, *self._own]))
 
     def __getitem__(self, key: str) -> xr.Dataset:
         """Dataset of a stage and a specimen, "STAGE/SPECIMEN", in memory.
@@ -161,8 +158,8 @@ class Trees:
     """
 
     def __init__(self, path: Path | str, stages: Collection[str]):
-        self.path, self._without = Path(path), STAGES.keys() - set(stages)
-        self.root, self.held = read_named_atlas(path, self._without)
+        self.path, self._stages = Path(path), frozenset(stages)
+        self.root, self.held = read_named_atlas(path, only=self._stages)
         self.parts: dict[str, str] = _mapping(self.root.attrs, "parts", self.path)
         self.names = sorted({*specimens_of(self.root), *self.parts})
 
@@ -176,7 +173,7 @@ class Trees:
         if name not in self.parts:
             return self.root, self.held, self.path
         file = self._file(name)
-        return *read_named_atlas(file, {*self._without, *without}), file
+        return *read_named_atlas(file, without, self._stages), file
 
     def closure(self, name: str) -> Subject:
         """A specimen with its closure curves alone, which say what is reported."""

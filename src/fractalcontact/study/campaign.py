@@ -3,9 +3,7 @@
 from collections.abc import Collection, Mapping
 from typing import Any
 
-from ..core.stage import JOINT, SPECIMEN, STUDY
 from .figure_list import all_figures, figures_of
-from .stages import STAGES
 
 #: Specimens up to which an atlas is one file unless the study says otherwise. A file of many takes
 #: memory for all of them to write, and time for all of them to open.
@@ -14,8 +12,6 @@ MAX_WHOLE = 30
 WHOLE, PARTS = "whole", "parts"
 #: Word for all figures, and for none.
 ALL, NONE = "all", "none"
-#: The one stage of all specimens together that such an atlas has: it takes one row of each.
-KEPT_WHOLE = "study_comparison"
 #: Key that the figures over several specimens ask for: every study of more than one has it.
 COMPARISON = "comparison"
 
@@ -68,6 +64,4 @@ def of_study_alone(names: Collection[str]) -> list[str]:
     names : collection of str
         From :func:`study.figure_list.study_figures_of`.
     """
-    in_parts = {name for name, stage in STAGES.items() if stage.grain in (SPECIMEN, JOINT, STUDY)}
-    in_parts -= {KEPT_WHOLE}
-    return [name for name in names if not set(all_figures()[name].needs) & in_parts]
+    return [name for name in names if "specimens" not in all_figures()[name].needs]

@@ -4,11 +4,13 @@ RO-Crate 1.1 with the profile Workflow Run Crate 0.5, as one file of JSON-LD bes
 files listed are those of the manifest, with their checksums.
 """
 
+import contextlib
 import datetime
 import json
 import mimetypes
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from typing import Any
 from urllib.parse import quote
@@ -18,7 +20,6 @@ import yaml
 from ..core import checksums
 from ..core.atomic import atomic_write
 from .figure_list import all_figures
-from .stages import STAGES
 
 FILE = "ro-crate-metadata.json"
 _CODE = "code"
@@ -299,10 +300,11 @@ def _described(results: Path, name: str) -> dict[str, Any]:
 
 def _file(results: Path, name: str, digest: str) -> dict[str, Any]:
     """Entity of a result, with checksum and description."""
-    return _described(results, name) | {"description": _description(name), "sha256": digest}
+    description = _description(results, name)
+    return _described(results, name) | {"description": description, "sha256": digest}
 
 
-def _description(name: str) -> str:
+def _description(results: Path, name: str) -> str:
     """Kind of a result by its place: that of a figure, of a stage, or of a file of its own."""
     path = Path(name)
     first = path.parts[0]
@@ -316,6 +318,18 @@ def _description(name: str) -> str:
         return f"{kind.get(path.suffix, 'figure')}: {title}{of}"
     if first in _FOLDERS:
         return _FOLDERS[first].format(stem=path.stem)
-    if first in STAGES:
-        return f"{STAGES[first].title}, {'/'.join(path.with_suffix('').parts[1:])}"
+    if path.suffix == ".nc":
+        words = _title_of(results / first) or first
+        return f"{words}, {'/'.join(path.with_suffix('').parts[1:])}"
     return name
+
+
+@cache
+def _title_of(folder: Path) -> str:
+    """Title of the datasets of a stage; empty where they have none, or the first is damaged."""
+    import netCDF4  # takes longer to import than all the rest
+
+    for path in sorted(folder.glob("*.nc"))[:1]:
+        with contextlib.suppress(OSError), netCDF4.Dataset(path) as file:
+            return str(getattr(file, "title", ""))
+    return ""

@@ -56,13 +56,14 @@ class Cost:
 
 #: By rule, memory fitted to grids of 128 to 2048 nodes along a side, seconds to 256, 512 and 1024
 #: of a surface against a plane and to a joint of 520 states (``docs/scaling.md``). States of
-#: ``ensemble`` are realisations. Of ``specimen``
-#: the nodes are those of a face, else of the window; ``atlas_part`` is ``figures`` without any.
+#: ``ensemble`` are realisations. Of
+#: ``roughness_and_composite`` the nodes are those of a face, else of the window;
+#: ``atlas_part`` is ``figures`` without any.
 COSTS = {
-    "embedded": Cost(80, 130, 0.5, 0.4),
-    "specimen": Cost(270, 100, 4, 3.5),
+    "synthetic_scan": Cost(80, 130, 0.5, 0.4),
+    "roughness_and_composite": Cost(270, 100, 4, 3.5),
     "contact": Cost(210, 380, 2.5, 2.5, 1, 0.2),
-    "analysis": Cost(190, 450, 8, 9, 5, 0.3),
+    "closure_and_box_counts": Cost(190, 450, 8, 9, 5, 0.3),
     "flow": Cost(190, 1200, 4, 60, 5, 1),
     "windows": Cost(420, 620, 6, 55),
     "ensemble": Cost(420, 620, 5, 0, 0, 25),
@@ -99,7 +100,7 @@ def memory(rule: str, nodes: float, states: int = 1) -> int:
         Contact states that it keeps.
     """
     cost = COSTS[rule]
-    finer = OF_FINER * min(FINER * nodes, MAX_FINER) if rule == "analysis" else 0.0
+    finer = OF_FINER * min(FINER * nodes, MAX_FINER) if rule == "closure_and_box_counts" else 0.0
     of_grid = finer + nodes * (cost.bytes_per_node + cost.state * states)
     needed = AROUND + cost.start + of_grid / 1e6
     return max(MIN_MEMORY, round(ROOM * needed))
@@ -143,8 +144,8 @@ def reading_memory(files: Iterable[Path | str]) -> int:
     """
     files = list(map(Path, files))
     read = sum(_size(path) * (_PLAIN if _is_plain(path) else _PACKED) for path in files) / 1e6
-    described = memory("specimen", nodes_of_files(files))
-    least = ROOM * AROUND + 2 * COSTS["specimen"].start
+    described = memory("roughness_and_composite", nodes_of_files(files))
+    least = ROOM * AROUND + 2 * COSTS["roughness_and_composite"].start
     return max(described, round(least + read))
 
 

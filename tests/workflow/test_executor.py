@@ -1,0 +1,111 @@
+"""Jobs as forks of one process: they get, say and end as those that Snakemake starts itself."""
+
+import json
+import os
+import shutil
+import sys
+from types import SimpleNamespace
+
+import pytest
+from places import ROOT
+from projects import made, project, run, small_study, write_scan
+from snakemake.iocontainers import InputFiles, Log, OutputFiles, Params
+
+__all__ = ["project"]  # a fixture
+sys.path += [str(ROOT / "workflow"), str(ROOT / "workflow/engine")]
+import snakemake_executor_plugin_fractalcontact as forks
+
+pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="jobs are forks on Linux alone")
+
+
+@pytest.fixture(scope="module")
+def executor():
+    paths = [str(ROOT / name) for name in ("src", "workflow", "workflow/engine")]
+    os.environ["PYTHONPATH"] = os.pathsep.join(paths)
+    resources = SimpleNamespace(resource_settings=SimpleNamespace(cores=2))
+    workflow = SimpleNamespace(
+        **vars(resources), executor_settings=None, main_snakefile="", dag=None, scheduler=None
+    )
+    workflow.config, workflow.async_run = {"study": "test"}, lambda awaited: None
+    one = forks.Executor(workflow, None)
+    yield one
+    one.shutdown()
+    del os.environ["PYTHONPATH"]
+
+
+def end_of(executor, folder, text, threads=1):
+    """Exit code of a script, run as that of a job."""
+    (folder / "script.py").write_text(text)
+    basedir = SimpleNamespace(get_path_or_uri=lambda secret_free: str(folder))
+    lists = {
+        "input": InputFiles([str(folder / "told.json")]),
+        "output": OutputFiles(),
+        "log": Log(),
+        "params": Params(),
+    }
+    job = SimpleNamespace(
+        rule=SimpleNamespace(basedir=basedir, script="script.py", name="a_rule"),
+        threads=threads,
+        wildcards={},
+        resources={},
+        **lists,
+    )
+    return executor._run_script(job)
+
+
+TOLD = """
+import json, os, sys
+with open(snakemake.input[0], "w") as file:
+    json.dump([snakemake.rule, snakemake.config, os.getcwd(), os.environ["OMP_NUM_THREADS"],
+               "fractalcontact.figures.draw" in sys.modules,
+               "MALLOC_TRIM_THRESHOLD_" in os.environ], file)
+"""
+
+
+@pytest.mark.parametrize("threads", [1, 2])
+def test_a_script_is_given_its_job_and_of_one_thread_finds_everything_loaded(
+    executor, tmp_path, threads
+):
+    assert end_of(executor, tmp_path, TOLD, threads) == 0
+    told = json.loads((tmp_path / "told.json").read_text())
+    loaded = threads == 1
+    assert told == ["a_rule", {"study": "test"}, os.getcwd(), str(threads), loaded, False]
+
+
+@pytest.mark.parametrize(
+    ("text", "code"),
+    [
+        ("import sys; sys.exit('error: in one sentence')", 1),
+        ("import sys; sys.exit(3)", 3),
+        ("import sys; sys.exit()", 0),
+        ("raise ValueError('of the program')", 1),
+        ("import os; os.kill(os.getpid(), 9)", -9),
+    ],
+)
+def test_a_job_has_the_exit_code_of_its_script(executor, tmp_path, text, code):
+    assert end_of(executor, tmp_path, text) == code
+
+
+def test_the_variables_of_a_start_are_gone_after_it(monkeypatch):
+    monkeypatch.setenv("OMP_NUM_THREADS", "7")
+    monkeypatch.delenv("MALLOC_TRIM_THRESHOLD_", raising=False)
+    with forks._environment(forks._threads(1) | forks.MEMORY):
+        assert os.environ["OMP_NUM_THREADS"] == "1"
+        assert "MALLOC_TRIM_THRESHOLD_" in os.environ
+    assert os.environ["OMP_NUM_THREADS"] == "7"
+    assert "MALLOC_TRIM_THRESHOLD_" not in os.environ
+
+
+@pytest.mark.full
+@pytest.mark.workflow
+def test_a_study_has_the_same_bytes_with_and_without(project):
+    small_study(project)
+    write_scan(project, "rock")
+    alone = run(project, "config/test.yaml", "atlas")
+    assert alone.returncode == 0, alone.stderr[-3000:]
+    atlas = project / "results/test/atlas.nc"
+    expected = atlas.read_bytes()
+    shutil.rmtree(project / "results")
+    done = made(project, "config/test.yaml", targets=["atlas"])
+    assert done.returncode == 0, done.stderr[-3000:]
+    assert atlas.read_bytes() == expected
