@@ -84,7 +84,8 @@ class FaceKeys(Section):
     missing: Annotated[
         float | _Mark | _Marks,
         key(
-            'the number or word that marks missing cells ("" for empty ones), a list of them, or none'
+            'the number or word that marks missing cells ("" for empty ones), a list of them, '
+            "or none"
         ),
     ] = "none"
     confirmed: Annotated[
