@@ -40,7 +40,7 @@ class Section(BaseModel):
 S = TypeVar("S", bound=Section)
 
 
-def key(words: str, doc: str = "", unsaid: str = "", default: Any = None) -> Any:
+def key(words: str, doc: str = "", unsaid: str = "", default: Any = None, fill: str = "") -> Any:
     """Words on a key.
 
     Parameters
@@ -53,8 +53,10 @@ def key(words: str, doc: str = "", unsaid: str = "", default: Any = None) -> Any
         The cell of what holds where the key is left out.
     default : optional
         Value, as the user would write it, of a key that is left out.
+    fill : str, optional
+        What a draft asks its owner to fill in.
     """
-    extra = {"markdownDescription": doc, "x-unsaid": unsaid, "default": default}
+    extra = {"markdownDescription": doc, "x-unsaid": unsaid, "default": default, "x-fill": fill}
     return Field(
         description=words, json_schema_extra={k: v for k, v in extra.items() if v not in ("", None)}
     )

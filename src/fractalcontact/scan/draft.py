@@ -12,6 +12,7 @@ import numpy as np
 
 from ..core.directions import APERTURE
 from ..core.labels import listed, printable
+from .keys import words_to_fill
 from .options import NO_MARK, ScanOptions
 from .statements import statements
 from .undeclared import find_marks, number, possible_marks
@@ -29,25 +30,8 @@ _COMMENT_AT = 26
 _MAX_MARKS = 4
 #: Keys whose mention alone leaves open what would be taken for granted.
 _ASKED = ("heights", "kind", "missing", "first_row", "spacing", "unit", "unit_z")
-#: What to write where the file says nothing, by key.
-_TO_FILL = {
-    "kind": "face, aperture or contact-map",
-    "delimiter": "comma, semicolon, tab or blank",
-    "decimal": "'.' or ','",
-    "thousands": "the mark between groups of three digits",
-    "header": "lines above the first number",
-    "layout": "matrix (rows of heights) or points (x, y, z in columns)",
-    "variable": "the array of the heights",
-    "columns": "those of x, y and z, counted from 0",
-    "axes": "none, both, row or column: where coordinates stand instead of heights",
-    "unit": "of x, y and z: m, mm, um, ...; or unit_xy and unit_z",
-    "unit_xy": "of x and y: m, mm, um, ...",
-    "unit_z": "of the heights: m, mm, um, or of one count, 0.01 um",
-    "spacing": "between neighbouring cells, 0.1 mm, or [dx, dy]",
-    "first_row": "bottom or top: where the first row lies",
-    "heights": "up or down: which way the numbers grow",
-    "missing": "the number or word of cells without a height, or none",
-}
+#: What to write where the file says nothing, by key, in the order of a draft.
+_TO_FILL = words_to_fill()
 
 
 @dataclass(frozen=True)

@@ -4,8 +4,12 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from ..core.keys import Label, Load, Natural, PositiveLength, Section, key, wrong
-from .options import MAX_HEADER_LINES
+from ..core.keys import Label, Load, Natural, PositiveLength, Section, key, schema_of, wrong
+
+#: Most lines of words in front of the numbers of a text.
+MAX_HEADER_LINES = 10_000
+#: Kinds under the names that they had before.
+OLD_KINDS = {"surface": "face", "contact_map": "contact-map"}
 
 _Text = Annotated[str, Field(min_length=1)]
 _TwoSteps = Annotated[list[float | str], Field(min_length=2, max_length=2)]
@@ -29,63 +33,108 @@ class ConfirmedKeys(Section):
 class FaceKeys(Section):
     """Keys that may differ between the two faces of a joint."""
 
-    unit: Annotated[str, key("the unit of x, y and z, such as mm")] = ""
-    unit_xy: Annotated[str, key("the unit of x and y, such as mm")] = ""
+    delimiter: Annotated[
+        Literal["comma", "semicolon", "tab", "blank"],
+        key(
+            (
+                "comma, semicolon, tab or blank (white space of any length): what parts the "
+                "numbers of a text"
+            ),
+            fill="comma, semicolon, tab or blank",
+        ),
+    ] = "comma"
+    decimal: Annotated[
+        Literal[".", ","], key("the decimal mark of a text, '.' or ','", fill="'.' or ','")
+    ] = "."
+    thousands: Annotated[
+        Literal[".", ",", "'"],
+        key(
+            (
+                "the mark between groups of three digits, where a text has one: '.', ',' or an "
+                "apostrophe"
+            ),
+            fill="the mark between groups of three digits",
+        ),
+    ] = "'"
+    header: Annotated[
+        int,
+        Field(ge=0, le=MAX_HEADER_LINES),
+        key("number of lines above the numbers of a text", fill="lines above the first number"),
+    ] = 0
+    layout: Annotated[
+        Literal["matrix", "points"],
+        key("matrix or points", fill="matrix (rows of heights) or points (x, y, z in columns)"),
+    ] = "matrix"
+    variable: Annotated[
+        str,
+        key("the array, channel, layer or page of the heights", fill="the array of the heights"),
+    ] = ""
+    columns: Annotated[
+        list[str | Annotated[int, Field(ge=0)]],
+        Field(min_length=3, max_length=3),
+        key(
+            "the columns of x, y, z, as names or counted from 0",
+            fill="those of x, y and z, counted from 0",
+        ),
+    ] = []
+    axes: Annotated[
+        Literal["none", "both", "row", "column"],
+        key(
+            (
+                "none, both, row or column: which of the first row and column of a matrix hold "
+                "coordinates or counts instead of heights; of both, without spacing, they are "
+                "the coordinates"
+            ),
+            fill="none, both, row or column: where coordinates stand instead of heights",
+        ),
+    ] = "none"
+    unit: Annotated[
+        str,
+        key(
+            "the unit of x, y and z, such as mm",
+            fill="of x, y and z: m, mm, um, ...; or unit_xy and unit_z",
+        ),
+    ] = ""
+    unit_xy: Annotated[
+        str, key("the unit of x and y, such as mm", fill="of x and y: m, mm, um, ...")
+    ] = ""
     unit_z: Annotated[
-        str, key("the unit of the heights, such as um, or what one count is, 0.01 um")
+        str,
+        key(
+            "the unit of the heights, such as um, or what one count is, 0.01 um",
+            fill="of the heights: m, mm, um, or of one count, 0.01 um",
+        ),
     ] = ""
     spacing: Annotated[
         Annotated[float, Field(gt=0)] | _Text | _TwoSteps,
         key(
-            "the spacing of neighbouring cells: a number in the file's unit, a length such "
-            "as 0.1 mm, or a pair [dx, dy]"
+            (
+                "the spacing of neighbouring cells: a number in the file's unit, a length such "
+                "as 0.1 mm, or a pair [dx, dy]"
+            ),
+            fill="between neighbouring cells, 0.1 mm, or [dx, dy]",
         ),
     ] = ""
-    delimiter: Annotated[
-        Literal["comma", "semicolon", "tab", "blank"],
-        key(
-            "comma, semicolon, tab or blank (white space of any length): what parts the "
-            "numbers of a text"
-        ),
-    ] = "comma"
-    decimal: Annotated[Literal[".", ","], key("the decimal mark of a text, '.' or ','")] = "."
-    thousands: Annotated[
-        Literal[".", ",", "'"],
-        key(
-            "the mark between groups of three digits, where a text has one: '.', ',' or an "
-            "apostrophe"
-        ),
-    ] = "'"
-    header: Annotated[
-        int, Field(ge=0, le=MAX_HEADER_LINES), key("number of lines above the numbers of a text")
-    ] = 0
-    layout: Annotated[Literal["matrix", "points"], key("matrix or points")] = "matrix"
-    axes: Annotated[
-        Literal["none", "both", "row", "column"],
-        key(
-            "none, both, row or column: which of the first row and column of a matrix hold "
-            "coordinates or counts instead of heights; of both, without spacing, they are "
-            "the coordinates"
-        ),
-    ] = "none"
     first_row: Annotated[
         Literal["bottom", "top"],
-        key("bottom or top: whether the first row lies at the smallest y or the largest"),
+        key(
+            "bottom or top: whether the first row lies at the smallest y or the largest",
+            fill="bottom or top: where the first row lies",
+        ),
     ] = "bottom"
     heights: Annotated[
-        Literal["up", "down"], key("up or down: whether larger numbers are higher, or deeper")
+        Literal["up", "down"],
+        key(
+            "up or down: whether larger numbers are higher, or deeper",
+            fill="up or down: which way the numbers grow",
+        ),
     ] = "up"
-    variable: Annotated[str, key("the array, channel, layer or page of the heights")] = ""
-    columns: Annotated[
-        list[str | Annotated[int, Field(ge=0)]],
-        Field(min_length=3, max_length=3),
-        key("the columns of x, y, z, as names or counted from 0"),
-    ] = []
     missing: Annotated[
         float | _Mark | _Marks,
         key(
-            'the number or word that marks missing cells ("" for empty ones), a list of them, or '
-            "none"
+            'the number or word that marks missing cells ("" for empty ones), a list of them, '
+            "or none",
+            fill="the number or word of cells without a height, or none",
         ),
     ] = "none"
     confirmed: Annotated[
@@ -130,8 +179,11 @@ class ScanKeys(FaceKeys):
     kind: Annotated[
         Literal["face", "contact-map", "aperture", "profile", "surface", "contact_map"],
         key(
-            "face, contact-map, aperture (the opening between two faces) or profile (which "
-            "has a card alone, by profile_card)"
+            (
+                "face, contact-map, aperture (the opening between two faces) or profile (which "
+                "has a card alone, by profile_card)"
+            ),
+            fill="face, aperture or contact-map",
         ),
     ] = "face"
     lower: Annotated[FaceKeys, key("keys that hold for this face of two alone, {header: 0}")] = (
@@ -177,3 +229,20 @@ class ScanKeys(FaceKeys):
     mirror_upper: Annotated[
         Literal["x", "y"], key("x or y, the direction that runs the other way in the upper face")
     ] = "x"
+
+
+def choices() -> dict[str, tuple[str, ...]]:
+    """Values of the keys that have a few."""
+    keys = schema_of(ScanKeys)["properties"]
+    return {
+        name: tuple(value for value in one["enum"] if value not in OLD_KINDS)
+        for name, one in keys.items()
+        if "enum" in one
+    }
+
+
+def words_to_fill() -> dict[str, str]:
+    """Words for the keys that a draft asks its owner to fill in, in the order of a draft."""
+    keys = schema_of(ScanKeys)["properties"]
+    order = ("kind", *FaceKeys.model_fields)
+    return {name: keys[name]["x-fill"] for name in order if "x-fill" in keys[name]}

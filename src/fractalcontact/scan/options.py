@@ -6,9 +6,9 @@ from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any
 
-from ..core.directions import APERTURE
 from ..core.errors import InputError
 from ..core.units import length_factor, quantity
+from .keys import MAX_HEADER_LINES, choices
 
 
 @dataclass(frozen=True)
@@ -66,21 +66,6 @@ CONTACT_MAP = "contact-map"
 WRITING_KEYS = ("delimiter", "decimal", "thousands", "header")
 #: What parts the numbers of a line, by the key `delimiter`; a blank is white space of any length.
 DELIMITERS = {"comma": ",", "semicolon": ";", "tab": "\t", "blank": " "}
-#: Values of keys that have a few. Of `kind` the last three are no face, `axes` says
-#: which of the first row and column of a matrix hold coordinates or counts, `registration` how the
-#: upper face may be brought to the lower one.
-CHOICES = {
-    "kind": ("face", CONTACT_MAP, APERTURE, "profile"),
-    "delimiter": tuple(DELIMITERS),
-    "decimal": (".", ","),
-    "thousands": (".", ",", "'"),
-    "layout": ("matrix", "points"),
-    "axes": ("none", "both", "row", "column"),
-    "first_row": ("bottom", "top"),
-    "heights": ("up", "down"),
-    "registration": ("rigid", "translation", "none"),
-    "mirror_upper": ("x", "y"),
-}
 #: What the key `missing` says where every number is a height, however it looks.
 NO_MARK = "none"
 #: Keys that say how two faces lie to each other.
@@ -92,8 +77,6 @@ COORDINATE_KEYS = ("x", "y")
 #: Keys that mean nothing for the other layout, and what is meant by them.
 MATRIX_KEYS = ("spacing", "first_row", "axes")
 POINT_KEYS = ("columns", "grid")
-#: Most lines of words in front of the numbers of a text.
-MAX_HEADER_LINES = 10_000
 
 
 def parse_options(options: Mapping | None, where: str) -> ScanOptions:
@@ -119,7 +102,7 @@ def parse_options(options: Mapping | None, where: str) -> ScanOptions:
         if (unit := options.get(key)) is not None:
             _require(isinstance(unit, str), where, key, unit, "a unit of length, such as 'mm'")
             length_factor(unit, f"{where}: {key}")
-    for key, allowed in CHOICES.items():
+    for key, allowed in choices().items():
         value = options.get(key)
         _require(value is None or value in allowed, where, key, value, " or ".join(allowed))
     _check_text_keys(options, where)

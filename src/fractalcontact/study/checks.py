@@ -11,8 +11,8 @@ from ..core.errors import InputError
 from ..core.file_names import specimen_name
 from ..core.keys import nearest, shortened, validate
 from ..core.settings import Settings, Solver
-from ..scan.keys import ScanKeys
-from ..scan.options import CONTACT_MAP, coordinate_files
+from ..scan.keys import OLD_KINDS, ScanKeys
+from ..scan.options import coordinate_files
 from .configuration import resolve_embedded, resolve_roll_off, resolve_settings, solver_settings
 from .figure_list import figures_of
 from .idle_keys import refuse_idle_keys
@@ -21,9 +21,6 @@ from .measured import require_files, test_files
 from .scan_files import ScanFiles, refuse_outside_link
 from .scan_groups import list_grouped
 from .sidecar import is_contact_map, read_yaml
-
-#: Other words for the kinds of a file.
-_OLD_KINDS = {"surface": {"kind": "face"}, "contact_map": {"kind": CONTACT_MAP}}
 
 
 @dataclass(frozen=True)
@@ -295,7 +292,8 @@ def _split(document: dict, source: str) -> tuple[dict, dict]:
         if value is None and key in scan_keys:
             raise InputError(f"{source}: key '{key}' is empty; fill it in")
     validate(SidecarKeys, document, source)
-    document = {**document, **_OLD_KINDS.get(str(document.get("kind")), {})}
+    if (kind := document.get("kind")) in OLD_KINDS:
+        document = {**document, "kind": OLD_KINDS[kind]}
     scan = {key: value for key, value in document.items() if key in scan_keys}
     settings = {key: value for key, value in document.items() if key not in scan_keys}
     return scan, settings
