@@ -46,16 +46,19 @@ PIP    := $(BIN)/python -m pip --disable-pip-version-check --quiet --require-vir
 # Read from the environment, so that a shell never sees what stands in them.
 export STUDY SCANS FILE LIKE
 # Looks at the study and the results first, then runs Snakemake, and ends it when told to end.
-RUN = exec $(if $(filter yes y true 1,$(DROP)),env FRACTALCONTACT_DROP=yes) $(BIN)/python workflow/run.py "$$STUDY" \
+# Where it fails it ends make too, quietly, as QUIETLY does below.
+RUN = exec env FRACTALCONTACT_MAKE=$$PPID $(if $(filter yes y true 1,$(DROP)),FRACTALCONTACT_DROP=yes) $(BIN)/python workflow/run.py "$$STUDY" \
   $(if $(filter yes y true 1,$(VERBOSE)),--verbose)
 OPTIONS = -- --cores $(CORES)
+# Below the sentence of a check that refuses, make would add "*** Error 1". Only where a signal ends it
+# does it say nothing; and of that of a closed pipe no shell says anything.
+QUIETLY = || { kill -s PIPE $$PPID; exit 1; }
 
 .PHONY: new describe all study campaign report smoke size-effect-small keep-going slurm dry-run verify faults check-scans check-accuracy calibration keep same cost accuracy test test-all test-processors examples test-browser test-slurm test-slurm-accounting docs bench bench-flow problems grid-table extremes fuzz fuzz-dialects lint format lock clean
 # Two runs in one checkout would refuse each other.
 .NOTPARALLEL:
 all: study
 
-# Not by another make: each that fails adds a line of its own below what the run said.
 smoke: override STUDY = config/smoke.yaml
 study smoke: $(VENV)/installed
 	@$(RUN) $(OPTIONS) $(TARGET)
@@ -74,7 +77,7 @@ slurm: $(VENV)/slurm-installed
 	@$(RUN) --profile slurm -- -- $(TARGET)
 
 verify: $(VENV)/installed
-	@$(BIN)/python -m fractalcontact.commands.verify "$$STUDY"
+	@$(BIN)/python -m fractalcontact.commands.verify "$$STUDY" $(QUIETLY)
 
 # The experiment on the size effect in minutes, and its page in results/size_effect_small.
 size-effect-small: override STUDY = config/size_effect_small.yaml
@@ -85,16 +88,16 @@ size-effect-small: $(VENV)/installed
 
 # SCANS=folder for another one than the study's.
 check-scans: $(VENV)/installed
-	@$(BIN)/python -m fractalcontact.commands.check_scans $${SCANS:+"$$SCANS"} --study "$$STUDY"
+	@$(BIN)/python -m fractalcontact.commands.check_scans $${SCANS:+"$$SCANS"} --study "$$STUDY" $(QUIETLY)
 
 # NAME by the command line alone: Windows' WSL has one in the environment.
 new: $(VENV)/installed
 	@$(BIN)/python -m fractalcontact.commands.new_study $(if $(findstring command,$(origin NAME)),--name="$$NAME") \
-	  $${SCANS:+--scans "$$SCANS"}
+	  $${SCANS:+--scans "$$SCANS"} $(QUIETLY)
 
 describe: $(VENV)/installed
 	@$(BIN)/python -m fractalcontact.commands.describe $${SCANS:+"$$SCANS"} $${FILE:+--file "$$FILE"} \
-	  $${LIKE:+--like "$$LIKE"} --study "$$STUDY"
+	  $${LIKE:+--like "$$LIKE"} --study "$$STUDY" $(QUIETLY)
 
 # Times are compared: let nothing else run meanwhile.
 accuracy: STUDY := $(if $(filter file,$(origin STUDY)),config/accuracy.yaml,$(STUDY))
@@ -209,12 +212,16 @@ format: $(VENV)/tests-installed
 	$(BIN)/python -m snakefmt Snakefile workflow/rules
 
 $(VENV)/bin/python:
-	@$(PYTHON) -c 'import sys; sys.version_info >= (3, 11) or sys.exit(f"fractalcontact needs Python 3.11 or later, {sys.executable} is {sys.version.split()[0]}: make PYTHON=python3.12")'
-	@$(PYTHON) -c 'import os, re, sys; here = os.getcwd(); re.search(r"[\s\x22\x27\\$$`&;|<>()*?\[\]#!{}]", here) and sys.exit(f"{here}: Snakemake cannot start scripts from a folder whose name has spaces or quotes in it; move the checkout to one without")'
+	@$(PYTHON) -c 'import sys; sys.version_info >= (3, 11) or sys.exit(f"fractalcontact needs Python 3.11 or later, {sys.executable} is {sys.version.split()[0]}: make PYTHON=python3.12")' $(QUIETLY)
+	@$(PYTHON) -c 'import os, re, sys; here = os.getcwd(); re.search(r"[\s\x22\x27\\$$`&;|<>()*?\[\]#!{}]", here) and sys.exit(f"{here}: Snakemake cannot start scripts from a folder whose name has spaces or quotes in it; move the checkout to one without")' $(QUIETLY)
 	$(PYTHON) -m venv $(VENV)
 
+# Where Python finds the packages. A checkout that was copied or moved is installed again, before any
+# target: else Python would run the code of the folder where it was installed, or find none.
+FOUND_IN := $(shell cat $(VENV)/lib/python*/site-packages/__editable__.fractalcontact-*.pth 2>/dev/null)
+.PHONY: moved
 # Bytecode is compiled now: without it every job pays the imports three times over.
-$(VENV)/installed: requirements.lock pyproject.toml | $(VENV)/bin/python
+$(VENV)/installed: requirements.lock pyproject.toml $(if $(filter-out $(CURDIR)/src,$(FOUND_IN)),moved) | $(VENV)/bin/python
 	$(PIP) install --require-hashes --compile -r requirements.lock
 	$(PIP) install --no-deps --no-build-isolation --no-index -e .
 	$(BIN)/python -m compileall -q src

@@ -167,7 +167,8 @@ def test_what_a_user_holds_is_shown_in_a_line():
 def test_compiling_is_told_once(tmp_path, caplog, monkeypatch):
     monkeypatch.setattr(kernel_cache.KernelCache, "_announced", False)
     made = tmp_path / "made.py"
-    made.write_text("def twice(x):\n    return 2 * x\n\n\ndef thrice(x):\n    return 3 * x\n")
+    factors = {"twice": 2, "thrice": 3, "fourfold": 4}
+    made.write_text("".join(f"def {of}(x):\n    return {n} * x\n\n\n" for of, n in factors.items()))
     monkeypatch.syspath_prepend(tmp_path)
     module = importlib.import_module("made")
     monkeypatch.setattr(kernel_cache, "_folders", lambda: (tmp_path, [tmp_path]))
@@ -183,6 +184,10 @@ def test_compiling_is_told_once(tmp_path, caplog, monkeypatch):
         again = kernel_cache.njit(module.twice, cache=True)
         assert again(2.0) == 4.0
         assert caplog.records == []  # from the disk
+        # Another process, which needs a kernel that the first one did not.
+        monkeypatch.setattr(kernel_cache.KernelCache, "_announced", False)
+        assert kernel_cache.njit(module.fourfold, cache=True)(2.0) == 8.0
+        assert [record.levelno for record in caplog.records] == [logging.INFO]
 
 
 def test_a_format_whose_library_is_missing_says_what_to_install(tmp_path, monkeypatch):

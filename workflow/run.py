@@ -39,6 +39,8 @@ from fractalcontact.study.scan_files import list_scans
 WAIT, GRACE, CLUSTER_GRACE = 3, 20, 120
 #: What a shell does not take as it is.
 SPLITS = r"[\s'\"\\$`&;|<>()*?\[\]#!{}]"
+#: Environment variable with the number of the process of `make`, where that started this.
+MAKE = "FRACTALCONTACT_MAKE"
 #: Megabytes free below which a study is not begun: the default one makes some 100.
 MIN_FREE = 50
 
@@ -64,10 +66,11 @@ def main():
             _name_leftovers(results)
             _name_page(results)
     except (InputError, OSError) as error:  # a result, the guard or a folder that cannot be used
-        sys.exit(f"error: {error}")
+        _say(f"error: {error}")
+        _leave(1)
     if status and not options.dry_run:
         _say("the study did not finish; what is done is kept, and 'make' goes on from there")
-    sys.exit(status)
+    _leave(status)
 
 
 def _options():
@@ -215,6 +218,13 @@ def _end(child, *, cluster):
     with contextlib.suppress(ProcessLookupError):
         os.killpg(child.pid, signal.SIGKILL)
     child.wait()
+
+
+def _leave(status):
+    """End, and where it failed end the `make` that started this: it would add a line of its own."""
+    if status and MAKE in os.environ:
+        os.kill(int(os.environ[MAKE]), signal.SIGPIPE)
+    sys.exit(status)
 
 
 def _name_own_study(study, source):

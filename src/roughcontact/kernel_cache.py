@@ -157,12 +157,26 @@ class KernelCache(FunctionCache):
     def _announce(self):
         """Report that kernels are compiled, which takes about a minute.
 
-        Not of a kernel for other types, or one that was damaged, where the rest is on disk.
+        Once for a processor and versions, whichever process comes to it first. Not of a kernel for
+        other types, or one that was damaged, where the rest is on disk.
         """
         if not KernelCache._announced and not any(self._files(f"{self._digest[:16]}-*.nbc")):
             KernelCache._announced = True
-            LOG.warning("compiling kernels for this processor, once; this takes about a minute")
+            if self._is_first():
+                LOG.warning("compiling kernels for this processor, once; this takes about a minute")
         LOG.info("compiling %s", self._stem)
+
+    def _is_first(self):
+        """True if no kernel was kept last for this processor and these versions."""
+        files = [path for folder in self._paths for path in folder.glob("*.nbc")]
+        content = None
+        with contextlib.suppress(FileNotFoundError):  # removed by another process meanwhile
+            content = _intact(max(files, key=os.path.getmtime)) if files else None
+        if content is None:
+            return True
+        (_, _, processor, _, *versions), _ = pickle.loads(content)
+        mine = cpu_target.target_context.codegen().magic_tuple()
+        return (processor, *versions) != (mine, *_VERSIONS)
 
     def _save_overload(self, sig, data):
         if not self._enabled or not self._impl.check_cachable(data):

@@ -154,3 +154,21 @@ def test_every_form_has_the_nodes_of_oblong_cells_at_their_places(tmp_path):
         np.testing.assert_allclose(read, values, err_msg=ending)
         np.testing.assert_allclose(at_x, x, err_msg=ending)
         np.testing.assert_allclose(at_y, y, err_msg=ending)
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "words"),
+    [
+        ("configuration", "{settings: ", "'configuration' is no JSON"),
+        ("configuration", "[1]", "'configuration' holds no mapping"),
+        ("parts", "x", "'parts' is no JSON"),
+    ],
+)
+def test_an_atlas_with_a_damaged_attribute_is_refused_in_a_line(
+    tmp_path, capsys, name, text, words
+):
+    attrs = {"study": "a", "configuration": "{}"} | {name: text}
+    xr.Dataset(attrs=attrs).to_netcdf(tmp_path / "atlas.nc")
+    assert main([str(tmp_path / "atlas.nc"), "pair", "--out", "a.csv"]) == 1
+    (line,) = capsys.readouterr().err.splitlines()
+    assert words in line

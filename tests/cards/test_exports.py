@@ -11,6 +11,7 @@ from xml.etree import ElementTree as xml
 
 import numpy as np
 import pytest
+import yaml
 
 from fractalcontact.cards.exports import ags4, geos, opengeosys, porepy
 from fractalcontact.cards.exports.csv import table_of
@@ -218,3 +219,25 @@ def test_the_command_writes_a_file_or_says_what_is_no_card(tmp_path, card, capsy
     (line,) = capsys.readouterr().err.splitlines()
     assert line.startswith("error: ")
     assert "cannot be written" in line
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"study": None}, "study: None is not of type 'string'"),
+        ({"trust": {}}, "trust: 'word' is a required property"),
+        ({"entries": {"k_ni": {}}}, "entries.k_ni"),
+    ],
+)
+def test_a_card_that_is_not_whole_is_refused_in_one_line(tmp_path, card, capsys, change, words):
+    write_card(card, tmp_path)
+    path = tmp_path / "cards/pair.yaml"
+    path.write_text(yaml.safe_dump(dict(card) | change))
+    for code in CODES:
+        assert main([str(path), "--to", code]) == 1
+        (line,) = capsys.readouterr().err.splitlines()
+        assert "pair.yaml: no whole card: " in line
+        assert words in line
+    path.write_text(yaml.safe_dump({key: card[key] for key in card if key != "study"}))
+    assert main([str(path), "--to", "csv"]) == 1
+    assert "'study' is a required property" in capsys.readouterr().err

@@ -73,6 +73,7 @@ def test_faces_that_overlap_are_warned_of(folder, check):
     assert "1 ok, 1 with warnings" in out
     assert "the faces overlap in no cell of the window (0 in the whole scan)" in out
     assert "WARNING: the faces overlap as scanned in 1 cell of the window" in out
+    assert out.count("the faces overlap as scanned") == 1
     assert "suspicious: 1 lone spikes" in out
 
 

@@ -46,7 +46,7 @@ SENTENCES = {
     "closure": {"seated_k_ni_reason", "no_common_seat"},
     "elastic_model": {"reason"},
     "joints": {"plateau_undecided"},
-    "statements": {"claim", "short", "rule", "numbers", "note"},
+    "statements": {"claim", "short", "rule", "numbers", "note", "explanation"},
 }
 #: What depends on the order in which nodes are gone through: random nodes are drawn row by row.
 OF_ORDER = re.compile(

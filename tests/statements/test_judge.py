@@ -34,10 +34,7 @@ def found_by(name, settings=SETTINGS, **changes):
 def test_a_joint_as_the_paper_has_it():
     found = judge(stages(), SETTINGS)
     assert found.sizes["statement"] == len(statements_for(SETTINGS))
-    failing = {name: v for name, v in verdicts_of(found).items() if v != HOLDS}
-    assert failing == dict.fromkeys(
-        ("composite_dimension_rises", "compliance_goes_with_dimension"), ILL_POSED
-    )
+    assert set(verdicts_of(found).values()) == {HOLDS}
     assert found.attrs == {"direction": "W", "force": 1000.0}
     beside_a_rival = (
         nulls.closure_is_hyperbolic,
@@ -55,7 +52,6 @@ def verdicts_of(found):
 RISING = [1 - np.exp(-RIGID), 0.2 * RIGID]
 #: West, East, North, South.
 STEEP_NS = [1 - np.exp(-RIGID)] * 2 + [0.2 * RIGID] * 2
-TILTED = [1 + 0.0 * RIGID, 1 + 0.4 * RIGID] * 2
 ALIKE = [1 - np.exp(-RIGID)] * 4
 
 
@@ -68,7 +64,7 @@ ALIKE = [1 - np.exp(-RIGID)] * 4
         # A closure that has converged holds in part where the area has not.
         ("refinement_changes_little", {"area_change": -0.3}, PARTLY),
         ("refinement_changes_little", {"closure_change": [0.0, 0.3, 0.05, 0.05]}, PARTLY),
-        ("compliance_rises_at_first", {"compliance": [3, 3, 2, 1, 4, 5, 5], "length": 1.3}, FAILS),
+        ("compliance_rises_at_first", {"compliance": [4, 3, 2, 1, 1, 5, 5], "length": 1.3}, FAILS),
         ("compliance_rises_at_first", {"compliance": [1, 9, 2, 4, 4, 5, 5]}, UNDETERMINED),
         ("compliance_rises_at_first", {"length": 0.15}, UNDETERMINED),
         ("compliance_rises_at_first", {"nodes": np.full(7, 9.0)}, UNDETERMINED),
@@ -88,12 +84,12 @@ ALIKE = [1 - np.exp(-RIGID)] * 4
         ("compliance_rises_again", {"uncorrelated": np.nan}, UNDETERMINED),
         # None between: the last offset within the correlation length, not a first one, is before.
         ("compliance_rises_again", WITHIN | {"compliance": [1, 1.8, 3.2, 4, 4, 4, 4]}, FAILS),
-        ("compliance_rises_again", WITHIN | {"compliance": [9, 8, 7, 4, 5, 5, 5]}, HOLDS),
-        ("closure_is_hyperbolic", {"law": ["", *["hyperbola"] * 3, *["undecided"] * 3]}, HOLDS),
-        ("closure_is_hyperbolic", {"law": ["", "hyperbola", *["semi-logarithmic"] * 5]}, PARTLY),
-        ("closure_is_hyperbolic", {"law": ["semi-logarithmic"] * 7}, FAILS),
-        ("closure_is_hyperbolic", {"law": ["neither"] * 7}, FAILS),
-        ("closure_is_hyperbolic", {"law": ["undecided"] * 7}, UNDETERMINED),
+        ("compliance_rises_again", WITHIN | {"compliance": [9, 8, 7, 6, 4, 5, 5]}, HOLDS),
+        # A law without an asymptote fits better at some offsets; the hyperbola fits at some, none.
+        ("closure_is_hyperbolic", {"seated_misfits": [[0.02] * 7, [0.03] * 6 + [0.01]]}, PARTLY),
+        ("closure_is_hyperbolic", {"seated_misfits": [[0.02] * 6 + [0.2], [0.3] * 7]}, PARTLY),
+        ("closure_is_hyperbolic", {"seated_misfits": [[0.06] * 7, [0.3] * 7]}, FAILS),
+        ("closure_is_hyperbolic", {"seated_misfits": [[np.nan] * 7, [0.3] * 7]}, UNDETERMINED),
         ("area_is_linear", {"exponent": [0.95, *[0.8] * 6]}, PARTLY),
         ("area_is_linear", {"exponent": np.full(7, 0.8)}, FAILS),
         ("area_is_linear", {"exponent": np.full(7, 0.89)}, UNDETERMINED),
@@ -103,11 +99,26 @@ ALIKE = [1 - np.exp(-RIGID)] * 4
         ("area_falls", {"area": [9, 1, 9, 1, 9, 1, 8]}, UNDETERMINED),
         ("area_settles", {"area": [9, 8, 7, 5, 5, 5, 4]}, FAILS),
         ("area_settles", {"area": [9, 8, 7, 5, 5, 5, 2]}, FAILS),
-        ("composite_dimension_rises", {"dimension": np.linspace(2.0, 2.8, 7)}, ILL_POSED),
-        ("composite_dimension_rises", {"dimension": np.full(7, np.nan)}, ILL_POSED),
-        ("larger_samples_close_more", {"window_exponent": np.full(7, 0.05)}, UNDETERMINED),
-        ("larger_samples_close_more", {"window_exponent": np.full(7, -0.3)}, FAILS),
-        ("larger_samples_close_more", {"window_exponent": np.full(7, np.nan)}, UNDETERMINED),
+        ("composite_dimension_rises", {"dimension": np.linspace(2.8, 2.0, 7)}, FAILS),
+        # A rise within the margin is none.
+        ("composite_dimension_rises", {"dimension": np.linspace(2.3, 2.35, 7)}, FAILS),
+        ("composite_dimension_rises", {"dimension": np.full(7, np.nan)}, UNDETERMINED),
+        ("compliance_goes_with_dimension", {"dimension": np.linspace(2.8, 2.0, 7)}, FAILS),
+        ("compliance_goes_with_dimension", {"compliance": [4, 4, 4, 4, 4, 4, 4]}, UNDETERMINED),
+        ("compliance_goes_with_dimension", {"dimension": np.full(7, 2.3)}, UNDETERMINED),
+        # Closure from first touch grows with the size, the compliance does not.
+        ("larger_samples_close_more", {"window_exponent": np.full(7, 0.05)}, PARTLY),
+        ("larger_samples_close_more", {"window_exponent": np.full(7, -0.3)}, PARTLY),
+        (
+            "larger_samples_close_more",
+            {"window_exponent": np.full(7, -0.3), "closure_exponent": -0.3},
+            FAILS,
+        ),
+        (
+            "larger_samples_close_more",
+            {"window_exponent": np.full(7, np.nan), "closure_exponent": np.nan},
+            UNDETERMINED,
+        ),
         ("dilatancy_flattens", {"dilatancy": RISING * 2}, PARTLY),
         ("dilatancy_flattens", {"dilatancy": [0.1 * RIGID, 0.2 * RIGID] * 2}, FAILS),
         # While the faces still correlate no trend decides.
@@ -122,8 +133,6 @@ ALIKE = [1 - np.exp(-RIGID)] * 4
         # Of other levels, but none rises: the claim is of slopes.
         ("dilatancy_is_anisotropic", {}, FAILS),
         ("dilatancy_is_anisotropic", {"dilatancy": STEEP_NS}, HOLDS),
-        # Opposite directions that rise and level by a tilt: the roughness opens both axes alike.
-        ("dilatancy_is_anisotropic", {"dilatancy": TILTED}, PARTLY),
         ("domains_cluster", {"morisita": np.full(7, 2.0) - 0.1 * np.arange(7)}, FAILS),
         # An exponent below the margin is no fall.
         ("area_is_lacunar", {"delta_sigma_area": np.full(4, 1.98)}, FAILS),
@@ -141,8 +150,8 @@ ALIKE = [1 - np.exp(-RIGID)] * 4
         ("boxes_follow_one_law", {"half": 0.6}, HOLDS),
         ("boxes_follow_one_law", {"random_p": np.nan}, UNDETERMINED),
         ("estimates_agree", {"delta_sigma_box": np.array([0.2, 0.3, 0.9, 1.9])}, PARTLY),
-        # The margin is that of an ensemble, not a quarter.
-        ("estimates_agree", {"delta_sigma_box": np.array([0.05, 0.65, 1.25, 1.75])}, FAILS),
+        # Surely different, but perhaps by less than the margin.
+        ("estimates_agree", {"delta_sigma_box": np.array([0.05, 0.65, 1.25, 1.75])}, UNDETERMINED),
         ("estimates_agree", {"delta_sigma_box": np.array([-0.3, 0.3, 0.9, 1.4])}, FAILS),
         # Neither the same within the margin nor different.
         ("estimates_agree", {"difference_half": 0.3}, UNDETERMINED),
@@ -155,22 +164,12 @@ ALIKE = [1 - np.exp(-RIGID)] * 4
         ),
         ("dimension_rises_by_boxes", {"delta_sigma_box": np.full(4, np.nan)}, UNDETERMINED),
         ("dimension_rises_by_boxes", {"half": 1.5}, UNDETERMINED),
-        # Faster than the cut, perhaps by the margin; as fast; faster by less than the margin.
+        ("dimension_rises_by_boxes", {"delta_sigma_box": np.linspace(1.9, 1.2, 4)}, FAILS),
+        # Loads that span less than a decade could not have said otherwise.
         (
             "dimension_rises_by_boxes",
-            {"cut_less": 0.05 * np.arange(4), "half": 0.2},
+            {"delta_sigma_box": np.array([np.nan, np.nan, np.nan, 1.9])},
             UNDETERMINED,
-        ),
-        ("dimension_rises_by_boxes", {"cut_less": 0.1}, FAILS),
-        ("dimension_rises_by_boxes", {"cut_less": 0.05 * np.arange(4)}, FAILS),
-        # Where the cut is near 2 it cannot rise: the domain would seem to rise faster.
-        (
-            "dimension_rises_by_boxes",
-            {
-                "cut_less": np.array([-0.3, -0.3, -0.3, 0.0]),
-                "delta_sigma_box": [0.2, 0.8, 1.4, 2.0],
-            },
-            FAILS,
         ),
         # Intervals of 1.2 leave a rise of 1.7 over three decades no doubt, intervals of 3 do.
         ("dimension_rises_by_area", {"half": 0.6}, HOLDS),
@@ -183,18 +182,17 @@ ALIKE = [1 - np.exp(-RIGID)] * 4
         ("dimension_rises_by_area", {"delta_sigma_area": np.linspace(1.2, 1.3, 4)}, FAILS),
         ("dimension_rises_by_area", {"half": 1.5}, UNDETERMINED),
         ("dimension_spans_all", {"delta_sigma_box": np.linspace(0.5, 1.9, 4)}, PARTLY),
-        ("dimension_spans_all", {"delta_sigma_box": np.linspace(0.5, 1.5, 4)}, FAILS),
+        # The paper asks 2 of plastic contact alone.
+        ("dimension_spans_all", {"delta_sigma_box": np.linspace(0.5, 1.5, 4)}, PARTLY),
+        ("dimension_spans_all", {"delta_sigma_box": np.linspace(0.1, 1.5, 4)}, HOLDS),
+        ("dimension_spans_all", {"delta_sigma_box": np.linspace(0.5, 0.9, 4)}, FAILS),
         ("dimension_spans_all", {"delta_sigma_box": np.linspace(0.27, 1.9, 4)}, PARTLY),
-        # Lighter loads would come nearer to 0; heavier ones than the study's are not its loads.
+        # No load has a dimension surely below 1, though random nodes do: or do not.
+        ("dimension_spans_all", {"delta_sigma_box": np.linspace(1.0, 1.9, 4)}, FAILS),
         (
             "dimension_spans_all",
-            {"delta_sigma_box": np.linspace(0.5, 1.74, 4), "random": np.linspace(0.4, 1.3, 4)},
+            {"delta_sigma_box": np.linspace(1.0, 1.9, 4), "random": np.linspace(1.1, 1.9, 4)},
             UNDETERMINED,
-        ),
-        (
-            "dimension_spans_all",
-            {"delta_sigma_box": np.linspace(0.5, 1.2, 4), "random": np.linspace(0.4, 1.3, 4)},
-            FAILS,
         ),
         ("size_effect_follows", {"eq6_less": [[0.0, 0.0], [0.4, 0.4]]}, PARTLY),
         ("size_effect_follows", {"eq6_less": 0.4}, FAILS),
@@ -219,16 +217,18 @@ ALIKE = [1 - np.exp(-RIGID)] * 4
         ("strength_falls_with_size", {"strength_exponent": np.full((2, 1), -0.05)}, UNDETERMINED),
         # A bound from above that is negative says that strength falls; at equal v it may not.
         ("strength_falls_with_size", {"bounded": True}, HOLDS),
-        ("strength_falls_with_size", {"bounded": True, "equal_v_exponent": 0.0}, PARTLY),
-        ("strength_falls_with_size", {"equal_v_exponent": np.nan}, PARTLY),
+        # Laboratories compare at equal v/b: what happens at equal v changes no verdict.
+        ("strength_falls_with_size", {"equal_v_exponent": 0.0}, HOLDS),
+        ("strength_falls_with_size", {"equal_v_exponent": np.nan}, HOLDS),
         ("strength_falls_with_size", {"strength_exponent": np.full((2, 1), np.nan)}, UNDETERMINED),
         ("no_correlation_is_left", {"limit": -0.1}, FAILS),
         ("no_correlation_is_left", {"limit": np.nan}, UNDETERMINED),
-        ("domains_are_fractal", {"null": "not separated from random nodes"}, FAILS),
+        # Counts of random nodes are the same: they could have shown no structure.
+        ("domains_are_fractal", {"null": "not separated from random nodes"}, UNDETERMINED),
         (
             "domains_are_fractal",
             {"null": "different from random nodes, not separated from the bearing-area cut"},
-            PARTLY,
+            HOLDS,
         ),
         ("domains_are_fractal", {"null": "undetermined"}, UNDETERMINED),
         # A crossover to a filled plane is no power law, however little the slopes differ.
@@ -259,10 +259,10 @@ ALIKE = [1 - np.exp(-RIGID)] * 4
         ("domains_differ_from_cuts", {"slope_cut_less": 0.02}, FAILS),
         ("domains_differ_from_cuts", {"slope_cut_less": 0.09}, UNDETERMINED),
         ("domains_differ_from_cuts", {"cut_p": np.nan}, UNDETERMINED),
-        ("domains_are_isotropic", {"along": 0.13}, PARTLY),
-        ("domains_are_isotropic", {"along": 0.13, "lag_half": 0.1}, UNDETERMINED),
-        ("domains_are_isotropic", {"along": 0.05, "across": 0.17}, FAILS),
-        ("domains_are_isotropic", {"along": 0.0, "across": 0.0}, UNDETERMINED),
+        ("domains_are_isotropic", {"along": 0.6}, FAILS),
+        # Perhaps by less than the margin.
+        ("domains_are_isotropic", {"along": 0.55}, UNDETERMINED),
+        ("domains_are_isotropic", {"interval_half": 0.2}, UNDETERMINED),
         ("domains_are_isotropic", {"along": np.nan}, UNDETERMINED),
     ],
 )
@@ -280,7 +280,7 @@ def test_a_rule_with_a_limit_is_asked_at_every_load():
     found = stages()
     for end in ends_of("interface_compliance"):
         compliance = found["closure"][end].copy()
-        compliance.loc[{"offset": 1.6, "normal_force": 10.0}] *= 1.5
+        compliance.loc[{"offset": 1.9, "normal_force": 10.0}] *= 1.5
         found["closure"][end] = compliance
     overlap = closure.curves_overlap(Joint(found, SETTINGS))
     assert overlap.verdict == PARTLY
@@ -328,13 +328,15 @@ def test_nothing_is_asked_of_the_area_where_all_that_touches_yields():
 def test_every_offset_belongs_to_one_part_of_the_sliding(length, uncorrelated):
     """Also one that is the correlation length, or at which no correlation is left, exactly."""
     joint = Joint(stages(length=length, uncorrelated=uncorrelated), SETTINGS)
-    times = sum(part.astype(int) for part in (joint.initial, joint.between, joint.unrelated))
-    np.testing.assert_array_equal(times, joint.offset > 0)
+    v = joint.offsets
+    parts = joint.initial(v), joint.between(v), joint.unrelated(v)
+    np.testing.assert_array_equal(sum(part.astype(int) for part in parts), v > 0)
 
 
 def test_flush_faces_are_left_out():
-    def flush_first(law):
-        made, offsets = stages(law=[law, *["hyperbola"] * 6]), [0.0, *V[1:]]
+    def flush_first(misfit):
+        misfits = [[misfit, *[0.01] * 6], [0.05] * 7]
+        made, offsets = stages(seated_misfits=misfits), [0.0, *V[1:]]
         at_zero = {
             name: one.assign_coords(offset=offsets)
             for name, one in made.items()
@@ -342,11 +344,12 @@ def test_flush_faces_are_left_out():
         }
         return Joint({**made, **at_zero}, SETTINGS)
 
-    joint = flush_first("")
-    np.testing.assert_array_equal(joint.offsets == 0, [True, *[False] * 6])
-    assert not joint.initial[0]
-    assert joint.initial.any()
-    assert nulls.closure_is_hyperbolic(flush_first("semi_logarithmic")).verdict == HOLDS
+    joint = flush_first(0.01)
+    v = joint.offsets
+    np.testing.assert_array_equal(v == 0, [True, *[False] * 6])
+    assert not joint.initial(v)[0]
+    assert joint.initial(v).any()
+    assert nulls.closure_is_hyperbolic(flush_first(0.9)).verdict == HOLDS
 
 
 @pytest.mark.parametrize("loads", [1, 12])
@@ -364,8 +367,8 @@ def test_a_difference_at_the_limit_is_called_beyond_it_in_few_joints_however_man
 
 def test_a_variable_that_is_missing_is_an_error():
     without = stages()
-    without["closure"] = without["closure"].drop_vars("closure_law")
-    with pytest.raises(KeyError, match="closure_law"):
+    without["closure"] = without["closure"].drop_vars("seated_hyperbola_misfit")
+    with pytest.raises(KeyError, match="seated_hyperbola_misfit"):
         nulls.closure_is_hyperbolic(Joint(without, SETTINGS))
 
 

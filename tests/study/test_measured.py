@@ -65,6 +65,18 @@ def test_rock_is_stated_by_length_and_modulus(tmp_path):
         ({"closure": TEST | {"file": "../load.csv"}}, "measured.closure.file"),
         ({"closures": TEST}, "did you mean 'closure'"),
         ({"closure": TEST | {"branches": "load"}}, "did you mean 'branch'"),
+        (
+            {"closure": [TEST | {"branches": "load"}]},
+            r"'measured.closure.0.branches'; did you mean",
+        ),
+        (
+            {"closure": [TEST | {"cycle": 0}]},
+            r"closure.0.cycle: 0 .*a whole number from 1",
+        ),
+        (
+            {"closure": [TEST | {"gauge": {"lenght": "1 mm"}}]},
+            "lenght'; did you mean 'length'",
+        ),
         ({"closure": [dict(TEST), dict(TEST)]}, "two tests are 'load, cycle 1'"),
         ({"flow": {"file": "load.csv", "branch": "load", "cycle": 1}}, "'way' is not stated"),
         ({"shear": {"file": "load.csv", "direction": "E"}}, "'pressure' is not stated"),

@@ -80,6 +80,8 @@ def test_a_made_safe_name_keeps_its_files(tmp_path):
         (["rock.yaml"], "this sidecar has no scan"),
         (["--.npy"], "letters or digits"),
         (["{specimen}.npy"], "braces"),
+        (["rock.draft.npy"], r"taken for a draft; rename the file, such as rock_draft\.npy"),
+        (["rock.draft.lower.npy", "rock.draft.upper.npy"], "taken for a draft"),
         (["Rock.npy", "rock.x3p"], "differ in upper and lower case alone"),
         (["Rock.yaml", "rock.x3p"], "spell both the same if they belong together"),
     ],
@@ -219,7 +221,18 @@ def test_files_of_coordinates_belong_to_their_map(tmp_path):
     assert "x: no file absent.csv beside it" in str(refused["film"])
 
 
-LEFT = ["rock.npy~", "Thumbs.db", "desktop.ini", "~$table.csv", "rock.npy.bak", "._rock.npy"]
+LEFT = [
+    *("rock.npy~", "Thumbs.db", "desktop.ini", "~$table.csv", "rock.npy.bak", "._rock.npy"),
+    *(
+        "#rock.npy#",
+        "#rock.yaml#",
+        "rock.npy.~1~",
+        "rock.yaml.save",
+        "rock.npy.save.1",
+        "rock.npy.swo",
+    ),
+    *("rock.npy.partial", "rock.npy.filepart", "rock.npy.download"),
+]
 
 
 @pytest.mark.parametrize("name", LEFT)

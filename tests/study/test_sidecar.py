@@ -52,6 +52,15 @@ def test_encodings_that_editors_write(sidecar, encoding):
     assert read_yaml(sidecar("unit: µm\n".encode(encoding))) == {"unit": "µm"}
 
 
+def test_keys_are_the_texts_that_stand_there(sidecar):
+    assert read_yaml(sidecar("no: 1\n1: on\n'yes': 2\n~: 3\n")) == {
+        "no": 1,
+        "1": "on",
+        "yes": 2,
+        "~": 3,
+    }
+
+
 def test_an_empty_sidecar_says_nothing(sidecar):
     assert read_yaml(sidecar("")) == read_yaml(sidecar("# unit: mm\n")) == {}
 
@@ -66,9 +75,9 @@ LAUGHS = "a: &a [x, x]\nb: &b [*a, *a]\nc: &c [*b, *b]\nd: [*c, *c]\n"
         ("unit: *mm\n", "line 1: anchors"),
         ("unit: " + "[" * 60_000, "nested more than"),
         ("unit: mm\n" + "- " * 20_000, "not readable as YAML"),
-        ("unit: mm\n" * 2, "line 2: the key 'unit' stands here a second time"),
+        ("unit: mm\n" * 2, "line 2: the key 'unit' stands here a second time, after line 1; keep"),
+        ("upper:\n  unit: m\n  unit: mm\n", "line 3: the key 'unit' .* after line 2"),
         ("unit: mm\n" * 10_000, "longer than the 64 kB"),
-        ("1: mm\n", "the key '1' is no word"),
         ("? [a, b]\n: mm\n", "is no word"),
         ("unit: !!python/object/apply:os.system [ls]\n", "has no use here"),
         ("unit: !!binary aGk=\n", "has no use here"),

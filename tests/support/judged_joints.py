@@ -7,7 +7,7 @@ from fractalcontact.core.reported import Reported
 from fractalcontact.domain.cluster_laws import localisation
 from fractalcontact.mechanics.plateau import opposite_parts, rigid_plateaus, undecided_plateaus
 
-V = np.array([0.1, 0.2, 0.4, 1.2, 1.4, 1.6, 10.0])
+V = np.array([0.1, 0.2, 0.4, 0.6, 1.2, 1.9, 10.0])
 # Correlated up to 0.5 mm by 1/e, not at all from 2 mm on.
 RIGID = np.linspace(0, 10, 101)
 LOADS = [10.0, 100.0, 1000.0, 10000.0]
@@ -60,7 +60,7 @@ def stages(**changes):
         "bend": 0.0,
         "bend_half": 0.05,
         "slope_cut_less": 0.2,
-        "law": ["", *["hyperbola"] * 6],
+        "seated_misfits": [np.full(7, 0.01), np.full(7, 0.05)],
         "null": "different from random nodes and from the bearing-area cut",
         "local_slopes": [1.06, 1.1, 1.0, 1.08, 1.15],
         "local_slope_half": 0.1,
@@ -69,15 +69,16 @@ def stages(**changes):
         "cut_p": 0.01,
         "cut_less": 0.15 * (np.arange(4) - 1.5),
         "random": np.array([0.1, 0.5, 0.9, 1.2]),
-        "along": 0.2,
-        "across": 0.2,
-        "lag_half": 0.03,
+        "along": 0.4,
+        "across": 0.42,
+        "interval_half": 0.05,
         "cut_half": 0.05,
-        "area": [9, 8, 7, 5, 5.1, 5.2, 4.95],
+        "area": [40, 25, 15, 5, 5.1, 5.2, 4.95],
         "dimension": [2.0, 2.05, 2.1, 2.2, 2.21, 2.3, 2.35],
         "morisita": [1, 1.5, 2, 4, 4.5, 9, 18],
         "exponent": np.full(7, 1.02),
         "window_exponent": np.full(7, 0.4),
+        "closure_exponent": 0.5,
         "dilatancy": [1 - np.exp(-RIGID), 1.5 * (1 - np.exp(-RIGID))] * 2,
         "limit": 0.1,
         "delta_sigma_area": [0.2, 0.8, 1.4, 1.9],
@@ -138,9 +139,12 @@ def stages(**changes):
             "correlation_length": ("direction", [values["length"]] * 4),
             "uncorrelated_offset": ("direction", [values["uncorrelated"]] * 4),
             "correlation_limit": values["limit"],
-            "composite_dimension": ("offset", values["dimension"]),
-            "composite_fit_min": ("offset", np.full(7, 0.2)),
-            "composite_fit_max": ("offset", np.full(7, 1.2)),
+            "lag_dimension": (
+                ("offset", "lag_range"),
+                np.transpose([values["dimension"]] * 3),
+            ),
+            "lag_min": ("lag_range", [0.2, 0.2, 0.5]),
+            "lag_max": ("lag_range", [1.2, 0.5, 1.2]),
         },
         {"direction": [*"WENS"], "contact_direction": ["W"], "rigid_offset": RIGID, "offset": V},
     )
@@ -151,6 +155,8 @@ def stages(**changes):
             ("offset", "normal_force"),
             np.asarray(values["window_exponent"])[:, np.newaxis] + by,
         )
+        closing = np.full((len(V), 1), values["closure_exponent"] + by)
+        windows[f"closure_exponent{end}"] = ("offset", "normal_force"), closing
         density = np.full((len(V), 1), values["density_exponent"] + by)
         windows[f"area_exponent{end}"] = (("offset", "normal_force"), density)
         windows[f"strength_at_equal_v_over_b_exponent{end}"] = (
@@ -160,11 +166,11 @@ def stages(**changes):
         )
         at_one_v = np.full((2, 1), values["equal_v_exponent"] + by / 2)
         windows[f"slope_at_equal_v_exponent{end}"] = ("share", "normal_force"), at_one_v
-    windows["closure_exponent"] = ("offset", "normal_force"), np.full((len(V), 1), 0.5)
     slid = slid.assign(rigid_plateaus(RIGID, values["dilatancy"], [*"WENS"]))
     lost = np.full(4, values["uncorrelated"])
     slid = slid.assign(undecided_plateaus(RIGID, slid["face_correlation"].values, lost))
     slid = slid.assign(opposite_parts(RIGID, values["dilatancy"], [*"WENS"]))
+    slid["window_tilt"] = "axis", [0.0, 0.0]
     specimen = xr.Dataset(
         attrs={"window_ny": 10, "window_nx": 10, "spacing_y": 1.0, "spacing_x": 1.0}
     )
@@ -196,9 +202,13 @@ def stages(**changes):
                 "area_corrected_error": (dims, np.zeros((1, len(V), 1, len(LOADS)))),
                 "interface_closure": over_boxes([0.1, 0.2, 0.3, 0.4]),
                 "seating_pressure": (of_offsets, np.full((1, len(V), 1), 0.1)),
-                "closure_law": (of_offsets, np.reshape(values["law"], (1, len(V), 1))),
-                "hyperbola_misfit": (of_offsets, np.full((1, len(V), 1), 0.01)),
-                "semi_logarithmic_misfit": (of_offsets, np.full((1, len(V), 1), 0.05)),
+                "hyperbola_misfit": (of_offsets, np.full((1, len(V), 1), 0.05)),
+                **{
+                    f"seated_{law}_misfit": (of_offsets, np.reshape(misfit, (1, len(V), 1)))
+                    for law, misfit in zip(
+                        ("hyperbola", "logarithm"), values["seated_misfits"], strict=True
+                    )
+                },
             },
             coords,
         ),
@@ -240,9 +250,9 @@ def stages(**changes):
         ),
         "domain_measures": xr.Dataset(
             {
-                f"contact_at_lag_{way}{end}": (
+                f"interval_dimension_{way}{end}": (
                     "normal_force",
-                    np.full(4, values[way] + np.sign(by) * values["lag_half"]),
+                    np.full(4, values[way] + np.sign(by) * values["interval_half"]),
                 )
                 for way in ("along", "across")
                 for end, by in ends.items()

@@ -7,7 +7,9 @@ import sys
 import pytest
 import yaml
 from places import ROOT
+from projects import project, run
 
+__all__ = ["project"]  # a fixture
 pytestmark = pytest.mark.workflow
 #: Of `snakemake --lint`, as CONTRIBUTING.md has it: functions stand beside the rules that use them,
 #: and one environment is made for all rules before the first run.
@@ -61,3 +63,15 @@ def test_snakemake_has_the_limit_of_jobs_a_second_that_a_local_run_takes_off():
     assert "scheduler.job_rate_limiter = None" in (ROOT / "workflow/rules/records.smk").read_text()
     for method in (JobScheduler.schedule, JobScheduler.job_selector):
         assert "job_rate_limiter" in method.__code__.co_names
+
+
+def test_snakemake_reads_a_study_as_the_program_does(project):
+    text = (project / "config/smoke.yaml").read_text()
+    (project / "config/no.yaml").write_text(text.replace("small_joint", "no"))
+    planned = run(project, "config/no.yaml", "--dry-run", "results/smoke/specimens/no.nc")
+    assert planned.returncode == 0, planned.stderr
+    (project / "config/twice.yaml").write_text(f"{text}\nstudy: other\n")
+    refused = run(project, "config/twice.yaml", "--dry-run")
+    assert refused.returncode != 0
+    said = refused.stdout + refused.stderr
+    assert "the key 'study' stands here a second time, after line 2" in said

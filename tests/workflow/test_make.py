@@ -3,11 +3,12 @@
 import os
 import shutil
 import subprocess
+import sys
 
 import pytest
 from places import ROOT
 
-#: Notes the study and its arguments, and whether another runs meanwhile; fails where it is told to.
+#: Notes the study and its arguments, and whether another runs meanwhile.
 PYTHON = """#!/bin/sh
 mkdir busy || echo two at once >> calls
 echo "$STUDY: $*" >> calls
@@ -15,7 +16,6 @@ sleep 0.2
 rmdir busy
 case "$*" in
   *compile_kernels) echo compiling kernels ;;
-  *run.py*) test -z "$FAIL" || { echo "the study did not finish" >&2; exit 1; } ;;
 esac
 """
 
@@ -34,12 +34,16 @@ def project(tmp_path):
     return tmp_path
 
 
-def make(project, *words, **environment):
-    """What make says, and the calls that it made."""
+def make(project, *words, before="", **environment):
+    """What make says, and the calls that it made; after some words of the shell."""
     outer = ("MAKEFLAGS", "MAKELEVEL", "MFLAGS", "STUDY")
     kept = {name: value for name, value in os.environ.items() if name not in outer}
     done = subprocess.run(
-        ["make", *words], cwd=project, capture_output=True, text=True, env=kept | environment
+        ["sh", "-c", f'{before}exec make "$@"', "sh", *words],
+        cwd=project,
+        capture_output=True,
+        text=True,
+        env=kept | environment,
     )
     calls = project / "calls"
     return done, calls.read_text().splitlines() if calls.exists() else []
@@ -82,13 +86,49 @@ def test_a_new_study_has_the_name_of_the_command_line_and_no_other(project):
     assert named.endswith("new_study --name=a b --scans my scans")
 
 
-@pytest.mark.parametrize("target", ["study", "smoke", "report", "accuracy", "size-effect-small"])
-def test_below_the_words_of_a_run_that_failed_make_says_one_line_and_fails(project, target):
-    done, _ = make(project, target, FAIL="yes")
-    said, line = done.stderr.splitlines()
+#: Targets that are refused, in one sentence.
+REFUSED = [
+    *(["study", "STUDY=none.yaml"], ["smoke"], ["dry-run"], ["report"], ["verify"]),
+    *(["check-scans", "SCANS=none"], ["describe", "FILE=none.txt"], ["new", "NAME=a b"]),
+]
+
+
+@pytest.mark.parametrize("words", REFUSED, ids=" ".join)
+def test_below_the_sentence_of_a_refusal_make_says_nothing_and_fails(project, words):
+    with_python(project)
+    done, _ = make(project, *words)
+    assert done.returncode != 0
+    (sentence,) = done.stderr.splitlines()
+    assert sentence.startswith("error: ")
+
+
+@pytest.mark.parametrize("words", [["study", "STUDY=none.yaml"], ["verify"]], ids=" ".join)
+def test_where_make_takes_no_signal_it_fails_in_a_line_of_its_own(project, words):
+    """Some services start everything with that of a closed pipe ignored."""
+    with_python(project)
+    done, _ = make(project, *words, before="trap '' PIPE; ")
+    sentence, line = done.stderr.splitlines()
     assert done.returncode == 2
-    assert said == "the study did not finish"
+    assert sentence.startswith("error: ")
     assert line.startswith("make: *** [")
+
+
+def with_python(project):
+    """The code of this checkout in place of the stand-in."""
+    shutil.copytree(ROOT / "workflow", project / "workflow")
+    python = project / ".venv/bin/python"
+    python.write_text(f'#!/bin/sh\nPYTHONPATH={ROOT / "src"} exec {sys.executable} "$@"\n')
+
+
+def test_a_moved_or_copied_checkout_is_installed_again_before_any_target(project):
+    found_in = project / ".venv/lib/python3.12/site-packages/__editable__.fractalcontact-9.pth"
+    found_in.parent.mkdir(parents=True)
+    for folder, again in ((project, False), (project.with_name("moved"), True)):
+        found_in.write_text(f"{folder}/src\n")
+        for target in ("study", "verify", "check-scans", "describe", "new", "dry-run"):
+            (project / "calls").unlink(missing_ok=True)
+            _, calls = make(project, target)
+            assert any(call.endswith("--no-index -e .") for call in calls[:-1]) == again, target
 
 
 def test_an_installation_says_once_that_kernels_are_compiled(project):

@@ -4,6 +4,8 @@ import base64
 import json
 import os
 import shutil
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -233,6 +235,38 @@ def test_a_job_that_failed_with_a_new_scan_leaves_nothing_that_counts_as_made_of
     checksums.unlink()
     (project / "kept").rename(checksums)
     assert {"specimen", "contact", "atlas"} <= set(planned(project))
+
+
+def test_results_stay_whole_for_their_readers_until_the_new_ones_replace_them(project):
+    """A label is in atlas and figure, which are made again."""
+    paths = [project / ATLAS, project / FIGURE]
+    before = [sha256(path) for path in paths]
+    seen = [set() for _ in paths]
+    change_label(project)
+    words = (sys.executable, "workflow/run.py", STUDY, "--", "--cores", "2", ATLAS, FIGURE)
+    said = (project / "said").open("w")
+    running = subprocess.Popen(words, cwd=project, stdout=said, stderr=said)
+    while running.poll() is None:
+        for path, digests in zip(paths, seen, strict=True):
+            digests.add(sha256(path))
+    assert running.returncode == 0, (project / "said").read_text()[-3000:]
+    assert seen == [{old, sha256(path)} for old, path in zip(before, paths, strict=True)]
+    assert len(seen[0]) == 2
+
+
+def test_results_of_before_that_stay_where_their_job_failed_do_not_count_as_made_by_it(project):
+    before = (project / ATLAS).read_bytes()
+    change_label(project)
+    assert made(project, STUDY, targets=["results/test/windows/rock.nc"]).returncode == 0
+    closure = project / "results/test/closure/rock.nc"
+    content, times = closure.read_bytes(), closure.stat()
+    closure.write_bytes(content[:-1])  # so that the job of the atlas refuses it
+    os.utime(closure, ns=(times.st_atime_ns, times.st_mtime_ns))
+    assert run(project, STUDY, ATLAS).returncode != 0
+    assert (project / ATLAS).read_bytes() == before
+    closure.write_bytes(content)
+    os.utime(closure, ns=(times.st_atime_ns, times.st_mtime_ns))
+    assert planned(project) == {"atlas": 1}
 
 
 def test_a_run_has_the_code_of_its_checkout_wherever_its_environment_was_made(project):

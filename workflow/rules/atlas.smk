@@ -26,9 +26,10 @@ rule atlas:
         **MAP_FILES,
         **STUDY_FILES,
     output:
-        f"{RESULTS}/atlas.nc",
+        # `update` here and below: Snakemake would remove what readers have before its job begins.
+        update(f"{RESULTS}/atlas.nc"),
         # Which specimens it has, one a line: kept from being lost without a word.
-        names=f"{RESULTS}/specimens.txt",
+        names=update(f"{RESULTS}/specimens.txt"),
     log:
         f"{RESULTS}/logs/atlas.log",
     resources:

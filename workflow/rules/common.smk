@@ -9,6 +9,7 @@ from pathlib import Path
 import yaml
 from snakemake.exceptions import WorkflowError
 from snakemake.logging import logger
+from snakemake.utils import update_config
 
 # The code of this checkout, wherever its environment was installed from: it may have been moved.
 ROOT = Path(workflow.basedir)
@@ -26,6 +27,7 @@ from fractalcontact.core.stage import ENSEMBLE, GRAINS, JOINT, MAP, SPECIMEN, TE
 from fractalcontact.study import campaign, resources, stages
 from fractalcontact.study.checks import resolve_study
 from fractalcontact.study.configuration import resolve_embedded
+from fractalcontact.study.documents import read_study
 from fractalcontact.study.figure_list import all_figures, study_figures_of
 from fractalcontact.study.scan_groups import grouped_notes
 from fractalcontact.study.selection import CAPPED_VARIANTS
@@ -37,12 +39,26 @@ SOURCE = str(workflow.configfiles[-1]) if workflow.configfiles else "config/pape
 PLAN = Path(".snakemake/fractalcontact-plan.pickle")
 #: SHA-256 of the scan files that the run was planned with.
 PLANNED = {}
+
+
+def read_again():
+    """Replace the configuration by the study as the program itself reads it.
+
+    Snakemake takes the last of two equal keys without a word, and a specimen called ``no`` for false.
+    """
+    config.clear()
+    for path in workflow.configfiles:
+        update_config(config, read_study(path))
+    update_config(config, workflow.config_settings.config)
+
+
 if workflow.is_main_process:
     schema = yaml.safe_load((ROOT / "config/schema/study.schema.yaml").read_text())
     # What is wrong with one scan stops only that where the user asks so on the command line, which
     # Snakemake itself looks at later.
     keep_going = bool({"-k", "--keep-going"} & set(sys.argv))
     try:
+        read_again()
         STUDY = resolve_study(config, schema, SOURCE, leave_out=keep_going)
     except InputError as error:
         raise WorkflowError(str(error))

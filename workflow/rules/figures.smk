@@ -14,13 +14,17 @@ DRAWN = {opposite: campaign.drawn_of(config, SPECIMENS, opposite) for opposite i
 
 
 def drawings(names, folder="{specimen}/", category="{specimen}"):
-    """Files of figures: each PNG with its title for the report, and what goes with it."""
+    """Files of figures: each PNG with its title for the report, and what goes with it.
+
+    Those that are there stay until the new ones take their places.
+    """
     files = {name: f"{RESULTS}/figures/{folder}{name}" for name in names}
-    found = [f"{file}.{ending}" for file in files.values() for ending in ("svg", "csv", "txt")]
+    endings = "svg", "csv", "txt"
+    found = [update(f"{file}.{ending}") for file in files.values() for ending in endings]
     for name, file in files.items():
         labels = {"figure": name, "title": all_figures()[name].title}
         # At the beginning of a line, `report` would be read as the directive.
-        found.append(report(f"{file}.png", category=category, labels=labels))
+        found.append(report(update(f"{file}.png"), category=category, labels=labels))
     return found
 
 
@@ -55,7 +59,7 @@ for NAME, OPPOSITE, HERE, OTHERS in (
         output:
             *drawings(DRAWN[OPPOSITE]),
             **({"row": SPECIMEN_ROW} if IN_PARTS else {}),
-            atlas=SPECIMEN_ATLAS,
+            atlas=update(SPECIMEN_ATLAS),
             undrawn=UNDRAWN,
         log:
             f"{RESULTS}/logs/figures/{{specimen}}.log",

@@ -16,7 +16,7 @@ rule explorer:
         rules.atlas.output[0],
         expand(SPECIMEN_ATLAS, specimen=EXPLORED) if IN_PARTS else [],
     output:
-        f"{RESULTS}/explorer.html",
+        update(f"{RESULTS}/explorer.html"),
     log:
         f"{RESULTS}/logs/explorer.log",
     # After the figures: beside the result page, no core has nothing to do at the end.
@@ -43,9 +43,9 @@ rule specimen_page:
         # Aperture maps are those of the jobs of contact, which the atlas rounds.
         lambda wildcards: [] if IN_PARTS else contact_parts_of(known(wildcards)),
     output:
-        f"{RESULTS}/{page_files.SPECIMEN_PAGE}",
-        *with_endings(page_files.CARD, page_files.CARD_ENDINGS),
-        *([] if IN_PARTS else with_endings(page_files.APERTURE, page_files.APERTURE_ENDINGS)),
+        update(f"{RESULTS}/{page_files.SPECIMEN_PAGE}"),
+        update(with_endings(page_files.CARD, page_files.CARD_ENDINGS)),
+        update([] if IN_PARTS else with_endings(page_files.APERTURE, page_files.APERTURE_ENDINGS)),
     log:
         f"{RESULTS}/logs/specimen_page/{{specimen}}.log",
     resources:
@@ -76,7 +76,7 @@ rule result_page:
         # Its first screen is that of the cards.
         PAGES,
     output:
-        INDEX,
+        update(INDEX),
     log:
         f"{RESULTS}/logs/result_page.log",
     resources:

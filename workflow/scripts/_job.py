@@ -20,7 +20,7 @@ import _running
 from fractalcontact.core import checksums
 from fractalcontact.core.errors import InputError, OutputError
 from roughcontact.contact.effort import SOLVING
-from roughcontact.errors import NotConverged
+from roughcontact.errors import NotConverged, is_interrupt
 
 #: What a job says, and exits with, that is told to end.
 STOPPED, STOPPED_CODE = "stopped before it was done", 143
@@ -70,8 +70,7 @@ def job(snakemake):
             log.info(CERTAIN)
         sys.exit(1)
     except (Exception, KeyboardInterrupt) as error:
-        # Inside a compiled kernel the interrupt ends as an error of another kind.
-        if isinstance(error, KeyboardInterrupt) or _told_to_stop:
+        if is_interrupt(error) or _told_to_stop:
             log.error(STOPPED)
             sys.exit(STOPPED_CODE)
         log.exception("error in the program")

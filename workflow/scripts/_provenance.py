@@ -2,11 +2,14 @@
 
 Snakemake compares the parameters and inputs of a file with its record. It takes a file for up to
 date whose record is lost or unreadable, and one that was made from a result that has since been
-removed, even if the job of that result failed after its scan was replaced.
+removed, even if the job of that result failed after its scan was replaced. And where the job of a
+file that is flagged `update` fails, it puts the file of before back, and records it as made by that
+job.
 """
 
 import functools
 import logging
+import os
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -45,4 +48,15 @@ def _has_provenance(file, records, results, is_there):
     outdated = records.has_outdated_metadata(SimpleNamespace(output=[file]))
     if record is None or outdated or None in (record.params, record.input):
         return False
-    return all(is_there(path) for path in record.input if path.startswith(f"{results}/"))
+    return not _is_put_back(file, record, checksums.record_of(results, file)) and all(
+        is_there(path) for path in record.input if path.startswith(f"{results}/")
+    )
+
+
+def _is_put_back(file, record, sums):
+    """True of a file whose job, the last of Snakemake's record, failed: it has left no checksums.
+
+    Both times are younger than the checksums then; in a copy of a folder neither need be in order.
+    """
+    left = os.stat(sums).st_mtime
+    return (record.starttime or 0) > left and os.stat(file).st_mtime > left

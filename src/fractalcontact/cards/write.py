@@ -6,9 +6,12 @@ from pathlib import Path
 from typing import Any
 
 import yaml
+from jsonschema import Draft202012Validator
+from jsonschema.exceptions import best_match
 
 from ..core.atomic import atomic_write
 from ..core.errors import InputError
+from ..core.labels import printable
 from ..core.subject import Subject, configuration_of
 from ..pages.files import APERTURE, APERTURE_ENDINGS, CARD
 from ..pages.templating import write_page
@@ -95,5 +98,12 @@ def read_card(path: Path | str) -> dict[str, Any]:
         raise InputError(
             f"{path}: no card of form {FORM}; expected 'form: {FORM}' and 'entries', as in "
             "results/paper/cards/sandstone_twin.yaml"
+        )
+    schema = Draft202012Validator(json.loads(SCHEMA.read_text(encoding="utf-8")))
+    if wrong := best_match(schema.iter_errors(found)):
+        key = ".".join(map(str, wrong.absolute_path))
+        raise InputError(
+            f"{path}: no whole card: {key and f'{key}: '}{printable(wrong.message, 120)}; mend "
+            "that, or let the study write its cards again (make)"
         )
     return found

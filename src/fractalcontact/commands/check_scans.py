@@ -197,11 +197,14 @@ def _specimen_row(scan, specimen, quality):
         lines.append("; ".join(filter(None, (stated, file["notes"]))))
         if file.get("overrides"):
             lines.append(f"{words}, the sidecar overrides: {file['overrides']}")
+    warnings = warnings_of_specimen(specimen, quality)
     if len(faces) == 2:
-        lines.append(f"{gap_words(specimen)}; {overlap_words(specimen, quality)}")
+        overlap = overlap_words(specimen, quality)
+        is_warned_of = any(overlap in warning for warning in warnings)
+        lines.append(gap_words(specimen) if is_warned_of else f"{gap_words(specimen)}; {overlap}")
     if suspicious := suspect_words(specimen):
         lines.append(f"suspicious: {suspicious}")
-    return Checked(scan.name, cells, lines, warnings_of_specimen(specimen, quality))
+    return Checked(scan.name, cells, lines, warnings)
 
 
 def _noise(quality):

@@ -104,7 +104,7 @@ def record(results: Path | str, files: Iterable[Path | str]) -> None:
     results = Path(results)
     records: dict[Path, list[Path]] = {}
     for file in map(Path, files):
-        records.setdefault(_record_of(results, file), []).append(file)
+        records.setdefault(record_of(results, file), []).append(file)
     for path, members in records.items():
         lines = [f"{sha256(f)}  {f.relative_to(results).as_posix()}\n" for f in sorted(members)]
         with atomic_write(path) as temporary:
@@ -122,7 +122,7 @@ def require_intact(results: Path | str, file: Path | str) -> None:
         If it is, or if its checksum is not known.
     """
     results, file = Path(results), Path(file)
-    path = _record_of(results, file)
+    path = record_of(results, file)
     if not path.is_file():
         raise InputError(
             f"{file}: the record of its making is missing ({path}); 'make' sets it aside and "
@@ -219,7 +219,9 @@ def lines_of(results: Path | str) -> list[str]:
     return sorted(lines, key=lambda line: line[66:])
 
 
-def _record_of(results, file):
+def record_of(results: Path | str, file: Path | str) -> Path:
+    """File with the checksums of a result and of those that differ from it in their ending."""
+    results, file = Path(results), Path(file)
     name = file.relative_to(results)
     return results / FOLDER / name.with_name(name.stem + ENDING)
 

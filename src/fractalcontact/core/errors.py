@@ -5,6 +5,8 @@ import sys
 from collections.abc import Callable
 from typing import ParamSpec
 
+from roughcontact.errors import interruptible
+
 P = ParamSpec("P")
 
 
@@ -26,7 +28,8 @@ def said_in_one_line(main: Callable[P, int]) -> Callable[P, int]:
     @functools.wraps(main)
     def command(*arguments: P.args, **options: P.kwargs) -> int:
         try:
-            return main(*arguments, **options)
+            with interruptible():
+                return main(*arguments, **options)
         except (InputError, OutputError) as error:
             sys.stderr.write(f"error: {error}\n")
             return 1

@@ -39,6 +39,19 @@ def without_mean_plane(heights: ArrayLike) -> np.ndarray:
     return heights - mean - slope_y * y - slope_x * x
 
 
+def mean_slopes(heights: ArrayLike) -> tuple[float, float]:
+    """Slopes (y, x) of the least-squares plane through a complete grid, per cell.
+
+    Parameters
+    ----------
+    heights : (ny, nx) array_like
+        Two cells or more along each side.
+    """
+    heights = np.asarray(heights, float)
+    plane = heights - without_mean_planes(heights)
+    return float(plane[1, 0] - plane[0, 0]), float(plane[0, 1] - plane[0, 0])
+
+
 def without_mean_planes(heights: ArrayLike) -> np.ndarray:
     """Complete grids, each less its own mean plane.
 

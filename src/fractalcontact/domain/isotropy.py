@@ -1,75 +1,73 @@
-"""Isotropy of a contact domain: how often contact has contact beside it, along and across sliding.
+"""Isotropy of a contact domain: counts of occupied intervals along sliding and across it.
 
-A domain that shrinks alike along both axes (isotropic scaling) has the same probability along both.
+A domain that scales isotropically has the same exponent along both axes.
 """
 
 import numpy as np
 
 from ..core.estimate import Estimate, rows_of
-from ..core.intervals import jackknife_error
-from ..core.slope_of_sums import BLOCKS
+from ..core.slope_of_sums import BLOCKS, slope_of_sums
+from .correlation import pair_distances
 
-#: Nodes between which contact is compared: neighbours touch for being of one hill.
-LAG = 2
+#: Axes of the counts.
+WAYS = ("along", "across")
 
-#: What is kept of every domain: name, unit, long name.
-LAG_FIELDS = {
+#: Variables of every domain: name, unit, long name.
+INTERVAL_FIELDS = {
     name: words
-    for way in ("along", "across")
+    for way in WAYS
     for name, words in rows_of(
-        f"contact_at_lag_{way}",
+        f"interval_dimension_{way}",
         "1",
-        f"P(contact {LAG} nodes {way} sliding | contact), along x and across y where nothing "
-        "slides",
+        f"exponent of the number of occupied intervals {way} sliding over their length, along x "
+        "and across y where nothing slides",
     ).items()
 }
 
+#: Origins of the intervals that counts are averaged over, at most.
+MAX_ORIGINS = 4
 
-def contact_at_lag(domain: np.ndarray, direction: str) -> dict[str, float]:
-    """Probability that a node has contact where another at a lag of `LAG` nodes has, by direction.
+
+def interval_dimensions(
+    domain: np.ndarray, spacing: tuple[float, float], direction: str
+) -> list[Estimate]:
+    """Exponents of the number of occupied intervals of rows and of columns over their length.
 
     Parameters
     ----------
     domain : (ny, nx) bool ndarray
         Nodes in contact.
+    spacing : (float, float)
+        Sides (y, x) of a cell, mm.
     direction : str
         Where the upper block slides: E or W along x, N or S along y; anything else counts as x.
 
     Returns
     -------
-    dict of str to float
-        :data:`LAG_FIELDS`. Of nodes with a neighbour at that lag inside the window; the interval
-        is the jackknife's over parts of the window. NaN without contact. Nodes at random have the
-        fraction of the window in contact.
+    list of Estimate
+        Along and across, over lengths of two cells to an eighth of the window, with the interval of
+        :mod:`core.slope_of_sums`. Not known without contact. A filled window has 1, nodes that lie
+        farther apart than the longest interval have 0.
     """
-    along = 0 if direction in ("N", "S") else 1
-    found: dict[str, float] = {}
-    for way, axis in (("along", along), ("across", 1 - along)):
-        found |= _conditional(domain, axis, LAG).columns(f"contact_at_lag_{way}")
+    axis = 0 if direction in ("N", "S") else 1
+    lengths = np.unique(np.round(pair_distances(domain.shape)).astype(int))
+    found = []
+    for way in (axis, 1 - axis):
+        rows = np.moveaxis(np.asarray(domain, bool), way, 1)
+        parts = np.array([_occupied(rows, length) for length in lengths])
+        slope = slope_of_sums(lengths * spacing[way], parts, lambda sums: sums[:, 0])
+        found.append(slope.mapped(np.negative, falling=True))
     return found
 
 
-def _conditional(domain, axis, lag):
-    """P(contact at the lag | contact) along one axis, both ways, with its interval."""
-    domain = np.moveaxis(np.asarray(domain, bool), axis, 0)
-    if domain.shape[0] <= lag:
-        return Estimate()
-    first, second = domain[:-lag], domain[lag:]
-    sums = np.array([_by_part(first & second), (_by_part(first) + _by_part(second)) / 2])
-    total = sums.sum(axis=1)
-    if total[1] == 0:
-        return Estimate()
-    value = total[0] / total[1]
-    left = total[:, np.newaxis] - sums[:, sums[1] > 0]
-    with np.errstate(invalid="ignore"):
-        error = jackknife_error(left[0] / left[1])
-    return Estimate(value, max(value - error, 0.0), min(value + error, 1.0))
-
-
-def _by_part(values):
-    """Sums of a field over `BLOCKS` x `BLOCKS` parts, as a list."""
-    for axis in (0, 1):
-        n = values.shape[axis]
-        starts = np.unique(np.arange(BLOCKS) * n // BLOCKS)
-        values = np.add.reduceat(values, starts, axis=axis, dtype=np.int32)
-    return values.ravel()
+def _occupied(rows: np.ndarray, length: int) -> np.ndarray:
+    """Occupied intervals of rows, mean over origins, by part of the window: (1, parts)."""
+    ny, nx = rows.shape
+    counts = np.zeros((BLOCKS, BLOCKS))
+    origins = np.unique(np.arange(MAX_ORIGINS) * length // MAX_ORIGINS)
+    for origin in origins:
+        starts = np.unique(np.r_[0, np.arange(origin, nx, length)])
+        occupied = np.logical_or.reduceat(rows, starts, axis=1)
+        y, x = np.nonzero(occupied)
+        np.add.at(counts, (y * BLOCKS // ny, starts[x] * BLOCKS // nx), 1)
+    return counts.reshape(1, -1) / origins.size

@@ -10,7 +10,7 @@ from ..core.datasets import labelled
 from ..core.estimate import Estimate
 from ..core.labels import cf_attrs
 from .correlation import correlation_dimension
-from .isotropy import LAG_FIELDS, contact_at_lag
+from .isotropy import INTERVAL_FIELDS, WAYS, interval_dimensions
 from .multifractal import ORDERS, generalised_dimensions, lacunarity
 
 #: D_q of these orders are compared: of the support, and of the largest pressures.
@@ -31,13 +31,16 @@ def measures_of_map_states(states: xr.Dataset, spacing: float) -> xr.Dataset:
     -------
     xr.Dataset
         With the scalars ``direction``, ``offset`` and ``resolution``, and over load the
-        probabilities of :data:`domain.isotropy.LAG_FIELDS`.
+        exponents of :data:`domain.isotropy.INTERVAL_FIELDS`.
     """
     pressures, factor = states["pressure"].values, int(states["resolution"])
     measures = measures_of_states(pressures, spacing * factor, states["normal_force"].values)
-    lags = [contact_at_lag(p > 0, str(states["direction"].item())) for p in pressures]
-    by_load = {name: ("normal_force", *words) for name, words in LAG_FIELDS.items()}
-    values = {name: [row[name] for row in lags] for name in LAG_FIELDS}
+    direction, sides = str(states["direction"].item()), (spacing * factor, spacing * factor)
+    ways = [interval_dimensions(p > 0, sides, direction) for p in pressures]
+    by_load = {name: ("normal_force", *words) for name, words in INTERVAL_FIELDS.items()}
+    values: dict[str, Any] = {}
+    for way, found in zip(WAYS, zip(*ways, strict=True), strict=True):
+        values |= Estimate.stack(found).columns(f"interval_dimension_{way}")
     measures = measures.assign(labelled(by_load, values))
     place = {name: states[name] for name in ("direction", "offset", "resolution")}
     return measures.assign_coords(place)

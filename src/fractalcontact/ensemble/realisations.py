@@ -18,6 +18,7 @@ from ..core.settings import EnsembleSettings, Solver
 from ..core.window import cell_side, window_sides
 from ..domain.analysis import corrected_scaling
 from ..domain.box_dimension import dimension_of_domain
+from ..domain.isotropy import interval_dimensions
 from ..domain.null_models import OCTAVES
 from ..domain.random_nodes import expected_dimension
 from ..mechanics.closure import interface_states
@@ -32,6 +33,7 @@ from ..size_effect.windows import solved_windows
 from ..surface.embedded import embedded_surface
 from ..surface.specimen import make_specimen, window_arguments
 from .null_slopes import NULL_SLOPES, null_slopes
+from .sliding import LAG_ENDS, SLIDING, sliding, spread_offsets
 from .statistics import add_statistics, add_trends
 from .twins import twin_loadings
 
@@ -55,6 +57,13 @@ STATES = {
     ),
     "difference": ("1", "Delta_sigma from area less that from box counting"),
 }
+#: Of every realisation under the reference load: unit, long name.
+ISOTROPY = {
+    "interval_difference": (
+        "1",
+        "exponent of occupied intervals across sliding less that along it",
+    ),
+}
 #: The closure that compares between realisations: from one load, at which all are resolved.
 _SEATED = "closure_from_common_seat"
 
@@ -69,6 +78,8 @@ _EQ6 = {
 EXPONENTS = {
     exponent: ({"area_fraction": "corrected_area_share"}.get(name, name), fewest, words)
     for name, (exponent, fewest, words) in QUANTITIES.items()
+} | {
+    "closure_exponent": ("interface_closure", RESOLVED_NODES, "interface closure from first touch")
 }
 
 
@@ -101,7 +112,8 @@ def ensemble(
         first load at the seat, the loads that figures draw and the heaviest. Over (realisation,):
         :data:`EXPONENTS` under the reference load and the trends of
         :func:`ensemble.statistics.add_trends`; over both, by how much eq. 6 is missed, ``eq6_area``
-        and ``eq6_box``. Of each the mean over the realisations with its interval and the spread, as
+        and ``eq6_box``; of realisations of a joint that slides :data:`ensemble.sliding.SLIDING`. Of
+        each the mean over the realisations with its interval and the spread, as
         :func:`ensemble.statistics.add_statistics` names them. The attribute ``members`` says
         what they are.
 
@@ -118,22 +130,28 @@ def ensemble(
     loading = replace(whole, settings=_light(settings, whole.area)).at_map_offset()
     seeds = (1 if recipe is None else recipe["seed"]) + np.arange(realisations)
     members = _members(loading, recipe, [int(seed) for seed in seeds])
-    rows = [_realisation(member) for member in members]
+    slides = recipe is not None and whole.slides
+    longest = float(joints["lag_max"].max())
+    rows = []
+    for member in members:
+        slid = [sliding(member.at(spread_offsets(whole.cells)), longest)] if slides else []
+        rows.append(xr.merge([_realisation(member), *slid]))
     result = xr.concat(rows, "realisation")
     for name in result.data_vars:
         result[name].attrs = rows[0][name].attrs
-    for name in OCTAVES:
+    for name in (*OCTAVES, *(LAG_ENDS if slides else ())):
         result[name] = rows[0][name]
     _add_seated_closure(result, settings.seating_pressure * whole.area)
     result["seed"] = ("realisation", seeds, cf_attrs("1", "seed of the synthesis"))
     _add_eq6(result)
     add_trends(result)
-    add_statistics(result, [*STATES, *NULL_SLOPES, _SEATED, *EXPONENTS, *_EQ6])
+    names = [*STATES, *NULL_SLOPES, _SEATED, *EXPONENTS, *_EQ6, *ISOTROPY]
+    add_statistics(result, names + (list(SLIDING) if slides else []))
     return with_pressure(result, whole.area).assign_attrs(
         members=REALISATIONS if recipe is not None else TWINS,
         direction=loading.direction,
         offset=float(loading.offsets[0]),
-        map_load=float(forces_of([settings.map_load], whole.area)[0]),
+        map_load=_reference(loading),
     )
 
 
@@ -223,7 +241,17 @@ def _realisation(loading: JointLoading[EnsembleSettings]) -> xr.Dataset:
     result = labelled_dataset(table, values, coords={"normal_force": curves["normal_force"]})
     composite = loading.composite(mapped)[::finest, ::finest]
     slopes = null_slopes(touching, composite, cell, fit_range=fitted)
-    return result.merge(slopes).assign(_size_exponents(loading))
+    reference = int(np.argmin(np.abs(result["normal_force"].values - _reference(loading))))
+    sides = tuple(loading.spacing * finest)
+    along, across = interval_dimensions(touching[reference], sides, loading.direction)
+    of_domain = {name: ((), *words) for name, words in ISOTROPY.items()}
+    isotropy = labelled(of_domain, {"interval_difference": across.value - along.value})
+    return result.merge(slopes).assign(isotropy | _size_exponents(loading))
+
+
+def _reference(loading: JointLoading[EnsembleSettings]) -> float:
+    """Reference load, N."""
+    return float(loading.forces([loading.settings.map_load])[0])
 
 
 def _size_exponents(loading: JointLoading[EnsembleSettings]) -> dict:

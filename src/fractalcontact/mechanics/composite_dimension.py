@@ -9,6 +9,7 @@ from ..core.estimate import names_of
 from ..core.labels import cf_attrs
 from ..roughness.dimension import measured_exponents, surface_dimension
 from ..roughness.fit_range import FitRange, below_offset
+from .lag_dimension import lag_dimensions
 
 #: How Delta_g of the composite topographies is measured: of the estimators with little bias the
 #: one that a tilt of the composite, which is part of the joint, does not touch.
@@ -37,7 +38,8 @@ def composite_dimensions(
     -------
     dict of str to (dims, values, attributes)
         ``composite_dimension`` with ``_low`` and ``_high``, ``composite_fit_min`` and ``_max`` (mm)
-        and ``composite_no_dimension``, why there is none, all (offset).
+        and ``composite_no_dimension``, why there is none, all (offset), and those of
+        :func:`mechanics.lag_dimension.lag_dimensions`, over lags that are the same at all offsets.
 
     Notes
     -----
@@ -61,7 +63,7 @@ def composite_dimensions(
     return {
         f"composite_{name}": ("offset", dimensions[name].values, dimensions[name].attrs)
         for name in names
-    }
+    } | lag_dimensions(composites, spacing, face.longest)
 
 
 def _composite_dimension(

@@ -14,7 +14,7 @@ from ..core.datasets import labelled, labelled_dataset
 from ..core.directions import AUTOMATIC_OFFSETS
 from ..core.errors import InputError
 from ..core.labels import cf_attrs
-from ..core.mean_plane import without_mean_plane
+from ..core.mean_plane import mean_slopes, without_mean_plane
 from ..core.settings import SpecimenSettings
 from ..core.window import faces, nominal_area, window_slices
 from ..surface.specimen import largest_offset
@@ -283,7 +283,7 @@ def describe_joint(specimen: xr.Dataset, settings: SpecimenSettings) -> xr.Datas
     chosen = choose_offsets(specimen, settings.offsets, every)
     reference = solved[0]
     cells, spacing = chosen[reference], direction_spacing(specimen, reference)
-    slide = _describe_slide(specimen, directions, np.arange(int(max(cells)) + 1), spacing)
+    slide = describe_slide(specimen, directions, np.arange(int(max(cells)) + 1), spacing)
     composites = [composite_topography(specimen, reference, n) for n in cells]
     window = window_slices(specimen)
     y, x = (specimen[axis].values[along] for axis, along in zip("yx", window, strict=True))
@@ -305,23 +305,61 @@ def describe_joint(specimen: xr.Dataset, settings: SpecimenSettings) -> xr.Datas
         "first_touch_y": y[touching[0]],
         "first_touch_x": x[touching[1]],
     }
-    return slide.assign(
-        composite_dimensions(specimen, composites, cells * spacing, settings.surface_range)
-        | labelled(table, values)
-    ).assign_coords(
-        contact_direction=solved,
-        offset=("offset", offsets_of(cells, spacing), cf_attrs("mm", "shear offset v")),
-        window_y=("window_y", y, specimen.y.attrs),
-        window_x=("window_x", x, specimen.x.attrs),
+    return (
+        slide.assign(window_tilts(specimen, slide["axis"].values.tolist()))
+        .assign(
+            composite_dimensions(specimen, composites, cells * spacing, settings.surface_range)
+            | labelled(table, values)
+        )
+        .assign_coords(
+            contact_direction=solved,
+            offset=("offset", offsets_of(cells, spacing), cf_attrs("mm", "shear offset v")),
+            window_y=("window_y", y, specimen.y.attrs),
+            window_x=("window_x", x, specimen.x.attrs),
+        )
     )
 
 
-def _describe_slide(
+def window_tilts(specimen: xr.Dataset, axes: Sequence[str]) -> dict[str, tuple]:
+    """Tilt of the window's mean plane against that of the whole lower face.
+
+    Parameters
+    ----------
+    specimen : xr.Dataset
+    axes : sequence of str
+        Of :data:`mechanics.plateau.AXES`; the tilt is positive where the face rises to East or
+        North.
+
+    Returns
+    -------
+    dict
+        ``window_tilt`` (axis) as ``xr.Dataset`` takes it, a slope.
+    """
+    slopes = dict(
+        zip(
+            ("N-S", "E-W"),
+            mean_slopes(faces(specimen)[0][window_slices(specimen)]),
+            strict=True,
+        )
+    )
+    spacing = {"N-S": specimen.attrs["spacing_y"], "E-W": specimen.attrs["spacing_x"]}
+    table = {"window_tilt": ("axis", "1", "tilt of the mean plane of the window, a slope")}
+    return labelled(table, {"window_tilt": np.array([slopes[a] / spacing[a] for a in axes])})
+
+
+def describe_slide(
     specimen: xr.Dataset, directions: Sequence[str], cells: np.ndarray, spacing: float
 ) -> xr.Dataset:
     """Rigid dilatancy, its plateaus, and correlation of the faces at every cell.
 
-    Cells are those of the reference direction.
+    Parameters
+    ----------
+    specimen : xr.Dataset
+    directions : sequence of str
+    cells : (n,) int ndarray
+        Offsets in cells of the reference direction, from 0.
+    spacing : float
+        Of that direction, mm.
     """
     dilatancy = np.full((len(directions), len(cells)), np.nan)
     spread, correlation = dilatancy.copy(), dilatancy.copy()

@@ -34,7 +34,7 @@ _UNDECIDED = {
 #: Opposite directions, by the axis that they lie on.
 AXES = {"E-W": ("E", "W"), "N-S": ("N", "S")}
 _EVEN = "half the sum of the rigid dilatancies in opposite directions, the part of the roughness"
-_ODD = "half their difference, the part of a tilt"
+_ODD = "half their difference: a tilt of the window, and chance of the highest points"
 _PART_DIMS = ("axis", "rigid_offset")
 #: Parts of the rigid dilatancy over opposite directions: dimensions, unit, long name.
 _PARTS = {
@@ -155,8 +155,8 @@ def opposite_parts(
     """Even and odd part of the rigid dilatancy over opposite directions.
 
     A tilt a of the window against the plane that was removed from the face adds a v in one
-    direction and - a v in the opposite one: it is in the odd part alone, and what the roughness
-    opens in both is the even part.
+    direction and - a v in the opposite one, so that the even part is of the roughness alone. The
+    odd part is no measure of the tilt: the highest points differ by chance too.
 
     Parameters
     ----------

@@ -34,6 +34,8 @@ class Cell:
         In words; a sign; the class of its colour.
     numbers, note : str
         What decides it, and what to know of that.
+    explanation : str
+        What a null model does in the same data; empty where none is compared.
     judged_on : str
         The specimen, or realisations of its kind.
     circular : str
@@ -47,6 +49,7 @@ class Cell:
     kind: str
     numbers: str
     note: str
+    explanation: str
     judged_on: str
     circular: str
     figure: str
@@ -110,6 +113,7 @@ def statement_table(study: str, rows: Iterable[Row]) -> pd.DataFrame:
             "verdict": cell.verdict,
             "numbers": cell.numbers,
             "note": cell.note,
+            "explanation": cell.explanation,
             "judged_on": cell.judged_on,
             "chosen_for": cell.circular,
         }
@@ -146,6 +150,7 @@ def _cell(found, figure):
         kind=kind,
         numbers=str(found["numbers"].item()),
         note=str(found["note"].item()),
+        explanation=str(found["explanation"].item()),
         judged_on=str(found["judged_on"].item()),
         circular=str(found["circular_reason"].item()) if bool(found["circular"]) else "",
         figure=figure,

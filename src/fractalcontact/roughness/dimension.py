@@ -199,7 +199,7 @@ def measured_exponents(
     heights = np.asarray(heights, float)
     if heights.ndim != 2:
         raise ValueError(f"heights must be a (y, x) grid, not of shape {heights.shape}")
-    heights, spacing = _on_square_cells(heights, spacing)
+    heights, spacing = on_square_cells(heights, spacing)
     levelled = without_mean_plane(heights)
     if np.nanmax(np.abs(levelled), initial=0) <= FLATNESS * np.nanmax(np.abs(heights), initial=0):
         levelled[...] = 0  # a plane but for rounding, which has no dimension
@@ -213,7 +213,9 @@ def measured_exponents(
     }, chosen
 
 
-def _on_square_cells(heights: np.ndarray, spacing) -> tuple[np.ndarray, float]:
+def on_square_cells(
+    heights: np.ndarray, spacing: float | tuple[float, ...]
+) -> tuple[np.ndarray, float]:
     """Heights at the coarser of two spacings along both axes, and that spacing."""
     spacings = np.broadcast_to(np.asarray(spacing, float), 2)
     coarse = spacings.max()

@@ -7,6 +7,7 @@ import numpy as np
 
 from .draft import Hints, add_words
 from .table_hints import add_axes, add_columns, coordinate_columns
+from .text_lines import words_of
 
 _HEIGHTS = re.compile(r"(?:^|[^a-z])(?:z|heights?|topo\w*|elev\w*|surf\w*|data)(?:[^a-z]|$)")
 #: A larger array is not looked into.
@@ -37,7 +38,7 @@ def array_hints(
         Attributes of the file: where each stands, and its text.
     """
     hints = Hints()
-    names = sorted(tables, key=lambda name: (not _HEIGHTS.search(name.lower()), name))
+    names = sorted(tables, key=lambda name: (not _HEIGHTS.search(words_of(name.lower())), name))
     name = wanted if wanted in tables else names[0] if names else None
     if name is None:
         return hints

@@ -11,13 +11,15 @@ from ..core.units import length_unit
 from .draft import Hints, add_words
 from .options import DELIMITERS, ScanOptions
 from .table_hints import add_axes, add_columns, axis_of, coordinate_columns
-from .text_lines import COMMENT_MARKS, cells_of, cleaned, is_number, open_text
+from .text_lines import COMMENT_MARKS, cells_of, cleaned, is_number, open_text, words_of
 from .text_style import add_style
 
 _MAX_LINES = 2_000
 _LONGEST_LINE = 200_000
 #: Lines of words in front of the numbers that a table which describes itself may have.
 _MAX_ABOVE = 200
+#: Characters of a line that names columns; patterns take the square of them, at worst.
+_MAX_HEADING = 2_000
 _NAMED = re.compile(r"([xyzXYZ])\s*[\[(]\s*([^\[\]()]+?)\s*[\])]")
 _GLUED = re.compile(r"[^\s\[(]+\s*[\[(][^\])]*[\])]")
 #: Numbers whose point may part thousands as well.
@@ -51,11 +53,13 @@ def named_columns(path: Path) -> tuple[dict[str, Any], dict[str, Any]] | None:
     if not number:
         return None
     line = lines[number - 1].lstrip("#%!/ ").rstrip()
+    if len(line) > _MAX_HEADING:
+        return None
     for name, delimiter in DELIMITERS.items():
         cells = _GLUED.findall(line) if delimiter == " " else line.split(delimiter)
         if delimiter == " " and "".join(cells).replace(" ", "") != line.replace(" ", ""):
             continue
-        found = [_NAMED.fullmatch(cell.strip().strip("\"'")) for cell in cells]
+        found = [_NAMED.fullmatch(words_of(cell).strip("\"'")) for cell in cells]
         axes = [match[1].lower() if match and length_unit(match[2]) else "" for match in found]
         if sorted(filter(None, axes)) != ["x", "y", "z"]:
             continue
@@ -232,11 +236,11 @@ def _add_field(hints: Hints, above: list[str], shape: tuple[int, int]) -> None:
     """
     if len(above) != 4 or not all(line.startswith("# ") and ":" in line for line in above):
         return
-    across, along = (_FIELD.fullmatch(line.strip()) for line in above[1:3])
+    across, along = (_FIELD.fullmatch(words_of(line)) for line in above[1:3])
     unit = above[3].rpartition(":")[2].strip()
     if not (across and along and length_unit(across[2]) and length_unit(along[2])):
         return
-    if not length_unit(unit) or _FIELD.fullmatch(above[0].strip()):
+    if not length_unit(unit) or _FIELD.fullmatch(words_of(above[0])):
         return
     steps = [
         f"{float(match[1].replace(',', '.')) / count:.9g} {match[2]}"

@@ -23,6 +23,8 @@ DOUBTFUL_END = (
     f"{NOTE}the last line has no line end, and its last number fewer characters than most: the "
     "file may be cut off there; compare it with its source"
 )
+#: Characters of a line of words that are looked at: patterns take the square of them, at worst.
+MAX_WORDS = 200
 #: What programs call the sides of a matrix in its header.
 _SIDES = re.compile(
     r"[#%!/\s\"']*(?:(?P<x>nx|ncols|n_cols|columns)|(?P<y>ny|nrows|n_rows|rows))[\s:=,;\t]+"
@@ -63,6 +65,11 @@ def _encoding(path: Path) -> str:
         except UnicodeDecodeError:  # instruments in Europe still write this one
             return "latin-1"
     return "utf-8-sig"
+
+
+def words_of(line: str) -> str:
+    """The beginning of a line of words, with one blank for white space of any length."""
+    return " ".join(line[: 4 * MAX_WORDS].split())[:MAX_WORDS]
 
 
 def cells_of(line: str, delimiter: str) -> list[str]:

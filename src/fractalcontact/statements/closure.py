@@ -4,137 +4,236 @@ import numpy as np
 
 from ..core.claims import all_claims
 from ..core.estimate import Estimate
-from ..core.intervals import mean_difference
+from ..core.fitting import MIN_POINTS, fit_line
 from ..core.limits import NEARLY
 from ..core.text import compact, loads_of, number
-from ..core.verdicts import FAILS, HOLDS, ILL_POSED, PARTLY, UNDETERMINED
+from ..core.verdicts import FAILS, HOLDS, PARTLY, UNDETERMINED
+from ..mechanics.lag_dimension import LAG_RANGES
 from .evidence import Evidence, of_a_kind
 from .findings import (
     Finding,
     Joint,
     beyond_margin,
+    difference_of,
     level,
     margin_words,
+    no_offsets,
     of_the_area,
+    power_of_offset,
     share,
-    trend,
     under_every_load,
 )
 
 #: Relative difference between two pressures that are one.
 ROUNDING = 1e-9
 
+#: Offsets that could differ are this factor apart.
+MIN_SPREAD = 3.0
+
 #: Closure from first contact is an extreme of the sample; compliance is a property of the joint.
 _COMPLIANCE = "compliance"
 
 
-def compliance_rises_at_first(joint: Joint) -> Finding:
-    """Compliance of the interface up to the correlation length, as a power of v."""
-    return trend(joint.offsets, joint.compliance, joint.initial, _COMPLIANCE, rising=True)
+@of_a_kind
+def compliance_rises_at_first(joint: Joint, evidence: Evidence) -> Finding:
+    """Compliance of the interface up to the correlation length, as a power of v.
 
-
-def curves_overlap(joint: Joint) -> Finding:
-    """Range of the compliance of the interface beyond the correlation length, at every load.
-
-    The claim holds where the range, with the solver's error, lies within the margin.
+    The claim holds where the interval of the power lies above the margin.
     """
-    v, margin = joint.offsets[joint.between], all_claims()["curves_overlap"].margin
+    v = evidence.offsets()
+    first = joint.initial(v)
+    exponent = evidence.power_of_offset("compliance", first)
+    name = "compliance_rises_at_first"
+    return power_of_offset(name, exponent, v[first], _COMPLIANCE, rising=True)
+
+
+@of_a_kind
+def curves_overlap(joint: Joint, evidence: Evidence) -> Finding:
+    """Range of the compliance of the interface over offsets a factor of three apart.
+
+    The claim holds where such a stretch of offsets beyond the correlation length has a range whose
+    interval lies within the margin. Neighbouring offsets would agree in any joint. One specimen is
+    judged at every load, realisations at the reference load.
+    """
+    v, margin = evidence.offsets(), all_claims()["curves_overlap"].margin
+    beyond = joint.between(v) | joint.unrelated(v)
 
     def spread(force):
-        compliance = joint.estimate_at_load("closure", "interface_compliance", force)
-        return level(compliance[joint.between], _COMPLIANCE, v, margin)
+        found = []
+        for part in _stretches(v, beyond):
+            change, n = evidence.spread_over("compliance", part, force)
+            if n >= MIN_POINTS and change.known:
+                found.append(level(change, _COMPLIANCE, v[part], margin))
+        wanted = (
+            f"no three offsets from v to {compact(MIN_SPREAD, 6)} v beyond the correlation length"
+        )
+        order = (HOLDS, UNDETERMINED, FAILS)
+        nothing = Finding(UNDETERMINED, wanted)
+        return min(found, key=lambda one: order.index(one.verdict), default=nothing)
 
-    return under_every_load(joint, spread)
+    return under_every_load(joint, spread, evidence.judged_forces)
 
 
-def compliance_rises_again(joint: Joint) -> Finding:
-    """Change of the compliance as the correlation of the faces is lost, at every load.
+def _stretches(v: np.ndarray, chosen: np.ndarray) -> list[np.ndarray]:
+    """Masks of the offsets from each chosen one up to the first that is a factor beyond it."""
+    found = []
+    for first in v[chosen]:
+        far = np.flatnonzero(chosen & (v >= MIN_SPREAD * first * (1 - ROUNDING)))
+        if far.size:
+            found.append(chosen & (v >= first) & (v <= v[far[0]]))
+    return found
+
+
+@of_a_kind
+def compliance_rises_again(joint: Joint, evidence: Evidence) -> Finding:
+    """Change of the compliance as the correlation of the faces is lost.
 
     The mean logarithm over the offsets without correlation is compared with that over the offsets
     beyond the correlation length at which the faces still correlate (if there is none, the last one
-    within that length). The claim holds where the interval lies above the margin.
+    within that length). The claim holds where the interval lies above the margin. One specimen is
+    judged at every load, realisations at the reference load.
     """
-    before = joint.between
-    if not before.any() and joint.initial.any():
-        before = joint.offsets == joint.offsets[joint.initial].max()
-    return under_every_load(joint, lambda force: _rise(joint, force, before))
-
-
-def _rise(joint, force, before):
-    """Compliance at the offsets without correlation less that at the ones before, under a load."""
-    compliance = joint.compliance_under(force)
-    known = np.isfinite(compliance)
-    before, after = before & known, joint.unrelated & known
-    if not after.any() or not before.any():
-        return Finding(UNDETERMINED, "no offset lies before the loss of correlation, or none after")
-    spread = joint.along("closure")["composite_spread"].values
-    change, of_spread = (
-        mean_difference(np.log(values[after]), np.log(values[before])).mapped(np.expm1)
-        for values in (compliance, spread)
+    v = evidence.offsets()
+    before, after = joint.between(v), joint.unrelated(v)
+    first = joint.initial(v)
+    if not before.any() and first.any():
+        before = v == v[first].max()
+    return under_every_load(
+        joint,
+        lambda force: _rise(joint, evidence, force, before, after),
+        evidence.judged_forces,
     )
+
+
+def _rise(joint, evidence, force, before, after):
+    """Compliance at the offsets without correlation less that at the ones before, under a load."""
+    rise = evidence.rise_over("compliance", before, after, force)
+    if not rise.known:
+        return Finding(UNDETERMINED, "no offset lies before the loss of correlation, or none after")
+    change = rise.mapped(np.expm1)
+    spread = joint.along("closure")["composite_spread"].values[joint.offsets > 0]
+    v = joint.offsets[joint.offsets > 0]
+    ends = evidence.offsets()[before].max(), evidence.offsets()[after].min()
+    widened = spread[v >= ends[1]].mean() / spread[(v >= v[0]) & (v <= ends[0])][-1] - 1
     name = "compliance_rises_again"
-    ends = joint.offsets[before].max(), joint.offsets[after].min()
     percent = change.mapped(lambda end: 100 * end)
     return Finding(
         beyond_margin(change, all_claims()[name].margin, rising=True),
         f"compliance {number(percent, 0, '+')} %",
         f"from v = {compact(ends[0])} mm and less to {compact(ends[1])} mm and more; "
         f"{margin_words(name)}; "
-        f"sigma_z of the composite topography {number(100 * of_spread.value, 0, '+')} %",
-    )
-
-
-def composite_dimension_rises(joint: Joint) -> Finding:
-    """Delta_g of the composite topography against offset, which the fitted lags decide.
-
-    At lags far below v the composite topography z(x + v) - z(x) has the dimension of the face. At
-    lags far above v its variogram is flat. So the dimension fitted over given lags depends on v in
-    the same way for every joint.
-    """
-    joints = joint["joints"]
-    dimension = joints["composite_dimension"].values
-    known = np.isfinite(dimension) & (joint.offsets > 0)
-    if not known.any():
-        return Finding(
-            ILL_POSED, "the fitted lags decide it: the variogram is flat above v, the face's below"
-        )
-    v, fitted = joint.offsets[known], dimension[known]
-    low = float(joints["composite_fit_min"].min())
-    high = float(joints["composite_fit_max"].max())
-    return Finding(
-        ILL_POSED,
-        f"Delta_g is {number(fitted[0])} at v = {compact(v[0])} mm and "
-        f"{number(fitted[-1])} at {compact(v[-1])} mm, "
-        f"over lags of {compact(low)} to {compact(high)} mm",
-        "other lags would give other dimensions",
-    )
-
-
-def compliance_goes_with_dimension(joint: Joint) -> Finding:
-    """Compliance against a dimension that the fitted lags decide."""
-    return Finding(
-        ILL_POSED,
-        "it needs the dimension of the composite topography, which is ill-posed",
-        "a joint slid farther is more compliant because sigma_z grows",
+        f"sigma_z of the composite topography {number(100 * widened, 0, '+')} %",
     )
 
 
 @of_a_kind
-def larger_samples_close_more(joint: Joint, evidence: Evidence) -> Finding:
-    """Exponent of the compliance of the interface against the size of sub-windows.
+def composite_dimension_rises(joint: Joint, evidence: Evidence) -> Finding:
+    """Dimension of the composite topography at the largest offset less that at the smallest.
 
-    The claim holds where the interval lies above the margin, and fails where it lies below.
+    The dimension is that over the same lags at all offsets, for three choices of lags. The claim
+    holds where it rises by more than the margin for each, and fails where it does for none. Offsets
+    are compared that lie a factor of three apart or more.
+    """
+    name, v = "composite_dimension_rises", evidence.offsets()
+    if v.size < 2 or v[-1] < MIN_SPREAD * v[0]:
+        return Finding(UNDETERMINED, no_offsets("two, a factor of three apart,"))
+    dimension = evidence.lag_dimension()
+    first, last = dimension[0], dimension[-1]
+    rise = [difference_of(last[i], first[i]) for i in range(len(LAG_RANGES))]
+    if not all(one.known for one in rise):
+        return Finding(UNDETERMINED, "the composite topography is flat at the first or last offset")
+    margin = all_claims()[name].margin
+    each = [beyond_margin(one, margin, rising=True) for one in rise]
+    low, high = (joint["joints"][f"lag_{end}"].values for end in ("min", "max"))
+    also = ", ".join(
+        f"{number(first.value[i])} to {number(last.value[i])} over {compact(low[i], 2)} "
+        f"to {compact(high[i], 2)} mm"
+        for i in range(1, len(LAG_RANGES))
+    )
+    return Finding(
+        share(sum(verdict in (HOLDS, PARTLY) for verdict in each), len(each)),
+        f"over lags of {compact(low[0], 2)} to {compact(high[0], 2)} mm it goes from "
+        f"{number(first.value[0])} at "
+        f"v = {compact(v[0])} mm to {number(last.value[0])} at {compact(v[-1])} mm",
+        f"{also}; {margin_words(name)}",
+        explanation="far below a lag the composite topography is a derivative of the face, far "
+        "above it has the face's dimension",
+    )
+
+
+@of_a_kind
+def compliance_goes_with_dimension(joint: Joint, evidence: Evidence) -> Finding:
+    """Compliance of the interface and dimension of the composite topography over the offsets.
+
+    The claim holds where both rise or both fall from the smallest to the largest offset, and fails
+    where one rises and the other falls.
+    """
+    name, v = "compliance_goes_with_dimension", evidence.offsets()
+    if v.size < 2 or v[-1] < MIN_SPREAD * v[0]:
+        return Finding(UNDETERMINED, no_offsets("two, a factor of three apart,"))
+    dimension = evidence.lag_dimension()
+    steeper = difference_of(dimension[-1], dimension[0])[0]
+    every = np.full(v.shape, True)
+    softer = evidence.power_of_offset("compliance", every)
+    if not (steeper.known and softer.known):
+        return Finding(UNDETERMINED, "no dimension or no compliance at some offset")
+    wider = _exponent_of_spread(joint)
+    numbers = (
+        f"as v grows from {compact(v[0])} to {compact(v[-1])} mm the dimension changes by "
+        f"{number(steeper.value, 2, '+')} and the compliance as v^x, x = {number(softer)}"
+    )
+    margin, note = all_claims()[name].margin, margin_words(name)
+    directions = [_sign(softer, margin), _sign(steeper, margin)]
+    if 0 in directions:
+        return Finding(UNDETERMINED, numbers, note)
+    return Finding(
+        HOLDS if directions[0] == directions[1] else FAILS,
+        numbers,
+        note,
+        explanation=f"sigma_z of the composite topography grows as v^{number(wider)}: a joint slid "
+        "farther is more compliant because its gap is wider",
+    )
+
+
+def _sign(change: Estimate, margin: float) -> int:
+    """Sign of a change that is sure and may exceed the margin; 0 of none, or of one not known."""
+    for sign, rising in ((1, True), (-1, False)):
+        if beyond_margin(change, margin, rising=rising) in (HOLDS, PARTLY):
+            return sign
+    return 0
+
+
+def _exponent_of_spread(joint: Joint) -> float:
+    """Exponent over v of the standard deviation sigma_z of the composite topography."""
+    slid = joint.offsets > 0
+    spread = joint.along("closure")["composite_spread"].values[slid]
+    return float(fit_line(np.log(joint.offsets[slid]), np.log(spread)).slope.value)
+
+
+@of_a_kind
+def larger_samples_close_more(joint: Joint, evidence: Evidence) -> Finding:
+    """Exponents against the size of sub-windows: of closure from first touch and of compliance.
+
+    Each grows with size where its interval lies above the margin, and does not where it lies below.
+    The claim holds where both grow, and in part where one does.
     """
     name = "larger_samples_close_more"
-    exponent = evidence.size_exponent("compliance_exponent")
-    if not exponent.known:
+    margin = all_claims()[name].margin
+    found = {
+        "closure from first touch": evidence.size_exponent("closure_exponent"),
+        "compliance": evidence.size_exponent("compliance_exponent"),
+    }
+    found = {words: exponent for words, exponent in found.items() if exponent.known}
+    if not found:
         return Finding(UNDETERMINED, "too few nodes in contact in sub-windows of two sizes")
-    closure = float(joint.state("windows")["closure_exponent"])
+    each = [beyond_margin(exponent, margin, rising=True) for exponent in found.values()]
+    decided = [verdict for verdict in each if verdict != UNDETERMINED]
+    grows = sum(verdict in (HOLDS, PARTLY) for verdict in decided)
+    verdict = PARTLY if grows else FAILS if decided else UNDETERMINED
     return Finding(
-        beyond_margin(exponent, all_claims()[name].margin, rising=True),
-        f"x = {number(exponent)}",
-        f"compliance ~ b^x {evidence.reference}; {margin_words(name)}; closure from first touch "
-        f"~ b^{number(closure)} in this specimen",
+        HOLDS if each == [HOLDS, HOLDS] else verdict,
+        " and ".join(f"{words} ~ b^x, x = {number(exponent)}" for words, exponent in found.items()),
+        f"{evidence.reference}; {margin_words(name)}",
     )
 
 
@@ -162,24 +261,27 @@ def area_is_linear(joint: Joint) -> Finding:
 
 
 @of_the_area
-def area_falls(joint: Joint) -> Finding:
-    """Contact area against offset, as a power of v."""
-    return trend(joint.offsets, joint.area_fraction, joint.offsets > 0, "A_r", rising=False)
+@of_a_kind
+def area_falls(joint: Joint, evidence: Evidence) -> Finding:
+    """Contact area against offset, as a power of v, compared with the margin."""
+    v = evidence.offsets()
+    exponent = evidence.power_of_offset("area", np.full(v.shape, True))
+    return power_of_offset("area_falls", exponent, v, "A_r", rising=False)
 
 
 @of_the_area
-def area_settles(joint: Joint) -> Finding:
-    """Range of the contact area beyond the correlation length.
+@of_a_kind
+def area_settles(joint: Joint, evidence: Evidence) -> Finding:
+    """Range of the contact area beyond the correlation length, over a factor of three of v.
 
-    The claim holds where the range, with the solver's error, lies within the margin.
+    The claim holds where the interval of the range lies within the margin.
     """
-    beyond = joint.between | joint.unrelated
-    area, error = (
-        joint.at_load("closure", name)[beyond]
-        for name in ("area_corrected", "area_corrected_error")
-    )
-    areas = Estimate(area, area - error, area + error)
-    return level(areas, "A_r", joint.offsets[beyond], all_claims()["area_settles"].margin)
+    v = evidence.offsets()
+    beyond = joint.between(v) | joint.unrelated(v)
+    spread, n = evidence.spread_over("area", beyond, joint.force)
+    if n < MIN_POINTS or v[beyond][-1] < MIN_SPREAD * v[beyond][0]:
+        return Finding(UNDETERMINED, no_offsets("three, over a factor of three,"))
+    return level(spread, "A_r", v[beyond], all_claims()["area_settles"].margin)
 
 
 def refinement_changes_little(joint: Joint) -> Finding:

@@ -13,18 +13,26 @@ import numpy as np
 import xarray as xr
 
 from ..core.estimate import Estimate
-from ..core.fitting import slope_error
+from ..core.fitting import MIN_POINTS, fit_line, slope_error
+from ..core.intervals import mean_difference, mean_interval
 from ..core.limits import MIN_NODES, NEAR_FULL
 from ..core.text import compact
 from ..core.verdicts import UNDETERMINED
 from ..domain.departure import departure_of
+from ..domain.isotropy import WAYS
 from ..domain.null_models import TOO_SMALL
 from ..domain.pressure_trend import pressure_trend
 from ..domain.slope_curves import largest_departure
-from .findings import Finding, Joint
+from .findings import Finding, Joint, difference_of
 
 #: The two estimates of Delta_sigma, as their variables and in words.
 ESTIMATES = {"area": "by A_r(s)", "box": "by boxes"}
+
+#: Quantities over the offsets: variable of the stage closure, and its error if it has no interval.
+AT_OFFSETS = {
+    "compliance": ("interface_compliance", ""),
+    "area": ("area_corrected", "area_corrected_error"),
+}
 
 #: Null models; estimates and box sides beside them.
 _NULLS = ("random", "cut")
@@ -127,6 +135,72 @@ class Evidence:
         """
         return self.joint.states("domains")
 
+    def offsets(self) -> np.ndarray:
+        """Offsets v > 0 at which the contact of the joint was solved, mm, ascending."""
+        return self.joint.offsets[self.joint.offsets > 0]
+
+    def power_of_offset(self, name: str, chosen: np.ndarray) -> Estimate:
+        """Exponent over some of the offsets of one of :data:`AT_OFFSETS`, at the reference load."""
+        values = self._at_offsets(name, self.joint.force).value
+        used = chosen & (values > 0)
+        return fit_line(np.log(self.offsets()[used]), np.log(values[used])).slope
+
+    def spread_over(self, name: str, chosen: np.ndarray, force: float) -> tuple[Estimate, int]:
+        """Range of one of :data:`AT_OFFSETS` over its mean over some offsets, and their number.
+
+        The ends of its interval are the least and the largest range that the solver's errors allow.
+        """
+        values = self._at_offsets(name, force)
+        values = values[chosen & np.isfinite(values.value)]
+        if values.value.size < MIN_POINTS:
+            return Estimate(), int(values.value.size)
+        least = max(values.low.max() - values.high.min(), 0.0)
+        spread = Estimate(np.ptp(values.value), least, values.high.max() - values.low.min())
+        return spread.mapped(lambda end: end / values.value.mean()), values.value.size
+
+    def rise_over(self, name: str, before: np.ndarray, after: np.ndarray, force: float) -> Estimate:
+        """Mean logarithm of one of :data:`AT_OFFSETS` at some offsets less that at others."""
+        values = self._at_offsets(name, force).value
+        known = np.isfinite(values)
+        before, after = before & known, after & known
+        if not before.any() or not after.any():
+            return Estimate()
+        return mean_difference(np.log(values[after]), np.log(values[before]))
+
+    @property
+    def judged_forces(self) -> np.ndarray:
+        """Loads (n,), N, under which the offsets are compared."""
+        return self.joint.forces
+
+    def interval_difference(self) -> Estimate:
+        """Exponent of occupied intervals across sliding less that along it, at reference load."""
+        measures = self.joint["domain_measures"]
+        measures = measures.sel(normal_force=self.joint.force, method="nearest")
+        along, across = (Estimate.read(measures, f"interval_dimension_{way}") for way in WAYS)
+        return difference_of(across, along)
+
+    def rigid_slides(self) -> list[xr.Dataset]:
+        """Rigid dilatancy of every realisation, as the stage ``joints`` has it; none of a joint."""
+        return []
+
+    def lag_dimension(self) -> Estimate:
+        """Dimension of the composite topography over fixed lags (offset, lag_range)."""
+        joints = self.joint["joints"]
+        value = joints["lag_dimension"].transpose("offset", "lag_range").values
+        value = value[self.joint.offsets > 0]
+        return Estimate(value, value, value)
+
+    def _at_offsets(self, name: str, force: float) -> Estimate:
+        """One of :data:`AT_OFFSETS` over the offsets, missing below ten nodes in contact."""
+        variable, error = AT_OFFSETS[name]
+        value = self.joint.at_load("closure", variable, force)
+        if error:
+            half = self.joint.at_load("closure", error, force)
+            found = Estimate(value, value - half, value + half)
+        else:
+            found = self.joint.estimate_at_load("closure", variable, force)
+        return found[self.joint.offsets > 0]
+
     @property
     def _pressures(self) -> np.ndarray:
         return self.joint.forces / self.joint.area
@@ -149,7 +223,8 @@ class OfRealisations(Evidence):
         # A finding without a note has no number, but the reason why there is none.
         of = "mean of" if finding.note else "in"
         judged_on = f"{self.realisations} realisations"
-        return finding._replace(numbers=f"{finding.numbers}; {of} {judged_on}", judged_on=judged_on)
+        told = "" if "realisations" in finding.numbers else f"; {of} {judged_on}"
+        return finding._replace(numbers=finding.numbers + told, judged_on=judged_on)
 
     def size_exponent(self, name: str) -> Estimate:
         """Exponent against the side b of sub-windows under the reference load."""
@@ -212,6 +287,58 @@ class OfRealisations(Evidence):
             for name in (*names, *missing)
         }
         return xr.Dataset({**means, **sides, **table})
+
+    def offsets(self) -> np.ndarray:
+        """Offsets at which the realisations were solved, mm, ascending."""
+        return self.stage["offset"].values
+
+    def power_of_offset(self, name: str, chosen: np.ndarray) -> Estimate:
+        """Mean exponent over some of the offsets of one of :data:`AT_OFFSETS`."""
+        rows = self._rows(name)[:, chosen]
+        if rows.shape[1] < MIN_POINTS:
+            return Estimate()
+        lever = np.log(self.offsets()[chosen])
+        lever = lever - lever.mean()
+        return mean_interval(rows @ lever / (lever @ lever))
+
+    def spread_over(self, name: str, chosen: np.ndarray, force: float) -> tuple[Estimate, int]:
+        """Change between the smallest and the largest mean over some offsets, as a fraction."""
+        rows = self._rows(name)[:, chosen]
+        if rows.shape[1] < MIN_POINTS:
+            return Estimate(), rows.shape[1]
+        means = rows.mean(axis=0)
+        change = mean_interval(rows[:, np.argmax(means)] - rows[:, np.argmin(means)])
+        return change.mapped(np.expm1).within(0.0, np.inf), rows.shape[1]
+
+    def rise_over(self, name: str, before: np.ndarray, after: np.ndarray, force: float) -> Estimate:
+        """Mean logarithm at some offsets less that at others, of every realisation."""
+        rows = self._rows(name)
+        if not before.any() or not after.any():
+            return Estimate()
+        return mean_interval(rows[:, after].mean(axis=1) - rows[:, before].mean(axis=1))
+
+    @property
+    def judged_forces(self) -> np.ndarray:
+        """The reference load alone: the only one under which the realisations slide."""
+        return np.array([self.joint.force])
+
+    def interval_difference(self) -> Estimate:
+        """Mean exponent of occupied intervals across sliding less that along it."""
+        return self._mean("interval_difference")
+
+    def rigid_slides(self) -> list[xr.Dataset]:
+        """Rigid dilatancy of every realisation, as the stage ``joints`` has it."""
+        return [self.stage.isel(realisation=i) for i in range(self.realisations)]
+
+    def lag_dimension(self) -> Estimate:
+        """Mean dimension of the composite topography over fixed lags (offset, lag_range)."""
+        ordered = self.stage.transpose(..., "offset", "lag_range")
+        return Estimate.read(ordered, "lag_dimension_mean")
+
+    def _rows(self, name: str) -> np.ndarray:
+        """Logarithms of one of :data:`AT_OFFSETS` (realisation, offset); NaN where missing."""
+        values = self.stage[f"{name}_slid"].transpose("realisation", "offset").values
+        return np.log(np.where(values > 0, values, np.nan))
 
     def _departures(self, less: Mapping[str, Estimate], load: int) -> dict[str, Any]:
         """Departures of the mean local slopes from those of the null models under one load."""

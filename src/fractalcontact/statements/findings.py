@@ -8,7 +8,6 @@ import numpy as np
 
 from ..core.claims import all_claims
 from ..core.estimate import Estimate, names_of
-from ..core.fitting import MIN_POINTS, fit_line
 from ..core.limits import RESOLVED_NODES
 from ..core.subject import Subject
 from ..core.text import compact, loads_of, number
@@ -21,7 +20,8 @@ BY_CONSTRUCTION = "A_r = F/H, because all contacts yield"
 class Finding(NamedTuple):
     """Verdict on one statement, its numbers, and a remark.
 
-    Captions quote the verdict and the numbers. The note stands in the table alone, and so does
+    Captions quote the verdict and the numbers. The note stands in the table alone, and so do
+    ``explanation``, what a null model does in the same data, which never changes the verdict, and
     ``judged_on``, which is empty where the whole subject was judged.
     """
 
@@ -29,6 +29,7 @@ class Finding(NamedTuple):
     numbers: str
     note: str = ""
     judged_on: str = ""
+    explanation: str = ""
 
 
 class Joint(Subject):
@@ -109,23 +110,20 @@ class Joint(Subject):
         """A variable of the joint in the direction judged."""
         return self.along("joints")[name].values
 
-    @cached_property
-    def initial(self) -> np.ndarray:
-        """Offsets of the first stage of sliding: up to the correlation length, if it is reached."""
+    def initial(self, v: np.ndarray) -> np.ndarray:
+        """Offsets (n,) of the first stage of sliding: up to the correlation length, if reached."""
         length = self.of_direction("correlation_length")
-        return (self.offsets > 0) & (np.isnan(length) | (self.offsets <= length))
+        return (v > 0) & (np.isnan(length) | (v <= length))
 
-    @cached_property
-    def between(self) -> np.ndarray:
-        """Offsets beyond the correlation length at which the faces still correlate."""
-        unrelated = self.of_direction("uncorrelated_offset")
-        beyond = self.offsets > self.of_direction("correlation_length")
-        return beyond & (~np.isfinite(unrelated) | (self.offsets < unrelated))
+    def between(self, v: np.ndarray) -> np.ndarray:
+        """Offsets (n,) beyond the correlation length at which the faces still correlate."""
+        lost = self.of_direction("uncorrelated_offset")
+        beyond = v > self.of_direction("correlation_length")
+        return beyond & (~np.isfinite(lost) | (v < lost))
 
-    @cached_property
-    def unrelated(self) -> np.ndarray:
-        """Offsets at which the faces no longer correlate."""
-        return self.offsets >= self.of_direction("uncorrelated_offset")
+    def unrelated(self, v: np.ndarray) -> np.ndarray:
+        """Offsets (n,) at which the faces no longer correlate."""
+        return v >= self.of_direction("uncorrelated_offset")
 
 
 def of_the_area(check: Callable[[Joint], Finding]) -> Callable[[Joint], Finding]:
@@ -140,27 +138,20 @@ def of_the_area(check: Callable[[Joint], Finding]) -> Callable[[Joint], Finding]
     return asked
 
 
-def trend(
-    v: np.ndarray, values: np.ndarray, chosen: np.ndarray, symbol: str, *, rising: bool
+def power_of_offset(
+    name: str, exponent: Estimate, v: np.ndarray, symbol: str, *, rising: bool
 ) -> Finding:
-    """Verdict on a claim of a power of v with a stated sign."""
-    chosen = chosen & (values > 0)
-    line = fit_line(np.log(v[chosen]), np.log(values[chosen]))
-    return power_of_offset(line.slope, v[chosen], symbol, rising=rising)
-
-
-def power_of_offset(exponent: Estimate, v: np.ndarray, symbol: str, *, rising: bool) -> Finding:
-    """Verdict on an exponent over the offsets v that it was fitted to, by the sign wanted."""
+    """Verdict on an exponent over the offsets v that it was fitted to, by sign and margin."""
     if not exponent.known:
         return Finding(UNDETERMINED, no_offsets("three"))
     return Finding(
-        by_sign(exponent, rising=rising),
+        beyond_margin(exponent, all_claims()[name].margin, rising=rising),
         f"x = {number(exponent)}",
-        f"{symbol} ~ v^x, v = {compact(v[0])} to {compact(v[-1])} mm",
+        f"{symbol} ~ v^x, v = {compact(v[0])} to {compact(v[-1])} mm; {margin_words(name)}",
     )
 
 
-def under_every_load(joint: Joint, rule: Callable[[float], Finding]) -> Finding:
+def under_every_load(joint: Joint, rule: Callable[[float], Finding], forces: np.ndarray) -> Finding:
     """Finding of a rule at the load nearest to the reference that decides, its verdict that of all.
 
     What a rule with a fixed limit finds at one load may be otherwise at the next.
@@ -170,14 +161,20 @@ def under_every_load(joint: Joint, rule: Callable[[float], Finding]) -> Finding:
     joint : Joint
     rule : callable
         From a load, N, to its finding.
+    forces : (n,) ndarray
+        Loads asked, N.
     """
-    found = {force: rule(force) for force in joint.forces}
+    found = {force: rule(force) for force in forces}
     decided = {force: one for force, one in found.items() if one.verdict != UNDETERMINED}
     if not decided:
         return rule(joint.force)
     force = min(decided, key=lambda one: abs(np.log(one / joint.force)))
     verdicts = [one.verdict for one in decided.values()]
     pressure = force / joint.area
+    if len(found) == 1:
+        return decided[force]._replace(
+            numbers=f"{decided[force].numbers} at {compact(pressure)} MPa"
+        )
     share_of = f"holds at {loads_of(verdicts.count(HOLDS), len(decided))}"
     if PARTLY in verdicts:
         share_of += f", in part at {loads_of(verdicts.count(PARTLY), len(decided))}"
@@ -220,12 +217,20 @@ def beyond_margin(found: Estimate, margin: float, *, rising: bool) -> str:
 def within_margin(difference: Estimate, margin: float) -> str:
     """Verdict on a claim that there is no difference.
 
-    It is none where the whole interval lies within the margin, and fails where the interval leaves
-    out zero and some of it lies beyond.
+    There is none where the whole interval lies within the margin, and one where the whole interval
+    lies beyond it on one side.
     """
     if max(abs(difference.low), abs(difference.high)) <= margin:
         return HOLDS
-    return FAILS if difference.low > 0 or difference.high < 0 else UNDETERMINED
+    return FAILS if max(difference.low, -difference.high) > margin else UNDETERMINED
+
+
+def difference_of(first: Estimate, second: Estimate) -> Estimate:
+    """Difference of two estimates with independent errors."""
+    below = np.hypot(first.value - first.low, second.high - second.value)
+    above = np.hypot(first.high - first.value, second.value - second.low)
+    value = first.value - second.value
+    return Estimate(value, value - below, value + above)
 
 
 def margin_words(name: str) -> str:
@@ -233,22 +238,10 @@ def margin_words(name: str) -> str:
     return f"margin {compact(all_claims()[name].margin, 6)}"
 
 
-def level(values: Estimate, symbol: str, v: np.ndarray, margin: float) -> Finding:
-    """Verdict on a claim of constancy over offsets, by the range over the mean.
-
-    The ends of its interval are the least and the largest range that the intervals of the values
-    allow.
-    """
-    known = np.isfinite(values.value)
-    values, v = values[known], v[known]
-    if len(v) < MIN_POINTS:
-        return Finding(UNDETERMINED, no_offsets("three"))
-    least = max(values.low.max() - values.high.min(), 0.0)
-    spread = Estimate(np.ptp(values.value), least, values.high.max() - values.low.min())
-    spread = spread.mapped(lambda end: end / values.value.mean())
-    verdict = HOLDS if spread.high <= margin else FAILS if spread.low > margin else UNDETERMINED
+def level(spread: Estimate, symbol: str, v: np.ndarray, margin: float) -> Finding:
+    """Verdict on a claim of constancy over offsets, by the range over the mean."""
     return Finding(
-        verdict,
+        HOLDS if spread.high <= margin else FAILS if spread.low > margin else UNDETERMINED,
         f"{symbol} varies by {number(spread.mapped(lambda end: 100 * end), 0)} % of its mean",
         f"v = {compact(v[0])} to {compact(v[-1])} mm; margin {compact(100 * margin, 6)} %",
     )

@@ -111,7 +111,7 @@ def table_of(
     -------
     xr.Dataset
         ``figure``, ``claim``, ``short``, ``rule``, ``verdict``, ``numbers``, ``note``,
-        ``judged_on``, ``circular`` and ``circular_reason`` over (statement,).
+        ``explanation``, ``judged_on``, ``circular`` and ``circular_reason`` over (statement,).
     """
     found = [rule(subject) for rule in rules.values()]
     claims = [all_claims()[name] for name in rules]
@@ -125,6 +125,10 @@ def table_of(
         "note": (
             [_note(finding, claim) for finding, claim in zip(found, claims, strict=True)],
             "remark on these numbers, and what would decide the statement if they do not",
+        ),
+        "explanation": (
+            [finding.explanation for finding in found],
+            "what a null model does in the same data",
         ),
         "judged_on": ([finding.judged_on or asked for finding in found], "evidence judged"),
         "circular": (

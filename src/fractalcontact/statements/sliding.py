@@ -1,5 +1,6 @@
 """Statements of the paper on dilatancy and contact domains under sliding (Figs. 6 and 7)."""
 
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -8,6 +9,7 @@ import xarray as xr
 from ..core.limits import LEVEL_CHANGE, LOOSELY, NEARLY
 from ..core.text import compact, number
 from ..core.verdicts import FAILS, HOLDS, LEVEL, PARTLY, RISING, UNDETERMINED
+from .evidence import Evidence, of_a_kind
 from .findings import Finding, Joint, no_offsets, power_of_offset, share
 
 #: Directions in which the paper's concrete has a plateau, of those it slid in.
@@ -54,73 +56,141 @@ class Plateaus(NamedTuple):
         """Directions in which dilatancy keeps rising."""
         return self.trend == RISING
 
-    def finding(self, verdict: str) -> Finding:
-        """Verdict with the number of level directions and their change; undetermined if one is."""
+    def words(self) -> str:
+        """Number of level directions, those that rise, and why there is no verdict."""
         rising = [self.directions[i] for i in np.flatnonzero(self.rising)]
         more = f", rising in {', '.join(rising)}" if rising else ""
-        return Finding(
-            UNDETERMINED if self.undecided else verdict,
+        return (
             f"level in {self.flat.sum() or 'none'} of {self.change.size} directions{more}"
-            f"{f'; {self.undecided}' if self.undecided else ''}",
-            f"{number(100 * self.change.min(), 0, '+')} to "
-            f"{number(100 * self.change.max(), 0, '+')} % change over the "
-            f"second half of v; level: up to {compact(100 * LEVEL_CHANGE, 6)} %",
+            f"{f'; {self.undecided}' if self.undecided else ''}"
         )
 
 
-def dilatancy_flattens(joint: Joint) -> Finding:
+@of_a_kind
+def dilatancy_flattens(joint: Joint, evidence: Evidence) -> Finding:
     """Change of the rigid dilatancy over the second half of the offsets, in every direction.
 
-    The claim is undetermined while the faces still correlate, as a plateau may yet follow.
+    One specimen is judged by the fraction of its directions that are level, realisations by the
+    fraction of them that are level in all directions. The claim is undetermined while the faces
+    still correlate, as a plateau may yet follow.
     """
-    plateaus = Plateaus.of(joint["joints"])
-    if not plateaus.change.size:
-        return Finding(UNDETERMINED, no_offsets("three rigid"))
-    return plateaus.finding(share(int(plateaus.flat.sum()), plateaus.flat.size))
+    return _of_plateaus(
+        joint,
+        evidence,
+        asked="all directions",
+        met=lambda one: bool(one.flat.all()),
+        judged=lambda one: share(int(one.flat.sum()), one.flat.size),
+    )
 
 
-def dilatancy_flattens_in_two(joint: Joint) -> Finding:
+@of_a_kind
+def dilatancy_flattens_in_two(joint: Joint, evidence: Evidence) -> Finding:
     """Number of directions with a plateau, and of directions that rise on: two each.
 
-    The claim is undetermined while the faces still correlate, as a plateau may yet follow.
+    Realisations are judged by the fraction of them of which this is true. The claim is undetermined
+    while the faces still correlate, as a plateau may yet follow.
     """
-    plateaus = Plateaus.of(joint["joints"])
-    if plateaus.change.size < DIRECTIONS:
+    if Plateaus.of(joint["joints"]).change.size < DIRECTIONS:
         return Finding(UNDETERMINED, f"{DIRECTIONS} directions needed")
+    return _of_plateaus(
+        joint,
+        evidence,
+        asked="two directions and rises in the other two",
+        met=lambda one: int(one.flat.sum()) == int(one.rising.sum()) == PLATEAUS,
+        judged=_two_each,
+    )
+
+
+def _two_each(plateaus: Plateaus) -> str:
+    """Verdict of one joint on two level and two rising directions."""
     flat, rising = int(plateaus.flat.sum()), int(plateaus.rising.sum())
     both = flat > 0 and rising > 0
-    verdict = HOLDS if both and flat == rising == PLATEAUS else PARTLY if both else FAILS
-    return plateaus.finding(verdict)
+    return HOLDS if both and flat == rising == PLATEAUS else PARTLY if both else FAILS
 
 
-def dilatancy_is_anisotropic(joint: Joint) -> Finding:
-    """Difference of the slopes of the rigid dilatancy among directions, second half of v.
-
-    A tilt of the window raises the slope in one direction and lowers it in the opposite one by as
-    much. The mean of both is roughness alone. Where the two axes have the same mean, the claim
-    holds in part.
-    """
-    joints = joint["joints"]
-    change = Plateaus.of(joints).change
-    if change.size < 2:
-        return Finding(UNDETERMINED, "fewer than two directions")
-    verdict = _differs(np.ptp(change))
-    even, tilts = joints["even_change"].values, joints["odd_slope"].values
-    axes = [str(axis) for axis in joints["axis"].values]
-    parts = "; ".join(
-        f"{axis} {number(100 * rise, 0, '+')} % in the mean of both directions, tilt "
-        f"{number(tilt, 3, '+')} v"
-        for axis, rise, tilt in zip(axes, even, tilts, strict=True)
+def _of_plateaus(
+    joint: Joint,
+    evidence: Evidence,
+    *,
+    asked: str,
+    met: Callable[[Plateaus], bool],
+    judged: Callable[[Plateaus], str],
+) -> Finding:
+    """Finding on plateaus: of the specimen, or by the fraction of its realisations."""
+    own = Plateaus.of(joint["joints"])
+    if not own.change.size:
+        return Finding(UNDETERMINED, no_offsets("three rigid"))
+    note = (
+        f"{number(100 * own.change.min(), 0, '+')} to "
+        f"{number(100 * own.change.max(), 0, '+')} % change over the second "
+        f"half of v; level: up to {compact(100 * LEVEL_CHANGE, 6)} %"
     )
-    if len(axes) > 1 and verdict == HOLDS and _differs(np.ptp(even)) != HOLDS:
-        verdict = PARTLY
+    members = [Plateaus.of(one) for one in evidence.rigid_slides()]
+    if not members:
+        return Finding(UNDETERMINED if own.undecided else judged(own), own.words(), note)
+    decided = [one for one in members if not one.undecided]
+    if not decided:
+        return Finding(UNDETERMINED, members[0].undecided, note)
+    count = sum(met(one) for one in decided)
     return Finding(
-        verdict,
-        f"delta_r changes by {number(100 * change.min(), 0, '+')} to "
-        f"{number(100 * change.max(), 0, '+')} % of its mean "
-        "over the second half of v, depending on direction",
-        parts,
+        share(count, len(decided)),
+        f"level in {asked} in {count or 'none'} of {len(decided)} realisations; this specimen: "
+        f"{own.words()}",
+        f"this specimen: {note}",
     )
+
+
+@of_a_kind
+def dilatancy_is_anisotropic(joint: Joint, evidence: Evidence) -> Finding:
+    """Difference of the changes of the rigid dilatancy among directions, second half of v.
+
+    The changes differ markedly where their range is above 0.25, and in part where it is above 0.1.
+    Realisations are judged by the fraction of them that differ markedly. A tilt of the window opens
+    one direction and closes the opposite one by as much; it is that of the window's mean plane.
+    """
+    own = Plateaus.of(joint["joints"])
+    if own.change.size < 2:
+        return Finding(UNDETERMINED, "fewer than two directions")
+    numbers = (
+        f"delta_r changes by {number(100 * own.change.min(), 0, '+')} to "
+        f"{number(100 * own.change.max(), 0, '+')} % of "
+        "its mean over the second half of v, depending on direction"
+    )
+    members = evidence.rigid_slides()
+    if not members:
+        return Finding(_differs(np.ptp(own.change)), numbers, _odd_parts(joint["joints"]))
+    ranges = [float(np.ptp(Plateaus.of(one).change)) for one in members]
+    marked = sum(_differs(one) == HOLDS for one in ranges)
+    return Finding(
+        share(marked, len(ranges)),
+        f"the directions differ by more than {compact(100 * LOOSELY, 6)} % in "
+        f"{marked or 'none'} of "
+        f"{len(ranges)} realisations; this specimen: {numbers}",
+        _odd_parts(joint["joints"]),
+        explanation=f"the recipe is isotropic: {_scatter(members)} is chance of the highest points",
+    )
+
+
+def _odd_parts(joints: xr.Dataset) -> str:
+    """Odd part of the slope by axis, and the tilt of the window's mean plane along it."""
+    return "; ".join(
+        f"{axis}: odd part {number(odd, 3, '+')} v, tilt of the window {number(tilt, 4, '+')}"
+        for axis, odd, tilt in zip(
+            joints["axis"].values,
+            joints["odd_slope"].values,
+            joints["window_tilt"].values,
+            strict=True,
+        )
+    )
+
+
+def _scatter(members: Sequence[xr.Dataset]) -> str:
+    """Standard deviation over realisations of the odd parts, by axis, in words."""
+    odd = np.array([one["odd_slope"].values for one in members])
+    axes = members[0]["axis"].values
+    each = odd.std(axis=0, ddof=1)
+    parts = (f"{number(each[i], 3)} v {axis}" for i, axis in enumerate(axes))
+    return f"the scatter of the odd part over realisations, {' and '.join(parts)},"
 
 
 def _differs(spread: float) -> str:
@@ -131,7 +201,7 @@ def _differs(spread: float) -> str:
 def domains_cluster(joint: Joint) -> Finding:
     """Morisita's index of the contact domains against offset, as a power of v."""
     exponent, fitted = joint.localisation
-    return power_of_offset(exponent, fitted, "Morisita's index", rising=True)
+    return power_of_offset("domains_cluster", exponent, fitted, "Morisita's index", rising=True)
 
 
 def no_correlation_is_left(joint: Joint) -> Finding:

@@ -13,7 +13,7 @@ from ..core.text import number
 from ..core.verdicts import UNDETERMINED
 from ..roughness.recommended import best_dimension
 from .evidence import evidence_of
-from .findings import Finding, Joint, beyond_margin, by_sign, margin_words
+from .findings import Finding, Joint, beyond_margin, by_sign, difference_of, margin_words
 from .judge import material_of, table_of
 
 
@@ -81,15 +81,21 @@ def _slope(x: np.ndarray, y: np.ndarray, error: np.ndarray) -> Estimate:
 
 
 def area_falls_more_in_concrete(joints: Mapping[str, Joint]) -> Finding:
-    """Exponent of A_r against v, concrete's minus rock's, beyond the margin."""
-    exponents = _by_material(joints, _area_exponent)
-    return _compared(exponents, "area_falls_more_in_concrete", "A_r ~ v^x", rising=False)
+    """Exponent of A_r against v, concrete's minus rock's, beyond the margin.
+
+    Synthetic surfaces of one recipe hold no difference of materials, and decide nothing.
+    """
+    found = _by_material(joints, _area_exponent)
+    return _compared(found, "area_falls_more_in_concrete", "A_r ~ v^x", rising=False)
 
 
 def contact_localises_more_in_concrete(joints: Mapping[str, Joint]) -> Finding:
-    """Exponent of Morisita's index against v, concrete's minus rock's, beyond the margin."""
-    exponents, name = _by_material(joints, _localisation), "contact_localises_more_in_concrete"
-    return _compared(exponents, name, "Morisita's index ~ v^x", rising=True)
+    """Exponent of Morisita's index against v, concrete's minus rock's, beyond the margin.
+
+    Synthetic surfaces of one recipe hold no difference of materials, and decide nothing.
+    """
+    found, name = _by_material(joints, _localisation), "contact_localises_more_in_concrete"
+    return _compared(found, name, "Morisita's index ~ v^x", rising=True)
 
 
 def _localisation(joint):
@@ -104,30 +110,29 @@ def _area_exponent(joint):
 
 
 def _by_material(joints, exponent_of):
-    """Exponent of the first joint of each material that has one."""
-    found: dict[str, Estimate] = {}
+    """Exponent of the first joint of each material that has one, and whether it is synthetic."""
+    found: dict[str, tuple[Estimate, bool]] = {}
     for joint in joints.values():
         material = material_of(joint.settings)
         if not slides(joint.settings["opposite"]) or material in found or not material:
             continue
         exponent = exponent_of(joint)
         if exponent.known:
-            found[material] = exponent
+            found[material] = exponent, joint.realised
     return found
 
 
-def _compared(exponents, name, law, *, rising):
+def _compared(found, name, law, *, rising):
     """Verdict on concrete's exponent less rock's, whose errors are independent."""
-    if exponents.keys() != {"rock", "concrete"}:
+    if found.keys() != {"rock", "concrete"}:
         return Finding(UNDETERMINED, "a joint of each material needed")
-    rock, concrete = exponents["rock"], exponents["concrete"]
-    value = concrete.value - rock.value
-    below = np.hypot(concrete.value - concrete.low, rock.high - rock.value)
-    above = np.hypot(concrete.high - concrete.value, rock.value - rock.low)
-    less = Estimate(value, value - below, value + above)
+    (rock, of_recipe), (concrete, also) = found["rock"], found["concrete"]
+    less = difference_of(concrete, rock)
+    verdict = beyond_margin(less, all_claims()[name].margin, rising=rising)
+    one_recipe = "; both are synthetic surfaces of one recipe" if of_recipe and also else ""
     return Finding(
-        beyond_margin(less, all_claims()[name].margin, rising=rising),
-        f"{law}: x = {number(concrete)} in concrete, {number(rock)} in rock",
+        UNDETERMINED if one_recipe else verdict,
+        f"{law}: x = {number(concrete)} in concrete, {number(rock)} in rock{one_recipe}",
         f"difference {number(less, 2, '+')}; {margin_words(name)}",
     )
 

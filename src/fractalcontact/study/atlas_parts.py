@@ -60,10 +60,10 @@ class Atlas:
         self.attrs, self._own = _contents(path)
         if "configuration" not in self.attrs:
             raise InputError(f"{path}: no atlas; it lacks the attribute 'configuration'")
-        self._parts: dict[str, str] = json.loads(self.attrs.get("parts", "{}"))
+        self._parts: dict[str, str] = _mapping(self.attrs, "parts", path)
         own = self._own.get("specimens", ())
         self.specimens: tuple[str, ...] = tuple(sorted({*own, *self._parts}))
-        settings: dict[str, Any] = json.loads(self.attrs["configuration"]).get("settings", {})
+        settings = _mapping(self.attrs, "configuration", path).get("settings", {})
         self.groups = {name: settings.get(name, {}).get("group", "") for name in self.specimens}
 
     def __repr__(self) -> str:
@@ -163,7 +163,7 @@ class Trees:
     def __init__(self, path: Path | str, stages: Collection[str]):
         self.path, self._without = Path(path), STAGES.keys() - set(stages)
         self.root, self.held = read_named_atlas(path, self._without)
-        self.parts: dict[str, str] = json.loads(self.root.attrs.get("parts", "{}"))
+        self.parts: dict[str, str] = _mapping(self.root.attrs, "parts", self.path)
         self.names = sorted({*specimens_of(self.root), *self.parts})
 
     def of(
@@ -219,6 +219,17 @@ def read_group(path: Path | str, group: str) -> tuple[xr.Dataset, Mapping[str, A
             raise KeyError(f"{path}: no group {group}") from None
         dataset = xr.open_dataset(xr.backends.NetCDF4DataStore(found)).load()
         return dataset, {name: file.getncattr(name) for name in file.ncattrs()}
+
+
+def _mapping(attrs: Mapping[Any, Any], name: str, path: Path) -> dict[str, Any]:
+    """An attribute of an atlas that holds a mapping as JSON; empty where there is none."""
+    try:
+        held = json.loads(attrs.get(name, "{}"))
+    except (TypeError, ValueError) as error:
+        raise InputError(f"{path}: no atlas; its attribute '{name}' is no JSON ({error})") from None
+    if not isinstance(held, dict):
+        raise InputError(f"{path}: no atlas; its attribute '{name}' holds no mapping")
+    return held
 
 
 def _contents(path):

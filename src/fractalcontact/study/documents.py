@@ -7,8 +7,8 @@ from pathlib import Path
 import yaml
 
 from ..core.errors import InputError
+from .plain_yaml import load_yaml
 from .schema import shortened
-from .sidecar import unreadable
 
 _TEMPLATE = "__use_yte__"
 _MAX_VALUES = 100_000
@@ -24,13 +24,14 @@ def read_study(path: Path | str) -> dict:
         that stands in a study which asks for it, and studies come from colleagues and supplements.
     """
     try:
-        document = yaml.safe_load(Path(path).read_text(encoding="utf-8"))
-    except yaml.YAMLError as error:
-        raise unreadable(path, error) from error
+        text = Path(path).read_text(encoding="utf-8")
     except OSError as error:
         raise InputError(f"{path}: cannot be read ({error.strerror})") from error
     except UnicodeDecodeError as error:
         raise InputError(f"{path}: not text in UTF-8 ({error.reason}); save it as that") from error
+    document = load_yaml(text, path, anchors=True)
+    try:
+        yaml.safe_load(text)  # as Snakemake does before it lets the workflow read the study
     except ValueError as error:  # a day that no month has, an integer of thousands of digits
         raise InputError(f"{path}: an invalid date or number ({error})") from error
     if not isinstance(document, dict):

@@ -43,6 +43,7 @@ _WRITE = {
     "pressure": "the normal pressure that is held, such as 'pressure: 5 MPa'",
     "direction": "the direction of sliding, 'direction: E', N, W or S",
 }
+_MAX_GAUGE = 100  # characters
 _COMPLIANCE = re.compile(r"\s*(?P<number>[-+.\deE]+)\s*(?P<unit>\S+)\s*/\s*MPa\s*")
 
 
@@ -162,7 +163,7 @@ def _compliance(gauge: Any, where: str) -> float:
         modulus = quantity(gauge["modulus"], "pressure", f"{where}.modulus")
         found = length / modulus if modulus > 0 else -1.0
     else:
-        parts = _COMPLIANCE.fullmatch(str(gauge))
+        parts = _COMPLIANCE.fullmatch(str(gauge)[:_MAX_GAUGE])
         if parts is None:
             raise InputError(f"{where}: {str(gauge)[:60]!r} is not right; write {_WRITE['gauge']}")
         found = float(parts["number"]) * length_factor(parts["unit"], where)

@@ -14,10 +14,16 @@ from ..core.labels import printable
 _IGNORED = ("README", "LICENSE")
 #: Files that systems and editors leave in a folder, by name, ending or beginning, in lower case.
 _LEFT_BY_SYSTEMS = ("thumbs.db", "desktop.ini", "icon\r", "ehthumbs.db")
-_LEFT_BEHIND = ("~", ".bak", ".orig", ".tmp", ".swp", ".part", ".crdownload")
+_LEFT_BEHIND = (
+    *("~", ".bak", ".orig", ".rej", ".tmp", ".swp", ".swo", ".save", ".asv", ".autosave"),
+    *(".part", ".partial", ".filepart", ".crdownload", ".download", ".opdownload"),
+)
 #: Endings of what `make describe` writes: drafts of sidecars and pictures, which nothing reads.
 DRAFTS = (".draft.yaml", ".draft.png", ".draft.html")
+_DRAFT = ".draft"
 _LOCKS = ("~$", "._", ".~lock.")
+#: Emacs' ``#rock.npy#`` and nano's ``rock.npy.save.1``.
+_SAVED_BY_EDITORS = re.compile(r"#[^#]{1,250}#|[^#]{1,240}\.save\.\d{1,3}")
 #: How others name the faces of a joint: what stands before, the mark, the face, the ending.
 _OTHER_FACE = {"lower": "upper", "bottom": "top", "sidea": "sideb", "side1": "side2"}
 _FACE = re.compile(r"(?:[_ -]|(?<=[a-z0-9])(?=[A-Z]))(?i:lower|bottom|side[a1])(?![a-zA-Z0-9])")
@@ -180,7 +186,8 @@ def is_passed_over(name: str) -> bool:
 
 def _is_left_behind(name: str) -> bool:
     name = name.lower()
-    return name in _LEFT_BY_SYSTEMS or name.endswith(_LEFT_BEHIND) or name.startswith(_LOCKS)
+    known = name in _LEFT_BY_SYSTEMS or name.endswith(_LEFT_BEHIND) or name.startswith(_LOCKS)
+    return known or bool(_SAVED_BY_EDITORS.fullmatch(name))
 
 
 def _likely_pairs(names: list[str]) -> Iterator[tuple[str, str, str, str]]:
@@ -231,7 +238,7 @@ def refuse_misleading(path: Path) -> None:
 
 
 def refuse_unusable(name: str, path: Path) -> None:
-    """Refuse a specimen's name that is empty, or too long for the files of its results.
+    """Refuse a specimen's name that is empty, a draft's, or too long for the files of its results.
 
     Raises
     ------
@@ -239,6 +246,11 @@ def refuse_unusable(name: str, path: Path) -> None:
     """
     if not name:
         raise InputError(f"{path}: give the file a name with letters or digits in it")
+    if name.lower().endswith(_DRAFT):
+        raise InputError(
+            f"{path}: a specimen called {name}, whose sidecar {name}.yaml would be taken for a "
+            f"draft; rename the file, such as {name[: -len(_DRAFT)]}_draft{path.suffix}"
+        )
     if len(name) > LONGEST_NAME:
         raise InputError(
             f"{path}: a specimen name of {len(name)} characters, more than the {LONGEST_NAME} that "

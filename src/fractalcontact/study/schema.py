@@ -70,8 +70,8 @@ def _explain(error):
         full = f"{key}.{missing}" if key else missing
         expected = error.schema["properties"].get(missing, {})
         return f"missing key '{full}'{_expected(expected)}"
-    if error.validator == "anyOf" and isinstance(error.instance, dict):
-        # What is wrong within a mapping says more than that it is none of the forms.
+    if error.validator == "anyOf" and isinstance(error.instance, dict | list):
+        # What is wrong within a mapping or a list says more than that it is none of the forms.
         of_mappings = [found for found in error.context if found.validator not in ("type", "const")]
         inner = max(of_mappings, key=lambda found: len(found.absolute_path), default=error)
         deeper = len(inner.absolute_path) > len(error.absolute_path)

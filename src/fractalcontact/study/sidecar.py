@@ -1,32 +1,14 @@
-"""Text of a sidecar: a reduced YAML, since it is untrusted input.
+"""Text of a sidecar: plain YAML without anchors, and short, since it is untrusted input."""
 
-Words and numbers mean what they look like: ``1e-3`` is a number, ``no``, ``1:30`` and
-``2020-01-01`` are words, ``010`` is ten. Anchors, tags, keys written twice and nesting without end
-are refused; so is a file far longer than any sidecar.
-"""
-
-import re
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, ClassVar
-
-import yaml
+from typing import Any
 
 from ..core.errors import InputError
 from ..scan.options import CONTACT_MAP
+from .plain_yaml import load_yaml
 
 LARGEST_SIDECAR = 64 * 1024  # bytes
-DEEPEST_SIDECAR = 10  # lists within mappings within ...
-_LONGEST_INTEGER = 18  # digits; a longer one is a number like any other
-
-_STANDARD = "tag:yaml.org,2002:"
-#: The core schema of YAML 1.2; PyYAML's own is that of 1.1.
-_WORDS = (
-    ("null", r"~|null|Null|NULL|"),
-    ("bool", r"true|True|TRUE|false|False|FALSE"),
-    ("int", r"[-+]?[0-9]+"),
-    ("float", r"[-+]?(\.[0-9]+|[0-9]+(\.[0-9]*)?)([eE][-+]?[0-9]+)?|[-+]?\.inf|\.nan"),
-)
 
 
 def is_contact_map(scan_options: Mapping) -> bool:
@@ -77,10 +59,7 @@ def read_yaml(path: Path | str) -> dict:
             f"{path}: longer than the {LARGEST_SIDECAR // 1024} kB of a sidecar; write only the "
             "keys listed in scans/README.md"
         )
-    try:
-        document = yaml.load(content, _Loader)
-    except yaml.YAMLError as error:
-        raise unreadable(path, error) from error
+    document = load_yaml(content, path)
     if document is None:
         return {}
     if not isinstance(document, dict):
@@ -102,68 +81,4 @@ def plain_value(text: str, where: str) -> Any:
     InputError
         If it is no such value.
     """
-    try:
-        return yaml.load(text[:LARGEST_SIDECAR], _Loader)
-    except yaml.YAMLError as error:
-        raise unreadable(where, error) from error
-
-
-def unreadable(path: Path | str, error: yaml.YAMLError) -> InputError:
-    """Sentence on an error in YAML.
-
-    Parameters
-    ----------
-    path : path-like
-    error : yaml.YAMLError
-    """
-    if isinstance(error, yaml.MarkedYAMLError):
-        line = f"line {error.problem_mark.line + 1}: " if error.problem_mark else ""
-        problem = f"{line}{error.problem}"
-    else:
-        problem = f"{error.reason} at character {error.position}; save it as plain text in UTF-8"
-    return InputError(f"{path}: not readable as YAML: {problem}")
-
-
-class _Loader(yaml.SafeLoader):
-    """PyYAML's safe loader, reduced to the needs of a sidecar."""
-
-    yaml_implicit_resolvers: ClassVar[dict] = {}
-    depth = 0
-
-    def compose_node(self, parent, index):
-        event = self.peek_event()
-        if isinstance(event, yaml.AliasEvent) or event.anchor:
-            raise _refusal("anchors (&) and aliases (*) have no use here; write it out", event)
-        if event.tag:
-            problem = f"{event.tag[:40]!r} has no use here; write plain words and numbers"
-            raise _refusal(problem, event)
-        self.depth += 1
-        if self.depth > DEEPEST_SIDECAR:
-            raise _refusal(f"nested more than {DEEPEST_SIDECAR} deep", event)
-        node = super().compose_node(parent, index)
-        self.depth -= 1
-        return node
-
-    def construct_mapping(self, node, deep=False):
-        found = set()
-        for key, _ in node.value:
-            if not key.tag.endswith(":str"):
-                raise _refusal(f"the key {str(key.value)[:40]!r} is no word", key)
-            if key.value in found:
-                raise _refusal(f"the key {key.value[:40]!r} stands here a second time", key)
-            found.add(key.value)
-        return super().construct_mapping(node, deep)
-
-    def construct_yaml_int(self, node):
-        """Decimal, also with a zero in front; one of many digits is a number like any other."""
-        of = int if len(node.value) <= _LONGEST_INTEGER else float
-        return of(node.value)
-
-
-def _refusal(problem: str, where) -> yaml.MarkedYAMLError:
-    return yaml.constructor.ConstructorError(problem=problem, problem_mark=where.start_mark)
-
-
-for _name, _pattern in _WORDS:
-    _Loader.add_implicit_resolver(_STANDARD + _name, re.compile(rf"(?:{_pattern})\Z"), None)
-_Loader.add_constructor(_STANDARD + "int", _Loader.construct_yaml_int)
+    return load_yaml(text[:LARGEST_SIDECAR], where)

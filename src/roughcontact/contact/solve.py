@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike
 
 from ..arguments import MAX_INPUT, MAX_RESULT, MIN_INPUT, MIN_RESULT, field, number, quoted
 from ..elastic.halfspace import HalfSpace
-from ..errors import NotConverged
+from ..errors import NotConverged, interruptible
 from .active_set import ActiveSetMethod
 from .bounds import Bounds
 from .candidates import (
@@ -37,6 +37,7 @@ from .topography import Topography
 FURTHEST = 2.0
 
 
+@interruptible()
 def solve_contact(
     composite: ArrayLike,
     space: HalfSpace,

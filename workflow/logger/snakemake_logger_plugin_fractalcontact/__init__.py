@@ -41,6 +41,8 @@ _REASONS = {
 }
 #: Where in the workflow an error was noticed, before what it says.
 _PLACE = re.compile(r"\w+(?: in (?:rule .*|file \".*\", line \d+))?:")
+#: Of a job that failed, a line for each file that is there as before.
+_UNSAID = re.compile("Restored previous version of ")
 #: What would do things to a terminal.
 _CONTROL = re.compile(r"[\x00-\x08\x0b-\x1f\x7f-\x9f]")
 
@@ -70,7 +72,7 @@ class LogHandler(LogHandlerBase):
             getattr(self, f"_{kind}", lambda record: None)(record)
         elif str(record.msg).startswith("Nothing to be done"):
             self.nothing = True
-        elif record.levelname == "WARNING":
+        elif record.levelname == "WARNING" and not _UNSAID.match(str(record.msg)):
             for line in _wrapped(f"warning: {record.msg}"):
                 self._say(line, self.err)
 

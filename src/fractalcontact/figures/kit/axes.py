@@ -1,5 +1,7 @@
 """Axes of forces and offsets, and labels of logarithmic ones that are short."""
 
+from collections.abc import Sequence
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
@@ -91,11 +93,11 @@ class _FewPlaces(LogLocator):
     Matplotlib takes up to nine even ones there, whose labels run into each other.
     """
 
-    def tick_values(self, vmin: float, vmax: float) -> np.ndarray:
+    def tick_values(self, vmin: float, vmax: float) -> Sequence[float]:
         low, high = sorted((vmin, vmax))
         decades = 10 ** np.arange(np.floor(np.log10(low)), np.ceil(np.log10(high)) + 1)
         places = np.outer(decades, (1, 2, 5)).ravel()
         inside = places[(places >= low * (1 - 1e-9)) & (places <= high * (1 + 1e-9))]
         if inside.size > 1:
-            return inside
-        return np.asarray(MaxNLocator(3, steps=[1, 2, 5, 10]).tick_values(low, high))
+            return inside.tolist()
+        return list(MaxNLocator(3, steps=[1, 2, 5, 10]).tick_values(low, high))

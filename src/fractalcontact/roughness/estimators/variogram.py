@@ -14,9 +14,15 @@ from ..known_bias import (
 from ..roll_off import difference_fraction
 
 
-def variogram_curves(heights: np.ndarray, spacing: float) -> dict[str, Curve]:
-    """Mean square height difference (mm2) over lags (mm): grows as h^(2H)."""
-    lags = lengths_in_cells(1, min(heights.shape) // 2)
+def variogram_curves(
+    heights: np.ndarray, spacing: float, lags: np.ndarray | None = None
+) -> dict[str, Curve]:
+    """Mean square height difference (mm2) over lags (mm): grows as h^(2H).
+
+    Lags are stated in cells; by default they go up to half of the smaller side.
+    """
+    if lags is None:
+        lags = lengths_in_cells(1, min(heights.shape) // 2)
     return along_axes(spacing, lags, heights, _add_differences)
 
 

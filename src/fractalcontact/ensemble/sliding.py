@@ -1,0 +1,104 @@
+"""Sliding of an ensemble: rigid dilatancy in all directions, and contact at all offsets.
+
+What the paper says of sliding it says of two joints. One joint shows it by chance: the highest
+points of a face decide, and there are few of them. Realisations show what is common to a kind.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+import xarray as xr
+
+from ..core.datasets import labelled_dataset
+from ..core.labels import cf_attrs
+from ..core.limits import RESOLVED_NODES
+from ..core.settings import EnsembleSettings
+from ..core.window import window_sides
+from ..mechanics.closure import interface_states
+from ..mechanics.joint import describe_slide
+from ..mechanics.lag_dimension import lag_dimensions
+from ..mechanics.loading import JointLoading
+from ..mechanics.sweep import contact_states
+
+#: Of every realisation over the offsets, under the reference load: unit, long name.
+AT_OFFSETS = {
+    "compliance_slid": ("mm/MPa", "compliance of the interface under the reference load"),
+    "area_slid": ("1", "A_r / A_0 under the reference load, corrected for the perimeter"),
+    "composite_spread": ("mm", "standard deviation sigma_z of the composite topography"),
+}
+#: Over the offsets and the choices of lags.
+OVER_LAGS = ("lag_dimension",)
+#: Over the directions, and over the axes of two opposite directions, from the rigid slide.
+OF_DIRECTIONS, OF_AXES = ("plateau_slope", "plateau_change"), ("even_change", "odd_slope")
+
+#: Offsets solved are at least this factor apart: neighbours hardly differ.
+OFFSET_RATIO = 1.4
+
+#: Ends of the lags, the same of all realisations.
+LAG_ENDS = ("lag_min", "lag_max")
+
+#: Variables whose mean and spread over the realisations are kept.
+SLIDING = (*AT_OFFSETS, *OVER_LAGS, *OF_DIRECTIONS, *OF_AXES)
+
+
+def spread_offsets(cells: np.ndarray) -> np.ndarray:
+    """Offsets of a joint, in cells, ascending, at which its realisations are solved.
+
+    Each is :data:`OFFSET_RATIO` times the one before or more; flush faces are left out.
+    """
+    chosen: list[int] = []
+    for n in cells[cells > 0]:
+        if not chosen or n >= OFFSET_RATIO * chosen[-1]:
+            chosen.append(int(n))
+    return np.array(chosen)
+
+
+def sliding(loading: JointLoading[EnsembleSettings], longest: float) -> xr.Dataset:
+    """Sliding of one realisation.
+
+    Parameters
+    ----------
+    loading : JointLoading
+        At the offsets of :func:`spread_offsets`.
+    longest : float
+        Longest lag of ``lag_dimension``, mm.
+
+    Returns
+    -------
+    xr.Dataset
+        :data:`SLIDING`, with ``plateau_trend`` and ``plateau_undecided`` over (direction,) as
+        :func:`mechanics.plateau.rigid_plateaus` has them, and the lags of ``lag_dimension``.
+
+    Raises
+    ------
+    NotConverged
+        If a state could not be verified.
+    """
+    settings, specimen = loading.settings, loading.specimen
+    spacing = float(loading.offsets[-1] / loading.cells[-1])
+    cells = np.arange(int(loading.cells[-1]) + 1)
+    rigid = describe_slide(specimen, settings.directions, cells, spacing)
+    names = [*OF_DIRECTIONS, "plateau_trend", "plateau_undecided", *OF_AXES]
+    composites = [loading.composite(n) for n in loading.cells]
+    lags = lag_dimensions(composites, tuple(loading.spacing), longest)
+    return rigid[names].merge(_under_reference_load(loading)).assign(lags)
+
+
+def _under_reference_load(loading: JointLoading[EnsembleSettings]) -> xr.Dataset:
+    """:data:`AT_OFFSETS` of one realisation; missing below ten nodes in contact."""
+    finest = min(loading.settings.resolutions)
+    light = replace(loading.settings, loads=[loading.settings.map_load])
+    states = contact_states(replace(loading, settings=light), [finest], lightly=True)
+    window, e_star = window_sides(loading.specimen), light.material.e_star
+    curves = interface_states(states, window, e_star).squeeze(
+        ["direction", "resolution", "normal_force"]
+    )
+    many = (curves["nodes"] >= RESOLVED_NODES).values
+    values = {
+        "compliance_slid": np.where(many, 1 / curves["interface_stiffness"].values, np.nan),
+        "area_slid": np.where(many, curves["area_corrected_share"].values, np.nan),
+        "composite_spread": curves["composite_spread"].values,
+    }
+    table = {name: ("offset", *words) for name, words in AT_OFFSETS.items()}
+    offset = ("offset", loading.offsets, cf_attrs("mm", "shear offset v"))
+    return labelled_dataset(table, values, coords={"offset": offset})
