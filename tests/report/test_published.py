@@ -10,7 +10,7 @@ import fractalcontact
 from fractalcontact.core.estimate import Estimate
 from fractalcontact.core.subject import Subject
 from fractalcontact.core.verdicts import NO_PRESSURE, TOO_WIDE
-from fractalcontact.report.columns import columns_of
+from fractalcontact.report.columns import columns_of, old_columns_of
 from fractalcontact.report.published import BY_SCAN, Number, Row, published, read, row_of, shown_in
 
 DIMS = ("direction", "offset", "resolution", "normal_force")
@@ -68,6 +68,15 @@ def test_columns_are_of_one_rule_whether_a_value_is_known_or_not():
         *("breadth_determined", "breadth_reason"),
     ]
     assert not found["breadth_determined"]
+    one = Number({}, Estimate(2.0, 1.0, 4.0), error=0.5, population=0.7, hardest=3.0)
+    found = columns_of(row(summary="breadth", budget="width"), one)
+    assert found == {
+        **{"breadth_mm": 2.0, "breadth_low_mm": 1.0, "breadth_high_mm": 4.0},
+        **{"breadth_error_surface_mm": 0.5, "breadth_error_population_mm": 0.7},
+        "breadth_hardest_mm": 3.0,
+    }
+    found = old_columns_of(row(summary="breadth", range=("a/b", "a/c")), one)
+    assert found == {"breadth_mm_low": 1.0, "breadth_mm_high": 4.0, "breadth_mm_determined": True}
 
 
 def test_an_interval_is_its_own_or_from_the_error_of_the_budget_within_its_bounds():
