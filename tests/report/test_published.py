@@ -82,6 +82,8 @@ def test_columns_are_of_one_rule_whether_a_value_is_known_or_not():
 def test_an_interval_is_its_own_or_from_the_error_of_the_budget_within_its_bounds():
     ends = {"width": [1, 2, 3], "width_low": [0.5, 1, 2], "width_high": [2, np.nan, 4]}
     assert read(row(), subject(**ends))[0].estimate.ends == (1, 0.5, 2)
+    one_end = read(row(), subject(width=[1, 2, 3], width_low=[0.5, 1, 2]))[0]
+    assert np.isnan(one_end.estimate.low)
     errors = xr.Dataset(
         {
             "width_total": ("normal_force", [4.0, 0.5, np.nan]),
