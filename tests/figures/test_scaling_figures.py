@@ -16,13 +16,13 @@ from fractalcontact.core.intervals import LEFT_OUT
 from fractalcontact.core.limits import CORRECTED_NODES
 from fractalcontact.core.settings import Material, read
 from fractalcontact.core.subject import Subject
+from fractalcontact.core.text import compact
 from fractalcontact.domain.analysis import scaling_over_resolutions
 from fractalcontact.domain.box_dimension import ESTIMATORS
 from fractalcontact.domain.renormalisation import extrapolated_pressure
 from fractalcontact.figures import draw as figures
 from fractalcontact.figures.draw import drawer_of
 from fractalcontact.figures.kit import drawing as common
-from fractalcontact.figures.kit import words as _words
 from fractalcontact.figures.kit.axes import label_short_span
 from fractalcontact.figures.kit.domains import contact_domain, spread_loads
 from fractalcontact.mechanics.model_validity import model_validity
@@ -76,8 +76,8 @@ def test_eq_6_passes_through_the_specimen(atlas, figure):
 
 
 def test_numbers_in_words():
-    assert _words.short(2210.4) == "2210"
-    assert _words.short(0.03906) == "0.0391"
+    assert compact(2210.4) == "2210"
+    assert compact(0.03906) == "0.0391"
 
 
 def test_loads_spread_evenly_with_the_one_asked_for():

@@ -10,8 +10,8 @@ import fractalcontact
 from fractalcontact.core.estimate import Estimate
 from fractalcontact.core.subject import Subject
 from fractalcontact.core.verdicts import NO_PRESSURE, TOO_WIDE
-from fractalcontact.report.columns import columns_of
-from fractalcontact.report.published import Number, Row, published, read, row_of, shown_in
+from fractalcontact.report.columns import columns_of, old_columns_of
+from fractalcontact.report.published import BY_SCAN, Number, Row, published, read, row_of, shown_in
 
 DIMS = ("direction", "offset", "resolution", "normal_force")
 FORCES = [1.0, 2.0, 3.0]
@@ -68,11 +68,22 @@ def test_columns_are_of_one_rule_whether_a_value_is_known_or_not():
         *("breadth_determined", "breadth_reason"),
     ]
     assert not found["breadth_determined"]
+    one = Number({}, Estimate(2.0, 1.0, 4.0), error=0.5, population=0.7, hardest=3.0)
+    found = columns_of(row(summary="breadth", budget="width"), one)
+    assert found == {
+        **{"breadth_mm": 2.0, "breadth_low_mm": 1.0, "breadth_high_mm": 4.0},
+        **{"breadth_error_surface_mm": 0.5, "breadth_error_population_mm": 0.7},
+        "breadth_hardest_mm": 3.0,
+    }
+    found = old_columns_of(row(summary="breadth", range=("a/b", "a/c")), one)
+    assert found == {"breadth_mm_low": 1.0, "breadth_mm_high": 4.0, "breadth_mm_determined": True}
 
 
 def test_an_interval_is_its_own_or_from_the_error_of_the_budget_within_its_bounds():
     ends = {"width": [1, 2, 3], "width_low": [0.5, 1, 2], "width_high": [2, np.nan, 4]}
     assert read(row(), subject(**ends))[0].estimate.ends == (1, 0.5, 2)
+    one_end = read(row(), subject(width=[1, 2, 3], width_low=[0.5, 1, 2]))[0]
+    assert np.isnan(one_end.estimate.low)
     errors = xr.Dataset(
         {
             "width_total": ("normal_force", [4.0, 0.5, np.nan]),
@@ -137,8 +148,50 @@ def test_the_scan_and_a_wide_interval_leave_a_number_undetermined():
 def test_no_bound_on_the_pressure_is_no_number():
     (hardness,) = read(row_of("hardness"), subject())
     assert hardness.missing == row_of("hardness").missing
+    assert np.isnan(hardness.value)
     (modulus,) = read(row_of("modulus"), subject())
     assert (modulus.value, modulus.missing) == (5, "")
+
+
+def test_what_is_missing_says_why_before_what_is_to_know_of_it():
+    known = Estimate(1.0, 0.9, 1.1, reason="to know")
+    assert Number({}, known, "missing").remark == "missing"
+    assert Number({}, known).remark == "to know"
+    assert Number({}, Estimate(1.0, 0.9, 1.1)).remark == ""
+    assert Number({}, Estimate(1.0, 0.9, 1.1), determined=False).remark == BY_SCAN
+    assert Number({}, Estimate(1.0), determined=False).remark == "its error is not known"
+
+
+def test_a_dimension_lies_in_the_plane_and_an_error_may_be_one_of_the_stage():
+    errors = xr.Dataset(
+        {f"width_{kind}": ("normal_force", [4.0, 0.5, 0.5]) for kind in ("total", "hardest")},
+        coords={"normal_force": FORCES, "quantity": ["other"]},
+    )
+    errors["total_of_population"] = (("quantity", "normal_force"), [[1.0, 1.0, 1.0]])
+    of = row(dimension=True, budget="width")
+    assert read(of, subject(errors, width=[1, 1, 1]))[0].estimate.ends == (1, 0, 2)
+    of = row(error="closure/spread", within=(-np.inf, np.inf))
+    found = read(of, subject(width=[1, 2, 3], spread=[2, 1, 0.5]))
+    assert [one.estimate.low for one in found] == [-1, 1, 2.5]
+    assert [one.error for one in found] == [2, 1, 0.5]
+
+
+def test_a_lacking_stage_and_a_flag_without_a_value_have_reasons_of_their_own():
+    lacks = Row("gap", "gap", "flow/gap", "mm", absent="no flow", missing="no load")
+    assert read(lacks, subject())[0].missing == "no flow"
+    of = row(flag="closure/says", note="too few", missing="none")
+    found = read(of, subject(width=[1, np.nan, 3], says=[0, 0, 1]))
+    assert [one.missing for one in found] == ["too few", "none", ""]
+
+
+def test_all_states_of_a_quantity_are_read_where_its_row_says_so():
+    known = subject()
+    coords = {"contact_direction": ["W", "E"], "offset": [0.1]}
+    width = (("contact_direction", "offset"), [[1.0], [2.0]], {"units": "mm"})
+    strength = xr.Dataset({"width": width}, coords=coords)
+    both = Subject({**known.stages, "strength": strength}, known.settings)
+    of = Row("width", "width", "strength/width", "mm", all=True)
+    assert [one.at["direction"] for one in read(of, both)] == ["W", "E"]
 
 
 def test_each_quantity_stands_once_and_is_shown_somewhere():

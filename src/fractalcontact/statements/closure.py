@@ -146,8 +146,8 @@ def composite_dimension_rises(joint: Joint, evidence: Evidence) -> Finding:
     each = [beyond_margin(one, margin, rising=True) for one in rise]
     low, high = (joint["joints"][f"lag_{end}"].values for end in ("min", "max"))
     also = ", ".join(
-        f"{number(first.value[i])} to {number(last.value[i])} over {compact(low[i], 2)} to "
-        f"{compact(high[i], 2)} mm"
+        f"{number(first.value[i])} to {number(last.value[i])} over {compact(low[i], 2)} "
+        f"to {compact(high[i], 2)} mm"
         for i in range(1, len(LAG_RANGES))
     )
     return Finding(
@@ -250,12 +250,12 @@ def area_is_linear(joint: Joint) -> Finding:
     apart = int(((exponent.high < 1 - NEARLY) | (exponent.low > 1 + NEARLY)).sum())
     verdict = FAILS if apart == value.size else PARTLY if apart else HOLDS
     verdict = UNDETERMINED if not apart and 2 * near <= value.size else verdict
-    ends = " to ".join(dict.fromkeys(f"{number(m)}" for m in (value.min(), value.max())))
+    ends = " to ".join(dict.fromkeys(number(m) for m in (value.min(), value.max())))
     return Finding(
         verdict,
         f"m = {ends}",
-        f"A_r ~ F^m; {near} of {value.size} exponents lie within {compact(NEARLY, 6)} of 1, the "
-        f"intervals "
+        f"A_r ~ F^m; {near} of {value.size} exponents lie within {compact(NEARLY, 6)} of "
+        "1, the intervals "
         f"of {apart or 'none'} outside",
     )
 

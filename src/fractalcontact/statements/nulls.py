@@ -52,7 +52,7 @@ def closure_is_hyperbolic(joint: Joint) -> Finding:
     wins = int((close & (hyperbola < logarithm)).sum())
     first = np.nanmedian(curves["hyperbola_misfit"].values[fitted])
     ends = " to ".join(
-        dict.fromkeys(f"{compact(100 * end, 2)}" for end in (hyperbola.min(), hyperbola.max()))
+        dict.fromkeys(compact(100 * end, 2) for end in (hyperbola.min(), hyperbola.max()))
     )
     return Finding(
         HOLDS if wins == count else PARTLY if close.any() else FAILS,
@@ -96,8 +96,9 @@ def _departure_words(state, null, words):
     slope, other = (float(state[name][place]) for name in ("local_slope", f"local_slope_{null}"))
     small = differs(p) and abs(slope - other) < NEARLY
     return (
-        f"{words}: largest departure at r = {compact(side, 2)} mm, local slope {number(slope)} "
-        f"against {number(other)}, p "
+        f"{words}: largest departure at r = {compact(side, 2)} mm, local slope "
+        f"{number(slope)} against "
+        f"{number(other)}, p "
         f"{f'= {compact(p, 2)}' if p >= _LEAST_P else f'< {compact(_LEAST_P, 6)}'}"
         f"{f' (significant, but smaller than {compact(NEARLY, 6)})' if small else ''}"
     )
@@ -131,15 +132,13 @@ def domains_differ_from_cuts(joint: Joint, evidence: Evidence) -> Finding:
     less = states["delta_sigma_cut_difference"].values
     less = less[np.isfinite(less)]
     ends = (
-        dict.fromkeys(f"{number(end, 2, '+')}" for end in (less.min(), less.max()))
-        if less.size
-        else "-"
+        dict.fromkeys(number(end, 2, "+") for end in (less.min(), less.max())) if less.size else "-"
     )
     return Finding(
         verdict,
         f"local slopes differ from those of the cut at {loads_of(different, total)}",
-        f"slopes coincide within {compact(margin, 6)} at {loads_of(int(alike.sum()), total)}; "
-        f"Delta_sigma "
+        f"slopes coincide within {compact(margin, 6)} at "
+        f"{loads_of(int(alike.sum()), total)}; Delta_sigma "
         f"minus that of the cut is {' to '.join(ends)}",
     )
 

@@ -121,8 +121,8 @@ def _of_plateaus(
     if not own.change.size:
         return Finding(UNDETERMINED, no_offsets("three rigid"))
     note = (
-        f"{number(100 * own.change.min(), 0, '+')} to {number(100 * own.change.max(), 0, '+')} % "
-        f"change over the second "
+        f"{number(100 * own.change.min(), 0, '+')} to "
+        f"{number(100 * own.change.max(), 0, '+')} % change over the second "
         f"half of v; level: up to {compact(100 * LEVEL_CHANGE, 6)} %"
     )
     members = [Plateaus.of(one) for one in evidence.rigid_slides()]
@@ -163,8 +163,8 @@ def dilatancy_is_anisotropic(joint: Joint, evidence: Evidence) -> Finding:
     marked = sum(_differs(one) == HOLDS for one in ranges)
     return Finding(
         share(marked, len(ranges)),
-        f"the directions differ by more than {compact(100 * LOOSELY, 6)} % in {marked or 'none'} "
-        f"of "
+        f"the directions differ by more than {compact(100 * LOOSELY, 6)} % in "
+        f"{marked or 'none'} of "
         f"{len(ranges)} realisations; this specimen: {numbers}",
         _odd_parts(joint["joints"]),
         explanation=f"the recipe is isotropic: {_scatter(members)} is chance of the highest points",
