@@ -22,7 +22,7 @@ def test_what_is_wrong_with_one_scan_stops_only_that_where_the_user_asks_so(proj
     assert "half.lower.xyz: the upper face is missing" in stopped.stderr
     planned = made(project, study, "--dry-run", targets=("--keep-going",)).stdout
     assert planned.count("a scan that is left out: what is wrong with it") == 1
-    assert planned.count(": levelled scan, its surface dimension and its joint") == 1
+    assert planned.count(": levelled faces, Delta_g, composite topographies at all offsets") == 1
     specimen = "results/test/specimens/good_slab.nc"
     refused = "results/test/refused/0.txt"
     done = made(project, study, targets=("--keep-going", specimen, refused))
