@@ -40,7 +40,14 @@ class Section(BaseModel):
 S = TypeVar("S", bound=Section)
 
 
-def key(words: str, doc: str = "", unsaid: str = "", default: Any = None, fill: str = "") -> Any:
+def key(
+    words: str,
+    doc: str = "",
+    unsaid: str = "",
+    default: Any = None,
+    fill: str = "",
+    only: str = "",
+) -> Any:
     """Words on a key.
 
     Parameters
@@ -55,8 +62,11 @@ def key(words: str, doc: str = "", unsaid: str = "", default: Any = None, fill: 
         Value, as the user would write it, of a key that is left out.
     fill : str, optional
         What a draft asks its owner to fill in.
+    only : {"contact map", "map", "heights", "pair", "sliding", ""}, optional
+        The only files or specimens for which the key has a meaning.
     """
-    extra = {"markdownDescription": doc, "x-unsaid": unsaid, "default": default, "x-fill": fill}
+    extra = {"markdownDescription": doc, "x-unsaid": unsaid, "default": default}
+    extra |= {"x-fill": fill, "x-only": only}
     return Field(
         description=words, json_schema_extra={k: v for k, v in extra.items() if v not in ("", None)}
     )

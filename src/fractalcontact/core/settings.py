@@ -48,7 +48,8 @@ _Resolutions = Annotated[
 _ContactDirections = Annotated[
     _Directions,
     key(
-        "sliding directions whose contact is solved, some of E, N, W, S",
+        only="sliding",
+        words="sliding directions whose contact is solved, some of E, N, W, S",
         doc="those of them whose contact is solved; most figures show the first",
         unsaid="`directions`",
     ),
@@ -161,6 +162,7 @@ class SpecimenSettings:
             doc="sliding directions of the rigid dilatancy, some of `E, N, W, S`",
             unsaid="all four",
             default=["E", "N", "W", "S"],
+            only="sliding",
         ),
     ]
     contact_directions: _ContactDirections
@@ -174,6 +176,7 @@ class SpecimenSettings:
                 "one cell and the largest possible, and zero where two faces were scanned"
             ),
             unsaid="`auto`",
+            only="sliding",
         ),
     ]
     resolutions: _Resolutions
@@ -228,6 +231,7 @@ class JointSettings:
             "a length with its unit, such as 0.3 mm",
             doc="offset of the contact maps over resolutions and loads",
             unsaid="0 of two scanned faces, else the third",
+            only="sliding",
         ),
     ]
 

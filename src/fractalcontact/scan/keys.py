@@ -75,6 +75,7 @@ class FaceKeys(Section):
         key(
             "the columns of x, y, z, as names or counted from 0",
             fill="those of x, y and z, counted from 0",
+            only="heights",
         ),
     ] = []
     axes: Annotated[
@@ -103,6 +104,7 @@ class FaceKeys(Section):
         key(
             "the unit of the heights, such as um, or what one count is, 0.01 um",
             fill="of the heights: m, mm, um, or of one count, 0.01 um",
+            only="heights",
         ),
     ] = ""
     spacing: Annotated[
@@ -127,6 +129,7 @@ class FaceKeys(Section):
         key(
             "up or down: whether larger numbers are higher, or deeper",
             fill="up or down: which way the numbers grow",
+            only="heights",
         ),
     ] = "up"
     missing: Annotated[
@@ -186,48 +189,64 @@ class ScanKeys(FaceKeys):
             fill="face, aperture or contact-map",
         ),
     ] = "face"
-    lower: Annotated[FaceKeys, key("keys that hold for this face of two alone, {header: 0}")] = (
-        FaceKeys()
-    )
-    upper: Annotated[FaceKeys, key("keys that hold for this face of two alone, {header: 0}")] = (
-        FaceKeys()
-    )
+    lower: Annotated[
+        FaceKeys, key("keys that hold for this face of two alone, {header: 0}", only="pair")
+    ] = FaceKeys()
+    upper: Annotated[
+        FaceKeys, key("keys that hold for this face of two alone, {header: 0}", only="pair")
+    ] = FaceKeys()
     threshold: Annotated[
         float | _Thresholds,
         key(
-            "the number above which a cell of a contact map is in contact, or a list of "
-            "such numbers"
+            (
+                "the number above which a cell of a contact map is in contact, or a list of "
+                "such numbers"
+            ),
+            only="contact map",
         ),
     ] = 0.0
     outline: Annotated[
         Literal["disc", "rectangle"] | OutlineKeys,
         key(
-            "disc, rectangle, or one of {disc: {centre: [x, y], diameter: d}}, {polygon: "
-            "[[x, y], ...]}, {mask: number}"
+            (
+                "disc, rectangle, or one of {disc: {centre: [x, y], diameter: d}}, {polygon: "
+                "[[x, y], ...]}, {mask: number}"
+            ),
+            only="map",
         ),
     ] = "disc"
-    series: Annotated[Label, key("what it is, in up to 200 characters on one line, without $")] = ""
-    x: Annotated[_FileName, key("the plain name of the file of x beside that of a contact map")] = (
-        ""
-    )
-    y: Annotated[_FileName, key("the plain name of the file of y beside that of a contact map")] = (
-        ""
-    )
+    series: Annotated[
+        Label, key("what it is, in up to 200 characters on one line, without $", only="contact map")
+    ] = ""
+    x: Annotated[
+        _FileName,
+        key("the plain name of the file of x beside that of a contact map", only="contact map"),
+    ] = ""
+    y: Annotated[
+        _FileName,
+        key("the plain name of the file of y beside that of a contact map", only="contact map"),
+    ] = ""
     cells: Annotated[
-        Literal["any contact", "contact at the centre"], key("any contact or contact at the centre")
+        Literal["any contact", "contact at the centre"],
+        key("any contact or contact at the centre", only="contact map"),
     ] = "any contact"
-    load: Annotated[Load, key("the force or the nominal pressure on the map, such as 85 MPa")] = (
+    load: Annotated[
+        Load,
+        key("the force or the nominal pressure on the map, such as 85 MPa", only="contact map"),
+    ] = (
         0.0,
         "",
     )
     grid: Annotated[
-        PositiveLength, key("the spacing to grid points at, 0.3 mm; unsaid, their own")
+        PositiveLength,
+        key("the spacing to grid points at, 0.3 mm; unsaid, their own", only="heights"),
     ] = 0.0
     registration: Annotated[
-        Literal["rigid", "translation", "none"], key("rigid, translation or none")
+        Literal["rigid", "translation", "none"], key("rigid, translation or none", only="pair")
     ] = "rigid"
     mirror_upper: Annotated[
-        Literal["x", "y"], key("x or y, the direction that runs the other way in the upper face")
+        Literal["x", "y"],
+        key("x or y, the direction that runs the other way in the upper face", only="pair"),
     ] = "x"
 
 
