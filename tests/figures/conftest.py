@@ -8,6 +8,7 @@ from made_stages import scan, stages_of
 from made_tests import with_tests
 from materials import ROCK
 from stage_names import EXPERIMENTS, STAGES
+from unchecked_settings import resolve_unchecked
 
 from contactlab.experiments.area_slope import area_slope
 from contactlab.experiments.delta_g import estimator_bias
@@ -18,7 +19,7 @@ from contactlab.experiments.size_strength import size_strength
 from contactlab.experiments.size_tasks import size_tasks
 from fractalcontact.stages.atlas import join_stages
 from fractalcontact.study.atlas import read_atlas
-from fractalcontact.study.configuration import resolve_settings, solver_settings
+from fractalcontact.study.configuration import solver_settings
 from fractalcontact.surface.synthesis import self_affine
 
 SPACING = 0.1  # mm
@@ -118,7 +119,7 @@ def _scans():
 def atlas_file(tmp_path_factory):
     """Path of an atlas with the specimens sliding, flat and pair."""
     parts = {stage: {} for stage in STAGES}
-    settings = {name: resolve_settings(STUDY, name, {}, "tiny") for name in STUDY["specimens"]}
+    settings = {name: resolve_unchecked(STUDY, name, {}, "tiny") for name in STUDY["specimens"]}
     folder = tmp_path_factory.mktemp("atlas")
     for name, faces in _scans().items():
         made = stages_of(name, faces, settings[name], SOLVER)

@@ -11,12 +11,13 @@ import pytest
 import xarray as xr
 from made_stages import scan, stages_of
 from stage_names import STAGES
+from unchecked_settings import resolve_unchecked
 
 from fractalcontact.mechanics.overlap import overlapping_nodes, suspect_nodes
 from fractalcontact.pages.explorer import write_explorer
 from fractalcontact.pages.packed_states import GAP_STEPS, ORDER, packed, packed_states
 from fractalcontact.study.atlas import read_atlas, write_atlas
-from fractalcontact.study.configuration import resolve_settings, solver_settings
+from fractalcontact.study.configuration import solver_settings
 from fractalcontact.surface.synthesis import self_affine
 
 HOSTILE = "</script><script>alert(1)</script>"
@@ -53,7 +54,7 @@ def atlas_file(tmp_path_factory):
         "flat": (scan(surface(48, 4), 0.1), None),
     }
     parts = {stage: {} for stage in STAGES}
-    settings = {name: resolve_settings(STUDY, name, {}, "tiny") for name in scans}
+    settings = {name: resolve_unchecked(STUDY, name, {}, "tiny") for name in scans}
     for name, faces in scans.items():
         made = stages_of(name, faces, settings[name], SOLVER, ["closure", "flow"])
         for stage, dataset in made.items():

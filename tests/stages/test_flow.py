@@ -7,10 +7,10 @@ from chain import SMALL_STUDY, SOLVER
 from made_stages import scan, stages_of
 from materials import ROCK
 from scipy import ndimage
+from unchecked_settings import resolve_unchecked
 
 from fractalcontact.flow.aperture import correlation_length
 from fractalcontact.flow.cubic_law import plane_flow
-from fractalcontact.study.configuration import resolve_settings
 from fractalcontact.surface.synthesis import self_affine
 
 
@@ -22,7 +22,7 @@ def test_what_has_crushed_unloads_on_the_reported_grid(resolutions):
         "resolutions": resolutions,
         "offsets": ["0.4 mm"],
     }
-    settings = resolve_settings(SMALL_STUDY, None, own, "made")
+    settings = resolve_unchecked(SMALL_STUDY, None, own, "made")
     face = scan(self_affine((96, 96), 0.1, 0.8, rms=0.05, seed=1), 0.1)
     stages = stages_of(
         "capped", (face, None), settings, SOLVER, later=("window_states", "closure", "flow")
@@ -60,7 +60,7 @@ def sheared():
         **{"resolutions": [1], "offsets": ["0.3 mm"], "directions": ["N"]},
         "contact_directions": ["N"],
     }
-    settings = resolve_settings(SMALL_STUDY, None, own, "made")
+    settings = resolve_unchecked(SMALL_STUDY, None, own, "made")
     return stages_of("sheared", faces, settings, SOLVER, later=("closure", "flow"))
 
 

@@ -12,8 +12,9 @@ import xarray as xr
 from made_stages import stages_of
 from materials import ROCK
 from scipy import ndimage
+from unchecked_settings import resolve_unchecked
 
-from fractalcontact.study.configuration import resolve_settings, solver_settings
+from fractalcontact.study.configuration import solver_settings
 
 #: Spacing of the surface that is scanned, mm, and the cells of it that one of a scan is long.
 FINEST, SQUARE, OBLONG = 0.05, (2, 2), {"wide": (2, 4), "tall": (4, 2)}
@@ -84,7 +85,7 @@ def stages(steps):
             "resolutions": [1, 2],
         },
     }
-    settings = resolve_settings(study, "joint", {}, "oblong")
+    settings = resolve_unchecked(study, "joint", {}, "oblong")
     return stages_of("joint", faces, settings, solver_settings({}, "oblong"))
 
 

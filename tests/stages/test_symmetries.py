@@ -11,11 +11,12 @@ from made_stages import stages_of
 from materials import ROCK
 from stage_names import OF_SPECIMENS
 from symmetries import LENGTH, STRESS, differences, exchanged, grown, with_axes_exchanged
+from unchecked_settings import resolve_unchecked
 
 from fractalcontact.mechanics.states import SOLVER_ERROR
 from fractalcontact.stages.report import OF_STRENGTH
 from fractalcontact.stages.strength import strength_stages
-from fractalcontact.study.configuration import resolve_settings, solver_settings
+from fractalcontact.study.configuration import solver_settings
 from fractalcontact.surface.synthesis import self_affine
 
 SPACING, WINDOW = (0.15, 0.1), (6.0, 4.8)  # (y, x), mm
@@ -100,7 +101,7 @@ def rock_joint(length=1.0, stress=1.0, turned=False):
             "fill_holes": 3,
         },
     }
-    return faces, resolve_settings(study, "joint", {}, "tiny")
+    return faces, resolve_unchecked(study, "joint", {}, "tiny")
 
 
 @cache

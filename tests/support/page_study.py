@@ -7,6 +7,7 @@ from made_tests import with_tests
 from materials import ROCK
 from spreadsheets import FORMULA
 from stage_names import STAGES
+from unchecked_settings import resolve_unchecked
 
 from fractalcontact.core.subject import configuration_of
 from fractalcontact.pages.files import EXPLORER
@@ -14,7 +15,7 @@ from fractalcontact.pages.result_page import Place, write_index, write_specimen_
 from fractalcontact.stages.atlas import join_stages
 from fractalcontact.study.atlas_parts import Trees
 from fractalcontact.study.campaign import explored
-from fractalcontact.study.configuration import resolve_settings, solver_settings
+from fractalcontact.study.configuration import solver_settings
 from fractalcontact.surface.synthesis import self_affine
 
 HOSTILE = "</script><script>alert(1)</script><img src='https://x.example/a.png'> $\\alpha$ \"q\""
@@ -56,7 +57,7 @@ def write_study(folder):
     }
     folder.mkdir(parents=True)
     parts = {stage: {} for stage in STAGES}
-    settings = {name: resolve_settings(STUDY, name, {}, "tiny") for name in scans}
+    settings = {name: resolve_unchecked(STUDY, name, {}, "tiny") for name in scans}
     for name, faces in scans.items():
         solver = solver_settings({}, "tiny")
         made = stages_of(name, faces, settings[name], solver)

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from dataclasses import fields
 from pathlib import Path
 
-from ..core.directions import slides
+from ..core.directions import APERTURE, slides
 from ..core.errors import InputError
 from ..core.keys import MAX_NODES_PER_SIDE, nearest, validate
 from ..core.settings import Material, Settings, Solver
@@ -116,7 +116,12 @@ class _Layers:
         self.texts, self.values = {}, {}
         for texts, said_in, above in layers:
             self.texts |= texts
-            self.values |= stated(validate(SettingsKeys, texts, said_in, above))
+            # The program itself states it of aperture maps; no study or sidecar can.
+            is_map = texts.get("opposite") == APERTURE
+            said = {key: text for key, text in texts.items() if not (is_map and key == "opposite")}
+            self.values |= stated(validate(SettingsKeys, said, said_in, above))
+            if is_map:
+                self.values["opposite"] = APERTURE
         for key in ("material", "loads", "resolutions"):
             if key not in self.values:
                 raise InputError(f"{source}: missing key 'defaults.{key}'")
