@@ -242,7 +242,7 @@ def level(spread: Estimate, symbol: str, v: np.ndarray, margin: float) -> Findin
     """Verdict on a claim of constancy over offsets, by the range over the mean."""
     return Finding(
         HOLDS if spread.high <= margin else FAILS if spread.low > margin else UNDETERMINED,
-        f"{symbol} varies by {number(spread.mapped(lambda end: 100 * end), 0)} % of its mean",
+        f"{symbol} varies by {number(spread.mapped(lambda end: 100 * end), 0)} %",
         f"v = {compact(v[0])} to {compact(v[-1])} mm; margin {compact(100 * margin, 6)} %",
     )
 

@@ -98,12 +98,11 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     below.text(0.01, 1, "\n".join(lines), **style)
     words = {key: quality.attrs[key] for key in ("cells", "overlap")}
     words |= {"warnings": len(warnings), "pair": pair}
-    said = [caption(__name__, **words), *history(specimen, faces)]
-    return Drawing(figure, table_of(*panels), " ".join(said))
+    return Drawing(figure, table_of(*panels), caption(__name__, **words))
 
 
 def _text_lines(specimen, quality, faces, warnings):
-    """Findings of a scan, broken into lines; the warnings first."""
+    """History and findings of a scan, broken into lines; the warnings first."""
     paragraphs = [f"WARNING: {warning}." for warning in warnings]
     paragraphs += [
         f"{face_words(specimen, face).capitalize()}: {quality.attrs[f'{face}_face']}."
@@ -115,4 +114,5 @@ def _text_lines(specimen, quality, faces, warnings):
         paragraphs.append(
             f"Gap in the window: mean {compact(mean)} mm, sd {compact(sd)} mm; {overlap}."
         )
+    paragraphs += history(specimen, faces)
     return [line for text in paragraphs for line in textwrap.wrap(text, LETTERS)]
