@@ -294,3 +294,15 @@ def test_a_warning_before_the_jobs_is_wrapped(said):
     start().emit(event(None, levelname="WARNING", msg="scans: passed over: " + "a b.tmp, " * 40))
     assert both()[1][0].startswith("warning: scans: passed over: ")
     assert max(map(len, both()[1])) <= terminal.WIDTH
+
+
+def test_files_of_before_that_snakemake_puts_back_are_no_lines_of_a_run(said):
+    start, lines = said
+    one = start()
+    for text in (
+        "Restored previous version of atlas.nc (updating job failed).",
+        "Cannot restore figures/rock/errors.svg: no backup found.",
+        "scans: half a pair",
+    ):
+        one.emit(event(None, msg=text, levelname="WARNING"))
+    assert lines() == ([], ["warning: scans: half a pair"])

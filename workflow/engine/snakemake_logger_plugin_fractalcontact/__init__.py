@@ -42,8 +42,8 @@ _REASONS = {
 }
 #: Where in the workflow an error was noticed, before what it says.
 _PLACE = re.compile(r"\w+(?: in (?:rule .*|file \".*\", line \d+))?:")
-#: Of a job that failed, a line for each file that is there as before.
-_UNSAID = re.compile("Restored previous version of ")
+#: Of a job that failed, a line for each file that is there as before, or was never there.
+_UNSAID = re.compile("Restored previous version of |Cannot restore .*: no backup found")
 #: What would do things to a terminal.
 _CONTROL = re.compile(r"[\x00-\x08\x0b-\x1f\x7f-\x9f]")
 
