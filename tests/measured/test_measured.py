@@ -10,6 +10,7 @@ from dense_programmes import dense_operator, dense_pressure
 from ensembles import ensemble
 from made_settings import made_settings
 from made_stages import scan, stages_of
+from made_tests import stated_tests
 
 from fractalcontact.core.errors import InputError
 from fractalcontact.core.estimate import Estimate
@@ -18,7 +19,6 @@ from fractalcontact.measured.stage import measured_stage
 from fractalcontact.mechanics.loading import JointLoading
 from fractalcontact.mechanics.settlement import bulk_settlement
 from fractalcontact.study.configuration import solver_settings
-from fractalcontact.study.measured import resolve_tests
 from fractalcontact.surface.synthesis import self_affine
 
 SOLVER = solver_settings({}, "made")
@@ -109,7 +109,7 @@ def written(folder, tests, **more):
 
 
 def compared(settings, stages, stated, folder):
-    tests = resolve_tests(stated, "made.yaml: measured", Path(folder))
+    tests = stated_tests(stated, "made.yaml: measured", folder)
     needed = ("specimens", "joints", "closure", "dilatancy", "error_budget", "flow", "strength")
     return measured_stage(
         **{name: stages[name] for name in needed},
@@ -165,19 +165,19 @@ def test_a_branch_that_is_not_the_test_s_does_not_agree(made, tmp_path):
 
 #: What is said of a test that is refused, and in which words.
 REFUSED = [
-    ({"gauge": None}, "'gauge' is not stated; write what the displacement contains"),
-    ({"seat": None}, "'seat' is not stated; write the pressure"),
-    ({"branch": None}, "'branch' is not stated; write"),
-    ({"cycle": None}, "'cycle' is not stated; write 'cycle: 1'"),
-    ({"file": None}, "'file' is not stated; write the table"),
-    ({"gauge": "4 um"}, "gauge: '4 um' is not right; write what the displacement contains"),
-    ({"gauge": {"length": "100 mm"}}, "'modulus' is not stated"),
+    ({"gauge": None}, "missing key 'closure.gauge'; expected what the displacement contains"),
+    ({"seat": None}, "missing key 'closure.seat'; expected the pressure"),
+    ({"branch": None}, "missing key 'closure.branch'; expected load, unload or reload"),
+    ({"cycle": None}, "missing key 'closure.cycle'; expected a whole number from 1"),
+    ({"file": None}, "missing key 'closure.file'; expected the plain name of a file"),
+    ({"gauge": "4 um"}, "closure.gauge: '4 um' is not right; expected what the displacement"),
+    ({"gauge": {"length": "100 mm"}}, "missing key 'closure.gauge.modulus'"),
     ({"gauge": "-4 um/MPa"}, "does not stretch"),
     ({"gauge": "40 um/MPa"}, "falls as the pressure rises"),
     ({"seat": "0.25 mm"}, "is not a pressure"),
     ({"cycle": 2}, "the first loading is 'branch: load' of cycle 1"),
     ({"branch": "unload"}, "the pressure rises again from"),
-    ({"way": "along"}, "'way' has no meaning for a closure test"),
+    ({"way": "along"}, "unknown key 'closure.way'; known: file"),
     ({"columns": {"force": "F [kN]"}}, "no column 'force' of a closure test"),
     ({"columns": {"pressure": "sn [MPa]"}}, "expected their names and units"),
     ({"columns": {"displacement": "displacement [MPa]"}}, "expected their names"),

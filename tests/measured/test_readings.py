@@ -4,10 +4,10 @@ import re
 
 import numpy as np
 import pytest
+from made_tests import stated_tests
 
 from fractalcontact.core.errors import InputError
 from fractalcontact.measured.readings import read_test
-from fractalcontact.study.measured import resolve_tests
 
 HELD = {"file": "test.csv", "pressure": "2 MPa", "direction": "E"}
 CLOSURE = {"file": "test.csv", "gauge": "joint", "seat": "0.25 MPa", "branch": "load", "cycle": 1}
@@ -34,7 +34,7 @@ SLID = np.linspace(0, 3, 61)
 def read(folder, kind, x, y, **said):
     rows = "".join(f"{a:.4f},{b:.4f}\n" for a, b in zip(x, y, strict=True))
     (folder / "test.csv").write_text(f"{HEADS[kind]}\n{rows}")
-    (test,) = resolve_tests({kind: STATED[kind] | said}, "made.yaml: measured", folder)
+    (test,) = stated_tests({kind: STATED[kind] | said}, "made.yaml: measured", folder)
     return read_test(test)
 
 

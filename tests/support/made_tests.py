@@ -6,8 +6,10 @@ from pathlib import Path
 import numpy as np
 from made_stages import given
 
+from fractalcontact.core.keys import validate
 from fractalcontact.measured.stage import measured_stage
 from fractalcontact.study.measured import resolve_tests
+from fractalcontact.study.measured_keys import Tests
 
 #: Measured over computed.
 PART = 0.9
@@ -17,6 +19,11 @@ def computed_and_read(table):
     """Rows of a figure's table that are computed, and those of laboratory tests."""
     read = table.filter(regex="_test$").notna().any(axis=1)
     return table[~read], table[read]
+
+
+def stated_tests(stated, where, folder):
+    """Laboratory tests as a sidecar states them under ``measured``, checked by its classes."""
+    return resolve_tests(validate(Tests, stated, where), where, Path(folder))
 
 
 def with_tests(stages, settings, solver, folder):
@@ -62,7 +69,7 @@ def with_tests(stages, settings, solver, folder):
         text = "\n".join([heads[kind], *(f"{a!s}, {b!s}" for a, b in rows)])
         Path(folder, f"{kind}.csv").write_text(text, encoding="utf-8")
         stated[kind] = stated[kind] | {"file": f"{kind}.csv"}
-    settings = replace(settings, measured=resolve_tests(stated, "made: measured", Path(folder)))
+    settings = replace(settings, measured=stated_tests(stated, "made: measured", folder))
     needed = ("specimens", "joints", "closure", "dilatancy", "error_budget", "flow", "strength")
     sections = given(measured_stage, settings, solver)
     found = measured_stage(**{name: stages[name] for name in needed}, **sections)
