@@ -39,7 +39,9 @@ def main() -> tuple[Hyperbola, BoxDimension]:
         closures.append(float(interface_closure(state.closure, settled)))
         print(f"{pressure:6.2f} MPa: {closures[-1]:.4f} mm, {state.area / side**2:.1%} in contact")
     hyperbola = fit_hyperbola(PRESSURES, closures)
-    print(f"k_ni = {hyperbola.k_ni:.3g} MPa/mm, misfit {hyperbola.misfit:.1%} {hyperbola.reason}")
+    k_ni = hyperbola.k_ni
+    print(f"k_ni = {k_ni.value:.3g} [{k_ni.low:.3g}, {k_ni.high:.3g}] MPa/mm")
+    print(f"misfit {hyperbola.misfit:.1%} {hyperbola.reason}")
     dimension = box_dimension(state.in_contact, SPACING)
     print(dimension)
     return hyperbola, dimension

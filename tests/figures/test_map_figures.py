@@ -6,6 +6,7 @@ import xarray as xr
 from print_size import faults
 from stated import MAP
 
+from fractalcontact.core.text import number
 from fractalcontact.domain.map_series import with_series
 from fractalcontact.domain.measured_map import read_contact_map
 from fractalcontact.domain.pressure_trend import pressure_trend
@@ -143,7 +144,7 @@ def test_a_caption_states_the_trend_of_a_series(maps):
         series.pressure, series.values("delta_sigma"), series.values("delta_sigma_random")
     )
     caption = drawn(only_maps(maps), "map_trend").caption
-    assert f"films (4): {trend.line.slope:.2f}" in caption
+    assert f"films (4): {number(trend.line.slope)}" in caption
     assert f"({trend.verdict})" in caption
     assert f"({trend.beyond_random})" in caption
     alone = {name: one for name, one in maps.items() if name.startswith("lost")}

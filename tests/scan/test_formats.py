@@ -456,7 +456,7 @@ def test_compressions_and_predictors_of_libtiff(tmp_path, compression, kind, pre
     steps[40:60, 20:90] = 31_000
     image = (steps * (1 if kind is np.uint16 else 0.37)).astype(kind)
     path = libtiff(tmp_path / "rock.tif", image, compression, predictor)
-    stated = {"unit_z": "um", "spacing": "0.1 mm", "first_row": "top"}
+    stated = {"unit_z": "um", "spacing": "0.1 mm", "first_row": "top", "missing": "none"}
     heights = read_scan(path, stated)
     np.testing.assert_allclose(heights, image[::-1].astype(float) * 1e-3, rtol=1e-12)
 

@@ -38,6 +38,9 @@ def read_tiff(path: Path, options: ScanOptions) -> RawScan:
         names = [f"page {number}" for number in range(1, len(file.pages) + 1)]
         page = file.pages[0 if options.variable not in names else names.index(options.variable)]
         _refuse_images(page, options, path)
+        # A draft looks into the picture, which has to be readable by then.
+        refuse_larger(math.prod(page.shape) * 8, path)
+        refuse_unknown_coding(page, path)
         stated = _imagej(file, page) or _geotiff(page)
         needs = Needs(arrays=names)
         require_stated(path, options, needs, lambda: _hints(names, stated, page))
