@@ -109,11 +109,9 @@ SCANNED = {
     *("seated_closure_mm", "interface_closure_mm", "stiffness_MPa_per_mm"),
     *("mean_gap_mm", "transmissivity_along_mm3"),
 }
-#: Of the error budget: column of the summary, its unit, and that of its errors on the page: those
-#: of what may cross zero are no fractions.
+#: Of the error budget: column of the summary, its unit, and that of its errors on the page.
 BUDGET = {
     "closure": ("interface_closure", "mm", "%"),
-    "separation": ("separation", "mm", "m"),
     "area_corrected": ("area_corrected", "mm2", "%"),
     "stiffness": ("stiffness", "MPa_per_mm", "%"),
 }
@@ -276,7 +274,6 @@ def test_the_explorer_has_the_values_errors_and_words_of_the_summary(published, 
             values = {
                 "total/closure/area_corrected_share": area_error,
                 "closure/interface_closure": row["interface_closure_mm"],
-                "closure/separation": row["separation_mm"],
                 "closure/interface_stiffness": row["interface_stiffness_MPa_per_mm"],
                 "closure/nodes": row["contact_nodes"],
                 "scaling/sigma_n": row["real_pressure_MPa"],
@@ -286,7 +283,6 @@ def test_the_explorer_has_the_values_errors_and_words_of_the_summary(published, 
                 "total/closure/interface_closure": row["interface_closure_error_surface_mm"],
                 "closure/seated_closure": row["seated_closure_mm"],
                 "total/closure/seated_closure": row["seated_closure_error_surface_mm"],
-                "total/closure/separation": row["separation_error_surface_mm"],
                 "total/closure/interface_stiffness": row["stiffness_error_surface_MPa_per_mm"],
                 "undetermined/by_scan": float(row["by_scan"]),
             }
