@@ -284,11 +284,11 @@ def test_a_rule_with_a_limit_is_asked_at_every_load():
         found["closure"][end] = compliance
     overlap = closure.curves_overlap(Joint(found, SETTINGS))
     assert overlap.verdict == PARTLY
-    assert overlap.numbers.endswith("at 10 MPa; holds at 3 of 4 loads")
+    assert overlap.numbers.endswith("at 10 MPa; true at 3 of 4 loads")
     again = closure.compliance_rises_again(Joint(found, SETTINGS))
     # There the offsets before scatter too much to decide.
     assert again.verdict == HOLDS
-    assert again.numbers.endswith("holds at every load")
+    assert again.numbers.endswith("true at every load")
 
 
 def test_nothing_is_asked_of_the_area_where_all_that_touches_yields():

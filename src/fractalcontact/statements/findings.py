@@ -175,7 +175,7 @@ def under_every_load(joint: Joint, rule: Callable[[float], Finding], forces: np.
         return decided[force]._replace(
             numbers=f"{decided[force].numbers} at {compact(pressure)} MPa"
         )
-    share_of = f"holds at {loads_of(verdicts.count(HOLDS), len(decided))}"
+    share_of = f"true at {loads_of(verdicts.count(HOLDS), len(decided))}"
     if PARTLY in verdicts:
         share_of += f", in part at {loads_of(verdicts.count(PARTLY), len(decided))}"
     return decided[force]._replace(
