@@ -162,7 +162,6 @@ def random_places(atlas, n):
 TOTALS = {
     "closure/closure": "closure",
     "closure/interface_closure": "closure",
-    "closure/separation": "separation",
     "closure/interface_stiffness": "stiffness",
 }
 
