@@ -1,4 +1,4 @@
-"""What is ours around Snakemake, a file each: why it is there, what it takes, how to do without.
+"""Additions to Snakemake, a file each: why it is there, what it takes, how to do without.
 
 CONTRIBUTING.md has what each was measured to be worth. The two packages are plugins of Snakemake,
 which finds them by their names on the path that ``workflow/run.py`` gives it.

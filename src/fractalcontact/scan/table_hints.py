@@ -128,7 +128,7 @@ def add_axes(hints: Hints, table: np.ndarray) -> None:
 
 
 def _axes_in_doubt(table: np.ndarray, row: np.ndarray, column: np.ndarray) -> str:
-    """What the first or last row and column may be besides heights."""
+    """Readings of the first or last row and column other than heights."""
     running = {
         "row": ("first row", row), "column": ("first column", column),
         "": ("last column", table[1:, -1]), " ": ("last row", table[-1, 1:]),

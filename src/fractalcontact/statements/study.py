@@ -85,7 +85,7 @@ def _slope(x: np.ndarray, y: np.ndarray, error: np.ndarray) -> Estimate:
 def area_falls_more_in_concrete(joints: Mapping[str, Joint]) -> Finding:
     """Exponent of A_r against v, concrete's minus rock's, beyond the margin.
 
-    Synthetic surfaces of one recipe hold no difference of materials, and decide nothing.
+    Synthetic surfaces of one recipe hold no difference of materials: it is then undetermined.
     """
     found = _by_material(joints, _area_exponent)
     return _compared(found, "area_falls_more_in_concrete", "A_r ~ v^x", rising=False)
@@ -94,7 +94,7 @@ def area_falls_more_in_concrete(joints: Mapping[str, Joint]) -> Finding:
 def contact_localises_more_in_concrete(joints: Mapping[str, Joint]) -> Finding:
     """Exponent of Morisita's index against v, concrete's minus rock's, beyond the margin.
 
-    Synthetic surfaces of one recipe hold no difference of materials, and decide nothing.
+    Synthetic surfaces of one recipe hold no difference of materials: it is then undetermined.
     """
     found, name = _by_material(joints, _localisation), "contact_localises_more_in_concrete"
     return _compared(found, name, "Morisita's index ~ v^x", rising=True)

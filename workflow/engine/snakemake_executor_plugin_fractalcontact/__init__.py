@@ -101,7 +101,7 @@ class Executor(RealExecutor):
     cancel = shutdown
 
     def get_exec_mode(self):
-        """That of a process on this machine."""
+        """Execution mode of a process on this machine."""
         return ExecMode.SUBPROCESS
 
     def get_python_executable(self):
