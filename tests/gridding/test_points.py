@@ -95,11 +95,11 @@ def test_a_fold_that_delaunay_would_cut_is_kept_by_its_mesh(tmp_path):
         strips += [np.column_stack([first, first + 1, eave])]
         strips += [np.column_stack([eave[:-1], eave[1:], first[1:]])]
     path = mesh_of(vertices, np.concatenate(strips), tmp_path / "roof.ply")
-    heights = read_scan(path, {"unit": "mm", "grid": 0.25})
+    heights = read_scan(path, {"unit": "mm", "grid": "0.25 mm"})
     middle = heights.sel(x=slice(-0.9, 0.9), y=slice(2.5, 89.5))
     roof = exact(middle, lambda x, _: 5 - np.abs(x))
     np.testing.assert_allclose(middle, roof, rtol=1e-6)
-    vertices_alone = read_scan(saved(tmp_path, vertices), {"unit": "mm", "grid": 0.25})
+    vertices_alone = read_scan(saved(tmp_path, vertices), {"unit": "mm", "grid": "0.25 mm"})
     cut = vertices_alone.sel(x=slice(-0.9, 0.9), y=slice(2.5, 89.5))
     assert float(np.abs(cut - roof).max()) > 0.5
 
@@ -108,7 +108,7 @@ def test_the_top_of_a_mesh_is_what_is_seen(tmp_path):
     ball = trimesh.creation.icosphere(subdivisions=5, radius=5.0)
     path = tmp_path / "ball.stl"
     ball.export(path)
-    heights = read_scan(path, {"unit": "mm", "grid": 0.1})
+    heights = read_scan(path, {"unit": "mm", "grid": "0.1 mm"})
     inside = exact(heights, np.hypot) < 4.5
     top = exact(heights, lambda x, y: np.sqrt(np.maximum(25 - x**2 - y**2, 0)))
     np.testing.assert_allclose(heights.values[inside], top[inside], atol=0.02)
@@ -271,7 +271,7 @@ def test_an_upright_mesh_knows_its_upper_side(tmp_path):
     triangles = Delaunay(flat[:, :2]).simplices  # counter-clockwise: normals point up
     for degrees in (90, 89, -89):
         path = mesh_of(flat @ lean(degrees).T, triangles, tmp_path / "wall.ply")
-        heights = read_scan(path, {"unit": "mm", "grid": 0.3})
+        heights = read_scan(path, {"unit": "mm", "grid": "0.3 mm"})
         assert heights.attrs["overhang_share"] == 0.0
         assert "face down" not in heights.attrs["notes"]
         assert float(heights.std()) == pytest.approx(flat[:, 2].std(), rel=0.1)
@@ -458,7 +458,7 @@ def test_a_mesh_that_covers_its_area_without_end_is_refused(tmp_path):
     flat = cloud(1000)
     triangles = np.random.default_rng(0).integers(0, len(flat), (3000, 3))
     with pytest.raises(InputError, match="cover its area more than 200 times"):
-        read_scan(mesh_of(flat, triangles, tmp_path / "rock.ply"), {"unit": "mm", "grid": 0.1})
+        read_scan(mesh_of(flat, triangles, tmp_path / "rock.ply"), {"unit": "mm", "grid": "0.1 mm"})
 
 
 # --- text in blocks ----------------------------------------------------------------------------

@@ -6,7 +6,6 @@ import subprocess
 import sys
 import threading
 import time
-from dataclasses import asdict
 
 import numpy as np
 import pytest
@@ -91,7 +90,7 @@ def test_what_breaks_off_or_promises_too_much_is_no_scan(tmp_path):
 
 def test_options_reach_the_reader(tmp_path):
     given = parse_options({"spacing": [0.1, "2 um"], "columns": ["x", 1, 2], "missing": -1}, "rock")
-    sent = transfer.from_text(transfer.to_text({"options": asdict(given)}))
+    sent = transfer.from_text(transfer.to_text({"options": given.stated()}))
     assert ScanOptions(**sent["options"]) == given
     np.savez(tmp_path / "rock.npz", a=np.zeros((9, 9)), b=np.arange(30.0).reshape(10, 3))
     keys = {"variable": "b", "layout": "points", "columns": [1, 2, 0], "kind": "face"}

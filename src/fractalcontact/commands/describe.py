@@ -7,7 +7,7 @@ import argparse
 import html
 import sys
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -23,7 +23,7 @@ from ..core.units import length_factor
 from ..gridding.measured import Measured
 from ..scan.draft import written
 from ..scan.keys import ScanKeys
-from ..scan.options import FACES, NO_MARK, ScanOptions, of_face
+from ..scan.options import FACES, NO_MARK, of_face
 from ..scan.raw import IncompleteSidecar
 from ..scan.read import measure
 from ..scan.undeclared import find_marks, number, possible_marks
@@ -319,7 +319,7 @@ def write_alike(scan: ScanFiles, like: Mapping[str, Any]) -> Described:
 
 
 def _scan_keys(document: Mapping[str, Any]) -> dict[str, Any]:
-    known = {key.name for key in fields(ScanOptions)} - {"confirmed"}
+    known = ScanKeys.model_fields.keys() - {"confirmed", *FACES}
     return {key: value for key, value in document.items() if key in known}
 
 

@@ -53,9 +53,12 @@ def tables() -> dict[str, dict[str, str]]:
         **{name: _table(two, _rows(section)) for name, section in laboratory.items()},
     }
     scan = (row for row in _rows(ScanKeys) if row[0] not in OF_MAPS)
+    maps = (row for row in _rows(ScanKeys) if row[0] in OF_MAPS)
+    scans = {"scan": _table(("key", "meaning"), scan)}
     return {
         "config/README.md": study,
-        "scans/README.md": {"scan": _table(("key", "meaning"), scan)},
+        "scans/README.md": scans,
+        "docs/keys.md": {**study, **scans, "map": _table(("key", "meaning"), maps)},
     }
 
 

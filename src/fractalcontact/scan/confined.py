@@ -13,7 +13,6 @@ import socket
 import subprocess
 import sys
 import threading
-from dataclasses import asdict
 from multiprocessing.connection import Connection
 from multiprocessing.reduction import recv_handle
 from pathlib import Path
@@ -58,7 +57,7 @@ def read_confined(path: Path, options: ScanOptions) -> RawScan:
     """
     # The reader process may have another present folder.
     folder = "/" if path.is_absolute() else os.getcwd()
-    request = {"path": str(path), "folder": folder, "options": asdict(options)}
+    request = {"path": str(path), "folder": folder, "options": options.stated()}
     lines, raw, status = _ask(request, path)
     limits: dict = next((line for line in reversed(lines) if line["outcome"] == "limits"), {})
     last = lines[-1] if lines else {"outcome": "limits"}

@@ -5,7 +5,7 @@ Nothing here is ever believed: a draft is shown, with the relief it would give, 
 
 import re
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -145,7 +145,7 @@ def drafted_options(options: ScanOptions, hints: Hints) -> ScanOptions:
         changes.pop("first_row", None)
     if {"unit_xy", "unit_z"} <= changes.keys():
         changes.pop("unit", None)
-    return replace(options, **changes)
+    return options.but(**changes)
 
 
 def draft_lines(

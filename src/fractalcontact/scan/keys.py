@@ -250,16 +250,6 @@ class ScanKeys(FaceKeys):
     ] = "x"
 
 
-def choices() -> dict[str, tuple[str, ...]]:
-    """Values of the keys that have a few."""
-    keys = schema_of(ScanKeys)["properties"]
-    return {
-        name: tuple(value for value in one["enum"] if value not in OLD_KINDS)
-        for name, one in keys.items()
-        if "enum" in one
-    }
-
-
 def words_to_fill() -> dict[str, str]:
     """Words for the keys that a draft asks its owner to fill in, in the order of a draft."""
     keys = schema_of(ScanKeys)["properties"]

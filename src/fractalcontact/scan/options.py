@@ -2,44 +2,55 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any
 
 from ..core.errors import InputError
+from ..core.keys import validate
 from ..core.units import length_factor, quantity
-from .keys import MAX_HEADER_LINES, choices
+from .keys import ScanKeys
 
 
-@dataclass(frozen=True)
 class ScanOptions:
-    """Statements of a sidecar about a scan file; None where not stated.
+    """Statements of a sidecar about a scan file: each key of `ScanKeys`, None where not stated.
 
     A file that describes itself needs none of them, any other is read only as they say: see
     :mod:`scan.stated`.
+
+    Raises
+    ------
+    TypeError
+        If a name is not that of a key.
     """
 
-    kind: str | None = None
-    delimiter: str | None = None
-    decimal: str | None = None
-    thousands: str | None = None
-    header: int | None = None
-    layout: str | None = None
-    variable: str | None = None
-    columns: tuple | None = None
-    axes: str | None = None
-    unit: str | None = None
-    unit_xy: str | None = None
-    unit_z: str | None = None
-    spacing: float | str | tuple | None = None
-    first_row: str | None = None
-    heights: str | None = None
-    missing: float | tuple | str | None = None
-    grid: float | str | None = None
-    outline: str | dict | None = None
-    registration: str | None = None
-    mirror_upper: str | None = None
-    confirmed: dict | None = None
+    def __init__(self, **stated: Any):
+        if unknown := sorted(stated.keys() - ScanKeys.model_fields.keys()):
+            raise TypeError(f"{unknown[0]!r} is not a key of a scan")
+        vars(self).update(dict.fromkeys(ScanKeys.model_fields), **stated)
+
+    def __getattr__(self, name: str) -> Any:
+        raise AttributeError(f"{name!r} is not a key of a scan")
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        raise AttributeError("statements are not changed; make others with `but`")
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, ScanOptions) and vars(self) == vars(other)
+
+    def __hash__(self) -> int:
+        return hash(repr(self))
+
+    def __repr__(self) -> str:
+        said = ", ".join(f"{key}={value!r}" for key, value in self.stated().items())
+        return f"ScanOptions({said})"
+
+    def stated(self) -> dict[str, Any]:
+        """Values of the keys that are stated."""
+        return {key: value for key, value in vars(self).items() if value is not None}
+
+    def but(self, **changes: Any) -> "ScanOptions":
+        """The same statements, some of them changed."""
+        return ScanOptions(**{**vars(self), **changes})
 
     @property
     def marks(self) -> tuple[float, ...]:
@@ -80,12 +91,12 @@ POINT_KEYS = ("columns", "grid")
 
 
 def parse_options(options: Mapping | None, where: str) -> ScanOptions:
-    """Check the scan keys of a sidecar.
+    """Statements on how one file is read.
 
     Parameters
     ----------
     options : mapping or None
-        See `ScanOptions`; every key is optional.
+        Keys of `ScanKeys` for one file, so neither ``lower`` nor ``upper``; each is optional.
     where : str
         The scan file, for errors.
 
@@ -94,36 +105,23 @@ def parse_options(options: Mapping | None, where: str) -> ScanOptions:
     InputError
         If a key is unknown or a value is of the wrong kind.
     """
-    options = dict(options or {})
-    known = [field.name for field in fields(ScanOptions)]
-    if unknown := sorted(set(options) - set(known), key=str):
+    document = {key: _as_list(value) for key, value in (options or {}).items()}
+    known = [key for key in ScanKeys.model_fields if key not in FACES]
+    if unknown := sorted(set(document) - set(known), key=str):
         raise InputError(f"{where}: unknown scan key {unknown[0]!r}; known: {', '.join(known)}")
+    stated = {key: value for key, value in document.items() if value is not None}
+    validate(ScanKeys, stated, where)
     for key in ("unit", "unit_xy", "unit_z"):
-        if (unit := options.get(key)) is not None:
-            _require(isinstance(unit, str), where, key, unit, "a unit of length, such as 'mm'")
-            length_factor(unit, f"{where}: {key}")
-    for key, allowed in choices().items():
-        value = options.get(key)
-        _require(value is None or value in allowed, where, key, value, " or ".join(allowed))
-    _check_text_keys(options, where)
-    if (variable := options.get("variable")) is not None:
-        _require(isinstance(variable, str), where, "variable", variable, "the name of an array")
-    if (missing := options.get("missing")) is not None:
-        if isinstance(missing, list | tuple):
-            options["missing"] = missing = tuple(missing)
-        each = missing if isinstance(missing, tuple) else (missing,)
-        _require(
-            len(each) > 0 and all(_is_number(mark) or isinstance(mark, str) for mark in each),
-            where,
-            "missing",
-            missing,
-            "a number, such as -9999, a word such as BAD, a list of them, or 'none'",
-        )
-    if (columns := options.get("columns")) is not None:
-        options["columns"] = _columns(columns, where)
-    if isinstance(options.get("spacing"), list):
-        options["spacing"] = tuple(options["spacing"])
-    return ScanOptions(**options)
+        if key in stated:
+            length_factor(stated[key], f"{where}: {key}")
+    _refuse_one_mark_for_two(stated, where)
+    return ScanOptions(
+        **{key: tuple(one) if isinstance(one, list) else one for key, one in stated.items()}
+    )
+
+
+def _as_list(value: Any) -> Any:
+    return list(value) if isinstance(value, tuple) else value
 
 
 def of_face(options: Mapping | None, face: str) -> dict[str, Any]:
@@ -139,15 +137,8 @@ def of_face(options: Mapping | None, face: str) -> dict[str, Any]:
     return {**common, **((options or {}).get(face) or {})}
 
 
-def _check_text_keys(options: dict, where: str) -> None:
-    header, decimal = options.get("header"), options.get("decimal")
-    _require(
-        header is None or (_is_index(header) and header <= MAX_HEADER_LINES),
-        where,
-        "header",
-        header,
-        f"the number of lines above the numbers, 0 to {MAX_HEADER_LINES}",
-    )
+def _refuse_one_mark_for_two(options: dict, where: str) -> None:
+    decimal = options.get("decimal")
     taken = {"decimal mark": decimal, "delimiter": DELIMITERS.get(str(options.get("delimiter")))}
     for name, mark in taken.items():
         if mark is not None and mark == options.get("thousands"):
@@ -231,24 +222,5 @@ def has_own_units(spacing: Any) -> bool:
     return all(isinstance(step, str) for step in pair)
 
 
-def _columns(columns, where: str) -> tuple:
-    valid = (
-        isinstance(columns, list | tuple)
-        and len(columns) == 3
-        and all(isinstance(c, str) or _is_index(c) for c in columns)
-    )
-    _require(valid, where, "columns", columns, "three names or numbers from 0: [x, y, z]")
-    return tuple(columns)
-
-
 def _is_number(value) -> bool:
     return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
-
-
-def _is_index(value) -> bool:
-    return isinstance(value, int) and not isinstance(value, bool) and value >= 0
-
-
-def _require(valid: bool, where: str, key: str, value, expected: str) -> None:
-    if not valid:
-        raise InputError(f"{where}: key '{key}' is {value!r}; expected {expected}")

@@ -5,7 +5,7 @@ named x, y and z with a unit each) needs none of them.
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 from ..core.directions import APERTURE
@@ -79,7 +79,7 @@ def require_stated(
     required = set(required_keys(complete, needs))
     # A layout that only the draft knows asks for keys of its own.
     draft = "\n".join(draft_lines(options, found, required, needs.arrays))
-    stated = replace(options, registration=None, mirror_upper=None, grid=None)
+    stated = options.but(registration=None, mirror_upper=None, grid=None)
     states_some = stated != ScanOptions()
     name, _ = split_file_name(path.name)
     sidecar = path.with_name(f"{name}.yaml")

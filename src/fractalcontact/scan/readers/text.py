@@ -3,7 +3,6 @@
 import io
 import re
 from collections import Counter
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -56,7 +55,7 @@ def read_text(path: Path, options: ScanOptions) -> RawScan:
     units: dict[str, str] = {}
     if all(getattr(options, key) is None for key in LAYOUT_KEYS) and (found := named_columns(path)):
         keys, units = found
-        options = replace(options, **keys)
+        options = options.but(**keys)
     else:
         needs = Needs(text=True, table=True)
         require_stated(path, options, needs, lambda: text_hints(path))
