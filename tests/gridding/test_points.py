@@ -76,7 +76,7 @@ def test_means_over_cells_are_exact_on_a_plane(tmp_path):
     def plane(x, y):
         return 0.05 * x - 0.02 * y + 3.0
 
-    heights = read(tmp_path, cloud(height=plane), grid=1.0)
+    heights = read(tmp_path, cloud(height=plane), grid="1.0 mm")
     assert "averaged over 4 x 4 places" in heights.attrs["gridding"]  # 10 points to a cell
     np.testing.assert_allclose(heights, np.where(heights.isnull(), np.nan, exact(heights, plane)))
     assert float(heights[1:-1, 1:-1].isnull().mean()) < 0.01
@@ -205,7 +205,7 @@ def test_tiles_give_the_heights_of_the_whole_triangulation(monkeypatch, tile, pl
 def test_a_leaning_cloud_comes_back_in_its_own_frame(tmp_path, degrees, azimuth):
     flat = level(cloud(12_000))
     matrix = lean(degrees, azimuth)
-    heights = read(tmp_path, flat @ matrix.T, grid=0.25)
+    heights = read(tmp_path, flat @ matrix.T, grid="0.25 mm")
     assert heights.attrs["levelled_degrees"] == pytest.approx(degrees, abs=1e-6)
     assert f"turned by {degrees} degrees" in heights.attrs["notes"]
     moved = flat.mean(axis=0) @ matrix.T - flat.mean(axis=0)
@@ -294,7 +294,7 @@ def test_the_lower_half_of_a_sphere_is_hidden():
 def test_of_overhanging_points_the_top_is_gridded(tmp_path):
     roof = raised(cloud(8000, seed=5), 6.0)
     roof = roof[(np.abs(roof[:, :2] - 10) < 4).all(axis=1)]
-    heights = read(tmp_path, np.concatenate([cloud(8000), roof]), grid=0.3)
+    heights = read(tmp_path, np.concatenate([cloud(8000), roof]), grid="0.3 mm")
     share = heights.attrs["overhang_share"]
     true_share = 8000 * 64 / 400 / (8000 + len(roof))
     assert 0.75 * true_share < share < 1.05 * true_share  # at the roof's edge it is seen less well
@@ -342,7 +342,9 @@ def test_noise_finer_than_the_grid_is_averaged_not_aliased(tmp_path):
     rng = np.random.default_rng(6)
     noisy = cloud(10_000, height=lambda x, y: 0.02 * np.sin(x))
     noisy[:, 2] += rng.normal(size=len(noisy))
-    scatter = {grid: float(read(tmp_path, noisy, grid=grid).std()) for grid in (0.3, 1.0, 2.0)}
+    scatter = {
+        grid: float(read(tmp_path, noisy, grid=f"{grid} mm").std()) for grid in (0.3, 1.0, 2.0)
+    }
     assert scatter[0.3] > 0.6  # two points in a cell, three in its triangle: hardly an average
     assert scatter[1.0] < 1.5 / np.sqrt(25)
     assert scatter[2.0] < 1.5 / np.sqrt(100)
@@ -376,7 +378,7 @@ def test_points_at_random_choose_the_area_of_a_point(tmp_path, uneven):
 def test_what_was_read_stands_in_the_attributes(tmp_path):
     flat = cloud(5000)
     flat = flat[np.hypot(flat[:, 0] - 10, flat[:, 1] - 10) > 4]
-    heights = read(tmp_path, np.concatenate([flat, flat[:7], raised(flat[:3], 1.0)]), grid=0.5)
+    heights = read(tmp_path, np.concatenate([flat, flat[:7], raised(flat[:3], 1.0)]), grid="0.5 mm")
     attrs = heights.attrs
     assert (attrs["points"], attrs["duplicated_points"], attrs["stacked_points"]) == (
         len(flat) + 10,
@@ -399,7 +401,7 @@ def test_the_repeats_of_stl_are_no_news(tmp_path):
 def test_coordinates_far_from_the_origin_lose_no_digits(tmp_path):
     near = np.round(cloud(), 6)
     far = near + np.array([5e8, 5e9, 0])  # mm: UTM
-    here, there = (read(tmp_path, c, grid=0.25) for c in (near, far))
+    here, there = (read(tmp_path, c, grid="0.25 mm") for c in (near, far))
     np.testing.assert_allclose(there.values, here.values, atol=1e-5)
     assert "single precision" not in there.attrs["notes"]
 
@@ -442,7 +444,7 @@ def test_a_spot_with_far_too_many_points_is_refused(tmp_path, monkeypatch):
     spot = cloud(3000)
     spot[:1400, :2] = 3.0 + spot[:1400, :2] / 1e4
     with pytest.raises(InputError, match=r"rock\.npy: 1\d\d\d points, more than 1000, lie around"):
-        read(tmp_path, spot, grid=0.5)
+        read(tmp_path, spot, grid="0.5 mm")
 
 
 def test_triangles_without_vertices_are_refused(tmp_path):

@@ -325,7 +325,7 @@ def test_outline_and_holes_stay_missing(tmp_path):
     x, y = points[:, 0] - 10, points[:, 1] - 10
     ring = (np.hypot(x, y) > 3.0) & ((x < 0) | (y < 0))  # a hole, and a corner cut out
     path = save_npy(tmp_path / "rock.npy", points[ring])
-    heights = read_scan(path, {"unit": "mm", "grid": 0.25})
+    heights = read_scan(path, {"unit": "mm", "grid": "0.25 mm"})
     x, y = np.meshgrid(heights.x - 10, heights.y - 10)
     present = np.isfinite(heights.values)
     margin = 0.5
@@ -346,8 +346,8 @@ def test_points_measured_twice_are_averaged(tmp_path):
 
 def test_a_grid_of_zero_is_refused(tmp_path):
     path = save_npy(tmp_path / "rock.npy", plane_cloud())
-    with pytest.raises(InputError, match=r"rock\.npy: key 'grid'.*above zero"):
-        read_scan(path, {"unit": "mm", "grid": 0})
+    with pytest.raises(InputError, match=r"rock\.npy: .*grid.*positive"):
+        read_scan(path, {"unit": "mm", "grid": "0 mm"})
 
 
 def test_a_stray_point_does_not_ask_for_all_memory(tmp_path):
