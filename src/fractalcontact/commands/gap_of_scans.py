@@ -1,0 +1,152 @@
+"""Write the gap between two scanned faces, without a study: numbers, a map and a picture.
+
+python -m fractalcontact.commands.gap_of_scans LOWER UPPER --out FILE
+    [--keys SIDECAR.yaml] [--outliers fill]
+
+LOWER and UPPER are scans of the two faces. SIDECAR.yaml says how they are read, as a sidecar in the
+folder of scans does; its keys `registration` and `grid` hold here too. FILE ends in .csv, .nc or
+.vtk; the picture goes beside it.
+"""
+
+import argparse
+import json
+import sys
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+
+from ..cards.apertures import write_aperture
+from ..core.errors import InputError, said_in_one_line
+from ..core.labels import printable
+from ..core.text import percent
+from ..scan.keys import ScanKeys
+from ..scan.read import read_faces
+from ..study.sidecar import read_yaml
+from ..surface.cleaning import clean_faces
+
+#: Shares of the cells that lie below the gaps that are printed, in percent.
+_PERCENTILES = (1, 5, 25, 50, 75, 95, 99)
+_ENDINGS = (".csv", ".nc", ".vtk")
+
+
+@said_in_one_line
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Write the map and its picture, and print the numbers; 1 for a wrong request, else 0."""
+    parser = argparse.ArgumentParser(prog="gap_of_scans", description=__doc__)
+    parser.add_argument("lower")
+    parser.add_argument("upper")
+    parser.add_argument("--out", required=True, help="file to write: .csv, .nc or .vtk")
+    parser.add_argument("--keys", help="YAML file of keys as a sidecar has them")
+    parser.add_argument("--outliers", default="keep", help="keep, mask or fill; keep by default")
+    given = parser.parse_args(arguments)
+    out = Path(given.out)
+    if out.suffix not in _ENDINGS:
+        raise InputError(f"{out}: write a file that ends in {', '.join(_ENDINGS)}")
+    if given.keys:
+        keys = read_yaml(given.keys)
+        # Keys of a study in the same sidecar, such as a material, say nothing of the gap.
+        keys = {key: value for key, value in keys.items() if key in ScanKeys.model_fields}
+    else:
+        keys = {}
+    gap = gap_of(Path(given.lower), Path(given.upper), keys, given.outliers)
+    picture = out.with_suffix(".png")
+    write_aperture(gap, out)
+    _draw(gap, picture)
+    sys.stdout.write("\n".join([*words(gap), f"{out}: the gap in mm", f"{picture}: its picture"]))
+    sys.stdout.write("\n")
+    return 0
+
+
+def gap_of(lower: Path, upper: Path, keys: Mapping, outliers: str = "keep") -> xr.DataArray:
+    """Gap between two scanned faces that lie as the registration leaves them.
+
+    Parameters
+    ----------
+    lower, upper : Path
+    keys : mapping
+        How they are read, see `scan.read.read_faces`.
+    outliers : {"keep", "mask", "fill"}
+        See `surface.cleaning.clean_faces`.
+
+    Returns
+    -------
+    DataArray (y, x)
+        ``aperture``, mm: height of the upper face above the lower one, below zero where the faces
+        overlap, NaN where a face is missing. Attributes: ``registration`` and ``cleaning``.
+
+    Raises
+    ------
+    InputError
+        As `read_faces` and `clean_faces`.
+    """
+    faces = read_faces(lower, upper, keys)
+    assert faces[1] is not None  # two files were given
+    registration = faces[1].attrs["registration"]
+    cleaned, _, attrs = clean_faces(list(faces), outliers=outliers, name=str(lower))
+    gap = (cleaned[1] - cleaned[0]).rename("aperture")
+    source = f"{upper.name} above {lower.name}"
+    found = {"registration": registration, "cleaning": attrs["cleaning"], "source": source}
+    return gap.assign_attrs(units="mm", long_name="gap between the faces", **found)
+
+
+def words(gap: xr.DataArray) -> list[str]:
+    """Lines on the sizes, the gap and the registration."""
+    done = json.loads(gap.attrs["registration"])
+    present = gap.values[np.isfinite(gap.values)]
+    ny, nx = gap.shape
+    dx, dy = (float(np.diff(gap[axis].values).mean()) for axis in "xy")
+    shares = np.percentile(present, _PERCENTILES)
+    each = ", ".join(f"{p} %: {g:.4g}" for p, g in zip(_PERCENTILES, shares, strict=True))
+    lines = [
+        f"{gap.attrs['source']}: {nx} x {ny} cells of {dx:.4g} x {dy:.4g} mm, "
+        f"{percent(1 - present.size / gap.size)} without a height of both",
+        f"gap: mean {present.mean():.4g} mm, standard deviation {present.std():.4g} mm, "
+        f"{present.min():.4g} to {present.max():.4g} mm",
+        f"cells whose gap is less, in mm: {each}",
+        f"overlap: the faces lie below each other at {percent(float(np.mean(present < 0)))}",
+        f"suspicious cells: {gap.attrs['cleaning']}",
+    ]
+    if not done["applied"]:
+        return [*lines, f"registration {done['mode']}: nothing was moved; {done['note']}"]
+    return [
+        *lines,
+        f"registration {done['mode']}: the upper face moved by {done['shift_x_mm']:.4g} mm along x "
+        f"and {done['shift_y_mm']:.4g} mm along y, turned by {done['rotation_degrees']:.3g} "
+        f"degrees; standard deviation of the gap {done['gap_sd_before_mm'] or np.nan:.4g} mm "
+        f"before, {done['gap_sd_after_mm']:.4g} mm after; {done['note']}",
+    ]
+
+
+def _draw(gap: xr.DataArray, path: Path) -> None:
+    """Map of the gap and its histogram."""
+    from matplotlib import colormaps
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(11, 4.8), layout="constrained")
+    FigureCanvasAgg(figure)
+    of_map, histogram = figure.subplots(1, 2, width_ratios=(3, 2))
+    present = gap.values[np.isfinite(gap.values)]
+    low, high = np.percentile(present, [0.5, 99.5])  # a few spikes must not hide the rest
+    colours = colormaps["viridis"].with_extremes(bad="red")
+    image = of_map.pcolormesh(
+        gap["x"], gap["y"], gap, cmap=colours, vmin=low, vmax=high, rasterized=True
+    )
+    of_map.set_aspect("equal")
+    of_map.set_facecolor("red")
+    of_map.set(xlabel="x (mm)", ylabel="y (mm)", title="missing is red")
+    figure.colorbar(image, ax=of_map, label="gap (mm)", extend="both")
+    # A margin of 1 um, as a gap may be the same everywhere.
+    ends = (low - 1e-3, high + 1e-3)
+    histogram.hist(np.clip(present, low, high), bins=60, range=ends, color="0.4")
+    histogram.axvline(float(present.mean()), color="black", linestyle="--", label="mean")
+    histogram.set(xlabel="gap (mm)", ylabel="cells")
+    histogram.legend()
+    figure.suptitle(printable(gap.attrs["source"], 120), fontsize=9)
+    figure.savefig(path, dpi=110)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,93 @@
+"""The gap between two scanned faces, without a study."""
+
+import numpy as np
+import pandas as pd
+import pytest
+import xarray as xr
+import yaml
+
+from fractalcontact.commands.gap_of_scans import main
+from fractalcontact.surface.synthesis import self_affine
+
+STATED = {
+    "kind": "face",
+    "layout": "matrix",
+    "axes": "none",
+    "unit": "mm",
+    "spacing": [0.1, 0.2],
+    "first_row": "bottom",
+    "heights": "up",
+    "missing": "none",
+    "registration": "none",
+}
+OPENING = np.linspace(0.2, 0.5, 40)  # along x, mm
+
+
+@pytest.fixture
+def pair(tmp_path):
+    """Two faces that open along x, and a sidecar with a key of studies too."""
+    lower = self_affine((30, 40), 0.8, 0.1, rms=0.1, seed=3)
+    np.save(tmp_path / "lower.npy", lower)
+    np.save(tmp_path / "upper.npy", lower + OPENING)
+    (tmp_path / "keys.yaml").write_text(yaml.safe_dump({**STATED, "material": "granite"}))
+    return [str(tmp_path / name) for name in ("lower.npy", "upper.npy")]
+
+
+def run(pair, tmp_path, out, *more):
+    keys = str(tmp_path / "keys.yaml")
+    return main([*pair, "--keys", keys, "--out", str(tmp_path / out), *more])
+
+
+def test_the_map_is_the_opening_at_its_places(pair, tmp_path, capsys):
+    assert run(pair, tmp_path, "gap.nc") == 0
+    with xr.open_dataset(tmp_path / "gap.nc") as found:
+        gap = found["aperture"].load()
+    np.testing.assert_allclose(gap, np.broadcast_to(OPENING, (30, 40)), atol=1e-9)
+    np.testing.assert_allclose(np.diff(gap.x), 0.1)
+    np.testing.assert_allclose(np.diff(gap.y), 0.2)
+    said = capsys.readouterr().out
+    assert "40 x 30 cells of 0.1 x 0.2 mm" in said
+    assert "mean 0.35 mm" in said
+    assert (tmp_path / "gap.png").read_bytes().startswith(b"\x89PNG")
+    assert run(pair, tmp_path, "gap.csv") == 0
+    table = pd.read_csv(tmp_path / "gap.csv")
+    by_place = table.sort_values(["y", "x"])["aperture"].to_numpy().reshape(30, 40)
+    np.testing.assert_allclose(by_place, gap.values, rtol=1e-6)
+
+
+def test_faces_in_the_wrong_order_are_refused_and_nothing_is_written(pair, tmp_path, capsys):
+    assert run(pair[::-1], tmp_path, "gap.nc") == 1
+    assert "the upper face lies below the lower one" in capsys.readouterr().err
+    assert not list(tmp_path.glob("gap.*"))
+
+
+def test_a_spike_is_filled_where_that_is_asked(pair, tmp_path):
+    upper = np.load(pair[1])
+    upper[15, 20] += 50.0
+    np.save(pair[1], upper)
+    peaks = []
+    for outliers in ("keep", "fill"):
+        assert run(pair, tmp_path, "gap.nc", "--outliers", outliers) == 0
+        with xr.open_dataset(tmp_path / "gap.nc") as found:
+            peaks.append(float(found["aperture"].max()))
+    assert peaks[0] > 50.0
+    assert peaks[1] == pytest.approx(0.5, abs=0.1)
+
+
+def test_registration_finds_the_displacement_of_a_face(tmp_path, capsys):
+    z = self_affine((128, 128), 0.8, 0.1, rms=0.2, seed=5)
+    np.save(tmp_path / "a.npy", z[4:, :-6])
+    np.save(tmp_path / "b.npy", z[:-4, 6:] + 0.3)
+    keys = {**STATED, "spacing": 0.1, "registration": "translation"}
+    (tmp_path / "keys.yaml").write_text(yaml.safe_dump(keys))
+    assert run([str(tmp_path / "a.npy"), str(tmp_path / "b.npy")], tmp_path, "gap.nc") == 0
+    with xr.open_dataset(tmp_path / "gap.nc") as found:
+        assert float(found["aperture"].std()) < 1e-3
+    assert "moved by 0.6" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("out", ["gap.xyz", "gap"])
+def test_another_ending_is_refused_before_anything_is_read(tmp_path, capsys, out):
+    assert main(["no.npy", "none.npy", "--out", str(tmp_path / out)]) == 1
+    assert ".csv, .nc, .vtk" in capsys.readouterr().err
+    assert list(tmp_path.iterdir()) == []
