@@ -81,13 +81,16 @@ def gap_of(lower: Path, upper: Path, keys: Mapping, outliers: str = "keep") -> x
     InputError
         As `read_faces` and `clean_faces`.
     """
-    faces = read_faces(lower, upper, keys)
-    assert faces[1] is not None  # two files were given
-    registration = faces[1].attrs["registration"]
-    cleaned, _, attrs = clean_faces(list(faces), outliers=outliers, name=str(lower))
+    low, high = read_faces(lower, upper, keys)
+    assert high is not None  # two files were given
+    cleaned, _, attrs = clean_faces([low, high], outliers=outliers, name=str(lower))
     gap = (cleaned[1] - cleaned[0]).rename("aperture")
     source = f"{upper.name} above {lower.name}"
-    found = {"registration": registration, "cleaning": attrs["cleaning"], "source": source}
+    found = {
+        "registration": high.attrs["registration"],
+        "cleaning": attrs["cleaning"],
+        "source": source,
+    }
     return gap.assign_attrs(units="mm", long_name="gap between the faces", **found)
 
 
