@@ -37,6 +37,15 @@ def test_a_hyperbola_is_found_again_exactly():
     assert fit.reason == ""
 
 
+@pytest.mark.parametrize("seat", [0.01, 0.25, 5.0])
+def test_closures_from_any_seat_give_the_constants_from_zero_load(seat):
+    sigma = seat * np.geomspace(1.5, 100, 8)
+    fit = fit_hyperbola(sigma, hyperbola(sigma) - hyperbola(seat), seat)
+    assert (fit.k_ni.value, fit.w_m.value) == pytest.approx((30, 0.4), rel=1e-6)
+    # As if the law were zero at the seat: the slope there, and not at zero load.
+    assert fit_hyperbola(sigma, hyperbola(sigma) - hyperbola(seat)).k_ni.value > 30.003
+
+
 @pytest.mark.parametrize("n", [4, 5, 9])
 def test_the_interval_of_a_hyperbola_is_that_of_its_linear_part(n):
     """Student's t, of points less the two parameters, in the logarithms of these."""

@@ -212,7 +212,7 @@ def _laws(measured: Curve, computed: Curve, datum: float) -> Mapping[str, Estima
     found: dict[str, dict[str, Estimate]] = {}
     for name, curve in (("measured", measured), ("computed", computed)):
         fitted = (curve.x <= SEATED_SPAN * datum) & (curve.y > 0)
-        bent = fit_hyperbola(curve.x[fitted], curve.y[fitted])
+        bent = fit_hyperbola(curve.x[fitted], curve.y[fitted], datum)
         logarithm = fit_semi_logarithmic(curve.x[fitted], curve.y[fitted])
         found[name] = {"k_ni": bent.k_ni, "v_m": bent.w_m, "chi": logarithm.b}
     return {

@@ -60,7 +60,7 @@ class SemiLogarithmic(NamedTuple):
     reason: str = ""
 
 
-def fit_hyperbola(pressure: ArrayLike, closure: ArrayLike) -> Hyperbola:
+def fit_hyperbola(pressure: ArrayLike, closure: ArrayLike, seat: float = 0.0) -> Hyperbola:
     """Fit the closure hyperbola, least squares in the closure.
 
     Parameters
@@ -68,7 +68,9 @@ def fit_hyperbola(pressure: ArrayLike, closure: ArrayLike) -> Hyperbola:
     pressure : (n,) array_like
         Nominal pressure sigma_0, MPa.
     closure : (n,) array_like
-        Interface closure w_int, mm.
+        Interface closure, mm: from first touch, or from the seat on.
+    seat : float, optional
+        Nominal pressure at which the closure counts from zero, MPa.
 
     Returns
     -------
@@ -77,22 +79,24 @@ def fit_hyperbola(pressure: ArrayLike, closure: ArrayLike) -> Hyperbola:
 
     Notes
     -----
-    Solved for w the law reads w = sigma w_m / (k_ni w_m + sigma). Both parameters are positive, so
-    the fit and its Student-t interval are made in their logarithms. k_ni is the slope at zero load,
-    where no state is fitted: it is an extrapolation.
+    Solved for w the law reads w = sigma w_m / (k_ni w_m + sigma). A closure from the seat is its
+    difference, w(sigma) - w(seat), so that both constants keep their meaning: k_ni is the slope at
+    zero load and w_m the closure from there on. Both parameters are positive, so the fit and its
+    Student-t interval are made in their logarithms. No state is fitted at zero load: k_ni is an
+    extrapolation.
     """
     from scipy import optimize
 
-    sigma, w = _usable(pressure, closure)
+    sigma, w = _usable(pressure, closure, seat)
     if sigma.size < MIN_CLOSURE_POINTS:
         return Hyperbola(n=sigma.size, reason=_too_few(sigma.size))
 
     def law(sigma, log_k, log_wm):
         # A search along a straight curve, which has no asymptote, runs far.
         k, w_m = np.exp(np.clip([log_k, log_wm], -FARTHEST, FARTHEST))
-        return sigma * w_m / (k * w_m + sigma)
+        return w_m * (sigma / (k * w_m + sigma) - seat / (k * w_m + seat))
 
-    guess = np.log([2 * sigma[0] / w[0], 1.2 * w.max()])
+    guess = np.log([2 * (sigma[0] - seat) / w[0], 1.2 * w.max()])
     try:
         best, covariance = optimize.curve_fit(law, sigma, w, p0=guess, maxfev=5000)
     except RuntimeError:
@@ -189,10 +193,12 @@ def undetermined_stiffness(hyperbola: Hyperbola, law: Law) -> str:
     return ""
 
 
-def _usable(pressure: ArrayLike, closure: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
-    """Points that either law can be fitted to."""
+def _usable(
+    pressure: ArrayLike, closure: ArrayLike, seat: float = 0.0
+) -> tuple[np.ndarray, np.ndarray]:
+    """Points above the seat that either law can be fitted to."""
     sigma, w = np.asarray(pressure, float), np.asarray(closure, float)
-    usable = np.isfinite(sigma) & np.isfinite(w) & (sigma > 0) & (w > 0)
+    usable = np.isfinite(sigma) & np.isfinite(w) & (sigma > seat) & (w > 0)
     return sigma[usable], w[usable]
 
 

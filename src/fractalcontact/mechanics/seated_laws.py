@@ -53,7 +53,8 @@ def add_seated_laws(curves: xr.Dataset) -> None:
 
     Notes
     -----
-    The hyperbola is sigma = k_ni d / (1 - d/v_m), the other law d = d_0 + chi ln(sigma / 1 MPa).
+    The hyperbola is sigma = k_ni w / (1 - w/v_m); the closure from the seat is its own difference,
+    d = w(sigma) - w(seat). The other law is d = d_0 + chi ln(sigma / 1 MPa).
     The stiffness at a reference pressure is read between the states beside it, straight in
     logarithms: stiffnesses of rough contact are nearly powers of the pressure.
     """
@@ -87,7 +88,7 @@ class _Fit:
 
     def __init__(self, pressure: np.ndarray, closure: np.ndarray, seat: float):
         fitted = np.isfinite(closure) & (closure > 0) & within_span(pressure, seat)
-        hyperbola = fit_hyperbola(pressure[fitted], closure[fitted])
+        hyperbola = fit_hyperbola(pressure[fitted], closure[fitted], seat)
         logarithm = fit_semi_logarithmic(pressure[fitted], closure[fitted])
         self.seated_k_ni, self.seated_v_m = hyperbola.k_ni, hyperbola.w_m
         self.seated_d_0, self.seated_chi = logarithm.a, logarithm.b

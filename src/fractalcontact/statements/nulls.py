@@ -34,7 +34,8 @@ _NULLS = {"random": "random nodes", "cut": "bearing-area cut"}
 def closure_is_hyperbolic(joint: Joint) -> Finding:
     """Misfits of the hyperbola and of the logarithm, from the seating pressure on, at every offset.
 
-    The paper fits hyperbolas to find asymptotes, which the logarithm lacks. The claim holds where
+    The paper fits hyperbolas to find asymptotes, which the logarithm lacks. The hyperbola is zero
+    at the seat, which the logarithm, of two free constants, need not be. The claim holds where
     the hyperbola misses every curve by 5 % rms or less and by less than the logarithm. It holds in
     part where it misses some curves by 5 % or less.
     """

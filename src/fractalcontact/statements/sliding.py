@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from ..core.limits import LEVEL_CHANGE, LOOSELY, NEARLY
+from ..core.limits import LEVEL_CHANGE, LOOSELY
 from ..core.text import compact, number
 from ..core.verdicts import FAILS, HOLDS, LEVEL, PARTLY, RISING, UNDETERMINED
 from .evidence import Evidence, of_a_kind
@@ -144,7 +144,8 @@ def _of_plateaus(
 def dilatancy_is_anisotropic(joint: Joint, evidence: Evidence) -> Finding:
     """Difference of the changes of the rigid dilatancy among directions, second half of v.
 
-    The changes differ markedly where their range is above 0.25, and in part where it is above 0.1.
+    The changes differ markedly where their range is above 0.25, and in part where it is above 0.2,
+    the largest among directions that are all level.
     Realisations are judged by the fraction of them that differ markedly. A tilt of the window opens
     one direction and closes the opposite one by as much; it is that of the window's mean plane.
     """
@@ -195,7 +196,7 @@ def _scatter(members: Sequence[xr.Dataset]) -> str:
 
 def _differs(spread: float) -> str:
     """Verdict on a claim of markedly different changes."""
-    return HOLDS if spread > LOOSELY else PARTLY if spread > NEARLY else FAILS
+    return HOLDS if spread > LOOSELY else PARTLY if spread > 2 * LEVEL_CHANGE else FAILS
 
 
 def domains_cluster(joint: Joint) -> Finding:

@@ -21,7 +21,7 @@ def constants_of(card: Mapping[str, Any]) -> Constants:
     """Attributes of ``BartonBandis`` that a card has a number for."""
     entries, found = card["entries"], Constants()
     k_ni, v_m = entries["k_ni"], entries["v_m"]
-    found.add("referenceAperture", v_m, v_m, "v_m of the hyperbola")
+    found.add("referenceAperture", v_m, v_m, "v_m of the hyperbola, from zero load")
     # Only to learn whether k_ni is one: the attribute is of both.
     found.add("referenceNormalStress", k_ni, k_ni, "k_ni of the hyperbola")
     if {"referenceAperture", "referenceNormalStress"} <= set(found.values):

@@ -17,8 +17,8 @@ def constants_of(card: Mapping[str, Any]) -> Constants:
     """Keywords of ``porepy.SolidConstants`` that a card has a number for."""
     entries, found = card["entries"], Constants()
     k_ni, v_m = entries["k_ni"], entries["v_m"]
-    found.add("fracture_normal_stiffness", k_ni, k_ni, "k_ni of the hyperbola")
-    found.add("maximum_elastic_fracture_opening", v_m, v_m, "v_m of the hyperbola")
+    found.add("fracture_normal_stiffness", k_ni, k_ni, "k_ni of the hyperbola, at zero load")
+    found.add("maximum_elastic_fracture_opening", v_m, v_m, "v_m of the hyperbola, from zero load")
     modulus, poisson = entries["modulus"], entries["poisson"]
     if "value" in modulus and "value" in poisson:
         young, nu = modulus["value"] * 1e6, poisson["value"]

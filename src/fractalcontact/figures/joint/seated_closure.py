@@ -91,9 +91,10 @@ def _draw_laws(axes: Axes, curve: xr.Dataset) -> None:
         return
     pressure = np.geomspace(*ends, 100)
     d_0, chi = (float(curve[f"seated_{name}"]) for name in ("d_0", "chi"))
-    bent = hyperbola(pressure, curve["seated_k_ni"], curve["seated_v_m"])
+    law = hyperbola(np.append(pressure, ends[0]), curve["seated_k_ni"], curve["seated_v_m"])
+    bent = r"hyperbola $w = \sigma_0/(k_{ni} + \sigma_0/v_m)$ less $w$(seat)"
     for closure, words, line, colour in (
-        (bent, r"hyperbola $\sigma_0 = k_{ni}d/(1 - d/v_m)$", "--", 1),
+        (law[:-1] - law[-1], bent, "--", 1),
         (d_0 + chi * np.log(pressure), r"logarithm $d = d_0 + \chi\ln\sigma_0$", "-", 2),
     ):
         if np.isfinite(closure).any():
