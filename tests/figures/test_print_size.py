@@ -100,6 +100,7 @@ def test_faults_are_found():
     with print_style():
         figure = Figure(figsize=(3, 2))
         axes = figure.subplots()
+        axes.set(xlim=(0, 1), ylim=(0, 1))
         axes.set_xticks([0.5, 0.58, 0.9], ["3.25", "3.5", "4"])
         axes.text(0.5, 0.5, "tiny", fontsize=5)
         axes.text(0.5, 0.7, "one over the other")
