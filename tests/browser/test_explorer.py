@@ -5,6 +5,7 @@ import time
 
 import numpy as np
 import pytest
+from page_drawings import assert_readable
 
 pytestmark = [pytest.mark.browser, pytest.mark.workflow]
 DRAWN = "body[data-drawn]"
@@ -501,3 +502,23 @@ def test_the_lines_of_python_give_the_number_beside_them(open_page, results):
     assert eval(lines[-1], names) == value
     names["atlas"].close()
     assert xr is names["xr"]
+
+
+#: Draws a plot of the page anew, along y from and to these numbers.
+DRAWN_FROM_TO = """([low, high, log]) => {
+  const points = [low, high].map((y, i) => ({ x: i + 1, y }));
+  const rest = { series: [{ points }], dots: [], key: [] };
+  const y = { label: "y (mm)", log };
+  drawPlot(document.querySelector(".plot"), { x: { label: "x" }, y, ...rest });
+}"""
+
+
+@pytest.mark.parametrize("phone", [False, True])
+def test_the_title_of_an_axis_stands_clear_of_its_numbers_however_wide(open_page, phone):
+    with open_page("explorer.html", phone=phone) as page:
+        page.wait_for_selector(DRAWN)
+        for drawing in page.locator(".plot svg").all():
+            assert_readable(drawing)
+        for ends in ([100012, 100019, False], [-1.00012e-7, -1.00019e-7, False], [1e-12, 1, True]):
+            page.evaluate(DRAWN_FROM_TO, ends)
+            assert_readable(page.locator(".plot svg").first)

@@ -7,6 +7,7 @@ from urllib.parse import unquote
 import numpy as np
 import pandas as pd
 import pytest
+from page_drawings import assert_readable
 
 pytestmark = [pytest.mark.browser, pytest.mark.workflow]
 #: Addresses of a page, those inside its templates too, and what stands in it to be linked to.
@@ -186,6 +187,8 @@ def test_ticked_specimens_lie_over_each_other_and_over_another_study(
         for quantity in page.locator("#quantity option").all():
             page.locator("#quantity").select_option(quantity.get_attribute("value"))
             assert page.locator("#chart").text_content()
+            if page.locator("#chart svg").count():
+                assert_readable(page.locator("#chart svg"))
         page.locator("#quantity").select_option(index=0)
         table = pd.read_csv(results / "curves.csv").assign(study="another")
         table.to_csv(tmp_path / "curves.csv", index=False)
@@ -195,6 +198,16 @@ def test_ticked_specimens_lie_over_each_other_and_over_another_study(
         assert curves.count() == 2 * before
         assert "other file" in page.locator("#legend").text_content()
         page.locator("#chart").screenshot(path=shots / "index_overlay.png")
+        # Numbers between which an axis needs many digits.
+        table["value"] = np.linspace(-100019, -100012, len(table))
+        table.assign(low=np.nan, high=np.nan).to_csv(tmp_path / "wide.csv", index=False)
+        for box in boxes.all():
+            box.uncheck()
+        page.locator("#other").set_input_files(tmp_path / "wide.csv")
+        page.wait_for_selector("#chart svg")
+        assert_readable(page.locator("#chart svg"))
+        for box in boxes.all():
+            box.check()
         (tmp_path / "wrong.csv").write_text("a,b\n1,2\n")
         page.locator("#other").set_input_files(tmp_path / "wrong.csv")
         page.wait_for_selector("#other-said:has-text('no column')")
@@ -261,6 +274,18 @@ def test_the_table_of_specimens_is_whole_on_a_small_screen(open_page):
         page.set_viewport_size({"width": 1200, "height": 900})
         needed, there = page.locator("#table").evaluate("(e) => [e.scrollWidth, e.clientWidth]")
         assert needed <= there
+
+
+@pytest.mark.parametrize("which", range(4))
+def test_no_button_is_printed(open_page, results, pages, which):
+    """Of the card of a specimen and the explorer too: paper has nothing to press."""
+    card = f"cards/{pages[1].rpartition('/')[2]}"
+    with open_page([*pages[:2], card, "explorer.html"][which]) as page:
+        page.wait_for_load_state()
+        page.emulate_media(media="print")
+        shown = "all => all.filter((one) => one.checkVisibility()).map((one) => one.outerHTML)"
+        pressed = "button:not(th button), .button, .choice label:not(:has(:checked))"
+        assert page.locator(pressed).evaluate_all(shown) == []
 
 
 @pytest.mark.parametrize("which", [0, 1])

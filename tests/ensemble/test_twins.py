@@ -9,7 +9,9 @@ from materials import ROCK
 
 from fractalcontact.core.errors import InputError
 from fractalcontact.core.labels import REALISATIONS, TWINS
+from fractalcontact.core.mean_plane import without_mean_plane
 from fractalcontact.core.settings import EnsembleSettings, read
+from fractalcontact.core.window import spacing_of
 from fractalcontact.domain.random_nodes import band_of
 from fractalcontact.ensemble import realisations
 from fractalcontact.ensemble.realisations import ensemble
@@ -17,6 +19,7 @@ from fractalcontact.ensemble.twins import twin_loadings
 from fractalcontact.error_budget.ensemble_spread import INSIDE, OUTSIDE
 from fractalcontact.error_budget.error_budget import error_budget
 from fractalcontact.mechanics.loading import JointLoading
+from fractalcontact.roughness.twin_surface import twin_surface
 from fractalcontact.study.configuration import resolve_settings, solver_settings
 from fractalcontact.surface.synthesis import band_limited
 
@@ -107,6 +110,26 @@ def test_a_face_with_its_match_slides_its_twin_and_a_pair_has_twins_of_its_compo
     tilts = [np.polyfit(x, z.mean(axis=0), 1)[0] for z in (composite, *drawn)]
     np.testing.assert_allclose(tilts[1:], tilts[0], rtol=1e-6)
     assert "twin of seed 1" in twins[0].specimen.attrs["name"]
+
+
+@pytest.mark.parametrize(("along", "wide"), [("y", (2, 1)), ("x", (1, 2))])
+def test_twins_have_the_cells_of_their_scan(along, wide):
+    """Of cells twice as wide or tall, their spectrum is that over mm, not over cells."""
+    heights = _surface(4)[:: wide[0], :: wide[1]]
+    spacing = SPACING * wide[0], SPACING * wide[1]
+    one = scan(heights, SPACING)
+    one = one.assign_coords({along: 2 * one[along]})
+    one.attrs |= {"spacing_y": spacing[0], "spacing_x": spacing[1]}
+    settings = _settings()
+    loading = _loading(stages_of("tiny", (one, None), settings, SOLVER, later=()), settings)
+    composite = loading.composite(int(loading.cells[0]))
+    plane = composite - without_mean_plane(composite)
+    surface = twin_surface(composite, spacing, composite.shape)
+    for seed, twin in zip((1, 2), twin_loadings(loading, (1, 2)), strict=True):
+        assert spacing_of(twin.specimen) == spacing
+        np.testing.assert_array_equal(twin.composite(0), plane + surface.drawn(seed))
+    turned = twin_surface(composite, spacing[::-1], composite.shape)
+    assert not np.allclose(turned.drawn(1), surface.drawn(1), rtol=0.01)
 
 
 def test_the_spread_of_twins_takes_the_place_of_counting_and_windows_in_the_population():

@@ -286,6 +286,18 @@ def test_laboratory_tests_stand_in_the_panels_of_the_computed_curves(atlas, figu
     if kind != "strength":  # every peak of this joint is truncated
         assert float(stage[f"{kind}_ratio_at_last"]) == pytest.approx(1 / PART, rel=0.05)
         assert "Computed/measured" in drawing.caption
+    sizes = [
+        {
+            line.get_label(): line.get_markersize()
+            for line in axes.lines
+            if line.get_marker() != "None"
+        }
+        for axes in drawing.figure.axes
+    ]
+    for panel in sizes:
+        read = [size for label, size in panel.items() if str(label).startswith("test: ")]
+        assert min(read, default=np.inf) >= max(panel.values(), default=0)
+    assert any(str(label).startswith("test: ") for panel in sizes for label in panel)
 
 
 def test_contact_domains_drawn_hold_the_area_of_the_atlas(atlas):

@@ -100,6 +100,8 @@ def test_faults_are_found():
     with print_style():
         figure = Figure(figsize=(3, 2))
         axes = figure.subplots()
+        axes.set(xlim=(0, 1), ylim=(0, 1))
+        axes.set_xticks([0.5, 0.58, 0.9], ["3.25", "3.5", "4"])
         axes.text(0.5, 0.5, "tiny", fontsize=5)
         axes.text(0.5, 0.7, "one over the other")
         axes.text(0.5, 0.7, "another of the two")
@@ -110,6 +112,8 @@ def test_faults_are_found():
     assert "a legend is cut off" in found
     assert "5 pt: 'tiny'" in found
     assert "overlap: 'one over the other' and 'another of the two'" in found
+    assert "run together: '3.25' and '3.5'" in found
+    assert "run together: '3.5' and '4'" not in found
     assert "cut off: 'which leaves the figure'" in found
 
 

@@ -7,7 +7,6 @@ import pytest
 from matplotlib.figure import Figure
 from print_size import shown_texts
 
-from fractalcontact.figures.kit.axes import label_short_span
 from fractalcontact.figures.kit.drawing import print_style
 from fractalcontact.figures.kit.layout import lay_out
 
@@ -24,7 +23,6 @@ def test_numbers_of_a_short_logarithmic_axis_stand_apart(ratio):
             axes = figure.subplots(1, 3)[0]
             axes.plot([low, low * ratio], [1, 2])
             axes.set(xscale="log", xlim=(low, low * ratio))
-            label_short_span(axes.xaxis)
             canvas = lay_out(figure)
             canvas.draw()
         labels = {*axes.xaxis.get_ticklabels(which="both")}

@@ -249,22 +249,54 @@ def test_closed_bodies_are_named(tmp_path, flat):
     points, triangles = ball(flat)
     path = write_stl(tmp_path / "boulder.stl", points, triangles)
     assert "a closed body, such as a boulder" in warnings_for(path, {"unit": "mm"})
-    np.savetxt(tmp_path / "boulder.xyz", points)
-    found = warnings_for(tmp_path / "boulder.xyz", {"unit": "mm"})
-    assert "a closed body, or two faces or scans in one file" in found
+    refused_cloud(tmp_path / "boulder.npy", points)
     upper_half = triangles[(points[triangles][:, :, 2] > 5 * flat).all(axis=1)]
     path = write_stl(tmp_path / "dome.stl", points, upper_half)
     assert "closed body" not in warnings_for(path, {"unit": "mm"})
 
 
-def test_two_faces_in_one_file_are_named(tmp_path):
-    lower, upper = nodes(rough(1), 0.1, 0.1), nodes(rough(1) + 1.0, 0.1, 0.1)
-    path = saved(tmp_path / "same.npy", np.vstack([lower, upper]))
-    assert "two faces or scans in one file" in warnings_for(path, {"unit": "mm"})
+def refused_cloud(path, points):
+    with pytest.raises(InputError, match="two faces or scans in one file, or a body; save each"):
+        read_scan(saved(path, points), {"unit": "mm"})
+
+
+@pytest.mark.parametrize("gap", [0.5, 5.0])
+def test_two_faces_in_one_cloud_are_refused(tmp_path, gap):
+    """At the same x and y, between each other, scattered, and one over half of the other."""
+    lower, upper = nodes(rough(1), 0.1, 0.1), nodes(rough(1) + gap, 0.1, 0.1)
+    refused_cloud(tmp_path / "same.npy", np.vstack([lower, upper]))
+    half = upper[upper[:, 0] < np.median(upper[:, 0])]
+    refused_cloud(tmp_path / "half.npy", np.vstack([lower, half]))
     upper[:, :2] += 0.043
     lower[:, 0] += 0.02 * np.sin(np.arange(len(lower)))
-    path = saved(tmp_path / "between.npy", np.vstack([lower, upper]))
-    assert "two faces or scans in one file" in warnings_for(path, {"unit": "mm"})
+    refused_cloud(tmp_path / "between.npy", np.vstack([lower, upper]))
+    scattered = np.random.default_rng(2).normal(0, 0.02, (len(lower), 2))
+    lower[:, :2] += scattered
+    refused_cloud(tmp_path / "scattered.npy", np.vstack([lower, upper]))
+
+
+@pytest.mark.parametrize("noise", [0.001, 0.05, 1.0])
+def test_a_noisy_cloud_scanned_twice_is_one_face(tmp_path, noise):
+    """However large the noise, white or rounded to steps; and so is a face of steps."""
+    rng = np.random.default_rng(3)
+    rough_face = rough(1)
+
+    def once(heights):
+        points = nodes(heights, 0.1, 0.1)
+        return points + np.c_[rng.normal(0, 0.02, (len(points), 2)), np.zeros(len(points))]
+
+    noisy = [rough_face + noise * rng.normal(size=rough_face.shape) for _ in range(2)]
+    same = np.vstack([nodes(one, 0.1, 0.1) for one in noisy])
+    steps = 0.1 * rough_face + 2.0 * (np.arange(rough_face.shape[1]) // 5 % 2)
+    clouds = {
+        "same": same,
+        "between": np.vstack([once(one) for one in noisy]),
+        "rounded": np.vstack([once(np.round(one / noise) * noise) for one in noisy]),
+        "steps": once(steps),
+    }
+    for name, points in clouds.items():
+        heights = read_scan(saved(tmp_path / f"{name}.npy", points), {"unit": "mm"})
+        assert np.isfinite(heights.values).mean() > 0.9, name
 
 
 def sheet(heights, step=0.5):

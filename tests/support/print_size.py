@@ -1,7 +1,7 @@
 """What keeps a figure from being read in print: small letters, words over words or cut off."""
 
 import json
-from itertools import combinations
+from itertools import combinations, pairwise
 
 from matplotlib.axis import Axis
 from matplotlib.legend import Legend
@@ -10,6 +10,7 @@ from matplotlib.text import Annotation, Text
 from fractalcontact.figures.draw import draw_figure
 from fractalcontact.figures.kit.drawing import WIDTH
 from fractalcontact.figures.kit.layout import lay_out
+from fractalcontact.figures.kit.ticks import axes_of
 from fractalcontact.study.atlas import read_atlas
 from fractalcontact.study.figure_list import all_figures, figures_of, study_figures_of
 
@@ -17,6 +18,9 @@ from fractalcontact.study.figure_list import all_figures, figures_of, study_figu
 MIN_SIZE = 6.0
 #: Pixels that boxes around words may share: they are a little larger than the letters.
 _SLACK = 3.0
+#: Empty space between two numbers of an axis, at least, in sizes of their letters: "3.253.5" is one
+#: number to a reader.
+_APART = 0.25
 
 
 def faults_of_study(path):
@@ -63,14 +67,15 @@ def shown_texts(figure):
     return [text for text in dict.fromkeys(found) if text.get_visible() and text.get_text().strip()]
 
 
-def _tick_labels(axis):
+def _tick_labels(axis, *sides):
+    """Numbers within the ends of an axis, on both sides of it or on one."""
     along = axis.get_transform().transform
     low, high = sorted(along(axis.get_view_interval()))
     slack = 1e-6 * (high - low)
     return [
         label
         for tick in (*axis.get_major_ticks(), *axis.get_minor_ticks())
-        for label in (tick.label1, tick.label2)
+        for label in (getattr(tick, side) for side in sides or ("label1", "label2"))
         if low - slack <= along(tick.get_loc()) <= high + slack
     ]
 
@@ -104,6 +109,21 @@ def faults(figure):
         height = min(a.y1, b.y1) - max(a.y0, b.y0)
         if width > _SLACK and height > _SLACK:
             found.append(f"overlap: {one.get_text()[:30]!r} and {other.get_text()[:30]!r}")
+    return found + _run_together(figure, boxes)
+
+
+def _run_together(figure, boxes):
+    """Numbers along one side of an axis that a reader takes for one, in words."""
+    found = []
+    for _, axis in axes_of(figure):
+        low, high = f"{axis.axis_name}0", f"{axis.axis_name}1"
+        for side in ("label1", "label2"):
+            row = [label for label in _tick_labels(axis, side) if label in boxes]
+            row.sort(key=lambda label: getattr(boxes[label], low))
+            for one, other in pairwise(row):
+                gap = getattr(boxes[other], low) - getattr(boxes[one], high)
+                if gap < _APART * one.get_fontsize() * figure.dpi / 72:
+                    found.append(f"run together: {one.get_text()!r} and {other.get_text()!r}")
     return found
 
 

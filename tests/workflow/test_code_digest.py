@@ -94,6 +94,8 @@ def test_a_room_is_named_whole_and_a_name_of_the_package_may_be_any(project):
 @pytest.mark.parametrize(
     ("name", "counts"),
     [
+        ("scripts/_help.py", True),
+        ("scripts/job.py", True),
         ("src/rocks/middle/table.yaml", True),
         ("src/rocks/middle/new.py", True),  # found by listing its folder
         ("src/rocks/high/b.py", True),
@@ -106,7 +108,8 @@ def test_a_room_is_named_whole_and_a_name_of_the_package_may_be_any(project):
 def test_a_change_of_what_counts_and_of_nothing_else_is_seen(project, name, counts):
     before = digest(project)
     (project / name).parent.mkdir(exist_ok=True)
-    (project / name).write_text("# a change\n")
+    with open(project / name, "a") as file:
+        file.write("# a change\n")
     assert (digest(project) != before) == counts
 
 
@@ -117,6 +120,28 @@ def test_a_moved_checkout_is_the_same_and_a_renamed_file_another(project, tmp_pa
     assert digest(moved) == before
     (moved / "src/rocks/middle/c.py").rename(moved / "src/rocks/middle/g.py")
     assert digest(moved) != before
+
+
+def test_a_file_moved_to_another_folder_is_another(project):
+    before = digest(project)
+    table = project / "src/rocks/middle/table.yaml"
+    table.rename(table.parent / "inner" / table.name)
+    assert digest(project) != before
+
+
+def test_what_runs_before_a_module_counts_though_it_imports_nothing(project):
+    """That of the package and of its room."""
+    (project / "scripts/alone.py").write_text("from rocks.high.b import one\n")
+    assert behind(project, project / "scripts/alone.py") == {
+        "scripts/alone.py",
+        *("src/rocks/__init__.py", "src/rocks/high/__init__.py", "src/rocks/high/b.py"),
+    }
+    (project / "src/rocks/high/inner").mkdir()
+    (project / "src/rocks/high/inner/g.py").write_text("")
+    (project / "scripts/alone.py").write_text("from rocks.high.inner.g import one\n")
+    assert "src/rocks/high/__init__.py" in behind(project, project / "scripts/alone.py")
+    (project / "scripts/alone.py").write_text("from rocks.low import d\n")
+    assert "src/rocks/__init__.py" in behind(project, project / "scripts/alone.py")
 
 
 def test_versions_of_libraries_count_where_they_are_imported(project, monkeypatch):

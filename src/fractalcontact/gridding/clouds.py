@@ -16,10 +16,15 @@ from . import points as pts
 from .measured import NOTE, Measured
 from .triangles import interpolate_mesh, interpolate_points, places_across
 
+_CUT_APART = (
+    "save each face in a file of its own, two faces as NAME.lower and NAME.upper, as seen from "
+    "above"
+)
 _OVERHANG_OF_POINTS = (
     "of the points lies beneath others; so few are kept",
     "of the points lies beneath others and is left out: an instrument above would not see it",
 )
+
 #: From this share of points that lie over another one on they are no repeats by chance.
 _MANY_STACKED = 0.05
 
@@ -50,6 +55,8 @@ class Cloud:
         What is known about the points, for the result.
     notes : tuple of str
         What was done to them, and what a user should know.
+    parted : float
+        Share of the points, as in the file, that lie on one of two faces.
     """
 
     path: Path
@@ -59,6 +66,7 @@ class Cloud:
     mesh: Mesh | None
     attrs: dict
     notes: tuple[str, ...]
+    parted: float = 0.0
 
     @property
     def area_per_point(self) -> float:
@@ -87,7 +95,7 @@ def prepare_clouds(scans: Sequence[Measured]) -> list[Cloud]:
     Raises
     ------
     InputError
-        If a scan has too few points, or all on one line.
+        If a scan has too few points, all on one line, or those of two faces.
     """
     clouds = [_merge(scan) for scan in scans]
     if scans[0].level and any(cloud.lattice is None for cloud in clouds):
@@ -158,8 +166,7 @@ def _refuse_several_faces(mesh: Mesh, heights: np.ndarray, lattice: pts.Lattice,
     if layers >= overhangs.SEVERAL_FACES and not overhangs.is_closed(mesh.triangles):
         raise InputError(
             f"{where}: the mesh has {layers:.1f} heights at each x, y on average: two faces or "
-            "scans in one file, or a body; save each face in a file of its own, two faces as "
-            "NAME.lower and NAME.upper, as seen from above"
+            f"scans in one file, or a body; {_CUT_APART}"
         )
 
 
@@ -178,10 +185,13 @@ def _merge(scan: Measured) -> Cloud:
     if scan.triangles is not None:
         whole = np.isfinite(scan.values).all(axis=1)[scan.triangles].all(axis=1)
         mesh = Mesh(scan.values, scan.triangles[whole])
-    lattice = None
+    lattice, parted = None, 0.0
     if mesh is None or repeats.stacked == 0:
         distance = dense.neighbour_distance(points, dense.plane_tree(points))
         lattice = pts.find_lattice(points, distance)
+    if mesh is None and (repeats.stacked or lattice is None):
+        every = np.unique(scan.values[_finite(scan.values)], axis=0)
+        parted = overhangs.parted_share(every, dense.plane_tree(every))
     attrs: dict[str, float] = {"points": len(scan.values), "duplicated_points": repeats.duplicated}
     attrs |= {"stacked_points": repeats.stacked, "overhang_share": 0.0, "levelled_degrees": 0.0}
     notes = []
@@ -193,7 +203,7 @@ def _merge(scan: Measured) -> Cloud:
         if mesh is None and repeats.stacked > _MANY_STACKED * len(points):
             note = f"{NOTE}{note}; two faces or scans in one file? Cut them apart"
         notes.append(note)
-    return Cloud(scan.path, points, lattice, None, mesh, attrs, tuple(notes))
+    return Cloud(scan.path, points, lattice, None, mesh, attrs, tuple(notes), parted)
 
 
 def _turn_level(clouds: list[Cloud], scans) -> list[Cloud]:
@@ -230,7 +240,12 @@ def _turned(cloud: Cloud, scan, normal: np.ndarray, centre: np.ndarray) -> Cloud
 
 
 def _look_beneath(cloud: Cloud) -> Cloud:
-    """Measure overhangs and density."""
+    """Measure overhangs and density; two faces in one cloud are refused."""
+    if cloud.parted >= overhangs.TWO_FACES:
+        raise InputError(
+            f"{cloud.path}: {percent(cloud.parted)} of the points lie on one of two faces whose "
+            f"other is next to them: two faces or scans in one file, or a body; {_CUT_APART}"
+        )
     if cloud.mesh is not None:
         cloud = _with_overhang_of_mesh(cloud, cloud.mesh)
     if cloud.lattice is not None:

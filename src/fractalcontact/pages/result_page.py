@@ -53,6 +53,7 @@ from .files import (
     TABLES,
 )
 from .first_screen import blocks_of
+from .history import history
 from .laboratory import calibration_of, tests_of
 from .matrix import Row as Judged
 from .matrix import counted, matrix_of, merged, of_study, statement_table
@@ -326,6 +327,7 @@ def _specimen_values(
     ``held`` is the path of its atlas, as typed, and the names of the groups in it.
     """
     figures, choices = all_figures(), subject["choices"]
+    faces = [str(face) for face in subject["quality"]["face"].values]
     names = [name for name, one in figures.items() if one.subject in (SPECIMEN, JOINT)]
     cards = cards_of(
         names,
@@ -348,6 +350,7 @@ def _specimen_values(
         "tests": tests_of(subject),
         "calibration": calibration_of(subject),
         "sections": [(name.replace(" ", "-"), title, found) for name, title, found in sections],
+        "history": history(subject["specimens"], faces),
         "quantities": _quantities(subject, sheet),
         "plan": choices.attrs,
         "choices": choices[["value", "reason", "error", "error_of"]].to_dataframe().itertuples(),

@@ -7,7 +7,6 @@ from matplotlib.figure import Figure
 from xarray import DataTree
 
 from fractalcontact.core.estimate import EXPONENT, Estimate
-from fractalcontact.figures.kit.axes import label_short_span
 from fractalcontact.figures.kit.caption import caption
 from fractalcontact.figures.kit.drawing import MARKERS, WIDTH, Drawing, colour_of, group
 from fractalcontact.figures.kit.panel import rows
@@ -40,7 +39,6 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
     for axes, which, title in zip(panels, "abc", _TITLES, strict=True):
         letter(axes, which, title)
         axes.set(xscale="log", yscale="log")
-        label_short_span(axes.xaxis, within=10)
         axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.2))
     panels[0].set_ylabel("relative error, rms over positions (1)")
     table = pd.concat(tables, ignore_index=True)

@@ -8,7 +8,6 @@ from matplotlib.lines import Line2D
 from xarray import DataTree
 
 from fractalcontact.core.estimate import EXPONENT, Estimate
-from fractalcontact.figures.kit.axes import label_short_span
 from fractalcontact.figures.kit.caption import caption
 from fractalcontact.figures.kit.drawing import WIDTH, Drawing, colour_of, group
 from fractalcontact.figures.kit.titles import letter
@@ -42,7 +41,6 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
         panels[-1, j].set_xlabel("nodes per side (1)")
     for i, (label, _) in enumerate(_ROWS.values()):
         panels[i, 0].set_ylabel(label)
-        label_short_span(panels[i, 0].yaxis)
     legend_of(figure, panels.flat, ncols=3)
     return Drawing(figure, _table(growth), caption(__name__, **_numbers(growth, columns)))
 

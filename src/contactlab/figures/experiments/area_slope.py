@@ -6,7 +6,6 @@ import numpy as np
 from matplotlib.figure import Figure
 from xarray import DataTree
 
-from fractalcontact.figures.kit.axes import label_short_span
 from fractalcontact.figures.kit.caption import caption
 from fractalcontact.figures.kit.drawing import MARKERS, WIDTH, Drawing, colour_of, group
 from fractalcontact.figures.kit.kappa import kappa_lines
@@ -40,7 +39,6 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
         _draw_surfaces(axes, chosen)
         kappa_lines(axes, slopes)
         share = f"1/{1 / slopes.attrs['roll_off_share']:.3g}"
-        label_short_span(axes.xaxis)
         letter(axes, which, _TITLES[kind].format(share=share))
         axes.set_xlabel(r"reduced pressure $p/(E^* h′_\mathrm{rms})$ (1)")
     panels[0].set_ylabel(r"area slope $\kappa=(A_r/A_0)\,E^* h′_\mathrm{rms}/p$ (1)")

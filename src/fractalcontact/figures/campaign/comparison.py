@@ -10,7 +10,6 @@ from xarray import DataTree
 
 from ...core.estimate import Estimate
 from ...core.labels import printable
-from ..kit.axes import label_short_span
 from ..kit.caption import caption
 from ..kit.drawing import LINES, MARKERS, WIDTH, Drawing, colour_of
 from ..kit.empty import say_empty
@@ -69,7 +68,6 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
     surface, stiffness, contact, _, _ = panels
     surface.set_xticks([])
     stiffness.set_yscale("log", nonpositive="mask")
-    label_short_span(stiffness.yaxis)
     contact.set_ylim(-0.05, 2.05)  # the interval of a mean of few goes far beyond
     key.set_axis_off()
     bars = (

@@ -6,7 +6,6 @@ import xarray as xr
 
 from ...core.estimate import EXPONENT, Estimate
 from ...core.text import compact
-from ..kit.axes import label_short_span
 from ..kit.drawing import COLOURS
 from ..kit.panel import Panel
 
@@ -39,7 +38,6 @@ def draw_sizes(panel: Panel, sizes: xr.Dataset) -> None:
     axes.set(xscale="log", yscale="log", xlabel="cluster area $a$ (mm$^2$)")
     axes.set_ylim(bottom=0.7)
     axes.set_ylabel(r"number of clusters of area $\geq a$ (1)")
-    label_short_span(axes.xaxis)
     if sizes["cluster_exponent"].notnull().any():
         axes.plot([], [], color="0.4", lw=0.8, label="lines: laws over the areas fitted")
 

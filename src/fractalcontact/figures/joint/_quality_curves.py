@@ -12,7 +12,6 @@ from matplotlib.patches import Patch
 from ...core.limits import DECISIVE
 from ...core.text import compact, length_unit, length_words, number
 from ...core.window import window_slices
-from ..kit.axes import label_short_span
 from ..kit.drawing import COLOURS, spread
 from ..kit.empty import say_empty
 from ..kit.legends import mark
@@ -121,7 +120,6 @@ def _finish(axes: Axes, quality: xr.Dataset, spectrum: xr.DataArray) -> None:
         axes.plot(2 * side, 0.985, "v", color=RANGE, mfc=face, ms=5, zorder=5, **at)
     if not spectrum.notnull().any():
         say_empty(axes, "too small for a spectrum")
-    label_short_span(axes.xaxis)
 
 
 def _range(quality: xr.Dataset) -> tuple[float, float]:

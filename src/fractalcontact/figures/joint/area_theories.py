@@ -12,7 +12,6 @@ from ...core.estimate import EXPONENT, Estimate
 from ...core.limits import LIGHT_LOAD
 from ...core.subject import Subject
 from ...core.text import compact
-from ..kit.axes import label_short_span
 from ..kit.caption import caption
 from ..kit.drawing import COLOURS, WIDTH, Drawing
 from ..kit.empty import say_empty
@@ -79,8 +78,6 @@ def _draw_area(axes: Axes, law: xr.Dataset) -> None:
             words = f"{words}: not defined here"
         axes.plot(pressure[drawn], 100 * share[drawn], color=colour, ls=line, lw=1, label=words)
     axes.set(xscale="log", yscale="log")
-    for axis in (axes.xaxis, axes.yaxis):
-        label_short_span(axis)
     axes.set_xlabel(f"{NOMINAL_PRESSURE} (MPa)")
     axes.set_ylabel("real contact area $A_r/A_0$ (%)")
 
@@ -111,7 +108,6 @@ def _draw_kappa(axes: Axes, laws: xr.Dataset, law: xr.Dataset) -> None:
             axes.errorbar([at], [mean.value], yerr=reach(*mean.ends), transform=edge, **style)
     if laws["fitted"].any():
         kappa_lines(axes, laws, _OF_KAPPA)
-        label_short_span(axes.xaxis)
     if laws["line_pressure"].max() > LIGHT_LOAD:
         axes.axvline(LIGHT_LOAD, color="0.45", lw=0.6, label="end of light load")
     if not law["fitted"].any():

@@ -11,7 +11,6 @@ from xarray import DataTree
 from ...core.estimate import DIMENSION, Estimate
 from ...core.subject import Subject
 from ...core.text import force_label
-from ..kit.axes import label_short_span
 from ..kit.caption import caption
 from ..kit.domains import spread_loads
 from ..kit.drawing import WIDTH, Drawing
@@ -79,8 +78,6 @@ def _finish(slopes: Axes, lacunarity: Axes, spectrum: Axes, shown: xr.Dataset) -
         lacunarity.set_ylim(0.8, 3 * max(float(shown["lacunarity"].max()), 1.5))
     spectrum.axhline(2, **_PLANE)
     spectrum.set(xlabel="order $q$ (1)", ylabel="dimension $D_q$ of the pressure (1)")
-    for axes in (slopes, lacunarity):
-        label_short_span(axes.xaxis)
 
 
 def _values(state: xr.Dataset, counts: xr.Dataset) -> dict[str, Any]:

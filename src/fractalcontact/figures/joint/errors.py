@@ -10,7 +10,7 @@ from xarray import DataTree
 from ...core.labels import REALISATIONS, TWINS
 from ...core.subject import Subject
 from ...core.text import compact, length_unit, percent
-from ..kit.axes import force_axis, label_short_span
+from ..kit.axes import force_axis
 from ..kit.caption import caption
 from ..kit.drawing import LINES, MARKERS, WIDTH, Drawing, colour_of
 from ..kit.legends import entries
@@ -71,7 +71,6 @@ def draw(atlas: DataTree, name: str) -> Drawing:
         load = float(here["normal_force"]) / size
         axes.axvline(load, label="reference load", color="0.8", lw=3, zorder=0)
         _draw_errors(panel, errors.sel(quantity=quantity), size)
-        label_short_span(axes.xaxis)
         plain_decades(axes.yaxis)
     hollow_entry(places[-1], "hollow: interpolated between loads", marker=MARKERS[2])
     found = {entry.get_label(): entry for axes in places for entry in entries(axes)}

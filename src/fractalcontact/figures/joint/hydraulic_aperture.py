@@ -11,7 +11,7 @@ from xarray import DataTree
 from ...core.directions import slides
 from ...core.estimate import Estimate, names_of
 from ...core.subject import Subject
-from ..kit.axes import label_short_span, offset_axis
+from ..kit.axes import offset_axis
 from ..kit.caption import caption
 from ..kit.drawing import WIDTH, Drawing, colour_of
 from ..kit.empty import say_empty
@@ -56,7 +56,6 @@ def draw(atlas: DataTree, name: str) -> Drawing:
         flow = subject["flow"]
         _draw_ways(c, flow, "offset", "offset_transmissivity", "", "-", ["offset_mean_gap"])
         c.axes.set_yscale("log")
-        label_short_span(c.axes.yaxis)
         offset_axis(c.axes, flow["offset"].values)
     legends_below(figure, entries(a.axes), entries(b.axes))
     headline(figure, subject.label, place(subject.direction, subject.offset))

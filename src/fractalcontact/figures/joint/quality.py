@@ -1,4 +1,4 @@
-"""Quality sheet of a scan: relief, mask, histogram, profiles, spectra and processing.
+"""Quality sheet of a scan: relief, mask, histogram, profiles, spectra and findings.
 
 Of two faces also their gap, where they overlap, and how much of the load rests on such cells.
 """
@@ -17,7 +17,6 @@ from ..kit.maps import scan_extent
 from ..kit.panel import Panel, table_of
 from ..kit.relief import draw_faces
 from ..kit.titles import headline
-from ._history import history
 from ._quality_curves import (
     curve_entries,
     draw_gap_heights,
@@ -102,7 +101,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
 
 
 def _text_lines(specimen, quality, faces, warnings):
-    """History and findings of a scan, broken into lines; the warnings first."""
+    """Findings of a scan, broken into lines; the warnings first."""
     paragraphs = [f"WARNING: {warning}." for warning in warnings]
     paragraphs += [
         f"{face_words(specimen, face).capitalize()}: {quality.attrs[f'{face}_face']}."
@@ -114,5 +113,4 @@ def _text_lines(specimen, quality, faces, warnings):
         paragraphs.append(
             f"Gap in the window: mean {compact(mean)} mm, sd {compact(sd)} mm; {overlap}."
         )
-    paragraphs += history(specimen, faces)
     return [line for text in paragraphs for line in textwrap.wrap(text, LETTERS)]

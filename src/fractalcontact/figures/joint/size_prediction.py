@@ -8,7 +8,6 @@ from matplotlib.figure import Figure
 from xarray import DataTree
 
 from ...core.subject import Subject
-from ..kit.axes import label_short_span
 from ..kit.caption import caption
 from ..kit.drawing import MARKERS, WIDTH, Drawing, colour_of
 from ..kit.empty import say_empty
@@ -74,7 +73,6 @@ def _draw_ratios(panel: Panel, test: xr.Dataset, quantity: str) -> None:
     low, high = (float(end(shown["ratio"])) for end in (np.nanmin, np.nanmax))
     axes.set_ylim(min(low / 1.5, 0.5), max(1.5 * high, 2))
     plain_decades(axes.yaxis)
-    label_short_span(axes.xaxis)
 
 
 def _words(test: xr.Dataset) -> dict[str, Any]:

@@ -11,7 +11,6 @@ from xarray import DataTree
 from ...core.estimate import DIMENSION, EXPONENT, Estimate
 from ...core.subject import Subject
 from ...core.text import pressure_label
-from ..kit.axes import label_short_span
 from ..kit.caption import caption
 from ..kit.drawing import COLOURS, MARKERS, WIDTH, Drawing, spread
 from ..kit.empty import say_empty
@@ -124,7 +123,6 @@ def _draw_exponents(panel: Panel, test: xr.Dataset, name: str, sure: xr.DataArra
     axes.axhline(0, color="0.5", lw=0.6)
     axes.set(xscale="log", xlim=(pressure[0] / 1.3, pressure[-1] * 1.3), ylim=(-2.3, 0.8))
     axes.set_xlabel(r"$\sigma_0$ of the whole window (MPa)")
-    label_short_span(axes.xaxis)
 
 
 def grey_beyond(axes: Any, test: xr.Dataset) -> None:

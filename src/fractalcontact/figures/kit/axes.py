@@ -73,8 +73,8 @@ def spacing_axis(axes: Axes, spacings: ArrayLike) -> None:
     axes.set_xlabel("spacing $s$ (mm)")
 
 
-def label_short_span(axis: Axis, within: float = 100) -> None:
-    """Plain labels at 1, 2 and 5 on a logarithmic axis whose ends are less than ``within`` apart.
+def label_short_span(axis: Axis) -> None:
+    """Plain labels at 1, 2 and 5 on a logarithmic axis shorter than two decades.
 
     Powers of ten would be one there, or none. Labels between those lie over each other on any axis
     and are left out; on a short one so do these over more than a decade.
@@ -82,7 +82,7 @@ def label_short_span(axis: Axis, within: float = 100) -> None:
     """
     low, high = axis.get_view_interval()
     axis.set_minor_formatter(NullFormatter())
-    if high < within * low:
+    if high < 100 * low:
         axis.set_major_locator(_FewPlaces(subs=(1, 2, 5)))
         axis.set_major_formatter(StrMethodFormatter("{x:g}"))
 

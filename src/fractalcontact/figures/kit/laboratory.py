@@ -32,8 +32,8 @@ def draw_tests(panel: Panel, subject: Subject, kind: str, *, turned: bool = Fals
         style: dict[str, Any] = {
             "ls": "none",
             "marker": MARKERS[(3 + number) % len(MARKERS)],
-            "ms": 4,
-            "mew": 0.6,
+            "ms": 6,
+            "mew": 0.8,
             "mfc": "none",
             "color": COLOURS[(3 + 2 * number) % len(COLOURS)],
             "zorder": 1,

@@ -14,14 +14,17 @@ from matplotlib.axis import Axis
 from matplotlib.figure import FigureBase
 from matplotlib.ticker import Locator, LogFormatterSciNotation, NullLocator
 
+from .axes import label_short_span
+
 _UNLABELLED = {f"label{side}": False for side in ("bottom", "top", "left", "right")}
 
 
 def plain_ticks(figure: FigureBase) -> None:
-    """Remove invisible parts of the ticks of a finished figure.
+    """Number logarithmic axes of a finished figure, and remove invisible parts of its ticks.
 
-    Powers of ten become plain text, ticks between them are made within the axes alone and drawn as
-    one, and nothing is measured for labels that are empty.
+    Numbers of short axes are those of :func:`label_short_span`. Powers of ten become plain text,
+    ticks between them are made within the axes alone and drawn as one, and nothing is measured for
+    labels that are empty.
     """
     for panel, axis in axes_of(figure):
         _spare(panel, axis)
@@ -53,6 +56,8 @@ def _spare(panel, axis):
     if not axis.label.get_text():
         axis.set_label_coords(0, 0)  # else a place clear of the numbers is sought for it too
     if type(axis.get_major_formatter()) is LogFormatterSciNotation:
+        label_short_span(axis)
+    if type(axis.get_major_formatter()) is LogFormatterSciNotation:  # a long one still
         axis.set_major_formatter(_Decades())
     minor = axis.get_minorticklocs()
     if len(minor):

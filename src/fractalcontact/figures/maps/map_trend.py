@@ -6,7 +6,6 @@ from matplotlib.patches import Patch
 from xarray import DataTree
 
 from ...core.estimate import DIMENSION, Estimate
-from ..kit.axes import label_short_span
 from ..kit.caption import caption
 from ..kit.drawing import WIDTH, Drawing
 from ..kit.empty import say_empty
@@ -40,12 +39,10 @@ def draw(atlas: DataTree, specimens: list[str]) -> Drawing:
         letter(axes, which, words.split(" $")[0])
     if any(np.isfinite(each.pressure).any() for each in series):
         panels[0].set_xscale("log")
-        label_short_span(panels[0].xaxis)
     else:
         panels[0].set_xticks([])
         say_empty(panels[0], "no map states its load")
     panels[1].set_xscale("log")
-    label_short_span(panels[1].xaxis)
     panels[0].set_ylabel(r"dimension $\Delta_\sigma$ by box counting (1)")
     panels[0].set_ylim(-0.05, 2.05)
     legends_below(figure, entries(panels[1]), _marks(series))

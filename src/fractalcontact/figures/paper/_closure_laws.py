@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from ...core.estimate import EXPONENT, Estimate
 from ...core.subject import Subject
 from ...core.text import compact, percent
-from ..kit.axes import force_axis, label_short_span
+from ..kit.axes import force_axis
 from ..kit.drawing import MARKERS, colour_of
 from ..kit.empty import TOO_FULL, say_empty
 from ..kit.points import draw_points
@@ -76,7 +76,6 @@ def draw_light_loads(axes: Axes, drawn: xr.Dataset, subject: Subject) -> None:
         say_empty(axes, TOO_FULL)
     axes.set_xlabel(r"closure $w_\mathrm{int}$ from first touch (mm)")
     axes.set_ylabel(f"{NOMINAL_PRESSURE} (MPa)")
-    label_short_span(axes.xaxis)
 
 
 def _draw_laws(axes, curve, lines, area, unit=1.0):

@@ -7,7 +7,6 @@ import xarray as xr
 from matplotlib.colors import to_rgba
 
 from ...core.estimate import Estimate
-from ..kit.axes import label_short_span
 from ..kit.drawing import COLOURS, WEAK
 from ..kit.panel import Panel
 from ..kit.points import reach
@@ -45,7 +44,6 @@ def draw_slopes(panel: Panel, counts: xr.Dataset) -> None:
             axes.fill_between(ends, *Estimate.read(counts, name).ends[1:], **band_of(colour))
     axes.set_ylim(-0.1, 2.3)
     axes.set(xlabel="box side $r$ (mm)", ylabel=r"local slope $-$d log $N$ / d log $r$ (1)")
-    label_short_span(axes.xaxis)
 
 
 def band_of(colour: str) -> dict[str, Any]:

@@ -9,7 +9,7 @@ from ...core.subject import Subject
 from ...core.text import compact, force_label, percent
 from ...core.verdicts import UNDETERMINED
 from ...core.window import cell_side
-from ..kit.axes import label_short_span, spacing_axis
+from ..kit.axes import spacing_axis
 from ..kit.drawing import MARKERS
 from ..kit.empty import TOO_FULL, different_reasons, missing_lines, say_empty
 from ..kit.panel import Panel
@@ -65,7 +65,6 @@ def draw_stiffness(panel: Panel, curves: xr.Dataset) -> list[str]:
         say_empty(axes, "\n".join(different_reasons(reasons)) or TOO_FULL)
         return []
     axes.set_yscale("log")
-    label_short_span(axes.yaxis)
     return missing_lines(reasons, "d")
 
 

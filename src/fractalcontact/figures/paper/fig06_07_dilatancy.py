@@ -8,7 +8,7 @@ from ...core.subject import Subject
 from ...core.text import compact, force_label, percent
 from ...core.verdicts import FALLING, LEVEL, RISING
 from ...core.window import window_sides
-from ..kit.axes import label_short_span, offset_axis
+from ..kit.axes import offset_axis
 from ..kit.caption import caption
 from ..kit.drawing import WIDTH, Drawing, spread
 from ..kit.laboratory import draw_tests, test_words
@@ -112,7 +112,6 @@ def _draw_elastic(panel, subject, curves, points):
     if axes.get_xscale() == "log":
         ends = curves["offset"].values[[0, -1]]
         axes.set_xlim(ends[0] / 1.3, ends[1] * 1.3)
-        label_short_span(axes.xaxis)
     axes.margins(y=0.2)  # room for a letter below the lowest point
     axes.set_ylabel(r"dilatancy $\delta$ (mm)")
 

@@ -7,7 +7,7 @@ from xarray import DataTree
 from ...core.subject import Subject
 from ...core.text import compact, force_label
 from ...core.window import window_sides
-from ..kit.axes import label_short_span, spacing_axis
+from ..kit.axes import spacing_axis
 from ..kit.caption import caption
 from ..kit.domains import contact_domain, estimates_of, prefractals
 from ..kit.drawing import COLOURS, WIDTH, Drawing
@@ -100,6 +100,5 @@ def _draw_pressures(panel, states, model):
     axes.axhspan(*ends, fc=to_rgba(COLOURS[2], 0.2), ec=COLOURS[2], ls="--", lw=1, label=label)
     axes.set_yscale("log")
     spacing_axis(axes, states["spacing"])
-    label_short_span(axes.yaxis)
     axes.set_ylabel(f"{REAL_PRESSURE} (MPa)")
     axes.legend(loc="center left", bbox_to_anchor=(1.01, 0.5), borderaxespad=0)

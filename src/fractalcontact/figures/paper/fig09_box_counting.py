@@ -11,7 +11,6 @@ from ...core.estimate import DIMENSION, Estimate
 from ...core.subject import Subject
 from ...core.text import force_label
 from ...core.window import window_sides
-from ..kit.axes import label_short_span
 from ..kit.caption import caption
 from ..kit.domains import contact_domain
 from ..kit.drawing import COLOURS, WEAK, WIDTH, Drawing
@@ -110,4 +109,3 @@ def _draw_counts(panel, counts, law, ordinary):
         axes.loglog(counts["mean_side"], counts["law_count"], color=LAW, label=law, **style)
     axes.set_ylim(0.7, float(counts["box_count"].max()) ** 1.1 * 2)
     axes.set(xlabel="box side $r$ (mm)", ylabel="occupied boxes $N(r)$ (1)")
-    label_short_span(axes.xaxis)

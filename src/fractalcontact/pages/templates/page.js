@@ -102,11 +102,13 @@ function draw() {
   const log = !dimension && rows.every((row) => row.value > 0);
   // As wide as its place, so that letters keep their size on a phone.
   const width = Math.max(320, Math.min(760, chart.clientWidth - 2)), height = Math.max(300, 0.58 * width);
-  const frame = { left: MARGIN.left, right: width - MARGIN.right, top: MARGIN.top, bottom: height - MARGIN.bottom };
-  const across = new Scale(rows.map((row) => row.nominal_pressure_MPa), { log: true }, frame.left, frame.right);
+  const frame = { right: width - MARGIN.right, top: MARGIN.top, bottom: height - MARGIN.bottom };
   const up = new Scale(rows.map((row) => row.value), dimension ? { from: 0, to: 2 } : { log }, frame.bottom, frame.top);
   const unit = /^(1|mm2.mm2)$/.test(rows[0].unit) ? "" : rows[0].unit;
   const drawing = svg("svg", { viewBox: `0 0 ${width} ${height}`, role: "img", "font-size": 13 });
+  chart.append(drawing);
+  frame.left = leftOf(drawing, up.ticks(ticksAlong(frame.bottom - frame.top)));
+  const across = new Scale(rows.map((row) => row.nominal_pressure_MPa), { log: true }, frame.left, frame.right);
   drawing.setAttribute("aria-label", `${quantity} against nominal pressure, ${[...curves.keys()].join(", ")}`);
   drawAxes(drawing, frame, across, up, { label: "nominal pressure (MPa)" }, { label: `${symbols(quantity)} (${unit || 1})` });
   // A bar that leaves the frame ends at it; of a missing end there is none.
@@ -131,7 +133,6 @@ function draw() {
     entry.append(key, name);
     legend.append(entry);
   });
-  chart.append(drawing);
 }
 
 // -- statements --

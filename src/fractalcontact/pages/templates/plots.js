@@ -81,9 +81,10 @@ function drawPlot(figure, { x, y, series, dots, key, empty }) {
   const points = series.flatMap((one) => one.points);
   const frame = { right: width - MARGIN.right, top: MARGIN.top, bottom: height - MARGIN.bottom };
   const up = new Scale(points.flatMap((p) => [p.y]), y, frame.bottom, frame.top);
-  frame.left = leftOf(up.ticks(ticksAlong(frame.bottom - frame.top)));
-  const across = new Scale(points.map((p) => p.x), x, frame.left, frame.right);
   const drawing = svg("svg", { viewBox: `0 0 ${width} ${height}`, width, height, role: "img" });
+  box.replaceChildren(drawing);
+  frame.left = leftOf(drawing, up.ticks(ticksAlong(frame.bottom - frame.top)));
+  const across = new Scale(points.map((p) => p.x), x, frame.left, frame.right);
   drawing.setAttribute("aria-label", `${figure.querySelector("figcaption").textContent}: ${y.label} over ${x.label}`);
   drawAxes(drawing, frame, across, up, x, y);
   const clip = `clip-${figure.dataset.plot}`;
@@ -94,7 +95,6 @@ function drawPlot(figure, { x, y, series, dots, key, empty }) {
   for (const dot of dots) drawDot(drawing, dot, across, up);
   if (empty) svg("text", { x: (frame.left + frame.right) / 2, y: (frame.top + frame.bottom) / 2, class: "empty" }, drawing, empty);
   drawing.addEventListener("click", (event) => choose(event, drawing, points, across, up));
-  box.replaceChildren(drawing);
   figure.querySelector(".key").replaceChildren(...key.map(([style, words]) => keyEntry(style, words)));
 }
 
@@ -103,9 +103,15 @@ function ticksAlong(height) {
   return height / 45;
 }
 
-/** Place of the axis y: right of its title and of its longest number, whose digits are 7 wide. */
-function leftOf(ticks) {
-  return Math.max(MARGIN.left, 28 + 7 * Math.max(0, ...ticks.map(([, label]) => label.length)));
+/** Place of the axis y: right of its title and of its widest number, in a drawing on the page. */
+function leftOf(drawing, ticks) {
+  const widths = ticks.map(([, label]) => {
+    const text = svg("text", {}, drawing, label);
+    const width = text.getComputedTextLength();
+    text.remove();
+    return width;
+  });
+  return Math.max(MARGIN.left, 28 + Math.max(0, ...widths));
 }
 
 function keyEntry(style, words) {

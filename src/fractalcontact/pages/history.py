@@ -5,12 +5,12 @@ from collections.abc import Sequence
 
 import xarray as xr
 
-from ...core.labels import printable
-from ...core.limits import STEEP_TILT
-from ...core.text import compact
-from ...core.window import face_words, window_sides
+from ..core.labels import printable
+from ..core.limits import STEEP_TILT
+from ..core.text import compact
+from ..core.window import face_words, window_sides
 
-#: Longest file name and note that stand in a figure whole; of longer ones both ends are shown.
+#: Longest file name and note that stand on a page whole; of longer ones both ends are shown.
 MAX_NAME, MAX_NOTE = 60, 400
 
 
