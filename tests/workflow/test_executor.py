@@ -3,7 +3,9 @@
 import json
 import os
 import shutil
+import signal
 import sys
+import threading
 from types import SimpleNamespace
 
 import pytest
@@ -84,6 +86,20 @@ def test_a_script_is_given_its_job_and_of_one_thread_finds_everything_loaded(
 )
 def test_a_job_has_the_exit_code_of_its_script(executor, tmp_path, text, code):
     assert end_of(executor, tmp_path, text) == code
+
+
+def test_no_job_is_begun_once_the_run_was_told_to_end(executor, tmp_path, monkeypatch):
+    told = threading.Event()
+    told.set()
+    monkeypatch.setattr(forks, "TOLD", told)
+    assert end_of(executor, tmp_path, TOLD) == -signal.SIGTERM
+    assert not (tmp_path / "told.json").exists()
+
+
+def test_a_job_is_ended_whose_run_was_told_to_end_while_it_began(executor, tmp_path, monkeypatch):
+    told = SimpleNamespace(is_set=iter([False, True]).__next__)
+    monkeypatch.setattr(forks, "TOLD", told)
+    assert end_of(executor, tmp_path, "import time; time.sleep(600)") == -signal.SIGTERM
 
 
 def test_the_variables_of_a_start_are_gone_after_it(monkeypatch):
