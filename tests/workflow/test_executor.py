@@ -2,7 +2,6 @@
 
 import json
 import os
-import shutil
 import signal
 import sys
 import threading
@@ -10,10 +9,8 @@ from types import SimpleNamespace
 
 import pytest
 from places import ROOT
-from projects import made, project, run, small_study, write_scan
 from snakemake.iocontainers import InputFiles, Log, OutputFiles, Params
 
-__all__ = ["project"]  # a fixture
 sys.path += [str(ROOT / "workflow"), str(ROOT / "workflow/engine")]
 import snakemake_executor_plugin_fractalcontact as forks
 
@@ -110,18 +107,3 @@ def test_the_variables_of_a_start_are_gone_after_it(monkeypatch):
         assert "MALLOC_TRIM_THRESHOLD_" in os.environ
     assert os.environ["OMP_NUM_THREADS"] == "7"
     assert "MALLOC_TRIM_THRESHOLD_" not in os.environ
-
-
-@pytest.mark.full
-@pytest.mark.workflow
-def test_a_study_has_the_same_bytes_with_and_without(project):
-    small_study(project)
-    write_scan(project, "rock")
-    alone = run(project, "config/test.yaml", "atlas")
-    assert alone.returncode == 0, alone.stderr[-3000:]
-    atlas = project / "results/test/atlas.nc"
-    expected = atlas.read_bytes()
-    shutil.rmtree(project / "results")
-    done = made(project, "config/test.yaml", targets=["atlas"])
-    assert done.returncode == 0, done.stderr[-3000:]
-    assert atlas.read_bytes() == expected
