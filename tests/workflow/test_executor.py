@@ -2,16 +2,15 @@
 
 import json
 import os
-import shutil
+import signal
 import sys
+import threading
 from types import SimpleNamespace
 
 import pytest
 from places import ROOT
-from projects import made, project, run, small_study, write_scan
 from snakemake.iocontainers import InputFiles, Log, OutputFiles, Params
 
-__all__ = ["project"]  # a fixture
 sys.path += [str(ROOT / "workflow"), str(ROOT / "workflow/engine")]
 import snakemake_executor_plugin_fractalcontact as forks
 
@@ -86,6 +85,20 @@ def test_a_job_has_the_exit_code_of_its_script(executor, tmp_path, text, code):
     assert end_of(executor, tmp_path, text) == code
 
 
+def test_no_job_is_begun_once_the_run_was_told_to_end(executor, tmp_path, monkeypatch):
+    told = threading.Event()
+    told.set()
+    monkeypatch.setattr(forks, "TOLD", told)
+    assert end_of(executor, tmp_path, TOLD) == -signal.SIGTERM
+    assert not (tmp_path / "told.json").exists()
+
+
+def test_a_job_is_ended_whose_run_was_told_to_end_while_it_began(executor, tmp_path, monkeypatch):
+    told = SimpleNamespace(is_set=iter([False, True]).__next__)
+    monkeypatch.setattr(forks, "TOLD", told)
+    assert end_of(executor, tmp_path, "import time; time.sleep(600)") == -signal.SIGTERM
+
+
 def test_the_variables_of_a_start_are_gone_after_it(monkeypatch):
     monkeypatch.setenv("OMP_NUM_THREADS", "7")
     monkeypatch.delenv("MALLOC_TRIM_THRESHOLD_", raising=False)
@@ -94,18 +107,3 @@ def test_the_variables_of_a_start_are_gone_after_it(monkeypatch):
         assert "MALLOC_TRIM_THRESHOLD_" in os.environ
     assert os.environ["OMP_NUM_THREADS"] == "7"
     assert "MALLOC_TRIM_THRESHOLD_" not in os.environ
-
-
-@pytest.mark.full
-@pytest.mark.workflow
-def test_a_study_has_the_same_bytes_with_and_without(project):
-    small_study(project)
-    write_scan(project, "rock")
-    alone = run(project, "config/test.yaml", "atlas")
-    assert alone.returncode == 0, alone.stderr[-3000:]
-    atlas = project / "results/test/atlas.nc"
-    expected = atlas.read_bytes()
-    shutil.rmtree(project / "results")
-    done = made(project, "config/test.yaml", targets=["atlas"])
-    assert done.returncode == 0, done.stderr[-3000:]
-    assert atlas.read_bytes() == expected

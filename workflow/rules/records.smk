@@ -1,9 +1,11 @@
 # What a run looks at before its first job, and leaves behind after its last: a guard of results, its
 # plan, checksums, and what was made of what in linked data.
 import os
+import threading
 
 import snakemake
 from engine import provenance, running
+from engine.ending import answer_in_thread
 from fractalcontact.core import checksums
 from fractalcontact.study import crate, guards
 from snakemake.logging import logger
@@ -24,6 +26,9 @@ def remake_without_record():
 def begin():
     """Refuse what would lose results; else say that a run is at work, and its plan."""
     running.mark()
+    # Elsewhere no signal is answered: another program may call Snakemake from any thread.
+    if threading.current_thread() is threading.main_thread():
+        answer_in_thread()
     try:
         # Only the user says that specimens may go, never a study.
         if "FRACTALCONTACT_DROP" not in os.environ:

@@ -14,6 +14,7 @@ import contextlib
 import multiprocessing
 import os
 import runpy
+import signal
 import subprocess
 import sys
 import threading
@@ -25,6 +26,8 @@ from snakemake.iocontainers import Snakemake
 from snakemake_interface_executor_plugins.executors.base import SubmittedJobInfo
 from snakemake_interface_executor_plugins.executors.real import RealExecutor
 from snakemake_interface_executor_plugins.settings import CommonSettings, ExecMode
+
+from engine.ending import TOLD
 
 common_settings = CommonSettings(
     non_local_exec=False,
@@ -75,7 +78,12 @@ class Executor(RealExecutor):
         )
         process = context.Process(target=run_script, args=(script, given))
         with self.one_by_one, _environment(_threads(1) | MEMORY):
-            process.start()
+            if not TOLD.is_set():
+                process.start()
+        if TOLD.is_set():  # meanwhile, and the signal to end may have come before the process
+            if process.pid is None:
+                return -signal.SIGTERM
+            process.terminate()
         connection.wait([process.sentinel])
         with self.one_by_one:
             process.join()

@@ -18,7 +18,13 @@ for room in ROOMS:
     package = importlib.import_module(room)
     for module in pkgutil.walk_packages(package.__path__, f"{package.__name__}."):
         importlib.import_module(module.name)
-for name in ("engine.job", "netCDF4", "scipy.optimize", "scipy.stats"):
+# Libraries that the rooms, or xarray when it first reads or writes a file, import only where they
+# use them: every job would, pint alone for 0.1 s.
+LATER = (
+    *("engine.job", "netCDF4", "pandas.io.formats.csvs", "pint", "scipy.optimize", "scipy.stats"),
+    *("snakemake.io", "xarray.backends.netCDF4_"),
+)
+for name in LATER:
     importlib.import_module(name)
 load_cached()
 gc.collect()

@@ -15,6 +15,7 @@ from pathlib import Path
 from snakemake_interface_logger_plugins.base import LogHandlerBase
 
 from engine.cluster import ended_by_cluster
+from engine.ending import TOLD
 
 #: Columns of the terminal; lines of warnings at the end, of which the result page has all.
 WIDTH, MAX_WARNINGS = 120, 24
@@ -137,7 +138,7 @@ class LogHandler(LogHandlerBase):
         said = [line[len("error: ") :] for line in lines if line.startswith("error: ")]
         if said:
             return said[-1]
-        if "stopped before it was done" in lines[-1:]:
+        if TOLD.is_set() or "stopped before it was done" in lines[-1:]:
             self.stopped = True
             return ""
         # Of a full disk the log may say nothing, which stands on it too.

@@ -1,0 +1,30 @@
+"""SIGTERM answered in a thread, so that a run which is told to end does end.
+
+Snakemake 9.27 answers it in its main thread, with a lock that is not reentrant
+(``JobScheduler.exit_gracefully``). The main thread may hold that lock, as it does while it takes in
+jobs that are done: then the run waits for itself for ever. A thread waits until the lock is free.
+Jobs that have not begun are not begun either. All this costs nothing until a run is told to end. To
+do without it, leave ``answer_in_thread`` out of ``begin`` in ``workflow/rules/records.smk``.
+"""
+
+import signal
+import threading
+
+#: Set once this run was told to end.
+TOLD = threading.Event()
+
+
+def answer_in_thread(number: int = signal.SIGTERM) -> None:
+    """Let a thread answer a signal as the main thread would, which must be the one that calls."""
+    answer = signal.getsignal(number)
+
+    def begin_answer(*told):
+        threading.Thread(target=_answer, args=(answer, told)).start()
+
+    if callable(answer):
+        signal.signal(number, begin_answer)
+
+
+def _answer(answer, told):
+    TOLD.set()  # here, as the event has such a lock too
+    answer(*told)
