@@ -1,9 +1,12 @@
 """A small atlas, by the functions that the jobs of a study call: what tests draw figures from."""
 
+import warnings
 from dataclasses import asdict
 
 import numpy as np
 import pytest
+import xarray as xr
+from drawings import draw
 from made_stages import scan, stages_of
 from made_tests import with_tests
 from materials import ROCK
@@ -20,6 +23,7 @@ from contactlab.experiments.size_tasks import size_tasks
 from fractalcontact.stages.atlas import join_stages
 from fractalcontact.study.atlas import read_atlas
 from fractalcontact.study.configuration import solver_settings
+from fractalcontact.study.figure_list import all_figures
 from fractalcontact.surface.synthesis import self_affine
 
 SPACING = 0.1  # mm
@@ -154,3 +158,35 @@ def _experiments():
 @pytest.fixture(scope="session")
 def atlas(atlas_file):
     return read_atlas(atlas_file)
+
+
+@pytest.fixture(scope="session")
+def marked(atlas):
+    """The atlas with words of its own for every verdict."""
+    changed = atlas.copy()
+    for name in STUDY["specimens"]:
+        judged = atlas[f"statements/{name}"].to_dataset()
+        said = [f"verdict_{i}" for i in range(judged.sizes["statement"])]
+        judged["verdict"] = judged["verdict"].copy(data=np.array(said, object))
+        changed[f"statements/{name}"] = xr.DataTree(judged)
+    return changed
+
+
+@pytest.fixture(scope="session")
+def drawn(marked):
+    """A figure of the marked atlas, drawn once, from no other stage than those it states."""
+    known = {}
+
+    def once(figure, subject):
+        if (figure, str(subject)) not in known:
+            needed = marked.copy()
+            for stage in set(STAGES) - set(all_figures()[figure].needs):
+                if stage in needed.children:
+                    del needed[stage]
+            with warnings.catch_warnings():
+                warnings.simplefilter("error", UserWarning)
+                warnings.simplefilter("error", RuntimeWarning)
+                known[figure, str(subject)] = draw(needed, figure, subject)
+        return known[figure, str(subject)]
+
+    return once

@@ -55,19 +55,6 @@ def test_the_points_drawn_are_those_of_the_atlas(atlas, name):
             assert profile["height_mm"].max() <= float(specimen[face].max())
 
 
-@pytest.mark.parametrize("name", representative(SPECIMENS))
-def test_it_is_written_with_units_on_every_axis(atlas, name, tmp_path):
-    drawing = drawn(atlas, name)
-    with print_style():
-        save(drawing, tmp_path, "quality")
-    assert {path.suffix for path in tmp_path.iterdir()} == {".png", ".svg", ".csv", ".txt"}
-    panels = [axes for axes in drawing.figure.axes if axes.get_title(loc="left")]
-    assert len(panels) == 7 + 5 * (name == "pair")
-    for axes in panels:
-        assert "(" in axes.get_xlabel()
-        assert "(" in axes.get_ylabel()
-
-
 def test_a_warning_stands_in_the_sheet_and_in_no_caption(atlas_file, atlas, tmp_path):
     changed = atlas.copy()
     changed["quality/sliding"].attrs["warning"] = (
