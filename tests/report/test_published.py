@@ -11,7 +11,16 @@ from fractalcontact.core.estimate import Estimate
 from fractalcontact.core.subject import Subject
 from fractalcontact.core.verdicts import NO_PRESSURE, TOO_WIDE
 from fractalcontact.report.columns import columns_of, old_columns_of
-from fractalcontact.report.published import BY_SCAN, Number, Row, published, read, row_of, shown_in
+from fractalcontact.report.published import (
+    BY_SCAN,
+    PLACES,
+    Number,
+    Row,
+    published,
+    read,
+    row_of,
+    shown_in,
+)
 
 DIMS = ("direction", "offset", "resolution", "normal_force")
 FORCES = [1.0, 2.0, 3.0]
@@ -197,8 +206,10 @@ def test_all_states_of_a_quantity_are_read_where_its_row_says_so():
 def test_each_quantity_stands_once_and_is_shown_somewhere():
     names = [row.name for row in published()]
     assert len(names) == len(set(names)) > 60
-    places = ("section", "summary", "curves", "explorer", "page", "index")
-    assert shown_in(*places) == published()
+    kept = shown_in("shown")
+    assert {row.shown for row in kept} == {"atlas"}
+    assert not any(row in kept for row in shown_in(*(PLACES.keys() - {"shown"})))
+    assert shown_in(*PLACES) == published()
     for place in ("summary", "curves", "page", "index"):
         shown = [getattr(row, place) for row in shown_in(place)]
         assert len(shown) == len(set(shown)) > 3
