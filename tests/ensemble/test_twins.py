@@ -74,12 +74,13 @@ def test_twins_scatter_as_fresh_surfaces_of_the_same_spectrum_do(monkeypatch):
     seen = _twins(known, settings, 24)
     many = seen["nodes"].mean("realisation").values > 30  # of few nodes one box more is a jump
     for name in ("interface_closure", "mean_gap", "area_corrected_share", "delta_sigma"):
-        spread = np.mean([one[f"{name}_spread"][many] for one in twins], axis=0)
-        ratio = spread / seen[f"{name}_spread"].values[many]
+        spread = np.mean([one[name].std("realisation", ddof=1)[many] for one in twins], axis=0)
+        scatter = seen[name].std("realisation", ddof=1).values[many]
+        ratio = spread / scatter
         assert 0.6 < ratio.mean() < 1.6, (name, ratio)
         mean = np.mean([one[f"{name}_mean"][many] for one in twins], axis=0)
         apart = np.abs(mean - seen[f"{name}_mean"].values[many])
-        assert (apart < 1.3 * seen[f"{name}_spread"].values[many]).all(), name
+        assert (apart < 1.3 * scatter).all(), name
 
 
 def _loading(known, settings):

@@ -140,11 +140,12 @@ def test_flush_faces_are_passed_over_and_if_there_are_no_others_said_to_be(with_
         for name in numbers:
             if "offset" in laws[name].dims:
                 laws[name][{"offset": slice(0, count)}] = np.nan
-        for prefix in ("", "corrected_"):
-            laws[f"{prefix}fitted"][{"offset": slice(0, count)}] = False
-            for name, reason in (("law", FULL_CONTACT), ("mean_kappa", "the faces are flush")):
-                laws[f"no_{prefix}{name}"] = laws[f"no_{prefix}{name}"].astype(object)
-                laws[f"no_{prefix}{name}"][{"offset": slice(0, count)}] = reason
+        for fitted in ("fitted", "corrected_fitted"):
+            laws[fitted][{"offset": slice(0, count)}] = False
+        reasons = dict.fromkeys(("no_mean_kappa", "no_corrected_mean_kappa"), "the faces are flush")
+        for name, reason in {"no_corrected_law": FULL_CONTACT, **reasons}.items():
+            laws[name] = laws[name].astype(object)
+            laws[name][{"offset": slice(0, count)}] = reason
         add_comparison(laws)
         add_area_offset(laws, 0.4)
         return laws

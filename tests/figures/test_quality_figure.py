@@ -11,7 +11,7 @@ from matplotlib.text import Text
 
 from fractalcontact.figures.draw import draw_figures
 from fractalcontact.figures.joint.quality import draw
-from fractalcontact.figures.kit.drawing import print_style, save
+from fractalcontact.figures.kit.drawing import print_style
 from fractalcontact.roughness.quality import scan_quality
 from fractalcontact.roughness.quality_words import statements
 

@@ -2,42 +2,16 @@
 
 import numpy as np
 import pytest
-from scipy import ndimage
 
 from fractalcontact.flow.aperture import (
     barton_aperture,
-    correlation_length,
     reynolds_gradient,
     rms_slope,
-    transmissivity_bounds,
     zimmerman_bodvarsson_aperture,
 )
 from fractalcontact.flow.cubic_law import flow_of
 from fractalcontact.flow.network import NO_PATH
 from fractalcontact.stages.flow import _percolation_pressures
-
-
-def test_the_correlation_length_of_filtered_noise_is_twice_its_filter():
-    # A Gaussian filter of sigma correlates as exp(-r^2 / (4 sigma^2)): 1/e at 2 sigma.
-    noise = np.random.default_rng(1).normal(size=(400, 400))
-    gap = ndimage.gaussian_filter(noise, (3, 6), mode="wrap")
-    assert correlation_length(gap, 0.1, 0) == pytest.approx(0.6, rel=0.1)
-    assert correlation_length(gap, 0.1, 1) == pytest.approx(1.2, rel=0.1)
-
-
-@pytest.mark.parametrize("axis", [0, 1])
-def test_the_correlation_of_a_wave_is_not_lowered_by_the_end_of_the_window(axis):
-    # Beside each other waves of all phases: their autocorrelation is cos(k lag), to the last lag.
-    n, phases = 256, 8
-    k = 2 * np.pi / n
-    wave = np.cos(k * np.arange(n)[:, np.newaxis] + 2 * np.pi * np.arange(phases) / phases)
-    gap = 1 + 0.5 * np.moveaxis(wave, 0, axis)
-    found = correlation_length(gap, 0.25, axis)
-    assert found == pytest.approx(0.25 * np.arccos(np.exp(-1)) / k, rel=1e-3)
-
-
-def test_an_even_gap_and_one_slope_have_no_correlation_length():
-    assert np.isnan(correlation_length(np.ones((5, 8)), 0.1, 1))
 
 
 def test_the_slope_of_a_plane_is_its_gradient_and_contact_counts_for_nothing():
@@ -47,11 +21,6 @@ def test_the_slope_of_a_plane_is_its_gradient_and_contact_counts_for_nothing():
     gap[5:15, 10:20] = 0
     assert rms_slope(gap, (0.2, 0.1)) == pytest.approx(0.5, rel=0.02)
     assert np.isnan(rms_slope(np.zeros((4, 4)), (1, 1)))
-
-
-def test_bounds_of_even_gaps_meet():
-    assert transmissivity_bounds(np.full((4, 5), 2.0), 0) == pytest.approx((8 / 12, 8 / 12))
-    assert transmissivity_bounds(np.zeros((4, 5)), 1) == (0, 0)
 
 
 def test_laws_of_smooth_plates_give_their_gap():

@@ -5,10 +5,10 @@ import pickle
 import numpy as np
 import pytest
 from ensembles import ensemble
+from flow_bounds import transmissivity_bounds
 from scipy import ndimage, sparse
 
 from fractalcontact.flow import network, red_black
-from fractalcontact.flow.aperture import transmissivity_bounds
 from fractalcontact.flow.cubic_law import plane_flow, radial_flow
 from fractalcontact.flow.network import (
     AIMED_IMBALANCE,

@@ -11,7 +11,16 @@ from fractalcontact.core.estimate import Estimate
 from fractalcontact.core.subject import Subject
 from fractalcontact.core.verdicts import NO_PRESSURE, TOO_WIDE
 from fractalcontact.report.columns import columns_of, old_columns_of
-from fractalcontact.report.published import BY_SCAN, Number, Row, published, read, row_of, shown_in
+from fractalcontact.report.published import (
+    BY_SCAN,
+    PLACES,
+    Number,
+    Row,
+    published,
+    read,
+    row_of,
+    shown_in,
+)
 
 DIMS = ("direction", "offset", "resolution", "normal_force")
 FORCES = [1.0, 2.0, 3.0]
@@ -194,11 +203,39 @@ def test_all_states_of_a_quantity_are_read_where_its_row_says_so():
     assert [one.at["direction"] for one in read(of, both)] == ["W", "E"]
 
 
+def test_what_is_known_where_the_reported_state_was_not_solved_is_no_gap():
+    unsolved = [1.0, 1.0, 1.0]  # the third load, whatever the values
+    numbers = read(row(), subject(width=[1, 2, 3], solved=unsolved))
+    assert [one.missing for one in numbers] == ["", "", ""]
+    # Of numbers over more than the loads the state says nothing.
+    dims = ("contact_direction", "normal_force")
+    coords = {"contact_direction": ["W", "E"], "normal_force": FORCES}
+    coords["nominal_pressure"] = ("normal_force", [10.0, 20.0, 30.0])
+    width = (dims, [[1.0, 2.0, np.nan], [1.0, 2.0, 3.0]], {"units": "mm"})
+    known = subject(solved=unsolved)
+    stages = {**known.stages, "strength": xr.Dataset({"width": width}, coords=coords)}
+    of = Row("width", "width", "strength/width", "mm", all=True, missing="no angle")
+    assert read(of, Subject(stages, known.settings))[2].missing == "no angle"
+
+
+def test_a_dimension_has_signed_errors_and_says_whether_it_is_determined():
+    of = Row("width", "width", "closure/width", "1", dimension=True, summary="width")
+    assert of.signed
+    assert not row().signed
+    one = Number({}, Estimate(1.5, 1.4, 1.6))
+    assert columns_of(of, one)["width_determined"]
+    # What has no unit was never named with the unit first.
+    fitted = Row("width", "width", "closure/width", "1", summary="width", range=("a/b", "a/c"))
+    assert old_columns_of(fitted, one) == {}
+
+
 def test_each_quantity_stands_once_and_is_shown_somewhere():
     names = [row.name for row in published()]
     assert len(names) == len(set(names)) > 60
-    places = ("section", "summary", "curves", "explorer", "page", "index")
-    assert shown_in(*places) == published()
+    kept = shown_in("shown")
+    assert {row.shown for row in kept} == {"atlas"}
+    assert not any(row in kept for row in shown_in(*(PLACES.keys() - {"shown"})))
+    assert shown_in(*PLACES) == published()
     for place in ("summary", "curves", "page", "index"):
         shown = [getattr(row, place) for row in shown_in(place)]
         assert len(shown) == len(set(shown)) > 3

@@ -11,12 +11,11 @@ from scipy.special import j0
 
 from fractalcontact.roughness.dimension import surface_dimension
 from fractalcontact.roughness.estimators.variogram import variogram_curves
-from fractalcontact.roughness.fit_range import FitRange, below_offset, choose_fit_range
+from fractalcontact.roughness.fit_range import choose_fit_range
 from fractalcontact.roughness.roll_off import (
     HURST_GRID,
     SHAPES,
     SMOOTH,
-    RollOff,
     about_line_fraction,
     about_plane_fraction,
     difference_fraction,
@@ -192,18 +191,6 @@ def test_stated_range_is_kept_and_the_roll_off_inside_is_said():
     assert inside[:2] == (2.0, 24.0)
     assert "beyond a quarter of the roll-off" in inside.reason
     assert choose_fit_range(heights, 1.0, (2.0, 6.0)).reason == "stated by the study"
-
-
-def test_range_below_an_offset():
-    face = FitRange(4.0, 32.0, RollOff(np.inf, 300.0, np.inf), "auto")
-    slid, refusal = below_offset(face, 20.0, 1.0)
-    assert refusal == ""
-    assert slid[1] == 10.0
-    assert slid[0] == pytest.approx(10 / 3)
-    assert below_offset(face, 200.0, 1.0)[0][:2] == (4.0, 32.0)
-    assert below_offset(face, 9.0, 1.0)[1] == "undetermined: v below 10 cells"
-    assert below_offset(face, 0.9, 0.1)[1] == "undetermined: v below 10 cells"
-    assert below_offset(face, 1.0, 0.1)[1] == ""
 
 
 def test_a_surface_too_small_or_flat_has_no_roll_off():

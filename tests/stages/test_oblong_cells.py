@@ -22,7 +22,6 @@ FINEST, SQUARE, OBLONG = 0.05, (2, 2), {"wide": (2, 4), "tall": (4, 2)}
 CLOSE = 0.2
 _WAYS = ("along", "across")
 _CUBED = ("transmissivity", "hydraulic_aperture", "critical_gap", "channel_fraction")
-_BOUNDS = ("series_bound", "parallel_bound", "gap_correlation_length", "reynolds_gradient")
 _FURTHER = ("branch_transmissivity", "offset_transmissivity", "unloaded_transmissivity")
 #: Numbers that every scan resolves, by stage.
 RESOLVED = {
@@ -33,11 +32,11 @@ RESOLVED = {
         *("gap_deviation", "interface_stiffness", "conductance", "rigid_opening", "separation"),
     ),
     "dilatancy": ("elastic_dilatancy", "separation"),
-    "area": ("rms_height", "rms_slope", "m0", "m2", "persson_share"),
+    "area": ("rms_slope", "m0", "m2", "persson_share"),
     "scaling": ("sigma_n", "area_corrected"),
     "branches": ("interface_closure", "interface_stiffness", "area", "recovered_energy"),
     "flow": (
-        *(f"{name}_{way}" for name in (*_CUBED, *_BOUNDS, *_FURTHER) for way in _WAYS),
+        *(f"{name}_{way}" for name in (*_CUBED, "reynolds_gradient", *_FURTHER) for way in _WAYS),
         *("gap_slope", "gap_quantile", "zimmerman_aperture", "offset_mean_gap"),
     ),
     "strength": (

@@ -35,7 +35,7 @@ ABSOLUTE = {
     *("fit_step", "jrc_by_fit"),  # published at steps in mm
     *("scaled_roughness", "scaled_wall_strength", "barton_scaled_strength", "line_level"),
     *("barton_slope_angle", "peak_over_barton"),
-    *("unit_area", "unit_area_low", "unit_area_high", "value"),
+    "value",
     *("unit_conductance", "unit_conductance_low", "unit_conductance_high"),
     *("reference_pressure", "reference_stiffness"),
     *("reference_stiffness_total", "reference_stiffness_total_of_population"),

@@ -1,4 +1,4 @@
-"""Write what is made from the classes of keys: schemas for editors, and tables of keys.
+"""Write what is made from the classes of keys and the register: schemas, and tables in documents.
 
 python -m fractalcontact.commands.write_keys
 """
@@ -10,6 +10,7 @@ from typing import Any
 
 from ..core.atomic import atomic_write
 from ..core.keys import schema_of
+from ..report.published import PLACES, published
 from ..scan.keys import ScanKeys
 from ..study import keys, measured_keys
 
@@ -34,7 +35,7 @@ def schemas() -> dict[str, str]:
 
 
 def tables() -> dict[str, dict[str, str]]:
-    """Tables of keys in Markdown, by document and name."""
+    """Tables of keys and of published numbers in Markdown, by document and name."""
     laboratory = {
         "roll_off": keys.RollOffKeys,
         "area_slope": keys.AreaSlopeKeys,
@@ -59,6 +60,9 @@ def tables() -> dict[str, dict[str, str]]:
         "config/README.md": study,
         "scans/README.md": scans,
         "docs/keys.md": {**study, **scans, "map": _table(("key", "meaning"), maps)},
+        "docs/atlas.md": {
+            "published": _table(("variable", "unit", "what it is", "shown"), _published_rows())
+        },
     }
 
 
@@ -69,7 +73,7 @@ def written(document: str, made: dict[str, str]) -> str:
         before, _, rest = document.partition(start)
         _, mark, after = rest.partition(end)
         if not mark:
-            raise ValueError(f"no place for the table of keys {name!r}")
+            raise ValueError(f"no place for the table {name!r}")
         document = f"{before}{start}{table}{mark}{after}"
     return document
 
@@ -103,6 +107,15 @@ def _study_rows() -> Iterator[tuple[str, str, str]]:
             yield row
 
 
+def _published_rows() -> Iterator[tuple[str, ...]]:
+    """Variables of the atlas that the register names, their units, titles and places."""
+    for row in published():
+        if row.stage != "settings":
+            shown = ", ".join(words for key, words in PLACES.items() if getattr(row, key))
+            title = row.title.replace("*", "\\*").replace("|", "\\|").replace("_", "\\_")
+            yield row.source, row.unit.replace("*", "\\*"), title, shown
+
+
 def _test_rows() -> Iterator[tuple[str, str, str]]:
     """Keys of laboratory tests, and the kinds that have each."""
     kinds = {kind: schema_of(of) for kind, of in measured_keys.KINDS.items()}
@@ -114,7 +127,7 @@ def _test_rows() -> Iterator[tuple[str, str, str]]:
         yield name, words, f"{of}{', required' * is_required}{unsaid and f'; unsaid, {unsaid}'}"
 
 
-def _table(head: tuple[str, ...], rows: Iterator[tuple[str, str, str]]) -> str:
+def _table(head: tuple[str, ...], rows: Iterator[tuple[str, ...]]) -> str:
     lines = [f"| {' | '.join(head)} |", "|---" * len(head) + "|"]
     lines += [f"| {' | '.join((f'`{row[0]}`', *row[1:])[: len(head)])} |" for row in rows]
     return "\n".join(lines) + "\n"

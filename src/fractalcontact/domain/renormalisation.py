@@ -55,7 +55,7 @@ def renormalisation(
     -------
     xarray.Dataset
         On the other dimensions of `area`: `delta_sigma` with `_low`, `_high` (95 %), `n`
-        resolutions fitted, `r2`; `hausdorff_measure` (geometric mean over resolutions, mm^Delta);
+        resolutions fitted; `hausdorff_measure` (geometric mean over resolutions, mm^Delta);
         `sigma_star` = F / H_D, N mm^-Delta. On (resolution, ...): `sigma_n` = F / A_n, MPa, at the
         resolutions that count. NaN where fewer than three resolutions can be.
 
@@ -84,7 +84,7 @@ def renormalisation(
         raise ValueError(f"a contact area cannot be negative: {float(area.min())} mm2")
     nodes = area / s**2 if nodes is None else nodes
     touching = area.where(nodes >= fewest - 1e-6)
-    value, low, high, n, r2 = _of_resolutions(_area_exponent, 5, s, touching, left, sampling)
+    value, low, high, n = _of_resolutions(_area_exponent, 4, s, touching, left, sampling)
     delta = (
         Estimate(value, low, high).mapped(lambda exponent: 2 - exponent, falling=True).in_plane()
     )
@@ -93,7 +93,6 @@ def renormalisation(
     values = {
         **delta.columns("delta_sigma"),
         "n": n.astype(int),
-        "r2": r2,
         "hausdorff_measure": measure,
         "sigma_star": force / measure,
         "sigma_n": force / touching,
@@ -105,7 +104,6 @@ def renormalisation(
 _RENORMALISED = {
     **rows_of("delta_sigma", "1", "dimension of the contact domain from A_r ~ s^(2 - Delta_sigma)"),
     "n": ("1", "resolutions fitted"),
-    "r2": ("1", "coefficient of determination of the fit"),
     "hausdorff_measure": ("mm^delta_sigma", "fractal measure H_D of the contact domain"),
     "sigma_star": ("N mm^-delta_sigma", "fractal mean pressure sigma*"),
     "sigma_n": ("MPa", "real mean pressure at each resolution"),
@@ -137,12 +135,12 @@ def _of_resolutions(function, outputs, s, area, left, sampling) -> tuple[xr.Data
 
 
 def _area_exponent(log_s, log_area, log_left, free) -> tuple[float, ...]:
-    """Slope of log A over log s with its interval, resolutions fitted and r2."""
+    """Slope of log A over log s with its interval, and resolutions fitted."""
     line = fit_line(log_s, log_area)
     slope, fitted = line.slope.value, np.isfinite(log_area)
     about = fitted * (log_s - np.average(log_s, weights=fitted + 1e-300))
     half = _half(about / (about @ about or 1.0), log_left, free)
-    return slope, slope - half, slope + half, float(line.n), line.r2
+    return slope, slope - half, slope + half, float(line.n)
 
 
 def _half(weights, log_left, free) -> float:

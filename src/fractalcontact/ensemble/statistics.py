@@ -1,4 +1,4 @@
-"""Statistics of an ensemble: trends with load of each realisation, means, intervals and spreads."""
+"""Statistics of an ensemble: trends with load of each realisation, means, intervals and bands."""
 
 from collections.abc import Sequence
 
@@ -27,6 +27,11 @@ _BOUNDS = {
         ),
         IN_PLANE,
     ),
+}
+#: Quantities with a band: figures draw those of the slopes, the error budget takes the others.
+_BANDS = {
+    *("delta_sigma", "delta_sigma_area", "local_slope"),
+    *("interface_closure", "mean_gap", "area_corrected_share", "interface_stiffness"),
 }
 #: Trends with the load: quantity, and what the trend is of.
 TRENDS = {
@@ -74,15 +79,15 @@ def add_trends(result: xr.Dataset) -> None:
 
 
 def add_statistics(result: xr.Dataset, names: Sequence[str]) -> None:
-    """Mean with its 95 % interval, spread and number of realisations, into ``result``.
+    """Mean with its 95 % interval, band and number of realisations, into ``result``.
 
     Parameters
     ----------
     result : xr.Dataset
         Of each name it gets ``NAME_mean`` with ``_low`` and ``_high``, by Student's t of the mean;
-        ``NAME_spread``, the standard deviation over the realisations; ``NAME_band_low`` and
-        ``NAME_band_high``, between which one more realisation lies with 95 % probability; and
-        ``NAME_n``, those that have a value. Intervals end at the bounds of the quantity.
+        ``NAME_n``, the realisations that have a value; and of :data:`_BANDS` ``NAME_band_low`` and
+        ``NAME_band_high``, between which one more realisation lies with 95 % probability.
+        Intervals and bands end at the bounds of the quantity.
     names : sequence of str
         Variables over realisation.
     """
@@ -92,13 +97,13 @@ def add_statistics(result: xr.Dataset, names: Sequence[str]) -> None:
         units, words = values.attrs["units"], values.attrs["long_name"]
         dims = values.dims[1:]
         bounds = _BOUNDS.get(name, (-np.inf, np.inf))
-        mean, band = (of(values.values).within(*bounds) for of in (mean_interval, band_of))
+        mean = mean_interval(values.values).within(*bounds)
         found |= mean.variables(f"{name}_mean", dims, units, f"{words}, mean over realisations")
-        for end, of_end, of_band in (("low", "lower", band.low), ("high", "upper", band.high)):
-            attrs = cf_attrs(units, f"{words}, {of_end} end of the 95 % band of one more")
-            found[f"{name}_band_{end}"] = (dims, of_band, attrs)
-        attrs = cf_attrs(units, f"{words}, standard deviation over realisations")
-        found[f"{name}_spread"] = values.std("realisation", ddof=1).assign_attrs(attrs)
+        if name in _BANDS:
+            band = band_of(values.values).within(*bounds)
+            for end, of_end, of_band in (("low", "lower", band.low), ("high", "upper", band.high)):
+                attrs = cf_attrs(units, f"{words}, {of_end} end of the 95 % band of one more")
+                found[f"{name}_band_{end}"] = (dims, of_band, attrs)
         attrs = cf_attrs("1", f"{words}, number of realisations with a value")
         found[f"{name}_n"] = (dims, mean.n, attrs)
     # All at once: xarray goes through all that is there each time that something is added.

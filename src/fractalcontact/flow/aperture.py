@@ -1,44 +1,10 @@
-"""Aperture map: correlation length, slope, bounds of its transmissivity, empirical laws."""
+"""Aperture map: slope, empirical laws of its hydraulic aperture."""
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 #: Quantiles of the aperture that are kept.
 QUANTILES = (0.05, 0.25, 0.5, 0.75, 0.95)
-
-
-def correlation_length(gap: np.ndarray, spacing: float, axis: int) -> float:
-    """Correlation length of the gap along an axis, mm: the lag of an autocorrelation of 1/e.
-
-    Parameters
-    ----------
-    gap : (ny, nx) ndarray
-        mm.
-    spacing : float
-        Distance of cells along that axis, mm.
-    axis : int
-
-    Returns
-    -------
-    float
-        Interpolated linearly between lags. NaN where the gap is constant, or where the correlation
-        stays above 1/e over half the window.
-    """
-    deviation = np.moveaxis(gap - gap.mean(), axis, -1)
-    n = deviation.shape[-1]
-    variance = float((deviation**2).mean())
-    if variance == 0:
-        return np.nan
-    # Padded with zeros: the window is not periodic.
-    power = np.abs(np.fft.rfft(deviation, 2 * n, axis=-1)) ** 2
-    sums = np.fft.irfft(power, axis=-1).mean(axis=0)[: n // 2]
-    correlation = sums / (n - np.arange(n // 2)) / variance
-    below = np.flatnonzero(correlation < np.exp(-1))
-    if not below.size:
-        return np.nan
-    last = int(below[0])
-    before, after = correlation[last - 1], correlation[last]
-    return spacing * (last - 1 + (before - np.exp(-1)) / (before - after))
 
 
 def rms_slope(gap: np.ndarray, spacing: tuple[float, float]) -> float:
@@ -50,29 +16,6 @@ def rms_slope(gap: np.ndarray, spacing: tuple[float, float]) -> float:
         sums, faces = sums + float(slopes @ slopes), faces + slopes.size
     # The mean square of each component, of half of the faces, counts once.
     return float(np.sqrt(2 * sums / faces)) if faces else np.nan
-
-
-def transmissivity_bounds(gap: np.ndarray, axis: int) -> tuple[float, float]:
-    """Lower and upper bound of the transmissivity along an axis, mm3.
-
-    Parameters
-    ----------
-    gap : (ny, nx) ndarray
-        g, mm.
-    axis : int
-        Along which it flows.
-
-    Returns
-    -------
-    lower, upper : float
-        The lower bound has walls between the rows of cells along the flow: in each row the cells
-        are in series, and the rows are parallel. The upper bound has even pressure across the
-        flow: the cells of each cross-section are parallel, and the cross-sections are in series.
-    """
-    cubed = np.moveaxis(gap, axis, -1) ** 3 / 12
-    with np.errstate(divide="ignore"):  # a wall in a strip makes its harmonic mean 0
-        lower, upper = (1 / (1 / one).mean(axis=-1) for one in (cubed, cubed.mean(axis=0)))
-    return float(lower.mean()), float(upper)
 
 
 def zimmerman_bodvarsson_aperture(

@@ -15,7 +15,7 @@ from .joint import composite_topography, direction_spacing, offsets_of
 from .states import chosen_offset, error_attrs
 
 #: What is kept of a composite topography, by its name in :func:`slope_statistics`.
-STATISTICS = ("rms_height", "rms_slope", "m0", "m2", "m4")
+STATISTICS = ("rms_slope", "m0", "m2", "m4")
 
 #: kappa of the raw and of the corrected area.
 AREA_SLOPE = "area slope kappa = (A_r/A_0) E* h'_rms / sigma_0"
@@ -32,7 +32,7 @@ FULL_CONTACT = "the faces touch everywhere at every load"
 
 
 def composite_statistics(specimen: xr.Dataset, direction: str, cells: ArrayLike) -> xr.Dataset:
-    """Heights, slopes and spectral moments of the composite topography at each offset.
+    """Slopes and spectral moments of the composite topography at each offset.
 
     Parameters
     ----------
@@ -117,14 +117,12 @@ def area_laws(
     Returns
     -------
     xr.Dataset
-        Over (direction, offset): the statistics; the law A_r ~ F^m as :data:`LAW` has it, and with
-        ``corrected_`` before its name that of the corrected area; ``departure``, the largest
-        deviation of A_r/F from its geometric mean over the loads fitted; means of kappa at light
-        load; ``no_law`` and ``no_mean_kappa``, reasons. Over (direction, offset,
-        load): ``fitted``, ``light``, ``reduced_pressure``, ``kappa`` and ``corrected_kappa``, and
-        the fractions A_r/A_0 of the theories; what :func:`mechanics.area_theories.add_comparison`
-        and :func:`add_area_offset` add. ``departure`` and the kappas have an ``_error``, the
-        solver's.
+        Over (direction, offset): the statistics; the law A_r ~ F^m of the corrected area,
+        ``corrected_`` before the names of :data:`LAW`; means of kappa at light load;
+        ``no_corrected_law`` and ``no_mean_kappa``, reasons. Over (direction, offset, load):
+        ``fitted``, ``light``, ``reduced_pressure``, ``kappa`` and ``corrected_kappa``, and the
+        fractions A_r/A_0 of the theories; what :func:`mechanics.area_theories.add_comparison` and
+        :func:`add_area_offset` add. The kappas have an ``_error``, the solver's.
 
     Notes
     -----
@@ -186,62 +184,40 @@ LAW = {
 
 
 def _add_laws(result: xr.Dataset, curves: xr.Dataset) -> None:
-    """Power laws of raw and corrected area, departure from linearity, reasons for none."""
+    """Power law of the corrected area, and the reason for none."""
     dims = ("direction", "offset")
     force = np.log(curves["normal_force"].values)
-    for prefix, name, *_ in _AREAS:
-        fitted = result[f"{prefix}fitted"].transpose(*dims, "normal_force").values
-        area = np.log(curves[name].transpose(*dims, "normal_force").where(fitted).values)
-        lines = np.empty(area.shape[:2], object)
-        for index in np.ndindex(lines.shape):
-            lines[index] = fit_line(force[fitted[index]], area[index][fitted[index]])
-        exponent = Estimate.stack((line.slope for line in lines.flat), lines.shape)
-        at_one = Estimate.stack((line.intercept for line in lines.flat), lines.shape)
-        first, last = np.exp(exponent.over)
-        values = exponent.columns("exponent") | at_one.mapped(np.exp).columns("unit_area")
-        values |= {"force_low": first, "force_high": last, "n": exponent.n}
-        for key, (units, words) in LAW.items():
-            kind = ", corrected area" if prefix else ""
-            result[prefix + key] = (dims, values[key], cf_attrs(units, words + kind))
-    _add_departure(result, curves)
-    for prefix, name, fewest, _ in _AREAS:
-        words = f"reason why there is no law of the {name.replace('_', ', ')}"
-        reasons = _reasons_for_no_law(result, curves, prefix, fewest)
-        result[f"no_{prefix}law"] = dims, reasons, cf_attrs("1", words)
+    fitted = result["corrected_fitted"].transpose(*dims, "normal_force").values
+    area = np.log(curves["area_corrected"].transpose(*dims, "normal_force").where(fitted).values)
+    lines = np.empty(area.shape[:2], object)
+    for index in np.ndindex(lines.shape):
+        lines[index] = fit_line(force[fitted[index]], area[index][fitted[index]])
+    exponent = Estimate.stack((line.slope for line in lines.flat), lines.shape)
+    at_one = Estimate.stack((line.intercept for line in lines.flat), lines.shape)
+    first, last = np.exp(exponent.over)
+    values = exponent.columns("exponent") | at_one.mapped(np.exp).columns("unit_area")
+    values |= {"force_low": first, "force_high": last, "n": exponent.n}
+    for key, (units, words) in LAW.items():
+        attrs = cf_attrs(units, f"{words}, corrected area")
+        result[f"corrected_{key}"] = (dims, values[key], attrs)
+    reasons = _reasons_for_no_law(result, curves)
+    words = "reason why there is no law of the area, corrected"
+    result["no_corrected_law"] = dims, reasons, cf_attrs("1", words)
 
 
-def _add_departure(result: xr.Dataset, curves: xr.Dataset) -> None:
-    """Departure of area against force from a straight line, into ``result``."""
-    ratio = curves["area"] / curves["normal_force"]
-    log_ratio = xr.apply_ufunc(np.log, ratio).where(result["fitted"])
-    largest = abs(log_ratio - log_ratio.mean("normal_force")).max("normal_force")
-    deviation = largest.pipe(np.exp) - 1
-    result["departure"] = deviation.where(np.isfinite(result["exponent"]))
-    result["departure"].attrs = cf_attrs(
-        "1", "largest deviation of A_r/F from its geometric mean, a fraction of it"
-    )
-    uncertain = np.minimum(curves["area_error"] / curves["area"], 1)
-    with np.errstate(divide="ignore"):  # a law of which nothing is sure
-        off = abs(np.log1p(-uncertain)).where(result["fitted"])
-    error = (1 + result["departure"]) * np.expm1(off.max("normal_force") + off.mean("normal_force"))
-    result["departure_error"] = error.assign_attrs(error_attrs(result["departure"].attrs))
-
-
-def _reasons_for_no_law(
-    result: xr.Dataset, curves: xr.Dataset, prefix: str, fewest: int
-) -> np.ndarray:
+def _reasons_for_no_law(result: xr.Dataset, curves: xr.Dataset) -> np.ndarray:
     """Reason why a curve has no law of the area, (direction, offset); empty if it has one."""
     full = (curves["area_share"] > 0.5).all("normal_force") & ~result["fitted"].any("normal_force")
-    n = result[f"{prefix}n"].values.astype(int)
+    n = result["corrected_n"].values.astype(int)
     reasons = [
-        "" if loads >= MIN_POINTS else FULL_CONTACT if whole else _too_few(loads, fewest)
+        "" if loads >= MIN_POINTS else FULL_CONTACT if whole else _too_few(loads)
         for loads, whole in zip(n.ravel(), full.values.ravel(), strict=True)
     ]
     return np.array(reasons).reshape(n.shape)
 
 
-def _too_few(n: int, fewest: int) -> str:
-    return f"{n} of {MIN_POINTS} loads with {fewest} nodes in contact, but not all"
+def _too_few(n: int) -> str:
+    return f"{n} of {MIN_POINTS} loads with {CORRECTED_NODES} nodes in contact, but not all"
 
 
 def _add_kappa(result: xr.Dataset, curves: xr.Dataset, e_star: float, node: xr.DataArray) -> None:

@@ -25,11 +25,6 @@ _OF_THEORIES = {
 #: What they say whatever the topography.
 _EXPONENTS = {
     "no_majumdar_bhushan": ((), "1", "why there is no area by Majumdar and Bhushan"),
-    "archard_exponent": (
-        "archard_level",
-        "1",
-        "exponent 1 - 3^-n of area against force by Archard",
-    ),
     "archard_level": ("archard_level", "1", "generations n of spheres upon spheres"),
 }
 
@@ -73,7 +68,6 @@ def add_theories(
     levels = np.arange(1, 4)
     exponents = {
         "no_majumdar_bhushan": theory.no_majumdar_bhushan(profile),
-        "archard_exponent": theory.archard_exponent(levels),
         "archard_level": levels,
     }
     result.update(labelled(_EXPONENTS, exponents))
@@ -89,7 +83,8 @@ def add_comparison(result: xr.Dataset) -> None:
         Laws of the area over (direction, offset), with what :func:`add_theories` adds.
     """
     low, high = (result[f"corrected_exponent_{end}"] for end in ("low", "high"))
-    archard = result["archard_exponent"]
+    levels = result["archard_level"]
+    archard = levels.copy(data=theory.archard_exponent(levels.values))
     words = "whether Archard's exponent lies in the interval of that of the corrected area"
     result["archard_fits"] = ((low <= archard) & (archard <= high)).assign_attrs(
         cf_attrs("1", words)

@@ -17,8 +17,9 @@ from ..core.labels import cf_attrs
 from ..core.mean_plane import mean_slopes, without_mean_plane
 from ..core.settings import SpecimenSettings
 from ..core.window import faces, nominal_area, window_slices
+from ..roughness.dimension import measured_exponents
 from ..surface.specimen import largest_offset
-from .composite_dimension import composite_dimensions
+from .lag_dimension import lag_dimensions
 from .plateau import opposite_parts, rigid_plateaus, undecided_plateaus
 from .rigid_slide import Slide, slide
 
@@ -269,9 +270,8 @@ def describe_joint(specimen: xr.Dataset, settings: SpecimenSettings) -> xr.Datas
         .opposite_parts`, ``correlation_length`` and ``uncorrelated_offset`` (direction),
         ``correlation_limit``; ``offset_cells`` (direction, offset) of the contact solves; for the
         first direction whose contact is solved ``composite`` (offset, window_y, window_x), the node
-        ``first_touch_y``, ``first_touch_x`` (offset) where it is highest, and its dimension Delta_g
-        ``composite_dimension`` (offset), with its interval, the lengths fitted and why there is
-        none.
+        ``first_touch_y``, ``first_touch_x`` (offset) where it is highest, and those of
+        :func:`mechanics.lag_dimension.lag_dimensions`.
 
     Raises
     ------
@@ -285,6 +285,10 @@ def describe_joint(specimen: xr.Dataset, settings: SpecimenSettings) -> xr.Datas
     cells, spacing = chosen[reference], direction_spacing(specimen, reference)
     slide = describe_slide(specimen, directions, np.arange(int(max(cells)) + 1), spacing)
     composites = [composite_topography(specimen, reference, n) for n in cells]
+    spacing_of = tuple(specimen.attrs[f"spacing_{axis}"] for axis in "yx")
+    _, face = measured_exponents(
+        specimen["lower"].values, spacing_of, fit_range=settings.surface_range, estimators=[]
+    )
     window = window_slices(specimen)
     y, x = (specimen[axis].values[along] for axis, along in zip("yx", window, strict=True))
     touching = np.unravel_index([h.argmax() for h in composites], (y.size, x.size))
@@ -307,10 +311,7 @@ def describe_joint(specimen: xr.Dataset, settings: SpecimenSettings) -> xr.Datas
     }
     return (
         slide.assign(window_tilts(specimen, slide["axis"].values.tolist()))
-        .assign(
-            composite_dimensions(specimen, composites, cells * spacing, settings.surface_range)
-            | labelled(table, values)
-        )
+        .assign(lag_dimensions(composites, spacing_of, face.longest) | labelled(table, values))
         .assign_coords(
             contact_direction=solved,
             offset=("offset", offsets_of(cells, spacing), cf_attrs("mm", "shear offset v")),

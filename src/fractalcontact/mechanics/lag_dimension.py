@@ -1,9 +1,9 @@
 """Dimension of the composite topography over fixed lags, which compares offsets with each other.
 
-The dimension below the offset (:mod:`mechanics.composite_dimension`) is that of the face, whatever
-the offset. Over lags that stay the same the composite topography of matching faces changes: at
-offsets far below a lag it is a derivative of the face, rougher than the face, and at offsets far
-above it has the face's own dimension.
+The dimension over lags below the offset is that of the face, whatever the offset. Over lags that
+stay the same the composite topography of matching faces changes: at offsets far below a lag it is a
+derivative of the face, rougher than the face, and at offsets far above it has the face's own
+dimension.
 """
 
 from collections.abc import Sequence

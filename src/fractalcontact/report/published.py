@@ -126,6 +126,7 @@ class Row:
     page: str = ""
     index: str = ""
     extra: bool = False
+    shown: str = ""
 
     @property
     def stage(self) -> str:
@@ -152,6 +153,18 @@ class Row:
     def signed(self) -> bool:
         """True if it may be zero or of either sign: its errors are no fractions of it."""
         return self.dimension or self.within[0] < 0
+
+
+#: Where a number may be shown, by the key of its row that says so.
+PLACES = {
+    "section": "card",
+    "summary": "`summary.csv`",
+    "curves": "`curves.csv`",
+    "explorer": "explorer",
+    "page": "page",
+    "index": "index",
+    "shown": "atlas alone",
+}
 
 
 @cache

@@ -75,7 +75,7 @@ def surface_dimension(
     xarray.Dataset
         On `estimator`: `hurst`, `dimension` with `_low` and `_high` (95 % interval), `hurst_x` and
         `hurst_y` with theirs (of profiles along one axis; NaN for those that have no axis),
-        `slope_hurst` (H before the correction of known bias), `fit_min`, `fit_max` (mm), `n` points
+        `fit_min`, `fit_max` (mm), `n` points
         fitted. On (`estimator`, `scale`), padded with NaN: `length` (mm), `measure`, and whether it
         was `used`. NaN with `n` where a line cannot be fitted. Of the surface: `roll_off` with its
         interval (mm; infinite where none is seen, `roll_off_low` then the shortest not excluded),
@@ -120,12 +120,10 @@ def surface_dimension(
         "length": length,
         "measure": measure,
         "used": used,
-        "slope_hurst": [estimate.slope_hurst for estimate in every],
         "fit_min": _finite(np.min(length, axis=1, where=fitted, initial=np.inf)),
         "fit_max": _finite(np.max(length, axis=1, where=fitted, initial=-np.inf)),
         "n": used.sum(axis=1),
         "length_kind": [estimator.length for estimator in chosen],
-        "measure_kind": [estimator.measure for estimator in chosen],
         "measure_units": [estimator.units for estimator in chosen],
         "roll_off_shape": chosen_range.roll_off.shape,
         "range_min": chosen_range.shortest,
@@ -150,12 +148,10 @@ _DIMENSIONS = {
     "length": (("estimator", "scale"), "mm", "length at which the measure was taken"),
     "measure": (("estimator", "scale"), "see measure_units", "measured quantity"),
     "used": (("estimator", "scale"), "1", "taken into the fit"),
-    "slope_hurst": ("estimator", "1", "Hurst exponent before the correction of known bias"),
     "fit_min": ("estimator", "mm", "shortest length fitted"),
     "fit_max": ("estimator", "mm", "longest length fitted"),
     "n": ("estimator", "1", "points fitted"),
     "length_kind": ("estimator", "1", "kind of length"),
-    "measure_kind": ("estimator", "1", "kind of measure"),
     "measure_units": ("estimator", "1", "unit of what was measured"),
     "roll_off_shape": ((), "1", "form of the spectrum about it: sharp, or smooth as von Karman's"),
     "range_min": ((), "mm", "shortest lag of the fits"),

@@ -19,9 +19,6 @@ LAST_OF_ROLL_OFF = 1 / 4
 #: A range cut by a roll-off may begin at this number of cells to span this ratio.
 MIN_CELLS, MIN_RATIO = 2, 3.0
 
-#: Shortest offset (cells) below which four lags are left: 2 to 5 cells.
-MIN_OFFSET = 10
-
 
 class FitRange(NamedTuple):
     """Lags a dimension is fitted over, and why these."""
@@ -75,33 +72,6 @@ def choose_fit_range(
     first = min(first, max(end / MIN_RATIO, MIN_CELLS * spacing))
     reason = f"up to a quarter of the roll-off at {_words(roll_off)}"
     return FitRange(first, end, roll_off, reason)
-
-
-def below_offset(face: FitRange, offset: float, spacing: float) -> tuple[FitRange, str]:
-    """Range of lags of the difference of a surface and itself, slid by an offset.
-
-    Parameters
-    ----------
-    face : FitRange
-        Of the surface.
-    offset, spacing : float
-        mm.
-
-    Returns
-    -------
-    FitRange
-        Up to half of the offset at most, so that second differences span no more than it: at longer
-        lags the difference of two like surfaces is flat whatever they are.
-    str
-        Why there is no such range; "" where there is.
-    """
-    end = min(face.longest, offset / 2)
-    first = min(face.shortest, max(end / MIN_RATIO, MIN_CELLS * spacing))
-    reason = "lags up to half of v" if end < face.longest else face.reason
-    fit_range = FitRange(first, end, face.roll_off, reason)
-    if offset < MIN_OFFSET * spacing * (1 - 1e-6):
-        return fit_range, f"undetermined: v below {MIN_OFFSET} cells"
-    return fit_range, ""
 
 
 def _words(roll_off: RollOff) -> str:

@@ -92,11 +92,6 @@ def _mean_curves(states: xr.Dataset, fewest_nodes: int) -> tuple[np.ndarray, np.
 
 _STRENGTH = {
     "strength_share": ((), "1", "v/b at which strengths are compared"),
-    "largest_truncated_fraction": (
-        "dilatancy_load",
-        "1",
-        "largest fraction of windows of any size whose angle was truncated",
-    ),
 }
 
 
@@ -114,9 +109,8 @@ def predict_whole_strength(laws: xr.Dataset, delta_sigma: xr.DataArray) -> xr.Da
     -------
     xr.Dataset
         ``predicted_strength`` (predictor, dilatancy_load), ``direct_strength`` (dilatancy_load),
-        ``strength_error``; ``strength_share``, the v/b at which most sizes can be compared;
-        ``largest_truncated_fraction`` (dilatancy_load), the largest fraction of windows of any size
-        whose angle was truncated there. NaN where the study states no basic friction angle.
+        ``strength_error``; ``strength_share``, the v/b at which most sizes
+        can be compared. NaN where the study states no basic friction angle.
 
     Notes
     -----
@@ -139,12 +133,7 @@ def predict_whole_strength(laws: xr.Dataset, delta_sigma: xr.DataArray) -> xr.Da
     dim = "dilatancy_load"
     result = labelled_dataset(
         _STRENGTH,
-        {
-            "strength_share": float(chosen["share"]),
-            "largest_truncated_fraction": chosen["truncated_fraction_at_equal_v_over_b"]
-            .max("part")
-            .values,
-        },
+        {"strength_share": float(chosen["share"])},
         coords={
             "predictor": list(PREDICTORS),
             dim: (dim, forces, cf_attrs("N", "force on the whole window")),

@@ -16,10 +16,8 @@ from ..core.window import nominal_area
 from ..flow.aperture import (
     QUANTILES,
     barton_aperture,
-    correlation_length,
     reynolds_gradient,
     rms_slope,
-    transmissivity_bounds,
     zimmerman_bodvarsson_aperture,
 )
 from ..flow.cubic_law import WAYS, flow_of, window_interval
@@ -46,9 +44,6 @@ _OF_WAY: dict[Dims, dict[str, tuple[str, str]]] = {
         "channel_fraction": ("1", "fraction of the window that carries 90 % of the flow"),
         "flow_imbalance": ("1", "bound on the relative error of T by mass balance and closed gaps"),
         "flow_reason": ("1", "why T is zero or missing"),
-        "series_bound": ("mm3", "lower bound of T: strips along the flow, cells in series"),
-        "parallel_bound": ("mm3", "upper bound of T: strips across the flow, cells side by side"),
-        "gap_correlation_length": ("mm", "lag at which the correlation of the gap falls to 1/e"),
         "hydraulic_ratio": ("1", "hydraulic aperture over the mean gap"),
         "transmissivity_grid_error": (
             "mm3",
@@ -221,8 +216,7 @@ def _over_loads(way, axis, gaps, spacing, states, error, reported):
 def _numbers(gap, spacing, axis, *, errors):
     """Numbers of the flow through a gap; the errors of T take five more solves, of parts of it."""
     flow = flow_of(gap, spacing, axis)
-    number, whole, (dy, dx) = "yx".index(axis), flow.transmissivity, spacing
-    lower, upper = transmissivity_bounds(gap, number)
+    whole, (dy, dx) = flow.transmissivity, spacing
     coarse = flow_of(gap[::2, ::2], (2 * dy, 2 * dx), axis).transmissivity if errors else np.nan
     return {
         "transmissivity": window_interval(gap, spacing, axis, whole) if errors else Estimate(whole),
@@ -232,9 +226,6 @@ def _numbers(gap, spacing, axis, *, errors):
         "flux_map": flow.flux,
         "flow_imbalance": flow.imbalance,
         "flow_reason": flow.reason,
-        "series_bound": lower,
-        "parallel_bound": upper,
-        "gap_correlation_length": correlation_length(gap, spacing[number], number),
     }
 
 
