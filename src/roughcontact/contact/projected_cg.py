@@ -22,6 +22,8 @@ CLIPPING_PASSES = 20
 MIN_RESPONSE = 1e-2
 # Stiffness: its error is of second order in this residual.
 TANGENT_RESIDUAL = 1e-4
+# Compliance: passes in which double precision corrects what single precision leaves.
+COMPLIANCE_PASSES = 4
 
 
 class ProjectedCG:
@@ -121,6 +123,8 @@ class ProjectedCG:
             previous = slope
             image = self.operator.apply_sparse((self.active, direction))
             curvature = _curvature(direction, image, self.active, self.unclipped)
+            if not curvature > 0:  # of a constant, in a window that goes on beyond its edges
+                break
             length = np.float32(slope / curvature)
             add(self.solution, length, direction)
             add(self.image, length, image)
@@ -176,6 +180,52 @@ def stiffness(operator: Operator, active: np.ndarray) -> tuple[float, float]:
     residual, q = equations.residual.astype(float), equations.solution.astype(float)
     value = q.sum() + residual @ q
     return value, float(residual @ operator.inverse(equations.residual)) / value
+
+
+def compliance(operator: Operator, active: np.ndarray) -> tuple[float, float]:
+    """The least q.K q of all q of sum 1 on some nodes: dw/dF of a state, as `stiffness` dF/dw.
+
+    For windows that go on beyond their edges, where K has no inverse on all of the nodes, and
+    nearly none on most: there it falls to 0.
+
+    Parameters
+    ----------
+    operator : Operator
+    active : (n,) int32 ndarray
+        One node or more.
+
+    Returns
+    -------
+    compliance, error : float
+        As `stiffness`.
+
+    Notes
+    -----
+    The least is the multiplier of the sum. An approximate q gives what is above it by r.K^-1 r, of
+    the residual r that is left of K q less its mean.
+    """
+    operator.precondition(active, fresh=True)
+    q = operator.inverse(np.ones(active.size, np.float32)).astype(float)
+    value = error = np.inf
+    for _ in range(COMPLIANCE_PASSES):
+        q /= q.sum()
+        loaded = np.zeros(operator.size)
+        loaded[active] = q
+        image = operator(loaded)[active]
+        value = float(q @ image)
+        scale = float(np.abs(image - value).max())
+        if not scale > 0:
+            return value, 0.0
+        equations = ProjectedCG(operator, active, (value - image) / scale)
+        response = operator.inverse(np.ones(active.size, np.float32))
+        search = operator.inverse(equations.residual)
+        search -= response * np.float32(search.sum() / response.sum())
+        error = scale**2 * abs(float(equations.residual @ search)) / value if value > 0 else np.inf
+        if error <= TANGENT_RESIDUAL**2:
+            break
+        equations.iterate(TANGENT_RESIDUAL, by_force=True)
+        q += scale * equations.solution
+    return value, error
 
 
 @njit(cache=True)
