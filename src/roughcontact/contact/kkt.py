@@ -50,7 +50,7 @@ class Problem:
 
     @property
     def most_closure(self) -> float:
-        """Closure that an elastic window goes on beyond its edges with in full contact, or infinity.
+        """Closure of an elastic window that goes on beyond its edges in full contact, or infinity.
 
         Its mean plane then comes no nearer, whatever the force.
         """

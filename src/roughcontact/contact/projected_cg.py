@@ -157,6 +157,8 @@ class ProjectedCG:
 def stiffness(operator: Operator, active: np.ndarray) -> tuple[float, float]:
     """Sum of q with K q = 1 on some nodes: dF/dw of a state in which these lie between the bounds.
 
+    Infinite on all nodes of a window that goes on beyond its edges.
+
     Parameters
     ----------
     operator : Operator
@@ -174,6 +176,11 @@ def stiffness(operator: Operator, active: np.ndarray) -> tuple[float, float]:
     """
     if active.size == 0:
         return 0.0, 0.0
+    if not operator.space.is_free:
+        if active.size == operator.size:
+            return np.inf, 0.0
+        value, error = _compliance(operator, active)
+        return (1 / value, error) if value > 0 else (np.inf, np.inf)
     operator.precondition(active, fresh=True)
     equations = ProjectedCG(operator, active, np.ones(active.size))
     equations.iterate(TANGENT_RESIDUAL, by_force=False)
@@ -182,31 +189,16 @@ def stiffness(operator: Operator, active: np.ndarray) -> tuple[float, float]:
     return value, float(residual @ operator.inverse(equations.residual)) / value
 
 
-def compliance(operator: Operator, active: np.ndarray) -> tuple[float, float]:
-    """The least q.K q of all q of sum 1 on some nodes: dw/dF of a state, as `stiffness` dF/dw.
+def _compliance(operator, active):
+    """The least q.K q of all q of sum 1 on some nodes, which is dw/dF, and its relative error.
 
     For windows that go on beyond their edges, where K has no inverse on all of the nodes, and
-    nearly none on most: there it falls to 0.
-
-    Parameters
-    ----------
-    operator : Operator
-    active : (n,) int32 ndarray
-        One node or more.
-
-    Returns
-    -------
-    compliance, error : float
-        As `stiffness`.
-
-    Notes
-    -----
-    The least is the multiplier of the sum. An approximate q gives what is above it by r.K^-1 r, of
-    the residual r that is left of K q less its mean.
+    nearly none on most. The least is the multiplier of the sum; an approximate q is above it by
+    r.K^-1 r, of what is left of K q less its mean.
     """
     operator.precondition(active, fresh=True)
-    q = operator.inverse(np.ones(active.size, np.float32)).astype(float)
-    value = error = np.inf
+    response = operator.inverse(np.ones(active.size, np.float32))
+    q, value, error = response.astype(float), np.inf, np.inf
     for _ in range(COMPLIANCE_PASSES):
         q /= q.sum()
         loaded = np.zeros(operator.size)
@@ -214,13 +206,12 @@ def compliance(operator: Operator, active: np.ndarray) -> tuple[float, float]:
         image = operator(loaded)[active]
         value = float(q @ image)
         scale = float(np.abs(image - value).max())
-        if not scale > 0:
-            return value, 0.0
+        if not (value > 0 and scale > 0):
+            return value, 0.0 if value > 0 else np.inf
         equations = ProjectedCG(operator, active, (value - image) / scale)
-        response = operator.inverse(np.ones(active.size, np.float32))
         search = operator.inverse(equations.residual)
         search -= response * np.float32(search.sum() / response.sum())
-        error = scale**2 * abs(float(equations.residual @ search)) / value if value > 0 else np.inf
+        error = scale**2 * abs(float(equations.residual @ search)) / value
         if error <= TANGENT_RESIDUAL**2:
             break
         equations.iterate(TANGENT_RESIDUAL, by_force=True)

@@ -89,7 +89,7 @@ def newton_on_closure(
         The caller checks its residual.
     """
     low, high, solution = 0.0, problem.most_closure, start
-    closure, tolerance = start.closure, SAFETY * rtol
+    closure, tolerance = min(start.closure, high / 2), SAFETY * rtol
     for _ in range(MAX_CLOSURES):
         solution = solve(replace(problem, load=closure, by_force=False), tolerance, solution)
         total = solution.pressure.sum()

@@ -15,7 +15,7 @@ from .bounds import Bounds
 from .effort import SOLVING
 from .kkt import frank_wolfe_gap
 from .operator import Operator
-from .projected_cg import compliance, stiffness
+from .projected_cg import stiffness
 from .slope import Slope, secant_slope
 from .topography import Topography
 
@@ -152,22 +152,13 @@ class ContactState:
         if self._yields():
             return secant_slope(self, self._solver)
         with SOLVING.counted(0):
-            value, error = self._elastic_slope(*self._operator_on_active())
+            value, error = stiffness(*self._operator_on_active())
         if not error <= STIFFNESS_ERROR:
             raise NotConverged("the stiffness equations on the contact set", self, error)
         if math.isinf(value):  # in full contact
             return Slope(value, 0.0)
         value *= self.space.modulus * self.space.cell
         return Slope(value, STIFFNESS_ERROR * value)
-
-    def _elastic_slope(self, operator, active):
-        """dF/dw on a contact set, in units as the solver has them, and its relative error."""
-        if self.space.is_free or active.size == 0:
-            return stiffness(operator, active)
-        if active.size == operator.size:
-            return np.inf, 0.0
-        value, error = compliance(operator, active)
-        return 1 / value, error
 
     def _yields(self):
         """True if a node is at its hardness."""

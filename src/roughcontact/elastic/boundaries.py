@@ -25,7 +25,7 @@ class PeriodicConvolution:
     shape : (int, int)
         Of the fields, (ny, nx). Without prime factors over 5 these take the least time.
     sides : (float, float)
-        Of a cell, such that its area is 1.
+        Of a cell. What presses on it does so with its pressure on an area of 1.
     dtype : type
         float32 or float64.
     """
@@ -115,7 +115,7 @@ def repeated_influence(
     cells : (int, int)
         Of a period.
     sides : (float, float)
-        Of a cell, such that its area is 1.
+        Of a cell. What presses on it does so with its pressure on an area of 1.
 
     Returns
     -------
@@ -153,11 +153,11 @@ def even_spectrum(half: np.ndarray, lengths: tuple[int, int]) -> np.ndarray:
 
 
 def _symbol(waves, cells, sides):
-    """2 / q of some waves along y and x around a period of cells; 0 of their mean."""
+    """2 / q of some waves along y and x around a period of cells, over an area; 0 of the mean."""
     along = [np.arange(n) / (c * d) for n, c, d in zip(waves, cells, sides, strict=True)]
     number = 2 * np.pi * np.hypot(along[0][:, None], along[1])
     number[0, 0] = np.inf
-    return 2 / number
+    return 2 / (sides[0] * sides[1] * number)
 
 
 def _check(values, shape, dtype):

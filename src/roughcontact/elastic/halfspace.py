@@ -302,8 +302,11 @@ class HalfSpace:
         sides = factor * self.spacing[0], factor * self.spacing[1]
         kind = {"kernel": self.kernel, "boundary": self.boundary}
         coarse = HalfSpace(shape, sides, self.modulus, **kind)
-        # To the last bit the same influence.
-        vars(coarse).update(_sides=self._sides, _is_coarse=True)
+        # To the last bit the same influence. What repeats itself must do so after as long.
+        inside = (n / (factor * m) for n, m in zip(self.shape, shape, strict=True))
+        repeated = tuple(d * part for d, part in zip(self._sides, inside, strict=True))
+        within = self._sides if self.is_free else repeated
+        vars(coarse).update(_sides=within, _is_coarse=True)
         return self._coarser.setdefault(factor, coarse)
 
     @computed_once
