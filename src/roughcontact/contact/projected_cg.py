@@ -18,6 +18,9 @@ from .operator import Operator
 MAX_INNER = 60
 # Passes in search of the closure that gives a clipped step its total.
 CLIPPING_PASSES = 20
+# To what fraction it has that; in a window that goes on beyond its edges, where clearances are a
+# larger part of the closure.
+TOTAL, REPEATED_TOTAL = 1e-7, 1e-12
 # In it, least effect of closure on a node's pressure, as a fraction of the mean.
 MIN_RESPONSE = 1e-2
 # Stiffness: its error is of second order in this residual.
@@ -86,7 +89,8 @@ class ProjectedCG:
         aim, (low, high) = start + self.inverse(self.residual), bounds.on(start.size)
         if total is not None and self.active.size:  # it is empty where all that touches yields
             self._response = self.inverse(np.ones(self.active.size, np.float32))
-            multiplier = _multiplier_of_total(aim, self._response, low, high, total)
+            nearly = TOTAL if self.operator.space.is_free else REPEATED_TOTAL
+            multiplier = _multiplier_of_total(aim, self._response, low, high, total, nearly)
             self.residual += np.float32(multiplier)
             self.multiplier += multiplier
         clipped = _clip(aim, start, low, high, self.solution, self.unclipped)
@@ -297,7 +301,7 @@ def _subtract(residual, scale, image, active, unclipped):
 
 
 @njit(cache=True)
-def _multiplier_of_total(aim, response, low, high, total):
+def _multiplier_of_total(aim, response, low, high, total, nearly):
     """Multiplier at which aim + multiplier * response, clipped, has a total; the aim moves there.
 
     Found by Newton's method, safeguarded by bisection.
@@ -316,7 +320,7 @@ def _multiplier_of_total(aim, response, low, high, total):
             missing -= min(max(end, low[i]), high[i])
             if low[i] < end < high[i]:
                 slope += response[i]
-        if abs(missing) <= 1e-7 * abs(total):
+        if abs(missing) <= nearly * abs(total):
             break
         least, most = (multiplier, most) if missing > 0 else (least, multiplier)
         if slope > 0:

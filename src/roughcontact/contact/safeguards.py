@@ -89,7 +89,8 @@ def newton_on_closure(
         The caller checks its residual.
     """
     low, high, solution = 0.0, problem.most_closure, start
-    closure, tolerance = min(start.closure, high / 2), SAFETY * rtol
+    closure = start.closure if start.closure < high else high / 2
+    tolerance = SAFETY * rtol
     for _ in range(MAX_CLOSURES):
         solution = solve(replace(problem, load=closure, by_force=False), tolerance, solution)
         total = solution.pressure.sum()

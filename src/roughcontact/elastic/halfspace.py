@@ -300,8 +300,8 @@ class HalfSpace:
             return self._coarser[factor]
         shape = -(-self.shape[0] // factor), -(-self.shape[1] // factor)
         sides = factor * self.spacing[0], factor * self.spacing[1]
-        kind = {"kernel": self.kernel, "boundary": self.boundary}
-        coarse = HalfSpace(shape, sides, self.modulus, **kind)
+        kernel, boundary = self.kernel, self.boundary
+        coarse = HalfSpace(shape, sides, self.modulus, kernel=kernel, boundary=boundary)
         # To the last bit the same influence. What repeats itself must do so after as long.
         inside = (n / (factor * m) for n, m in zip(self.shape, shape, strict=True))
         repeated = tuple(d * part for d, part in zip(self._sides, inside, strict=True))

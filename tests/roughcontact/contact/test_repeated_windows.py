@@ -249,6 +249,18 @@ def test_strips_take_few_applications(shape, boundary):
 
 
 @pytest.mark.parametrize("boundary", BOUNDARIES)
+@pytest.mark.parametrize("shape", [(1, 1), (1, 2), (1, 74), (9, 10)])
+def test_small_windows_come_into_full_contact(shape, boundary):
+    """On all nodes of a small window K has no inverse, which elsewhere is the preconditioner."""
+    height = np.random.default_rng(3).random(shape)
+    space = HalfSpace(shape, (0.12, 0.07), 0.02, boundary=boundary)
+    state = solve_contact(height, space, force=1e3 * height.size * space.cell_area, rtol=1e-9)
+    assert state.in_contact.all()
+    assert state.iterations < 30
+    assert violation(state, height) <= 1.001e-9
+
+
+@pytest.mark.parametrize("boundary", BOUNDARIES)
 def test_large_windows_have_no_candidates(boundary):
     height, space, one = rough(boundary, n=512)
     state = solve_contact(height, space, force=2 * one)
