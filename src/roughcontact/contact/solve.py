@@ -79,7 +79,8 @@ def solve_contact(
     ValueError
         If the topography has missing or masked cells or another shape, the start is none of this
         grid, the load makes no sense or double precision ends before its state, or the force is
-        more than the hardness lets the whole window carry.
+        more than the hardness lets the whole window carry. Or if the closure is beyond that of full
+        contact, of an elastic surface that is repeated or reflected.
     NotConverged
         If the conditions are not met to ``rtol``.
     """
