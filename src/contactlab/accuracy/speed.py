@@ -236,7 +236,9 @@ def _cold(press, height, space, closure, rtol):
 
 def _on_a_new_grid(press, height, space, closure, rtol):
     """As `_cold`, kernel and transforms made anew."""
-    new = HalfSpace(space.shape, space.spacing, space.modulus, kernel=space.kernel)
+    kernel, boundary = space.kernel, space.boundary
+    grid = space.shape, space.spacing
+    new = HalfSpace(*grid, space.modulus, kernel=kernel, boundary=boundary)
     return _cold(press, height, new, closure, rtol)
 
 

@@ -115,6 +115,8 @@ def posed_problem(
     ValueError
         As `fractalcontact.solve_contact`.
     """
+    if isinstance(space, HalfSpace) and not space.is_free:
+        raise ValueError(f"methods of comparison know free windows, not {space.boundary} ones")
     load, clearance = checked_problem(composite, space, closure, force, start, rtol)
     limit = checked_hardness(hardness, space, force)
     return ContactProblem(space, clearance, load, force is not None, limit, start, rtol)

@@ -104,7 +104,8 @@ def subgrid_states(
     """
     heights = subgrid(composite, factor)
     spacing = space.spacing[0] / factor, space.spacing[1] / factor
-    finer = HalfSpace(heights.shape, spacing, space.modulus, kernel=space.kernel)
+    kernel, boundary = space.kernel, space.boundary
+    finer = HalfSpace(heights.shape, spacing, space.modulus, kernel=kernel, boundary=boundary)
     highest = float(heights.max())
     for state in load_steps(heights, finer, forces, solving, f"{where}, spacing / {factor}"):
         yield state, highest

@@ -170,16 +170,15 @@ class ActiveSetMethod:
         single_step_left = problem.nodes is None
         for iteration in range(MAX_ITERATIONS):
             # Safeguards. Force: Newton's method, which solves for closures. Closure: exact solves.
-            newton = many_iterations_under_force(iteration, violation, iterate.closure)
+            newton = many_iterations_under_force(iteration, violation, problem.tolerated(iterate))
             exact = many_iterations(iteration)
             if problem.by_force and newton:
                 start = verified(problem, operator, iterate)
                 return newton_on_closure(problem, rtol, operator, start, self._solve_closure)
             kkt = self._kkt_residual(iterate)
-            may_end = iteration >= min_iterations or kkt.holds_to(
-                SINGLE_PRECISION_FLOOR, iterate.closure
-            )
-            if may_end and kkt.holds_to(rtol, iterate.closure):
+            unit = problem.tolerated(iterate)
+            may_end = iteration >= min_iterations or kkt.holds_to(SINGLE_PRECISION_FLOOR, unit)
+            if may_end and kkt.holds_to(rtol, unit):
                 iterate = solution = verified(problem, operator, iterate, self._dtype)
                 if solution.residual <= rtol:
                     return solution
@@ -188,7 +187,7 @@ class ActiveSetMethod:
             if exact:
                 kkt = without_entering(kkt, iterate.pressure, problem.bounds)
             single_step = may_end and single_step_left
-            linear_solve = self._linear_solve(kkt, iterate.closure, exact, single_step)
+            linear_solve = self._linear_solve(kkt, problem.tolerated(iterate), exact, single_step)
             operator.precondition(kkt.active, fresh=iteration == 0)
             reduction = _reduction(linear_solve, previous_active, kkt.active)
             self._step(iterate, kkt, linear_solve, reduction, predict=iteration < predictions)
@@ -201,11 +200,11 @@ class ActiveSetMethod:
                     return solution
         return verified(problem, operator, iterate, self._dtype)
 
-    def _linear_solve(self, kkt, closure, exact, single_step):
+    def _linear_solve(self, kkt, unit, exact, single_step):
         """Kind of linear solve: ``exact`` as a safeguard, or ``single_step`` while one is left."""
         if exact:
             return LinearSolve.EXACT
-        if single_step and kkt.holds_to(SINGLE_STEP_BELOW * self.rtol, closure):
+        if single_step and kkt.holds_to(SINGLE_STEP_BELOW * self.rtol, unit):
             return LinearSolve.SINGLE_STEP
         return LinearSolve.INEXACT
 
@@ -257,7 +256,7 @@ class ActiveSetMethod:
             equations, change, scale = self._preconditioned_step(iterate, working, clipped)
         if linear_solve is not LinearSolve.SINGLE_STEP:
             equations.apply_step(working.fixed, change)
-            wanted = SAFETY * self.rtol * abs(iterate.closure) / scale
+            wanted = SAFETY * self.rtol * self.problem.tolerated(iterate) / scale
             equations.iterate(max(reduction, wanted), by_force=self.problem.by_force)
             add(iterate.displacement, scale, equations.image)
         iterate.pressure[working.fixed] = working.bound

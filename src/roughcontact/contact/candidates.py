@@ -182,8 +182,11 @@ class Restricted:
 
 
 def may_restrict(space: HalfSpace, rtol: float) -> bool:
-    """True if the window is so large, and the tolerance such, that candidates may pay."""
-    large = min(space.shape) >= MIN_WINDOW
+    """True if the window is so large, and the tolerance such, that candidates may pay.
+
+    Not of windows that go on beyond their edges: their displacements are negative somewhere.
+    """
+    large = space.is_free and min(space.shape) >= MIN_WINDOW
     return large and MIN_RTOL <= rtol < MARGIN - 1 and multipole_suits(space)
 
 

@@ -60,8 +60,9 @@ def verified(
     if problem.by_force:
         closure = problem.closure_at_force(pressure, displacement)
     kkt = kkt_residual(pressure, displacement, problem.clearance, closure, problem.bounds)
-    residual = max(kkt.largest / abs(closure), lacking)
-    return Solution(pressure, displacement, closure, residual, operator.applications)
+    found = Solution(pressure, displacement, closure, lacking, operator.applications)
+    found.residual = max(kkt.largest / problem.tolerated(found), lacking)
+    return found
 
 
 def _scaled_to_force(problem, operator, pressure, displacement):

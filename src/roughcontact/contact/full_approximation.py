@@ -55,6 +55,8 @@ def full_approximation_start(
     """
     if min(problem.space.shape) < MIN_FINE_SIDE:
         return None
+    if not (problem.by_force or problem.space.is_free):
+        return None  # the coarse grid might not have that closure (`Problem.coarser`)
     clearance, bounds = problem.clearance, problem.bounds
     mean = mean_closure(pressure, displacement, clearance, bounds)
     if bounds.reached_by(pressure, CAP_ROUNDING) or not np.isfinite(mean):

@@ -64,7 +64,8 @@ class InverseCholesky:
     def __init__(self, space: HalfSpace, neighbourhood: np.ndarray):
         self._shape = space.shape
         dy, dx = (side / space.cell for side in space.spacing)
-        side = TABLE_SIDE if max(dy / dx, dx / dy) <= MAX_STRETCHED else max(space.shape)
+        far_alike = space.is_free and max(dy / dx, dx / dy) <= MAX_STRETCHED
+        side = TABLE_SIDE if far_alike else max(space.shape)
         self.influence = space.near_influence(side).astype(np.float32)
         whole = self.influence.shape == self._shape
         #: For :func:`influence_between`: of any two nodes.

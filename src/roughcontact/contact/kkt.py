@@ -48,6 +48,24 @@ class Problem:
     bounds: Bounds = ELASTIC
     nodes: np.ndarray | None = None
 
+    @property
+    def most_closure(self) -> float:
+        """Closure of an elastic window that goes on beyond its edges in full contact, or infinity.
+
+        Its mean plane then comes no nearer, whatever the force.
+        """
+        bounded = self.bounds.elastic and not self.space.is_free
+        return float(self.clearance.mean()) if bounded else np.inf
+
+    def tolerated(self, iterate: "Iterate") -> float:
+        """What violations are counted in: the closure.
+
+        In full contact of a window that goes on beyond its edges the closure may be none, as that
+        of two planes is, under any pressure. What its mean pressure does to a cell alone is added.
+        """
+        closure = abs(iterate.closure)
+        return closure if self.space.is_free else closure + abs(float(iterate.pressure.mean()))
+
     def coarser(self, clearance: np.ndarray) -> "Problem":
         """A problem on the grid twice as coarse, on the whole window.
 
@@ -57,6 +75,9 @@ class Problem:
             c at every node of that grid.
         """
         load = coarser_load(self.load, self.by_force)
+        if not (self.by_force or self.space.is_free) and self.clearance.any():
+            # Of the highest of each four nodes the mean plane is nearer, and may not come so far.
+            load *= float(clearance.mean() / self.clearance.mean())
         bounds = self.bounds.coarser(self.space.shape)
         return Problem(self.space.coarser(2), clearance, load, self.by_force, bounds)
 
@@ -155,9 +176,9 @@ class KKTResidual:
     infeasible: np.ndarray
     largest: float
 
-    def holds_to(self, tolerance: float, closure: float) -> bool:
-        """True if no violation exceeds a fraction of the closure."""
-        return self.largest <= tolerance * abs(closure)
+    def holds_to(self, tolerance: float, unit: float) -> bool:
+        """True if no violation exceeds a fraction of their unit (`Problem.tolerated`)."""
+        return self.largest <= tolerance * unit
 
 
 def kkt_residual(

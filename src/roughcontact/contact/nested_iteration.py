@@ -39,8 +39,10 @@ def nested_iteration_start(problem: Problem) -> np.ndarray:
     space = problem.space
     ny, nx = space.shape
     if min(ny, nx) < COARSEST_SIDE:
-        return problem.bounds.clip(np.ones(ny * nx))
+        return _without_coarser_grid(problem)
     coarse = problem.coarser(restrict_minimum(problem.clearance.reshape(ny, nx)).ravel())
+    if not coarse.load > 0:  # its highest nodes are all alike (`Problem.coarser`)
+        return _without_coarser_grid(problem)
     method = ActiveSetMethod(coarse, COARSE_RTOL, dtype=np.float32)
     solution = method.solve(nested_iteration_start(coarse), min_iterations=COARSE_ITERATIONS)
     if coarse.clearance.size > KEPT_CELLS:
@@ -48,6 +50,13 @@ def nested_iteration_start(problem: Problem) -> np.ndarray:
     pressure = solution.pressure.reshape(coarse.space.shape) / 2
     pressure = prolong(pressure, problem.clearance.reshape(ny, nx), space.near_influence(4))
     return problem.bounds.clip(pressure.ravel())
+
+
+def _without_coarser_grid(problem):
+    """A start that knows no other: uniform, or where that displaces nothing, what overlaps."""
+    if problem.by_force or problem.space.is_free:
+        return problem.bounds.clip(np.ones(problem.clearance.size))
+    return problem.bounds.clip(problem.load - problem.clearance)
 
 
 @njit(cache=True)

@@ -49,7 +49,7 @@ class Preconditioner:
 
     def __init__(self, space: HalfSpace):
         self.small = max(space.shape) <= SMALL
-        self._shape = space.shape
+        self._shape, self._has_null_space = space.shape, not space.is_free
         neighbourhood = NARROW_NEIGHBOURHOOD if self.small else WIDE_NEIGHBOURHOOD
         self._factor = InverseCholesky(space, neighbourhood)
         # Not held: what is kept for a half-space would keep it.
@@ -82,7 +82,8 @@ class Preconditioner:
             self._coarse.forget()
         if nodes.size <= DIRECT:
             # Few nodes of a large window may lie further apart than the table reaches.
-            self._exact = _exact_inverse(nodes, self._shape[1], self._factor.anywhere)
+            singular = self._has_null_space and nodes.size == self._shape[0] * self._shape[1]
+            self._exact = _exact_inverse(nodes, self._shape[1], self._factor.anywhere, singular)
             return
         self._factor.update(nodes)
         self._local = self.small or (scattered and nodes.size <= SCATTERED)
@@ -159,12 +160,14 @@ def _drop(kept, key):
 
 
 @njit(cache=True)
-def _exact_inverse(nodes, nx, influence):
-    """Inverse of K on a few nodes, exactly."""
+def _exact_inverse(nodes, nx, influence, singular):
+    """Inverse of K on a few nodes, exactly; where it has none, for pressures of the mean zero."""
     n = nodes.size
+    everywhere = float(influence[0][0, 0]) if singular else 0.0
     inverse = np.empty((n, n))
     for a in range(n):
         for b in range(n):
             dy = abs(nodes[a] // nx - nodes[b] // nx)
             inverse[a, b] = influence_between(influence, dy, abs(nodes[a] % nx - nodes[b] % nx))
+            inverse[a, b] += everywhere
     return inverted(inverse).astype(np.float32)

@@ -18,10 +18,15 @@ from .operator import Operator
 MAX_INNER = 60
 # Passes in search of the closure that gives a clipped step its total.
 CLIPPING_PASSES = 20
+# To what fraction it has that; in a window that goes on beyond its edges, where clearances are a
+# larger part of the closure.
+TOTAL, REPEATED_TOTAL = 1e-7, 1e-12
 # In it, least effect of closure on a node's pressure, as a fraction of the mean.
 MIN_RESPONSE = 1e-2
 # Stiffness: its error is of second order in this residual.
 TANGENT_RESIDUAL = 1e-4
+# Compliance: passes in which double precision corrects what single precision leaves.
+COMPLIANCE_PASSES = 4
 
 
 class ProjectedCG:
@@ -84,7 +89,8 @@ class ProjectedCG:
         aim, (low, high) = start + self.inverse(self.residual), bounds.on(start.size)
         if total is not None and self.active.size:  # it is empty where all that touches yields
             self._response = self.inverse(np.ones(self.active.size, np.float32))
-            multiplier = _multiplier_of_total(aim, self._response, low, high, total)
+            nearly = TOTAL if self.operator.space.is_free else REPEATED_TOTAL
+            multiplier = _multiplier_of_total(aim, self._response, low, high, total, nearly)
             self.residual += np.float32(multiplier)
             self.multiplier += multiplier
         clipped = _clip(aim, start, low, high, self.solution, self.unclipped)
@@ -121,6 +127,8 @@ class ProjectedCG:
             previous = slope
             image = self.operator.apply_sparse((self.active, direction))
             curvature = _curvature(direction, image, self.active, self.unclipped)
+            if not curvature > 0:  # of a constant, in a window that goes on beyond its edges
+                break
             length = np.float32(slope / curvature)
             add(self.solution, length, direction)
             add(self.image, length, image)
@@ -153,6 +161,8 @@ class ProjectedCG:
 def stiffness(operator: Operator, active: np.ndarray) -> tuple[float, float]:
     """Sum of q with K q = 1 on some nodes: dF/dw of a state in which these lie between the bounds.
 
+    Infinite on all nodes of a window that goes on beyond its edges.
+
     Parameters
     ----------
     operator : Operator
@@ -170,12 +180,47 @@ def stiffness(operator: Operator, active: np.ndarray) -> tuple[float, float]:
     """
     if active.size == 0:
         return 0.0, 0.0
+    if not operator.space.is_free:
+        if active.size == operator.size:
+            return np.inf, 0.0
+        value, error = _compliance(operator, active)
+        return (1 / value, error) if value > 0 else (np.inf, np.inf)
     operator.precondition(active, fresh=True)
     equations = ProjectedCG(operator, active, np.ones(active.size))
     equations.iterate(TANGENT_RESIDUAL, by_force=False)
     residual, q = equations.residual.astype(float), equations.solution.astype(float)
     value = q.sum() + residual @ q
     return value, float(residual @ operator.inverse(equations.residual)) / value
+
+
+def _compliance(operator, active):
+    """The least q.K q of all q of sum 1 on some nodes, which is dw/dF, and its relative error.
+
+    For windows that go on beyond their edges, where K has no inverse on all of the nodes, and
+    nearly none on most. The least is the multiplier of the sum; an approximate q is above it by
+    r.K^-1 r, of what is left of K q less its mean.
+    """
+    operator.precondition(active, fresh=True)
+    response = operator.inverse(np.ones(active.size, np.float32))
+    q, value, error = response.astype(float), np.inf, np.inf
+    for _ in range(COMPLIANCE_PASSES):
+        q /= q.sum()
+        loaded = np.zeros(operator.size)
+        loaded[active] = q
+        image = operator(loaded)[active]
+        value = float(q @ image)
+        scale = float(np.abs(image - value).max())
+        if not (value > 0 and scale > 0):
+            return value, 0.0 if value > 0 else np.inf
+        equations = ProjectedCG(operator, active, (value - image) / scale)
+        search = operator.inverse(equations.residual)
+        search -= response * np.float32(search.sum() / response.sum())
+        error = scale**2 * abs(float(equations.residual @ search)) / value
+        if error <= TANGENT_RESIDUAL**2:
+            break
+        equations.iterate(TANGENT_RESIDUAL, by_force=True)
+        q += scale * equations.solution
+    return value, error
 
 
 @njit(cache=True)
@@ -256,7 +301,7 @@ def _subtract(residual, scale, image, active, unclipped):
 
 
 @njit(cache=True)
-def _multiplier_of_total(aim, response, low, high, total):
+def _multiplier_of_total(aim, response, low, high, total, nearly):
     """Multiplier at which aim + multiplier * response, clipped, has a total; the aim moves there.
 
     Found by Newton's method, safeguarded by bisection.
@@ -275,7 +320,7 @@ def _multiplier_of_total(aim, response, low, high, total):
             missing -= min(max(end, low[i]), high[i])
             if low[i] < end < high[i]:
                 slope += response[i]
-        if abs(missing) <= 1e-7 * abs(total):
+        if abs(missing) <= nearly * abs(total):
             break
         least, most = (multiplier, most) if missing > 0 else (least, multiplier)
         if slope > 0:

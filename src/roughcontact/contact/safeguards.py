@@ -39,7 +39,7 @@ def many_iterations(iterations: int) -> bool:
     return iterations > PATIENCE
 
 
-def many_iterations_under_force(iterations: int, violation: float, closure: float) -> bool:
+def many_iterations_under_force(iterations: int, violation: float, unit: float) -> bool:
     """True if more iterations were made than go without Newton's method, under a given force.
 
     Parameters
@@ -48,10 +48,10 @@ def many_iterations_under_force(iterations: int, violation: float, closure: floa
         Made so far.
     violation : float
         The largest before the last of them.
-    closure : float
-        After it.
+    unit : float
+        What that is counted in (`Problem.tolerated`).
     """
-    stalled = violation > STALLED_VIOLATION * abs(closure)
+    stalled = violation > STALLED_VIOLATION * unit
     return iterations > (STALL if stalled else PATIENCE)
 
 
@@ -88,8 +88,9 @@ def newton_on_closure(
     Solution
         The caller checks its residual.
     """
-    low, high, solution = 0.0, np.inf, start
-    closure, tolerance = start.closure, SAFETY * rtol
+    low, high, solution = 0.0, problem.most_closure, start
+    closure = start.closure if start.closure < high else high / 2
+    tolerance = SAFETY * rtol
     for _ in range(MAX_CLOSURES):
         solution = solve(replace(problem, load=closure, by_force=False), tolerance, solution)
         total = solution.pressure.sum()

@@ -79,7 +79,8 @@ def solve_contact(
     ValueError
         If the topography has missing or masked cells or another shape, the start is none of this
         grid, the load makes no sense or double precision ends before its state, or the force is
-        more than the hardness lets the whole window carry.
+        more than the hardness lets the whole window carry. Or if the closure is beyond that of full
+        contact, of an elastic surface that is repeated or reflected.
     NotConverged
         If the conditions are not met to ``rtol``.
     """
@@ -88,6 +89,7 @@ def solve_contact(
         return unloaded_state(space, topography.clearance())
     units = _Units(space, load, force is not None)
     case = units.case(topography, _hardness_of_nodes(hardness, space, force))
+    _check_reach(case, load)
     with SOLVING.counted(1):
         problem, solution = _solve(case, units, load, start, rtol)
     state = units.state(solution, topography, problem, start)
@@ -210,6 +212,18 @@ def _checked(composite, space, closure, force, start, rtol):
             f"{MIN_RESULT:g} to {MAX_RESULT:g} mm, MPa and N"
         )
     return load, topography
+
+
+def _check_reach(case, closure):
+    """Refuse a closure that no force brings an elastic surface to, as its mean plane stays."""
+    if case.by_force or case.space.is_free or not case.bounds.elastic:
+        return
+    most = float(case.topography.clearance().mean())
+    if closure >= most:
+        raise ValueError(
+            f"closure {closure:g} mm: no force closes this {case.space.boundary} surface further "
+            f"than its mean plane in full contact, {most:g} mm; give the force"
+        )
 
 
 def _check_start(start, space):

@@ -1,6 +1,7 @@
 """State of contact: pressures, displacements, gaps and derived quantities."""
 
 import dataclasses
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
@@ -36,7 +37,8 @@ class ContactState:
         Remaining opening, mm; within ``residual`` times the closure of zero in contact, where
         the pressure is not at the hardness.
     closure : float
-        w from first touch, mm: the rigid-body approach (indentation) of contact mechanics.
+        w from first touch, mm: the rigid-body approach (indentation) of contact mechanics. Of a
+        window that goes on beyond its edges that of the surface's mean plane.
     force : float
         F, N.
     residual : float
@@ -91,6 +93,9 @@ class ContactState:
         no larger than that which closes such a gap on one cell.
         """
         tolerance = self.residual * self.closure
+        if not self.space.is_free:
+            mean = float(self.pressure.mean())
+            tolerance += self.residual * mean * self.space.cell / self.space.modulus
         weakest = tolerance * self.space.modulus / self.space.cell
         pressure, _, gap = self._on_nodes()
         touching = pressure > 0
@@ -140,7 +145,8 @@ class ContactState:
 
         Notes
         -----
-        Of an elastic state the exact one, from K q = 1 on the contact domain. Where nodes yield the
+        Of an elastic state the exact one, from K q = 1 on the contact domain; infinite in full
+        contact of a window that goes on beyond its edges. Where nodes yield the
         secant of the loading branch (`slope.secant_slope`), from two more solves.
         """
         if self._yields():
@@ -149,6 +155,8 @@ class ContactState:
             value, error = stiffness(*self._operator_on_active())
         if not error <= STIFFNESS_ERROR:
             raise NotConverged("the stiffness equations on the contact set", self, error)
+        if math.isinf(value):  # in full contact
+            return Slope(value, 0.0)
         value *= self.space.modulus * self.space.cell
         return Slope(value, STIFFNESS_ERROR * value)
 

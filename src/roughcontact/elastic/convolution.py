@@ -27,18 +27,25 @@ THREADED_CELLS = 150_000
 LINES = 64
 
 
-def cosine_transform(half: np.ndarray, axis: int) -> np.ndarray:
-    """Transform of even data along an axis, from its first half, in place (DCT-I).
+def cosine_transform(
+    half: np.ndarray, axis: int, kind: int = 1, *, back: bool = False
+) -> np.ndarray:
+    """Transform of even data along an axis, from its first half, in place.
 
     By threads of our own: scipy's are shut down while the process forks, and whoever transforms
     then gets an error.
 
     Parameters
     ----------
-    half : (ny, nx) float64 ndarray
+    half : (ny, nx) float32 or float64 ndarray
         Overwritten.
     axis : int
         0 or 1.
+    kind : int
+        1: the data are even about their first and last number (DCT-I). 2: about places half a step
+        before and beyond them (DCT-II).
+    back : bool
+        The inverse.
 
     Returns
     -------
@@ -46,11 +53,12 @@ def cosine_transform(half: np.ndarray, axis: int) -> np.ndarray:
         The same array.
     """
     lines = half if axis == 1 else half.T
+    of_lines = fft.idct if back else fft.dct
 
     def transform(start: int, stop: int) -> None:
         for first in range(start, stop, LINES):
             block = slice(first, min(first + LINES, stop))
-            lines[block] = fft.dct(lines[block], 1, axis=1, workers=1)
+            lines[block] = of_lines(lines[block], kind, axis=1, workers=1)
 
     threads.in_parts(transform, len(lines), smallest=LINES)
     return half

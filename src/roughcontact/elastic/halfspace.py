@@ -1,7 +1,7 @@
-"""The elastic half-space: normal displacement of a free surface under a pressure, by FFT.
+"""The elastic half-space: normal displacement of a surface under a pressure, by FFT.
 
-Free space: the window stands alone on an infinite half-space, so the convolution is zero padded and
-there are no periodic images.
+In free space the window stands alone on an infinite half-space: the convolution is zero padded, and
+there are no periodic images. Or the window goes on beyond its edges (`boundaries`).
 """
 
 import warnings
@@ -10,7 +10,6 @@ from numbers import Real
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy import fft
 
 from ..arguments import (
     field,
@@ -23,7 +22,8 @@ from ..arguments import (
 )
 from ..limits import MAX_INPUT, MAX_RESULT, MIN_INPUT
 from ..threads import computed_once
-from .convolution import Convolution, cosine_transform, fast_length
+from .boundaries import CONVOLUTIONS, FREE, even_spectrum, period, repeated_influence
+from .convolution import Convolution, fast_length
 from .influence import influence_table, spread
 from .split_convolution import MIN_SPLIT_SIDE, SplitConvolution
 
@@ -87,24 +87,31 @@ class HalfSpace:
     kernel : str
         ``"love"`` (default): uniform pressure on each cell, displacement at its centre. Or one of
         the readings of the paper's rigid plate, ``"rigid square"``, ``"equal-area disc"``,
-        ``"inscribed disc"``: that self-term, and a point load on every other cell.
+        ``"inscribed disc"``: that self-term, and a point load on every other cell. Of a free window
+        alone; others have the displacement 2 p / (E* q) of each wave number q.
+    boundary : str
+        ``"free"`` (default): the window stands alone on the half-space. ``"periodic"``: it is
+        repeated beyond its edges. ``"mirrored"``: it is reflected there, half a cell beyond its
+        outermost nodes. Of the latter two the displacement has the mean zero, and the closure is
+        the approach of the mean plane.
     e_star : float, optional
         Another word for ``modulus``, deprecated.
 
     Raises
     ------
     ValueError
-        If the shape, spacing, modulus or kernel makes no sense.
+        If the shape, spacing, modulus, kernel or boundary makes no sense.
     TypeError
         If there is not one modulus.
     """
 
-    _FIXED = ("shape", "spacing", "modulus", "kernel", "cell", "_padded")
+    _FIXED = ("shape", "spacing", "modulus", "kernel", "boundary", "cell", "_padded")
 
     shape: tuple[int, int]
     spacing: tuple[float, float]
     modulus: float
     kernel: str
+    boundary: str
     cell: float
     _is_coarse = False
 
@@ -115,6 +122,7 @@ class HalfSpace:
         modulus: float | None = None,
         *,
         kernel: str = "love",
+        boundary: str = FREE,
         e_star: float | None = None,
     ):
         modulus = _one_modulus(modulus, e_star)
@@ -129,11 +137,16 @@ class HalfSpace:
             raise ValueError(f"kernel {quoted(kernel)}: expected one of {', '.join(names)}")
         if kernel != "love" and not np.isclose(dx, dy, rtol=1e-9, atol=0):
             raise ValueError("the rigid-plate kernels are known for square cells only")
+        if not isinstance(boundary, str) or boundary not in (FREE, *CONVOLUTIONS):
+            named = ", ".join((FREE, *CONVOLUTIONS))
+            raise ValueError(f"boundary {quoted(boundary)}: expected one of {named}")
+        if boundary != FREE and kernel != "love":
+            raise ValueError(f"the rigid-plate kernels are those of a free window, not {boundary}")
         # Side of the square as large as a cell: the solver's unit of length in the plane.
         cell = float(np.sqrt(dy * dx))
         padded = fast_length(2 * ny - 1), fast_length(2 * nx - 1)
         vars(self).update(shape=(ny, nx), spacing=(dy, dx), modulus=modulus, kernel=kernel)
-        vars(self).update(cell=cell, _padded=padded)
+        vars(self).update(boundary=boundary, cell=cell, _padded=padded)
 
     def __setattr__(self, name, value):
         # What is kept of the old grid would be used, out of bounds, on the new one.
@@ -151,16 +164,23 @@ class HalfSpace:
 
     @property
     def _key(self):
-        return self.shape, self.spacing, self.modulus, self.kernel
+        return self.shape, self.spacing, self.modulus, self.kernel, self.boundary
 
     def __getstate__(self):
         return {name: vars(self)[name] for name in self._FIXED}
 
     def __repr__(self):
-        kernel = "" if self.kernel == "love" else f", kernel={self.kernel!r}"
+        usual = {"kernel": "love", "boundary": FREE}
+        named = {name: vars(self)[name] for name in usual if vars(self)[name] != usual[name]}
+        others = "".join(f", {name}={value!r}" for name, value in named.items())
         return (
-            f"HalfSpace(shape={self.shape}, spacing={self.spacing}, modulus={self.modulus}{kernel})"
+            f"HalfSpace(shape={self.shape}, spacing={self.spacing}, modulus={self.modulus}{others})"
         )
+
+    @property
+    def is_free(self) -> bool:
+        """True if the window stands alone; else K has no inverse, as constants displace nothing."""
+        return self.boundary == FREE
 
     @property
     def e_star(self) -> float:
@@ -198,7 +218,10 @@ class HalfSpace:
         return self.convolve(values) * (self.cell / self.modulus)
 
     def influence(self) -> np.ndarray:
-        """Dimensionless influence E* u / (p cell) at every cell distance, (ny, nx), read only."""
+        """Dimensionless influence E* u / (p cell) at every cell distance, (ny, nx), read only.
+
+        Of a periodic or mirrored window with all its repetitions, but without the reflections.
+        """
         return self._influence
 
     @computed_once
@@ -238,6 +261,8 @@ class HalfSpace:
         -------
         (my, mx) ndarray
         """
+        if not self.is_free:
+            return repeated_influence(shape, period(self.shape, self.boundary), self._sides)
         return influence_table(shape, self._sides, self._self_term)
 
     @property
@@ -275,9 +300,13 @@ class HalfSpace:
             return self._coarser[factor]
         shape = -(-self.shape[0] // factor), -(-self.shape[1] // factor)
         sides = factor * self.spacing[0], factor * self.spacing[1]
-        coarse = HalfSpace(shape, sides, self.modulus, kernel=self.kernel)
-        # To the last bit the same influence.
-        vars(coarse).update(_sides=self._sides, _is_coarse=True)
+        kernel, boundary = self.kernel, self.boundary
+        coarse = HalfSpace(shape, sides, self.modulus, kernel=kernel, boundary=boundary)
+        # To the last bit the same influence. What repeats itself must do so after as long.
+        inside = (n / (factor * m) for n, m in zip(self.shape, shape, strict=True))
+        repeated = tuple(d * part for d, part in zip(self._sides, inside, strict=True))
+        within = self._sides if self.is_free else repeated
+        vars(coarse).update(_sides=within, _is_coarse=True)
         return self._coarser.setdefault(factor, coarse)
 
     @computed_once
@@ -330,47 +359,41 @@ class HalfSpace:
     @computed_once
     def _convolutions(self):
         """In double and in single precision, from one spectrum, which is not kept."""
-        spectrum = self._spectrum()
-        return tuple(
-            Convolution(spectrum, self.shape, self._padded, dtype)
-            for dtype in (np.float64, np.float32)
-        )
+        spectrum = self._spectrum() if self.is_free else None
+        return tuple(self._convolution(dtype, spectrum) for dtype in (np.float64, np.float32))
 
     @computed_once
     def _single_alone(self):
         """Operator on coarser grids, where double precision is rarely needed."""
-        return Convolution(self._spectrum(), self.shape, self._padded, np.float32)
+        return self._convolution(np.float32)
 
     @computed_once
     def _double_alone(self):
-        return Convolution(self._spectrum(), self.shape, self._padded, np.float64)
+        return self._convolution(np.float64)
 
     @computed_once
     def _split(self):
         """The convolution in single precision on large windows of nearly square cells, or None."""
         stretched = max(self._sides) > MAX_STRETCHED * min(self._sides)
-        if min(self.shape) < MIN_SPLIT_SIDE or stretched:
+        if not self.is_free or min(self.shape) < MIN_SPLIT_SIDE or stretched:
             return None
         return SplitConvolution(self.shape, self._sides, self._self_term)
 
-    def _spectrum(self):
-        """Transform of the influence in its circulant: even both ways, and so real and even.
+    def _convolution(self, dtype, spectrum=None):
+        """The operator in one precision."""
+        if not self.is_free:
+            return CONVOLUTIONS[self.boundary](self.shape, self._sides, dtype)
+        spectrum = self._spectrum() if spectrum is None else spectrum
+        return Convolution(spectrum, self.shape, self._padded, dtype)
 
-        Of even length it is a cosine transform (DCT-I) of half the circulant.
-        """
+    def _spectrum(self):
+        """Transform of the influence in its zero-padded circulant."""
         spectrum = self.influence_within(self.shape)
-        for axis in (1, 0):
-            n, padded = self.shape[axis], self._padded[axis]
-            half = padded // 2 + 1
-            if padded % 2 == 0:
-                place = np.minimum(np.arange(half), n - 1)
-                spectrum = np.take(spectrum, place, axis=axis) if half != n else spectrum
-                spectrum = cosine_transform(spectrum, axis)
-            else:
-                distance = np.minimum(np.arange(padded), padded - np.arange(padded))
-                circulant = np.take(spectrum, np.minimum(distance, n - 1), axis=axis)
-                spectrum = fft.rfft(circulant, axis=axis).real
-        return spectrum
+        for axis in (0, 1):
+            n, half = self.shape[axis], self._padded[axis] // 2 + 1
+            if half != n:
+                spectrum = np.take(spectrum, np.minimum(np.arange(half), n - 1), axis=axis)
+        return even_spectrum(spectrum, self._padded)
 
 
 def _size(value, name, unit):

@@ -104,3 +104,11 @@ def test_starts_that_are_not_finite_are_refused(height, space, method, name, val
 def test_starts_that_are_no_states_are_refused(height, space, method, start):
     with pytest.raises(ValueError, match=r"start .*: expected a ContactState"):
         METHODS[method](height, space, closure=0.3, start=start)
+
+
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("boundary", ["periodic", "mirrored"])
+def test_windows_that_go_on_beyond_their_edges_are_refused(height, method, boundary):
+    space = HalfSpace(SHAPE, 0.1, 2e4, boundary=boundary)
+    with pytest.raises(ValueError, match=f"know free windows, not {boundary} ones"):
+        METHODS[method](height, space, closure=0.01)
