@@ -1,5 +1,5 @@
 # From scans of cracks to the figures of Borri-Brunetto, Carpinteri and Chiaia (1999).
-# A study is its configuration: snakemake --cores all --configfile config/paper.yaml
+# A study is its configuration: snakemake --cores all --configfile config/mine.yaml
 from snakemake.utils import min_version
 
 min_version("9.27")
@@ -23,7 +23,7 @@ include: "workflow/rules/pages.smk"
 include: "workflow/rules/records.smk"
 
 
-# Before Snakemake looks at what there is: results of which it has lost the record are made again.
+# Before Snakemake looks at what there is, in a dry run too: results of which it has lost the record are made again.
 remake_without_record()
 
 

@@ -1,8 +1,8 @@
 # All that was computed, in one file; or of many specimens in one a specimen, and one of what they
 # have together.
 
-#: What is made of every surface, by the rules above.
-OF_SPECIMEN = [
+#: Files that the rules above make of every specimen, whatever its kind, with {specimen} in their names.
+STAGE_PATTERNS = [
     *rules.roughness_and_composite.output,
     *rules.windows.output,
     *rules.closure_and_box_counts.output,
@@ -13,9 +13,9 @@ SPECIMEN_ATLAS = f"{RESULTS}/atlas/{{specimen}}.nc"
 # What of a specimen is compared with others, beside its atlas, which takes long to open.
 SPECIMEN_ROW = f"{RESULTS}/rows/{{specimen}}.nc"
 
-#: What is made of all specimens.
-OF_SPECIMENS = [
-    *expand(OF_SPECIMEN, specimen=SPECIMENS),
+#: Files of all stages of all specimens.
+STAGE_FILES = [
+    *expand(STAGE_PATTERNS, specimen=SPECIMENS),
     *expand(list(rules.strength.output), specimen=SLIDING),
     *expand(list(rules.size_laws_against_plane.output), specimen=FLAT),
     *expand(list(rules.ensemble.output), specimen=ENSEMBLES),
@@ -26,7 +26,7 @@ OF_SPECIMENS = [
 # All that the rules above made, with the verdicts on what the paper says of several specimens.
 rule atlas:
     input:
-        stages=[] if IN_PARTS else OF_SPECIMENS,
+        stages=[] if IN_PARTS else STAGE_FILES,
         rows=expand(SPECIMEN_ROW, specimen=SPECIMENS) if IN_PARTS else [],
         maps=MAP_FILES,
         laboratory=LABORATORY,

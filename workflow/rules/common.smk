@@ -7,12 +7,13 @@ from pathlib import Path
 
 from snakemake.exceptions import WorkflowError
 
-# Of this workflow, also where another imports it as a module.
+# The folder of this workflow, also where another workflow imports it as a module.
 ROOT = Path(workflow.current_basedir.get_path_or_uri(secret_free=True)).parents[1]
 sys.path.insert(0, str(ROOT / "workflow"))
 
 from engine import use_checkout
 
+# The packages of this checkout's src, not those of an installed one.
 use_checkout(ROOT)
 
 from engine.code_digest import Code
@@ -21,10 +22,12 @@ from fractalcontact.core import settings
 from fractalcontact.core.directions import AUTOMATIC_OFFSETS, slides
 from fractalcontact.core.errors import InputError
 from fractalcontact.core.patterns import alternation
-from fractalcontact.study import campaign, resources
+from fractalcontact.study import campaign
+from fractalcontact.study import resources as estimates
 from fractalcontact.study.configuration import resolve_embedded
 
 SOURCE = str(workflow.configfiles[-1]) if workflow.configfiles else "config/paper.yaml"
+# Checks the study, reads the sidecars and digests the scans; once a run, not once a job.
 RUN = Plan(workflow, config, SOURCE)
 STUDY = RUN.study
 RESULTS = f"results/{config['study']}"
@@ -37,9 +40,10 @@ SPECIMENS = sorted(SETTINGS)
 #: Surfaces against a plane, which cannot slide, and all others.
 FLAT = [name for name in SPECIMENS if not slides(SETTINGS[name].opposite)]
 SLIDING = sorted(set(SPECIMENS) - set(FLAT))
-#: Measured maps of contact, which have no settings.
+#: Measured maps of contact. They have no settings, and STUDY.labels has their labels alone; those of
+#: specimens are among their settings.
 MAPS = list(LABELS)
-#: Surfaces that the study makes, with their recipes, and those with laboratory tests.
+#: Surfaces that the study makes, with their recipes, and those with tests in a real laboratory.
 RECIPES = {name: recipe for name, recipe in config.get("embedded", {}).items() if name in SETTINGS}
 TESTED = [name for name in SPECIMENS if SETTINGS[name].measured]
 #: Members of the ensembles that the study wants: twins of scans, realisations of its own surfaces.
@@ -47,7 +51,8 @@ TWINS = {name: SETTINGS[name].twins for name in SPECIMENS if SETTINGS[name].twin
 ENSEMBLES = TWINS | {
     name: recipe["realisations"] for name, recipe in RECIPES.items() if "realisations" in recipe
 }
-#: Whether the atlas has a file a specimen: then nothing asks for all that was made of each of them.
+#: Whether this is a campaign: a study of so many specimens that each has an atlas of its own, and
+#: atlas.nc holds one row of each. Then nothing asks for all that was made of each of them.
 IN_PARTS = campaign.in_parts(config, SPECIMENS)
 
 
@@ -69,14 +74,17 @@ def known(wildcards):
 
 
 def names_of(some, others):
-    """Pattern of the names of one kind of specimens; any name where there is no other kind."""
+    """Constraint of {specimen} to one kind of specimens, where two rules make the same files.
+
+    Any name where there is no other kind, and none where there is none of this kind.
+    """
     return alternation(some) if others else "[^/]+" if some else alternation([])
 
 
-def stated(section):
-    """Parameter with the settings of a specimen that a class of `core.settings` names.
+def settings_of(section):
+    """Input of `params`: the settings of a specimen that a class of `core.settings` names.
 
-    A change of others is no change: a friction angle or a label solves nothing again.
+    Only these make a job run again: a changed friction angle or label solves nothing.
     """
     return lambda wildcards: asdict(settings.read(section, RECORDS[known(wildcards)]))
 
@@ -87,7 +95,8 @@ digest = functools.cache(Code(ROOT / "src", ROOT, ROOT / "workflow").digest)
 def code(script, *names):
     """Parameter that changes with the code that a script of workflow/scripts runs.
 
-    Named are modules, or whole rooms, that it imports by names which only exist when it runs.
+    Snakemake's own trigger sees the script, but not what it imports. Named here are modules, or
+    folders of src, that the script imports only while it runs.
     """
     return lambda wildcards: digest(ROOT / f"workflow/scripts/{script}.py", *names)
 
@@ -101,15 +110,15 @@ def recipe_named(name):
 def face_nodes(name):
     """Most nodes of a face of a specimen."""
     if name in SCANS:
-        return resources.nodes_of_files(SCANS[name].files)
-    return resources.nodes_of_recipe(recipe_named(name))
+        return estimates.nodes_of_files(SCANS[name].files)
+    return estimates.nodes_of_recipe(recipe_named(name))
 
 
 @functools.cache
 def window_nodes(name):
     """Most nodes of the window of a specimen."""
     spacing = OPTIONS[name].get("spacing") if name in SCANS else recipe_named(name)["spacing"]
-    return resources.nodes_of_window(SETTINGS[name], spacing, face_nodes(name))
+    return estimates.nodes_of_window(SETTINGS[name], spacing, face_nodes(name))
 
 
 def most_offsets(name):
@@ -119,7 +128,7 @@ def most_offsets(name):
 
 def kept_states(name):
     """Contact states of a specimen that are kept at the finest resolution."""
-    return resources.states_of(SETTINGS[name], most_offsets(name))
+    return estimates.states_of(SETTINGS[name], most_offsets(name))
 
 
 def doubled(amount):
@@ -133,9 +142,9 @@ def doubled(amount):
 
 def memory(job, nodes=window_nodes, states=kept_states):
     """Megabytes that a job asks for, by the nodes of its grid and its number of states."""
-    return doubled(lambda wc: resources.memory(job, nodes(known(wc)), states(wc.specimen)))
+    return doubled(lambda wc: estimates.memory(job, nodes(known(wc)), states(wc.specimen)))
 
 
 def minutes(job, nodes=window_nodes, states=kept_states):
     """Minutes that a job asks for, likewise."""
-    return doubled(lambda wc: resources.minutes(job, nodes(known(wc)), states(wc.specimen)))
+    return doubled(lambda wc: estimates.minutes(job, nodes(known(wc)), states(wc.specimen)))

@@ -26,7 +26,9 @@ def part_of(wildcards, key):
 
 
 # Offset x load states of the pre-fractals at several resolutions. One job takes as many directions,
-# offsets and resolutions as the study's `grain` says, with all their loads: its file has their numbers.
+# offsets and resolutions as the study's `grain` says, with all their loads. File D.O.R.nc has the D-th
+# block of directions, the O-th of offsets and the R-th of resolutions, counted from 0. The pre-fractals,
+# which are the composite topography at coarser resolutions, are made inside the job and not stored.
 rule contact:
     input:
         specimen=rules.roughness_and_composite.output.specimens,
@@ -39,7 +41,7 @@ rule contact:
         mem_mb=memory("contact"),
         runtime=minutes("contact"),
     params:
-        settings=stated(settings.ContactSettings),
+        settings=settings_of(settings.ContactSettings),
         solver=SOLVER,
         directions=lambda wc: SETTINGS[wc.specimen].contact_directions[part_of(wc, "directions")],
         offsets=lambda wc: part_of(wc, "offsets"),
@@ -62,8 +64,9 @@ def contact_files(wildcards):
     return contact_files_of(known(wildcards))
 
 
-# Its seed and those that follow, or twins: their spread is an error of what is published. As long as
-# the sub-windows; all but those wait for it.
+# Realisations of a surface that the study makes (its seed and those that follow), or twins of a scan:
+# random surfaces with its spectrum. Their spread is an error of what is published. It takes about as
+# long as `windows`, and closure_and_box_counts waits for it.
 rule ensemble:
     input:
         specimens=rules.roughness_and_composite.output.specimens,
@@ -79,7 +82,7 @@ rule ensemble:
         mem_mb=memory("ensemble", states=lambda name: ENSEMBLES[name]),
         runtime=minutes("ensemble", states=lambda name: ENSEMBLES[name]),
     params:
-        settings=stated(settings.EnsembleSettings),
+        settings=settings_of(settings.EnsembleSettings),
         solver=SOLVER,
         recipe=lambda wc: None if wc.specimen in TWINS else recipe_named(known(wc)),
         realisations=lambda wc: ENSEMBLES[wc.specimen],
@@ -94,8 +97,10 @@ rule ensemble:
 ENSEMBLE = branch(lambda wildcards: wildcards.specimen in ENSEMBLES, then=rules.ensemble.output[0])
 
 
-# And the errors of what is published, by source, for which some states are solved again on finer
-# grids and in other windows. Seconds of work, so one job.
+# Closure, dilatancy, contact area, box counts and renormalisation of the states that `contact` solved,
+# and the errors of what is published, by source. For these some states are solved again on finer grids
+# and in other windows. All of it is short beside `contact`, so one job. `branches` are loading and
+# unloading, `choices` says how each solve was done, and contact/{specimen}.nc has the states of all jobs.
 rule closure_and_box_counts:
     input:
         specimens=rules.roughness_and_composite.output.specimens,
@@ -120,7 +125,7 @@ rule closure_and_box_counts:
         mem_mb=memory("closure_and_box_counts"),
         runtime=minutes("closure_and_box_counts"),
     params:
-        settings=stated(settings.StateSettings),
+        settings=settings_of(settings.StateSettings),
         solver=SOLVER,
         code=code("closure_and_box_counts"),
     message:
@@ -146,7 +151,7 @@ rule flow:
         mem_mb=memory("flow"),
         runtime=minutes("flow"),
     params:
-        settings=stated(settings.JointSettings),
+        settings=settings_of(settings.JointSettings),
         solver=SOLVER,
         code=code("flow"),
     message:
@@ -155,7 +160,8 @@ rule flow:
         "../scripts/flow.py"
 
 
-# The longest of a specimen, and the others wait for it.
+# Contact of sub-windows, for the size effect. It is the longest job of a specimen and is begun early,
+# since `strength` waits for it. `strength` summarises window_states in windows/{specimen}.nc.
 rule windows:
     input:
         specimens=rules.roughness_and_composite.output.specimens,
@@ -170,7 +176,7 @@ rule windows:
         mem_mb=memory("windows"),
         runtime=minutes("windows"),
     params:
-        settings=stated(settings.WindowSettings),
+        settings=settings_of(settings.WindowSettings),
         solver=SOLVER,
         code=code("windows"),
     message:
@@ -179,7 +185,8 @@ rule windows:
         "../scripts/windows.py"
 
 
-# The report: this job alone reads friction angles, wall strengths and labels, and it solves nothing.
+# Shear strength, size laws and the comparison with the paper. This job alone reads friction angles, wall
+# strengths and labels of specimens, and it solves nothing.
 rule strength:
     input:
         specimens=rules.roughness_and_composite.output.specimens,
@@ -209,7 +216,7 @@ rule strength:
         mem_mb=memory("strength"),
         runtime=minutes("strength"),
     params:
-        settings=stated(settings.ReportSettings),
+        settings=settings_of(settings.ReportSettings),
         code=code("strength"),
     message:
         "{wildcards.specimen}: strength, size laws and the paper's statements"
@@ -232,7 +239,8 @@ use rule strength as size_laws_against_plane with:
         "{wildcards.specimen}: size laws and the paper's statements"
 
 
-# Little is solved: another hardness, or what has crushed under the largest pressure of a test.
+# Tests of the joint in a real laboratory beside the computed curves. Little is solved: another hardness,
+# or what has crushed under the largest pressure of a test.
 rule measured:
     input:
         specimens=rules.roughness_and_composite.output.specimens,
@@ -248,11 +256,13 @@ rule measured:
         measured=f"{RESULTS}/measured/{{specimen}}.nc",
     log:
         f"{RESULTS}/logs/measured/{{specimen}}.log",
+    wildcard_constraints:
+        specimen=alternation(TESTED),
     resources:
         mem_mb=memory("closure_and_box_counts"),
         runtime=minutes("closure_and_box_counts"),
     params:
-        settings=stated(settings.MeasuredSettings),
+        settings=settings_of(settings.MeasuredSettings),
         solver=SOLVER,
         digests=lambda wc: RUN.digests(*(test.file for test in SETTINGS[known(wc)].measured)),
         code=code("measured"),

@@ -11,7 +11,7 @@ if any(record["capped_variant"] for record in RECORDS.values()):
 STUDY_FIGURES = study_figures_of(ASKED)
 if IN_PARTS:
     STUDY_FIGURES = campaign.of_study_alone(STUDY_FIGURES)
-#: Names of the figures of each joint, and of each surface against a plane, that the study asks for.
+#: Names of the figures of each joint (of matching or independent faces), and of each surface against a plane, that the study asks for.
 OF_JOINT = campaign.drawn_of(config, SPECIMENS, "match")
 OF_FLAT = campaign.drawn_of(config, SPECIMENS, "flat")
 
@@ -47,11 +47,12 @@ def configuration_of(wildcards):
 UNDRAWN = f"{RESULTS}/undrawn/{{specimen}}.txt"
 
 
-# From an atlas of its own, made just before: so a new scan draws only its own, one bad scan does not
-# keep the others from theirs.
+# This job first writes the atlas of one specimen (and its row, in a campaign), and draws from that: it
+# needs no atlas.nc. So a new scan draws only its own figures, and one bad scan does not keep the others
+# from theirs. A new contact map draws all again, as it stands beside every specimen.
 rule figures:
     input:
-        OF_SPECIMEN,
+        STAGE_PATTERNS,
         rules.strength.output,
         ENSEMBLE,
         branch(lambda wildcards: wildcards.specimen in TESTED, then=rules.measured.output.measured),
@@ -84,7 +85,7 @@ rule figures:
 # A surface against a plane does not slide: no strength, and fewer figures.
 use rule figures as figures_against_plane with:
     input:
-        OF_SPECIMEN,
+        STAGE_PATTERNS,
         rules.size_laws_against_plane.output,
         ENSEMBLE,
         branch(lambda wildcards: wildcards.specimen in TESTED, then=rules.measured.output.measured),
@@ -178,7 +179,7 @@ def collect_everything(wildcards):
         return made
     return [
         *made,
-        *OF_SPECIMENS,
+        *STAGE_FILES,
         *MAP_FILES,
         *(path for name in SPECIMENS for path in contact_files_of(name)),
         *expand(list(rules.synthetic_scan.output), specimen=set(SPECIMENS) - set(SCANS)),

@@ -107,7 +107,7 @@ rule estimator_bias:
 def memory_of_part(wildcards):
     """Megabytes of a part of the experiment on the size effect, by its largest surface."""
     side = max(task.whole or task.size for task in SIZE_PARTS[wildcards.part])
-    return resources.memory("size_effect_part", side**2)
+    return estimates.memory("size_effect_part", side**2)
 
 
 # Surfaces of one class a job, minutes each, in any order; small classes share a job.

@@ -7,7 +7,7 @@ EXPLORED = campaign.explored(config, SPECIMENS)
 
 
 def with_endings(path, endings):
-    """Files of a specimen, one an ending, below the folder of the results."""
+    """Files of a specimen, one an ending: "cards/{specimen}.{ending}" with ["yaml", "json"], say."""
     return expand(f"{RESULTS}/{path}", specimen="{specimen}", ending=endings)
 
 
@@ -16,6 +16,7 @@ rule explorer:
         rules.atlas.output[0],
         expand(SPECIMEN_ATLAS, specimen=EXPLORED) if IN_PARTS else [],
     output:
+        # `update`: what readers have stays until the new file takes its place.
         update(f"{RESULTS}/explorer.html"),
     log:
         f"{RESULTS}/logs/explorer.log",
@@ -34,8 +35,8 @@ rule explorer:
 
 
 # The card of a specimen, constants with their intervals which the page and other codes read; its
-# aperture map for other programs, which of many specimens `export_aperture` writes; and its page. All
-# from its own atlas: one more specimen writes no other's again.
+# aperture map for other programs (in a campaign the command export_aperture writes it on demand); and its
+# page. All from its own atlas: one more specimen writes no other's again.
 rule card_and_page:
     input:
         SPECIMEN_ATLAS,

@@ -22,7 +22,10 @@ rule synthetic_scan:
 
 
 def scan_files(wildcards):
-    """The faces of a specimen, or a measured map, wherever they come from. Digests show changes."""
+    """The faces of a specimen, or a measured map, wherever they come from.
+
+    `ancient` ignores their dates: a changed content changes `digests`, which makes the job run again.
+    """
     if wildcards.specimen not in SCANS:
         return rules.synthetic_scan.output.scan
     return [ancient(str(path)) for path in SCANS[wildcards.specimen].files]
@@ -43,8 +46,8 @@ def memory_of_reading(wildcards):
     """Megabytes that the job of a specimen asks for, by the size of its scan files."""
     name = known(wildcards)
     if name in SCANS:
-        return resources.reading_memory(SCANS[name].files)
-    return resources.memory("roughness_and_composite", face_nodes(name))
+        return estimates.reading_memory(SCANS[name].files)
+    return estimates.memory("roughness_and_composite", face_nodes(name))
 
 
 # Seconds of work, so one job: to read the scan is most of it.
@@ -62,7 +65,7 @@ rule roughness_and_composite:
         mem_mb=doubled(memory_of_reading),
         runtime=minutes("roughness_and_composite", face_nodes),
     params:
-        settings=stated(settings.SpecimenSettings),
+        settings=settings_of(settings.SpecimenSettings),
         options=reading_options,
         digests=scan_digests,
         code=code("roughness_and_composite"),
@@ -72,7 +75,7 @@ rule roughness_and_composite:
         "../scripts/roughness_and_composite.py"
 
 
-# A measured map of contact goes straight to the analysis of domains.
+# A measured map of contact goes straight to the analysis of domains. Its {specimen} is the name of a map.
 rule contact_map:
     input:
         scan_files,
