@@ -34,6 +34,17 @@ def made_row(generator, group, pressures=(0.1, 1.0, 10.0), missing=()):
     return xr.Dataset(variables, attrs={"group": group, "label": "a twin"})
 
 
+def test_every_specimen_stands_in_the_table_with_its_surface_dimension(atlas):
+    table = drawing_of("comparison", atlas).data
+    loads = atlas["study_comparison/study"].sizes["load"]
+    assert table["specimen"].tolist() == [name for name in NAMES for _ in range(loads)]
+    table = table[table["load"] == 0]
+    for name, row in zip(NAMES, table.to_dict("records"), strict=True):
+        surface = atlas[f"surface_dimension/{name}"]
+        assert row["delta_g"] == pytest.approx(float(surface["recommended_dimension"]), nan_ok=True)
+    assert np.isnan(table["dilatancy_mm"].iloc[0])  # against a plane
+
+
 def test_the_row_of_a_specimen_is_what_its_stages_state(atlas):
     row = atlas["comparison/sliding"].to_dataset()
     budget = atlas["error_budget/sliding"].to_dataset().sel(quantity="stiffness")

@@ -13,8 +13,8 @@ from fractalcontact.study.figure_list import figures_of, study_figures_of
 
 SUBJECTS = {"sliding": "match", "pair": "match", "flat": "flat"}
 STUDY = [(figure, list(SUBJECTS)) for figure in study_figures_of([*EXPERIMENTS, "comparison"])]
-#: Figures of each specimen, and of the study; those of maps, of accuracy and of elastic and capped
-#: pairs are held to the same contract where their atlases are made.
+#: Figures of each specimen and of the study. Those of maps, of accuracy and of elastic and capped
+#: pairs, which need other atlases, have tests of their own.
 FIGURES = [(one, name) for name, kind in SUBJECTS.items() for one in figures_of(kind)] + STUDY
 FIRST = [(figure, of) for figure, of in FIGURES if of not in ("pair", "flat")]
 #: Its statement prints the missing end of an interval.

@@ -1,11 +1,15 @@
 """The figure of the contact domain's measures, from states of the small atlas."""
 
 import numpy as np
+import pytest
 import xarray as xr
+from cases import representative
+from PIL import Image
 
+from fractalcontact.core.subject import Subject
 from fractalcontact.domain.measures import measures_of_states
 from fractalcontact.figures.joint.domain_measures import draw
-from fractalcontact.figures.kit.drawing import print_style
+from fractalcontact.figures.kit.drawing import print_style, save
 
 
 def with_measures(atlas, name, factor=1.0):
@@ -28,6 +32,25 @@ def with_measures(atlas, name, factor=1.0):
         missing = {of: domains[of] * np.nan for of in ("delta_sigma", "local_slope")}
         nodes[f"/domains/{name}"] = domains.assign(missing)
     return xr.DataTree.from_dict(nodes), found
+
+
+@pytest.mark.parametrize("name", representative(["sliding", "flat", "pair"]))
+def test_drawing_shows_what_was_measured(atlas, name, tmp_path):
+    tree, found = with_measures(atlas, name)
+    with print_style():
+        drawing = draw(tree, name)
+        save(drawing, tmp_path, "domain_measures")
+    with Image.open(tmp_path / "domain_measures.png") as picture:
+        assert np.ptp(np.asarray(picture.convert("L"))) > 100  # something is drawn
+    counts = Subject.of(tree, name).states("domains")
+    drawn_of = ((counts, "local_slope"), (found, "lacunarity"), (found, "generalised_dimension"))
+    for panel, (source, of) in zip("abc", drawn_of, strict=True):
+        drawn = drawing.data[drawing.data["panel"] == panel]
+        assert len(drawn)
+        for force, points in drawn.groupby("normal_force_N"):
+            np.testing.assert_array_equal(points[of], source[of].sel(normal_force=force))
+    assert "section 6" in drawing.caption
+    assert "nan" not in drawing.caption
 
 
 def test_no_contact_is_said(atlas):

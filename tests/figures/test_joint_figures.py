@@ -1,6 +1,7 @@
 """Figures of clusters, conductance, compliance and of the plateau of rigid dilatancy."""
 
 import json
+import re
 
 import numpy as np
 import pytest
@@ -11,13 +12,20 @@ from matplotlib.text import Text
 
 from fractalcontact.core.fitting import fit_line
 from fractalcontact.core.verdicts import ABOVE, BELOW, WITHIN
+from fractalcontact.domain.clusters import cluster_sizes, cluster_statistics
 from fractalcontact.figures.draw import drawer_of
 from fractalcontact.figures.joint import compliance
 from fractalcontact.figures.kit.axes import offset_axis
-from fractalcontact.figures.kit.drawing import print_style
+from fractalcontact.figures.kit.drawing import print_style, save
 from fractalcontact.mechanics.conductance import add_conductance
 
 SLIDING = ("sliding", "pair")
+DRAWN = [
+    *[(figure, name) for figure in ("clusters", "compliance") for name in SLIDING],
+    *[("conductance", name) for name in (*SLIDING, "flat")],
+    ("plateau", ("sliding", "pair", "flat")),
+    ("plateau", ("sliding",)),
+]
 
 
 def drawn(atlas, figure, what):
@@ -37,6 +45,41 @@ def with_changes(atlas, group, **change):
 
 
 # Against the atlas
+
+
+@pytest.mark.parametrize("name", representative(SLIDING))
+def test_clusters_drawn_are_those_of_the_contact_domains(atlas, name):
+    table = drawn(atlas, "clusters", name).data
+    fields = atlas[f"contact/{name}"].to_dataset()["in_contact_1"].isel(direction=0)
+    columns = {
+        "a": ("clusters",),
+        "b": ("largest_share",),
+        "c": ("morisita", "morisita_scatter"),
+    }
+    points = table[table["panel"] != "d"]
+    assert set(points["panel"]) == set(columns)
+    for _, point in points.iterrows():
+        domain = fields.sel(
+            offset=point["offset_mm"], normal_force=point["normal_force_N"], method="nearest"
+        )
+        found = cluster_statistics(domain.values, 0.1)
+        assert point["panel"] != "a" or point["nodes"] == domain.values.sum()
+        for column in columns[point["panel"]]:
+            np.testing.assert_allclose(point[column], found[column])
+
+
+def test_sizes_drawn_are_those_of_the_clusters(atlas):
+    table = drawn(atlas, "clusters", "sliding").data
+    sizes = table[table["panel"] == "d"]
+    fields = atlas["contact/sliding"].to_dataset()["in_contact_1"].isel(direction=0)
+    assert sizes["offset_mm"].nunique() == 3
+    for _, point in sizes.iterrows():
+        domain = fields.sel(
+            offset=point["offset_mm"], normal_force=point["normal_force_N"], method="nearest"
+        )
+        areas = cluster_sizes(domain.values) * 0.1**2
+        at_least = (areas > point["cluster_area_mm2"] * (1 - 1e-9)).sum()
+        assert point["clusters_at_least"] == at_least
 
 
 @pytest.mark.parametrize("name", [*SLIDING, "flat"])
@@ -93,6 +136,25 @@ def test_closures_drawn_over_the_offset_count_from_the_common_seat_of_the_atlas(
         np.testing.assert_array_equal(points["closure_from_common_seat_mm"], stored)
 
 
+@pytest.mark.parametrize("name", SLIDING)
+def test_columns_of_one_name_hold_one_number_for_one_state(atlas, name):
+    """The tables of a specimen's figures of closure, at the offsets and loads that both have."""
+    tables = [drawn(atlas, figure, name).data for figure in ("compliance", "fig04_05_closure")]
+    state = ["offset_mm", "normal_force_N"]
+    first, second = (
+        table[table["interface_closure_mm"].notna()].round(dict.fromkeys(state, 9)).set_index(state)
+        for table in tables
+    )
+    both = first.index.intersection(second.index)
+    assert len(both) > 3
+    columns = first.select_dtypes("number").columns.intersection(second.columns)
+    assert "interface_closure_mm" in columns
+    for column in columns:
+        np.testing.assert_array_equal(
+            first.loc[both, column].astype(float), second.loc[both, column].astype(float), column
+        )
+
+
 def test_the_slope_of_the_synthetic_joints_is_that_of_the_atlas(atlas):
     told = with_changes(atlas, "roll_off/surfaces", slope=0.25, slope_low=0.2, slope_high=0.3)
     stage = told["roll_off/surfaces"].to_dataset()
@@ -128,6 +190,47 @@ def test_spread_of_the_composite_is_what_the_correlation_makes_it(atlas):
 
 
 # What every figure must be
+
+
+@pytest.mark.parametrize(("figure", "what"), representative(DRAWN, 1))
+def test_every_axis_has_a_label_with_its_unit(atlas, figure, what):
+    drawing = drawn(atlas, figure, what)
+    drawing.figure.draw_without_rendering()
+    for axes in drawing.figure.axes:
+        assert axes.get_ylabel()
+        for label in (axes.get_xlabel(), axes.get_ylabel()):
+            assert not label or re.search(r"\(.+\)$", label), label
+    assert 0 < len(drawing.data) <= 20_000
+    assert "nan" not in drawing.caption
+    assert "inf" not in re.sub("interface|inform", "", drawing.caption)
+    labels = {"sliding": "synthetic twin of nothing", "pair": "Brèche", "flat": "flat"}
+    shown = drawing.figure.get_suptitle() or drawing.caption
+    if not isinstance(what, str):  # of a study: the legend names its specimens
+        shown = " ".join(text.get_text() for text in drawing.figure.findobj(Text))
+    for name in [what] if isinstance(what, str) else [n for n in what if n != "flat"]:
+        assert labels[name] in " ".join(shown.split())
+
+
+@pytest.mark.full
+@pytest.mark.parametrize(
+    ("figure", "what"),
+    [
+        ("clusters", "pair"),
+        ("compliance", "pair"),
+        ("conductance", "flat"),
+        ("plateau", ("sliding", "pair")),
+    ],
+)
+def test_the_same_drawing_twice_is_the_same_file_twice(atlas, tmp_path, figure, what):
+    for folder in ("first", "second"):
+        with print_style():
+            save(drawn(atlas, figure, what), tmp_path / folder, figure)
+    written = [
+        {path.name: path.read_bytes() for path in (tmp_path / folder).iterdir()}
+        for folder in ("first", "second")
+    ]
+    assert written[0] == written[1]
+    assert len(written[0]) == 4
 
 
 @pytest.mark.parametrize(

@@ -4,6 +4,7 @@ import base64
 import re
 
 import numpy as np
+import pandas as pd
 import pytest
 import xarray as xr
 from cases import representative
@@ -14,13 +15,20 @@ from matplotlib.text import Text
 from fractalcontact.core.fitting import fit_line
 from fractalcontact.core.subject import Subject
 from fractalcontact.core.text import force_label, force_unit, length_unit
-from fractalcontact.figures.draw import drawer_of
+from fractalcontact.figures.draw import ENDINGS, draw_figures, drawer_of
 from fractalcontact.figures.kit.drawing import DPI, print_style, save, spread
 from fractalcontact.figures.kit.maps import MISSING
 from fractalcontact.figures.kit.relief import shaded
 from fractalcontact.mechanics.joint import composite_topography
+from fractalcontact.study.figure_list import figures_of
 
 FIGURES = ("fig02_relief", "fig03_composite", "fig04_05_closure", "fig06_07_dilatancy")
+DRAWN = [
+    (specimen, figure)
+    for specimen, opposite in (("sliding", "match"), ("pair", "scanned"), ("flat", "flat"))
+    for figure in FIGURES
+    if figure in figures_of(opposite)
+]
 
 
 def drawn(atlas, specimen, figure):
@@ -107,6 +115,16 @@ def test_spread_keeps_the_ends_and_never_repeats():
 # Against the atlas, by other ways
 
 
+def test_estimates_of_dimension_are_those_of_the_atlas(atlas):
+    table = drawn(atlas, "sliding", "fig02_relief").data
+    stored = atlas["surface_dimension/sliding"]
+    assert table["estimator"].tolist() == stored["estimator"].values.tolist()
+    for end in ("", "_low", "_high"):
+        np.testing.assert_array_equal(table[f"dimension{end}"], stored[f"dimension{end}"])
+        for axis in "xy":
+            np.testing.assert_array_equal(table[f"hurst_{axis}{end}"], stored[f"hurst_{axis}{end}"])
+
+
 @pytest.mark.parametrize("specimen", ["sliding", "pair"])
 def test_lifted_upper_face_touches_once_and_never_cuts_the_lower(atlas, specimen):
     profiles = drawn(atlas, specimen, "fig03_composite").data
@@ -149,6 +167,25 @@ def closures_drawn(atlas, specimen):
     """The points of panels (a) and (b)."""
     table = drawn(atlas, specimen, "fig04_05_closure").data
     return table[table["panel"] == "a, b, c"]
+
+
+@pytest.mark.parametrize("specimen", ["sliding", "flat", "pair"])
+def test_closure_points_are_those_of_the_atlas(atlas, specimen):
+    table = closures_drawn(atlas, specimen)
+    curves = atlas[f"closure/{specimen}"].to_dataset().isel(direction=0, resolution=0)
+    for offset, points in table.groupby("offset_mm"):
+        stored = curves.sel(offset=offset, method="nearest")
+        for column, name in (
+            ("normal_force_N", "normal_force"),
+            ("interface_closure_mm", "interface_closure"),
+            ("area_mm2", "area"),
+            ("area_corrected_share", "area_corrected_share"),
+            ("seated_closure_mm", "seated_closure"),
+            ("separation_mm", "separation"),
+        ):
+            np.testing.assert_array_equal(points[column], stored[name])
+        np.testing.assert_array_equal(points["hyperbola_w_m_mm"].unique(), stored["hyperbola_w_m"])
+    assert table["offset_mm"].nunique() == min(5, curves.sizes["offset"])
 
 
 def test_area_exponent_is_that_of_the_points_marked_as_fitted(atlas):
@@ -276,12 +313,40 @@ def test_contact_domains_drawn_hold_the_area_of_the_atlas(atlas):
 # What every figure must be
 
 
+@pytest.mark.parametrize(("specimen", "figure"), representative(DRAWN, 2))
+def test_every_axis_has_a_label_with_its_unit(atlas, specimen, figure):
+    drawing = drawn(atlas, specimen, figure)
+    for axes in drawing.figure.axes:
+        if axes.get_label() == "<colorbar>":
+            continue
+        labels = [axes.get_xlabel(), axes.get_ylabel()]
+        assert any(labels), axes.get_title(loc="left")
+        assert all(re.search(r"\(.+\)$", label) for label in labels if label)
+    assert isinstance(drawing.data, pd.DataFrame)
+    assert 0 < len(drawing.data) <= 20_000
+    label = {"sliding": "synthetic twin of nothing", "pair": "Brèche", "flat": "flat"}[specimen]
+    assert label in drawing.figure.get_suptitle()
+    assert "Fig" in drawing.caption
+    assert "nan" not in drawing.caption
+
+
 @pytest.mark.parametrize("specimen", representative(["sliding", "pair"], 0))
 def test_maps_are_true_to_scale(atlas, specimen):
     for figure in FIGURES:
         for axes in drawn(atlas, specimen, figure).figure.axes:
             if axes.images:
                 assert axes.get_aspect() == 1
+
+
+@pytest.mark.full
+def test_files_are_written_and_the_same_twice(atlas_file, tmp_path):
+    written = []
+    for folder in (tmp_path / "first", tmp_path / "second"):
+        captions = draw_figures(atlas_file, "pair", folder, FIGURES).captions
+        assert list(captions) == list(FIGURES)
+        written.append({path.name: path.read_bytes() for path in folder.iterdir()})
+    assert written[0] == written[1]
+    assert set(written[0]) == {f"{name}.{ending}" for name in FIGURES for ending in ENDINGS}
 
 
 def test_maps_in_the_svg_are_as_fine_as_those_in_the_png(atlas, tmp_path):

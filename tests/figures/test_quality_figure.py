@@ -11,7 +11,7 @@ from matplotlib.text import Text
 
 from fractalcontact.figures.draw import draw_figures
 from fractalcontact.figures.joint.quality import draw
-from fractalcontact.figures.kit.drawing import print_style
+from fractalcontact.figures.kit.drawing import print_style, save
 from fractalcontact.roughness.quality import scan_quality
 from fractalcontact.roughness.quality_words import statements
 
@@ -53,6 +53,19 @@ def test_the_points_drawn_are_those_of_the_atlas(atlas, name):
             profile = table.query("face == @face and axis == @axis and height_mm.notna()")
             assert 0 < len(profile) <= specimen.sizes[axis]
             assert profile["height_mm"].max() <= float(specimen[face].max())
+
+
+@pytest.mark.parametrize("name", representative(SPECIMENS))
+def test_it_is_written_with_units_on_every_axis(atlas, name, tmp_path):
+    drawing = drawn(atlas, name)
+    with print_style():
+        save(drawing, tmp_path, "quality")
+    assert {path.suffix for path in tmp_path.iterdir()} == {".png", ".svg", ".csv", ".txt"}
+    panels = [axes for axes in drawing.figure.axes if axes.get_title(loc="left")]
+    assert len(panels) == 7 + 5 * (name == "pair")
+    for axes in panels:
+        assert "(" in axes.get_xlabel()
+        assert "(" in axes.get_ylabel()
 
 
 def test_a_warning_stands_in_the_sheet_and_in_no_caption(atlas_file, atlas, tmp_path):

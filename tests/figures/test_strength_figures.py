@@ -1,5 +1,7 @@
 """Figures of strength and of size (Fig. 1b, sects. 3 and 5 of the paper)."""
 
+import json
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -9,8 +11,9 @@ from matplotlib.figure import Figure
 
 from fractalcontact.core.estimate import names_of
 from fractalcontact.core.limits import LARGEST_FRICTION_ANGLE
+from fractalcontact.core.subject import Subject
 from fractalcontact.figures.draw import drawer_of
-from fractalcontact.figures.kit.drawing import print_style
+from fractalcontact.figures.kit.drawing import print_style, save
 from fractalcontact.figures.kit.sizes import draw_over_size, plain_decades, roughness_words
 
 DRAWN = [
@@ -71,6 +74,50 @@ def test_series_stand_apart_about_the_size_itself():
 # Against the atlas
 
 
+@pytest.mark.parametrize("specimen", ["sliding", "pair"])
+def test_strength_drawn_is_that_of_the_atlas(atlas, specimen):
+    table, _ = computed_and_read(drawn(atlas, specimen, "strength").data)
+    stored = atlas[f"strength/{specimen}"].to_dataset().isel(contact_direction=0)
+    panels = {which: table[table["panel"] == which] for which in "abc"}
+    rigid = panels["a"][panels["a"]["normal_force_N"].isna()]
+    np.testing.assert_array_equal(rigid["midpoint_mm"], stored["midpoint"])
+    np.testing.assert_array_equal(
+        rigid["rigid_dilatancy_angle_degree"], stored["rigid_dilatancy_angle"]
+    )
+    for panel, column, name in (
+        ("a", "midpoint_mm", "midpoint"),
+        ("a", "dilatancy_angle_degree", "dilatancy_angle"),
+        ("b", "shear_strength_MPa", "shear_strength"),
+    ):
+        for force, points in panels[panel].groupby("normal_force_N"):
+            values = stored.sel(normal_force=force)[name]
+            np.testing.assert_array_equal(points[column], values)
+    for name in ("peak_strength", "barton_strength"):
+        np.testing.assert_array_equal(panels["c"][f"{name}_MPa"], stored[name])
+
+
+@pytest.mark.parametrize("specimen", ["sliding", "pair", "flat"])
+def test_sizes_drawn_are_those_of_the_atlas(atlas, specimen):
+    table = drawn(atlas, specimen, "window_size").data
+    laws = atlas[f"windows/{specimen}"].to_dataset()
+    face = table[table["panel"] == "a"].dropna(subset="face_sigma_z_mm")
+    np.testing.assert_array_equal(face["scale_side_mm"], laws["scale_side"])
+    np.testing.assert_array_equal(face["face_sigma_z_mm"], laws["face_sigma_z"])
+    closure = table[table["panel"] == "b"]
+    laws = laws.sel(offset=Subject.of(atlas, specimen).offset, method="nearest")
+    expected = laws["interface_closure"].transpose("normal_force", "part").values.ravel()
+    np.testing.assert_array_equal(closure["interface_closure_mm"], expected)
+
+
+def test_strength_by_size_is_that_of_the_atlas(atlas):
+    table = drawn(atlas, "sliding", "fig01_strength").data
+    laws = atlas["windows/sliding"].to_dataset()
+    for name, unit in (("slope", ""), ("strength", "_MPa")):
+        for of in ("at_equal_v_over_b", "of_whole_at_equal_v"):
+            stored = laws[f"{name}_{of}"].transpose("normal_force", "share", "part").values.ravel()
+            np.testing.assert_array_equal(table[f"{name}_{of}{unit}"], stored)
+
+
 def test_the_right_axis_adds_the_basic_angle(atlas):
     axes = drawn(atlas, "sliding", "strength").figure.axes[0]
     (other,) = axes.child_axes
@@ -82,6 +129,26 @@ def test_the_right_axis_adds_the_basic_angle(atlas):
 
 
 # Properties
+
+
+@pytest.mark.parametrize(("specimen", "figure"), representative(DRAWN, 1))
+def test_every_axis_states_its_unit(atlas, specimen, figure):
+    for axes in drawn(atlas, specimen, figure).figure.axes:
+        if axes.axison and axes.lines:
+            for label in (axes.get_xlabel(), axes.get_ylabel()):
+                assert label.endswith(("(mm)", "(MPa)", "(degrees)", "(mm/mm)")), label
+
+
+@pytest.mark.parametrize(("specimen", "figure"), representative(DRAWN, 1))
+def test_caption_names_the_specimen_and_its_claim(atlas, specimen, figure):
+    drawing = drawn(atlas, specimen, figure)
+    caption = drawing.caption
+    label = json.loads(atlas.attrs["configuration"])["settings"][specimen]["label"]
+    assert label in drawing.figure.get_suptitle()
+    assert "nan" not in caption
+    assert "  " not in caption
+    assert ("Fig. 1b" in caption) == (figure == "fig01_strength")
+    assert ("section 5" in caption) == (figure != "fig01_strength")
 
 
 @pytest.mark.parametrize(("specimen", "figure"), representative(DRAWN, 3))
@@ -103,6 +170,20 @@ def test_no_fit_is_said_and_no_line_drawn(atlas):
     assert "No fit of eq. 2" in drawing.caption
 
 
+@pytest.mark.full
+@pytest.mark.parametrize(("specimen", "figure"), DRAWN)
+def test_drawn_twice_the_files_are_the_same(atlas, specimen, figure, tmp_path):
+    for folder in ("once", "twice"):
+        with print_style():
+            save(drawn(atlas, specimen, figure), tmp_path / folder, figure)
+    for ending in ("png", "svg", "csv", "txt"):
+        once, twice = (
+            (tmp_path / f / f"{figure}.{ending}").read_bytes() for f in ("once", "twice")
+        )
+        assert once == twice
+        assert once
+
+
 def test_strengths_of_truncated_angles_are_marked_and_compared_with_nothing(atlas):
     strength = atlas["strength/sliding"].to_dataset().isel(contact_direction=0)
     table, _ = computed_and_read(drawn(atlas, "sliding", "strength").data)
@@ -117,6 +198,15 @@ def test_strengths_of_truncated_angles_are_marked_and_compared_with_nothing(atla
     assert (valid.values == (strength["truncated_high"].values == 0)).all()
     none = "Every peak is truncated" in drawn(atlas, "sliding", "strength").caption
     assert none == (not valid.any())
+
+
+def test_compliance_over_size_is_drawn_as_the_atlas_has_it(atlas):
+    laws = atlas["windows/sliding"].to_dataset()
+    table = drawn(atlas, "sliding", "window_size").data
+    rows = table[table["panel"] == "c"]
+    laws = laws.sel(offset=Subject.of(atlas, "sliding").offset, method="nearest")
+    stored = laws["interface_compliance"].transpose("normal_force", "part").values
+    np.testing.assert_array_equal(rows["interface_compliance_mm_per_MPa"], stored.ravel())
 
 
 def test_both_figures_of_strength_word_the_roughness_alike(atlas):
