@@ -123,3 +123,8 @@ def test_a_number_becomes_text_in_one_module(room):
         r"^def (percent|short|measured|with_unit|interval|number)\(.*(float|share)", re.M
     )
     assert [path.name for path in paths if own.search(path.read_text())] == []
+
+
+def test_an_end_that_is_not_known_is_said_so():
+    estimate = Estimate(0.12, 0.03, math.nan)
+    assert number(estimate, 2, "+") == "+0.12 [+0.03, not known]"

@@ -17,17 +17,11 @@ STUDY = [(figure, list(SUBJECTS)) for figure in study_figures_of([*EXPERIMENTS, 
 #: pairs, which need other atlases, have tests of their own.
 FIGURES = [(one, name) for name, kind in SUBJECTS.items() for one in figures_of(kind)] + STUDY
 FIRST = [(figure, of) for figure, of in FIGURES if of not in ("pair", "flat")]
-#: Its statement prints the missing end of an interval.
-UNKNOWN_END = ("compliance", "pair")
-NOT_YET = pytest.mark.xfail(reason="its caption has '+nan' for an unknown end", strict=True)
 #: Half of the captions of a study have fewer words than this.
 MEDIAN_WORDS = 50
 
 
-@pytest.mark.parametrize(
-    ("figure", "subject"),
-    [pytest.param(*one, marks=NOT_YET if one == UNKNOWN_END else ()) for one in FIGURES],
-)
+@pytest.mark.parametrize(("figure", "subject"), FIGURES)
 def test_a_figure_keeps_the_contract(marked, drawn, figure, subject):
     """Units on all axes, a short caption, a table of numbers that the atlas has at their places."""
     drawing = drawn(figure, subject)

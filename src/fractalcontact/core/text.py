@@ -61,9 +61,13 @@ def compact(value: Any, digits: int = 3, sign: str = "") -> str:
 
 
 def number(value: Any, decimals: int = 2, sign: str = "") -> str:
-    """A number, or an estimate with its interval, to some decimals, never a negative zero."""
+    """A number, or an estimate with its interval, to some decimals, never a negative zero.
+
+    An end of an interval that is NaN is "not known".
+    """
     if hasattr(value, "ends"):
-        return _with_ends(number(end, decimals, sign) for end in value.ends)
+        middle, *ends = (number(end, decimals, sign) for end in value.ends)
+        return _with_ends([middle, *("not known" if end.endswith("nan") else end for end in ends)])
     return f"{round(float(value), decimals) + 0.0:{sign}.{decimals}f}"
 
 
