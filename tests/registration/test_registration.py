@@ -454,7 +454,7 @@ def test_keys_for_two_faces_need_two_faces(tmp_path):
     for key, value in (("registration", "none"), ("mirror_upper", "x")):
         with pytest.raises(InputError, match=f"key '{key}' needs two faces"):
             read_faces(path, None, options | {key: value})
-        with pytest.raises(InputError, match=f"key '{key}' is 'z'; expected"):
+        with pytest.raises(InputError, match=f"{key}: 'z' is not right; expected"):
             read_faces(path, path, options | {key: "z"})
 
 

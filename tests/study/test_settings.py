@@ -45,7 +45,7 @@ def test_a_rule_states_the_settings_that_the_function_of_its_script_takes(functi
     rule = rules.partition(f"\nrule {RULES[function]}:\n")[2].partition("\n    script:")[0]
     script = (ROOT / f"workflow/scripts/{RULES[function]}.py").read_text()
     taken = {of.__name__ for of in get_type_hints(function).values() if is_section(of)}
-    named = set(re.findall(r"stated\(settings\.(\w+)\)", rule))
+    named = set(re.findall(r"settings_of\(settings\.(\w+)\)", rule))
     assert taken == named | ({"Solver"} if "solver=SOLVER" in rule else set())
     assert set(re.findall(r"read\((\w+), given", script)) == named
     assert f"{function.__name__}(" in script

@@ -143,7 +143,7 @@ def test_every_rule_asks_for_more_at_a_second_attempt():
     for amount in (3, lambda wildcards: 3):
         asked = own["doubled"](amount)
         assert [asked(None, attempt) for attempt in (1, 2, 3)] == [3, 6, 12]
-    assert shared.count("    return doubled(lambda wc: resources.") == 2  # memory and minutes
+    assert shared.count("    return doubled(lambda wc: estimates.") == 2  # memory and minutes
 
 
 def test_why_the_cluster_ended_a_job_is_said_in_its_users_words():

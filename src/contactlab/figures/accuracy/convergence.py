@@ -10,6 +10,7 @@ from fractalcontact.core.estimate import EXPONENT, Estimate
 from fractalcontact.figures.kit.caption import caption
 from fractalcontact.figures.kit.drawing import MARKERS, WIDTH, Drawing, colour_of, group
 from fractalcontact.figures.kit.panel import rows
+from fractalcontact.figures.kit.ticks import powers_of_ten
 from fractalcontact.figures.kit.titles import letter
 
 from ...accuracy.convergence import QUANTITIES
@@ -39,6 +40,7 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
     for axes, which, title in zip(panels, "abc", _TITLES, strict=True):
         letter(axes, which, title)
         axes.set(xscale="log", yscale="log")
+        powers_of_ten(axes.xaxis)
         axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.2))
     panels[0].set_ylabel("relative error, rms over positions (1)")
     table = pd.concat(tables, ignore_index=True)

@@ -10,9 +10,10 @@ from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.axes._secondary_axes import SecondaryAxis
 from matplotlib.axis import Axis
 from matplotlib.figure import FigureBase
-from matplotlib.ticker import Locator, LogFormatterSciNotation, NullLocator
+from matplotlib.ticker import Locator, LogFormatterSciNotation, NullFormatter, NullLocator
 
 from .axes import label_short_span
 
@@ -28,6 +29,14 @@ def plain_ticks(figure: FigureBase) -> None:
     """
     for panel, axis in axes_of(figure):
         _spare(panel, axis)
+
+
+def powers_of_ten(axis: Axis) -> None:
+    """Number a logarithmic axis of a narrow panel at powers of ten alone, if it is over a decade."""
+    low, high = axis.get_view_interval()
+    if high > 10 * low:
+        axis.set_major_formatter(_Decades())
+        axis.set_minor_formatter(NullFormatter())
 
 
 def keep_labels(figure: FigureBase) -> None:
@@ -55,7 +64,9 @@ def axes_of(figure: FigureBase) -> Iterator[tuple[Axes, Axis]]:
 def _spare(panel, axis):
     if not axis.label.get_text():
         axis.set_label_coords(0, 0)  # else a place clear of the numbers is sought for it too
-    if type(axis.get_major_formatter()) is LogFormatterSciNotation:
+    # A secondary axis gets its limits only while it is drawn.
+    is_known = not isinstance(panel, SecondaryAxis)
+    if is_known and type(axis.get_major_formatter()) is LogFormatterSciNotation:
         label_short_span(axis)
     if type(axis.get_major_formatter()) is LogFormatterSciNotation:  # a long one still
         axis.set_major_formatter(_Decades())
