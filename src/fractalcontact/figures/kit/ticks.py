@@ -32,7 +32,7 @@ def plain_ticks(figure: FigureBase) -> None:
 
 
 def powers_of_ten(axis: Axis) -> None:
-    """Number a logarithmic axis of a narrow panel at powers of ten alone, if it is over a decade."""
+    """Number a logarithmic axis over a decade at powers of ten alone, for a narrow panel."""
     low, high = axis.get_view_interval()
     if high > 10 * low:
         axis.set_major_formatter(_Decades())
