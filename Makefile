@@ -25,7 +25,7 @@
 #:   make rule-graph            the picture of the rules, docs/chain.svg
 #:   make keep                  before a change: keeps the results of smoke and paper, or of STUDY
 #:   make same                  after it: what differs from those, bit for bit; AGAINST=folder, RENAMED=file
-#:   make schema                schemas for editors and the tables of keys, from the classes of keys
+#:   make schema                schemas for editors, tables of keys and of published numbers, from their classes and rows
 #:   make lock                  new pins for every package
 #:   make clean                 results and Snakemake's records are removed
 
