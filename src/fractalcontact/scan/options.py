@@ -3,6 +3,7 @@
 import math
 from collections.abc import Mapping
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 from ..core.errors import InputError
@@ -11,11 +12,11 @@ from ..core.units import length_factor, quantity
 from .keys import ScanKeys
 
 
-class ScanOptions:
+class ScanOptions(SimpleNamespace):
     """Statements of a sidecar about a scan file: each key of `ScanKeys`, None where not stated.
 
     A file that describes itself needs none of them, any other is read only as they say: see
-    :mod:`scan.stated`.
+    :mod:`scan.stated`. They are not changed; :meth:`but` makes others.
 
     Raises
     ------
@@ -26,23 +27,10 @@ class ScanOptions:
     def __init__(self, **stated: Any):
         if unknown := sorted(stated.keys() - ScanKeys.model_fields.keys()):
             raise TypeError(f"{unknown[0]!r} is not a key of a scan")
-        vars(self).update(dict.fromkeys(ScanKeys.model_fields), **stated)
-
-    def __getattr__(self, name: str) -> Any:
-        raise AttributeError(f"{name!r} is not a key of a scan")
+        super().__init__(**dict.fromkeys(ScanKeys.model_fields) | stated)
 
     def __setattr__(self, name: str, value: Any) -> None:
         raise AttributeError("statements are not changed; make others with `but`")
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, ScanOptions) and vars(self) == vars(other)
-
-    def __hash__(self) -> int:
-        return hash(repr(self))
-
-    def __repr__(self) -> str:
-        said = ", ".join(f"{key}={value!r}" for key, value in self.stated().items())
-        return f"ScanOptions({said})"
 
     def stated(self) -> dict[str, Any]:
         """Values of the keys that are stated."""
