@@ -29,7 +29,7 @@ def pair(tmp_path):
     lower = self_affine((30, 40), 0.8, 0.1, rms=0.1, seed=3)
     np.save(tmp_path / "lower.npy", lower)
     np.save(tmp_path / "upper.npy", lower + OPENING)
-    (tmp_path / "keys.yaml").write_text(yaml.safe_dump({**STATED, "material": "granite"}))
+    (tmp_path / "keys.yaml").write_text(yaml.safe_dump({**STATED, "label": "granite"}))
     return [str(tmp_path / name) for name in ("lower.npy", "upper.npy")]
 
 
@@ -91,3 +91,9 @@ def test_another_ending_is_refused_before_anything_is_read(tmp_path, capsys, out
     assert main(["no.npy", "none.npy", "--out", str(tmp_path / out)]) == 1
     assert ".csv, .nc, .vtk" in capsys.readouterr().err
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_key_that_is_none_is_refused(pair, tmp_path, capsys):
+    (tmp_path / "keys.yaml").write_text(yaml.safe_dump({**STATED, "registraton": "none"}))
+    assert run(pair, tmp_path, "gap.nc") == 1
+    assert "did you mean 'registration'?" in capsys.readouterr().err

@@ -16,6 +16,9 @@ from ..core.text import exact
 #: Relative difference of two pressures that are one.
 SAME = 1e-6
 
+#: Endings of files of an aperture map.
+MAP_ENDINGS = (".csv", ".nc", ".vtk")
+
 
 def aperture_at(
     contact: xr.Dataset, pressure: float | None, name: str, results: Path | str | None = None
@@ -143,7 +146,7 @@ def write_aperture(aperture: xr.DataArray | pd.DataFrame, path: Path | str) -> N
     """
     path = Path(path)
     of_points = isinstance(aperture, pd.DataFrame)
-    endings = (".csv",) if of_points else (".csv", ".nc", ".vtk")
+    endings = (".csv",) if of_points else MAP_ENDINGS
     if path.suffix not in endings:
         what = "apertures at points" if of_points else "an aperture map"
         raise InputError(f"{path}: {what}: write a file that ends in {' or '.join(endings)}")

@@ -42,7 +42,7 @@ def draw_faces(faces: Sequence[Any], path: Path) -> None:
         of_map = face.options.get("kind") == APERTURE
         label = "negative of the aperture (mm)" if of_map else "height (mm)"
         z = _draw_relief(figure, beside, face, label)
-        _draw_histogram(histogram, z, label)
+        draw_histogram(histogram, z, label)
     figure.savefig(path, dpi=90)
 
 
@@ -55,12 +55,12 @@ def _draw_relief(figure, axes, face, label):
         step = max(1, -(-max(z.shape) // _MAX_CELLS))
         shown = np.ma.masked_invalid(z[::step, ::step])
         extent = (0, nx * dx, 0, ny * dy)
-        image = axes.imshow(shown, origin="lower", extent=extent, cmap=_colours(), aspect="equal")
+        image = axes.imshow(shown, origin="lower", extent=extent, cmap=colours(), aspect="equal")
         title = f"{nx} x {ny} cells of {dx:.4g} x {dy:.4g} mm"
     else:
         points = measured.values[:: max(1, len(measured.values) // _MAX_POINTS)]
         x, y, z = points.T
-        image = axes.scatter(x, y, c=z, s=2, cmap=_colours(), linewidths=0)
+        image = axes.scatter(x, y, c=z, s=2, cmap=colours(), linewidths=0)
         axes.set_aspect("equal")
         title = f"{len(measured.values)} points"
         z = measured.values[:, 2]
@@ -72,16 +72,20 @@ def _draw_relief(figure, axes, face, label):
     return z
 
 
-def _colours():
+def colours():
+    """Colours of a relief, missing cells in red."""
     from matplotlib import colormaps
 
     return colormaps["viridis"].with_extremes(bad="red")
 
 
-def _draw_histogram(axes, z, label):
+def draw_histogram(axes, z, label):
+    """Histogram of values in mm; their ends, median and missing share above it."""
     present = z[np.isfinite(z)]
     if present.size:
-        axes.hist(present, bins=60, color="0.4")
+        # A margin of 1 um, as all may be alike.
+        ends = (present.min() - 1e-3, present.max() + 1e-3)
+        axes.hist(present, bins=60, range=ends, color="0.4")
         axes.set_title(
             f"{present.min():.5g} to {present.max():.5g} mm, median {np.median(present):.5g} mm\n"
             f"missing {percent(1 - present.size / z.size)} (red)",

@@ -17,18 +17,17 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from ..cards.apertures import write_aperture
+from ..cards.apertures import MAP_ENDINGS, write_aperture
 from ..core.errors import InputError, said_in_one_line
 from ..core.labels import printable
 from ..core.text import percent
-from ..scan.keys import ScanKeys
 from ..scan.read import read_faces
-from ..study.sidecar import read_yaml
+from ..study.checks import read_sidecar
 from ..surface.cleaning import clean_faces
+from .describe_picture import colours, draw_histogram
 
-#: Shares of the cells that lie below the gaps that are printed, in percent.
+#: Percentiles of the gap that are printed.
 _PERCENTILES = (1, 5, 25, 50, 75, 95, 99)
-_ENDINGS = (".csv", ".nc", ".vtk")
 
 
 @said_in_one_line
@@ -42,14 +41,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--outliers", default="keep", help="keep, mask or fill; keep by default")
     given = parser.parse_args(arguments)
     out = Path(given.out)
-    if out.suffix not in _ENDINGS:
-        raise InputError(f"{out}: write a file that ends in {', '.join(_ENDINGS)}")
-    if given.keys:
-        keys = read_yaml(given.keys)
-        # Keys of a study in the same sidecar, such as a material, say nothing of the gap.
-        keys = {key: value for key, value in keys.items() if key in ScanKeys.model_fields}
-    else:
-        keys = {}
+    if out.suffix not in MAP_ENDINGS:
+        raise InputError(f"{out}: write a file that ends in {', '.join(MAP_ENDINGS)}")
+    # Settings of a study in the same sidecar, such as a material, say nothing of the gap.
+    keys, _ = read_sidecar(Path(given.keys) if given.keys else None)
     gap = gap_of(Path(given.lower), Path(given.upper), keys, given.outliers)
     picture = out.with_suffix(".png")
     write_aperture(gap, out)
@@ -107,8 +102,9 @@ def words(gap: xr.DataArray) -> list[str]:
         f"{percent(1 - present.size / gap.size)} without a height of both",
         f"gap: mean {present.mean():.4g} mm, standard deviation {present.std():.4g} mm, "
         f"{present.min():.4g} to {present.max():.4g} mm",
-        f"cells whose gap is less, in mm: {each}",
-        f"overlap: the faces lie below each other at {percent(float(np.mean(present < 0)))}",
+        f"percentiles of the gap, mm: {each}",
+        f"overlap: the upper face lies below the lower one in {percent(float(np.mean(present < 0)))} "
+        "of the cells",
         f"suspicious cells: {gap.attrs['cleaning']}",
     ]
     if not done["applied"]:
@@ -124,29 +120,19 @@ def words(gap: xr.DataArray) -> list[str]:
 
 def _draw(gap: xr.DataArray, path: Path) -> None:
     """Map of the gap and its histogram."""
-    from matplotlib import colormaps
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(11, 4.8), layout="constrained")
     FigureCanvasAgg(figure)
     of_map, histogram = figure.subplots(1, 2, width_ratios=(3, 2))
-    present = gap.values[np.isfinite(gap.values)]
-    low, high = np.percentile(present, [0.5, 99.5])  # a few spikes must not hide the rest
-    colours = colormaps["viridis"].with_extremes(bad="red")
+    low, high = np.nanpercentile(gap, [0.5, 99.5])  # a few spikes must not hide the rest
     image = of_map.pcolormesh(
-        gap["x"], gap["y"], gap, cmap=colours, vmin=low, vmax=high, rasterized=True
+        gap["x"], gap["y"], gap, cmap=colours(), vmin=low, vmax=high, rasterized=True
     )
-    of_map.set_aspect("equal")
-    of_map.set_facecolor("red")
-    of_map.set(xlabel="x (mm)", ylabel="y (mm)", title="missing is red")
+    of_map.set(aspect="equal", facecolor="red", xlabel="x (mm)", ylabel="y (mm)")
     figure.colorbar(image, ax=of_map, label="gap (mm)", extend="both")
-    # A margin of 1 um, as a gap may be the same everywhere.
-    ends = (low - 1e-3, high + 1e-3)
-    histogram.hist(np.clip(present, low, high), bins=60, range=ends, color="0.4")
-    histogram.axvline(float(present.mean()), color="black", linestyle="--", label="mean")
-    histogram.set(xlabel="gap (mm)", ylabel="cells")
-    histogram.legend()
+    draw_histogram(histogram, gap.values, "gap (mm)")
     figure.suptitle(printable(gap.attrs["source"], 120), fontsize=9)
     figure.savefig(path, dpi=110)
 
