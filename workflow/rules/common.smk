@@ -51,8 +51,8 @@ TWINS = {name: SETTINGS[name].twins for name in SPECIMENS if SETTINGS[name].twin
 ENSEMBLES = TWINS | {
     name: recipe["realisations"] for name, recipe in RECIPES.items() if "realisations" in recipe
 }
-#: Whether this is a campaign: a study of so many specimens that each has an atlas of its own, and
-#: atlas.nc holds one row of each. Then nothing asks for all that was made of each of them.
+#: Whether this is a campaign: a study whose specimens each have an atlas of their own, as they
+#: are many; atlas.nc holds one row of each. Then nothing asks for all that was made of each of them.
 IN_PARTS = campaign.in_parts(config, SPECIMENS)
 
 

@@ -49,7 +49,7 @@ class Problem:
     nodes: np.ndarray | None = None
 
     @property
-    def most_closure(self) -> float:
+    def largest_closure(self) -> float:
         """Closure of an elastic window that goes on beyond its edges in full contact, or infinity.
 
         Its mean plane then comes no nearer, whatever the force.
@@ -58,7 +58,7 @@ class Problem:
         return float(self.clearance.mean()) if bounded else np.inf
 
     def tolerated(self, iterate: "Iterate") -> float:
-        """What violations are counted in: the closure.
+        """Unit of violations: the closure.
 
         In full contact of a window that goes on beyond its edges the closure may be none, as that
         of two planes is, under any pressure. What its mean pressure does to a cell alone is added.

@@ -88,7 +88,7 @@ def newton_on_closure(
     Solution
         The caller checks its residual.
     """
-    low, high, solution = 0.0, problem.most_closure, start
+    low, high, solution = 0.0, problem.largest_closure, start
     closure = start.closure if start.closure < high else high / 2
     tolerance = SAFETY * rtol
     for _ in range(MAX_CLOSURES):
