@@ -96,6 +96,7 @@ def words(gap: xr.DataArray) -> list[str]:
     ny, nx = gap.shape
     dx, dy = (float(np.diff(gap[axis].values).mean()) for axis in "xy")
     shares = np.percentile(present, _PERCENTILES)
+    overlapping = percent(float(np.mean(present < 0)))
     each = ", ".join(f"{p} %: {g:.4g}" for p, g in zip(_PERCENTILES, shares, strict=True))
     lines = [
         f"{gap.attrs['source']}: {nx} x {ny} cells of {dx:.4g} x {dy:.4g} mm, "
@@ -103,8 +104,7 @@ def words(gap: xr.DataArray) -> list[str]:
         f"gap: mean {present.mean():.4g} mm, standard deviation {present.std():.4g} mm, "
         f"{present.min():.4g} to {present.max():.4g} mm",
         f"percentiles of the gap, mm: {each}",
-        f"overlap: the upper face lies below the lower one in {percent(float(np.mean(present < 0)))} "
-        "of the cells",
+        f"overlap: the upper face lies below the lower one in {overlapping} of the cells",
         f"suspicious cells: {gap.attrs['cleaning']}",
     ]
     if not done["applied"]:
