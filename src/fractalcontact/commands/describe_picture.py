@@ -72,14 +72,14 @@ def _draw_relief(figure, axes, face, label):
     return z
 
 
-def colours():
+def colours() -> Any:
     """Colours of a relief, missing cells in red."""
     from matplotlib import colormaps
 
     return colormaps["viridis"].with_extremes(bad="red")
 
 
-def draw_histogram(axes, z, label):
+def draw_histogram(axes: Any, z: np.ndarray, label: str) -> None:
     """Histogram of values in mm; their ends, median and missing share above it."""
     present = z[np.isfinite(z)]
     if present.size:
