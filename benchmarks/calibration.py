@@ -19,10 +19,10 @@ from fractalcontact.core.intervals import LEFT_OUT
 from fractalcontact.core.limits import CORRECTED_NODES
 from fractalcontact.domain.box_dimension import dimension_of_domain
 from fractalcontact.domain.renormalisation import renormalisation
-from fractalcontact.mechanics.area_sampling import state_area_sampling
-from fractalcontact.mechanics.joint import prefractal
-from fractalcontact.mechanics.left_out import fractions_left, part_ends
-from fractalcontact.mechanics.state_scalars import state_area
+from fractalcontact.joint.joint import prefractal
+from fractalcontact.states.area_sampling import state_area_sampling
+from fractalcontact.states.left_out import fractions_left, part_ends
+from fractalcontact.states.state_scalars import state_area
 from fractalcontact.surface.synthesis import self_affine
 from roughcontact.contact.solve import solve_contact
 from roughcontact.elastic.halfspace import HalfSpace

@@ -32,12 +32,12 @@ from fractalcontact.domain.clusters import NEIGHBOURS
 from fractalcontact.domain.random_nodes import band_of
 from fractalcontact.error_budget.counting import counting_error
 from fractalcontact.error_budget.refinement import LoadCurve
-from fractalcontact.mechanics.area_sampling import state_area_sampling
-from fractalcontact.mechanics.joint import prefractal
-from fractalcontact.mechanics.state_scalars import aperture
-from fractalcontact.mechanics.subgrid import state_quantities
-from fractalcontact.mechanics.sweep import load_steps
+from fractalcontact.joint.joint import prefractal
 from fractalcontact.roughness.twin_surface import twin_surface
+from fractalcontact.states.area_sampling import state_area_sampling
+from fractalcontact.states.state_scalars import aperture
+from fractalcontact.states.subgrid import state_quantities
+from fractalcontact.states.sweep import load_steps
 from fractalcontact.surface.synthesis import band_limited
 from roughcontact.elastic.halfspace import HalfSpace
 

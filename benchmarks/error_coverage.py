@@ -1,7 +1,7 @@
 """Coverage of the stated errors, on synthetic joints whose truth is known: `error_coverage.py`.
 
 Each joint is solved at s, as a study does, and at s/2 and s/4, from which its errors are stated;
-the truth is the same surface at s/8. The constants of `mechanics/numerical_error.py` are calibrated
+the truth is the same surface at s/8. The constants of `states/numerical_error.py` are calibrated
 on seeds 1 to 100; of any others the table says whether they hold.
 """
 
@@ -13,9 +13,9 @@ from pathlib import Path
 import numpy as np
 
 from fractalcontact.error_budget.refinement import FACTORS, curve_errors
-from fractalcontact.mechanics.state_scalars import state_errors
-from fractalcontact.mechanics.subgrid import QUANTITIES, state_quantities, subgrid_states, summit
 from fractalcontact.roughness.dimension import slope_statistics
+from fractalcontact.states.state_scalars import state_errors
+from fractalcontact.states.subgrid import QUANTITIES, state_quantities, subgrid_states, summit
 from fractalcontact.surface.synthesis import self_affine
 from roughcontact.elastic.halfspace import HalfSpace
 

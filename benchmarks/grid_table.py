@@ -24,11 +24,11 @@ import xarray as xr
 from fractalcontact.core.errors import InputError
 from fractalcontact.core.settings import Settings, Solver
 from fractalcontact.domain.box_dimension import dimension_of_domain
-from fractalcontact.mechanics.joint import describe_joint, prefractal
-from fractalcontact.mechanics.loading import JointLoading
-from fractalcontact.mechanics.subgrid import state_quantities, subgrid
-from fractalcontact.mechanics.sweep import load_steps
+from fractalcontact.joint.joint import describe_joint, prefractal
 from fractalcontact.stages.specimen import prepare_specimen
+from fractalcontact.states.loading import JointLoading
+from fractalcontact.states.subgrid import state_quantities, subgrid
+from fractalcontact.states.sweep import load_steps
 from fractalcontact.study.checks import read_sidecar
 from fractalcontact.study.configuration import (
     resolve_embedded,

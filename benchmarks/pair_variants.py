@@ -30,18 +30,18 @@ from fractalcontact.core.estimate import Estimate
 from fractalcontact.core.limits import DECISIVE
 from fractalcontact.core.settings import Settings, Solver
 from fractalcontact.core.window import cell_side, window_sides
-from fractalcontact.mechanics.closure import closure_curves
-from fractalcontact.mechanics.closure_laws import fit_hyperbola
-from fractalcontact.mechanics.joint import describe_joint, prefractal
-from fractalcontact.mechanics.loading import JointLoading
-from fractalcontact.mechanics.overlap import fits_undetermined
-from fractalcontact.mechanics.registration_spread import registration_spread
-from fractalcontact.mechanics.states import combine, forces_of
-from fractalcontact.mechanics.sweep import contact_states
+from fractalcontact.joint.joint import describe_joint, prefractal
+from fractalcontact.joint.overlap import fits_undetermined
+from fractalcontact.laws.closure import closure_curves
+from fractalcontact.laws.closure_laws import fit_hyperbola
 from fractalcontact.registration.registration_scatter import motion_variables, scattered_motions
 from fractalcontact.roughness.quality import scan_quality
 from fractalcontact.roughness.quality_words import overlap_words, suspect_words
 from fractalcontact.scan.read import read_faces
+from fractalcontact.states.loading import JointLoading
+from fractalcontact.states.registration_spread import registration_spread
+from fractalcontact.states.states import combine, forces_of
+from fractalcontact.states.sweep import contact_states
 from fractalcontact.study.checks import read_sidecar
 from fractalcontact.study.configuration import (
     resolve_settings,

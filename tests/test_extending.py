@@ -52,7 +52,7 @@ def test_the_scan_format_reads_what_its_writer_writes(tmp_path):
 
 
 def test_the_stage_counts_summits():
-    module = run_code("docs/extending_stages.md", "A stage", package="fractalcontact.mechanics")
+    module = run_code("docs/extending_stages.md", "A stage", package="fractalcontact.joint")
     y, x = np.meshgrid(*[np.linspace(0, 1, 41)] * 2, indexing="ij")
 
     def hills(*tops):

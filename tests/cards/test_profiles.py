@@ -9,8 +9,8 @@ import pytest
 from fractalcontact.cards.write import SCHEMA, read_card
 from fractalcontact.commands.profile_card import main
 from fractalcontact.core.errors import InputError
-from fractalcontact.mechanics.jrc import FITS
-from fractalcontact.mechanics.profile import profile_coefficients
+from fractalcontact.joint.jrc import FITS
+from fractalcontact.joint.profile import profile_coefficients
 from fractalcontact.scan.columns import read_profile
 
 

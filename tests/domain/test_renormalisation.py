@@ -12,7 +12,7 @@ from fractalcontact.domain.renormalisation import (
     nominal_pressure,
     renormalisation,
 )
-from fractalcontact.mechanics.left_out import PARTS_LEFT_OUT
+from fractalcontact.states.left_out import PARTS_LEFT_OUT
 
 S = xr.DataArray(0.08 * 2.0 ** np.arange(4), dims="resolution")
 DELTA = xr.DataArray([1.2, 1.5, 1.8], dims="normal_force")

@@ -18,8 +18,8 @@ from fractalcontact.ensemble.realisations import ensemble
 from fractalcontact.ensemble.twins import twin_loadings
 from fractalcontact.error_budget.ensemble_spread import INSIDE, OUTSIDE
 from fractalcontact.error_budget.error_budget import error_budget
-from fractalcontact.mechanics.loading import JointLoading
 from fractalcontact.roughness.twin_surface import twin_surface
+from fractalcontact.states.loading import JointLoading
 from fractalcontact.study.configuration import resolve_settings, solver_settings
 from fractalcontact.surface.synthesis import band_limited
 

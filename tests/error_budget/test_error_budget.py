@@ -17,13 +17,13 @@ from fractalcontact.error_budget.other_windows import (
     window_places,
     window_spread,
 )
-from fractalcontact.mechanics.closure import closure_curves, elastic_dilatancy
-from fractalcontact.mechanics.joint import composite_topography, describe_joint
-from fractalcontact.mechanics.loading import JointLoading
-from fractalcontact.mechanics.plan import solve_plan
-from fractalcontact.mechanics.states import combine, contact_domains
-from fractalcontact.mechanics.subgrid import state_quantities, subgrid
-from fractalcontact.mechanics.sweep import joint_states
+from fractalcontact.joint.joint import composite_topography, describe_joint
+from fractalcontact.laws.closure import closure_curves, elastic_dilatancy
+from fractalcontact.states.loading import JointLoading
+from fractalcontact.states.plan import solve_plan
+from fractalcontact.states.states import combine, contact_domains
+from fractalcontact.states.subgrid import state_quantities, subgrid
+from fractalcontact.states.sweep import joint_states
 from fractalcontact.study.configuration import resolve_settings, solver_settings
 from fractalcontact.surface.specimen import make_specimen, window_arguments
 from fractalcontact.surface.synthesis import self_affine

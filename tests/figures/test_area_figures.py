@@ -13,13 +13,13 @@ from contactlab.figures.experiments import area_slope as slope_figure
 from fractalcontact.core.subject import Subject
 from fractalcontact.figures.joint import area_theories
 from fractalcontact.figures.kit.drawing import print_style, save
-from fractalcontact.mechanics.area import (
+from fractalcontact.laws.area import (
     FULL_CONTACT,
     add_area_offset,
     area_laws,
     joint_statistics,
 )
-from fractalcontact.mechanics.area_theories import add_comparison
+from fractalcontact.laws.area_theories import add_comparison
 
 SPECIMENS = ("sliding", "flat", "pair")
 RECIPE = {

@@ -18,7 +18,7 @@ from fractalcontact.core.subject import Subject
 from fractalcontact.core.text import compact
 from fractalcontact.figures.kit import caption
 from fractalcontact.figures.kit.drawing import print_style
-from fractalcontact.mechanics.joint import composite_topography
+from fractalcontact.joint.joint import composite_topography
 from fractalcontact.study.crate import Workflow, write_crate
 from fractalcontact.study.figure_list import read_figure
 

@@ -12,7 +12,7 @@ from fractalcontact.core.errors import InputError
 from fractalcontact.figures import draw
 from fractalcontact.figures.draw import ENDINGS, draw_figures, drawer_of
 from fractalcontact.figures.kit.drawing import print_style, save
-from fractalcontact.mechanics.closure import FULL_CONTACT
+from fractalcontact.laws.closure import FULL_CONTACT
 from fractalcontact.study.atlas import read_atlas
 from fractalcontact.study.figure_list import figures_of
 

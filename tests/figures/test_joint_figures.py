@@ -17,7 +17,7 @@ from fractalcontact.figures.draw import drawer_of
 from fractalcontact.figures.joint import compliance
 from fractalcontact.figures.kit.axes import offset_axis
 from fractalcontact.figures.kit.drawing import print_style, save
-from fractalcontact.mechanics.conductance import add_conductance
+from fractalcontact.laws.conductance import add_conductance
 
 SLIDING = ("sliding", "pair")
 DRAWN = [

@@ -19,7 +19,7 @@ from fractalcontact.figures.draw import ENDINGS, draw_figures, drawer_of
 from fractalcontact.figures.kit.drawing import DPI, print_style, save, spread
 from fractalcontact.figures.kit.maps import MISSING
 from fractalcontact.figures.kit.relief import shaded
-from fractalcontact.mechanics.joint import composite_topography
+from fractalcontact.joint.joint import composite_topography
 from fractalcontact.study.figure_list import figures_of
 
 FIGURES = ("fig02_relief", "fig03_composite", "fig04_05_closure", "fig06_07_dilatancy")

@@ -25,8 +25,8 @@ from fractalcontact.figures.draw import drawer_of
 from fractalcontact.figures.kit import drawing as common
 from fractalcontact.figures.kit.axes import label_short_span
 from fractalcontact.figures.kit.domains import contact_domain, spread_loads
-from fractalcontact.mechanics.model_validity import model_validity
-from fractalcontact.mechanics.states import with_pressure
+from fractalcontact.states.model_validity import model_validity
+from fractalcontact.states.states import with_pressure
 
 NAMES = (
     "fig08_prefractals",

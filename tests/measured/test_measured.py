@@ -16,8 +16,8 @@ from fractalcontact.core.errors import InputError
 from fractalcontact.core.estimate import Estimate
 from fractalcontact.measured.curve import Curve, ratio, scatter
 from fractalcontact.measured.stage import measured_stage
-from fractalcontact.mechanics.loading import JointLoading
-from fractalcontact.mechanics.settlement import bulk_settlement
+from fractalcontact.states.loading import JointLoading
+from fractalcontact.states.settlement import bulk_settlement
 from fractalcontact.study.configuration import solver_settings
 from fractalcontact.surface.synthesis import self_affine
 

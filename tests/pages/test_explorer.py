@@ -13,7 +13,7 @@ from made_stages import scan, stages_of
 from stage_names import STAGES
 from unchecked_settings import resolve_unchecked
 
-from fractalcontact.mechanics.overlap import overlapping_nodes, suspect_nodes
+from fractalcontact.joint.overlap import overlapping_nodes, suspect_nodes
 from fractalcontact.pages.explorer import write_explorer
 from fractalcontact.pages.packed_states import GAP_STEPS, ORDER, packed, packed_states
 from fractalcontact.study.atlas import read_atlas, write_atlas

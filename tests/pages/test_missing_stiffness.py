@@ -13,7 +13,7 @@ from page_study import write_pages
 
 from fractalcontact.figures.draw import drawer_of
 from fractalcontact.figures.kit.drawing import print_style
-from fractalcontact.mechanics.closure import SINGLE_CELLS
+from fractalcontact.laws.closure import SINGLE_CELLS
 from fractalcontact.pages.packed_states import packed_states
 from fractalcontact.study.atlas import read_atlas
 

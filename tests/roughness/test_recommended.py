@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from fractalcontact.mechanics.theory import no_majumdar_bhushan
+from fractalcontact.laws.theory import no_majumdar_bhushan
 from fractalcontact.roughness.dimension import surface_dimension
 from fractalcontact.roughness.recommended import (
     RECOMMENDED,

@@ -8,7 +8,7 @@ from scan_writers import WRITERS, write
 
 from fractalcontact.core.errors import InputError
 from fractalcontact.flow.cubic_law import plane_flow
-from fractalcontact.mechanics.joint import composite_topography
+from fractalcontact.joint.joint import composite_topography
 from fractalcontact.scan.raw import IncompleteSidecar
 from fractalcontact.scan.read import read_faces, read_scan
 from fractalcontact.surface.specimen import make_specimen

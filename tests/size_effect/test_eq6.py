@@ -21,8 +21,7 @@ from fractalcontact.core.verdicts import (
     UNDECIDED,
 )
 from fractalcontact.domain.renormalisation import hausdorff_measure
-from fractalcontact.mechanics.joint import composite_topography
-from fractalcontact.mechanics.loading import JointLoading
+from fractalcontact.joint.joint import composite_topography
 from fractalcontact.size_effect.division import split
 from fractalcontact.size_effect.eq6 import DELTA_SIGMA_ESTIMATORS, size_test
 from fractalcontact.size_effect.laws import joint_by_size
@@ -35,6 +34,7 @@ from fractalcontact.size_effect.prediction import PREDICTORS, predict_whole, pre
 from fractalcontact.size_effect.size_verdict import NOTHING_PREDICTED
 from fractalcontact.size_effect.slope import equal_pressure, real_pressures, slopes_at_equal_star
 from fractalcontact.size_effect.windows import window_states
+from fractalcontact.states.loading import JointLoading
 from fractalcontact.study.configuration import resolve_settings
 from fractalcontact.surface.specimen import make_specimen
 from fractalcontact.surface.synthesis import self_affine

@@ -15,12 +15,9 @@ from fractalcontact.core.fitting import fit_line
 from fractalcontact.core.mean_plane import without_mean_plane
 from fractalcontact.core.settings import Friction, Material, Solver, StrengthSettings
 from fractalcontact.core.window import window_sides
-from fractalcontact.mechanics.closure import closure_curves
-from fractalcontact.mechanics.loading import JointLoading
-from fractalcontact.mechanics.states import SOLVER_ERROR, combine
-from fractalcontact.mechanics.strength import joint_strength
-from fractalcontact.mechanics.sweep import contact_states
-from fractalcontact.mechanics.theory import scaled_joint
+from fractalcontact.joint.barton import scaled_joint
+from fractalcontact.laws.closure import closure_curves
+from fractalcontact.laws.strength import joint_strength
 from fractalcontact.roughness.estimators.roughness_length import roughness_length_curves
 from fractalcontact.size_effect.division import MIN_CELLS, PARTS, split, spread_windows
 from fractalcontact.size_effect.laws import size_laws
@@ -28,6 +25,9 @@ from fractalcontact.size_effect.local_roughness import local_roughness
 from fractalcontact.size_effect.strength_laws import OFFSET_FRACTIONS
 from fractalcontact.size_effect.window_means import power_through
 from fractalcontact.size_effect.windows import window_states
+from fractalcontact.states.loading import JointLoading
+from fractalcontact.states.states import SOLVER_ERROR, combine
+from fractalcontact.states.sweep import contact_states
 from fractalcontact.study.configuration import resolve_settings
 from fractalcontact.surface.specimen import make_specimen
 from fractalcontact.surface.synthesis import self_affine

@@ -13,9 +13,9 @@ from stage_names import OF_SPECIMENS
 from symmetries import LENGTH, STRESS, differences, exchanged, grown, with_axes_exchanged
 from unchecked_settings import resolve_unchecked
 
-from fractalcontact.mechanics.states import SOLVER_ERROR
 from fractalcontact.stages.report import OF_STRENGTH
 from fractalcontact.stages.strength import strength_stages
+from fractalcontact.states.states import SOLVER_ERROR
 from fractalcontact.study.configuration import solver_settings
 from fractalcontact.surface.synthesis import self_affine
 

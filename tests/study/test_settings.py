@@ -12,12 +12,12 @@ from places import ROOT
 from fractalcontact.core import settings
 from fractalcontact.ensemble.realisations import ensemble
 from fractalcontact.measured.stage import measured_stage
-from fractalcontact.mechanics.sweep import joint_states
 from fractalcontact.stages.flow import flow_stages
 from fractalcontact.stages.report import report_stages
 from fractalcontact.stages.specimen import stages_of_scan
 from fractalcontact.stages.states import state_stages
 from fractalcontact.stages.windows import window_stages
+from fractalcontact.states.sweep import joint_states
 from fractalcontact.study.configuration import solver_settings
 
 SOLVER = solver_settings({}, "study")

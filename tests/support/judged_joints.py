@@ -5,7 +5,7 @@ import xarray as xr
 
 from fractalcontact.core.reported import Reported
 from fractalcontact.domain.cluster_laws import localisation
-from fractalcontact.mechanics.plateau import opposite_parts, rigid_plateaus, undecided_plateaus
+from fractalcontact.joint.plateau import opposite_parts, rigid_plateaus, undecided_plateaus
 
 V = np.array([0.1, 0.2, 0.4, 0.6, 1.2, 1.9, 10.0])
 # Correlated up to 0.5 mm by 1/e, not at all from 2 mm on.

@@ -7,12 +7,12 @@ import numpy as np
 import xarray as xr
 
 from fractalcontact.core import settings as sections
-from fractalcontact.mechanics.sweep import joint_states
 from fractalcontact.stages.flow import flow_stages
 from fractalcontact.stages.report import report_stages
 from fractalcontact.stages.specimen import specimen_stages
 from fractalcontact.stages.states import state_stages
 from fractalcontact.stages.windows import window_stages
+from fractalcontact.states.sweep import joint_states
 from fractalcontact.surface.specimen import make_specimen, window_arguments
 
 

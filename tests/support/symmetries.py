@@ -8,7 +8,7 @@ import re
 import numpy as np
 import xarray as xr
 
-from fractalcontact.mechanics.states import SOLVER_ERROR
+from fractalcontact.states.states import SOLVER_ERROR
 
 #: New units of length and stress in the old ones: powers of two, which cost no digit.
 LENGTH, STRESS = 64.0, 1 / 8

@@ -13,7 +13,7 @@ def test_the_stage_of_the_recipe_is_made(project):
     module, script, rule = (
         block.text for block in blocks("docs/extending_stages.md") if block.heading == "A stage"
     )
-    (project / "src/fractalcontact/mechanics/summits.py").write_text(module, encoding="utf-8")
+    (project / "src/fractalcontact/joint/summits.py").write_text(module, encoding="utf-8")
     (project / "workflow/scripts/summits.py").write_text(script, encoding="utf-8")
     with open(project / "workflow/rules/contact.smk", "a", encoding="utf-8") as rules:
         rules.write(f"\n\n{rule}")

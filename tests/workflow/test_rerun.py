@@ -105,7 +105,7 @@ def test_code_counts_by_rooms_and_what_is_no_code_makes_nothing_again(project):
     ):
         append(project, name)
     assert set(planned(project)) == {"windows", "size_laws_against_plane", "atlas"}
-    append(project, "src/fractalcontact/mechanics/__init__.py")
+    append(project, "src/fractalcontact/joint/__init__.py")
     assert {"roughness_and_composite", "contact", "closure_and_box_counts"} <= set(planned(project))
 
 
@@ -302,7 +302,7 @@ def test_code_of_a_script_follows_from_the_function_that_it_calls():
     rooms, files = _rooms_behind("windows")
     assert {"workflow/engine/job.py", "workflow/scripts/_files.py"} <= files
     assert "src/fractalcontact/stages/windows.py" in files
-    assert {"size_effect", "contact", "mechanics"} <= rooms
+    assert {"size_effect", "contact", "states"} <= rooms
     # Another stage does not make it again, nor what stands above.
     assert not {"study", "figures", "pages"} & rooms
     assert "src/fractalcontact/stages/report.py" not in files

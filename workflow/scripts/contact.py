@@ -4,7 +4,7 @@ from _files import read_inputs, write
 from engine.job import job
 
 from fractalcontact.core.settings import ContactSettings, Solver, read
-from fractalcontact.mechanics.sweep import joint_states
+from fractalcontact.states.sweep import joint_states
 
 with job(snakemake) as log:
     given = snakemake.params

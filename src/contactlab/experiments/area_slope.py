@@ -13,11 +13,11 @@ import xarray as xr
 
 from fractalcontact.core.datasets import titled
 from fractalcontact.core.labels import cf_attrs
-from fractalcontact.mechanics import theory
-from fractalcontact.mechanics.area import AREA_SLOPE, CORRECTED_AREA_SLOPE
-from fractalcontact.mechanics.corrected_area import corrected_area
-from fractalcontact.mechanics.sweep import load_steps
+from fractalcontact.laws import theory
+from fractalcontact.laws.area import AREA_SLOPE, CORRECTED_AREA_SLOPE
 from fractalcontact.roughness.dimension import slope_statistics
+from fractalcontact.states.corrected_area import corrected_area
+from fractalcontact.states.sweep import load_steps
 from fractalcontact.surface.synthesis import self_affine
 from roughcontact.elastic.halfspace import HalfSpace
 

@@ -19,14 +19,14 @@ from fractalcontact.core.limits import LEVEL_CHANGE
 from fractalcontact.core.mean_plane import without_mean_plane
 from fractalcontact.core.verdicts import FALLING, LEVEL, RISING
 from fractalcontact.core.window import faces, window_slices
-from fractalcontact.mechanics.joint import (
+from fractalcontact.joint.joint import (
     RIGID_SLIDE,
     direction_spacing,
     face_correlation,
     over_spread,
     rigid_dilatancy,
 )
-from fractalcontact.mechanics.plateau import relative_change, second_half
+from fractalcontact.joint.plateau import relative_change, second_half
 from fractalcontact.roughness.dimension import slope_statistics
 from fractalcontact.surface.embedded import embedded_surface
 from fractalcontact.surface.specimen import largest_offset, make_specimen

@@ -15,7 +15,7 @@ import xarray as xr
 from fractalcontact.core.datasets import labelled, titled
 from fractalcontact.core.estimate import Estimate, rows_of
 from fractalcontact.core.labels import cf_attrs
-from fractalcontact.mechanics.theory import (
+from fractalcontact.laws.theory import (
     PERIODIC_AREAS,
     PERIODIC_SCATTER,
     PERIODIC_SLOPE,

@@ -39,7 +39,7 @@ def friction_ratio(rate: np.ndarray, basic_angle: float) -> np.ndarray:
 
     Notes
     -----
-    Goodman (1989), as in :mod:`mechanics.strength`.
+    Goodman (1989), as in :mod:`laws.strength`.
     """
     angle = np.radians(basic_angle) + np.arctan(rate)
     with np.errstate(invalid="ignore"):

@@ -97,7 +97,7 @@ def dilatancy_rates(states: xr.Dataset) -> np.ndarray:
 
     Notes
     -----
-    Secants, as :func:`mechanics.strength.dilatancy_angle` takes them: of one joint, whose scatter
+    Secants, as :func:`laws.strength.dilatancy_angle` takes them: of one joint, whose scatter
     cancels, and every state serves two of them.
     """
     delta = states["separation"].transpose("surface", "law", "offset", "reduced_pressure").values

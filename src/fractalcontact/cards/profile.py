@@ -42,7 +42,7 @@ def card_of_profile(
     ----------
     name : str
     found : xr.Dataset
-        From :func:`mechanics.profile.profile_coefficients`.
+        From :func:`joint.profile.profile_coefficients`.
     cells : int
     spacing : float
         mm.

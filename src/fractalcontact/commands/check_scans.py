@@ -20,15 +20,15 @@ from ..core.text import length_words, percent, plain
 from ..core.window import face_words, spacing_of, window_sides
 from ..domain.measured_map import read_contact_map
 from ..gridding.outline import outline_words
+from ..joint.joint import choose_offsets
 from ..measured.beforehand import check_tests
 from ..measured.readings import read_test
-from ..mechanics.joint import choose_offsets
-from ..mechanics.states import hardness_of
 from ..roughness.dimension import surface_dimension
 from ..roughness.quality import scan_quality
 from ..roughness.quality_words import overlap_words, suspect_words
 from ..roughness.recommended import beyond_roll_off, dimension_words
 from ..stages.specimen import prepare_specimen
+from ..states.states import hardness_of
 from ..study.checks import check_study, read_scans
 from ..study.configuration import resolve_settings, solver_settings
 from ..study.documents import read_study

@@ -13,9 +13,9 @@ from roughcontact.elastic.split_convolution import MIN_SPLIT_SIDE
 
 from ..domain.measures import measures_of_states
 from ..flow.cubic_law import plane_flow
-from ..mechanics.rigid_slide import slide
-from ..mechanics.state_scalars import aperture
+from ..joint.rigid_slide import slide
 from ..roughness.dimension import surface_dimension
+from ..states.state_scalars import aperture
 from ..surface.synthesis import self_affine
 
 #: Nodes per side: from here on the solver uses all of its parts.

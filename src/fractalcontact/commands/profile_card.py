@@ -15,7 +15,7 @@ from ..cards.write import write_card
 from ..core.checksums import sha256
 from ..core.errors import said_in_one_line
 from ..core.file_names import specimen_name
-from ..mechanics.profile import profile_coefficients
+from ..joint.profile import profile_coefficients
 from ..scan.columns import read_profile
 
 

@@ -101,7 +101,7 @@ def analyse_domains(
     ----------
     fields : xr.Dataset
         ``in_contact_k`` over (direction, offset, normal_force, y_k, x_k) and, of domains that were
-        not measured, ``solved`` and ``nodes_error``: :func:`mechanics.states.contact_domains`.
+        not measured, ``solved`` and ``nodes_error``: :func:`states.states.contact_domains`.
     spacing : float
         Of the scan, mm; a domain at resolution k has k times this.
     fit_range : (float, float), optional
@@ -267,7 +267,7 @@ def scaling_over_resolutions(
     spacing : float
         Of the scan, mm.
     left : DataArray, optional
-        From :func:`mechanics.left_out.left_of_fields`; no interval without it.
+        From :func:`states.left_out.left_of_fields`; no interval without it.
     fit_range : (float, float), optional
         Smallest and largest spacing s of the fits, mm; all by default.
 

@@ -23,7 +23,7 @@ def measures_of_map_states(states: xr.Dataset, spacing: float) -> xr.Dataset:
     Parameters
     ----------
     states : xr.Dataset
-        From :func:`mechanics.states.map_states`.
+        From :func:`states.states.map_states`.
     spacing : float
         Of the scan, mm.
 

@@ -180,7 +180,7 @@ def nulls_of_map_states(
     Parameters
     ----------
     states : xr.Dataset
-        From :func:`mechanics.states.map_states`.
+        From :func:`states.states.map_states`.
     spacing : float
         Of the scan, mm.
     composites : DataArray (offset, window_y, window_x)

@@ -46,7 +46,7 @@ def renormalisation(
         Nodes that a domain needs to count.
     left : DataArray (resolution, ..., left_out), optional
         Fraction of the area that is left without each part of the domain, from
-        :mod:`mechanics.left_out`; without it only areas that no sample changes have an interval.
+        :mod:`states.left_out`; without it only areas that no sample changes have an interval.
     sampling : DataArray (resolution, ...), optional
         Sampling errors of the areas: where all that are fitted are 0, as those of F/H where all
         contacts yield, the interval has no width.

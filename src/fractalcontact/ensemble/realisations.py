@@ -21,15 +21,15 @@ from ..domain.box_dimension import dimension_of_domain
 from ..domain.isotropy import interval_dimensions
 from ..domain.null_models import OCTAVES
 from ..domain.random_nodes import expected_dimension
-from ..mechanics.closure import interface_states
-from ..mechanics.loading import JointLoading
-from ..mechanics.separation import ROUNDING
-from ..mechanics.states import MAP_GAP, forces_of, with_pressure
-from ..mechanics.sweep import contact_states
+from ..laws.closure import interface_states
 from ..size_effect.division import solvable_parts, spread_windows
 from ..size_effect.size_exponents import of_usable_sizes, size_exponent
 from ..size_effect.size_law import QUANTITIES
 from ..size_effect.windows import solved_windows
+from ..states.loading import JointLoading
+from ..states.separation import ROUNDING
+from ..states.states import MAP_GAP, forces_of, with_pressure
+from ..states.sweep import contact_states
 from ..surface.embedded import embedded_surface
 from ..surface.specimen import make_specimen, window_arguments
 from .null_slopes import NULL_SLOPES, null_slopes

@@ -14,11 +14,11 @@ from ..core.labels import cf_attrs
 from ..core.limits import RESOLVED_NODES
 from ..core.settings import EnsembleSettings
 from ..core.window import window_sides
-from ..mechanics.closure import interface_states
-from ..mechanics.joint import describe_slide
-from ..mechanics.lag_dimension import lag_dimensions
-from ..mechanics.loading import JointLoading
-from ..mechanics.sweep import contact_states
+from ..joint.joint import describe_slide
+from ..joint.lag_dimension import lag_dimensions
+from ..laws.closure import interface_states
+from ..states.loading import JointLoading
+from ..states.sweep import contact_states
 
 #: Of every realisation over the offsets, under the reference load: unit, long name.
 AT_OFFSETS = {
@@ -67,7 +67,7 @@ def sliding(loading: JointLoading[EnsembleSettings], longest: float) -> xr.Datas
     -------
     xr.Dataset
         :data:`SLIDING`, with ``plateau_trend`` and ``plateau_undecided`` over (direction,) as
-        :func:`mechanics.plateau.rigid_plateaus` has them, and the lags of ``lag_dimension``.
+        :func:`joint.plateau.rigid_plateaus` has them, and the lags of ``lag_dimension``.
 
     Raises
     ------

@@ -16,8 +16,8 @@ from ..core.errors import InputError
 from ..core.mean_plane import without_mean_plane
 from ..core.settings import EnsembleSettings
 from ..core.window import spacing_of, window_slices
-from ..mechanics.loading import JointLoading
 from ..roughness.twin_surface import twin_surface
+from ..states.loading import JointLoading
 
 
 def twin_loadings(

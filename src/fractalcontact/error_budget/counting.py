@@ -23,7 +23,7 @@ def counting_error(curve: LoadCurve) -> np.ndarray:
     -----
     The number N of independent clusters varies by 1/sqrt(N) of itself (Poisson). So does their
     stiffness, as long as contacts act side by side. The area under a given force varies less
-    (:mod:`mechanics.area_sampling`).
+    (:mod:`states.area_sampling`).
 
     At a given separation the force varies by 1/sqrt(N). So at a given force the separation varies
     by l/sqrt(N), with l = sigma_0/(d sigma/d w_int), the length over which the pressure falls by e.

@@ -4,7 +4,7 @@ import numpy as np
 import xarray as xr
 
 from ..core.datasets import labelled
-from ..mechanics.seated_laws import at_reference_pressures
+from ..laws.seated_laws import at_reference_pressures
 from .refinement import LoadCurve
 
 _AT = ("reference_pressure",)

@@ -11,9 +11,9 @@ from ..core.datasets import labelled_dataset
 from ..core.labels import OF_SURFACE, REALISATIONS, TWINS, cf_attrs
 from ..core.limits import MIN_NODES
 from ..core.settings import StateSettings
-from ..mechanics.joint import prefractal
-from ..mechanics.loading import JointLoading
-from ..mechanics.sweep import load_steps
+from ..joint.joint import prefractal
+from ..states.loading import JointLoading
+from ..states.sweep import load_steps
 from .counting import counting_error
 from .derived import with_derived
 from .ensemble_spread import ensemble_spread, position_in_band, seated_spread

@@ -7,9 +7,9 @@ bear lies between it and Tabor's three times of it.
 import numpy as np
 
 from ..core.datasets import labelled
-from ..mechanics.seated_laws import at_reference_pressures
-from ..mechanics.state_scalars import aperture
-from ..mechanics.sweep import load_steps
+from ..laws.seated_laws import at_reference_pressures
+from ..states.state_scalars import aperture
+from ..states.sweep import load_steps
 from .refinement import BUDGET_QUANTITIES, LoadCurve, budget_values
 
 #: Hardness of rough contacts over the joint wall strength: between 1 and this (Tabor's 3).

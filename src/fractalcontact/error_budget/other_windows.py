@@ -5,8 +5,8 @@ import xarray as xr
 
 from ..core.intervals import t_quantile
 from ..core.window import faces, window_slices
-from ..mechanics.joint import DIRECTION_STEPS
-from ..mechanics.loading import JointLoading
+from ..joint.joint import DIRECTION_STEPS
+from ..states.loading import JointLoading
 
 #: Windows compared, the specimen's own among them, and the largest overlap of any two.
 MAX_WINDOWS, MAX_OVERLAP = 5, 0.5
@@ -25,7 +25,7 @@ def whole_composite(specimen: xr.Dataset, direction: str, cells: int) -> np.ndar
     Parameters
     ----------
     specimen, direction, cells
-        As for :func:`mechanics.joint.composite_topography`.
+        As for :func:`joint.joint.composite_topography`.
 
     Returns
     -------

@@ -16,10 +16,10 @@ from roughcontact.elastic.halfspace import HalfSpace
 
 from ..core.settings import ContactSettings, Load
 from ..domain.box_dimension import dimension_of_domain
-from ..mechanics.loading import JointLoading
-from ..mechanics.numerical_error import NumericalError, closure_error, numerical_error
-from ..mechanics.states import forces_of
-from ..mechanics.subgrid import QUANTITIES, state_quantities, subgrid_states, summit
+from ..states.loading import JointLoading
+from ..states.numerical_error import NumericalError, closure_error, numerical_error
+from ..states.states import forces_of
+from ..states.subgrid import QUANTITIES, state_quantities, subgrid_states, summit
 
 #: Cells of the largest grid at s/2, and at s/4: of a study, and of one that asks for all states.
 MAX_CELLS_HALF, MAX_CELLS, MAX_CELLS_FULL = 2**22, 2**20, 2**22
@@ -128,7 +128,7 @@ class Refinement:
     Attributes
     ----------
     error, limit, order : (quantity, normal_force) ndarray
-        From :mod:`mechanics.numerical_error`; NaN where nothing was solved.
+        From :mod:`states.numerical_error`; NaN where nothing was solved.
     finest : (normal_force,) int ndarray
         Divisor of the finest spacing solved, 1 where none was.
     """
@@ -247,7 +247,7 @@ def budget_values(
 ) -> list[float]:
     """Values of :data:`BUDGET_QUANTITIES` of a state.
 
-    ``highest`` and ``reference`` as for :func:`mechanics.subgrid.state_quantities`; ``limits`` are
+    ``highest`` and ``reference`` as for :func:`states.subgrid.state_quantities`; ``limits`` are
     the smallest and largest box of Delta_sigma, mm, which is NaN if they are not finite.
     """
     dimension = np.nan

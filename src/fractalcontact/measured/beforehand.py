@@ -9,8 +9,8 @@ from roughcontact.contact.path import LOAD
 
 from ..core.errors import InputError
 from ..core.settings import MeasuredTest, Settings, Solver
-from ..mechanics.joint import choose_offsets, prefractal
-from ..mechanics.loading import JointLoading
+from ..joint.joint import choose_offsets, prefractal
+from ..states.loading import JointLoading
 from .curve import Curve
 from .readings import TestReadings, read_test
 

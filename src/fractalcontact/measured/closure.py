@@ -10,7 +10,7 @@ from ..core.errors import InputError
 from ..core.estimate import NO_ESTIMATE, Estimate
 from ..core.limits import SEATED_SPAN
 from ..core.settings import MeasuredTest
-from ..mechanics.closure_laws import fit_hyperbola, fit_semi_logarithmic
+from ..laws.closure_laws import fit_hyperbola, fit_semi_logarithmic
 from .beforehand import require_calibration, require_relief
 from .calibration import NEAR, fit_factor
 from .computed import CARRIED, Joint

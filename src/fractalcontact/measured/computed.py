@@ -12,9 +12,9 @@ from roughcontact.errors import NotConverged
 from ..core.errors import InputError
 from ..core.reported import Reported
 from ..core.settings import MeasuredSettings, MeasuredTest
-from ..mechanics.joint import prefractal
-from ..mechanics.loading import JointLoading
-from ..mechanics.settlement import bulk_settlement
+from ..joint.joint import prefractal
+from ..states.loading import JointLoading
+from ..states.settlement import bulk_settlement
 from .curve import Curve
 
 #: Of its hardness, up to which a joint is loaded.

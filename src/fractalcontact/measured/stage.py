@@ -14,7 +14,7 @@ from ..core.estimate import NO_ESTIMATE, Estimate
 from ..core.labels import cf_attrs
 from ..core.reported import Reported
 from ..core.settings import TEST_COLUMNS, MeasuredSettings, MeasuredTest, Solver
-from ..mechanics.loading import JointLoading
+from ..states.loading import JointLoading
 from .closure import OF_CALIBRATION, OF_CLOSURE, compare_closure
 from .computed import Joint
 from .curve import Curve, compared

@@ -38,7 +38,7 @@ from ..core.window import cell_side
 from ..domain.analysis import corrected_scaling
 from ..domain.box_dimension import dimension_of_domain
 from ..domain.renormalisation import MIN_NODES_PER_RESOLUTION
-from ..mechanics.loading import JointLoading
+from ..states.loading import JointLoading
 from .division import PARTS, split
 from .load_ladder import OF_WINDOWS, solve_sub_windows, whole_areas
 from .prediction import predict_whole

@@ -10,7 +10,7 @@ from ..core.labels import cf_attrs
 from ..core.limits import CORRECTED_NODES, RESOLVED_NODES
 from ..core.ranges import within
 from ..core.settings import Friction
-from ..mechanics.jrc import profile_roughness
+from ..joint.jrc import profile_roughness
 from .division import spread_windows
 from .size_exponents import add_size_exponents, of_usable_sizes
 from .strength_laws import add_slope_trends, strength_by_size
@@ -88,7 +88,7 @@ def size_laws(
     material : Friction
     roughness : float
         JRC of the window as used in Barton's law (``jrc_used`` of
-        :func:`mechanics.jrc.profile_roughness`); NaN for a joint that does not slide.
+        :func:`joint.jrc.profile_roughness`); NaN for a joint that does not slide.
     dimension : Estimate
         Delta_g of the face: eq. 2 expects H = 3 - Delta_g.
     fit_range : (float, float), optional

@@ -14,14 +14,14 @@ from ..core.limits import CORRECTED_NODES, RESOLVED_NODES
 from ..core.ranges import within
 from ..core.settings import JointSettings
 from ..domain.renormalisation import MIN_NODES_PER_RESOLUTION
-from ..mechanics.area_sampling import state_area_sampling
-from ..mechanics.joint import prefractal
-from ..mechanics.left_out import PARTS_LEFT_OUT, fractions_left, part_ends
-from ..mechanics.loading import JointLoading
-from ..mechanics.settlement import bulk_settlement, interface_closure
-from ..mechanics.state_scalars import state_area
-from ..mechanics.states import SCALARS, SOLVER_ERROR
-from ..mechanics.sweep import load_steps
+from ..joint.joint import prefractal
+from ..states.area_sampling import state_area_sampling
+from ..states.left_out import PARTS_LEFT_OUT, fractions_left, part_ends
+from ..states.loading import JointLoading
+from ..states.settlement import bulk_settlement, interface_closure
+from ..states.state_scalars import state_area
+from ..states.states import SCALARS, SOLVER_ERROR
+from ..states.sweep import load_steps
 from .division import PARTS, solvable_parts, split
 
 #: A resolution is used if the smallest sub-windows keep this many nodes per side at it.
@@ -62,7 +62,7 @@ def solve_sub_windows(
         ``nodes`` (part, window, resolution, step) in contact and ``nodes_error``, those that the
         solver leaves ambiguous; ``interface_closure`` and :data:`OF_WINDOWS` (part, window, step)
         at the finest resolution, ``whole_area`` and ``whole_area_sampling`` (resolution, step)
-        and ``whole_left`` (resolution, step, left_out) of :mod:`mechanics.left_out`,
+        and ``whole_left`` (resolution, step, left_out) of :mod:`states.left_out`,
         ``side`` b and ``windows`` (part), ``ladder_pressure`` (step) whose first steps are those
         of the loads. Steps that no
         window of a size needs are NaN.
@@ -156,7 +156,7 @@ class _LoadedSize:
     sampling : (resolution, step) ndarray
         Relative sampling error of that of a window alone.
     left : (resolution, step, left_out) ndarray
-        Fractions of it, see :mod:`mechanics.left_out`.
+        Fractions of it, see :mod:`states.left_out`.
     finest : dict of str to (window, step) ndarray
         ``interface_closure``, mm, and :data:`OF_WINDOWS`.
     domains : list of (ny, nx) bool ndarray
@@ -386,7 +386,7 @@ def whole_areas(
     -------
     xr.Dataset
         ``area_corrected``, mm2, ``area_sampling`` and ``nodes`` (resolution, normal_force), and
-        ``left`` (resolution, normal_force, left_out) of :mod:`mechanics.left_out`.
+        ``left`` (resolution, normal_force, left_out) of :mod:`states.left_out`.
     """
     composite = loading.composite(loading.cells.item())
     factors, loads = loading.settings.resolutions, states["normal_force"]

@@ -11,7 +11,7 @@ from ..core.estimate import Estimate
 from ..core.intervals import mean_interval
 from ..core.mean_plane import without_mean_planes
 from ..core.window import cell_side, faces, window_slices
-from ..mechanics.loading import JointLoading
+from ..states.loading import JointLoading
 from .division import split
 
 #: A sub-window whose sigma_z is measured has at least this many cells per side.

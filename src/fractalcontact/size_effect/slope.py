@@ -6,7 +6,7 @@ from numpy.typing import ArrayLike
 
 from ..core.datasets import labelled_dataset
 from ..core.fitting import fit_line
-from ..mechanics.states import SOLVER_ERROR
+from ..states.states import SOLVER_ERROR
 from .load_ladder import real_pressure
 from .window_means import add_exponents
 

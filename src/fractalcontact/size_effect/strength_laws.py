@@ -15,7 +15,8 @@ from ..core.labels import cf_attrs
 from ..core.limits import JRC_RANGE, LARGEST_FRICTION_ANGLE, MOSTLY_TRUNCATED
 from ..core.settings import Friction
 from ..core.verdicts import FALLING, RISING
-from ..mechanics.strength import (
+from ..joint.barton import barton_strength, scaled_joint
+from ..laws.strength import (
     FIELDS,
     angles_with_errors,
     from_flush,
@@ -23,7 +24,6 @@ from ..mechanics.strength import (
     slopes_apart,
     strength_with_error,
 )
-from ..mechanics.theory import barton_strength, scaled_joint
 from .window_means import add_exponents, add_law, add_mean, power_through
 
 #: Offsets, as fractions of the side b, at which sizes are compared. Barton and Bandis put the peak

@@ -9,7 +9,7 @@ from ..core.estimate import Estimate
 from ..core.fitting import fit_line
 from ..core.intervals import mean_interval
 from ..core.labels import cf_attrs
-from ..mechanics.states import error_attrs
+from ..states.states import error_attrs
 
 
 def add_mean(

@@ -14,12 +14,12 @@ from roughcontact.elastic.halfspace import HalfSpace
 from ..core.datasets import labelled_dataset
 from ..core.labels import cf_attrs
 from ..core.settings import JointSettings
-from ..mechanics.joint import sliding_axis
-from ..mechanics.loading import JointLoading
-from ..mechanics.settlement import bulk_settlement, interface_closure
-from ..mechanics.state_scalars import state_area, state_errors
-from ..mechanics.states import SOLVER_ERROR
-from ..mechanics.sweep import load_steps
+from ..joint.joint import sliding_axis
+from ..states.loading import JointLoading
+from ..states.settlement import bulk_settlement, interface_closure
+from ..states.state_scalars import state_area, state_errors
+from ..states.states import SOLVER_ERROR
+from ..states.sweep import load_steps
 from .division import PARTS, solvable_parts, split, spread_windows
 from .local_roughness import local_roughness, roughness_by_size
 

@@ -7,11 +7,11 @@ from ..core.settings import Solver, StateSettings
 from ..core.tolerance import ACCURACY
 from ..core.units import share_of
 from ..error_budget.error_budget import error_budget
-from ..mechanics.branches import joint_branches
-from ..mechanics.loading import JointLoading
-from ..mechanics.plan import solve_plan
-from ..mechanics.registration_spread import registration_spread
-from ..mechanics.states import with_pressure
+from ..laws.branches import joint_branches
+from ..states.loading import JointLoading
+from ..states.plan import solve_plan
+from ..states.registration_spread import registration_spread
+from ..states.states import with_pressure
 
 
 def error_stages(
@@ -32,7 +32,7 @@ def error_stages(
     specimens, joints, closure, dilatancy, domains : xr.Dataset
         Of the stages of these names.
     mapped : xr.Dataset
-        Fields of the states at the offset of the maps, from :func:`mechanics.states.map_states`.
+        Fields of the states at the offset of the maps, from :func:`states.states.map_states`.
     settings : StateSettings
     solver : Solver
     ensemble : xr.Dataset, optional

@@ -22,12 +22,12 @@ from ..flow.aperture import (
 )
 from ..flow.cubic_law import WAYS, flow_of, window_interval
 from ..flow.network import hydraulic_aperture
-from ..mechanics.joint import prefractal, sliding_axis
-from ..mechanics.jrc import profile_roughness
-from ..mechanics.loading import JointLoading
-from ..mechanics.state_scalars import aperture
-from ..mechanics.states import MAP_GAP, OFFSET_GAP, with_pressure
-from ..mechanics.sweep import load_steps
+from ..joint.joint import prefractal, sliding_axis
+from ..joint.jrc import profile_roughness
+from ..states.loading import JointLoading
+from ..states.state_scalars import aperture
+from ..states.states import MAP_GAP, OFFSET_GAP, with_pressure
+from ..states.sweep import load_steps
 
 _LOADS = "normal_force"
 _STATES, _QUANTILES = ("branch", _LOADS), ("gap_probability", _LOADS)
@@ -107,7 +107,7 @@ def flow_stages(
     closure, branches, error_budget : xr.Dataset
         Likewise, from :func:`stages.states.state_stages`.
     parts : sequence of xr.Dataset
-        Contact states, from :func:`mechanics.sweep.joint_states`.
+        Contact states, from :func:`states.sweep.joint_states`.
     settings : JointSettings
     solver : Solver
 

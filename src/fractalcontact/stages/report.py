@@ -6,9 +6,9 @@ import xarray as xr
 
 from ..core.datasets import titled
 from ..core.settings import ReportSettings
-from ..mechanics.model_validity import model_validity
 from ..statements.comparison import specimen_row
 from ..statements.judge import judge
+from ..states.model_validity import model_validity
 from .strength import strength_stages
 
 #: Stages that strength and size laws are made of.

@@ -8,7 +8,7 @@ import xarray as xr
 from ..core.datasets import titled
 from ..core.settings import SpecimenSettings
 from ..core.window import spacing_of
-from ..mechanics.joint import describe_joint
+from ..joint.joint import describe_joint
 from ..registration.registration_scatter import motion_variables, scattered_motions
 from ..roughness.dimension import surface_dimension
 from ..roughness.quality import scan_quality

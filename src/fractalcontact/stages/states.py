@@ -13,13 +13,14 @@ from ..domain.analysis import analyse_domains, scaling_over_resolutions
 from ..domain.measures import measures_of_map_states
 from ..domain.null_models import beside_domains, nulls_of_map_states
 from ..domain.renormalisation import extrapolated_pressure
-from ..mechanics.area import area_laws, joint_statistics
-from ..mechanics.closure import closure_curves, elastic_dilatancy, full_contact_warning
-from ..mechanics.contact_fields import contact_fields
-from ..mechanics.left_out import left_of_fields
-from ..mechanics.overlap import load_warning, node_marks
-from ..mechanics.separation import prefractal_openings
-from ..mechanics.states import (
+from ..joint.overlap import load_warning, node_marks
+from ..laws.area import area_laws, joint_statistics
+from ..laws.closure import closure_curves, elastic_dilatancy, full_contact_warning
+from ..roughness.recommended import best_dimension
+from ..states.contact_fields import contact_fields
+from ..states.left_out import left_of_fields
+from ..states.separation import prefractal_openings
+from ..states.states import (
     DIP,
     chosen_offset,
     combine,
@@ -29,7 +30,6 @@ from ..mechanics.states import (
     map_states,
     with_pressure,
 )
-from ..roughness.recommended import best_dimension
 from .errors import error_stages
 
 
@@ -61,7 +61,7 @@ def state_stages(
     specimens, surface_dimension, joints : xr.Dataset
         Of the stages of these names, from :func:`stages.specimen.specimen_stages`.
     parts : sequence of xr.Dataset
-        Contact states, from :func:`mechanics.sweep.joint_states`.
+        Contact states, from :func:`states.sweep.joint_states`.
     settings : StateSettings
     solver : Solver
     ensemble : xr.Dataset, optional

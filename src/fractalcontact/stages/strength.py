@@ -6,12 +6,12 @@ import xarray as xr
 from ..core.directions import slides
 from ..core.settings import StrengthSettings
 from ..core.window import cell_side, nominal_area
-from ..mechanics.states import with_pressure
-from ..mechanics.strength import joint_strength
+from ..laws.strength import joint_strength
 from ..roughness.fit_range import MIN_CELLS
 from ..roughness.recommended import best_dimension
 from ..size_effect.laws import joint_by_size
 from ..size_effect.prediction import predict_whole_strength
+from ..states.states import with_pressure
 
 
 def strength_stages(

@@ -5,10 +5,10 @@ import xarray as xr
 
 from ..core.datasets import titled
 from ..core.settings import Solver, WindowSettings
-from ..mechanics.loading import JointLoading
-from ..mechanics.states import with_pressure
 from ..size_effect import windows
 from ..size_effect.eq6 import size_test
+from ..states.loading import JointLoading
+from ..states.states import with_pressure
 
 
 @titled(

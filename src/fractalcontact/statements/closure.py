@@ -8,7 +8,7 @@ from ..core.fitting import MIN_POINTS, fit_line
 from ..core.limits import NEARLY
 from ..core.text import compact, loads_of, number
 from ..core.verdicts import FAILS, HOLDS, PARTLY, UNDETERMINED
-from ..mechanics.lag_dimension import LAG_RANGES
+from ..joint.lag_dimension import LAG_RANGES
 from .evidence import Evidence, of_a_kind
 from .findings import (
     Finding,

@@ -4,7 +4,7 @@ from ensembles import ensemble
 
 from contactlab.experiments.area_slope import area_slope
 from fractalcontact.core.intervals import mean_interval
-from fractalcontact.mechanics import theory
+from fractalcontact.laws import theory
 
 RECIPE = {
     "dimension": 2.2,

@@ -9,7 +9,7 @@ from contactlab.experiments.size_effect_test import size_effect_test
 from contactlab.experiments.size_states import seed_of, solve_task
 from contactlab.experiments.size_tasks import size_jobs, size_tasks
 from fractalcontact.core.errors import InputError
-from fractalcontact.mechanics.theory import (
+from fractalcontact.laws.theory import (
     FUDGE,
     PERIODIC_AREAS,
     PERIODIC_SLOPE,

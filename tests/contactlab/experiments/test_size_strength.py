@@ -32,8 +32,8 @@ from contactlab.experiments.strength_exponents import (
 from contactlab.experiments.units import E_STAR, SPACING
 from fractalcontact import HalfSpace, solve_contact
 from fractalcontact.core.errors import InputError
-from fractalcontact.mechanics.corrected_area import corrected_area
-from fractalcontact.mechanics.strength import dilatancy_angle, from_flush, shear_strength
+from fractalcontact.laws.strength import dilatancy_angle, from_flush, shear_strength
+from fractalcontact.states.corrected_area import corrected_area
 
 RECIPE = {
     "hurst": [0.8],

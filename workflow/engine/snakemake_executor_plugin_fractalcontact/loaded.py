@@ -9,8 +9,8 @@ from roughcontact.kernel_cache import load_cached
 #: Rooms whose modules are loaded, with all that they import; the others are so too, or rarely used.
 ROOMS = (
     *("fractalcontact.cards", "fractalcontact.ensemble", "fractalcontact.figures"),
-    *("fractalcontact.mechanics", "fractalcontact.pages", "fractalcontact.stages"),
-    "fractalcontact.study",
+    *("fractalcontact.joint", "fractalcontact.laws", "fractalcontact.pages"),
+    *("fractalcontact.stages", "fractalcontact.states", "fractalcontact.study"),
     *("contactlab.experiments", "contactlab.figures"),
 )
 

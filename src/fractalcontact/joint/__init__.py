@@ -1,0 +1,1 @@
+"""The joint: faces slid against each other, their composite topography, and JRC."""

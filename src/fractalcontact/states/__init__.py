@@ -1,0 +1,1 @@
+"""Contact states of a joint: the solve plan, the solves, their numbers and errors."""

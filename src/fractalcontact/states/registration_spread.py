@@ -1,0 +1,122 @@
+"""Registration error of two scanned faces: spread over registrations that are as good."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+import xarray as xr
+
+from ..core.intervals import t_quantile
+from ..core.settings import Load
+from ..registration.registration_scatter import stored_motions
+from ..registration.surface_motion import Motion, Surface, grid_nodes
+from .loading import JointLoading
+from .separation import ROUNDING
+from .subgrid import QUANTITIES as OF_STATES
+from .subgrid import state_quantities
+from .sweep import load_steps
+
+#: Quantities whose spread is computed: those of :mod:`states.subgrid`, and the closure from the
+#: first load at the seat or beyond, mm.
+QUANTITIES = (*OF_STATES, "seated_closure")
+
+
+def moved_specimen(specimen: xr.Dataset, motion: Motion) -> xr.Dataset:
+    """A specimen of two faces with its upper face moved once more.
+
+    Parameters
+    ----------
+    specimen : xr.Dataset
+    motion : Motion
+        Small: from :func:`registration.registration_scatter.stored_motions`.
+
+    Returns
+    -------
+    xr.Dataset
+        Heights are interpolated by a cubic spline; where a cell around is missing the height
+        stays, but for the tilt.
+    """
+    upper = specimen["upper"].assign_attrs(
+        spacing_x=specimen.attrs["spacing_x"], spacing_y=specimen.attrs["spacing_y"]
+    )
+    x, y = grid_nodes(upper)
+    moved = Surface(upper)(*motion.back(x, y))
+    moved = np.where(np.isfinite(moved), moved, upper.values) + motion.rise(x, y)
+    return specimen.assign(upper=upper.copy(data=moved))
+
+
+def registration_values(
+    loading: JointLoading, loads: Sequence[Load] | None = None
+) -> dict[str, np.ndarray]:
+    """Closures, separation, area and stiffness of each registration that is as good.
+
+    Parameters
+    ----------
+    loading : JointLoading
+        Of two scanned faces, at one offset.
+    loads : sequence of (float, str), optional
+        Those solved; the study's if left out.
+
+    Returns
+    -------
+    dict of str to (motion, load) ndarray
+        By :data:`QUANTITIES`. The separation is max h - mean h - w: that of the faces' mean planes
+        within the window, which needs no highest node of the mated faces. Empty along the motions
+        where the specimen holds none.
+
+    Raises
+    ------
+    NotConverged
+        If a state could not be verified.
+    """
+    (cells,) = loading.cells
+    forces = loading.forces(loading.settings.loads if loads is None else loads)
+    space = loading.half_space(loading.shape)
+    seating = loading.settings.seating_pressure * loading.area * (1 - ROUNDING)
+    seat = min(int(np.searchsorted(forces, seating)), len(forces) - 1)
+    rows = []
+    for motion in stored_motions(loading.specimen):
+        moved = replace(loading, specimen=moved_specimen(loading.specimen, motion))
+        composite = moved.composite(int(cells))
+        where = f"specimen {loading.specimen.attrs['name']}, another registration"
+        states = load_steps(composite, space, forces, loading.solving, where)
+        datum = float(composite.max()), float(composite.mean())
+        found = [state_quantities(state, *datum) for state in states]
+        row = {name: np.array([one[name] for one in found]) for name in OF_STATES}
+        rows.append(row | {"seated_closure": row["closure"] - row["closure"][seat]})
+    return {
+        name: np.array([row[name] for row in rows]).reshape(len(rows), len(forces))
+        for name in QUANTITIES
+    }
+
+
+def registration_spread(
+    loading: JointLoading, loads: Sequence[Load] | None = None
+) -> dict[str, np.ndarray] | None:
+    """Registration error: half-widths of the 95 % spread over registrations that are as good.
+
+    Parameters
+    ----------
+    loading, loads
+        As for :func:`registration_values`.
+
+    Returns
+    -------
+    dict of str to (load,) ndarray, or None
+        By :data:`QUANTITIES`, in their units. None of a specimen that holds no further motions: one
+        face, faces given in one frame, or faces that do not match.
+
+    Raises
+    ------
+    NotConverged
+        If a state could not be verified.
+
+    Notes
+    -----
+    All registrations are interpolated alike, so their spread does not hold what that smooths away.
+    """
+    values = registration_values(loading, loads)
+    count = len(values["closure"])
+    if count < 2:
+        return None
+    return {name: t_quantile(count - 1) * of.std(axis=0, ddof=1) for name, of in values.items()}

@@ -1,0 +1,144 @@
+"""Sub-grids: the same surface on finer grids, and its contact states there."""
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from roughcontact.contact.state import ContactState
+from roughcontact.elastic.halfspace import HalfSpace
+
+from .settlement import bulk_settlement, interface_closure
+from .state_scalars import state_area
+from .sweep import load_steps
+
+#: Quantities of a state whose numerical error is found: unit, long name.
+QUANTITIES = {
+    "closure": ("mm", "closure w_int from first touch"),
+    "separation": ("mm", "separation of the mean planes, delta_r - w"),
+    "area_corrected": ("mm2", "real contact area, corrected for its edge"),
+    "stiffness": ("MPa/mm", "stiffness of the interface d sigma / d w_int"),
+}
+
+#: Nodes around which the summit of the spline is looked for, and points per cell there. The spline
+#: rises above its nodes by a few tenths of the difference between neighbours, so that a node much
+#: lower than the highest ones has no summit beside it that matters.
+SUMMIT_NODES, SUMMIT_POINTS = 64, 16
+
+
+def subgrid(composite: ArrayLike, factor: int) -> np.ndarray:
+    """Composite topography on cells ``factor`` times smaller: the cubic spline through its nodes.
+
+    Parameters
+    ----------
+    composite : (ny, nx) array_like
+        h at the centres of the cells, mm.
+    factor : int
+        From 1.
+
+    Returns
+    -------
+    (factor ny, factor nx) ndarray
+        h at the centres of the smaller cells, mm.
+
+    Notes
+    -----
+    Nodes are centres of cells, so that n cells of s and 2 n cells of s/2 cover the same window, and
+    the same nominal area, but have no centre in common; of odd factors each old centre is a new
+    one. All are samples of one surface. Within half a cell of the window's edge the spline has no
+    nodes beyond: it is continued evenly about the edge, which invents no summit there.
+    """
+    from scipy import ndimage
+
+    heights = np.asarray(composite, float)
+    if factor == 1:
+        return heights
+    return ndimage.zoom(heights, factor, order=3, mode="reflect", grid_mode=True)
+
+
+def summit(composite: ArrayLike) -> float:
+    """Largest height of the spline of :func:`subgrid`, mm.
+
+    Parameters
+    ----------
+    composite : (ny, nx) array_like
+        h, mm.
+    """
+    from scipy import ndimage
+
+    heights = np.asarray(composite, float)
+    spline = ndimage.spline_filter(heights, order=3, mode="reflect")
+    highest = np.argsort(heights, axis=None)[-SUMMIT_NODES:]
+    around = np.linspace(-1, 1, 2 * SUMMIT_POINTS + 1)
+    rows, columns = (
+        np.clip(place[:, np.newaxis] + around, -0.5, n - 0.5)
+        for place, n in zip(np.unravel_index(highest, heights.shape), heights.shape, strict=True)
+    )
+    points = np.broadcast_arrays(rows[:, :, np.newaxis], columns[:, np.newaxis, :])
+    found = ndimage.map_coordinates(spline, points, order=3, mode="reflect", prefilter=False)
+    return float(max(found.max(), heights.max()))
+
+
+def subgrid_states(
+    composite: np.ndarray,
+    space: HalfSpace,
+    factor: int,
+    forces: ArrayLike,
+    solving: Mapping[str, Any],
+    where: str,
+) -> Iterator[tuple[ContactState, float]]:
+    """Contact states of a composite topography on cells ``factor`` times smaller.
+
+    Parameters
+    ----------
+    composite, space, forces, solving, where
+        As for :func:`states.sweep.load_steps`.
+    factor : int
+
+    Yields
+    ------
+    state : ContactState
+    highest : float
+        Largest height on its grid, from which its closure counts, mm.
+    """
+    heights = subgrid(composite, factor)
+    spacing = space.spacing[0] / factor, space.spacing[1] / factor
+    kernel, boundary = space.kernel, space.boundary
+    finer = HalfSpace(heights.shape, spacing, space.modulus, kernel=kernel, boundary=boundary)
+    highest = float(heights.max())
+    for state in load_steps(heights, finer, forces, solving, f"{where}, spacing / {factor}"):
+        yield state, highest
+
+
+def state_quantities(
+    state: ContactState, highest: float, reference: float = 0.0
+) -> dict[str, float]:
+    """The :data:`QUANTITIES` of a contact state.
+
+    Parameters
+    ----------
+    state : ContactState
+    highest : float
+        Largest height of its composite topography, on its own grid, mm.
+    reference : float
+        Largest height at zero offset on the scan's grid, mm, from which dilatancy counts.
+
+    Notes
+    -----
+    The separation is ``highest - reference - w``. The largest height rises as the grid gets finer,
+    and so does the closure counted from it: their difference is the place of the rigid plane and
+    knows nothing of the summit. The reference is a length of the joint and stays what it is.
+    """
+    space = state.space
+    sides = np.multiply(space.shape, space.spacing)
+    area = float(np.prod(sides))
+    settlement = float(bulk_settlement(state.force, space.modulus, *sides))
+    stiffness = state.stiffness
+    compliance = (area / stiffness if stiffness else np.inf) - settlement / (state.force / area)
+    return {
+        "closure": float(interface_closure(state.closure, settlement)),
+        "separation": highest - reference - state.closure,
+        "area_corrected": state_area(state),
+        "stiffness": 1 / compliance if compliance > 0 else np.nan,
+    }

@@ -1,0 +1,142 @@
+"""Shear strength from the contact itself: saw teeth, flat faces, reciprocity."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import xarray as xr
+from made_settings import made_settings
+from made_stages import scan, stages_of
+
+from fractalcontact.joint.contact_strength import (
+    PARTS,
+    contact_dips,
+    contact_strength,
+    dips_by_force,
+    friction_of_dips,
+)
+from fractalcontact.joint.joint import composite_topography
+from fractalcontact.study.configuration import solver_settings
+from fractalcontact.surface.specimen import make_specimen, window_arguments
+from fractalcontact.surface.synthesis import self_affine
+
+SPACING, BASIC = 0.1, 30.0
+SOLVER = solver_settings({}, "made")
+
+
+def settings_of(**stated):
+    load = (5.0, "pressure")
+    return made_settings(
+        **{
+            **{"loads": [load], "dilatancy_loads": [load], "map_load": load, "window": 3.2},
+            **{"directions": ["E"], "contact_directions": ["E"], "resolutions": [1]},
+        }
+        | stated
+    )
+
+
+def saw_teeth(angle, length=16, cells=65):
+    """Teeth across x, of a slope both ways, mm; even about the middle, so without a tilt."""
+    along = (np.arange(cells) - cells // 2) % length
+    rise = np.minimum(along, length - along) * SPACING
+    return np.tile(np.tan(np.radians(angle)) * rise, (cells, 1))
+
+
+def specimen_of(*faces, **stated):
+    arguments = window_arguments(settings_of(**stated))
+    return make_specimen(*(scan(face, SPACING) for face in faces), name="made", **arguments)
+
+
+@pytest.mark.parametrize("direction", ["E", "W"])
+@pytest.mark.parametrize("angle", [10.0, 25.0])
+def test_saw_teeth_that_match_have_the_angle_of_their_flanks_wherever_they_touch(angle, direction):
+    """Slid by three cells: every node of the flanks that touch, also beside tips and valleys."""
+    specimen = specimen_of(saw_teeth(angle))
+    dips = contact_dips(specimen, direction, 3, 1)
+    height = composite_topography(specimen, direction, 3)
+    touching = height > height.max() - 1e-9
+    assert touching.sum() > 100
+    np.testing.assert_allclose(dips[touching], angle, atol=1e-9)
+    by_force = dips_by_force(touching.astype(float), dips)
+    ratio, truncated = friction_of_dips(by_force, BASIC)
+    assert ratio == pytest.approx(np.tan(np.radians(BASIC + angle)), rel=1e-9)
+    assert truncated == 0
+
+
+def test_a_solved_joint_of_saw_teeth_has_their_strength():
+    """Through solver, stages and the stage strength; steeper than 70 degrees is truncated."""
+    settings = settings_of(offsets=[0.3, 0.5], map_offset=0.3)
+    settings = replace(settings, material=replace(settings.material, basic_friction_angle=BASIC))
+    for angle, expected in ((20.0, BASIC + 20), (60.0, 70.0)):
+        found = stages_of("made", [scan(saw_teeth(angle), SPACING)], settings, SOLVER)["strength"]
+        tau = found["contact_strength"].sel(contact_direction="E").squeeze()
+        np.testing.assert_allclose(tau, 5 * np.tan(np.radians(expected)), rtol=1e-4)
+        assert (found["contact_truncated"] == (angle > 40)).all()
+        assert (found["peak_contact_strength"] == tau.max()).all()
+        # What is truncated is a bound, whose interval does not pass it.
+        assert (found["peak_contact_valid"] == (angle < 40)).all()
+        bound = "only a lower bound, as most angles are truncated at 70 degrees"
+        assert found["peak_contact_reason"].item() == ("" if angle < 40 else bound)
+        bound = 5 * np.tan(np.radians(70))
+        assert not (found["peak_contact_strength_high"] > bound * (1 + 1e-6)).any()
+
+
+def test_flat_faces_have_the_basic_friction_angle():
+    dips = contact_dips(specimen_of(np.zeros((64, 64))), "N", 2, 1)
+    assert not np.nanmax(np.abs(dips))
+    by_force = dips_by_force(np.ones(dips.shape), dips)
+    ratio, _ = friction_of_dips(by_force, BASIC)
+    assert ratio == pytest.approx(np.tan(np.radians(BASIC)), rel=1e-12)
+
+
+def test_exchanging_the_faces_changes_nothing():
+    """Turned over, the lower block is the upper one, and slides the other way."""
+    first, second = (
+        self_affine((64, 64), SPACING, 0.8, rms=0.1, seed=seed, roll_off=1.5) for seed in (1, 2)
+    )
+    stated = {"offsets": [0.0]}
+    one = contact_dips(specimen_of(first, second, **stated), "E", 0, 1)
+    other = contact_dips(specimen_of(-second, -first, **stated), "W", 0, 1)
+    np.testing.assert_allclose(one, other, atol=1e-9)
+
+
+def test_coarser_nodes_have_slopes_over_their_own_spacing():
+    """A plane has its slope at every resolution and step; a short wave none over its length."""
+    x = np.arange(64)
+    wave = np.tile(0.2 * x * SPACING + 0.05 * np.sin(np.pi * x / 2), (64, 1))
+    specimen = specimen_of(wave)
+    # The mean plane of the scan is taken off: its dip is that of the wave alone.
+    for factor, step in ((4, 1), (2, 2), (1, 4)):
+        dips = contact_dips(specimen, "E", 0, factor, step)
+        assert dips.shape == (32 // factor, 32 // factor)
+        assert np.abs(dips).max() < 1
+
+
+def test_parts_of_the_force_keep_its_mean_dip_and_split_nodes():
+    pressure, dips = np.array([[1.0, 3.0]]), np.array([[40.0, -10.0]])
+    parts = dips_by_force(pressure, dips)
+    assert parts.mean() == pytest.approx(2.5)
+    assert parts[: 3 * PARTS // 4] == pytest.approx(-10)
+    assert parts[-1] == pytest.approx(40)
+    assert np.isnan(dips_by_force(0 * pressure, dips)).all()
+
+
+def test_no_friction_angle_is_no_strength():
+    dims = ("offset", "normal_force", "dip_step", "force_part")
+    dips = xr.DataArray(np.zeros((1, 1, 2, PARTS)), dims=dims)
+    found = contact_strength(dips, np.array([5.0]), np.nan)
+    assert np.isnan(found["contact_strength"]).all()
+    assert np.isnan(found["contact_truncated"]).all()
+
+
+def test_an_interval_ends_where_every_angle_is_truncated():
+    dims = ("offset", "normal_force", "dip_step", "force_part")
+    dips = np.zeros((1, 1, 2, PARTS))
+    dips[..., 0, :] = 39
+    found = contact_strength(xr.DataArray(dips, dims=dims), np.array([5.0]), BASIC)
+    ends = found["peak_contact_strength_low"], found["peak_contact_strength_high"]
+    half = 5 * (np.tan(np.radians(BASIC + 39)) - np.tan(np.radians(BASIC)))
+    most = 5 * np.tan(np.radians(70))
+    peak = 5 * np.tan(np.radians(BASIC + 39))
+    np.testing.assert_allclose(np.ravel(ends), [peak - half, most])
+    assert half + peak > most
