@@ -92,7 +92,7 @@ def test_the_atlas_opens_in_every_way_that_is_documented(capsys):
 
 
 def test_the_first_lines_read_an_atlas():
-    left = run_code("README.md", "The first ten minutes", replaced=[JOINT])
+    left = run_code("README.md", "What a study gives", replaced=[JOINT])
     assert "closure" in left["atlas"].children
     left["atlas"].close()
     left = run_code("docs/first_hour.md", replaced=[JOINT])
