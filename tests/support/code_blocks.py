@@ -58,6 +58,10 @@ NOT_RUN = {
         "docs/flow.md",
         "import numpy as np\nimport porepy",
     ): "a model of another program",
+    (
+        "docs/library.md",
+        ".venv/bin/python -m fractalcontact.commands.gap_of_scans",
+    ): "run with two faces of a test in tests/commands/test_gap_of_scans.py",
     ("docs/first_hour.md", "make new"): BY_CI,
     ("docs/first_hour.md", "kind: face"): "a sidecar: read in tests/test_documents.py",
     ("docs/first_hour.md", "make check-scans"): BY_CI,
