@@ -100,31 +100,22 @@ def analyse_domains(
     Parameters
     ----------
     fields : xr.Dataset
-        ``in_contact_k`` over (direction, offset, normal_force, y_k, x_k) and, of domains that were
-        not measured, ``solved`` and ``nodes_error``: :func:`states.states.contact_domains`.
+        ``in_contact_k`` over (direction, offset, normal_force, y_k, x_k) and, of solved domains,
+        ``solved`` and ``nodes_error``: :func:`states.states.contact_domains`.
     spacing : float
-        Of the scan, mm; a domain at resolution k has k times this.
-    fit_range : (float, float), optional
-        Smallest and largest box of the fits, mm; by default all between the cut-offs.
-    whole_cells : bool, optional
-        What is known of the nodes, see :func:`domain.box_dimension.box_dimension`; those of a
-        solution are centres of cells.
+        Spacing of the scan, mm; a domain at resolution k has k times this.
+    fit_range, whole_cells
+        As of :func:`domain.box_dimension.box_dimension`; nodes of a solution are centres of cells.
 
     Returns
     -------
     xr.Dataset
-        :data:`DOMAIN_FIELDS`, ``reason`` (why there is no dimension, or no interval) and
-        ``determined`` over (direction, offset, resolution, load); ``box_count`` and ``box_used``
-        with a last dimension scale, ``mean_count`` with mean_scale, ``cluster_octaves`` with
-        octave; ``box_side`` and ``mean_side`` (resolution, ...) in mm; over the
-        sides fitted ``law_count`` of the count law and ``ordinary_count`` of the ordinary slope;
-        what :func:`domain.cluster_laws.cluster_laws` finds.
+        The variables of :data:`_TABLE`, and those of :func:`domain.cluster_laws.cluster_laws`.
+        ``law_count`` and ``ordinary_count`` are given at the box sides of their fits.
 
-    Notes
-    -----
-    The dimension is that of :func:`domain.box_dimension.dimension_of_domain`. Its solver error
-    bound is the fraction of the nodes whose contact is ambiguous: in 95 to 98 % of 250 states of
-    three twins, solved to 1e-5 to 1e-2, the dimension was off by no more than that.
+    Notes ----- The solver error bound of the dimension is the fraction of the nodes whose contact
+    is ambiguous: in 95 to 98 % of 250 states of three twins, solved to 1e-5 to 1e-2, the dimension
+    was off by no more than that.
     """
     domains = {k: domain.values for k, domain in domains_by_resolution(fields).items()}
     factors = list(domains)
@@ -135,7 +126,7 @@ def analyse_domains(
     }
     n_direction, n_offset, n_load, *window = domains[factors[0]].shape
     shape = (n_direction, n_offset, len(factors), n_load)
-    # A coarser domain has fewer nodes and fewer octaves of cluster sizes: none in the others.
+    # The octaves of the finest domain; a coarser one has fewer nodes and no clusters in the last.
     n_octaves = int(np.prod(window)).bit_length()
     solved, ambiguous = _solver_state(fields, shape)
     n_scales, n_means = (max(map(len, of_all)) for of_all in sizes.values())
@@ -175,14 +166,14 @@ def analyse_domains(
 
 
 def _solver_state(fields, shape):
-    """True for each solved domain, and its ambiguous nodes; NaN for measured maps."""
+    """True for each solved domain, and its number of ambiguous nodes; NaN for measured maps."""
     if "solved" not in fields:
         return np.ones(shape, bool), np.full(shape, np.nan)
     return tuple(fields[name].transpose(*_ORDER).values for name in ("solved", "nodes_error"))
 
 
 def _empty_table(shape, n_scales, n_means, n_octaves) -> dict[str, np.ndarray]:
-    """Values of :data:`_TABLE` before any domain is measured, but the sides of the boxes."""
+    """Values of :data:`_TABLE` before any domain is measured, except the sides of the boxes."""
     return {
         **{name: np.full(shape, np.nan) for name in DOMAIN_FIELDS},
         "cluster_octaves": np.full((*shape, n_octaves), np.nan),
@@ -199,10 +190,10 @@ def _empty_table(shape, n_scales, n_means, n_octaves) -> dict[str, np.ndarray]:
 
 
 def _row(domain, spacing, ambiguous, **how) -> dict:
-    """Row of the table for one domain; ``how`` chooses the estimator of its dimension."""
+    """Row of the table for one domain; ``how`` are the options of the box dimension."""
     box = dimension_of_domain(domain, spacing, **how)
     sides = mean_sizes(domain.shape) * spacing
-    with np.errstate(invalid="ignore"):  # of a box as large as what a node stands for, to rounding
+    with np.errstate(invalid="ignore"):  # r - c is below 0 by rounding if a box is as wide as c
         law = law_count(sides, box.dimension, box.terms)
     return {
         **box.columns("delta_sigma"),
@@ -225,14 +216,14 @@ def _row(domain, spacing, ambiguous, **how) -> dict:
 
 
 def _ordinary(box, spacing) -> dict:
-    """The ordinary dimension of a domain, nothing where there is none."""
+    """Columns of the ordinary dimension of a domain; none where there is no such dimension."""
     slope = box.ordinary
     if slope is None:
         return {}
     used = np.isin(np.round(box.r / spacing), slope.sizes[slope.used])
     line = np.full(box.r.shape, np.nan)
     if used.any():
-        # Through the mean of the logarithms of the counts fitted.
+        # The line goes through the mean of the logarithms of the counts fitted.
         level = np.mean(np.log(box.count[used]) + slope.value * np.log(box.r[used]))
         inside = within(box.r, *(end * spacing for end in slope.over))
         line = np.where(inside, np.exp(level) * box.r**-slope.value, np.nan)
@@ -255,7 +246,7 @@ def scaling_over_resolutions(
     left: xr.DataArray | None = None,
     fit_range: tuple[float, float] | None = None,
 ) -> xr.Dataset:
-    """Renormalisation over resolutions: Delta_sigma from A_r(s) beside that of the box counts.
+    """Renormalisation over resolutions: Delta_sigma from A_r(s), compared with that of box counts.
 
     Parameters
     ----------
@@ -263,9 +254,9 @@ def scaling_over_resolutions(
         With ``area``, ``area_corrected``, ``area_sampling`` and ``nodes`` over (direction, offset,
         resolution, normal_force).
     domains : xr.Dataset
-        From :func:`analyse_domains`.
+        From :func:`analyse_domains`; the box counts used are those at the scan's own resolution.
     spacing : float
-        Of the scan, mm.
+        Spacing of the scan, mm.
     left : DataArray, optional
         From :func:`states.left_out.left_of_fields`; no interval without it.
     fit_range : (float, float), optional
@@ -274,14 +265,9 @@ def scaling_over_resolutions(
     Returns
     -------
     xr.Dataset
-        The renormalisation of :func:`domain.renormalisation.renormalisation` over (direction,
-        offset, load), and both estimates of Delta_sigma with their difference; the box counts are
-        those at the scan's own resolution; ``area``, ``area_corrected`` and ``nodes`` are those of
-        the states. ``sigma_n`` is F / A_r of the corrected area wherever `CORRECTED_NODES` touch,
-        ``sigma_n_raw`` that of the raw one; ``area_used`` says which areas Delta_sigma is fitted
-        to, ``fitted_area`` is their law. ``delta_sigma_area_reason`` and ``delta_sigma_box_reason``
-        say why there is no estimate, or no interval; ``area_bend`` is how much more Delta_sigma the
-        two finest resolutions have than the two coarsest.
+        The variables of :func:`domain.renormalisation.renormalisation`, both estimates of
+        Delta_sigma and their difference, and ``area_bend`` of
+        :func:`domain.renormalisation.area_bend`.
 
     Notes
     -----
@@ -318,17 +304,9 @@ def corrected_scaling(
     left: xr.DataArray | None = None,
     fit_range: tuple[float, float] | None = None,
 ) -> xr.Dataset:
-    """Renormalisation of the corrected areas alone, with the bend of their law.
+    """Renormalisation of the corrected areas alone, with the bend of their law and its interval.
 
-    Parameters
-    ----------
-    curves, spacing, left, fit_range
-        As of :func:`scaling_over_resolutions`.
-
-    Returns
-    -------
-    xr.Dataset
-        As of :func:`domain.renormalisation.renormalisation`, and ``area_bend`` with its interval.
+    Parameters are those of :func:`scaling_over_resolutions`.
     """
     s, nodes = _spacings(curves, spacing), _nodes_between(curves, spacing, fit_range)
     area = curves["area_corrected"]
@@ -346,7 +324,7 @@ def _spacings(curves, spacing):
 
 
 def _nodes_between(curves, spacing, fit_range):
-    """Nodes in contact at the spacings that are fitted, else missing."""
+    """Nodes in contact at the spacings of the fit; missing at others."""
     inside = True if fit_range is None else within(_spacings(curves, spacing), *fit_range)
     return curves["nodes"].where(inside)
 

@@ -1,7 +1,6 @@
-"""Box-counting dimension Delta_sigma of a contact domain.
+"""Box-counting dimension Delta_sigma of a contact domain: cut-offs, three estimators, intervals.
 
-The whole rule is here: the cut-offs of the box sizes, the three estimators and their interval. The
-counts themselves are those of :mod:`domain.box_counts`.
+The counts are those of :mod:`domain.box_counts`.
 """
 
 import itertools
@@ -55,14 +54,17 @@ class BoxDimension(Estimate):
     r, count : (k,) ndarray
         Sides of the boxes, mm, and the minimal cover there.
     used : (k,) bool ndarray
-        Sides that the dimension rests on.
+        Sides that the dimension rests on; for "mean" those within the range of the law.
     estimator : str
         One of :data:`ESTIMATORS`.
     misfit : float
-        Relative, rms, of the law that was fitted.
+        Root mean square of the counts about the fitted law, as a fraction of them.
     terms : LawTerms
+        Terms of the law, mm, from which :func:`domain.count_law.law_count` draws its curve.
     means : MeanCounts
+        Mean counts over grid origins.
     ordinary : OrdinarySlope or None
+        Ordinary box-counting dimension, :mod:`domain.ordinary_slope`; None without counts.
     """
 
     r: np.ndarray
@@ -104,7 +106,7 @@ def box_dimension(
     domain : (ny, nx) bool array_like
         Nodes in contact.
     spacing : float
-        In mm.
+        Distance of neighbouring nodes, mm.
     fit_range : (float, float), optional
         Smallest and largest box side of the fit, mm; by default all between the cut-offs.
     sizes : (k,) array_like, optional
@@ -118,21 +120,15 @@ def box_dimension(
     Returns
     -------
     BoxDimension
-        `dimension`, `low`, `high`; `r_min`, `r_max` of the fit in mm and its `n` sizes; `r` (mm),
-        `count` (of the minimal cover) and `used` of all sizes; `reason` why there is no dimension
-        (NaN) or no interval, else ""; `estimator`, "exact", "mean" or "cover" (for "mean", `n` are
-        the sizes of the law and `used` those of the minimal cover within its range); `misfit`, the
-        root mean square of the counts about the law, as a fraction of them; `terms` (mm) of the
-        law, from which :func:`domain.count_law.law_count` draws its curve; `means`, the mean counts
-        over grid origins; `ordinary`, the ordinary slope of :mod:`domain.ordinary_slope`, where any
-        count is.
+        `r_min` and `r_max` of the fit in mm and its `n` sizes; `reason` says why there is no
+        dimension (NaN) or no interval.
 
     Notes
     -----
     A box size lies beyond a cut-off where all but `SATURATED` of the nodes are alone in their box,
     or of the boxes of the window occupied. Such sizes are left out, unless as much of the window
     touches (then all sizes give dimension 2) or a single node does (0). Fewer than `MIN_SCALES`
-    sizes left, or different counts among them, are no dimension: a line through a staircase of two
+    sizes left, or different counts among them, give no dimension: a line through a staircase of two
     or three treads shows where their edges happen to be, and through a single tread it would claim
     0 without error.
 
@@ -158,26 +154,26 @@ def box_dimension(
 
     Known bias: percolation clusters of 512 and 1024 read 0.016 to 0.02 low in the mean. Sets marked
     by whole cells read up to 0.1 high where their waves hide that: state `whole_cells`. Levy dusts
-    marked and stated so read high, where chance bends what is no outline like one (indices of 1.2
-    and 1.5) or few boxes are left (0.8): by 0.025, 0.02 and 0.04 in windows of 512, by 0.02, 0.015
-    and 0.015 in windows of 2048; means of 120 to 400, known within 0.007.
+    marked and stated so read high, where chance bends the counts as an outline would (indices of
+    1.2 and 1.5) or few boxes are left (0.8): by 0.025, 0.02 and 0.04 in windows of 512, by 0.02,
+    0.015 and 0.015 in windows of 2048; means of 120 to 400, uncertain by 0.007.
 
-    What one window cannot show is whether it was struck by chance more densely than others: where
+    One window cannot show whether chance struck it more densely than others: where
     parts fall on the same boxes, as those of flights or trails, the counts of size r differ by a
     random fraction of (r / L)^(2 - D), which is alike in all parts and nearly a power law. Such
     sets of 1.5 are in 93 % of intervals; of 1.7, or trails that have not filled their window, in
     fewer.
 
-    Figures apart, as two squares: once boxes are larger than a figure or than the gap, what is
-    counted is no outline any more. With more of it than `count_law.MAX_OUTLINE` allows they read
+    Figures apart, as two squares: once boxes are larger than a figure or than the gap, the counts
+    measure no outline any more. With more of it than `count_law.MAX_OUTLINE` allows they read
     1.3 to 1.9, as a strip of 5 x 1 does, and where the gap is wide their intervals end short of 2:
     local slopes show the bend. Without that limit they are exact, but cascades of 1.2 read 0.12
-    high. So with a set that is cut off so that copies of several sizes are left: a
+    high. The same holds for a set that is cut off so that copies of several sizes are left: a
     dust of 650 of its 729 cells reads 0.09 low, inside its interval.
     """
     domain = np.asarray(domain, dtype=bool)
     extent = cropped(domain)
-    # A single node has no extent to divide: it is seen at the scales of the window.
+    # A single node has no extent to divide: its boxes are those of the window.
     shape = extent.shape if extent.size > 1 else domain.shape
     fitting = sizes is None
     sizes = box_sizes(shape, min(domain.shape)) if sizes is None else np.asarray(sizes, dtype=float)
@@ -191,7 +187,7 @@ def box_dimension(
     cover = _Cover(sizes, r, count, used)
     ladder = _best_scales(cover, {max(extent.shape), max(domain.shape)})
     side = max(extent.shape) * float(spacing)
-    # Boxes of sizes that fit a filled window count it exactly, others overhang it.
+    # Sizes that fit a filled window count it exactly; others overhang it.
     if nodes == 1 or (fitting and nodes == domain.size) or _is_exact(cover, ladder):
         return replace(_exact(cover, ladder, side), ordinary=ordinary)
     law, means = law_of_means(extent, limits, whole_cells)
@@ -202,7 +198,7 @@ def box_dimension(
 
 
 def _with_interval(found: BoxDimension, nodes: int) -> BoxDimension:
-    """The dimension without its interval where that means nothing, and with the reason."""
+    """The dimension, without its interval and with the reason where it rests on too few nodes."""
     why = FEW_NODES.format(nodes) if nodes < MIN_NODES else ONE_PART
     if nodes >= MIN_NODES and np.isfinite(found.width):
         return found.in_plane()
@@ -229,20 +225,20 @@ def dimension_of_domain(
 ) -> BoxDimension:
     """Box-counting dimension of a contact domain, as every stage states it.
 
-    One set of nodes in one window has one dimension, whoever asks: box sizes are those of the
+    One set of nodes in one window has one dimension in all stages: box sizes are those of the
     window, whole numbers of cells, so that every grid origin is tried. To box counting a single
-    node is a point, of dimension 0 without error; the node, though, stands for contact somewhere in
-    a cell, and whether that is a point, a line or the whole cell no count at this spacing can show:
-    it has none.
+    node is a point, of dimension 0 without error. The node stands for contact somewhere in
+    a cell, and no count at this spacing can show whether that is a point, a line or the whole cell:
+    a single node has no dimension.
 
     Parameters
     ----------
     domain : (ny, nx) bool array_like
         Nodes in contact, over the whole window.
     spacing : float
-        In mm.
+        Distance of neighbouring nodes, mm.
     fit_range, whole_cells
-        As :func:`box_dimension` takes them; the nodes of a solution are centres of cells.
+        As of :func:`box_dimension`; the nodes of a solution are centres of cells.
     """
     domain = np.asarray(domain, dtype=bool)
     sizes = window_sizes(domain.shape).astype(float)
@@ -384,12 +380,5 @@ def _slopes_of_parts(x: np.ndarray, y: np.ndarray) -> np.ndarray:
 
 
 def no_dimension(r: np.ndarray, count: np.ndarray, reason: str) -> BoxDimension:
-    """Box counts without a dimension, and why.
-
-    Parameters
-    ----------
-    r, count : (k,) ndarray
-        Box sides, mm, and N(r).
-    reason : str
-    """
+    """Box counts (k,) at sides r (k,) in mm without a dimension, and the reason."""
     return BoxDimension(r=r, count=count, used=np.zeros(r.size, dtype=bool), reason=reason)

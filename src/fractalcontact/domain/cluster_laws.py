@@ -1,4 +1,4 @@
-"""Laws of contact clusters: how many are how large, and how contact localises with the offset."""
+"""Laws of contact clusters: number against size, and localisation against offset."""
 
 import numpy as np
 import xarray as xr
@@ -45,30 +45,25 @@ _TABLE = {
 
 
 def cluster_laws(domains: xr.Dataset, nodes: np.ndarray, spacing: float) -> xr.Dataset:
-    """Sizes of clusters beside their power law, and Morisita's index as a power of the offset.
+    """Sizes of clusters with their power law, and Morisita's index as a power of the offset.
+
+    Domains of fewer than `RESOLVED_NODES` nodes are not fitted.
 
     Parameters
     ----------
     domains : xr.Dataset
-        With the numbers of :func:`domain.clusters.cluster_statistics` over (direction, offset,
+        The numbers of :func:`domain.clusters.cluster_statistics` over (direction, offset,
         resolution, normal_force).
     nodes : (direction, offset, resolution, normal_force) ndarray
-        Nodes in contact; domains of fewer than `RESOLVED_NODES` are not fitted.
+        Nodes in contact.
     spacing : float
-        Of the scan, mm.
-
-    Returns
-    -------
-    xr.Dataset
-        ``cluster_area`` over (resolution, octave), mm2; ``clusters_at_least`` and, over the
-        octaves fitted, ``cluster_law_count``; ``cluster_law_followed``; what chance leaves of
-        ``morisita``; ``morisita_used`` and ``morisita_exponent``.
+        Spacing of the scan, mm.
     """
     cell = (domains["resolution"] * spacing) ** 2
     area = 2.0 ** domains["octave"] * cell
-    # Summed from the largest.
+    # Counts are summed from the largest clusters down.
     counts = domains["cluster_octaves"].transpose(..., "octave").values
-    # Random nodes have an index of 1 in the mean.
+    # The index of random nodes is 1 in the mean.
     reach = special.ndtri((1 + CONFIDENCE) / 2) * domains["morisita_scatter"]
     values = {
         "cluster_area": area,
@@ -89,17 +84,10 @@ def cluster_laws(domains: xr.Dataset, nodes: np.ndarray, spacing: float) -> xr.D
 
 
 def localisation(domains: xr.Dataset, nodes: np.ndarray) -> dict[str, xr.DataArray]:
-    """Exponent of Morisita's index as a power of the offset, and the states that it is fitted to.
+    """Exponent of Morisita's index as a power of the offset, and the states of its fit.
 
-    Parameters
-    ----------
-    domains, nodes
-        As of :func:`cluster_laws`; only ``morisita`` is read.
-
-    Returns
-    -------
-    dict of str to xr.DataArray
-        ``morisita_used``, and ``morisita_exponent`` with its interval.
+    Parameters are those of :func:`cluster_laws`; of ``domains`` only ``morisita`` is read. Returns
+    ``morisita_used``, and ``morisita_exponent`` with its interval.
     """
     offset, index = domains["offset"], domains["morisita"]
     used = (offset > 0) & (index > 0) & (xr.zeros_like(index, int) + nodes >= RESOLVED_NODES)

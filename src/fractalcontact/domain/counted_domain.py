@@ -31,13 +31,13 @@ class CountedDomain:
     Attributes
     ----------
     nodes : (ny, nx) bool ndarray
-        In contact.
+        Nodes in contact.
     box : BoxDimension
         From :func:`domain.box_dimension.dimension_of_domain`.
     limits : (float, float)
         Smallest and largest box side that may be fitted, cells.
     whole_cells : bool or None
-        As :func:`domain.count_law.best_law` takes it.
+        As of :func:`domain.count_law.best_law`.
     """
 
     nodes: np.ndarray
@@ -47,7 +47,7 @@ class CountedDomain:
 
     @cached_property
     def values(self) -> dict[str, float]:
-        """Each of :data:`QUANTITIES`."""
+        """Values of :data:`QUANTITIES` by name."""
         slope = np.nan
         if self.nodes.any() and self.counts_pairs:
             pairs, lags = self.pairs
@@ -82,20 +82,15 @@ class CountedDomain:
 
     @cached_property
     def pairs(self) -> tuple[np.ndarray, np.ndarray]:
-        """Pairs of nodes in contact within each lag, by part of the window, and lags there are."""
+        """Pairs of nodes in contact within each lag, by part of the window, and number of lags."""
         return pair_counts(self.nodes, self.distances)
 
 
 def errors_of(domain: CountedDomain, other: CountedDomain) -> dict[str, float]:
-    """Half the 95 % t-interval of each dimension of a domain less that of another in one window.
+    """Half the 95 % t-interval of the difference of two domains' dimensions, in one window.
 
-    The jackknife leaves the same part of the window out of both.
-
-    Returns
-    -------
-    dict of str to float
-        ``delta_sigma`` and ``correlation_dimension``; NaN where too few parts of the window are
-        occupied.
+    Of ``delta_sigma`` and ``correlation_dimension``, by the jackknife that leaves the same part of
+    the window out of both; NaN where too few parts of the window are occupied.
     """
     found = {
         "delta_sigma": _law_error(domain, other),
@@ -105,7 +100,7 @@ def errors_of(domain: CountedDomain, other: CountedDomain) -> dict[str, float]:
 
 
 def _law_error(domain, other):
-    """Estimator of dimensions by the law of the mean counts, each at the sizes of its own law."""
+    """Error of the dimensions by the law of the mean counts, each at the sizes of its own law."""
     if domain.law is None or other.law is None:
         return np.nan
     ours = len(domain.law_parts)
@@ -117,7 +112,7 @@ def _law_error(domain, other):
 
 
 def _pairs_error(domain, other):
-    """Estimator of correlation dimensions."""
+    """Error of the correlation dimensions."""
     if not domain.counts_pairs:
         return np.nan
     lags = domain.pairs[1]

@@ -23,7 +23,7 @@ def between_cut_offs(
     sizes : (k,) ndarray
         Box sides, cells.
     nodes : int
-        In contact.
+        Nodes in contact.
     shape : (ny, nx)
         Cells of the window.
 

@@ -40,14 +40,14 @@ def interval_dimensions(
     spacing : (float, float)
         Sides (y, x) of a cell, mm.
     direction : str
-        Where the upper block slides: E or W along x, N or S along y; anything else counts as x.
+        Sliding of the upper block: E or W along x, N or S along y; anything else counts as x.
 
     Returns
     -------
     list of Estimate
         Along and across, over lengths of two cells to an eighth of the window, with the interval of
-        :mod:`core.slope_of_sums`. Not known without contact. A filled window has 1, nodes that lie
-        farther apart than the longest interval have 0.
+        :mod:`core.slope_of_sums`; undetermined without contact. A filled window has 1, nodes that
+        lie farther apart than the longest interval have 0.
     """
     axis = 0 if direction in ("N", "S") else 1
     lengths = np.unique(np.round(pair_distances(domain.shape)).astype(int))

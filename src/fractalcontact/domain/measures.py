@@ -1,4 +1,4 @@
-"""Measures of a contact domain and its pressure beside the box dimension, of all map states."""
+"""Measures of a contact domain and its pressure other than the box dimension."""
 
 from typing import Any
 
@@ -18,20 +18,10 @@ _COMPARED_ORDERS = (0.0, 4.0)
 
 
 def measures_of_map_states(states: xr.Dataset, spacing: float) -> xr.Dataset:
-    """:func:`measures_of_states` of the states that are looked at closely.
+    """Measures of the map states, :func:`states.states.map_states`, spacing in mm.
 
-    Parameters
-    ----------
-    states : xr.Dataset
-        From :func:`states.states.map_states`.
-    spacing : float
-        Of the scan, mm.
-
-    Returns
-    -------
-    xr.Dataset
-        With the scalars ``direction``, ``offset`` and ``resolution``, and over load the
-        exponents of :data:`domain.isotropy.INTERVAL_FIELDS`.
+    Those of :func:`measures_of_states` with the scalars ``direction``, ``offset`` and
+    ``resolution``, and over load the exponents of :data:`domain.isotropy.INTERVAL_FIELDS`.
     """
     pressures, factor = states["pressure"].values, int(states["resolution"])
     measures = measures_of_states(pressures, spacing * factor, states["normal_force"].values)

@@ -1,9 +1,9 @@
 """Null models of a contact domain: as many nodes at random, and the bearing-area cut.
 
-A finite set of points has a box-counting dimension between 0 and 2 whatever its geometry: it
-crosses over from points alone to full boxes. What its geometry adds is the departure from nodes
-drawn at random in the same window; and what elastic interaction adds, the departure from the
-bearing-area cut: as many nodes, the highest of the composite topography.
+A finite set of points has a box-counting dimension between 0 and 2 whatever its geometry: its
+counts cross over from single points to full boxes. The departure from nodes drawn at random in the
+same window shows its geometry; the departure from the bearing-area cut, as many nodes that are the
+highest of the composite topography, shows elastic interaction.
 """
 
 from collections.abc import Collection
@@ -32,14 +32,13 @@ from .slope_curves import (
     random_curves,
 )
 
-#: What is stored of the bearing-area cut, of random nodes and of the difference, by the ending of a
-#: name.
+#: Long names of numbers of the cut, of random nodes and of the difference, by the ending of a name.
 _CUT = "that of the bearing-area cut of as many nodes"
 _ESTIMATES = {
     "_random": "as many random nodes, mean and 95 % band",
     "_cut_difference": "less that of the bearing-area cut",
 }
-#: Of which quantities.
+#: Quantities that have these numbers.
 _COMPARED = {
     "_random": ("delta_sigma", "clusters"),
     "_cut_difference": ("delta_sigma", "correlation_dimension"),
@@ -50,14 +49,14 @@ _BY_OCTAVE = ("normal_force", "null_octave")
 
 
 def _rows(name: str, words: str, dims: Any, endings: Collection[str]) -> dict[str, tuple]:
-    """Variables of a quantity beside its null models."""
+    """Variables of the null models of a quantity: name, dimensions, unit, long name."""
     rows = {f"{name}_cut": ("1", f"{words}: {_CUT}")}
     for ending in endings:
         rows |= rows_of(f"{name}{ending}", "1", f"{words}: {_CURVES[ending]}")
     return {of: (dims, *units_and_words) for of, units_and_words in rows.items()}
 
 
-#: Curves of local slopes that are stored, by the ending of their name.
+#: Long names of the curves of local slopes, by the ending of a name.
 _CURVES = {"": "of the domain"} | _ESTIMATES
 #: Reason of a window with no local slope.
 TOO_SMALL = "the window is too small for local slopes"
@@ -121,23 +120,21 @@ def null_models(
     mask: np.ndarray | None = None,
     whole_cells: bool | None = False,
 ) -> xr.Dataset:
-    """Null models of contact domains in one window, and how the domains depart from them.
+    """Null models of contact domains in one window, and the domains' departures from them.
 
     Parameters
     ----------
     domains : (n, ny, nx) bool array_like
-        Nodes in contact, one domain a load.
+        Nodes in contact, one domain for each load.
     spacing : float
         mm.
     composite : (ny, nx) ndarray, optional
         Composite topography; without it (a measured map, a set without a surface) there is no cut,
         and departures are from random nodes alone.
-    fit_range : (float, float), optional
-        Smallest and largest box of the dimensions, mm; by default all between the cut-offs.
+    fit_range, whole_cells
+        As of :func:`domain.box_dimension.dimension_of_domain`.
     mask : (ny, nx) bool ndarray, optional
         Cells where contact could be seen; all by default. Random nodes lie in it.
-    whole_cells : bool, optional
-        As :func:`domain.box_dimension.dimension_of_domain` takes it.
 
     Returns
     -------
@@ -155,7 +152,7 @@ def null_models(
     -----
     The domain and its cut share most of their hills, so the interval of their difference is that of
     pairs: the jackknife leaves the same part of the window out of both. Both models are fitted over
-    the boxes of the domain, so that what the choice of these changes is common and in neither.
+    the boxes of the domain, so that the choice of these has the same effect on all three.
     """
     domains = np.asarray(domains, bool)
     limits = in_cells(fit_range, spacing)
@@ -175,24 +172,11 @@ def nulls_of_map_states(
     composites: xr.DataArray,
     fit_range: tuple[float, float] | None = None,
 ) -> xr.Dataset:
-    """Null models of the contact domains that are looked at closely, under every load.
+    """Null models of the map states, :func:`states.states.map_states`, under every load.
 
-    Parameters
-    ----------
-    states : xr.Dataset
-        From :func:`states.states.map_states`.
-    spacing : float
-        Of the scan, mm.
-    composites : DataArray (offset, window_y, window_x)
-        Composite topographies of the joint in the direction of the states.
-    fit_range : (float, float), optional
-        Smallest and largest box of the dimensions, mm; by default all between the cut-offs.
-
-    Returns
-    -------
-    xr.Dataset
-        From :func:`null_models`, with the loads and the scalars ``direction``, ``offset`` and
-        ``resolution`` of the states.
+    The composites (offset, window_y, window_x) are those of the joint in the direction of the
+    states; spacing and fit range are in mm. The dataset is that of :func:`null_models`, with the
+    loads and the scalars ``direction``, ``offset`` and ``resolution`` of the states.
     """
     factor = int(states["resolution"])
     here = composites.sel(offset=float(states["offset"]), method="nearest").values
@@ -203,19 +187,9 @@ def nulls_of_map_states(
 
 
 def beside_domains(domains: xr.Dataset, nulls: xr.Dataset) -> xr.Dataset:
-    """The table of contact domains with the null models of those that are looked at closely.
+    """Table of contact domains with the null models of the map states, missing in other domains.
 
-    Parameters
-    ----------
-    domains : xr.Dataset
-        From :func:`domain.analysis.analyse_domains`.
-    nulls : xr.Dataset
-        From :func:`nulls_of_map_states`.
-
-    Returns
-    -------
-    xr.Dataset
-        What is known by load stands over all dimensions of the table, missing in other domains.
+    From :func:`domain.analysis.analyse_domains` and :func:`nulls_of_map_states`.
     """
     order = ("direction", "offset", "resolution", "normal_force")
     sizes = tuple(domains.sizes[name] for name in order)
@@ -271,7 +245,7 @@ def _row(domain, spacing, composite, fit_range, mask, how) -> dict[str, Any]:
 
 
 def octaves_of(shape: tuple[int, ...], spacing: float) -> dict[str, np.ndarray]:
-    """Box sides of the local slopes, mm; a missing one in a window too small for any."""
+    """Box sides of the local slopes, mm; NaN alone in a window too small for any."""
     sides = np.append(curve_sizes(shape), np.full(2, np.nan))[: max(curve_sizes(shape).size, 2)]
     low, high = sides[:-1] * float(spacing), sides[1:] * float(spacing)
     return {
@@ -303,7 +277,7 @@ def _compared_slopes(domain, cut, mask, spacing):
     row = {"local_slope_cut": cut_values}
     for ending, of in curves.items():
         row |= of.columns(f"local_slope{ending}")
-    # A window too small for any slope has one that is missing.
+    # A window too small for any slope has a single missing one, as axes need a length.
     row = {name: values if np.size(values) else none for name, values in row.items()}
     if nodes < MIN_NODES:
         departures = dict.fromkeys(departures, NOT_COMPARED)
@@ -331,18 +305,9 @@ def _less_cut(domain, cut) -> dict[str, Estimate]:
 
 
 def bearing_area_cut(composite: np.ndarray, nodes: int) -> np.ndarray:
-    """The highest nodes of a composite topography: contact without elastic interaction.
+    """The highest nodes of a composite topography (ny, nx): contact without elastic interaction.
 
-    Parameters
-    ----------
-    composite : (ny, nx) ndarray
-        Heights; NaN where there is none.
-    nodes : int
-        How many; of equal heights the first are taken.
-
-    Returns
-    -------
-    (ny, nx) bool
+    Nodes without a height (NaN) are the last; of equal heights the first are taken.
     """
     heights = np.where(np.isfinite(composite), composite, -np.inf).ravel()
     level = np.partition(heights, heights.size - nodes)[heights.size - nodes]

@@ -1,7 +1,7 @@
-"""The ordinary box-counting dimension: the least-squares slope of the minimal cover.
+"""Ordinary box-counting dimension: the least-squares slope of the minimal cover.
 
 Boxes of 1, 2, 4, ... cells, every grid origin tried, a straight line through log N over log r
-between the cut-offs: what a textbook calls box counting, without a model of the counts.
+between the cut-offs: the box counting of textbooks, without a model of the counts.
 """
 
 from dataclasses import dataclass
@@ -20,15 +20,7 @@ from .mean_law import block_error, count_slope
 
 @dataclass(frozen=True, kw_only=True)
 class OrdinarySlope(Estimate):
-    """Slope of the minimal cover over sizes in cells, and the counts behind it.
-
-    Attributes
-    ----------
-    sizes : (k,) int64 ndarray
-        Cells: the powers of two to half of the window.
-    counts : (k,) ndarray
-    used : (k,) bool ndarray
-    """
+    """Ordinary dimension, its box sizes (2^k cells to half of the window) and their counts."""
 
     sizes: np.ndarray
     counts: np.ndarray
@@ -50,24 +42,19 @@ def ordinary_slope(
 ) -> OrdinarySlope:
     """Ordinary box-counting dimension of a domain.
 
+    The interval is that of :mod:`core.slope_of_sums`, by the mean counts at the same sizes; none
+    with fewer than `MIN_NODES` nodes.
+
     Parameters
     ----------
     extent : (ny, nx) bool ndarray
         The domain, without empty rows and columns about it.
     shape : (int, int)
         Cells of its window.
-    sizes : (k,) int ndarray
-        From :func:`dyadic_sizes`.
-    count : (k,) ndarray
-        Minimal cover at these.
+    sizes, count : (k,) ndarray
+        Sizes from :func:`dyadic_sizes`, and the minimal cover.
     limits : (float, float)
         Smallest and largest box side that may be fitted, cells.
-
-    Returns
-    -------
-    OrdinarySlope
-        Its interval is that of :mod:`core.slope_of_sums`, by the mean counts at the same sizes;
-        none with fewer than `MIN_NODES` nodes.
     """
     nodes = int(np.count_nonzero(extent))
     used = cover_used(count, sizes, nodes, shape, limits)
