@@ -26,20 +26,20 @@ from .registry import ESTIMATORS
 from .roll_off import RollOff
 from .spectrum_model import BAND_LIMITED
 
-#: What levelling leaves of a plane, as a part of its largest height.
+#: Largest remainder of a plane after levelling, as a fraction of its largest height.
 FLATNESS = 1e-12
 
-#: Cells this close to square, as a part of their side, are taken as square.
+#: Largest difference of the sides of a cell, as a fraction, that is taken as square.
 SQUARENESS = 1e-3
 
-#: Added to either end of an interval for the bias that is left: at H from 0.5 to 0.9 on synthetic
-#: surfaces it is at most twice this (roughness-length at H = 0.5), mostly below it.
+#: Remaining bias, added to either end of an interval: at H from 0.5 to 0.9 on synthetic surfaces it
+#: is at most twice this (roughness-length at H = 0.5), mostly below it.
 BIAS_LEFT = 0.015
 
-#: Ends of intervals of H: beyond the last exponents of the tables a curve may say next to nothing.
+#: Bounds of the intervals of H: beyond the last exponents of the tables a curve determines little.
 FARTHEST = (-0.5, 1.5)
 
-#: Axes a measure is taken along, and the ending of the variables that go with them.
+#: Axes of a measure with the endings of its variables' names and long names.
 AXES = {"both": ("", ""), "x": ("_x", " along x"), "y": ("_y", " along y")}
 
 
@@ -64,11 +64,11 @@ def surface_dimension(
         much longer as they must be to see that lag (variable `fit_min`, `fit_max`). By default from
         4 cells to an eighth of the smaller side, or to a quarter of a roll-off that is seen: see
         :func:`roughness.fit_range.choose_fit_range`. A roll-off is looked for whatever the range,
-        unless a FitRange says what it is.
+        unless a FitRange states it.
     estimators : sequence of str, optional
         Some of `ESTIMATORS`; all by default.
     known_dimension : float, optional
-        Delta_g of a synthetic surface, kept beside the estimates.
+        Delta_g of a synthetic surface, stored with the estimates.
 
     Returns
     -------
@@ -80,9 +80,9 @@ def surface_dimension(
         was `used`. NaN with `n` where a line cannot be fitted. Of the surface: `roll_off` with its
         interval (mm; infinite where none is seen, `roll_off_low` then the shortest not excluded),
         the lags `range_min` and `range_max` and `range_reason`; the `recommended` estimator with
-        its `reason`, `recommended_dimension` with its interval, or `no_dimension`, why there is
-        none (:func:`roughness.recommended.recommended_variables`); `known_dimension`; of all
-        estimators together what :func:`roughness.recommended.variables_of_all` counts.
+        its `reason`, `recommended_dimension` with its interval, or `no_dimension`, the reason
+        (:func:`roughness.recommended.recommended_variables`); `known_dimension`; of all
+        estimators together the counts of :func:`roughness.recommended.variables_of_all`.
 
     Raises
     ------
@@ -95,16 +95,16 @@ def surface_dimension(
     waves along with the plane, which lowers variogram and prisms by 0.1 at H = 0.9; cubes and
     islands are corrected by their mean on synthetic surfaces. Where the surface rolls off, a part
     of the long waves is missing that variogram and prisms feel far below it (0.15 at H = 0.8 over
-    lags up to a quarter of it): what the seen roll-off takes is taken off too.
+    lags up to a quarter of it): the effect of the seen roll-off is taken off too.
 
     The interval is the wider of the regression's and the jackknife's over parts of the surface (4 x
     4 blocks; 8 strips for the spectrum), the latter widened by the estimator's `spread`, because
     the parts of one surface share its long waves; and `BIAS_LEFT` beyond either end. It spans the
-    roll-offs and their shapes that cannot be excluded. What is not known, too, is whether
-    the nodes are points of a finer surface, or the surface lacks waves shorter than two nodes, as
-    synthetic surfaces do: then all but cubes and islands give H too high, by up to 0.06 at 0.3,
-    0.025 at 0.5 and 0.005 at 0.8, and twice that from lags of two cells. The interval spans both.
-    :mod:`experiments.delta_g` measures bias, scatter and how often it holds the truth.
+    roll-offs and their shapes that cannot be excluded. It also spans two samplings that heights
+    alone do not separate: nodes that are points of a finer surface, and a surface that lacks waves
+    shorter than two nodes, as synthetic surfaces do. In the second case all but cubes and islands
+    give H too high, by up to 0.06 at 0.3, 0.025 at 0.5 and 0.005 at 0.8, and twice that from lags
+    of two cells. :mod:`experiments.delta_g` measures bias, scatter and coverage of the interval.
     """
     estimates, chosen_range = measured_exponents(
         heights, spacing, fit_range=fit_range, estimators=estimators
@@ -188,9 +188,9 @@ def measured_exponents(
     fit_range: tuple[float, float] | FitRange | None = None,
     estimators: Sequence[str] | None = None,
 ) -> tuple[dict[str, MeasuredCurve], FitRange]:
-    """Hurst exponent by estimator, and the range all were fitted over.
+    """Curve and Hurst exponent by estimator, and the range of the fits.
 
-    Parameters and errors as :func:`surface_dimension`.
+    Parameters and errors are those of :func:`surface_dimension`.
     """
     heights = np.asarray(heights, float)
     if heights.ndim != 2:

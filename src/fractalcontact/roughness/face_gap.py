@@ -1,4 +1,4 @@
-"""Gap of two faces as scanned and registered: its distribution, and where the faces overlap."""
+"""Gap of two faces as scanned and registered: its distribution, and the cells that overlap."""
 
 import numpy as np
 import xarray as xr
@@ -9,7 +9,7 @@ from ..surface.suspect import overlap_statistics
 
 #: Bins of the distribution of the gap.
 GAP_BINS = 60
-#: Parts of a scan whose overlap is stated.
+#: Parts of a scan for which the overlap is stated.
 REGIONS = ("scan", "window")
 
 _OVERLAP = {
@@ -49,16 +49,8 @@ def _gap_histogram(specimen):
 
 
 def gap_statistics(specimen: xr.Dataset) -> dict[str, tuple]:
-    """Overlap and gap by region of the scan, and the gap's distribution over the whole of it.
+    """Overlap and gap of two faces by region of the scan, and the gap's distribution over the scan.
 
-    Parameters
-    ----------
-    specimen : Dataset
-        Of two faces, from :func:`surface.specimen.make_specimen`.
-
-    Returns
-    -------
-    dict
-        Variables, as ``xr.Dataset`` takes them.
+    Variables for ``xr.Dataset``, of a specimen from :func:`surface.specimen.make_specimen`.
     """
     return _overlap(specimen) | _gap_histogram(specimen)

@@ -27,17 +27,17 @@ from .spectra import STRIPS, profile_spectra, radial_spectrum
 
 #: Fractions of the cells below a height, in percent.
 PERCENTILES = (0.1, 1.0, 5.0, 25.0, 50.0, 75.0, 95.0, 99.0, 99.9)
-#: mm, and rms slopes at the spacing of the scan, beyond which a unit is wrong, nearly always.
+#: Bounds on the side, mm, and on rms slopes at the spacing of the scan: beyond them a unit is
+#: nearly always wrong.
 MIN_SIDE = 1.0
 MIN_SLOPE, MAX_SLOPE = 0.01, 3.0
 #: Bins of the histogram, between the outer two percentiles and a quarter beyond on either side.
 BINS = 60
-#: Levels of a quantised surface are at least this many times fewer than its cells, or the step is
-#: too fine to be seen.
+#: Least number of cells over number of levels of a surface whose height step can be seen.
 CELLS_PER_LEVEL = 2
-#: Heights are multiples of a step when they depart from them by less than this part of it (rms).
+#: Largest rms departure of heights from multiples of a step, as a fraction of the step.
 STEP_TOLERANCE = 0.05
-#: What arithmetic may add to equal heights, as a part of the largest.
+#: Largest rounding error of equal heights, as a fraction of the largest height.
 ROUNDING = 1e-13
 
 
@@ -59,10 +59,9 @@ def scan_quality(specimen: xr.Dataset, resolutions: Sequence[int]) -> xr.Dataset
         :mod:`roughness.fractal_range`, and alternate scan lines by :mod:`roughness.scan_lines`.
         `range_end` (mm), the shortest wavelength of the fractal range over all of them, with its
         cause as attribute ``ended_by``; `below_range` on `resolution`. Of two faces, on `region`
-        ("scan", "window"): where they overlap, and their gap. Attributes: ``warning``, what
-        reading the files and this found, in sentences, "" if all is well; ``overlap``, a clause on
-        where the faces overlap, "" of one face; what :func:`roughness.quality_words.statements`
-        says.
+        ("scan", "window"): their overlap and their gap. Attribute ``warning``: the warnings of the
+        files and of this function in sentences, "" without any; further attributes are those of
+        :func:`roughness.quality_words.statements`.
 
     Notes
     -----
@@ -107,7 +106,7 @@ def scan_quality(specimen: xr.Dataset, resolutions: Sequence[int]) -> xr.Dataset
 def _doubtful_unit(specimen, heights, spacing) -> str:
     """Warning of a side or slope that rock joints hardly have: a wrong unit, nearly always.
 
-    The slope of an aperture map is not judged: it is no face.
+    The slope of an aperture map is not judged, because it is no face.
     """
     side = min(n * s for n, s in zip(heights[0].shape, spacing, strict=True))
     found = [slope_statistics(z, spacing) for z in heights]
@@ -190,17 +189,10 @@ def _removed_plane(specimen):
 
 
 def height_step(heights: np.ndarray) -> float:
-    """The step of which all heights are multiples, mm: of a converter, or of rounded text.
+    """Step of which all heights are multiples, mm: of a converter, or of rounded text.
 
-    Parameters
-    ----------
-    heights : (ny, nx) ndarray
-        As measured, before a plane is taken off; NaN where missing.
-
-    Returns
-    -------
-    float
-        NaN where there are about as many heights as cells, or they share no step.
+    NaN where there are about as many heights as cells, or they share no step. Heights are as
+    measured, before a plane is taken off; NaN where missing.
     """
     known = np.sort(heights[np.isfinite(heights)])
     rises = np.diff(known)
@@ -255,8 +247,8 @@ _NUMBERS = {
 
 
 def _profile_spectra(heights, spacing):
-    """Spectra of profiles along x and y, and where their fractal range ends."""
-    curves = [list(profile_spectra(z, spacing).values()) for z in heights]  # x, then y
+    """Spectra of profiles along x and y, and the ends of their fractal range."""
+    curves = [list(profile_spectra(z, spacing).values()) for z in heights]  # [face][x, y]
     ranges = [
         [find_fractal_range(curve, d) for curve, d in zip(row, spacing[::-1], strict=True)]
         for row in curves
@@ -350,7 +342,7 @@ _RANGE = {
 def _range_end(result, specimen) -> Estimate:
     """Shortest wavelength of the fractal range, mm, over faces and axes, and its cause.
 
-    Points farther apart than the nodes end it too.
+    A distance of points larger than that of the nodes ends it too.
     """
     seen = Estimate.read(result, "end")
     words = [face_words(specimen, face) for face in result["face"].values]
@@ -369,7 +361,7 @@ def _range_end(result, specimen) -> Estimate:
 
 
 def _compared_with_range(end: Estimate, resolutions, side):
-    """The end of the range, and the resolutions that go below it."""
+    """End of the range, and the resolutions that go below it."""
     values = {
         "resolution": resolutions * side,
         "multiple": resolutions,

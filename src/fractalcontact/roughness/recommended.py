@@ -1,6 +1,6 @@
 """Recommended surface dimension Delta_g: the choice among the estimates, or of none.
 
-Estimators that look at the same heights do not err independently, so that their mean is no better
+Estimators of the same heights do not err independently, so that their mean is no better
 than the best of them, and worse where a roll-off or the edges of the scan bend some of the curves.
 """
 
@@ -16,9 +16,9 @@ from .fit_range import LAST_OF_ROLL_OFF
 
 #: The estimator whose value is the answer.
 RECOMMENDED = "roughness_length"
-#: Why: 50 surfaces of each kind in `config/estimators.yaml`, H from 0.5 to 0.9. There its rms error
-#: is 0.038 at 256 nodes per side (second differences 0.040, variogram 0.042, spectrum 0.052), and
-#: half its interval 0.12 (0.13, 0.22, 0.14).
+#: Reason of the choice: on 50 surfaces of each kind in `config/estimators.yaml`, H from 0.5 to 0.9,
+#: its rms error is 0.038 at 256 nodes per side (second differences 0.040, variogram 0.042, spectrum
+#: 0.052), and half its interval 0.12 (0.13, 0.22, 0.14).
 REASON = (
     "least rms error and narrowest 95 % interval of all estimators on synthetic surfaces of known "
     "dimension, with and without a roll-off; the interval contains the known value on more than "
@@ -40,8 +40,8 @@ def best_dimension(dimensions: xr.Dataset) -> Estimate:
     Returns
     -------
     Estimate
-        None, with the reason, where the estimator found no dimension, or one that is not between 2
-        and 3: what is smoother than a plane allows, or rougher than independent heights, is not
+        None, with the reason, where the estimator has no dimension, or one that is not between 2
+        and 3: a surface smoother than a plane allows, or rougher than independent heights, is not
         self-affine over these lags, and no theory of self-affine surfaces applies.
     """
     if RECOMMENDED not in dimensions["estimator"].values:
@@ -63,7 +63,7 @@ def best_dimension(dimensions: xr.Dataset) -> Estimate:
     return Estimate(reason=reason)
 
 
-#: What is stored of all estimators together: long names.
+#: Variables of all estimators together: long names.
 _OF_ALL = {
     "dimensions_fitted": "estimators that found a dimension",
     "lowest_dimension": "lowest Delta_g of the estimators",
@@ -76,16 +76,9 @@ _OF_ALL = {
 def variables_of_all(dimensions: xr.Dataset) -> dict[str, Any]:
     """Range of Delta_g over the estimators, as the paper states it, and how many separate x and y.
 
-    Parameters
-    ----------
-    dimensions : xr.Dataset
-        ``dimension``, and ``hurst_x`` and ``hurst_y`` with their intervals, on ``estimator``.
-
-    Returns
-    -------
-    dict
-        Variables by the names of the atlas; the range is NaN without a fit. The middle of the range
-        is no estimate: see :func:`best_dimension`.
+    Variables by the names of the atlas, from ``dimension``, ``hurst_x`` and ``hurst_y`` on
+    ``estimator``; the range is NaN without a fit. The middle of the range is no estimate: see
+    :func:`best_dimension`.
     """
     known = dimensions["dimension"].values
     known = known[np.isfinite(known)]
@@ -103,25 +96,13 @@ def variables_of_all(dimensions: xr.Dataset) -> dict[str, Any]:
 
 
 def beyond_roll_off(dimensions: xr.Dataset) -> bool:
-    """True if the lags fitted reach beyond the part of a roll-off up to which its effect is known.
-
-    Parameters
-    ----------
-    dimensions : xr.Dataset
-        From :func:`roughness.dimension.surface_dimension`.
-    """
+    """True if lags were fitted beyond the part of a roll-off up to which its effect is known."""
     end = LAST_OF_ROLL_OFF * float(dimensions["roll_off"])
     return float(dimensions["range_max"]) > end * (1 + 1e-9)
 
 
 def dimension_words(dimensions: xr.Dataset) -> str:
-    """Sentence on the recommended estimate with the reason for its lags, or why there is none.
-
-    Parameters
-    ----------
-    dimensions : xr.Dataset
-        From :func:`roughness.dimension.surface_dimension`.
-    """
+    """Sentence on the recommended estimate with the reason for its lags, or for having none."""
     reason = str(dimensions["no_dimension"].item())
     if reason:
         return f"no surface dimension: {reason}"

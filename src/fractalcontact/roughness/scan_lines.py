@@ -1,6 +1,6 @@
 """Alternation of scan lines: every other column or row of a line scanner shifted or sheared.
 
-A scanner that measures to and fro has two kinds of line. Where they disagree, a spectrum across the
+A scanner that measures to and fro has two kinds of line. If they disagree, a spectrum across the
 lines has a peak at its shortest wave of two spacings, which no rough surface has.
 """
 
@@ -15,36 +15,28 @@ from .quality_words import AXES
 
 #: Nodes of a stretch across the lines; even, so that all begin with the same kind.
 STRETCH = 32
-#: Orders below that of the alternation beside which its power is held: the taper smears it over the
-#: next two.
+#: Orders with which the power of the alternation is compared: lower by three or more, as the taper
+#: smears it over the next two.
 _BESIDE = range(STRETCH // 2 - 6, STRETCH // 2 - 2)
-#: How often chance may show an alternation where lines are shifted at random, each as a whole.
+#: Probability of an alternation by chance where lines are shifted at random, each as a whole.
 _BY_CHANCE = 1e-4
 
 
 def line_alternation(heights: np.ndarray) -> tuple[float, float]:
-    """Difference of alternate columns, and the noise.
+    """Difference of alternate columns, and the noise, mm, of heights (ny, nx) in mm.
 
-    Parameters
-    ----------
-    heights : (ny, nx) ndarray
-        mm, NaN where missing; transposed for alternate rows.
-
-    Returns
-    -------
-    difference : float
-        Root mean square difference of neighbouring columns that alternation makes, mm: twice its
-        amplitude. NaN where chance may make it, or no stretch of `STRETCH` nodes is complete.
-    noise : float
-        Standard deviation of independent heights with the power of the waves beside it, mm.
+    The difference is the root mean square one of neighbouring columns that alternation makes: twice
+    its amplitude. It is NaN where chance may make it, or no stretch of `STRETCH` nodes is complete.
+    The noise is the standard deviation of independent heights with the power of the waves next to
+    it.
 
     Notes
     -----
-    Stretches are tapered (Hann). Their power at order n/2, less that at the orders beside it, is
+    Stretches are tapered (Hann). Their power at order n/2, less that at the neighbouring orders, is
     the square of the amplitude; the spectrum of a rough surface falls there, so that it is not
     overestimated. Columns that are shifted at random are alike in all rows, so that only stretches
     count: the ratio of the powers must exceed the quantile of F with one degree of freedom for each
-    and two for each order beside it.
+    and two for each neighbouring order.
     """
     ny, nx = heights.shape
     count = nx // STRETCH

@@ -10,33 +10,22 @@ from .curves import LENGTHS_PER_OCTAVE, Curve
 #: Parts of a surface: strips of neighbouring profiles.
 STRIPS = 8
 
-#: A profile segment must hold this many points for a spectrum to be worth taking.
+#: Fewest points of a profile segment whose spectrum is taken.
 SHORTEST_SEGMENT = 32
 
-#: Waves of which fewer fit into a segment are left out: the taper smears orders over two
-#: neighbours to either side, and detrending takes a part of the first ones.
+#: Fewest wavelengths in a segment: the taper smears orders over two neighbours to either side, and
+#: detrending takes a part of the first ones.
 FIRST_ORDER = 4
 
 
 def profile_spectra(heights: np.ndarray, spacing: tuple[float, float]) -> dict[str, Curve]:
-    """Mean two-sided spectra (mm3) of profiles along x and along y, against wavelength (mm).
+    """Mean two-sided spectra (mm3) of profiles along "x" and "y", against wavelength (mm).
 
     Welch's method: unbroken segments of one length, as long as a quarter of the complete ones
     allows, each detrended and tapered (Hann); the mean is averaged in bins of equal ratio. Its
     parts are strips of profiles. Heights that are independent at every node, of variance v, have
-    the spectrum v times the spacing at every wavelength.
-
-    Parameters
-    ----------
-    heights : (ny, nx) ndarray
-        mm, NaN where missing.
-    spacing : (float, float)
-        (dy, dx), mm.
-
-    Returns
-    -------
-    dict of str to Curve
-        "x" and "y"; empty curves where no unbroken segment is long enough.
+    the spectrum v times the spacing at every wavelength. Curves are empty where no unbroken segment
+    is long enough. Heights and spacing (dy, dx) are in mm, heights NaN where missing.
     """
     segments = _unbroken_segments(heights)
     n = segments["x"][0].shape[1]
@@ -49,7 +38,7 @@ def profile_spectra(heights: np.ndarray, spacing: tuple[float, float]) -> dict[s
     members = np.bincount(which)
     mean_order = np.exp(np.bincount(which, np.log(order)) / members)
 
-    # Hann's side lobes fall as q^-6: no leakage from the long waves into q^-(1 + 2H).
+    # Hann's side lobes fall as q^-6, so that long waves do not leak into q^-(1 + 2H).
     taper = np.hanning(n + 1)[:-1]
     curves = {}
     for (axis, (profiles, strip)), pitch in zip(segments.items(), spacing[::-1], strict=True):
@@ -98,7 +87,7 @@ def _cut_segments(profiles: np.ndarray, length: int) -> tuple[np.ndarray, np.nda
 
 
 def _without_trend(profiles: np.ndarray) -> np.ndarray:
-    """Each row less its own least-squares line."""
+    """Rows, each less its own least-squares line."""
     x = np.arange(profiles.shape[1]) - (profiles.shape[1] - 1) / 2
     slope = profiles @ x / np.dot(x, x)
     return profiles - profiles.mean(axis=1, keepdims=True) - np.outer(slope, x)
