@@ -12,7 +12,7 @@ from fractalcontact.core.labels import cf_attrs
 
 from .speed import MODEL, OURS
 
-#: Nodes of the grid, not nodes per side, are what time and memory are fitted against.
+#: Quantities fitted against the number of nodes of the grid (not nodes per side).
 FITTED = {"seconds": "wall time", "memory": "peak memory"}
 _DIMS = ("surface", "solver", "size")
 #: Variables of `growth`: dimensions, unit, long name.
@@ -33,7 +33,7 @@ def growth(problems: Sequence[xr.Dataset], error: float) -> xr.Dataset:
     problems : list of xr.Dataset
         From `speed.error_against_time`; one surface at several sizes, and several surfaces.
     error : float
-        A solver counts at the tolerance with which it gets there fastest.
+        Error of the force; each solver is taken at the tolerance that reaches it fastest.
 
     Returns
     -------

@@ -25,21 +25,15 @@ _TEMPLATE = Path(__file__).with_name("size_effect.md.jinja")
 _WIDTH = 132
 #: Signs of the verdicts on an exponent of the strength.
 _SIGNS = {"no size effect": " *", "undetermined": " ?"}
-#: What the surfaces of one arm and side differ in but for their seeds.
+#: Properties, other than seeds, by which surfaces of one arm and side differ.
 _CLASS = ("hurst", "cut_off", "construction")
 
 
 def page(test: xr.Dataset, study: str, strength: xr.Dataset | None = None) -> str:
     """Text of the page, in Markdown.
 
-    Parameters
-    ----------
-    test : xr.Dataset
-        Group ``size_effect/surfaces`` of an atlas.
-    study : str
-        Name of the study, from which the command follows.
-    strength : xr.Dataset, optional
-        Group ``size_strength/surfaces``, where the atlas has it.
+    From the groups ``size_effect/surfaces`` and, if the atlas has it, ``size_strength/surfaces``;
+    the name of the study gives the command.
     """
     environment = Environment(trim_blocks=True, lstrip_blocks=True, undefined=StrictUndefined)
     environment.filters["prose"] = _prose
@@ -86,7 +80,7 @@ def _with_error(one: xr.Dataset, name: str, less: float = 0.0) -> str:
 def _cells(
     one: xr.Dataset, *names: str, less: float = 0.0, beside: str = "", sign: Sequence[str] = ()
 ) -> str:
-    """A cell for each load: the value of each name with its error, a number, and a sign."""
+    """Cells for the loads: the value of each name with its error, a number, and a sign."""
     cells = []
     for i in range(one.sizes["reduced_pressure"]):
         cell = one.isel(reduced_pressure=i)

@@ -1,8 +1,8 @@
-"""The area slope kappa at light load on synthetic surfaces, where its right value is known to lie.
+"""Area slope kappa at light load on synthetic surfaces, for which theories bound its value.
 
 Theories put kappa of A_r/A_0 = kappa p / (E* h'_rms) between Persson's sqrt(8/pi) and Bush, Gibson
-and Thomas' sqrt(2 pi) for a surface with many hills in the window. Whether the solver lands there
-is a check of the whole chain; how much single surfaces scatter says what one scan can show.
+and Thomas' sqrt(2 pi) for a surface with many hills in the window. A solution between them checks
+the whole chain; the scatter of single surfaces is the uncertainty of one scan.
 """
 
 from collections.abc import Mapping
@@ -34,7 +34,7 @@ def area_slope(recipe: Mapping[str, Any], rtol: float = 1e-6) -> xr.Dataset:
         ``dimension`` Delta_g, ``nodes`` per side, ``seeds``, ``roll_off_share`` (roll-off length as
         a fraction of the side) and ``loads``, values of p / (E* h'_rms).
     rtol : float
-        Of the solves.
+        Tolerance of the solves.
 
     Returns
     -------
@@ -85,7 +85,7 @@ def area_slope(recipe: Mapping[str, Any], rtol: float = 1e-6) -> xr.Dataset:
 def _labelled(
     fraction: np.ndarray, slope: np.ndarray, loads: np.ndarray, seeds: list[int]
 ) -> xr.Dataset:
-    """The dataset from the area fractions (raw and corrected) and slopes of all surfaces."""
+    """Dataset of the area fractions (raw and corrected) and slopes of all surfaces."""
     dims = ("surface", "seed", "reduced_pressure")
     result = xr.Dataset(
         {"rms_slope": (dims[:2], slope, cf_attrs("1", "rms slope h'_rms of the surface"))},

@@ -1,7 +1,7 @@
 """Bias, scatter and coverage of the estimators of Delta_g, on synthetic surfaces of known H.
 
-Each surface is measured as a scan would be: over the default range, with the interval every scan
-gets, and with a roll-off that has to be seen where there is one. An interval is honest if it holds
+Each surface is measured as a scan would be: over the default range, with the interval of every
+scan, and with the search for a roll-off. An interval is honest if it holds
 the exponent of the synthesis in most cases.
 """
 
@@ -24,13 +24,12 @@ from fractalcontact.surface.synthesis import self_affine
 
 from .units import SPACING
 
-#: H does not depend on the unit of height.
-RMS = 1.0  # mm
+#: Root mean square height, mm: H does not depend on it.
+RMS = 1.0
 
-#: Verdicts are about surfaces at least this smooth, as those of natural joints are.
+#: Least H of the surfaces of the verdicts: those of natural joints are as smooth.
 FROM_HURST = 0.5
-#: Bias that three estimators at least are to keep to there, and fraction of the intervals that are
-#: to hold H.
+#: Largest bias there of at least three estimators, and least fraction of the intervals that hold H.
 TOLERATED, PROMISED = 0.03, 0.9
 
 
@@ -57,7 +56,7 @@ def estimator_bias(recipe: Mapping[str, Any]) -> xr.Dataset:
         (hurst, size, roll_off): ``roll_off_seen``, fraction of surfaces. Over estimator, for H >=
         0.5: ``worst_bias``, ``overall_error`` (rms) and ``min_coverage``; for smaller H
         ``rough_coverage``. Attributes ``first_cells`` and ``last_part``: default range;
-        ``recommended``: estimator; ``tolerated_bias`` and ``promised_coverage``: what is aimed at.
+        ``recommended``: estimator; ``tolerated_bias`` and ``promised_coverage``: the targets.
     """
     exponents, sizes, seeds = (np.unique(recipe[key]) for key in ("hurst", "sizes", "seeds"))
     stated = [np.inf if part is None else float(part) for part in recipe.get("roll_offs", [None])]
@@ -98,7 +97,7 @@ def _numbered(*values: np.ndarray) -> Iterator[list[tuple[int, Any]]]:
 
 
 def _judged(estimates: np.ndarray, seen: np.ndarray, coords: Mapping[str, Any]) -> xr.Dataset:
-    """The dataset from H, the ends of its interval and the slopes' H, and roll-offs seen."""
+    """Dataset of H, the ends of its interval, the slopes' H, and roll-offs seen."""
     dims = tuple(coords)
     *ends, slope = estimates
     value, low, high = ends
@@ -140,7 +139,7 @@ def _mean(values: np.ndarray) -> np.ndarray:
 
 
 def _with_verdicts(result: xr.Dataset) -> xr.Dataset:
-    """The table with numbers over all natural surfaces, (estimator)."""
+    """Table with numbers over all natural surfaces, (estimator)."""
     natural = result.where(result["hurst"] >= FROM_HURST)
     every = ["hurst", "size", "roll_off"]
     of = f"H from {FROM_HURST:g}"

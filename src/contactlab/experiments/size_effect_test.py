@@ -2,8 +2,8 @@
 
 Arm R varies the short cut-off at one size, S1, S2 and S3 vary the size at one short cut-off, with a
 fixed roll-off, one in proportion to the size, and none; W those of windows cut from one surface. G
-has surfaces of other constructions. What the classical theory (Persson's) says of each stands
-beside it, from the spectrum that the surfaces of a class have in the mean.
+has surfaces of other constructions. The prediction of the classical theory (Persson's) for each
+comes from the mean spectrum of the surfaces of a class.
 """
 
 from collections.abc import Mapping, Sequence
@@ -48,7 +48,7 @@ OVER_SIDE = {
     "compliance_exponent": "exponent of the compliance of the interface over the side b",
     "separation_exponent": "exponent of the mean gap over the side b",
 }
-#: What arm R gives, and the largest surfaces of S1, in place of a dimension.
+#: Numbers of arm R and of the largest surfaces of S1 that stand for a dimension.
 DIMENSIONS = {
     "area_delta": "Delta_sigma by A_r(s), from the short cut-off",
     "theory_delta": "the same from h'_rms of the surfaces alone, by Persson",
@@ -58,7 +58,7 @@ DIMENSIONS = {
     "band_delta": "correlation dimension between cut-off and roll-off, finest surfaces of arm R",
     "cut_delta": "the same of the bearing-area cut",
 }
-#: What arm G gives.
+#: Numbers of arm G.
 GEOMETRY = {
     "geometry_delta": "correlation dimension of the contact domain, other constructions",
     "geometry_cut": "the same of the bearing-area cut",
@@ -79,7 +79,7 @@ _VERDICTS: dict[str, tuple] = {
     "published_pressure": ("published", "1", "p / (E* h'_rms) of published periodic areas"),
     "published_share": ("published", "1", "published A_r / A_0 of periodic surfaces, H = 0.8"),
 }
-#: Estimators of Delta_sigma that eq. 6 is tried with: by the areas A_r(s), and by box counts.
+#: Estimators of Delta_sigma in eq. 6: by the areas A_r(s), and by box counts.
 _ESTIMATORS = ("area", "box")
 
 
@@ -161,19 +161,11 @@ def size_effect_test(parts: Sequence[xr.Dataset], recipe: Mapping[str, Any]) -> 
 
 
 def with_comparisons(result: xr.Dataset) -> xr.Dataset:
-    """Exponents that eq. 6 wants, and where contact domains differ from the bearing-area cut.
+    """Add the exponents by eq. 6, and the departures of domains from the bearing-area cut.
 
-    Parameters
-    ----------
-    result : xr.Dataset
-        Of :func:`size_effect_test`, without them.
-
-    Returns
-    -------
-    xr.Dataset
-        With ``eq6_exponent`` (hurst, reduced_pressure, delta_estimator) and its interval, and
-        ``domain_determined`` and ``domain_beyond_cut`` (hurst, reduced_pressure): whether both
-        dimensions have intervals, and whether these are disjoint.
+    ``eq6_exponent`` (hurst, reduced_pressure, delta_estimator) with its interval;
+    ``domain_determined`` and ``domain_beyond_cut`` (hurst, reduced_pressure): whether both
+    dimensions have intervals, and whether these are disjoint.
     """
     dims = ("hurst", "reduced_pressure")
     found = result.transpose(*dims, ...)
@@ -203,19 +195,10 @@ def with_comparisons(result: xr.Dataset) -> xr.Dataset:
 
 
 def with_resolution_law(result: xr.Dataset) -> xr.Dataset:
-    """Area slopes of arm R over p / (E* h'_rms(s)), and the lines of Persson's theory beside.
+    """Add the area slopes of arm R over p / (E* h'_rms(s)), and the lines of Persson's theory.
 
-    Parameters
-    ----------
-    result : xr.Dataset
-        Of :func:`size_effect_test`, without them.
-
-    Returns
-    -------
-    xr.Dataset
-        With ``resolved_pressure`` and ``resolved_kappa`` (surface, reduced_pressure), NaN outside
-        arm R; ``theory_pressure``, ``theory_kappa`` and ``weakened_kappa_low`` and ``_high``
-        (theory,).
+    ``resolved_pressure`` and ``resolved_kappa`` (surface, reduced_pressure), NaN outside arm R;
+    ``theory_pressure``, ``theory_kappa`` and ``weakened_kappa_low`` and ``_high`` (theory,).
     """
     steepest, slope = _slope_of_loads(result), result["rms_slope"]
     pressure = (result["reduced_pressure"] * steepest / slope).where(result["of_arm"] == "R")
@@ -235,7 +218,7 @@ def with_resolution_law(result: xr.Dataset) -> xr.Dataset:
     return result.assign(labelled(_RESOLUTION, values))
 
 
-#: Parts g of the elastic energy that computations without adhesion want, and points of a curve.
+#: Fractions g of the elastic energy by computations without adhesion, and points of a curve.
 _WEAKENED, _CURVE_POINTS = (0.45, 0.42), 60
 _OF_STATES = ("surface", "reduced_pressure")
 _WEAKENED_WORDS = "A_r/A_0 over pressure by Persson's theory with its elastic energy times g"
@@ -261,7 +244,7 @@ def _persson(samples: xr.Dataset) -> xr.DataArray:
 
 
 def _slope_of_loads(samples: xr.Dataset) -> xr.DataArray:
-    """h'_rms in which the loads of every surface are given: that of the shortest cut-off."""
+    """h'_rms in the unit of the loads of every surface: that of the shortest cut-off."""
     slopes = samples["rms_slope"].values
     keys = list(zip(*(samples[f"of_{k}"].values for k in ("arm", "hurst", "size")), strict=True))
     steepest: dict[tuple, float] = {}
@@ -271,7 +254,7 @@ def _slope_of_loads(samples: xr.Dataset) -> xr.DataArray:
 
 
 def _of(samples: xr.Dataset, **chosen: Any) -> xr.Dataset:
-    """The surfaces of a class."""
+    """Surfaces of a class."""
     keep = np.ones(samples.sizes["surface"], bool)
     for name, value in chosen.items():
         keep &= samples[f"of_{name}"].values == value

@@ -69,7 +69,7 @@ NUMBERS: dict[str, tuple[tuple[str, ...], str, str]] = {
     "theory_strength": (_AT_V, "1", "tau/sigma_0 from S(v), the separation in its square root"),
     "theory_exponent": (_AT_FRACTION, "1", "exponent of theory_strength over b at equal v/b"),
 }
-#: What decides a class, at equal v and at equal v/b.
+#: Exponents that decide a class, at equal v and at equal v/b.
 _DECIDING = ("pooled_exponent", "scaled_strength_exponent", "predicted_exponent")
 
 
@@ -84,21 +84,11 @@ class _Sample(NamedTuple):
 
 
 def dilatancy_rates(states: xr.Dataset) -> np.ndarray:
-    """Rates d delta/dv between successive displacements, from mated faces on.
+    """Rates d delta/dv (surface, law, interval, reduced_pressure) between successive displacements.
 
-    Parameters
-    ----------
-    states : xr.Dataset
-        From :func:`experiments.size_strength.sliding_states`.
-
-    Returns
-    -------
-    (surface, law, interval, reduced_pressure) ndarray
-
-    Notes
-    -----
-    Secants, as :func:`laws.strength.dilatancy_angle` takes them: of one joint, whose scatter
-    cancels, and every state serves two of them.
+    They begin with mated faces. Secants, as :func:`laws.strength.dilatancy_angle` takes them: of
+    one joint, whose scatter cancels, and every state serves two of them. States are those of
+    :func:`experiments.size_strength.sliding_states`.
     """
     delta = states["separation"].transpose("surface", "law", "offset", "reduced_pressure").values
     delta = np.concatenate([np.zeros_like(delta[:, :, :1]), delta], axis=2)
@@ -107,21 +97,12 @@ def dilatancy_rates(states: xr.Dataset) -> np.ndarray:
 
 
 def strength_exponents(states: xr.Dataset, recipe: Mapping[str, Any]) -> xr.Dataset:
-    """Size effect from states of sliding joints.
+    """Size effect from states of sliding joints, :func:`experiments.size_strength.sliding_states`.
 
-    Parameters
-    ----------
-    states : xr.Dataset
-        From :func:`experiments.size_strength.sliding_states`.
-    recipe : mapping
-        As of :func:`experiments.size_strength.size_strength`.
-
-    Returns
-    -------
-    xr.Dataset
-        The states; :data:`EXPONENTS` with ``_error``, ``_low`` and ``_high`` (99 % over surfaces),
-        :data:`VERDICTS` after ``_verdict``; ``theory_strength`` and ``theory_exponent`` from S(v);
-        ``truncated_share``. Sides from :data:`MIN_ROLL_OFFS` roll-offs on enter exponents.
+    The dataset has the states; :data:`EXPONENTS` with ``_error``, ``_low`` and ``_high`` (99 % over
+    surfaces), :data:`VERDICTS` after ``_verdict``; ``theory_strength`` and ``theory_exponent`` from
+    S(v); ``truncated_share``. Only sides from :data:`MIN_ROLL_OFFS` roll-offs on enter exponents.
+    The recipe is that of :func:`experiments.size_strength.size_strength`.
     """
     offsets = np.r_[0.0, states["offset"].values]
     sides = np.unique(states["of_size"].values)
@@ -184,15 +165,8 @@ def equal_fractions(
 ) -> dict[tuple[float, float], dict[float, int]]:
     """Intervals of v that are one fraction of the side, for two sides or more.
 
-    Parameters
-    ----------
-    sides, offsets : array_like
-        mm; the offsets with zero, ascending.
-
-    Returns
-    -------
-    dict
-        By the ends (v/b) of the interval: its number by side.
+    By the ends (v/b) of the interval: its number by side. Sides and offsets are in mm; the offsets
+    include zero and ascend.
     """
     found: dict[tuple[Fraction, Fraction], dict[float, int]] = {}
     for side in sides:
@@ -250,7 +224,7 @@ def _verdict(found: Mapping[str, Mapping[tuple[int, ...], Exponent]], i: int, j:
 
 
 def _truncated_share(sample: _Sample, sides: np.ndarray, basic: float) -> list[np.ndarray]:
-    """Fraction of joints of each side whose phi_b + i Barton's law does not know."""
+    """Fraction of joints of each side whose phi_b + i is beyond the range of Barton's law."""
     angles = basic + np.degrees(np.arctan(sample.rates))
     out = (angles > LARGEST_FRICTION_ANGLE) | (angles < 0)
     return [out[sample.sides == side].mean(axis=0) for side in sides]
@@ -337,8 +311,8 @@ def _by_theory(
 ) -> dict[str, Any]:
     """Strength if the separation is in proportion to sqrt(S(v)), the factor of the largest joints.
 
-    A composite that is Gaussian, of one h'_rms and under one pressure, opens in proportion to its
-    rms height but for what the shape of its spectrum changes.
+    A Gaussian composite of one h'_rms and under one pressure opens in proportion to its
+    rms height but for the effect of the shape of its spectrum.
     """
     root = np.sqrt(difference)
     largest = sample.sides == sample.sides.max()

@@ -41,12 +41,12 @@ def rough(scenes: dict[str, xr.Dataset]) -> dict[str, xr.Dataset]:
 
 
 def values_of(scenes: dict[str, xr.Dataset], key: str) -> list:
-    """The different values of an attribute, ascending."""
+    """Distinct values of an attribute, ascending."""
     return sorted({scene.attrs[key] for scene in scenes.values()})
 
 
 def middle_contact(scenes: dict[str, xr.Dataset]) -> float:
-    """The share in contact that stands for all where there is room for one."""
+    """Share in contact that represents all where there is room for one."""
     shares = values_of(scenes, "contact")
     return shares[len(shares) // 2]
 

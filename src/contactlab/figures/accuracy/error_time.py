@@ -24,14 +24,14 @@ NEEDS = ("speed",)
 KEY = "speed"
 ORDER = 50
 
-#: How each quantity stands at an axis.
+#: Label of each quantity at an axis.
 AXES = {
     "force_error": "error of $F$ (1)",
     "area_error": "error of $A_r$ (1)",
     "delta_error": r"error of $\Delta_\sigma$ (1)",
     "pressure_error": "error of $p$, rms (1)",
 }
-#: Errors of zero are drawn here, and nothing below.
+#: Smallest error drawn; errors of zero are drawn there.
 SMALLEST = 1e-14
 
 
@@ -77,7 +77,7 @@ def _draw_points(axes: Axes, scene: xr.Dataset, quantity: str, looks: dict[str, 
 
 
 def _words(scenes: dict[str, xr.Dataset]) -> dict[str, Any]:
-    """Counts of the problems on whose front ours is at every error below `LEADS_BELOW`."""
+    """Counts of the problems on whose front our solver is at every error below `LEADS_BELOW`."""
     leads = {
         quantity: sum(
             not ahead_of_ours(scene, quantity=quantity, models=False).sizes["point"]

@@ -23,7 +23,7 @@ NEEDS = ("stability",)
 KEY = "stability"
 ORDER = 100
 
-#: Colour and hatching of each verdict: what must not happen is the darkest.
+#: Colour and hatching of each verdict; silent errors are the darkest.
 _STYLE: dict[int, dict[str, Any]] = {
     RIGHT: {"facecolor": "#cfe3f1"},
     HONEST: {"facecolor": COLOURS[5], "hatch": "////"},

@@ -25,9 +25,9 @@ NEEDS = ("size_effect",)
 KEY = "size_effect"
 ORDER = 7
 
-#: Of contact and of its bearing-area cut: words, marker, line, factor of their places.
+#: Contact and its bearing-area cut: words, marker, line, factor of their places.
 _STYLES = (("elastic contact", "o", "-", 1.04), ("bearing-area cut", "s", "--", 0.96))
-#: Their dimensions on the self-affine surfaces, and on each construction.
+#: Variables of both on the self-affine surfaces, and on each construction.
 _SELF_AFFINE, _CONSTRUCTED = ("band_delta", "cut_delta"), ("geometry_delta", "geometry_cut")
 
 

@@ -25,14 +25,14 @@ NEEDS = ("size_effect",)
 KEY = "size_effect"
 ORDER = 6
 
-#: Of every state in the table.
+#: Variables of every state in the table.
 _STATES = (
     *("corrected_share", "persson_share", "rms_slope", "of_hurst", "of_cut_off", "number"),
     *("resolved_pressure", "resolved_kappa"),
 )
-#: Factor between places of points that would lie over each other.
+#: Factor between the places of points that would overlap.
 _BESIDE = 1.05
-#: Colour of what others computed, which is no class of surfaces of this study.
+#: Colour of published computations, which are no class of surfaces of this study.
 _PUBLISHED = colour_of(3)
 
 

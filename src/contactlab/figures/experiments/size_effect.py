@@ -36,7 +36,7 @@ _ARMS = {
 }
 #: Estimators of Delta_sigma: name, words, filled.
 _ESTIMATORS = (("area", "$A_r(s)$", True), ("box", "box counts", False))
-#: Of the table, for every class, load and estimator.
+#: Columns of the table for every class, load and estimator.
 _COLUMNS = (
     *("alpha", "eq6_exponent", "central_alpha", "theory_alpha", "verdict"),
     "no_size_effect",
@@ -94,7 +94,7 @@ def _legends(test: xr.Dataset) -> list[list[Artist]]:
     """Columns of the legend: classes, loads, estimators and lines."""
     classes: list[Artist] = []
     for i, hurst in enumerate(test["hurst"].values):
-        # With the verdict on eq. 6 where all arms agree.
+        # The title has the verdict on eq. 6 if all arms agree.
         decided = np.unique(test["overall"].sel(hurst=hurst).values)
         words = f": {decided[0]}" if len(decided) == 1 else ""
         label = f"$H$ = {hurst:g}{words}"
