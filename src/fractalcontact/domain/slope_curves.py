@@ -84,7 +84,9 @@ class SlopeCurve:
     @cached_property
     def parts(self) -> np.ndarray:
         """Mean counts by part of the window over those of the whole window, (k, parts)."""
-        counts = mean_count(self.nodes, self.sizes, blocks=BLOCKS).reshape(self.sizes.size, -1)
+        counts = mean_count(self.nodes, self.sizes, blocks=BLOCKS).reshape(
+            self.sizes.size, BLOCKS**2
+        )
         return counts / window_counts(self.nodes.shape, self.sizes, self.mask)[:, np.newaxis]
 
     @cached_property
