@@ -6,11 +6,12 @@ import numpy as np
 import xarray as xr
 
 from ..core.arrays import padded
-from ..core.datasets import domains_by_resolution, labelled_dataset
+from ..core.datasets import domains_by_resolution, labelled
 from ..core.estimate import rows_of
 from ..core.fitting import MIN_POINTS
 from ..core.labels import cf_attrs
 from ..core.limits import CORRECTED_NODES
+from ..core.per_curve import stacked
 from ..core.ranges import within
 from .box_counts import window_sizes
 from .box_dimension import ESTIMATORS, dimension_of_domain
@@ -49,41 +50,30 @@ NOT_NEEDED = "not solved, since nothing shown needs it"
 #: Dimensions of the table of contact domains.
 _ORDER = ("direction", "offset", "resolution", "normal_force")
 
-#: The table: dimensions, unit and long name.
-_TABLE = {
-    **{name: (_ORDER, *words) for name, words in DOMAIN_FIELDS.items()},
-    "cluster_octaves": (
-        (*_ORDER, "octave"),
-        "1",
-        "contact clusters of 2^k to 2^(k+1) - 1 nodes, by octave k",
-    ),
-    "reason": (_ORDER, "1", "why there is no dimension, or none with an interval"),
-    "estimator": (_ORDER, "1", "estimator of delta_sigma"),
-    "determined": (_ORDER, "1", "whether delta_sigma has an interval"),
-    "ordinary_determined": (_ORDER, "1", "whether delta_sigma_ordinary has an interval"),
-    "box_count": (
-        (*_ORDER, "scale"),
-        "1",
-        "occupied boxes N(r), minimal cover over all grid origins",
-    ),
-    "box_used": ((*_ORDER, "scale"), "1", "box size used in the fit"),
-    "ordinary_used": (
-        (*_ORDER, "scale"),
-        "1",
-        "box size used in the fit of the ordinary dimension",
-    ),
-    "box_side": (("resolution", "scale"), "mm", "side of the boxes r"),
-    "mean_count": ((*_ORDER, "mean_scale"), "1", "occupied boxes N(r), mean over all grid origins"),
-    "law_count": (
-        (*_ORDER, "mean_scale"),
-        "1",
-        "box counts by the law that Delta_sigma is fitted with",
-    ),
+#: Variables of the table: unit, long name, and dimensions of an array of each domain.
+_TABLE: dict[str, tuple[str, ...]] = {
+    **DOMAIN_FIELDS,
+    "cluster_octaves": ("1", "contact clusters of 2^k to 2^(k+1) - 1 nodes, by octave k", "octave"),
+    "reason": ("1", "why there is no dimension, or none with an interval"),
+    "estimator": ("1", "estimator of delta_sigma"),
+    "determined": ("1", "whether delta_sigma has an interval"),
+    "ordinary_determined": ("1", "whether delta_sigma_ordinary has an interval"),
+    "box_count": ("1", "occupied boxes N(r), minimal cover over all grid origins", "scale"),
+    "box_used": ("1", "box size used in the fit", "scale"),
+    "ordinary_used": ("1", "box size used in the fit of the ordinary dimension", "scale"),
+    "mean_count": ("1", "occupied boxes N(r), mean over all grid origins", "mean_scale"),
+    "law_count": ("1", "box counts by the law that Delta_sigma is fitted with", "mean_scale"),
     "ordinary_count": (
-        (*_ORDER, "scale"),
         "1",
         "box counts by the line that the ordinary dimension is fitted with",
+        "scale",
     ),
+}
+_WORDS = ("reason", "estimator")
+_FLAGS = ("determined", "ordinary_determined", "box_used", "ordinary_used")
+
+_SIDES = {
+    "box_side": (("resolution", "scale"), "mm", "side of the boxes r"),
     "mean_side": (("resolution", "mean_scale"), "mm", "side of the boxes of the mean counts r"),
 }
 
@@ -119,49 +109,48 @@ def analyse_domains(
     """
     domains = {k: domain.values for k, domain in domains_by_resolution(fields).items()}
     factors = list(domains)
-    shapes = {k: domains[k].shape[-2:] for k in factors}
-    sizes = {
-        "box_side": [window_sizes(shapes[k]) * k * spacing for k in factors],
-        "mean_side": [mean_sizes(shapes[k]) * k * spacing for k in factors],
+    windows = {k: domains[k].shape[-2:] for k in factors}
+    sides = {
+        "box_side": padded([window_sizes(windows[k]) * k * spacing for k in factors]),
+        "mean_side": padded([mean_sizes(windows[k]) * k * spacing for k in factors]),
     }
-    n_direction, n_offset, n_load, *window = domains[factors[0]].shape
+    n_direction, n_offset, n_load, *_ = domains[factors[0]].shape
     shape = (n_direction, n_offset, len(factors), n_load)
     # The octaves of the finest domain; a coarser one has fewer nodes and no clusters in the last.
-    n_octaves = int(np.prod(window)).bit_length()
+    n_octaves = int(np.prod(windows[factors[0]])).bit_length()
     solved, ambiguous = _solver_state(fields, shape)
-    n_scales, n_means = (max(map(len, of_all)) for of_all in sizes.values())
-    table = _empty_table(shape, n_scales, n_means, n_octaves)
-    nodes = np.zeros(shape, int)
+    missing = _missing_values(
+        scale=sides["box_side"].shape[1], mean_scale=sides["mean_side"].shape[1], octave=n_octaves
+    )
+    rows, nodes = [], np.zeros(shape, int)
     for place in np.ndindex(shape):
         direction, offset, k, load = place
         if not solved[place]:
-            table["reason"][place] = NOT_NEEDED
+            rows.append(missing | {"reason": NOT_NEEDED})
             continue
-        factor = factors[k]
-        domain = domains[factor][direction, offset, load]
+        domain = domains[factors[k]][direction, offset, load]
         nodes[place] = domain.sum()
         row = _row(
             domain,
-            factor * spacing,
+            factors[k] * spacing,
             ambiguous[place],
             fit_range=fit_range,
             whole_cells=whole_cells,
         )
-        table["cluster_octaves"][place] = 0
-        for name, value in row.items():
-            if np.ndim(value):
-                table[name][place][: len(value)] = value
-            else:
-                table[name][place] = value
-    table |= {name: table[name].astype(str) for name in ("reason", "estimator")}
-    table |= {name: padded(of_all) for name, of_all in sizes.items()}
-    multiples = ("resolution", factors, cf_attrs("1", "multiple k of the scan's spacing"))
-    octaves = ("octave", np.arange(n_octaves), cf_attrs("1", "octave k of cluster sizes"))
+        octaves = row["cluster_octaves"]
+        row["cluster_octaves"] = np.pad(octaves, (0, n_octaves - octaves.size))
+        rows.append(_with_all_values(row, missing))
     coords: dict[str, Any] = {
         name: fields[name] for name in ("direction", "offset", "normal_force")
     }
-    coords |= {"resolution": multiples, "octave": octaves}
-    result = labelled_dataset(_TABLE, table, coords=coords)
+    coords["resolution"] = (
+        "resolution",
+        factors,
+        cf_attrs("1", "multiple k of the scan's spacing"),
+    )
+    coords["octave"] = ("octave", np.arange(n_octaves), cf_attrs("1", "octave k of cluster sizes"))
+    table = stacked(rows, _TABLE, _ORDER, shape) | labelled(_SIDES, sides)
+    result = xr.Dataset(table, coords)
     return result.merge(cluster_laws(result, nodes, spacing))
 
 
@@ -172,21 +161,23 @@ def _solver_state(fields, shape):
     return tuple(fields[name].transpose(*_ORDER).values for name in ("solved", "nodes_error"))
 
 
-def _empty_table(shape, n_scales, n_means, n_octaves) -> dict[str, np.ndarray]:
-    """Values of :data:`_TABLE` before any domain is measured, except the sides of the boxes."""
+def _missing_values(**lengths: int) -> dict[str, np.ndarray]:
+    """Row of the table without any value; ``lengths`` are those of its arrays by dimension."""
+    fills = dict.fromkeys(_TABLE, np.nan) | dict.fromkeys(_WORDS, "") | dict.fromkeys(_FLAGS, False)
     return {
-        **{name: np.full(shape, np.nan) for name in DOMAIN_FIELDS},
-        "cluster_octaves": np.full((*shape, n_octaves), np.nan),
-        "reason": np.full(shape, "", object),
-        "estimator": np.full(shape, "", object),
-        "determined": np.zeros(shape, bool),
-        "ordinary_determined": np.zeros(shape, bool),
-        "box_count": np.full((*shape, n_scales), np.nan),
-        "box_used": np.zeros((*shape, n_scales), bool),
-        "ordinary_used": np.zeros((*shape, n_scales), bool),
-        **{name: np.full((*shape, n_means), np.nan) for name in ("mean_count", "law_count")},
-        "ordinary_count": np.full((*shape, n_scales), np.nan),
+        name: np.full([lengths[dim] for dim in own], fills[name])
+        for name, (_, _, *own) in _TABLE.items()
     }
+
+
+def _with_all_values(row, missing) -> dict[str, Any]:
+    """Row with arrays as long as those of a missing row, filled up with its values."""
+    arrays = {}
+    for name, empty in missing.items():
+        if name in row and empty.ndim:
+            arrays[name] = empty.copy()
+            arrays[name][: len(row[name])] = row[name]
+    return missing | row | arrays
 
 
 def _row(domain, spacing, ambiguous, **how) -> dict:
@@ -200,7 +191,7 @@ def _row(domain, spacing, ambiguous, **how) -> dict:
         "delta_sigma_error": ambiguous / domain.sum() if box.known else np.nan,
         "fit_min": box.over[0],
         "fit_max": box.over[1],
-        "fit_n": box.n,
+        "fit_n": float(box.n),
         "fit_misfit": box.misfit,
         **{f"law_{name}": value for name, value in box.terms._asdict().items()},
         **_ordinary(box, spacing),
@@ -231,7 +222,7 @@ def _ordinary(box, spacing) -> dict:
         **slope.columns("delta_sigma_ordinary"),
         "ordinary_fit_min": slope.over[0] * spacing,
         "ordinary_fit_max": slope.over[1] * spacing,
-        "ordinary_fit_n": slope.n,
+        "ordinary_fit_n": float(slope.n),
         "ordinary_determined": slope.determined,
         "ordinary_used": used,
         "ordinary_count": line,

@@ -5,23 +5,21 @@ A domain that scales isotropically has the same exponent along both axes.
 
 import numpy as np
 
-from ..core.estimate import Estimate, rows_of
+from ..core.estimate import Estimate
 from ..core.slope_of_sums import BLOCKS, slope_of_sums
 from .correlation import pair_distances
 
 #: Axes of the counts.
 WAYS = ("along", "across")
 
-#: Variables of every domain: name, unit, long name.
-INTERVAL_FIELDS = {
-    name: words
-    for way in WAYS
-    for name, words in rows_of(
-        f"interval_dimension_{way}",
+#: Variables of every domain: unit, long name.
+INTERVALS = {
+    f"interval_dimension_{way}": (
         "1",
         f"exponent of the number of occupied intervals {way} sliding over their length, along x "
         "and across y where nothing slides",
-    ).items()
+    )
+    for way in WAYS
 }
 
 #: Origins of the intervals that counts are averaged over, at most.

@@ -13,9 +13,10 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from ..core.datasets import labelled_dataset
-from ..core.estimate import NO_ESTIMATE, Estimate, rows_of
+from ..core.datasets import labelled
+from ..core.estimate import NO_ESTIMATE, Estimate
 from ..core.limits import MIN_NODES
+from ..core.per_curve import stacked
 from ..core.ranges import in_cells
 from .box_dimension import dimension_of_domain
 from .counted_domain import QUANTITIES, CountedDomain, errors_of
@@ -44,18 +45,6 @@ _COMPARED = {
     "_cut_difference": ("delta_sigma", "correlation_dimension"),
 }
 
-_BY_SIDE = ("normal_force", "null_scale")
-_BY_OCTAVE = ("normal_force", "null_octave")
-
-
-def _rows(name: str, words: str, dims: Any, endings: Collection[str]) -> dict[str, tuple]:
-    """Variables of the null models of a quantity: name, dimensions, unit, long name."""
-    rows = {f"{name}_cut": ("1", f"{words}: {_CUT}")}
-    for ending in endings:
-        rows |= rows_of(f"{name}{ending}", "1", f"{words}: {_CURVES[ending]}")
-    return {of: (dims, *units_and_words) for of, units_and_words in rows.items()}
-
-
 #: Long names of the curves of local slopes, by the ending of a name.
 _CURVES = {"": "of the domain"} | _ESTIMATES
 #: Reason of a window with no local slope.
@@ -67,47 +56,52 @@ OCTAVES = {
     "local_slope_side_min": ("null_octave", "mm", "smaller of the two box sides r"),
     "local_slope_side_max": ("null_octave", "mm", "larger of the two box sides r"),
 }
+_SIDES = {
+    **OCTAVES,
+    "null_side": ("null_scale", "mm", "side of the boxes r of the null models"),
+    "null_mean_side": ("null_mean_scale", "mm", "side of the boxes r of that expectation"),
+}
+
+
+def _rows(name: str, words: str, endings: Collection[str], *own: str) -> dict[str, tuple]:
+    """Variables of a quantity of null models, by endings: unit, long name, dimensions of arrays."""
+    long_names = {"_cut": _CUT} | {ending: _CURVES[ending] for ending in endings}
+    return {
+        f"{name}{ending}": ("1", f"{words}: {long_name}", *own)
+        for ending, long_name in long_names.items()
+    }
+
+
+_P = "probability (p-value) of such a departure of local slopes by chance, from those of"
+_SIDE = "box side r of the largest departure of local slopes from those of"
+
+#: Variables of each domain: unit, long name, dimensions of arrays.
 _TABLE: dict[str, tuple] = {
     **{
         of: row
         for name, words in QUANTITIES.items()
         for of, row in _rows(
-            name, words, "normal_force", [of for of, names in _COMPARED.items() if name in names]
+            name, words, [of for of, names in _COMPARED.items() if name in names]
         ).items()
     },
-    **_rows("local_slope", "local slope of the mean box counts", _BY_OCTAVE, _CURVES),
-    **OCTAVES,
-    **{
-        f"local_slope_{null}_{name}": ("normal_force", units, f"{words} {of}")
-        for null, of in (("random", "as many random nodes"), ("cut", "the bearing-area cut"))
-        for name, units, words in (
-            (
-                "p",
-                "1",
-                "probability (p-value) of such a departure of local slopes by chance, from "
-                "those of",
-            ),
-            ("side", "mm", "box side r of the largest departure of local slopes from those of"),
-        )
-    },
-    "null_verdict": ("normal_force", "1", "null models from which the local slopes differ"),
-    "null_reason": ("normal_force", "1", "why the local slopes are not compared; empty else"),
-    **{
-        of: (_BY_SIDE, *row)
-        for of, row in rows_of(
-            "null_count_random",
-            "1",
-            "minimal cover N(r) of as many random nodes, mean and band",
-        ).items()
-    },
-    "null_count_cut": (_BY_SIDE, "1", "minimal cover N(r) of the bearing-area cut"),
-    "null_side": ("null_scale", "mm", "side of the boxes r of the null models"),
+    **_rows("local_slope", "local slope of the mean box counts", _CURVES, "null_octave"),
+    "local_slope_random_p": ("1", f"{_P} as many random nodes"),
+    "local_slope_random_side": ("mm", f"{_SIDE} as many random nodes"),
+    "local_slope_cut_p": ("1", f"{_P} the bearing-area cut"),
+    "local_slope_cut_side": ("mm", f"{_SIDE} the bearing-area cut"),
+    "null_verdict": ("1", "null models from which the local slopes differ"),
+    "null_reason": ("1", "why the local slopes are not compared; empty else"),
+    "null_count_random": (
+        "1",
+        "minimal cover N(r) of as many random nodes, mean and band",
+        "null_scale",
+    ),
+    "null_count_cut": ("1", "minimal cover N(r) of the bearing-area cut", "null_scale"),
     "null_mean_count": (
-        ("normal_force", "null_mean_scale"),
         "1",
         "mean N(r) over all grid origins, expectation of as many random nodes",
+        "null_mean_scale",
     ),
-    "null_mean_side": ("null_mean_scale", "mm", "side of the boxes r of that expectation"),
 }
 
 
@@ -159,11 +153,12 @@ def null_models(
     how = {"limits": limits, "whole_cells": whole_cells}
     rows = [_row(domain, spacing, composite, fit_range, mask, how) for domain in domains]
     shape = domains.shape[1:]
-    values: dict[str, Any] = {name: [row[name] for row in rows] for name in rows[0]}
-    values["null_side"] = dyadic_sizes(shape) * float(spacing)
-    values["null_mean_side"] = mean_sizes(shape) * float(spacing)
-    values |= octaves_of(shape, spacing)
-    return labelled_dataset(_TABLE, values)
+    sides = octaves_of(shape, spacing)
+    sides["null_side"] = dyadic_sizes(shape) * float(spacing)
+    sides["null_mean_side"] = mean_sizes(shape) * float(spacing)
+    return xr.Dataset(
+        stacked(rows, _TABLE, ("normal_force",), (len(rows),)) | labelled(_SIDES, sides)
+    )
 
 
 def nulls_of_map_states(
@@ -234,11 +229,10 @@ def _row(domain, spacing, composite, fit_range, mask, how) -> dict[str, Any]:
         if highest.box.ordinary is not None:
             count = highest.box.ordinary.counts
     row: dict[str, Any] = {f"{name}_cut": value for name, value in of_cut.items()}
-    for ending, found in (("_random", bands), ("_cut_difference", beyond_cut)):
-        for name, estimate in found.items():
-            row |= estimate.columns(f"{name}{ending}")
+    row |= {f"{name}_random": band for name, band in bands.items()}
+    row |= {f"{name}_cut_difference": difference for name, difference in beyond_cut.items()}
     row |= _compared_slopes(domain, highest_nodes, mask, spacing)
-    row |= counts.columns("null_count_random")
+    row["null_count_random"] = counts
     row["null_count_cut"] = count
     row["null_mean_count"] = expected_mean_counts(domain.shape, nodes, mean_sizes(domain.shape))
     return row
@@ -261,7 +255,8 @@ def _compared_slopes(domain, cut, mask, spacing):
     nodes = int(np.count_nonzero(domain))
     curve = SlopeCurve(domain, mask)
     none = np.full(sides.size, np.nan)
-    curves = dict.fromkeys(_CURVES, Estimate(none, none, none)) | {"": curve.interval}
+    missing = dict.fromkeys(_CURVES, Estimate(none, none, none))
+    curves = missing | {"": curve.interval}
     cut_values, departures = none, dict.fromkeys(("random", "cut"), NOT_COMPARED)
     reason = _why_not_compared(nodes, curve.values.size)
     if nodes > 1:
@@ -274,11 +269,11 @@ def _compared_slopes(domain, cut, mask, spacing):
         curves["_cut_difference"], departures["cut"] = paired_departure(curve, highest)
         if not (reason or np.isfinite(departures["cut"].p)):
             reason = "contact in too few parts of the window to compare with the bearing-area cut"
-    row = {"local_slope_cut": cut_values}
-    for ending, of in curves.items():
-        row |= of.columns(f"local_slope{ending}")
-    # A window too small for any slope has a single missing one, as axes need a length.
-    row = {name: values if np.size(values) else none for name, values in row.items()}
+    if not curve.values.size:
+        # A window too small for any slope has a single missing one, as axes need a length.
+        curves, cut_values = missing, none
+    row: dict[str, Any] = {f"local_slope{ending}": values for ending, values in curves.items()}
+    row["local_slope_cut"] = cut_values
     if nodes < MIN_NODES:
         departures = dict.fromkeys(departures, NOT_COMPARED)
     for null, departure in departures.items():

@@ -5,17 +5,17 @@ H comes from the slope of the line through the logarithms of each estimator's cu
 """
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
 
-from ..core.arrays import padded
-from ..core.datasets import labelled_dataset
+from ..core.datasets import labelled, labelled_dataset
 from ..core.estimate import NO_ESTIMATE, Estimate
 from ..core.fitting import fit_line
 from ..core.intervals import t_quantile
 from ..core.mean_plane import without_mean_plane
+from ..core.per_curve import stacked
 from ..core.ranges import within
 from .curves import Curve, jackknife_standard_error
 from .estimator import Estimator
@@ -109,50 +109,41 @@ def surface_dimension(
     estimates, chosen_range = measured_exponents(
         heights, spacing, fit_range=fit_range, estimators=estimators
     )
-    every, chosen = list(estimates.values()), [ESTIMATORS[name] for name in estimates]
-    length, measure = (padded([getattr(e, key) for e in every]) for key in ("length", "measure"))
-    used = np.zeros(length.shape, bool)
-    for row, estimate in zip(used, every, strict=True):
-        row[: estimate.used.size] = estimate.used
-    hurst = {axis: Estimate.stack(curve.hurst[axis] for curve in every) for axis in AXES}
-    fitted = used & np.isfinite(hurst["both"].value)[:, np.newaxis]
+    rows = [_row(ESTIMATORS[name], estimate) for name, estimate in estimates.items()]
     values = {
-        "length": length,
-        "measure": measure,
-        "used": used,
-        "fit_min": _finite(np.min(length, axis=1, where=fitted, initial=np.inf)),
-        "fit_max": _finite(np.max(length, axis=1, where=fitted, initial=-np.inf)),
-        "n": used.sum(axis=1),
-        "length_kind": [estimator.length for estimator in chosen],
-        "measure_units": [estimator.units for estimator in chosen],
         "roll_off_shape": chosen_range.roll_off.shape,
         "range_min": chosen_range.shortest,
         "range_max": chosen_range.longest,
         "range_reason": chosen_range.reason,
         "known_dimension": known_dimension,
     }
-    coords = {"estimator": list(estimates), "scale": np.arange(length.shape[1])}
-    result = labelled_dataset(_DIMENSIONS, values, coords=coords)
-    for axis, (ending, along) in AXES.items():
-        words = f"Hurst exponent H{along}"
-        result.update(hurst[axis].variables(f"hurst{ending}", "estimator", "1", words))
-    delta_g = hurst["both"].mapped(lambda exponent: 3 - exponent, falling=True)
-    words = "surface dimension Delta_g = 3 - H"
-    result.update(delta_g.variables("dimension", "estimator", "1", words))
     words = "wavelength above which the spectrum is flat"
-    result.update(chosen_range.roll_off.variables("roll_off", (), "mm", words))
+    result = xr.Dataset(
+        {
+            **stacked(rows, _OF_ESTIMATOR, ("estimator",), (len(rows),)),
+            **labelled(_OF_SURFACE, values),
+            **chosen_range.roll_off.variables("roll_off", (), "mm", words),
+        },
+        coords={"estimator": list(estimates)},
+    )
+    result = result.assign_coords(scale=np.arange(result.sizes["scale"]))
     return result.assign(recommended_variables(result) | variables_of_all(result))
 
 
-_DIMENSIONS = {
-    "length": (("estimator", "scale"), "mm", "length at which the measure was taken"),
-    "measure": (("estimator", "scale"), "see measure_units", "measured quantity"),
-    "used": (("estimator", "scale"), "1", "taken into the fit"),
-    "fit_min": ("estimator", "mm", "shortest length fitted"),
-    "fit_max": ("estimator", "mm", "longest length fitted"),
-    "n": ("estimator", "1", "points fitted"),
-    "length_kind": ("estimator", "1", "kind of length"),
-    "measure_units": ("estimator", "1", "unit of what was measured"),
+#: Variables of each estimator: unit, long name, dimensions of arrays.
+_OF_ESTIMATOR = {
+    "length": ("mm", "length at which the measure was taken", "scale"),
+    "measure": ("see measure_units", "measured quantity", "scale"),
+    "used": ("1", "taken into the fit", "scale"),
+    "fit_min": ("mm", "shortest length fitted"),
+    "fit_max": ("mm", "longest length fitted"),
+    "n": ("1", "points fitted"),
+    "length_kind": ("1", "kind of length"),
+    "measure_units": ("1", "unit of what was measured"),
+    **{f"hurst{ending}": ("1", f"Hurst exponent H{along}") for ending, along in AXES.values()},
+    "dimension": ("1", "surface dimension Delta_g = 3 - H"),
+}
+_OF_SURFACE = {
     "roll_off_shape": ((), "1", "form of the spectrum about it: sharp, or smooth as von Karman's"),
     "range_min": ((), "mm", "shortest lag of the fits"),
     "range_max": ((), "mm", "longest lag of the fits"),
@@ -161,9 +152,22 @@ _DIMENSIONS = {
 }
 
 
-def _finite(values: np.ndarray) -> np.ndarray:
-    """Values, NaN where they are infinite."""
-    return np.where(np.isfinite(values), values, np.nan)
+def _row(estimator: Estimator, estimate: "MeasuredCurve") -> dict[str, Any]:
+    """Values of :data:`_OF_ESTIMATOR` by one estimator."""
+    hurst = estimate.hurst
+    fitted = estimate.length[estimate.used] if hurst["both"].known else np.array([np.nan])
+    return {
+        "length": estimate.length,
+        "measure": estimate.measure,
+        "used": estimate.used,
+        "fit_min": fitted.min(),
+        "fit_max": fitted.max(),
+        "n": estimate.used.sum(),
+        "length_kind": estimator.length,
+        "measure_units": estimator.units,
+        **{f"hurst{ending}": hurst[axis] for axis, (ending, _) in AXES.items()},
+        "dimension": hurst["both"].mapped(lambda exponent: 3 - exponent, falling=True),
+    }
 
 
 class MeasuredCurve(NamedTuple):

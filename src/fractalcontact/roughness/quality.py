@@ -4,18 +4,16 @@ import json
 import math
 from collections.abc import Sequence
 from dataclasses import replace
-from itertools import chain
-from operator import attrgetter
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
-from ..core.arrays import padded
 from ..core.datasets import labelled
 from ..core.directions import APERTURE
 from ..core.estimate import NO_ESTIMATE, Estimate
 from ..core.labels import cf_attrs
+from ..core.per_curve import stacked
 from ..core.text import length_words
 from ..core.window import cell_side, face_words, spacing_of
 from .dimension import slope_statistics
@@ -209,82 +207,63 @@ def height_step(heights: np.ndarray) -> float:
 # -- spectra ---------------------------------------------------------------------------------------
 
 
-_AXIS = ("face", "axis")
-
+#: Variables along each axis of each face: unit, long name, dimensions of arrays.
 _PROFILES = {
-    "wavelength": ((*_AXIS, "wave"), "mm", "wavelength"),
-    "spectrum": ((*_AXIS, "wave"), "mm3", "two-sided power spectral density of profiles"),
-    "spectrum_model": (
-        (*_AXIS, "wave"),
-        "mm3",
-        "its model: self-affine, with what else was seen",
-    ),
-}
-
-#: Estimates with their intervals.
-_ESTIMATES = {
+    "wavelength": ("mm", "wavelength", "wave"),
+    "spectrum": ("mm3", "two-sided power spectral density of profiles", "wave"),
+    "spectrum_model": ("mm3", "its model: self-affine, with what else was seen", "wave"),
     "noise_rms": ("mm", "noise floor: standard deviation of independent errors of the nodes"),
     "noise_wavelength": ("mm", "wavelength where the self-affine line meets the noise floor"),
     "filter_wavelength": ("mm", "wavelength where a low-pass filter halves the spectrum"),
     "roll_off_wavelength": ("mm", "wavelength above which the spectrum is flat"),
     "end": ("mm", "shortest wavelength of the fractal range along one axis"),
-}
-
-_NUMBERS = {
-    "noise_limit": (_AXIS, "mm", "upper bound of the noise floor"),
+    "noise_limit": ("mm", "upper bound of the noise floor"),
     "strips_left_out": (
-        _AXIS,
         "1",
         f"strips of profiles, of {STRIPS}, left out for spikes or steps, mean over the wavelengths",
     ),
-    "misfit": (_AXIS, "1", "rms logarithm of measured over modelled spectrum"),
-    "line_level": (_AXIS, "mm3", "self-affine line at a wavelength of 1 mm"),
-    "line_exponent": (_AXIS, "1", "exponent 1 + 2H of the self-affine line"),
-    "form": (_AXIS, "1", "parts of the model of the spectrum"),
-    "self_affine_line": ((*_AXIS, "wave"), "mm3", "self-affine line at the wavelengths"),
-    "noise_floor": (_AXIS, "mm3", "noise floor of the spectrum of profiles"),
+    "misfit": ("1", "rms logarithm of measured over modelled spectrum"),
+    "line_level": ("mm3", "self-affine line at a wavelength of 1 mm"),
+    "line_exponent": ("1", "exponent 1 + 2H of the self-affine line"),
+    "form": ("1", "parts of the model of the spectrum"),
+    "self_affine_line": ("mm3", "self-affine line at the wavelengths", "wave"),
+    "noise_floor": ("mm3", "noise floor of the spectrum of profiles"),
 }
+
+
+def _profile_spectrum(curve, spacing) -> dict[str, Any]:
+    """Values of :data:`_PROFILES` of a curve of :func:`roughness.spectra.profile_spectra`."""
+    found = find_fractal_range(curve, spacing)
+    level, exponent = found.line
+    return {
+        "wavelength": curve.length,
+        "spectrum": found.level,
+        "spectrum_model": found.fitted,
+        "noise_rms": found.noise_rms,
+        "noise_wavelength": found.noise_wavelength,
+        "filter_wavelength": found.filter_wavelength,
+        "roll_off_wavelength": found.roll_off_wavelength,
+        "end": found.end,
+        "noise_limit": found.noise_limit,
+        "strips_left_out": found.left_out,
+        "misfit": found.misfit,
+        "line_level": level,
+        "line_exponent": exponent,
+        "form": _form_words(found),
+        "self_affine_line": level * curve.length**exponent,
+        "noise_floor": np.square(found.noise_rms.value) * spacing,
+    }
 
 
 def _profile_spectra(heights, spacing):
     """Spectra of profiles along x and y, and the ends of their fractal range."""
-    curves = [list(profile_spectra(z, spacing).values()) for z in heights]  # [face][x, y]
-    ranges = [
-        [find_fractal_range(curve, d) for curve, d in zip(row, spacing[::-1], strict=True)]
-        for row in curves
+    along = dict(zip(AXES, spacing[::-1], strict=True))
+    rows = [
+        _profile_spectrum(curve, along[axis])
+        for z in heights
+        for axis, curve in profile_spectra(z, spacing).items()
     ]
-
-    def of_range(value):
-        return [[value(found) for found in row] for row in ranges]
-
-    profiles = {
-        "wavelength": _padded_rows([[curve.length for curve in row] for row in curves]),
-        "spectrum": _padded_rows(of_range(lambda found: found.level)),
-        "spectrum_model": _padded_rows(of_range(lambda found: found.fitted)),
-    }
-    estimates: dict[str, Any] = {}
-    for name, words in _ESTIMATES.items():
-        each = chain.from_iterable(of_range(attrgetter(name)))
-        estimates |= Estimate.stack(each, (len(ranges), len(AXES))).variables(name, _AXIS, *words)
-    level = np.array(of_range(lambda found: found.line[0]))
-    exponent = np.array(of_range(lambda found: found.line[1]))
-    noise = np.array(of_range(lambda found: found.noise_rms.value))
-    waves = profiles["wavelength"]
-    numbers = {
-        "self_affine_line": level[..., np.newaxis] * waves ** exponent[..., np.newaxis],
-        "noise_floor": noise**2 * np.array(spacing[::-1]),
-        "noise_limit": of_range(lambda found: found.noise_limit),
-        "strips_left_out": of_range(lambda found: found.left_out),
-        "misfit": of_range(lambda found: found.misfit),
-        "line_level": level,
-        "line_exponent": exponent,
-        "form": of_range(_form_words),
-    }
-    return {
-        **labelled(_PROFILES, profiles),
-        **estimates,
-        **labelled(_NUMBERS, numbers),
-    }
+    return stacked(rows, _PROFILES, ("face", "axis"), (len(heights), len(AXES)))
 
 
 def _form_words(found: FractalRange) -> str:
@@ -297,27 +276,15 @@ def _form_words(found: FractalRange) -> str:
     return " + ".join(parts + ([f"{form.filtering} low-pass"] if form.filtering else []))
 
 
-def _padded_rows(values):
-    """Rows of rows of arrays of different length as one array (face, axis, wave)."""
-    flat = padded([array for row in values for array in row])
-    return flat.reshape(len(values), len(AXES), -1)
-
-
 _RADIAL = {
-    "radial_wavelength": (("face", "radial_wave"), "mm", "wavelength"),
-    "radial_spectrum": (
-        ("face", "radial_wave"),
-        "mm4",
-        "radially averaged power spectral density",
-    ),
+    "radial_wavelength": ("mm", "wavelength", "radial_wave"),
+    "radial_spectrum": ("mm4", "radially averaged power spectral density", "radial_wave"),
 }
 
 
 def _radial_spectra(heights, spacing):
-    wavelengths, densities = zip(*(radial_spectrum(z, spacing) for z in heights), strict=True)
-    return labelled(
-        _RADIAL, {"radial_wavelength": padded(wavelengths), "radial_spectrum": padded(densities)}
-    )
+    rows = [dict(zip(_RADIAL, radial_spectrum(z, spacing), strict=True)) for z in heights]
+    return stacked(rows, _RADIAL, ("face",), (len(rows),))
 
 
 # -- where the fractal range ends ------------------------------------------------------------------
