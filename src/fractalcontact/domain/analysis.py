@@ -208,22 +208,22 @@ def _row(domain, spacing, ambiguous, **how) -> dict:
 
 def _ordinary(box, spacing) -> dict:
     """Columns of the ordinary dimension of a domain; none where there is no such dimension."""
-    slope = box.ordinary
-    if slope is None:
+    ordinary = box.ordinary
+    if ordinary is None:
         return {}
-    used = np.isin(np.round(box.r / spacing), slope.sizes[slope.used])
+    used = np.isin(np.round(box.r / spacing), ordinary.sizes[ordinary.used])
     line = np.full(box.r.shape, np.nan)
     if used.any():
         # The line goes through the mean of the logarithms of the counts fitted.
-        level = np.mean(np.log(box.count[used]) + slope.value * np.log(box.r[used]))
-        inside = within(box.r, *(end * spacing for end in slope.over))
-        line = np.where(inside, np.exp(level) * box.r**-slope.value, np.nan)
+        level = np.mean(np.log(box.count[used]) + ordinary.value * np.log(box.r[used]))
+        inside = within(box.r, *(end * spacing for end in ordinary.over))
+        line = np.where(inside, np.exp(level) * box.r**-ordinary.value, np.nan)
     return {
-        **slope.columns("delta_sigma_ordinary"),
-        "ordinary_fit_min": slope.over[0] * spacing,
-        "ordinary_fit_max": slope.over[1] * spacing,
-        "ordinary_fit_n": float(slope.n),
-        "ordinary_determined": slope.determined,
+        **ordinary.columns("delta_sigma_ordinary"),
+        "ordinary_fit_min": ordinary.over[0] * spacing,
+        "ordinary_fit_max": ordinary.over[1] * spacing,
+        "ordinary_fit_n": float(ordinary.n),
+        "ordinary_determined": ordinary.determined,
         "ordinary_used": used,
         "ordinary_count": line,
     }

@@ -25,7 +25,7 @@ from .mean_law import (
     is_crowded,
     law_of_means,
 )
-from .ordinary_slope import OrdinarySlope, dyadic_sizes, ordinary_slope
+from .ordinary_dimension import OrdinaryDimension, dyadic_sizes, ordinary_dimension
 
 #: The estimators of the dimension by their names in results.
 ESTIMATORS = {
@@ -63,8 +63,8 @@ class BoxDimension(Estimate):
         Terms of the law, mm, from which :func:`domain.count_law.law_count` draws its curve.
     means : MeanCounts
         Mean counts over grid origins.
-    ordinary : OrdinarySlope or None
-        Ordinary box-counting dimension, :mod:`domain.ordinary_slope`; None without counts.
+    ordinary : OrdinaryDimension or None
+        Ordinary box-counting dimension, :mod:`domain.ordinary_dimension`; None without counts.
     """
 
     r: np.ndarray
@@ -74,7 +74,7 @@ class BoxDimension(Estimate):
     misfit: float = float("nan")
     terms: LawTerms = NO_TERMS
     means: MeanCounts = NO_MEANS
-    ordinary: OrdinarySlope | None = None
+    ordinary: OrdinaryDimension | None = None
     scale: Scale = DIMENSION
 
     def __repr__(self):
@@ -205,15 +205,15 @@ def _with_interval(found: BoxDimension, nodes: int) -> BoxDimension:
     return replace(found, low=np.nan, high=np.nan, reason=why)
 
 
-def _minimal_covers(domain, extent, sizes, limits) -> tuple[np.ndarray, OrdinarySlope | None]:
-    """Minimal cover at all sizes, and the ordinary slope at the powers of two among them."""
+def _minimal_covers(domain, extent, sizes, limits) -> tuple[np.ndarray, OrdinaryDimension | None]:
+    """Minimal cover at all sizes, and the ordinary dimension from the powers of two among them."""
     dyadic = dyadic_sizes(domain.shape)
     every, place = np.unique(np.concatenate([sizes, dyadic]), return_inverse=True)
     count = box_count(extent, every)[place]
     if not extent.any():
         return count[: sizes.size], None
     of_dyadic = count[sizes.size :]
-    return count[: sizes.size], ordinary_slope(extent, domain.shape, dyadic, of_dyadic, limits)
+    return count[: sizes.size], ordinary_dimension(extent, domain.shape, dyadic, of_dyadic, limits)
 
 
 def dimension_of_domain(

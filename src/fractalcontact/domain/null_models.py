@@ -22,7 +22,7 @@ from .box_dimension import dimension_of_domain
 from .counted_domain import QUANTITIES, CountedDomain, errors_of
 from .departure import departure_of
 from .mean_law import mean_sizes
-from .ordinary_slope import dyadic_sizes
+from .ordinary_dimension import dyadic_sizes
 from .random_nodes import band_of, expected_mean_counts, random_bands
 from .slope_curves import (
     NOT_COMPARED,

@@ -9,7 +9,7 @@ from ..core.ranges import in_cells
 from .box_counts import mean_count, minimal_cover
 from .clusters import NEIGHBOURS
 from .mean_law import FoundLaw, dimension_by_means, find_law
-from .ordinary_slope import dyadic_sizes
+from .ordinary_dimension import dyadic_sizes
 
 #: Draws of random nodes. The band allows for their number.
 DRAWS = 20
@@ -64,7 +64,7 @@ def random_bands(
     bands : dict of str to Estimate
         ``delta_sigma`` and ``clusters``.
     counts : Estimate
-        Of the minimal cover, (k,) over :func:`domain.ordinary_slope.dyadic_sizes`.
+        Of the minimal cover, (k,) over :func:`domain.ordinary_dimension.dyadic_sizes`.
 
     Notes
     -----

@@ -19,7 +19,7 @@ from .mean_law import block_error, count_slope
 
 
 @dataclass(frozen=True, kw_only=True)
-class OrdinarySlope(Estimate):
+class OrdinaryDimension(Estimate):
     """Ordinary dimension, its box sizes (2^k cells to half of the window) and their counts."""
 
     sizes: np.ndarray
@@ -33,13 +33,13 @@ def dyadic_sizes(shape: tuple[int, ...]) -> np.ndarray:
     return 2 ** np.arange(max(int(np.log2(min(shape) / 2) + 1e-9), 0) + 1)
 
 
-def ordinary_slope(
+def ordinary_dimension(
     extent: np.ndarray,
     shape: tuple[int, int],
     sizes: np.ndarray,
     count: np.ndarray,
     limits: tuple[float, float] = (0, np.inf),
-) -> OrdinarySlope:
+) -> OrdinaryDimension:
     """Ordinary box-counting dimension of a domain.
 
     The interval is that of :mod:`core.slope_of_sums`, by the mean counts at the same sizes; none
@@ -62,14 +62,14 @@ def ordinary_slope(
     slope = line.slope
     if nodes < 2 or not np.isfinite(slope.value):
         unused = np.zeros(sizes.size, bool)
-        return OrdinarySlope(sizes=sizes, counts=count, used=unused)
+        return OrdinaryDimension(sizes=sizes, counts=count, used=unused)
     parts = mean_count(extent, sizes[used], blocks=BLOCKS)
     error = block_error(parts, lambda left: count_slope(left, sizes[used]))
     law = line.intercept.value + slope.value * np.log(sizes[used])
     half = np.hypot(error, wave_error(sizes[used], np.log(count[used]) - law))
     half = half if nodes >= MIN_NODES and np.isfinite(half) else np.nan
     ends = np.clip((-slope.value - half, -slope.value + half), *IN_PLANE)
-    return OrdinarySlope(
+    return OrdinaryDimension(
         value=0.0 - slope.value,  # a constant count gives 0, not -0
         low=float(ends[0]),
         high=float(ends[1]),
