@@ -67,9 +67,9 @@ def growth(problems: Sequence[xr.Dataset], error: float) -> xr.Dataset:
     )
     nodes = np.log(np.square(sizes, dtype=float))
     for name, words in FITTED.items():
-        each = (fit_line(nodes, np.log(row)).slope for row in values[name].reshape(-1, len(sizes)))
+        lines = (fit_line(nodes, np.log(row)).slope for row in values[name].reshape(-1, len(sizes)))
         words = f"exponent of the {words} in the number of nodes"
-        exponents = Estimate.stack(each, shape[:2])
+        exponents = Estimate.stack(lines, shape[:2])
         result.update(exponents.variables(f"{name}_exponent", _DIMS[:2], "1", words))
     return result
 

@@ -286,10 +286,10 @@ def pareto_front(seconds: ArrayLike, error: ArrayLike) -> np.ndarray:
     A point with a NaN is on no front; of points alike in both all are on it.
     """
     seconds, error = np.asarray(seconds, float), np.asarray(error, float)
-    known = np.isfinite(seconds) & np.isfinite(error)
+    finite = np.isfinite(seconds) & np.isfinite(error)
     no_worse = (seconds <= seconds[:, np.newaxis]) & (error <= error[:, np.newaxis])
     better = (seconds < seconds[:, np.newaxis]) | (error < error[:, np.newaxis])
-    return known & ~(no_worse & better & known).any(axis=1)
+    return finite & ~(no_worse & better & finite).any(axis=1)
 
 
 def _front(points, quantity):

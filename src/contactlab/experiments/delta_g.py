@@ -134,8 +134,8 @@ def _judged(estimates: np.ndarray, seen: np.ndarray, coords: Mapping[str, Any]) 
 
 def _mean(values: np.ndarray) -> np.ndarray:
     """Means over the seeds with a value; NaN without any."""
-    known = np.isfinite(values)
-    return ratio(np.where(known, values, 0.0).sum(axis=-1), known.sum(axis=-1))
+    finite = np.isfinite(values)
+    return ratio(np.where(finite, values, 0.0).sum(axis=-1), finite.sum(axis=-1))
 
 
 def _with_verdicts(result: xr.Dataset) -> xr.Dataset:

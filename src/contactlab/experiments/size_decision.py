@@ -60,12 +60,12 @@ class Exponent(Estimate):
     @classmethod
     def stack(cls, estimates: Iterable[Estimate], shape: Sequence[int] = (-1,)) -> "Exponent":
         """Exponents as one of arrays, in C order over ``shape``."""
-        each = list(estimates)
+        exponents = list(estimates)
         error, usual = (
-            np.reshape([getattr(one, name) for one in each], shape)
+            np.reshape([getattr(exponent, name) for exponent in exponents], shape)
             for name in ("error", "half_width")
         )
-        return cls(*Estimate.stack(each, shape).ends, error=error, half_width=usual)
+        return cls(*Estimate.stack(exponents, shape).ends, error=error, half_width=usual)
 
     def variables(
         self, name: str, dims: Hashable | Sequence[Hashable], units: str, long_name: str
@@ -147,15 +147,15 @@ def paired_exponent(sides: np.ndarray, values: np.ndarray, surfaces: np.ndarray)
     (n,), ``values`` are means over the windows of a side, ``surfaces`` the numbers of their
     surfaces.
     """
-    sides, values, surfaces = (np.asarray(one) for one in (sides, values, surfaces))
+    sides, values, surfaces = (np.asarray(column) for column in (sides, values, surfaces))
     usable = np.isfinite(values) & (values > 0)
     slopes = []
     for surface in np.unique(surfaces):
-        here = usable & (surfaces == surface)
-        x = np.log(sides[here])
+        of_surface = usable & (surfaces == surface)
+        x = np.log(sides[of_surface])
         lever = x - x.mean() if x.size else x
         if np.any(lever):
-            slopes.append(float(lever @ np.log(values[here]) / (lever @ lever)))
+            slopes.append(float(lever @ np.log(values[of_surface]) / (lever @ lever)))
     return mean_exponent(np.array(slopes))
 
 

@@ -168,10 +168,13 @@ def with_comparisons(result: xr.Dataset) -> xr.Dataset:
     dimensions have intervals, and whether these are disjoint.
     """
     dims = ("hurst", "reduced_pressure")
-    found = result.transpose(*dims, ...)
-    each = [Estimate.read(found, f"{name}_delta").mapped(lambda d: d - 2) for name in _ESTIMATORS]
+    ordered = result.transpose(*dims, ...)
+    predictions = [
+        Estimate.read(ordered, f"{name}_delta").mapped(lambda d: d - 2) for name in _ESTIMATORS
+    ]
     value, low, high = (
-        np.stack(ends, axis=-1) for ends in zip(*(one.ends for one in each), strict=True)
+        np.stack(ends, axis=-1)
+        for ends in zip(*(prediction.ends for prediction in predictions), strict=True)
     )
     wanted = Estimate(value, low, high)
     words = "exponent of A_r/A_0 over the side b by eq. 6"

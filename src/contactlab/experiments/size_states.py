@@ -105,8 +105,10 @@ def solve_task(task: SizeTask, loads: Sequence[float], rtol: float) -> xr.Datase
     """
     pressures = np.unique(loads)
     numbers = range(task.first, task.first + task.surfaces)
-    each = [_one_surface(task, number, pressures, rtol) for number in numbers]
-    values: dict[str, Any] = {name: np.array([one[name] for one in each]) for name in each[0]}
+    surfaces = [_one_surface(task, number, pressures, rtol) for number in numbers]
+    values: dict[str, Any] = {
+        name: np.array([surface[name] for surface in surfaces]) for name in surfaces[0]
+    }
     of_class = {
         "of_arm": np.array([task.arm] * task.surfaces),
         "of_hurst": np.full(task.surfaces, task.hurst),
@@ -206,9 +208,9 @@ def _one_surface(task: SizeTask, number: int, pressures: np.ndarray, rtol: float
 
 def _known_mean(values: np.ndarray) -> np.ndarray:
     """Mean of the values over the first axis that are not NaN; NaN without any."""
-    known = np.isfinite(values)
+    finite = np.isfinite(values)
     with np.errstate(invalid="ignore"):
-        return np.where(known, values, 0.0).sum(axis=0) / known.sum(axis=0)
+        return np.where(finite, values, 0.0).sum(axis=0) / finite.sum(axis=0)
 
 
 def _numbers_of(

@@ -60,14 +60,14 @@ def linear_strengths(groups: np.ndarray, rates: np.ndarray, basic_angle: float) 
     groups, rates = np.asarray(groups), np.asarray(rates, float)
     result = np.full(rates.shape, np.nan)
     for group in np.unique(groups):
-        here = (groups == group) & np.isfinite(rates)
-        if not here.any():
+        in_group = (groups == group) & np.isfinite(rates)
+        if not in_group.any():
             continue
-        mean = float(rates[here].mean())
+        mean = float(rates[in_group].mean())
         tangent = float(friction_ratio(np.array(mean), basic_angle))
         if tangent > 0:
             lever = _slope(mean, basic_angle) / tangent
-            result[here] = tangent * np.exp(lever * (rates[here] - mean))
+            result[in_group] = tangent * np.exp(lever * (rates[in_group] - mean))
     return result
 
 
@@ -103,15 +103,15 @@ def joint_verdict(
     alone makes a size effect are size effects, and no other. None where no exponent of either kind
     is. Else undetermined.
     """
-    rest = [one.less(of) for one, of in zip(at_fraction, predicted, strict=True)]
-    verdicts = [size_verdict(one) for one in at_v]
-    scaled = [size_verdict(one) for one in at_fraction]
-    if EFFECT in verdicts or EFFECT in [size_verdict(one) for one in rest]:
+    rest = [exponent.less(of) for exponent, of in zip(at_fraction, predicted, strict=True)]
+    verdicts = [size_verdict(exponent) for exponent in at_v]
+    scaled = [size_verdict(exponent) for exponent in at_fraction]
+    if EFFECT in verdicts or EFFECT in [size_verdict(exponent) for exponent in rest]:
         return OF_B
     if not verdicts or set(verdicts) != {FLAT}:
         return OPEN
     if scaled and set(scaled) == {FLAT}:
         return FLAT
-    by_v = [size_verdict(one) for one in predicted]
+    by_v = [size_verdict(exponent) for exponent in predicted]
     explained = [pair == (EFFECT, EFFECT) for pair in zip(scaled, by_v, strict=True)]
     return OF_V if any(explained) else OPEN

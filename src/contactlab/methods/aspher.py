@@ -73,14 +73,14 @@ class Aspher(PublicCode):
     @property
     def path(self) -> str:
         """Path of the last call by the code's own counters."""
-        found = self._result
-        if found is None:
+        result = self._result
+        if result is None:
             return ""
-        stages = " ".join(stage["name"] for stage in found.stage_stats)
-        fallback = ", fell back to the whole grid" if found.active_fallback else ""
+        stages = " ".join(stage["name"] for stage in result.stage_stats)
+        fallback = ", fell back to the whole grid" if result.active_fallback else ""
         return (
-            f"{stages}: {found.precond_count} preconditioned, {found.active_rounds} rounds, "
-            f"{found.verification_matvec_count} verifications{fallback}; set-up included"
+            f"{stages}: {result.precond_count} preconditioned, {result.active_rounds} rounds, "
+            f"{result.verification_matvec_count} verifications{fallback}; set-up included"
         )
 
 

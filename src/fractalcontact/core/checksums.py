@@ -56,14 +56,14 @@ class Digests:
 
     def of(self, path: Path | str) -> str:
         """SHA-256 of a file; OSError if it cannot be read."""
-        known = self._known.get(str(path))
-        found = _identity(path)
-        if known and known[1:] == found:
-            return known[0]
+        cached = self._known.get(str(path))
+        identity = _identity(path)
+        if cached and cached[1:] == identity:
+            return cached[0]
         digest = sha256(path)
-        still = _identity(path) == found
-        if still and time.time_ns() - found[-1] > _SAME_TICK:
-            self._known[str(path)] = [digest, *found]
+        still = _identity(path) == identity
+        if still and time.time_ns() - identity[-1] > _SAME_TICK:
+            self._known[str(path)] = [digest, *identity]
             self._new = True
         return digest
 
@@ -77,8 +77,8 @@ class Digests:
 
 
 def _identity(path):
-    found = os.stat(path)
-    return [found.st_dev, found.st_ino, found.st_size, found.st_mtime_ns, found.st_ctime_ns]
+    status = os.stat(path)
+    return [status.st_dev, status.st_ino, status.st_size, status.st_mtime_ns, status.st_ctime_ns]
 
 
 def record(results: Path | str, files: Iterable[Path | str]) -> None:
@@ -202,8 +202,8 @@ def _recorded_in(results, path):
     """Existing files whose checksums a record holds, by name."""
     folder = (results / path.relative_to(results / FOLDER)).parent
     stem = path.name.removesuffix(ENDING)
-    found = (f for f in folder.glob("*") if f.stem == stem and f.suffix in RESULT_ENDINGS)
-    return sorted(f for f in found if f.is_file())
+    files = (f for f in folder.glob("*") if f.stem == stem and f.suffix in RESULT_ENDINGS)
+    return sorted(f for f in files if f.is_file())
 
 
 def _lines(path):

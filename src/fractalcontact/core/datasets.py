@@ -26,10 +26,12 @@ def titled(
     def decorate(function: Callable[Given, Made]) -> Callable[Given, Made]:
         @functools.wraps(function)
         def make(*args: Given.args, **kwargs: Given.kwargs) -> Made:
-            made = function(*args, **kwargs)
-            if isinstance(made, xr.Dataset):
-                return made.assign_attrs(title=title)
-            return {name: one.assign_attrs(title=titles[name]) for name, one in made.items()}
+            result = function(*args, **kwargs)
+            if isinstance(result, xr.Dataset):
+                return result.assign_attrs(title=title)
+            return {
+                name: dataset.assign_attrs(title=titles[name]) for name, dataset in result.items()
+            }
 
         return make
 

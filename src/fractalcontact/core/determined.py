@@ -69,13 +69,13 @@ def differ_together(p: ArrayLike) -> np.ndarray:
     of Statistics 6, 65-70.
     """
     p = np.asarray(p, float)
-    found = np.zeros(p.shape, bool)
+    significant = np.zeros(p.shape, bool)
     tested = [place for place in np.argsort(p) if np.isfinite(p[place])]
     for rank, place in enumerate(tested):
         if not differs(p[place] * (len(tested) - rank)):
             break
-        found[place] = True
-    return found
+        significant[place] = True
+    return significant
 
 
 def decided_by_scan(share: float | np.ndarray | xr.DataArray) -> Any:

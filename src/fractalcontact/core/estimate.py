@@ -103,18 +103,18 @@ class Estimate:
     @classmethod
     def stack(cls, estimates: Iterable["Estimate"], shape: Sequence[int] = (-1,)) -> "Estimate":
         """Estimates as one of arrays, in C order over ``shape``."""
-        each = list(estimates)
+        members = list(estimates)
 
         def joined(field: Callable[["Estimate"], Any]) -> np.ndarray:
             # A scalar field of a member belongs to all of its numbers.
-            columns = [np.broadcast_to(field(one), np.shape(one.value)) for one in each]
+            columns = [np.broadcast_to(field(member), np.shape(member.value)) for member in members]
             return np.reshape(columns, shape)
 
         value, low, high, n, reason = (
             joined(attrgetter(name)) for name in ("value", "low", "high", "n", "reason")
         )
-        over = joined(lambda one: one.over[0]), joined(lambda one: one.over[1])
-        return cls(value, low, high, n, over, reason, each[0].scale if each else SIZE)
+        over = joined(lambda member: member.over[0]), joined(lambda member: member.over[1])
+        return cls(value, low, high, n, over, reason, members[0].scale if members else SIZE)
 
     def __getitem__(self, index: Any) -> "Estimate":
         """Estimates at an index of the arrays; scalars shared by all are kept."""

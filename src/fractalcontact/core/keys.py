@@ -255,10 +255,10 @@ def _faults(section: type[Section], document: Mapping, errors: list, above: str)
         groups.setdefault(place, []).append((path, error))
     chosen = []
     for place, group in groups.items():
-        path, error = max(group, key=lambda one: (_rank(one[1]), len(one[0])))
+        path, error = max(group, key=lambda fault: (_rank(fault[1]), len(fault[0])))
         says_little = _rank(error) == 0 and len(group) > 1
         chosen.append((place if says_little and len(path) <= len(place) else path, error))
-    chosen.sort(key=lambda one: [str(part) for part in one[0]])
+    chosen.sort(key=lambda fault: [str(part) for part in fault[0]])
     return [_sentence(section, document, path, error, above) for path, error in chosen]
 
 
@@ -332,7 +332,10 @@ def _forms(schema: dict, node: dict) -> list[dict]:
     """Forms that a value may have: itself, and each of ``anyOf``, references followed."""
     if "$ref" in node:
         return _forms(schema, schema["$defs"][node["$ref"].rpartition("/")[2]])
-    return [node, *(form for one in node.get("anyOf", ()) for form in _forms(schema, one))]
+    return [
+        node,
+        *(form for form_node in node.get("anyOf", ()) for form in _forms(schema, form_node)),
+    ]
 
 
 def _child(form: dict, part: Any) -> dict | None:

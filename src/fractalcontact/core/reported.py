@@ -71,9 +71,11 @@ class Reported:
         reference load.
         """
         forces = curves["normal_force"].values
-        *dilating, at = (int(np.argmin(np.abs(forces - force))) for force in (*loads, reference))
+        *dilating, of_reference = (
+            int(np.argmin(np.abs(forces - force))) for force in (*loads, reference)
+        )
         resolution = int(curves["resolution"].min())
-        return cls(direction, offset, resolution, forces, tuple(sorted({*dilating})), at)
+        return cls(direction, offset, resolution, forces, tuple(sorted({*dilating})), of_reference)
 
     @classmethod
     def read(cls, curves: xr.Dataset) -> "Reported":

@@ -458,5 +458,5 @@ def read(section: type[S], stated: Mapping[str, Any]) -> S:
 def _read(kind: Any, value: Any) -> Any:
     """Value, or each value of a list, as its class where it has one."""
     if get_origin(kind) is list and is_dataclass(of := get_args(kind)[0]):
-        return [read(of, one) for one in value]  # type: ignore[arg-type]
+        return [read(of, item) for item in value]  # type: ignore[arg-type]
     return read(kind, value) if is_dataclass(kind) else value  # type: ignore[arg-type]

@@ -177,9 +177,9 @@ def share_of(value: Any) -> float:
     text = str(value).strip()
     number = text.removesuffix("%").strip()
     if not isinstance(value, bool) and len(text) <= _LONGEST and re.fullmatch(_NUMBER, number):
-        found = float(number) / (100 if text.endswith("%") else 1)
-        if 0 < found < 1:
-            return found
+        share = float(number) / (100 if text.endswith("%") else 1)
+        if 0 < share < 1:
+            return share
     raise InputError(f"{text[:_LONGEST]!r} is no share; write for example '1 %' or 0.01")
 
 

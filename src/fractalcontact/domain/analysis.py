@@ -301,10 +301,10 @@ def corrected_scaling(
     """
     s, nodes = _spacings(curves, spacing), _nodes_between(curves, spacing, fit_range)
     area = curves["area_corrected"]
-    each = nodes, CORRECTED_NODES, left, curves["area_sampling"]
-    result = renormalisation(s, area, curves["normal_force"], *each)
+    samples = nodes, CORRECTED_NODES, left, curves["area_sampling"]
+    result = renormalisation(s, area, curves["normal_force"], *samples)
     words = "Delta_sigma from the area of the two finest resolutions less that of the two coarsest"
-    bend = area_bend(s, area, *each)
+    bend = area_bend(s, area, *samples)
     for (name, row), value in zip(rows_of("area_bend", "1", words).items(), bend.ends, strict=True):
         result[name] = value.assign_attrs(cf_attrs(*row))
     return result

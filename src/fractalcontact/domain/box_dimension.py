@@ -193,23 +193,23 @@ def box_dimension(
     law, means = law_of_means(extent, limits, whole_cells)
     if law is None and is_crowded(means, extent):
         return replace(no_dimension(r, count, CROWDED), ordinary=ordinary, means=means)
-    found = _of_law(cover, law, spacing) if law else _of_line(cover, extent, side)
-    return replace(_with_interval(found, nodes), ordinary=ordinary, means=means)
+    dimension = _of_law(cover, law, spacing) if law else _of_line(cover, extent, side)
+    return replace(_with_interval(dimension, nodes), ordinary=ordinary, means=means)
 
 
-def _with_interval(found: BoxDimension, nodes: int) -> BoxDimension:
+def _with_interval(dimension: BoxDimension, nodes: int) -> BoxDimension:
     """The dimension, without its interval and with the reason where it rests on too few nodes."""
     why = FEW_NODES.format(nodes) if nodes < MIN_NODES else ONE_PART
-    if nodes >= MIN_NODES and np.isfinite(found.width):
-        return found.in_plane()
-    return replace(found, low=np.nan, high=np.nan, reason=why)
+    if nodes >= MIN_NODES and np.isfinite(dimension.width):
+        return dimension.in_plane()
+    return replace(dimension, low=np.nan, high=np.nan, reason=why)
 
 
 def _minimal_covers(domain, extent, sizes, limits) -> tuple[np.ndarray, OrdinaryDimension | None]:
     """Minimal cover at all sizes, and the ordinary dimension from the powers of two among them."""
     dyadic = dyadic_sizes(domain.shape)
-    every, place = np.unique(np.concatenate([sizes, dyadic]), return_inverse=True)
-    count = box_count(extent, every)[place]
+    all_sizes, place = np.unique(np.concatenate([sizes, dyadic]), return_inverse=True)
+    count = box_count(extent, all_sizes)[place]
     if not extent.any():
         return count[: sizes.size], None
     of_dyadic = count[sizes.size :]
@@ -310,22 +310,22 @@ def _exact(cover: _Cover, ladder, extent) -> BoxDimension:
     slopes = [line.slope.low, line.slope.high, *parts]
     line = _line(r, count, ladder)
     slopes += [line.slope.low, line.slope.high]
-    found = _of_cover(cover, ladder, "exact", extent)
+    dimension = _of_cover(cover, ladder, "exact", extent)
     low, high = np.clip([0.0 - max(slopes), 0.0 - min(slopes)], *IN_PLANE)
-    return replace(found, low=float(low), high=float(high))
+    return replace(dimension, low=float(low), high=float(high))
 
 
 def _of_line(cover: _Cover, extent, side) -> BoxDimension:
     """The line through the minimal cover, with the jackknife of the mean counts at its sizes."""
     r, count, used = cover.r, cover.count, cover.used
-    found = _of_cover(cover, used, "cover", side)
+    dimension = _of_cover(cover, used, "cover", side)
     whole = np.unique(np.round(cover.sizes[used])).astype(int)
     parts = mean_count(extent, whole, blocks=BLOCKS)
     error = block_error(parts, lambda left: count_slope(left, whole))
     line = _line(r, count, used)
     law = line.intercept.value + line.slope.value * np.log(r[used])
     half = np.hypot(error, wave_error(r[used], np.log(count[used]) - law))
-    return replace(found, low=found.value - half, high=found.value + half)
+    return replace(dimension, low=dimension.value - half, high=dimension.value + half)
 
 
 def _of_cover(cover: _Cover, ladder, estimator, extent) -> BoxDimension:

@@ -91,5 +91,5 @@ def _law_count(domains, area):
 
 def _power_of_offset(offset, index):
     """Exponent of Morisita's index as a power of the offset."""
-    known = np.isfinite(index)
-    return {"morisita_exponent": fit_line(np.log(offset[known]), np.log(index[known])).slope}
+    in_fit = np.isfinite(index)
+    return {"morisita_exponent": fit_line(np.log(offset[in_fit]), np.log(index[in_fit])).slope}

@@ -122,7 +122,12 @@ def pairs_slope(distances: np.ndarray, pairs: np.ndarray, lags: np.ndarray) -> f
     Pairs (k,) are with the translation correction, as the first of :func:`pair_counts`. NaN with
     too few distances that have a pair.
     """
-    known = pairs > 0
-    if np.count_nonzero(known) < MIN_SCALES:
+    has_pairs = pairs > 0
+    if np.count_nonzero(has_pairs) < MIN_SCALES:
         return np.nan
-    return 2 + fit_line(np.log(distances[known]), np.log(pairs[known] / lags[known])).slope.value
+    return (
+        2
+        + fit_line(
+            np.log(distances[has_pairs]), np.log(pairs[has_pairs] / lags[has_pairs])
+        ).slope.value
+    )

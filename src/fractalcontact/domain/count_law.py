@@ -194,15 +194,15 @@ def _fit(law, sizes, count, side):
     """Law of this form with the least misfit; None if its factors are not admissible."""
     if sizes.size <= law.outline + 2:
         return None
-    at = 0.0
+    centre = 0.0
     for grid in (_COARSE, _FINE):
-        tried = np.clip(at + grid, 0, 2)
+        tried = np.clip(centre + grid, 0, 2)
         misfit = _misfits(sizes - law.c, count * sizes**2, side, law.outline + 1, tried)
         i = int(np.argmin(misfit))
         if np.isinf(misfit[i]):
             return None
-        at = float(tried[i])
-    return replace(law, dimension=at, misfit=float(misfit[i]))
+        centre = float(tried[i])
+    return replace(law, dimension=centre, misfit=float(misfit[i]))
 
 
 #: Compilation that may take sums in any order, several terms at a time.

@@ -92,11 +92,11 @@ def errors_of(domain: CountedDomain, other: CountedDomain) -> dict[str, float]:
     Of ``delta_sigma`` and ``correlation_dimension``, by the jackknife that leaves the same part of
     the window out of both; NaN where too few parts of the window are occupied.
     """
-    found = {
+    errors = {
         "delta_sigma": _law_error(domain, other),
         "correlation_dimension": _pairs_error(domain, other),
     }
-    return {name: error if 0 < error < np.inf else np.nan for name, error in found.items()}
+    return {name: error if 0 < error < np.inf else np.nan for name, error in errors.items()}
 
 
 def _law_error(domain, other):

@@ -49,13 +49,13 @@ def interval_dimensions(
     """
     axis = 0 if direction in ("N", "S") else 1
     lengths = np.unique(np.round(pair_distances(domain.shape)).astype(int))
-    found = []
+    exponents = []
     for way in (axis, 1 - axis):
         rows = np.moveaxis(np.asarray(domain, bool), way, 1)
         parts = np.array([_occupied(rows, length) for length in lengths])
         slope = slope_of_sums(lengths * spacing[way], parts, lambda sums: sums[:, 0])
-        found.append(slope.mapped(np.negative, falling=True))
-    return found
+        exponents.append(slope.mapped(np.negative, falling=True))
+    return exponents
 
 
 def _occupied(rows: np.ndarray, length: int) -> np.ndarray:

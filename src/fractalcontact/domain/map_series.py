@@ -30,7 +30,7 @@ def with_series(maps: Mapping[str, xr.Dataset]) -> dict[str, xr.Dataset]:
 
     Maps are as :func:`domain.measured_map.read_contact_map` gives them.
     """
-    found = {}
+    placed = {}
     for number, names in enumerate(series_of_maps(maps)):
         pressure, value, random = (
             [float(maps[name][key]) for name in names]
@@ -47,8 +47,8 @@ def with_series(maps: Mapping[str, xr.Dataset]) -> dict[str, xr.Dataset]:
         for place, name in enumerate(names):
             table = {key: ((), *words) for key, words in _TABLE.items()}
             values = of_series | {"number_in_series": place}
-            found[name] = maps[name].assign(labelled(table, values))
-    return found
+            placed[name] = maps[name].assign(labelled(table, values))
+    return placed
 
 
 def series_of_maps(maps: Mapping[str, xr.Dataset]) -> list[tuple[str, ...]]:
@@ -69,7 +69,7 @@ def series_of_maps(maps: Mapping[str, xr.Dataset]) -> list[tuple[str, ...]]:
     return series + [(name,) for name in alone]
 
 
-def _pressure(one):
+def _pressure(contact_map):
     """Nominal pressure, MPa; infinite where no load is stated."""
-    pressure = float(one["nominal_pressure"])
+    pressure = float(contact_map["nominal_pressure"])
     return pressure if np.isfinite(pressure) else np.inf

@@ -87,10 +87,10 @@ def law_of_means(
     count = parts.sum(axis=(1, 2))
     means = MeanCounts(sizes, count)
     side = max(extent.shape)
-    found = _fitted(means, extent, limits, whole_cells)
-    if found is None:
+    fitted = _fitted(means, extent, limits, whole_cells)
+    if fitted is None:
         return None, means
-    law, between = found
+    law, between = fitted
     kept = between & (sizes >= SMALLEST)
     sizes, parts, count = sizes[kept].astype(float), parts[kept], count[kept]
     terms = law_terms(law, sizes, count, side)
@@ -167,10 +167,10 @@ def find_law(
     extent = cropped(domain)
     sizes = mean_sizes(extent.shape)
     means = MeanCounts(sizes, mean_count(extent, sizes).ravel())
-    found = _fitted(means, extent, limits, whole_cells)
-    if found is None:
+    fitted = _fitted(means, extent, limits, whole_cells)
+    if fitted is None:
         return None
-    law, between = found
+    law, between = fitted
     separating = sizes[between]
     return FoundLaw(law, separating[separating >= SMALLEST], separating, max(extent.shape))
 
@@ -192,9 +192,9 @@ def dimension_by_means(
     sizes = mean_sizes(extent.shape)
     cover, count = minimal_cover(extent, cover_sizes), mean_count(extent, sizes).ravel()
     means = MeanCounts(sizes, count)
-    found = _fitted(means, extent, limits, whole_cells)
-    if found is not None:
-        return found[0].dimension, cover
+    fitted = _fitted(means, extent, limits, whole_cells)
+    if fitted is not None:
+        return fitted[0].dimension, cover
     alone, full = (
         np.count_nonzero(beyond[sizes > 1]) for beyond in _beyond_cut_offs(means, extent)
     )

@@ -174,9 +174,11 @@ def nulls_of_map_states(
     loads and the scalars ``direction``, ``offset`` and ``resolution`` of the states.
     """
     factor = int(states["resolution"])
-    here = composites.sel(offset=float(states["offset"]), method="nearest").values
+    composite = composites.sel(offset=float(states["offset"]), method="nearest").values
     domains = states["pressure"].values > 0
-    nulls = null_models(domains, spacing * factor, here[::factor, ::factor], fit_range=fit_range)
+    nulls = null_models(
+        domains, spacing * factor, composite[::factor, ::factor], fit_range=fit_range
+    )
     names = ("normal_force", "direction", "offset", "resolution")
     return nulls.assign_coords({name: states[name] for name in names})
 

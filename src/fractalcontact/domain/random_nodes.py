@@ -21,12 +21,12 @@ def band_of(draws: np.ndarray) -> Estimate:
     NaN where fewer than half of the draws have a value.
     """
     draws = np.asarray(draws, float)
-    known = np.isfinite(draws)
-    n = known.sum(axis=0)
+    has_value = np.isfinite(draws)
+    n = has_value.sum(axis=0)
     enough = n >= max(len(draws) / 2, 2)
     count = np.maximum(n, 2)
-    mean = np.where(known, draws, 0).sum(axis=0) / count
-    variance = np.where(known, (draws - mean) ** 2, 0).sum(axis=0) / (count - 1)
+    mean = np.where(has_value, draws, 0).sum(axis=0) / count
+    variance = np.where(has_value, (draws - mean) ** 2, 0).sum(axis=0) / (count - 1)
     half = t_quantile(count - 1) * np.sqrt(variance * (1 + 1 / count))
     mean = np.where(enough, mean, np.nan)
     return Estimate(mean, mean - half, mean + half)

@@ -268,9 +268,9 @@ def _corrected(
         for nodes in (BAND_LIMITED, POINTS)
         for of in roll_off.cases()
     }
-    every = np.clip(np.concatenate(list(of_each.values())), *FARTHEST)
+    estimates = np.clip(np.concatenate(list(of_each.values())), *FARTHEST)
     value = float(of_each[estimator.nodes, roll_off.cases()[0]][0])
-    return Estimate(value, float(min(every.min(), value)), float(max(every.max(), value)))
+    return Estimate(value, float(min(estimates.min(), value)), float(max(estimates.max(), value)))
 
 
 def _hurst_of_slope(estimator: Estimator, curve: Curve, used: np.ndarray) -> tuple[float, float]:
@@ -279,13 +279,13 @@ def _hurst_of_slope(estimator: Estimator, curve: Curve, used: np.ndarray) -> tup
     x, y = np.log(curve.length[used]), np.log(np.where(measures > 0, measures, np.nan))
     slope = fit_line(x, y[0]).slope
     of_regression = (slope.high - slope.value) / abs(estimator.slope_per_hurst)
-    every = (slopes(x, y) - estimator.slope_at_zero) / estimator.slope_per_hurst
-    without = every[1:][np.isfinite(every[1:])]
+    estimates = (slopes(x, y) - estimator.slope_at_zero) / estimator.slope_per_hurst
+    without = estimates[1:][np.isfinite(estimates[1:])]
     parts = len(without)
     if not np.isfinite(of_regression) or parts < 2:
         return np.nan, np.nan
     of_parts = t_quantile(parts - 1) * estimator.spread * jackknife_standard_error(without)
-    return every[0], max(of_regression, of_parts) + BIAS_LEFT
+    return estimates[0], max(of_regression, of_parts) + BIAS_LEFT
 
 
 # -- statistics that the classical theories ask for ------------------------------------------------
@@ -295,9 +295,9 @@ def _mean_square(differences) -> float:
     """Mean square of all finite values in several arrays; NaN without any."""
     total, count = 0.0, 0
     for values in differences:
-        known = values[np.isfinite(values)]
-        total += np.dot(known, known)
-        count += known.size
+        finite = values[np.isfinite(values)]
+        total += np.dot(finite, finite)
+        count += finite.size
     return total / count if count else np.nan
 
 

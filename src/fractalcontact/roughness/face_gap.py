@@ -22,10 +22,10 @@ _OVERLAP = {
 
 
 def _overlap(specimen):
-    found = overlap_statistics(specimen, window_slices(specimen))
+    statistics = overlap_statistics(specimen, window_slices(specimen))
     keys = ("cells", "fraction", "depth", "gap_mean", "gap_sd")
     return labelled(
-        _OVERLAP, {name: list(found[key]) for name, key in zip(_OVERLAP, keys, strict=True)}
+        _OVERLAP, {name: list(statistics[key]) for name, key in zip(_OVERLAP, keys, strict=True)}
     )
 
 
@@ -39,12 +39,12 @@ _GAPS = {
 def _gap_histogram(specimen):
     """Cells in bins of the gap over the whole scan."""
     gap = (specimen["upper"] - specimen["lower"]).values
-    known = gap[np.isfinite(gap)]
-    low, high = (known.min(), known.max()) if known.size else (0.0, 0.0)
+    measured = gap[np.isfinite(gap)]
+    low, high = (measured.min(), measured.max()) if measured.size else (0.0, 0.0)
     width = ((high - low) or 1.0) / GAP_BINS
     first, last = np.floor(low / width), np.ceil(high / width)
     edges = width * np.arange(first, max(last, first + 1) + 1)
-    middles, counts = (edges[1:] + edges[:-1]) / 2, np.histogram(known, edges)[0]
+    middles, counts = (edges[1:] + edges[:-1]) / 2, np.histogram(measured, edges)[0]
     return labelled(_GAPS, {"gap_edge": edges, "gap": middles, "gap_cells": counts})
 
 

@@ -104,19 +104,19 @@ def find_fractal_range(curve: Curve, spacing: float) -> FractalRange:
     """
     curve, left_out = _without_spiky_strips(curve)
     level = curve.measure()
-    known = _above_leakage(curve.length, level)
-    limit = float(np.sqrt(level[known].min() / spacing)) if known.any() else np.nan
+    usable = _above_leakage(curve.length, level)
+    limit = float(np.sqrt(level[usable].min() / spacing)) if usable.any() else np.nan
     fitted = np.full(len(level), np.nan)
-    if known.sum() < MIN_BINS:
+    if usable.sum() < MIN_BINS:
         return FractalRange(level, fitted, left_out, limit)
-    x = 2 * spacing / curve.length[known]
-    parts = np.log(curve.without_each_part()[:, known])
-    logs = np.log(level[known])
+    x = 2 * spacing / curve.length[usable]
+    parts = np.log(curve.without_each_part()[:, usable])
+    logs = np.log(level[usable])
     error = np.hypot(jackknife_standard_error(parts), BIN_ERROR)
 
     form, fit, values = _most_likely(x, logs, error, parts)
-    fitted[known] = np.exp(log_model(form, fit.x, x))
-    misfit = float(np.sqrt(np.mean((logs - np.log(fitted[known])) ** 2)))
+    fitted[usable] = np.exp(log_model(form, fit.x, x))
+    misfit = float(np.sqrt(np.mean((logs - np.log(fitted[usable])) ** 2)))
     if misfit > np.log(NO_POWER_LAW):
         values = {}
     lengths = {  # logarithms of x become wavelengths, infinite if a bound

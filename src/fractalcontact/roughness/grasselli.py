@@ -45,7 +45,7 @@ def grasselli(heights: np.ndarray, spacing: tuple[float, float], direction: str)
     Areas are those of the triangles themselves. C is fitted by least squares to the cumulative area
     over bins of 2 degrees, as the authors' program does.
     """
-    dips, areas = (np.concatenate(one) for one in _triangles(heights, spacing, direction))
+    dips, areas = (np.concatenate(halves) for halves in _triangles(heights, spacing, direction))
     facing = dips >= 0
     total = areas.sum()
     if np.count_nonzero(dips > 0) < _MIN_TRIANGLES:

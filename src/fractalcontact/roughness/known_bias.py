@@ -61,13 +61,13 @@ class Fit(NamedTuple):
 
 def slopes(x: np.ndarray, y: np.ndarray) -> np.ndarray:
     """Least-squares slopes of the rows of y (rows, k) over x (k,), where y is finite."""
-    known = np.isfinite(y)
-    n = known.sum(axis=1)
+    finite = np.isfinite(y)
+    n = finite.sum(axis=1)
     enough = n >= 2
     n = np.where(enough, n, 1)
-    mean_x = np.sum(known * x, axis=1) / n
-    dx = np.where(known, x - mean_x[:, np.newaxis], 0)
-    product = np.sum(dx * np.where(known, y, 0), axis=1)
+    mean_x = np.sum(finite * x, axis=1) / n
+    dx = np.where(finite, x - mean_x[:, np.newaxis], 0)
+    product = np.sum(dx * np.where(finite, y, 0), axis=1)
     return ratio(product, np.where(enough, np.sum(dx**2, axis=1), 0))
 
 

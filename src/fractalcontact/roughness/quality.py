@@ -107,9 +107,9 @@ def _doubtful_unit(specimen, heights, spacing) -> str:
     The slope of an aperture map is not judged, because it is no face.
     """
     side = min(n * s for n, s in zip(heights[0].shape, spacing, strict=True))
-    found = [slope_statistics(z, spacing) for z in heights]
-    rms = max(found, key=lambda one: one["rms_height"].item())["rms_height"].item()
-    slopes = [one["rms_slope"].item() for one in found]
+    statistics = [slope_statistics(z, spacing) for z in heights]
+    rms = max(statistics, key=lambda of_face: of_face["rms_height"].item())["rms_height"].item()
+    slopes = [of_face["rms_slope"].item() for of_face in statistics]
     is_slope = specimen.attrs["opposite"] != APERTURE and any(
         not MIN_SLOPE <= slope <= MAX_SLOPE for slope in slopes if math.isfinite(slope)
     )
@@ -152,25 +152,25 @@ _RELIEF = {
 
 def _relief(heights):
     """Statistics about the mean plane, and histograms of all faces over the same bins."""
-    known = [z[np.isfinite(z)] for z in heights]
-    centred = [z - z.mean() for z in known]
+    measured = [z[np.isfinite(z)] for z in heights]
+    centred = [z - z.mean() for z in measured]
     rms = np.array([np.sqrt(np.mean(z**2)) for z in centred])
-    percentiles = np.array([np.percentile(z, PERCENTILES) for z in known])
+    percentiles = np.array([np.percentile(z, PERCENTILES) for z in measured])
     low, high = percentiles[:, 0].min(), percentiles[:, -1].max()
     edges = np.linspace(low - (high - low) / 4, high + (high - low) / 4, BINS + 1)
-    counts = np.array([np.histogram(z, edges)[0] for z in known])
+    counts = np.array([np.histogram(z, edges)[0] for z in measured])
     values = {
         "missing_share": [np.isnan(z).mean() for z in heights],
         "rms": rms,
         "skewness": _moment(centred, 3) / rms**3,
         "kurtosis": _moment(centred, 4) / rms**4,
-        "lowest": [z.min() for z in known],
-        "highest": [z.max() for z in known],
+        "lowest": [z.min() for z in measured],
+        "highest": [z.max() for z in measured],
         "percentile": list(PERCENTILES),
         "height": percentiles,
         "edge": edges,
         "bin_height": (edges[1:] + edges[:-1]) / 2,
-        "density": counts / (np.array([[z.size] for z in known]) * np.diff(edges)),
+        "density": counts / (np.array([[z.size] for z in measured]) * np.diff(edges)),
     }
     return labelled(_RELIEF, values)
 
@@ -192,15 +192,15 @@ def height_step(heights: np.ndarray) -> float:
     NaN where there are about as many heights as cells, or they share no step. Heights are as
     measured, before a plane is taken off; NaN where missing.
     """
-    known = np.sort(heights[np.isfinite(heights)])
-    rises = np.diff(known)
-    steps = rises[rises > ROUNDING * np.abs(known).max(initial=0)]
-    if steps.size < 2 or known.size < CELLS_PER_LEVEL * (steps.size + 1):
+    measured = np.sort(heights[np.isfinite(heights)])
+    rises = np.diff(measured)
+    steps = rises[rises > ROUNDING * np.abs(measured).max(initial=0)]
+    if steps.size < 2 or measured.size < CELLS_PER_LEVEL * (steps.size + 1):
         return math.nan
     step = np.median(steps[steps < 1.5 * steps.min()])
-    multiples = np.round((known - known[0]) / step)
-    step = np.dot(multiples, known - known[0]) / np.dot(multiples, multiples)
-    left = known - known[0] - step * multiples
+    multiples = np.round((measured - measured[0]) / step)
+    step = np.dot(multiples, measured - measured[0]) / np.dot(multiples, multiples)
+    left = measured - measured[0] - step * multiples
     return float(step) if np.sqrt(np.mean(left**2)) < STEP_TOLERANCE * step else math.nan
 
 
@@ -233,25 +233,25 @@ _PROFILES = {
 
 def _profile_spectrum(curve, spacing) -> dict[str, Any]:
     """Values of :data:`_PROFILES` of a curve of :func:`roughness.spectra.profile_spectra`."""
-    found = find_fractal_range(curve, spacing)
-    level, exponent = found.line
+    fractal = find_fractal_range(curve, spacing)
+    level, exponent = fractal.line
     return {
         "wavelength": curve.length,
-        "spectrum": found.level,
-        "spectrum_model": found.fitted,
-        "noise_rms": found.noise_rms,
-        "noise_wavelength": found.noise_wavelength,
-        "filter_wavelength": found.filter_wavelength,
-        "roll_off_wavelength": found.roll_off_wavelength,
-        "end": found.end,
-        "noise_limit": found.noise_limit,
-        "strips_left_out": found.left_out,
-        "misfit": found.misfit,
+        "spectrum": fractal.level,
+        "spectrum_model": fractal.fitted,
+        "noise_rms": fractal.noise_rms,
+        "noise_wavelength": fractal.noise_wavelength,
+        "filter_wavelength": fractal.filter_wavelength,
+        "roll_off_wavelength": fractal.roll_off_wavelength,
+        "end": fractal.end,
+        "noise_limit": fractal.noise_limit,
+        "strips_left_out": fractal.left_out,
+        "misfit": fractal.misfit,
         "line_level": level,
         "line_exponent": exponent,
-        "form": _form_words(found),
+        "form": _form_words(fractal),
         "self_affine_line": level * curve.length**exponent,
-        "noise_floor": np.square(found.noise_rms.value) * spacing,
+        "noise_floor": np.square(fractal.noise_rms.value) * spacing,
     }
 
 

@@ -28,12 +28,12 @@ def interval_words(values: xr.Dataset, name: str, unit: str | None = None) -> st
 
 def noise_words(quality: xr.Dataset, face: str) -> str:
     """Sentence on the noise floor of a face, "lower" or "upper", with its possible origin."""
-    found = quality.sel(face=face)
-    if not any(found["form"].values):
+    of_face = quality.sel(face=face)
+    if not any(of_face["form"].values):
         return "too small for a spectrum, so its noise is unknown"
-    along = [_noise_along(axis, found.sel(axis=axis)) for axis in AXES]
+    along = [_noise_along(axis, of_face.sel(axis=axis)) for axis in AXES]
     words = f"noise floor {', '.join(along)}"
-    rms, limit = found["noise_rms"].values, found["noise_limit"].values
+    rms, limit = of_face["noise_rms"].values, of_face["noise_limit"].values
     for axis, own, other in zip(AXES, rms, np.fmin(rms, limit)[::-1], strict=True):
         if own > UNEQUAL * other:
             across = AXES[1 - AXES.index(axis)]
@@ -57,10 +57,10 @@ def _noise_along(axis, of_axis) -> str:
 
 def range_words(quality: xr.Dataset, face: str) -> str:
     """Sentence on filter, roll-off, steps and misfit of a face; "" without any."""
-    found = quality.sel(face=face)
+    of_face = quality.sel(face=face)
     words = []
     for axis in AXES:
-        of_axis = found.sel(axis=axis)
+        of_axis = of_face.sel(axis=axis)
         if np.isfinite(of_axis["filter_wavelength"]):
             words.append(
                 f"low-pass filtered along {axis}, halved at a wavelength of "
@@ -77,7 +77,7 @@ def range_words(quality: xr.Dataset, face: str) -> str:
                 f"{of_axis['strips_left_out']:.0f} of {STRIPS} strips of profiles along {axis} "
                 "left out of the spectrum for spikes or steps"
             )
-    step = found["height_step"].item()
+    step = of_face["height_step"].item()
     if math.isfinite(step):
         words.append(
             f"heights are multiples of {length_words(step)}, which alone adds "

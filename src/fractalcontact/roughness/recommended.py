@@ -47,13 +47,13 @@ def best_dimension(dimensions: xr.Dataset) -> Estimate:
     if RECOMMENDED not in dimensions["estimator"].values:
         return Estimate(reason=f"{RECOMMENDED.replace('_', ' ')} was not measured")
     chosen = dimensions.sel(estimator=RECOMMENDED)
-    found = Estimate.read(chosen, "dimension")
-    value, low, high = found.ends
-    if not found.known:
+    dimension = Estimate.read(chosen, "dimension")
+    value, low, high = dimension.ends
+    if not dimension.known:
         return Estimate(reason="no fit: too few lags or no relief")
     least, most = POSSIBLE
     if least < value < most:
-        return found
+        return dimension
     inside = low < most and high > least
     reason = f"Delta_g {value:.2f} [{low:.2f}, {high:.2f}] does not lie between 2 and 3" + (
         f" (its interval reaches {'above 2' if value <= least else 'below 3'})"
@@ -80,15 +80,15 @@ def variables_of_all(dimensions: xr.Dataset) -> dict[str, Any]:
     ``estimator``; the range is NaN without a fit. The middle of the range is no estimate: see
     :func:`best_dimension`.
     """
-    known = dimensions["dimension"].values
-    known = known[np.isfinite(known)]
+    values_of_fits = dimensions["dimension"].values
+    values_of_fits = values_of_fits[np.isfinite(values_of_fits)]
     x, y = (Estimate.read(dimensions, f"hurst_{axis}") for axis in "xy")
     compared = x.known & y.known
     apart = compared & ((x.low > y.high) | (y.low > x.high))
     values = {
-        "dimensions_fitted": known.size,
-        "lowest_dimension": min(known, default=np.nan),
-        "highest_dimension": max(known, default=np.nan),
+        "dimensions_fitted": values_of_fits.size,
+        "lowest_dimension": min(values_of_fits, default=np.nan),
+        "highest_dimension": max(values_of_fits, default=np.nan),
         "axes_compared": np.sum(compared),
         "axes_differing": np.sum(apart),
     }
@@ -116,11 +116,11 @@ def dimension_words(dimensions: xr.Dataset) -> str:
 
 def recommended_variables(dimensions: xr.Dataset) -> dict[str, Any]:
     """Variables of the recommended estimate, by the names of the atlas."""
-    found = best_dimension(dimensions)
+    dimension = best_dimension(dimensions)
     words = {
         "recommended": (RECOMMENDED, "recommended estimator"),
         "reason": (REASON, "why this estimator"),
-        "no_dimension": (found.reason, "why there is no recommended dimension"),
+        "no_dimension": (dimension.reason, "why there is no recommended dimension"),
     }
     texts = {name: ((), text, cf_attrs("1", of)) for name, (text, of) in words.items()}
-    return texts | found.variables("recommended_dimension", (), "1", "recommended Delta_g")
+    return texts | dimension.variables("recommended_dimension", (), "1", "recommended Delta_g")

@@ -121,8 +121,8 @@ def _looked_up(table: np.ndarray, share: np.ndarray) -> np.ndarray:
     place = np.minimum(place, len(SHARES) - 1.001)
     before = place.astype(int)
     part = place - before
-    found = (1 - part) * table[:, before] + part * table[:, before + 1]
-    return np.where(share > 0, found, 1.0)
+    fraction = (1 - part) * table[:, before] + part * table[:, before + 1]
+    return np.where(share > 0, fraction, 1.0)
 
 
 def difference_fraction(share: np.ndarray, shape: str = SHARP) -> np.ndarray:

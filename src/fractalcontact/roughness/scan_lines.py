@@ -51,13 +51,13 @@ def line_alternation(heights: np.ndarray) -> tuple[float, float]:
     chosen = chosen - chosen.mean(axis=1, keepdims=True)
     taper = np.hanning(STRETCH + 1)[:-1]
     power = np.mean(np.abs(np.fft.rfft(chosen * taper, axis=1)) ** 2, axis=0)
-    beside = float(power[list(_BESIDE)].mean())
+    neighbours = float(power[list(_BESIDE)].mean())
     alternating = float(power[-1])
-    noise = math.sqrt(beside / np.sum(taper**2))
+    noise = math.sqrt(neighbours / np.sum(taper**2))
     freedom = (stretches, 2 * len(_BESIDE) * stretches)
-    if not alternating > stats.f.isf(_BY_CHANCE, *freedom) * beside:
+    if not alternating > stats.f.isf(_BY_CHANCE, *freedom) * neighbours:
         return math.nan, noise
-    return 2 * math.sqrt(alternating - beside) / float(taper.sum()), noise
+    return 2 * math.sqrt(alternating - neighbours) / float(taper.sum()), noise
 
 
 #: Variables of the quality of a scan: dimensions, unit, long name.
@@ -73,21 +73,21 @@ ALTERNATION = {
 
 def alternations(heights: list[np.ndarray]) -> dict[str, np.ndarray]:
     """Values of `ALTERNATION` for the faces of a scan, along x and along y."""
-    found = np.array([[line_alternation(z), line_alternation(z.T)] for z in heights])
-    return dict(zip(ALTERNATION, np.moveaxis(found, -1, 0), strict=True))
+    differences = np.array([[line_alternation(z), line_alternation(z.T)] for z in heights])
+    return dict(zip(ALTERNATION, np.moveaxis(differences, -1, 0), strict=True))
 
 
 def scan_line_warnings(quality: xr.Dataset) -> list[str]:
     """Alternations that exceed the noise, a sentence each."""
-    found = []
+    sentences = []
     for face in quality["face"].values:
         for axis, line in zip(AXES, ("columns", "rows"), strict=True):
-            one = quality.sel(face=face, axis=axis)
-            difference, noise = one["alternation"].item(), one["alternation_noise"].item()
+            of_axis = quality.sel(face=face, axis=axis)
+            difference, noise = of_axis["alternation"].item(), of_axis["alternation_noise"].item()
             if difference > noise:
-                found.append(
+                sentences.append(
                     f"alternate {line} of the {face} face differ by {length_words(difference)}, "
                     f"more than the noise of {length_words(noise)}: the two scan directions of "
                     "the instrument disagree; correct this in the instrument's program"
                 )
-    return found
+    return sentences

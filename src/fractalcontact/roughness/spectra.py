@@ -59,11 +59,11 @@ def _unbroken_segments(heights: np.ndarray) -> dict[str, tuple[np.ndarray, np.nd
     The length is the longest at which complete segments cover a quarter of the measured cells along
     each axis; there are none if that is below `SHORTEST_SEGMENT`.
     """
-    known = np.isfinite(heights)
+    measured = np.isfinite(heights)
     length = min(heights.shape)
     while length >= SHORTEST_SEGMENT:
         found = {"x": _cut_segments(heights, length), "y": _cut_segments(heights.T, length)}
-        if min(f.size for f, _ in found.values()) >= 0.25 * known.sum() > 0:
+        if min(f.size for f, _ in found.values()) >= 0.25 * measured.sum() > 0:
             return found
         length = length * 7 // 8
     return {axis: (np.empty((0, 0)), np.empty(0, int)) for axis in "xy"}
@@ -71,13 +71,13 @@ def _unbroken_segments(heights: np.ndarray) -> dict[str, tuple[np.ndarray, np.nd
 
 def _cut_segments(profiles: np.ndarray, length: int) -> tuple[np.ndarray, np.ndarray]:
     """Complete segments of the rows, each starting where the one before ended, and their strips."""
-    known = np.isfinite(profiles)
+    measured = np.isfinite(profiles)
     strip = np.arange(len(profiles)) * STRIPS // len(profiles)
     segments, strips = [np.empty((0, length))], [np.empty(0, int)]
     free_from = np.zeros(len(profiles), int)
     run = np.zeros(len(profiles), int)
     for end in range(1, profiles.shape[1] + 1):
-        run = np.where(known[:, end - 1], run + 1, 0)
+        run = np.where(measured[:, end - 1], run + 1, 0)
         complete = (run >= length) & (end - free_from >= length)
         if complete.any():
             segments.append(profiles[complete, end - length : end])

@@ -105,11 +105,11 @@ def _filtered(filtering: str, log_ratio: np.ndarray) -> np.ndarray:
 def features_of(form: Form, parameters: np.ndarray, x: np.ndarray) -> dict[str, float]:
     """Parameters: H, and logarithms of the others; the noise as the x where it meets the line."""
     own = named(form, parameters)
-    found = {"hurst": (own["slope"] - 1) / 2}
-    found |= {name: own[name] for name in ("roll_off", "filter", "level") if name in own}
+    features = {"hurst": (own["slope"] - 1) / 2}
+    features |= {name: own[name] for name in ("roll_off", "filter", "level") if name in own}
     if form.noisy:
         # A line that lies below the floor everywhere gets the longest wave, x's minimum.
-        found["noise"] = max((own["a"] - own["level"]) / own["slope"], np.log(x.min()))
-        if found["noise"] > 0:  # a filter ends the range before the line meets the floor
-            del found["noise"]
-    return found
+        features["noise"] = max((own["a"] - own["level"]) / own["slope"], np.log(x.min()))
+        if features["noise"] > 0:  # a filter ends the range before the line meets the floor
+            del features["noise"]
+    return features
