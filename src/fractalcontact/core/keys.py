@@ -188,23 +188,11 @@ Label = Annotated[str, Field(pattern=LINE % 200, description=LABEL_WORDS)]
 
 
 def validate(section: type[S], document: Mapping, source: str, above: str = "") -> S:
-    """Section of a document.
+    """Section, of a class, of a document as read from YAML.
 
-    Parameters
-    ----------
-    section : type
-        Class of the section.
-    document : mapping
-        Content of a YAML file.
-    source : str
-        Its name, for errors.
-    above : str, optional
-        Keys that the section stands under, such as "embedded.NAME", for errors.
-
-    Raises
-    ------
-    InputError
-        For the first fault: the file, the key, its value, the expected value.
+    ``source`` is the name of the file, ``above`` are the keys that the section stands under, such
+    as "embedded.NAME", for errors. InputError for the first fault: the file, the key, its value,
+    the expected value.
     """
     try:
         return section.model_validate(document)

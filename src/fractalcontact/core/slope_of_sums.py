@@ -47,20 +47,10 @@ def slope_of_sums(
 ) -> Estimate:
     """Slope of log of a statistic of sums against log scale, with the interval of this module.
 
-    Parameters
-    ----------
-    scales : (k,) array_like
-        Ascending.
-    parts : (k, m, n) array_like
-        m sums at each scale, over n parts of the window.
-    statistic : callable
-        (k, m) sums of the whole window, or of all but one part, to (k,) values whose logarithm is
-        taken; scales where it is not positive are left out.
-
-    Returns
-    -------
-    Estimate
-        Over the scales used; NaN with fewer than `MIN_SCALES` of them.
+    ``parts`` (k, m, n) are m sums at each scale (k,), ascending, over n parts of the window.
+    ``statistic`` takes (k, m) sums of the whole window, or of all but one part, to (k,) values
+    whose logarithm is taken; scales where it is not positive are left out. NaN with fewer than
+    `MIN_SCALES` others.
     """
     scales, parts = np.asarray(scales, float), np.asarray(parts, float)
     whole = parts.sum(axis=2)

@@ -239,29 +239,16 @@ def scaling_over_resolutions(
 ) -> xr.Dataset:
     """Renormalisation over resolutions: Delta_sigma from A_r(s), compared with that of box counts.
 
-    Parameters
-    ----------
-    curves : xr.Dataset
-        With ``area``, ``area_corrected``, ``area_sampling`` and ``nodes`` over (direction, offset,
-        resolution, normal_force).
-    domains : xr.Dataset
-        From :func:`analyse_domains`; the box counts used are those at the scan's own resolution.
-    spacing : float
-        Spacing of the scan, mm.
-    left : DataArray, optional
-        From :func:`states.left_out.left_of_fields`; no interval without it.
-    fit_range : (float, float), optional
-        Smallest and largest spacing s of the fits, mm; all by default.
+    ``curves`` has ``area``, ``area_corrected``, ``area_sampling`` and ``nodes`` over (direction,
+    offset, resolution, normal_force); of ``domains``, from :func:`analyse_domains`, the box counts
+    at the scan's own resolution are used. ``spacing`` is that of the scan, ``fit_range`` the
+    smallest and largest spacing s of the fits, mm, all by default; ``left`` comes from
+    :func:`states.left_out.left_of_fields`, and without it there is no interval.
 
-    Returns
-    -------
-    xr.Dataset
-        The variables of :func:`domain.renormalisation.renormalisation`, both estimates of
-        Delta_sigma and their difference, and ``area_bend`` of
-        :func:`domain.renormalisation.area_bend`.
+    The dataset has the variables of :func:`domain.renormalisation.renormalisation`, both estimates
+    of Delta_sigma and their difference, and ``area_bend`` of
+    :func:`domain.renormalisation.area_bend`.
 
-    Notes
-    -----
     Areas are those corrected for the cells on their edge, at resolutions where `CORRECTED_NODES`
     touch: the raw area exceeds the true one by a fraction that grows with the spacing, which lowers
     Delta_sigma. Mixing both would put a step into the line where one takes over from the other.

@@ -41,17 +41,9 @@ _POWERS = {"morisita_exponent": ("1", "x of Morisita's index I ~ v^x over all of
 def cluster_laws(domains: xr.Dataset, nodes: np.ndarray, spacing: float) -> xr.Dataset:
     """Sizes of clusters with their power law, and Morisita's index as a power of the offset.
 
-    Domains of fewer than `RESOLVED_NODES` nodes are not fitted.
-
-    Parameters
-    ----------
-    domains : xr.Dataset
-        The numbers of :func:`domain.clusters.cluster_statistics` over (direction, offset,
-        resolution, normal_force).
-    nodes : (direction, offset, resolution, normal_force) ndarray
-        Nodes in contact.
-    spacing : float
-        Spacing of the scan, mm.
+    ``domains`` has the numbers of :func:`domain.clusters.cluster_statistics` over (direction,
+    offset, resolution, normal_force), ``nodes`` the nodes in contact in that order; domains of
+    fewer than `RESOLVED_NODES` are not fitted. ``spacing`` is that of the scan, mm.
     """
     cell = (domains["resolution"] * spacing) ** 2
     area = 2.0 ** domains["octave"] * cell

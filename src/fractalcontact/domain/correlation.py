@@ -14,18 +14,13 @@ LARGEST_DISTANCE = 1 / 8
 
 
 def pair_counts(domain: np.ndarray, distances: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Pairs of nodes within some distances, by the part of the window of the first node.
+    """Pairs of nodes within distances (k,), by the part of the window of the first node, and lags.
 
-    Exact, by fast Fourier transform. The distances (k,) are in cells, ascending, smaller than the
+    Exact, by fast Fourier transform; distances are in cells, ascending, smaller than the window.
+    The pairs are (k, 2, BLOCKS**2), first with the translation correction: pairs at a lag h over
+    the fraction of the window that h leaves inside, as if the domain went on beyond the window;
+    then without. The (k,) numbers of lags other than 0 are the pairs of each node of a filled
     window.
-
-    Returns
-    -------
-    pairs : (k, 2, BLOCKS**2) float64
-        First with the translation correction: pairs at a lag h over the fraction of the window that
-        h leaves inside, as if the domain went on beyond the window. Second without it.
-    lags : (k,) int64
-        Number of lags other than 0: pairs that a filled window has, for each of its nodes.
     """
     domain = np.asarray(domain, dtype=bool)
     reach = int(distances[-1])

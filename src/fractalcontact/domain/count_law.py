@@ -105,22 +105,11 @@ class Law:
 def best_law(
     sizes: np.ndarray, count: np.ndarray, side: float, whole_cells: bool | None = None
 ) -> Law | None:
-    """Law that mean box counts follow; None where no law with such terms fits.
+    """Law that mean box counts (k,) follow at box sides (k,) in cells; None where no such law fits.
 
-    Parameters
-    ----------
-    sizes, count : (k,) float ndarray
-        Box sides in cells and the mean number of boxes over all origins.
-    side : float
-        Extent L of the set, cells.
-    whole_cells : bool, optional
-        Nodes are whole cells (c = 0) or centres (c = 1). Unless it is stated, nodes are taken for
-        centres where counts do not plainly follow the law of whole cells.
-
-    Raises
-    ------
-    ValueError
-        If there is not one count for each size.
+    ``side`` is the extent L of the set, cells. Nodes are whole cells (c = 0) or centres (c = 1);
+    unless ``whole_cells`` states it, they are taken for centres where counts do not plainly follow
+    the law of whole cells. ValueError if there is not one count for each size.
     """
     sizes, count = _checked(sizes, count)
     stand_for = {None: (_WHOLE, _CENTRE), True: (_WHOLE,), False: (_CENTRE,)}[whole_cells]

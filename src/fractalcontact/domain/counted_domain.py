@@ -26,18 +26,9 @@ QUANTITIES = {
 
 @dataclass(frozen=True, eq=False)
 class CountedDomain:
-    """A contact domain with its box-counting dimension, each count of it made once.
+    """A contact domain (ny, nx) with its box-counting dimension, each count of it made once.
 
-    Attributes
-    ----------
-    nodes : (ny, nx) bool ndarray
-        Nodes in contact.
-    box : BoxDimension
-        From :func:`domain.box_dimension.dimension_of_domain`.
-    limits : (float, float)
-        Smallest and largest box side that may be fitted, cells.
-    whole_cells : bool or None
-        As of :func:`domain.count_law.best_law`.
+    ``limits`` and ``whole_cells`` are those of :func:`domain.mean_law.law_of_means`.
     """
 
     nodes: np.ndarray

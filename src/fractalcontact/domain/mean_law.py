@@ -65,22 +65,11 @@ def law_of_means(
     limits: tuple[float, float],
     whole_cells: bool | None,
 ) -> tuple[FittedLaw | None, MeanCounts]:
-    """The law fitted to the mean counts of a domain, and these.
+    """Law fitted to the mean counts of a domain, None with too few box sizes, and these counts.
 
-    Parameters
-    ----------
-    extent : (ny, nx) bool ndarray
-        The domain, without empty rows and columns about it.
-    limits : (float, float)
-        Smallest and largest box side that may be fitted, cells.
-    whole_cells : bool, optional
-        As of :func:`domain.count_law.best_law`.
-
-    Returns
-    -------
-    law : FittedLaw or None
-        None with too few box sizes between the cut-offs.
-    counts : MeanCounts
+    ``extent`` is the domain (ny, nx) without empty rows and columns about it, ``limits`` are the
+    smallest and largest box side that may be fitted, cells; ``whole_cells`` is that of
+    :func:`domain.count_law.best_law`.
     """
     sizes = mean_sizes(extent.shape)
     parts = mean_count(extent, sizes, blocks=BLOCKS)
@@ -212,15 +201,9 @@ def block_error(
     of one set are alike, the more so as the largest boxes are wider than one: each holds much of
     the information of the part left out. A strip has fewer neighbours; but of strips there are few.
 
-    Parameters
-    ----------
-    parts : (k, blocks, blocks) ndarray
-        Counts by part of the window.
-    statistic : callable
-        (k,) counts to a number, NaN where there is none.
-    firsts : sequence of int
-        Counts that show which parts are occupied: those of the smallest boxes, of each set where
-        counts of several are stacked.
+    ``parts`` (k, blocks, blocks) are counts by part of the window; ``statistic`` takes (k,) counts
+    to a number, NaN where there is none. ``firsts`` are the counts that show which parts are
+    occupied: those of the smallest boxes, of each set where counts of several are stacked.
     """
     divisions = parts.reshape(len(parts), -1), parts.sum(axis=2), parts.sum(axis=1)
     squares, *strips = (_without_parts(division, statistic, firsts) for division in divisions)

@@ -45,14 +45,8 @@ def gliding_moments(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Moments of the mass in gliding boxes inside the window, over parts of the window.
 
-    Parameters
-    ----------
-    mass : (ny, nx) array_like
-        Nodes in contact, or their pressure; finite and not negative, else ValueError.
-    sizes : (k,) int array_like
-        Box sides in cells, none larger than the window.
-    orders : sequence of float
-        q.
+    ``mass`` (ny, nx) are nodes in contact, or their pressure; ValueError if it is negative or not
+    finite. ``sizes`` (k,) are box sides in cells, none larger than the window, ``orders`` are q.
 
     Returns
     -------

@@ -40,21 +40,12 @@ def ordinary_dimension(
     count: np.ndarray,
     limits: tuple[float, float] = (0, np.inf),
 ) -> OrdinaryDimension:
-    """Ordinary box-counting dimension of a domain.
+    """Ordinary box-counting dimension of a domain, from its minimal cover at :func:`dyadic_sizes`.
 
     The interval is that of :mod:`core.slope_of_sums`, by the mean counts at the same sizes; none
-    with fewer than `MIN_NODES` nodes.
-
-    Parameters
-    ----------
-    extent : (ny, nx) bool ndarray
-        The domain, without empty rows and columns about it.
-    shape : (int, int)
-        Cells of its window.
-    sizes, count : (k,) ndarray
-        Sizes from :func:`dyadic_sizes`, and the minimal cover.
-    limits : (float, float)
-        Smallest and largest box side that may be fitted, cells.
+    with fewer than `MIN_NODES` nodes. ``extent`` is the domain without empty rows and columns about
+    it, ``shape`` its window; ``limits`` are the smallest and largest box side that may be fitted,
+    cells.
     """
     nodes = int(np.count_nonzero(extent))
     used = cover_used(count, sizes, nodes, shape, limits)

@@ -42,32 +42,14 @@ def random_bands(
     law: FoundLaw | None = None,
     draws: int = DRAWS,
 ) -> tuple[dict[str, Estimate], Estimate]:
-    """Bands of the same estimators for as many random nodes in a window.
+    """Bands of ``delta_sigma`` and ``clusters`` of random nodes, and of their minimal cover.
 
-    Parameters
-    ----------
-    shape : (int, int)
-        Cells of the window.
-    nodes : int
-        Nodes drawn; NaN bands for fewer than two.
-    mask : (ny, nx) bool ndarray, optional
-        Cells that nodes may lie in; all by default.
-    limits, whole_cells
-        As of :func:`domain.mean_law.law_of_means`.
-    law : FoundLaw, optional
-        Law of the domain that is compared: the draws' laws are fitted over the same boxes. By
-        default each draw has its own range, between its own cut-offs.
-    draws : int
+    Parameters are those of :func:`domain.null_models.null_models` and of
+    :func:`domain.mean_law.law_of_means`. ``law`` is that of the domain compared: the draws' laws
+    are fitted over the same boxes; by default each draw has its own range, between its own
+    cut-offs. The cover is over :func:`domain.ordinary_dimension.dyadic_sizes`. NaN for fewer than
+    two nodes.
 
-    Returns
-    -------
-    bands : dict of str to Estimate
-        ``delta_sigma`` and ``clusters``.
-    counts : Estimate
-        Of the minimal cover, (k,) over :func:`domain.ordinary_dimension.dyadic_sizes`.
-
-    Notes
-    -----
     The same shape and number draw the same nodes on every run. Nodes at random cross over from
     single points to full boxes, a slope of 2 + ln f / ln R over R cells at a fraction f in contact:
     a domain is compared with that slope over its own boxes. A draw whose own range is empty, as its

@@ -183,19 +183,11 @@ def fractal_pressure(force: Any, side: Any, delta_sigma: Any) -> Any:
 def extrapolated_pressure(scaling: xr.Dataset, side: float) -> xr.Dataset:
     """Nominal pressures of joints of other sizes by eq. 6, which is fixed on the specimen.
 
-    Parameters
-    ----------
-    scaling : xr.Dataset
-        Both estimates of Delta_sigma, from :func:`compare_dimensions`.
-    side : float
-        b of the specimen, mm: of the square that has its window's area.
-
-    Returns
-    -------
-    xr.Dataset
-        Over the coordinate ``estimator`` ("area", "box") and the dimensions of the estimates:
-        ``eq6_sigma_star``; over ``eq6_side``, too (`SIDES` times ``side``): ``eq6_pressure`` with
-        the ends of its interval, which follow from those of Delta_sigma, each with its own sigma*.
+    ``scaling`` has both estimates of Delta_sigma, from :func:`compare_dimensions`; ``side`` b of
+    the specimen, mm, is that of the square as large as its window. The dataset has the coordinate
+    ``estimator`` ("area", "box"): ``eq6_sigma_star``, and over ``eq6_side`` (`SIDES` times
+    ``side``) ``eq6_pressure`` with the ends of its interval, which follow from those of
+    Delta_sigma, each with its own sigma*.
     """
     force = scaling["normal_force"]
     sides = xr.DataArray(side * SIDES, dims="eq6_side")

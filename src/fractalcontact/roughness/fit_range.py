@@ -34,23 +34,12 @@ class FitRange(NamedTuple):
 def choose_fit_range(
     heights: np.ndarray, spacing: float, stated: tuple[float, float] | None = None
 ) -> FitRange:
-    """Range of lags of a levelled surface.
+    """Range of lags, mm, of a levelled surface (ny, nx), mm, NaN where missing.
 
-    Parameters
-    ----------
-    heights : (ny, nx) ndarray
-        mm, NaN where missing.
-    spacing : float
-        mm.
-    stated : (float, float), optional
-        Range that the study states, mm, used unchanged; the reason names a roll-off inside it. By
-        default from `FIRST_CELLS` cells to `LAST_PART` of the smaller side, or to
-        `LAST_OF_ROLL_OFF` of a roll-off, and then from `MIN_CELLS` cells if need be.
-
-    Raises
-    ------
-    ValueError
-        If the stated range does not rise from above 0.
+    A stated range is used unchanged; the reason names a roll-off inside it. By default it goes from
+    `FIRST_CELLS` cells to `LAST_PART` of the smaller side, or to `LAST_OF_ROLL_OFF` of a roll-off,
+    and then from `MIN_CELLS` cells if need be. ValueError if the stated range does not rise from
+    above 0.
     """
     if stated is not None and not 0 < stated[0] < stated[1]:
         raise ValueError(f"fit range {stated} mm must rise from above 0")

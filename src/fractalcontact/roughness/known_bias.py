@@ -176,18 +176,11 @@ def tabulated_mean(
 ) -> np.ndarray:
     """Mean exponents by the slope of a measure tabulated from synthetic surfaces, (exponents,).
 
-    Parameters
-    ----------
-    fit : Fit
-        Lengths fitted.
-    of_default, of_short : (7,) sequences of float
-        Mean results at `SYNTHETIC_HURST` over the default range, and over `SHORT_RANGE`; linear in
-        between in the logarithm of the mean length, since short columns and small islands are the
-        source of the bias.
-    factor : float
-        Lengths of the estimator over lags.
-    second_differences : float
-        Effect of a roll-off over its effect on second differences at lags as long.
+    ``of_default`` and ``of_short`` (7,) are mean results at `SYNTHETIC_HURST` over the default
+    range, and over `SHORT_RANGE`; linear in between in the logarithm of the mean length, since
+    short columns and small islands are the source of the bias. ``factor`` is the ratio of the
+    estimator's lengths to lags, ``second_differences`` the ratio of the effects of a roll-off on
+    the measure and on second differences at lags as long.
     """
     long, short = np.log(DEFAULT_RANGE), np.log(SHORT_RANGE)
     part = np.clip((long - np.mean(np.log(fit.length / factor))) / (long - short), 0, 1)

@@ -203,24 +203,16 @@ def _over_pairs(of: str, shape: str) -> np.ndarray:
 
 
 def find_roll_off(curve: Curve, spacing: float, missing: np.ndarray) -> RollOff:
-    """Roll-off, mm, of a surface as its second differences show it.
+    """Roll-off, mm, of a surface by its second differences along both axes, lags in mm.
 
-    Parameters
-    ----------
-    curve : Curve
-        Second differences along both axes, lags in mm.
-    spacing : float
-        mm.
-    missing : (exponents,) ndarray
-        Mean square second difference of the waves that a band-limited surface lacks, over that of
-        a lag of one cell.
+    ``missing`` (exponents,) is the mean square second difference of the waves that a band-limited
+    surface lacks, over that of a lag of one cell, ``spacing`` the cell, mm.
 
-    Notes ----- Second differences are blind to any plane, so that levelling takes nothing from
-    them, and reach waves of half the side. Least squares of their logarithms, weighted by their
-    jackknife errors, over all exponents and roll-offs and for both samplings of
-    :mod:`roughness.known_bias`. A roll-off is seen where it lowers chi-square by `EVIDENCE`, and
-    having none is excluded. Calibrated on synthetic surfaces without a roll-off:
-    :mod:`experiments.delta_g`.
+    Second differences are blind to any plane, so that levelling takes nothing from them, and reach
+    waves of half the side. Least squares of their logarithms, weighted by their jackknife errors,
+    over all exponents and roll-offs and for both samplings of :mod:`roughness.known_bias`. A
+    roll-off is seen where it lowers chi-square by `EVIDENCE`, and having none is excluded.
+    Calibrated on synthetic surfaces without a roll-off: :mod:`experiments.delta_g`.
     """
     lag, measure = curve.length / spacing, curve.measure()
     without = curve.without_each_part()

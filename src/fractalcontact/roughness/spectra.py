@@ -98,18 +98,9 @@ def radial_spectrum(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Radially averaged spectrum of the largest hole-free square, levelled and tapered (Hann).
 
-    Parameters
-    ----------
-    heights : (ny, nx) ndarray
-        mm, NaN where missing.
-    spacing : (float, float)
-        (dy, dx), mm.
-
-    Returns
-    -------
-    wavelength, density : (k,) ndarray
-        mm, ascending; mm4, two-sided: independent errors of variance v have v dx dy everywhere.
-        Empty where the square has fewer than `SHORTEST_SEGMENT` cells along a side.
+    Wavelengths (k,), mm, ascending, and two-sided densities (k,), mm4: independent errors of
+    variance v have v dx dy everywhere. Empty where the square has fewer than `SHORTEST_SEGMENT`
+    cells along a side. Heights and spacing (dy, dx) are in mm, heights NaN where missing.
     """
     z = heights[hole_free_square(np.isfinite(heights), spacing)]
     if min(z.shape) < SHORTEST_SEGMENT:
