@@ -5,7 +5,8 @@ scan, and with the search for a roll-off. An interval is honest if it holds
 the exponent of the synthesis in most cases.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -61,22 +62,12 @@ def estimator_bias(recipe: Mapping[str, Any]) -> xr.Dataset:
     exponents, sizes, seeds = (np.unique(recipe[key]) for key in ("hurst", "sizes", "seeds"))
     stated = [np.inf if part is None else float(part) for part in recipe.get("roll_offs", [None])]
     roll_offs = np.unique(stated)[::-1]
-    names = list(ESTIMATORS)
     shape = len(exponents), len(sizes), len(roll_offs), len(seeds)
-    estimates, seen = np.full((4, len(names), *shape), np.nan), np.zeros(shape, bool)
-    for (i, hurst), (j, nodes), (m, part), (k, seed) in _numbered(
-        exponents, sizes, roll_offs, seeds
-    ):
-        roll_off = part * nodes * SPACING if np.isfinite(part) else None
-        surface = self_affine(
-            (nodes, nodes), SPACING, hurst, rms=RMS, seed=int(seed), roll_off=roll_off
-        )
-        found, fit_range = measured_exponents(surface, SPACING)
-        seen[i, j, m, k] = np.isfinite(fit_range.roll_off.value)
-        for n, estimate in enumerate(found.values()):
-            estimates[:, n, i, j, m, k] = *estimate.hurst["both"].ends, estimate.slope_hurst
+    rows = [_measured(*surface) for surface in product(exponents, sizes, roll_offs, seeds)]
+    estimates = np.stack([row for row, _ in rows], axis=-1).reshape(4, len(ESTIMATORS), *shape)
+    seen = np.reshape([seen for _, seen in rows], shape)
     coords = {
-        "estimator": names,
+        "estimator": list(ESTIMATORS),
         "hurst": ("hurst", exponents, cf_attrs("1", "Hurst exponent of the surfaces")),
         "size": ("size", sizes, cf_attrs("1", "nodes per side")),
         "roll_off": (
@@ -89,11 +80,15 @@ def estimator_bias(recipe: Mapping[str, Any]) -> xr.Dataset:
     return _with_verdicts(_judged(estimates, seen, coords))
 
 
-def _numbered(*values: np.ndarray) -> Iterator[list[tuple[int, Any]]]:
-    """Every combination of the values, each value with its place."""
-    grids = np.meshgrid(*(np.arange(len(v)) for v in values), indexing="ij")
-    for places in zip(*(grid.ravel() for grid in grids), strict=True):
-        yield [(place, v[place]) for place, v in zip(places, values, strict=True)]
+def _measured(hurst: float, nodes: int, part: float, seed: int) -> tuple[np.ndarray, bool]:
+    """H with its ends and the slope's H (4, estimators) of one surface; whether it rolls off."""
+    roll_off = part * nodes * SPACING if np.isfinite(part) else None
+    surface = self_affine(
+        (nodes, nodes), SPACING, hurst, rms=RMS, seed=int(seed), roll_off=roll_off
+    )
+    curves, fit_range = measured_exponents(surface, SPACING)
+    numbers = [(*curve.hurst["both"].ends, curve.slope_hurst) for curve in curves.values()]
+    return np.transpose(numbers), np.isfinite(fit_range.roll_off.value)
 
 
 def _judged(estimates: np.ndarray, seen: np.ndarray, coords: Mapping[str, Any]) -> xr.Dataset:
