@@ -97,13 +97,13 @@ def _counted(verdicts: np.ndarray) -> list[str]:
 
 def _powers(test: xr.Dataset, arm: str, hurst: float) -> str:
     """Powers of the stiffness over the pressure, between neighbouring loads."""
-    here = (test["of_arm"] == arm) & (test["of_hurst"] == hurst)
-    largest = here & (test["of_size"] == test["of_size"].where(here).max())
+    of_class = (test["of_arm"] == arm) & (test["of_hurst"] == hurst)
+    largest = of_class & (test["of_size"] == test["of_size"].where(of_class).max())
     compliance = test["compliance"].isel(surface=largest.values).values
     steps = np.diff(np.log(test["reduced_pressure"].values))
     slopes = -np.diff(np.log(np.where(compliance > 0, compliance, np.nan))) / steps
-    known = [column[np.isfinite(column)] for column in slopes.T]
-    return ", ".join(f"{np.median(one):.2f}" if one.size else "–" for one in known)
+    finite = [column[np.isfinite(column)] for column in slopes.T]
+    return ", ".join(f"{np.median(one):.2f}" if one.size else "–" for one in finite)
 
 
 def _fractions(test: xr.Dataset) -> str:
@@ -143,13 +143,13 @@ def _other_exponents(test: xr.Dataset) -> str:
 
 def _surfaces(test: xr.Dataset) -> dict[str, list[str]]:
     """Number of surfaces of each class in the run, by arm."""
-    found: dict[str, list[str]] = {}
+    rows: dict[str, list[str]] = {}
     for arm, size in sorted({*zip(test["of_arm"].values, test["of_size"].values, strict=True)}):
-        here = (test["of_arm"] == arm) & (test["of_size"] == size)
-        part = test.isel(surface=here.values)
+        of_class = (test["of_arm"] == arm) & (test["of_size"] == size)
+        part = test.isel(surface=of_class.values)
         kinds = {*zip(*(part[f"of_{key}"].values for key in _CLASS), strict=True)}
-        found.setdefault(str(arm), []).append(f"{part.sizes['surface'] // len(kinds)} of {size}")
-    return found
+        rows.setdefault(str(arm), []).append(f"{part.sizes['surface'] // len(kinds)} of {size}")
+    return rows
 
 
 @said_in_one_line

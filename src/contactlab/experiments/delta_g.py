@@ -121,8 +121,8 @@ def _judged(estimates: np.ndarray, seen: np.ndarray, coords: Mapping[str, Any]) 
         "roll_off_seen": seen.mean(axis=-1),
     }
     result = labelled_dataset(table, values, coords=coords)
-    found = Estimate(value, low, high)
-    result.update(found.variables("found", dims, "1", "Hurst exponent by the estimator"))
+    estimate = Estimate(value, low, high)
+    result.update(estimate.variables("found", dims, "1", "Hurst exponent by the estimator"))
     result.update(bias.variables("bias", over, "1", "mean bias of H"))
     return result
 
@@ -136,7 +136,7 @@ def _mean(values: np.ndarray) -> np.ndarray:
 def _with_verdicts(result: xr.Dataset) -> xr.Dataset:
     """Table with numbers over all natural surfaces, (estimator)."""
     natural = result.where(result["hurst"] >= FROM_HURST)
-    every = ["hurst", "size", "roll_off"]
+    all_surfaces = ["hurst", "size", "roll_off"]
     of = f"H from {FROM_HURST:g}"
     table = {
         "worst_bias": f"largest mean bias, {of}",
@@ -144,13 +144,13 @@ def _with_verdicts(result: xr.Dataset) -> xr.Dataset:
         "min_coverage": f"smallest coverage of any H, size and roll-off, {of}",
     }
     values: dict[str, Any] = {
-        "worst_bias": abs(natural["bias"]).max(every),
-        "overall_error": np.sqrt((natural["rms_error"] ** 2).mean(every)),
-        "min_coverage": natural["coverage"].min(every),
+        "worst_bias": abs(natural["bias"]).max(all_surfaces),
+        "overall_error": np.sqrt((natural["rms_error"] ** 2).mean(all_surfaces)),
+        "min_coverage": natural["coverage"].min(all_surfaces),
     }
     for name, words in table.items():
         result[name] = values[name].assign_attrs(cf_attrs("1", words))
-    rough = result["coverage"].where(result["hurst"] < FROM_HURST).min(every)
+    rough = result["coverage"].where(result["hurst"] < FROM_HURST).min(all_surfaces)
     words = f"smallest coverage of any size and roll-off, H below {FROM_HURST:g}"
     result["rough_coverage"] = rough.assign_attrs(cf_attrs("1", words))
     result.attrs = {

@@ -121,8 +121,8 @@ def size_exponent(sides: np.ndarray, values: np.ndarray, *, equal: bool = False)
     sides, values = np.asarray(sides, float), np.asarray(values, float)
     usable = np.isfinite(values) & (values > 0)
     groups = [np.log(values[usable & (sides == side)]) for side in np.unique(sides)]
-    known = [group.size > 1 for group in groups]
-    x = np.log(np.unique(sides))[known]
+    scatters = [group.size > 1 for group in groups]
+    x = np.log(np.unique(sides))[scatters]
     groups = [group for group in groups if group.size > 1]
     if len(groups) < 2:
         return UNKNOWN

@@ -192,7 +192,7 @@ def _one_surface(task: SizeTask, number: int, pressures: np.ndarray, rtol: float
     where = f"{task.name}, surface {number}"
     # One rms height for all windows, so that mean ratios to it are ratios of mean quantities.
     rms = float(np.mean([np.sqrt(np.mean(heights**2)) for heights in windows]))
-    found = [
+    rows_of_windows = [
         [
             _numbers_of(state, heights, rms, slope, band)
             for state in load_steps(heights, space, forces, {"rtol": rtol}, where)
@@ -200,7 +200,9 @@ def _one_surface(task: SizeTask, number: int, pressures: np.ndarray, rtol: float
         for heights in windows
     ]
     means = {
-        name: _known_mean(np.array([[row[name] for row in rows] for rows in found], float))
+        name: _known_mean(
+            np.array([[row[name] for row in rows] for rows in rows_of_windows], float)
+        )
         for name in STATES
     }
     return {"rms_slope": own, "rms_height": rms} | means

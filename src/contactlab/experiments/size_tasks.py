@@ -102,7 +102,7 @@ def size_jobs(recipe: Mapping[str, Any]) -> dict[str, list[SizeTask]]:
     shared: dict[tuple, list[SizeTask]] = {}
     for task in size_tasks(recipe):
         together = shared.get((task.arm, task.hurst), [])
-        nodes = task.nodes + sum(one.nodes for one in together)
+        nodes = task.nodes + sum(task_in_job.nodes for task_in_job in together)
         if task.nodes < SMALL_TASK and together and nodes <= NODES_SHARED:
             together.append(task)
             continue

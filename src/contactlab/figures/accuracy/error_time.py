@@ -37,12 +37,12 @@ SMALLEST = 1e-14
 
 def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
     """Rows of quantities, a column for each H, at the largest size and the middle contact."""
-    every = scenes_of(atlas)
-    scenes = rough(every)
+    all_problems = scenes_of(atlas)
+    scenes = rough(all_problems)
     looks = styles(scenes)
     size, contact = values_of(scenes, "size")[-1], middle_contact(scenes)
     wanted = {"size": size, "contact": contact}
-    shown = [one for one in scenes.values() if wanted.items() <= one.attrs.items()]
+    shown = [problem for problem in scenes.values() if wanted.items() <= problem.attrs.items()]
     figure = Figure(figsize=(WIDTH, 8.8))
     panels = figure.subplots(len(AXES), len(shown), sharex=True, sharey="row", squeeze=False)
     letters = iter("abcdefghijklmnopqrstuvwxyz")
@@ -53,17 +53,17 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
         panels[-1, j].set_xlabel("wall time (s)")
     legend_of(figure, panels.flat)
     words = caption(__name__, size=size, share=f"{100 * contact:g}", **_words(scenes))
-    return Drawing(figure, _table(every), words)
+    return Drawing(figure, _table(all_problems), words)
 
 
 def _draw_points(axes: Axes, scene: xr.Dataset, quantity: str, looks: dict[str, dict]) -> None:
     """Every method's error against its seconds, the front, and the reference's own error."""
     for method, look in looks.items():
         own = scene.isel(point=np.flatnonzero(scene["method"] == method))
-        known = np.isfinite(own[quantity].values) & np.isfinite(own["seconds"].values)
-        error = np.maximum(own[quantity].values[known], SMALLEST)
-        if known.any():
-            axes.plot(own["seconds"].values[known], error, **look, label=method, ms=3)
+        finite = np.isfinite(own[quantity].values) & np.isfinite(own["seconds"].values)
+        error = np.maximum(own[quantity].values[finite], SMALLEST)
+        if finite.any():
+            axes.plot(own["seconds"].values[finite], error, **look, label=method, ms=3)
     for name in (name for name, error in FRONTS.items() if error == quantity):
         front = scene.isel(point=np.flatnonzero(scene[name])).sortby("seconds")
         error = np.maximum(front[quantity].values, SMALLEST)

@@ -33,11 +33,11 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
     figure = Figure(figsize=(WIDTH, 6.4))
     panels = figure.subplots(2, len(columns), sharex=True, sharey="row", squeeze=False)
     for j, surface in enumerate(columns):
-        one = growth.sel(surface=surface)
+        of_surface = growth.sel(surface=surface)
         for i, name in enumerate(_ROWS):
-            _draw_growth(panels[i, j], one, name, looks)
+            _draw_growth(panels[i, j], of_surface, name, looks)
             letter(panels[i, j], "abcdefgh"[i * len(columns) + j], surface)
-        _draw_bounds(panels[0, j], one)
+        _draw_bounds(panels[0, j], of_surface)
         panels[-1, j].set_xlabel("nodes per side (1)")
     for i, (label, _) in enumerate(_ROWS.values()):
         panels[i, 0].set_ylabel(label)

@@ -53,12 +53,12 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
         configuration_of(atlas)["settings"],
     )
     sliding = [name for name in names if directions.slides(settings[name]["opposite"])]
-    slides = [_synthetic(joints.sel(surface=one)) for one in joints["surface"].values]
+    slides = [_synthetic(joints.sel(surface=surface)) for surface in joints["surface"].values]
     # A specimen that crushes has the faces of another specimen.
     other = [name for name in sliding if not settings[name]["capped_variant"]]
     slides += [_of_specimen(atlas, name) for name in other]
     figure = Figure(figsize=(WIDTH, 3.6 + 0.15 * len(slides)))
-    panels = [Panel(*one) for one in zip(figure.subplots(1, 2), "ab", _TITLES, strict=True)]
+    panels = [Panel(*surface) for surface in zip(figure.subplots(1, 2), "ab", _TITLES, strict=True)]
     for n, slide in enumerate(slides):
         _draw_slide(panels, slide, {"color": colour_of(n), "ls": LINES[n % 4]})
     opened, ratio = (panel.axes for panel in panels)

@@ -77,17 +77,17 @@ def _draw_arm(axes: Axes, test: xr.Dataset) -> None:
     axes.axline((0, 0), slope=1, color="k", lw=1.2, ls="--")
     places = product(range(test.sizes["hurst"]), range(test.sizes["reduced_pressure"]), _ESTIMATORS)
     for i, k, (estimator, _, filled) in places:
-        one = test.isel(hurst=i, reduced_pressure=k).sel(delta_estimator=estimator)
-        found, wanted = (Estimate.read(one, name) for name in ("alpha", "eq6_exponent"))
-        if found.known and wanted.known:
+        of_class = test.isel(hurst=i, reduced_pressure=k).sel(delta_estimator=estimator)
+        measured, wanted = (Estimate.read(of_class, name) for name in ("alpha", "eq6_exponent"))
+        if measured.known and wanted.known:
             colour = colour_of(i)
             style: dict[str, Any] = {
                 "color": colour,
                 "mfc": colour if filled else "white",
                 "elinewidth": 0.7,
             }
-            style |= {"xerr": reach(*wanted.ends), "yerr": reach(*found.ends)}
-            axes.errorbar(wanted.value, found.value, fmt=MARKERS[k], **style)
+            style |= {"xerr": reach(*wanted.ends), "yerr": reach(*measured.ends)}
+            axes.errorbar(wanted.value, measured.value, fmt=MARKERS[k], **style)
 
 
 def _legends(test: xr.Dataset) -> list[list[Artist]]:
