@@ -195,7 +195,7 @@ KNOWN = {
 
 
 @pytest.mark.parametrize(("name", "n"), [(name, n) for name, (*_, ns) in KNOWN.items() for n in ns])
-def test_sets_of_known_dimension(name, n):
+def test_sierpinski_carpets_and_cantor_dusts_have_their_dimension(name, n):
     make, exact, _ = KNOWN[name]
     check(box_dimension(make(n), 0.1), exact, 0.02)
 

@@ -17,7 +17,7 @@ MERGES = 10
 def git(root: Path, *args: str) -> str:
     """Output of a git command, CalledProcessError if it fails."""
     command = ["git", "-C", str(root), *args]
-    return subprocess.run(command, capture_output=True, text=True, check=True).stdout
+    return subprocess.run(command, capture_output=True, encoding="utf-8", check=True).stdout
 
 
 def net_lines(root: Path, merge: str) -> dict[str, int]:
