@@ -307,7 +307,7 @@ def _over_sides(sample: _Sample, intervals: Mapping[float, int], linear: np.ndar
 def _by_largest(
     rates: np.ndarray, numbers: np.ndarray, intervals: Mapping[float, int], basic: float
 ) -> Exponent:
-    """The same line through the strengths that the largest joints have at these intervals."""
+    """Exponent over the sides of the largest joints' strengths at the intervals of all sides."""
     if len(rates) < 2:
         return UNKNOWN
     columns = [linear_strengths(numbers * 0, rates[:, k], basic) for k in intervals.values()]

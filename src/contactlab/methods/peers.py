@@ -92,7 +92,7 @@ class PublicCode:
 
     @property
     def applications(self) -> int | None:
-        """Applications of the operator since then; None for a code that does not count them."""
+        """Applications of the operator since :meth:`count` began; None if they are not counted."""
         return None
 
     @property

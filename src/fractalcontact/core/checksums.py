@@ -82,9 +82,9 @@ def _identity(path):
 
 
 def record(results: Path | str, files: Iterable[Path | str]) -> None:
-    """Store the checksums of the files made by a job.
+    """Store the checksums of the files made by a job, below the folder ``results`` of the study.
 
-    All files made, below the folder ``results`` of the study; those that share a record together.
+    Files that share a record are given in one call.
     """
     results = Path(results)
     records: dict[Path, list[Path]] = {}

@@ -51,7 +51,7 @@ LARGEST_DISTANCE = 0.85
 #: specimen by 0.4 %.
 STEEP_TILT = 5.0
 
-#: Largest change over the second half of the offsets, a fraction of the mean there, of a level.
+#: Largest change of a level dilatancy over the second half of the offsets, over the mean there.
 LEVEL_CHANGE = 0.1
 
 #: Largest rms misfit of a curve that follows a law, as a fraction of its largest closure.

@@ -30,7 +30,7 @@ CLUSTER_FIELDS = {
 #: Quadrats of the window along each axis (fewer where cells are few), in which contact is counted.
 QUADRATS = 8
 
-#: A power law is fitted to sizes over this many octaves that hold clusters, and this many clusters:
+#: Fewest octaves with clusters, and fewest clusters, for the fit of a power law to their sizes:
 #: Clauset et al. find estimates from fewer than about 50 untrustworthy.
 MIN_OCTAVES = 4
 MIN_CLUSTERS = 50

@@ -180,7 +180,7 @@ def _analysed(
     sides: tuple[float, float],
     whole_cells: bool | None,
 ) -> xr.Dataset:
-    """Variables of a map without its loads, for each threshold; ``main`` is the index of one."""
+    """Variables of a map for its thresholds, without loads; ``main`` is the main one's index."""
     spacing = float(np.sqrt(np.prod(sides)))
     dims = ("direction", "offset", "normal_force", "y_1", "x_1")
     # The analysis of domains takes the thresholds as loads of one joint.

@@ -144,7 +144,7 @@ def _area_exponent(log_s, log_area, log_left, free) -> tuple[float, ...]:
 
 
 def _half(weights, log_left, free) -> float:
-    """Half of the interval of a weighted sum of log A; 0 of areas that no sample changes."""
+    """Half of the interval of a weighted sum of log A; 0 for areas that no sample changes."""
     counted = abs(weights) > 1e-12 * abs(weights).max()  # a middle point's weight is 0 to rounding
     if not free[counted].any():
         return 0.0

@@ -99,7 +99,7 @@ def _words(scenes: dict[str, xr.Dataset]) -> dict[str, Any]:
 
 
 def _table(scenes: dict[str, xr.Dataset]) -> pd.DataFrame:
-    """One row a point, every test problem below the other, those not drawn too."""
+    """Table of all test problems, also those not drawn, with one row for each point."""
     columns = ["method", "kind", "tolerance", *AXES, "seconds", "seconds_low", "seconds_high"]
     columns += ["runs", "memory", "on_front", "on_pressure_front", "said"]
     tables = [scene[columns].to_dataframe().assign(test_problem=n) for n, scene in scenes.items()]

@@ -75,7 +75,7 @@ def _draw_bounds(axes, one):
 
 
 def _table(growth):
-    """One row a surface, solver and size."""
+    """Table of times and memories with a row for each surface, solver and size."""
     columns = ["seconds", "memory", "reached", "bound"]
     columns += [name for name in growth.data_vars if "exponent" in name]
     table = growth[columns].to_dataframe().reset_index()
