@@ -56,7 +56,6 @@ def grasselli(heights: np.ndarray, spacing: tuple[float, float], direction: str)
     order = np.argsort(dip)
     above = np.append(np.cumsum(area[order][::-1])[::-1], 0.0) / area.sum()
     share = above[np.searchsorted(dip[order], edges)]
-    share[-1] = 0.0
     c = _exponent(1 - edges / theta_max, share)
     return Grasselli(theta_max, c, a_0, theta_max / (c + 1))
 
