@@ -69,18 +69,27 @@ def scan_quality(specimen: xr.Dataset, resolutions: Sequence[int]) -> xr.Dataset
     faces = [face for face in ("lower", "upper") if face in specimen]
     spacing = spacing_of(specimen)
     heights = [specimen[face].values.astype(float) for face in faces]
-    plane = _removed_plane(specimen)
-    points = {
-        "height_step": [height_step(z + plane) for z in heights],
-        "point_pitch": [_point_pitch(specimen, face) for face in faces],
+    plane, edges = _removed_plane(specimen), _edges(heights)
+    rows = [
+        {
+            **_relief(z, edges),
+            "height_step": height_step(z + plane),
+            "point_pitch": _point_pitch(specimen, face),
+            **dict(zip(_RADIAL, radial_spectrum(z, spacing), strict=True)),
+        }
+        for face, z in zip(faces, heights, strict=True)
+    ]
+    bins = {
+        "percentile": list(PERCENTILES),
+        "edge": edges,
+        "bin_height": (edges[1:] + edges[:-1]) / 2,
     }
     result = xr.Dataset(
         {
-            **_relief(heights),
-            **labelled(_POINTS, points),
+            **stacked(rows, {**_RELIEF, **_POINTS, **_RADIAL}, ("face",), (len(faces),)),
+            **labelled(_BINS, bins),
             **labelled(ALTERNATION, alternations(heights)),
             **_profile_spectra(heights, spacing),
-            **_radial_spectra(heights, spacing),
         },
         coords={"face": faces, "axis": list(AXES)},
     )
@@ -123,60 +132,61 @@ def _doubtful_unit(specimen, heights, spacing) -> str:
     )
 
 
-_POINTS = {
-    "height_step": ("face", "mm", "step of quantised heights, missing if none is seen"),
-    "point_pitch": ("face", "mm", "mean distance of the points measured"),
-}
-
-
 # -- relief ----------------------------------------------------------------------------------------
 
+#: Variables of each face: unit, long name, dimensions of arrays.
 _RELIEF = {
-    "missing_share": ("face", "1", "fraction of cells not measured"),
-    "rms": ("face", "mm", "root mean square height"),
-    "skewness": ("face", "1", "skewness of the heights"),
-    "kurtosis": ("face", "1", "kurtosis of the heights, 3 if Gaussian"),
-    "lowest": ("face", "mm", "smallest height"),
-    "highest": ("face", "mm", "largest height"),
-    "percentile": ("percentile", "%", "fraction of cells below"),
-    "height": (("face", "percentile"), "mm", "height"),
-    "edge": ("edge", "mm", "edges of the bins of heights"),
-    "bin_height": ("bin", "mm", "middle of the bin of heights"),
+    "missing_share": ("1", "fraction of cells not measured"),
+    "rms": ("mm", "root mean square height"),
+    "skewness": ("1", "skewness of the heights"),
+    "kurtosis": ("1", "kurtosis of the heights, 3 if Gaussian"),
+    "lowest": ("mm", "smallest height"),
+    "highest": ("mm", "largest height"),
+    "height": ("mm", "height", "percentile"),
     "density": (
-        ("face", "bin"),
         "mm-1",
         "fraction of cells in a bin, over its width; some heights lie beyond all bins",
+        "bin",
     ),
+}
+_POINTS = {
+    "height_step": ("mm", "step of quantised heights, missing if none is seen"),
+    "point_pitch": ("mm", "mean distance of the points measured"),
+}
+_RADIAL = {
+    "radial_wavelength": ("mm", "wavelength", "radial_wave"),
+    "radial_spectrum": ("mm4", "radially averaged power spectral density", "radial_wave"),
+}
+_BINS = {
+    "percentile": ("percentile", "%", "fraction of cells below"),
+    "edge": ("edge", "mm", "edges of the bins of heights"),
+    "bin_height": ("bin", "mm", "middle of the bin of heights"),
 }
 
 
-def _relief(heights):
-    """Statistics about the mean plane, and histograms of all faces over the same bins."""
-    measured = [z[np.isfinite(z)] for z in heights]
-    centred = [z - z.mean() for z in measured]
-    rms = np.array([np.sqrt(np.mean(z**2)) for z in centred])
-    percentiles = np.array([np.percentile(z, PERCENTILES) for z in measured])
-    low, high = percentiles[:, 0].min(), percentiles[:, -1].max()
-    edges = np.linspace(low - (high - low) / 4, high + (high - low) / 4, BINS + 1)
-    counts = np.array([np.histogram(z, edges)[0] for z in measured])
-    values = {
-        "missing_share": [np.isnan(z).mean() for z in heights],
+def _edges(heights):
+    """Edges of the bins of all faces' heights, mm, beyond the outer percentiles by a quarter."""
+    outer = (PERCENTILES[0], PERCENTILES[-1])
+    ends = np.array([np.percentile(z[np.isfinite(z)], outer) for z in heights])
+    low, high = ends[:, 0].min(), ends[:, 1].max()
+    return np.linspace(low - (high - low) / 4, high + (high - low) / 4, BINS + 1)
+
+
+def _relief(z, edges) -> dict[str, Any]:
+    """Statistics of a face about its mean plane, and its histogram."""
+    measured = z[np.isfinite(z)]
+    centred = measured - measured.mean()
+    rms = np.sqrt(np.mean(centred**2))
+    return {
+        "missing_share": np.isnan(z).mean(),
         "rms": rms,
-        "skewness": _moment(centred, 3) / rms**3,
-        "kurtosis": _moment(centred, 4) / rms**4,
-        "lowest": [z.min() for z in measured],
-        "highest": [z.max() for z in measured],
-        "percentile": list(PERCENTILES),
-        "height": percentiles,
-        "edge": edges,
-        "bin_height": (edges[1:] + edges[:-1]) / 2,
-        "density": counts / (np.array([[z.size] for z in measured]) * np.diff(edges)),
+        "skewness": np.mean(centred**3) / np.power(rms, 3),
+        "kurtosis": np.mean(centred**4) / np.power(rms, 4),
+        "lowest": measured.min(),
+        "highest": measured.max(),
+        "height": np.percentile(measured, PERCENTILES),
+        "density": np.histogram(measured, edges)[0] / (measured.size * np.diff(edges)),
     }
-    return labelled(_RELIEF, values)
-
-
-def _moment(centred, order):
-    return np.array([np.mean(z**order) for z in centred])
 
 
 def _removed_plane(specimen):
@@ -274,17 +284,6 @@ def _form_words(found: FractalRange) -> str:
     parts = ["self-affine" if form.sampling == "ideal" else f"self-affine, {form.sampling}"]
     parts += ["roll-off"] * form.rolls_off + ["noise floor"] * form.noisy
     return " + ".join(parts + ([f"{form.filtering} low-pass"] if form.filtering else []))
-
-
-_RADIAL = {
-    "radial_wavelength": ("mm", "wavelength", "radial_wave"),
-    "radial_spectrum": ("mm4", "radially averaged power spectral density", "radial_wave"),
-}
-
-
-def _radial_spectra(heights, spacing):
-    rows = [dict(zip(_RADIAL, radial_spectrum(z, spacing), strict=True)) for z in heights]
-    return stacked(rows, _RADIAL, ("face",), (len(rows),))
 
 
 # -- where the fractal range ends ------------------------------------------------------------------
