@@ -19,7 +19,7 @@
 #:   make test-browser          the pages in Debian's chromium
 #:   make examples              each study of config/examples, run once
 #:   make faults                kills, damage, full disks and more, replayed; FAULTS=--quick, FAULTS=--slurm
-#:   make lint                  ruff, snakefmt, annotations and types, changing nothing
+#:   make lint                  ruff, snakefmt, annotations and types, changing nothing; net lines
 #:   make format                what lint finds, mended where it can be
 #:   make docs                  the documentation in results/docs; warnings and broken links are errors
 #:   make rule-graph            the picture of the rules, docs/chain.svg
@@ -153,6 +153,7 @@ lint: $(VENV)/tests-installed
 	$(BIN)/python -m snakefmt --check Snakefile workflow/rules
 	$(BIN)/python tests/support/annotations.py src
 	$(BIN)/python -m mypy
+	$(BIN)/python tests/support/net_lines.py
 
 format: $(VENV)/tests-installed
 	$(BIN)/python -m ruff check --fix .

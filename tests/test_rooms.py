@@ -1,6 +1,7 @@
 """A room of the package imports from lower floors alone, and only what it is asked for."""
 
 import ast
+import re
 import sys
 from pathlib import Path
 
@@ -81,6 +82,15 @@ def modules():
 def test_every_module_has_a_room_and_every_room_a_floor(modules):
     assert {room_of(module) for module in modules} == set(FLOOR)
     assert [path.name for path in SOURCES.glob("fractalcontact/*.py")] == ["__init__.py"]
+
+
+def test_contributing_has_the_floors_of_the_chain():
+    text = (SOURCES.parent / "CONTRIBUTING.md").read_text(encoding="utf-8")
+    rows = re.findall(r"(?m)^\| (\d+) \| (.+?) \|", text.partition("| floor | rooms |")[2])
+    chain = [rooms for rooms in FLOORS if not any("contact" in room for room in rooms)]
+    assert {int(floor): set(re.findall(r"`(\w+)`", rooms)) for floor, rooms in rows} == {
+        floor: set(rooms) for floor, rooms in enumerate(chain)
+    }
 
 
 @pytest.mark.parametrize("room", FLOOR)

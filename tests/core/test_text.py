@@ -10,12 +10,14 @@ import pytest
 from fractalcontact.core import text
 from fractalcontact.core.estimate import Estimate
 from fractalcontact.core.text import (
+    MISSING,
     compact,
     duration,
     interval,
     measured,
     number,
     percent,
+    plus_minus,
     short,
     undetermined,
     with_unit,
@@ -69,6 +71,13 @@ def test_what_is_undetermined_is_shown_with_its_error():
     assert undetermined(interval(212, 49.1, 914)) == "undetermined (212 [49.1, 914])"
     assert undetermined(interval(1.4, math.nan, math.nan)) == "undetermined (1.40, error not known)"
     assert interval(math.nan, math.nan, math.nan) == "–"
+
+
+@pytest.mark.parametrize("error", [math.nan, math.inf])
+def test_an_error_that_is_not_known_has_no_sign(error):
+    assert with_unit(math.nan, "mm") == MISSING
+    assert plus_minus(error, with_unit(error, "mm")) == "error not known"
+    assert plus_minus(0.5, "0.5 mm") == "± 0.5 mm"
 
 
 @pytest.mark.parametrize(

@@ -113,6 +113,12 @@ def embedded(shape, rows, columns):
     return domain
 
 
+def check(result, exact, within):
+    """The dimension is the exact one to within a bound, and its interval holds that."""
+    assert result.dimension == pytest.approx(exact, abs=within)
+    assert result.low <= exact <= result.high
+
+
 # -- exact -----------------------------------------------------------------------------------------
 
 EXACT = {
@@ -137,16 +143,15 @@ def test_euclidean_sets(name):
 
 
 @pytest.mark.parametrize(
-    "shape", [(256, 200), (100, 197), (64, 256), (512, 100), (90, 150), (300, 256), (40, 41)]
+    ("shape", "margin"),
+    [
+        *(((256, 200), 0), ((100, 197), 0), ((64, 256), 0), ((512, 100), 0), ((90, 150), 0)),
+        *(((300, 256), 0), ((40, 41), 0)),
+        *(((256, 200), 60), ((90, 150), 60), ((300, 256), 60), ((200, 100), 60)),
+    ],
 )
-def test_filled_rectangle(shape):
-    result = box_dimension(np.ones(shape, dtype=bool), 0.1)
-    assert result.dimension == pytest.approx(2, abs=0.02)
-
-
-@pytest.mark.parametrize("shape", [(256, 200), (90, 150), (300, 256), (200, 100)])
-def test_filled_rectangle_inside_a_window(shape):
-    result = box_dimension(np.pad(np.ones(shape, dtype=bool), 60), 0.1)
+def test_filled_rectangle_with_or_without_a_window_around_it(shape, margin):
+    result = box_dimension(np.pad(np.ones(shape, dtype=bool), margin), 0.1)
     assert result.dimension == pytest.approx(2, abs=0.02)
 
 
@@ -172,46 +177,39 @@ def test_two_squares_far_apart_have_slopes_that_bend(side, gap, shift):
     assert np.ptp(slopes) > 0.3
 
 
-@pytest.mark.parametrize("n", ensemble("carpet sizes"))
-def test_sierpinski_carpet(n):
-    result = box_dimension(sierpinski_carpet(n), 0.1)
-    assert result.dimension == pytest.approx(CARPET, abs=0.02)
-    assert result.low <= CARPET <= result.high
+#: Sets of known dimension by name: a set of n x n cells, its dimension, and its sizes.
+KNOWN = {
+    "carpet": (sierpinski_carpet, CARPET, ensemble("carpet sizes")),
+    "dust": (cantor_dust, DUST, ensemble("dust sizes")),
+    "dust, every cell that holds a point": (
+        lambda n: drawn(dust_points(), n),
+        DUST,
+        ensemble("drawn dust sizes"),
+    ),
+    "carpet cut off by the window": (
+        lambda n: sierpinski_carpet(729)[:n, :n],
+        CARPET,
+        (200, 500, 512),
+    ),
+}
 
 
-@pytest.mark.parametrize("n", ensemble("dust sizes"))
-def test_cantor_dust(n):
-    result = box_dimension(cantor_dust(n), 0.1)
-    assert result.dimension == pytest.approx(DUST, abs=0.02)
-    assert result.low <= DUST <= result.high
-
-
-@pytest.mark.parametrize("n", ensemble("drawn dust sizes"))
-def test_dust_drawn_as_every_cell_that_holds_a_point(n):
-    result = box_dimension(drawn(dust_points(), n), 0.1)
-    assert result.dimension == pytest.approx(DUST, abs=0.02)
-    assert result.low <= DUST <= result.high
+@pytest.mark.parametrize(("name", "n"), [(name, n) for name, (*_, ns) in KNOWN.items() for n in ns])
+def test_sierpinski_carpets_and_cantor_dusts_have_their_dimension(name, n):
+    make, exact, _ = KNOWN[name]
+    check(box_dimension(make(n), 0.1), exact, 0.02)
 
 
 @pytest.mark.parametrize(("n", "levels"), ensemble("drawn carpets"))
 def test_carpet_drawn_as_every_cell_that_holds_a_point(n, levels):
     # Corners of the smallest squares, which are no more than half a cell wide.
-    result = box_dimension(drawn(carpet_points(levels), n), 0.1)
-    assert result.dimension == pytest.approx(CARPET, abs=0.02)
-    assert result.low <= CARPET <= result.high
+    check(box_dimension(drawn(carpet_points(levels), n), 0.1), CARPET, 0.02)
 
 
 @pytest.mark.parametrize("n", [200, 500])
 def test_sizes_given_for_the_window_do_as_well(n):
     dust = box_dimension(cantor_dust(n), 0.1, sizes=box_sizes((n, n)))
     assert dust.dimension == pytest.approx(DUST, abs=0.02)
-
-
-@pytest.mark.parametrize("n", [200, 500, 512])
-def test_carpet_cut_off_by_the_window(n):
-    result = box_dimension(sierpinski_carpet(729)[:n, :n], 0.1)
-    assert result.dimension == pytest.approx(CARPET, abs=0.02)
-    assert result.low <= CARPET <= result.high
 
 
 OTHERS = {
@@ -233,9 +231,7 @@ def test_sets_the_law_was_not_tuned_on(name, n):
     domain = drawn(points, n)
     assert box_dimension(domain, 0.1).dimension == pytest.approx(exact, abs=0.08)
     # Whole cells taken for centres are a bias, which an interval of sampling does not hold.
-    result = box_dimension(domain, 0.1, whole_cells=True)
-    assert result.dimension == pytest.approx(exact, abs=0.08)
-    assert result.low <= exact <= result.high
+    check(box_dimension(domain, 0.1, whole_cells=True), exact, 0.08)
 
 
 @pytest.mark.parametrize("n", ensemble("cut dust sizes"))
@@ -249,9 +245,7 @@ def test_dust_cut_off_by_the_window_is_in_its_interval(n):
 def test_dust_cut_off_by_the_window_keeps_its_dimension(n):
     # What is left are smaller copies of the dust and so of its dimension: at 400 one of 243 cells;
     # at 500 also one of 9 cells and others of 3 and less, 243 cells off.
-    result = box_dimension(drawn(dust_points(), 729)[:n, :n], 0.1, whole_cells=True)
-    assert result.dimension == pytest.approx(DUST, abs=0.025)
-    assert result.low <= DUST <= result.high
+    check(box_dimension(drawn(dust_points(), 729)[:n, :n], 0.1, whole_cells=True), DUST, 0.025)
 
 
 ROTATED = {
@@ -267,9 +261,7 @@ def test_sets_turned_by_thirty_degrees(name):
     points, exact = ROTATED[name]
     cosine, sine = np.cos(np.pi / 6), np.sin(np.pi / 6)
     turned = (points() - 0.5) @ np.array([[cosine, sine], [-sine, cosine]])
-    result = box_dimension(drawn(0.7 * turned + 0.5, 512), 0.1)
-    assert result.dimension == pytest.approx(exact, abs=0.05)
-    assert result.low <= exact <= result.high
+    check(box_dimension(drawn(0.7 * turned + 0.5, 512), 0.1), exact, 0.05)
 
 
 #: Index, cells, flights, and how far their mean may be off. At 0.8, few boxes are left: 120 of four
@@ -449,9 +441,7 @@ def test_no_dimension_is_said_with_its_reason(domain, why):
 
 def test_dense_domains_are_plane():
     # As much of the window as a hardness cap leaves to fill.
-    result = box_dimension(np.random.default_rng(0).random((256, 256)) < 0.985, 1.0)
-    assert result.dimension == pytest.approx(2, abs=0.02)
-    assert result.low <= 2 <= result.high
+    check(box_dimension(np.random.default_rng(0).random((256, 256)) < 0.985, 1.0), 2, 0.02)
 
 
 def test_rough_domains_are_measured_by_mean_counts():

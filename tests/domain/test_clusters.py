@@ -50,13 +50,6 @@ def test_full_contact():
     assert (found["morisita"], found["morisita_scatter"]) == (1, 0)
 
 
-def test_one_node():
-    found = cluster_statistics(block((64, 64), 20, 3), 0.5)
-    assert found["clusters"] == found["largest_share"] == 1
-    assert found["cluster_area_mean"] == 0.25
-    assert np.isnan([found["morisita"], found["morisita_scatter"]]).all()
-
-
 def test_all_contact_in_one_quadrat():
     found = cluster_statistics(block((64, 64), slice(8, 14), slice(0, 6)), 1.0)
     assert found["morisita"] == pytest.approx(4095 / 63)
@@ -75,16 +68,6 @@ def test_checkerboard_of_quadrats_is_localised():
     found = cluster_statistics(np.kron(np.indices((8, 8)).sum(axis=0) % 2 == 0, np.ones((8, 8))), 1)
     assert found["morisita"] == pytest.approx(4095 / 2047)
     assert found["clusters"] == 1
-
-
-def test_clusters_join_over_corners():
-    domain = np.zeros((6, 6), bool)
-    domain[[0, 1, 2, 5], [0, 1, 1, 5]] = True
-    found = cluster_statistics(domain, 2.0)
-    assert sorted(cluster_sizes(domain)) == [1, 3]
-    assert found["clusters"] == 2
-    assert found["largest_share"] == 0.75
-    assert found["cluster_area_mean"] == 8.0
 
 
 def test_octaves_begin_at_powers_of_two():

@@ -6,6 +6,7 @@ import yaml
 from stated import COMMAS, MAP
 
 from fractalcontact.core.errors import InputError
+from fractalcontact.core.verdicts import UNDETERMINED
 from fractalcontact.domain.measured_map import CELLS, read_contact_map
 from fractalcontact.gridding.outline import outline_words
 from fractalcontact.study.sidecar import is_contact_map
@@ -32,6 +33,18 @@ def test_a_map_of_known_dimension(carpet):
     assert float(found["nominal_pressure"]) == 85
     assert int(found["clusters"]) == 1
     assert found.attrs["label"] == "a carpet"
+
+
+@pytest.mark.parametrize("side", [8, 11, 12])
+def test_a_map_too_small_for_local_slopes_is_read(side, tmp_path):
+    """Below 12 cells a third of the window holds no box of the local slopes, below 24 no two."""
+    cells = np.ones((side, side))
+    cells[0, 0] = 0
+    path = tmp_path / "small.npy"
+    np.save(path, cells)
+    found = read_contact_map(path, OPTIONS, label="small")
+    assert found["area_share"] == 1 - 1 / side**2
+    assert found["null_verdict"] == UNDETERMINED
 
 
 def test_stresses_above_the_threshold_are_in_contact(carpet, tmp_path):

@@ -16,7 +16,7 @@ from unchecked_settings import resolve_unchecked
 from contactlab.experiments.area_slope import area_slope
 from contactlab.experiments.delta_g import estimator_bias
 from contactlab.experiments.roll_off import roll_off_effect
-from contactlab.experiments.size_effect_test import size_effect_test
+from contactlab.experiments.size_effect_verdict import size_effect_verdict
 from contactlab.experiments.size_states import solve_task
 from contactlab.experiments.size_strength import size_strength
 from contactlab.experiments.size_tasks import size_tasks
@@ -145,7 +145,7 @@ def _experiments():
         "area_slope": area_slope(AREA_SLOPE),
         "estimator_bias": estimator_bias(ESTIMATOR_BIAS),
         "roll_off": roll_off_effect(ROLL_OFF, 4.8, [1, 2]),
-        "size_effect": size_effect_test(
+        "size_effect": size_effect_verdict(
             [solve_task(task, SIZE_EFFECT["loads"], 1e-4) for task in size_tasks(SIZE_EFFECT)],
             SIZE_EFFECT,
         ),

@@ -3,9 +3,9 @@
 from _files import read_inputs, write
 from engine.job import job
 
-from contactlab.experiments.size_effect_test import size_effect_test
+from contactlab.experiments.size_effect_verdict import size_effect_verdict
 
 with job(snakemake) as log:
     given = snakemake.params
-    laws = size_effect_test(**read_inputs(snakemake.input), recipe=given.recipe)
+    laws = size_effect_verdict(**read_inputs(snakemake.input), recipe=given.recipe)
     write(laws, snakemake.output[0], log)

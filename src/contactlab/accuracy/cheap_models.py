@@ -1,8 +1,11 @@
 """Models cheaper than elastic contact at full resolution, to see where they are good enough.
 
-The bearing area cuts the topography with a plane and lets nothing give way. A Winkler foundation
-lets every node give way alone. A coarse grid is solved elastically, and its result extrapolated to
-the spacing asked for by what happens between two coarse spacings.
+The bearing area cuts the rigid topography with a plane. On a Winkler foundation every node yields
+alone. A coarse grid is solved elastically, and its result extrapolated to the requested spacing by
+the change between two coarse spacings.
+
+All models take the composite topography, mm, the half-space and the closure w, mm, from first touch
+of the whole topography; ValueError if the closure is not valid.
 """
 
 from dataclasses import dataclass
@@ -14,7 +17,7 @@ from roughcontact.contact.preconditioner import forget_preconditioner
 from roughcontact.contact.solve import checked_problem, solve_contact
 from roughcontact.elastic.halfspace import HalfSpace, rectangle_mean_displacement
 
-#: Tolerance of the coarse solves: far below what the coarse grid itself is off by.
+#: Tolerance of the coarse solves: far below the error of the coarse grid itself.
 COARSE_RTOL = 1e-4
 #: Order in s of the error of the force on sampled rough surfaces. Measured on 24 problems (H 0.5
 #: and 0.8, 256 and 512 nodes per side, 1 to 20 % in contact), first order leaves 0.3 %
@@ -25,16 +28,10 @@ FORCE_ORDER = 1
 
 @dataclass(frozen=True)
 class CheapState:
-    """State of contact by a cheap model.
+    """State of contact by a cheap model; NaN where the model has no such quantity.
 
-    Attributes
-    ----------
-    pressure : (ny, nx) ndarray
-        MPa; NaN where the model has none.
-    in_contact : (my, mx) bool ndarray
-        Contact domain, on the model's own grid.
-    closure, force, area : float
-        mm, N and mm2; NaN where the model has none.
+    ``pressure`` (ny, nx) is in MPa, ``in_contact`` (my, mx) the contact domain on the model's own
+    grid; ``closure``, ``force`` and ``area`` are in mm, N and mm2.
     """
 
     pressure: np.ndarray
@@ -47,24 +44,7 @@ class CheapState:
 def bearing_area(composite: ArrayLike, space: HalfSpace, *, closure: float) -> CheapState:
     """Contact without elasticity: the bearing area above a plane (Abbott and Firestone 1933).
 
-    Parameters
-    ----------
-    composite : (ny, nx) array_like
-        mm.
-    space : HalfSpace
-        Of which only the grid counts.
-    closure : float
-        w, mm, from first touch: the plane's depth.
-
-    Returns
-    -------
-    CheapState
-        Without a force: none is defined.
-
-    Raises
-    ------
-    ValueError
-        If the closure makes no sense.
+    A force is not defined.
     """
     closure, clearance = checked_problem(composite, space, closure, None, None, 0.5)
     in_contact = clearance < closure
@@ -80,8 +60,6 @@ def bearing_area(composite: ArrayLike, space: HalfSpace, *, closure: float) -> C
 def foundation_modulus(space: HalfSpace) -> float:
     """Foundation modulus p / u of the Winkler model, MPa/mm.
 
-    Notes
-    -----
     That of the window uniformly loaded: its mean settlement under a pressure p on a half-space is
     0.9464 p b / E* for a square of side b. The load as a whole then sinks in as far as on the
     half-space; single spots of contact sink in too far.
@@ -91,22 +69,7 @@ def foundation_modulus(space: HalfSpace) -> float:
 
 
 def winkler(composite: ArrayLike, space: HalfSpace, *, closure: float) -> CheapState:
-    """Contact on a Winkler foundation: every node gives way alone, p = k (w - c) where w > c.
-
-    Parameters
-    ----------
-    composite : (ny, nx) array_like
-        mm.
-    space : HalfSpace
-        Its grid and modulus make the foundation, see `foundation_modulus`.
-    closure : float
-        w, mm, from first touch.
-
-    Raises
-    ------
-    ValueError
-        If the closure makes no sense.
-    """
+    """Contact on a Winkler foundation, :func:`foundation_modulus`: p = k (w - c) where w > c."""
     closure, clearance = checked_problem(composite, space, closure, None, None, 0.5)
     pressure = foundation_modulus(space) * np.maximum(closure - clearance, 0.0)
     in_contact = pressure > 0
@@ -122,29 +85,11 @@ def winkler(composite: ArrayLike, space: HalfSpace, *, closure: float) -> CheapS
 def coarse_grid(composite: ArrayLike, space: HalfSpace, *, closure: float) -> CheapState:
     """Elastic contact on every second node, extrapolated with the help of every fourth.
 
-    Parameters
-    ----------
-    composite : (ny, nx) array_like
-        mm.
-    space : HalfSpace
-    closure : float
-        w, mm, from first touch of the whole topography.
-
-    Returns
-    -------
-    CheapState
-        Force and area extrapolated to the spacing s, NaN where the coarsest grid does not touch;
-        pressure and contact domain those of the finer of the two grids.
-
-    Raises
-    ------
-    ValueError, NotConverged
-        As `fractalcontact.solve_contact`.
-
-    Notes
-    -----
-    The force by an error of order `FORCE_ORDER` in s; the area by the power law A_r ~ s^a of
-    self-affine surfaces (eq. 5 of the paper), which two spacings determine.
+    Force and area are extrapolated to the spacing s, NaN where the coarsest grid does not touch;
+    the force by an error of order `FORCE_ORDER` in s, the area by the power law A_r ~ s^a of
+    self-affine surfaces (eq. 5 of the paper), which two spacings determine. Pressure and contact
+    domain are those of the finer of the two grids. Errors are those of
+    `fractalcontact.solve_contact`.
     """
     closure, _ = checked_problem(composite, space, closure, None, None, COARSE_RTOL)
     height = np.asarray(composite, float)
@@ -165,7 +110,7 @@ def coarse_grid(composite: ArrayLike, space: HalfSpace, *, closure: float) -> Ch
 
 
 def _sampled(height, space, closure, factor):
-    """State on every ``factor``-th node, with the plane where it is for all of them."""
+    """State on every ``factor``-th node, with the first touch of all nodes."""
     sample = height[::factor, ::factor]
     left = max(closure - (height.max() - sample.max()), 0.0)
     coarse = space.coarser(factor)

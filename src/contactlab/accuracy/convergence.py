@@ -14,17 +14,17 @@ from roughcontact.elastic.halfspace import HalfSpace
 
 from .richardson import richardson
 
-# The window is this many times the contact across: what lies outside never touches.
+# Width of the window over that of the contact: the surface outside never touches.
 WINDOW = 1.2
 #: Contact radius, mm, on E* = 1 MPa: the relative errors depend on neither.
 RADIUS = 0.1
 # The paraboloid of Hertz has this radius of curvature, mm.
 CURVATURE = 1.0
-# The punch is pressed by this closure, mm, and what lies around it is this far below, mm.
+# Closure of the punch, and depth of the surface around it, mm.
 PUNCH_CLOSURE, PUNCH_DEPTH = 0.01, 1.0
 
-#: What is compared with the exact solution, and the order in s that Richardson's extrapolation
-#: takes its error to have. The number of nodes on a disc scatters with s^1.5 about its area.
+#: Quantities compared with the exact solution, and the order in s of their errors that Richardson's
+#: extrapolation assumes. The number of nodes on a disc scatters with s^1.5 about its area.
 QUANTITIES: dict[str, dict[str, float]] = {
     "hertz": {"force": 2, "radius": 1, "peak_pressure": 2},
     "punch": {"force": 1, "radius": 1.5},
@@ -36,14 +36,7 @@ _RTOL, _TRIAL_RTOL = 1e-6, 1e-7
 
 @titled("error against spacing where the solution is known, and Richardson's extrapolation")
 def convergence(problem: str, recipe: Mapping[str, Any]) -> xr.Dataset:
-    """Error against spacing where the solution is known, or trials of Richardson's extrapolation.
-
-    Parameters
-    ----------
-    problem : {"hertz", "punch", "richardson"}
-    recipe : mapping
-        The study's ``convergence``.
-    """
+    """Error against spacing for "hertz" or "punch", or the "richardson" trials, by a recipe."""
     if problem == "richardson":
         return richardson_trials(recipe["trials"], recipe["trial_cells"], seed=recipe["seed"])
     return error_over_spacing(problem, recipe["cells"], recipe["placements"])
@@ -74,8 +67,7 @@ def error_over_spacing(
         On ``cells_per_radius``: ``force_error``, ``radius_error`` (of the disc as large as the
         contact domain) and, of Hertz's, ``peak_pressure_error``, relative to the exact value; at
         the edge of a punch the pressure is infinite. For each also the order with which it falls
-        with s, and the interval of the order: ``force_order``, ``force_order_low``,
-        ``force_order_high`` and so on.
+        with s and its interval: ``force_order``, ``force_order_low``, ``force_order_high``.
 
     Notes
     -----
@@ -103,7 +95,8 @@ def error_over_spacing(
 def _hertz_errors(cells_per_radius, centre, rtol):
     """Relative errors of force, radius and peak pressure with the apex off the node by ``centre``.
 
-    Closure counts from the first touch of a node, the theory's from that of the apex.
+    The closure starts at the first touch of a node, that of the theory at the first touch of the
+    apex.
     """
     y, x, spacing = _grid(cells_per_radius, centre)
     height = -(y**2 + x**2) / (2 * CURVATURE)
@@ -154,14 +147,8 @@ def richardson_trials(cases: int, cells: tuple[float, float], *, seed: int) -> x
     """Trials of Richardson's extrapolation: values within their own error bar of the exact one.
 
     Every case has its own place of the centre among the nodes and its own, not whole, number of
-    cells across the radius, and is solved at the spacings s, 2 s and 4 s.
-
-    Parameters
-    ----------
-    cases : int
-    cells : (float, float)
-        Fewest and most cells of the finest spacing across the contact radius.
-    seed : int
+    cells across the radius, between the two ``cells`` at the finest spacing, and is solved at the
+    spacings s, 2 s and 4 s.
 
     Returns
     -------

@@ -1,10 +1,10 @@
-"""Does dropping the points in tension, and never taking one back, reach the right contact set?
+"""Elimination: contact sets reached by dropping the points in tension, none ever taken back.
 
-It does where the inverse M of the influence matrix K has no positive entry off its diagonal. On the
-interpenetrating points, of interference d, p = M (d + g) with gaps g >= 0 is then a complementarity
-problem with a Z-matrix, and the paper's procedure is Chandrasekaran's for such problems: gaps only
-grow on the way to their values, so that no point is dropped that belongs to the contact. Where M
-has a positive entry, a problem can be constructed whose first step drops a point wrongly.
+The set is right if the inverse M of the influence matrix K has no positive entry off its diagonal.
+On the interpenetrating points, of interference d, p = M (d + g) with gaps g >= 0 is then a
+complementarity problem with a Z-matrix, and the paper's procedure is Chandrasekaran's for such
+problems: gaps only grow on the way to their values, so that no point of the contact is dropped. If
+M has a positive entry, a problem can be constructed whose first step drops a point wrongly.
 
 R. Chandrasekaran, Opsearch 7 (1970) 263; R. W. Cottle, J.-S. Pang & R. E. Stone, The Linear
 Complementarity Problem (1992), sect. 4.7.
@@ -32,18 +32,15 @@ SIDES = (4, 14)
 RTOL = 1e-6
 #: Tolerances of the inner solves whose effect is shown.
 TOLERANCES = (1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
-#: How near the counter-example comes to where it would not be one.
+#: Gap of the counter-example over the largest with which node j still interpenetrates.
 _NEARLY = 0.9
 
 
 def largest_off_diagonal(space: HalfSpace) -> float:
     """Largest entry of K^-1 off its diagonal, relative to the diagonal entry of its row.
 
-    Returns
-    -------
-    float
-        Negative where elimination is always right; principal submatrices then share the property
-        (T. L. Markham, Proc. Am. Math. Soc. 36 (1972) 326).
+    Negative where elimination is always right; principal submatrices then share the property
+    (T. L. Markham, Proc. Am. Math. Soc. 36 (1972) 326).
     """
     inverse, diagonal = _inverse(space)
     np.fill_diagonal(inverse, -np.inf)
@@ -51,23 +48,11 @@ def largest_off_diagonal(space: HalfSpace) -> float:
 
 
 def counter_example(space: HalfSpace, closure: float = 1.0) -> np.ndarray | None:
-    """A topography on which the first step of elimination drops a point that is in contact.
+    """Topography on which the first step of elimination drops a point that is in contact.
 
-    Parameters
-    ----------
-    space : HalfSpace
-    closure : float
-        mm.
-
-    Returns
-    -------
-    (ny, nx) ndarray or None
-        mm, to be pressed to ``closure``; None where the inverse has no positive entry.
-
-    Notes
-    -----
-    All nodes but j are in contact under pressure 1, but i under less than M_ij g_j. The first step,
-    which takes the gap g_j for closed, finds p_i - M_ij g_j < 0 there and drops i.
+    Heights (ny, nx) in mm, to be pressed to ``closure``, mm; None where the inverse has no positive
+    entry. All nodes but j are in contact under pressure 1, but i under less than M_ij g_j. The
+    first step, which takes the gap g_j for closed, has p_i - M_ij g_j < 0 there and drops i.
     """
     inverse, diagonal = _inverse(space)
     np.fill_diagonal(inverse, -np.inf)
@@ -78,7 +63,7 @@ def counter_example(space: HalfSpace, closure: float = 1.0) -> np.ndarray | None
     influence = influence_matrix(space, everywhere, everywhere)
     pressure = np.ones(len(influence))
     pressure[j] = 0.0
-    # Node j stays among the interpenetrating ones, if only just.
+    # Node j remains just among the interpenetrating ones.
     gap = _NEARLY * (influence[j] @ pressure)
     pressure[i] = _NEARLY * inverse[i, j] * gap
     interference = influence @ pressure
@@ -119,8 +104,8 @@ def elimination(draws: int = 200) -> xr.Dataset:
     -------
     xr.Dataset
         On ``case``, with ``kernel`` and ``ratio`` of the sides of a cell: ``tried``, ``wrong``, the
-        largest ``force_error`` of those; ``largest_off_diagonal``; ``counter_example``, whether one
-        constructed on purpose defeats it. On ``tolerance``, with Love's kernel: the fraction of
+        largest ``force_error`` of those; ``largest_off_diagonal``; ``counter_example``, whether a
+        constructed problem defeats it. On ``tolerance``, with Love's kernel: the fraction of
         problems that ``lost`` a node of the contact to an inexact solve, and the largest
         ``area_error`` of them.
     """
@@ -163,7 +148,7 @@ def _random_problem(draw, kernel, ratio):
 
 
 def _case(kernel, ratio, draws):
-    """The values of `_ELIMINATION` on a case."""
+    """Values of `_ELIMINATION` on a case."""
     wrong, worst = 0, 0.0
     for draw in range(draws):
         height, space, closure = _random_problem(draw, kernel, ratio)

@@ -12,7 +12,7 @@ from fractalcontact.core.labels import cf_attrs
 
 from .speed import MODEL, OURS
 
-#: Nodes of the grid, not nodes per side, are what time and memory are fitted against.
+#: Quantities fitted against the number of nodes of the grid (not nodes per side).
 FITTED = {"seconds": "wall time", "memory": "peak memory"}
 _DIMS = ("surface", "solver", "size")
 #: Variables of `growth`: dimensions, unit, long name.
@@ -33,7 +33,7 @@ def growth(problems: Sequence[xr.Dataset], error: float) -> xr.Dataset:
     problems : list of xr.Dataset
         From `speed.error_against_time`; one surface at several sizes, and several surfaces.
     error : float
-        A solver counts at the tolerance with which it gets there fastest.
+        Error of the force; each solver is taken at the tolerance that reaches it fastest.
 
     Returns
     -------
@@ -67,9 +67,9 @@ def growth(problems: Sequence[xr.Dataset], error: float) -> xr.Dataset:
     )
     nodes = np.log(np.square(sizes, dtype=float))
     for name, words in FITTED.items():
-        each = (fit_line(nodes, np.log(row)).slope for row in values[name].reshape(-1, len(sizes)))
+        lines = (fit_line(nodes, np.log(row)).slope for row in values[name].reshape(-1, len(sizes)))
         words = f"exponent of the {words} in the number of nodes"
-        exponents = Estimate.stack(each, shape[:2])
+        exponents = Estimate.stack(lines, shape[:2])
         result.update(exponents.variables(f"{name}_exponent", _DIMS[:2], "1", words))
     return result
 

@@ -1,11 +1,11 @@
 """Contact problems of the kinds that methods fail on, each drawn at random from a seed.
 
-Those of `tests/support/random_problems.py` mix sizes, shapes and units to find any fault of our own
-solver. Here every kind isolates one difficulty and stays small enough for direct elimination, so
-that it can be said of any method which difficulty it cannot take.
+Those of `tests/support/random_problems.py` mix sizes, shapes and units to reveal any fault of our
+own solver. Here every kind isolates one difficulty and stays small enough for direct elimination,
+so that each failure of a method has its cause.
 
-Kinds that are hard for their surface, or for how deeply it is pressed, are in `hard_surfaces`; here
-are those hard for their window, units, start or hardness, or for what they lack.
+Problems that are hard for their surface, or for the depth of loading, are in `hard_surfaces`; those
+here are hard for their window, units, start or hardness, or for missing properties.
 """
 
 from collections.abc import Callable
@@ -32,14 +32,7 @@ YIELDING = {"cap, some yield": (0.5, 0.9), "cap, most yield": (0.05, 0.2)}
 
 
 def hard_problem(kind: str, draw: int) -> HardProblem:
-    """A contact problem that is the same for the same kind and number.
-
-    Parameters
-    ----------
-    kind : str
-        A key of `KINDS`.
-    draw : int
-    """
+    """Contact problem of a kind of `KINDS`, the same for the same kind and number ``draw``."""
     number = list(KINDS).index(kind)
     generator = np.random.default_rng([number, draw])
     return KINDS[kind](kind, generator)
@@ -73,7 +66,7 @@ def _tiny(generator):
 
 
 def _length_unit(cell):
-    """The same problem with lengths counted in another unit, and an odd unit of stress."""
+    """The same problem with lengths in another unit, and an odd unit of stress."""
 
     def problem(kind, generator):
         height = rough_surface(generator) * (cell / 0.1)
@@ -124,7 +117,7 @@ def _of_lower_load(generator, height, space, closure):
 
 
 def _garbage(generator, height, space, closure):
-    """Pressures drawn at random: no state of any surface."""
+    """Random pressures: no state of any surface."""
     pressure = 10 ** generator.uniform(-6, 6) * generator.random(height.shape)
     displacement = space.displacement(pressure)
     force = float(pressure.sum()) * space.cell_area
@@ -157,7 +150,7 @@ def _all_but_capped(kind, generator):
 
 
 def _above_the_cap(kind, generator):
-    """More than the window can carry: there is no such state."""
+    """Force above the largest that the window can carry: no such state exists."""
     height = rough_surface(generator)
     space = half_space(height.shape)
     hardness = 10 ** generator.uniform(0, 3)
@@ -173,7 +166,7 @@ def _missing_cell(kind, generator):
     return HardProblem(kind, height, half_space(height.shape), {"closure": closure}, solvable=False)
 
 
-#: Every kind of problem, and what draws one. Their order is part of what is drawn.
+#: Kinds of problem, and functions that draw one. The seeds depend on their order.
 KINDS: dict[str, Callable[[str, np.random.Generator], HardProblem]] = {
     **SURFACES,
     "window 8:1": _window(_strip),

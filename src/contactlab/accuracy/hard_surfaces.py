@@ -1,6 +1,6 @@
-"""Contact problems that are hard for their surface or for how far it is loaded.
+"""Contact problems that are hard for their surface or for the depth of loading.
 
-What all kinds of `hard_problems` are drawn with stands here too: shapes, rough heights, loads.
+The module also has the parts of all kinds of `hard_problems`: shapes, rough heights, loads.
 """
 
 from collections.abc import Callable, Mapping
@@ -32,7 +32,7 @@ class HardProblem:
         Keywords for a solver: ``closure`` (mm) or ``force`` (N), and where it matters ``hardness``
         (MPa) and ``start``.
     solvable : bool
-        False where no state exists and a method must say so.
+        False where no state exists and a method must report that.
     """
 
     kind: str
@@ -51,18 +51,7 @@ def draw_shape(generator: np.random.Generator) -> tuple[int, int]:
 def rough_heights(
     generator: np.random.Generator, shape: tuple[int, int], hurst: float = 0.8
 ) -> np.ndarray:
-    """Self-affine heights of about unit standard deviation.
-
-    Parameters
-    ----------
-    generator : numpy.random.Generator
-    shape : (int, int)
-    hurst : float
-
-    Returns
-    -------
-    (ny, nx) ndarray
-    """
+    """Self-affine heights (ny, nx) of about unit standard deviation."""
     n = max(*shape, 8)
     seed = int(generator.integers(2**31))
     return self_affine((n, n), 1.0, hurst, rms=1.0, seed=seed)[: shape[0], : shape[1]]
@@ -75,31 +64,21 @@ def scaled(height: np.ndarray, slope: float = 0.1, cell: float = 0.1) -> np.ndar
 
 
 def rough_surface(generator: np.random.Generator) -> np.ndarray:
-    """A self-affine surface of a window drawn at random, scaled: what most kinds begin with, mm."""
+    """Scaled self-affine surface of a random window, mm: the start of most kinds."""
     return scaled(rough_heights(generator, draw_shape(generator)))
 
 
 def half_space(
     shape: tuple[int, int], *, cell: float = 0.1, stretch: float = 1.0, modulus: float = 1e4
 ) -> HalfSpace:
-    """The half-space under this many cells (mm), ``stretch`` times as long along y as along x."""
+    """Half-space under this many cells (mm), ``stretch`` times as long along y as along x."""
     return HalfSpace(shape, (cell * stretch, cell), modulus)
 
 
 def closure_reaching(height: np.ndarray, fraction: float) -> float:
-    """Closure at which a fraction of the nodes lies above the rigid plane, before they give way.
+    """Closure, mm, at which a fraction of the nodes of an undeformed topography reaches the plane.
 
-    Parameters
-    ----------
-    height : (ny, nx) ndarray
-        mm.
-    fraction : float
-        From 0 to 1.
-
-    Returns
-    -------
-    float
-        mm, above zero unless all heights are equal.
+    Above zero unless all heights (mm) are equal.
     """
     depth = np.sort(height.max() - height, axis=None)
     reached = depth[min(int(fraction * depth.size), depth.size - 1)]
@@ -115,19 +94,10 @@ def loaded(
     space: HalfSpace | None = None,
     by_force: bool | None = None,
 ) -> HardProblem:
-    """A problem loaded until the plane reaches a random fraction of its nodes.
+    """Problem loaded until the plane reaches a random fraction of its nodes.
 
-    Parameters
-    ----------
-    kind : str
-    generator : numpy.random.Generator
-    height : (ny, nx) ndarray
-        mm.
-    fraction : (float, float)
-        The least and the most of it.
-    space : HalfSpace, optional
-    by_force : bool, optional
-        Whether a force is given rather than a closure; by default as chance has it.
+    The fraction lies between the two given; heights are in mm. The load is a force if ``by_force``,
+    by default at random.
     """
     space = half_space(height.shape) if space is None else space
     closure = closure_reaching(height, generator.uniform(*fraction))
@@ -137,7 +107,7 @@ def loaded(
 def _load(generator, space, closure, by_force=None):
     """A closure or, in half the cases, about its force: that of a punch as large as the window.
 
-    Any force has its state.
+    Any force has a state.
     """
     by_force = generator.random() < 0.5 if by_force is None else by_force
     if not by_force:
@@ -236,7 +206,7 @@ def _twins(kind, generator):
 def _spike_on_a_mirror(kind, generator):
     """A spike on a quantised surface far smoother, under a force with which it just sinks in.
 
-    Under a given force all of its surroundings seem to touch, or none: seen on the scan of a
+    Under a given force all of its surroundings seem to touch, or none: observed on the scan of a
     polished surface with a grain of dust.
     """
     height = np.round(7 * generator.standard_t(4, size=draw_shape(generator))) * 1e-6
@@ -334,7 +304,7 @@ def _noise(generator, y, x):
     return generator.standard_normal(y.shape)
 
 
-#: Kinds of problem, and what draws one from its kind and a generator.
+#: Kinds of problem, and functions that draw one from its kind and a generator.
 SURFACES: dict[str, Callable[[str, np.random.Generator], HardProblem]] = {
     "H = 0.1": _rough_of(0.1),
     "H = 0.3": _rough_of(0.3),

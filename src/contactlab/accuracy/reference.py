@@ -1,4 +1,4 @@
-"""Test problems that solvers are timed on, each with a reference solution of known error.
+"""Test problems for the timing of solvers, each with a reference solution of known error.
 
 The window is a unit square and E* = 1: the problem depends on no unit. Rough surfaces are loaded
 until a given fraction of the nodes touches; the paraboloid of Hertz and the flat circular punch
@@ -26,32 +26,25 @@ from .violation import violation
 SIDE = 1.0  # mm
 E_STAR = 1.0  # MPa
 RMS = 0.02  # mm
-# The reference is solved to the first of these that rounding lets the solver verify.
+# Tolerances of the reference: the first that the solver can verify, for rounding, counts.
 REFERENCE_TOLERANCES = (1e-12, 1e-11, 1e-10)
-# Relative error to which the fraction in contact is met: it names a problem and decides nothing.
+# Relative error of the fraction in contact, which only names a problem.
 FRACTION_MET = 0.02
-# Between closures as near to each other as this no other count of nodes is looked for.
+# Relative distance of closures at which the search for a count of nodes ends.
 CLOSED = 1e-3
-#: Interpenetrating nodes up to which direct elimination is a matter of seconds.
+#: Most interpenetrating nodes for direct elimination within seconds.
 ELIMINATED = 4500
 # Hertz's contact and the punch reach this fraction of the way from the centre to the edge.
 REACH = 0.8
-# Closure of the punch relative to its radius; the problem is linear, and this decides nothing.
+# Closure of the punch relative to its radius; the problem is linear and does not depend on it.
 PUNCH_CLOSURE = 0.01
-# What lies outside the punch is this many closures below it, and never touches.
+# Depth of the surface around the punch, in closures: it never touches.
 PUNCH_STEP = 10.0
 
 
 @dataclass(frozen=True)
 class Reference:
-    """Reference solution, of known error.
-
-    Attributes
-    ----------
-    state : ContactState
-    tolerance : float
-        The solver's own.
-    """
+    """Reference solution of known error; ``tolerance`` is the solver's own."""
 
     state: ContactState = field(repr=False)
     tolerance: float
@@ -64,7 +57,7 @@ class Reference:
     def error(self, answer: ContactState | CheapState) -> float:
         """Relative error of the force, whichever of closure and force the solver was given.
 
-        An error of the closure counts as the force it stands for, by dF/dw.
+        An error of the closure is converted to one of the force by dF/dw.
         """
         exact = self.state
         change = answer.force - exact.force - exact.stiffness * (answer.closure - exact.closure)
@@ -73,8 +66,6 @@ class Reference:
     def own_error(self, height: np.ndarray) -> float:
         """Bound of the reference's own relative error of the force.
 
-        Notes
-        -----
         Where gaps and pressures miss the conditions by a fraction v of the closure w, judged by a
         convolution that is not the solver's, the state lies between those at w (1 - v) and
         w (1 + v), as F rises with w: the error is at most v w dF/dw.
@@ -90,13 +81,13 @@ class ReferenceProblem:
     Attributes
     ----------
     name : str
-        In messages.
+        Name in messages.
     height : (size, size) ndarray
         Composite topography, mm.
     closure : float
         w, mm.
     hurst, fraction : float
-        Of a rough surface, and of its nodes to be in contact.
+        H of a rough surface, and the fraction of its nodes to be in contact.
     """
 
     name: str
@@ -112,12 +103,12 @@ class ReferenceProblem:
 
     @cached_property
     def space(self) -> HalfSpace:
-        """The half-space it is pressed on."""
+        """Half-space under the surface."""
         return _unit_space(self.size)
 
     @cached_property
     def single(self) -> Reference:
-        """The reference at the tightest of `REFERENCE_TOLERANCES` that can be verified."""
+        """Reference at the tightest of `REFERENCE_TOLERANCES` that can be verified."""
         start = None
         for tolerance in REFERENCE_TOLERANCES:
             try:
@@ -131,11 +122,11 @@ class ReferenceProblem:
 
     @property
     def overlapping(self) -> int:
-        """Number of nodes that the rigid plane would reach if nothing gave way."""
+        """Number of nodes above the rigid plane of the undeformed surface."""
         return int(np.count_nonzero(self.height.max() - self.height < self.closure))
 
     def eliminated(self) -> float:
-        """Difference of the reference's force from direct elimination, relative; NaN if too large.
+        """Relative difference of the reference's force from direct elimination; NaN if too large.
 
         Elimination shares neither FFT nor iteration with the solver.
         """
@@ -177,12 +168,10 @@ def _radius(size):
 
 
 def problems_of(recipe: Mapping[str, Any]) -> dict[str, Callable[[], ReferenceProblem]]:
-    """Test problems of a study by name, to be made when they are used.
+    """Test problems of a study by name, made on first use.
 
-    Parameters
-    ----------
-    recipe : mapping
-        ``sizes`` (nodes per side), ``hurst``, ``contact`` (fractions of the nodes) and ``seed``.
+    The recipe has ``sizes`` (nodes per side), ``hurst``, ``contact`` (fractions of the nodes) and
+    ``seed``.
     """
     problems: dict[str, Callable[[], ReferenceProblem]] = {}
     for size in sorted(recipe["sizes"]):
@@ -195,21 +184,10 @@ def problems_of(recipe: Mapping[str, Any]) -> dict[str, Callable[[], ReferencePr
 
 
 def closure_at_fraction(height: np.ndarray, space: HalfSpace, fraction: float) -> float:
-    """Closure at which a fraction of the nodes is in contact, by regula falsi on its logarithm.
+    """Closure, mm, at which a fraction of the nodes is in contact, by regula falsi on its log.
 
-    Parameters
-    ----------
-    height : (ny, nx) ndarray
-        mm.
-    space : HalfSpace
-    fraction : float
-        Met to `FRACTION_MET` of it, or as closely as the count of nodes in contact lets it be: on
-        small grids several may touch at once.
-
-    Returns
-    -------
-    float
-        mm.
+    The fraction is met to `FRACTION_MET` of it, or as closely as the count of nodes in contact lets
+    it be: on small grids several may touch at once. Heights are in mm.
     """
     low, high = 0.0, np.inf
     wanted, state = fraction * height.size, None

@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike
 
 
 class Extrapolated(NamedTuple):
-    """Values at zero spacing and their error bars, in the unit and shape (...) of those given."""
+    """Values at zero spacing and their error bars, in the unit and shape (...) of the data."""
 
     value: np.ndarray
     error: np.ndarray
@@ -21,17 +21,13 @@ def richardson(values: ArrayLike, order: float) -> Extrapolated:
     values : (3, ...) array_like
         The finest first.
     order : float
-        p > 0: the values are off by about c s^p.
-
-    Returns
-    -------
-    Extrapolated
-        Exact for values off by c s^p; ``error`` is then the change from 2 s to s.
+        p > 0: the values are off by about c s^p; values off by exactly c s^p are extrapolated
+        exactly, and ``error`` is then the change from 2 s to s.
 
     Notes
     -----
-    The value is f(s) + (f(s) - f(2s)) / (2^p - 1). Its bar is the largest of three signs of how far
-    from the limit the values are: the change from 2 s to s; that from 4 s to 2 s, carried on by the
+    The value is f(s) + (f(s) - f(2s)) / (2^p - 1). Its bar is the largest of three signs of the
+    distance from the limit: the change from 2 s to s; that from 4 s to 2 s, carried on by the
     order; and the disagreement of the extrapolations from (s, 2 s) and (2 s, 4 s). The edge of a
     contact jumps from node to node, and any one of them may be small by chance. P. J. Roache, J.
     Fluids Eng. 116 (1994) 405, asks for three times the correction where the order is only

@@ -1,8 +1,8 @@
 """Error against time: every solver and every cheaper model on a test problem, measured in turn.
 
-What is set up once for a grid (kernel, transforms, the topography handed over to another code) is
-timed for nobody; every solve starts cold. A method's tolerances are tried from loose to tight until
-one takes too long or fails; ours goes through all of them.
+Set-up for a grid (kernel, transforms, the topography handed over to another code) is not timed;
+every solve starts cold. A method's tolerances are tried from loose to tight until
+one takes too long or fails; all tolerances of our solver are tried.
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -42,7 +42,7 @@ MODELS: dict[str, Callable[..., CheapState]] = {
 }
 #: Our tolerance whose memory is measured: the default.
 DEFAULT_RTOL = 1e-6
-#: Below this error the production solver is meant to be the fastest.
+#: Error below which the production solver is meant to be the fastest.
 LEADS_BELOW = 1e-2
 
 #: Errors of every point against the reference.
@@ -77,8 +77,8 @@ _TOLERANCE = {"tolerance": ("point", "1", "tolerance asked for")}
 class _Way:
     """One way to solve a test problem.
 
-    ``solve`` is timed, ``finish`` makes a state of what it returns, and ``from_scratch`` does all
-    that is set up once too: a process needs the memory of both.
+    ``solve`` is timed, ``finish`` makes a state of its result, and ``from_scratch`` includes the
+    set-up: a process needs the memory of both.
     """
 
     method: str
@@ -91,21 +91,14 @@ class _Way:
 
 @titled("error against time of solvers and cheaper models, one group per test problem")
 def speed(problem: str, recipe: Mapping[str, Any]) -> xr.Dataset:
-    """:func:`error_against_time` of one of a study's problems, named as in `reference.problems_of`.
-
-    Parameters
-    ----------
-    problem : str
-    recipe : mapping
-        The study's ``speed``.
-    """
+    """:func:`error_against_time` of a problem of `reference.problems_of`, by a study's recipe."""
     return error_against_time(problems_of(recipe)[problem](), recipe)
 
 
 def error_against_time(problem: ReferenceProblem, recipe: Mapping[str, Any]) -> xr.Dataset:
     """Errors, seconds and memory of every way to solve a test problem.
 
-    What else runs on the machine disturbs the seconds: nothing should.
+    Other programs on the machine disturb the seconds.
 
     Parameters
     ----------
@@ -113,7 +106,7 @@ def error_against_time(problem: ReferenceProblem, recipe: Mapping[str, Any]) -> 
     recipe : mapping
         ``tolerances``; ``runs`` of each way, of which the median counts; ``longest``, seconds from
         which on a way is run once and, but of ours, no tighter tolerance tried; ``slow_nodes``,
-        interpenetrating nodes up to which methods are tried that need many of them.
+        most interpenetrating nodes for methods that write out the influence matrix.
 
     Returns
     -------
@@ -141,7 +134,7 @@ def error_against_time(problem: ReferenceProblem, recipe: Mapping[str, Any]) -> 
     for row in table:
         row["memory"] = memory.get(row["method"], np.nan)
     result = _labelled(table).assign_attrs(_about_problem(problem))
-    # An error smaller than anyone was asked for is no merit, nor one below the reference's own.
+    # Errors below every requested tolerance, or below the reference's own, count as alike.
     asked = min(recipe["tolerances"])
     result.attrs["resolvable_error"] = max(result.attrs["reference_error"], asked)
     for name, error in FRONTS.items():
@@ -151,7 +144,7 @@ def error_against_time(problem: ReferenceProblem, recipe: Mapping[str, Any]) -> 
 
 
 def _first_runs(problem, recipe):
-    """A row for every way tried, and the ways that gave a state, each run once."""
+    """Row of every way tried, and the ways that gave a state, each run once."""
     dimension = dimension_of_domain(problem.single.state.in_contact, 1.0).dimension
     table, ways = [], []
     for ladder in _ladders(problem, recipe):
@@ -180,7 +173,7 @@ def _first_runs(problem, recipe):
 
 
 def _ladders(problem: ReferenceProblem, recipe: Mapping[str, Any]) -> Iterator[list[_Way]]:
-    """For every method its ways from loose to tight."""
+    """Ways of every method from loose to tight."""
     tolerances = sorted(recipe["tolerances"], reverse=True)
     yield _of_solver(OURS, solve_contact, problem, tolerances)
     for name, method in METHODS.items():
@@ -199,7 +192,7 @@ def _ladders(problem: ReferenceProblem, recipe: Mapping[str, Any]) -> Iterator[l
 
 
 def _of_solver(name, press, problem, tolerances):
-    """The ways of a solver of the package."""
+    """Ways of a solver of the package."""
     arguments = press, problem.height, problem.space, problem.closure
     return [
         _Way(
@@ -213,7 +206,7 @@ def _of_solver(name, press, problem, tolerances):
 
 
 def _of_peer(name, peer, problem, tolerances):
-    """The ways of a public code, set up once."""
+    """Ways of a public code, set up once."""
     code = peer.set_up(problem.height, problem.space)
     control = peer.loads[0]
     return [
@@ -228,14 +221,14 @@ def _of_peer(name, peer, problem, tolerances):
 
 
 def _cold(press, height, space, closure, rtol):
-    """Cold solve, without anything kept of the last contact set."""
+    """Cold solve, without anything stored of the last contact set."""
     forget_preconditioner(space)
     options = {} if np.isnan(rtol) else {"rtol": rtol}
     return press(height, space, closure=closure, **options)
 
 
 def _on_a_new_grid(press, height, space, closure, rtol):
-    """As `_cold`, kernel and transforms made anew."""
+    """Cold solve with kernel and transforms made anew."""
     kernel, boundary = space.kernel, space.boundary
     grid = space.shape, space.spacing
     new = HalfSpace(*grid, space.modulus, kernel=kernel, boundary=boundary)
@@ -267,22 +260,14 @@ def _peer_state(control, problem, pressure):
 
 
 def _warm_up(recipe):
-    """Every method once on a few nodes: compiled code is loaded before the clock starts."""
+    """Solve a few nodes once by every method, so that compiled code is loaded before timing."""
     _first_runs(hertz_problem(16), {**recipe, "tolerances": recipe["tolerances"][:1]})
 
 
 def errors_of(
     state: ContactState | CheapState, reference: Reference, dimension: float
 ) -> dict[str, float]:
-    """Errors of a state, by the names of `ERRORS`.
-
-    Parameters
-    ----------
-    state : ContactState or CheapState
-    reference : Reference
-    dimension : float
-        Delta_sigma of the reference's contact domain.
-    """
+    """Errors of a state, by the names of `ERRORS`; ``dimension`` is the reference's Delta_sigma."""
     exact = reference.state
     same = np.array_equal(state.in_contact, exact.in_contact)
     reached = dimension if same else dimension_of_domain(state.in_contact, 1.0).dimension
@@ -296,27 +281,19 @@ def errors_of(
 
 
 def pareto_front(seconds: ArrayLike, error: ArrayLike) -> np.ndarray:
-    """Pareto front of time and error: points that no other is both faster than and closer than.
+    """Pareto front (n,) of time and error: no other point is both faster and closer.
 
-    Parameters
-    ----------
-    seconds, error : (n,) array_like
-        A point with a NaN is on no front.
-
-    Returns
-    -------
-    (n,) bool ndarray
-        Of points alike in both all are on the front.
+    A point with a NaN is on no front; of points alike in both all are on it.
     """
     seconds, error = np.asarray(seconds, float), np.asarray(error, float)
-    known = np.isfinite(seconds) & np.isfinite(error)
+    finite = np.isfinite(seconds) & np.isfinite(error)
     no_worse = (seconds <= seconds[:, np.newaxis]) & (error <= error[:, np.newaxis])
     better = (seconds < seconds[:, np.newaxis]) | (error < error[:, np.newaxis])
-    return known & ~(no_worse & better & known).any(axis=1)
+    return finite & ~(no_worse & better & finite).any(axis=1)
 
 
 def _front(points, quantity):
-    """The Pareto front of an error; below ``resolvable_error`` no point is the closer one."""
+    """Pareto front of an error; below ``resolvable_error`` all points are equally close."""
     error = np.maximum(points[quantity].values, points.attrs["resolvable_error"])
     return pareto_front(points["seconds"].values, error)
 
@@ -328,22 +305,10 @@ def ahead_of_ours(
     below: float = LEADS_BELOW,
     models: bool = True,
 ) -> xr.Dataset:
-    """Points of others on the front below an error: where ours is not the fastest way there.
+    """Points of others on the front below an error, where our solver is not the fastest way.
 
-    Parameters
-    ----------
-    points : xr.Dataset
-        From `error_against_time`.
-    quantity : str
-        A key of `ERRORS`.
-    below : float
-    models : bool
-        Whether the cheaper models count; without them it is a matter of solvers of one problem.
-
-    Returns
-    -------
-    xr.Dataset
-        The points of the front that are not ours.
+    ``quantity`` is a key of `ERRORS`; with ``models`` the cheaper models count, without them only
+    solvers of the same problem.
     """
     if not models:
         points = points.isel(point=np.flatnonzero(points["kind"] != MODEL))
@@ -352,7 +317,7 @@ def ahead_of_ours(
 
 
 def _labelled(rows: Sequence[Mapping[str, Any]]) -> xr.Dataset:
-    """The dataset of the rows."""
+    """Dataset of the rows."""
     values: dict[str, np.ndarray] = {
         name: np.array([row[name] for row in rows], dtype=object) for name in _TEXTS
     }
@@ -364,9 +329,9 @@ def _labelled(rows: Sequence[Mapping[str, Any]]) -> xr.Dataset:
 
 
 def _about_problem(problem):
-    """Attributes: the problem, its reference, and the cost of one operator application.
+    """Attributes: the problem, its reference, and the seconds of one operator application.
 
-    It is one in single precision, as all of ours are but one or two.
+    The application is in single precision, as all of ours are but one or two.
     """
     reference, space = problem.single, problem.space
     field = reference.state.pressure.astype(np.float32)

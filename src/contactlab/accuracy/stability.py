@@ -1,4 +1,4 @@
-"""Stability of solvers by kind of test problem: right, an honest failure, or silently wrong."""
+"""Stability of solvers by kind of test problem: right, honest failure, or silently wrong."""
 
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NamedTuple
@@ -18,19 +18,19 @@ from .hard_surfaces import HardProblem
 from .violation import violation
 
 RTOL = 1e-6
-#: A state is right if it violates the contact conditions by no more than this many times the
-#: tolerance: methods judge themselves with other roundings than the judge.
+#: Largest violation of the contact conditions by a right state, in tolerances: the judge's rounding
+#: differs from that of the methods.
 MARGIN = 2.0
-#: And if its force (its closure, where the force was given) is that of direct elimination.
+#: Largest difference of a right state's force (closure, if the force is given) from elimination's.
 AGREEMENT = 1e-4
-#: Tolerances that a peer is given one after the other while its state is not right: they are on
-#: quantities of its own, and to have met them is not to be silently wrong.
+#: Tolerances of a public code, the next one tried while its state is not right: they are on
+#: quantities of its own, so that a state that meets a loose one is not silently wrong.
 PEER_RTOLS = (RTOL, 1e-8, 1e-10, 1e-12, 1e-14)
 
 #: Verdicts, in the order of their codes.
 VERDICTS = ("right", "honest failure", "silently wrong", "not offered")
 RIGHT, HONEST, SILENT, NOT_OFFERED = range(len(VERDICTS))
-#: How the package's solvers say that they failed; public codes raise whatever they raise.
+#: Exceptions of a failure of the package's solvers; public codes may raise others.
 _OWN_FAILURES = (NotConverged, ValueError)
 _DIMS = ("kind", "draw", "solver")
 #: Variables of `stability`: dimensions, unit, long name.
@@ -58,7 +58,7 @@ class Judgement(NamedTuple):
 
 
 def solvers() -> dict[str, Solver]:
-    """Every solver by name: ours first, those kept for comparison, public codes if installed."""
+    """Solvers by name: ours first, the comparison methods, public codes if installed."""
     return {"fractalcontact": solve_contact, **METHODS, **installed_peers()}
 
 
@@ -108,13 +108,7 @@ def stability(kinds: Sequence[str] | None = None, draws: int = 25) -> xr.Dataset
 
 @titled("verdicts on the solvers by kind of test problem")
 def join(parts: Sequence[xr.Dataset]) -> xr.Dataset:
-    """Verdicts on all kinds of problem, in the order of `hard_problems.KINDS`.
-
-    Parameters
-    ----------
-    parts : sequence of xr.Dataset
-        From `stability`, of different kinds.
-    """
+    """Verdicts of `stability` on several kinds, in the order of `hard_problems.KINDS`."""
     whole = xr.concat(parts, "kind", data_vars="minimal")
     return whole.sel(kind=[kind for kind in KINDS if kind in whole["kind"]])
 
@@ -132,7 +126,7 @@ def _judge_all(judged: Mapping[str, Solver], problem: HardProblem) -> list[Judge
 
 
 def _judge_patiently(solve, problem, exact, tolerances, failures):
-    """The judgement at the first tolerance where a solver is not silently wrong, or at the last."""
+    """Judgement at the first tolerance where a solver is not silently wrong, or at the last."""
     for rtol in tolerances:
         judgement = _judge(solve, problem, exact, rtol, failures)
         if judgement.verdict != SILENT or not problem.solvable:
@@ -151,12 +145,12 @@ def _exact(problem):
 
 
 def _answer(state, problem):
-    """The one of force and closure that was not given."""
+    """Force of a problem with given closure, closure of one with given force."""
     return state.closure if "force" in problem.load else state.force
 
 
 def _judge(solve, problem, exact, rtol, failures):
-    """The judgement of a solver at one tolerance."""
+    """Judgement of a solver at one tolerance."""
     try:
         state = solve(problem.height, problem.space, rtol=rtol, **problem.load)
     except NotOffered as error:

@@ -10,7 +10,7 @@ from typing import Any
 
 from fractalcontact.core.child_process import ChildFailed, in_child
 
-#: Seconds after which a call whose memory is measured is given up.
+#: Longest call, seconds, whose memory is measured.
 LONGEST = 3600.0
 
 
@@ -24,19 +24,10 @@ def timed(call: Callable[[], Any]) -> tuple[Any, float]:
 def repeated(
     calls: Sequence[Callable[[], Any]], first: Sequence[float], *, runs: int, longest: float
 ) -> list[list[float]]:
-    """Seconds of repeated calls, in turn; each was made once before.
+    """Seconds of repeated calls, in turn, so that a disturbance of the machine affects all alike.
 
-    All once, then all again: what disturbs the machine for a while disturbs all alike.
-
-    Parameters
-    ----------
-    calls : sequence of callable
-    first : sequence of float
-        Seconds of the first call of each.
-    runs : int
-        Of each, the first included.
-    longest : float
-        A call that took more seconds is not made again.
+    Each was made once before, in ``first`` seconds, which is one of its ``runs``. A call that took
+    more than ``longest`` seconds is not made again.
     """
     seconds = [[took] for took in first]
     for _ in range(runs - 1):
@@ -47,17 +38,10 @@ def repeated(
 
 
 def peak_memory(call: Callable[[], Any]) -> float:
-    """Largest memory that a call adds to that of the process, in bytes.
+    """Largest memory, bytes, that a call adds to that of the process.
 
-    Parameters
-    ----------
-    call : callable
-        Made in a child process, on one thread: the threads of the parent do not exist there.
-
-    Returns
-    -------
-    float
-        NaN if the call ends in an error, or takes longer than `LONGEST`.
+    The call is made in a child process, on one thread, since the parent's threads do not exist
+    there. NaN if it ends in an error, or takes longer than `LONGEST`.
     """
     _hand_back()
     try:
@@ -67,7 +51,7 @@ def peak_memory(call: Callable[[], Any]) -> float:
 
 
 def _hand_back():
-    """Give freed memory back, where the C library can: a child would use it unseen."""
+    """Give freed memory back, where the C library can: a child would use it unnoticed."""
     trim = getattr(ctypes.CDLL(None), "malloc_trim", None)
     if trim is not None:
         trim(0)

@@ -20,8 +20,8 @@ def violation(state: ContactState, height: np.ndarray) -> tuple[float, float]:
     Returns
     -------
     violation, rounding : float
-        Relative to the closure: how far gaps and pressures are from a state of contact, and how
-        much of it the rounding of the heights themselves explains.
+        Relative to the closure: distance of gaps and pressures from a state of contact, and the
+        part of it that the rounding of the heights explains.
     """
     (ny, nx), (dy, dx) = state.space.shape, state.space.spacing
     y, x = np.arange(1 - ny, ny)[:, None] * dy, np.arange(1 - nx, nx)[None, :] * dx

@@ -25,21 +25,15 @@ _TEMPLATE = Path(__file__).with_name("size_effect.md.jinja")
 _WIDTH = 132
 #: Signs of the verdicts on an exponent of the strength.
 _SIGNS = {"no size effect": " *", "undetermined": " ?"}
-#: What the surfaces of one arm and side differ in but for their seeds.
+#: Properties, other than seeds, by which surfaces of one arm and side differ.
 _CLASS = ("hurst", "cut_off", "construction")
 
 
 def page(test: xr.Dataset, study: str, strength: xr.Dataset | None = None) -> str:
     """Text of the page, in Markdown.
 
-    Parameters
-    ----------
-    test : xr.Dataset
-        Group ``size_effect/surfaces`` of an atlas.
-    study : str
-        Name of the study, from which the command follows.
-    strength : xr.Dataset, optional
-        Group ``size_strength/surfaces``, where the atlas has it.
+    From the groups ``size_effect/surfaces`` and, if the atlas has it, ``size_strength/surfaces``;
+    the name of the study gives the command.
     """
     environment = Environment(trim_blocks=True, lstrip_blocks=True, undefined=StrictUndefined)
     environment.filters["prose"] = _prose
@@ -86,7 +80,7 @@ def _with_error(one: xr.Dataset, name: str, less: float = 0.0) -> str:
 def _cells(
     one: xr.Dataset, *names: str, less: float = 0.0, beside: str = "", sign: Sequence[str] = ()
 ) -> str:
-    """A cell for each load: the value of each name with its error, a number, and a sign."""
+    """Cells for the loads: the value of each name with its error, a number, and a sign."""
     cells = []
     for i in range(one.sizes["reduced_pressure"]):
         cell = one.isel(reduced_pressure=i)
@@ -103,13 +97,13 @@ def _counted(verdicts: np.ndarray) -> list[str]:
 
 def _powers(test: xr.Dataset, arm: str, hurst: float) -> str:
     """Powers of the stiffness over the pressure, between neighbouring loads."""
-    here = (test["of_arm"] == arm) & (test["of_hurst"] == hurst)
-    largest = here & (test["of_size"] == test["of_size"].where(here).max())
+    of_class = (test["of_arm"] == arm) & (test["of_hurst"] == hurst)
+    largest = of_class & (test["of_size"] == test["of_size"].where(of_class).max())
     compliance = test["compliance"].isel(surface=largest.values).values
     steps = np.diff(np.log(test["reduced_pressure"].values))
     slopes = -np.diff(np.log(np.where(compliance > 0, compliance, np.nan))) / steps
-    known = [column[np.isfinite(column)] for column in slopes.T]
-    return ", ".join(f"{np.median(one):.2f}" if one.size else "–" for one in known)
+    finite = [column[np.isfinite(column)] for column in slopes.T]
+    return ", ".join(f"{np.median(one):.2f}" if one.size else "–" for one in finite)
 
 
 def _fractions(test: xr.Dataset) -> str:
@@ -149,13 +143,13 @@ def _other_exponents(test: xr.Dataset) -> str:
 
 def _surfaces(test: xr.Dataset) -> dict[str, list[str]]:
     """Number of surfaces of each class in the run, by arm."""
-    found: dict[str, list[str]] = {}
+    rows: dict[str, list[str]] = {}
     for arm, size in sorted({*zip(test["of_arm"].values, test["of_size"].values, strict=True)}):
-        here = (test["of_arm"] == arm) & (test["of_size"] == size)
-        part = test.isel(surface=here.values)
+        of_class = (test["of_arm"] == arm) & (test["of_size"] == size)
+        part = test.isel(surface=of_class.values)
         kinds = {*zip(*(part[f"of_{key}"].values for key in _CLASS), strict=True)}
-        found.setdefault(str(arm), []).append(f"{part.sizes['surface'] // len(kinds)} of {size}")
-    return found
+        rows.setdefault(str(arm), []).append(f"{part.sizes['surface'] // len(kinds)} of {size}")
+    return rows
 
 
 @said_in_one_line

@@ -1,11 +1,12 @@
 """Bias, scatter and coverage of the estimators of Delta_g, on synthetic surfaces of known H.
 
-Each surface is measured as a scan would be: over the default range, with the interval every scan
-gets, and with a roll-off that has to be seen where there is one. An interval is honest if it holds
+Each surface is measured as a scan would be: over the default range, with the interval of every
+scan, and with the search for a roll-off. An interval is honest if it holds
 the exponent of the synthesis in most cases.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -24,13 +25,12 @@ from fractalcontact.surface.synthesis import self_affine
 
 from .units import SPACING
 
-#: H does not depend on the unit of height.
-RMS = 1.0  # mm
+#: Root mean square height, mm: H does not depend on it.
+RMS = 1.0
 
-#: Verdicts are about surfaces at least this smooth, as those of natural joints are.
+#: Least H of the surfaces of the verdicts: those of natural joints are as smooth.
 FROM_HURST = 0.5
-#: Bias that three estimators at least are to keep to there, and fraction of the intervals that are
-#: to hold H.
+#: Largest bias there of at least three estimators, and least fraction of the intervals that hold H.
 TOLERATED, PROMISED = 0.03, 0.9
 
 
@@ -57,27 +57,17 @@ def estimator_bias(recipe: Mapping[str, Any]) -> xr.Dataset:
         (hurst, size, roll_off): ``roll_off_seen``, fraction of surfaces. Over estimator, for H >=
         0.5: ``worst_bias``, ``overall_error`` (rms) and ``min_coverage``; for smaller H
         ``rough_coverage``. Attributes ``first_cells`` and ``last_part``: default range;
-        ``recommended``: estimator; ``tolerated_bias`` and ``promised_coverage``: what is aimed at.
+        ``recommended``: estimator; ``tolerated_bias`` and ``promised_coverage``: the targets.
     """
     exponents, sizes, seeds = (np.unique(recipe[key]) for key in ("hurst", "sizes", "seeds"))
     stated = [np.inf if part is None else float(part) for part in recipe.get("roll_offs", [None])]
     roll_offs = np.unique(stated)[::-1]
-    names = list(ESTIMATORS)
     shape = len(exponents), len(sizes), len(roll_offs), len(seeds)
-    estimates, seen = np.full((4, len(names), *shape), np.nan), np.zeros(shape, bool)
-    for (i, hurst), (j, nodes), (m, part), (k, seed) in _numbered(
-        exponents, sizes, roll_offs, seeds
-    ):
-        roll_off = part * nodes * SPACING if np.isfinite(part) else None
-        surface = self_affine(
-            (nodes, nodes), SPACING, hurst, rms=RMS, seed=int(seed), roll_off=roll_off
-        )
-        found, fit_range = measured_exponents(surface, SPACING)
-        seen[i, j, m, k] = np.isfinite(fit_range.roll_off.value)
-        for n, estimate in enumerate(found.values()):
-            estimates[:, n, i, j, m, k] = *estimate.hurst["both"].ends, estimate.slope_hurst
+    rows = [_measured(*surface) for surface in product(exponents, sizes, roll_offs, seeds)]
+    estimates = np.stack([row for row, _ in rows], axis=-1).reshape(4, len(ESTIMATORS), *shape)
+    seen = np.reshape([seen for _, seen in rows], shape)
     coords = {
-        "estimator": names,
+        "estimator": list(ESTIMATORS),
         "hurst": ("hurst", exponents, cf_attrs("1", "Hurst exponent of the surfaces")),
         "size": ("size", sizes, cf_attrs("1", "nodes per side")),
         "roll_off": (
@@ -90,15 +80,19 @@ def estimator_bias(recipe: Mapping[str, Any]) -> xr.Dataset:
     return _with_verdicts(_judged(estimates, seen, coords))
 
 
-def _numbered(*values: np.ndarray) -> Iterator[list[tuple[int, Any]]]:
-    """Every combination of the values, each value with its place."""
-    grids = np.meshgrid(*(np.arange(len(v)) for v in values), indexing="ij")
-    for places in zip(*(grid.ravel() for grid in grids), strict=True):
-        yield [(place, v[place]) for place, v in zip(places, values, strict=True)]
+def _measured(hurst: float, nodes: int, part: float, seed: int) -> tuple[np.ndarray, bool]:
+    """H with its ends and the slope's H (4, estimators) of one surface; whether it rolls off."""
+    roll_off = part * nodes * SPACING if np.isfinite(part) else None
+    surface = self_affine(
+        (nodes, nodes), SPACING, hurst, rms=RMS, seed=int(seed), roll_off=roll_off
+    )
+    curves, fit_range = measured_exponents(surface, SPACING)
+    numbers = [(*curve.hurst["both"].ends, curve.slope_hurst) for curve in curves.values()]
+    return np.transpose(numbers), np.isfinite(fit_range.roll_off.value)
 
 
 def _judged(estimates: np.ndarray, seen: np.ndarray, coords: Mapping[str, Any]) -> xr.Dataset:
-    """The dataset from H, the ends of its interval and the slopes' H, and roll-offs seen."""
+    """Dataset of H, the ends of its interval, the slopes' H, and roll-offs seen."""
     dims = tuple(coords)
     *ends, slope = estimates
     value, low, high = ends
@@ -127,22 +121,22 @@ def _judged(estimates: np.ndarray, seen: np.ndarray, coords: Mapping[str, Any]) 
         "roll_off_seen": seen.mean(axis=-1),
     }
     result = labelled_dataset(table, values, coords=coords)
-    found = Estimate(value, low, high)
-    result.update(found.variables("found", dims, "1", "Hurst exponent by the estimator"))
+    estimate = Estimate(value, low, high)
+    result.update(estimate.variables("found", dims, "1", "Hurst exponent by the estimator"))
     result.update(bias.variables("bias", over, "1", "mean bias of H"))
     return result
 
 
 def _mean(values: np.ndarray) -> np.ndarray:
     """Means over the seeds with a value; NaN without any."""
-    known = np.isfinite(values)
-    return ratio(np.where(known, values, 0.0).sum(axis=-1), known.sum(axis=-1))
+    finite = np.isfinite(values)
+    return ratio(np.where(finite, values, 0.0).sum(axis=-1), finite.sum(axis=-1))
 
 
 def _with_verdicts(result: xr.Dataset) -> xr.Dataset:
-    """The table with numbers over all natural surfaces, (estimator)."""
+    """Table with numbers over all natural surfaces, (estimator)."""
     natural = result.where(result["hurst"] >= FROM_HURST)
-    every = ["hurst", "size", "roll_off"]
+    all_surfaces = ["hurst", "size", "roll_off"]
     of = f"H from {FROM_HURST:g}"
     table = {
         "worst_bias": f"largest mean bias, {of}",
@@ -150,13 +144,13 @@ def _with_verdicts(result: xr.Dataset) -> xr.Dataset:
         "min_coverage": f"smallest coverage of any H, size and roll-off, {of}",
     }
     values: dict[str, Any] = {
-        "worst_bias": abs(natural["bias"]).max(every),
-        "overall_error": np.sqrt((natural["rms_error"] ** 2).mean(every)),
-        "min_coverage": natural["coverage"].min(every),
+        "worst_bias": abs(natural["bias"]).max(all_surfaces),
+        "overall_error": np.sqrt((natural["rms_error"] ** 2).mean(all_surfaces)),
+        "min_coverage": natural["coverage"].min(all_surfaces),
     }
     for name, words in table.items():
         result[name] = values[name].assign_attrs(cf_attrs("1", words))
-    rough = result["coverage"].where(result["hurst"] < FROM_HURST).min(every)
+    rough = result["coverage"].where(result["hurst"] < FROM_HURST).min(all_surfaces)
     words = f"smallest coverage of any size and roll-off, H below {FROM_HURST:g}"
     result["rough_coverage"] = rough.assign_attrs(cf_attrs("1", words))
     result.attrs = {

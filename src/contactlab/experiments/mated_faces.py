@@ -1,7 +1,7 @@
 """Synthetic mated faces that slide, of one spectrum at every size: their composite, and S(v).
 
-One face slides over its copy. Both are cut from one larger surface, so that nothing is lost at the
-edge of the window, whatever the displacement.
+One face slides over its copy. Both are cut from one larger surface, so that the window has no edge
+effects at any displacement.
 """
 
 from collections.abc import Mapping
@@ -16,7 +16,7 @@ from .units import SPACING
 
 #: Stream of the seeds: faces share no noise with the surfaces of other experiments.
 _STREAM = 5
-#: Points of the integral over the spectrum, for one radian of q v and in all.
+#: Points of the integral over the spectrum: for one radian of q v, and fewest in all.
 _POINTS, _FEWEST = 32, 4000
 
 
@@ -30,15 +30,10 @@ class FaceClass(NamedTuple):
 
 
 def face_class(hurst: float, recipe: Mapping[str, Any]) -> FaceClass:
-    """Spectrum of the faces of a recipe.
+    """Spectrum of the faces of a recipe with Hurst exponent ``hurst``.
 
-    Parameters
-    ----------
-    hurst : float
-        H.
-    recipe : mapping
-        ``cut_off`` and ``roll_off`` in nodes, ``sizes`` in nodes per side, and ``rms_slope``, the
-        h'_rms of a face: one prefactor for all sizes, in the mean of the largest.
+    The recipe has ``cut_off`` and ``roll_off`` in nodes, ``sizes`` in nodes per side, and
+    ``rms_slope``, the h'_rms of a face: one prefactor for all sizes, in the mean of the largest.
     """
     lengths = {key: recipe[key] * SPACING for key in ("cut_off", "roll_off")}
     largest = max(recipe["sizes"])
@@ -62,20 +57,11 @@ def sliding_face(faces: FaceClass, size: int, reach: int, number: int) -> np.nda
 
 
 def mated_composite(face: np.ndarray, offset: int) -> np.ndarray:
-    """Composite topography h(x) = z(x + v) - z(x) of a face and its copy, about its mean.
+    """Composite topography h(x) = z(x + v) - z(x) (n, n) of a face and its copy about its mean, mm.
 
-    Parameters
-    ----------
-    face : (n, n + reach) ndarray
-        Heights, mm.
-    offset : int
-        v, nodes along x, up to the reach.
-
-    Returns
-    -------
-    (n, n) ndarray
-        mm. Its mean, the tilt of the window times v, is taken off: a joint opens by the separation
-        of its mean planes, however they lie.
+    The face (n, n + reach) is in mm, the offset v in nodes along x, up to the reach. The mean, the
+    tilt of the window times v, is taken off: a joint opens by the separation of its mean planes,
+    whatever their tilt.
     """
     size = len(face)
     composite = face[:, offset : offset + size] - face[:, :size]
@@ -85,21 +71,9 @@ def mated_composite(face: np.ndarray, offset: int) -> np.ndarray:
 def height_difference(offset: np.ndarray, faces: FaceClass) -> np.ndarray:
     """Height-difference function S(v) = <(z(x + v) - z(x))^2>, mm2: mean square of the composite.
 
-    Parameters
-    ----------
-    offset : array_like
-        v, mm.
-    faces : FaceClass
-
-    Returns
-    -------
-    ndarray
-        The integral of 2 C(q) (1 - J_0(q v)) q dq / (2 pi). It goes with v^2 below the cut-off,
-        about as v^(2H) up to the roll-off, and is twice the mean square height beyond.
-
-    Notes
-    -----
-    Persson et al., J. Phys. Condens. Matter 17 (2005) R1, for the spectrum.
+    The integral of 2 C(q) (1 - J_0(q v)) q dq / (2 pi), v in mm. It goes with v^2 below the
+    cut-off, about as v^(2H) up to the roll-off, and is twice the mean square height beyond.
+    Spectrum: Persson et al., J. Phys. Condens. Matter 17 (2005) R1.
     """
     offset = np.asarray(offset, float)
     largest, corner = 2 * np.pi / faces.cut_off, 2 * np.pi / faces.roll_off

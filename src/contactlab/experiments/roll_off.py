@@ -61,7 +61,7 @@ def roll_off_effect(recipe: Mapping[str, Any], window: float, seeds: Sequence[in
     Notes
     -----
     Without the roll-off the spectrum goes on to the longest wave. Heights are scaled to the rms
-    slope that the same seed has with it, so that the short waves are as high.
+    slope of the same seed with the roll-off, so that the short waves are as high.
     """
     by_surface = {
         surface: [_slide(heights, recipe["spacing"], window) for heights in surfaces]
@@ -88,11 +88,8 @@ def roll_off_effect(recipe: Mapping[str, Any], window: float, seeds: Sequence[in
 def add_trend(result: xr.Dataset) -> None:
     """Add slope, change and trend of the dilatancy over the second half of the offsets.
 
-    Parameters
-    ----------
-    result : xr.Dataset
-        With ``rigid_dilatancy`` over (surface, seed, direction, rigid_offset): ``slope``, its mean
-        over the seeds, with its interval, ``change`` and ``trend`` over (surface,) are added to it.
+    ``result`` has ``rigid_dilatancy`` over (surface, seed, direction, rigid_offset) and gets
+    ``slope``, its mean over the seeds, with its interval, ``change`` and ``trend`` over (surface,).
     """
     v = result["rigid_offset"].values
     half = second_half(v)
@@ -115,11 +112,8 @@ def add_trend(result: xr.Dataset) -> None:
 def add_means(result: xr.Dataset) -> None:
     """Add means over the directions of each joint, and the first offset of the slope.
 
-    Parameters
-    ----------
-    result : xr.Dataset
-        Of :func:`roll_off_effect`: gets ``joint_dilatancy``, ``joint_rms``, ``joint_rms_expected``
-        and ``joint_dilatancy_over_rms`` over (surface, seed, rigid_offset).
+    ``result`` of :func:`roll_off_effect` gets ``joint_dilatancy``, ``joint_rms``,
+    ``joint_rms_expected`` and ``joint_dilatancy_over_rms`` over (surface, seed, rigid_offset).
     """
     order = ("surface", "seed", "direction", "rigid_offset")
     slides = result.transpose(*order)

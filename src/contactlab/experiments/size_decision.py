@@ -1,9 +1,9 @@
 """Decision rule on the exponent of the size effect.
 
-Eq. 6 wants the nominal pressure at one sigma*, and so the part of the nominal area that touches at
-one nominal pressure, to go with the side as b^-(2 - Delta_sigma), whichever way Delta_sigma is
-measured. Here the exponent alpha of A_r/A_0 over b is compared with that, class by class. Intervals
-are over surfaces, not over a regression.
+Eq. 6 demands that the nominal pressure at one sigma*, and so the part of the nominal area that
+touches at one nominal pressure, goes with the side as b^-(2 - Delta_sigma), for either measure of
+Delta_sigma. Here the exponent alpha of A_r/A_0 over b is compared with that, class by class.
+Intervals are over surfaces, not over a regression.
 """
 
 from collections.abc import Hashable, Iterable, Sequence
@@ -18,17 +18,17 @@ from fractalcontact.core.labels import cf_attrs
 from fractalcontact.size_effect.size_verdict import NO_EFFECT as NO_EFFECT
 from fractalcontact.size_effect.size_verdict import WIDEST_PREDICTION as WIDEST_PREDICTION
 
-#: Probability covered by the intervals that decide, and by those that are only shown.
+#: Probability of the intervals that decide, and of those that are only shown.
 PROBABILITY, USUAL = 0.99, 0.95
 
 #: Loads at which a class must follow eq. 6 before it is supported.
 SUPPORTING_LOADS = 3
 
-#: Sides from this number of roll-offs on hold enough hills to be compared.
+#: Smallest side, roll-offs, that holds enough hills to be compared.
 MIN_ROLL_OFFS = 4
 
 REFUTED, SUPPORTED, OPEN = "eq. 6 refuted", "eq. 6 agrees", "undetermined"
-#: What enough loads that agree are called together.
+#: Verdict where enough loads agree.
 UPHELD = "eq. 6 supported"
 
 
@@ -45,12 +45,12 @@ class Exponent(Estimate):
 
     @classmethod
     def scattered(cls, value: float, error: float, freedom: float) -> "Exponent":
-        """From the standard error and its degrees of freedom, by Student's t."""
+        """Exponent from the standard error and its degrees of freedom, by Student's t."""
         half, usual = (quantile(freedom, level) * error for level in (PROBABILITY, USUAL))
         return cls(value, value - half, value + half, error=error, half_width=usual)
 
     def less(self, other: "Exponent") -> "Exponent":
-        """Difference from an independent one, with the joint interval."""
+        """Difference from an independent exponent, with the joint interval."""
         value = self.value - other.value
         half = float(np.hypot(self.high - self.value, other.high - other.value))
         error = float(np.hypot(self.error, other.error))
@@ -60,17 +60,17 @@ class Exponent(Estimate):
     @classmethod
     def stack(cls, estimates: Iterable[Estimate], shape: Sequence[int] = (-1,)) -> "Exponent":
         """Exponents as one of arrays, in C order over ``shape``."""
-        each = list(estimates)
+        exponents = list(estimates)
         error, usual = (
-            np.reshape([getattr(one, name) for one in each], shape)
+            np.reshape([getattr(exponent, name) for exponent in exponents], shape)
             for name in ("error", "half_width")
         )
-        return cls(*Estimate.stack(each, shape).ends, error=error, half_width=usual)
+        return cls(*Estimate.stack(exponents, shape).ends, error=error, half_width=usual)
 
     def variables(
         self, name: str, dims: Hashable | Sequence[Hashable], units: str, long_name: str
     ) -> dict[str, tuple[Any, Any, dict[str, str]]]:
-        """As those of an estimate, with ``NAME_error`` and ``NAME_half_width``."""
+        """Variables of an estimate, and ``NAME_error`` and ``NAME_half_width``."""
         usual = f"{long_name}, half-width of the {100 * USUAL:g} % interval"
         return super().variables(name, dims, units, long_name) | {
             f"{name}_error": (dims, self.error, cf_attrs(units, f"{long_name}, standard error")),
@@ -87,13 +87,7 @@ def quantile(freedom: float, probability: float = PROBABILITY) -> float:
 
 
 def mean_exponent(values: np.ndarray) -> Exponent:
-    """Mean exponent over single surfaces, with its interval.
-
-    Parameters
-    ----------
-    values : (n,) array_like
-        NaN where missing.
-    """
+    """Mean exponent over single surfaces (n,), with its interval; NaN values are left out."""
     values = np.asarray(values, float)
     values = values[np.isfinite(values)]
     if values.size < 2:
@@ -127,13 +121,13 @@ def size_exponent(sides: np.ndarray, values: np.ndarray, *, equal: bool = False)
     sides, values = np.asarray(sides, float), np.asarray(values, float)
     usable = np.isfinite(values) & (values > 0)
     groups = [np.log(values[usable & (sides == side)]) for side in np.unique(sides)]
-    known = [group.size > 1 for group in groups]
-    x = np.log(np.unique(sides))[known]
+    scatters = [group.size > 1 for group in groups]
+    x = np.log(np.unique(sides))[scatters]
     groups = [group for group in groups if group.size > 1]
     if len(groups) < 2:
         return UNKNOWN
     mean = np.array([group.mean() for group in groups])
-    # A side whose surfaces are all alike would have all the weight.
+    # A side whose surfaces are all equal would have infinite weight.
     variance = np.array([np.var(group, ddof=1) / group.size for group in groups])
     variance = np.maximum(variance, 1e-12)
     weight = np.ones(variance.size) if equal else 1 / variance
@@ -149,25 +143,19 @@ def size_exponent(sides: np.ndarray, values: np.ndarray, *, equal: bool = False)
 def paired_exponent(sides: np.ndarray, values: np.ndarray, surfaces: np.ndarray) -> Exponent:
     """Exponent of a positive quantity over the side, from windows of the same surfaces.
 
-    Parameters
-    ----------
-    sides, values, surfaces : (n,) array_like
-        Side, mean over the windows of that side, and the number of the surface they are cut from.
-
-    Returns
-    -------
-    Exponent
-        Mean over the surfaces of the slopes that each has; its interval is over surfaces.
+    The mean over the surfaces of the slope of each, with the interval over surfaces. ``sides``
+    (n,), ``values`` are means over the windows of a side, ``surfaces`` the numbers of their
+    surfaces.
     """
-    sides, values, surfaces = (np.asarray(one) for one in (sides, values, surfaces))
+    sides, values, surfaces = (np.asarray(column) for column in (sides, values, surfaces))
     usable = np.isfinite(values) & (values > 0)
     slopes = []
     for surface in np.unique(surfaces):
-        here = usable & (surfaces == surface)
-        x = np.log(sides[here])
+        of_surface = usable & (surfaces == surface)
+        x = np.log(sides[of_surface])
         lever = x - x.mean() if x.size else x
         if np.any(lever):
-            slopes.append(float(lever @ np.log(values[here]) / (lever @ lever)))
+            slopes.append(float(lever @ np.log(values[of_surface]) / (lever @ lever)))
     return mean_exponent(np.array(slopes))
 
 
@@ -180,21 +168,12 @@ class Decision(NamedTuple):
 
 
 def decide(alpha: Exponent, by_area: Exponent, by_boxes: Exponent) -> Decision:
-    """The rule: alpha beside -(2 - Delta_sigma) of both estimators.
+    """Verdict of the rule: alpha compared with -(2 - Delta_sigma) of both estimators.
 
-    Parameters
-    ----------
-    alpha : Exponent
-        Of A_r/A_0 over the side.
-    by_area, by_boxes : Exponent
-        Predictions -(2 - Delta_sigma), from A_r(s) and from box counts.
-
-    Returns
-    -------
-    Decision
-        Refuted where alpha differs from both predictions beyond their joint interval; agreeing
-        where it does not differ from one that is narrow enough to decide; else undetermined.
-        ``no_size_effect`` where the whole interval of alpha lies within :data:`NO_EFFECT` of zero.
+    Refuted where alpha, of A_r/A_0 over the side, differs from both predictions (from A_r(s) and
+    from box counts) beyond their joint interval; agreeing where it does not differ from one that is
+    narrow enough to decide; else undetermined. ``no_size_effect`` where the whole interval of alpha
+    lies within :data:`NO_EFFECT` of zero.
     """
     flat = max(abs(alpha.low), abs(alpha.high)) < NO_EFFECT
     if not np.isfinite(alpha.error):
@@ -205,7 +184,7 @@ def decide(alpha: Exponent, by_area: Exponent, by_boxes: Exponent) -> Decision:
     narrow = [p for p in predictions if p.high - p.low <= WIDEST_PREDICTION]
     agreeing = [p for p in narrow if not differ(alpha, p)]
     if agreeing:
-        # That which predicts hardly an effect agrees with none at all, and supports nothing.
+        # A prediction of hardly any effect agrees with no effect at all, and supports nothing.
         if all(abs(p.value) < NO_EFFECT for p in agreeing):
             return Decision(OPEN, flat, "the prediction itself is next to no size effect")
         return Decision(SUPPORTED, flat, "within the joint interval of a prediction")
@@ -223,15 +202,10 @@ def differ(first: Exponent, second: Exponent) -> bool:
 
 
 def overall(decisions: list[Decision], *, follows: bool) -> str:
-    """Verdict on a class over all its loads.
+    """Verdict on a class over the decisions at all its loads.
 
-    Parameters
-    ----------
-    decisions : list of Decision
-        One a load.
-    follows : bool
-        Whether alpha follows the predicted change where H changes; without that nothing supports
-        eq. 6, for a number may be met by chance.
+    ``follows`` says whether alpha follows the predicted change where H changes; without that
+    nothing supports eq. 6, as a number may be met by chance.
     """
     refuted = sum(decision.verdict == REFUTED for decision in decisions)
     agreeing = sum(decision.verdict == SUPPORTED for decision in decisions)

@@ -1,8 +1,9 @@
 """Contact of synthetic surfaces whose prefactor, cut-offs and size are set one by one.
 
-What eq. 6 gives one exponent for is separated: the short cut-off of the surface (resolution), its
-side (size) and the set that touches (geometry). The spectrum has one prefactor throughout, so that
-a larger surface continues a smaller one, and a longer cut-off leaves waves away and changes none.
+Eq. 6 has one exponent for three causes, which are separated here: the short cut-off of the surface
+(resolution), its side (size) and the set that touches (geometry). The spectrum has one prefactor
+throughout, so that a larger surface continues a smaller one, and a longer cut-off only leaves waves
+out.
 """
 
 from collections.abc import Sequence
@@ -30,14 +31,14 @@ from roughcontact.elastic.halfspace import HalfSpace
 from .size_tasks import SizeTask
 from .units import E_STAR, SPACING
 
-#: Prefactor C_0 of the spectrum, mm^(2 - 2H): nothing depends on it, for pressures are in units of
+#: Prefactor C_0 of the spectrum, mm^(2 - 2H): nothing depends on it, as pressures are in units of
 #: E* h'_rms.
 PREFACTOR = 1e-6
 #: Standard deviation of the heights of other constructions, mm: nothing depends on it either.
 RMS = 1e-2
 
 _STATE = ("surface", "reduced_pressure")
-#: What is kept of every state: dimensions, unit and long name.
+#: Stored variables of every state: dimensions, unit and long name.
 STATES: dict[str, tuple] = {
     "area_share": (_STATE, "1", "real contact area A_r / A_0"),
     "corrected_share": (_STATE, "1", "real contact area A_r / A_0, corrected for the perimeter"),
@@ -53,7 +54,7 @@ STATES: dict[str, tuple] = {
     "cut_dimension": (_STATE, "1", "the same of the bearing-area cut of as many nodes"),
     **{name: (_STATE, *SCALARS[name]) for name in ("residual", "energy_error")},
 }
-#: What is kept of every surface.
+#: Stored variables of every surface.
 SURFACES: dict[str, tuple] = {
     "of_arm": ("surface", "1", "arm of the experiment"),
     "of_hurst": ("surface", "1", "Hurst exponent H"),
@@ -87,10 +88,10 @@ def solve_task(task: SizeTask, loads: Sequence[float], rtol: float) -> xr.Datase
     ----------
     task : SizeTask
     loads : sequence of float
-        Values of p / (E* h'_rms), h'_rms being that which surfaces of the arm and size have in the
-        mean with the shortest cut-off, so that the pressure is one for all cut-offs.
+        Values of p / (E* h'_rms), h'_rms being the mean of surfaces of the arm and size
+        with the shortest cut-off, so that the pressure is one for all cut-offs.
     rtol : float
-        Of the solves.
+        Tolerance of the solves.
 
     Returns
     -------
@@ -104,8 +105,10 @@ def solve_task(task: SizeTask, loads: Sequence[float], rtol: float) -> xr.Datase
     """
     pressures = np.unique(loads)
     numbers = range(task.first, task.first + task.surfaces)
-    each = [_one_surface(task, number, pressures, rtol) for number in numbers]
-    values: dict[str, Any] = {name: np.array([one[name] for one in each]) for name in each[0]}
+    surfaces = [_one_surface(task, number, pressures, rtol) for number in numbers]
+    values: dict[str, Any] = {
+        name: np.array([surface[name] for surface in surfaces]) for name in surfaces[0]
+    }
     of_class = {
         "of_arm": np.array([task.arm] * task.surfaces),
         "of_hurst": np.full(task.surfaces, task.hurst),
@@ -131,7 +134,7 @@ def _class_of(task: SizeTask) -> dict[str, Any]:
 
 
 def _mean_slope(task: SizeTask) -> float:
-    """h'_rms of a class. Without a roll-off long waves add a little with the size."""
+    """h'_rms of a class. Without a roll-off long waves make it grow a little with the size."""
     return band_slope((task.size, task.size), SPACING, task.hurst, **_class_of(task))
 
 
@@ -181,15 +184,15 @@ def _one_surface(task: SizeTask, number: int, pressures: np.ndarray, rtol: float
         slope = own = float(np.sqrt(sum(np.mean(d**2) for d in np.gradient(whole, SPACING))))
     else:
         slope = _mean_slope(task._replace(cut_off=task.finest))
-        # Not differences of nodes: those of waves of a few nodes are too small.
+        # The slope is that of the waves: node differences are too small for waves of a few nodes.
         own = _mean_slope(task)
     space = HalfSpace(windows[0].shape, (SPACING, SPACING), E_STAR)
     forces = pressures * slope * E_STAR * windows[0].size * SPACING**2
     band = task.cut_off * SPACING, (task.roll_off or len(windows[0]) / 8) * SPACING
     where = f"{task.name}, surface {number}"
-    # One for all windows, so that means of what is divided by it are means of the quantity.
+    # One rms height for all windows, so that mean ratios to it are ratios of mean quantities.
     rms = float(np.mean([np.sqrt(np.mean(heights**2)) for heights in windows]))
-    found = [
+    rows_of_windows = [
         [
             _numbers_of(state, heights, rms, slope, band)
             for state in load_steps(heights, space, forces, {"rtol": rtol}, where)
@@ -197,17 +200,19 @@ def _one_surface(task: SizeTask, number: int, pressures: np.ndarray, rtol: float
         for heights in windows
     ]
     means = {
-        name: _known_mean(np.array([[row[name] for row in rows] for rows in found], float))
+        name: _known_mean(
+            np.array([[row[name] for row in rows] for rows in rows_of_windows], float)
+        )
         for name in STATES
     }
     return {"rms_slope": own, "rms_height": rms} | means
 
 
 def _known_mean(values: np.ndarray) -> np.ndarray:
-    """Mean of the known values over the first axis; NaN without any."""
-    known = np.isfinite(values)
+    """Mean of the values over the first axis that are not NaN; NaN without any."""
+    finite = np.isfinite(values)
     with np.errstate(invalid="ignore"):
-        return np.where(known, values, 0.0).sum(axis=0) / known.sum(axis=0)
+        return np.where(finite, values, 0.0).sum(axis=0) / finite.sum(axis=0)
 
 
 def _numbers_of(

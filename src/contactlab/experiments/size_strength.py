@@ -1,8 +1,8 @@
 """Size effect of the strength of mated joints that slide, at equal v and at equal v/b.
 
 At equal v no length of the ensemble is the side b, and there should be no size effect. At equal
-v/b larger joints slide farther, and what becomes of their strength should be what v alone makes of
-it, through the height-difference function S(v). Both are decided here, for elastic and for capped
+v/b larger joints slide farther, and their strength should follow from v alone, through the
+height-difference function S(v). Both are decided here, for elastic and for capped
 (elastic-perfectly plastic) contact, with the dilatancy angle not truncated.
 """
 
@@ -34,7 +34,7 @@ from .units import E_STAR, SPACING
 RTOL = 1e-5
 
 _STATE = ("surface", "law", "offset", "reduced_pressure")
-#: What is kept of every state: dimensions, unit and long name.
+#: Stored variables of every state: dimensions, unit and long name.
 STATES: dict[str, tuple] = {
     "separation": (_STATE, "mm", "separation of the mean planes of the faces (mean gap)"),
     "corrected_share": (_STATE, "1", "real contact area A_r / A_0, corrected for the perimeter"),
@@ -42,7 +42,7 @@ STATES: dict[str, tuple] = {
     "yielded": (_STATE, "1", "fraction of the nodes in contact that carry the hardness"),
     **{name: (_STATE, *SCALARS[name]) for name in ("residual", "energy_error")},
 }
-#: What is kept of every surface, and of every spectrum.
+#: Stored variables of every surface, and of every spectrum.
 SURFACES: dict[str, tuple] = {
     "of_hurst": ("surface", "1", "Hurst exponent H"),
     "of_size": ("surface", "1", "nodes per side"),
@@ -68,13 +68,13 @@ def size_strength(recipe: Mapping[str, Any], rtol: float = 1e-6) -> xr.Dataset:
         ``sizes`` in nodes per side and as many numbers of ``surfaces``; and optionally
         ``hardness``, H / (E* h'_rms), for the capped law.
     rtol : float
-        Of the solves, where it is tighter than :data:`RTOL`.
+        Tolerance of the solves, where it is tighter than :data:`RTOL`.
 
     Returns
     -------
     xr.Dataset
-        :data:`STATES` over (surface, law, offset, reduced_pressure), :data:`SURFACES`, and what
-        :func:`experiments.strength_exponents.strength_exponents` concludes from them.
+        :data:`STATES` over (surface, law, offset, reduced_pressure), :data:`SURFACES`, and the
+        results of :func:`experiments.strength_exponents.strength_exponents`.
 
     Raises
     ------
@@ -85,7 +85,7 @@ def size_strength(recipe: Mapping[str, Any], rtol: float = 1e-6) -> xr.Dataset:
 
     Notes
     -----
-    h'_rms is that of the composite of faces that have lost each other, sqrt(2) times that of a
+    h'_rms is that of the composite of uncorrelated faces, sqrt(2) times that of a
     face, so that the pressure is one for all sizes and displacements.
     """
     return strength_exponents(sliding_states(recipe, rtol), recipe)
@@ -94,7 +94,7 @@ def size_strength(recipe: Mapping[str, Any], rtol: float = 1e-6) -> xr.Dataset:
 def sliding_states(recipe: Mapping[str, Any], rtol: float) -> xr.Dataset:
     """States of all surfaces: :data:`STATES`, :data:`SURFACES` and S(v).
 
-    Parameters as of :func:`size_strength`.
+    Parameters are those of :func:`size_strength`.
     """
     if len(recipe["sizes"]) != len(recipe["surfaces"]):
         raise InputError(
@@ -133,24 +133,10 @@ def _laws(recipe: Mapping[str, Any]) -> dict[str, float]:
 def sliding_joint(
     face: np.ndarray, recipe: Mapping[str, Any], rtol: float, where: str
 ) -> dict[str, np.ndarray]:
-    """States of one face that slides over its copy.
+    """States of one face that slides over its copy: :data:`STATES` and ``composite_rms`` (offset).
 
-    Parameters
-    ----------
-    face : (n, n + reach) ndarray
-        Heights, mm.
-    recipe : mapping
-        ``offsets``, ``loads``, ``rms_slope`` and optionally ``hardness``, as of
-        :func:`size_strength`.
-    rtol : float
-        Of the solves.
-    where : str
-        What is loaded, for errors.
-
-    Returns
-    -------
-    dict of str to ndarray
-        :data:`STATES` over (law, offset, reduced_pressure), and ``composite_rms`` (offset).
+    The face (n, n + reach) is in mm, the recipe that of :func:`size_strength`; ``where`` names the
+    joint in errors.
     """
     size = len(face)
     area = (size * SPACING) ** 2
@@ -176,7 +162,7 @@ def _numbers_of(state: ContactState, area: float) -> dict[str, float]:
     """:data:`STATES` of one state."""
     domain = state.in_contact
     return {
-        # Where material has yielded the gap is negative: the planes come that much closer.
+        # The gap is negative where material has yielded: the planes come closer by as much.
         "separation": float(state.gap.mean()),
         "corrected_share": float(corrected_area(domain, state.space.spacing)) / area,
         "nodes": int(np.count_nonzero(domain)),

@@ -1,4 +1,4 @@
-"""Jobs of the experiment on the size effect: which surfaces each of them makes and solves.
+"""Jobs of the experiment on the size effect: the surfaces that each of them makes and solves.
 
 Light, because the workflow reads it: a job takes seeds of one arm, one Hurst exponent, one size and
 one short cut-off, as many as last for minutes.
@@ -10,8 +10,8 @@ from typing import Any, NamedTuple
 
 from fractalcontact.core.errors import InputError
 
-#: Arms of the experiment: what makes the long waves of the surfaces of each. In R the short cut-off
-#: is varied at one size; in S1, S2, S3 and W the size, at one short cut-off; in G the construction.
+#: Arms of the experiment with the limit of the long waves of their surfaces. R varies the short
+#: cut-off at one size; S1, S2, S3 and W vary the size at one short cut-off; G the construction.
 ARMS = {
     "R": "roll-off in proportion to the size",
     "S1": "roll-off fixed",
@@ -23,8 +23,8 @@ ARMS = {
 
 #: Nodes of all surfaces of one job together, about.
 NODES_A_JOB = 2**24
-#: Tasks of one arm and H with fewer nodes than the first share a job of no more than the second:
-#: else most of its time would go into its start.
+#: Largest task, nodes, that shares a job with others of its arm and H, and largest such job: small
+#: jobs would spend most of their time on their start.
 SMALL_TASK, NODES_SHARED = 2**21, 2**22
 
 
@@ -52,13 +52,13 @@ class SizeTask(NamedTuple):
 
     @property
     def name(self) -> str:
-        """Of its file."""
+        """Name of the task's file."""
         name = f"{self.arm}_{self.hurst:g}_{self.size}_{self.cut_off}_{self.first}"
         return f"{name}_{self.construction}" if self.construction else name
 
     @property
     def nodes(self) -> int:
-        """Nodes that are solved."""
+        """Number of nodes to be solved."""
         return self.surfaces * (self.whole or self.size) ** 2
 
 
@@ -70,7 +70,7 @@ def size_tasks(recipe: Mapping[str, Any]) -> list[SizeTask]:
     recipe : mapping
         ``hurst``; ``cut_off`` and ``roll_off`` in nodes, ``roll_off_fraction`` of the side;
         ``arms``, by name ``sizes`` (nodes per side) and as many numbers of ``surfaces``, that of R
-        with ``cut_offs`` and that of G with ``constructions`` beside them. The windows of arm W are
+        with ``cut_offs`` and that of G with ``constructions``, too. The windows of arm W are
         cut from surfaces of its largest size.
 
     Raises
@@ -97,18 +97,12 @@ def size_tasks(recipe: Mapping[str, Any]) -> list[SizeTask]:
 
 
 def size_jobs(recipe: Mapping[str, Any]) -> dict[str, list[SizeTask]]:
-    """Tasks of every job by its name: one, or small ones of one arm and H together.
-
-    Parameters
-    ----------
-    recipe : mapping
-        As for :func:`size_tasks`.
-    """
+    """Tasks of every job of a recipe by its name: one, or small ones of one arm and H together."""
     jobs: list[list[SizeTask]] = []
     shared: dict[tuple, list[SizeTask]] = {}
     for task in size_tasks(recipe):
         together = shared.get((task.arm, task.hurst), [])
-        nodes = task.nodes + sum(one.nodes for one in together)
+        nodes = task.nodes + sum(task_in_job.nodes for task_in_job in together)
         if task.nodes < SMALL_TASK and together and nodes <= NODES_SHARED:
             together.append(task)
             continue
@@ -120,7 +114,7 @@ def size_jobs(recipe: Mapping[str, Any]) -> dict[str, list[SizeTask]]:
 
 def _of_class(arm, hurst, size, cut_off, construction, surfaces, recipe):
     """Tasks of the surfaces of one class."""
-    if construction == "cantor-punch":  # has 3^n nodes per side, and no more than asked for
+    if construction == "cantor-punch":  # it has 3^n nodes per side, at most the requested number
         size = 3 ** int(math.log(size, 3) + 1e-9)
     whole = max(recipe["arms"][arm]["sizes"]) if arm == "W" else None
     step = max(1, NODES_A_JOB // (whole or size) ** 2)

@@ -69,7 +69,7 @@ NUMBERS: dict[str, tuple[tuple[str, ...], str, str]] = {
     "theory_strength": (_AT_V, "1", "tau/sigma_0 from S(v), the separation in its square root"),
     "theory_exponent": (_AT_FRACTION, "1", "exponent of theory_strength over b at equal v/b"),
 }
-#: What decides a class, at equal v and at equal v/b.
+#: Exponents that decide a class, at equal v and at equal v/b.
 _DECIDING = ("pooled_exponent", "scaled_strength_exponent", "predicted_exponent")
 
 
@@ -84,21 +84,11 @@ class _Sample(NamedTuple):
 
 
 def dilatancy_rates(states: xr.Dataset) -> np.ndarray:
-    """Rates d delta/dv between successive displacements, from mated faces on.
+    """Rates d delta/dv (surface, law, interval, reduced_pressure) between successive displacements.
 
-    Parameters
-    ----------
-    states : xr.Dataset
-        From :func:`experiments.size_strength.sliding_states`.
-
-    Returns
-    -------
-    (surface, law, interval, reduced_pressure) ndarray
-
-    Notes
-    -----
-    Secants, as :func:`laws.strength.dilatancy_angle` takes them: of one joint, whose scatter
-    cancels, and every state serves two of them.
+    They begin with mated faces. Secants, as :func:`laws.strength.dilatancy_angle` takes them: of
+    one joint, whose scatter cancels, and every state serves two of them. States are those of
+    :func:`experiments.size_strength.sliding_states`.
     """
     delta = states["separation"].transpose("surface", "law", "offset", "reduced_pressure").values
     delta = np.concatenate([np.zeros_like(delta[:, :, :1]), delta], axis=2)
@@ -107,21 +97,12 @@ def dilatancy_rates(states: xr.Dataset) -> np.ndarray:
 
 
 def strength_exponents(states: xr.Dataset, recipe: Mapping[str, Any]) -> xr.Dataset:
-    """Size effect from states of sliding joints.
+    """Size effect from states of sliding joints, :func:`experiments.size_strength.sliding_states`.
 
-    Parameters
-    ----------
-    states : xr.Dataset
-        From :func:`experiments.size_strength.sliding_states`.
-    recipe : mapping
-        As of :func:`experiments.size_strength.size_strength`.
-
-    Returns
-    -------
-    xr.Dataset
-        The states; :data:`EXPONENTS` with ``_error``, ``_low`` and ``_high`` (99 % over surfaces),
-        :data:`VERDICTS` after ``_verdict``; ``theory_strength`` and ``theory_exponent`` from S(v);
-        ``truncated_share``. Sides from :data:`MIN_ROLL_OFFS` roll-offs on enter exponents.
+    The dataset has the states; :data:`EXPONENTS` with ``_error``, ``_low`` and ``_high`` (99 % over
+    surfaces), :data:`VERDICTS` after ``_verdict``; ``theory_strength`` and ``theory_exponent`` from
+    S(v); ``truncated_share``. Only sides from :data:`MIN_ROLL_OFFS` roll-offs on enter exponents.
+    The recipe is that of :func:`experiments.size_strength.size_strength`.
     """
     offsets = np.r_[0.0, states["offset"].values]
     sides = np.unique(states["of_size"].values)
@@ -136,17 +117,17 @@ def strength_exponents(states: xr.Dataset, recipe: Mapping[str, Any]) -> xr.Data
         name: np.full([sizes[dim] for dim in dims], np.nan) for name, (dims, *_) in NUMBERS.items()
     }
     basic = float(recipe["basic_friction_angle"])
-    found: dict[str, dict[tuple[int, ...], Exponent]] = {name: {} for name in EXPONENTS}
+    exponents: dict[str, dict[tuple[int, ...], Exponent]] = {name: {} for name in EXPONENTS}
     for (i, j, k), sample in _samples(states).items():
-        for name, each in _one_class(sample, sides, smallest, classes, basic).items():
+        for name, values in _one_class(sample, sides, smallest, classes, basic).items():
             middle = np.ndindex(*(sizes[dim] for dim in EXPONENTS[name][0][2:-1]))
             places = ((i, j, *place, k) for place in middle)
-            found[name] |= dict(zip(places, each, strict=True))
+            exponents[name] |= dict(zip(places, values, strict=True))
         numbers["truncated_share"][i, j, ..., k] = _truncated_share(sample, sides, basic)
         difference = states["height_difference"].values[i]
-        for name, each in _by_theory(sample, difference, offsets, classes, basic).items():
-            numbers[name][i, j, ..., k] = each
-    variables = _variables(found, sizes) | labelled(NUMBERS, numbers)
+        for name, values in _by_theory(sample, difference, offsets, classes, basic).items():
+            numbers[name][i, j, ..., k] = values
+    variables = _variables(exponents, sizes) | labelled(NUMBERS, numbers)
     result = states.merge(xr.Dataset(variables, _coords(offsets, sides, classes)), join="exact")
     result.attrs = {
         "smallest_side": int(smallest),
@@ -165,18 +146,18 @@ def _samples(states: xr.Dataset) -> dict[tuple[int, int, int], _Sample]:
     """Joints by the numbers of their Hurst exponent, law and load."""
     rates, hursts = dilatancy_rates(states), states["hurst"].values
     shape = (states.sizes[dim] for dim in (*_CLASS, "reduced_pressure"))
-    found = {}
+    samples = {}
     for i, j, k in product(*map(range, shape)):
-        here = states["of_hurst"].values == hursts[i]
-        one = states.isel(surface=here, law=j, reduced_pressure=k)
-        found[i, j, k] = _Sample(
-            one["of_size"].values,
-            rates[here][:, j, :, k],
-            one["corrected_share"].transpose("surface", "offset").values,
-            one["separation"].transpose("surface", "offset").values,
-            one["number"].values,
+        of_hurst = states["of_hurst"].values == hursts[i]
+        joints = states.isel(surface=of_hurst, law=j, reduced_pressure=k)
+        samples[i, j, k] = _Sample(
+            joints["of_size"].values,
+            rates[of_hurst][:, j, :, k],
+            joints["corrected_share"].transpose("surface", "offset").values,
+            joints["separation"].transpose("surface", "offset").values,
+            joints["number"].values,
         )
-    return found
+    return samples
 
 
 def equal_fractions(
@@ -184,25 +165,18 @@ def equal_fractions(
 ) -> dict[tuple[float, float], dict[float, int]]:
     """Intervals of v that are one fraction of the side, for two sides or more.
 
-    Parameters
-    ----------
-    sides, offsets : array_like
-        mm; the offsets with zero, ascending.
-
-    Returns
-    -------
-    dict
-        By the ends (v/b) of the interval: its number by side.
+    By the ends (v/b) of the interval: its number by side. Sides and offsets are in mm; the offsets
+    include zero and ascend.
     """
-    found: dict[tuple[Fraction, Fraction], dict[float, int]] = {}
+    numbers: dict[tuple[Fraction, Fraction], dict[float, int]] = {}
     for side in sides:
         for k, ends in enumerate(pairwise(offsets)):
             low, high = (Fraction(float(v)) / Fraction(float(side)) for v in ends)
-            found.setdefault((low, high), {})[float(side)] = k
+            numbers.setdefault((low, high), {})[float(side)] = k
     return {
-        (float(low), float(high)): found[low, high]
-        for low, high in sorted(found)
-        if len(found[low, high]) > 1
+        (float(low), float(high)): numbers[low, high]
+        for low, high in sorted(numbers)
+        if len(numbers[low, high]) > 1
     }
 
 
@@ -227,30 +201,37 @@ def _coords(
 
 
 def _variables(
-    found: Mapping[str, Mapping[tuple[int, ...], Exponent]], sizes: Mapping[Any, int]
+    exponents: Mapping[str, Mapping[tuple[int, ...], Exponent]], sizes: Mapping[Any, int]
 ) -> dict[str, tuple]:
     """:data:`EXPONENTS` by their places and the verdicts on them, as ``xr.Dataset`` takes them."""
     variables: dict[str, tuple] = {}
     for name, (dims, words) in EXPONENTS.items():
         shape = [sizes[dim] for dim in dims]
-        each = [found[name][at] for at in np.ndindex(*shape)]
-        variables |= Exponent.stack(each, shape).variables(name, dims, "1", words)
+        members = [exponents[name][place] for place in np.ndindex(*shape)]
+        variables |= Exponent.stack(members, shape).variables(name, dims, "1", words)
         if name in VERDICTS:
-            verdicts = np.reshape(np.array([size_verdict(one) for one in each], object), shape)
+            verdicts = np.reshape(
+                np.array([size_verdict(member) for member in members], object), shape
+            )
             variables[f"{name}_verdict"] = (dims, verdicts, cf_attrs("1", VERDICTS[name]))
-    overall = [[_verdict(found, i, j) for j in range(sizes["law"])] for i in range(sizes["hurst"])]
+    overall = [
+        [_verdict(exponents, i, j) for j in range(sizes["law"])] for i in range(sizes["hurst"])
+    ]
     words = "whether the strength has a size effect, and of what"
     return variables | {"overall": (_CLASS, np.array(overall, object), cf_attrs("1", words))}
 
 
-def _verdict(found: Mapping[str, Mapping[tuple[int, ...], Exponent]], i: int, j: int) -> str:
+def _verdict(exponents: Mapping[str, Mapping[tuple[int, ...], Exponent]], i: int, j: int) -> str:
     """Verdict of a Hurst exponent and law over all loads."""
-    deciding = ([one for at, one in found[name].items() if at[:2] == (i, j)] for name in _DECIDING)
+    deciding = (
+        [exponent for place, exponent in exponents[name].items() if place[:2] == (i, j)]
+        for name in _DECIDING
+    )
     return joint_verdict(*deciding)
 
 
 def _truncated_share(sample: _Sample, sides: np.ndarray, basic: float) -> list[np.ndarray]:
-    """Fraction of joints of each side whose phi_b + i Barton's law does not know."""
+    """Fraction of joints of each side whose phi_b + i is beyond the range of Barton's law."""
     angles = basic + np.degrees(np.arctan(sample.rates))
     out = (angles > LARGEST_FRICTION_ANGLE) | (angles < 0)
     return [out[sample.sides == side].mean(axis=0) for side in sides]
@@ -267,60 +248,66 @@ def _one_class(
     intervals = range(sample.rates.shape[1])
     of_side = {side: sample.rates[sample.sides == side] for side in sides}
     entering = sample.sides >= smallest
-    one = _Sample(*(column[entering] for column in sample))
-    linear = np.array([linear_strengths(one.sides, rate, basic) for rate in one.rates.T])
+    compared = _Sample(*(column[entering] for column in sample))
+    linear = np.array([linear_strengths(compared.sides, rate, basic) for rate in compared.rates.T])
     with np.errstate(invalid="ignore", divide="ignore"):
         pooled = np.exp(np.log(linear).mean(axis=0))
     return {
         "strength": [mean_strength(of_side[s][:, k], basic) for s in sides for k in intervals],
-        "strength_exponent": [strength_exponent(one.sides, r, basic) for r in one.rates.T],
-        "area_exponent": [size_exponent(one.sides, share) for share in one.shares.T],
-        "separation_exponent": [size_exponent(one.sides, gap) for gap in one.separations.T],
-        "pooled_exponent": [size_exponent(one.sides, pooled)],
-    } | _scaled(one, linear, classes, basic)
+        "strength_exponent": [
+            strength_exponent(compared.sides, r, basic) for r in compared.rates.T
+        ],
+        "area_exponent": [size_exponent(compared.sides, share) for share in compared.shares.T],
+        "separation_exponent": [
+            size_exponent(compared.sides, gap) for gap in compared.separations.T
+        ],
+        "pooled_exponent": [size_exponent(compared.sides, pooled)],
+    } | _scaled(compared, linear, classes, basic)
 
 
 def _scaled(
-    one: _Sample,
+    sample: _Sample,
     linear: np.ndarray,
     classes: Mapping[tuple[float, float], Mapping[float, int]],
     basic: float,
 ) -> dict[str, list[Exponent]]:
     """Exponents at equal v/b, and the prediction from v alone for the largest joints."""
-    found: dict[str, list[Exponent]] = {
+    of_fractions: dict[str, list[Exponent]] = {
         name: [] for name, (dims, _) in EXPONENTS.items() if dims == _AT_FRACTION
     }
-    largest = one.sides == one.sides.max(initial=0)
+    largest = sample.sides == sample.sides.max(initial=0)
     for intervals in classes.values():
         exponents = {
-            "scaled_strength_exponent": _over_sides(one, intervals, linear),
+            "scaled_strength_exponent": _over_sides(sample, intervals, linear),
             "predicted_exponent": _by_largest(
-                one.rates[largest], one.numbers[largest], intervals, basic
+                sample.rates[largest], sample.numbers[largest], intervals, basic
             ),
         }
         exponents["beyond_exponent"] = exponents["scaled_strength_exponent"].less(
             exponents["predicted_exponent"]
         )
         for name, exponent in exponents.items():
-            found[name].append(exponent)
-    return found
+            of_fractions[name].append(exponent)
+    return of_fractions
 
 
-def _over_sides(one: _Sample, intervals: Mapping[float, int], linear: np.ndarray) -> Exponent:
+def _over_sides(sample: _Sample, intervals: Mapping[float, int], linear: np.ndarray) -> Exponent:
     """Exponent over sides of the strength (interval, surface), of each side at its own interval.
 
     At equal v/b the strength follows v, and not along a straight line.
     """
-    here = {side: one.sides * SPACING == side for side in intervals}
-    sides = np.concatenate([np.full(np.count_nonzero(at), side) for side, at in here.items()])
-    values = np.concatenate([linear[intervals[side]][at] for side, at in here.items()])
+    of_side = {side: sample.sides * SPACING == side for side in intervals}
+    sides = np.concatenate(
+        [np.full(np.count_nonzero(mask), side) for side, mask in of_side.items()]
+    )
+    values = np.concatenate([linear[intervals[side]][mask] for side, mask in of_side.items()])
     return size_exponent(sides, values, equal=True)
 
 
 def _by_largest(
     rates: np.ndarray, numbers: np.ndarray, intervals: Mapping[float, int], basic: float
 ) -> Exponent:
-    """The same line through the strengths that the largest joints have at these intervals."""
+    """Exponent over the sides of the largest joints' strengths at the intervals of all sides."""
     if len(rates) < 2:
         return UNKNOWN
     columns = [linear_strengths(numbers * 0, rates[:, k], basic) for k in intervals.values()]
@@ -337,8 +324,8 @@ def _by_theory(
 ) -> dict[str, Any]:
     """Strength if the separation is in proportion to sqrt(S(v)), the factor of the largest joints.
 
-    A composite that is Gaussian, of one h'_rms and under one pressure, opens in proportion to its
-    rms height but for what the shape of its spectrum changes.
+    A Gaussian composite of one h'_rms and under one pressure opens in proportion to its
+    rms height but for the effect of the shape of its spectrum.
     """
     root = np.sqrt(difference)
     largest = sample.sides == sample.sides.max()

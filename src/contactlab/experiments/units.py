@@ -1,7 +1,7 @@
 """Units and kinds of the synthetic surfaces of the experiments.
 
 The elastic problem is linear in heights and depends on F/E* alone and on no length, so that areas,
-slopes and dimensions come out the same whatever these are.
+slopes and dimensions do not depend on these values.
 """
 
 #: Side of a cell, mm.

@@ -18,7 +18,7 @@ from roughcontact.elastic.halfspace import HalfSpace
 from .method import Method
 from .peers import Failed, Load, PublicCode
 
-#: What it is called with, by mode.
+#: Arguments of ASPHER by mode.
 _OPTIONS: dict[str, dict[str, Any]] = {
     "active set": {"active_set": True},
     "fft": {"backend": "fft"},
@@ -29,16 +29,7 @@ _COARSEST = 64
 
 
 class Aspher(PublicCode):
-    """ASPHER set up for one topography.
-
-    Parameters
-    ----------
-    height : (ny, nx) array_like
-        mm.
-    space : HalfSpace
-    mode : str
-        ``"active set"``, ``"fft"`` or ``"float then double"``.
-    """
+    """ASPHER set up for one topography, in a mode of `_OPTIONS`."""
 
     def __init__(self, height: ArrayLike, space: HalfSpace, mode: str):
         import aspher
@@ -71,7 +62,7 @@ class Aspher(PublicCode):
         return pressure
 
     def closure(self, pressure: np.ndarray) -> float:
-        """The closure of a pressure, from the mean gap over the contact, mm, with our operator."""
+        """Closure of a pressure, from the mean gap over the contact, mm, with our operator."""
         return float((self.space.displacement(pressure) - self.height)[pressure > 0].mean())
 
     @property
@@ -82,14 +73,14 @@ class Aspher(PublicCode):
     @property
     def path(self) -> str:
         """Path of the last call by the code's own counters."""
-        found = self._result
-        if found is None:
+        result = self._result
+        if result is None:
             return ""
-        stages = " ".join(stage["name"] for stage in found.stage_stats)
-        fallback = ", fell back to the whole grid" if found.active_fallback else ""
+        stages = " ".join(stage["name"] for stage in result.stage_stats)
+        fallback = ", fell back to the whole grid" if result.active_fallback else ""
         return (
-            f"{stages}: {found.precond_count} preconditioned, {found.active_rounds} rounds, "
-            f"{found.verification_matvec_count} verifications{fallback}; set-up included"
+            f"{stages}: {result.precond_count} preconditioned, {result.active_rounds} rounds, "
+            f"{result.verification_matvec_count} verifications{fallback}; set-up included"
         )
 
 

@@ -18,21 +18,12 @@ from .common import in_stress
 from .method import Method
 from .peers import Failed, Load, PublicCode
 
-# The dual optimisers' names there.
+# Names of the dual optimisers in ContactMechanics.
 _DUAL = {"dual": "ccg-without-restart", "dual-lbfgs": "l-bfgs-b"}
 
 
 class ContactMechanics(PublicCode):
-    """ContactMechanics set up for one topography.
-
-    Parameters
-    ----------
-    height : (ny, nx) array_like
-        mm.
-    space : HalfSpace
-    optimiser : str
-        ``"ccg"``, ``"dual"`` or ``"dual-lbfgs"``.
-    """
+    """ContactMechanics set up for one topography, with optimiser "ccg", "dual" or "dual-lbfgs"."""
 
     def __init__(self, height: ArrayLike, space: HalfSpace, optimiser: str):
         from ContactMechanics import FreeFFTElasticHalfSpace
@@ -43,7 +34,7 @@ class ContactMechanics(PublicCode):
         self.optimiser = optimiser
         self.substrate = FreeFFTElasticHalfSpace(space.shape, space.modulus, self.sides)
         self.system = NonSmoothContactSystem(self.substrate, Topography(self.height, self.sides))
-        # What all of its optimisers call.
+        # All of its optimisers call these two functions.
         self._evaluate = {
             name: getattr(self.substrate, name) for name in ("evaluate_disp", "evaluate_force")
         }
@@ -80,7 +71,7 @@ class ContactMechanics(PublicCode):
         return pressure
 
     def _length(self, force):
-        """Scale of the gaps where the closure is not known, mm."""
+        """Scale of the gaps of a load without closure, mm."""
         side = np.sqrt(np.prod(self.space.shape)) * self.space.cell
         return max(np.std(self.height), (force or 0.0) / (self.space.modulus * side))
 
@@ -89,7 +80,7 @@ class ContactMechanics(PublicCode):
         if start is not None:
             padded = np.zeros(self.substrate.nb_domain_grid_pts)
             padded[: start.shape[0], : start.shape[1]] = -start
-        # Divided as in `in_stress`: what comes back at the cap must be seen to be there.
+        # The division is that of `in_stress`, so that pressures at the cap are recognised.
         cap = None if load.hardness is None else load.hardness / (1 / self.space.cell_area)
         return self.system.minimize_proxy(
             offset=load.closure,

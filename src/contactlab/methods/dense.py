@@ -1,8 +1,8 @@
 """Contact by direct elimination: the reference that shares neither FFT nor iteration with ours.
 
-The influence matrix is written out and the contact set found by block principal pivoting, which
-ends after finitely many exchanges. Memory grows with the square, time with the cube of the number
-of interpenetrating nodes: a few thousand at most.
+The influence matrix is written out and the contact set determined by block principal pivoting,
+which ends after finitely many exchanges. Memory grows with the square, time with the cube of the
+number of interpenetrating nodes: a few thousand at most.
 """
 
 import itertools
@@ -15,40 +15,26 @@ from roughcontact.contact.state import ContactState
 from .common import ContactProblem, influence_matrix
 from .method import Method
 
-# Pressures and gaps smaller than this fraction of the largest pressure and of the closure are zero:
-# the rounding of a Cholesky solution, which must not count as tension or penetration.
+# Largest rounding of a Cholesky solution, as a fraction of the largest pressure and of the closure:
+# it must not count as tension or penetration.
 ROUNDING = 1e-12
 # Whole-set exchanges allowed without progress before single ones, which cannot cycle, take over
 # (Judice & Pires 1994 use about ten).
 PATIENCE = 10
-# Closures tried before giving up on a force: trials needed at most five.
+# Most closures tried for a force: trials needed at most five.
 MAX_CLOSURES = 100
-# Contact sets solved for at one closure before giving up: finite in theory, this in practice.
+# Most contact sets solved for at one closure: theory says only that they are finite in number.
 MAX_SETS = 10_000
-# What a node can be: its pressure zero, its gap zero, or its pressure at the hardness.
+# Statuses of a node: pressure zero, gap zero, or pressure at the hardness.
 OPEN, CLOSED, CAPPED = 0, 1, 2
 
 
 def solve(problem: ContactProblem) -> ContactState:
     """State by block principal pivoting: direct, and exact but for rounding.
 
-    Parameters
-    ----------
-    problem : ContactProblem
-        The contact set of its start, if it has one, is the first one tried.
+    The contact set of a start is tried first; ``iterations`` count the contact sets solved.
+    NotConverged if the pivoting does not end, or the state fails the final check.
 
-    Returns
-    -------
-    ContactState
-        Its ``iterations`` count the contact sets solved for.
-
-    Raises
-    ------
-    NotConverged
-        If the pivoting does not end, or the state fails the final check.
-
-    Notes
-    -----
     J. J. Judice & F. M. Pires, Comput. Oper. Res. 21 (1994) 587, and for two bounds J. Optim.
     Theory Appl. 74 (1992) 487; K. G. Murty, Linear Algebra Appl. 20 (1978) 263. Under a given force
     every set yields, with its closure unknown, the bordered system [K -1; 1' 0] [p; w] = [-c; F],

@@ -14,27 +14,14 @@ from .method import Method
 
 # Sweeps before giving up: the number needed grows with the width of the contact patches in cells.
 MAX_SWEEPS = 5000
-# The sweeps end this far below the tolerance of the final check.
+# Tolerance of the sweeps over that of the final check.
 SAFETY = 0.3
 
 
 def solve(problem: ContactProblem) -> ContactState:
-    """State by projected Gauss-Seidel.
+    """State by projected Gauss-Seidel, from the pressure of a start; ``iterations`` are sweeps.
 
-    Parameters
-    ----------
-    problem : ContactProblem
-        The pressure of its start, if it has one, is where the sweeps start.
-
-    Returns
-    -------
-    ContactState
-        Its ``iterations`` count the sweeps.
-
-    Raises
-    ------
-    NotConverged
-        If `MAX_SWEEPS` were not enough.
+    NotConverged if `MAX_SWEEPS` were not enough.
     """
     space, clearance, limit = problem.space, problem.clearance, problem.hardness
     closure = problem.load
@@ -82,7 +69,8 @@ def relieve(
 def _sweep(influence, rows, columns, interference, values, limit, tolerance, max_sweeps):
     """Sweep in place until the conditions hold to ``tolerance``; the number of sweeps done.
 
-    ``left`` is the overlap still there, carried along, so that a sweep ends with its residual.
+    ``left`` is the remaining overlap, updated with every change, so that a sweep ends with its
+    residual.
     """
     left = interference.copy()
     for s in range(rows.size):
@@ -111,7 +99,7 @@ METHODS = [
         name="gauss-seidel",
         order=40,
         title="projected Gauss-Seidel",
-        # A sum to be kept is no bound on a single point.
+        # A given force is a constraint on a sum, which the projection of single points lacks.
         loads=("closure",),
         hardness=("closure",),
         warm=True,

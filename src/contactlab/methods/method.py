@@ -27,22 +27,22 @@ class Method:
     Attributes
     ----------
     name : str
-        In tables, legends and messages.
+        Name in tables, legends and messages.
     solver : callable
         ``solver(problem)`` gives the `ContactState` of a `common.ContactProblem`; of a public code,
         ``solver(height, space, **options)`` a `peers.PublicCode` made ready for one topography.
     order : float
         Its place among the others; equals are sorted by name.
     title : str
-        Subject of the messages that say what it does not offer; by default the name.
+        Subject of the messages on capabilities it lacks; by default the name.
     loads : tuple of str
-        What it can be given, ``"closure"``, ``"force"`` or both; the first is what it is timed at.
+        Possible loads, ``"closure"``, ``"force"`` or both; it is timed at the first.
     hardness : tuple of str
         The loads under which the pressure can be capped at a hardness.
     kernels : tuple of str
-        The influence kernels of `HalfSpace` that it knows; any if none is named.
+        Possible influence kernels of `HalfSpace`; any if none is named.
     windows : str
-        Windows that it knows: ``"any"``, or ``"dyadic"`` for squares of 32, 64, 128 ... square
+        Possible windows: ``"any"``, or ``"dyadic"`` for squares of 32, 64, 128 ... square
         cells a side.
     holes : bool
         Whether it would take a cell without a height for one that never touches, which is another
@@ -52,16 +52,16 @@ class Method:
     direct : bool
         Whether it is exact but for rounding, whatever the tolerance.
     counts : str
-        What the ``iterations`` of its states count; ``"applications"`` are those of the operator.
+        Unit of the ``iterations`` of its states; ``"applications"`` are those of the operator.
     largest : int or None
         Interpenetrating nodes beyond which a solve takes minutes or too much memory, of methods
         that write out the influence of every node on every other.
     rtol : float
-        Tolerance unless another is given.
+        Default tolerance.
     likely : float
         Power of ten near the tolerance that brings the force within 1e-6 on 512 x 512 nodes.
     packages : tuple of str
-        What must be installed; of public codes alone.
+        Packages to be installed; of public codes alone.
     options : mapping
         Keywords that choose it among several methods of one file.
     """
@@ -95,35 +95,16 @@ class Method:
         rtol: float | None = None,
         hardness: float | None = None,
     ) -> ContactState:
-        """Press a composite topography against a rigid plane.
+        """Press a composite topography against a rigid plane, as `fractalcontact.solve_contact`.
 
-        Parameters
-        ----------
-        composite : (ny, nx) array_like
-            Composite topography h, mm.
-        space : HalfSpace
-            The elastic operator on the same grid.
-        closure : float, optional
-            w, mm, from first touch. Either this or ``force`` is given, as far as it is offered.
-        force : float, optional
-            F, N.
-        start : ContactState, optional
-            Where to start from; of no use to a method that is not ``warm``.
-        rtol : float, optional
-            Largest violation allowed of the contact conditions, relative to the closure; of a
-            public code the tolerance on a quantity of its own.
-        hardness : float, optional
-            Largest pressure, MPa.
-
-        Returns
-        -------
-        ContactState
-            Its ``iterations`` count what ``counts`` says.
+        ``start`` is of no use to a method that is not ``warm``. ``rtol`` is the largest violation
+        allowed of the contact conditions, relative to the closure; of a public code the tolerance
+        on a quantity of its own. The ``iterations`` of the state are in units of ``counts``.
 
         Raises
         ------
         NotOffered
-            If the method was not made for such a problem.
+            If the method does not solve such problems.
         ValueError
             As `fractalcontact.solve_contact`.
         NotConverged
@@ -159,19 +140,12 @@ class Method:
         return state
 
     def set_up(self, height: ArrayLike, space: HalfSpace) -> PublicCode:
-        """A public code made ready for one topography.
-
-        Parameters
-        ----------
-        height : (ny, nx) array_like
-            mm.
-        space : HalfSpace
-        """
+        """Public code made ready for one topography, mm."""
         code: PublicCode = self.solver(height, space, **self.options)
         return code
 
     def takes(self, space: HalfSpace) -> bool:
-        """True if the window of a half-space is one that the method knows."""
+        """True if the method can solve the window of a half-space."""
         if self.windows == "any":
             return True
         (ny, nx), (dy, dx) = space.shape, space.spacing

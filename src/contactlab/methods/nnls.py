@@ -17,32 +17,20 @@ from .method import Method
 
 # Gradient projections for the warm start; each one application of the operator.
 PROJECTIONS = 100
-# Sets solved for before giving up: finite in theory, this in practice.
+# Most sets solved for: theory says only that they are finite in number.
 MAX_SETS = 5000
-# Points are admitted until overlap is this far below the tolerance of the final check.
+# Largest overlap of points not admitted, over the tolerance of the final check.
 SAFETY = 0.3
 
 
 def solve(problem: ContactProblem) -> ContactState:
-    """State by non-negative least squares.
+    """State by non-negative least squares; ``iterations`` count the Cholesky factorisations.
 
-    Parameters
-    ----------
-    problem : ContactProblem
-        The pressure of its start, if it has one, is the warm start instead of gradient projections.
-
-    Returns
-    -------
-    ContactState
-        Its ``iterations`` count the sets solved for, each a Cholesky factorisation.
-
-    Raises
-    ------
-    NotConverged
-        If the active set does not end, or the state fails the final check.
+    The pressure of a start replaces the gradient projections of the warm start. NotConverged if the
+    active set does not end, or the state fails the final check.
     """
     space, closure = problem.space, problem.load
-    # Pressure in units of E*/s, so that the operator gives mm.
+    # Pressure is in units of E*/s, so that the operator gives mm.
     unit = space.modulus / space.cell
     interference = closure - problem.clearance
     if problem.start is not None:
@@ -61,7 +49,7 @@ def solve(problem: ContactProblem) -> ContactState:
 
 def _gradient_projections(space, interference):
     """Pressure after `PROJECTIONS` projected gradient steps with Nesterov's acceleration."""
-    # No eigenvalue of a positive operator exceeds its largest sum of a row.
+    # The largest row sum bounds the eigenvalues of a positive operator.
     step = 1 / space.convolve(np.ones(space.shape)).max()
     pressure = ahead = np.zeros(space.shape)
     for k in range(PROJECTIONS):

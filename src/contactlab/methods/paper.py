@@ -1,7 +1,7 @@
 """The contact algorithm of Borri-Brunetto, Carpinteri and Chiaia (1999), sect. 4, as published.
 
 Start from all interpenetrating points, solve eq. 3 on them by Gauss-Seidel, keep the points in
-compression, repeat. Points are dropped, never added, so nothing in the procedure itself ensures
+compression, repeat. Points are dropped, never added. The procedure does not ensure
 that a dropped point stays open: the final check does.
 
 With ``HalfSpace(..., kernel=...)`` the influence terms are Love's or a rigid plate's.
@@ -18,27 +18,15 @@ from .method import Method
 
 # Sweeps on one set before giving up: 500 over all sets sufficed for 12,000 interpenetrating nodes.
 MAX_SWEEPS = 5000
-# Each set is solved this far below the tolerance of the final check.
+# Tolerance of each set over that of the final check.
 SAFETY = 0.3
 
 
 def solve(problem: ContactProblem) -> ContactState:
-    """State by dropping points in tension.
+    """State by dropping points in tension from all interpenetrating ones, whatever the start.
 
-    Parameters
-    ----------
-    problem : ContactProblem
-        Its start is not used: the procedure starts from all interpenetrating points.
-
-    Returns
-    -------
-    ContactState
-        Its ``iterations`` count the Gauss-Seidel sweeps.
-
-    Raises
-    ------
-    NotConverged
-        If Gauss-Seidel does not converge, or a dropped point is left interpenetrating.
+    ``iterations`` count the Gauss-Seidel sweeps. NotConverged if Gauss-Seidel does not converge, or
+    a dropped point is left interpenetrating.
     """
     space, closure = problem.space, problem.load
     tolerance = SAFETY * problem.rtol
@@ -67,7 +55,8 @@ def solve(problem: ContactProblem) -> ContactState:
 def _gauss_seidel(influence, rows, columns, target, values, tolerance, max_sweeps):
     """Solve sum_s H_rs f_s = target_r in place; returns the sweeps done, max_sweeps + 1 if in vain.
 
-    What is left of the right side is carried along, so that each sweep ends with its residual.
+    The remaining right side is updated with every change, so that each sweep ends with its
+    residual.
     """
     left = target.copy()
     for s in range(rows.size):

@@ -1,8 +1,8 @@
 """Interface of public contact codes to the comparison methods.
 
 Each is set up in a file of its own, on the same free-space problem and with heights from the
-highest one down. What they return is not checked against the contact conditions: whether their own
-word can be trusted is for others to judge. ``pip install -e '.[peers]'`` installs them.
+highest one down. Their results are not checked against the contact conditions: other modules judge
+whether their own report can be trusted. ``pip install -e '.[peers]'`` installs them.
 """
 
 from collections.abc import Callable
@@ -21,7 +21,7 @@ from .common import measured_state
 
 #: Limit of iterations where a code is set up for large grids.
 MAX_ITERATIONS = 500
-#: Behind the call of the comparison methods patience is greater, in iterations and in seconds.
+#: Limits of iterations and of seconds in the call of the comparison methods, which may take longer.
 PATIENT_ITERATIONS, PATIENCE = 2000, 60.0
 
 
@@ -57,22 +57,16 @@ class Load:
 
 
 class PublicCode:
-    """A public code set up for one topography; each code has a subclass in a file of its own.
-
-    Parameters
-    ----------
-    height : (ny, nx) array_like
-        mm.
-    space : HalfSpace
+    """A public code set up for one topography, mm; each code has a subclass in a file of its own.
 
     Attributes
     ----------
     height : (ny, nx) ndarray
         From the highest one down, mm: an offset counted from it is a closure.
     sides : (float, float)
-        Of the window along y and x, mm.
+        Sides of the window along y and x, mm.
     max_iterations : int
-        After this many it gives up.
+        Limit of iterations.
     """
 
     def __init__(self, height: ArrayLike, space: HalfSpace):
@@ -82,36 +76,23 @@ class PublicCode:
         self.sides = (ny * space.spacing[0], nx * space.spacing[1])
 
     def solve(self, load: Load, rtol: float) -> np.ndarray:
-        """Pressure under a load of the kinds that the code offers.
+        """Pressure (ny, nx), MPa, under a load of the kinds that the code offers.
 
-        Parameters
-        ----------
-        load : Load
-        rtol : float
-            Tolerance on the code's own measure of its error.
-
-        Returns
-        -------
-        (ny, nx) ndarray
-            Pressure, MPa.
-
-        Raises
-        ------
-        Failed
-            If the code says that it did not converge.
+        ``rtol`` is the tolerance on the code's own measure of its error. Failed if the code reports
+        that it did not converge.
         """
         raise NotImplementedError
 
     def closure(self, pressure: np.ndarray) -> float:
-        """The closure that a pressure belongs to, mm, of a code that is given a force."""
+        """Closure of a pressure, mm, for a code that is given a force."""
         raise NotImplementedError
 
     def count(self, on: bool) -> None:
-        """Begin to count applications of the operator, from zero, or end it: it takes time."""
+        """Begin to count applications of the operator, from zero, or end it, as it takes time."""
 
     @property
     def applications(self) -> int | None:
-        """Applications of the operator since then; None for a code that does not count them."""
+        """Applications of the operator since :meth:`count` began; None if they are not counted."""
         return None
 
     @property
@@ -131,9 +112,9 @@ def solve_in_child(
     start: ContactState | None,
     rtol: float,
 ) -> ContactState:
-    """State that a public code gives, run where it may crash or never end without harm.
+    """State by a public code in a child process, where it may crash or never end without harm.
 
-    A load is passed on as it is: that it makes no sense is for the code to say.
+    A load is passed on unchanged, so that the code itself refuses an invalid one.
 
     Parameters
     ----------
@@ -148,15 +129,10 @@ def solve_in_child(
     rtol : float
         Tolerance on the code's own measure of its error.
 
-    Returns
-    -------
-    ContactState
-        Of `state_of`.
-
     Raises
     ------
     NotConverged
-        If the code says so itself.
+        If the code reports it.
     ChildFailed
         If it raises an error, crashes or takes longer than `PATIENCE` seconds.
     """
@@ -181,17 +157,7 @@ def _pressed(set_up, composite, space, load, rtol):
 
 
 def clearance_of(height: ArrayLike) -> np.ndarray:
-    """Opening at first touch, mm; cells without a height keep their NaN or infinity.
-
-    Parameters
-    ----------
-    height : (ny, nx) array_like
-        mm.
-
-    Returns
-    -------
-    (ny, nx) ndarray
-    """
+    """Opening at first touch (ny, nx), mm; cells without a height keep their NaN or infinity."""
     height = np.asarray(height, float)
     return height[np.isfinite(height)].max() - height
 
@@ -205,24 +171,11 @@ def state_of(
     force: float | None = None,
     hardness: float | None = None,
 ) -> ContactState:
-    """The state of a code's pressure, whether or not it satisfies the contact conditions.
+    """State of a code's pressure, MPa, whether or not it satisfies the contact conditions.
 
-    Parameters
-    ----------
-    space : HalfSpace
-    pressure : (ny, nx) ndarray
-        MPa.
-    clearance : (ny, nx) ndarray
-        Opening at first touch, mm.
-    closure : float, optional
-        mm; if it is not known it is evaluated as the mean over the contact that is no overlap.
-    force, hardness : float, optional
-        N and MPa, where they were given.
-
-    Returns
-    -------
-    ContactState
-        Its ``residual`` is measured with our operator; its ``iterations`` are not known: 0.
+    ``clearance`` is the opening at first touch, mm. An unknown closure is the mean over the contact
+    that is no overlap. Force (N) and hardness (MPa) are the given ones. ``residual`` is measured
+    with our operator; ``iterations`` are not known: 0.
     """
     cap = np.inf if hardness is None else hardness
     if closure is None:

@@ -7,7 +7,7 @@ capped at a hardness as by Almqvist et al. (Tribol. Int. 40 (2007) 574): points 
 out of the contact set until their gap opens. Under a given force the rescaling and the cap disturb
 each other; that is not offered.
 
-One thing differs: the authors stop when the pressure changes little, which says nothing of the
+One point differs: the authors stop when the pressure changes little, which does not bound the
 error; here the iteration ends when the contact conditions hold.
 """
 
@@ -18,33 +18,20 @@ from roughcontact.contact.state import ContactState
 from .common import ContactProblem, in_stress
 from .method import Method
 
-# Two applications each: rough surfaces need 30 to 150 for 1e-6.
+# Most iterations, of two applications each: rough surfaces need 30 to 150 for 1e-6.
 MAX_ITERATIONS = 5000
-# The iteration ends this far below the tolerance of the final check.
+# Tolerance of the iteration over that of the final check.
 SAFETY = 0.9
-# Closures, mm, between which the squares of gaps so much smaller still are numbers.
+# Closures, mm, between which squares of much smaller gaps are in the range of doubles.
 MIN_CLOSURE, MAX_CLOSURE = 1e-140, 1e140
 
 
 def solve(problem: ContactProblem) -> ContactState:
-    """State by constrained conjugate gradients.
+    """State by constrained conjugate gradients, from the pressure of a start.
 
-    Parameters
-    ----------
-    problem : ContactProblem
-        The pressure of its start, if it has one, is where the iteration starts.
-
-    Returns
-    -------
-    ContactState
-        Its ``iterations`` count the applications of the operator, the final check left out.
-
-    Raises
-    ------
-    ValueError
-        If the squares of gaps at the closure have no double precision.
-    NotConverged
-        If the conditions are not met after `MAX_ITERATIONS`.
+    ``iterations`` count the applications of the operator without the final check. ValueError if the
+    squares of gaps at the closure have no double precision, NotConverged if the conditions are not
+    met after `MAX_ITERATIONS`.
     """
     space, force = problem.space, problem.force
     if force is None and not MIN_CLOSURE <= problem.load <= MAX_CLOSURE:
@@ -88,7 +75,7 @@ def _iterate(problem, pressure, total, limit):
     closure, tolerance = problem.load, SAFETY * problem.rtol
     pressure = np.minimum(pressure, limit)
     direction = np.zeros(space.shape)
-    # The first step's length where no point is free to give one: K is near 1 on a point itself.
+    # The first step has length 1 where no point is free to give one: K is near 1 on a point itself.
     step, previous, conjugate, applications = 1.0, 1.0, False, 0
     if by_force:
         pressure *= total / pressure.sum()

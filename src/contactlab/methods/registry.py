@@ -1,6 +1,6 @@
-"""Register of the comparison solvers: those that the files of this folder declare.
+"""Registry of the comparison solvers: those that the files of this folder declare.
 
-Nothing else has to know of a new file: accuracy study, figures, benchmarks and tests read `METHODS`
+A new file needs no edit elsewhere: accuracy study, figures, benchmarks and tests read `METHODS`
 and `PEERS`.
 """
 
@@ -26,5 +26,5 @@ PEERS = {method.name: method for method in _FOUND if method.packages}
 
 
 def installed_peers() -> dict[str, Method]:
-    """The public codes by name whose packages are installed."""
+    """Public codes by name whose packages are installed."""
     return {name: peer for name, peer in PEERS.items() if all(map(find_spec, peer.packages))}

@@ -29,7 +29,7 @@ class Tamaas(PublicCode):
         self.window = self.sides[0] * self.sides[1]
         kind = tamaas.model_type.basic_2d
         self.model = tamaas.ModelFactory.createModel(kind, list(self.sides), list(space.shape))
-        # The operator takes over the modulus it finds when it is registered.
+        # The operator copies the modulus when it is registered, so that it is set first.
         self.model.E, self.model.nu = space.modulus, 0.0
         tamaas.ModelFactory.registerNonPeriodic(self.model, "dcfft")
         self.height = np.ascontiguousarray(self.height)
@@ -48,7 +48,7 @@ class Tamaas(PublicCode):
         solver.max_iter = self.max_iterations
         if self._counter is not None:
             solver.addFunctionalTerm(self._counter)
-        # It offers given forces alone.
+        # Tamaas solves for given forces only.
         reached = solver.solve(load.force / self.window)  # type: ignore[operator]
         pressure = np.array(self.model.traction)
         if not reached <= rtol:
@@ -56,7 +56,7 @@ class Tamaas(PublicCode):
         return pressure
 
     def closure(self, pressure: np.ndarray) -> float:
-        """The closure of a pressure, from the mean gap over the contact, mm."""
+        """Closure of a pressure, from the mean gap over the contact, mm."""
         displacement = np.zeros_like(pressure)
         self.model.operators["dcfft"](pressure, displacement)
         return float((displacement - self.height)[pressure > 0].mean())

@@ -7,16 +7,9 @@ from numpy.typing import ArrayLike
 
 
 def padded(arrays: Sequence[ArrayLike], length: int | None = None) -> np.ndarray:
-    """Arrays of different length as rows of one table, the rest NaN.
+    """Arrays of different length as rows of one float64 table, the rest NaN.
 
-    Parameters
-    ----------
-    arrays : sequence of (n_i,) array_like
-    length : int, optional
-
-    Returns
-    -------
-    (len(arrays), length) float64 ndarray
+    ``length`` is the number of columns, by default that of the longest array.
     """
     rows = [np.asarray(values) for values in arrays]
     length = max((len(row) for row in rows), default=0) if length is None else length

@@ -1,4 +1,4 @@
-"""Files that appear whole or not at all: the one writer of everything that is kept."""
+"""Files that appear whole or not at all: the one writer of all results."""
 
 import contextlib
 import errno
@@ -10,29 +10,19 @@ from pathlib import Path
 
 from .errors import OutputError
 
-#: Beginning of the names of files that are being written; what a killed run left of them is swept.
+#: Beginning of the names of files that are being written; those of killed runs are swept.
 UNFINISHED = ".unfinished-"
-#: Of a disk with fewer bytes left than this, any error in writing is taken to come from that: the
-#: netCDF library says no more than "HDF error" or "permission denied".
+#: Free bytes of a disk below which an error in writing is put down to a full disk: the netCDF
+#: library says no more than "HDF error" or "permission denied".
 FULL_DISK = 2**20
 
 
 @contextlib.contextmanager
 def atomic_write(path: Path | str) -> Iterator[Path]:
-    """A temporary path beside ``path`` that takes its place when the block ends without error.
+    """Temporary path that takes the place of ``path`` when the block ends without error.
 
     Its content has reached the disk before it gets its name, so that a loss of power leaves the old
-    file or the new one.
-
-    Parameters
-    ----------
-    path : path-like
-        Its folder is made where it is missing.
-
-    Yields
-    ------
-    pathlib.Path
-        Same folder and same ending as ``path``.
+    file or the new one. A missing folder is made; folder and ending are those of ``path``.
 
     Raises
     ------
@@ -64,12 +54,7 @@ def atomic_write(path: Path | str) -> Iterator[Path]:
 
 
 def reach_disk(folders: Iterable[Path | str]) -> None:
-    """Wait until the names in these folders have reached the disk, as their files' contents have.
-
-    Parameters
-    ----------
-    folders : iterable of path-like
-    """
+    """Wait until the names in these folders have reached the disk, as the files' contents have."""
     for folder in sorted(set(folders)):
         handle = os.open(folder, os.O_RDONLY)
         try:
@@ -79,13 +64,7 @@ def reach_disk(folders: Iterable[Path | str]) -> None:
 
 
 def sweep(folder: Path | str) -> list[Path]:
-    """Remove half-written files of killed runs, while nothing writes there.
-
-    Returns
-    -------
-    list of pathlib.Path
-        What was removed.
-    """
+    """Remove half-written files of killed runs, while nothing writes there, and list them."""
     left = sorted(path for path in Path(folder).rglob(f"{UNFINISHED}*") if path.is_file())
     for path in left:
         path.unlink(missing_ok=True)
@@ -102,7 +81,7 @@ _NO_SPACE = "no space left on its disk; make room there"
 
 
 def _explained(path, error):
-    """Error of a failed write, with its cause in words."""
+    """OutputError of a failed write, with its cause in words."""
     if error.errno in (errno.ENOSPC, errno.EDQUOT):
         return _unwritten(path, _NO_SPACE)
     why = "no permission" if isinstance(error, PermissionError) else error.strerror or str(error)

@@ -1,6 +1,6 @@
 """Checksums of the results of a study, by which damaged files are detected and never read.
 
-Every job leaves, beside its results, the SHA-256 of each file it made:
+Every job stores, in the folder of its results, the SHA-256 of each file it made:
 ``results/NAME/checksums/STAGE/SPECIMEN.sha256`` for ``results/NAME/STAGE/SPECIMEN.nc``; files of
 one folder that differ in their ending alone share one such record. Each line is as ``sha256sum -c``
 takes it, in the folder ``results/NAME``.
@@ -19,14 +19,14 @@ from .atomic import atomic_write, reach_disk
 from .errors import InputError
 
 FOLDER, ENDING = "checksums", ".sha256"
-#: Of the files that jobs make: nothing else in the folder of a study is ours.
+#: Endings of the files that jobs make; other files in the folder of a study are not the program's.
 RESULT_ENDINGS = (".csv", ".html", ".nc", ".npy", ".png", ".svg", ".txt", ".yaml", ".zip")
-#: Of these, those that later jobs read.
+#: Endings of files that later jobs read.
 _READ = (".nc", ".npy")
 MANIFEST = "manifest.sha256"
 #: Folder of a study to which damaged files are moved.
 ASIDE = "damaged"
-#: Where a checkout keeps checksums that were computed.
+#: Cache of the checksums computed in a checkout.
 KNOWN = Path(".snakemake/fractalcontact-digests.json")
 #: Nanoseconds after a change within which a file may change again without its times showing it.
 _SAME_TICK = 2_000_000_000
@@ -41,39 +41,29 @@ def sha256(path: Path | str) -> str:
 class Digests:
     """SHA-256 of files, not computed again while a file's identity, size and times are the same.
 
-    A change cannot keep the time of the last change of status, which no program can set. So moving,
-    copying or unpacking an older file over another is noticed, as git does it.
-
-    Parameters
-    ----------
-    cache : path-like, optional
-        Where they are kept; damaged or missing, it is made anew.
+    No program can set the time of the last change of status. So moving, copying or unpacking an
+    older file over another is noticed, as git does it. The cache is the file that stores them;
+    damaged or missing, it is made anew.
     """
 
     def __init__(self, cache: Path | str = KNOWN):
         self._cache, self._new = Path(cache), False
         self._known: dict[str, list] = {}
-        with contextlib.suppress(OSError, UnicodeDecodeError):  # only a cache
+        with contextlib.suppress(OSError, UnicodeDecodeError):  # a cache may be missing or damaged
             checksum, _, text = self._cache.read_text(encoding="utf-8").partition("\n")
             if hashlib.sha256(text.encode()).hexdigest() == checksum:
                 self._known = json.loads(text)
 
     def of(self, path: Path | str) -> str:
-        """SHA-256 of a file.
-
-        Raises
-        ------
-        OSError
-            If it cannot be read.
-        """
-        known = self._known.get(str(path))
-        found = _identity(path)
-        if known and known[1:] == found:
-            return known[0]
+        """SHA-256 of a file; OSError if it cannot be read."""
+        cached = self._known.get(str(path))
+        identity = _identity(path)
+        if cached and cached[1:] == identity:
+            return cached[0]
         digest = sha256(path)
-        still = _identity(path) == found
-        if still and time.time_ns() - found[-1] > _SAME_TICK:
-            self._known[str(path)] = [digest, *found]
+        still = _identity(path) == identity
+        if still and time.time_ns() - identity[-1] > _SAME_TICK:
+            self._known[str(path)] = [digest, *identity]
             self._new = True
         return digest
 
@@ -87,19 +77,14 @@ class Digests:
 
 
 def _identity(path):
-    found = os.stat(path)
-    return [found.st_dev, found.st_ino, found.st_size, found.st_mtime_ns, found.st_ctime_ns]
+    status = os.stat(path)
+    return [status.st_dev, status.st_ino, status.st_size, status.st_mtime_ns, status.st_ctime_ns]
 
 
 def record(results: Path | str, files: Iterable[Path | str]) -> None:
-    """Store the checksums of the files made by a job.
+    """Store the checksums of the files made by a job, below the folder ``results`` of the study.
 
-    Parameters
-    ----------
-    results : path-like
-        Folder of the study.
-    files : iterable of path-like
-        All that were made, below it; those that share a record together.
+    Files that share a record are given in one call.
     """
     results = Path(results)
     records: dict[Path, list[Path]] = {}
@@ -114,13 +99,7 @@ def record(results: Path | str, files: Iterable[Path | str]) -> None:
 
 
 def require_intact(results: Path | str, file: Path | str) -> None:
-    """Refuse a file that is not as the job that made it left it.
-
-    Raises
-    ------
-    InputError
-        If it is, or if its checksum is not known.
-    """
+    """Refuse with an InputError a file without a checksum or unlike the one that its job made."""
     results, file = Path(results), Path(file)
     path = record_of(results, file)
     if not path.is_file():
@@ -142,9 +121,9 @@ class Checked:
     Attributes
     ----------
     intact, damaged, missing : list of pathlib.Path
-        Files of which a checksum is known. Where the record is damaged, it and all its files are.
+        Files with a checksum. Where the record is damaged, it and all its files are damaged.
     unrecorded : list of pathlib.Path
-        Files that later jobs would read, of which none is known.
+        Files without a checksum that later jobs would read.
     """
 
     intact: list[Path]
@@ -154,13 +133,9 @@ class Checked:
 
 
 def check(results: Path | str, digest: Callable[[Path], str] = sha256) -> Checked:
-    """Compare all files of a study with their checksums.
+    """Comparison of all files of a study with their checksums.
 
-    Parameters
-    ----------
-    results : path-like
-    digest : callable
-        From a path to its SHA-256: that of a :class:`Digests` to save time.
+    ``digest`` gives the SHA-256 of a path: that of a :class:`Digests` saves time.
     """
     results = Path(results)
     checked = Checked([], [], [], [])
@@ -172,7 +147,7 @@ def check(results: Path | str, digest: Callable[[Path], str] = sha256) -> Checke
             file = results / name
             if not file.is_file():
                 checked.missing.append(file)
-            # Once more in full, before anything is done about it.
+            # The checksum is computed in full before the file counts as damaged.
             elif known == digest(file) or known == sha256(file):
                 checked.intact.append(file)
             else:
@@ -188,12 +163,9 @@ def check(results: Path | str, digest: Callable[[Path], str] = sha256) -> Checke
 
 
 def set_aside(results: Path | str, file: Path | str) -> Path:
-    """Move a damaged file out of the way, where nothing reads it: it may be its owner's work.
+    """Move a damaged file, which may be its owner's work, to a folder that nothing reads.
 
-    Returns
-    -------
-    pathlib.Path
-        Where it is now.
+    Returns its new path.
     """
     target = Path(results) / ASIDE / Path(file).relative_to(results)
     target.parent.mkdir(parents=True, exist_ok=True)
@@ -202,7 +174,7 @@ def set_aside(results: Path | str, file: Path | str) -> Path:
 
 
 def write_manifest(results: Path | str) -> None:
-    """All checksums in one file beside the atlas, as ``sha256sum -c`` takes them there."""
+    """Write all checksums to one file next to the atlas, in the form of ``sha256sum -c``."""
     results = Path(results)
     if results.is_dir():
         with atomic_write(results / MANIFEST) as path:
@@ -210,7 +182,7 @@ def write_manifest(results: Path | str) -> None:
 
 
 def lines_of(results: Path | str) -> list[str]:
-    """All lines of the records of a study, of files that are there, sorted."""
+    """All lines of the records of a study for existing files, sorted."""
     results = Path(results)
     lines: list[str] = []
     for path in (results / FOLDER).rglob(f"*{ENDING}"):
@@ -230,8 +202,8 @@ def _recorded_in(results, path):
     """Existing files whose checksums a record holds, by name."""
     folder = (results / path.relative_to(results / FOLDER)).parent
     stem = path.name.removesuffix(ENDING)
-    found = (f for f in folder.glob("*") if f.stem == stem and f.suffix in RESULT_ENDINGS)
-    return sorted(f for f in found if f.is_file())
+    files = (f for f in folder.glob("*") if f.stem == stem and f.suffix in RESULT_ENDINGS)
+    return sorted(f for f in files if f.is_file())
 
 
 def _lines(path):

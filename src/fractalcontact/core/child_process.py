@@ -1,4 +1,4 @@
-"""Calls of foreign code, which may crash, never end or flood the screen, in a child process."""
+"""Calls in a child process of foreign code, which may crash, never end or print without end."""
 
 import faulthandler
 import multiprocessing
@@ -15,30 +15,16 @@ class ChildFailed(RuntimeError):
 
 
 def in_child(call: Callable[[], T], *, seconds: float) -> T:
-    """Result of a call.
+    """Result of a call in a fork of this process, copied from there.
 
-    Parameters
-    ----------
-    call : callable
-        Made in a fork of this process, on one thread: the threads of the parent do not exist there.
-        What it prints is dropped.
-    seconds : float
-        Longest it may take.
-
-    Returns
-    -------
-    object
-        Copied from the child.
-
-    Raises
-    ------
-    ChildFailed
+    It runs on one thread, since the threads of the parent do not exist there. Its output is
+    dropped. ChildFailed if it fails or takes longer than ``seconds``.
     """
     context = multiprocessing.get_context("fork")
     receiver, sender = context.Pipe(duplex=False)
     child = context.Process(target=_answer, args=(call, seconds, sender))
     child.start()
-    # The child's is now the only open end: the pipe ends with it, however it ends.
+    # The child now has the only open end, so that the pipe closes however the child ends.
     sender.close()
     try:
         value, said = receiver.recv()
@@ -60,7 +46,7 @@ def _answer(call, seconds, sender):
     with open(os.devnull, "wb") as nothing:
         for stream in (1, 2):
             os.dup2(nothing.fileno(), stream)
-    # An alarm that nobody handles ends the process, be it in a loop of C; and without a parent too.
+    # An unhandled alarm ends the process, even in a loop of C and without a parent.
     signal.signal(signal.SIGALRM, signal.SIG_DFL)
     signal.setitimer(signal.ITIMER_REAL, seconds)
     try:

@@ -11,33 +11,33 @@ _FILE = Path(__file__).with_suffix(".yaml")
 
 @dataclass(frozen=True)
 class Claim:
-    """A statement of the paper, and of which specimens it is asked.
+    """A statement of the paper, and the specimens for which it is judged.
 
     Attributes
     ----------
     name : str
-        Of the function that judges it.
+        Name of the function that judges it.
     figure : str
         Figures or section of the paper.
     claim : str
-        In our words.
+        The statement in our words.
     margin : float
         Equivalence margin: an exponent, or a difference, whose interval stays below it is none.
     decides : str
-        What would decide it where the data leave it open.
+        Measurement that would decide it where the data leave it open.
     short : str
-        How captions call it.
+        Its name in captions.
     material : str
-        "rock" or "concrete" where the paper says it of one of them, else empty.
+        "rock" or "concrete" if the paper states it for one of them, else empty.
     slides : bool
-        Whether only a joint that slides is asked.
+        True if it is judged for joints that slide only.
     plastic : bool
-        Whether a hardness can change the answer: these alone are asked of a specimen that stands
+        True if a hardness can change the answer: only these are judged for a specimen that stands
         in its study once more without one.
     joints : str
-        "one", or "several" where it needs them.
+        "one", or "several" if it needs several joints.
     shown_in : str
-        Figure that shows it; empty where none does.
+        Figure that shows it; may be empty.
     """
 
     name: str

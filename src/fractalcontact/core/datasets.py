@@ -1,4 +1,4 @@
-"""Labelled datasets made from a table: of each variable its dimensions, unit and long name."""
+"""Labelled datasets from a table of their variables: name, dimensions, unit, long name."""
 
 import functools
 from collections.abc import Callable, Mapping, Sequence
@@ -8,7 +8,7 @@ import xarray as xr
 
 from .labels import cf_attrs
 
-#: A name, several of them, or () for a number.
+#: Dimensions: a name, several names, or () for a number.
 Dims = Sequence[str]
 Given = ParamSpec("Given")
 Made = TypeVar("Made", xr.Dataset, dict[str, xr.Dataset])
@@ -17,25 +17,21 @@ Made = TypeVar("Made", xr.Dataset, dict[str, xr.Dataset])
 def titled(
     title: str = "", **titles: str
 ) -> Callable[[Callable[Given, Made]], Callable[Given, Made]]:
-    """Decorator of the function of a stage, which gives its dataset a title.
+    """Decorator of the function of a stage, which gives its dataset the attribute ``title``.
 
-    The attribute ``title`` is the description of the stage's group in the atlas.
-
-    Parameters
-    ----------
-    title : str, optional
-        Of a function that gives one dataset.
-    **titles : str
-        By name, of a function that gives several.
+    It is the description of the stage's group in the atlas: ``title`` of a function that gives one
+    dataset, ``titles`` by name of a function that gives several.
     """
 
     def decorate(function: Callable[Given, Made]) -> Callable[Given, Made]:
         @functools.wraps(function)
         def make(*args: Given.args, **kwargs: Given.kwargs) -> Made:
-            made = function(*args, **kwargs)
-            if isinstance(made, xr.Dataset):
-                return made.assign_attrs(title=title)
-            return {name: one.assign_attrs(title=titles[name]) for name, one in made.items()}
+            result = function(*args, **kwargs)
+            if isinstance(result, xr.Dataset):
+                return result.assign_attrs(title=title)
+            return {
+                name: dataset.assign_attrs(title=titles[name]) for name, dataset in result.items()
+            }
 
         return make
 
@@ -52,7 +48,7 @@ def labelled(
     table : mapping of str to (dims, str, str)
         Dimensions (a name, a tuple of names, or () for a number), unit and long name by variable.
     values : mapping of str to array_like
-        Of the same names.
+        Values by variable.
 
     Returns
     -------
@@ -78,16 +74,7 @@ def labelled_dataset(
     coords: Mapping[Any, Any] | None = None,
     attrs: Mapping[Any, Any] | None = None,
 ) -> xr.Dataset:
-    """A dataset made from a table.
-
-    Parameters
-    ----------
-    table, values
-        As :func:`labelled` takes them.
-    coords : mapping, optional
-        As ``xr.Dataset`` takes them.
-    attrs : mapping, optional
-    """
+    """Dataset of :func:`labelled` variables; coordinates and attributes are those of xarray."""
     return xr.Dataset(labelled(table, values), coords=coords, attrs=attrs)
 
 

@@ -1,4 +1,4 @@
-"""Exceptions of the package, and the form in which commands say them."""
+"""Exceptions of the package, and their form in commands."""
 
 import functools
 import sys

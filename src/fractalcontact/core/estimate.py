@@ -1,4 +1,4 @@
-"""A number with its 95 % interval: the one type of every estimate, in memory, on disk, in words.
+"""Numbers with their 95 % intervals: the one type of every estimate, in memory, on disk, in words.
 
 In memory it is an :class:`Estimate`. On disk it is the variables, or columns, ``NAME``,
 ``NAME_low`` and ``NAME_high``: no other module puts these names together.
@@ -16,7 +16,7 @@ from .labels import cf_attrs
 from .text import compact, number, undetermined, with_error
 from .verdicts import UNDETERMINED
 
-#: Ends of an interval by the ending of their names, and what follows the long name there.
+#: Ends of an interval: ending of the name, and ending of the long name.
 _ENDS = {
     "": "",
     "_low": ", lower end of the {} interval",
@@ -27,7 +27,7 @@ _LEVEL = "95 %"
 
 
 class Scale(NamedTuple):
-    """Kind of a quantity: which intervals determine it, and how its numbers are written.
+    """Kind of a quantity: the intervals that determine it, and the form of its numbers.
 
     ``span`` and ``exact`` are those of :func:`core.determined.determined`; without
     ``decimals`` numbers have three digits.
@@ -44,8 +44,8 @@ SIZE = Scale()
 EXPONENT = Scale(span=1.0)
 #: Least and largest dimension of a set in the plane.
 IN_PLANE = (0.0, 2.0)
-#: Fractal dimensions and their slopes, which lie within 2: any interval determines them, and each
-#: verdict is by what it leaves out; those of a contact domain, 0 and 2, need none.
+#: Fractal dimensions and their slopes, which lie within 2: any interval determines them, and
+#: verdicts rest on the values outside it; 0 and 2 of a contact domain need no interval.
 DIMENSION = Scale(span=2.0, exact=IN_PLANE, decimals=2)
 
 
@@ -56,15 +56,15 @@ class Estimate:
     Attributes
     ----------
     value, low, high : float or ndarray
-        NaN where there is none.
+        NaN where missing.
     n : int or ndarray of int
         Points, or samples, that it rests on; 0 where that is not counted.
     over : (float, float) or (ndarray, ndarray)
-        Range that it was fitted over; NaN where it is no fit.
+        Range of the fit; NaN without a fit.
     reason : str or ndarray of str
-        Why there is no value, or what to know of it.
+        Reason of a missing value, or a remark on it.
     scale : Scale
-        What kind of quantity it is of.
+        Kind of the quantity.
     level : str
         Probability of the interval, in words; of its class.
     """
@@ -82,17 +82,7 @@ class Estimate:
     def read(cls, table: Any, name: str, *, reason: Any = "", scale: Scale = SIZE) -> Self:
         """Estimate of this name in a dataset, a table or one row of a table.
 
-        Parameters
-        ----------
-        table : xr.Dataset, pd.DataFrame, pd.Series or mapping of str to array_like
-        name : str
-        reason : str or array_like of str, optional
-        scale : Scale, optional
-
-        Raises
-        ------
-        KeyError
-            Where the value or an end is missing.
+        KeyError if the value or an end is missing.
         """
         value, low, high = (np.asarray(table[of])[()] for of in names_of(name))
         return cls(value, low, high, reason=reason, scale=scale)
@@ -101,37 +91,30 @@ class Estimate:
     def about(
         cls, value: Any, half: Any, least: float = -np.inf, most: float = np.inf, **of: Any
     ) -> Self:
-        """Estimate from a half-width, its ends kept within what the quantity can be.
+        """Estimate from a half-width, its ends kept within bounds of the quantity, as 0 of a gap.
 
-        Parameters
-        ----------
-        value, half : array_like
-            Of the same shape; a half-width that is NaN gives no interval.
-        least, most : float, optional
-            Bounds of the quantity, such as 0 of a gap.
-        **of
-            Further fields.
+        A half-width that is NaN gives no interval; ``of`` are further fields.
         """
         value, half = np.asarray(value, float)[()], np.asarray(half, float)[()]
         low, high = np.maximum(value - half, least), np.minimum(value + half, most)
-        # A value beyond a bound by rounding still lies in its interval.
+        # The interval holds its value even if rounding puts that beyond a bound.
         return cls(value, np.minimum(low, value), np.maximum(high, value), **of)
 
     @classmethod
     def stack(cls, estimates: Iterable["Estimate"], shape: Sequence[int] = (-1,)) -> "Estimate":
         """Estimates as one of arrays, in C order over ``shape``."""
-        each = list(estimates)
+        members = list(estimates)
 
         def joined(field: Callable[["Estimate"], Any]) -> np.ndarray:
-            # What a member has once belongs to all of its numbers.
-            columns = [np.broadcast_to(field(one), np.shape(one.value)) for one in each]
+            # A scalar field of a member belongs to all of its numbers.
+            columns = [np.broadcast_to(field(member), np.shape(member.value)) for member in members]
             return np.reshape(columns, shape)
 
         value, low, high, n, reason = (
             joined(attrgetter(name)) for name in ("value", "low", "high", "n", "reason")
         )
-        over = joined(lambda one: one.over[0]), joined(lambda one: one.over[1])
-        return cls(value, low, high, n, over, reason, each[0].scale if each else SIZE)
+        over = joined(lambda member: member.over[0]), joined(lambda member: member.over[1])
+        return cls(value, low, high, n, over, reason, members[0].scale if members else SIZE)
 
     def __getitem__(self, index: Any) -> "Estimate":
         """Estimates at an index of the arrays; scalars shared by all are kept."""
@@ -158,12 +141,12 @@ class Estimate:
 
     @property
     def determined(self) -> Any:
-        """True if the interval determines a quantity of this kind; of a single number."""
+        """True if the interval determines a quantity of this kind; for a single number."""
         span, exact, _ = self.scale
         return determined(*self.ends, span=span, exact=exact)
 
     def text(self, unit: str = "") -> str:
-        """Value with its interval: "0.954 [0.912, 1.02] MPa"; of a single number.
+        """Value with its interval: "0.954 [0.912, 1.02] MPa"; for a single number.
 
         "no fit" where there is none, :attr:`undetermined` where the interval is too wide
         to be of use.
@@ -177,9 +160,9 @@ class Estimate:
         return f"{words} {unit}".rstrip()
 
     def undetermined(self, unit: str = "") -> str:
-        """The word, then the value and its error in brackets.
+        """ "undetermined" with the value and its error in brackets.
 
-        The error is half of an even interval; of an uneven one both ends are given.
+        The error is half of an even interval; an uneven one has both ends.
         """
         if not self.known:
             return UNDETERMINED
@@ -202,7 +185,7 @@ class Estimate:
         return self.within(*IN_PLANE)
 
     def within(self, least: float, most: float) -> Self:
-        """Estimate of a quantity that has bounds: what lies beyond one is stated as the bound."""
+        """Estimate of a bounded quantity; a value or an end beyond a bound becomes the bound."""
         return self.mapped(lambda end: np.clip(end, least, most))
 
     def columns(self, name: str, unit: str = "") -> dict[str, Any]:
@@ -214,12 +197,7 @@ class Estimate:
     ) -> dict[str, tuple[Any, Any, dict[str, str]]]:
         """Variables ``NAME``, ``NAME_low`` and ``NAME_high``, as ``xr.Dataset`` takes them.
 
-        Parameters
-        ----------
-        name : str
-        dims : str or sequence of str
-            Of the arrays; () for a number.
-        units, long_name : str
+        ``dims`` are those of the arrays, () for a number.
         """
         rows = rows_of(name, units, long_name, self.level)
         return {
@@ -228,7 +206,7 @@ class Estimate:
         }
 
 
-#: What is not known at all.
+#: Estimate of an unknown quantity.
 NO_ESTIMATE = Estimate()
 
 

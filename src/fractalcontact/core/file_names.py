@@ -1,4 +1,4 @@
-"""Names of scan files: which specimen and which face a file is of, by its name alone."""
+"""Names of scan files: specimen and face of a file, by its name alone."""
 
 import hashlib
 import re
@@ -11,17 +11,17 @@ SIDECAR_SUFFIXES = (".yaml", ".yml")
 _UNSAFE = re.compile(r"[^A-Za-z0-9_.-]")
 
 
-#: Windows opens devices by these names, whatever the ending: no folder of results could be copied.
+#: Names by which Windows opens devices, whatever the ending: it cannot copy files of such names.
 _DEVICES = re.compile(r"(?i)(con|prn|aux|nul|com\d|lpt\d)(\.|$)")
 
 
-#: Snakemake takes such an ending for a rule that feeds on its own output; long names in other
-#: alphabets end so, as a row of ``_``.
+#: Repetitive ending, which Snakemake takes for a rule that consumes its own output; long names in
+#: other alphabets end in a row of ``_``.
 _REPEATS = re.compile(r"(.+?)\1{19}$")
 
 
 def specimen_name(original_name: str) -> str:
-    """Make a name safe: letters, digits, ``_ . -``; neither dash nor dot in front.
+    """Name of a specimen with safe characters: letters, digits, ``_ . -``; no dash or dot in front.
 
     Composed and decomposed accents, which look the same, give the same name. A name that Windows
     keeps for a device gets ``_`` in front, one that ends in many repeats six letters behind.
@@ -34,13 +34,7 @@ def specimen_name(original_name: str) -> str:
 
 
 def split_file_name(file_name: str) -> tuple[str, str]:
-    """Split a scan's or sidecar's file name into the specimen's name and the role of the file.
-
-    Returns
-    -------
-    original_name : str
-    role : {"only", "lower", "upper", "sidecar"}
-    """
+    """Specimen's name and role ("only", "lower", "upper", "sidecar") of a scan file or sidecar."""
     path = Path(file_name)
     if path.suffix.lower() in SIDECAR_SUFFIXES:
         return path.stem, "sidecar"

@@ -1,4 +1,4 @@
-"""Straight lines through points, with the interval that belongs to them."""
+"""Straight lines through points, with their intervals."""
 
 from typing import NamedTuple
 
@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 from .estimate import Estimate
 from .intervals import t_quantile
 
-#: Two points always lie on a line: from three on its error is known.
+#: Fewest points of a line with an error: two points always lie on a line.
 MIN_POINTS = 3
 
 
@@ -72,17 +72,9 @@ def _around(value: float, half: float, n: int, over: tuple[float, float]) -> Est
 
 
 def slope_error(x: np.ndarray, error: np.ndarray) -> float:
-    """Error of a least-squares slope by the errors of its values, which are independent.
+    """Error of a least-squares slope over x (n,) by the independent errors (n,) of its values.
 
-    Parameters
-    ----------
-    x, error : (n,) ndarray
-        Where the values stand, and the half-widths of their intervals.
-
-    Returns
-    -------
-    float
-        NaN of fewer than two.
+    Errors are half-widths of intervals. NaN with fewer than two points.
     """
     if x.size < 2:
         return np.nan

@@ -9,36 +9,20 @@ from scipy import special
 from .estimate import Estimate
 from .limits import CONFIDENCE
 
-#: Dimension of parts that a jackknife leaves out one by one.
+#: Dimension of the parts that a jackknife leaves out one by one.
 LEFT_OUT = "left_out"
 
 
 def t_quantile(freedom: ArrayLike) -> Any:
-    """Half the width of a 95 % interval in standard errors, by Student's t.
-
-    Parameters
-    ----------
-    freedom : int or (...) array_like of int
-        Degrees of freedom.
-    """
-    # stdtrit is the quantile behind scipy.stats.t, whose import alone costs most of a second.
+    """Half the width of a 95 % interval in standard errors: Student's t for degrees of freedom."""
+    # stdtrit is the quantile of scipy.stats.t, whose import alone costs most of a second.
     return special.stdtrit(freedom, (1 + CONFIDENCE) / 2)
 
 
 def mean_interval(values: ArrayLike, axis: int = 0) -> Estimate:
-    """Mean of independent values and its Student-t interval.
+    """Mean of independent values along an axis and its Student-t interval; NaN values are left out.
 
-    Parameters
-    ----------
-    values : array_like
-        NaN where missing.
-    axis : int
-        Along which the mean is taken.
-
-    Returns
-    -------
-    Estimate
-        NaN without a value; the interval needs two.
+    NaN without a value; the interval needs two.
     """
     values = np.asarray(values, float)
     n = np.isfinite(values).sum(axis=axis)
@@ -52,16 +36,9 @@ def mean_interval(values: ArrayLike, axis: int = 0) -> Estimate:
 
 
 def mean_difference(first: ArrayLike, second: ArrayLike) -> Estimate:
-    """Mean of one sample less that of another, with Student's interval for one variance.
+    """Mean of one sample (n,) less that of another (m,), with Student's interval for one variance.
 
-    Parameters
-    ----------
-    first, second : (n,), (m,) array_like
-
-    Returns
-    -------
-    Estimate
-        Without an interval where n + m is below three.
+    Without an interval where n + m is below three.
     """
     samples = [np.asarray(values, float) for values in (first, second)]
     difference = float(samples[0].mean() - samples[1].mean())

@@ -1,4 +1,4 @@
-"""Keys of a study and its sidecars: types of values with units, and errors that say what to write.
+"""Keys of a study and its sidecars: types of values with units, and errors with the remedy.
 
 A section is a pydantic class. Its fields are keys with type, unit, bounds, default and words;
 schemas, tables of keys and errors are made from them.
@@ -27,7 +27,7 @@ from .errors import InputError
 from .units import load_of, magnitude, share_of
 
 _MAX_QUOTE = 80  # characters of what the user wrote, in a message
-#: Nodes per side of a surface, and cells of a map: one of that many takes some 35 GB to make.
+#: Most nodes per side of a surface, and cells of a map: making one takes some 35 GB.
 MAX_NODES_PER_SIDE = 16384
 
 
@@ -48,20 +48,20 @@ def key(
     fill: str = "",
     only: str = "",
 ) -> Any:
-    """Words on a key.
+    """Description of a key.
 
     Parameters
     ----------
     words : str
         The expected value, in errors: "expected {words}".
     doc : str, optional
-        The cell of the key in tables of keys, in Markdown; `words` by default.
+        Cell of the key in tables of keys, in Markdown; `words` by default.
     unsaid : str, optional
-        The cell of what holds where the key is left out.
+        Cell of the default in these tables.
     default : optional
         Value, as the user would write it, of a key that is left out.
     fill : str, optional
-        What a draft asks its owner to fill in.
+        Question of a draft to its owner.
     only : {"contact map", "map", "heights", "pair", "sliding", ""}, optional
         The only files or specimens for which the key has a meaning.
     """
@@ -76,7 +76,7 @@ def key(
 
 
 def wrong(words: str = "") -> PydanticCustomError:
-    """Error of a value of the wrong form, with what was expected if no description says it."""
+    """Error of a value of the wrong form, with the expected one if no description states it."""
     return PydanticCustomError("form", "{words}", {"words": words})
 
 
@@ -152,12 +152,12 @@ Share = Annotated[
     PlainValidator(share_of),
     WithJsonSchema({"type": ["string", "number"], "description": "a share, such as 1 % or 0.01"}),
 ]
-#: Marks of a list whose values differ from each other.
+#: Validators of a list of distinct values.
 different = (AfterValidator(_unique), Field(json_schema_extra={"uniqueItems": True}))
 
 
 class StatedAs:
-    """Marks the form in which a user states a value of another type."""
+    """Mark of the form in which a user states a value of another type."""
 
     def __init__(self, form: Any):
         self.form = form
@@ -178,7 +178,7 @@ Range = Annotated[
 ]
 Natural = Annotated[int, Field(ge=1, description="a whole number from 1")]
 Direction = Annotated[Literal["E", "N", "W", "S"], Field(description="E, N, W or S")]
-#: Between dollars the figures would read mathematics.
+#: Text of one line without dollar signs, between which figures would read mathematics.
 LINE = r"^[^$\x00-\x1f\x7f-\x9f]{1,%d}$"
 LABEL_WORDS = "what it is, in up to 200 characters on one line, without $"
 Label = Annotated[str, Field(pattern=LINE % 200, description=LABEL_WORDS)]
@@ -188,22 +188,11 @@ Label = Annotated[str, Field(pattern=LINE % 200, description=LABEL_WORDS)]
 
 
 def validate(section: type[S], document: Mapping, source: str, above: str = "") -> S:
-    """Section of a document.
+    """Section, of a class, of a document as read from YAML.
 
-    Parameters
-    ----------
-    section : type
-    document : mapping
-        As read from YAML.
-    source : str
-        The file it came from, for errors.
-    above : str, optional
-        Keys that the section stands under, such as "embedded.NAME", for errors.
-
-    Raises
-    ------
-    InputError
-        For the first thing that is wrong: the file, the key, what stands there, what was expected.
+    ``source`` is the name of the file, ``above`` are the keys that the section stands under, such
+    as "embedded.NAME", for errors. InputError for the first fault: the file, the key, its value,
+    the expected value.
     """
     try:
         return section.model_validate(document)
@@ -214,7 +203,7 @@ def validate(section: type[S], document: Mapping, source: str, above: str = "") 
 
 
 def shortened(text: object) -> str:
-    """A text of any length and content as one that fits into a message."""
+    """Text of any length and content, shortened to fit into a message."""
     text = str(text) if str(text).isprintable() else ascii(text)
     return text if len(text) <= _MAX_QUOTE else f"{text[:_MAX_QUOTE]}..."
 
@@ -238,7 +227,7 @@ def schema_of(section: type[Section]) -> dict[str, Any]:
     return section.model_json_schema(schema_generator=_Schema)
 
 
-#: Kinds of errors, from the one that says least of a value that has several forms.
+#: Kinds of errors of a value with several forms, from the least to the most specific.
 _RANKS = ("other", "value_error", "missing", "extra_forbidden")
 
 
@@ -254,10 +243,10 @@ def _faults(section: type[Section], document: Mapping, errors: list, above: str)
         groups.setdefault(place, []).append((path, error))
     chosen = []
     for place, group in groups.items():
-        path, error = max(group, key=lambda one: (_rank(one[1]), len(one[0])))
+        path, error = max(group, key=lambda fault: (_rank(fault[1]), len(fault[0])))
         says_little = _rank(error) == 0 and len(group) > 1
         chosen.append((place if says_little and len(path) <= len(place) else path, error))
-    chosen.sort(key=lambda one: [str(part) for part in one[0]])
+    chosen.sort(key=lambda fault: [str(part) for part in fault[0]])
     return [_sentence(section, document, path, error, above) for path, error in chosen]
 
 
@@ -331,7 +320,10 @@ def _forms(schema: dict, node: dict) -> list[dict]:
     """Forms that a value may have: itself, and each of ``anyOf``, references followed."""
     if "$ref" in node:
         return _forms(schema, schema["$defs"][node["$ref"].rpartition("/")[2]])
-    return [node, *(form for one in node.get("anyOf", ()) for form in _forms(schema, one))]
+    return [
+        node,
+        *(form for form_node in node.get("anyOf", ()) for form in _forms(schema, form_node)),
+    ]
 
 
 def _child(form: dict, part: Any) -> dict | None:

@@ -5,10 +5,10 @@ from collections.abc import Iterable
 
 #: Members of an ensemble: realisations of an embedded specimen, or twins of a scan.
 REALISATIONS, TWINS = "realisations", "twins of the scan"
-#: Sources of the error of a number as a property of this surface; others are of its population.
+#: Error sources of a number as a property of this surface; other sources concern its population.
 OF_SURFACE = ("solver", "numerical", "secant")
 
-#: What stands for the other face, by the attribute ``opposite`` of the specimen.
+#: Words for the other face, by the attribute ``opposite`` of the specimen.
 OPPOSITE = {
     "scanned": "both faces scanned",
     "match": "one face given, the other taken as its perfect match",
@@ -18,18 +18,14 @@ OPPOSITE = {
 
 
 def cf_attrs(units: str, long_name: str) -> dict[str, str]:
-    """Attributes of a variable, named as the CF conventions have them."""
+    """Attributes of a variable with the names of the CF conventions."""
     return {"units": units, "long_name": long_name}
 
 
 def printable(text: object, longest: int | None = None) -> str:
     """Untrusted text on one line: control characters escaped, the middle left out if it is long.
 
-    Parameters
-    ----------
-    text : str
-    longest : int, optional
-        Characters.
+    ``longest`` is the number of characters.
     """
     text = "".join(c if c.isprintable() else ascii(c)[1:-1] for c in str(text))
     if longest is None or len(text) <= longest:

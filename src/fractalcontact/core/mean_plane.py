@@ -5,17 +5,9 @@ from numpy.typing import ArrayLike
 
 
 def without_mean_plane(heights: ArrayLike) -> np.ndarray:
-    """Heights less the least-squares plane through the cells that were measured.
+    """Heights (ny, nx) less the least-squares plane through the cells that were measured.
 
-    Parameters
-    ----------
-    heights : (ny, nx) array_like
-        NaN where missing.
-
-    Returns
-    -------
-    (ny, nx) float64
-        All NaN where the measured cells do not span a plane: fewer than three, or in one line.
+    All NaN where the measured cells do not span a plane: fewer than three, or in one line.
     """
     heights = np.asarray(heights, float)
     measured = np.isfinite(heights)
@@ -27,7 +19,7 @@ def without_mean_plane(heights: ArrayLike) -> np.ndarray:
     y -= y[measured].mean()
     x -= x[measured].mean()
     mean = heights[measured].mean()
-    # Sums, not a matrix product: the last bit must not depend on the number of cores.
+    # Sums and no matrix product, so that the last bit does not depend on the number of cores.
     dy, dx, dz = y[measured], x[measured], heights[measured] - mean
     yy, xx, xy = np.sum(dy * dy), np.sum(dx * dx), np.sum(dx * dy)
     determinant = yy * xx - xy**2
@@ -42,10 +34,7 @@ def without_mean_plane(heights: ArrayLike) -> np.ndarray:
 def mean_slopes(heights: ArrayLike) -> tuple[float, float]:
     """Slopes (y, x) of the least-squares plane through a complete grid, per cell.
 
-    Parameters
-    ----------
-    heights : (ny, nx) array_like
-        Two cells or more along each side.
+    The grid has two cells or more along each side.
     """
     heights = np.asarray(heights, float)
     plane = heights - without_mean_planes(heights)
@@ -53,17 +42,7 @@ def mean_slopes(heights: ArrayLike) -> tuple[float, float]:
 
 
 def without_mean_planes(heights: ArrayLike) -> np.ndarray:
-    """Complete grids, each less its own mean plane.
-
-    Parameters
-    ----------
-    heights : (..., ny, nx) array_like
-        Two cells or more along each side.
-
-    Returns
-    -------
-    (..., ny, nx) float64
-    """
+    """Complete grids (..., ny, nx), each less its mean plane; two cells or more along each side."""
     heights = np.asarray(heights, float)
     ny, nx = heights.shape[-2:]
     y, x = np.arange(ny) - (ny - 1) / 2, np.arange(nx) - (nx - 1) / 2

@@ -36,13 +36,7 @@ def measured_maps(atlas: xr.DataTree) -> dict[str, xr.Dataset]:
 
 
 def map_table(maps: Mapping[str, xr.Dataset]) -> pd.DataFrame:
-    """Table of measured maps, one row each: load, area and dimension, with the nulls.
-
-    Parameters
-    ----------
-    maps : mapping of str to xr.Dataset
-        By name.
-    """
+    """Table of measured maps by name, one row each: load, area and dimension, with the nulls."""
     rows = [
         {
             "map": name,

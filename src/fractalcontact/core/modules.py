@@ -6,18 +6,10 @@ from types import ModuleType
 
 
 def modules_of(package: ModuleType) -> dict[str, ModuleType]:
-    """Every module of a package, imported.
+    """Modules of a package by their names, sorted, all imported.
 
-    Parameters
-    ----------
-    package : module
-        Imported by the calling module with a statement, ``from . import NAME``, and given by that
-        name; or ``sys.modules[__package__]``, that of the calling module.
-
-    Returns
-    -------
-    dict of str to module
-        By their own names, sorted.
+    The package is imported by the calling module with a statement, ``from . import NAME``, and
+    given by that name; or it is ``sys.modules[__package__]``, that of the calling module.
     """
     names = sorted(module.name for module in iter_modules(package.__path__))
     return {name: import_module(f"{package.__name__}.{name}") for name in names}

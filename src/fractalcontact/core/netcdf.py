@@ -18,10 +18,10 @@ from .atomic import atomic_write
 _NUMBER_MAKERS = ("fractalcontact", "numpy", "scipy", "numba", "xarray")
 
 
-#: Bytes from which on compression gains more than the chunks it needs cost.
+#: Least size in bytes of an array whose compression gains more than its chunks cost.
 COMPRESSED_FROM = 4096
 
-#: Attribute of every part that says with which versions it was made.
+#: Attribute of every part with the versions of the libraries that made it.
 _VERSIONS = "made_with"
 
 
@@ -35,16 +35,16 @@ def write(dataset: xr.Dataset, path: Path | str) -> None:
 def read(path: Path | str) -> xr.Dataset:
     """A dataset written by :func:`write`, in memory.
 
-    How it was kept is forgotten: the length of its longest word would cut off those of others that
-    are put behind it. Integers with an attribute ``_FillValue`` stay integers.
+    Its encoding is dropped: the length of its longest word would cut off those of other datasets in
+    a concatenation. Integers with an attribute ``_FillValue`` stay integers.
     """
     return read_with_versions(path)[0]
 
 
 def read_with_versions(path: Path | str) -> tuple[xr.Dataset, dict[str, str]]:
     """A dataset written by :func:`write`, and the versions it was made with by library."""
-    # Small integers stay such, with the number that marks missing ones: as numbers with NaN they
-    # would take four times the memory.
+    # Small integers keep the number that marks missing ones: floats with NaN would take four times
+    # the memory.
     with xr.open_dataset(path, engine="netcdf4", mask_and_scale=False) as dataset:
         dataset = dataset.load().drop_encoding()
     for variable in dataset.variables.values():
@@ -62,18 +62,10 @@ def versions() -> dict[str, str]:
 def encoding(dataset: xr.Dataset, digits: int | None = None) -> dict[Any, dict[str, Any]]:
     """Encoding of the variables of a dataset: large arrays compressed, small ones plain.
 
-    Parameters
-    ----------
-    dataset : xr.Dataset
-    digits : int, optional
-        Significant decimal digits that are kept of floats in single precision; all by default. The
-        netCDF library rounds the bits behind them (granular bit rounding) and says so in an
-        attribute of the variable.
-
-    Notes
-    -----
-    What is compressed is kept in chunks, whose index takes some 2 kB a variable: more than most
-    variables of an atlas hold.
+    Compressed arrays are stored in chunks, whose index takes some 2 kB a variable: more than most
+    variables of an atlas. ``digits`` are the significant decimal digits stored of floats in single
+    precision, all by default. The netCDF library rounds the bits behind them (granular bit
+    rounding) and states so in an attribute of the variable.
     """
     kept: dict[Any, dict[str, Any]] = {}
     for name, variable in dataset.variables.items():

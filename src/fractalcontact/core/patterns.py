@@ -7,10 +7,8 @@ from collections.abc import Iterable
 def alternation(names: Iterable[str]) -> str:
     """Pattern that matches these names only; without names it matches nothing.
 
-    Notes
-    -----
-    What names have in common at their beginning is written once (a radix tree), so that a match
-    takes as long as the name is. One after the other, ten thousand names would be tried one by one.
+    A common beginning of names is written once (a radix tree), so that a match takes time with the
+    length of the name. A plain list of ten thousand names would be tried one by one.
     """
     words = sorted(set(names))
     return _branches(words) if words else "(?!)"

@@ -1,8 +1,8 @@
-"""Pictures as PNG whose rows are compressed as they are.
+"""Pictures as PNG whose rows are compressed without filters.
 
-Other writers try five filters on every row for the one after which it compresses best (W3C, "PNG
-Specification", section 9). Lines and words on white, as maps of few colours, do so without any:
-trying them takes half of the time, for files no smaller.
+Other writers try five filters on every row for the best compression (W3C, "PNG
+Specification", section 9). Lines and words on white, and maps of few colours, compress as well
+without any: trying them takes half of the time, for files no smaller.
 """
 
 import struct
@@ -19,9 +19,9 @@ def png(picture: np.ndarray, level: int, dpi: float | None = None) -> bytes:
     picture : (ny, nx) or (ny, nx, 3) ndarray of uint8
         Grey levels, or red, green and blue; row 0 at the top.
     level : int
-        Of compression, 1 to 9.
+        Compression, 1 to 9.
     dpi : float, optional
-        Pixels of an inch, where the file is to say so.
+        Pixels per inch, if the file is to state it.
     """
     ny, nx, colours = np.atleast_3d(picture).shape
     kind = {1: 0, 3: 2}[colours]
@@ -29,9 +29,9 @@ def png(picture: np.ndarray, level: int, dpi: float | None = None) -> bytes:
     if dpi:
         of_metre = round(dpi / 0.0254)
         chunks.append((b"pHYs", struct.pack(">IIB", of_metre, of_metre, 1)))
-    # Before each row the number of its filter, which is none.
+    # Each row begins with the number of its filter: 0, no filter.
     rows = np.zeros((ny, 1 + nx * colours), np.uint8)
-    for colour in range(colours):  # each at once: pixel by pixel numpy takes six times as long
+    for colour in range(colours):  # colour by colour: pixel by pixel takes numpy six times as long
         rows[:, 1 + colour :: colours] = np.atleast_3d(picture)[..., colour]
     chunks += [(b"IDAT", zlib.compress(rows.tobytes(), level)), (b"IEND", b"")]
     return b"\x89PNG\r\n\x1a\n" + b"".join(

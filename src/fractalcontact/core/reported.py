@@ -1,6 +1,6 @@
-"""The contact states of a specimen that are published: which direction, offset, grid and loads.
+"""Contact states of a specimen that are published: direction, offset, grid and loads.
 
-They are chosen once, by the stage that solves them, and stored with its closure curves. Figures,
+The stage that solves them chooses them once and stores them with its closure curves. Figures,
 pages, statements and comparisons read them there.
 """
 
@@ -13,9 +13,9 @@ import xarray as xr
 
 from .datasets import labelled
 
-#: A stage, or one of its variables.
+#: Type of a stage, or of one of its variables.
 _States = TypeVar("_States", xr.Dataset, xr.DataArray)
-#: Variables they are stored as: dimensions, unit, long name.
+#: Stored variables of the reported states: dimensions, unit, long name.
 _VARIABLES = {
     "reported_direction": ((), "1", "direction of sliding whose states are reported"),
     "reported_offset": ((), "mm", "shear offset v whose states are reported"),
@@ -34,7 +34,7 @@ class Reported:
     Attributes
     ----------
     direction : str
-        "E", "N", "W", "S", or "none" of what does not slide.
+        "E", "N", "W", "S", or "none" without sliding.
     offset : float
         mm.
     resolution : int
@@ -44,7 +44,7 @@ class Reported:
     loads : tuple of int
         Numbers of those whose dilatancy and strength are reported, ascending.
     reference : int
-        Number of the load whose contact domains are looked at closely.
+        Number of the load of the map states.
     """
 
     direction: str
@@ -66,22 +66,16 @@ class Reported:
     ) -> "Reported":
         """States nearest to those requested by a study, at the finest resolution.
 
-        Parameters
-        ----------
-        curves : xr.Dataset
-            Over ``offset`` (mm), ``resolution`` and ``normal_force`` (N).
-        direction : str
-        offset : float
-            mm, one of the offsets.
-        loads : (k,) sequence of float
-            Forces whose dilatancy is reported, N.
-        reference : float
-            Reference load, N.
+        Curves are over ``offset`` (mm), ``resolution`` and ``normal_force`` (N); the offset is one
+        of theirs. ``loads`` are the forces whose dilatancy is reported, N, ``reference`` the
+        reference load.
         """
         forces = curves["normal_force"].values
-        *dilating, at = (int(np.argmin(np.abs(forces - force))) for force in (*loads, reference))
+        *dilating, of_reference = (
+            int(np.argmin(np.abs(forces - force))) for force in (*loads, reference)
+        )
         resolution = int(curves["resolution"].min())
-        return cls(direction, offset, resolution, forces, tuple(sorted({*dilating})), at)
+        return cls(direction, offset, resolution, forces, tuple(sorted({*dilating})), of_reference)
 
     @classmethod
     def read(cls, curves: xr.Dataset) -> "Reported":
@@ -110,7 +104,7 @@ class Reported:
 
     @property
     def quoted(self) -> list[int]:
-        """Numbers of all loads of which numbers are published, ascending."""
+        """Numbers of all loads with published numbers, ascending."""
         return sorted({*self.loads, self.reference})
 
     @property

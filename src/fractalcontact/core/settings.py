@@ -54,7 +54,7 @@ _ContactDirections = Annotated[
         unsaid="`directions`",
     ),
 ]
-#: Columns of each kind of laboratory test: that of the curve's axis, then what is measured over it.
+#: Columns of each kind of laboratory test: the curve's axis, then the quantity measured over it.
 TEST_COLUMNS = {
     "closure": ("pressure", "displacement"),
     "flow": ("pressure", "transmissivity"),
@@ -315,7 +315,7 @@ class StateSettings(ContactSettings):
 
 @dataclass(frozen=True)
 class EnsembleSettings(SpecimenSettings, StateSettings):
-    """Settings of an ensemble: of the making of its members and their states."""
+    """Settings of an ensemble: for making its members and their states."""
 
 
 @dataclass(frozen=True)
@@ -328,7 +328,7 @@ class StrengthSettings:
 
 @dataclass(frozen=True)
 class MeasuredTest:
-    """A laboratory test; what has no meaning for its kind is NaN or empty.
+    """A laboratory test; fields without a meaning for its kind are NaN or empty.
 
     Attributes
     ----------
@@ -340,13 +340,14 @@ class MeasuredTest:
     branch : {"load", "unload", "reload", ""}
     cycle : int
     way : {"along", "across", ""}
-        Of the flow.
+        Direction of the flow.
     direction : str
-        Of sliding.
+        Direction of sliding.
     seat, pressure, largest_pressure : float
-        That the displacement counts from, that is held, and that the joint has carried, MPa.
+        Pressures of the zero of displacement, during the test, and largest in the joint's history,
+        MPa.
     compliance : float
-        Of the rock between the gauge points, mm/MPa.
+        Compliance of the rock between the gauge points, mm/MPa.
     error : float
         Half-width of the interval of a reading, 95 %, mm or MPa.
     calibrate : {"modulus", "hardness", ""}
@@ -444,15 +445,7 @@ class Solver:
 
 
 def read(section: type[S], stated: Mapping[str, Any]) -> S:
-    """The part of some settings that a class names.
-
-    Parameters
-    ----------
-    section : type
-        Of this module.
-    stated : mapping
-        By key, such as ``dataclasses.asdict`` of :class:`Settings`; other keys are passed over.
-    """
+    """Part of some settings, by key, that a class of this module names; other keys are ignored."""
     types = get_type_hints(section)
     return section(
         **{
@@ -463,7 +456,7 @@ def read(section: type[S], stated: Mapping[str, Any]) -> S:
 
 
 def _read(kind: Any, value: Any) -> Any:
-    """A value, or each of a list, as its class where it has one."""
+    """Value, or each value of a list, as its class where it has one."""
     if get_origin(kind) is list and is_dataclass(of := get_args(kind)[0]):
-        return [read(of, one) for one in value]  # type: ignore[arg-type]
+        return [read(of, item) for item in value]  # type: ignore[arg-type]
     return read(kind, value) if is_dataclass(kind) else value  # type: ignore[arg-type]

@@ -2,8 +2,8 @@
 
 Counts at many scales of one set are no independent points, and the error of a regression alone is
 far too small. Here parts of the window are left out one by one (the jackknife), and the waves of
-the sums about their smooth bend are added in quadrature. The bend itself is no error: that a slope
-changes with the scale is a finding of its own, which local slopes show.
+the sums about their smooth bend are added in quadrature. The bend itself is no error: a slope
+that changes with the scale is a finding of its own, which local slopes show.
 """
 
 from collections.abc import Callable
@@ -29,17 +29,9 @@ _BEND = 2
 def wave_error(scales: np.ndarray, residuals: np.ndarray) -> float:
     """Slope that waves about the smooth bend of a power law may add to it over its range.
 
-    Parameters
-    ----------
-    scales : (k,) ndarray
-    residuals : (k,) ndarray
-        Logarithms of what was summed, less those of the law.
-
-    Returns
-    -------
-    float
-        Tilt of a wave of the root mean square of the residuals about their parabola over log scale;
-        0 where the parabola goes through all of them.
+    The tilt of a wave of the root mean square of the residuals (k,) about their parabola over log
+    scale; 0 where the parabola goes through all of them. Residuals are logarithms of sums less
+    those of the law.
     """
     freedom = scales.size - _BEND - 1
     if freedom < 1:
@@ -55,20 +47,10 @@ def slope_of_sums(
 ) -> Estimate:
     """Slope of log of a statistic of sums against log scale, with the interval of this module.
 
-    Parameters
-    ----------
-    scales : (k,) array_like
-        Ascending.
-    parts : (k, m, n) array_like
-        m sums at each scale, over n parts of the window.
-    statistic : callable
-        (k, m) sums of the whole window, or of all but one part, to (k,) values whose logarithm is
-        taken; scales where it is not positive are left out.
-
-    Returns
-    -------
-    Estimate
-        Over the scales used; NaN with fewer than `MIN_SCALES` of them.
+    ``parts`` (k, m, n) are m sums at each scale (k,), ascending, over n parts of the window.
+    ``statistic`` takes (k, m) sums of the whole window, or of all but one part, to (k,) values
+    whose logarithm is taken; scales where it is not positive are left out. NaN with fewer than
+    `MIN_SCALES` others.
     """
     scales, parts = np.asarray(scales, float), np.asarray(parts, float)
     whole = parts.sum(axis=2)

@@ -1,27 +1,15 @@
-"""Strips of a large array, worked on one by one so that no copy of all of it is needed."""
+"""Strips of a large array, processed one by one so that no copy of all of it is needed."""
 
 from collections.abc import Iterator
 
-#: Numbers held at once: 32 MB of them.
+#: Most numbers in memory at once: 32 MB.
 _NUMBERS = 4_000_000
 
 
 def blocks(count: int, numbers: int = 1, most: int = _NUMBERS) -> Iterator[slice]:
-    """Consecutive slices of this many things that take ``numbers`` numbers each.
+    """Consecutive slices of ``count`` items of ``numbers`` numbers each, at most ``most`` at once.
 
-    Parameters
-    ----------
-    count : int
-        Things in all.
-    numbers : int
-        Numbers that one of them takes while it is worked on.
-    most : int, optional
-        Numbers held at once.
-
-    Yields
-    ------
-    slice
-        Together all things, each once; none of no things.
+    No slice without items.
     """
     step = max(1, most // max(numbers, 1))
     for start in range(0, count, step):
@@ -29,13 +17,5 @@ def blocks(count: int, numbers: int = 1, most: int = _NUMBERS) -> Iterator[slice
 
 
 def strips(shape: tuple[int, ...], numbers: int = 1, most: int = _NUMBERS) -> Iterator[slice]:
-    """Consecutive rows of a grid whose cells take ``numbers`` numbers each, as :func:`blocks`.
-
-    Parameters
-    ----------
-    shape : (int, int)
-        (ny, nx).
-    numbers, most : int
-        As for :func:`blocks`.
-    """
+    """Consecutive rows of a grid (ny, nx) whose cells take ``numbers`` numbers each."""
     return blocks(shape[0], numbers * shape[1], most)

@@ -21,9 +21,9 @@ class Subject:
     Attributes
     ----------
     stages : mapping of str to xr.Dataset
-        By name; those that it has.
+        Existing stages by name.
     settings : mapping
-        As the study states them, numbers in mm, N and MPa.
+        Settings of the study, numbers in mm, N and MPa.
     name : str
     """
 
@@ -33,13 +33,7 @@ class Subject:
 
     @classmethod
     def of(cls, atlas: xr.DataTree, name: str) -> "Subject":
-        """A specimen of an atlas.
-
-        Raises
-        ------
-        KeyError
-            If the atlas has no specimen of this name.
-        """
+        """Specimen of an atlas; KeyError if the atlas has none of this name."""
         stages = {
             stage: group[name].to_dataset()
             for stage, group in atlas.children.items()
@@ -58,17 +52,17 @@ class Subject:
 
     @property
     def label(self) -> str:
-        """As its user wrote it: untrusted text."""
+        """Label as its user wrote it: untrusted text."""
         return str(self.settings["label"])
 
     @property
     def direction(self) -> str:
-        """Direction of sliding that is reported."""
+        """Reported direction of sliding."""
         return self.reported.direction
 
     @property
     def offset(self) -> float:
-        """Offset whose states are reported, mm."""
+        """Reported offset, mm."""
         return self.reported.offset
 
     @property
@@ -103,7 +97,7 @@ class Subject:
 
     def states(self, stage: str) -> xr.Dataset:
         """A stage at the reported direction, offset and resolution, over loads."""
-        # A page asks for a few numbers of each load: a stage is selected from once.
+        # The selection is cached, as a page reads a few numbers at each load.
         if stage not in self._states:
             self._states[stage] = self.reported.states(self[stage])
         return self._states[stage]
@@ -118,7 +112,7 @@ class Subject:
 
 
 def configuration_of(atlas: xr.DataTree) -> dict[str, Any]:
-    """Study and settings, as an atlas keeps them."""
+    """Study and settings of an atlas."""
     return json.loads(atlas.attrs["configuration"])
 
 

@@ -1,4 +1,4 @@
-"""Numbers, intervals, units, percentages and ranges as text: the one module that makes it.
+"""Numbers, intervals, units, percentages and ranges as text: no other module formats numbers.
 
 Pages and cards have the typographic minus sign; captions, tables, messages and verdicts, which are
 searched and parsed, the hyphen.
@@ -11,21 +11,21 @@ from typing import Any
 MISSING = "–"
 #: Minus sign of pages and cards.
 _MINUS = "−"
-#: Below and above these a number has an exponent.
+#: Range of the numbers without an exponent.
 _PLAIN = (1e-4, 1e6)
-#: Ends of an interval that differ from even ones by less than this part of it are called even.
+#: Largest difference of the two halves of an even interval, as a fraction of it.
 _EVEN = 0.02
-#: An interval narrower than this, as a fraction of its value, has left out its errors.
+#: Least width of an interval, as a fraction of its value; a narrower one has left out its errors.
 _NO_WIDTH = 1e-6
-#: Smaller units: from where on, its name, how many of the first unit it is.
+#: Units of length: smallest length, name, mm in one unit.
 _LENGTHS = ((1.0, "mm", 1.0), (1e-3, "µm", 1e-3), (0.0, "nm", 1e-6))
 _STIFFNESS = ((1e3, "GPa/mm", 1e3), (0.0, "MPa/mm", 1.0))
 _FORCES = ((1e6, "MN", 1e6), (1e3, "kN", 1e3), (0.0, "N", 1.0))
 _PRESSURES = ((1e3, "GPa", 1e3), (0.0, "MPa", 1.0))
 _SCALED = {"mm": _LENGTHS, "MPa/mm": _STIFFNESS, "N": _FORCES, "MPa": _PRESSURES}
-#: Units of force of figures and how many N they are, the largest first.
+#: Units of force of figures and N in one unit, the largest first.
 _FORCE_UNITS = (("GN", 1e9), ("MN", 1e6), ("kN", 1e3), ("N", 1.0), ("mN", 1e-3), ("µN", 1e-6))
-#: Lengths from here on, mm, are said in metres.
+#: Least length, mm, that is stated in metres.
 _METRES = 1e4
 
 
@@ -76,7 +76,7 @@ def _with_ends(words: Iterable[str]) -> str:
 
 
 def rounded(value: float, digits: int) -> float:
-    """A number with some digits."""
+    """Number rounded to some significant digits."""
     return float(f"{float(value):.{digits}g}")
 
 
@@ -180,7 +180,7 @@ def interval(value: float, low: float, high: float) -> str:
 
 
 def plus_minus(error: float, words: str) -> str:
-    """An error, said in words, behind its sign; where it is not finite, that it is not known."""
+    """Error in words, behind its sign; "not known" where it is not finite."""
     return f"± {words}" if math.isfinite(error) else "error not known"
 
 
@@ -195,11 +195,11 @@ def with_error(
     """Value and error to two digits of it, "0.96 ± 0.94", or both ends of an uneven interval."""
     half = (high - low) / 2
     if not half > _NO_WIDTH * max(abs(value), 1e-300) or not math.isfinite(half):
-        # Rounding leaves 1e-16 of a slope of 0.
+        # A slope of 0 is 1e-16 by rounding.
         known = plain(value, limits=_PLAIN) if decimals is None else number(value, decimals)
         words = f"{known}, error not known"
     else:
-        # Two digits of the error, and two decimals where it is of the order of one.
+        # The error has two digits, and two decimals if it is of the order of one.
         digits = max(1 - math.floor(math.log10(half)), 2 if half < 10 else 0)
         shown, least, most, error = (number(x, digits) for x in (value, low, high, half))
         even = abs(high - value - (value - low)) <= _EVEN * (high - low)

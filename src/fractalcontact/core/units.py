@@ -14,23 +14,23 @@ from .errors import InputError
 PROGRAM_UNITS = {"length": "mm", "force": "N", "pressure": "MPa", "angle": "degree"}
 
 _EXAMPLES = {"length": "20 mm", "force": "10 kN", "pressure": "25 MPa", "angle": "30 deg"}
-#: What an angle is to pint, which knows no such dimension.
+#: Dimension of an angle in pint, which has no name for it.
 _DIMENSIONS = {"angle": "[]"}
-#: A number and a unit. The library would take any sum, and spend for ever on 9**9**9 mm.
+#: Patterns of a number and a unit. The library would evaluate any sum, 9**9**9 mm without end.
 _WORD = r"[^\W\d_]+(?:(?:\^|\*\*)?-?\d)?"
 _NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 _UNITS = rf"{_WORD}(?:(?:\s*[*/·]\s*|\s+){_WORD})*"
 _QUANTITY = re.compile(rf"\s*{_NUMBER}\s*(?:°|{_UNITS})?\s*")
 _LONGEST = 60  # characters
-#: What an instrument means by a length; the library also knows points, picas and pixels as parts
-#: of an inch, and light years. By symbol, as written, and by name, in any case and number.
+#: Units of length of instruments, by symbol as written and by name in any case and number. The
+#: library of units has points, picas and pixels as parts of an inch, too, and light years.
 _LENGTH_SYMBOLS = {
     **{
         symbol: symbol
         for symbol in ("fm", "pm", "nm", "um", "mm", "cm", "dm", "m", "km", "in", "ft")
     },
     **{"µm": "um", "\u03bcm": "um", "Å": "angstrom", "\u212b": "angstrom"},
-    # As programs that know capitals alone write them; a megametre measures no rock.
+    # Programs that know capitals alone write MM; a megametre measures no rock.
     **{"NM": "nm", "UM": "um", "MM": "mm", "CM": "cm"},
 }
 _METRE = re.compile(
@@ -50,27 +50,21 @@ class _OutOfRange(InputError):
 
 @cache
 def _registry() -> Any:
-    import pint  # with numpy, which a stage's table of settings does without
+    import pint  # imports numpy, which reading the settings of a stage does not need
 
     return pint.UnitRegistry(cache_folder=None)
 
 
 def quantity(text: Any, kind: str, where: str) -> float:
-    """Read one quantity with its unit.
+    """Value of one quantity with its unit, in mm, N, MPa or degrees.
 
     Parameters
     ----------
     text : str
         A number and a unit, such as ``"0.1 mm"``.
     kind : {"length", "force", "pressure", "angle"}
-        What it must be.
     where : str
         The file and key it stands under, for the error.
-
-    Returns
-    -------
-    float
-        The value in mm, N, MPa or degrees.
 
     Raises
     ------
@@ -87,9 +81,9 @@ def quantity(text: Any, kind: str, where: str) -> float:
 
 @lru_cache(maxsize=4096)
 def magnitude(text: str, kind: str) -> float:
-    """A quantity, with errors that name no place.
+    """Value of a quantity, with errors that name no place.
 
-    Values are kept: a campaign states the same few hundreds of times over.
+    Values are cached: a campaign states the same few hundreds of times over.
     """
     unit, wanted = PROGRAM_UNITS[kind], _wanted(kind)
     if len(text) > _LONGEST or not _QUANTITY.fullmatch(text):
@@ -98,7 +92,7 @@ def magnitude(text: str, kind: str) -> float:
         text = _with_known_length(text, wanted)
     try:
         value = _registry()(text)
-    except Exception as error:  # pint raises half a dozen unrelated types for malformed text
+    except Exception as error:  # pint raises many unrelated types for malformed text
         raise InputError(f"cannot read {text!r} ({error}); {wanted}") from None
     if not isinstance(value, _registry().Quantity) or value.unitless:
         raise InputError(f"{text!r} has no unit; {wanted}")
@@ -121,8 +115,8 @@ def _wanted(kind: str) -> str:
 def length_unit(text: str) -> str | None:
     """Name of a unit of length for the library of units; None if unknown.
 
-    Only lengths of the SI and their usual multiples, angstrom, inch and foot: what other units are
-    called may mean another thing, as "point" and "px" do.
+    Only lengths of the SI and their usual multiples, angstrom, inch and foot: names of other units
+    may mean another thing, as "point" and "px" do.
     """
     if text in _LENGTH_SYMBOLS:
         return _LENGTH_SYMBOLS[text]
@@ -132,12 +126,9 @@ def length_unit(text: str) -> str | None:
 
 
 def _with_known_length(text: str, wanted: str) -> str:
-    """A quantity with its unit as the library names it, if that is one word and a length.
+    """Quantity with its unit as the library names it, if that is one word and a length.
 
-    Raises
-    ------
-    InputError
-        If its unit is a length to the library of units alone.
+    InputError if only the library of units takes its unit for a length.
     """
     match = re.fullmatch(rf"\s*({_NUMBER})\s*({_WORD})\s*", text)
     if not match:
@@ -145,7 +136,7 @@ def _with_known_length(text: str, wanted: str) -> str:
     if name := length_unit(match[2]):
         return f"{match[1]} {name}"
     is_length = False
-    with contextlib.suppress(Exception):  # whatever else it may be is refused further on
+    with contextlib.suppress(Exception):  # other faults of the text are refused further on
         is_length = _registry()(f"1 {match[2]}").check("[length]")
     if is_length:
         raise InputError(
@@ -160,19 +151,7 @@ def _article(noun):
 
 
 def load(text: Any, where: str) -> tuple[float, str]:
-    """Read a load given as a force or as a nominal pressure.
-
-    Returns
-    -------
-    value : float
-        In N or MPa.
-    kind : {"force", "pressure"}
-
-    Raises
-    ------
-    InputError
-        If it is neither.
-    """
+    """Value and kind, "force" (N) or "pressure" (MPa), of a load; InputError if it is neither."""
     try:
         return load_of(text)
     except InputError as error:
@@ -194,19 +173,13 @@ def load_of(text: Any) -> tuple[float, str]:
 
 
 def share_of(value: Any) -> float:
-    """A share between 0 and 1, as a number or in per cent: 0.01 or "1 %".
-
-    Raises
-    ------
-    InputError
-        If it is neither.
-    """
+    """Share between 0 and 1, a number or in per cent: 0.01 or "1 %"; InputError if neither."""
     text = str(value).strip()
     number = text.removesuffix("%").strip()
     if not isinstance(value, bool) and len(text) <= _LONGEST and re.fullmatch(_NUMBER, number):
-        found = float(number) / (100 if text.endswith("%") else 1)
-        if 0 < found < 1:
-            return found
+        share = float(number) / (100 if text.endswith("%") else 1)
+        if 0 < share < 1:
+            return share
     raise InputError(f"{text[:_LONGEST]!r} is no share; write for example '1 %' or 0.01")
 
 

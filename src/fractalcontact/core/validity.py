@@ -1,4 +1,4 @@
-"""A verdict on the elastic model, as the stage ``elastic_model`` states it."""
+"""Verdict on the elastic model, as the stage ``elastic_model`` states it."""
 
 from typing import NamedTuple
 
@@ -6,7 +6,7 @@ import xarray as xr
 
 from .verdicts import HARDNESS, USUAL
 
-#: What decides a verdict that is not good, beside the pressure.
+#: Reasons other than the pressure for a verdict that is not good.
 SLOPE, LOAD = "slope", "load"
 
 
@@ -46,11 +46,11 @@ class Validity(NamedTuple):
     verdict : str
         :data:`GOOD`, :data:`IN_PART`, :data:`POOR` or :data:`NOT_JUDGED`.
     pressure : float
-        Real mean pressure that is judged, MPa; NaN where there is none.
+        Real mean pressure that is judged, MPa; NaN if missing.
     reason : str
-        One line on pressure and slope, that which decides first.
+        One line on pressure and slope, the deciding one first.
     decided_by : str
-        Of a verdict that is not good :data:`SLOPE`, :data:`LOAD` or "pressure".
+        :data:`SLOPE`, :data:`LOAD` or "pressure" of a verdict that is not good.
     limits : Limits
     """
 
@@ -79,5 +79,5 @@ class Validity(NamedTuple):
 
 
 def pressure_words(pressure: float) -> str:
-    """A pressure in MPa, so that it can be compared with the strength beside it."""
+    """Pressure in MPa, the unit of the strength it is compared with."""
     return f"{float(f'{pressure:.3g}'):g} MPa"

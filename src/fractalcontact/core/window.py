@@ -1,4 +1,4 @@
-"""The window of a specimen, as its dataset states it: spacing, sides, area, place, faces."""
+"""Window of a specimen, as its dataset states it: spacing, sides, area, place, faces."""
 
 import numpy as np
 import xarray as xr
@@ -9,10 +9,7 @@ from .directions import APERTURE, slides
 def spacing_of(grid: xr.Dataset | xr.DataArray) -> tuple[float, float]:
     """Distances (dy, dx) of neighbouring nodes, mm.
 
-    Parameters
-    ----------
-    grid : Dataset or DataArray
-        A scan, a specimen, or anything else with the attributes ``spacing_y`` and ``spacing_x``.
+    From the attributes ``spacing_y`` and ``spacing_x`` of a scan, a specimen or another grid.
     """
     return float(grid.attrs["spacing_y"]), float(grid.attrs["spacing_x"])
 
@@ -21,7 +18,7 @@ def faces(specimen: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:
     """Heights of the lower and upper face (ny, nx) in mm, NaN where missing.
 
     A face that was not scanned is the lower face itself ("match") or the plane z = 0
-    ("flat"), as beside the negative of an aperture map ("aperture").
+    ("flat"; for an aperture map, "aperture", the lower face is the negative of the map).
     """
     z_l = specimen["lower"].values.astype(np.float64)
     if specimen.attrs["opposite"] == "scanned":

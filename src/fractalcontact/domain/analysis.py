@@ -6,11 +6,12 @@ import numpy as np
 import xarray as xr
 
 from ..core.arrays import padded
-from ..core.datasets import domains_by_resolution, labelled_dataset
+from ..core.datasets import domains_by_resolution, labelled
 from ..core.estimate import rows_of
 from ..core.fitting import MIN_POINTS
 from ..core.labels import cf_attrs
 from ..core.limits import CORRECTED_NODES
+from ..core.per_curve import stacked
 from ..core.ranges import within
 from .box_counts import window_sizes
 from .box_dimension import ESTIMATORS, dimension_of_domain
@@ -49,41 +50,30 @@ NOT_NEEDED = "not solved, since nothing shown needs it"
 #: Dimensions of the table of contact domains.
 _ORDER = ("direction", "offset", "resolution", "normal_force")
 
-#: The table: dimensions, unit and long name.
-_TABLE = {
-    **{name: (_ORDER, *words) for name, words in DOMAIN_FIELDS.items()},
-    "cluster_octaves": (
-        (*_ORDER, "octave"),
-        "1",
-        "contact clusters of 2^k to 2^(k+1) - 1 nodes, by octave k",
-    ),
-    "reason": (_ORDER, "1", "why there is no dimension, or none with an interval"),
-    "estimator": (_ORDER, "1", "estimator of delta_sigma"),
-    "determined": (_ORDER, "1", "whether delta_sigma has an interval"),
-    "ordinary_determined": (_ORDER, "1", "whether delta_sigma_ordinary has an interval"),
-    "box_count": (
-        (*_ORDER, "scale"),
-        "1",
-        "occupied boxes N(r), minimal cover over all grid origins",
-    ),
-    "box_used": ((*_ORDER, "scale"), "1", "box size used in the fit"),
-    "ordinary_used": (
-        (*_ORDER, "scale"),
-        "1",
-        "box size used in the fit of the ordinary dimension",
-    ),
-    "box_side": (("resolution", "scale"), "mm", "side of the boxes r"),
-    "mean_count": ((*_ORDER, "mean_scale"), "1", "occupied boxes N(r), mean over all grid origins"),
-    "law_count": (
-        (*_ORDER, "mean_scale"),
-        "1",
-        "box counts by the law that Delta_sigma is fitted with",
-    ),
+#: Variables of the table: unit, long name, and dimensions of an array of each domain.
+_TABLE: dict[str, tuple[str, ...]] = {
+    **DOMAIN_FIELDS,
+    "cluster_octaves": ("1", "contact clusters of 2^k to 2^(k+1) - 1 nodes, by octave k", "octave"),
+    "reason": ("1", "why there is no dimension, or none with an interval"),
+    "estimator": ("1", "estimator of delta_sigma"),
+    "determined": ("1", "whether delta_sigma has an interval"),
+    "ordinary_determined": ("1", "whether delta_sigma_ordinary has an interval"),
+    "box_count": ("1", "occupied boxes N(r), minimal cover over all grid origins", "scale"),
+    "box_used": ("1", "box size used in the fit", "scale"),
+    "ordinary_used": ("1", "box size used in the fit of the ordinary dimension", "scale"),
+    "mean_count": ("1", "occupied boxes N(r), mean over all grid origins", "mean_scale"),
+    "law_count": ("1", "box counts by the law that Delta_sigma is fitted with", "mean_scale"),
     "ordinary_count": (
-        (*_ORDER, "scale"),
         "1",
         "box counts by the line that the ordinary dimension is fitted with",
+        "scale",
     ),
+}
+_WORDS = ("reason", "estimator")
+_FLAGS = ("determined", "ordinary_determined", "box_used", "ordinary_used")
+
+_SIDES = {
+    "box_side": (("resolution", "scale"), "mm", "side of the boxes r"),
     "mean_side": (("resolution", "mean_scale"), "mm", "side of the boxes of the mean counts r"),
 }
 
@@ -100,116 +90,108 @@ def analyse_domains(
     Parameters
     ----------
     fields : xr.Dataset
-        ``in_contact_k`` over (direction, offset, normal_force, y_k, x_k) and, of domains that were
-        not measured, ``solved`` and ``nodes_error``: :func:`states.states.contact_domains`.
+        ``in_contact_k`` over (direction, offset, normal_force, y_k, x_k) and, of solved domains,
+        ``solved`` and ``nodes_error``: :func:`states.states.contact_domains`.
     spacing : float
-        Of the scan, mm; a domain at resolution k has k times this.
-    fit_range : (float, float), optional
-        Smallest and largest box of the fits, mm; by default all between the cut-offs.
-    whole_cells : bool, optional
-        What is known of the nodes, see :func:`domain.box_dimension.box_dimension`; those of a
-        solution are centres of cells.
+        Spacing of the scan, mm; a domain at resolution k has k times this.
+    fit_range, whole_cells
+        As of :func:`domain.box_dimension.box_dimension`; nodes of a solution are centres of cells.
 
     Returns
     -------
     xr.Dataset
-        :data:`DOMAIN_FIELDS`, ``reason`` (why there is no dimension, or no interval) and
-        ``determined`` over (direction, offset, resolution, load); ``box_count`` and ``box_used``
-        with a last dimension scale, ``mean_count`` with mean_scale, ``cluster_octaves`` with
-        octave; ``box_side`` and ``mean_side`` (resolution, ...) in mm; over the
-        sides fitted ``law_count`` of the count law and ``ordinary_count`` of the ordinary slope;
-        what :func:`domain.cluster_laws.cluster_laws` finds.
+        The variables of :data:`_TABLE`, and those of :func:`domain.cluster_laws.cluster_laws`.
+        ``law_count`` and ``ordinary_count`` are given at the box sides of their fits.
 
-    Notes
-    -----
-    The dimension is that of :func:`domain.box_dimension.dimension_of_domain`. Its solver error
-    bound is the fraction of the nodes whose contact is ambiguous: in 95 to 98 % of 250 states of
-    three twins, solved to 1e-5 to 1e-2, the dimension was off by no more than that.
+    Notes ----- The solver error bound of the dimension is the fraction of the nodes whose contact
+    is ambiguous: in 95 to 98 % of 250 states of three twins, solved to 1e-5 to 1e-2, the dimension
+    was off by no more than that.
     """
     domains = {k: domain.values for k, domain in domains_by_resolution(fields).items()}
     factors = list(domains)
-    shapes = {k: domains[k].shape[-2:] for k in factors}
-    sizes = {
-        "box_side": [window_sizes(shapes[k]) * k * spacing for k in factors],
-        "mean_side": [mean_sizes(shapes[k]) * k * spacing for k in factors],
+    windows = {k: domains[k].shape[-2:] for k in factors}
+    sides = {
+        "box_side": padded([window_sizes(windows[k]) * k * spacing for k in factors]),
+        "mean_side": padded([mean_sizes(windows[k]) * k * spacing for k in factors]),
     }
-    n_direction, n_offset, n_load, *window = domains[factors[0]].shape
+    n_direction, n_offset, n_load, *_ = domains[factors[0]].shape
     shape = (n_direction, n_offset, len(factors), n_load)
-    # A coarser domain has fewer nodes and fewer octaves of cluster sizes: none in the others.
-    n_octaves = int(np.prod(window)).bit_length()
+    # The octaves of the finest domain; a coarser one has fewer nodes and no clusters in the last.
+    n_octaves = int(np.prod(windows[factors[0]])).bit_length()
     solved, ambiguous = _solver_state(fields, shape)
-    n_scales, n_means = (max(map(len, of_all)) for of_all in sizes.values())
-    table = _empty_table(shape, n_scales, n_means, n_octaves)
-    nodes = np.zeros(shape, int)
+    missing = _missing_values(
+        scale=sides["box_side"].shape[1], mean_scale=sides["mean_side"].shape[1], octave=n_octaves
+    )
+    rows, nodes = [], np.zeros(shape, int)
     for place in np.ndindex(shape):
         direction, offset, k, load = place
         if not solved[place]:
-            table["reason"][place] = NOT_NEEDED
+            rows.append(missing | {"reason": NOT_NEEDED})
             continue
-        factor = factors[k]
-        domain = domains[factor][direction, offset, load]
+        domain = domains[factors[k]][direction, offset, load]
         nodes[place] = domain.sum()
         row = _row(
             domain,
-            factor * spacing,
+            factors[k] * spacing,
             ambiguous[place],
             fit_range=fit_range,
             whole_cells=whole_cells,
         )
-        table["cluster_octaves"][place] = 0
-        for name, value in row.items():
-            if np.ndim(value):
-                table[name][place][: len(value)] = value
-            else:
-                table[name][place] = value
-    table |= {name: table[name].astype(str) for name in ("reason", "estimator")}
-    table |= {name: padded(of_all) for name, of_all in sizes.items()}
-    multiples = ("resolution", factors, cf_attrs("1", "multiple k of the scan's spacing"))
-    octaves = ("octave", np.arange(n_octaves), cf_attrs("1", "octave k of cluster sizes"))
+        octaves = row["cluster_octaves"]
+        row["cluster_octaves"] = np.pad(octaves, (0, n_octaves - octaves.size))
+        rows.append(_with_all_values(row, missing))
     coords: dict[str, Any] = {
         name: fields[name] for name in ("direction", "offset", "normal_force")
     }
-    coords |= {"resolution": multiples, "octave": octaves}
-    result = labelled_dataset(_TABLE, table, coords=coords)
+    coords["resolution"] = (
+        "resolution",
+        factors,
+        cf_attrs("1", "multiple k of the scan's spacing"),
+    )
+    coords["octave"] = ("octave", np.arange(n_octaves), cf_attrs("1", "octave k of cluster sizes"))
+    table = stacked(rows, _TABLE, _ORDER, shape) | labelled(_SIDES, sides)
+    result = xr.Dataset(table, coords)
     return result.merge(cluster_laws(result, nodes, spacing))
 
 
 def _solver_state(fields, shape):
-    """True for each solved domain, and its ambiguous nodes; NaN for measured maps."""
+    """True for each solved domain, and its number of ambiguous nodes; NaN for measured maps."""
     if "solved" not in fields:
         return np.ones(shape, bool), np.full(shape, np.nan)
     return tuple(fields[name].transpose(*_ORDER).values for name in ("solved", "nodes_error"))
 
 
-def _empty_table(shape, n_scales, n_means, n_octaves) -> dict[str, np.ndarray]:
-    """Values of :data:`_TABLE` before any domain is measured, but the sides of the boxes."""
+def _missing_values(**lengths: int) -> dict[str, np.ndarray]:
+    """Row of the table without any value; ``lengths`` are those of its arrays by dimension."""
+    fills = dict.fromkeys(_TABLE, np.nan) | dict.fromkeys(_WORDS, "") | dict.fromkeys(_FLAGS, False)
     return {
-        **{name: np.full(shape, np.nan) for name in DOMAIN_FIELDS},
-        "cluster_octaves": np.full((*shape, n_octaves), np.nan),
-        "reason": np.full(shape, "", object),
-        "estimator": np.full(shape, "", object),
-        "determined": np.zeros(shape, bool),
-        "ordinary_determined": np.zeros(shape, bool),
-        "box_count": np.full((*shape, n_scales), np.nan),
-        "box_used": np.zeros((*shape, n_scales), bool),
-        "ordinary_used": np.zeros((*shape, n_scales), bool),
-        **{name: np.full((*shape, n_means), np.nan) for name in ("mean_count", "law_count")},
-        "ordinary_count": np.full((*shape, n_scales), np.nan),
+        name: np.full([lengths[dim] for dim in own], fills[name])
+        for name, (_, _, *own) in _TABLE.items()
     }
 
 
+def _with_all_values(row, missing) -> dict[str, Any]:
+    """Row with arrays as long as those of a missing row, filled up with its values."""
+    arrays = {}
+    for name, empty in missing.items():
+        if name in row and empty.ndim:
+            arrays[name] = empty.copy()
+            arrays[name][: len(row[name])] = row[name]
+    return missing | row | arrays
+
+
 def _row(domain, spacing, ambiguous, **how) -> dict:
-    """Row of the table for one domain; ``how`` chooses the estimator of its dimension."""
+    """Row of the table for one domain; ``how`` are the options of the box dimension."""
     box = dimension_of_domain(domain, spacing, **how)
     sides = mean_sizes(domain.shape) * spacing
-    with np.errstate(invalid="ignore"):  # of a box as large as what a node stands for, to rounding
+    with np.errstate(invalid="ignore"):  # r - c is below 0 by rounding if a box is as wide as c
         law = law_count(sides, box.dimension, box.terms)
     return {
         **box.columns("delta_sigma"),
         "delta_sigma_error": ambiguous / domain.sum() if box.known else np.nan,
         "fit_min": box.over[0],
         "fit_max": box.over[1],
-        "fit_n": box.n,
+        "fit_n": float(box.n),
         "fit_misfit": box.misfit,
         **{f"law_{name}": value for name, value in box.terms._asdict().items()},
         **_ordinary(box, spacing),
@@ -225,23 +207,23 @@ def _row(domain, spacing, ambiguous, **how) -> dict:
 
 
 def _ordinary(box, spacing) -> dict:
-    """The ordinary dimension of a domain, nothing where there is none."""
-    slope = box.ordinary
-    if slope is None:
+    """Columns of the ordinary dimension of a domain; none where there is no such dimension."""
+    ordinary = box.ordinary
+    if ordinary is None:
         return {}
-    used = np.isin(np.round(box.r / spacing), slope.sizes[slope.used])
+    used = np.isin(np.round(box.r / spacing), ordinary.sizes[ordinary.used])
     line = np.full(box.r.shape, np.nan)
     if used.any():
-        # Through the mean of the logarithms of the counts fitted.
-        level = np.mean(np.log(box.count[used]) + slope.value * np.log(box.r[used]))
-        inside = within(box.r, *(end * spacing for end in slope.over))
-        line = np.where(inside, np.exp(level) * box.r**-slope.value, np.nan)
+        # The line goes through the mean of the logarithms of the counts fitted.
+        level = np.mean(np.log(box.count[used]) + ordinary.value * np.log(box.r[used]))
+        inside = within(box.r, *(end * spacing for end in ordinary.over))
+        line = np.where(inside, np.exp(level) * box.r**-ordinary.value, np.nan)
     return {
-        **slope.columns("delta_sigma_ordinary"),
-        "ordinary_fit_min": slope.over[0] * spacing,
-        "ordinary_fit_max": slope.over[1] * spacing,
-        "ordinary_fit_n": slope.n,
-        "ordinary_determined": slope.determined,
+        **ordinary.columns("delta_sigma_ordinary"),
+        "ordinary_fit_min": ordinary.over[0] * spacing,
+        "ordinary_fit_max": ordinary.over[1] * spacing,
+        "ordinary_fit_n": float(ordinary.n),
+        "ordinary_determined": ordinary.determined,
         "ordinary_used": used,
         "ordinary_count": line,
     }
@@ -255,36 +237,18 @@ def scaling_over_resolutions(
     left: xr.DataArray | None = None,
     fit_range: tuple[float, float] | None = None,
 ) -> xr.Dataset:
-    """Renormalisation over resolutions: Delta_sigma from A_r(s) beside that of the box counts.
+    """Renormalisation over resolutions: Delta_sigma from A_r(s), compared with that of box counts.
 
-    Parameters
-    ----------
-    curves : xr.Dataset
-        With ``area``, ``area_corrected``, ``area_sampling`` and ``nodes`` over (direction, offset,
-        resolution, normal_force).
-    domains : xr.Dataset
-        From :func:`analyse_domains`.
-    spacing : float
-        Of the scan, mm.
-    left : DataArray, optional
-        From :func:`states.left_out.left_of_fields`; no interval without it.
-    fit_range : (float, float), optional
-        Smallest and largest spacing s of the fits, mm; all by default.
+    ``curves`` has ``area``, ``area_corrected``, ``area_sampling`` and ``nodes`` over (direction,
+    offset, resolution, normal_force); of ``domains``, from :func:`analyse_domains`, the box counts
+    at the scan's own resolution are used. ``spacing`` is that of the scan, ``fit_range`` the
+    smallest and largest spacing s of the fits, mm, all by default; ``left`` comes from
+    :func:`states.left_out.left_of_fields`, and without it there is no interval.
 
-    Returns
-    -------
-    xr.Dataset
-        The renormalisation of :func:`domain.renormalisation.renormalisation` over (direction,
-        offset, load), and both estimates of Delta_sigma with their difference; the box counts are
-        those at the scan's own resolution; ``area``, ``area_corrected`` and ``nodes`` are those of
-        the states. ``sigma_n`` is F / A_r of the corrected area wherever `CORRECTED_NODES` touch,
-        ``sigma_n_raw`` that of the raw one; ``area_used`` says which areas Delta_sigma is fitted
-        to, ``fitted_area`` is their law. ``delta_sigma_area_reason`` and ``delta_sigma_box_reason``
-        say why there is no estimate, or no interval; ``area_bend`` is how much more Delta_sigma the
-        two finest resolutions have than the two coarsest.
+    The dataset has the variables of :func:`domain.renormalisation.renormalisation`, both estimates
+    of Delta_sigma and their difference, and ``area_bend`` of
+    :func:`domain.renormalisation.area_bend`.
 
-    Notes
-    -----
     Areas are those corrected for the cells on their edge, at resolutions where `CORRECTED_NODES`
     touch: the raw area exceeds the true one by a fraction that grows with the spacing, which lowers
     Delta_sigma. Mixing both would put a step into the line where one takes over from the other.
@@ -318,24 +282,16 @@ def corrected_scaling(
     left: xr.DataArray | None = None,
     fit_range: tuple[float, float] | None = None,
 ) -> xr.Dataset:
-    """Renormalisation of the corrected areas alone, with the bend of their law.
+    """Renormalisation of the corrected areas alone, with the bend of their law and its interval.
 
-    Parameters
-    ----------
-    curves, spacing, left, fit_range
-        As of :func:`scaling_over_resolutions`.
-
-    Returns
-    -------
-    xr.Dataset
-        As of :func:`domain.renormalisation.renormalisation`, and ``area_bend`` with its interval.
+    Parameters are those of :func:`scaling_over_resolutions`.
     """
     s, nodes = _spacings(curves, spacing), _nodes_between(curves, spacing, fit_range)
     area = curves["area_corrected"]
-    each = nodes, CORRECTED_NODES, left, curves["area_sampling"]
-    result = renormalisation(s, area, curves["normal_force"], *each)
+    samples = nodes, CORRECTED_NODES, left, curves["area_sampling"]
+    result = renormalisation(s, area, curves["normal_force"], *samples)
     words = "Delta_sigma from the area of the two finest resolutions less that of the two coarsest"
-    bend = area_bend(s, area, *each)
+    bend = area_bend(s, area, *samples)
     for (name, row), value in zip(rows_of("area_bend", "1", words).items(), bend.ends, strict=True):
         result[name] = value.assign_attrs(cf_attrs(*row))
     return result
@@ -346,7 +302,7 @@ def _spacings(curves, spacing):
 
 
 def _nodes_between(curves, spacing, fit_range):
-    """Nodes in contact at the spacings that are fitted, else missing."""
+    """Nodes in contact at the spacings of the fit; missing at others."""
     inside = True if fit_range is None else within(_spacings(curves, spacing), *fit_range)
     return curves["nodes"].where(inside)
 

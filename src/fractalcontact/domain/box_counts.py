@@ -19,10 +19,10 @@ _MAX_CELLS = 2**31 - 1
 
 #: Largest q of box sides p / q cells that are tried at every grid origin.
 _MAX_PARTS = 4
-#: Places along x that are counted side by side, at least.
+#: Smallest number of places along x that are counted in one loop, for SIMD.
 _SPAN = 64
 
-#: Boxes of no size cover more than this many times an oblong extent.
+#: Largest area of the boxes of one size over that of an oblong extent.
 MAX_OVERHANG = 1.1
 
 
@@ -37,9 +37,9 @@ def box_sizes(extent: int | tuple[int, int], largest: float | None = None) -> np
     Parameters
     ----------
     extent : int or (ny, nx)
-        Cells along the sides of what is to be covered, a window or a domain.
+        Cells along the sides of a window or a domain.
     largest : float, optional
-        No box is larger; by default the shorter side, beyond which a filled window seems a line.
+        Largest box; by default the shorter side, beyond which a filled window seems a line.
 
     Returns
     -------
@@ -52,7 +52,7 @@ def box_sizes(extent: int | tuple[int, int], largest: float | None = None) -> np
     best: dict[int, tuple[float, float, float]] = {}
     for r in sorted(parts):
         place = SIZES_PER_OCTAVE * np.log2(sides[-1] / r)
-        # Rounded, so that of sizes that all fit the one nearest to its place is taken.
+        # Rounding makes sizes that all fit equal, so that the nearest to its place is taken.
         rank = round(_overhang(sides, r), 9), abs(place - round(place)), r
         best[round(place)] = min(best.get(round(place), rank), rank)
     powers = {sides[-1] / ratio**k for ratio in RATIOS for k in range(1, sides[-1].bit_length())}
@@ -62,7 +62,7 @@ def box_sizes(extent: int | tuple[int, int], largest: float | None = None) -> np
 
 
 def _overhang(sides: list[int], r: float) -> float:
-    """Area of boxes of side r over that of the window; a side shorter than a box does not count."""
+    """Area of boxes of side r over that of the window; a side shorter than a box is left out."""
     return float(np.prod([float(boxes_along(n, r)) * r / n for n in sides if n >= r]))
 
 
@@ -80,22 +80,14 @@ def window_sizes(shape: tuple[int, ...]) -> np.ndarray:
 
 
 def whole_sizes(largest: float) -> np.ndarray:
-    """Whole box sides from 1 to a largest, `SIZES_PER_OCTAVE` in each doubling where there are."""
+    """Whole box sides from 1 to a largest, at most `SIZES_PER_OCTAVE` in each doubling."""
     return np.unique(np.round(geometric_sizes(1, largest)).astype(np.int64))
 
 
 def geometric_sizes(smallest: float, largest: float) -> np.ndarray:
-    """Lengths from a smallest to a largest, `SIZES_PER_OCTAVE` in each doubling.
+    """Lengths from a smallest to a largest of one unit, `SIZES_PER_OCTAVE` in each doubling.
 
-    Parameters
-    ----------
-    smallest, largest : float
-        Positive, in one unit.
-
-    Returns
-    -------
-    (k,) float64
-        The smallest alone if the largest is no longer.
+    The smallest alone if the largest is no longer.
     """
     octaves = np.log2(max(largest / smallest, 1))
     steps = np.arange(int(SIZES_PER_OCTAVE * octaves + 1e-9) + 1)
@@ -112,7 +104,7 @@ def box_count(domain: np.ndarray, sizes: np.ndarray, *, max_shifts: int = 16) ->
     sizes : (k,) array_like
         Box sides in cells, at least 1, not necessarily whole.
     max_shifts : int
-        Origins tried along each axis where not all of them are: evenly spaced over a box.
+        Evenly spaced origins along each axis for sizes of which not all origins can be tried.
 
     Returns
     -------
@@ -156,12 +148,12 @@ def _origins(size: float, max_shifts: int) -> np.ndarray:
     if ratio is None:
         shifts = max(min(int(np.ceil(size)), max_shifts), 1)
         return size * np.arange(shifts) / shifts
-    # Nodes change boxes where an edge passes a centre: at 1/2 + whole parts 1/q of a cell.
+    # Nodes change boxes when an edge passes a centre: at 1/2 + multiples of 1/q of a cell.
     return 0.5 + (np.arange(ratio.numerator) + 0.5) / ratio.denominator
 
 
 def cropped(domain: np.ndarray) -> np.ndarray:
-    """The part of the grid that a domain spans; one empty cell for an empty domain."""
+    """Part of the grid that a domain spans; one empty cell for an empty domain."""
     if not domain.any():
         return np.zeros((1, 1), dtype=bool)
     rows, columns = (np.flatnonzero(domain.any(axis=axis)) for axis in (1, 0))
@@ -169,29 +161,12 @@ def cropped(domain: np.ndarray) -> np.ndarray:
 
 
 def minimal_cover(domain: np.ndarray, sizes: np.ndarray) -> np.ndarray:
-    """Minimal cover by boxes of whole sides, over every grid origin.
-
-    Parameters
-    ----------
-    domain : (ny, nx) bool ndarray
-    sizes : (k,) int64 ndarray
-        Box sides in cells, at least 1.
-
-    Returns
-    -------
-    (k,) int64
-    """
+    """Minimal cover by boxes of whole sides (k,) in cells, over every grid origin: (k,) int64."""
     return _over_origins(np.ascontiguousarray(domain), sizes)
 
 
 def _checked_domain(domain):
-    """A contact domain as (ny, nx) bool.
-
-    Raises
-    ------
-    ValueError
-        If the domain is not a (y, x) grid, or too large to count in four bytes.
-    """
+    """A contact domain as (ny, nx) bool; ValueError if it is no grid or too large to count."""
     domain = arguments.domain(domain, "a contact domain")
     if domain.size > _MAX_CELLS:
         raise ValueError(f"a contact domain of {domain.shape}: expected {_MAX_CELLS} cells at most")
@@ -199,13 +174,7 @@ def _checked_domain(domain):
 
 
 def _checked_sizes(sizes):
-    """Sides of boxes in cells as (k,) float64.
-
-    Raises
-    ------
-    ValueError
-        If one is below 1, or no number.
-    """
+    """Sides of boxes in cells as (k,) float64; ValueError if one is below 1, or no number."""
     sizes = arguments.real_array(sizes, "sizes of boxes").astype(float)
     if sizes.ndim != 1:
         raise ValueError(f"sizes of boxes {sizes.shape}: expected a list of numbers")
@@ -232,13 +201,14 @@ def _over_origins(domain, sizes):
     """Minimal cover for each size.
 
     A box whose lowest cell is p meets the domain if its side is at least d(p): 1 at a node, else
-    one more than the least of the upper neighbours'. One grid has the places alike modulo r.
+    one more than the least d of the upper neighbours. The boxes of one grid have their lowest cells
+    at equal places modulo r.
     """
     ny, nx = domain.shape
     reach = 1
     for size in sizes:
         reach = max(reach, size)
-    # Places along x are counted modulo a multiple of r: small boxes too go over many at a time.
+    # Places along x are counted modulo a multiple of r, so that small boxes too have long loops.
     spans = sizes * ((_SPAN + sizes - 1) // sizes)
     starts = np.zeros(sizes.size + 1, np.int64)
     starts[1:] = np.cumsum(sizes * spans)
@@ -290,8 +260,7 @@ def _edges(n, size, origins):
     for shift in range(origins.size):
         for box in range(boxes):
             edge = size * box - origins[shift] % size
-            # The cell whose centre is the first beyond the edge; the small number keeps n/k * k
-            # at n.
+            # The first cell whose centre lies beyond the edge; the small number keeps n/k * k at n.
             edges[shift, box] = min(max(int(np.ceil(edge - 0.5 - 1e-9)), 0), n)
     return edges
 
@@ -320,8 +289,8 @@ def _minimal_cover(nodes, size, origins):
 def mean_count(domain: np.ndarray, sizes: np.ndarray, *, blocks: int = 1) -> np.ndarray:
     """Mean number of boxes of each size that meet a domain, over all grid origins.
 
-    The places where a gliding box meets the domain, divided by its area: nothing depends on where
-    a grid happens to lie. The domain ends where it ends, and boxes hang over that by up to their
+    The places where a gliding box meets the domain, divided by its area: nothing depends on the
+    origin of a grid. The domain ends where it ends, and boxes hang over that by up to their
     own side, so that a filled square of side L counts (L + r - 1)^2 / r^2.
 
     Parameters
@@ -367,8 +336,7 @@ def _places(packed, nx, sizes, blocks):
     """
     ny = packed.shape[0]
     reach = sizes[-1] if sizes.size else 1
-    # Cell 0 stands at the first word that leaves room for boxes which hang over. Behind the last
-    # word stand zeros, for those on the other side.
+    # Boxes hang over both sides: words before cell 0 and zeros behind the last word hold them.
     before = (reach + 62) // 64
     rows, words = ny + reach - 1, before + packed.shape[1]
     meets = np.zeros((rows, words + reach // 64 + 2), np.uint64)
@@ -386,7 +354,7 @@ def _places(packed, nx, sizes, blocks):
             part_y = min(max((2 * y + size) * blocks // (2 * ny), 0), blocks - 1)
             first = 64 * before + 1 - size
             for part_x in range(blocks):
-                # Beyond the last place whose middle is in this part; the outer ones overhang.
+                # One past the last place whose middle is in this part; outer boxes overhang.
                 end = -((size * blocks - 2 * nx * (part_x + 1)) // 2 // blocks)
                 end = 64 * before + (nx if part_x == blocks - 1 else end)
                 places[k, part_y, part_x] += _ones(meets[row], first, end)
@@ -398,14 +366,14 @@ def _places(packed, nx, sizes, blocks):
 def _widen(meets, words, first, step):
     """Make boxes wider by some cells, at most by their side; row ``first`` is the first not empty.
 
-    In place from below: what is read lies further up.
+    Rows are written from below and read from above, so that no copy is needed.
     """
     whole, bits = step // 64, np.uint64(step % 64)
     row = np.empty(words, np.uint64)
     for y in range(first, meets.shape[0]):
         lower, upper = meets[y, whole : whole + words], meets[y, whole + 1 : whole + 1 + words]
         for i in range(words):
-            # In two shifts to the left: one of 64 is none.
+            # Two shifts to the left, because a single shift by 64 bits does nothing.
             row[i] = lower[i] >> bits | upper[i] << np.uint64(1) << (np.uint64(63) - bits)
         for i in range(words):
             meets[y, i] |= row[i]
@@ -416,7 +384,7 @@ def _widen(meets, words, first, step):
 
 @njit(cache=True)
 def _ones(row, first, end):
-    """Bits that are set from ``first`` to before ``end``."""
+    """Number of bits that are set from ``first`` to before ``end``."""
     if end <= first:
         return 0
     last = (end - 1) >> 6
@@ -433,7 +401,7 @@ def _ones(row, first, end):
 
 @njit(cache=True)
 def _bits_of(word):
-    """Bits that are set in a word of 64: sums of two, four and eight of them side by side."""
+    """Number of bits set in a word of 64: sums of two, four and eight of them in parallel."""
     word -= (word >> np.uint64(1)) & np.uint64(0x5555555555555555)
     word = (word & np.uint64(0x3333333333333333)) + (
         (word >> np.uint64(2)) & np.uint64(0x3333333333333333)

@@ -1,7 +1,6 @@
-"""Box-counting dimension Delta_sigma of a contact domain.
+"""Box-counting dimension Delta_sigma of a contact domain: cut-offs, three estimators, intervals.
 
-The whole rule is here: the cut-offs of the box sizes, the three estimators and their interval. The
-counts themselves are those of :mod:`domain.box_counts`.
+The counts are those of :mod:`domain.box_counts`.
 """
 
 import itertools
@@ -26,7 +25,7 @@ from .mean_law import (
     is_crowded,
     law_of_means,
 )
-from .ordinary_slope import OrdinarySlope, dyadic_sizes, ordinary_slope
+from .ordinary_dimension import OrdinaryDimension, dyadic_sizes, ordinary_dimension
 
 #: The estimators of the dimension by their names in results.
 ESTIMATORS = {
@@ -55,14 +54,17 @@ class BoxDimension(Estimate):
     r, count : (k,) ndarray
         Sides of the boxes, mm, and the minimal cover there.
     used : (k,) bool ndarray
-        Sides that the dimension rests on.
+        Sides that the dimension rests on; for "mean" those within the range of the law.
     estimator : str
         One of :data:`ESTIMATORS`.
     misfit : float
-        Relative, rms, of the law that was fitted.
+        Root mean square of the counts about the fitted law, as a fraction of them.
     terms : LawTerms
+        Terms of the law, mm, from which :func:`domain.count_law.law_count` draws its curve.
     means : MeanCounts
-    ordinary : OrdinarySlope or None
+        Mean counts over grid origins.
+    ordinary : OrdinaryDimension or None
+        Ordinary box-counting dimension, :mod:`domain.ordinary_dimension`; None without counts.
     """
 
     r: np.ndarray
@@ -72,7 +74,7 @@ class BoxDimension(Estimate):
     misfit: float = float("nan")
     terms: LawTerms = NO_TERMS
     means: MeanCounts = NO_MEANS
-    ordinary: OrdinarySlope | None = None
+    ordinary: OrdinaryDimension | None = None
     scale: Scale = DIMENSION
 
     def __repr__(self):
@@ -104,7 +106,7 @@ def box_dimension(
     domain : (ny, nx) bool array_like
         Nodes in contact.
     spacing : float
-        In mm.
+        Distance of neighbouring nodes, mm.
     fit_range : (float, float), optional
         Smallest and largest box side of the fit, mm; by default all between the cut-offs.
     sizes : (k,) array_like, optional
@@ -118,21 +120,15 @@ def box_dimension(
     Returns
     -------
     BoxDimension
-        `dimension`, `low`, `high`; `r_min`, `r_max` of the fit in mm and its `n` sizes; `r` (mm),
-        `count` (of the minimal cover) and `used` of all sizes; `reason` why there is no dimension
-        (NaN) or no interval, else ""; `estimator`, "exact", "mean" or "cover" (for "mean", `n` are
-        the sizes of the law and `used` those of the minimal cover within its range); `misfit`, the
-        root mean square of the counts about the law, as a fraction of them; `terms` (mm) of the
-        law, from which :func:`domain.count_law.law_count` draws its curve; `means`, the mean counts
-        over grid origins; `ordinary`, the ordinary slope of :mod:`domain.ordinary_slope`, where any
-        count is.
+        `r_min` and `r_max` of the fit in mm and its `n` sizes; `reason` says why there is no
+        dimension (NaN) or no interval.
 
     Notes
     -----
     A box size lies beyond a cut-off where all but `SATURATED` of the nodes are alone in their box,
     or of the boxes of the window occupied. Such sizes are left out, unless as much of the window
     touches (then all sizes give dimension 2) or a single node does (0). Fewer than `MIN_SCALES`
-    sizes left, or different counts among them, are no dimension: a line through a staircase of two
+    sizes left, or different counts among them, give no dimension: a line through a staircase of two
     or three treads shows where their edges happen to be, and through a single tread it would claim
     0 without error.
 
@@ -158,26 +154,26 @@ def box_dimension(
 
     Known bias: percolation clusters of 512 and 1024 read 0.016 to 0.02 low in the mean. Sets marked
     by whole cells read up to 0.1 high where their waves hide that: state `whole_cells`. Levy dusts
-    marked and stated so read high, where chance bends what is no outline like one (indices of 1.2
-    and 1.5) or few boxes are left (0.8): by 0.025, 0.02 and 0.04 in windows of 512, by 0.02, 0.015
-    and 0.015 in windows of 2048; means of 120 to 400, known within 0.007.
+    marked and stated so read high, where chance bends the counts as an outline would (indices of
+    1.2 and 1.5) or few boxes are left (0.8): by 0.025, 0.02 and 0.04 in windows of 512, by 0.02,
+    0.015 and 0.015 in windows of 2048; means of 120 to 400, uncertain by 0.007.
 
-    What one window cannot show is whether it was struck by chance more densely than others: where
+    One window cannot show whether chance struck it more densely than others: where
     parts fall on the same boxes, as those of flights or trails, the counts of size r differ by a
     random fraction of (r / L)^(2 - D), which is alike in all parts and nearly a power law. Such
     sets of 1.5 are in 93 % of intervals; of 1.7, or trails that have not filled their window, in
     fewer.
 
-    Figures apart, as two squares: once boxes are larger than a figure or than the gap, what is
-    counted is no outline any more. With more of it than `count_law.MAX_OUTLINE` allows they read
+    Figures apart, as two squares: once boxes are larger than a figure or than the gap, the counts
+    measure no outline any more. With more of it than `count_law.MAX_OUTLINE` allows they read
     1.3 to 1.9, as a strip of 5 x 1 does, and where the gap is wide their intervals end short of 2:
     local slopes show the bend. Without that limit they are exact, but cascades of 1.2 read 0.12
-    high. So with a set that is cut off so that copies of several sizes are left: a
+    high. The same holds for a set that is cut off so that copies of several sizes are left: a
     dust of 650 of its 729 cells reads 0.09 low, inside its interval.
     """
     domain = np.asarray(domain, dtype=bool)
     extent = cropped(domain)
-    # A single node has no extent to divide: it is seen at the scales of the window.
+    # A single node has no extent to divide: its boxes are those of the window.
     shape = extent.shape if extent.size > 1 else domain.shape
     fitting = sizes is None
     sizes = box_sizes(shape, min(domain.shape)) if sizes is None else np.asarray(sizes, dtype=float)
@@ -191,33 +187,33 @@ def box_dimension(
     cover = _Cover(sizes, r, count, used)
     ladder = _best_scales(cover, {max(extent.shape), max(domain.shape)})
     side = max(extent.shape) * float(spacing)
-    # Boxes of sizes that fit a filled window count it exactly, others overhang it.
+    # Sizes that fit a filled window count it exactly; others overhang it.
     if nodes == 1 or (fitting and nodes == domain.size) or _is_exact(cover, ladder):
         return replace(_exact(cover, ladder, side), ordinary=ordinary)
     law, means = law_of_means(extent, limits, whole_cells)
     if law is None and is_crowded(means, extent):
         return replace(no_dimension(r, count, CROWDED), ordinary=ordinary, means=means)
-    found = _of_law(cover, law, spacing) if law else _of_line(cover, extent, side)
-    return replace(_with_interval(found, nodes), ordinary=ordinary, means=means)
+    dimension = _of_law(cover, law, spacing) if law else _of_line(cover, extent, side)
+    return replace(_with_interval(dimension, nodes), ordinary=ordinary, means=means)
 
 
-def _with_interval(found: BoxDimension, nodes: int) -> BoxDimension:
-    """The dimension without its interval where that means nothing, and with the reason."""
+def _with_interval(dimension: BoxDimension, nodes: int) -> BoxDimension:
+    """The dimension, without its interval and with the reason where it rests on too few nodes."""
     why = FEW_NODES.format(nodes) if nodes < MIN_NODES else ONE_PART
-    if nodes >= MIN_NODES and np.isfinite(found.width):
-        return found.in_plane()
-    return replace(found, low=np.nan, high=np.nan, reason=why)
+    if nodes >= MIN_NODES and np.isfinite(dimension.width):
+        return dimension.in_plane()
+    return replace(dimension, low=np.nan, high=np.nan, reason=why)
 
 
-def _minimal_covers(domain, extent, sizes, limits) -> tuple[np.ndarray, OrdinarySlope | None]:
-    """Minimal cover at all sizes, and the ordinary slope at the powers of two among them."""
+def _minimal_covers(domain, extent, sizes, limits) -> tuple[np.ndarray, OrdinaryDimension | None]:
+    """Minimal cover at all sizes, and the ordinary dimension from the powers of two among them."""
     dyadic = dyadic_sizes(domain.shape)
-    every, place = np.unique(np.concatenate([sizes, dyadic]), return_inverse=True)
-    count = box_count(extent, every)[place]
+    all_sizes, place = np.unique(np.concatenate([sizes, dyadic]), return_inverse=True)
+    count = box_count(extent, all_sizes)[place]
     if not extent.any():
         return count[: sizes.size], None
     of_dyadic = count[sizes.size :]
-    return count[: sizes.size], ordinary_slope(extent, domain.shape, dyadic, of_dyadic, limits)
+    return count[: sizes.size], ordinary_dimension(extent, domain.shape, dyadic, of_dyadic, limits)
 
 
 def dimension_of_domain(
@@ -229,20 +225,20 @@ def dimension_of_domain(
 ) -> BoxDimension:
     """Box-counting dimension of a contact domain, as every stage states it.
 
-    One set of nodes in one window has one dimension, whoever asks: box sizes are those of the
+    One set of nodes in one window has one dimension in all stages: box sizes are those of the
     window, whole numbers of cells, so that every grid origin is tried. To box counting a single
-    node is a point, of dimension 0 without error; the node, though, stands for contact somewhere in
-    a cell, and whether that is a point, a line or the whole cell no count at this spacing can show:
-    it has none.
+    node is a point, of dimension 0 without error. The node stands for contact somewhere in
+    a cell, and no count at this spacing can show whether that is a point, a line or the whole cell:
+    a single node has no dimension.
 
     Parameters
     ----------
     domain : (ny, nx) bool array_like
         Nodes in contact, over the whole window.
     spacing : float
-        In mm.
+        Distance of neighbouring nodes, mm.
     fit_range, whole_cells
-        As :func:`box_dimension` takes them; the nodes of a solution are centres of cells.
+        As of :func:`box_dimension`; the nodes of a solution are centres of cells.
     """
     domain = np.asarray(domain, dtype=bool)
     sizes = window_sizes(domain.shape).astype(float)
@@ -314,22 +310,22 @@ def _exact(cover: _Cover, ladder, extent) -> BoxDimension:
     slopes = [line.slope.low, line.slope.high, *parts]
     line = _line(r, count, ladder)
     slopes += [line.slope.low, line.slope.high]
-    found = _of_cover(cover, ladder, "exact", extent)
+    dimension = _of_cover(cover, ladder, "exact", extent)
     low, high = np.clip([0.0 - max(slopes), 0.0 - min(slopes)], *IN_PLANE)
-    return replace(found, low=float(low), high=float(high))
+    return replace(dimension, low=float(low), high=float(high))
 
 
 def _of_line(cover: _Cover, extent, side) -> BoxDimension:
     """The line through the minimal cover, with the jackknife of the mean counts at its sizes."""
     r, count, used = cover.r, cover.count, cover.used
-    found = _of_cover(cover, used, "cover", side)
+    dimension = _of_cover(cover, used, "cover", side)
     whole = np.unique(np.round(cover.sizes[used])).astype(int)
     parts = mean_count(extent, whole, blocks=BLOCKS)
     error = block_error(parts, lambda left: count_slope(left, whole))
     line = _line(r, count, used)
     law = line.intercept.value + line.slope.value * np.log(r[used])
     half = np.hypot(error, wave_error(r[used], np.log(count[used]) - law))
-    return replace(found, low=found.value - half, high=found.value + half)
+    return replace(dimension, low=dimension.value - half, high=dimension.value + half)
 
 
 def _of_cover(cover: _Cover, ladder, estimator, extent) -> BoxDimension:
@@ -384,12 +380,5 @@ def _slopes_of_parts(x: np.ndarray, y: np.ndarray) -> np.ndarray:
 
 
 def no_dimension(r: np.ndarray, count: np.ndarray, reason: str) -> BoxDimension:
-    """Box counts without a dimension, and why.
-
-    Parameters
-    ----------
-    r, count : (k,) ndarray
-        Box sides, mm, and N(r).
-    reason : str
-    """
+    """Box counts (k,) at sides r (k,) in mm without a dimension, and the reason."""
     return BoxDimension(r=r, count=count, used=np.zeros(r.size, dtype=bool), reason=reason)

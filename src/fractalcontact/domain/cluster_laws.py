@@ -1,18 +1,17 @@
-"""Laws of contact clusters: how many are how large, and how contact localises with the offset."""
+"""Laws of contact clusters: number against size, and localisation against offset."""
 
 import numpy as np
 import xarray as xr
 from scipy import special
 
-from ..core.datasets import labelled_dataset
+from ..core.datasets import labelled
 from ..core.determined import follows_law
-from ..core.estimate import Estimate, rows_of
 from ..core.fitting import fit_line
 from ..core.limits import CONFIDENCE, RESOLVED_NODES
+from ..core.per_curve import per_curve
 from ..core.ranges import within
 
 _STATES = ("direction", "offset", "resolution", "normal_force")
-_OVER_OFFSETS = ("direction", "resolution", "normal_force")
 _TABLE = {
     "cluster_area": (("resolution", "octave"), "mm2", "smallest cluster of an octave"),
     "clusters_at_least": ((*_STATES, "octave"), "1", "contact clusters of cluster_area or more"),
@@ -35,41 +34,25 @@ _TABLE = {
         for end, words in (("low", "lower"), ("high", "upper"))
     },
     "morisita_used": (_STATES, "1", "state in the fit of morisita_exponent"),
-    **{
-        name: (_OVER_OFFSETS, *words)
-        for name, words in rows_of(
-            "morisita_exponent", "1", "x of Morisita's index I ~ v^x over all offsets v"
-        ).items()
-    },
 }
+_POWERS = {"morisita_exponent": ("1", "x of Morisita's index I ~ v^x over all offsets v")}
 
 
 def cluster_laws(domains: xr.Dataset, nodes: np.ndarray, spacing: float) -> xr.Dataset:
-    """Sizes of clusters beside their power law, and Morisita's index as a power of the offset.
+    """Sizes of clusters with their power law, and Morisita's index as a power of the offset.
 
-    Parameters
-    ----------
-    domains : xr.Dataset
-        With the numbers of :func:`domain.clusters.cluster_statistics` over (direction, offset,
-        resolution, normal_force).
-    nodes : (direction, offset, resolution, normal_force) ndarray
-        Nodes in contact; domains of fewer than `RESOLVED_NODES` are not fitted.
-    spacing : float
-        Of the scan, mm.
-
-    Returns
-    -------
-    xr.Dataset
-        ``cluster_area`` over (resolution, octave), mm2; ``clusters_at_least`` and, over the
-        octaves fitted, ``cluster_law_count``; ``cluster_law_followed``; what chance leaves of
-        ``morisita``; ``morisita_used`` and ``morisita_exponent``.
+    ``domains`` has the numbers of :func:`domain.clusters.cluster_statistics` over (direction,
+    offset, resolution, normal_force), ``nodes`` the nodes in contact in that order; domains of
+    fewer than `RESOLVED_NODES` are not fitted. ``spacing`` is that of the scan, mm.
     """
     cell = (domains["resolution"] * spacing) ** 2
     area = 2.0 ** domains["octave"] * cell
-    # Summed from the largest.
+    # Counts are summed from the largest clusters down.
     counts = domains["cluster_octaves"].transpose(..., "octave").values
-    # Random nodes have an index of 1 in the mean.
+    # The index of random nodes is 1 in the mean.
     reach = special.ndtri((1 + CONFIDENCE) / 2) * domains["morisita_scatter"]
+    offset, index = domains["offset"], domains["morisita"]
+    used = (offset > 0) & (index > 0) & (xr.zeros_like(index, int) + nodes >= RESOLVED_NODES)
     values = {
         "cluster_area": area,
         "clusters_at_least": np.cumsum(counts[..., ::-1], axis=-1)[..., ::-1],
@@ -79,39 +62,15 @@ def cluster_laws(domains: xr.Dataset, nodes: np.ndarray, spacing: float) -> xr.D
         ),
         "morisita_by_chance_low": 1 - reach,
         "morisita_by_chance_high": 1 + reach,
-        **localisation(domains, nodes),
+        "morisita_used": used,
     }
     ordered = {
         name: value.transpose(*_TABLE[name][0]).values if hasattr(value, "dims") else value
         for name, value in values.items()
     }
-    return labelled_dataset(_TABLE, ordered)
-
-
-def localisation(domains: xr.Dataset, nodes: np.ndarray) -> dict[str, xr.DataArray]:
-    """Exponent of Morisita's index as a power of the offset, and the states that it is fitted to.
-
-    Parameters
-    ----------
-    domains, nodes
-        As of :func:`cluster_laws`; only ``morisita`` is read.
-
-    Returns
-    -------
-    dict of str to xr.DataArray
-        ``morisita_used``, and ``morisita_exponent`` with its interval.
-    """
-    offset, index = domains["offset"], domains["morisita"]
-    used = (offset > 0) & (index > 0) & (xr.zeros_like(index, int) + nodes >= RESOLVED_NODES)
-    exponent = xr.apply_ufunc(
-        _power,
-        offset,
-        index.where(used),
-        input_core_dims=[["offset"]] * 2,
-        output_core_dims=[[]] * 3,
-        vectorize=True,
-    )
-    return {"morisita_used": used, **Estimate(*exponent).columns("morisita_exponent")}
+    used_states = {"offset": offset, "index": index.where(used)}
+    powers = per_curve(used_states, _power_of_offset, _POWERS, along="offset")
+    return xr.Dataset(labelled(_TABLE, ordered) | powers)
 
 
 def _law_count(domains, area):
@@ -122,7 +81,7 @@ def _law_count(domains, area):
     return law.where(within(area, first, largest))
 
 
-def _power(offset, index):
-    """Exponent of the index as a power of the offset, with its interval."""
-    known = np.isfinite(index)
-    return fit_line(np.log(offset[known]), np.log(index[known])).slope.ends
+def _power_of_offset(offset, index):
+    """Exponent of Morisita's index as a power of the offset."""
+    in_fit = np.isfinite(index)
+    return {"morisita_exponent": fit_line(np.log(offset[in_fit]), np.log(index[in_fit])).slope}

@@ -1,4 +1,4 @@
-"""Clusters of the contact domain: how many, how large, and how unevenly spread over the window."""
+"""Clusters of the contact domain: number, sizes and unevenness over the window."""
 
 from typing import Any
 
@@ -27,10 +27,10 @@ CLUSTER_FIELDS = {
     "morisita_scatter": ("1", "standard deviation of Morisita's index of as many random nodes"),
 }
 
-#: Contact is counted in equal parts of the window, this many each way (fewer where cells are few).
+#: Quadrats of the window along each axis (fewer where cells are few), in which contact is counted.
 QUADRATS = 8
 
-#: A power law is fitted to sizes over this many octaves that hold clusters, and this many clusters:
+#: Fewest octaves with clusters, and fewest clusters, for the fit of a power law to their sizes:
 #: Clauset et al. find estimates from fewer than about 50 untrustworthy.
 MIN_OCTAVES = 4
 MIN_CLUSTERS = 50
@@ -43,19 +43,10 @@ NEIGHBOURS = np.ones((3, 3), int)
 def cluster_statistics(domain: ArrayLike, spacing: float) -> dict[str, Any]:
     """Number, sizes and spread of the clusters of a contact domain.
 
-    Parameters
-    ----------
-    domain : (ny, nx) bool array_like
-        Nodes in contact.
-    spacing : float
-        In mm; a node covers its square.
-
-    Returns
-    -------
-    dict
-        The numbers of :data:`CLUSTER_FIELDS`, NaN where the domain cannot give them, and
-        ``cluster_octaves``, clusters of 2^k to 2^(k+1) - 1 nodes for k = 0, 1, ... up to the whole
-        window: an array as long for every domain on windows of as many cells.
+    The numbers of :data:`CLUSTER_FIELDS`, NaN where the domain cannot give them, and
+    ``cluster_octaves``, clusters of 2^k to 2^(k+1) - 1 nodes for k = 0, 1, ... up to the whole
+    window: an array as long for every domain on windows of as many cells. A node covers its square
+    of side ``spacing``, mm.
     """
     domain = np.asarray(domain, bool)
     sizes = cluster_sizes(domain)
@@ -75,23 +66,14 @@ def cluster_statistics(domain: ArrayLike, spacing: float) -> dict[str, Any]:
 
 
 def cluster_sizes(domain: ArrayLike) -> np.ndarray:
-    """Nodes in each cluster of a domain, where neighbours by side or corner belong together.
-
-    Parameters
-    ----------
-    domain : (ny, nx) bool array_like
-
-    Returns
-    -------
-    (clusters,) int64 ndarray
-    """
+    """Nodes in each cluster of a domain; neighbours by side or corner belong together."""
     labels, _ = scipy.ndimage.label(domain, structure=NEIGHBOURS)
     return np.bincount(labels.ravel())[1:]
 
 
 def octave_counts(sizes: np.ndarray, most: int) -> np.ndarray:
     """Clusters in each octave of nodes: 1, 2 to 3, 4 to 7, ... up to ``most`` nodes."""
-    # Exact, where the logarithm of a power of two need not be: frexp gives the digits of a number.
+    # frexp gives the binary exponent exactly; a rounded logarithm can miss a power of two.
     octave = np.frexp(sizes)[1] - 1
     return np.bincount(octave, minlength=int(most).bit_length())
 
@@ -151,7 +133,7 @@ def _geometric(counts):
     excess = np.sum(counts * places)
     ratio = excess / (n + excess)
     distance = np.max(np.abs(np.cumsum(counts) / n - (1 - ratio ** (places + 1))))
-    # The chance of not going on is a beta variable: n times stopped, `excess` times gone on.
+    # Clusters stop at their octave n times and go on `excess` times: a beta variable.
     tail = (1 - CONFIDENCE) / 2
     low = 1 - special.betaincinv(n, excess, 1 - tail)
     high = 1 - special.betaincinv(n, excess + 1, tail)
@@ -161,14 +143,7 @@ def _geometric(counts):
 def quadrat_counts(domain: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Nodes in contact, and all nodes, in each of `QUADRATS` by `QUADRATS` parts of the window.
 
-    Parameters
-    ----------
-    domain : (ny, nx) bool ndarray
-
-    Returns
-    -------
-    contact, cells : (quadrats,) int64 ndarray
-        Parts of a window that cannot be divided evenly differ by a row or a column of cells.
+    Parts of a window that cannot be divided evenly differ by a row or a column of cells.
     """
     edges = [np.arange(min(n, QUADRATS)) * n // min(n, QUADRATS) for n in domain.shape]
     contact = np.add.reduceat(domain, edges[0], axis=0, dtype=np.int64)
@@ -178,26 +153,15 @@ def quadrat_counts(domain: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def morisita_index(contact: ArrayLike, cells: ArrayLike) -> tuple[float, float]:
-    """Morisita's index of dispersion and its scatter for random nodes.
+    """Morisita's index of dispersion and its scatter for random nodes; NaN below two nodes.
 
-    Parameters
-    ----------
-    contact, cells : (quadrats,) int array_like
-        From :func:`quadrat_counts`.
-
-    Returns
-    -------
-    index, scatter : float
-        NaN for fewer than two nodes.
-
-    Notes
-    -----
-    How much likelier two nodes in contact are to share a quadrat than any two nodes: 1 on average
-    for nodes drawn at random, whatever their number, more where contact is localised, less where
-    it is regular (Morisita, Mem. Fac. Sci. Kyushu Univ. E 2 (1959) 215). Counted so, without
-    replacement, it is exactly 1 for the full window too, and quadrats may differ in size. The
-    scatter is the exact standard deviation of the multivariate hypergeometric counts. Thinning a
-    domain at random leaves the expected index as it is, so that it compares domains of any area.
+    The index is the ratio of two probabilities: that two nodes in contact share a quadrat, and that
+    any two nodes do. It is 1 on average for nodes drawn at random, whatever their number, more
+    where contact is localised, less where it is regular (Morisita, Mem. Fac. Sci. Kyushu Univ. E 2
+    (1959) 215). Counted without replacement, it is exactly 1 for the full window too, and quadrats
+    may differ in size. The scatter is the exact standard deviation of the multivariate
+    hypergeometric counts. Thinning a domain at random leaves the expected index as it is, so that
+    it compares domains of any area. Arguments are those of :func:`quadrat_counts`.
     """
     contact, cells = np.asarray(contact, float), np.asarray(cells, float)
     n, all_cells = contact.sum(), cells.sum()

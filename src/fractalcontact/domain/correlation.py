@@ -1,4 +1,4 @@
-"""The correlation dimension of a contact domain, from the distances of its pairs of nodes."""
+"""Correlation dimension of a contact domain, from the distances of its pairs of nodes."""
 
 import numpy as np
 from scipy import fft
@@ -14,23 +14,13 @@ LARGEST_DISTANCE = 1 / 8
 
 
 def pair_counts(domain: np.ndarray, distances: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Pairs of nodes within some distances, by the part of the window of the first node.
+    """Pairs of nodes within distances (k,), by the part of the window of the first node, and lags.
 
-    Exact, by fast Fourier transform.
-
-    Parameters
-    ----------
-    domain : (ny, nx) bool array_like
-    distances : (k,) array_like
-        Cells, ascending, smaller than the window.
-
-    Returns
-    -------
-    pairs : (k, 2, BLOCKS**2) float64
-        First with the translation correction: pairs at a lag h over the fraction of the window that
-        h leaves inside, as if the domain went on beyond the window. Then as they are.
-    lags : (k,) int64
-        How many lags but 0 there are: pairs that a filled window has, for each of its nodes.
+    Exact, by fast Fourier transform; distances are in cells, ascending, smaller than the window.
+    The pairs are (k, 2, BLOCKS**2), first with the translation correction: pairs at a lag h over
+    the fraction of the window that h leaves inside, as if the domain went on beyond the window;
+    then without. The (k,) numbers of lags other than 0 are the pairs of each node of a filled
+    window.
     """
     domain = np.asarray(domain, dtype=bool)
     reach = int(distances[-1])
@@ -39,8 +29,8 @@ def pair_counts(domain: np.ndarray, distances: np.ndarray) -> tuple[np.ndarray, 
     ring, n = _rings(lag_y, lag_x, distances), len(distances)
     pairs = np.zeros((n, 2, BLOCKS**2))
     for i, part in enumerate(_parts(domain.shape)):
-        # Of a part and all around it that its nodes pair with; zeros fill up what the window lacks,
-        # and keep opposite sides apart.
+        # The part and its surroundings, with which its nodes pair. Zeros fill in beyond the window,
+        # and keep opposite sides apart in the periodic transform.
         around = tuple(slice(max(0, along.start - reach), along.stop + reach) for along in part)
         lengths = (along.stop - along.start + 2 * reach for along in part)
         shape = [fft.next_fast_len(length, real=True) for length in lengths]
@@ -59,7 +49,7 @@ def pair_counts(domain: np.ndarray, distances: np.ndarray) -> tuple[np.ndarray, 
 def _rings(lag_y, lag_x, distances):
     """Bin of each lag's distance among the distances; lags that are no pair lie beyond."""
     lag = np.hypot(lag_y, lag_x)
-    # The small number keeps a lag at its own distance.
+    # The small number puts a lag equal to a distance into that distance's bin.
     ring = np.searchsorted(np.asarray(distances) + 1e-9, lag)
     ring[lag == 0] = len(distances)
     return ring
@@ -83,7 +73,7 @@ def correlation_dimension(
     domain : (ny, nx) bool array_like
         Nodes in contact.
     spacing : float
-        mm.
+        Distance of neighbouring nodes, mm.
     fit_range : (float, float), optional
         Smallest and largest distance of the fit, mm; by default `SMALLEST_DISTANCE` cells and
         `LARGEST_DISTANCE` of the window.
@@ -124,19 +114,15 @@ def pair_distances(shape: tuple[int, ...]) -> np.ndarray:
 def pairs_slope(distances: np.ndarray, pairs: np.ndarray, lags: np.ndarray) -> float:
     """Correlation dimension from the pairs of a whole window, without its interval.
 
-    Parameters
-    ----------
-    distances : (k,) ndarray
-    pairs : (k,) ndarray
-        With the translation correction, as the first of :func:`pair_counts`.
-    lags : (k,) ndarray
-
-    Returns
-    -------
-    float
-        NaN with too few distances that have a pair.
+    Pairs (k,) are with the translation correction, as the first of :func:`pair_counts`. NaN with
+    too few distances that have a pair.
     """
-    known = pairs > 0
-    if np.count_nonzero(known) < MIN_SCALES:
+    has_pairs = pairs > 0
+    if np.count_nonzero(has_pairs) < MIN_SCALES:
         return np.nan
-    return 2 + fit_line(np.log(distances[known]), np.log(pairs[known] / lags[known])).slope.value
+    return (
+        2
+        + fit_line(
+            np.log(distances[has_pairs]), np.log(pairs[has_pairs] / lags[has_pairs])
+        ).slope.value
+    )

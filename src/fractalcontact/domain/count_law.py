@@ -1,4 +1,4 @@
-"""The power law that mean box counts follow: the set's resolution and its outline separated.
+"""Power law of the mean box counts: the set's resolution and its outline separated.
 
 The places of a gliding box that meet a set of dimension D fill the area V(r) = r^2 N(r). For a set
 drawn on a grid and cut off by an outline
@@ -7,19 +7,20 @@ drawn on a grid and cut off by an outline
 
 with all a >= 0. Of the two corrections
 
-- c is what a node stands for. A box of r cells spans r - 1 from the centre of its first cell to
-  that of its last: of points sampled at centres (contact solved at nodes), c = 1. If every cell is
-  marked that holds some point of the set, what counts is the whole box: c = 0.
-- the bracket is what hangs over the outline: Steiner's formula for a filled figure (D = 2, area,
-  half perimeter in the mean, 1), which boxes of a tenth of its side would take for a set of 1.8;
-  the outline of a set of dimension D is taken to have D - 1, and below D = 1 there is none. (No
-  factor being negative, what chance bends to an outline would raise D: by 0.03 at D = 0.8.)
+- c is the width that a node stands for. A box of r cells spans r - 1 from the centre of its first
+  cell to that of its last: of points sampled at centres (contact solved at nodes), c = 1. If every
+  cell is marked that holds some point of the set, the whole box counts: c = 0.
+- the bracket is the area of boxes that hang over the outline: Steiner's formula for a filled figure
+  (D = 2, area, half perimeter in the mean, 1), which boxes of a tenth of its side would take for a
+  set of 1.8; the outline of a set of dimension D is taken to have D - 1, and below D = 1 there is
+  none. (As no factor is negative, a random bend taken for an outline would raise D: by 0.03 at
+  D = 0.8.)
 
 The thresholds below were chosen on carpets, dusts, percolation clusters and random cascades, where
-D is then found within 0.02. On other sets, drawn as whole cells, that they were not chosen on
+D comes out within 0.02. On other sets, drawn as whole cells, that they were not chosen on
 (Vicsek's, Sierpinski's triangle, dusts and carpets of ratios 4 and 5, upright and turned) the
 median error is 0.03 and the largest 0.07, mostly upwards, where whole cells pass for centres.
-Whoever drew a set knows which they are, and may state it.
+A user who knows how a set was drawn may state it.
 """
 
 from dataclasses import dataclass, replace
@@ -31,28 +32,28 @@ from numpy.typing import ArrayLike
 from roughcontact.arguments import real_array
 from roughcontact.kernel_cache import njit
 
-#: Values of D that are tried first, and then about the best of them.
+#: Values of D that are tried first, and offsets from the best of them that are tried next.
 _COARSE = np.linspace(0, 2, 101)
 _FINE = np.linspace(-0.02, 0.02, 41)
 
-#: An outline adds at most this times what the inside counts, at boxes as large as the extent.
-#: (A filled square has 2, one turned by 45 degrees 4.)
+#: Largest count of an outline over that of the inside, at boxes as large as the extent.
+#: (A filled square has 2, a square turned by 45 degrees 4.)
 MAX_OUTLINE = 4.0
 
 #: Sets of less than this dimension have no outline: a line of the plane misses them.
 MIN_WITH_OUTLINE = 1.0
 
-#: A further term of the outline has to make the misfit smaller by this ratio.
+#: Least ratio by which a further term of the outline must lower the misfit.
 TERM_GAIN = 1.5
 
-#: Cells marked whole (c = 0) are believed where their law fits better by this ratio than that of
-#: centres, and to this misfit: without an outline (log-periodic sets wave by 2 %), and with one.
+#: Cells count as whole (c = 0) where their law fits better by this ratio than that of centres, and
+#: to this misfit: without an outline (log-periodic sets wave by 2 %), and with an outline.
 WHOLE_GAIN = 1.6
 WHOLE_MISFIT = 0.026
 WHOLE_MISFIT_OUTLINE = 0.0015
 
-#: Smallest box, cells, by which forms of the law are separated, and of the fit itself: the
-#: smaller the box, the more what a node stands for shows, which is wanted in the one only.
+#: Smallest box, cells, by which forms of the law are separated, and smallest box of the fit itself.
+#: Small boxes show the width c that a node stands for: it is wanted for the form only.
 SMALLEST_SEPARATING = 3
 SMALLEST = 4
 
@@ -79,22 +80,11 @@ NO_TERMS = LawTerms(*(np.nan,) * 5)
 
 
 def law_count(r: ArrayLike, dimension: float, terms: LawTerms) -> np.ndarray:
-    """Boxes of side r by a count law.
+    """Boxes of side r (k,) by a count law, r in the unit of the terms and larger than c.
 
     N(r) = A (rho/L)^(2 - D) (L/r)^2 [1 + b_1 rho/L + b_2 (rho/L)^2], rho = r - c: the law at the
     top of this module, with A = a_0 L^-D, b = a/a_0. Without outline and with c = 0 it is the
     line N = A (L/r)^D.
-
-    Parameters
-    ----------
-    r : (k,) array_like
-        Box sides in the unit of the terms, larger than c.
-    dimension : float
-    terms : LawTerms
-
-    Returns
-    -------
-    (k,) float64
     """
     r = np.asarray(r, float)
     rho = (r - terms.node_width) / terms.extent
@@ -115,28 +105,11 @@ class Law:
 def best_law(
     sizes: np.ndarray, count: np.ndarray, side: float, whole_cells: bool | None = None
 ) -> Law | None:
-    """The law that mean box counts follow.
+    """Law that mean box counts (k,) follow at box sides (k,) in cells; None where no such law fits.
 
-    Parameters
-    ----------
-    sizes, count : (k,) float ndarray
-        Box sides in cells and the mean number of boxes over all origins.
-    side : float
-        Extent L of the set, cells.
-    whole_cells : bool, optional
-        What is known of the nodes: c = 0 if they are whole cells, c = 1 if centres.
-
-    Returns
-    -------
-    Law or None
-        Unless it is known, nodes are taken for centres (c = 1) where counts do not plainly follow
-        the law of whole cells.
-        None where no law with such terms fits.
-
-    Raises
-    ------
-    ValueError
-        If there is not one count for each size.
+    ``side`` is the extent L of the set, cells. Nodes are whole cells (c = 0) or centres (c = 1);
+    unless ``whole_cells`` states it, they are taken for centres where counts do not plainly follow
+    the law of whole cells. ValueError if there is not one count for each size.
     """
     sizes, count = _checked(sizes, count)
     stand_for = {None: (_WHOLE, _CENTRE), True: (_WHOLE,), False: (_CENTRE,)}[whole_cells]
@@ -153,7 +126,7 @@ def best_law(
 
 
 def _whole_cells(laws):
-    """The law of cells marked whole, where that of centres is plainly worse."""
+    """Law of cells marked whole, where that of centres is plainly worse; else None."""
     centres = {law.outline: law.misfit for law in laws.values() if law.c == _CENTRE}
     limits = ((2, WHOLE_MISFIT_OUTLINE), (1, WHOLE_MISFIT_OUTLINE), (0, WHOLE_MISFIT))
     for outline, most in limits:
@@ -167,7 +140,7 @@ def _whole_cells(laws):
 
 
 def _simplest(laws):
-    """The law with the fewest terms that one more would not make much better."""
+    """Law with the fewest terms that one more would not make much better."""
     best = None
     for law in laws:
         if best is None or law.misfit < best.misfit / TERM_GAIN:
@@ -176,41 +149,18 @@ def _simplest(laws):
 
 
 def law_dimension(law: Law, sizes: np.ndarray, count: np.ndarray, side: float) -> float:
-    """D of a law of the same form fitted to other counts; NaN without a fit.
-
-    Parameters
-    ----------
-    law : Law
-    sizes, count : (k,) float ndarray
-    side : float
-        Extent L of the set, cells.
-
-    Raises
-    ------
-    ValueError
-        If there is not one count for each size.
-    """
+    """Dimension of a law of the same form fitted to other counts; NaN without a fit."""
     sizes, count = _checked(sizes, count)
     fitted = _fit(law, sizes, count, side)
     return np.nan if fitted is None else fitted.dimension
 
 
 def law_terms(law: Law, sizes: np.ndarray, count: np.ndarray, side: float) -> LawTerms:
-    """Terms of a fitted law, in cells.
-
-    Parameters
-    ----------
-    law : Law
-        From :func:`best_law`.
-    sizes, count : (k,) float ndarray
-        What it was fitted to.
-    side : float
-        Extent L of the set, cells.
-    """
+    """Terms, in cells, of a law from :func:`best_law` and of what it was fitted to."""
     sizes, count = _checked(sizes, count)
     rho = (sizes - law.c) / side
     powers = rho[:, np.newaxis] ** (2 - law.dimension + np.arange(law.outline + 1))
-    # As in the fit, what is least is the relative misfit.
+    # The relative misfit is least, as in the fit.
     columns = powers * ((side / sizes) ** 2 / count)[:, np.newaxis]
     a = np.linalg.lstsq(columns, np.ones(sizes.size), rcond=None)[0]
     outline = np.zeros(2)
@@ -233,18 +183,18 @@ def _fit(law, sizes, count, side):
     """Law of this form with the least misfit; None if its factors are not admissible."""
     if sizes.size <= law.outline + 2:
         return None
-    at = 0.0
+    centre = 0.0
     for grid in (_COARSE, _FINE):
-        tried = np.clip(at + grid, 0, 2)
+        tried = np.clip(centre + grid, 0, 2)
         misfit = _misfits(sizes - law.c, count * sizes**2, side, law.outline + 1, tried)
         i = int(np.argmin(misfit))
         if np.isinf(misfit[i]):
             return None
-        at = float(tried[i])
-    return replace(law, dimension=at, misfit=float(misfit[i]))
+        centre = float(tried[i])
+    return replace(law, dimension=centre, misfit=float(misfit[i]))
 
 
-#: Sums may be taken in any order, several terms at a time.
+#: Compilation that may take sums in any order, several terms at a time.
 _summing = njit(cache=True, fastmath={"reassoc", "contract"})
 
 
@@ -284,7 +234,8 @@ def _solve_normal(columns, normal, a):
             normal[i, j] = (columns[i] * columns[j]).sum()
         normal[i, n] = columns[i].sum()
     for i in range(n):
-        # Positive definite: the diagonal is what is left of each column beside those before.
+        # The diagonal is the square of each column's part independent of the columns before it;
+        # without such a part the equations are singular.
         if not normal[i, i] > 0:
             return
         for row in range(i + 1, n):

@@ -26,18 +26,9 @@ QUANTITIES = {
 
 @dataclass(frozen=True, eq=False)
 class CountedDomain:
-    """A contact domain with its box-counting dimension, each count of it made once.
+    """A contact domain (ny, nx) with its box-counting dimension, each count of it made once.
 
-    Attributes
-    ----------
-    nodes : (ny, nx) bool ndarray
-        In contact.
-    box : BoxDimension
-        From :func:`domain.box_dimension.dimension_of_domain`.
-    limits : (float, float)
-        Smallest and largest box side that may be fitted, cells.
-    whole_cells : bool or None
-        As :func:`domain.count_law.best_law` takes it.
+    ``limits`` and ``whole_cells`` are those of :func:`domain.mean_law.law_of_means`.
     """
 
     nodes: np.ndarray
@@ -47,7 +38,7 @@ class CountedDomain:
 
     @cached_property
     def values(self) -> dict[str, float]:
-        """Each of :data:`QUANTITIES`."""
+        """Values of :data:`QUANTITIES` by name."""
         slope = np.nan
         if self.nodes.any() and self.counts_pairs:
             pairs, lags = self.pairs
@@ -82,30 +73,25 @@ class CountedDomain:
 
     @cached_property
     def pairs(self) -> tuple[np.ndarray, np.ndarray]:
-        """Pairs of nodes in contact within each lag, by part of the window, and lags there are."""
+        """Pairs of nodes in contact within each lag, by part of the window, and number of lags."""
         return pair_counts(self.nodes, self.distances)
 
 
 def errors_of(domain: CountedDomain, other: CountedDomain) -> dict[str, float]:
-    """Half the 95 % t-interval of each dimension of a domain less that of another in one window.
+    """Half the 95 % t-interval of the difference of two domains' dimensions, in one window.
 
-    The jackknife leaves the same part of the window out of both.
-
-    Returns
-    -------
-    dict of str to float
-        ``delta_sigma`` and ``correlation_dimension``; NaN where too few parts of the window are
-        occupied.
+    Of ``delta_sigma`` and ``correlation_dimension``, by the jackknife that leaves the same part of
+    the window out of both; NaN where too few parts of the window are occupied.
     """
-    found = {
+    errors = {
         "delta_sigma": _law_error(domain, other),
         "correlation_dimension": _pairs_error(domain, other),
     }
-    return {name: error if 0 < error < np.inf else np.nan for name, error in found.items()}
+    return {name: error if 0 < error < np.inf else np.nan for name, error in errors.items()}
 
 
 def _law_error(domain, other):
-    """Estimator of dimensions by the law of the mean counts, each at the sizes of its own law."""
+    """Error of the dimensions by the law of the mean counts, each at the sizes of its own law."""
     if domain.law is None or other.law is None:
         return np.nan
     ours = len(domain.law_parts)
@@ -117,7 +103,7 @@ def _law_error(domain, other):
 
 
 def _pairs_error(domain, other):
-    """Estimator of correlation dimensions."""
+    """Error of the correlation dimensions."""
     if not domain.counts_pairs:
         return np.nan
     lags = domain.pairs[1]

@@ -14,24 +14,11 @@ SATURATED = 0.02
 def between_cut_offs(
     count: np.ndarray, sizes: np.ndarray, nodes: int, shape: tuple[int, ...]
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Box sizes whose minimal cover carries information, and those beyond either cut-off.
+    """Box sizes used (k,), and sizes with nearly every node alone or nearly every box occupied.
 
-    Parameters
-    ----------
-    count : (k,) ndarray
-        Minimal cover N(r).
-    sizes : (k,) ndarray
-        Box sides, cells.
-    nodes : int
-        In contact.
-    shape : (ny, nx)
-        Cells of the window.
-
-    Returns
-    -------
-    used, alone, full : (k,) bool
-        Between the cut-offs; with nearly every node alone; with nearly every box occupied. Of a
-        single node and of a window that nearly all touches, every size is used.
+    ``count`` (k,) is the minimal cover N(r) at box sides ``sizes`` in cells, ``nodes`` the number
+    of nodes in contact, ``shape`` the window's cells. Of a single node and of a window that nearly
+    all touches, every size is used.
     """
     used = np.ones(sizes.size, dtype=bool)
     alone, full = np.zeros((2, sizes.size), dtype=bool)

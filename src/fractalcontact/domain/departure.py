@@ -23,23 +23,12 @@ def departs(departure: Departure) -> bool:
 
 
 def departure_of(random: Departure, cut: Departure = NOT_COMPARED, *, surface: bool) -> str:
-    """Departure of a domain from its null models, by its curve of local slopes.
+    """Departure of a domain from its null models, one of :data:`DEPARTURES`, by its local slopes.
 
-    The curve decides alone. It holds all box sides; the correlation dimension, one slope over the
-    smaller of them, has to follow where it differs, and asked for as well it only hid what the
-    curves show.
-
-    Parameters
-    ----------
-    random, cut : Departure
-        From random nodes, and from the bearing-area cut.
-    surface : bool
-        Whether there is a composite topography, and so a bearing-area cut.
-
-    Returns
-    -------
-    str
-        One of :data:`DEPARTURES`.
+    The curve of local slopes decides alone, as it holds all box sides. The correlation dimension is
+    one slope over the smaller of them, which differs only where the curve does: as a second
+    condition it hid departures that the curves show. ``surface`` says whether there is a composite
+    topography, and so a bearing-area cut.
     """
     if math.isnan(random.p):
         return UNDETERMINED

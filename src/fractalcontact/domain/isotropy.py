@@ -5,23 +5,21 @@ A domain that scales isotropically has the same exponent along both axes.
 
 import numpy as np
 
-from ..core.estimate import Estimate, rows_of
+from ..core.estimate import Estimate
 from ..core.slope_of_sums import BLOCKS, slope_of_sums
 from .correlation import pair_distances
 
 #: Axes of the counts.
 WAYS = ("along", "across")
 
-#: Variables of every domain: name, unit, long name.
-INTERVAL_FIELDS = {
-    name: words
-    for way in WAYS
-    for name, words in rows_of(
-        f"interval_dimension_{way}",
+#: Variables of every domain: unit, long name.
+INTERVALS = {
+    f"interval_dimension_{way}": (
         "1",
         f"exponent of the number of occupied intervals {way} sliding over their length, along x "
         "and across y where nothing slides",
-    ).items()
+    )
+    for way in WAYS
 }
 
 #: Origins of the intervals that counts are averaged over, at most.
@@ -40,24 +38,24 @@ def interval_dimensions(
     spacing : (float, float)
         Sides (y, x) of a cell, mm.
     direction : str
-        Where the upper block slides: E or W along x, N or S along y; anything else counts as x.
+        Sliding of the upper block: E or W along x, N or S along y; anything else counts as x.
 
     Returns
     -------
     list of Estimate
         Along and across, over lengths of two cells to an eighth of the window, with the interval of
-        :mod:`core.slope_of_sums`. Not known without contact. A filled window has 1, nodes that lie
-        farther apart than the longest interval have 0.
+        :mod:`core.slope_of_sums`; undetermined without contact. A filled window has 1, nodes that
+        lie farther apart than the longest interval have 0.
     """
     axis = 0 if direction in ("N", "S") else 1
     lengths = np.unique(np.round(pair_distances(domain.shape)).astype(int))
-    found = []
+    exponents = []
     for way in (axis, 1 - axis):
         rows = np.moveaxis(np.asarray(domain, bool), way, 1)
         parts = np.array([_occupied(rows, length) for length in lengths])
         slope = slope_of_sums(lengths * spacing[way], parts, lambda sums: sums[:, 0])
-        found.append(slope.mapped(np.negative, falling=True))
-    return found
+        exponents.append(slope.mapped(np.negative, falling=True))
+    return exponents
 
 
 def _occupied(rows: np.ndarray, length: int) -> np.ndarray:

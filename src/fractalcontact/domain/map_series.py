@@ -1,4 +1,4 @@
-"""Series of measured contact maps: their order, and how the dimension goes with pressure."""
+"""Series of measured contact maps: their order, and the trend of the dimension with pressure."""
 
 from collections.abc import Mapping
 
@@ -10,7 +10,7 @@ from ..core.estimate import rows_of
 from ..core.labels import natural_key
 from .pressure_trend import pressure_trend
 
-#: What a map has of its series. A map alone is a series of one.
+#: Variables of a map's series. A map alone is a series of one.
 _TABLE = {
     "series_number": ("1", "place of the series, or of the map alone, among them"),
     "number_in_series": ("1", "place of the map in its series, by pressure"),
@@ -26,19 +26,11 @@ _TABLE = {
 
 
 def with_series(maps: Mapping[str, xr.Dataset]) -> dict[str, xr.Dataset]:
-    """Measured maps with their places in their series, and the trend of the series.
+    """Measured maps by name with their places in their series and its trend: :data:`_TABLE`.
 
-    Parameters
-    ----------
-    maps : mapping of str to xr.Dataset
-        As :func:`domain.measured_map.read_contact_map` gives them, by name.
-
-    Returns
-    -------
-    dict of str to xr.Dataset
-        With the variables of :data:`_TABLE`.
+    Maps are as :func:`domain.measured_map.read_contact_map` gives them.
     """
-    found = {}
+    placed = {}
     for number, names in enumerate(series_of_maps(maps)):
         pressure, value, random = (
             [float(maps[name][key]) for name in names]
@@ -55,20 +47,15 @@ def with_series(maps: Mapping[str, xr.Dataset]) -> dict[str, xr.Dataset]:
         for place, name in enumerate(names):
             table = {key: ((), *words) for key, words in _TABLE.items()}
             values = of_series | {"number_in_series": place}
-            found[name] = maps[name].assign(labelled(table, values))
-    return found
+            placed[name] = maps[name].assign(labelled(table, values))
+    return placed
 
 
 def series_of_maps(maps: Mapping[str, xr.Dataset]) -> list[tuple[str, ...]]:
     """Names of the maps of each series, then of the maps alone.
 
-    Those of a series are in the order of their pressure, those of unknown pressure last; what no
-    pressure orders is by name, numbers as numbers.
-
-    Parameters
-    ----------
-    maps : mapping of str to xr.Dataset
-        As :func:`domain.measured_map.read_contact_map` gives them, by name.
+    Those of a series are in the order of their pressure, those of unknown pressure last; maps
+    without pressures and series are in the order of their names, numbers as numbers.
     """
     members: dict[str, list[str]] = {}
     for name in sorted(maps, key=natural_key):
@@ -82,7 +69,7 @@ def series_of_maps(maps: Mapping[str, xr.Dataset]) -> list[tuple[str, ...]]:
     return series + [(name,) for name in alone]
 
 
-def _pressure(one):
+def _pressure(contact_map):
     """Nominal pressure, MPa; infinite where no load is stated."""
-    pressure = float(one["nominal_pressure"])
+    pressure = float(contact_map["nominal_pressure"])
     return pressure if np.isfinite(pressure) else np.inf

@@ -1,7 +1,6 @@
-"""The count law fitted to the mean box counts of a contact domain, with its interval.
+"""Count law fitted to the mean box counts of a contact domain: its box sizes and its interval.
 
-The law is that of :mod:`domain.count_law`; here are the box sizes it is fitted to and the interval
-of its dimension.
+The law is that of :mod:`domain.count_law`.
 """
 
 from collections.abc import Callable, Sequence
@@ -66,37 +65,26 @@ def law_of_means(
     limits: tuple[float, float],
     whole_cells: bool | None,
 ) -> tuple[FittedLaw | None, MeanCounts]:
-    """The law fitted to the mean counts of a domain, and these.
+    """Law fitted to the mean counts of a domain, None with too few box sizes, and these counts.
 
-    Parameters
-    ----------
-    extent : (ny, nx) bool ndarray
-        The domain, without empty rows and columns about it.
-    limits : (float, float)
-        Smallest and largest box side that may be fitted, cells.
-    whole_cells : bool, optional
-        As :func:`domain.count_law.best_law` takes it.
-
-    Returns
-    -------
-    law : FittedLaw or None
-        None with too few box sizes between the cut-offs.
-    counts : MeanCounts
+    ``extent`` is the domain (ny, nx) without empty rows and columns about it, ``limits`` are the
+    smallest and largest box side that may be fitted, cells; ``whole_cells`` is that of
+    :func:`domain.count_law.best_law`.
     """
     sizes = mean_sizes(extent.shape)
     parts = mean_count(extent, sizes, blocks=BLOCKS)
     count = parts.sum(axis=(1, 2))
     means = MeanCounts(sizes, count)
     side = max(extent.shape)
-    found = _fitted(means, extent, limits, whole_cells)
-    if found is None:
+    fitted = _fitted(means, extent, limits, whole_cells)
+    if fitted is None:
         return None, means
-    law, between = found
+    law, between = fitted
     kept = between & (sizes >= SMALLEST)
     sizes, parts, count = sizes[kept].astype(float), parts[kept], count[kept]
     terms = law_terms(law, sizes, count, side)
     error = block_error(parts, lambda left: law_dimension(law, sizes, left, side))
-    if np.isinf(error):  # what is left without the largest cluster may follow no law
+    if np.isinf(error):  # without its largest cluster a domain may follow no law
         error = block_error(parts, lambda left: count_slope(left, sizes))
     waves = wave_error(sizes, np.log(count / law_count(sizes, law.dimension, terms)))
     half = float(np.hypot(error, waves))
@@ -119,7 +107,7 @@ def _beyond_cut_offs(means, extent):
     """Sizes saturated by lone nodes, and sizes saturated by occupied boxes."""
     sizes, count = means
     all_boxes = np.prod([(n - 1) / sizes + 1 for n in extent.shape], axis=0)
-    # What fills its own extent is dense at every scale: then no scale is saturated.
+    # A set that fills its own extent is dense at every scale: then no scale is saturated.
     nodes = np.count_nonzero(extent)
     filled = nodes >= (1 - SATURATED) * extent.size
     alone = count >= (1 - SATURATED) * nodes
@@ -127,20 +115,16 @@ def _beyond_cut_offs(means, extent):
 
 
 def is_crowded(means: MeanCounts, extent: np.ndarray) -> bool:
-    """True if box sizes are too few for a law since most others find all boxes occupied.
+    """True if box sizes are too few for a law because all boxes are occupied at most of the sizes.
 
-    Parameters
-    ----------
-    means : MeanCounts
-    extent : (ny, nx) bool ndarray
-        The domain, without empty rows and columns about it.
+    The domain is without empty rows and columns about it.
     """
     alone, full = _beyond_cut_offs(means, extent)
     return bool(np.count_nonzero(full) > len(means.sizes) / 2 > np.count_nonzero(alone))
 
 
 class FoundLaw(NamedTuple):
-    """A law found, without the interval of its dimension."""
+    """A law of mean counts, without the interval of its dimension."""
 
     law: Law
     sizes: np.ndarray
@@ -167,19 +151,15 @@ def find_law(
 ) -> FoundLaw | None:
     """Law of the mean counts of a domain; None with too few sizes between the cut-offs.
 
-    Parameters
-    ----------
-    domain : (ny, nx) bool ndarray
-    limits, whole_cells
-        As :func:`law_of_means` takes them.
+    Parameters are those of :func:`law_of_means`.
     """
     extent = cropped(domain)
     sizes = mean_sizes(extent.shape)
     means = MeanCounts(sizes, mean_count(extent, sizes).ravel())
-    found = _fitted(means, extent, limits, whole_cells)
-    if found is None:
+    fitted = _fitted(means, extent, limits, whole_cells)
+    if fitted is None:
         return None
-    law, between = found
+    law, between = fitted
     separating = sizes[between]
     return FoundLaw(law, separating[separating >= SMALLEST], separating, max(extent.shape))
 
@@ -193,28 +173,17 @@ def dimension_by_means(
 ) -> tuple[float, np.ndarray]:
     """Dimension by the law of the mean counts without its interval, and the minimal cover.
 
-    Parameters
-    ----------
-    domain : (ny, nx) bool ndarray
-    cover_sizes : (k,) int64 ndarray
-        Box sides in cells of the minimal cover.
-    limits, whole_cells
-        As :func:`law_of_means` takes them.
-
-    Returns
-    -------
-    dimension : float
-        Where too few sizes lie between the cut-offs the limit that the counts have reached: 2 where
-        every box is occupied, 0 where every node is alone; NaN where neither.
-    cover : (k,) int64
+    The cover (k,) is at ``cover_sizes`` in cells; the rest is as of :func:`law_of_means`. Where too
+    few sizes lie between the cut-offs the dimension is the limit that the counts have reached: 2
+    where every box is occupied, 0 where every node is alone; NaN where neither.
     """
     extent = cropped(domain)
     sizes = mean_sizes(extent.shape)
     cover, count = minimal_cover(extent, cover_sizes), mean_count(extent, sizes).ravel()
     means = MeanCounts(sizes, count)
-    found = _fitted(means, extent, limits, whole_cells)
-    if found is not None:
-        return found[0].dimension, cover
+    fitted = _fitted(means, extent, limits, whole_cells)
+    if fitted is not None:
+        return fitted[0].dimension, cover
     alone, full = (
         np.count_nonzero(beyond[sizes > 1]) for beyond in _beyond_cut_offs(means, extent)
     )
@@ -229,18 +198,12 @@ def block_error(
     """Half the t-interval of a statistic of counts, by the jackknife over parts of the window.
 
     The larger error of two: by parts left out, and by rows or columns of them. Neighbouring parts
-    of one set are alike, the more so as the largest boxes are wider than one, and each holds much
-    of what the one left out held. A strip has fewer neighbours; but of strips there are few.
+    of one set are alike, the more so as the largest boxes are wider than one: each holds much of
+    the information of the part left out. A strip has fewer neighbours; but of strips there are few.
 
-    Parameters
-    ----------
-    parts : (k, blocks, blocks) ndarray
-        Counts by part of the window.
-    statistic : callable
-        (k,) counts to a number, NaN where there is none.
-    firsts : sequence of int
-        Counts that show which parts are occupied: those of the smallest boxes, of each set where
-        counts of several are stacked.
+    ``parts`` (k, blocks, blocks) are counts by part of the window; ``statistic`` takes (k,) counts
+    to a number, NaN where there is none. ``firsts`` are the counts that show which parts are
+    occupied: those of the smallest boxes, of each set where counts of several are stacked.
     """
     divisions = parts.reshape(len(parts), -1), parts.sum(axis=2), parts.sum(axis=1)
     squares, *strips = (_without_parts(division, statistic, firsts) for division in divisions)

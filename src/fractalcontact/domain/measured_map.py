@@ -1,4 +1,4 @@
-"""Measured contact maps: where two faces touched, as films and casts of real joints show it.
+"""Measured contact maps: contact of two faces as films and casts of real joints show it.
 
 A map is a file like a scan, a matrix of stresses or of 0 and 1, whose sidecar says
 ``kind: contact-map``. It has no heights, so nothing is solved: it goes straight to the analysis of
@@ -27,7 +27,7 @@ from .null_models import null_models
 
 #: Keys of a sidecar that only maps have.
 MAP_KEYS = ("kind", "threshold", "load", "cells", "outline", "series", "x", "y")
-#: How a file of coordinates is read, but for how its numbers are written.
+#: Options for a file of coordinates, other than the form of its numbers.
 COORDINATES_ALONE = {
     "kind": CONTACT_MAP,
     "axes": "none",
@@ -36,11 +36,11 @@ COORDINATES_ALONE = {
     "first_row": "bottom",
     "missing": "none",
 }
-#: What a cell in contact stands for, and whether it is one of those that hold any contact at all.
+#: Meanings of a cell in contact, and the value of ``whole_cells`` for each.
 CELLS = {"any contact": True, "contact at the centre": False}
 
 _OVER_THRESHOLDS = "over the thresholds stated"
-#: What a map holds beside the numbers of its contact domain.
+#: Variables of a map other than the numbers of its contact domain.
 _VARIABLES = {
     "in_contact": (("y", "x"), "1", "cell in contact"),
     "measured": (("y", "x"), "1", "cell within the outline where something was measured"),
@@ -67,9 +67,9 @@ _VARIABLES = {
     },
     "null_verdict": ((), "1", "null models from which the local slopes differ"),
 }
-#: Of them, what :func:`domain.null_models.null_models` finds.
+#: Variables that come from :func:`domain.null_models.null_models`.
 _OF_NULLS = (*names_of("delta_sigma_random"), "null_verdict")
-#: How it was loaded.
+#: Variables of the load of a map.
 _LOADS = {
     "force": ((), "N", "normal force F on the map"),
     "nominal_pressure": ((), "MPa", "nominal pressure sigma_0 = F / A_0"),
@@ -78,33 +78,28 @@ _LOADS = {
 
 @titled("measured contact maps, one group per map")
 def read_contact_map(path: Path | str, options: Mapping[str, Any], *, label: str) -> xr.Dataset:
-    """The contact domain of a map, its dimension and its clusters.
+    """Contact domain of a map with its dimension and its clusters.
 
     Parameters
     ----------
     path : path-like
-        A matrix file as :func:`scan.read.read_scan` takes it; NaN where nothing was
-        measured.
+        A matrix file as :func:`scan.read.read_scan` takes it; NaN where nothing was measured.
     options : mapping
-        Scan keys of the sidecar; ``unit`` (of x and y) and ``spacing`` as for a scan, or ``x`` and
-        ``y``, files of the coordinates beside this one;
-        ``threshold``: cells above it are in contact (not needed for a map of 0 and 1), or a list
-        of them, whose middle one counts; ``load``:
-        the force on the whole map or its nominal pressure, ``cells``: what a cell in contact
-        stands for (:data:`CELLS`), else its counts decide, see
-        :func:`domain.box_dimension.box_dimension`; ``outline``, see
-        :func:`gridding.outline.outline_mask`; ``series``: maps of one name belong together.
+        Keys of the sidecar: those of a scan, and :data:`MAP_KEYS`. Cells above ``threshold`` are in
+        contact; of several thresholds the middle one counts. ``load`` is a force on the whole map
+        or its nominal pressure. ``cells`` is one of :data:`CELLS`; without it the box counts
+        decide, see :func:`domain.box_dimension.box_dimension`. ``outline`` is that of
+        :func:`gridding.outline.outline_mask`.
     label : str
-        What it is, in words.
+        Name of the map in words.
 
     Returns
     -------
     xr.Dataset
         ``in_contact`` and ``measured`` (y, x); the numbers of
         :data:`domain.analysis.DOMAIN_FIELDS`; areas, ``force`` and ``nominal_pressure``,
-        NaN if no load is stated; Delta_sigma and area over ``threshold``, and the ends of
-        Delta_sigma there. Attributes ``label``, ``series`` and ``warning``, empty where there is
-        none.
+        NaN if no load is stated; Delta_sigma with its ends and area over ``threshold``. Attributes
+        ``label``, ``series`` and ``warning``, which may be empty.
 
     Raises
     ------
@@ -159,7 +154,7 @@ def _read(
         reading |= {"first_row": "bottom"}
         steps = [float(abs(np.diff(axes[key]).mean())) for key in "xy"]
         reading |= {"spacing": [f"{step:.12g} mm" for step in steps]}
-    # What the cells hold is no length: in mm it is taken over as it stands.
+    # The values are no lengths; "mm" takes them over unchanged.
     values, (dx, dy), provenance = read_matrix(
         path, reading | {"unit_z": "mm", "kind": CONTACT_MAP}
     )
@@ -185,10 +180,10 @@ def _analysed(
     sides: tuple[float, float],
     whole_cells: bool | None,
 ) -> xr.Dataset:
-    """Variables of a map without its loads, for each threshold; one is the main one."""
+    """Variables of a map for its thresholds, without loads; ``main`` is the main one's index."""
     spacing = float(np.sqrt(np.prod(sides)))
     dims = ("direction", "offset", "normal_force", "y_1", "x_1")
-    # To the analysis the thresholds are loads of one joint.
+    # The analysis of domains takes the thresholds as loads of one joint.
     coords = {"direction": ["none"], "offset": [0.0], "normal_force": np.arange(len(touching))}
     domains = xr.Dataset({"in_contact_1": (dims, touching[np.newaxis, np.newaxis])}, coords)
     table = analyse_domains(domains, spacing, whole_cells=whole_cells)

@@ -1,4 +1,4 @@
-"""Measures of a contact domain and its pressure beside the box dimension, of all map states."""
+"""Measures of a contact domain and its pressure other than the box dimension."""
 
 from typing import Any
 
@@ -6,11 +6,11 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from ..core.datasets import labelled
 from ..core.estimate import Estimate
 from ..core.labels import cf_attrs
+from ..core.per_curve import stacked
 from .correlation import correlation_dimension
-from .isotropy import INTERVAL_FIELDS, WAYS, interval_dimensions
+from .isotropy import INTERVALS, interval_dimensions
 from .multifractal import ORDERS, generalised_dimensions, lacunarity
 
 #: D_q of these orders are compared: of the support, and of the largest pressures.
@@ -18,32 +18,22 @@ _COMPARED_ORDERS = (0.0, 4.0)
 
 
 def measures_of_map_states(states: xr.Dataset, spacing: float) -> xr.Dataset:
-    """:func:`measures_of_states` of the states that are looked at closely.
+    """Measures of the map states, :func:`states.states.map_states`, spacing in mm.
 
-    Parameters
-    ----------
-    states : xr.Dataset
-        From :func:`states.states.map_states`.
-    spacing : float
-        Of the scan, mm.
-
-    Returns
-    -------
-    xr.Dataset
-        With the scalars ``direction``, ``offset`` and ``resolution``, and over load the
-        exponents of :data:`domain.isotropy.INTERVAL_FIELDS`.
+    Those of :func:`measures_of_states` with the scalars ``direction``, ``offset`` and
+    ``resolution``, and over load the exponents of :data:`domain.isotropy.INTERVALS`.
     """
-    pressures, factor = states["pressure"].values, int(states["resolution"])
-    measures = measures_of_states(pressures, spacing * factor, states["normal_force"].values)
+    factor = int(states["resolution"])
     direction, sides = str(states["direction"].item()), (spacing * factor, spacing * factor)
-    ways = [interval_dimensions(p > 0, sides, direction) for p in pressures]
-    by_load = {name: ("normal_force", *words) for name, words in INTERVAL_FIELDS.items()}
-    values: dict[str, Any] = {}
-    for way, found in zip(WAYS, zip(*ways, strict=True), strict=True):
-        values |= Estimate.stack(found).columns(f"interval_dimension_{way}")
-    measures = measures.assign(labelled(by_load, values))
+    measures = measures_of_states(states["pressure"], spacing * factor, states["normal_force"])
+    rows = [
+        dict(zip(INTERVALS, interval_dimensions(pressure > 0, sides, direction), strict=True))
+        for pressure in states["pressure"].values
+    ]
     place = {name: states[name] for name in ("direction", "offset", "resolution")}
-    return measures.assign_coords(place)
+    return measures.assign(stacked(rows, INTERVALS, ("normal_force",), (len(rows),))).assign_coords(
+        place
+    )
 
 
 def measures_of_states(pressures: ArrayLike, spacing: float, forces: ArrayLike) -> xr.Dataset:
@@ -76,46 +66,45 @@ def measures_of_states(pressures: ArrayLike, spacing: float, forces: ArrayLike) 
         raise ValueError(
             f"pressures {pressures.shape} and {forces.size} forces do not belong together"
         )
-    curves = [lacunarity(pressure > 0, spacing) for pressure in pressures]
-    pairs = Estimate.stack(correlation_dimension(pressure > 0, spacing) for pressure in pressures)
-    spectra = [generalised_dimensions(pressure, spacing) for pressure in pressures]
-    spectrum = Estimate.stack(
-        (spectrum[q] for spectrum in spectra for q in ORDERS), (len(spectra), len(ORDERS))
-    )
-    first, last = (spectrum[:, ORDERS.index(q)] for q in _COMPARED_ORDERS)
-    words = cf_attrs("1", "whether the interval of D_4 lies below that of D_0")
-    variables: dict[str, Any] = {
-        **_slope_variables(
-            "normal_force",
-            "correlation_dimension",
-            "correlation dimension of the nodes in contact",
-            pairs,
-        ),
-        **_slope_variables(
-            ("normal_force", "order"),
-            "generalised_dimension",
-            "generalised dimension D_q of the pressure",
-            spectrum,
-        ),
-        **Estimate.stack(curves, (len(curves), -1)).variables(
-            "lacunarity", ("normal_force", "gliding_side"), "1", "gliding-box lacunarity"
-        ),
-        "dimensions_fall": ("normal_force", last.high < first.low, words),
-    }
+    rows = [_measures(pressure, spacing) for pressure in pressures]
+    sides = rows[0]["lacunarity"].r
     coords = {
         "normal_force": ("normal_force", forces, cf_attrs("N", "normal force F")),
         "order": ("order", np.array(ORDERS), cf_attrs("1", "order q")),
-        "gliding_side": ("gliding_side", curves[0].r, cf_attrs("mm", "side of the gliding box")),
+        "gliding_side": ("gliding_side", sides, cf_attrs("mm", "side of the gliding box")),
     }
-    return xr.Dataset(variables, coords=coords)
+    return xr.Dataset(stacked(rows, _MEASURES, ("normal_force",), (len(rows),)), coords)
 
 
-def _slope_variables(dims, name, long_name, slope: Estimate) -> dict[str, Any]:
-    """Slopes with their intervals and the lengths they were fitted over, as variables."""
-    table = {
-        f"{name}_r_min": (dims, "mm", f"{long_name}: smallest length fitted"),
-        f"{name}_r_max": (dims, "mm", f"{long_name}: largest length fitted"),
-        f"{name}_n": (dims, "1", f"{long_name}: lengths fitted"),
+def _slope_rows(name: str, long_name: str, *own: str) -> dict[str, tuple[str, ...]]:
+    """Variables of a slope with its interval and the lengths that it is fitted over."""
+    return {
+        name: ("1", long_name, *own),
+        f"{name}_r_min": ("mm", f"{long_name}: smallest length fitted", *own),
+        f"{name}_r_max": ("mm", f"{long_name}: largest length fitted", *own),
+        f"{name}_n": ("1", f"{long_name}: lengths fitted", *own),
     }
-    values = dict(zip(table, (*slope.over, slope.n), strict=True))
-    return slope.variables(name, dims, "1", long_name) | labelled(table, values)
+
+
+#: Variables of each load: unit, long name, further dimensions.
+_MEASURES = {
+    **_slope_rows("correlation_dimension", "correlation dimension of the nodes in contact"),
+    **_slope_rows("generalised_dimension", "generalised dimension D_q of the pressure", "order"),
+    "lacunarity": ("1", "gliding-box lacunarity", "gliding_side"),
+    "dimensions_fall": ("1", "whether the interval of D_4 lies below that of D_0"),
+}
+
+
+def _measures(pressure: np.ndarray, spacing: float) -> dict[str, Any]:
+    """Values of :data:`_MEASURES` under one load."""
+    spectrum = Estimate.stack(generalised_dimensions(pressure, spacing).values())
+    slopes = {
+        "correlation_dimension": correlation_dimension(pressure > 0, spacing),
+        "generalised_dimension": spectrum,
+    }
+    row: dict[str, Any] = {"lacunarity": lacunarity(pressure > 0, spacing)}
+    for name, slope in slopes.items():
+        row |= {name: slope, f"{name}_r_min": slope.over[0], f"{name}_r_max": slope.over[1]}
+        row[f"{name}_n"] = slope.n
+    first, last = (spectrum[ORDERS.index(q)] for q in _COMPARED_ORDERS)
+    return row | {"dimensions_fall": last.high < first.low}

@@ -1,7 +1,7 @@
 """Multifractal analysis of a domain or its pressure: gliding-box lacunarity and D_q.
 
 A box glides over all its places inside the window. Boxes of one size then are a fair sample of
-what goes on beyond the window too, and nothing depends on where a grid of boxes happens to lie.
+the pattern beyond the window too, and nothing depends on the origin of a grid of boxes.
 """
 
 from collections.abc import Sequence
@@ -21,15 +21,15 @@ from .box_counts import whole_sizes
 SMALLEST_BOX = 4
 LARGEST_BOX = 1 / 4
 
-#: Places of a box along its own side: more add nothing new, the boxes overlap by so much.
+#: Places of a box along its own side: boxes at more places overlap so much that they add nothing.
 PLACES = 16
 
 #: Orders q of the generalised dimensions.
 ORDERS = (-2.0, -1.0, 0.0, 1.0, 2.0, 3.0, 4.0)
-#: Powers of whole orders below this are made one from the other.
+#: Powers of whole orders below this are computed one from the other.
 _MAX_WHOLE = 64
-#: Of fewer nodes there is no D_q: each is a tenth of it. And gliding boxes meet those near a rim
-#: less often: a single one in a corner would have 1.8, and parts left out would not show it.
+#: Fewest nodes with a D_q: each is then a tenth of the mass. Gliding boxes meet nodes near a rim
+#: less often: a single node in a corner would have 1.8, and the jackknife would not show it.
 FEWEST = 10
 
 
@@ -45,14 +45,8 @@ def gliding_moments(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Moments of the mass in gliding boxes inside the window, over parts of the window.
 
-    Parameters
-    ----------
-    mass : (ny, nx) array_like
-        Not negative: nodes in contact, or their pressure.
-    sizes : (k,) int array_like
-        Box sides in cells, none larger than the window.
-    orders : sequence of float
-        q.
+    ``mass`` (ny, nx) are nodes in contact, or their pressure; ValueError if it is negative or not
+    finite. ``sizes`` (k,) are box sides in cells, none larger than the window, ``orders`` are q.
 
     Returns
     -------
@@ -61,11 +55,6 @@ def gliding_moments(
         of p ln p.
     places : (k, BLOCKS**2) int64
         Boxes, empty ones too, by the part of the window that holds their middle.
-
-    Raises
-    ------
-    ValueError
-        If the mass is not a (y, x) grid, negative or not finite, or a size not whole or below 1.
     """
     mass = _checked(mass)
     sizes = whole_numbers(sizes, "sizes of boxes", least=1, most=max(1, *mass.shape))
@@ -105,13 +94,13 @@ def _glide(nx, filled, size, lowest_y, lowest_x, parts_y, parts_x, orders, momen
     """Add the moments of all boxes of one size, from the cells that are filled, row by row."""
     fraction, columns, starts = filled
     column = np.zeros(nx)
-    before = np.zeros(nx + 1, np.int64)  # columns that are not empty, before each
+    before = np.zeros(nx + 1, np.int64)  # number of columns with mass before each column
     whole = orders.size > 0 and np.abs(orders).max() < _MAX_WHOLE
     whole = whole and (orders == np.floor(orders)).all()
     least, most = (int(orders.min()), int(orders.max())) if whole else (0, 0)
     powers = np.empty(most - least + 1)
     for y, part_y in zip(lowest_y, parts_y):  # noqa: B905  # numba knows no `strict`
-        # Summed anew: differences of sums would leave a trace of mass where there is none.
+        # Sums are formed anew: differences of running sums would leave a trace in empty boxes.
         column[:] = 0.0
         for i in range(starts[y], starts[y + size]):
             column[columns[i]] += fraction[i]
@@ -122,7 +111,7 @@ def _glide(nx, filled, size, lowest_y, lowest_x, parts_y, parts_x, orders, momen
                 p, part = column[x : x + size].sum(), part_y * BLOCKS + part_x
                 log_p = np.log(p)
                 moments[-1, part] += p * log_p
-                if whole:  # each is p times the one before
+                if whole:  # each power is p times the previous one
                     power = p**least
                     for n in range(powers.size):
                         powers[n] = power
@@ -141,19 +130,9 @@ def lacunarity(mass: np.ndarray, spacing: float) -> SizeCurve:
     """Gliding-box lacunarity <M^2> / <M>^2 over box sizes (Allain & Cloitre 1991).
 
     1 where all boxes hold the same; a translation invariant fractal of dimension D in a window has
-    a power law of slope D - 2.
-
-    Parameters
-    ----------
-    mass : (ny, nx) array_like
-    spacing : float
-        mm.
-
-    Returns
-    -------
-    SizeCurve
-        `r` in mm from one cell to half of the window; interval by the jackknife over parts of the
-        window (on the logarithm). Empty window: NaN.
+    a power law of slope D - 2. Box sides in mm go from one cell, ``spacing`` in mm, to half of the
+    window; the interval is by the jackknife over parts of the window (on the logarithm). NaN in an
+    empty window.
     """
     mass = _checked(mass)
     sizes = whole_sizes(min(mass.shape) / 2)
@@ -186,18 +165,12 @@ def generalised_dimensions(
     Parameters
     ----------
     mass : (ny, nx) array_like
-        Pressure, or nodes in contact.
+        Pressure, or nodes in contact; fewer than :data:`FEWEST` nodes have no D_q.
     spacing : float
-        mm.
+        Side of a cell, mm, the unit of the fits' box sides.
     orders : sequence of float
-        q. Negative ones weigh the emptiest boxes most: they show how contact fades out at the rims
+        q. Negative ones weigh the emptiest boxes most: they show the fading of contact at the rims
         of its patches, and depend on the solver's tolerance.
-
-    Returns
-    -------
-    dict of float to Estimate
-        D_q, its interval, and the smallest and largest box (mm) of the fit; none of fewer
-        than :data:`FEWEST` nodes.
     """
     mass = _checked(mass)
     sizes = fit_sizes(mass.shape)

@@ -1,9 +1,9 @@
 """Null models of a contact domain: as many nodes at random, and the bearing-area cut.
 
-A finite set of points has a box-counting dimension between 0 and 2 whatever its geometry: it
-crosses over from points alone to full boxes. What its geometry adds is the departure from nodes
-drawn at random in the same window; and what elastic interaction adds, the departure from the
-bearing-area cut: as many nodes, the highest of the composite topography.
+A finite set of points has a box-counting dimension between 0 and 2 whatever its geometry: its
+counts cross over from single points to full boxes. The departure from nodes drawn at random in the
+same window shows its geometry; the departure from the bearing-area cut, as many nodes that are the
+highest of the composite topography, shows elastic interaction.
 """
 
 from collections.abc import Collection
@@ -13,15 +13,16 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from ..core.datasets import labelled_dataset
-from ..core.estimate import NO_ESTIMATE, Estimate, rows_of
+from ..core.datasets import labelled
+from ..core.estimate import NO_ESTIMATE, Estimate
 from ..core.limits import MIN_NODES
+from ..core.per_curve import stacked
 from ..core.ranges import in_cells
 from .box_dimension import dimension_of_domain
 from .counted_domain import QUANTITIES, CountedDomain, errors_of
 from .departure import departure_of
 from .mean_law import mean_sizes
-from .ordinary_slope import dyadic_sizes
+from .ordinary_dimension import dyadic_sizes
 from .random_nodes import band_of, expected_mean_counts, random_bands
 from .slope_curves import (
     NOT_COMPARED,
@@ -32,32 +33,19 @@ from .slope_curves import (
     random_curves,
 )
 
-#: What is stored of the bearing-area cut, of random nodes and of the difference, by the ending of a
-#: name.
+#: Long names of numbers of the cut, of random nodes and of the difference, by the ending of a name.
 _CUT = "that of the bearing-area cut of as many nodes"
 _ESTIMATES = {
     "_random": "as many random nodes, mean and 95 % band",
     "_cut_difference": "less that of the bearing-area cut",
 }
-#: Of which quantities.
+#: Quantities that have these numbers.
 _COMPARED = {
     "_random": ("delta_sigma", "clusters"),
     "_cut_difference": ("delta_sigma", "correlation_dimension"),
 }
 
-_BY_SIDE = ("normal_force", "null_scale")
-_BY_OCTAVE = ("normal_force", "null_octave")
-
-
-def _rows(name: str, words: str, dims: Any, endings: Collection[str]) -> dict[str, tuple]:
-    """Variables of a quantity beside its null models."""
-    rows = {f"{name}_cut": ("1", f"{words}: {_CUT}")}
-    for ending in endings:
-        rows |= rows_of(f"{name}{ending}", "1", f"{words}: {_CURVES[ending]}")
-    return {of: (dims, *units_and_words) for of, units_and_words in rows.items()}
-
-
-#: Curves of local slopes that are stored, by the ending of their name.
+#: Long names of the curves of local slopes, by the ending of a name.
 _CURVES = {"": "of the domain"} | _ESTIMATES
 #: Reason of a window with no local slope.
 TOO_SMALL = "the window is too small for local slopes"
@@ -68,47 +56,52 @@ OCTAVES = {
     "local_slope_side_min": ("null_octave", "mm", "smaller of the two box sides r"),
     "local_slope_side_max": ("null_octave", "mm", "larger of the two box sides r"),
 }
+_SIDES = {
+    **OCTAVES,
+    "null_side": ("null_scale", "mm", "side of the boxes r of the null models"),
+    "null_mean_side": ("null_mean_scale", "mm", "side of the boxes r of that expectation"),
+}
+
+
+def _rows(name: str, words: str, endings: Collection[str], *own: str) -> dict[str, tuple]:
+    """Variables of a quantity of null models, by endings: unit, long name, dimensions of arrays."""
+    long_names = {"_cut": _CUT} | {ending: _CURVES[ending] for ending in endings}
+    return {
+        f"{name}{ending}": ("1", f"{words}: {long_name}", *own)
+        for ending, long_name in long_names.items()
+    }
+
+
+_P = "probability (p-value) of such a departure of local slopes by chance, from those of"
+_SIDE = "box side r of the largest departure of local slopes from those of"
+
+#: Variables of each domain: unit, long name, dimensions of arrays.
 _TABLE: dict[str, tuple] = {
     **{
         of: row
         for name, words in QUANTITIES.items()
         for of, row in _rows(
-            name, words, "normal_force", [of for of, names in _COMPARED.items() if name in names]
+            name, words, [of for of, names in _COMPARED.items() if name in names]
         ).items()
     },
-    **_rows("local_slope", "local slope of the mean box counts", _BY_OCTAVE, _CURVES),
-    **OCTAVES,
-    **{
-        f"local_slope_{null}_{name}": ("normal_force", units, f"{words} {of}")
-        for null, of in (("random", "as many random nodes"), ("cut", "the bearing-area cut"))
-        for name, units, words in (
-            (
-                "p",
-                "1",
-                "probability (p-value) of such a departure of local slopes by chance, from "
-                "those of",
-            ),
-            ("side", "mm", "box side r of the largest departure of local slopes from those of"),
-        )
-    },
-    "null_verdict": ("normal_force", "1", "null models from which the local slopes differ"),
-    "null_reason": ("normal_force", "1", "why the local slopes are not compared; empty else"),
-    **{
-        of: (_BY_SIDE, *row)
-        for of, row in rows_of(
-            "null_count_random",
-            "1",
-            "minimal cover N(r) of as many random nodes, mean and band",
-        ).items()
-    },
-    "null_count_cut": (_BY_SIDE, "1", "minimal cover N(r) of the bearing-area cut"),
-    "null_side": ("null_scale", "mm", "side of the boxes r of the null models"),
+    **_rows("local_slope", "local slope of the mean box counts", _CURVES, "null_octave"),
+    "local_slope_random_p": ("1", f"{_P} as many random nodes"),
+    "local_slope_random_side": ("mm", f"{_SIDE} as many random nodes"),
+    "local_slope_cut_p": ("1", f"{_P} the bearing-area cut"),
+    "local_slope_cut_side": ("mm", f"{_SIDE} the bearing-area cut"),
+    "null_verdict": ("1", "null models from which the local slopes differ"),
+    "null_reason": ("1", "why the local slopes are not compared; empty else"),
+    "null_count_random": (
+        "1",
+        "minimal cover N(r) of as many random nodes, mean and band",
+        "null_scale",
+    ),
+    "null_count_cut": ("1", "minimal cover N(r) of the bearing-area cut", "null_scale"),
     "null_mean_count": (
-        ("normal_force", "null_mean_scale"),
         "1",
         "mean N(r) over all grid origins, expectation of as many random nodes",
+        "null_mean_scale",
     ),
-    "null_mean_side": ("null_mean_scale", "mm", "side of the boxes r of that expectation"),
 }
 
 
@@ -121,23 +114,21 @@ def null_models(
     mask: np.ndarray | None = None,
     whole_cells: bool | None = False,
 ) -> xr.Dataset:
-    """Null models of contact domains in one window, and how the domains depart from them.
+    """Null models of contact domains in one window, and the domains' departures from them.
 
     Parameters
     ----------
     domains : (n, ny, nx) bool array_like
-        Nodes in contact, one domain a load.
+        Nodes in contact, one domain for each load.
     spacing : float
         mm.
     composite : (ny, nx) ndarray, optional
         Composite topography; without it (a measured map, a set without a surface) there is no cut,
         and departures are from random nodes alone.
-    fit_range : (float, float), optional
-        Smallest and largest box of the dimensions, mm; by default all between the cut-offs.
+    fit_range, whole_cells
+        As of :func:`domain.box_dimension.dimension_of_domain`.
     mask : (ny, nx) bool ndarray, optional
         Cells where contact could be seen; all by default. Random nodes lie in it.
-    whole_cells : bool, optional
-        As :func:`domain.box_dimension.dimension_of_domain` takes it.
 
     Returns
     -------
@@ -155,18 +146,19 @@ def null_models(
     -----
     The domain and its cut share most of their hills, so the interval of their difference is that of
     pairs: the jackknife leaves the same part of the window out of both. Both models are fitted over
-    the boxes of the domain, so that what the choice of these changes is common and in neither.
+    the boxes of the domain, so that the choice of these has the same effect on all three.
     """
     domains = np.asarray(domains, bool)
     limits = in_cells(fit_range, spacing)
     how = {"limits": limits, "whole_cells": whole_cells}
     rows = [_row(domain, spacing, composite, fit_range, mask, how) for domain in domains]
     shape = domains.shape[1:]
-    values: dict[str, Any] = {name: [row[name] for row in rows] for name in rows[0]}
-    values["null_side"] = dyadic_sizes(shape) * float(spacing)
-    values["null_mean_side"] = mean_sizes(shape) * float(spacing)
-    values |= octaves_of(shape, spacing)
-    return labelled_dataset(_TABLE, values)
+    sides = octaves_of(shape, spacing)
+    sides["null_side"] = dyadic_sizes(shape) * float(spacing)
+    sides["null_mean_side"] = mean_sizes(shape) * float(spacing)
+    return xr.Dataset(
+        stacked(rows, _TABLE, ("normal_force",), (len(rows),)) | labelled(_SIDES, sides)
+    )
 
 
 def nulls_of_map_states(
@@ -175,47 +167,26 @@ def nulls_of_map_states(
     composites: xr.DataArray,
     fit_range: tuple[float, float] | None = None,
 ) -> xr.Dataset:
-    """Null models of the contact domains that are looked at closely, under every load.
+    """Null models of the map states, :func:`states.states.map_states`, under every load.
 
-    Parameters
-    ----------
-    states : xr.Dataset
-        From :func:`states.states.map_states`.
-    spacing : float
-        Of the scan, mm.
-    composites : DataArray (offset, window_y, window_x)
-        Composite topographies of the joint in the direction of the states.
-    fit_range : (float, float), optional
-        Smallest and largest box of the dimensions, mm; by default all between the cut-offs.
-
-    Returns
-    -------
-    xr.Dataset
-        From :func:`null_models`, with the loads and the scalars ``direction``, ``offset`` and
-        ``resolution`` of the states.
+    The composites (offset, window_y, window_x) are those of the joint in the direction of the
+    states; spacing and fit range are in mm. The dataset is that of :func:`null_models`, with the
+    loads and the scalars ``direction``, ``offset`` and ``resolution`` of the states.
     """
     factor = int(states["resolution"])
-    here = composites.sel(offset=float(states["offset"]), method="nearest").values
+    composite = composites.sel(offset=float(states["offset"]), method="nearest").values
     domains = states["pressure"].values > 0
-    nulls = null_models(domains, spacing * factor, here[::factor, ::factor], fit_range=fit_range)
+    nulls = null_models(
+        domains, spacing * factor, composite[::factor, ::factor], fit_range=fit_range
+    )
     names = ("normal_force", "direction", "offset", "resolution")
     return nulls.assign_coords({name: states[name] for name in names})
 
 
 def beside_domains(domains: xr.Dataset, nulls: xr.Dataset) -> xr.Dataset:
-    """The table of contact domains with the null models of those that are looked at closely.
+    """Table of contact domains with the null models of the map states, missing in other domains.
 
-    Parameters
-    ----------
-    domains : xr.Dataset
-        From :func:`domain.analysis.analyse_domains`.
-    nulls : xr.Dataset
-        From :func:`nulls_of_map_states`.
-
-    Returns
-    -------
-    xr.Dataset
-        What is known by load stands over all dimensions of the table, missing in other domains.
+    From :func:`domain.analysis.analyse_domains` and :func:`nulls_of_map_states`.
     """
     order = ("direction", "offset", "resolution", "normal_force")
     sizes = tuple(domains.sizes[name] for name in order)
@@ -260,18 +231,17 @@ def _row(domain, spacing, composite, fit_range, mask, how) -> dict[str, Any]:
         if highest.box.ordinary is not None:
             count = highest.box.ordinary.counts
     row: dict[str, Any] = {f"{name}_cut": value for name, value in of_cut.items()}
-    for ending, found in (("_random", bands), ("_cut_difference", beyond_cut)):
-        for name, estimate in found.items():
-            row |= estimate.columns(f"{name}{ending}")
+    row |= {f"{name}_random": band for name, band in bands.items()}
+    row |= {f"{name}_cut_difference": difference for name, difference in beyond_cut.items()}
     row |= _compared_slopes(domain, highest_nodes, mask, spacing)
-    row |= counts.columns("null_count_random")
+    row["null_count_random"] = counts
     row["null_count_cut"] = count
     row["null_mean_count"] = expected_mean_counts(domain.shape, nodes, mean_sizes(domain.shape))
     return row
 
 
 def octaves_of(shape: tuple[int, ...], spacing: float) -> dict[str, np.ndarray]:
-    """Box sides of the local slopes, mm; a missing one in a window too small for any."""
+    """Box sides of the local slopes, mm; NaN alone in a window too small for any."""
     sides = np.append(curve_sizes(shape), np.full(2, np.nan))[: max(curve_sizes(shape).size, 2)]
     low, high = sides[:-1] * float(spacing), sides[1:] * float(spacing)
     return {
@@ -287,7 +257,8 @@ def _compared_slopes(domain, cut, mask, spacing):
     nodes = int(np.count_nonzero(domain))
     curve = SlopeCurve(domain, mask)
     none = np.full(sides.size, np.nan)
-    curves = dict.fromkeys(_CURVES, Estimate(none, none, none)) | {"": curve.interval}
+    missing = dict.fromkeys(_CURVES, Estimate(none, none, none))
+    curves = missing | {"": curve.interval}
     cut_values, departures = none, dict.fromkeys(("random", "cut"), NOT_COMPARED)
     reason = _why_not_compared(nodes, curve.values.size)
     if nodes > 1:
@@ -300,11 +271,11 @@ def _compared_slopes(domain, cut, mask, spacing):
         curves["_cut_difference"], departures["cut"] = paired_departure(curve, highest)
         if not (reason or np.isfinite(departures["cut"].p)):
             reason = "contact in too few parts of the window to compare with the bearing-area cut"
-    row = {"local_slope_cut": cut_values}
-    for ending, of in curves.items():
-        row |= of.columns(f"local_slope{ending}")
-    # A window too small for any slope has one that is missing.
-    row = {name: values if np.size(values) else none for name, values in row.items()}
+    if not curve.values.size:
+        # A window too small for any slope has a single missing one, as axes need a length.
+        curves, cut_values = missing, none
+    row: dict[str, Any] = {f"local_slope{ending}": values for ending, values in curves.items()}
+    row["local_slope_cut"] = cut_values
     if nodes < MIN_NODES:
         departures = dict.fromkeys(departures, NOT_COMPARED)
     for null, departure in departures.items():
@@ -331,18 +302,9 @@ def _less_cut(domain, cut) -> dict[str, Estimate]:
 
 
 def bearing_area_cut(composite: np.ndarray, nodes: int) -> np.ndarray:
-    """The highest nodes of a composite topography: contact without elastic interaction.
+    """The highest nodes of a composite topography (ny, nx): contact without elastic interaction.
 
-    Parameters
-    ----------
-    composite : (ny, nx) ndarray
-        Heights; NaN where there is none.
-    nodes : int
-        How many; of equal heights the first are taken.
-
-    Returns
-    -------
-    (ny, nx) bool
+    Nodes without a height (NaN) are the last; of equal heights the first are taken.
     """
     heights = np.where(np.isfinite(composite), composite, -np.inf).ravel()
     level = np.partition(heights, heights.size - nodes)[heights.size - nodes]

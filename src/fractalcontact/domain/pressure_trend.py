@@ -1,6 +1,6 @@
-"""Trend of the dimension of measured contact maps with load, beside that of random cells.
+"""Trend of the dimension of measured contact maps with load, compared with that of random cells.
 
-Of a map only the random null model can be had: the bearing-area cut needs heights.
+A map has only the random null model: the bearing-area cut needs heights.
 """
 
 from typing import NamedTuple
@@ -11,21 +11,15 @@ from numpy.typing import ArrayLike
 from ..core.fitting import LineFit, fit_line
 from ..core.verdicts import BEYOND_RANDOM, LIKE_RANDOM, UNDETERMINED
 
-#: How a dimension goes with load.
+#: Trends of a dimension with load.
 RISES, FALLS = "rises", "falls"
 
 
 class Trend(NamedTuple):
     """Trend of a dimension with load over a series of maps.
 
-    Attributes
-    ----------
-    verdict : str
-        "rises", "falls" or "undetermined".
-    line : LineFit
-        Of Delta_sigma over the decades of pressure.
-    departure : LineFit
-        Of Delta_sigma less that of random cells.
+    ``verdict`` is "rises", "falls" or "undetermined"; ``line`` is Delta_sigma over the decades of
+    pressure, ``departure`` Delta_sigma less that of random cells.
     """
 
     verdict: str
@@ -42,18 +36,12 @@ class Trend(NamedTuple):
 
 
 def pressure_trend(pressure: ArrayLike, value: ArrayLike, random: ArrayLike) -> Trend:
-    """Trend of Delta_sigma with nominal pressure over the maps of a series.
+    """Trend of Delta_sigma with nominal pressure (MPa) over the maps of a series; NaN if missing.
 
-    Parameters
-    ----------
-    pressure, value, random : (n,) array_like
-        sigma_0 in MPa, Delta_sigma, and that of as many random cells; NaN where not known.
-
-    Notes
-    -----
-    Maps of a series are measured one by one: the line's own interval (Student's t) is that of the
-    trend. More contact raises the dimension of any cells, those at random too, so a rise alone
-    shows no fractal: the departure from random must have a trend of its own.
+    ``random`` is the Delta_sigma of as many random cells. Maps of a series are measured one by one:
+    the line's own interval (Student's t) is that of the trend. More contact raises the dimension of
+    any cells, those at random too, so a rise alone shows no fractal: the departure from random must
+    have a trend of its own.
     """
     pressure, value = np.asarray(pressure, float), np.asarray(value, float)
     decades = np.log10(np.where(pressure > 0, pressure, np.nan))

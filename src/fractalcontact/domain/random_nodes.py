@@ -9,32 +9,24 @@ from ..core.ranges import in_cells
 from .box_counts import mean_count, minimal_cover
 from .clusters import NEIGHBOURS
 from .mean_law import FoundLaw, dimension_by_means, find_law
-from .ordinary_slope import dyadic_sizes
+from .ordinary_dimension import dyadic_sizes
 
 #: Draws of random nodes. The band allows for their number.
 DRAWS = 20
 
 
 def band_of(draws: np.ndarray) -> Estimate:
-    """Mean of draws and the band in which one more lies with 95 % probability (normal draws).
+    """Mean of draws (n, ...) and the band that holds one more normal draw with 95 % probability.
 
-    Parameters
-    ----------
-    draws : (n, ...) array_like
-        NaN where a draw has no value.
-
-    Returns
-    -------
-    Estimate
-        NaN where fewer than half of the draws have a value.
+    NaN where fewer than half of the draws have a value.
     """
     draws = np.asarray(draws, float)
-    known = np.isfinite(draws)
-    n = known.sum(axis=0)
+    has_value = np.isfinite(draws)
+    n = has_value.sum(axis=0)
     enough = n >= max(len(draws) / 2, 2)
     count = np.maximum(n, 2)
-    mean = np.where(known, draws, 0).sum(axis=0) / count
-    variance = np.where(known, (draws - mean) ** 2, 0).sum(axis=0) / (count - 1)
+    mean = np.where(has_value, draws, 0).sum(axis=0) / count
+    variance = np.where(has_value, (draws - mean) ** 2, 0).sum(axis=0) / (count - 1)
     half = t_quantile(count - 1) * np.sqrt(variance * (1 + 1 / count))
     mean = np.where(enough, mean, np.nan)
     return Estimate(mean, mean - half, mean + half)
@@ -50,38 +42,18 @@ def random_bands(
     law: FoundLaw | None = None,
     draws: int = DRAWS,
 ) -> tuple[dict[str, Estimate], Estimate]:
-    """Bands of the same estimators for as many random nodes in a window.
+    """Bands of ``delta_sigma`` and ``clusters`` of random nodes, and of their minimal cover.
 
-    Parameters
-    ----------
-    shape : (int, int)
-        Cells of the window.
-    nodes : int
-        To draw; with fewer than two there is nothing to compare.
-    mask : (ny, nx) bool ndarray, optional
-        Cells that nodes may lie in; all by default.
-    limits : (float, float)
-        Smallest and largest box side that may be fitted, cells.
-    whole_cells : bool, optional
-        As :func:`domain.count_law.best_law` takes it.
-    law : FoundLaw, optional
-        Law of the domain that is compared: the draws' laws are fitted over the same boxes. By
-        default each draw has its own range, between its own cut-offs.
-    draws : int
+    Parameters are those of :func:`domain.null_models.null_models` and of
+    :func:`domain.mean_law.law_of_means`. ``law`` is that of the domain compared: the draws' laws
+    are fitted over the same boxes; by default each draw has its own range, between its own
+    cut-offs. The cover is over :func:`domain.ordinary_dimension.dyadic_sizes`. NaN for fewer than
+    two nodes.
 
-    Returns
-    -------
-    bands : dict of str to Estimate
-        ``delta_sigma`` and ``clusters``.
-    counts : Estimate
-        Of the minimal cover, each (k,) over :func:`domain.ordinary_slope.dyadic_sizes`.
-
-    Notes
-    -----
     The same shape and number draw the same nodes on every run. Nodes at random cross over from
-    points alone to full boxes, a slope of 2 + ln f / ln R over R cells at a fraction f in contact:
-    what a domain is compared with is that slope over its own boxes. A draw of its own range without
-    one, for its nodes are alone or its boxes full at all sizes, has the limit 0 or 2.
+    single points to full boxes, a slope of 2 + ln f / ln R over R cells at a fraction f in contact:
+    a domain is compared with that slope over its own boxes. A draw whose own range is empty, as its
+    nodes are alone or its boxes full at all sizes, has the limit 0 or 2.
     """
     sizes = dyadic_sizes(shape)
     cells = np.arange(np.prod(shape)) if mask is None else np.flatnonzero(mask)
@@ -111,13 +83,7 @@ def random_bands(
 def random_nodes(shape: tuple[int, int], nodes: int, cells: np.ndarray, seed: int) -> np.ndarray:
     """As many different nodes at random, (ny, nx) bool; the same ones for the same arguments.
 
-    Parameters
-    ----------
-    shape : (int, int)
-    nodes : int
-    cells : (m,) int ndarray
-        Flat places to draw from.
-    seed : int
+    ``cells`` (m,) are the flat indices to draw from.
     """
     rng = np.random.default_rng([*shape, cells.size, nodes, seed])
     domain = np.zeros(int(np.prod(shape)), bool)
@@ -126,23 +92,11 @@ def random_nodes(shape: tuple[int, int], nodes: int, cells: np.ndarray, seed: in
 
 
 def expected_mean_counts(shape: tuple[int, int], nodes: int, sizes: np.ndarray) -> np.ndarray:
-    """Mean box counts over all grid origins expected of random nodes, exactly.
+    """Exact expectation of the mean box counts of random nodes, at box sides ``sizes`` in cells.
 
     A box that holds m cells of the window is empty with the probability that all nodes lie in the
     others, C(M - m, N) / C(M, N); the count is the sum of its complement over the places of a
     gliding box, divided by its area.
-
-    Parameters
-    ----------
-    shape : (int, int)
-        Cells of the window.
-    nodes : int
-    sizes : (k,) int ndarray
-        Box sides, cells.
-
-    Returns
-    -------
-    (k,) float64
     """
     cells = int(np.prod(shape))
     left = np.arange(min(int(sizes.max()) ** 2, cells))
@@ -166,18 +120,8 @@ def expected_dimension(
 ) -> float:
     """Delta_sigma of as many random nodes over the boxes of a domain's law, from expected counts.
 
-    Parameters
-    ----------
-    domain : (ny, nx) bool ndarray
-    spacing : float
-        mm.
-    fit_range : (float, float), optional
-        As :func:`domain.box_dimension.box_dimension` takes it.
-
-    Returns
-    -------
-    float
-        NaN where the domain, or random nodes at its boxes, follow no law.
+    Spacing and fit range are in mm, as of :func:`domain.box_dimension.box_dimension`. NaN where the
+    domain, or random nodes at its boxes, follow no law.
     """
     limits = in_cells(fit_range, spacing)
     law = find_law(domain, limits, False)

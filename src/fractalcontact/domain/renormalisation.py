@@ -69,7 +69,7 @@ def renormalisation(
     The interval is of sampling: one part of the contact after another is left out at all
     resolutions together (jackknife), so that hills that carry more or less, which are the same at
     all of them, leave the slope as it is. Value and interval lie between 0 and 2, the bounds of a
-    set in the plane. What is left beside the line is a bend of the law, a finding
+    set in the plane. A misfit of the line is a bend of the law, a finding
     (:func:`area_bend`) and no error: an interval of the regression was four times too wide on
     joints, and beside their bend four points have one degree of freedom, too few for an interval.
 
@@ -100,7 +100,7 @@ def renormalisation(
     return _described(values, _RENORMALISED)
 
 
-#: Unit and long name of what renormalisation gives.
+#: Unit and long name of the results of renormalisation.
 _RENORMALISED = {
     **rows_of("delta_sigma", "1", "dimension of the contact domain from A_r ~ s^(2 - Delta_sigma)"),
     "n": ("1", "resolutions fitted"),
@@ -111,7 +111,7 @@ _RENORMALISED = {
 
 
 def _described(values, words) -> xr.Dataset:
-    """Arrays that know their own dimensions as a dataset with units and long names."""
+    """Dataset of arrays with dimensions of their own, with units and long names."""
     result = xr.Dataset(values)
     for name, (unit, long_name) in words.items():
         result[name].attrs = cf_attrs(unit, long_name)
@@ -119,10 +119,10 @@ def _described(values, words) -> xr.Dataset:
 
 
 def _of_resolutions(function, outputs, s, area, left, sampling) -> tuple[xr.DataArray, ...]:
-    """Numbers of a function of log s, log A, log of what is left, and whether A samples."""
+    """Numbers of a function of log s, log A, log of the areas left, and whether A samples."""
     left = xr.full_like(area, np.nan).expand_dims({LEFT_OUT: 1}) if left is None else left
     free = xr.ones_like(area, dtype=bool) if sampling is None else sampling != 0
-    with np.errstate(divide="ignore"):  # one part may hold all nodes
+    with np.errstate(divide="ignore"):  # log of 0 where one part holds all nodes
         logs = np.log(s), np.log(area), np.log(left)
     return xr.apply_ufunc(
         function,
@@ -144,72 +144,38 @@ def _area_exponent(log_s, log_area, log_left, free) -> tuple[float, ...]:
 
 
 def _half(weights, log_left, free) -> float:
-    """Half of the interval of a weighted sum of log A; 0 of areas that no sample changes."""
-    counted = abs(weights) > 1e-12 * abs(weights).max()  # that of a middle is 0 to rounding
+    """Half of the interval of a weighted sum of log A; 0 for areas that no sample changes."""
+    counted = abs(weights) > 1e-12 * abs(weights).max()  # a middle point's weight is 0 to rounding
     if not free[counted].any():
         return 0.0
-    if np.isinf(log_left[counted]).any():  # one part holds all nodes: the sum may be anything
+    if np.isinf(log_left[counted]).any():  # one part holds all nodes: the sum has no bound
         return np.inf
     replicates = weights[counted] @ log_left[counted]
     return jackknife_error(replicates) if np.isfinite(replicates).all() else np.nan
 
 
 def hausdorff_measure(s: Any, area: Any, delta_sigma: Any) -> Any:
-    """Fractal measure N_n s_n^Delta_sigma of each pre-fractal, with N_n = A_n / s_n^2 nodes.
+    """Fractal measure N_n s_n^Delta_sigma of each pre-fractal, mm^Delta_sigma.
 
-    Parameters
-    ----------
-    s : array_like
-        Spacing, mm.
-    area : array_like
-        Real contact area, mm2.
-    delta_sigma : array_like
-
-    Returns
-    -------
-    Of the arguments' common shape, in mm^Delta_sigma.
+    N_n = A_n / s_n^2 nodes, with the spacing s_n in mm and the real contact area A_n in mm2.
     """
     return area * s ** (delta_sigma - 2)
 
 
 def nominal_pressure(sigma_star: Any, delta_sigma: Any, b: Any) -> Any:
-    """Nominal pressure that brings about sigma* on a joint of side b (eq. 6).
+    """Nominal pressure sigma* b^(Delta_sigma - 2), MPa, of a joint of side b, mm (eq. 6).
 
-    Parameters
-    ----------
-    sigma_star : array_like
-        Fractal mean pressure, N mm^-Delta_sigma.
-    delta_sigma : array_like
-        Dimension of the contact domain.
-    b : array_like
-        Side of the joint, mm.
-
-    Returns
-    -------
-    Of the arguments' common shape, in MPa: sigma* b^(Delta_sigma - 2).
+    ``sigma_star`` is the fractal mean pressure, N mm^-Delta_sigma.
     """
     return sigma_star * b ** (delta_sigma - 2)
 
 
 def fractal_pressure(force: Any, side: Any, delta_sigma: Any) -> Any:
-    """sigma* = F / H_D with the fractal measure H_D = b^delta of the whole joint (eq. 5).
+    """sigma* = F / H_D, N mm^-delta, with the fractal measure H_D = b^delta of the joint (eq. 5).
 
     So sigma_0 A_0 = sigma* H_D holds on the specimen itself, and eq. 6 passes through it. The
     measure N_n s_n^delta of the pre-fractals, ``hausdorff_measure`` in the atlas, differs from it
-    by a factor without dimension, which eq. 6 does not contain.
-
-    Parameters
-    ----------
-    force : array_like
-        F, N.
-    side : array_like
-        b of the specimen, mm.
-    delta_sigma : array_like
-        Dimension of the contact domain.
-
-    Returns
-    -------
-    Of the arguments' common shape, in N mm^-delta.
+    by a factor without dimension, which eq. 6 does not contain. F is in N, the side b in mm.
     """
     return force / side**delta_sigma
 
@@ -217,19 +183,11 @@ def fractal_pressure(force: Any, side: Any, delta_sigma: Any) -> Any:
 def extrapolated_pressure(scaling: xr.Dataset, side: float) -> xr.Dataset:
     """Nominal pressures of joints of other sizes by eq. 6, which is fixed on the specimen.
 
-    Parameters
-    ----------
-    scaling : xr.Dataset
-        Both estimates of Delta_sigma, from :func:`compare_dimensions`.
-    side : float
-        b of the specimen, mm: of the square that has its window's area.
-
-    Returns
-    -------
-    xr.Dataset
-        Over the coordinate ``estimator`` ("area", "box") and the dimensions of the estimates:
-        ``eq6_sigma_star``; over ``eq6_side``, too (`SIDES` times ``side``): ``eq6_pressure`` with
-        the ends of its interval, which follow from those of Delta_sigma, each with its own sigma*.
+    ``scaling`` has both estimates of Delta_sigma, from :func:`compare_dimensions`; ``side`` b of
+    the specimen, mm, is that of the square as large as its window. The dataset has the coordinate
+    ``estimator`` ("area", "box"): ``eq6_sigma_star``, and over ``eq6_side`` (`SIDES` times
+    ``side``) ``eq6_pressure`` with the ends of its interval, which follow from those of
+    Delta_sigma, each with its own sigma*.
     """
     force = scaling["normal_force"]
     sides = xr.DataArray(side * SIDES, dims="eq6_side")
@@ -243,7 +201,7 @@ def extrapolated_pressure(scaling: xr.Dataset, side: float) -> xr.Dataset:
         nominal_pressure(star, dimension, sides)
         for star, dimension in zip(stars, dimensions, strict=True)
     )
-    # The lines of both ends cross: which is the lower depends on b.
+    # The lines of both ends cross, so that the side b decides which is the lower.
     pressure = Estimate(value, np.fmin(*ends), np.fmax(*ends))
     values = {"eq6_sigma_star": stars[0], **pressure.columns("eq6_pressure")}
     coords = {
@@ -254,12 +212,12 @@ def extrapolated_pressure(scaling: xr.Dataset, side: float) -> xr.Dataset:
     return result.transpose("estimator", *scaling["delta_sigma_area"].dims, "eq6_side")
 
 
-#: What Delta_sigma is estimated from.
+#: Sources of the estimates of Delta_sigma.
 ESTIMATORS = ("area", "box")
 #: Sides b of joints that eq. 6 is extrapolated to, as multiples of the specimen's: two decades.
 SIDES = np.array([0.1, 1.0, 10.0])
 
-#: Unit and long name of what eq. 6 makes of other sizes.
+#: Unit and long name of the results of eq. 6 for other sizes.
 _EXTRAPOLATED = {
     "eq6_sigma_star": ("N mm^-delta_sigma", "sigma* = F / b^Delta_sigma, which fixes eq. 6"),
     **rows_of("eq6_pressure", "MPa", "nominal pressure by eq. 6 on a joint of side b"),
@@ -267,20 +225,11 @@ _EXTRAPOLATED = {
 
 
 def compare_dimensions(by_area: xr.Dataset, by_boxes: xr.Dataset) -> xr.Dataset:
-    """Set two estimates of Delta_sigma side by side: from A_r(s) and from box counting.
+    """Two estimates of Delta_sigma and their difference: from A_r(s) and from box counting.
 
-    Parameters
-    ----------
-    by_area, by_boxes : xr.Dataset
-        `delta_sigma` with its interval, from `renormalisation` and from box counting.
-
-    Returns
-    -------
-    xarray.Dataset
-        `delta_sigma_area` and `delta_sigma_box` with their intervals, `difference` = area - box
-        with `difference_low`, `_high`: the ends of the two intervals combined as those of
-        independent estimates (root of the sum of squares); and whether they `disagree`: the
-        interval of the difference leaves out zero.
+    The ends of the difference combine the two intervals as those of independent estimates (root of
+    the sum of squares). The estimates ``disagree`` where the interval of the difference leaves out
+    zero.
     """
     area, area_low, area_high = (by_area[name] for name in names_of("delta_sigma"))
     box, box_low, box_high = (by_boxes[name] for name in names_of("delta_sigma"))
@@ -296,7 +245,7 @@ def compare_dimensions(by_area: xr.Dataset, by_boxes: xr.Dataset) -> xr.Dataset:
     return _described(values, _COMPARED)
 
 
-#: Unit and long name of two estimates side by side.
+#: Unit and long name of the two estimates and their difference.
 _COMPARED = {
     **rows_of("delta_sigma_area", "1", "Delta_sigma from the contact area over resolutions"),
     **rows_of("delta_sigma_box", "1", "Delta_sigma from box counting"),
@@ -316,18 +265,8 @@ def area_bend(
     """Delta_sigma of the two finest resolutions less that of the two coarsest, from their areas.
 
     It is zero for one power law A_n ~ s_n^(2 - Delta_sigma). The interval is of sampling, as that
-    of :func:`renormalisation`.
-
-    Parameters
-    ----------
-    s, area, nodes, fewest, left, sampling
-        As of :func:`renormalisation`, s ascending.
-
-    Returns
-    -------
-    Estimate
-        Of DataArrays on the other dimensions of `area`; NaN where fewer than three resolutions
-        count.
+    of :func:`renormalisation`, whose parameters these are, s ascending. NaN where fewer than three
+    resolutions count.
     """
     value, half = _of_resolutions(_bend, 2, s, area.where(nodes >= fewest), left, sampling)
     return Estimate(value, value - half, value + half)

@@ -27,14 +27,14 @@ from .count_law import SMALLEST
 from .mean_law import LARGEST_BOX
 from .random_nodes import random_nodes
 
-#: Draws of random nodes: with the domain they are 200, of which 5 % are ten.
+#: Draws of random nodes: 200 with the domain, so that 5 % are ten.
 DRAWS = 199
 
 
-#: Fewer occupied parts of the window give no scatter.
+#: Fewest occupied parts of the window that give a scatter.
 MIN_PARTS = 4
 
-#: Local slopes that scatter by less are the same in all draws: of boxes that are all occupied.
+#: Smallest scatter of local slopes; below it all boxes are occupied, and all draws are equal.
 _NO_SCATTER = 1e-9
 
 
@@ -42,7 +42,7 @@ class Departure(NamedTuple):
     """Departure of a curve of local slopes from that of a null model.
 
     The probability is of the departure that is largest in units of its scatter. Where the scatter
-    is small a difference of 0.002 is significant: what matters is the largest of those that are.
+    is small a difference of 0.002 is significant: the size is the largest of those that are.
     """
 
     p: float
@@ -68,7 +68,7 @@ class SlopeCurve:
     Attributes
     ----------
     nodes : (ny, nx) bool ndarray
-        In contact.
+        Nodes in contact.
     mask : (ny, nx) bool ndarray, optional
         Cells that nodes may lie in; all by default.
     """
@@ -84,7 +84,9 @@ class SlopeCurve:
     @cached_property
     def parts(self) -> np.ndarray:
         """Mean counts by part of the window over those of the whole window, (k, parts)."""
-        counts = mean_count(self.nodes, self.sizes, blocks=BLOCKS).reshape(self.sizes.size, -1)
+        counts = mean_count(self.nodes, self.sizes, blocks=BLOCKS).reshape(
+            self.sizes.size, BLOCKS**2
+        )
         return counts / window_counts(self.nodes.shape, self.sizes, self.mask)[:, np.newaxis]
 
     @cached_property
@@ -100,13 +102,13 @@ class SlopeCurve:
 
     @property
     def occupied(self) -> np.ndarray:
-        """Parts of the window with a box of the smallest size; none without a size."""
+        """Parts of the window with a box of the smallest size; none in a window without sizes."""
         return np.flatnonzero(self.parts[:1].sum(axis=0))
 
     def without(self, parts: np.ndarray) -> np.ndarray:
         """Local slopes with one part of the window after another left out, (m, k - 1)."""
         left = self.parts.sum(axis=1) - self.parts.T[parts]
-        # What is left of a sum by rounding is no count.
+        # A remainder of the subtraction by rounding is no count.
         return slope_curve(np.where(left > _NO_SCATTER * left.max(initial=1), left, 0), self.sizes)
 
     @cached_property
@@ -130,18 +132,9 @@ def window_counts(
 
 
 def slope_curve(relative: np.ndarray, sizes: np.ndarray) -> np.ndarray:
-    """Local slopes between neighbouring box sides.
+    """Local slopes (..., k - 1) between neighbouring box sides (k,); NaN where a count is 0.
 
-    Parameters
-    ----------
-    relative : (..., k) ndarray
-        Mean counts N(r) / N_w(r).
-    sizes : (k,) ndarray
-
-    Returns
-    -------
-    (..., k - 1) float64
-        NaN where a count is 0.
+    ``relative`` (..., k) are mean counts N(r) / N_w(r).
     """
     with np.errstate(divide="ignore", invalid="ignore"):
         curve = 2 - np.diff(np.log(relative), axis=-1) / np.diff(np.log(sizes))
@@ -153,15 +146,7 @@ def random_curves(
 ) -> np.ndarray:
     """Local slopes of as many nodes drawn at random, (draws, k - 1); the same ones on every run.
 
-    Parameters
-    ----------
-    shape : (int, int)
-        Cells of the window.
-    nodes : int
-        At least 1.
-    mask : (ny, nx) bool ndarray, optional
-        Cells that nodes may lie in; all by default.
-    draws : int
+    Nodes lie in the cells of the mask, all of the window by default.
     """
     sizes = curve_sizes(shape)
     cells = np.arange(np.prod(shape)) if mask is None else np.flatnonzero(mask)
@@ -172,47 +157,30 @@ def random_curves(
 
 
 def departure_from_draws(curve: np.ndarray, draws: np.ndarray) -> Departure:
-    """Departure of a curve of local slopes from draws of a null model: a Monte Carlo test.
+    """Departure of local slopes (j,) from draws (n, j) of a null model: a Monte Carlo test.
 
     The statistic is the largest standardised deviation over the box sides. Mean and scatter are
     those of the curve and the draws together: all of them being alike, a further draw is among the
-    k that depart most of n + 1 with probability k / (n + 1), however slopes are distributed.
-
-    Parameters
-    ----------
-    curve : (j,) ndarray
-    draws : (n, j) ndarray
-
-    References
-    ----------
-    Besag, J. & Diggle, P. J. 1977: Simple Monte Carlo tests for spatial pattern. Applied
-    Statistics 26, 327-333.
+    k that depart most of n + 1 with probability k / (n + 1), however slopes are distributed (Besag,
+    J. & Diggle, P. J. 1977: Simple Monte Carlo tests for spatial pattern. Applied Statistics 26,
+    327-333).
     """
     curves = np.vstack([curve, draws])
     if not curves.size or not np.isfinite(curves).all():
         return NOT_COMPARED
     deviation = _in_scatters(curves - curves.mean(axis=0), curves.std(axis=0))
     largest = deviation.max(axis=1)
-    # The small number counts draws that equal the curve.
+    # The small number counts draws that equal the curve as departing as much.
     p = np.mean(largest >= deviation[0][:, np.newaxis] * (1 - 1e-9), axis=1)
     return _departure(p, curve - draws.mean(axis=0))
 
 
 def paired_departure(domain: SlopeCurve, other: SlopeCurve) -> tuple[Estimate, Departure]:
-    """Local slopes of a domain less those of another one of as many nodes in the same window.
+    """Local slopes of a domain less those of another of as many nodes, and their departure.
 
-    Returns
-    -------
-    difference : Estimate
-        (k - 1,) each, with the 95 % interval of each local slope.
-    departure : Departure
-        From :func:`largest_departure`.
-
-    Notes
-    -----
     The scatter is that of the jackknife: the same part of the window is left out of both. Both have
-    as many nodes in the window, though not in its parts: what goes with the difference in number is
-    no scatter of the whole, and is taken off by regression.
+    as many nodes in the window, though not in its parts. The part of the scatter that goes with
+    this difference in number is none of the whole; regression removes it.
     """
     difference = domain.values - other.values
     if np.array_equal(domain.nodes, other.nodes):
@@ -225,20 +193,10 @@ def paired_departure(domain: SlopeCurve, other: SlopeCurve) -> tuple[Estimate, D
 
 
 def largest_departure(difference: Estimate, freedom: int) -> Departure:
-    """Departure of local slopes by their differences from a null model's.
+    """Departure by differences (j,) of local slopes from a null model's, with their t-intervals.
 
-    Parameters
-    ----------
-    difference : Estimate
-        (j,) differences of local slopes with their t-intervals.
-    freedom : int
-        Degrees of freedom of the intervals.
-
-    Returns
-    -------
-    Departure
-        The probability is Student's, times the number of local slopes (Bonferroni); not compared
-        where a local slope is missing.
+    The probability is Student's with ``freedom`` degrees of freedom, times the number of local
+    slopes (Bonferroni). Not compared where a local slope is missing.
     """
     values, half = difference.value, difference.width / 2
     if not np.size(values) or not np.isfinite(half).all():
@@ -248,9 +206,9 @@ def largest_departure(difference: Estimate, freedom: int) -> Departure:
 
 
 def _departure(p: np.ndarray, difference: np.ndarray) -> Departure:
-    """Departure by the probability of each local slope's and its difference."""
+    """Departure by the probabilities and the differences of all local slopes."""
     least = p.min()
-    # Where none is significant the nearest to it counts; the small number keeps 10 of 200 at 5 %.
+    # If none is significant the nearest to 5 % counts; the small number keeps 10 of 200 at 5 %.
     counts = p <= max(least, 1 - CONFIDENCE + 1e-9)
     place = int(np.where(counts, np.abs(difference), -1.0).argmax())
     return Departure(float(least), place, float(abs(difference[place])))
@@ -259,12 +217,8 @@ def _departure(p: np.ndarray, difference: np.ndarray) -> Departure:
 def _jackknife(left: np.ndarray, covariate: np.ndarray | None = None) -> tuple[np.ndarray, int]:
     """Half the 95 % t-interval of each column by parts left out, (j,), and degrees of freedom.
 
-    Parameters
-    ----------
-    left : (m, j) ndarray
-        Values without each part.
-    covariate : (m,) ndarray, optional
-        What the parts have more of than the mean part; the whole is known to have no more.
+    ``left`` (m, j) are values without each part. ``covariate`` (m,) is a number by which parts
+    differ and which is zero for the whole: its effect is taken off by regression.
     """
     n, columns = left.shape
     freedom = n - 1

@@ -1,1 +1,1 @@
-"""Roughness of a surface: its dimension Delta_g, its spectrum, and how good a scan is."""
+"""Roughness of a surface: its dimension Delta_g, its spectrum, and the quality of a scan."""

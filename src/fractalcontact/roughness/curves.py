@@ -1,9 +1,9 @@
-"""The curves from which the Hurst exponent of a surface is read, each in parts.
+"""Curves from which the Hurst exponent of a surface is read, each in parts.
 
 An estimator measures a quantity that grows as a known power of a length on a self-affine surface.
 Every measure here is a mean, kept as a sum and a weight for each of several parts of the surface,
-so that leaving out one part after the other shows how well the mean is known. All work on surfaces
-with missing cells and any outline: they use what is complete at each length.
+so that leaving out one part after the other gives its error. All work on surfaces
+with missing cells and any outline: they use the windows, pairs or boxes complete at each length.
 """
 
 from collections.abc import Callable
@@ -20,7 +20,7 @@ LENGTHS_PER_OCTAVE = 4
 #: Parts of the surface: `BLOCKS` x `BLOCKS` blocks.
 BLOCKS = 4
 
-#: A window or box counts where at least this part of it was measured.
+#: Least measured fraction of a window or box that counts.
 WINDOW_COVER = 0.9
 
 
@@ -52,16 +52,9 @@ def ratio(total: np.ndarray, weight: np.ndarray) -> np.ndarray:
 
 
 def jackknife_standard_error(without: np.ndarray) -> np.ndarray:
-    """Standard error of values of which those without each part are given.
+    """Standard error of () or (k,) values from those without each part (parts, ...).
 
-    Parameters
-    ----------
-    without : (parts,) or (parts, k) ndarray
-
-    Returns
-    -------
-    () or (k,) ndarray
-        0 with less than two parts.
+    0 with fewer than two parts.
     """
     parts = len(without)
     if parts < 2:
@@ -70,7 +63,7 @@ def jackknife_standard_error(without: np.ndarray) -> np.ndarray:
 
 
 def of_both_axes(curves: dict[str, Curve]) -> dict[str, Curve]:
-    """The curves along x and y, and of both together."""
+    """Curves along x, along y and of both axes together."""
     x, y = curves["x"], curves["y"]
     return {"both": Curve(x.length, x.total + y.total, x.weight + y.weight), **curves}
 
@@ -88,10 +81,8 @@ def in_blocks(
 ) -> Curve:
     """Curve over lengths in cells: ``add(heights, length, total, weight)`` fills the blocks.
 
-    Raises
-    ------
-    ValueError
-        If the heights are no (y, x) grid of real numbers, or a length is none from 1.
+    ValueError if the heights are no (y, x) grid of real numbers, or a length is below 1 or not
+    whole.
     """
     heights = field(heights, "heights")
     lengths = whole_numbers(lengths, "lengths", least=1, most=max(1, *heights.shape))

@@ -5,17 +5,17 @@ H comes from the slope of the line through the logarithms of each estimator's cu
 """
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
 
-from ..core.arrays import padded
-from ..core.datasets import labelled_dataset
+from ..core.datasets import labelled, labelled_dataset
 from ..core.estimate import NO_ESTIMATE, Estimate
 from ..core.fitting import fit_line
 from ..core.intervals import t_quantile
 from ..core.mean_plane import without_mean_plane
+from ..core.per_curve import stacked
 from ..core.ranges import within
 from .curves import Curve, jackknife_standard_error
 from .estimator import Estimator
@@ -26,20 +26,20 @@ from .registry import ESTIMATORS
 from .roll_off import RollOff
 from .spectrum_model import BAND_LIMITED
 
-#: What levelling leaves of a plane, as a part of its largest height.
+#: Largest remainder of a plane after levelling, as a fraction of its largest height.
 FLATNESS = 1e-12
 
-#: Cells this close to square, as a part of their side, are taken as square.
+#: Largest difference of the sides of a cell, as a fraction, that is taken as square.
 SQUARENESS = 1e-3
 
-#: Added to either end of an interval for the bias that is left: at H from 0.5 to 0.9 on synthetic
-#: surfaces it is at most twice this (roughness-length at H = 0.5), mostly below it.
+#: Remaining bias, added to either end of an interval: at H from 0.5 to 0.9 on synthetic surfaces it
+#: is at most twice this (roughness-length at H = 0.5), mostly below it.
 BIAS_LEFT = 0.015
 
-#: Ends of intervals of H: beyond the last exponents of the tables a curve may say next to nothing.
+#: Bounds of the intervals of H: beyond the last exponents of the tables a curve determines little.
 FARTHEST = (-0.5, 1.5)
 
-#: Axes a measure is taken along, and the ending of the variables that go with them.
+#: Axes of a measure with the endings of its variables' names and long names.
 AXES = {"both": ("", ""), "x": ("_x", " along x"), "y": ("_y", " along y")}
 
 
@@ -64,11 +64,11 @@ def surface_dimension(
         much longer as they must be to see that lag (variable `fit_min`, `fit_max`). By default from
         4 cells to an eighth of the smaller side, or to a quarter of a roll-off that is seen: see
         :func:`roughness.fit_range.choose_fit_range`. A roll-off is looked for whatever the range,
-        unless a FitRange says what it is.
+        unless a FitRange states it.
     estimators : sequence of str, optional
         Some of `ESTIMATORS`; all by default.
     known_dimension : float, optional
-        Delta_g of a synthetic surface, kept beside the estimates.
+        Delta_g of a synthetic surface, stored with the estimates.
 
     Returns
     -------
@@ -80,9 +80,9 @@ def surface_dimension(
         was `used`. NaN with `n` where a line cannot be fitted. Of the surface: `roll_off` with its
         interval (mm; infinite where none is seen, `roll_off_low` then the shortest not excluded),
         the lags `range_min` and `range_max` and `range_reason`; the `recommended` estimator with
-        its `reason`, `recommended_dimension` with its interval, or `no_dimension`, why there is
-        none (:func:`roughness.recommended.recommended_variables`); `known_dimension`; of all
-        estimators together what :func:`roughness.recommended.variables_of_all` counts.
+        its `reason`, `recommended_dimension` with its interval, or `no_dimension`, the reason
+        (:func:`roughness.recommended.recommended_variables`); `known_dimension`; of all
+        estimators together the counts of :func:`roughness.recommended.variables_of_all`.
 
     Raises
     ------
@@ -95,64 +95,55 @@ def surface_dimension(
     waves along with the plane, which lowers variogram and prisms by 0.1 at H = 0.9; cubes and
     islands are corrected by their mean on synthetic surfaces. Where the surface rolls off, a part
     of the long waves is missing that variogram and prisms feel far below it (0.15 at H = 0.8 over
-    lags up to a quarter of it): what the seen roll-off takes is taken off too.
+    lags up to a quarter of it): the effect of the seen roll-off is taken off too.
 
     The interval is the wider of the regression's and the jackknife's over parts of the surface (4 x
     4 blocks; 8 strips for the spectrum), the latter widened by the estimator's `spread`, because
     the parts of one surface share its long waves; and `BIAS_LEFT` beyond either end. It spans the
-    roll-offs and their shapes that cannot be excluded. What is not known, too, is whether
-    the nodes are points of a finer surface, or the surface lacks waves shorter than two nodes, as
-    synthetic surfaces do: then all but cubes and islands give H too high, by up to 0.06 at 0.3,
-    0.025 at 0.5 and 0.005 at 0.8, and twice that from lags of two cells. The interval spans both.
-    :mod:`experiments.delta_g` measures bias, scatter and how often it holds the truth.
+    roll-offs and their shapes that cannot be excluded. It also spans two samplings that heights
+    alone do not separate: nodes that are points of a finer surface, and a surface that lacks waves
+    shorter than two nodes, as synthetic surfaces do. In the second case all but cubes and islands
+    give H too high, by up to 0.06 at 0.3, 0.025 at 0.5 and 0.005 at 0.8, and twice that from lags
+    of two cells. :mod:`experiments.delta_g` measures bias, scatter and coverage of the interval.
     """
     estimates, chosen_range = measured_exponents(
         heights, spacing, fit_range=fit_range, estimators=estimators
     )
-    every, chosen = list(estimates.values()), [ESTIMATORS[name] for name in estimates]
-    length, measure = (padded([getattr(e, key) for e in every]) for key in ("length", "measure"))
-    used = np.zeros(length.shape, bool)
-    for row, estimate in zip(used, every, strict=True):
-        row[: estimate.used.size] = estimate.used
-    hurst = {axis: Estimate.stack(curve.hurst[axis] for curve in every) for axis in AXES}
-    fitted = used & np.isfinite(hurst["both"].value)[:, np.newaxis]
+    rows = [_row(ESTIMATORS[name], estimate) for name, estimate in estimates.items()]
     values = {
-        "length": length,
-        "measure": measure,
-        "used": used,
-        "fit_min": _finite(np.min(length, axis=1, where=fitted, initial=np.inf)),
-        "fit_max": _finite(np.max(length, axis=1, where=fitted, initial=-np.inf)),
-        "n": used.sum(axis=1),
-        "length_kind": [estimator.length for estimator in chosen],
-        "measure_units": [estimator.units for estimator in chosen],
         "roll_off_shape": chosen_range.roll_off.shape,
         "range_min": chosen_range.shortest,
         "range_max": chosen_range.longest,
         "range_reason": chosen_range.reason,
         "known_dimension": known_dimension,
     }
-    coords = {"estimator": list(estimates), "scale": np.arange(length.shape[1])}
-    result = labelled_dataset(_DIMENSIONS, values, coords=coords)
-    for axis, (ending, along) in AXES.items():
-        words = f"Hurst exponent H{along}"
-        result.update(hurst[axis].variables(f"hurst{ending}", "estimator", "1", words))
-    delta_g = hurst["both"].mapped(lambda exponent: 3 - exponent, falling=True)
-    words = "surface dimension Delta_g = 3 - H"
-    result.update(delta_g.variables("dimension", "estimator", "1", words))
     words = "wavelength above which the spectrum is flat"
-    result.update(chosen_range.roll_off.variables("roll_off", (), "mm", words))
+    result = xr.Dataset(
+        {
+            **stacked(rows, _OF_ESTIMATOR, ("estimator",), (len(rows),)),
+            **labelled(_OF_SURFACE, values),
+            **chosen_range.roll_off.variables("roll_off", (), "mm", words),
+        },
+        coords={"estimator": list(estimates)},
+    )
+    result = result.assign_coords(scale=np.arange(result.sizes["scale"]))
     return result.assign(recommended_variables(result) | variables_of_all(result))
 
 
-_DIMENSIONS = {
-    "length": (("estimator", "scale"), "mm", "length at which the measure was taken"),
-    "measure": (("estimator", "scale"), "see measure_units", "measured quantity"),
-    "used": (("estimator", "scale"), "1", "taken into the fit"),
-    "fit_min": ("estimator", "mm", "shortest length fitted"),
-    "fit_max": ("estimator", "mm", "longest length fitted"),
-    "n": ("estimator", "1", "points fitted"),
-    "length_kind": ("estimator", "1", "kind of length"),
-    "measure_units": ("estimator", "1", "unit of what was measured"),
+#: Variables of each estimator: unit, long name, dimensions of arrays.
+_OF_ESTIMATOR = {
+    "length": ("mm", "length at which the measure was taken", "scale"),
+    "measure": ("see measure_units", "measured quantity", "scale"),
+    "used": ("1", "taken into the fit", "scale"),
+    "fit_min": ("mm", "shortest length fitted"),
+    "fit_max": ("mm", "longest length fitted"),
+    "n": ("1", "points fitted"),
+    "length_kind": ("1", "kind of length"),
+    "measure_units": ("1", "unit of what was measured"),
+    **{f"hurst{ending}": ("1", f"Hurst exponent H{along}") for ending, along in AXES.values()},
+    "dimension": ("1", "surface dimension Delta_g = 3 - H"),
+}
+_OF_SURFACE = {
     "roll_off_shape": ((), "1", "form of the spectrum about it: sharp, or smooth as von Karman's"),
     "range_min": ((), "mm", "shortest lag of the fits"),
     "range_max": ((), "mm", "longest lag of the fits"),
@@ -161,9 +152,22 @@ _DIMENSIONS = {
 }
 
 
-def _finite(values: np.ndarray) -> np.ndarray:
-    """Values, NaN where they are infinite."""
-    return np.where(np.isfinite(values), values, np.nan)
+def _row(estimator: Estimator, estimate: "MeasuredCurve") -> dict[str, Any]:
+    """Values of :data:`_OF_ESTIMATOR` by one estimator."""
+    hurst = estimate.hurst
+    fitted = estimate.length[estimate.used] if hurst["both"].known else np.array([np.nan])
+    return {
+        "length": estimate.length,
+        "measure": estimate.measure,
+        "used": estimate.used,
+        "fit_min": fitted.min(),
+        "fit_max": fitted.max(),
+        "n": estimate.used.sum(),
+        "length_kind": estimator.length,
+        "measure_units": estimator.units,
+        **{f"hurst{ending}": hurst[axis] for axis, (ending, _) in AXES.items()},
+        "dimension": hurst["both"].mapped(lambda exponent: 3 - exponent, falling=True),
+    }
 
 
 class MeasuredCurve(NamedTuple):
@@ -188,9 +192,9 @@ def measured_exponents(
     fit_range: tuple[float, float] | FitRange | None = None,
     estimators: Sequence[str] | None = None,
 ) -> tuple[dict[str, MeasuredCurve], FitRange]:
-    """Hurst exponent by estimator, and the range all were fitted over.
+    """Curve and Hurst exponent by estimator, and the range of the fits.
 
-    Parameters and errors as :func:`surface_dimension`.
+    Parameters and errors are those of :func:`surface_dimension`.
     """
     heights = np.asarray(heights, float)
     if heights.ndim != 2:
@@ -264,9 +268,9 @@ def _corrected(
         for nodes in (BAND_LIMITED, POINTS)
         for of in roll_off.cases()
     }
-    every = np.clip(np.concatenate(list(of_each.values())), *FARTHEST)
+    estimates = np.clip(np.concatenate(list(of_each.values())), *FARTHEST)
     value = float(of_each[estimator.nodes, roll_off.cases()[0]][0])
-    return Estimate(value, float(min(every.min(), value)), float(max(every.max(), value)))
+    return Estimate(value, float(min(estimates.min(), value)), float(max(estimates.max(), value)))
 
 
 def _hurst_of_slope(estimator: Estimator, curve: Curve, used: np.ndarray) -> tuple[float, float]:
@@ -275,13 +279,13 @@ def _hurst_of_slope(estimator: Estimator, curve: Curve, used: np.ndarray) -> tup
     x, y = np.log(curve.length[used]), np.log(np.where(measures > 0, measures, np.nan))
     slope = fit_line(x, y[0]).slope
     of_regression = (slope.high - slope.value) / abs(estimator.slope_per_hurst)
-    every = (slopes(x, y) - estimator.slope_at_zero) / estimator.slope_per_hurst
-    without = every[1:][np.isfinite(every[1:])]
+    estimates = (slopes(x, y) - estimator.slope_at_zero) / estimator.slope_per_hurst
+    without = estimates[1:][np.isfinite(estimates[1:])]
     parts = len(without)
     if not np.isfinite(of_regression) or parts < 2:
         return np.nan, np.nan
     of_parts = t_quantile(parts - 1) * estimator.spread * jackknife_standard_error(without)
-    return every[0], max(of_regression, of_parts) + BIAS_LEFT
+    return estimates[0], max(of_regression, of_parts) + BIAS_LEFT
 
 
 # -- statistics that the classical theories ask for ------------------------------------------------
@@ -291,9 +295,9 @@ def _mean_square(differences) -> float:
     """Mean square of all finite values in several arrays; NaN without any."""
     total, count = 0.0, 0
     for values in differences:
-        known = values[np.isfinite(values)]
-        total += np.dot(known, known)
-        count += known.size
+        finite = values[np.isfinite(values)]
+        total += np.dot(finite, finite)
+        count += finite.size
     return total / count if count else np.nan
 
 

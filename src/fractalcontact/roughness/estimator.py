@@ -10,7 +10,7 @@ from .known_bias import POINTS, Fit
 
 
 class Estimator(NamedTuple):
-    """One way of measuring H: from the slope of a curve that grows as a power of a length."""
+    """An estimator of H: from the slope of a curve that grows as a power of a length."""
 
     place: int
     """Its place among all: results and figures come in this order, and no other has it."""

@@ -1,4 +1,4 @@
-"""Gap of two faces as scanned and registered: its distribution, and where the faces overlap."""
+"""Gap of two faces as scanned and registered: its distribution, and the cells that overlap."""
 
 import numpy as np
 import xarray as xr
@@ -9,7 +9,7 @@ from ..surface.suspect import overlap_statistics
 
 #: Bins of the distribution of the gap.
 GAP_BINS = 60
-#: Parts of a scan whose overlap is stated.
+#: Parts of a scan for which the overlap is stated.
 REGIONS = ("scan", "window")
 
 _OVERLAP = {
@@ -22,10 +22,10 @@ _OVERLAP = {
 
 
 def _overlap(specimen):
-    found = overlap_statistics(specimen, window_slices(specimen))
+    statistics = overlap_statistics(specimen, window_slices(specimen))
     keys = ("cells", "fraction", "depth", "gap_mean", "gap_sd")
     return labelled(
-        _OVERLAP, {name: list(found[key]) for name, key in zip(_OVERLAP, keys, strict=True)}
+        _OVERLAP, {name: list(statistics[key]) for name, key in zip(_OVERLAP, keys, strict=True)}
     )
 
 
@@ -39,26 +39,18 @@ _GAPS = {
 def _gap_histogram(specimen):
     """Cells in bins of the gap over the whole scan."""
     gap = (specimen["upper"] - specimen["lower"]).values
-    known = gap[np.isfinite(gap)]
-    low, high = (known.min(), known.max()) if known.size else (0.0, 0.0)
+    measured = gap[np.isfinite(gap)]
+    low, high = (measured.min(), measured.max()) if measured.size else (0.0, 0.0)
     width = ((high - low) or 1.0) / GAP_BINS
     first, last = np.floor(low / width), np.ceil(high / width)
     edges = width * np.arange(first, max(last, first + 1) + 1)
-    middles, counts = (edges[1:] + edges[:-1]) / 2, np.histogram(known, edges)[0]
+    middles, counts = (edges[1:] + edges[:-1]) / 2, np.histogram(measured, edges)[0]
     return labelled(_GAPS, {"gap_edge": edges, "gap": middles, "gap_cells": counts})
 
 
 def gap_statistics(specimen: xr.Dataset) -> dict[str, tuple]:
-    """Overlap and gap by region of the scan, and the gap's distribution over the whole of it.
+    """Overlap and gap of two faces by region of the scan, and the gap's distribution over the scan.
 
-    Parameters
-    ----------
-    specimen : Dataset
-        Of two faces, from :func:`surface.specimen.make_specimen`.
-
-    Returns
-    -------
-    dict
-        Variables, as ``xr.Dataset`` takes them.
+    Variables for ``xr.Dataset``, of a specimen from :func:`surface.specimen.make_specimen`.
     """
     return _overlap(specimen) | _gap_histogram(specimen)

@@ -12,16 +12,16 @@ from .roll_off import RollOff, find_roll_off
 #: aliasing show; above an eighth of the side too few independent pairs or windows are left.
 FIRST_CELLS, LAST_PART = 4, 1 / 8
 
-#: Part of a roll-off at which the range ends: a lag sees waves of twice its length, so that the
-#: longest fitted are half of it. What is missing up to there is taken off as known bias.
+#: Fraction of a roll-off at which the range ends: a lag sees waves of twice its length, so that the
+#: longest waves fitted are half of the roll-off. Their missing part is taken off as known bias.
 LAST_OF_ROLL_OFF = 1 / 4
 
-#: A range cut by a roll-off may begin at this number of cells to span this ratio.
+#: First cell of a range that a roll-off cuts, if that is needed to span this ratio.
 MIN_CELLS, MIN_RATIO = 2, 3.0
 
 
 class FitRange(NamedTuple):
-    """Lags a dimension is fitted over, and why these."""
+    """Range of lags of the fits of a dimension, and its reason."""
 
     shortest: float
     longest: float
@@ -34,27 +34,12 @@ class FitRange(NamedTuple):
 def choose_fit_range(
     heights: np.ndarray, spacing: float, stated: tuple[float, float] | None = None
 ) -> FitRange:
-    """Range of lags of a levelled surface.
+    """Range of lags, mm, of a levelled surface (ny, nx), mm, NaN where missing.
 
-    Parameters
-    ----------
-    heights : (ny, nx) ndarray
-        mm, NaN where missing.
-    spacing : float
-        mm.
-    stated : (float, float), optional
-        Range the study states, mm. It is used as it is; a roll-off inside it is said.
-
-    Returns
-    -------
-    FitRange
-        By default from `FIRST_CELLS` cells to `LAST_PART` of the smaller side, or to
-        `LAST_OF_ROLL_OFF` of a roll-off, and then from `MIN_CELLS` cells if need be.
-
-    Raises
-    ------
-    ValueError
-        If the stated range does not rise from above 0.
+    A stated range is used unchanged; the reason names a roll-off inside it. By default it goes from
+    `FIRST_CELLS` cells to `LAST_PART` of the smaller side, or to `LAST_OF_ROLL_OFF` of a roll-off,
+    and then from `MIN_CELLS` cells if need be. ValueError if the stated range does not rise from
+    above 0.
     """
     if stated is not None and not 0 < stated[0] < stated[1]:
         raise ValueError(f"fit range {stated} mm must rise from above 0")

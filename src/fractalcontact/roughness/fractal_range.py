@@ -1,6 +1,6 @@
 """Ends of the self-affine range of a measured surface: noise floor, low-pass filter, roll-off.
 
-What an instrument adds shows in the spectrum of profiles at short wavelengths. Independent errors
+An instrument changes the spectrum of profiles at short wavelengths. Independent errors
 of the nodes make it flat, and with N the level of that floor their standard deviation is the root
 of N / spacing. A finite spot, smoothing or interpolation makes it steeper than the surface. At the
 long end a surface may roll off. A model with any of these is fitted to the spectrum, and one of
@@ -18,36 +18,36 @@ from ..core.intervals import t_quantile
 from .curves import Curve, jackknife_standard_error, ratio
 from .spectrum_model import FORMS, SAMPLINGS, Form, features_of, log_model, named
 
-#: A feature must lower the score (BIC) by this beyond its parameters: "strong" in Kass & Raftery,
+#: Least drop of the score (BIC) by a feature, beyond its parameters: "strong" in Kass & Raftery,
 #: J. Am. Stat. Assoc. 90 (1995) 773.
 EVIDENCE = 6.0
-#: No bin of a spectrum is trusted better than this (relative): tapering and binning bend it.
+#: Least relative error of a bin of a spectrum, as tapering and binning bend it.
 BIN_ERROR = 0.05
 #: Neighbouring strips of one surface share its long waves (`estimator.Estimator.spread`).
 SPREAD = 1.2
-#: Slope 1 + 2H of a spectrum, between H = 0.2 and H = 1: flatter no rock is known, and what is
-#: flatter can hardly be separated from noise.
+#: Slope 1 + 2H of a spectrum, between H = 0.2 and H = 1: no rock is known with a flatter one, which
+#: could hardly be separated from noise.
 SLOPES = (1.4, 3.0)
-#: A filter must halve the spectrum at least at this many spacings, or it is the grid's own limit.
+#: Shortest wavelength, spacings, at which a filter halves the spectrum; the grid's limit is below.
 SHORTEST_FILTER = 2.2
-#: A floor must meet the line at least at this many spacings, or it may be aliasing.
+#: Shortest wavelength, spacings, at which a floor meets the line; below it may be aliasing.
 SHORTEST_NOISE = 2.5
-#: Power that a taper leaks from the longest wave fitted, at w times its wave number (from 2 on) and
-#: in units of its own: at most this w^-6.
+#: Largest factor of w^-6 in the power that a taper leaks from the longest wave fitted, in units of
+#: that wave's power, at w times its wave number (w from 2 on).
 LEAKAGE = 3.0
-#: Between roll-off and the end of the range must lie this ratio, or there is no range.
+#: Least ratio of the roll-off to the end of the range; below it there is no range.
 SHORTEST_RANGE = 4.0
-#: A wavelength known less well than by this factor either way is undetermined.
+#: Largest factor, either way, of the interval of a determined wavelength.
 VAGUE = 2.5
-#: A spectrum farther than by this factor (rms) from every model follows no power law: nothing is
-#: said of its noise or filter.
+#: Least factor (rms) from every model of a spectrum without a power law, of which neither noise nor
+#: filter is stated.
 NO_POWER_LAW = 2.0
 #: Features that lie at a wavelength.
 LENGTHS = ("noise", "filter", "roll_off")
-#: A strip of profiles with this many times the median strip's power holds a spike or a step, which
-#: is no noise of the instrument: it is left out.
+#: Power of a strip of profiles over the median strip's from which it is left out: it holds a spike
+#: or a step, which is no noise of the instrument.
 SPIKY = 3.0
-#: Spectra of fewer bins are not fitted.
+#: Fewest bins of a spectrum that is fitted.
 MIN_BINS = 7
 
 
@@ -81,22 +81,22 @@ class FractalRange(NamedTuple):
 
 
 def find_fractal_range(curve: Curve, spacing: float) -> FractalRange:
-    """Fractal range of a spectrum, and which of noise, filter and roll-off are seen in it.
+    """Fractal range of a spectrum: noise, filter and roll-off that are seen in it.
 
     Parameters
     ----------
     curve : Curve
         Of :func:`roughness.spectra.profile_spectra`, mm and mm3.
     spacing : float
-        Between the nodes of the profiles, mm.
+        Distance of neighbouring nodes of the profiles, mm.
 
     Notes
     -----
     Strips of profiles that stand out from the others (`SPIKY`) are left out first. Least squares of
     the logarithms, each bin weighted by its jackknife error over the strips and `BIN_ERROR`. The
     form is the one with the lowest chi-square + (parameters) ln(bins) + `EVIDENCE` (features), the
-    chi-square in units of what the best form leaves, among those whose features lie within the
-    spectrum and at a wavelength known within `VAGUE`: a floor that meets the line at
+    chi-square in units of the best form's own misfit, among those whose features lie within the
+    spectrum and at a wavelength determined within `VAGUE`: a floor that meets the line at
     `SHORTEST_NOISE` spacings or more (or stands out at the shortest wave behind a filter), a filter
     at `SHORTEST_FILTER` spacings or more, a roll-off below the longest wave. Intervals are the
     wider of the fit's and the jackknife's, and hold those of another sampling with a score as good
@@ -104,19 +104,19 @@ def find_fractal_range(curve: Curve, spacing: float) -> FractalRange:
     """
     curve, left_out = _without_spiky_strips(curve)
     level = curve.measure()
-    known = _above_leakage(curve.length, level)
-    limit = float(np.sqrt(level[known].min() / spacing)) if known.any() else np.nan
+    usable = _above_leakage(curve.length, level)
+    limit = float(np.sqrt(level[usable].min() / spacing)) if usable.any() else np.nan
     fitted = np.full(len(level), np.nan)
-    if known.sum() < MIN_BINS:
+    if usable.sum() < MIN_BINS:
         return FractalRange(level, fitted, left_out, limit)
-    x = 2 * spacing / curve.length[known]
-    parts = np.log(curve.without_each_part()[:, known])
-    logs = np.log(level[known])
+    x = 2 * spacing / curve.length[usable]
+    parts = np.log(curve.without_each_part()[:, usable])
+    logs = np.log(level[usable])
     error = np.hypot(jackknife_standard_error(parts), BIN_ERROR)
 
     form, fit, values = _most_likely(x, logs, error, parts)
-    fitted[known] = np.exp(log_model(form, fit.x, x))
-    misfit = float(np.sqrt(np.mean((logs - np.log(fitted[known])) ** 2)))
+    fitted[usable] = np.exp(log_model(form, fit.x, x))
+    misfit = float(np.sqrt(np.mean((logs - np.log(fitted[usable])) ** 2)))
     if misfit > np.log(NO_POWER_LAW):
         values = {}
     lengths = {  # logarithms of x become wavelengths, infinite if a bound
@@ -158,7 +158,7 @@ def _without_spiky_strips(curve: Curve) -> tuple[Curve, float]:
 
 
 def _above_leakage(length, level) -> np.ndarray:
-    """Bins that hold power, and more of it than the taper leaks from the longest wave."""
+    """Mask of bins that hold more power than the taper leaks from the longest wave."""
     known = np.isfinite(level) & (level > 0)
     if known.any():
         longest = np.flatnonzero(known)[-1]
@@ -171,7 +171,7 @@ def _above_leakage(length, level) -> np.ndarray:
 
 
 def _most_likely(x, logs, error, parts):
-    """The form with the lowest score that is determined, its fit and features with intervals."""
+    """Determined form with the lowest score, its fit and its features with intervals."""
     fits = {form: _fit(form, x, logs, error) for form in FORMS}
     freedom = {form: max(len(x) - len(fit.x), 1) for form, fit in fits.items()}
     left = max(1.0, min(2 * fit.cost / freedom[form] for form, fit in fits.items()))
@@ -180,7 +180,7 @@ def _most_likely(x, logs, error, parts):
         for form, fit in fits.items()
         if _is_sensible(form, fit.x, x)
     }
-    for form in sorted(score, key=score.get):  # the line alone, without features, always is
+    for form in sorted(score, key=score.get):  # the line without features is always determined
         values = _with_intervals(form, fits[form], x, logs, parts, error)
         for other in _rivals(form, score):
             values = _joined(values, _with_intervals(other, fits[other], x, logs, parts, error))
@@ -189,13 +189,13 @@ def _most_likely(x, logs, error, parts):
 
 
 def _rivals(form: Form, score) -> list[Form]:
-    """Forms with the same features that the grid may as well have made: nearly the same score."""
+    """Forms with the same features and another sampling, of nearly the same score."""
     same = [form._replace(sampling=sampling) for sampling in SAMPLINGS if sampling != form.sampling]
     return [other for other in same if score.get(other, np.inf) < score[form] + EVIDENCE]
 
 
 def _joined(values, others):
-    """Values with intervals that hold those of a rival too."""
+    """Values with intervals that hold those of a rival form too."""
     return {
         name: (value, min(low, others[name][1]), max(high, others[name][2]))
         if name in others
@@ -205,9 +205,9 @@ def _joined(values, others):
 
 
 def _is_determined(values) -> bool:
-    """True if all wavelengths, and the noise's standard deviation, are known within `VAGUE`."""
+    """True if all wavelengths and the noise's standard deviation are determined within `VAGUE`."""
     widths = {name: high - low for name, (_, low, high) in values.items() if np.isfinite(low)}
-    widths["level"] = widths.get("level", 0.0) / 2  # of a variance
+    widths["level"] = widths.get("level", 0.0) / 2  # the level is a variance, not a deviation
     return all(widths.get(name, 0.0) < 2 * np.log(VAGUE) for name in (*LENGTHS, "level"))
 
 
@@ -231,7 +231,7 @@ def _is_sensible(form: Form, parameters: np.ndarray, x: np.ndarray) -> bool:
 
 
 def _fit(form: Form, x, logs, error):
-    """Weighted least squares of the logarithms from some starts, the best of them."""
+    """Best of several weighted least-squares fits of the logarithms, from different starts."""
     low, high = _bounds(form, x, logs)
 
     def residuals(parameters):
@@ -259,7 +259,7 @@ def _bounds(form: Form, x, logs):
 
 
 def _starts(form: Form, x, logs):
-    """Starting points: filters at two places, everything else at one."""
+    """Starting points: filters at two places, all other features at one."""
     middle = slice(len(x) // 4, -(len(x) // 4))
     slope = np.clip(-np.polyfit(np.log(x[middle]), logs[middle], 1)[0], 1.2, 2.8)
     a = np.mean(logs + slope * np.log(x))
@@ -285,7 +285,7 @@ def _with_intervals(form: Form, fit, x, logs, parts, error) -> dict[str, tuple]:
         gradient = _gradient(form, fit.x, x, name, value)
         of_fit = np.sqrt(gradient @ covariance @ gradient)
         if name == "noise" and value <= np.log(x.min()):
-            # The floor lies above the surface at all wavelengths seen: a bound, not an estimate.
+            # The floor lies above the surface at all wavelengths: its end is a bound, no estimate.
             intervals[name] = (value, -np.inf, value)
             continue
         half = quantile * max(SPREAD * float(jackknife_standard_error(values)[0]), of_fit)

@@ -1,4 +1,4 @@
-"""Grasselli's directional roughness of a face: how much of it is steeper than an apparent dip.
+"""Grasselli's directional roughness of a face: its area by apparent dip.
 
 The part of the area that faces the sliding with an apparent dip of theta* or more follows
 A = A_0 (1 - theta*/theta*_max)^C (Grasselli, Wirth & Egger, Int. J. Rock Mech. Min. Sci. 39 (2002)
@@ -14,7 +14,7 @@ from ..core.directions import axis_and_sign
 
 #: Bins of the apparent dip, degrees, over which the law is fitted.
 _BIN = 2.0
-#: Triangles that face the sliding, below which there is no law.
+#: Fewest triangles facing the sliding that give a law.
 _MIN_TRIANGLES = 200
 
 
@@ -37,7 +37,7 @@ def grasselli(heights: np.ndarray, spacing: tuple[float, float], direction: str)
     spacing : (float, float)
         Of y and x, mm.
     direction : {"E", "N", "W", "S"}
-        Where the upper block slides: what rises that way faces it.
+        Sliding of the upper block: slopes that rise that way face it.
 
     Notes
     -----
@@ -45,7 +45,7 @@ def grasselli(heights: np.ndarray, spacing: tuple[float, float], direction: str)
     Areas are those of the triangles themselves. C is fitted by least squares to the cumulative area
     over bins of 2 degrees, as the authors' program does.
     """
-    dips, areas = (np.concatenate(one) for one in _triangles(heights, spacing, direction))
+    dips, areas = (np.concatenate(halves) for halves in _triangles(heights, spacing, direction))
     facing = dips >= 0
     total = areas.sum()
     if np.count_nonzero(dips > 0) < _MIN_TRIANGLES:
@@ -56,18 +56,17 @@ def grasselli(heights: np.ndarray, spacing: tuple[float, float], direction: str)
     order = np.argsort(dip)
     above = np.append(np.cumsum(area[order][::-1])[::-1], 0.0) / area.sum()
     share = above[np.searchsorted(dip[order], edges)]
-    share[-1] = 0.0
     c = _exponent(1 - edges / theta_max, share)
     return Grasselli(theta_max, c, a_0, theta_max / (c + 1))
 
 
 def _triangles(heights, spacing, direction):
-    """Apparent dips, degrees, and areas of the triangles of all cells, of both diagonals."""
+    """Apparent dips, degrees, and areas of the triangles of all cells, for both diagonals."""
     dy, dx = spacing
     axis, sign = axis_and_sign(direction)
     a, b, c, d = heights[:-1, :-1], heights[:-1, 1:], heights[1:, :-1], heights[1:, 1:]
     dips, areas = [], []
-    # Slopes along x and y of each half of a cell, as either diagonal cuts it.
+    # Rises along x and y of the two halves of a cell, for both diagonals.
     for rise_x, rise_y in ((b - a, d - b), (d - c, c - a), (b - a, c - a), (d - c, d - b)):
         slope_x, slope_y = rise_x / dx, rise_y / dy
         known = np.isfinite(slope_x + slope_y)

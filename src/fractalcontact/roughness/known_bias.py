@@ -1,11 +1,11 @@
 """Known bias of the slopes of the estimators' curves: their mean on surfaces of known exponent.
 
-The slope of a curve would be that of a power law but for four things that are known beforehand:
+Four effects, known beforehand, make the slope of a curve differ from that of a power law:
 
 - levelling takes a part of the long waves off along with the plane;
-- a grid does not show waves shorter than two nodes. Where they were taken out - by the spot of an
+- a grid does not show waves shorter than two nodes. If they were taken out - by the spot of an
   instrument, by averaging, or because a surface was made on the grid - all nodes lack their
-  roughness, which makes the short end of a curve too low (`BAND_LIMITED`). Where single points of a
+  roughness, which makes the short end of a curve too low (`BAND_LIMITED`). If single points of a
   finer surface were taken they are there in full, and look like longer waves in a spectrum
   (`POINTS`). Nothing in heights alone decides for sure which of the two they are;
 - a surface that rolls off lacks long waves (:mod:`roughness.roll_off`);
@@ -13,7 +13,7 @@ The slope of a curve would be that of a power law but for four things that are k
 
 All of it belongs to an isotropic surface that is self-affine at all lengths, or up to its roll-off.
 Levelling and missing waves follow from the mean square difference of such a surface alone, h^(2H)
-below a roll-off; the rest was measured on synthetic surfaces. What holds of one estimator alone
+below a roll-off; the rest was measured on synthetic surfaces. The bias of a single estimator
 stands in its own file.
 """
 
@@ -28,17 +28,17 @@ from .curves import ratio
 from .roll_off import HURST_GRID, SHARP, levelled_slope_fraction, second_difference_fraction
 from .spectrum_model import ALIASED, BAND_LIMITED
 
-#: The other thing nodes can stand for, beside `BAND_LIMITED`: see above.
+#: Nodes as points of a finer surface, the sampling other than `BAND_LIMITED`: see above.
 POINTS = ALIASED
 
 #: Exponents of the synthetic surfaces from which the bias of cubes and islands was measured: means
 #: over 50 of 256 x 256 and 40 of 512 x 512, fitted over the default range; from a spectrum
 #: (`synthesis.self_affine`), and points of fractional Brownian surfaces (Stein, J. Comput. Graph.
-#: Stat. 11 (2002) 587). They differ by up to 0.03 between the two sizes, and will by more for a
-#: very different range.
+#: Stat. 11 (2002) 587). The means differ by up to 0.03 between the two sizes; a very different
+#: range makes them differ more.
 SYNTHETIC_HURST = np.array([0.1, 0.3, 0.5, 0.7, 0.8, 0.9, 0.95])
-#: Lags (cells) in the middle of the default range, 4 to 32 on 256 x 256, and of 2 2/3 to 8, over
-#: which 16 of the surfaces of 256 x 256 were measured, too.
+#: Lags (cells) in the middle of the default range, 4 to 32 on 256 x 256, and of the short range,
+#: 8/3 to 8, over which 16 of the surfaces of 256 x 256 were measured, too.
 DEFAULT_RANGE, SHORT_RANGE = 11.0, 5.0
 #: Least rise of a mean exponent with the true one.
 MIN_RISE = 0.3
@@ -61,13 +61,13 @@ class Fit(NamedTuple):
 
 def slopes(x: np.ndarray, y: np.ndarray) -> np.ndarray:
     """Least-squares slopes of the rows of y (rows, k) over x (k,), where y is finite."""
-    known = np.isfinite(y)
-    n = known.sum(axis=1)
+    finite = np.isfinite(y)
+    n = finite.sum(axis=1)
     enough = n >= 2
     n = np.where(enough, n, 1)
-    mean_x = np.sum(known * x, axis=1) / n
-    dx = np.where(known, x - mean_x[:, np.newaxis], 0)
-    product = np.sum(dx * np.where(known, y, 0), axis=1)
+    mean_x = np.sum(finite * x, axis=1) / n
+    dx = np.where(finite, x - mean_x[:, np.newaxis], 0)
+    product = np.sum(dx * np.where(finite, y, 0), axis=1)
     return ratio(product, np.where(enough, np.sum(dx**2, axis=1), 0))
 
 
@@ -96,7 +96,7 @@ def levelled_slope() -> np.ndarray:
 def square_about_plane() -> np.ndarray:
     """Mean square about the least-squares plane of a square of side 1.
 
-    Half the mean square difference of all its pairs of points, less what the plane holds.
+    Half the mean square difference of all its pairs of points, less the plane's mean square.
     """
     pairs = _mean_over_pairs(lambda u, v: (1 - u) * (1 - v))
     return pairs / 2 - levelled_slope() / 6
@@ -143,11 +143,7 @@ def unresolved() -> np.ndarray:
 def levelled_fraction(fit: Fit, fraction: np.ndarray) -> np.ndarray:
     """Fraction of the power law that levelling took, (exponents, k): it grows as length^2.
 
-    Parameters
-    ----------
-    fit : Fit
-    fraction : (exponents,) ndarray
-        That of a length as long as the surface, without a roll-off.
+    ``fraction`` (exponents,) is that of a length as long as the surface, without a roll-off.
     """
     at_side = fraction[:, np.newaxis] * levelled_slope_fraction(
         np.array([fit.side / fit.roll_off]), fit.shape
@@ -158,30 +154,15 @@ def levelled_fraction(fit: Fit, fraction: np.ndarray) -> np.ndarray:
 def short_wave_fraction(fit: Fit, sampling: str, fraction: float | np.ndarray) -> np.ndarray:
     """Fraction of the power law that missing short waves have, (exponents, k).
 
-    Parameters
-    ----------
-    fit : Fit
-    sampling : str
-        None is missing but of a `BAND_LIMITED` surface.
-    fraction : float or (exponents,) ndarray
-        Mean square of noise over that of its differences, both in units of the surface's own.
+    0 but for a `BAND_LIMITED` surface. ``fraction`` is the mean square of noise over that of its
+    differences, both in units of the surface's own: one number or (exponents,).
     """
     missing = fraction * unresolved() * (sampling == BAND_LIMITED)
     return missing[:, np.newaxis] * fit.length ** (-2 * HURST_GRID[:, np.newaxis])
 
 
 def hurst_of_mean_square(fit: Fit, kept: np.ndarray) -> np.ndarray:
-    """Mean exponents by the slope, where this fraction of the power law is left at each length.
-
-    Parameters
-    ----------
-    fit : Fit
-    kept : (exponents, k) ndarray
-
-    Returns
-    -------
-    (exponents,) ndarray
-    """
+    """Mean exponents by the slope, from the fractions (exponents, k) of the power law kept."""
     return HURST_GRID + slopes(np.log(fit.length), np.log(np.maximum(kept, 1e-12))) / 2
 
 
@@ -193,19 +174,13 @@ def tabulated_mean(
     factor: float,
     second_differences: float,
 ) -> np.ndarray:
-    """Mean exponents by the slope of a measure known from synthetic surfaces, (exponents,).
+    """Mean exponents by the slope of a measure tabulated from synthetic surfaces, (exponents,).
 
-    Parameters
-    ----------
-    fit : Fit
-    of_default, of_short : (7,) sequences of float
-        Mean results at `SYNTHETIC_HURST` over the default range, and over `SHORT_RANGE`; linear in
-        between in the logarithm of the mean length, since short columns and small islands are what
-        the bias comes from.
-    factor : float
-        Of the estimator's lengths over lags.
-    second_differences : float
-        How many times what a roll-off takes from second differences over lags as long it takes.
+    ``of_default`` and ``of_short`` (7,) are mean results at `SYNTHETIC_HURST` over the default
+    range, and over `SHORT_RANGE`; linear in between in the logarithm of the mean length, since
+    short columns and small islands are the source of the bias. ``factor`` is the ratio of the
+    estimator's lengths to lags, ``second_differences`` the ratio of the effects of a roll-off on
+    the measure and on second differences at lags as long.
     """
     long, short = np.log(DEFAULT_RANGE), np.log(SHORT_RANGE)
     part = np.clip((long - np.mean(np.log(fit.length / factor))) / (long - short), 0, 1)
@@ -213,6 +188,6 @@ def tabulated_mean(
     left = second_difference_fraction(fit.length / fit.roll_off, fit.shape)
     of_roll_off = hurst_of_mean_square(fit, left) - HURST_GRID
     result = extended(HURST_GRID, SYNTHETIC_HURST, mean) + second_differences * of_roll_off
-    # Below a short roll-off the slope says next to nothing of H: no sharper than this.
+    # Below a short roll-off the slope hardly depends on H: this bounds the amplification.
     line = MIN_RISE * HURST_GRID
     return np.maximum.accumulate(result - line) + line

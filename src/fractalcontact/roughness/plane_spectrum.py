@@ -10,17 +10,18 @@ from ..core.mean_plane import without_mean_plane
 
 #: Sectors of the half plane of directions, and rings of an octave of wave numbers.
 SECTORS, RINGS_PER_OCTAVE = 12, 2
-#: Waves of the power law that a ring of long waves is pooled with, and of its ring a sector: few
-#: waves tell little of a density, and less of a direction.
+#: Weight, in waves, of the power law in a ring of long waves, and of the ring in its sectors: few
+#: waves determine a density poorly, and a direction worse.
 POOLED = 8
-#: Waves of which fewer fit into the surface are extrapolated: the taper mixes them with the tilt.
+#: Fewest wavelengths in the surface: longer waves, which the taper mixes with the tilt, are
+#: extrapolated.
 FIRST_ORDER = 2
-#: Waves of the tapered surface that tell as much as one that is independent.
+#: Number of waves of the tapered surface with the information of one independent wave.
 _TAPERED = 2.25
-#: The power law is that of waves down to this fraction of the longest, of whose rings none is taken
-#: for better known than to `_MISFIT`: no surface follows a power law more closely.
+#: Shortest wave of the fit of the power law, as a fraction of the longest, and least relative error
+#: of a ring: no surface follows a power law more closely.
 _FITTED, _MISFIT = 1 / 16, 0.1
-#: Slopes that are tried, and roll-offs, in longest waves.
+#: Slopes that are tried, and roll-offs as fractions of the longest wave.
 _SLOPES, _ROLL_OFFS = np.linspace(0, 4, 41), np.geomspace(1, 1 / 8, 13)
 #: Deviance by which a roll-off must describe the rings better than a power law alone.
 _EVIDENCE = 3.0
@@ -85,7 +86,7 @@ def plane_spectrum(heights: np.ndarray, spacing: tuple[float, float]) -> PlaneSp
     differences are whitened, so that neither the tilt nor long waves leak into shorter ones. It is
     averaged in rings of equal ratio and sectors. Rings of long waves, of which there are few, are
     pooled with the power law, with a roll-off if that is seen, which describes the longest three
-    octaves best. What taper and rings smear is then corrected: the density is divided by the
+    octaves best. The smearing by taper and rings is then corrected: the density is divided by the
     ratio of the periodogram expected of it to itself.
     """
     z = without_mean_plane(np.asarray(heights, float))
@@ -112,22 +113,9 @@ def plane_spectrum(heights: np.ndarray, spacing: tuple[float, float]) -> PlaneSp
 def amplitude_error(heights: np.ndarray, spacing: tuple[float, float]) -> float:
     """Relative standard deviation of the root mean square height, over windows like this one.
 
-    Parameters
-    ----------
-    heights : (ny, nx) ndarray
-        mm, without holes.
-    spacing : (float, float)
-        (dy, dx), mm.
-
-    Raises
-    ------
-    ValueError
-        As :func:`plane_spectrum`.
-
-    Notes
-    -----
-    The mean square of correlated Gaussian heights has the relative variance 2 <r^2>, r being the
-    correlation, that of the spectrum, and <> the mean over all pairs of nodes.
+    Parameters and errors are those of :func:`plane_spectrum`. The mean square of correlated
+    Gaussian heights has the relative variance 2 <r^2>, r being the correlation, that of the
+    spectrum, and <> the mean over all pairs of nodes.
     """
     waves = _Waves([2 * n for n in heights.shape], spacing)
     covariance = scipy.fft.ifft2(
@@ -172,7 +160,7 @@ class _Bins:
     def means(self, power):
         """Mean densities of rings and of their sectors (ring, sector), from power of differences.
 
-        Zero without a wave.
+        Zero in a bin without waves.
         """
         power = power[self.used] / self.gain
         ring = np.bincount(self.ring, power) / self.in_ring / 2
@@ -181,14 +169,14 @@ class _Bins:
 
 
 def _pooled(bins, rings):
-    """Rings of which the long ones are pooled with a power law, and its slope to longer waves."""
+    """Rings, those of long waves pooled with a power law, and its slope to longer waves."""
     x = bins.number / bins.number[0]
     long = x <= 1 / _FITTED
     waves = bins.in_ring[long] / _TAPERED
     weights = 1 / (1 / waves + _MISFIT**2)
     starts = np.concatenate([[0.0], 1 / _ROLL_OFFS])[:, np.newaxis, np.newaxis]
     shapes = np.maximum(x[long], starts) ** -_SLOPES[:, np.newaxis]
-    # Deviance of mean periodograms, which are gamma distributed, about the best multiple.
+    # The deviance of mean periodograms, which are gamma distributed, about the best multiple.
     ratio = rings[long] / shapes
     ratio /= np.average(ratio, axis=-1, weights=weights)[..., np.newaxis]
     deviance = -2 * np.sum(weights * np.log(np.maximum(ratio, 1e-300)), axis=-1)

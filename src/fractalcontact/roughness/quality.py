@@ -4,18 +4,16 @@ import json
 import math
 from collections.abc import Sequence
 from dataclasses import replace
-from itertools import chain
-from operator import attrgetter
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
-from ..core.arrays import padded
 from ..core.datasets import labelled
 from ..core.directions import APERTURE
 from ..core.estimate import NO_ESTIMATE, Estimate
 from ..core.labels import cf_attrs
+from ..core.per_curve import stacked
 from ..core.text import length_words
 from ..core.window import cell_side, face_words, spacing_of
 from .dimension import slope_statistics
@@ -27,17 +25,17 @@ from .spectra import STRIPS, profile_spectra, radial_spectrum
 
 #: Fractions of the cells below a height, in percent.
 PERCENTILES = (0.1, 1.0, 5.0, 25.0, 50.0, 75.0, 95.0, 99.0, 99.9)
-#: mm, and rms slopes at the spacing of the scan, beyond which a unit is wrong, nearly always.
+#: Bounds on the side, mm, and on rms slopes at the spacing of the scan: beyond them a unit is
+#: nearly always wrong.
 MIN_SIDE = 1.0
 MIN_SLOPE, MAX_SLOPE = 0.01, 3.0
 #: Bins of the histogram, between the outer two percentiles and a quarter beyond on either side.
 BINS = 60
-#: Levels of a quantised surface are at least this many times fewer than its cells, or the step is
-#: too fine to be seen.
+#: Least number of cells over number of levels of a surface whose height step can be seen.
 CELLS_PER_LEVEL = 2
-#: Heights are multiples of a step when they depart from them by less than this part of it (rms).
+#: Largest rms departure of heights from multiples of a step, as a fraction of the step.
 STEP_TOLERANCE = 0.05
-#: What arithmetic may add to equal heights, as a part of the largest.
+#: Largest rounding error of equal heights, as a fraction of the largest height.
 ROUNDING = 1e-13
 
 
@@ -59,10 +57,9 @@ def scan_quality(specimen: xr.Dataset, resolutions: Sequence[int]) -> xr.Dataset
         :mod:`roughness.fractal_range`, and alternate scan lines by :mod:`roughness.scan_lines`.
         `range_end` (mm), the shortest wavelength of the fractal range over all of them, with its
         cause as attribute ``ended_by``; `below_range` on `resolution`. Of two faces, on `region`
-        ("scan", "window"): where they overlap, and their gap. Attributes: ``warning``, what
-        reading the files and this found, in sentences, "" if all is well; ``overlap``, a clause on
-        where the faces overlap, "" of one face; what :func:`roughness.quality_words.statements`
-        says.
+        ("scan", "window"): their overlap and their gap. Attribute ``warning``: the warnings of the
+        files and of this function in sentences, "" without any; further attributes are those of
+        :func:`roughness.quality_words.statements`.
 
     Notes
     -----
@@ -72,18 +69,27 @@ def scan_quality(specimen: xr.Dataset, resolutions: Sequence[int]) -> xr.Dataset
     faces = [face for face in ("lower", "upper") if face in specimen]
     spacing = spacing_of(specimen)
     heights = [specimen[face].values.astype(float) for face in faces]
-    plane = _removed_plane(specimen)
-    points = {
-        "height_step": [height_step(z + plane) for z in heights],
-        "point_pitch": [_point_pitch(specimen, face) for face in faces],
+    plane, edges = _removed_plane(specimen), _edges(heights)
+    rows = [
+        {
+            **_relief(z, edges),
+            "height_step": height_step(z + plane),
+            "point_pitch": _point_pitch(specimen, face),
+            **dict(zip(_RADIAL, radial_spectrum(z, spacing), strict=True)),
+        }
+        for face, z in zip(faces, heights, strict=True)
+    ]
+    bins = {
+        "percentile": list(PERCENTILES),
+        "edge": edges,
+        "bin_height": (edges[1:] + edges[:-1]) / 2,
     }
     result = xr.Dataset(
         {
-            **_relief(heights),
-            **labelled(_POINTS, points),
+            **stacked(rows, {**_RELIEF, **_POINTS, **_RADIAL}, ("face",), (len(faces),)),
+            **labelled(_BINS, bins),
             **labelled(ALTERNATION, alternations(heights)),
             **_profile_spectra(heights, spacing),
-            **_radial_spectra(heights, spacing),
         },
         coords={"face": faces, "axis": list(AXES)},
     )
@@ -107,12 +113,12 @@ def scan_quality(specimen: xr.Dataset, resolutions: Sequence[int]) -> xr.Dataset
 def _doubtful_unit(specimen, heights, spacing) -> str:
     """Warning of a side or slope that rock joints hardly have: a wrong unit, nearly always.
 
-    The slope of an aperture map is not judged: it is no face.
+    The slope of an aperture map is not judged, because it is no face.
     """
     side = min(n * s for n, s in zip(heights[0].shape, spacing, strict=True))
-    found = [slope_statistics(z, spacing) for z in heights]
-    rms = max(found, key=lambda one: one["rms_height"].item())["rms_height"].item()
-    slopes = [one["rms_slope"].item() for one in found]
+    statistics = [slope_statistics(z, spacing) for z in heights]
+    rms = max(statistics, key=lambda of_face: of_face["rms_height"].item())["rms_height"].item()
+    slopes = [of_face["rms_slope"].item() for of_face in statistics]
     is_slope = specimen.attrs["opposite"] != APERTURE and any(
         not MIN_SLOPE <= slope <= MAX_SLOPE for slope in slopes if math.isfinite(slope)
     )
@@ -126,60 +132,61 @@ def _doubtful_unit(specimen, heights, spacing) -> str:
     )
 
 
-_POINTS = {
-    "height_step": ("face", "mm", "step of quantised heights, missing if none is seen"),
-    "point_pitch": ("face", "mm", "mean distance of the points measured"),
-}
-
-
 # -- relief ----------------------------------------------------------------------------------------
 
+#: Variables of each face: unit, long name, dimensions of arrays.
 _RELIEF = {
-    "missing_share": ("face", "1", "fraction of cells not measured"),
-    "rms": ("face", "mm", "root mean square height"),
-    "skewness": ("face", "1", "skewness of the heights"),
-    "kurtosis": ("face", "1", "kurtosis of the heights, 3 if Gaussian"),
-    "lowest": ("face", "mm", "smallest height"),
-    "highest": ("face", "mm", "largest height"),
-    "percentile": ("percentile", "%", "fraction of cells below"),
-    "height": (("face", "percentile"), "mm", "height"),
-    "edge": ("edge", "mm", "edges of the bins of heights"),
-    "bin_height": ("bin", "mm", "middle of the bin of heights"),
+    "missing_share": ("1", "fraction of cells not measured"),
+    "rms": ("mm", "root mean square height"),
+    "skewness": ("1", "skewness of the heights"),
+    "kurtosis": ("1", "kurtosis of the heights, 3 if Gaussian"),
+    "lowest": ("mm", "smallest height"),
+    "highest": ("mm", "largest height"),
+    "height": ("mm", "height", "percentile"),
     "density": (
-        ("face", "bin"),
         "mm-1",
         "fraction of cells in a bin, over its width; some heights lie beyond all bins",
+        "bin",
     ),
+}
+_POINTS = {
+    "height_step": ("mm", "step of quantised heights, missing if none is seen"),
+    "point_pitch": ("mm", "mean distance of the points measured"),
+}
+_RADIAL = {
+    "radial_wavelength": ("mm", "wavelength", "radial_wave"),
+    "radial_spectrum": ("mm4", "radially averaged power spectral density", "radial_wave"),
+}
+_BINS = {
+    "percentile": ("percentile", "%", "fraction of cells below"),
+    "edge": ("edge", "mm", "edges of the bins of heights"),
+    "bin_height": ("bin", "mm", "middle of the bin of heights"),
 }
 
 
-def _relief(heights):
-    """Statistics about the mean plane, and histograms of all faces over the same bins."""
-    known = [z[np.isfinite(z)] for z in heights]
-    centred = [z - z.mean() for z in known]
-    rms = np.array([np.sqrt(np.mean(z**2)) for z in centred])
-    percentiles = np.array([np.percentile(z, PERCENTILES) for z in known])
-    low, high = percentiles[:, 0].min(), percentiles[:, -1].max()
-    edges = np.linspace(low - (high - low) / 4, high + (high - low) / 4, BINS + 1)
-    counts = np.array([np.histogram(z, edges)[0] for z in known])
-    values = {
-        "missing_share": [np.isnan(z).mean() for z in heights],
+def _edges(heights):
+    """Edges of the bins of all faces' heights, mm, beyond the outer percentiles by a quarter."""
+    outer = (PERCENTILES[0], PERCENTILES[-1])
+    ends = np.array([np.percentile(z[np.isfinite(z)], outer) for z in heights])
+    low, high = ends[:, 0].min(), ends[:, 1].max()
+    return np.linspace(low - (high - low) / 4, high + (high - low) / 4, BINS + 1)
+
+
+def _relief(z, edges) -> dict[str, Any]:
+    """Statistics of a face about its mean plane, and its histogram."""
+    measured = z[np.isfinite(z)]
+    centred = measured - measured.mean()
+    rms = np.sqrt(np.mean(centred**2))
+    return {
+        "missing_share": np.isnan(z).mean(),
         "rms": rms,
-        "skewness": _moment(centred, 3) / rms**3,
-        "kurtosis": _moment(centred, 4) / rms**4,
-        "lowest": [z.min() for z in known],
-        "highest": [z.max() for z in known],
-        "percentile": list(PERCENTILES),
-        "height": percentiles,
-        "edge": edges,
-        "bin_height": (edges[1:] + edges[:-1]) / 2,
-        "density": counts / (np.array([[z.size] for z in known]) * np.diff(edges)),
+        "skewness": np.mean(centred**3) / np.power(rms, 3),
+        "kurtosis": np.mean(centred**4) / np.power(rms, 4),
+        "lowest": measured.min(),
+        "highest": measured.max(),
+        "height": np.percentile(measured, PERCENTILES),
+        "density": np.histogram(measured, edges)[0] / (measured.size * np.diff(edges)),
     }
-    return labelled(_RELIEF, values)
-
-
-def _moment(centred, order):
-    return np.array([np.mean(z**order) for z in centred])
 
 
 def _removed_plane(specimen):
@@ -190,109 +197,83 @@ def _removed_plane(specimen):
 
 
 def height_step(heights: np.ndarray) -> float:
-    """The step of which all heights are multiples, mm: of a converter, or of rounded text.
+    """Step of which all heights are multiples, mm: of a converter, or of rounded text.
 
-    Parameters
-    ----------
-    heights : (ny, nx) ndarray
-        As measured, before a plane is taken off; NaN where missing.
-
-    Returns
-    -------
-    float
-        NaN where there are about as many heights as cells, or they share no step.
+    NaN where there are about as many heights as cells, or they share no step. Heights are as
+    measured, before a plane is taken off; NaN where missing.
     """
-    known = np.sort(heights[np.isfinite(heights)])
-    rises = np.diff(known)
-    steps = rises[rises > ROUNDING * np.abs(known).max(initial=0)]
-    if steps.size < 2 or known.size < CELLS_PER_LEVEL * (steps.size + 1):
+    measured = np.sort(heights[np.isfinite(heights)])
+    rises = np.diff(measured)
+    steps = rises[rises > ROUNDING * np.abs(measured).max(initial=0)]
+    if steps.size < 2 or measured.size < CELLS_PER_LEVEL * (steps.size + 1):
         return math.nan
     step = np.median(steps[steps < 1.5 * steps.min()])
-    multiples = np.round((known - known[0]) / step)
-    step = np.dot(multiples, known - known[0]) / np.dot(multiples, multiples)
-    left = known - known[0] - step * multiples
+    multiples = np.round((measured - measured[0]) / step)
+    step = np.dot(multiples, measured - measured[0]) / np.dot(multiples, multiples)
+    left = measured - measured[0] - step * multiples
     return float(step) if np.sqrt(np.mean(left**2)) < STEP_TOLERANCE * step else math.nan
 
 
 # -- spectra ---------------------------------------------------------------------------------------
 
 
-_AXIS = ("face", "axis")
-
+#: Variables along each axis of each face: unit, long name, dimensions of arrays.
 _PROFILES = {
-    "wavelength": ((*_AXIS, "wave"), "mm", "wavelength"),
-    "spectrum": ((*_AXIS, "wave"), "mm3", "two-sided power spectral density of profiles"),
-    "spectrum_model": (
-        (*_AXIS, "wave"),
-        "mm3",
-        "its model: self-affine, with what else was seen",
-    ),
-}
-
-#: Estimates with their intervals.
-_ESTIMATES = {
+    "wavelength": ("mm", "wavelength", "wave"),
+    "spectrum": ("mm3", "two-sided power spectral density of profiles", "wave"),
+    "spectrum_model": ("mm3", "its model: self-affine, with what else was seen", "wave"),
     "noise_rms": ("mm", "noise floor: standard deviation of independent errors of the nodes"),
     "noise_wavelength": ("mm", "wavelength where the self-affine line meets the noise floor"),
     "filter_wavelength": ("mm", "wavelength where a low-pass filter halves the spectrum"),
     "roll_off_wavelength": ("mm", "wavelength above which the spectrum is flat"),
     "end": ("mm", "shortest wavelength of the fractal range along one axis"),
-}
-
-_NUMBERS = {
-    "noise_limit": (_AXIS, "mm", "upper bound of the noise floor"),
+    "noise_limit": ("mm", "upper bound of the noise floor"),
     "strips_left_out": (
-        _AXIS,
         "1",
         f"strips of profiles, of {STRIPS}, left out for spikes or steps, mean over the wavelengths",
     ),
-    "misfit": (_AXIS, "1", "rms logarithm of measured over modelled spectrum"),
-    "line_level": (_AXIS, "mm3", "self-affine line at a wavelength of 1 mm"),
-    "line_exponent": (_AXIS, "1", "exponent 1 + 2H of the self-affine line"),
-    "form": (_AXIS, "1", "parts of the model of the spectrum"),
-    "self_affine_line": ((*_AXIS, "wave"), "mm3", "self-affine line at the wavelengths"),
-    "noise_floor": (_AXIS, "mm3", "noise floor of the spectrum of profiles"),
+    "misfit": ("1", "rms logarithm of measured over modelled spectrum"),
+    "line_level": ("mm3", "self-affine line at a wavelength of 1 mm"),
+    "line_exponent": ("1", "exponent 1 + 2H of the self-affine line"),
+    "form": ("1", "parts of the model of the spectrum"),
+    "self_affine_line": ("mm3", "self-affine line at the wavelengths", "wave"),
+    "noise_floor": ("mm3", "noise floor of the spectrum of profiles"),
 }
 
 
-def _profile_spectra(heights, spacing):
-    """Spectra of profiles along x and y, and where their fractal range ends."""
-    curves = [list(profile_spectra(z, spacing).values()) for z in heights]  # x, then y
-    ranges = [
-        [find_fractal_range(curve, d) for curve, d in zip(row, spacing[::-1], strict=True)]
-        for row in curves
-    ]
-
-    def of_range(value):
-        return [[value(found) for found in row] for row in ranges]
-
-    profiles = {
-        "wavelength": _padded_rows([[curve.length for curve in row] for row in curves]),
-        "spectrum": _padded_rows(of_range(lambda found: found.level)),
-        "spectrum_model": _padded_rows(of_range(lambda found: found.fitted)),
-    }
-    estimates: dict[str, Any] = {}
-    for name, words in _ESTIMATES.items():
-        each = chain.from_iterable(of_range(attrgetter(name)))
-        estimates |= Estimate.stack(each, (len(ranges), len(AXES))).variables(name, _AXIS, *words)
-    level = np.array(of_range(lambda found: found.line[0]))
-    exponent = np.array(of_range(lambda found: found.line[1]))
-    noise = np.array(of_range(lambda found: found.noise_rms.value))
-    waves = profiles["wavelength"]
-    numbers = {
-        "self_affine_line": level[..., np.newaxis] * waves ** exponent[..., np.newaxis],
-        "noise_floor": noise**2 * np.array(spacing[::-1]),
-        "noise_limit": of_range(lambda found: found.noise_limit),
-        "strips_left_out": of_range(lambda found: found.left_out),
-        "misfit": of_range(lambda found: found.misfit),
+def _profile_spectrum(curve, spacing) -> dict[str, Any]:
+    """Values of :data:`_PROFILES` of a curve of :func:`roughness.spectra.profile_spectra`."""
+    fractal = find_fractal_range(curve, spacing)
+    level, exponent = fractal.line
+    return {
+        "wavelength": curve.length,
+        "spectrum": fractal.level,
+        "spectrum_model": fractal.fitted,
+        "noise_rms": fractal.noise_rms,
+        "noise_wavelength": fractal.noise_wavelength,
+        "filter_wavelength": fractal.filter_wavelength,
+        "roll_off_wavelength": fractal.roll_off_wavelength,
+        "end": fractal.end,
+        "noise_limit": fractal.noise_limit,
+        "strips_left_out": fractal.left_out,
+        "misfit": fractal.misfit,
         "line_level": level,
         "line_exponent": exponent,
-        "form": of_range(_form_words),
+        "form": _form_words(fractal),
+        "self_affine_line": level * curve.length**exponent,
+        "noise_floor": np.square(fractal.noise_rms.value) * spacing,
     }
-    return {
-        **labelled(_PROFILES, profiles),
-        **estimates,
-        **labelled(_NUMBERS, numbers),
-    }
+
+
+def _profile_spectra(heights, spacing):
+    """Spectra of profiles along x and y, and the ends of their fractal range."""
+    along = dict(zip(AXES, spacing[::-1], strict=True))
+    rows = [
+        _profile_spectrum(curve, along[axis])
+        for z in heights
+        for axis, curve in profile_spectra(z, spacing).items()
+    ]
+    return stacked(rows, _PROFILES, ("face", "axis"), (len(heights), len(AXES)))
 
 
 def _form_words(found: FractalRange) -> str:
@@ -303,29 +284,6 @@ def _form_words(found: FractalRange) -> str:
     parts = ["self-affine" if form.sampling == "ideal" else f"self-affine, {form.sampling}"]
     parts += ["roll-off"] * form.rolls_off + ["noise floor"] * form.noisy
     return " + ".join(parts + ([f"{form.filtering} low-pass"] if form.filtering else []))
-
-
-def _padded_rows(values):
-    """Rows of rows of arrays of different length as one array (face, axis, wave)."""
-    flat = padded([array for row in values for array in row])
-    return flat.reshape(len(values), len(AXES), -1)
-
-
-_RADIAL = {
-    "radial_wavelength": (("face", "radial_wave"), "mm", "wavelength"),
-    "radial_spectrum": (
-        ("face", "radial_wave"),
-        "mm4",
-        "radially averaged power spectral density",
-    ),
-}
-
-
-def _radial_spectra(heights, spacing):
-    wavelengths, densities = zip(*(radial_spectrum(z, spacing) for z in heights), strict=True)
-    return labelled(
-        _RADIAL, {"radial_wavelength": padded(wavelengths), "radial_spectrum": padded(densities)}
-    )
 
 
 # -- where the fractal range ends ------------------------------------------------------------------
@@ -350,7 +308,7 @@ _RANGE = {
 def _range_end(result, specimen) -> Estimate:
     """Shortest wavelength of the fractal range, mm, over faces and axes, and its cause.
 
-    Points farther apart than the nodes end it too.
+    A distance of points larger than that of the nodes ends it too.
     """
     seen = Estimate.read(result, "end")
     words = [face_words(specimen, face) for face in result["face"].values]
@@ -369,7 +327,7 @@ def _range_end(result, specimen) -> Estimate:
 
 
 def _compared_with_range(end: Estimate, resolutions, side):
-    """The end of the range, and the resolutions that go below it."""
+    """End of the range, and the resolutions that go below it."""
     values = {
         "resolution": resolutions * side,
         "multiple": resolutions,

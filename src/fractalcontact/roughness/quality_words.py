@@ -12,14 +12,14 @@ from .fractal_range import NO_POWER_LAW
 from .spectra import STRIPS
 
 AXES = ("x", "y")
-#: Noise along one axis this many times that along the other belongs to the scan's lines.
+#: Least ratio of the noise along one axis to that along the other of noise in the scan's lines.
 UNEQUAL = 2.0
-#: Below this exponent 1 + 2H no rock is known, and spikes and noise look alike.
+#: Least exponent 1 + 2H known of rock; below it spikes and noise look alike.
 FLATTEST = 1.5
 
 
 def interval_words(values: xr.Dataset, name: str, unit: str | None = None) -> str:
-    """Scalar length with its 95 % interval if known: three digits, in mm or a suitable unit."""
+    """Scalar length with its 95 % interval, if any: three digits, in mm or a suitable unit."""
     value, low, high = Estimate.read(values, name).ends
     unit, size = (unit, 1.0) if unit == "mm" else height_unit(value)
     interval = f" [{plain(low / size)}, {plain(high / size)}]" if math.isfinite(low) else ""
@@ -27,20 +27,13 @@ def interval_words(values: xr.Dataset, name: str, unit: str | None = None) -> st
 
 
 def noise_words(quality: xr.Dataset, face: str) -> str:
-    """Sentence on the noise floor of a face, with its possible origin.
-
-    Parameters
-    ----------
-    quality : Dataset
-        From `scan_quality`.
-    face : {"lower", "upper"}
-    """
-    found = quality.sel(face=face)
-    if not any(found["form"].values):
+    """Sentence on the noise floor of a face, "lower" or "upper", with its possible origin."""
+    of_face = quality.sel(face=face)
+    if not any(of_face["form"].values):
         return "too small for a spectrum, so its noise is unknown"
-    along = [_noise_along(axis, found.sel(axis=axis)) for axis in AXES]
+    along = [_noise_along(axis, of_face.sel(axis=axis)) for axis in AXES]
     words = f"noise floor {', '.join(along)}"
-    rms, limit = found["noise_rms"].values, found["noise_limit"].values
+    rms, limit = of_face["noise_rms"].values, of_face["noise_limit"].values
     for axis, own, other in zip(AXES, rms, np.fmin(rms, limit)[::-1], strict=True):
         if own > UNEQUAL * other:
             across = AXES[1 - AXES.index(axis)]
@@ -64,10 +57,10 @@ def _noise_along(axis, of_axis) -> str:
 
 def range_words(quality: xr.Dataset, face: str) -> str:
     """Sentence on filter, roll-off, steps and misfit of a face; "" without any."""
-    found = quality.sel(face=face)
+    of_face = quality.sel(face=face)
     words = []
     for axis in AXES:
-        of_axis = found.sel(axis=axis)
+        of_axis = of_face.sel(axis=axis)
         if np.isfinite(of_axis["filter_wavelength"]):
             words.append(
                 f"low-pass filtered along {axis}, halved at a wavelength of "
@@ -84,7 +77,7 @@ def range_words(quality: xr.Dataset, face: str) -> str:
                 f"{of_axis['strips_left_out']:.0f} of {STRIPS} strips of profiles along {axis} "
                 "left out of the spectrum for spikes or steps"
             )
-    step = found["height_step"].item()
+    step = of_face["height_step"].item()
     if math.isfinite(step):
         words.append(
             f"heights are multiples of {length_words(step)}, which alone adds "
@@ -94,13 +87,7 @@ def range_words(quality: xr.Dataset, face: str) -> str:
 
 
 def file_warnings(specimen: xr.Dataset) -> list[str]:
-    """Warnings from reading the files of a specimen, a sentence each.
-
-    Parameters
-    ----------
-    specimen : Dataset
-        From `surface.specimen.make_specimen`.
-    """
+    """Warnings from reading the files of a specimen, a sentence each."""
     found = []
     for face in ("lower", "upper"):
         attrs = json.loads(specimen.attrs.get(f"{face}_scan", "{}"))
@@ -114,13 +101,7 @@ def file_warnings(specimen: xr.Dataset) -> list[str]:
 
 
 def suspect_words(specimen: xr.Dataset) -> str:
-    """Counts of lone spikes and of cells far from any point; "" without any.
-
-    Parameters
-    ----------
-    specimen : Dataset
-        From `surface.specimen.make_specimen`.
-    """
+    """Counts of lone spikes and of cells far from any point; "" without any."""
     counts = {
         "lone spikes": int(specimen["spike"].sum()) if "spike" in specimen else 0,
         "cells far from any point": int(specimen["sparse"].sum()) if "sparse" in specimen else 0,
@@ -148,7 +129,7 @@ def overlap_words(specimen: xr.Dataset, quality: xr.Dataset) -> str:
 
 
 def cells_words(specimen: xr.Dataset, quality: xr.Dataset) -> str:
-    """A clause on cells missing, outlying, filled and suspicious."""
+    """Clause on cells missing, outlying, filled and suspicious."""
     missing = [f"{plain(100 * share, 2)} %" for share in quality["missing_share"].values]
     which = " (lower and upper face)" if len(missing) > 1 else ""
     words = [f"{' and '.join(missing)} of the cells have no height{which}"]
@@ -166,13 +147,10 @@ def cells_words(specimen: xr.Dataset, quality: xr.Dataset) -> str:
 
 
 def statements(specimen: xr.Dataset, quality: xr.Dataset) -> dict[str, str]:
-    """Clauses on a scan, as attributes of the stage ``quality``.
+    """Clauses on a scan by name, as attributes of the stage ``quality``.
 
-    Returns
-    -------
-    dict of str to str
-        ``lower_face`` and, if there is one, ``upper_face``: noise floor, and what else the spectra
-        show; ``cells``; ``overlap``, empty of one face. Each a clause.
+    ``lower_face`` and, if there is one, ``upper_face``: noise floor and other features of the
+    spectra; ``cells``; ``overlap``, empty of one face.
     """
     of_faces = {
         f"{face}_face": "; ".join(

@@ -1,6 +1,6 @@
 """Recommended surface dimension Delta_g: the choice among the estimates, or of none.
 
-Estimators that look at the same heights do not err independently, so that their mean is no better
+Estimators of the same heights do not err independently, so that their mean is no better
 than the best of them, and worse where a roll-off or the edges of the scan bend some of the curves.
 """
 
@@ -16,9 +16,9 @@ from .fit_range import LAST_OF_ROLL_OFF
 
 #: The estimator whose value is the answer.
 RECOMMENDED = "roughness_length"
-#: Why: 50 surfaces of each kind in `config/estimators.yaml`, H from 0.5 to 0.9. There its rms error
-#: is 0.038 at 256 nodes per side (second differences 0.040, variogram 0.042, spectrum 0.052), and
-#: half its interval 0.12 (0.13, 0.22, 0.14).
+#: Reason of the choice: on 50 surfaces of each kind in `config/estimators.yaml`, H from 0.5 to 0.9,
+#: its rms error is 0.038 at 256 nodes per side (second differences 0.040, variogram 0.042, spectrum
+#: 0.052), and half its interval 0.12 (0.13, 0.22, 0.14).
 REASON = (
     "least rms error and narrowest 95 % interval of all estimators on synthetic surfaces of known "
     "dimension, with and without a roll-off; the interval contains the known value on more than "
@@ -40,20 +40,20 @@ def best_dimension(dimensions: xr.Dataset) -> Estimate:
     Returns
     -------
     Estimate
-        None, with the reason, where the estimator found no dimension, or one that is not between 2
-        and 3: what is smoother than a plane allows, or rougher than independent heights, is not
+        None, with the reason, where the estimator has no dimension, or one that is not between 2
+        and 3: a surface smoother than a plane allows, or rougher than independent heights, is not
         self-affine over these lags, and no theory of self-affine surfaces applies.
     """
     if RECOMMENDED not in dimensions["estimator"].values:
         return Estimate(reason=f"{RECOMMENDED.replace('_', ' ')} was not measured")
     chosen = dimensions.sel(estimator=RECOMMENDED)
-    found = Estimate.read(chosen, "dimension")
-    value, low, high = found.ends
-    if not found.known:
+    dimension = Estimate.read(chosen, "dimension")
+    value, low, high = dimension.ends
+    if not dimension.known:
         return Estimate(reason="no fit: too few lags or no relief")
     least, most = POSSIBLE
     if least < value < most:
-        return found
+        return dimension
     inside = low < most and high > least
     reason = f"Delta_g {value:.2f} [{low:.2f}, {high:.2f}] does not lie between 2 and 3" + (
         f" (its interval reaches {'above 2' if value <= least else 'below 3'})"
@@ -63,7 +63,7 @@ def best_dimension(dimensions: xr.Dataset) -> Estimate:
     return Estimate(reason=reason)
 
 
-#: What is stored of all estimators together: long names.
+#: Variables of all estimators together: long names.
 _OF_ALL = {
     "dimensions_fitted": "estimators that found a dimension",
     "lowest_dimension": "lowest Delta_g of the estimators",
@@ -76,26 +76,19 @@ _OF_ALL = {
 def variables_of_all(dimensions: xr.Dataset) -> dict[str, Any]:
     """Range of Delta_g over the estimators, as the paper states it, and how many separate x and y.
 
-    Parameters
-    ----------
-    dimensions : xr.Dataset
-        ``dimension``, and ``hurst_x`` and ``hurst_y`` with their intervals, on ``estimator``.
-
-    Returns
-    -------
-    dict
-        Variables by the names of the atlas; the range is NaN without a fit. The middle of the range
-        is no estimate: see :func:`best_dimension`.
+    Variables by the names of the atlas, from ``dimension``, ``hurst_x`` and ``hurst_y`` on
+    ``estimator``; the range is NaN without a fit. The middle of the range is no estimate: see
+    :func:`best_dimension`.
     """
-    known = dimensions["dimension"].values
-    known = known[np.isfinite(known)]
+    values_of_fits = dimensions["dimension"].values
+    values_of_fits = values_of_fits[np.isfinite(values_of_fits)]
     x, y = (Estimate.read(dimensions, f"hurst_{axis}") for axis in "xy")
     compared = x.known & y.known
     apart = compared & ((x.low > y.high) | (y.low > x.high))
     values = {
-        "dimensions_fitted": known.size,
-        "lowest_dimension": min(known, default=np.nan),
-        "highest_dimension": max(known, default=np.nan),
+        "dimensions_fitted": values_of_fits.size,
+        "lowest_dimension": min(values_of_fits, default=np.nan),
+        "highest_dimension": max(values_of_fits, default=np.nan),
         "axes_compared": np.sum(compared),
         "axes_differing": np.sum(apart),
     }
@@ -103,25 +96,13 @@ def variables_of_all(dimensions: xr.Dataset) -> dict[str, Any]:
 
 
 def beyond_roll_off(dimensions: xr.Dataset) -> bool:
-    """True if the lags fitted reach beyond the part of a roll-off up to which its effect is known.
-
-    Parameters
-    ----------
-    dimensions : xr.Dataset
-        From :func:`roughness.dimension.surface_dimension`.
-    """
+    """True if lags were fitted beyond the part of a roll-off up to which its effect is known."""
     end = LAST_OF_ROLL_OFF * float(dimensions["roll_off"])
     return float(dimensions["range_max"]) > end * (1 + 1e-9)
 
 
 def dimension_words(dimensions: xr.Dataset) -> str:
-    """Sentence on the recommended estimate with the reason for its lags, or why there is none.
-
-    Parameters
-    ----------
-    dimensions : xr.Dataset
-        From :func:`roughness.dimension.surface_dimension`.
-    """
+    """Sentence on the recommended estimate with the reason for its lags, or for having none."""
     reason = str(dimensions["no_dimension"].item())
     if reason:
         return f"no surface dimension: {reason}"
@@ -135,11 +116,11 @@ def dimension_words(dimensions: xr.Dataset) -> str:
 
 def recommended_variables(dimensions: xr.Dataset) -> dict[str, Any]:
     """Variables of the recommended estimate, by the names of the atlas."""
-    found = best_dimension(dimensions)
+    dimension = best_dimension(dimensions)
     words = {
         "recommended": (RECOMMENDED, "recommended estimator"),
         "reason": (REASON, "why this estimator"),
-        "no_dimension": (found.reason, "why there is no recommended dimension"),
+        "no_dimension": (dimension.reason, "why there is no recommended dimension"),
     }
     texts = {name: ((), text, cf_attrs("1", of)) for name, (text, of) in words.items()}
-    return texts | found.variables("recommended_dimension", (), "1", "recommended Delta_g")
+    return texts | dimension.variables("recommended_dimension", (), "1", "recommended Delta_g")

@@ -1,4 +1,4 @@
-"""All estimators of the Hurst exponent, as they lie in their folder."""
+"""Registry of the estimators of the Hurst exponent: all files of their folder."""
 
 from ..core.modules import modules_of
 from . import estimators

@@ -5,7 +5,9 @@ slowly than h^(2H), and do so long before that wavelength: the variogram loses a
 h^(2 - 2H), like the part that levelling takes. The spectrum of the model is C(q) = q^(-2 (1 + H))
 above q_r = 2 pi / roll-off and C(q_r) below (Persson et al., J. Phys. Condens. Matter 17 (2005)
 R1), or von Karman's (q^2 + q_r^2)^(-1 - H), which bends over an octave or two. All else follows
-from it. Fractions are of the power law that the same surface has without a roll-off.
+from it. Fractions are of the power law that the same surface has without a roll-off: functions
+``..._fraction`` take (k,) ratios of a length to the roll-off, 0 without one, and a shape of
+`SHAPES`, and return (exponents, k).
 """
 
 from dataclasses import dataclass, replace
@@ -19,24 +21,24 @@ from ..core.intervals import t_quantile
 from .curves import Curve, jackknife_standard_error
 from .spectrum_model import ALIASED, BAND_LIMITED
 
-#: Exponents at which the mean result of every estimator is known.
+#: Exponents at which the mean result of every estimator is tabulated.
 HURST_GRID = np.linspace(0.02, 0.98, 97)
 
-#: Lengths over the roll-off at which fractions are tabulated; shorter ones lack next to nothing.
+#: Lengths over the roll-off at which fractions are tabulated; shorter ones lack nearly nothing.
 SHARES = np.geomspace(2.0**-12, 2.0**5, 137)
 
-#: Lags from which a roll-off is looked for, cells: below, what the grid does shows more.
+#: Shortest lag, cells, of the search for a roll-off: shorter ones show the grid more.
 FIRST_LAG = 2
-#: Shortest roll-off looked for, cells, and steps in each doubling.
+#: Shortest roll-off of the search, cells, and steps in each doubling.
 SHORTEST, STEPS_PER_OCTAVE = 8, 6
-#: Longest one, in longest lags of the second differences (which see waves of twice that).
+#: Longest roll-off over the longest lag of the second differences (which see waves of twice that).
 LONGEST_PER_LAG = 4.0
-#: Neighbouring parts of one surface share its long waves (`estimator.Estimator.spread`), and no
-#: mean is trusted better than this (relative).
+#: Spread of neighbouring parts of one surface, which share its long waves
+#: (`estimator.Estimator.spread`), and least relative error of a mean.
 SPREAD, MIN_ERROR = 1.3, 0.03
-#: How much better than any power law a roll-off must describe the curve (chi-square).
+#: Least drop of chi-square from the best power law to a roll-off that is seen.
 EVIDENCE = 20.0
-#: A roll-off that describes it by less than this worse than the best is not excluded.
+#: Least rise of chi-square above the best of a roll-off that is excluded.
 EXCLUDED = 4.0
 
 
@@ -48,21 +50,15 @@ SHARP, SMOOTH = SHAPES = ("sharp", "smooth")
 class RollOff(Estimate):
     """Wavelength above which a spectrum is flat, in the unit of the curve.
 
-    Infinite where none is seen; its lower end then is the shortest that is not excluded.
-
-    Attributes
-    ----------
-    shape : str
-        Of `SHAPES`, the one that describes the curve best.
-    others : tuple of (str, float)
-        Shapes and wavelengths that describe it nearly as well.
+    Infinite where none is seen; its lower end then is the shortest that is not excluded. ``shape``
+    of `SHAPES` describes the curve best, ``others`` are shapes and wavelengths nearly as good.
     """
 
     shape: str = SHARP
     others: tuple[tuple[str, float], ...] = ()
 
     def scaled(self, factor: float) -> "RollOff":
-        """The same in another unit of length."""
+        """The same roll-off in another unit of length."""
         others = tuple((shape, factor * length) for shape, length in self.others)
         value, low, high = (factor * end for end in self.ends)
         return replace(self, value=value, low=low, high=high, others=others)
@@ -73,7 +69,7 @@ class RollOff(Estimate):
         return tuple(dict.fromkeys((*own, *self.others)))
 
 
-# -- what a roll-off leaves, (exponents, lengths) --------------------------------------------------
+# -- fractions left by a roll-off, (exponents, lengths) --------------------------------------------
 
 
 @cache
@@ -120,30 +116,22 @@ def _beyond_quadratic_table(shape: str) -> np.ndarray:
 
 
 def _looked_up(table: np.ndarray, share: np.ndarray) -> np.ndarray:
-    """Linear interpolation over the logarithm of the share; 1 where there is no roll-off."""
+    """Linear interpolation over the logarithm of the share; 1 without a roll-off."""
     place = np.log(np.maximum(share, SHARES[0]) / SHARES[0]) / np.log(SHARES[1] / SHARES[0])
     place = np.minimum(place, len(SHARES) - 1.001)
     before = place.astype(int)
     part = place - before
-    found = (1 - part) * table[:, before] + part * table[:, before + 1]
-    return np.where(share > 0, found, 1.0)
+    fraction = (1 - part) * table[:, before] + part * table[:, before + 1]
+    return np.where(share > 0, fraction, 1.0)
 
 
 def difference_fraction(share: np.ndarray, shape: str = SHARP) -> np.ndarray:
-    """Fraction left of the mean square difference, (exponents, k).
-
-    Parameters
-    ----------
-    share : (k,) ndarray
-        Lag over the roll-off; 0 without one.
-    shape : str
-        Of `SHAPES`.
-    """
+    """Fraction left of the mean square difference D(h) at a lag h."""
     return _looked_up(_difference_table(shape), np.asarray(share, float))
 
 
 def second_difference_fraction(share: np.ndarray, shape: str = SHARP) -> np.ndarray:
-    """Fraction left of the mean square second difference 4 D(h) - D(2h), as above."""
+    """Fraction left of the mean square second difference 4 D(h) - D(2h)."""
     return _looked_up(_second_difference_table(shape), np.asarray(share, float))
 
 
@@ -156,7 +144,7 @@ def _second_difference_table(shape: str) -> np.ndarray:
 
 
 def rise_fraction(share: np.ndarray, shape: str = SHARP) -> np.ndarray:
-    """Fraction left of a prism facet's mean square rise D(b) + D(sqrt(2) b) / 2, as above."""
+    """Fraction left of a prism facet's mean square rise D(b) + D(sqrt(2) b) / 2."""
     share = np.asarray(share, float)
     ratio = 2 ** (HURST_GRID[:, np.newaxis] - 1)
     across = difference_fraction(np.sqrt(2) * share, shape)
@@ -164,17 +152,17 @@ def rise_fraction(share: np.ndarray, shape: str = SHARP) -> np.ndarray:
 
 
 def levelled_slope_fraction(share: np.ndarray, shape: str = SHARP) -> np.ndarray:
-    """Fraction left of the mean square slope of the plane of a square, of its side, as above."""
+    """Fraction left of the mean square slope of the plane of a square, by its side."""
     return _looked_up(_over_pairs("slope", shape), np.asarray(share, float))
 
 
 def about_plane_fraction(share: np.ndarray, shape: str = SHARP) -> np.ndarray:
-    """Fraction left of the mean square about the plane of a square, of its side, as above."""
+    """Fraction left of the mean square about the plane of a square, by its side."""
     return _looked_up(_over_pairs("plane", shape), np.asarray(share, float))
 
 
 def about_line_fraction(share: np.ndarray, shape: str = SHARP) -> np.ndarray:
-    """Fraction left of a profile's mean square about its line, of its length, as above."""
+    """Fraction left of a profile's mean square about its line, by its length."""
     return _looked_up(_over_pairs("line", shape), np.asarray(share, float))
 
 
@@ -183,7 +171,7 @@ def _over_pairs(of: str, shape: str) -> np.ndarray:
     """Fractions of means over all pairs of points of a square, or of a profile.
 
     The slope of the least-squares plane is the integral of 12 (x - 1/2) z; the mean square about
-    the plane half the mean square difference of all pairs, less what the plane holds.
+    the plane half the mean square difference of all pairs, less the plane's own.
     """
     points, weights = np.polynomial.legendre.leggauss(32)
     u, w = (points + 1) / 2, weights / 2
@@ -205,40 +193,26 @@ def _over_pairs(of: str, shape: str) -> np.ndarray:
             left[:, column] = (
                 np.sum(power * difference_fraction(share * distance, shape), axis=1) / whole
             )
-        else:  # what lies about a plane knows nothing of a missing plane
+        else:  # heights about a plane do not depend on a missing plane
             rest = _looked_up(_beyond_quadratic_table(shape), share * distance)
             left[:, column] = 1 - np.sum(power * rest, axis=1) / whole
     return left
 
 
-# -- whether one is seen ---------------------------------------------------------------------------
+# -- detection -------------------------------------------------------------------------------------
 
 
 def find_roll_off(curve: Curve, spacing: float, missing: np.ndarray) -> RollOff:
-    """Roll-off of a surface as its second differences show it.
+    """Roll-off, mm, of a surface by its second differences along both axes, lags in mm.
 
-    Parameters
-    ----------
-    curve : Curve
-        Second differences along both axes, lags in mm.
-    spacing : float
-        mm.
-    missing : (exponents,) ndarray
-        Mean square second difference of the waves that a band-limited surface lacks, over that of
-        a lag of one cell.
+    ``missing`` (exponents,) is the mean square second difference of the waves that a band-limited
+    surface lacks, over that of a lag of one cell, ``spacing`` the cell, mm.
 
-    Returns
-    -------
-    RollOff
-        mm.
-
-    Notes
-    -----
     Second differences are blind to any plane, so that levelling takes nothing from them, and reach
     waves of half the side. Least squares of their logarithms, weighted by their jackknife errors,
-    over all exponents and roll-offs and for both things that nodes can stand for. One is seen where
-    it lowers chi-square by `EVIDENCE` and none is excluded. Calibrated on synthetic surfaces
-    without a roll-off: :mod:`experiments.delta_g`.
+    over all exponents and roll-offs and for both samplings of :mod:`roughness.known_bias`. A
+    roll-off is seen where it lowers chi-square by `EVIDENCE`, and having none is excluded.
+    Calibrated on synthetic surfaces without a roll-off: :mod:`experiments.delta_g`.
     """
     lag, measure = curve.length / spacing, curve.measure()
     without = curve.without_each_part()

@@ -10,33 +10,22 @@ from .curves import LENGTHS_PER_OCTAVE, Curve
 #: Parts of a surface: strips of neighbouring profiles.
 STRIPS = 8
 
-#: A profile segment must hold this many points for a spectrum to be worth taking.
+#: Fewest points of a profile segment whose spectrum is taken.
 SHORTEST_SEGMENT = 32
 
-#: Waves of which fewer fit into a segment are left out: the taper smears orders over two
-#: neighbours to either side, and detrending takes a part of the first ones.
+#: Fewest wavelengths in a segment: the taper smears orders over two neighbours to either side, and
+#: detrending takes a part of the first ones.
 FIRST_ORDER = 4
 
 
 def profile_spectra(heights: np.ndarray, spacing: tuple[float, float]) -> dict[str, Curve]:
-    """Mean two-sided spectra (mm3) of profiles along x and along y, against wavelength (mm).
+    """Mean two-sided spectra (mm3) of profiles along "x" and "y", against wavelength (mm).
 
     Welch's method: unbroken segments of one length, as long as a quarter of the complete ones
     allows, each detrended and tapered (Hann); the mean is averaged in bins of equal ratio. Its
     parts are strips of profiles. Heights that are independent at every node, of variance v, have
-    the spectrum v times the spacing at every wavelength.
-
-    Parameters
-    ----------
-    heights : (ny, nx) ndarray
-        mm, NaN where missing.
-    spacing : (float, float)
-        (dy, dx), mm.
-
-    Returns
-    -------
-    dict of str to Curve
-        "x" and "y"; empty curves where no unbroken segment is long enough.
+    the spectrum v times the spacing at every wavelength. Curves are empty where no unbroken segment
+    is long enough. Heights and spacing (dy, dx) are in mm, heights NaN where missing.
     """
     segments = _unbroken_segments(heights)
     n = segments["x"][0].shape[1]
@@ -49,7 +38,7 @@ def profile_spectra(heights: np.ndarray, spacing: tuple[float, float]) -> dict[s
     members = np.bincount(which)
     mean_order = np.exp(np.bincount(which, np.log(order)) / members)
 
-    # Hann's side lobes fall as q^-6: no leakage from the long waves into q^-(1 + 2H).
+    # Hann's side lobes fall as q^-6, so that long waves do not leak into q^-(1 + 2H).
     taper = np.hanning(n + 1)[:-1]
     curves = {}
     for (axis, (profiles, strip)), pitch in zip(segments.items(), spacing[::-1], strict=True):
@@ -70,11 +59,11 @@ def _unbroken_segments(heights: np.ndarray) -> dict[str, tuple[np.ndarray, np.nd
     The length is the longest at which complete segments cover a quarter of the measured cells along
     each axis; there are none if that is below `SHORTEST_SEGMENT`.
     """
-    known = np.isfinite(heights)
+    measured = np.isfinite(heights)
     length = min(heights.shape)
     while length >= SHORTEST_SEGMENT:
         found = {"x": _cut_segments(heights, length), "y": _cut_segments(heights.T, length)}
-        if min(f.size for f, _ in found.values()) >= 0.25 * known.sum() > 0:
+        if min(f.size for f, _ in found.values()) >= 0.25 * measured.sum() > 0:
             return found
         length = length * 7 // 8
     return {axis: (np.empty((0, 0)), np.empty(0, int)) for axis in "xy"}
@@ -82,13 +71,13 @@ def _unbroken_segments(heights: np.ndarray) -> dict[str, tuple[np.ndarray, np.nd
 
 def _cut_segments(profiles: np.ndarray, length: int) -> tuple[np.ndarray, np.ndarray]:
     """Complete segments of the rows, each starting where the one before ended, and their strips."""
-    known = np.isfinite(profiles)
+    measured = np.isfinite(profiles)
     strip = np.arange(len(profiles)) * STRIPS // len(profiles)
     segments, strips = [np.empty((0, length))], [np.empty(0, int)]
     free_from = np.zeros(len(profiles), int)
     run = np.zeros(len(profiles), int)
     for end in range(1, profiles.shape[1] + 1):
-        run = np.where(known[:, end - 1], run + 1, 0)
+        run = np.where(measured[:, end - 1], run + 1, 0)
         complete = (run >= length) & (end - free_from >= length)
         if complete.any():
             segments.append(profiles[complete, end - length : end])
@@ -98,7 +87,7 @@ def _cut_segments(profiles: np.ndarray, length: int) -> tuple[np.ndarray, np.nda
 
 
 def _without_trend(profiles: np.ndarray) -> np.ndarray:
-    """Each row less its own least-squares line."""
+    """Rows, each less its own least-squares line."""
     x = np.arange(profiles.shape[1]) - (profiles.shape[1] - 1) / 2
     slope = profiles @ x / np.dot(x, x)
     return profiles - profiles.mean(axis=1, keepdims=True) - np.outer(slope, x)
@@ -109,18 +98,9 @@ def radial_spectrum(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Radially averaged spectrum of the largest hole-free square, levelled and tapered (Hann).
 
-    Parameters
-    ----------
-    heights : (ny, nx) ndarray
-        mm, NaN where missing.
-    spacing : (float, float)
-        (dy, dx), mm.
-
-    Returns
-    -------
-    wavelength, density : (k,) ndarray
-        mm, ascending; mm4, two-sided: independent errors of variance v have v dx dy everywhere.
-        Empty where the square has fewer than `SHORTEST_SEGMENT` cells along a side.
+    Wavelengths (k,), mm, ascending, and two-sided densities (k,), mm4: independent errors of
+    variance v have v dx dy everywhere. Empty where the square has fewer than `SHORTEST_SEGMENT`
+    cells along a side. Heights and spacing (dy, dx) are in mm, heights NaN where missing.
     """
     z = heights[hole_free_square(np.isfinite(heights), spacing)]
     if min(z.shape) < SHORTEST_SEGMENT:

@@ -4,10 +4,10 @@ The model, with x the wave number over that of the shortest wave (two spacings):
 
     C(x) = P(x) G(x / x_f) + N,    P(x) = A x^-(1 + 2H) above the roll-off
 
-Several forms are tried for what the grid does to P: nothing; aliasing, where points of a finer
+Several forms are tried for the grid's effect on P: none; aliasing, where points of a finer
 surface were taken; a band limit, where a surface was made on the grid itself. Each of them bends
-the last octave a little, and none is the instrument's. So are several forms of the filter G, which
-halves the spectrum at x_f.
+the last octave a little, and none is the instrument's. Several forms are tried, too, for the filter
+G, which halves the spectrum at x_f.
 """
 
 from itertools import product
@@ -16,9 +16,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from scipy import special
 
-#: Of a filter: Gaussian, and such as fall with powers of the wave number (2 f of straight facets).
+#: Forms of the filter: Gaussian, and powers of the wave number (2 f of straight facets).
 FILTERS = ("Gaussian", "second order", "fourth order")
-#: What the grid may have made of a surface: see above.
+#: Effects of the grid on a surface: see above.
 IDEAL, ALIASED, BAND_LIMITED = SAMPLINGS = ("ideal", "aliased", "band-limited")
 
 
@@ -71,28 +71,23 @@ def named(form: Form, parameters: np.ndarray) -> dict[str, float]:
 
 
 def sampled(sampling: str, slope: float | np.ndarray, x: np.ndarray) -> Any:
-    """Factor of the grid on a profile's spectrum x^-slope.
+    """Factor of the grid on a profile's spectrum x^-slope, by one of :data:`SAMPLINGS`.
 
-    Parameters
-    ----------
-    sampling : str
-        One of :data:`SAMPLINGS`.
-    slope : float or (n, 1) ndarray
-    x : (k,) ndarray
-        Wave numbers over that of the shortest wave, two spacings.
+    Slopes are one number or (n, 1), wave numbers x (k,) over that of the shortest wave, two
+    spacings.
     """
     if sampling == ALIASED:
-        # The sum of |x + 2k|^-slope over all whole k.
+        # The sum of |x + 2k|^-slope over all whole k, by Hurwitz zeta functions.
         waves = special.zeta(slope, x / 2) + special.zeta(slope, 1 - x / 2)
         return waves * (x / 2) ** slope
     if sampling == BAND_LIMITED:
-        # A profile's spectrum is the surface's, integrated over the other axis: to x = 1 only.
+        # A profile's spectrum is the surface's, integrated over the other axis only up to x = 1.
         return special.betainc(0.5, slope / 2, 1 / (1 + x**2))
     return 1.0
 
 
 def rolled_off(slope: float | np.ndarray, start: float, x: np.ndarray) -> np.ndarray:
-    """Profiles of an isotropic surface whose own spectrum is flat below `start`, as a factor."""
+    """Factor on the profiles' spectrum of an isotropic surface: flat spectrum below `start`."""
     whole = special.beta(0.5, slope / 2) / 2
     inside = np.clip(1 - (x / start) ** 2, 0, None)
     flat = np.sqrt(inside) * (x / start) ** slope
@@ -100,7 +95,7 @@ def rolled_off(slope: float | np.ndarray, start: float, x: np.ndarray) -> np.nda
 
 
 def _filtered(filtering: str, log_ratio: np.ndarray) -> np.ndarray:
-    """Logarithm of a filter's effect on the spectrum; it halves it where log_ratio is 0."""
+    """Logarithm of a filter's effect on the spectrum; the filter halves it where log_ratio is 0."""
     if filtering == "Gaussian":
         return -np.log(2) * np.exp(2 * log_ratio)
     order = 2 if filtering == "second order" else 4
@@ -110,11 +105,11 @@ def _filtered(filtering: str, log_ratio: np.ndarray) -> np.ndarray:
 def features_of(form: Form, parameters: np.ndarray, x: np.ndarray) -> dict[str, float]:
     """Parameters: H, and logarithms of the others; the noise as the x where it meets the line."""
     own = named(form, parameters)
-    found = {"hurst": (own["slope"] - 1) / 2}
-    found |= {name: own[name] for name in ("roll_off", "filter", "level") if name in own}
+    features = {"hurst": (own["slope"] - 1) / 2}
+    features |= {name: own[name] for name in ("roll_off", "filter", "level") if name in own}
     if form.noisy:
-        # A line below the floor everywhere meets it at no wave that is seen.
-        found["noise"] = max((own["a"] - own["level"]) / own["slope"], np.log(x.min()))
-        if found["noise"] > 0:  # a filter ends the range before the line could meet the floor
-            del found["noise"]
-    return found
+        # A line that lies below the floor everywhere gets the longest wave, x's minimum.
+        features["noise"] = max((own["a"] - own["level"]) / own["slope"], np.log(x.min()))
+        if features["noise"] > 0:  # a filter ends the range before the line meets the floor
+            del features["noise"]
+    return features

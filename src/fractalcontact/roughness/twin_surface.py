@@ -16,25 +16,19 @@ from ..core.mean_plane import without_mean_plane
 from ..surface.synthesis import filtered_noise, grid_side
 from .plane_spectrum import plane_spectrum
 
-#: Standard deviations by which a moment differs from that of Gaussian heights by more than chance.
+#: Least departure, standard deviations, of a moment from that of Gaussian heights beyond chance.
 _BEYOND_CHANCE = 3.0
-#: Hermite polynomials that a distribution is expanded in, and normal deviates it is sampled at.
+#: Number of Hermite polynomials in the expansion of a distribution, and its normal deviates.
 _POLYNOMIALS, _DEVIATES = 16, np.linspace(-6, 6, 2001)
 
 
 @dataclass(frozen=True, eq=False)
 class TwinSurface:
-    """Random surface like a measured one, to be drawn.
+    """Random surface like a measured one, of (ny, nx) nodes.
 
-    Attributes
-    ----------
-    shape : (ny, nx)
-        Nodes of a twin.
-    density : ndarray
-        Of :func:`surface.synthesis.filtered_noise`, mm2; of a translation process that of the
-        Gaussian surface of variance one.
-    heights : (n,) ndarray
-        Of a translation process the measured ones, mm, ascending; empty of a Gaussian surface.
+    ``density`` is that of :func:`surface.synthesis.filtered_noise`, mm2; of a translation process
+    that of the Gaussian surface of variance one. ``heights`` (n,) are the measured ones of a
+    translation process, mm, ascending; empty of a Gaussian surface.
     """
 
     shape: tuple[int, int]
@@ -62,16 +56,11 @@ def twin_surface(
     Parameters
     ----------
     heights : (ny, nx) ndarray
-        mm, without holes.
+        mm, without holes; ValueError as of :func:`roughness.plane_spectrum.plane_spectrum`.
     spacing : (float, float)
         (dy, dx), mm.
     shape : (ny, nx)
         Nodes of the twins.
-
-    Raises
-    ------
-    ValueError
-        As :func:`roughness.plane_spectrum.plane_spectrum`.
     """
     spectrum, side = plane_spectrum(heights, spacing), grid_side(shape)
     along = scipy.fft.fftfreq(side, spacing[0]), scipy.fft.rfftfreq(side, spacing[1])
@@ -87,7 +76,7 @@ def twin_surface(
     ordered = np.sort(z)
     normal = scipy.fft.rfft2(_before_translation(correlation, ordered), workers=1).real
     normal = np.maximum(normal, 0)
-    # Without its negative parts the density is that of a variance above one.
+    # Cutting negative parts off the density raises the variance above one.
     normal /= scipy.fft.irfft2(normal, s=(side, side), workers=1)[0, 0]
     return TwinSurface(shape, normal, np.sqrt(variance) * ordered)
 
@@ -113,8 +102,8 @@ def _translated(normal: np.ndarray, ordered: np.ndarray) -> np.ndarray:
 def _before_translation(correlation: np.ndarray, ordered: np.ndarray) -> np.ndarray:
     """Correlation of the normal deviates that heights of this correlation are translated from.
 
-    Mehler's formula: that of the heights is the sum of a_k^2 r^k / k! over the Hermite polynomials
-    k = 1, 2, ...
+    Mehler's formula: the heights' correlation is the sum of a_k^2 r^k / k! over the Hermite
+    polynomials k = 1, 2, ...
     """
     weight = np.exp(-(_DEVIATES**2) / 2)
     heights = _translated(_DEVIATES, ordered)
@@ -124,6 +113,6 @@ def _before_translation(correlation: np.ndarray, ordered: np.ndarray) -> np.ndar
         parts.append(np.sum(weight * heights * of_k) ** 2 / special.factorial(k))
     r = np.linspace(-1, 1, 2001)
     after = np.sum([part * r**k for k, part in enumerate(parts, 1)], axis=0) / np.sum(parts)
-    # Rises from -1 on where the distribution is not too skew; its lowest values are unattainable.
+    # For very skew heights the curve falls at first, and low correlations cannot be attained.
     after = np.maximum.accumulate(after)
     return np.interp(correlation, after, r)

@@ -5,7 +5,7 @@ import pytest
 import xarray as xr
 
 from contactlab.experiments.size_decision import paired_exponent
-from contactlab.experiments.size_effect_test import size_effect_test
+from contactlab.experiments.size_effect_verdict import size_effect_verdict
 from contactlab.experiments.size_states import seed_of, solve_task
 from contactlab.experiments.size_tasks import size_jobs, size_tasks
 from fractalcontact.core.errors import InputError
@@ -46,7 +46,7 @@ def parts():
 
 @pytest.fixture(scope="module")
 def found(parts):
-    return size_effect_test(parts, RECIPE)
+    return size_effect_verdict(parts, RECIPE)
 
 
 def test_every_surface_has_a_job_of_its_own_or_shares_one():
@@ -228,7 +228,7 @@ def test_everything_is_labelled(found):
 
 
 def test_the_order_of_the_parts_does_not_matter(parts, found):
-    xr.testing.assert_identical(size_effect_test(parts[::-1], RECIPE), found)
+    xr.testing.assert_identical(size_effect_verdict(parts[::-1], RECIPE), found)
 
 
 def _made(parts, exponent):
@@ -289,7 +289,7 @@ def _empty(task, loads):
 def test_a_world_in_which_eq_6_is_true_is_recognised(many):
     recipe, parts = many
     # Resolution and size have one exponent, 2 - Delta = 1 - H: finer is as good as larger.
-    found = size_effect_test(_made(parts, lambda hurst: hurst - 1), recipe)
+    found = size_effect_verdict(_made(parts, lambda hurst: hurst - 1), recipe)
     assert (found["verdict"] == "eq. 6 agrees").all()
     assert (found["overall"] == "eq. 6 supported").all()
     assert not found["no_size_effect"].any()
@@ -297,7 +297,7 @@ def test_a_world_in_which_eq_6_is_true_is_recognised(many):
 
 def test_a_world_in_which_it_is_false_is_recognised(many):
     recipe, parts = many
-    found = size_effect_test(_made(parts, lambda hurst: 0 * hurst), recipe)
+    found = size_effect_verdict(_made(parts, lambda hurst: 0 * hurst), recipe)
     assert (found["verdict"] != "eq. 6 agrees").all()
     assert (found["overall"] != "eq. 6 supported").all()
     assert found["no_size_effect"].all()
@@ -305,6 +305,6 @@ def test_a_world_in_which_it_is_false_is_recognised(many):
 
 def test_an_exponent_met_by_chance_at_one_h_supports_nothing(many):
     recipe, parts = many
-    found = size_effect_test(_made(parts, lambda hurst: 0 * hurst - 0.5), recipe)
+    found = size_effect_verdict(_made(parts, lambda hurst: 0 * hurst - 0.5), recipe)
     assert (found["verdict"].sel(hurst=0.5) == "eq. 6 agrees").all()
     assert (found["overall"] != "eq. 6 supported").all()

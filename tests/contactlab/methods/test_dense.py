@@ -115,13 +115,6 @@ def test_single_exchanges_alone_reach_the_same_set(monkeypatch):
     np.testing.assert_array_equal(state.in_contact, expected.in_contact)
 
 
-def test_first_touch_carries_nothing():
-    height, space = rough_problem(0, 0.5, 0.02, n=8)
-    for load in ({"closure": 0.0}, {"force": 0.0}):
-        state = ELIMINATION(height, space, **load)
-        assert state.force == state.closure == state.area == 0.0
-
-
 def test_unfinished_pivoting_is_an_error(monkeypatch):
     height, space = rough_problem(1, 0.8, 0.02, n=24)
     monkeypatch.setattr(dense, "MAX_SETS", 1)

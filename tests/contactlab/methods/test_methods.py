@@ -172,10 +172,12 @@ def test_final_check_finds_every_violation(largest_sum, monkeypatch):
             problem.checked_state(pressure, closure, **said)
 
 
-@pytest.mark.parametrize("method", METHODS)
-def test_first_touch_carries_nothing(method):
+@pytest.mark.parametrize(
+    ("method", "load"), [(m, load) for m in METHODS for load in METHODS[m].loads]
+)
+def test_first_touch_carries_nothing(method, load):
     height, space = rough_problem(0, (12, 12), 0.8)
-    state = METHODS[method](height, space, closure=0.0)
+    state = METHODS[method](height, space, **{load: 0.0})
     assert state.force == state.closure == state.area == 0.0
 
 

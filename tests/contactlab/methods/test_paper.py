@@ -76,14 +76,3 @@ def test_point_dropped_in_error_is_found_out(monkeypatch):
         DROPPING(height, space, closure=1.0)
     assert not caught.value.state.in_contact[0, 3]
     assert caught.value.residual == pytest.approx(0.14, abs=1e-5)
-
-
-def test_force_control_is_refused_by_name():
-    height, space = rough_problem(0)
-    with pytest.raises(ValueError, match="closure only"):
-        DROPPING(height, space, force=1.0)
-
-
-def test_first_touch_carries_nothing():
-    height, space = rough_problem(0)
-    assert DROPPING(height, space, closure=0.0).force == 0.0

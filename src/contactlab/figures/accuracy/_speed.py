@@ -26,8 +26,8 @@ _OURS = {"color": COLOURS[0], "marker": MARKERS[0], "ls": "-", "lw": 1.6, "zorde
 
 def scenes_of(atlas: DataTree) -> dict[str, xr.Dataset]:
     """Datasets of the test problems measured, by name, in order of size, H and contact."""
-    found = {name: node.to_dataset().load() for name, node in atlas["speed"].children.items()}
-    return dict(sorted(found.items(), key=lambda item: _place(item[1].attrs)))
+    problems = {name: node.to_dataset().load() for name, node in atlas["speed"].children.items()}
+    return dict(sorted(problems.items(), key=lambda item: _place(item[1].attrs)))
 
 
 def _place(attrs):
@@ -41,12 +41,12 @@ def rough(scenes: dict[str, xr.Dataset]) -> dict[str, xr.Dataset]:
 
 
 def values_of(scenes: dict[str, xr.Dataset], key: str) -> list:
-    """The different values of an attribute, ascending."""
+    """Distinct values of an attribute, ascending."""
     return sorted({scene.attrs[key] for scene in scenes.values()})
 
 
 def middle_contact(scenes: dict[str, xr.Dataset]) -> float:
-    """The share in contact that stands for all where there is room for one."""
+    """Share in contact that represents all where there is room for one."""
     shares = values_of(scenes, "contact")
     return shares[len(shares) // 2]
 
@@ -56,14 +56,14 @@ def styles(scenes: dict[str, xr.Dataset]) -> dict[str, dict]:
     kinds: dict[str, str] = {}
     for scene in scenes.values():
         kinds |= dict(zip(scene["method"].values, scene["kind"].values, strict=True))
-    found = {OURS: _OURS}
+    style_of = {OURS: _OURS}
     for i, (method, kind) in enumerate((m, k) for m, k in kinds.items() if m != OURS):
         style: dict[str, Any] = {
             "color": _COLOURS[i % len(_COLOURS)],
             "marker": MARKERS[(i + 1) % len(MARKERS)],
         }
-        found[method] = style | _OF_KIND[kind]
-    return found
+        style_of[method] = style | _OF_KIND[kind]
+    return style_of
 
 
 def legend_of(figure: FigureBase, panels: Iterable[Axes], ncols: int = 4) -> None:

@@ -29,10 +29,10 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
     figure = Figure(figsize=(WIDTH, 3.6))
     panels = figure.subplots(1, 3)
     panels[1].sharey(panels[0])
-    found = {problem: group(atlas, "convergence", problem) for problem in QUANTITIES}
+    groups = {problem: group(atlas, "convergence", problem) for problem in QUANTITIES}
     trials = group(atlas, "convergence", "richardson")
     tables = [rows(trials, "error", "bar", "finest", problem="richardson")]
-    for axes, (problem, result) in zip(panels, found.items(), strict=False):
+    for axes, (problem, result) in zip(panels, groups.items(), strict=False):
         _draw_errors(axes, result, QUANTITIES[problem])
         named = [f"{name}_{of}" for name in QUANTITIES[problem] for of in ("error", "order")]
         tables.append(rows(result, *named, problem=problem))
@@ -44,7 +44,7 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
         axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.2))
     panels[0].set_ylabel("relative error, rms over positions (1)")
     table = pd.concat(tables, ignore_index=True)
-    return Drawing(figure, table, caption(__name__, **_numbers(found, trials)))
+    return Drawing(figure, table, caption(__name__, **_numbers(groups, trials)))
 
 
 def _draw_errors(axes, result, quantities):

@@ -24,25 +24,25 @@ NEEDS = ("speed",)
 KEY = "speed"
 ORDER = 50
 
-#: How each quantity stands at an axis.
+#: Label of each quantity at an axis.
 AXES = {
     "force_error": "error of $F$ (1)",
     "area_error": "error of $A_r$ (1)",
     "delta_error": r"error of $\Delta_\sigma$ (1)",
     "pressure_error": "error of $p$, rms (1)",
 }
-#: Errors of zero are drawn here, and nothing below.
+#: Smallest error drawn; errors of zero are drawn there.
 SMALLEST = 1e-14
 
 
 def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
     """Rows of quantities, a column for each H, at the largest size and the middle contact."""
-    every = scenes_of(atlas)
-    scenes = rough(every)
+    all_problems = scenes_of(atlas)
+    scenes = rough(all_problems)
     looks = styles(scenes)
     size, contact = values_of(scenes, "size")[-1], middle_contact(scenes)
     wanted = {"size": size, "contact": contact}
-    shown = [one for one in scenes.values() if wanted.items() <= one.attrs.items()]
+    shown = [problem for problem in scenes.values() if wanted.items() <= problem.attrs.items()]
     figure = Figure(figsize=(WIDTH, 8.8))
     panels = figure.subplots(len(AXES), len(shown), sharex=True, sharey="row", squeeze=False)
     letters = iter("abcdefghijklmnopqrstuvwxyz")
@@ -53,17 +53,17 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
         panels[-1, j].set_xlabel("wall time (s)")
     legend_of(figure, panels.flat)
     words = caption(__name__, size=size, share=f"{100 * contact:g}", **_words(scenes))
-    return Drawing(figure, _table(every), words)
+    return Drawing(figure, _table(all_problems), words)
 
 
 def _draw_points(axes: Axes, scene: xr.Dataset, quantity: str, looks: dict[str, dict]) -> None:
     """Every method's error against its seconds, the front, and the reference's own error."""
     for method, look in looks.items():
         own = scene.isel(point=np.flatnonzero(scene["method"] == method))
-        known = np.isfinite(own[quantity].values) & np.isfinite(own["seconds"].values)
-        error = np.maximum(own[quantity].values[known], SMALLEST)
-        if known.any():
-            axes.plot(own["seconds"].values[known], error, **look, label=method, ms=3)
+        finite = np.isfinite(own[quantity].values) & np.isfinite(own["seconds"].values)
+        error = np.maximum(own[quantity].values[finite], SMALLEST)
+        if finite.any():
+            axes.plot(own["seconds"].values[finite], error, **look, label=method, ms=3)
     for name in (name for name, error in FRONTS.items() if error == quantity):
         front = scene.isel(point=np.flatnonzero(scene[name])).sortby("seconds")
         error = np.maximum(front[quantity].values, SMALLEST)
@@ -77,7 +77,7 @@ def _draw_points(axes: Axes, scene: xr.Dataset, quantity: str, looks: dict[str, 
 
 
 def _words(scenes: dict[str, xr.Dataset]) -> dict[str, Any]:
-    """Counts of the problems on whose front ours is at every error below `LEADS_BELOW`."""
+    """Counts of the problems on whose front our solver is at every error below `LEADS_BELOW`."""
     leads = {
         quantity: sum(
             not ahead_of_ours(scene, quantity=quantity, models=False).sizes["point"]
@@ -99,7 +99,7 @@ def _words(scenes: dict[str, xr.Dataset]) -> dict[str, Any]:
 
 
 def _table(scenes: dict[str, xr.Dataset]) -> pd.DataFrame:
-    """One row a point, every test problem below the other, those not drawn too."""
+    """Table of all test problems, also those not drawn, with one row for each point."""
     columns = ["method", "kind", "tolerance", *AXES, "seconds", "seconds_low", "seconds_high"]
     columns += ["runs", "memory", "on_front", "on_pressure_front", "said"]
     tables = [scene[columns].to_dataframe().assign(test_problem=n) for n, scene in scenes.items()]

@@ -23,7 +23,7 @@ NEEDS = ("stability",)
 KEY = "stability"
 ORDER = 100
 
-#: Colour and hatching of each verdict: what must not happen is the darkest.
+#: Colour and hatching of each verdict; silent errors are the darkest.
 _STYLE: dict[int, dict[str, Any]] = {
     RIGHT: {"facecolor": "#cfe3f1"},
     HONEST: {"facecolor": COLOURS[5], "hatch": "////"},
@@ -88,19 +88,19 @@ def _table(stability, counts):
     rows = []
     for k, kind in enumerate(stability["kind"].values):
         for n, solver in enumerate(stability["solver"].values):
-            one = stability.isel(kind=k, solver=n)
-            failed = np.isin(one["verdict"].values, (HONEST, SILENT))
-            words = {_unmeasured(said) for said in one["said"].values[failed]}
+            verdicts = stability.isel(kind=k, solver=n)
+            failed = np.isin(verdicts["verdict"].values, (HONEST, SILENT))
+            words = {_unmeasured(said) for said in verdicts["said"].values[failed]}
             rows.append(
                 {"kind": kind, "solver": solver}
                 | {
                     f"{name} (test problems)": counts[n, k, code]
                     for code, name in enumerate(VERDICTS)
                 }
-                | {"draws_honest_failure": _draws(one, HONEST)}
-                | {"draws_silently_wrong": _draws(one, SILENT)}
-                | {"violation_of_closure": one["violation"].where(failed).max().item()}
-                | {"tolerance_asked": one["asked"].min().item()}
+                | {"draws_honest_failure": _draws(verdicts, HONEST)}
+                | {"draws_silently_wrong": _draws(verdicts, SILENT)}
+                | {"violation_of_closure": verdicts["violation"].where(failed).max().item()}
+                | {"tolerance_asked": verdicts["asked"].min().item()}
                 | {"said": "; ".join(sorted(words - {""}))}
             )
     return pd.DataFrame(rows)

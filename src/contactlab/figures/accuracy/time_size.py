@@ -33,11 +33,11 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
     figure = Figure(figsize=(WIDTH, 6.4))
     panels = figure.subplots(2, len(columns), sharex=True, sharey="row", squeeze=False)
     for j, surface in enumerate(columns):
-        one = growth.sel(surface=surface)
+        of_surface = growth.sel(surface=surface)
         for i, name in enumerate(_ROWS):
-            _draw_growth(panels[i, j], one, name, looks)
+            _draw_growth(panels[i, j], of_surface, name, looks)
             letter(panels[i, j], "abcdefgh"[i * len(columns) + j], surface)
-        _draw_bounds(panels[0, j], one)
+        _draw_bounds(panels[0, j], of_surface)
         panels[-1, j].set_xlabel("nodes per side (1)")
     for i, (label, _) in enumerate(_ROWS.values()):
         panels[i, 0].set_ylabel(label)
@@ -75,7 +75,7 @@ def _draw_bounds(axes, one):
 
 
 def _table(growth):
-    """One row a surface, solver and size."""
+    """Table of times and memories with a row for each surface, solver and size."""
     columns = ["seconds", "memory", "reached", "bound"]
     columns += [name for name in growth.data_vars if "exponent" in name]
     table = growth[columns].to_dataframe().reset_index()

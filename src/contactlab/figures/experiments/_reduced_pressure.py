@@ -6,14 +6,7 @@ from matplotlib.ticker import NullLocator
 
 
 def load_axis(axes: Axes, loads: np.ndarray) -> None:
-    """A logarithmic axis with the loads that were solved, and no others, for ticks.
-
-    Parameters
-    ----------
-    axes : Axes
-    loads : (n,) ndarray
-        p / (E* h'_rms).
-    """
+    """Logarithmic axis with ticks at the loads p / (E* h'_rms) that were solved, and no others."""
     axes.set_xscale("log")
     axes.xaxis.set_minor_locator(NullLocator())
     axes.set_xticks(loads, [f"{load:g}" for load in loads])

@@ -61,11 +61,13 @@ def _draw_surfaces(axes, chosen):
         {"color": colour_of(2), "marker": MARKERS[1], "mfc": "white", "ls": "--"},
     )
     for seed in chosen["seed"].values:
-        one = chosen.sel(seed=seed)
+        surface = chosen.sel(seed=seed)
         first = seed == chosen["seed"].values[0]
         for (name, words), style in zip(_KAPPAS.items(), styles, strict=True):
             label = words if first else None
-            axes.plot(one["reduced_pressure"], one[name], label=label, lw=0.7, ms=3, **style)
+            axes.plot(
+                surface["reduced_pressure"], surface[name], label=label, lw=0.7, ms=3, **style
+            )
     axes.margins(y=0.12)
 
 

@@ -25,9 +25,9 @@ NEEDS = ("size_effect",)
 KEY = "size_effect"
 ORDER = 7
 
-#: Of contact and of its bearing-area cut: words, marker, line, factor of their places.
+#: Contact and its bearing-area cut: words, marker, line, factor of their places.
 _STYLES = (("elastic contact", "o", "-", 1.04), ("bearing-area cut", "s", "--", 0.96))
-#: Their dimensions on the self-affine surfaces, and on each construction.
+#: Variables of both on the self-affine surfaces, and on each construction.
 _SELF_AFFINE, _CONSTRUCTED = ("band_delta", "cut_delta"), ("geometry_delta", "geometry_cut")
 
 
@@ -78,16 +78,16 @@ def _count(test: xr.Dataset) -> int:
 
 
 def _draw_curves(
-    panel: Panel, one: xr.Dataset, names: Sequence[str], *, colours: Sequence[int], of: str = ""
+    panel: Panel, states: xr.Dataset, names: Sequence[str], *, colours: Sequence[int], of: str = ""
 ) -> None:
     """Dimension of the contact domain and of its cut."""
     for name, colour, (label, marker, line, beside) in zip(names, colours, _STYLES, strict=True):
         style: dict[str, Any] = {"marker": marker, "ls": line, "color": colour_of(colour)}
         style |= {"unit": (beside, 1.0), "label": f"{label}{of}", "hollow": {"zorder": 3}}
-        known = np.isfinite(Estimate.read(one, name).width)
-        shown = one.assign(known=("reduced_pressure", known))
+        has_interval = np.isfinite(Estimate.read(states, name).width)
+        shown = states.assign(known=("reduced_pressure", has_interval))
         panel.curve(shown, "reduced_pressure", name, filled="known", **style)
-    load_axis(panel.axes, one["reduced_pressure"].values)
+    load_axis(panel.axes, states["reduced_pressure"].values)
     panel.axes.set_xlabel(r"reduced pressure $p/(E^* h′_\mathrm{rms})$ (1)")
 
 

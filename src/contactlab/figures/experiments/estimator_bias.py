@@ -34,9 +34,9 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
     letters = iter("abcdefghijklmnopqrstuvwxyz")
     for n, (size, roll_off) in enumerate(surfaces):
         row, column = 2 * (n // columns), n % columns
-        one = bias.sel(size=size, roll_off=roll_off)
-        _draw_bias(panels[row, column], one)
-        _draw_coverage(panels[row + 1, column], one)
+        panel_bias = bias.sel(size=size, roll_off=roll_off)
+        _draw_bias(panels[row, column], panel_bias)
+        _draw_coverage(panels[row + 1, column], panel_bias)
         letter(panels[row, column], next(letters), f"bias, {_surface_words(size, roll_off)}")
         letter(panels[row + 1, column], next(letters), "95 % intervals that hold the true $H$")
     for upper, lower in zip(panels[::2, 0], panels[1::2, 0], strict=True):

@@ -29,7 +29,7 @@ NEEDS = ("specimens", "joints", "roll_off", "statements")
 KEY = "roll_off"
 ORDER = 10
 
-#: What the paper says of rock and of concrete (:mod:`statements.sliding`).
+#: The paper's statements on rock and on concrete (:mod:`statements.sliding`).
 PLATEAUS = ("dilatancy_flattens", "dilatancy_flattens_in_two")
 #: Specimens that the caption names, and letters of the label of each, there and in the legend.
 MAX_NAMED, MAX_IN_CAPTION, MAX_IN_LEGEND = 3, 40, 60
@@ -53,12 +53,12 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
         configuration_of(atlas)["settings"],
     )
     sliding = [name for name in names if directions.slides(settings[name]["opposite"])]
-    slides = [_synthetic(joints.sel(surface=one)) for one in joints["surface"].values]
-    # What crushes has the faces of another specimen.
+    slides = [_synthetic(joints.sel(surface=surface)) for surface in joints["surface"].values]
+    # A specimen that crushes has the faces of another specimen.
     other = [name for name in sliding if not settings[name]["capped_variant"]]
     slides += [_of_specimen(atlas, name) for name in other]
     figure = Figure(figsize=(WIDTH, 3.6 + 0.15 * len(slides)))
-    panels = [Panel(*one) for one in zip(figure.subplots(1, 2), "ab", _TITLES, strict=True)]
+    panels = [Panel(*surface) for surface in zip(figure.subplots(1, 2), "ab", _TITLES, strict=True)]
     for n, slide in enumerate(slides):
         _draw_slide(panels, slide, {"color": colour_of(n), "ls": LINES[n % 4]})
     opened, ratio = (panel.axes for panel in panels)
@@ -99,7 +99,7 @@ def _of_specimen(atlas: DataTree, name: str) -> xr.Dataset:
     length = quantity(stated, "length", f"embedded.{name}.roll_off") if stated else np.nan
     attrs = {"label": subject.label, "slope": "", "since": np.inf, "roll_off_mm": length}
     attrs["uncorrelated_mm"] = float(joint["mean_uncorrelated_offset"])
-    # The dilatancy of faces that do not match counts from where they were apart already.
+    # The dilatancy of faces that do not match starts from their initial separation.
     attrs["matched"] = subject["specimens"].attrs["opposite"] == "match"
     slide = joint[list(DRAWN)].rename(direction="direction_or_seed")
     return slide.drop_attrs(deep=False).assign_attrs(attrs)
@@ -107,7 +107,7 @@ def _of_specimen(atlas: DataTree, name: str) -> xr.Dataset:
 
 def _draw_slide(panels: Sequence[Panel], slide: xr.Dataset, style: dict[str, Any]) -> None:
     """Dilatancy of a slide and its ratio to the spread, the means with their bands; its marks."""
-    # Flush faces have no place in decades, and what rounding leaves of their spread would be shown.
+    # A logarithmic axis has no zero offset, where the spread of flush faces is rounding alone.
     slide = slide.isel(rigid_offset=(slide["rigid_offset"] > 0).values)
     v, of = slide["rigid_offset"].values, slide.attrs
     label = "\n".join(filter(None, (printable(of["label"], MAX_IN_LEGEND), of["slope"])))

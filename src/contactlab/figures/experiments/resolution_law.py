@@ -25,14 +25,14 @@ NEEDS = ("size_effect",)
 KEY = "size_effect"
 ORDER = 6
 
-#: Of every state in the table.
+#: Variables of every state in the table.
 _STATES = (
     *("corrected_share", "persson_share", "rms_slope", "of_hurst", "of_cut_off", "number"),
     *("resolved_pressure", "resolved_kappa"),
 )
-#: Factor between places of points that would lie over each other.
+#: Factor between the places of points that would overlap.
 _BESIDE = 1.05
-#: Colour of what others computed, which is no class of surfaces of this study.
+#: Colour of published computations, which are no class of surfaces of this study.
 _PUBLISHED = colour_of(3)
 
 
@@ -66,9 +66,9 @@ def _draw_slopes(axes: Axes, table: pd.DataFrame) -> list[Any]:
     hursts, cut_offs = (sorted(table[of].unique()) for of in ("of_hurst", "of_cut_off"))
     for (i, hurst), (j, cut_off) in product(enumerate(hursts), enumerate(cut_offs)):
         chosen = (table["of_hurst"] == hurst) & (table["of_cut_off"] == cut_off)
-        one = table[chosen].groupby("resolved_pressure")["resolved_kappa"]
-        one = one.agg(["mean", "min", "max"])
-        beside = one.index * _BESIDE ** (i - (len(hursts) - 1) / 2)
+        kappa = table[chosen].groupby("resolved_pressure")["resolved_kappa"]
+        kappa = kappa.agg(["mean", "min", "max"])
+        places = kappa.index * _BESIDE ** (i - (len(hursts) - 1) / 2)
         style: dict[str, Any] = {
             "marker": MARKERS[j % len(MARKERS)],
             "ms": 3.5,
@@ -76,8 +76,8 @@ def _draw_slopes(axes: Axes, table: pd.DataFrame) -> list[Any]:
             "lw": 0.6,
         }
         style["label"] = f"$H$ = {hurst:g}, $s$ = {cut_off:g} nodes"
-        bars = reach(one["mean"], one["min"], one["max"])
-        drawn.append(axes.errorbar(beside, one["mean"], bars, **style))
+        bars = reach(kappa["mean"], kappa["min"], kappa["max"])
+        drawn.append(axes.errorbar(places, kappa["mean"], bars, **style))
     return drawn
 
 

@@ -36,7 +36,7 @@ _ARMS = {
 }
 #: Estimators of Delta_sigma: name, words, filled.
 _ESTIMATORS = (("area", "$A_r(s)$", True), ("box", "box counts", False))
-#: Of the table, for every class, load and estimator.
+#: Columns of the table for every class, load and estimator.
 _COLUMNS = (
     *("alpha", "eq6_exponent", "central_alpha", "theory_alpha", "verdict"),
     "no_size_effect",
@@ -77,24 +77,24 @@ def _draw_arm(axes: Axes, test: xr.Dataset) -> None:
     axes.axline((0, 0), slope=1, color="k", lw=1.2, ls="--")
     places = product(range(test.sizes["hurst"]), range(test.sizes["reduced_pressure"]), _ESTIMATORS)
     for i, k, (estimator, _, filled) in places:
-        one = test.isel(hurst=i, reduced_pressure=k).sel(delta_estimator=estimator)
-        found, wanted = (Estimate.read(one, name) for name in ("alpha", "eq6_exponent"))
-        if found.known and wanted.known:
+        of_class = test.isel(hurst=i, reduced_pressure=k).sel(delta_estimator=estimator)
+        measured, wanted = (Estimate.read(of_class, name) for name in ("alpha", "eq6_exponent"))
+        if measured.known and wanted.known:
             colour = colour_of(i)
             style: dict[str, Any] = {
                 "color": colour,
                 "mfc": colour if filled else "white",
                 "elinewidth": 0.7,
             }
-            style |= {"xerr": reach(*wanted.ends), "yerr": reach(*found.ends)}
-            axes.errorbar(wanted.value, found.value, fmt=MARKERS[k], **style)
+            style |= {"xerr": reach(*wanted.ends), "yerr": reach(*measured.ends)}
+            axes.errorbar(wanted.value, measured.value, fmt=MARKERS[k], **style)
 
 
 def _legends(test: xr.Dataset) -> list[list[Artist]]:
     """Columns of the legend: classes, loads, estimators and lines."""
     classes: list[Artist] = []
     for i, hurst in enumerate(test["hurst"].values):
-        # With the verdict on eq. 6 where all arms agree.
+        # The title has the verdict on eq. 6 if all arms agree.
         decided = np.unique(test["overall"].sel(hurst=hurst).values)
         words = f": {decided[0]}" if len(decided) == 1 else ""
         label = f"$H$ = {hurst:g}{words}"

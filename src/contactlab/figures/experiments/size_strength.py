@@ -80,8 +80,8 @@ def _draw_strength(axes: Axes, test: xr.Dataset) -> None:
     sides = test.sizes["side"]
     for law, i in product(test["law"].values, range(sides)):
         shift = 1.06 ** (i - (sides - 1) / 2) * (1.0 if law == ELASTIC else 1.03)
-        one = Estimate.read(test.sel(law=law).isel(side=i), "strength")
-        _draw(axes, middles * shift, one, law, color=colour_of(i + 1), fmt=MARKERS[i])
+        strength = Estimate.read(test.sel(law=law).isel(side=i), "strength")
+        _draw(axes, middles * shift, strength, law, color=colour_of(i + 1), fmt=MARKERS[i])
     axes.plot(middles, test["theory_strength"].sel(law=ELASTIC), "-", color="0.6", lw=1, zorder=0)
     friction = np.tan(np.radians(test.attrs["basic_friction_angle"]))
     axes.axhline(friction, color="0.6", ls=":", lw=1, zorder=0)
@@ -97,14 +97,14 @@ def _draw_exponents(axes: Axes, test: xr.Dataset) -> None:
     axes.axhspan(-test.attrs["bound"], test.attrs["bound"], color="0.9", lw=0, zorder=0)
     groups = list(product(range(test.sizes["reduced_pressure"]), test["law"].values))
     for n, (load, law) in enumerate(groups):
-        one = test.sel(law=law).isel(reduced_pressure=load)
+        exponents = test.sel(law=law).isel(reduced_pressure=load)
         x = places + 0.7 * ((n + 0.5) / len(groups) - 0.5)
         names = ("pooled_exponent", "strength_exponent", "scaled_strength_exponent")
-        parts = [np.atleast_2d(np.stack(Estimate.read(one, name).ends).T) for name in names]
+        parts = [np.atleast_2d(np.stack(Estimate.read(exponents, name).ends).T) for name in names]
         _draw(axes, x, Estimate(*np.concatenate(parts).T), law, color="k", fmt=MARKERS[load])
         scaled = x[1 + intervals :]
-        axes.plot(scaled, one["predicted_exponent"], "_", color="k", ms=12, zorder=0)
-        axes.plot(scaled, one["theory_exponent"], "x", color="0.6", ms=5, zorder=0)
+        axes.plot(scaled, exponents["predicted_exponent"], "_", color="k", ms=12, zorder=0)
+        axes.plot(scaled, exponents["theory_exponent"], "x", color="0.6", ms=5, zorder=0)
     axes.axvline(intervals + 0.5, color="0.6", lw=0.8)
     of_v = zip(test["interval_low"].values, test["interval_high"].values, strict=True)
     of_b = zip(test["fraction_low"].values, test["fraction_high"].values, strict=True)

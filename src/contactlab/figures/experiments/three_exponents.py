@@ -25,7 +25,7 @@ NEEDS = ("size_effect",)
 KEY = "size_effect"
 ORDER = 4
 
-#: Of each exponent: variable, what is taken from it, marker, words, and words of its null models.
+#: Exponents: variable, number subtracted, marker, words, and words of the null models.
 _EXPONENTS: tuple[tuple[str, float, str, str, dict[str, str]], ...] = (
     (
         *("area_delta", 2.0, "o", r"resolution $s$: $\Delta_\sigma-2$ by $A_r(s)$"),
@@ -92,12 +92,12 @@ def _draw_hurst(axes: Axes, one: xr.Dataset) -> None:
 
 def _words(test: xr.Dataset) -> dict[str, Any]:
     """Exponents at one load, of the lowest and the highest H."""
-    one = test.sel(reduced_pressure=_QUOTED, method="nearest")
-    exponents = {name: one[name].values - less for name, less, *_ in _EXPONENTS}
+    quoted = test.sel(reduced_pressure=_QUOTED, method="nearest")
+    exponents = {name: quoted[name].values - less for name, less, *_ in _EXPONENTS}
     classes = [
         (hurst, {name: values[i] for name, values in exponents.items()})
         for i, hurst in enumerate(test["hurst"].values.tolist())
     ]
-    # The lowest and the highest H alone: a caption is short.
+    # The caption has only the lowest and the highest H, to be short.
     ends = dict((classes[0], classes[-1]))
-    return {"load": float(one["reduced_pressure"]), "classes": ends}
+    return {"load": float(quoted["reduced_pressure"]), "classes": ends}

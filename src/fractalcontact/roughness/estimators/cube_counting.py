@@ -9,7 +9,7 @@ from ..estimator import Estimator
 from ..known_bias import POINTS, Fit, tabulated_mean
 from ..spectrum_model import BAND_LIMITED
 
-#: Sides over lags of the fit range.
+#: Ratio of the sides of columns to the lags of the fit range.
 FACTOR = 1.0
 
 #: Mean H by the slope on the synthetic surfaces of `known_bias.SYNTHETIC_HURST`.
@@ -55,7 +55,7 @@ def _add_ranges(heights, side, total, weight):
 
 
 def expected_hurst(fit: Fit, sampling: str) -> np.ndarray:
-    """H that the slope gives on average.
+    """Mean H by the slope.
 
     A column of few nodes misses peaks between them; levelling takes from the widest columns.
     """
@@ -74,5 +74,5 @@ ESTIMATOR = Estimator(
     factor=FACTOR,
     spread=1.65,
     expected_hurst=expected_hurst,
-    nodes=BAND_LIMITED,  # the surfaces that it was tried on first
+    nodes=BAND_LIMITED,  # its means are of surfaces made on the grid
 )

@@ -70,7 +70,7 @@ def _square_about_plane(window):
                 zy += dz * dy
                 zx += dz * dx
                 zz += dz * dz
-    # Most of the window was measured, so that its cells span a plane.
+    # Cells that cover most of a window span a plane: the determinant is above zero.
     determinant = yy * xx - xy * xy
     slope_y, slope_x = (zy * xx - zx * xy) / determinant, (zx * yy - zy * xy) / determinant
     return max(zz - slope_y * zy - slope_x * zx, 0.0) / (n - 3)
@@ -109,14 +109,14 @@ def _square_about_line(piece):
             xx += dx * dx
             zx += dz * dx
             zz += dz * dz
-    # A random walk's is n/15 - 4/(15 n): so a sum over n, not over n - 2 as for noise.
+    # A random walk has n/15 - 4/(15 n): hence the sum over n, not over n - 2 as for noise.
     return max(zz - zx * zx / xx, 0.0) / n
 
 
 def expected_hurst(fit: Fit, sampling: str) -> np.ndarray:
-    """H that the slope gives on average.
+    """Mean H by the slope.
 
-    All of the missing waves' mean square is about a window's plane, of the surface's a part.
+    The mean square of missing waves lies wholly about a window's plane, that of the surface partly.
     """
     whole = fit.axis == "both"
     unit = square_about_plane() if whole else square_about_line()

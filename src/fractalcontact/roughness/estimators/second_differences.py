@@ -28,8 +28,8 @@ def second_difference_curves(heights: np.ndarray, spacing: float) -> dict[str, C
 def _add_second_differences(heights, lag, total, weight):
     """Add squares of second differences along x to the blocks that hold their middles.
 
-    As :func:`roughness.curves.add_squares`, but without an array of them: that of a large scan does
-    not fit the processor's cache.
+    As :func:`roughness.curves.add_squares`, but without an array of the differences: that of a
+    large scan does not fit the processor's cache.
     """
     ny, nx = heights.shape
     for i in range(ny):
@@ -46,9 +46,9 @@ def _add_second_differences(heights, lag, total, weight):
 
 
 def expected_hurst(fit: Fit, sampling: str) -> np.ndarray:
-    """H that the slope gives on average.
+    """Mean H by the slope.
 
-    Of noise second differences are three times the differences, of the surface 4 - 4^H times.
+    Second differences of noise are 3 times its differences, those of the surface 4 - 4^H times.
     """
     left = second_difference_fraction(fit.length / fit.roll_off, fit.shape)
     return hurst_of_mean_square(fit, left - short_wave_fraction(fit, sampling, NOISE))

@@ -8,10 +8,10 @@ from ..estimator import Estimator
 from ..known_bias import POINTS, Fit, tabulated_mean
 from ..spectrum_model import BAND_LIMITED
 
-#: Fractions of the surface below the levels whose islands are measured.
+#: Fractions of the surface that lie below the levels of the islands.
 LEVELS = (0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9)
 
-#: Lengths over lags of the fit range: there are too few islands at the long end.
+#: Ratio of lengths to lags of the fit range: there are too few islands at the long end.
 FACTOR = 0.75
 
 #: Mean H by the slope on the synthetic surfaces of `known_bias.SYNTHETIC_HURST`.
@@ -31,9 +31,9 @@ def slit_island_curves(heights: np.ndarray, spacing: float) -> dict[str, Curve]:
     """Perimeter of islands over the root of their area A, against that root (mm): A^((D - 1) / 2).
 
     Mandelbrot, Passoja & Paullay, Nature 308 (1984) 721: coasts of dimension D = Delta_g - 1.
-    Islands and lakes of the `LEVELS`, connected along sides of cells; shores of what lies inside
-    belong to the perimeter, and its area does not count. What meets the rim or a missing cell is
-    left out.
+    Islands and lakes of the `LEVELS`, connected along sides of cells; the shores of lakes and
+    islands inside belong to the perimeter, and their area does not count. Islands that meet the rim
+    or a missing cell are left out.
     """
     edges = np.geomspace(1, min(heights.shape) / 2, _bins_to(min(heights.shape) / 2) + 1)
     bins = len(edges) - 1
@@ -62,7 +62,7 @@ def _islands(heights, known, level):
     islands, n_islands = ndimage.label(above)
     lakes, n_lakes = ndimage.label(known & ~above)
     lakes[lakes > 0] += n_islands
-    # Number 0 is what was not measured, and a rim round the grid.
+    # Number 0 marks missing cells and a rim round the grid.
     label = np.pad(islands + lakes, 1)
     n = n_islands + n_lakes + 1
     perimeter, ends = np.zeros(n), np.ones(n, bool)
@@ -83,7 +83,7 @@ def _islands(heights, known, level):
 
 
 def expected_hurst(fit: Fit, sampling: str) -> np.ndarray:
-    """H that the slope gives on average.
+    """Mean H by the slope.
 
     Small islands have no lakes yet, and each coast alone is smoother than all of them.
     """
@@ -102,5 +102,5 @@ ESTIMATOR = Estimator(
     factor=FACTOR,
     spread=1.0,
     expected_hurst=expected_hurst,
-    nodes=BAND_LIMITED,  # the surfaces that it was tried on first
+    nodes=BAND_LIMITED,  # its means are of surfaces made on the grid
 )

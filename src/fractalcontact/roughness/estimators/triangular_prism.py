@@ -16,7 +16,8 @@ from ..known_bias import (
 )
 from ..roll_off import rise_fraction
 
-#: Prisms of side b start every b / PRISM_STEPS cells: closer ones add nothing new.
+#: Starts of prisms per side: prisms of side b start every b / PRISM_STEPS cells, as closer ones add
+#: nothing.
 PRISM_STEPS = 4
 
 
@@ -54,7 +55,7 @@ def _add_facet_slopes(heights, side, total, weight):
 
 
 def expected_hurst(fit: Fit, sampling: str) -> np.ndarray:
-    """H that the slope gives on average.
+    """Mean H by the slope.
 
     A facet's mean square rise is 1 + 2^(H - 1) times the mean square difference. Levelling takes
     both axes' part from it, and of noise it is 1 1/2 times the difference.

@@ -1,9 +1,9 @@
-"""The decisive experiment on eq. 6: resolution, size and geometry of the contact varied one by one.
+"""Verdict on eq. 6 by the experiment that varies resolution, size and geometry one by one.
 
 Arm R varies the short cut-off at one size, S1, S2 and S3 vary the size at one short cut-off, with a
 fixed roll-off, one in proportion to the size, and none; W those of windows cut from one surface. G
-has surfaces of other constructions. What the classical theory (Persson's) says of each stands
-beside it, from the spectrum that the surfaces of a class have in the mean.
+has surfaces of other constructions. The prediction of the classical theory (Persson's) for each
+comes from the mean spectrum of the surfaces of a class.
 """
 
 from collections.abc import Mapping, Sequence
@@ -48,7 +48,7 @@ OVER_SIDE = {
     "compliance_exponent": "exponent of the compliance of the interface over the side b",
     "separation_exponent": "exponent of the mean gap over the side b",
 }
-#: What arm R gives, and the largest surfaces of S1, in place of a dimension.
+#: Numbers of arm R and of the largest surfaces of S1 that stand for a dimension.
 DIMENSIONS = {
     "area_delta": "Delta_sigma by A_r(s), from the short cut-off",
     "theory_delta": "the same from h'_rms of the surfaces alone, by Persson",
@@ -58,7 +58,7 @@ DIMENSIONS = {
     "band_delta": "correlation dimension between cut-off and roll-off, finest surfaces of arm R",
     "cut_delta": "the same of the bearing-area cut",
 }
-#: What arm G gives.
+#: Numbers of arm G.
 GEOMETRY = {
     "geometry_delta": "correlation dimension of the contact domain, other constructions",
     "geometry_cut": "the same of the bearing-area cut",
@@ -79,12 +79,12 @@ _VERDICTS: dict[str, tuple] = {
     "published_pressure": ("published", "1", "p / (E* h'_rms) of published periodic areas"),
     "published_share": ("published", "1", "published A_r / A_0 of periodic surfaces, H = 0.8"),
 }
-#: Estimators of Delta_sigma that eq. 6 is tried with: by the areas A_r(s), and by box counts.
+#: Estimators of Delta_sigma in eq. 6: by the areas A_r(s), and by box counts.
 _ESTIMATORS = ("area", "box")
 
 
 @titled("which exponent carries the size effect: resolution, size and geometry one by one")
-def size_effect_test(parts: Sequence[xr.Dataset], recipe: Mapping[str, Any]) -> xr.Dataset:
+def size_effect_verdict(parts: Sequence[xr.Dataset], recipe: Mapping[str, Any]) -> xr.Dataset:
     """Exponents of every class of surfaces, and the verdict on eq. 6.
 
     Parameters
@@ -111,7 +111,7 @@ def size_effect_test(parts: Sequence[xr.Dataset], recipe: Mapping[str, Any]) -> 
     arms = [arm for arm in SIZE_ARMS if (samples["of_arm"] == arm).any()]
     smallest = MIN_ROLL_OFFS * recipe["roll_off"]
     constructions = np.unique(samples["of_construction"].values[samples["of_arm"] == "G"])
-    found = (
+    exponents = (
         _over_side(samples, arms, hursts, smallest)
         | _dimensions(samples, hursts)
         | _geometry(samples, constructions, hursts)
@@ -124,21 +124,25 @@ def size_effect_test(parts: Sequence[xr.Dataset], recipe: Mapping[str, Any]) -> 
     }
     variables: dict[str, tuple] = {}
     for name, (dims, words) in _EXPONENTS.items():
-        exponents = Exponent.stack(found[name], [lengths[dim] for dim in dims])
-        variables |= exponents.variables(name, dims, "1", words)
+        stacked = Exponent.stack(exponents[name], [lengths[dim] for dim in dims])
+        variables |= stacked.variables(name, dims, "1", words)
     shape = len(arms), len(hursts), len(loads)
-    alphas = dict(zip(np.ndindex(shape), found["alpha"], strict=True))
+    alphas = dict(zip(np.ndindex(shape), exponents["alpha"], strict=True))
     wanted = [
-        dict(zip(np.ndindex(shape[1:]), map(_prediction, found[f"{name}_delta"]), strict=True))
+        dict(zip(np.ndindex(shape[1:]), map(_prediction, exponents[f"{name}_delta"]), strict=True))
         for name in _ESTIMATORS
     ]
-    decisions = {at: decide(alpha, *(of[at[1:]] for of in wanted)) for at, alpha in alphas.items()}
+    decisions = {
+        place: decide(alpha, *(prediction[place[1:]] for prediction in wanted))
+        for place, alpha in alphas.items()
+    }
     variables |= labelled(
         _VERDICTS,
         {
-            "verdict": np.reshape([one.verdict for one in decisions.values()], shape),
-            "reason": np.reshape([one.reason for one in decisions.values()], shape),
-            "no_size_effect": np.reshape([one.no_size_effect for one in decisions.values()], shape),
+            **{
+                name: np.reshape([getattr(of_load, name) for of_load in decisions.values()], shape)
+                for name in ("verdict", "reason", "no_size_effect")
+            },
             "overall": _overall(decisions, alphas, wanted[0], shape),
             "published_pressure": np.array(list(PERIODIC_AREAS)) / PERIODIC_SLOPE,
             "published_share": np.array(list(PERIODIC_AREAS.values())),
@@ -161,25 +165,20 @@ def size_effect_test(parts: Sequence[xr.Dataset], recipe: Mapping[str, Any]) -> 
 
 
 def with_comparisons(result: xr.Dataset) -> xr.Dataset:
-    """Exponents that eq. 6 wants, and where contact domains differ from the bearing-area cut.
+    """Add the exponents by eq. 6, and the departures of domains from the bearing-area cut.
 
-    Parameters
-    ----------
-    result : xr.Dataset
-        Of :func:`size_effect_test`, without them.
-
-    Returns
-    -------
-    xr.Dataset
-        With ``eq6_exponent`` (hurst, reduced_pressure, delta_estimator) and its interval, and
-        ``domain_determined`` and ``domain_beyond_cut`` (hurst, reduced_pressure): whether both
-        dimensions have intervals, and whether these are disjoint.
+    ``eq6_exponent`` (hurst, reduced_pressure, delta_estimator) with its interval;
+    ``domain_determined`` and ``domain_beyond_cut`` (hurst, reduced_pressure): whether both
+    dimensions have intervals, and whether these are disjoint.
     """
     dims = ("hurst", "reduced_pressure")
-    found = result.transpose(*dims, ...)
-    each = [Estimate.read(found, f"{name}_delta").mapped(lambda d: d - 2) for name in _ESTIMATORS]
+    ordered = result.transpose(*dims, ...)
+    predictions = [
+        Estimate.read(ordered, f"{name}_delta").mapped(lambda d: d - 2) for name in _ESTIMATORS
+    ]
     value, low, high = (
-        np.stack(ends, axis=-1) for ends in zip(*(one.ends for one in each), strict=True)
+        np.stack(ends, axis=-1)
+        for ends in zip(*(prediction.ends for prediction in predictions), strict=True)
     )
     wanted = Estimate(value, low, high)
     words = "exponent of A_r/A_0 over the side b by eq. 6"
@@ -203,19 +202,10 @@ def with_comparisons(result: xr.Dataset) -> xr.Dataset:
 
 
 def with_resolution_law(result: xr.Dataset) -> xr.Dataset:
-    """Area slopes of arm R over p / (E* h'_rms(s)), and the lines of Persson's theory beside.
+    """Add the area slopes of arm R over p / (E* h'_rms(s)), and the lines of Persson's theory.
 
-    Parameters
-    ----------
-    result : xr.Dataset
-        Of :func:`size_effect_test`, without them.
-
-    Returns
-    -------
-    xr.Dataset
-        With ``resolved_pressure`` and ``resolved_kappa`` (surface, reduced_pressure), NaN outside
-        arm R; ``theory_pressure``, ``theory_kappa`` and ``weakened_kappa_low`` and ``_high``
-        (theory,).
+    ``resolved_pressure`` and ``resolved_kappa`` (surface, reduced_pressure), NaN outside arm R;
+    ``theory_pressure``, ``theory_kappa`` and ``weakened_kappa_low`` and ``_high`` (theory,).
     """
     steepest, slope = _slope_of_loads(result), result["rms_slope"]
     pressure = (result["reduced_pressure"] * steepest / slope).where(result["of_arm"] == "R")
@@ -235,7 +225,7 @@ def with_resolution_law(result: xr.Dataset) -> xr.Dataset:
     return result.assign(labelled(_RESOLUTION, values))
 
 
-#: Parts g of the elastic energy that computations without adhesion want, and points of a curve.
+#: Fractions g of the elastic energy by computations without adhesion, and points of a curve.
 _WEAKENED, _CURVE_POINTS = (0.45, 0.42), 60
 _OF_STATES = ("surface", "reduced_pressure")
 _WEAKENED_WORDS = "A_r/A_0 over pressure by Persson's theory with its elastic energy times g"
@@ -261,7 +251,7 @@ def _persson(samples: xr.Dataset) -> xr.DataArray:
 
 
 def _slope_of_loads(samples: xr.Dataset) -> xr.DataArray:
-    """h'_rms in which the loads of every surface are given: that of the shortest cut-off."""
+    """h'_rms in the unit of the loads of every surface: that of the shortest cut-off."""
     slopes = samples["rms_slope"].values
     keys = list(zip(*(samples[f"of_{k}"].values for k in ("arm", "hurst", "size")), strict=True))
     steepest: dict[tuple, float] = {}
@@ -271,77 +261,81 @@ def _slope_of_loads(samples: xr.Dataset) -> xr.DataArray:
 
 
 def _of(samples: xr.Dataset, **chosen: Any) -> xr.Dataset:
-    """The surfaces of a class."""
+    """Surfaces of a class."""
     keep = np.ones(samples.sizes["surface"], bool)
     for name, value in chosen.items():
         keep &= samples[f"of_{name}"].values == value
     return samples.isel(surface=keep)
 
 
+def _over_loads(column: xr.DataArray) -> np.ndarray:
+    """Values of the surfaces of a class, one row for each load."""
+    return column.transpose("reduced_pressure", "surface").values
+
+
 def _over_side(samples, arms, hursts, smallest) -> dict[str, list[Exponent]]:
     """:data:`OVER_SIDE` of every class, in the order (arm, hurst, load)."""
-    found: dict[str, list[Exponent]] = {name: [] for name in OVER_SIDE}
+    exponents: dict[str, list[Exponent]] = {name: [] for name in OVER_SIDE}
     for arm in arms:
         for hurst in hursts:
-            one = _of(samples, arm=arm, hurst=hurst)
-            one = one.isel(surface=one["of_size"].values >= smallest)
-            sides = one["of_size"].values
-            central = one["central_share"] / fudged_persson_area(
-                one["central_pressure"].values * _slope_of_loads(one).values[:, np.newaxis],
+            surfaces = _of(samples, arm=arm, hurst=hurst)
+            surfaces = surfaces.isel(surface=surfaces["of_size"].values >= smallest)
+            sides = surfaces["of_size"].values
+            central = surfaces["central_share"] / fudged_persson_area(
+                surfaces["central_pressure"].values
+                * _slope_of_loads(surfaces).values[:, np.newaxis],
                 1.0,
-                one["rms_slope"].values[:, np.newaxis],
+                surfaces["rms_slope"].values[:, np.newaxis],
             )
-            height = one["rms_height"]
+            height = surfaces["rms_height"]
             columns = {
-                "alpha": one["corrected_share"],
+                "alpha": surfaces["corrected_share"],
                 "central_alpha": central,
-                "theory_alpha": one["persson_share"],
-                "compliance_exponent": one["compliance"] * height,
-                "separation_exponent": one["separation"] * height,
+                "theory_alpha": surfaces["persson_share"],
+                "compliance_exponent": surfaces["compliance"] * height,
+                "separation_exponent": surfaces["separation"] * height,
             }
             for name, column in columns.items():
-                rows = column.transpose("reduced_pressure", "surface").values
+                rows = _over_loads(column)
                 if arm == "W":  # windows of one surface are no independent surfaces
-                    numbers = one["number"].values
-                    found[name] += [paired_exponent(sides, row, numbers) for row in rows]
+                    numbers = surfaces["number"].values
+                    exponents[name] += [paired_exponent(sides, row, numbers) for row in rows]
                 else:
-                    found[name] += [size_exponent(sides, row) for row in rows]
-    return found
+                    exponents[name] += [size_exponent(sides, row) for row in rows]
+    return exponents
 
 
 def _geometry(samples, constructions, hursts) -> dict[str, list[Exponent]]:
     """:data:`GEOMETRY` of every construction, Hurst exponent and load."""
-    found: dict[str, list[Exponent]] = {name: [] for name in GEOMETRY}
+    exponents: dict[str, list[Exponent]] = {name: [] for name in GEOMETRY}
     for construction in constructions:
         for hurst in hursts:
-            one = _of(samples, arm="G", construction=construction, hurst=hurst)
+            surfaces = _of(samples, arm="G", construction=construction, hurst=hurst)
             for name, column in zip(GEOMETRY, ("band_dimension", "cut_dimension"), strict=True):
-                rows = one[column].transpose("reduced_pressure", "surface").values
-                found[name] += [mean_exponent(row) for row in rows]
-    return found
+                exponents[name] += [mean_exponent(row) for row in _over_loads(surfaces[column])]
+    return exponents
 
 
 def _dimensions(samples, hursts) -> dict[str, list[Exponent]]:
     """:data:`DIMENSIONS` of every Hurst exponent and load."""
-    found: dict[str, list[Exponent]] = {name: [] for name in DIMENSIONS}
+    exponents: dict[str, list[Exponent]] = {name: [] for name in DIMENSIONS}
     for hurst in hursts:
         fine = _of(samples, arm="R", hurst=hurst)
         slopes = _cut_off_slopes(fine, "corrected_share"), _cut_off_slopes(fine, "persson_share")
         for name, of_surfaces in zip(("area_delta", "theory_delta"), slopes, strict=True):
-            found[name] += [mean_exponent(2 - row) for row in of_surfaces]
+            exponents[name] += [mean_exponent(2 - row) for row in of_surfaces]
         finest = fine.isel(surface=fine["of_cut_off"].values == fine["of_cut_off"].values.min())
         largest = _of(samples, arm="S1", hurst=hurst)
         largest = largest.isel(surface=largest["of_size"].values == largest["of_size"].values.max())
-        for name, one, column in (
+        for name, surfaces, column in (
             ("box_delta", largest, "box_dimension"),
             ("random_delta", largest, "random_dimension"),
             ("box_cut_delta", largest, "cut_box_dimension"),
             ("band_delta", finest, "band_dimension"),
             ("cut_delta", finest, "cut_dimension"),
         ):
-            rows = one[column].transpose("reduced_pressure", "surface").values
-            found[name] += [mean_exponent(row) for row in rows]
-    return found
+            exponents[name] += [mean_exponent(row) for row in _over_loads(surfaces[column])]
+    return exponents
 
 
 def _cut_off_slopes(fine: xr.Dataset, name: str) -> np.ndarray:

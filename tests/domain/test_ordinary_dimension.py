@@ -9,7 +9,7 @@ from fractalcontact.domain.box_counts import box_count, mean_count, window_sizes
 from fractalcontact.domain.box_dimension import box_dimension, dimension_of_domain
 from fractalcontact.domain.count_law import law_count
 from fractalcontact.domain.null_models import null_models
-from fractalcontact.domain.ordinary_slope import dyadic_sizes
+from fractalcontact.domain.ordinary_dimension import dyadic_sizes
 from fractalcontact.surface.synthesis import self_affine
 
 HEIGHTS = self_affine((128, 128), 0.1, 0.8, rms=1.0, seed=2)

@@ -1,7 +1,7 @@
-"""The ordinary box-counting dimension: the least-squares slope of the minimal cover.
+"""Ordinary box-counting dimension: the least-squares slope of the minimal cover.
 
 Boxes of 1, 2, 4, ... cells, every grid origin tried, a straight line through log N over log r
-between the cut-offs: what a textbook calls box counting, without a model of the counts.
+between the cut-offs: the box counting of textbooks, without a model of the counts.
 """
 
 from dataclasses import dataclass
@@ -19,16 +19,8 @@ from .mean_law import block_error, count_slope
 
 
 @dataclass(frozen=True, kw_only=True)
-class OrdinarySlope(Estimate):
-    """Slope of the minimal cover over sizes in cells, and the counts behind it.
-
-    Attributes
-    ----------
-    sizes : (k,) int64 ndarray
-        Cells: the powers of two to half of the window.
-    counts : (k,) ndarray
-    used : (k,) bool ndarray
-    """
+class OrdinaryDimension(Estimate):
+    """Ordinary dimension, its box sizes (2^k cells to half of the window) and their counts."""
 
     sizes: np.ndarray
     counts: np.ndarray
@@ -41,33 +33,19 @@ def dyadic_sizes(shape: tuple[int, ...]) -> np.ndarray:
     return 2 ** np.arange(max(int(np.log2(min(shape) / 2) + 1e-9), 0) + 1)
 
 
-def ordinary_slope(
+def ordinary_dimension(
     extent: np.ndarray,
     shape: tuple[int, int],
     sizes: np.ndarray,
     count: np.ndarray,
     limits: tuple[float, float] = (0, np.inf),
-) -> OrdinarySlope:
-    """Ordinary box-counting dimension of a domain.
+) -> OrdinaryDimension:
+    """Ordinary box-counting dimension of a domain, from its minimal cover at :func:`dyadic_sizes`.
 
-    Parameters
-    ----------
-    extent : (ny, nx) bool ndarray
-        The domain, without empty rows and columns about it.
-    shape : (int, int)
-        Cells of its window.
-    sizes : (k,) int ndarray
-        From :func:`dyadic_sizes`.
-    count : (k,) ndarray
-        Minimal cover at these.
-    limits : (float, float)
-        Smallest and largest box side that may be fitted, cells.
-
-    Returns
-    -------
-    OrdinarySlope
-        Its interval is that of :mod:`core.slope_of_sums`, by the mean counts at the same sizes;
-        none with fewer than `MIN_NODES` nodes.
+    The interval is that of :mod:`core.slope_of_sums`, by the mean counts at the same sizes; none
+    with fewer than `MIN_NODES` nodes. ``extent`` is the domain without empty rows and columns about
+    it, ``shape`` its window; ``limits`` are the smallest and largest box side that may be fitted,
+    cells.
     """
     nodes = int(np.count_nonzero(extent))
     used = cover_used(count, sizes, nodes, shape, limits)
@@ -75,14 +53,14 @@ def ordinary_slope(
     slope = line.slope
     if nodes < 2 or not np.isfinite(slope.value):
         unused = np.zeros(sizes.size, bool)
-        return OrdinarySlope(sizes=sizes, counts=count, used=unused)
+        return OrdinaryDimension(sizes=sizes, counts=count, used=unused)
     parts = mean_count(extent, sizes[used], blocks=BLOCKS)
     error = block_error(parts, lambda left: count_slope(left, sizes[used]))
     law = line.intercept.value + slope.value * np.log(sizes[used])
     half = np.hypot(error, wave_error(sizes[used], np.log(count[used]) - law))
     half = half if nodes >= MIN_NODES and np.isfinite(half) else np.nan
     ends = np.clip((-slope.value - half, -slope.value + half), *IN_PLANE)
-    return OrdinarySlope(
+    return OrdinaryDimension(
         value=0.0 - slope.value,  # a constant count gives 0, not -0
         low=float(ends[0]),
         high=float(ends[1]),
