@@ -1,14 +1,17 @@
 """Power law of the real contact area, and the theories beside it."""
 
+from typing import Any
+
 import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from ..core.estimate import Estimate, rows_of
+from ..core.estimate import rows_of
 from ..core.fitting import MIN_POINTS, fit_line
 from ..core.intervals import mean_interval
 from ..core.labels import cf_attrs
 from ..core.limits import CORRECTED_NODES, LIGHT_LOAD, RESOLVED_NODES
+from ..core.per_curve import per_curve
 from ..joint.joint import composite_topography, direction_spacing, offsets_of
 from ..roughness.dimension import slope_statistics
 from ..states.states import chosen_offset, error_attrs
@@ -118,7 +121,7 @@ def area_laws(
     -------
     xr.Dataset
         Over (direction, offset): the statistics; the law A_r ~ F^m of the corrected area,
-        ``corrected_`` before the names of :data:`LAW`; means of kappa at light load;
+        :data:`_NAMES`; means of kappa at light load;
         ``no_corrected_law`` and ``no_mean_kappa``, reasons. Over (direction, offset, load):
         ``fitted``, ``light``, ``reduced_pressure``, ``kappa`` and ``corrected_kappa``, and the
         fractions A_r/A_0 of the theories; what :func:`laws.area_theories.add_comparison` and
@@ -143,7 +146,14 @@ def area_laws(
         fitted = (share > (fewest - 0.5) * node) & (share < 1 - 0.5 * node)
         attrs = cf_attrs("1", f"{fewest} nodes touch, not all: load used in fits of the {words}")
         result[f"{prefix}fitted"] = fitted.assign_attrs(attrs)
-    _add_laws(result, finest)
+    law = {
+        "area": finest["area_corrected"],
+        "touching": finest["area_share"],
+        "fitted": result["corrected_fitted"],
+        "raw_fitted": result["fitted"],
+        "force": finest["normal_force"],
+    }
+    result.update(per_curve(law, _law, _NAMES))
     _add_kappa(result, finest, e_star, node)
     add_theories(result, finest, e_star, dimension, float(np.sqrt(np.prod(spacing))))
     add_comparison(result)
@@ -173,51 +183,42 @@ def add_area_offset(result: xr.Dataset, map_offset: float | None) -> None:
     result["area_offset"] = "direction", chosen, attrs
 
 
-#: What is kept of a law A_r ~ F^m: name, field of the fit in logarithms, unit, long name.
-LAW = {
-    **rows_of("exponent", "1", "exponent m of real contact area against force"),
-    **rows_of("unit_area", "mm2", "real contact area at 1 N by the fitted law"),
-    "force_low": ("N", "smallest force fitted"),
-    "force_high": ("N", "largest force fitted"),
-    "n": ("1", "loads fitted"),
-}
+#: Law A_r ~ F^m of the corrected area: unit, long name.
+_NAMES = {
+    f"corrected_{name}": (units, f"{words}, corrected area")
+    for name, (units, words) in {
+        **rows_of("exponent", "1", "exponent m of real contact area against force"),
+        **rows_of("unit_area", "mm2", "real contact area at 1 N by the fitted law"),
+        "force_low": ("N", "smallest force fitted"),
+        "force_high": ("N", "largest force fitted"),
+        "n": ("1", "loads fitted"),
+    }.items()
+} | {"no_corrected_law": ("1", "reason why there is no law of the area, corrected")}
 
 
-def _add_laws(result: xr.Dataset, curves: xr.Dataset) -> None:
-    """Power law of the corrected area, and the reason for none."""
-    dims = ("direction", "offset")
-    force = np.log(curves["normal_force"].values)
-    fitted = result["corrected_fitted"].transpose(*dims, "normal_force").values
-    area = np.log(curves["area_corrected"].transpose(*dims, "normal_force").where(fitted).values)
-    lines = np.empty(area.shape[:2], object)
-    for index in np.ndindex(lines.shape):
-        lines[index] = fit_line(force[fitted[index]], area[index][fitted[index]])
-    exponent = Estimate.stack((line.slope for line in lines.flat), lines.shape)
-    at_one = Estimate.stack((line.intercept for line in lines.flat), lines.shape)
-    first, last = np.exp(exponent.over)
-    values = exponent.columns("exponent") | at_one.mapped(np.exp).columns("unit_area")
-    values |= {"force_low": first, "force_high": last, "n": exponent.n}
-    for key, (units, words) in LAW.items():
-        attrs = cf_attrs(units, f"{words}, corrected area")
-        result[f"corrected_{key}"] = (dims, values[key], attrs)
-    reasons = _reasons_for_no_law(result, curves)
-    words = "reason why there is no law of the area, corrected"
-    result["no_corrected_law"] = dims, reasons, cf_attrs("1", words)
-
-
-def _reasons_for_no_law(result: xr.Dataset, curves: xr.Dataset) -> np.ndarray:
-    """Reason why a curve has no law of the area, (direction, offset); empty if it has one."""
-    full = (curves["area_share"] > 0.5).all("normal_force") & ~result["fitted"].any("normal_force")
-    n = result["corrected_n"].values.astype(int)
-    reasons = [
-        "" if loads >= MIN_POINTS else FULL_CONTACT if whole else _too_few(loads)
-        for loads, whole in zip(n.ravel(), full.values.ravel(), strict=True)
-    ]
-    return np.array(reasons).reshape(n.shape)
-
-
-def _too_few(n: int) -> str:
-    return f"{n} of {MIN_POINTS} loads with {CORRECTED_NODES} nodes in contact, but not all"
+def _law(
+    area: np.ndarray,
+    touching: np.ndarray,
+    fitted: np.ndarray,
+    raw_fitted: np.ndarray,
+    force: np.ndarray,
+) -> dict[str, Any]:
+    """Power law of the corrected area of one load curve, or the reason for none."""
+    exponent, at_one, _ = fit_line(np.log(force[fitted]), np.log(area[fitted]))
+    low, high = np.exp(exponent.over)
+    reason = ""
+    if exponent.n < MIN_POINTS:
+        full = (touching > 0.5).all() and not raw_fitted.any()
+        few = f"{exponent.n} of {MIN_POINTS} loads with {CORRECTED_NODES} nodes in contact"
+        reason = FULL_CONTACT if full else f"{few}, but not all"
+    return {
+        **exponent.columns("corrected_exponent"),
+        **at_one.mapped(np.exp).columns("corrected_unit_area"),
+        "corrected_force_low": low,
+        "corrected_force_high": high,
+        "corrected_n": exponent.n,
+        "no_corrected_law": reason,
+    }
 
 
 def _add_kappa(result: xr.Dataset, curves: xr.Dataset, e_star: float, node: xr.DataArray) -> None:
