@@ -7,24 +7,26 @@ asperities, the sum can pass the vertical, and what is stated as strength is tru
 """
 
 from collections.abc import Mapping
+from functools import partial
 from typing import Any
 
 import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from ..core.datasets import labelled
-from ..core.estimate import Estimate, rows_of
+from ..core.estimate import Estimate
 from ..core.intervals import mean_interval
 from ..core.labels import cf_attrs
 from ..core.limits import JRC_RANGE, LARGEST_FRICTION_ANGLE, MAX_TOUCHING
+from ..core.per_curve import per_curve
 from ..core.settings import Friction, Material, StrengthSettings
 from ..core.window import nominal_area, window_sides
 from ..joint.barton import LABORATORY_LENGTH, barton_strength, scaled_joint
-from ..joint.contact_strength import contact_strength
 from ..joint.joint import rigid_dilatancy, sliding_axis
 from ..joint.jrc import profile_roughness
 from ..states.states import DIP, SOLVER_ERROR
+from .contact_strength import NAMES as CONTACT_FIELDS
+from .contact_strength import contact_strength
 
 #: Residual strength is the mean over the intervals beyond this fraction of the largest offset.
 RESIDUAL_FROM = 0.5
@@ -216,23 +218,32 @@ def joint_strength(
     """
     material = settings.material
     pressure = dilatancy["normal_force"].values / nominal_area(specimen)
-    directions = [str(d) for d in dilatancy["contact_direction"].values]
-    parts = [
-        _one_direction(dilatancy, joint, specimen, material, direction, pressure)
-        for direction in directions
-    ]
-    result = xr.concat(parts, "contact_direction", join="override", combine_attrs="override")
+    directions = dilatancy["contact_direction"]
+    roughness = [profile_roughness(specimen, str(d)) for d in directions.values]
+    result = xr.concat(roughness, directions, combine_attrs="override")
+    of_direction = {
+        "direction": directions,
+        "offset": dilatancy["offset_on_grid"],
+        "elastic": dilatancy["elastic_dilatancy"],
+        "error": dilatancy["elastic_dilatancy_error"],
+        "cells": joint["offset_cells"].sel(contact_direction=directions),
+        "jrc": result["jrc_used"],
+    }
+    strength = partial(_strength, specimen=specimen, material=material, pressure=pressure)
+    result.update(per_curve(of_direction, strength, FIELDS, ("offset", "normal_force")))
+    result["scaled_roughness"].attrs["laboratory_length_mm"] = LABORATORY_LENGTH
+    if DIP in dilatancy:
+        of_contact = partial(
+            contact_strength, pressure=pressure, angle=material.basic_friction_angle
+        )
+        along = ("dip_step", "offset", "normal_force", "force_part")
+        result.update(per_curve({"dips": dilatancy[DIP]}, of_contact, CONTACT_FIELDS, along))
+    interval = "interval", result["midpoint"].values[0], result["midpoint"].attrs
     result = result.assign_coords(
-        contact_direction=directions,
-        normal_force=dilatancy["normal_force"],
-        offset=dilatancy["offset"],
-        interval=("interval", result["midpoint"].values[0], cf_attrs("mm", FIELDS["midpoint"][1])),
+        normal_force=dilatancy["normal_force"], offset=dilatancy["offset"], interval=interval
     )
-    result["nominal_pressure"] = (
-        "normal_force",
-        pressure,
-        cf_attrs("MPa", "nominal pressure sigma_0"),
-    )
+    attrs = cf_attrs("MPa", "nominal pressure sigma_0")
+    result["nominal_pressure"] = ("normal_force", pressure, attrs)
     for name, units, words in (
         ("basic_friction_angle", "degree", "basic friction angle phi_b"),
         ("joint_wall_strength", "MPa", "joint wall compressive strength JCS"),
@@ -241,35 +252,41 @@ def joint_strength(
     return result
 
 
+_EACH, _LOAD = ("interval", "normal_force"), ("normal_force",)
 _QUANTITIES = {
-    "midpoint": ("mm", "middle of the interval of offsets"),
-    "dilatancy_angle": ("degree", "dilatancy angle i"),
-    "rigid_dilatancy_angle": ("degree", "dilatancy angle of the rigid joint, F = 0"),
-    "friction_angle": ("degree", "effective friction angle phi_b + i, not truncated"),
-    "shear_strength": ("MPa", "shear strength tau"),
+    "midpoint": ("mm", "middle of the interval of offsets", "interval"),
+    "dilatancy_angle": ("degree", "dilatancy angle i", *_EACH),
+    "rigid_dilatancy_angle": ("degree", "dilatancy angle of the rigid joint, F = 0", "interval"),
+    "friction_angle": ("degree", "effective friction angle phi_b + i, not truncated", *_EACH),
+    "shear_strength": ("MPa", "shear strength tau", *_EACH),
     "truncated_high": (
         "1",
         f"intervals whose angle was truncated at {LARGEST_FRICTION_ANGLE:g} degrees",
+        *_LOAD,
     ),
-    "truncated_low": ("1", "intervals whose angle was truncated at 0"),
-    "shear_strength_valid": ("1", "the shear strength is a result"),
-    "shear_strength_reason": ("1", "why the shear strength is no result"),
-    "peak_strength_valid": ("1", "the peak strength is a result"),
-    "peak_strength_reason": ("1", "why the peak strength is no result"),
-    "peak_strength": ("MPa", "largest shear strength over the offsets"),
-    "peak_offset": ("mm", "offset where it is first reached"),
-    "peak_dilatancy_angle": ("degree", "largest dilatancy angle over the offsets"),
-    **rows_of("residual_strength", "MPa", "mean shear strength beyond half of the largest offset"),
-    **rows_of("residual_angle", "degree", "mean dilatancy angle beyond half of the largest offset"),
-    "residual_n": ("1", "intervals beyond half of the largest offset"),
-    "barton_strength": ("MPa", "peak strength by Barton's law"),
-    "peak_over_barton": ("1", "largest shear strength over the peak by Barton's law"),
+    "truncated_low": ("1", "intervals whose angle was truncated at 0", *_LOAD),
+    "shear_strength_valid": ("1", "the shear strength is a result", *_EACH),
+    "shear_strength_reason": ("1", "why the shear strength is no result", *_EACH),
+    "peak_strength_valid": ("1", "the peak strength is a result", *_LOAD),
+    "peak_strength_reason": ("1", "why the peak strength is no result", *_LOAD),
+    "peak_strength": ("MPa", "largest shear strength over the offsets", *_LOAD),
+    "peak_offset": ("mm", "offset where it is first reached", *_LOAD),
+    "peak_dilatancy_angle": ("degree", "largest dilatancy angle over the offsets", *_LOAD),
+    "residual_strength": ("MPa", "mean shear strength beyond half of the largest offset", *_LOAD),
+    "residual_angle": (
+        "degree",
+        "mean dilatancy angle beyond half of the largest offset",
+        *_LOAD,
+    ),
+    "residual_n": ("1", "intervals beyond half of the largest offset", *_LOAD),
+    "barton_strength": ("MPa", "peak strength by Barton's law", *_LOAD),
+    "peak_over_barton": ("1", "largest shear strength over the peak by Barton's law", *_LOAD),
     "scaled_roughness": ("1", "JRC_n for the window's length; missing above 20"),
     "scaled_wall_strength": ("MPa", "JCS_n for the window's length"),
-    "barton_scaled_strength": ("MPa", "peak strength by Barton's law with JRC_n and JCS_n"),
+    "barton_scaled_strength": ("MPa", "peak strength by Barton's law with JRC_n and JCS_n", *_LOAD),
 }
 
-#: What rests on solved states, and has a solver error bound for that.
+#: Quantities that rest on solved states, and have a solver error bound for that.
 _SOLVED = (
     "dilatancy_angle",
     "friction_angle",
@@ -281,29 +298,41 @@ _SOLVED = (
 TRUNCATED = f"friction and dilatancy angles together exceed {LARGEST_FRICTION_ANGLE:g} degrees"
 FULL = "half of the window touches, so that the faces no longer ride on asperities"
 
-#: Unit and long name of each quantity.
+#: Quantities of one direction: unit, long name, dimensions.
 FIELDS = _QUANTITIES | {
-    f"{name}_error": (_QUANTITIES[name][0], f"{_QUANTITIES[name][1]}, {SOLVER_ERROR}")
-    for name in _SOLVED
+    f"{name}_error": (units, f"{words}, {SOLVER_ERROR}", *dims)
+    for name, (units, words, *dims) in _QUANTITIES.items()
+    if name in _SOLVED
 }
 
 
-def _one_direction(
-    dilatancy: xr.Dataset,
-    joint: xr.Dataset,
+def _strength(
+    direction: np.ndarray,
+    offset: np.ndarray,
+    elastic: np.ndarray,
+    error: np.ndarray,
+    cells: np.ndarray,
+    jrc: np.ndarray,
+    *,
     specimen: xr.Dataset,
     material: Material,
-    direction: str,
     pressure: np.ndarray,
-) -> xr.Dataset:
-    """All of :func:`joint_strength` for one direction."""
-    angle_b = material.basic_friction_angle
-    largest = dilatancy["offset_on_grid"].sel(contact_direction=direction).values[-1]
-    curves = _curves_with_rigid(dilatancy, joint, specimen, direction)
-    midpoint, angles, angles_off = angles_with_errors(*curves)
+) -> dict[str, Any]:
+    """:data:`FIELDS` of one direction, from its elastic dilatancy (offset, load) and error, mm."""
+    angle_b, largest = material.basic_friction_angle, offset[-1]
+    rigid, _ = rigid_dilatancy(specimen, str(direction), cells)
+    # Openings of rigid faces are read off the heights: they have no solver error.
+    curves = np.column_stack([rigid, elastic])
+    errors = np.column_stack([np.zeros_like(rigid), error])
+    if specimen.attrs["opposite"] == "match":
+        # Flush faces have no dilatancy, whatever the load: no error either.
+        _, errors = from_flush(offset, errors)
+        offset, curves = from_flush(offset, curves)
+    midpoint, angles, angles_off = angles_with_errors(offset, curves, errors)
     rigid_angle, angle, angle_off = angles[:, 0], angles[:, 1:], angles_off[:, 1:]
     tau, truncated, tau_off = strength_with_error(pressure, angle_b + angle, angle_off)
     stated = np.where(np.isfinite(angle_b), 1.0, np.nan)
+    mean_angle = residual(midpoint, angle, largest)
     values = {
         "midpoint": midpoint,
         "dilatancy_angle": angle,
@@ -319,25 +348,15 @@ def _one_direction(
         # The largest of several values is off by no more than the one that is off most.
         "peak_strength_error": peak(midpoint, tau_off)[0],
         "peak_dilatancy_angle_error": peak(midpoint, angle_off)[0],
+        "residual_strength": residual(midpoint, tau, largest),
+        "residual_angle": mean_angle,
+        "residual_n": mean_angle.n,
     }
     values["peak_strength"], values["peak_offset"] = peak(midpoint, tau)
-    for name, of_intervals in (("strength", tau), ("angle", angle)):
-        mean = residual(midpoint, of_intervals, largest)
-        values |= mean.columns(f"residual_{name}") | {"residual_n": mean.n}
-
-    roughness = profile_roughness(specimen, direction)
-    side = window_sides(specimen)[sliding_axis(direction)]
-    values |= _by_barton(roughness["jrc_used"].item(), material, side, pressure)
+    side = window_sides(specimen)[sliding_axis(str(direction))]
+    values |= _by_barton(float(jrc), material, side, pressure)
     # Contacts that yield carry their hardness: the pressure says how much of the window touches.
-    full = pressure >= MAX_TOUCHING * material.hardness
-    values |= judged_strengths(values, full)
-    table = {name: (_dims(name, of_name), *FIELDS[name]) for name, of_name in values.items()}
-    result = roughness.assign(labelled(table, values))
-    if DIP in dilatancy:
-        dips = dilatancy[DIP].sel(contact_direction=direction)
-        result = result.assign(contact_strength(dips, pressure, angle_b))
-    result["scaled_roughness"].attrs["laboratory_length_mm"] = LABORATORY_LENGTH
-    return result
+    return values | judged_strengths(values, pressure >= MAX_TOUCHING * material.hardness)
 
 
 def judged_strengths(values: Mapping[str, ArrayLike], full: np.ndarray) -> dict[str, np.ndarray]:
@@ -373,28 +392,6 @@ def judged_strengths(values: Mapping[str, ArrayLike], full: np.ndarray) -> dict[
     }
 
 
-def _curves_with_rigid(
-    dilatancy: xr.Dataset, joint: xr.Dataset, specimen: xr.Dataset, direction: str
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Offsets (n,), dilatancy and its error (n, 1 + load), mm, the rigid joint's first."""
-    curve = dilatancy.sel(contact_direction=direction)
-    cells = joint["offset_cells"].sel(contact_direction=direction).values
-    rigid, _ = rigid_dilatancy(specimen, direction, cells)
-    offset = curve["offset_on_grid"].values
-    elastic, error = (
-        curve[name].transpose("offset", "normal_force").values
-        for name in ("elastic_dilatancy", "elastic_dilatancy_error")
-    )
-    both = np.column_stack([rigid, elastic])
-    # Openings of rigid faces are read off the heights.
-    errors = np.column_stack([np.zeros_like(rigid), error])
-    if specimen.attrs["opposite"] == "match":
-        # Flush faces have no dilatancy, whatever the load: no error either.
-        _, errors = from_flush(offset, errors)
-        offset, both = from_flush(offset, both)
-    return offset, both, errors
-
-
 def _by_barton(jrc: float, material: Friction, side: float, pressure: np.ndarray) -> dict[str, Any]:
     """Barton's law with the JRC and JCS as they are, and scaled to the side of the window."""
     angle, wall = material.basic_friction_angle, material.joint_wall_strength
@@ -407,9 +404,3 @@ def _by_barton(jrc: float, material: Friction, side: float, pressure: np.ndarray
         "scaled_wall_strength": scaled_wall,
         "barton_scaled_strength": barton_strength(pressure, angle, scaled_jrc, scaled_wall),
     }
-
-
-def _dims(name: str, values: ArrayLike) -> tuple[str, ...]:
-    if name in ("midpoint", "rigid_dilatancy_angle"):
-        return ("interval",)
-    return {0: (), 1: ("normal_force",), 2: ("interval", "normal_force")}[np.ndim(values)]

@@ -16,7 +16,7 @@ from roughcontact.elastic.halfspace import HalfSpace
 
 from ..core.settings import JointSettings, Load, Solver
 from ..core.window import nominal_area
-from ..joint.contact_strength import STEPS, contact_dips
+from ..joint.contact_dips import STEPS, contact_dips
 from ..joint.joint import composite_topography, direction_spacing, offsets_of
 from ..joint.overlap import suspect_nodes
 from .states import chosen_offset, forces_of, hardness_of

@@ -15,7 +15,7 @@ from roughcontact.errors import NotConverged
 from ..core.datasets import labelled_dataset
 from ..core.labels import cf_attrs
 from ..core.settings import ContactSettings, Solver
-from ..joint.contact_strength import PARTS, STEPS, dips_by_force
+from ..joint.contact_dips import PARTS, STEPS, dips_by_force
 from ..joint.joint import prefractal, rigid_dilatancy
 from .loading import JointLoading
 from .plan import solved_loads
