@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from .estimate import NO_ESTIMATE, Estimate
+from .estimate import Estimate
 from .labels import cf_attrs
 
 #: Variables by name, as ``xr.Dataset`` takes them.
@@ -88,28 +88,25 @@ def stacked(
     variables: Variables = {}
     for name, (units, long_name, *own) in names.items():
         values, over = [row.get(name) for row in rows], (*dims, *own)
-        first = next(value for value in values if value is not None)
-        if isinstance(first, Estimate):
-            estimates = (NO_ESTIMATE if value is None else value for value in values)
-            estimate = Estimate.stack(estimates, (*shape, *np.shape(first.value)))
+        if any(isinstance(value, Estimate) for value in values):
+            ends = zip(*(value.ends if value else [None] * 3 for value in values), strict=True)
+            estimate = Estimate(*(_filled(end, shape) for end in ends))
             variables |= estimate.variables(name, over, units, long_name)
         else:
-            table = _filled(values)
-            table = table.reshape(*shape, *table.shape[1:])
-            variables[name] = over, table, cf_attrs(units, long_name)
+            variables[name] = over, _filled(values, shape), cf_attrs(units, long_name)
     return variables
 
 
-def _filled(values: Sequence[Any]) -> np.ndarray:
-    """Values (n, ...) as one array, as large as the largest of them; None is missing."""
+def _filled(values: Sequence[Any], shape: Sequence[int]) -> np.ndarray:
+    """Values, each as large as the largest of them, in an array of a shape; None is missing."""
     arrays = [np.asarray(value) for value in values if value is not None]
     largest = tuple(np.max([array.shape for array in arrays], axis=0).astype(int))
     if len(arrays) == len(values) and all(array.shape == largest for array in arrays):
-        return np.array(arrays)
+        return np.reshape(arrays, (*shape, *largest))
     kind = np.result_type(*arrays)
     fill = {"b": False, "U": ""}.get(kind.kind, np.nan)
     table = np.full((len(values), *largest), fill, np.result_type(kind, type(fill)))
     for row, value in enumerate(values):
         if value is not None:
             table[(row, *map(slice, np.shape(value)))] = value
-    return table
+    return table.reshape(*shape, *largest)

@@ -12,6 +12,7 @@ from ..core.estimate import Estimate, rows_of
 from ..core.fitting import MIN_POINTS, LineFit, fit_line
 from ..core.labels import cf_attrs
 from ..core.limits import LEVEL_CHANGE
+from ..core.per_curve import stacked
 from ..core.text import length_words
 from ..core.verdicts import FALLING, LEVEL, RISING
 
@@ -19,8 +20,8 @@ _HALF = "rigid dilatancy over the second half of the offsets"
 #: Quantities of every direction: unit and long name. Intervals take the offsets as independent.
 _WORDS = {
     "plateau_level": ("mm", f"mean {_HALF}"),
-    **rows_of("plateau_slope", "1", f"slope of the {_HALF}"),
-    **rows_of("plateau_change", "1", f"change of the {_HALF}, a fraction of its mean"),
+    "plateau_slope": ("1", f"slope of the {_HALF}"),
+    "plateau_change": ("1", f"change of the {_HALF}, a fraction of its mean"),
     "plateau_intercept": ("mm", f"line through the {_HALF}, at no offset"),
     "plateau_offset_min": ("mm", "smallest offset of that line"),
     "plateau_offset_max": ("mm", "largest offset of that line"),
@@ -108,8 +109,7 @@ def rigid_plateaus(
         _plateau(fit_line(v, row), row.mean(), v, direction)
         for row, direction in zip(opened, directions, strict=True)
     ]
-    table = {name: ("direction", *words) for name, words in _WORDS.items()}
-    return labelled(table, {name: np.array([row[name] for row in rows]) for name in _WORDS})
+    return stacked(rows, _WORDS, ["direction"])
 
 
 def undecided_plateaus(
@@ -180,7 +180,7 @@ def opposite_parts(
     half = second_half(offset)
     v = offset[half]
     rows = [_plateau(fit_line(v, row), row.mean(), v, "none") for row in even[:, half]]
-    changes = Estimate.stack(Estimate.read(row, "plateau_change") for row in rows)
+    changes = Estimate.stack(row["plateau_change"] for row in rows)
     slopes = Estimate.stack(fit_line(v, row).slope for row in odd[:, half])
     values = {"even_dilatancy": even, "odd_dilatancy": odd}
     values |= changes.columns("even_change") | slopes.columns("odd_slope")
@@ -194,8 +194,8 @@ def _plateau(line: LineFit, mean: float, v: np.ndarray, direction: str) -> dict[
     change = slope.mapped(lambda rise: float(relative_change(rise, v, mean)))
     return {
         "plateau_level": mean if slope.known else np.nan,
-        **slope.columns("plateau_slope"),
-        **change.columns("plateau_change"),
+        "plateau_slope": slope,
+        "plateau_change": change,
         "plateau_intercept": line.intercept.value,
         "plateau_offset_min": first_and_last[0],
         "plateau_offset_max": first_and_last[1],

@@ -7,6 +7,7 @@ all that is cut from it (jackknife).
 """
 
 from collections.abc import Sequence
+from functools import partial
 
 import numpy as np
 import xarray as xr
@@ -140,7 +141,7 @@ def add_size_exponents(
     Parameters
     ----------
     result : xr.Dataset
-        With ``part`` and ``side``, filled as by :func:`size_effect.window_means.add_exponents`.
+        With ``part`` and ``side``; see :func:`size_effect.window_means.add_exponents`.
     values : xr.DataArray (part, window, ...)
         NaN where a size is not used.
     places : sequence of (n,) int ndarray
@@ -148,11 +149,7 @@ def add_size_exponents(
     words : str
         What the exponent is of.
     """
-    values = values.transpose("part", "window", ...)
-    dims, rows = tuple(map(str, values.dims[2:])), values.values
     parts, sides = result["part"].values.tolist(), result["side"].values
-    each = [
-        size_exponent(parts, sides, rows[(slice(None), slice(None), *index)], places)
-        for index in np.ndindex(rows.shape[2:])
-    ]
-    add_exponents(result, name, each, dims, words, "sizes used")
+    exponent = partial(size_exponent, parts, sides, places=places)
+    along = ("part", "window")
+    add_exponents(result, name, {"values": values}, exponent, along, words, "sizes used")

@@ -14,6 +14,7 @@ import xarray as xr
 
 from ..core.estimate import Estimate
 from ..core.labels import cf_attrs
+from ..core.per_curve import stacked
 from ..core.verdicts import AGREES, AMBIGUOUS, FLATTER, NOT_TESTED, STEEPER, UNDECIDED
 
 #: Exponents that differ by no more than this differ by rounding alone.
@@ -131,9 +132,16 @@ def both_forms(area: Judgement, own: Judgement) -> tuple[str, str]:
     return UNDECIDED, own.reason
 
 
-_FORMS = {
-    "area": ("A_r/A_0 at equal sigma_0", "exponent of A_r/A_0"),
-    "slope": ("its own form, at equal sigma*", "slope of log sigma_0"),
+_AREA_FORM, _OWN_FORM = "A_r/A_0 at equal sigma_0", "its own form, at equal sigma*"
+_NAMES = {
+    "verdict": ("1", "whether eq. 6 agrees, both forms together"),
+    "reason": ("1", "why undecided, both forms together"),
+    "area_verdict": ("1", f"whether eq. 6 agrees, {_AREA_FORM}"),
+    "area_reason": ("1", f"why undecided, {_AREA_FORM}"),
+    "area_difference": ("1", "exponent of A_r/A_0 less -(2 - Delta_sigma)"),
+    "slope_verdict": ("1", f"whether eq. 6 agrees, {_OWN_FORM}"),
+    "slope_reason": ("1", f"why undecided, {_OWN_FORM}"),
+    "slope_difference": ("1", "slope of log sigma_0 less -(2 - Delta_sigma)"),
 }
 
 
@@ -164,31 +172,19 @@ def size_verdicts(result: xr.Dataset) -> xr.Dataset:
     with np.errstate(divide="ignore"):
         condition = 1 / result["sensitivity"].values
     shape = predicted.value.shape
-    differences: dict[str, list[Estimate]] = {form: [] for form in _FORMS}
-    names = ("area_verdict", "area_reason", "slope_verdict", "slope_reason", "verdict", "reason")
-    words: dict[str, np.ndarray] = {name: np.empty(shape, object) for name in names}
-    for index in np.ndindex(shape):
-        load = index[1]
-        of_area = judge_exponent(measured["area"][load], predicted[index])
+    results = []
+    for place in np.ndindex(shape):
+        load = place[1]
+        area = judge_exponent(measured["area"][load], predicted[place])
         own = judge_own_form(
-            measured["slope"][load], predicted[index], float(condition[load]), int(crossings[load])
+            measured["slope"][load], predicted[place], float(condition[load]), int(crossings[load])
         )
-        differences["area"].append(of_area.difference)
-        differences["slope"].append(own.difference)
-        found = (*of_area[:2], *own[:2], *both_forms(of_area, own))
-        for name, word in zip(names, found, strict=True):
-            words[name][index] = word
-    verdicts = xr.Dataset()
-    for form, (of, quantity) in _FORMS.items():
-        difference = Estimate.stack(differences[form], shape)
-        text = f"{quantity} less -(2 - Delta_sigma)"
-        verdicts.update(difference.variables(f"{form}_difference", dims, "1", text))
-        for name, text in (("verdict", "whether eq. 6 agrees"), ("reason", "why undecided")):
-            attrs = cf_attrs("1", f"{text}, {of}")
-            verdicts[f"{form}_{name}"] = (dims, words[f"{form}_{name}"].astype(str), attrs)
-    for name, text in (("verdict", "whether eq. 6 agrees"), ("reason", "why undecided")):
-        attrs = cf_attrs("1", f"{text}, both forms together")
-        verdicts[name] = (dims, words[name].astype(str), attrs)
+        verdict, reason = both_forms(area, own)
+        judged = {"verdict": verdict, "reason": reason}
+        for form, judgement in (("area", area), ("slope", own)):
+            judged |= {f"{form}_{name}": value for name, value in judgement._asdict().items()}
+        results.append(judged)
+    verdicts = xr.Dataset(stacked(results, _NAMES, dims, shape))
     attrs = cf_attrs("1", "d ln sigma_0 / d ln sigma* of the whole window")
     verdicts["condition_number"] = ("normal_force", condition, attrs)
     single = (crossings == 1) & (abs(condition) <= WORST_CONDITION)

@@ -5,10 +5,9 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from ..core.datasets import labelled_dataset
-from ..core.fitting import fit_line
 from ..states.states import SOLVER_ERROR
 from .load_ladder import real_pressure
-from .window_means import add_exponents
+from .window_means import add_law
 
 
 def equal_pressure(pressures: ArrayLike, values: ArrayLike, target: float) -> tuple[float, int]:
@@ -168,10 +167,8 @@ def slopes_at_equal_star(states: xr.Dataset, n_loads: int) -> xr.Dataset:
             "sensitivity": sensitivity[:n_loads],
         },
     )
-    log_b = np.log(states["side"].values)
-    slopes = [fit_line(log_b, row).slope for row in np.log(equal)]
     words = "slope of log sigma_0 over log b at equal sigma*, all windows of a size"
-    add_exponents(result, "slope", slopes, "normal_force", words)
+    add_law(result, "slope", states["side"], result["equal_pressure"], words, "points fitted")
     return result
 
 

@@ -103,7 +103,13 @@ def strength_by_size(states: xr.Dataset, material: Friction, roughness: float) -
     apart = xr.DataArray(_in_three_steps(offset, side.values), dims="share")
     strengths = result["strength_at_equal_v_over_b"]
     strengths = strengths.where(apart & strengths.copy(data=~at_most))
-    _add_largest(result, side, strengths, at_least)
+    name = "strength_at_equal_v_over_b"
+    bounds = strengths.copy(data=at_least)
+    curves = {"strength": strengths, "bound": bounds, "side": side}
+    words = f"exponent of {name} against b, the largest where angles are truncated"
+    add_exponents(
+        result, f"{name}_exponent", curves, _largest_exponent, side.dims, words, "sizes fitted"
+    )
     name = "slope_at_equal_v_over_b"
     words = f"exponent of {name} against b"
     add_law(result, f"{name}_exponent", side, result[name].where(apart), words)
@@ -192,7 +198,7 @@ _DIMS = ("part", "window", "normal_force")
 
 #: Means over sub-windows: unit, long name.
 _MEANS = {
-    "peak_strength": FIELDS["peak_strength"],
+    "peak_strength": FIELDS["peak_strength"][:2],
     "strength_at_equal_v_over_b": ("MPa", "shear strength at one v/b"),
     "slope_at_equal_v_over_b": ("1", "slope d delta/dv at one v/b"),
 }
@@ -249,28 +255,17 @@ def _dilatancy_curves(states: xr.Dataset) -> tuple[np.ndarray, np.ndarray, np.nd
     return offset, curve, error
 
 
-def _add_largest(
-    result: xr.Dataset, side: xr.DataArray, strength: xr.DataArray, at_least: np.ndarray
-) -> None:
-    """Exponent of strengths (share, part, load), some of them lower bounds, into ``result``.
+def _largest_exponent(strength: np.ndarray, bound: np.ndarray, side: np.ndarray) -> Estimate:
+    """Exponent of strengths (part,) against b, some of which are lower bounds.
 
     A line falls faster as values left of its middle rise. So a fit with bounds at small sizes is
     the largest exponent that they allow; those at sizes beyond the middle are left out.
     """
-    x, dims = np.log(side.values), ("share", "normal_force")
-    values = strength.transpose(*dims, "part").values
-    at_least = np.moveaxis(at_least, 1, 2)
-    exponents = []
-    for index in np.ndindex(values.shape[:-1]):
-        kept = values[index] > 0
-        while (beyond := kept & at_least[index] & (kept.sum() * x > x[kept].sum())).any():
-            kept &= ~beyond
-        slope = fit_line(x[kept], np.log(values[index][kept])).slope
-        held = slope.known and at_least[index][kept].any()
-        exponents.append(replace(slope, low=-np.inf) if held else slope)
-    name = "strength_at_equal_v_over_b"
-    words = f"exponent of {name} against b, the largest where angles are truncated"
-    add_exponents(result, f"{name}_exponent", exponents, dims, words, "sizes fitted")
+    x, kept = np.log(side), strength > 0
+    while (beyond := kept & bound & (kept.sum() * x > x[kept].sum())).any():
+        kept &= ~beyond
+    slope = fit_line(x[kept], np.log(strength[kept])).slope
+    return replace(slope, low=-np.inf) if slope.known and bound[kept].any() else slope
 
 
 def _add_whole_window(

@@ -1,6 +1,7 @@
 """Means over the sub-windows of each size, and their power laws, into a dataset."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -9,6 +10,7 @@ from ..core.estimate import Estimate
 from ..core.fitting import fit_line
 from ..core.intervals import mean_interval
 from ..core.labels import cf_attrs
+from ..core.per_curve import per_curve
 from ..states.states import error_attrs
 
 
@@ -37,30 +39,30 @@ def add_mean(
 
 
 def add_law(
-    result: xr.Dataset, name: str, side: xr.DataArray, values: xr.DataArray, words: str
+    result: xr.Dataset,
+    name: str,
+    side: xr.DataArray,
+    values: xr.DataArray,
+    words: str,
+    points: str = "sizes fitted",
 ) -> None:
     """Exponent of positive values against the side b, into ``result``.
 
     Parameters
     ----------
-    result : xr.Dataset
-        As :func:`add_exponents` fills it.
+    result, name, words, points
+        As of :func:`add_exponents`.
     side : xr.DataArray (size,)
         b, mm, along the dimension of the sizes.
     values : xr.DataArray (..., size, ...)
         Those that are not positive, or missing, are left out.
-    words : str
-        What the exponent is of.
     """
-    (size,) = side.dims
-    dims = tuple(str(dim) for dim in values.dims if dim != size)
-    rows = values.transpose(*dims, size).values
-    positive = np.where(rows > 0, rows, np.nan)
-    lines = [
-        fit_line(np.log(side.values), np.log(positive[index]))
-        for index in np.ndindex(rows.shape[:-1])
-    ]
-    add_exponents(result, name, [line.slope for line in lines], dims, words, "sizes fitted")
+    add_exponents(result, name, {"values": values, "side": side}, _power, side.dims, words, points)
+
+
+def _power(values: np.ndarray, side: np.ndarray) -> Estimate:
+    """Exponent of one curve over the side b."""
+    return fit_line(np.log(side), np.log(np.where(values > 0, values, np.nan))).slope
 
 
 def power_through(
@@ -93,31 +95,37 @@ def power_through(
 def add_exponents(
     result: xr.Dataset,
     name: str,
-    exponents: Sequence[Estimate],
-    dims: str | tuple[str, ...],
+    curves: Mapping[Any, xr.DataArray],
+    function: Callable[..., Estimate],
+    along: Sequence[Any],
     words: str,
-    points: str = "points fitted",
+    points: str,
 ) -> None:
-    """Exponents by lines through logarithms over log b, into ``result``.
+    """Exponents against the side b of every curve, into ``result``.
 
     Parameters
     ----------
     result : xr.Dataset
         Gets ``name`` with the ends of its interval, ``_n`` and the smallest and largest b fitted,
         ``_b_min`` and ``_b_max``.
-    exponents : sequence of Estimate
-        Fitted over log b, b in mm; in the order of a C array over ``dims``.
-    dims : str or tuple of str
-        Of ``result``.
+    curves, along
+        As of :func:`core.per_curve.per_curve`.
+    function : callable
+        Exponent of one curve, fitted over log b, b in mm.
     words : str
         What the exponent is of.
     points : str
         What was fitted.
     """
-    over = (dims,) if isinstance(dims, str) else dims
-    found = Estimate.stack(exponents, tuple(result.sizes[dim] for dim in over))
-    first, last = np.exp(found.over)
-    result.update(found.variables(name, over, "1", words))
-    result[f"{name}_n"] = (over, found.n, cf_attrs("1", f"{words}, {points}"))
-    result[f"{name}_b_min"] = (over, first, cf_attrs("mm", "smallest b of that fit"))
-    result[f"{name}_b_max"] = (over, last, cf_attrs("mm", "largest b of that fit"))
+    names = {
+        name: ("1", words),
+        f"{name}_n": ("1", f"{words}, {points}"),
+        f"{name}_b_min": ("mm", "smallest b of that fit"),
+        f"{name}_b_max": ("mm", "largest b of that fit"),
+    }
+
+    def of_curve(**curve: Any) -> dict[str, Any]:
+        exponent = function(**curve)
+        return dict(zip(names, (exponent, exponent.n, *np.exp(exponent.over)), strict=True))
+
+    result.update(per_curve(curves, of_curve, names, along))

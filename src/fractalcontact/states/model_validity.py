@@ -10,8 +10,9 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from ..core.datasets import labelled_dataset
+from ..core.datasets import labelled
 from ..core.limits import MAX_TOUCHING
+from ..core.per_curve import per_curve
 from ..core.settings import Material
 from ..core.text import percent
 from ..core.validity import LOAD, SLOPE, Limits, Validity, pressure_words
@@ -79,22 +80,20 @@ def model_validity(area: xr.Dataset, scaling: xr.Dataset, material: Material) ->
     dims = ("direction", "offset", "normal_force")
     finest = scaling["sigma_n"].sel(resolution=scaling["resolution"].min(), drop=True)
     pressures, slopes = xr.align(finest.transpose(*dims), area["rms_slope"], join="exact")
-    of_offsets, of_loads = slopes.transpose(*dims[:2]).values, pressures["nominal_pressure"].values
-    judged = np.empty(pressures.shape, object)
-    for place in np.ndindex(judged.shape):
-        pressure, slope = float(pressures.values[place]), float(of_offsets[place[:2]])
-        nominal = float(of_loads[place[2]])
-        judged[place] = elastic_model_validity(pressure, slope, material, nominal)
-    values: dict[str, Any] = {
-        name: np.array([getattr(one, name) for one in judged.flat]).reshape(judged.shape)
-        for name in _OF_STATES
+    of_state = {
+        "pressure": pressures,
+        "rms_slope": slopes,
+        "nominal_pressure": pressures["nominal_pressure"],
     }
-    table: dict[str, Any] = {
-        **{name: (dims, *words) for name, words in _OF_STATES.items()},
-        **{name: ((), *words) for name, words in _OF_MATERIAL.items()},
-    }
-    limits = material_limits(material)
-    return labelled_dataset(table, values | limits._asdict(), coords=dict(pressures.coords))
+
+    def judged(**state: np.ndarray) -> dict[str, Any]:
+        numbers = {name: float(value) for name, value in state.items()}
+        validity = elastic_model_validity(**numbers, material=material)
+        return {name: getattr(validity, name) for name in _OF_STATES}
+
+    result = xr.Dataset(per_curve(of_state, judged, _OF_STATES, along=()), pressures.coords)
+    of_material = {name: ((), *words) for name, words in _OF_MATERIAL.items()}
+    return result.assign(labelled(of_material, material_limits(material)._asdict()))
 
 
 def elastic_model_validity(
