@@ -32,15 +32,15 @@ _PARAMETERS = {
 #: Numbers of a closure test: unit, long name.
 OF_CLOSURE = {
     **{
-        f"closure_{name}_{of}": ("1" if of == "ratio" else unit, f"{words}, {of}")
+        f"{name}_{of}": ("1" if of == "ratio" else unit, f"{words}, {of}")
         for name, (unit, words) in _PARAMETERS.items()
         for of in ("measured", "computed", "ratio")
     },
-    "closure_datum": ("MPa", "pressure from which both closures count"),
-    "closure_largest": ("MPa", "pressure that the joint had carried before"),
-    "closure_rock": ("mm/MPa", "displacement of the rock, which was subtracted"),
-    "closure_status": ("1", "how the calibrated curve came about: computed, fitted or predicted"),
-    "closure_ratio_calibrated": ("1", "calibrated over measured closure at the end"),
+    "datum": ("MPa", "pressure from which both closures count"),
+    "largest": ("MPa", "pressure that the joint had carried before"),
+    "rock": ("mm/MPa", "displacement of the rock, which was subtracted"),
+    "status": ("1", "how the calibrated curve came about: computed, fitted or predicted"),
+    "ratio_calibrated": ("1", "calibrated over measured closure at the end"),
 }
 #: The calibrated constant: unit, long name.
 OF_CALIBRATION = {
@@ -171,16 +171,16 @@ def _row(
         # On its branch, on the axis of the stage ``closure``: from the seat of the study on.
         "laid": readings.y - readings.at(datum).value + curve.at(datum).value - joint.seat_closure,
         **compared(computed.where(inside), measured),
-        "closure_datum": datum,
-        "closure_largest": largest,
-        "closure_rock": test.compliance,
-        "closure_status": COMPUTED,
-        "closure_ratio_calibrated": NO_ESTIMATE,
+        "datum": datum,
+        "largest": largest,
+        "rock": test.compliance,
+        "status": COMPUTED,
+        "ratio_calibrated": NO_ESTIMATE,
     }
     row |= _laws(measured, span, datum)
     if calibrated.factor.known:
-        row["closure_status"] = FITTED if test is calibrated.test else PREDICTED
-        row["closure_ratio_calibrated"] = _with_constant(calibrated, test, largest, datum, readings)
+        row["status"] = FITTED if test is calibrated.test else PREDICTED
+        row["ratio_calibrated"] = _with_constant(calibrated, test, largest, datum, readings)
     return row
 
 
@@ -216,7 +216,7 @@ def _laws(measured: Curve, computed: Curve, datum: float) -> Mapping[str, Estima
         logarithm = fit_semi_logarithmic(curve.x[fitted], curve.y[fitted])
         found[name] = {"k_ni": bent.k_ni, "v_m": bent.w_m, "chi": logarithm.b}
     return {
-        f"closure_{parameter}_{of}": value
+        f"{parameter}_{of}": value
         for parameter in _PARAMETERS
         for of, value in (
             *((name, found[name][parameter]) for name in found),
