@@ -1,6 +1,6 @@
 """The load ladder: all sub-windows of a joint at one offset, loaded step by step, for eq. 6."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 import xarray as xr
@@ -11,6 +11,7 @@ from ..core.datasets import labelled_dataset
 from ..core.intervals import LEFT_OUT
 from ..core.labels import cf_attrs
 from ..core.limits import CORRECTED_NODES, RESOLVED_NODES
+from ..core.per_curve import stacked
 from ..core.ranges import within
 from ..core.settings import JointSettings
 from ..domain.renormalisation import MIN_NODES_PER_RESOLUTION
@@ -18,11 +19,12 @@ from ..joint.joint import prefractal
 from ..states.area_sampling import state_area_sampling
 from ..states.left_out import PARTS_LEFT_OUT, fractions_left, part_ends
 from ..states.loading import JointLoading
-from ..states.settlement import bulk_settlement, interface_closure
+from ..states.settlement import interface_closure
 from ..states.state_scalars import state_area
 from ..states.states import SCALARS, SOLVER_ERROR
 from ..states.sweep import load_steps
 from .division import PARTS, solvable_parts, split
+from .sub_windows import SubWindows
 
 #: A resolution is used if the smallest sub-windows keep this many nodes per side at it.
 MIN_NODES_PER_SIDE = 12
@@ -104,7 +106,7 @@ def solve_sub_windows(
     for n in parts:
         windows = _cut(composite, n, max(factors))
         where = f"{n} x {n} parts"
-        size = _LoadedSize(loading, windows, factors, pressures, where, compliant)
+        size = _LoadedSize(loading, windows, pressures, where, factors, compliant)
         size.extend(len(of_study))
         sizes.append(size)
     n_tested, most = len(of_study), min(len(of_study) + TESTED_DOUBLINGS, len(pressures))
@@ -130,22 +132,15 @@ def solve_sub_windows(
     return states.assign_coords(direction=loading.direction, offset=offset), domains
 
 
-class _LoadedSize:
-    """All sub-windows of one size at all resolutions, loaded step by step.
+class _LoadedSize(SubWindows):
+    """All sub-windows of one size at all resolutions, and what eq. 6 takes of their states.
 
     Parameters
     ----------
-    loading : JointLoading
-    windows : (window, ny, nx) ndarray
-        Composite topographies, mm.
-    factors : sequence of int
-        Resolutions k, the finest first.
-    pressures : (step,) ndarray
-        Nominal, MPa.
-    what : str
-        For errors.
+    loading, windows, pressures, where, factors
+        As of :class:`size_effect.sub_windows.SubWindows`.
     compliant : (step,) bool ndarray
-        Steps whose compliance is found, where `RESOLVED_NODES` nodes touch.
+        Steps whose compliance is computed, where `RESOLVED_NODES` nodes touch.
 
     Attributes
     ----------
@@ -163,70 +158,51 @@ class _LoadedSize:
         Of a window alone at the finest resolution, a step each.
     bulk_compliance : float
         Bulk settlement over sigma_0, mm/MPa.
-    solved : int
-        Steps solved so far.
     """
 
     def __init__(
         self,
         loading: JointLoading[JointSettings],
         windows: np.ndarray,
-        factors: Sequence[int],
         pressures: np.ndarray,
-        what: str,
+        where: str,
+        factors: Sequence[int],
         compliant: np.ndarray,
     ) -> None:
-        cells = np.array(windows.shape[1:])
-        self.sides, self.pressures, self.factors = cells * loading.spacing, pressures, factors
+        super().__init__(loading, windows, pressures, where, factors)
         self.spacing = np.sqrt(loading.spacing.prod()) * np.array(factors)
-        self.loads = pressures * self.sides.prod()
         self.nodes = np.full((len(windows), len(factors), len(pressures)), np.nan)
-        self.ambiguous = self.nodes.copy()
+        self.ambiguous, self.corrected = self.nodes.copy(), self.nodes.copy()
         names = ("interface_closure", *OF_WINDOWS)
         self.finest = {name: np.full((len(windows), len(pressures)), np.nan) for name in names}
-        self.corrected = self.nodes.copy()
         self.sampling = self.nodes[0].copy()
         self.left = np.full((*self.sampling.shape, PARTS_LEFT_OUT), np.nan)
         self._compliant = compliant
         self.domains: list[np.ndarray] = []
         self._ends: list[np.ndarray] = []
-        self.solved = 0
-        modulus = loading.settings.material.e_star
-        self._settlement = bulk_settlement(self.loads, modulus, *self.sides)
-        self.bulk_compliance = self._settlement[0] / pressures[0]
-        self._flush = [np.ptp(window) == 0 for window in windows]
-        self._states: dict[tuple[int, int], Iterator[ContactState]] = {}
-        for k, factor in enumerate(factors):
-            space = loading.half_space(cells // factor, factor)
-            for j, window in enumerate(windows):
-                where = f"{what}, sub-window {j}, resolution {factor}"
-                h = prefractal(window, factor)
-                self._states[j, k] = load_steps(h, space, self.loads, loading.solving, where)
+        self.bulk_compliance = self.settlement[0] / pressures[0]
 
-    def extend(self, steps: int) -> None:
-        """Load every sub-window by this many steps more, as far as there are any."""
-        following = range(self.solved, min(self.solved + steps, len(self.loads)))
-        for (j, k), rising in self._states.items():
-            for step, state in zip(following, rising, strict=False):
-                self.nodes[j, k, step] = np.count_nonzero(state.in_contact)
-                self.ambiguous[j, k, step] = state.ambiguous
-                if k == 0 or len(self.nodes) == 1:
-                    self.corrected[j, k, step] = state_area(state)
-                if len(self.nodes) == 1:
-                    domain = state.in_contact
-                    if k == 0:
-                        self.domains.append(domain)
-                        self._ends.append(part_ends(domain, self.factors[0]))
-                    self.sampling[k, step] = state_area_sampling(state)
-                    self.left[k, step] = fractions_left(domain, self.factors[k], self._ends[step])
-                if k == 0:
-                    for name, value in self._of_state(state, j, step).items():
-                        self.finest[name][j, step] = value
-        self.solved = following.stop
+    def keep(self, state: ContactState, window: int, resolution: int, step: int) -> None:
+        """Store the numbers of a state; of a window alone also its domain."""
+        place, alone = (window, resolution, step), len(self.nodes) == 1
+        self.nodes[place] = np.count_nonzero(state.in_contact)
+        self.ambiguous[place] = state.ambiguous
+        if resolution == 0 or alone:
+            self.corrected[place] = state_area(state)
+        if alone:
+            domain, factor = state.in_contact, self.factors[resolution]
+            if resolution == 0:
+                self.domains.append(domain)
+                self._ends.append(part_ends(domain, factor))
+            self.sampling[resolution, step] = state_area_sampling(state)
+            self.left[resolution, step] = fractions_left(domain, factor, self._ends[step])
+        if resolution == 0:
+            for name, value in self._of_state(state, window, step).items():
+                self.finest[name][window, step] = value
 
     def _of_state(self, state: ContactState, window: int, step: int) -> dict[str, float]:
         """Fields of a state kept at the finest resolution."""
-        flush, settlement = self._flush[window], self._settlement[step]
+        flush, settlement = self.flush[window], self.settlement[step]
         area, domain = self.sides.prod(), state.in_contact
         ny, nx = domain.shape
         middle = np.s_[ny // 4 : ny - ny // 4, nx // 4 : nx - nx // 4]
@@ -263,11 +239,10 @@ class _LoadedSize:
 
     def real_pressure(self) -> np.ndarray:
         """:func:`real_pressure` of each sub-window, (window, step)."""
-        return real_pressure(self.loads, self.nodes.swapaxes(1, 2), self.spacing)
+        return real_pressure(self.forces, self.nodes.swapaxes(1, 2), self.spacing)
 
 
-_OF_WINDOW = ("part", "window", "step")
-#: What is known of every sub-window at the finest resolution, for
+#: Quantities of every sub-window at the finest resolution, for
 #: :mod:`size_effect.size_law`: unit, long name.
 OF_WINDOWS = {
     "area_fraction": ("1", "corrected real contact area A_r/A_0 of a sub-window"),
@@ -276,12 +251,18 @@ OF_WINDOWS = {
     "central_load": ("1", "load on the central half of a sub-window over that of an even spread"),
 }
 
-_OF_NODES = ("part", "window", "resolution", "step")
+_WINDOW, _NODES = ("window", "step"), ("window", "resolution", "step")
+#: Quantities of every size: unit, long name, dimensions.
+_OF_SIZES = {
+    "nodes": ("1", "nodes in contact", *_NODES),
+    "nodes_error": ("1", f"nodes in contact, {SOLVER_ERROR}", *_NODES),
+    "interface_closure": ("mm", "interface closure w_int = w - w_b of a sub-window", *_WINDOW),
+    **{name: (*words, *_WINDOW) for name, words in OF_WINDOWS.items()},
+    "bulk_compliance": ("mm/MPa", "bulk settlement of a sub-window over sigma_0"),
+    "side": ("mm", "side b of the sub-windows"),
+    "windows": ("1", "sub-windows solved of each size"),
+}
 _TABLE = {
-    "nodes": (_OF_NODES, "1", "nodes in contact"),
-    "nodes_error": (_OF_NODES, "1", f"nodes in contact, {SOLVER_ERROR}"),
-    "interface_closure": (_OF_WINDOW, "mm", "interface closure w_int = w - w_b of a sub-window"),
-    **{name: (_OF_WINDOW, *words) for name, words in OF_WINDOWS.items()},
     "whole_area": (
         ("resolution", "step"),
         "mm2",
@@ -289,9 +270,6 @@ _TABLE = {
     ),
     "whole_area_sampling": (("resolution", "step"), *SCALARS["area_sampling"]),
     "whole_left": (("resolution", "step", LEFT_OUT), "1", "fraction of it without a part"),
-    "bulk_compliance": ("part", "mm/MPa", "bulk settlement of a sub-window over sigma_0"),
-    "side": ("part", "mm", "side b of the sub-windows"),
-    "windows": ("part", "1", "sub-windows solved of each size"),
     "nominal_pressure": ("normal_force", "MPa", "nominal pressure sigma_0 of the whole window"),
     "beyond_study": ("normal_force", "1", "whether the load is larger than those of the study"),
     "ladder_pressure": ("step", "MPa", "nominal pressures that every window was loaded with"),
@@ -307,44 +285,39 @@ def _labelled(
     area: float,
 ) -> xr.Dataset:
     """The dataset of :func:`solve_sub_windows`; windows that a size does not have are NaN."""
-    pressures = sizes[0].pressures
-    n_windows, n_factors = max(parts) ** 2, len(sizes[0].spacing)
-    nodes = np.full((len(parts), n_windows, n_factors, len(pressures)), np.nan)
-    ambiguous = nodes.copy()
-    finest = {
-        name: np.full((len(parts), n_windows, len(pressures)), np.nan) for name in sizes[0].finest
-    }
-    for i, size in enumerate(sizes):
-        taken = slice(len(size.nodes))
-        nodes[i, taken], ambiguous[i, taken] = size.nodes, size.ambiguous
-        for name, values_of_size in size.finest.items():
-            finest[name][i, taken] = values_of_size
-    tested = pressures[:n_tested]
+    whole = sizes[0]
+    tested = whole.pressures[:n_tested]
     values = {
-        "nodes": nodes,
-        "nodes_error": ambiguous,
-        "whole_area": sizes[0].corrected[0],
-        "whole_area_sampling": sizes[0].sampling,
-        "whole_left": sizes[0].left,
-        "bulk_compliance": [size.bulk_compliance for size in sizes],
-        "side": [np.sqrt(size.sides.prod()) for size in sizes],
-        "windows": np.square(parts),
+        "whole_area": whole.corrected[0],
+        "whole_area_sampling": whole.sampling,
+        "whole_left": whole.left,
         "nominal_pressure": tested,
         "beyond_study": tested > largest_of_study,
-        "ladder_pressure": pressures,
-        "spacing": sizes[0].spacing,
-        **finest,
+        "ladder_pressure": whole.pressures,
+        "spacing": whole.spacing,
     }
+    of_sizes = [
+        {
+            "nodes": size.nodes,
+            "nodes_error": size.ambiguous,
+            "bulk_compliance": size.bulk_compliance,
+            "side": np.sqrt(size.sides.prod()),
+            "windows": len(size.nodes),
+            **size.finest,
+        }
+        for size in sizes
+    ]
     coords = {
         "part": ("part", parts, cf_attrs("1", "sub-windows along a side of the window")),
         "resolution": (
             "resolution",
-            sizes[0].factors,
+            whole.factors,
             cf_attrs("1", "multiple k of the scan's spacing"),
         ),
         "normal_force": ("normal_force", tested * area, cf_attrs("N", "force on the whole window")),
     }
-    return labelled_dataset(_TABLE, values, coords=coords)
+    states = labelled_dataset(_TABLE, values, coords=coords)
+    return states.assign(stacked(of_sizes, _OF_SIZES, ["part"]))
 
 
 def real_pressure(force: np.ndarray, nodes: np.ndarray, spacing: np.ndarray) -> np.ndarray:
