@@ -35,25 +35,12 @@ FULL_CONTACT = "the faces touch everywhere at every load"
 
 
 def composite_statistics(specimen: xr.Dataset, direction: str, cells: ArrayLike) -> xr.Dataset:
-    """Slopes and spectral moments of the composite topography at each offset.
+    """Slopes and spectral moments of the composite topography at offsets (n,) in cells.
 
-    Parameters
-    ----------
-    specimen, direction
-        As for :func:`joint.joint.composite_topography`.
-    cells : (n,) int array_like
-        Offsets in cells.
-
-    Returns
-    -------
-    xr.Dataset
-        :data:`STATISTICS` over (offset,), at the scan's own spacing: slopes are differences of
-        neighbouring nodes and grow as the spacing falls. Attributes ``spacing_y``, ``spacing_x``.
-
-    Notes
-    -----
-    On a self-affine surface of H = 0.8 whose spectrum reaches to the smallest wave of the grid the
-    differences give 0.93 to 0.94 of the slope of the waves themselves.
+    Over (offset,) at the scan's own spacing: :data:`STATISTICS`. Slopes are differences of
+    neighbouring nodes and grow as the spacing falls: on a self-affine surface of H = 0.8 whose
+    spectrum reaches to the smallest wave of the grid they give 0.93 to 0.94 of the slope of the
+    waves themselves. Attributes: ``spacing_y``, ``spacing_x``, mm.
     """
     spacing = specimen.attrs["spacing_y"], specimen.attrs["spacing_x"]
     cells = np.asarray(cells, int)
@@ -69,19 +56,9 @@ def composite_statistics(specimen: xr.Dataset, direction: str, cells: ArrayLike)
 
 
 def joint_statistics(specimen: xr.Dataset, joint: xr.Dataset) -> xr.Dataset:
-    """`composite_statistics` of every direction whose contact is solved.
+    """:data:`STATISTICS` over (direction, offset) of every direction whose contact is solved.
 
-    Parameters
-    ----------
-    specimen : xr.Dataset
-    joint : xr.Dataset
-        From :func:`joint.joint.describe_joint`.
-
-    Returns
-    -------
-    xr.Dataset
-        :data:`STATISTICS` over (direction, offset), offsets ascending and, as in
-        :func:`states.states.combine`, those of the first direction.
+    Offsets ascend and are, as in :func:`states.states.combine`, those of the first direction.
     """
     directions = [str(name) for name in joint["contact_direction"].values]
     each = [
@@ -101,34 +78,18 @@ def area_laws(
     dimension: float,
     map_offset: float | None = None,
 ) -> xr.Dataset:
-    """Growth of the real contact area with the force, beside the theories for the surface.
+    """Growth of the real contact area with the force at the finest resolution, beside the theories.
 
-    Parameters
-    ----------
-    curves : xr.Dataset
-        From :func:`laws.closure.closure_curves`; the finest resolution is used.
-    statistics : xr.Dataset
-        From :func:`joint_statistics`, of the same directions and offsets.
-    e_star : float
-        E*, MPa.
-    dimension : float
-        Delta_g of the surface, for Majumdar and Bhushan's law; NaN leaves that out, and
-        ``no_majumdar_bhushan`` says why.
-    map_offset : float, optional
-        Of the contact maps, mm; as :func:`states.states.chosen_offset` takes it.
+    ``statistics`` are those of :func:`joint_statistics`, E* is in MPa, ``dimension`` is Delta_g of
+    the surface for Majumdar and Bhushan's law (NaN leaves that out, and ``no_majumdar_bhushan``
+    says why), and ``map_offset``, mm, is taken as by :func:`states.states.chosen_offset`.
 
-    Returns
-    -------
-    xr.Dataset
-        Over (direction, offset): the statistics; the law A_r ~ F^m of the corrected area,
-        :data:`_NAMES`; means of kappa at light load;
-        ``no_corrected_law`` and ``no_mean_kappa``, reasons. Over (direction, offset, load):
-        ``fitted``, ``light``, ``reduced_pressure``, ``kappa`` and ``corrected_kappa``, and the
-        fractions A_r/A_0 of the theories; what :func:`laws.area_theories.add_comparison` and
-        :func:`add_area_offset` add. The kappas have an ``_error``, the solver's.
+    Over (direction, offset) the stage has the statistics, the law A_r ~ F^m of the corrected area
+    and the means of kappa at light load, each with a reason where there is none; over the loads too
+    the ``fitted`` and ``light`` ones, ``reduced_pressure``, both kappas with their solver error,
+    and the fractions A_r/A_0 of the theories; and what :func:`laws.area_theories.add_comparison`
+    and :func:`add_area_offset` add.
 
-    Notes
-    -----
     Flush faces have no slope: kappa and all theories are NaN, and full contact is no law. The
     interval of a mean kappa is over loads on one surface; other surfaces scatter more (see
     :mod:`experiments.area_slope`). Fits and means take states of `RESOLVED_NODES` nodes or more,
@@ -162,16 +123,9 @@ def area_laws(
 
 
 def add_area_offset(result: xr.Dataset, map_offset: float | None) -> None:
-    """Add the offset whose areas are reported: that of the contact maps.
+    """Add the offset whose areas are reported, mm: that of the contact maps.
 
-    Where the faces are flush there, it is the one chosen of those at which they are not.
-
-    Parameters
-    ----------
-    result : xr.Dataset
-        From :func:`area_laws`.
-    map_offset : float or None
-        mm.
+    Where the faces are flush there, it is chosen among the offsets at which they are not.
     """
     rough = result["reduced_pressure"].notnull().all("normal_force")
     offsets = result["offset"].values

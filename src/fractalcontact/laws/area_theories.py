@@ -32,20 +32,10 @@ _EXPONENTS = {
 def add_theories(
     result: xr.Dataset, curves: xr.Dataset, e_star: float, dimension: float, spacing: float
 ) -> None:
-    """Add the areas that theories make of the surface to the laws.
+    """Add the areas that theories make of the surface to the laws, over (direction, offset, load).
 
-    Parameters
-    ----------
-    result : xr.Dataset
-        Statistics of the composite topographies over (direction, offset); all is added to it.
-    curves : xr.Dataset
-        ``nominal_pressure`` over the loads.
-    e_star : float
-        E*, MPa.
-    dimension : float
-        Delta_g of the surface; NaN leaves Majumdar and Bhushan out.
-    spacing : float
-        Of the scan, mm.
+    ``result`` holds the statistics of the composite topographies, ``curves`` the loads; E* in MPa,
+    the scan's spacing in mm. Delta_g = NaN leaves Majumdar and Bhushan out.
     """
     rough = result.where(result["rms_slope"] > FLUSH)
     force, pressure = curves["normal_force"], curves["nominal_pressure"]
@@ -75,13 +65,7 @@ def add_theories(
 
 
 def add_comparison(result: xr.Dataset) -> None:
-    """Add which theories the laws agree with, and Persson's kappa over the pressures of the laws.
-
-    Parameters
-    ----------
-    result : xr.Dataset
-        Laws of the area over (direction, offset), with what :func:`add_theories` adds.
-    """
+    """Add which theories the laws agree with, and Persson's kappa over the pressures of the laws."""
     low, high = (result[f"corrected_exponent_{end}"] for end in ("low", "high"))
     levels = result["archard_level"]
     archard = levels.copy(data=theory.archard_exponent(levels.values))

@@ -118,18 +118,7 @@ def fit_hyperbola(pressure: ArrayLike, closure: ArrayLike, seat: float = 0.0) ->
 
 
 def fit_semi_logarithmic(pressure: ArrayLike, closure: ArrayLike) -> SemiLogarithmic:
-    """Fit the semi-logarithmic law of closure, least squares in the closure.
-
-    Parameters
-    ----------
-    pressure, closure
-        As for :func:`fit_hyperbola`.
-
-    Returns
-    -------
-    SemiLogarithmic
-        a (the closure at 1 MPa) and b in mm; NaN, with a reason, where there are too few points.
-    """
+    """Least-squares fit of the semi-logarithmic law in the closure: a, that at 1 MPa, and b."""
     sigma, w = _usable(pressure, closure)
     if sigma.size < MIN_CLOSURE_POINTS:
         return SemiLogarithmic(n=sigma.size, reason=_too_few(sigma.size))
@@ -147,18 +136,10 @@ class Law(NamedTuple):
 
 
 def better_law(hyperbola: Hyperbola, semi_logarithmic: SemiLogarithmic) -> Law:
-    """The law that fits a closure curve better, by its rms misfit.
+    """The law that fits a closure curve better, by its rms misfit; both fitted to the same states.
 
-    Parameters
-    ----------
-    hyperbola, semi_logarithmic
-        Fits to the same states.
-
-    Returns
-    -------
-    Law
-        "neither" where the better one misses by more than `GOOD_FIT`, "undecided" where the misfits
-        differ by less than `EQUAL_MISFIT` of the larger, empty where there are too few states.
+    "neither" where the better one misses by more than `GOOD_FIT`, "undecided" where the misfits
+    differ by less than `EQUAL_MISFIT` of the larger, empty where there are too few states.
     """
     if semi_logarithmic.reason:
         return Law("", semi_logarithmic.reason)
@@ -176,17 +157,8 @@ def better_law(hyperbola: Hyperbola, semi_logarithmic: SemiLogarithmic) -> Law:
 def undetermined_stiffness(hyperbola: Hyperbola, law: Law) -> str:
     """Reason why k_ni of a closure curve is undetermined; empty where it is determined.
 
-    Parameters
-    ----------
-    hyperbola : Hyperbola
-    law : Law
-        From :func:`better_law`, of the same curve.
-
-    Returns
-    -------
-    str
-        k_ni is a parameter of the hyperbola: it is undetermined where that is not the law of the
-        curve, and where its interval is too wide to be of use.
+    k_ni is a parameter of the hyperbola: it is undetermined where that is not the law of the curve,
+    and where its interval is too wide to be of use.
     """
     if hyperbola.reason:
         return hyperbola.reason
@@ -238,13 +210,8 @@ _NAMES = {
 def add_closure_laws(curves: xr.Dataset, fit_range: tuple[float, float] | None) -> None:
     """Add both laws of every closure curve, and which fits better, to a closure stage.
 
-    Parameters
-    ----------
-    curves : xr.Dataset
-        With ``interface_closure`` and ``resolved`` over (direction, offset, resolution, load); the
-        fits are added to it. States that are not resolved are not fitted.
-    fit_range : (float, float) or None
-        Smallest and largest force of the fits, N; all by default.
+    ``fit_range`` has the smallest and largest force of the fits, N; by default they take all loads.
+    States that are not resolved are not fitted.
     """
     force = curves["normal_force"]
     of_curve = {
@@ -320,13 +287,7 @@ def _few_states(*states: np.ndarray) -> str:
 
 
 def at_twice(values: xr.DataArray) -> xr.DataArray:
-    """Relative change of values at twice the spacing; NaN where that was not solved.
-
-    Parameters
-    ----------
-    values : xr.DataArray
-        Over ``resolution`` among others.
-    """
+    """Relative change of values at twice the spacing; NaN where that was not solved."""
     resolutions = values["resolution"]
     twice = values.reindex(resolution=2 * resolutions.values).assign_coords(resolution=resolutions)
     return (twice / values - 1).transpose(*values.dims)

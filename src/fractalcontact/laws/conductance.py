@@ -26,17 +26,8 @@ _NAMES = {
 
 
 def add_conductance(curves: xr.Dataset, e_star: float) -> None:
-    """Conductance of the interface and its power of the pressure, into closure curves.
+    """Conductance of the interface and its power of the pressure, into closure curves; E* in MPa.
 
-    Parameters
-    ----------
-    curves : xr.Dataset
-        With ``interface_stiffness`` and ``resolved``.
-    e_star : float
-        E*, MPa.
-
-    Notes
-    -----
     Barber (Proc. R. Soc. A 459 (2003) 53): 1/R = 2/(E* (rho_1 + rho_2)) dF/dw. Two blocks of one
     conductivity k = 1/rho, thermal or electrical, give h_c = k/E* d sigma_0/d w_int per nominal
     area. Loads at which fewer than `RESOLVED_NODES` touch are not fitted: they act on single cells.

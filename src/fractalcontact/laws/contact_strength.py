@@ -59,9 +59,8 @@ A_BOUND = f"only a lower bound, as most angles are truncated at {LARGEST_FRICTIO
 def friction_of_dips(dips: ArrayLike, basic_friction_angle: float) -> tuple[np.ndarray, np.ndarray]:
     """Shear over normal force of contacts (...) with these dips, and the fraction truncated.
 
-    ``dips`` (..., part) are those of equal parts of the force, degrees, as is the basic friction
-    angle; NaN gives NaN. Their sum is truncated at `LARGEST_FRICTION_ANGLE` up and down, as
-    Barton's.
+    Dips (..., part) of equal parts of the force and the basic friction angle are in degrees; NaN
+    gives NaN. Their sum is truncated at `LARGEST_FRICTION_ANGLE` up and down, as Barton's.
     """
     angle = np.asarray(dips) + basic_friction_angle
     kept = np.clip(angle, -LARGEST_FRICTION_ANGLE, LARGEST_FRICTION_ANGLE)
@@ -72,15 +71,9 @@ def friction_of_dips(dips: ArrayLike, basic_friction_angle: float) -> tuple[np.n
 def contact_strength(dips: np.ndarray, pressure: np.ndarray, angle: float) -> dict[str, Any]:
     """:data:`NAMES` of one direction at one resolution.
 
-    Parameters
-    ----------
-    dips : (dip_step, offset, load, force_part) ndarray
-        Degrees, by :func:`joint.contact_dips.dips_by_force`; NaN of states with few nodes. The
-        second of the steps is for the error of the grid.
-    pressure : (load,) ndarray
-        sigma_0, MPa.
-    angle : float
-        phi_b, degrees.
+    Dips (dip_step, offset, load, force_part), degrees, are those of
+    :func:`joint.contact_dips.dips_by_force`, NaN of states with few nodes; the second step is for
+    the error of the grid. Pressures (load,) are nominal, MPa, the angle is phi_b, degrees.
     """
     ratio, truncated = friction_of_dips(dips, angle)
     tau, twice = ratio * pressure

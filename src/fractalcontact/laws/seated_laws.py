@@ -48,18 +48,10 @@ _NAMES = {
 def add_seated_laws(curves: xr.Dataset) -> None:
     """Add both laws of the seated closure, and tangent stiffnesses, to a closure stage.
 
-    Parameters
-    ----------
-    curves : xr.Dataset
-        With ``seated_closure``, ``seating_pressure``, ``resolved`` and ``interface_stiffness`` over
-        (direction, offset, resolution, load); the laws are added to it.
-
-    Notes
-    -----
     The hyperbola is sigma = k_ni w / (1 - w/v_m); the closure from the seat is its own difference,
-    d = w(sigma) - w(seat). The other law is d = d_0 + chi ln(sigma / 1 MPa).
-    The stiffness at a reference pressure is interpolated linearly in logarithms between
-    neighbouring states: stiffnesses of rough contact are nearly powers of the pressure.
+    d = w(sigma) - w(seat). The other law is d = d_0 + chi ln(sigma / 1 MPa). The stiffness at a
+    reference pressure is interpolated linearly in logarithms between neighbouring states:
+    stiffnesses of rough contact are nearly powers of the pressure.
     """
     curves.coords["reference_pressure"] = (
         "reference_pressure",
@@ -126,19 +118,10 @@ def within_span(pressure: np.ndarray, seat: float) -> np.ndarray:
 
 
 def at_reference_pressures(pressure: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """Values at :data:`core.limits.REFERENCE_PRESSURES`, straight in logarithms between states.
+    """Values (k,) at :data:`core.limits.REFERENCE_PRESSURES`, linear in logarithms between states.
 
-    Parameters
-    ----------
-    pressure : (n,) ndarray
-        Nominal, MPa, ascending.
-    values : (n,) ndarray
-        Above zero, such as stiffnesses; NaN where unknown.
-
-    Returns
-    -------
-    (k,) ndarray
-        NaN outside the states that are known.
+    Pressures (n,) are nominal, MPa, and ascend; values above 0, such as stiffnesses, NaN where
+    unknown. NaN outside the known states.
     """
     known = np.isfinite(values) & (values > 0)
     if known.sum() < 2:

@@ -35,17 +35,7 @@ RESIDUAL_FROM = 0.5
 def from_flush(offset: ArrayLike, dilatancy: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
     """A dilatancy curve of faces that match: it starts from v = 0 and delta = 0 under any load.
 
-    Parameters
-    ----------
-    offset : (n,) array_like
-        mm, ascending, >= 0.
-    dilatancy : (n, ...) array_like
-        mm.
-
-    Returns
-    -------
-    offset : (m,) ndarray
-    dilatancy : (m, ...) ndarray
+    Offsets (n,) ascend from 0 or more, dilatancies (n, ...) likewise in mm.
     """
     offset, dilatancy = np.asarray(offset, float), np.asarray(dilatancy, float)
     slid = offset > 0
@@ -54,21 +44,10 @@ def from_flush(offset: ArrayLike, dilatancy: ArrayLike) -> tuple[np.ndarray, np.
 
 
 def dilatancy_angle(offset: ArrayLike, dilatancy: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
-    """Dilatancy angle i = atan(d delta / dv) between successive offsets.
+    """Middle of intervals of offsets, mm, and dilatancy angle i = atan(d delta / dv), degrees.
 
-    Parameters
-    ----------
-    offset : (n,) array_like
-        v, mm, ascending. Where faces match, start it with :func:`from_flush`.
-    dilatancy : (n, ...) array_like
-        delta, mm.
-
-    Returns
-    -------
-    midpoint : (n - 1,) ndarray
-        Middle of the intervals, mm.
-    angle : (n - 1, ...) ndarray
-        Degrees.
+    Offsets v (n,) ascend, dilatancies delta (n, ...) likewise in mm. Where faces match, start the
+    curve with :func:`from_flush`.
     """
     offset, dilatancy = np.asarray(offset, float), np.asarray(dilatancy, float)
     step = np.diff(offset).reshape(-1, *[1] * (dilatancy.ndim - 1))
@@ -79,21 +58,10 @@ def dilatancy_angle(offset: ArrayLike, dilatancy: ArrayLike) -> tuple[np.ndarray
 def angles_with_errors(
     offset: ArrayLike, dilatancy: ArrayLike, error: ArrayLike
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Dilatancy angle by :func:`dilatancy_angle`, with its error bound.
+    """Middle of the intervals, mm, dilatancy angle and its error bound, degrees.
 
-    Parameters
-    ----------
-    offset, dilatancy
-        As for :func:`dilatancy_angle`.
-    error : (n, ...) array_like
-        Bound on the error of each dilatancy, mm.
-
-    Returns
-    -------
-    midpoint, angle
-    off : (n - 1, ...) ndarray
-        Bound on the error of each angle, degrees: both ends of an interval may be off, in opposite
-        directions.
+    As :func:`dilatancy_angle`, with a bound on the error of each dilatancy, mm: both ends of an
+    interval may be off, in opposite directions.
     """
     midpoint, angle = dilatancy_angle(offset, dilatancy)
     ends = [slopes_apart(offset, dilatancy, sign * np.asarray(error)) for sign in (-1, 1)]
@@ -108,21 +76,10 @@ def slopes_apart(offset: ArrayLike, dilatancy: ArrayLike, off: ArrayLike) -> np.
 
 
 def shear_strength(pressure: ArrayLike, friction_angle: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
-    """tau = sigma_n tan(angle), the angle truncated to 0 and `LARGEST_FRICTION_ANGLE`.
+    """tau = sigma_n tan(angle), MPa, the angle truncated to 0 and `LARGEST_FRICTION_ANGLE`.
 
-    Parameters
-    ----------
-    pressure : array_like
-        sigma_n, MPa.
-    friction_angle : array_like
-        Effective friction angle, degrees; NaN gives NaN.
-
-    Returns
-    -------
-    strength : ndarray
-        MPa.
-    truncated : ndarray of int
-        1 where the angle was truncated at the largest, -1 at 0, else 0.
+    Effective friction angles are in degrees; NaN gives NaN. Second comes where the angle was
+    truncated: 1 at the largest, -1 at 0, else 0.
     """
     angle = np.asarray(friction_angle, float)
     truncated = (angle > LARGEST_FRICTION_ANGLE).astype(int) - (angle < 0)
@@ -133,20 +90,9 @@ def shear_strength(pressure: ArrayLike, friction_angle: ArrayLike) -> tuple[np.n
 def strength_with_error(
     pressure: ArrayLike, friction_angle: np.ndarray, off: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Shear strength by :func:`shear_strength`, with its error bound.
+    """Shear strength by :func:`shear_strength`, where it was truncated, and its error bound, MPa.
 
-    Parameters
-    ----------
-    pressure, friction_angle
-        As for :func:`shear_strength`.
-    off : ndarray
-        Bound on the error of the angles, degrees.
-
-    Returns
-    -------
-    strength, truncated
-    error : ndarray
-        MPa.
+    ``off`` bounds the error of the angles, degrees.
     """
     strength, truncated = shear_strength(pressure, friction_angle)
     ends = [shear_strength(pressure, friction_angle + sign * off)[0] for sign in (-1, 1)]
@@ -156,10 +102,7 @@ def strength_with_error(
 def peak(midpoint: ArrayLike, values: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
     """Largest value over the intervals (the first axis) and the offset where it is first reached.
 
-    Returns
-    -------
-    value, where : ndarray
-        NaN where there is no value.
+    NaN where there is no value.
     """
     values = np.asarray(values, float)
     if not len(values):
@@ -171,13 +114,7 @@ def peak(midpoint: ArrayLike, values: ArrayLike) -> tuple[np.ndarray, np.ndarray
 
 
 def residual(midpoint: ArrayLike, values: ArrayLike, largest: float) -> Estimate:
-    """Mean over the intervals beyond `RESIDUAL_FROM` of the largest offset, with its interval.
-
-    Returns
-    -------
-    Estimate
-        With one interval of offsets there is no interval of the mean.
-    """
+    """Mean over the intervals beyond `RESIDUAL_FROM` of the largest offset, with its interval."""
     beyond = np.asarray(midpoint) >= RESIDUAL_FROM * largest
     return mean_interval(np.asarray(values, float)[beyond])
 
@@ -190,28 +127,12 @@ def joint_strength(
 ) -> xr.Dataset:
     """Dilatancy angle, friction angle and shear strength over the offsets, peak and residual.
 
-    Parameters
-    ----------
-    dilatancy : xr.Dataset
-        From :func:`laws.closure.elastic_dilatancy`.
-    joint : xr.Dataset
-        From :func:`joint.joint.describe_joint`.
-    specimen : xr.Dataset
-        That slides: not one against a plane.
-    settings : StrengthSettings
-        What depends on a quantity that is not stated is NaN.
+    ``dilatancy`` is that of :func:`laws.closure.elastic_dilatancy`; the specimen slides.
+    :data:`FIELDS`, what :func:`joint.jrc.profile_roughness` gives and, where dips are known,
+    :data:`laws.contact_strength.NAMES`, over ``contact_direction`` and others. ``interval`` holds
+    midpoints of the offsets in the first direction, ``midpoint`` those of each. What depends on a
+    quantity that is not stated is NaN.
 
-    Returns
-    -------
-    xr.Dataset
-        Over (contact_direction, interval, normal_force), (contact_direction, normal_force) and
-        (contact_direction, sampling): :data:`FIELDS` and what
-        :func:`joint.jrc.profile_roughness` gives. What rests on solved states has an
-        ``_error``, the solver's. ``interval`` holds midpoints of the offsets in the first
-        direction, ``midpoint`` those of each.
-
-    Notes
-    -----
     Barton's phi_r is taken as the basic angle (faces that are not weathered), his JRC_0 as that of
     the window: Z2 at a fixed step hardly depends on the length of the profile. His correction for
     scale then goes from `LABORATORY_LENGTH` to the window's own length along the sliding.
@@ -360,15 +281,11 @@ def _strength(
 
 
 def judged_strengths(values: Mapping[str, ArrayLike], full: np.ndarray) -> dict[str, np.ndarray]:
-    """Validity of shear and peak strengths, and the peaks over Barton's.
+    """Validity of shear and peak strengths of one direction, and the peaks over Barton's.
 
-    Parameters
-    ----------
-    values : mapping of str to array_like
-        ``midpoint`` (n,), ``friction_angle`` (n, load), ``peak_strength``, ``peak_offset`` and
-        ``barton_strength`` (load,) of one direction.
-    full : (load,) ndarray of bool
-        Where more than :data:`core.limits.MAX_TOUCHING` of the window touches.
+    ``values`` has ``midpoint`` (n,), ``friction_angle`` (n, load), ``peak_strength``,
+    ``peak_offset`` and ``barton_strength`` (load,); ``full`` (load,) is True where more than
+    :data:`core.limits.MAX_TOUCHING` of the window touches.
     """
     midpoint, angle, peak_offset, peaks, barton = (
         np.asarray(values[name])
