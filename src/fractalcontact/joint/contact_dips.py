@@ -17,27 +17,11 @@ STEPS = (1, 2)
 def contact_dips(
     specimen: xr.Dataset, direction: str, cells: int, factor: int, step: int = 1
 ) -> np.ndarray:
-    """Apparent dip of the contact at every node of the window along the sliding, if it touches.
+    """Apparent dip of the contact along the sliding at each node (ny, nx), if it touches.
 
-    Parameters
-    ----------
-    specimen : xr.Dataset
-    direction : {"E", "N", "W", "S"}
-        Where the upper block slides.
-    cells : int
-        Offset in cells of the scan.
-    factor : int
-        Resolution k.
-    step : int, optional
-        Spacings of that resolution that a slope is taken over.
+    Degrees, above 0 where the upper block has to climb; NaN where no slope is known. The offset is
+    in cells of the scan; slopes are taken over ``step`` spacings of the resolution k, ``factor``.
 
-    Returns
-    -------
-    (ny, nx) ndarray
-        Degrees, above 0 where the upper block has to climb; NaN where no slope is known.
-
-    Notes
-    -----
     Where faces meet at a node, the plane between them is no steeper than the slopes of both on
     either side allow: it lies between the middle two of these four, and their mean is taken. So a
     tip on a flank has the dip of the flank, and exchanging the faces changes nothing.
@@ -63,7 +47,7 @@ def contact_dips(
 
 
 def _nanmedian(values: np.ndarray) -> np.ndarray:
-    """Median over the first axis of four, of those that are known."""
+    """Median over the first axis of four values, of those that are finite."""
     a, b, c, d = values
     middle = np.maximum(np.minimum(a, b), np.minimum(c, d))
     middle = (middle + np.minimum(np.maximum(a, b), np.maximum(c, d))) / 2
@@ -76,17 +60,8 @@ def _nanmedian(values: np.ndarray) -> np.ndarray:
 def dips_by_force(pressure: np.ndarray, dips: np.ndarray) -> np.ndarray:
     """Mean apparent dip of each of :data:`PARTS` equal parts of the force, ascending, degrees.
 
-    Parameters
-    ----------
-    pressure : (ny, nx) ndarray
-        MPa.
-    dips : (ny, nx) ndarray
-        From :func:`contact_dips`; nodes without one are left out.
-
-    Returns
-    -------
-    (PARTS,) ndarray
-        NaN where nothing presses.
+    ``dips`` (ny, nx) are those of :func:`contact_dips`; nodes without one are left out. NaN where
+    nothing presses.
     """
     pressing = (pressure > 0) & np.isfinite(dips)
     if not pressing.any():

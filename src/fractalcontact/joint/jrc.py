@@ -99,15 +99,7 @@ def profile_roughness(specimen: xr.Dataset, direction: str) -> xr.Dataset:
 
 
 def roughness_of_profiles(levelled: list[np.ndarray], spacing: float) -> xr.Dataset:
-    """Profile roughness of levelled profiles along the first axis of arrays.
-
-    Parameters
-    ----------
-    levelled : list of (n, m) ndarray
-        Heights, mm.
-    spacing : float
-        Along the first axis, mm.
-    """
+    """Profile roughness of levelled heights (n, m), mm, along the first axis of arrays."""
     lags = [1 if step is None else max(1, round(step / spacing)) for step in JRC_SAMPLINGS.values()]
     z2 = np.array([_rms_slope(levelled, lag, spacing) for lag in lags])
     jrc = np.array([joint_roughness(value) if value > 0 else np.nan for value in z2])

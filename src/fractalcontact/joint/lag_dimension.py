@@ -37,22 +37,11 @@ _TABLE = {
 def lag_dimensions(
     composites: Sequence[np.ndarray], spacings: tuple[float, ...], longest: float
 ) -> dict[str, tuple]:
-    """Dimension of composite topographies over fixed lags.
+    """Dimension of composite topographies over fixed lags, from two cells to the longest, mm.
 
-    Parameters
-    ----------
-    composites : sequence of (ny, nx) ndarray
-        Heights by offset, mm.
-    spacings : (float, float)
-        Sides (y, x) of a cell, mm.
-    longest : float
-        Longest lag, mm; the shortest is that of two cells.
-
-    Returns
-    -------
-    dict of str to (dims, values, attributes)
-        ``lag_dimension`` (offset, lag_range), ``lag_min`` and ``lag_max`` (lag_range), and the
-        coordinate ``lag_range``, :data:`LAG_RANGES`. Missing where the faces are flush.
+    ``lag_dimension`` (offset, lag_range), ``lag_min`` and ``lag_max`` (lag_range), mm, and the
+    coordinate ``lag_range``, :data:`LAG_RANGES`, as ``xr.Dataset`` takes them. Cells have the sides
+    (y, x) of ``spacings``, mm. Missing where the faces are flush.
     """
     spacing = max(spacings)
     longest = max(longest / spacing, MIN_LAGS * MIN_CELLS)

@@ -59,19 +59,7 @@ def second_half(offset: np.ndarray) -> np.ndarray:
 def relative_change(slope: Any, offset: np.ndarray, mean: Any) -> Any:
     """Change of a line over offsets as a fraction of its mean; positive where it rises.
 
-    Parameters
-    ----------
-    slope : float or ndarray
-        mm/mm.
-    offset : (n,) ndarray
-        mm, those of the line.
-    mean : float or ndarray
-        Of what the line goes through, mm.
-
-    Returns
-    -------
-    float or ndarray
-        NaN where the mean is zero.
+    NaN where the mean is zero.
     """
     size = np.where(np.asarray(mean) == 0, np.nan, np.abs(mean))
     return slope * np.ptp(offset) / size
@@ -82,26 +70,10 @@ def rigid_plateaus(
 ) -> dict[str, tuple]:
     """Level, slope and trend of the rigid dilatancy over the second half of the offsets.
 
-    Parameters
-    ----------
-    offset : (n,) ndarray
-        v, mm, ascending.
-    opened : (directions, n) array_like
-        delta_r, mm.
-    directions : sequence of str
-
-    Returns
-    -------
-    dict
-        Variables over (direction,) as ``xr.Dataset`` takes them: ``plateau_level``,
-        ``plateau_slope`` and ``plateau_change`` with their 95 % intervals, ``plateau_intercept``
-        and the ends of the fit, ``plateau_trend`` and ``no_plateau``. Without a line all are
-        missing but the reason.
-
-    Notes
-    -----
-    A change of up to a tenth of the mean is called level. The intervals are those of one
-    least-squares line whose points count as independent; neighbouring offsets are not.
+    Offsets v (n,) and openings delta_r (directions, n) are in mm. Without a line all are missing
+    but the reason ``no_plateau``. A change of up to a tenth of the mean is called level. The
+    intervals are those of one least-squares line whose points count as independent; neighbouring
+    offsets are not.
     """
     half = second_half(offset)
     v, opened = offset[half], np.asarray(opened, float)[:, half]
@@ -115,25 +87,13 @@ def rigid_plateaus(
 def undecided_plateaus(
     offset: np.ndarray, correlation: np.ndarray, uncorrelated: np.ndarray
 ) -> dict[str, tuple]:
-    """Reason why trends over the second half of the offsets say nothing of a plateau.
+    """Reason why trends over the second half of the offsets say nothing of a plateau, by direction.
 
     Faces that match open as long as they still correlate: a plateau begins beyond (the spread of
-    the composite topography is then that of two unrelated faces).
-
-    Parameters
-    ----------
-    offset : (n,) ndarray
-        v, mm, ascending.
-    correlation : (directions, n) ndarray
-        Of the faces.
-    uncorrelated : (directions,) ndarray
-        First offset where it does not differ from zero, mm; NaN where there is none.
-
-    Returns
-    -------
-    dict
-        ``plateau_undecided`` (direction,) as ``xr.Dataset`` takes it; empty where the second half
-        lies beyond that offset, or nothing slides.
+    the composite topography is then that of two unrelated faces). ``correlation`` (directions, n)
+    is that of the faces over the offsets, mm, ``uncorrelated`` the first offset where it does not
+    differ from zero, NaN where there is none. Empty where the second half lies beyond that offset,
+    or nothing slides.
     """
     first = offset[second_half(offset)][0]
 
@@ -152,24 +112,12 @@ def undecided_plateaus(
 def opposite_parts(
     offset: np.ndarray, opened: ArrayLike, directions: Sequence[str]
 ) -> dict[str, tuple]:
-    """Even and odd part of the rigid dilatancy over opposite directions.
+    """Even and odd part of the rigid dilatancy over opposite directions, mm, by axis.
 
     A tilt a of the window against the plane that was removed from the face adds a v in one
     direction and - a v in the opposite one, so that the even part is of the roughness alone. The
-    odd part is no measure of the tilt: the highest points differ by chance too.
-
-    Parameters
-    ----------
-    offset, opened, directions
-        As :func:`rigid_plateaus` takes them.
-
-    Returns
-    -------
-    dict
-        Coordinate ``axis``, of those both of whose directions are there, and variables as
-        ``xr.Dataset`` takes them: ``even_dilatancy`` and ``odd_dilatancy`` (axis, rigid_offset),
-        mm; ``even_change`` and ``odd_slope`` (axis), with the 95 % intervals of the line through
-        the second half of the offsets.
+    odd part is no measure of the tilt: the highest points differ by chance too. Intervals are those
+    of the line through the second half of the offsets.
     """
     of = dict(zip(directions, np.asarray(opened, float), strict=True))
     pairs = {axis: pair for axis, pair in AXES.items() if set(pair) <= of.keys()}

@@ -18,25 +18,12 @@ _TABLE = {
 
 
 def profile_coefficients(heights: np.ndarray, spacing: float) -> xr.Dataset:
-    """Z2, JRC and Delta_g = 3 - H of a profile, H by the roughness length (Malinverno 1990).
+    """Z2, JRC and Delta_g = 3 - H of a profile (n,), mm, H by the roughness length.
 
-    Parameters
-    ----------
-    heights : (n,) ndarray
-        mm, in even steps.
-    spacing : float
-        mm.
-
-    Returns
-    -------
-    xr.Dataset
-        As :func:`joint.jrc.profile_roughness`, over ``contact_direction`` "x" too;
-        ``recommended_dimension`` with its interval, of an isotropic surface with such profiles.
-
-    Notes
-    -----
-    Malinverno, Geophys. Res. Lett. 17 (1990) 1953: the variance about the line of windows of
-    length b grows as b^(2H). Windows shorter than 8 cells are left out; nothing else is corrected.
+    As :func:`joint.jrc.profile_roughness`, over ``contact_direction`` "x" too;
+    ``recommended_dimension`` with its interval is that of an isotropic surface with such profiles.
+    Malinverno, Geophys. Res. Lett. 17 (1990) 1953: the variance about the line of windows of length
+    b grows as b^(2H). Windows shorter than 8 cells are left out; nothing else is corrected.
     """
     x = np.arange(heights.size)
     levelled = heights - np.polyval(np.polyfit(x, heights, 1), x)

@@ -33,27 +33,11 @@ class Slide(NamedTuple):
 
 
 def slide(lower: np.ndarray, upper: np.ndarray, corners: np.ndarray) -> Slide:
-    """Slide the lower face under a window.
+    """Slide of the whole lower face under a window, heights in mm.
 
-    Parameters
-    ----------
-    lower : (ny, nx) float64 ndarray
-        Heights of the whole lower face, mm; none missing where the window comes to lie.
-    upper : (my, mx) float64 ndarray
-        Heights of the upper face in the window, mm.
-    corners : (n, 2) int ndarray
-        Row and column of the lower face under the window's first cell, one of which is the same at
-        all places.
-
-    Returns
-    -------
-    Slide
-        Of h = lower - upper at each place.
-
-    Raises
-    ------
-    ValueError
-        If neither the rows nor the columns are all the same.
+    ``corners`` (n, 2) have the row and column of the lower face under the window's first cell, one
+    of which is the same at all places; h is lower less upper. No height may be missing where the
+    window comes to lie. Raises ValueError if neither rows nor columns are all the same.
     """
     sums = np.zeros((len(corners), 2))
     highest = np.full(len(corners), -np.inf)

@@ -65,7 +65,7 @@ def add_theories(
 
 
 def add_comparison(result: xr.Dataset) -> None:
-    """Add which theories the laws agree with, and Persson's kappa over the pressures of the laws."""
+    """Add the theories that the laws agree with, and Persson's kappa over their pressures."""
     low, high = (result[f"corrected_exponent_{end}"] for end in ("low", "high"))
     levels = result["archard_level"]
     archard = levels.copy(data=theory.archard_exponent(levels.values))

@@ -49,35 +49,13 @@ def solve_sub_windows(
 ) -> tuple[xr.Dataset, np.ndarray]:
     """States of all sub-windows of several sizes under the study's loads and some beyond.
 
-    Parameters
-    ----------
-    loading : JointLoading
-        At one offset.
-    parts : sequence of int
-        Sub-windows along each side, of which :func:`size_effect.division.solvable_parts` are taken.
-    estimate : callable, optional
+    At the one offset of ``loading``, of the divisions among ``parts`` that
+    :func:`size_effect.division.solvable_parts` gives. The dataset has what ``estimate`` returned,
+    :data:`_OF_SIZES` by ``part``, NaN for steps that no window of a size needs, ``whole_area``,
+    ``whole_area_sampling`` and ``whole_left`` of :mod:`states.left_out`, and ``ladder_pressure``
+    (step), whose first steps are those of the loads. Second come the contact domains (load, ny, nx)
+    of the whole window at the finest resolution. Raises `NotConverged`.
 
-    Returns
-    -------
-    states : xr.Dataset
-        What was estimated, and
-        ``nodes`` (part, window, resolution, step) in contact and ``nodes_error``, those that the
-        solver leaves ambiguous; ``interface_closure`` and :data:`OF_WINDOWS` (part, window, step)
-        at the finest resolution, ``whole_area`` and ``whole_area_sampling`` (resolution, step)
-        and ``whole_left`` (resolution, step, left_out) of :mod:`states.left_out`,
-        ``side`` b and ``windows`` (part), ``ladder_pressure`` (step) whose first steps are those
-        of the loads. Steps that no
-        window of a size needs are NaN.
-    domains : (load, ny, nx) bool ndarray
-        Contact domain of the whole window at the finest resolution.
-
-    Raises
-    ------
-    NotConverged
-        As :func:`size_effect.windows.window_states`.
-
-    Notes
-    -----
     Sub-windows are cut to whole cells of the coarsest resolution, so that all of them cover the
     same area at each.
 
@@ -135,12 +113,7 @@ def solve_sub_windows(
 class _LoadedSize(SubWindows):
     """All sub-windows of one size at all resolutions, and what eq. 6 takes of their states.
 
-    Parameters
-    ----------
-    loading, windows, pressures, where, factors
-        As of :class:`size_effect.sub_windows.SubWindows`.
-    compliant : (step,) bool ndarray
-        Steps whose compliance is computed, where `RESOLVED_NODES` nodes touch.
+    Compliance is computed at the steps ``compliant`` (step,), where `RESOLVED_NODES` nodes touch.
 
     Attributes
     ----------
@@ -321,21 +294,11 @@ def _labelled(
 
 
 def real_pressure(force: np.ndarray, nodes: np.ndarray, spacing: np.ndarray) -> np.ndarray:
-    """Geometric mean of sigma_n over the resolutions, MPa.
+    """Geometric mean of sigma_n over the resolutions (..., step), MPa.
 
-    Parameters
-    ----------
-    force : (..., step) ndarray
-        N.
-    nodes : (..., step, resolution) ndarray
-        In contact; the mean number for several windows together.
-    spacing : (resolution,) ndarray
-        mm.
-
-    Returns
-    -------
-    (..., step) ndarray
-        NaN where there are fewer than `MIN_NODES_PER_RESOLUTION` nodes at a resolution.
+    Forces (..., step) are in N, nodes (..., step, resolution) those in contact, the mean number for
+    several windows together, spacings (resolution,) in mm. NaN where there are fewer than
+    `MIN_NODES_PER_RESOLUTION` nodes at a resolution.
     """
     nodes = np.where(within(nodes, MIN_NODES_PER_RESOLUTION, np.inf), nodes, np.nan)
     return np.exp(np.log(force[..., np.newaxis] / (nodes * spacing**2)).mean(axis=-1))
@@ -346,20 +309,9 @@ def whole_areas(
 ) -> xr.Dataset:
     """Corrected real area of the whole window at all resolutions of the study.
 
-    Parameters
-    ----------
-    loading : JointLoading
-        As for :func:`solve_sub_windows`.
-    states : xr.Dataset
-        From :func:`solve_sub_windows`, which has solved some of the resolutions.
-    domains : (load, ny, nx) bool ndarray
-        From there.
-
-    Returns
-    -------
-    xr.Dataset
-        ``area_corrected``, mm2, ``area_sampling`` and ``nodes`` (resolution, normal_force), and
-        ``left`` (resolution, normal_force, left_out) of :mod:`states.left_out`.
+    ``states`` and ``domains`` are those of :func:`solve_sub_windows`, which has solved some of the
+    resolutions. ``area_corrected``, mm2, ``area_sampling`` and ``nodes`` (resolution,
+    normal_force), and ``left`` (resolution, normal_force, left_out) of :mod:`states.left_out`.
     """
     composite = loading.composite(loading.cells.item())
     factors, loads = loading.settings.resolutions, states["normal_force"]

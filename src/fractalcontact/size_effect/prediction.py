@@ -20,29 +20,18 @@ PREDICTORS = ("power_law", "eq6_area", "eq6_box", "eq6_box_sizes", "no_size_effe
 def predict_whole(states: xr.Dataset, delta_sigma: xr.DataArray, fewest_nodes: int) -> xr.Dataset:
     """Closure and real area of the whole window, from smaller windows and as solved.
 
-    Parameters
-    ----------
-    states : xr.Dataset
-        From :func:`size_effect.load_ladder.solve_sub_windows`.
-    delta_sigma : xr.DataArray (estimator, normal_force)
-        Of the whole window.
-    fewest_nodes : int
-        A size is used where its windows hold this many nodes on the average.
+    ``states`` are those of :func:`size_effect.load_ladder.solve_sub_windows`, ``delta_sigma``
+    (estimator, normal_force) is that of the whole window; a size is used where its windows hold
+    ``fewest_nodes`` on the average. ``predicted_closure``, ``predicted_area`` (predictor,
+    normal_force) with intervals, ``direct_closure``, ``direct_area`` (normal_force), and
+    ``closure_error``, ``area_error`` (predictor, load) = predicted / direct - 1, at the finest
+    resolution.
 
-    Returns
-    -------
-    xr.Dataset
-        ``predicted_closure``, ``predicted_area`` (predictor, normal_force) with intervals,
-        ``direct_closure``, ``direct_area`` (normal_force), and ``closure_error``, ``area_error``
-        (predictor, load) = predicted / direct - 1. At the finest resolution.
-
-    Notes
-    -----
     The power law goes through the means of the smaller sizes at the same sigma_0. Eq. 6 says that
-    the whole at sigma_0 has the sigma*, so the real pressure, of windows of side b' at
-    sigma_0 (b/b')^(2 - Delta); every smaller size gives one prediction and their geometric mean is
-    taken. That they close as much then, too, is what "governing parameter" is taken to mean here;
-    the paper does not say it. Without a size effect the whole is as its parts at the same sigma_0.
+    the whole at sigma_0 has the sigma*, so the real pressure, of windows of side b' at sigma_0
+    (b/b')^(2 - Delta); every smaller size gives one prediction and their geometric mean is taken.
+    That they close as much then, too, is what "governing parameter" is taken to mean here; the
+    paper does not say it. Without a size effect the whole is as its parts at the same sigma_0.
     """
     b, pressures = states["side"].values, states["ladder_pressure"].values
     loads = pressures[: states.sizes["normal_force"]]
@@ -96,26 +85,14 @@ _STRENGTH = {
 
 
 def predict_whole_strength(laws: xr.Dataset, delta_sigma: xr.DataArray) -> xr.Dataset:
-    """Shear strength of the whole window at v/b as small windows predict it, and as solved.
+    """Shear strength of the whole window at v/b as small windows predict it, and as solved, MPa.
 
-    Parameters
-    ----------
-    laws : xr.Dataset
-        From :func:`size_effect.laws.joint_by_size`, of a joint that slides.
-    delta_sigma : xr.DataArray (estimator, normal_force)
-        Of the whole window.
-
-    Returns
-    -------
-    xr.Dataset
-        ``predicted_strength`` (predictor, dilatancy_load), ``direct_strength`` (dilatancy_load),
-        ``strength_error``; ``strength_share``, the v/b at which most sizes
-        can be compared. NaN where the study states no basic friction angle.
-
-    Notes
-    -----
-    Eq. 6 with tau* = mu sigma* has the apparent strength at a given sigma_0 fall as
-    b^-(2 - Delta).
+    ``laws`` are those of :func:`size_effect.laws.joint_by_size` of a joint that slides,
+    ``delta_sigma`` (estimator, normal_force) is that of the whole window. ``predicted_strength``
+    and ``strength_error`` (predictor, dilatancy_load), ``direct_strength`` (dilatancy_load), and
+    ``strength_share``, the v/b at which most sizes can be compared. NaN where the study states no
+    basic friction angle. Eq. 6 with tau* = mu sigma* has the apparent strength at a given sigma_0
+    fall as b^-(2 - Delta).
     """
     at = int(
         np.argmax(laws["slope_at_equal_v_over_b"].notnull().all("normal_force").sum("part").values)

@@ -52,16 +52,8 @@ class Judgement(NamedTuple):
 def judge_exponent(measured: Estimate, predicted: Estimate) -> Judgement:
     """Judgement of a measured exponent beside the predicted one: the rule of both forms.
 
-    Parameters
-    ----------
-    measured, predicted : Estimate
-        NaN where unknown.
-
-    Returns
-    -------
-    Judgement
-        Undecided where the prediction is wide or next to nothing, or where the measured interval
-        holds both the prediction and zero.
+    Undecided where the prediction is wide or next to nothing, or where the measured interval holds
+    both the prediction and zero.
     """
     value = measured.value - predicted.value
     low = value - np.hypot(measured.value - measured.low, predicted.high - predicted.value)
@@ -90,15 +82,10 @@ def judge_exponent(measured: Estimate, predicted: Estimate) -> Judgement:
 def judge_own_form(
     measured: Estimate, predicted: Estimate, condition: float, crossings: int
 ) -> Judgement:
-    """As :func:`judge_exponent`, of the slope at equal sigma*: only where that determines sigma_0.
+    """Judgement of the slope at equal sigma*, where that determines sigma_0.
 
-    Parameters
-    ----------
-    measured, predicted : Estimate
-    condition : float
-        d ln sigma_0 / d ln sigma* of the whole window, of any sign.
-    crossings : int
-        Pressures at which the whole window has its sigma*.
+    By :func:`judge_exponent`. ``condition`` is d ln sigma_0 / d ln sigma* of the whole window, of
+    any sign, ``crossings`` the number of pressures at which the whole window has its sigma*.
     """
     found = judge_exponent(measured, predicted)
     if found.verdict == NOT_TESTED:
@@ -113,17 +100,9 @@ def judge_own_form(
 
 
 def both_forms(area: Judgement, own: Judgement) -> tuple[str, str]:
-    """Verdict and reason on eq. 6 under one load, from both of its forms.
+    """Verdict and reason on eq. 6 under one load: the well-conditioned form's.
 
-    Parameters
-    ----------
-    area, own : Judgement
-        Of the exponent of A_r/A_0, and of eq. 6's own form.
-
-    Returns
-    -------
-    verdict, reason : str
-        The well-conditioned form's; where that agrees, what its own form adds.
+    Where that agrees, what its own form adds.
     """
     if area.verdict != AGREES:
         return area.verdict, area.reason
@@ -148,19 +127,10 @@ _NAMES = {
 def size_verdicts(result: xr.Dataset) -> xr.Dataset:
     """Verdicts on eq. 6 by estimator and load, in both forms and together.
 
-    Parameters
-    ----------
-    result : xr.Dataset
-        With ``area_exponent``, ``slope`` and ``predicted_slope`` with intervals, ``sensitivity``
-        and ``crossings`` as of :func:`size_effect.eq6.size_test`.
-
-    Returns
-    -------
-    xr.Dataset
-        Over (estimator, normal_force): ``area_difference``, ``slope_difference`` with intervals,
-        ``area_verdict``, ``slope_verdict``, ``verdict`` of both, each with its ``_reason``
-        (``reason`` of both). Over (normal_force,): ``condition_number``,
-        ``well_conditioned`` and ``size_effect``.
+    ``result`` has ``area_exponent``, ``slope``, ``predicted_slope``, ``sensitivity`` and
+    ``crossings`` of :func:`size_effect.eq6.size_test`. :data:`_NAMES` over (estimator,
+    normal_force); ``condition_number``, ``well_conditioned`` and ``size_effect`` over
+    (normal_force,).
     """
     dims = ("estimator", "normal_force")
     predicted = Estimate.read(result.transpose(*dims, ...), "predicted_slope")

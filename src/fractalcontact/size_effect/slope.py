@@ -11,21 +11,11 @@ from .window_means import add_law
 
 
 def equal_pressure(pressures: ArrayLike, values: ArrayLike, target: float) -> tuple[float, int]:
-    """Pressures at which a curve has a value, by lines between the logarithms.
+    """Pressure at which a curve has a value, by lines between the logarithms, and its crossings.
 
-    Parameters
-    ----------
-    pressures, values : (n,) array_like
-        The curve; NaN where it is not known.
-    target : float
-
-    Returns
-    -------
-    pressure : float
-        Geometric mean of all places where the curve has the value; 0 if all of the curve lies above
-        it, so that the place is below the pressures solved, infinity if all lies below; NaN without
-        a curve.
-    crossings : int
+    Values (n,) are NaN where unknown. The pressure is the geometric mean of all places where the
+    curve has the value; 0 if all of the curve lies above it, so that the place is below the
+    pressures solved, infinity if all lies below; NaN without a curve.
     """
     known = np.isfinite(values)
     if not known.any():
@@ -44,13 +34,10 @@ def equal_pressure(pressures: ArrayLike, values: ArrayLike, target: float) -> tu
 
 
 def real_pressures(states: xr.Dataset) -> np.ndarray:
-    """Geometric mean of sigma_n over the resolutions, MPa, of all windows of a size together.
+    """Geometric mean of sigma_n over the resolutions, MPa, (part, step), of all windows of a size.
 
-    Returns
-    -------
-    (part, step) ndarray
-        From the sum of F over the sum of A_n. NaN where the windows hold fewer than
-        `MIN_NODES_PER_RESOLUTION` nodes on the average at a resolution.
+    From the sum of F over the sum of A_n. NaN where the windows hold fewer than
+    `MIN_NODES_PER_RESOLUTION` nodes on the average at a resolution.
     """
     nodes = states["nodes"].mean("window").transpose("part", "step", "resolution")
     force = states["side"].values[:, np.newaxis] ** 2 * states["ladder_pressure"].values
@@ -58,12 +45,9 @@ def real_pressures(states: xr.Dataset) -> np.ndarray:
 
 
 def real_pressure_errors(states: xr.Dataset) -> np.ndarray:
-    """Solver error bounds of the logarithms of :func:`real_pressures`.
+    """Solver error bounds of the logarithms of :func:`real_pressures`, (part, step).
 
-    Returns
-    -------
-    (part, step) ndarray
-        Infinite where no node is certain to touch, NaN where the windows were not solved.
+    Infinite where no node is certain to touch, NaN where the windows were not solved.
     """
     nodes, off = (
         states[name].mean("window").transpose("part", "step", "resolution")
@@ -77,18 +61,10 @@ def real_pressure_errors(states: xr.Dataset) -> np.ndarray:
 def _places(
     pressures: np.ndarray, curves: np.ndarray, n_loads: int
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Pressures at which the windows of a size have the real pressure of the whole, by load.
+    """Pressures at which each size has the real pressure of the whole window, and crossings.
 
-    Parameters
-    ----------
-    pressures : (step,) ndarray
-    curves : (part, step) ndarray
-        As :func:`real_pressures` has them.
-    n_loads : int
-
-    Returns
-    -------
-    equal, crossings : (normal_force, part) ndarray
+    Both are (normal_force, part). Curves (part, step) are those of :func:`real_pressures`, over the
+    pressures (step,).
     """
     equal = np.full((n_loads, len(curves)), np.nan)
     crossings = np.zeros(equal.shape, int)
@@ -137,19 +113,9 @@ _TABLE = {
 
 
 def slopes_at_equal_star(states: xr.Dataset, n_loads: int) -> xr.Dataset:
-    """Pressures at equal sigma*, their slope over b, and its explanation.
+    """Pressures at equal sigma*, their slope over b, and its explanation: see `size_test`.
 
-    Parameters
-    ----------
-    states : xr.Dataset
-        From :func:`size_effect.load_ladder.solve_sub_windows`.
-    n_loads : int
-        The first steps, under which the whole window is tested.
-
-    Returns
-    -------
-    xr.Dataset
-        See :func:`size_effect.eq6.size_test`.
+    The whole window is tested under the first ``n_loads`` steps.
     """
     pressures = states["ladder_pressure"].values
     curves, errors = real_pressures(states), real_pressure_errors(states)

@@ -34,39 +34,27 @@ OFFSET_FRACTIONS = (0.01, 0.02, 0.05, 0.1)
 def strength_by_size(states: xr.Dataset, material: Friction, roughness: float) -> xr.Dataset:
     """Strength of the sub-windows, each from its own elastic dilatancy curve.
 
-    Parameters
-    ----------
-    states, material, roughness
-        As for :func:`size_effect.laws.size_laws`.
+    Arguments as for :func:`size_effect.laws.size_laws`. Means over sub-windows with their interval
+    and the ``_error`` of the solver: ``peak_strength`` (part, normal_force), and
+    ``truncated_fraction_at_peak``, the fraction of sub-windows whose angle was truncated there;
+    ``barton_scaled_strength`` with the JRC and JCS of that size by Barton and Bandis' law (which
+    was measured on joints of 50 mm and more), none where that JRC is beyond Barton's scale of 0 to
+    20.
 
-    Returns
-    -------
-    xr.Dataset
-        Means over sub-windows with ``_low``, ``_high`` and the ``_error`` of the solver:
-        ``peak_strength`` (part, normal_force); ``truncated_fraction_at_peak`` (part,
-        normal_force), the fraction of sub-windows whose angle was truncated there;
-        ``barton_scaled_strength`` (part, normal_force) with the JRC and JCS of that size by Barton
-        and Bandis' law (which was measured on joints of 50 mm and more); none where that JRC is
-        beyond Barton's scale of 0 to 20.
+    At offsets in proportion to the size, v = (v/b) b, over (share, part, load): mean
+    ``strength_at_equal_v_over_b`` and ``slope_at_equal_v_over_b`` (d delta/dv, not truncated),
+    ``truncated_fraction_at_equal_v_over_b`` and their exponents (share, load), where the v of the
+    sizes lie in three steps of sliding or more. ``share`` holds the fractions v/b.
+    ``strength_of_whole_at_equal_v`` and ``slope_of_whole_at_equal_v`` are those of the whole window
+    at the same v, and ``slope_at_equal_v_exponent`` (share, load) is the exponent against b of the
+    slope of the sub-windows over it. Besides those of :func:`with_slope_angles`.
 
-        At offsets in proportion to the size, v = (v/b) b, over (share, part, load): mean
-        ``strength_at_equal_v_over_b`` and ``slope_at_equal_v_over_b`` (d delta/dv, not truncated),
-        ``truncated_fraction_at_equal_v_over_b`` (the fraction of sub-windows whose angle was
-        truncated there) and their exponents (share, load), where the v of the sizes lie in three
-        steps of sliding or more. ``share`` holds the fractions v/b.
-        ``strength_of_whole_at_equal_v`` and ``slope_of_whole_at_equal_v`` (share, part, load) are
-        those of the whole window at the same v, and ``slope_at_equal_v_exponent`` (share, load) the
-        exponent against b of the slope of the sub-windows over it. Besides those of
-        :func:`with_slope_angles`.
-
-    Notes
-    -----
     A strength whose angle is truncated is a lower bound: the exponent at one v/b is the largest
     that the bounds allow, and its interval has no lower end.
 
     At one v/b both v and b grow, and a face without any effect of size has the slopes of its whole
-    window at these v: ``slope_at_equal_v_exponent`` is then 0. A self-affine face has
-    d delta/dv ~ v^(H - 1), which at one v/b falls as b^(H - 1).
+    window at these v: ``slope_at_equal_v_exponent`` is then 0. A self-affine face has d delta/dv ~
+    v^(H - 1), which at one v/b falls as b^(H - 1).
 
     The largest of several noisy values grows with their noise, which is larger in a small
     sub-window, so part of any size effect on a peak is scatter itself, as in a laboratory.
@@ -127,21 +115,10 @@ def strength_by_size(states: xr.Dataset, material: Friction, roughness: float) -
 
 
 def with_slope_angles(laws: xr.Dataset, pressure: np.ndarray) -> xr.Dataset:
-    """Strengths at one v/b as limit slope angles (Fig. 11).
+    """Size laws with strengths at one v/b as limit slope angles, degrees (Fig. 11).
 
-    Parameters
-    ----------
-    laws : xr.Dataset
-        ``strength_at_equal_v_over_b`` with its interval, ``truncated_fraction_at_equal_v_over_b``
-        and ``barton_scaled_strength``.
-    pressure : (n_load,) ndarray
-        sigma_0, MPa.
-
-    Returns
-    -------
-    xr.Dataset
-        With ``limit_slope_angle`` and ``strength_at_equal_v_over_b_valid`` (share, part,
-        normal_force), and ``barton_slope_angle`` (part, normal_force).
+    ``limit_slope_angle`` and ``strength_at_equal_v_over_b_valid`` (share, part, normal_force), and
+    ``barton_slope_angle`` (part, normal_force). Pressures sigma_0 (n_load,) in MPa.
     """
     dims = ("share", *_DIMS[::2])
     strength = Estimate.read(laws.transpose(*dims, ...), "strength_at_equal_v_over_b")
@@ -159,14 +136,11 @@ def with_slope_angles(laws: xr.Dataset, pressure: np.ndarray) -> xr.Dataset:
 
 
 def add_slope_trends(laws: xr.Dataset) -> None:
-    """Slope of the dilatancy over b at one v/b, and that of a self-affine face.
+    """Slope of the dilatancy over b at one v/b, and that of a self-affine face, into ``laws``.
 
-    Parameters
-    ----------
-    laws : xr.Dataset
-        Of :func:`size_effect.laws.size_laws`: gets ``slope_at_equal_v_over_b_trend`` (share,
-        normal_force), and ``slope_at_equal_v_over_b_expected`` (share, part), b^(H - 1) through the
-        mean over the loads of the sizes whose slopes are all positive, if three are.
+    ``slope_at_equal_v_over_b_trend`` (share, normal_force), and
+    ``slope_at_equal_v_over_b_expected`` (share, part), b^(H - 1) through the mean over the loads of
+    the sizes whose slopes are all positive, if three are.
     """
     exponent = Estimate.read(laws, "slope_at_equal_v_over_b_exponent")
     trend = np.where(exponent.high < 0, FALLING, np.where(exponent.low > 0, RISING, ""))
@@ -184,13 +158,7 @@ def add_slope_trends(laws: xr.Dataset) -> None:
 
 
 def slope_angle(strength: ArrayLike, pressure: ArrayLike) -> np.ndarray:
-    """Limit slope angle atan(tau / sigma_0), degrees: a block on a plane so steep just slides.
-
-    Parameters
-    ----------
-    strength, pressure : array_like
-        MPa.
-    """
+    """Limit slope angle atan(tau / sigma_0), degrees: a block on a plane so steep just slides."""
     return np.degrees(np.arctan(np.asarray(strength) / pressure))
 
 
@@ -276,14 +244,8 @@ def _add_whole_window(
 ) -> None:
     """Strength and slope of the whole window at the v of each size, and slopes over that.
 
-    Parameters
-    ----------
-    result : xr.Dataset
-        With ``strength_at_equal_v_over_b`` and ``slope_at_equal_v_over_b``.
-    offset : (n,) ndarray
-        mm.
-    over_offsets : mapping of str to (n - 1, part, window, load) ndarray
-        ``strength``, MPa, and ``slope``. Part 1 is the whole window.
+    ``over_offsets`` has ``strength``, MPa, and ``slope`` (n - 1, part, window, load) between the
+    offsets (n,), mm. The first part is the whole window.
     """
     for name, values in over_offsets.items():
         of_sizes = result[f"{name}_at_equal_v_over_b"]
@@ -325,18 +287,9 @@ def _by_barton(states: xr.Dataset, material: Friction, roughness: float) -> dict
 def _at_fractions(offset: np.ndarray, side: np.ndarray, values: np.ndarray) -> np.ndarray:
     """Values of the interval of offsets that holds v, for each v/b of `OFFSET_FRACTIONS` and b.
 
-    Parameters
-    ----------
-    offset : (n,) ndarray
-        Ends of the intervals, mm.
-    side : (part,) ndarray
-        b, mm.
-    values : (n - 1, part, window, load) ndarray
-
-    Returns
-    -------
-    (share, part, window, normal_force) ndarray
-        NaN where v is smaller than the first step of sliding or larger than the last offset.
+    Offsets (n,), mm, are the ends of the intervals, sides (part,) in mm, values (n - 1, part,
+    window, load). Of them (share, part, window, normal_force) are taken, NaN where v is smaller
+    than the first step of sliding or larger than the last offset.
     """
     taken = np.full((len(OFFSET_FRACTIONS), *values.shape[1:]), np.nan)
     tolerance = 1e-9 * offset[-1]

@@ -19,14 +19,7 @@ def add_mean(
 ) -> None:
     """Mean over the sub-windows with its interval, into ``result``.
 
-    Parameters
-    ----------
-    result : xr.Dataset
-        Gets ``name``, ``_low`` and ``_high`` and, with ``errors``, ``_error``.
-    values : xr.DataArray (..., window, ...)
-        Labelled; NaN where missing.
-    errors : xr.DataArray, optional
-        Solver error bounds of the values: their mean bounds that of the mean.
+    With solver error bounds of the values also an ``_error``: their mean bounds that of the mean.
     """
     dims = tuple(dim for dim in values.dims if dim != "window")
     units, long_name = values.attrs["units"], values.attrs["long_name"]
@@ -46,16 +39,9 @@ def add_law(
     words: str,
     points: str = "sizes fitted",
 ) -> None:
-    """Exponent of positive values against the side b, into ``result``.
+    """Exponent of values (..., size, ...) against the side b (size,), mm, into ``result``.
 
-    Parameters
-    ----------
-    result, name, words, points
-        As of :func:`add_exponents`.
-    side : xr.DataArray (size,)
-        b, mm, along the dimension of the sizes.
-    values : xr.DataArray (..., size, ...)
-        Those that are not positive, or missing, are left out.
+    As :func:`add_exponents`. Values that are not positive, or missing, are left out.
     """
     add_exponents(result, name, {"values": values, "side": side}, _power, side.dims, words, points)
 
@@ -70,20 +56,8 @@ def power_through(
 ) -> xr.DataArray:
     """Power of b with a known exponent through the middle of values on logarithmic axes.
 
-    Parameters
-    ----------
-    values : xr.DataArray (..., size, ...)
-        Those that are not positive, or missing, are left out.
-    side : xr.DataArray (size,)
-        b, mm.
-    exponent : xr.DataArray
-    words : str
-        What the line is.
-
-    Returns
-    -------
-    xr.DataArray
-        As ``values``, missing where these are left out or the exponent is unknown.
+    Values (..., size, ...) that are not positive, or missing, are left out, and so is the line
+    there and where the exponent is unknown. Sides b (size,) in mm; ``words`` say what the line is.
     """
     positive, (size,) = values.where(values > 0), side.dims
     powers = exponent * xr.ufuncs.log(side)

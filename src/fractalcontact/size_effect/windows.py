@@ -72,22 +72,7 @@ def window_states(
 ) -> xr.Dataset:
     """Contact states of sub-windows of several sizes, and how rough those of many more are.
 
-    Parameters
-    ----------
-    loading, parts, most
-        As of :func:`solved_windows`.
-
-    Returns
-    -------
-    xr.Dataset
-        That of :func:`solved_windows`, and ``face_sigma_z`` (scale) and ``sigma_z_all`` (offset,
-        scale) with the interval of their mean over all sub-windows of many more sizes
-        (``scale_side``), see :func:`size_effect.local_roughness.roughness_by_size`.
-
-    Raises
-    ------
-    NotConverged
-        As :func:`solved_windows`.
+    That of :func:`solved_windows`, and of :func:`size_effect.local_roughness.roughness_by_size`.
     """
     solved = solved_windows(loading, parts, most)
     return solved.merge(roughness_by_size(loading))
@@ -100,34 +85,16 @@ def solved_windows(
 ) -> xr.Dataset:
     """Contact states of sub-windows of several sizes, under the study's dilatancy loads.
 
-    Parameters
-    ----------
-    loading : JointLoading
-        Offsets ascending. The ``dilatancy_loads`` of its settings are taken as nominal pressures:
-        forces there act on the whole window.
-    parts : sequence of int
-        Sub-windows along each side, of which :func:`size_effect.division.solvable_parts` are taken.
-    most : int
-        Sub-windows solved of each size.
+    The loads are taken as nominal pressures: forces there act on the whole window. Of ``parts``
+    those of :func:`size_effect.division.solvable_parts` are taken, at most ``most`` sub-windows of
+    each size. :data:`STATES` over (part, window, offset, normal_force) and :data:`SHAPES` over
+    (part, window, offset) are NaN where there are fewer sub-windows; ``side`` b (part), mm, is the
+    square root of their area. Raises `NotConverged`, whose note names the state.
 
-    Returns
-    -------
-    xr.Dataset
-        :data:`STATES` over (part, window, offset, normal_force) and :data:`SHAPES` over (part,
-        window, offset), NaN where there are fewer sub-windows; ``side`` b (part), the square root
-        of their area.
-
-    Raises
-    ------
-    NotConverged
-        If a state could not be verified; the message names it.
-
-    Notes
-    -----
-    The composite topography of a sub-window is loaded as it lies in the whole one. The
-    blocks of the model do not turn (sect. 4), and only so the states of the parts can be compared
-    with those of the whole, of which they are pieces. A laboratory would seat a specimen of that
-    size; the part of its closure that comes from tilt alone then vanishes.
+    The composite topography of a sub-window is loaded as it lies in the whole one. The blocks of
+    the model do not turn (sect. 4), and only so the states of the parts can be compared with those
+    of the whole, of which they are pieces. A laboratory would seat a specimen of that size; the
+    part of its closure that comes from tilt alone then vanishes.
     """
     area, cells = loading.area, loading.cells
     pressures = loading.forces(loading.settings.dilatancy_loads) / area

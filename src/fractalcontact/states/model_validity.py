@@ -65,17 +65,7 @@ _OF_MATERIAL = {
 def model_validity(area: xr.Dataset, scaling: xr.Dataset, material: Material) -> xr.Dataset:
     """Verdicts on the elastic model in every state at the scan's own resolution.
 
-    Parameters
-    ----------
-    area, scaling : xr.Dataset
-        Of the stages of these names.
-    material : Material
-
-    Returns
-    -------
-    xr.Dataset
-        ``verdict``, ``pressure``, ``reason`` and ``decided_by`` over (direction, offset, load), and
-        the :class:`Limits` of the material.
+    :data:`_OF_STATES` over (direction, offset, load), and the :class:`Limits` of the material.
     """
     dims = ("direction", "offset", "normal_force")
     finest = scaling["sigma_n"].sel(resolution=scaling["resolution"].min(), drop=True)
@@ -99,7 +89,7 @@ def model_validity(area: xr.Dataset, scaling: xr.Dataset, material: Material) ->
 def elastic_model_validity(
     pressure: float, rms_slope: float, material: Material, nominal_pressure: float = 0.0
 ) -> Validity:
-    """Judge the elastic model under one load: the worse of pressure and slope counts.
+    """Verdict on the elastic model under one load: the worse of pressure and slope counts.
 
     Of contacts that crush at a hardness the pressure is no test: they are judged by the fraction of
     what the window can carry, good up to half of it, poor beyond 87 %. Else good up to the joint
@@ -107,15 +97,9 @@ def elastic_model_validity(
     strength lies between E/1000 and E/200: good up to the first, poor from three times the second.
     Slopes are good up to 0.3, in part up to 0.75.
 
-    Parameters
-    ----------
-    pressure : float
-        Real mean pressure, MPa: ``sigma_n`` of the stage ``scaling``. NaN gives no verdict.
-    rms_slope : float
-        Of the composite topography; NaN counts nothing.
-    material : Material
-    nominal_pressure : float, optional
-        F / A_0, MPa.
+    The pressure is the real mean one, MPa, ``sigma_n`` of the stage ``scaling``; NaN gives no
+    verdict. The rms slope is of the composite topography; NaN counts nothing. The nominal pressure
+    F / A_0 is in MPa.
     """
     limits = material_limits(material)
     if not np.isfinite(pressure):

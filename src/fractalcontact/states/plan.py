@@ -27,31 +27,11 @@ def solved_loads(
     factor: int,
     all_states: bool,
 ) -> np.ndarray:
-    """Load steps of a curve that the plan solves.
+    """Load steps of a curve that the plan solves: indices (m,) of the forces, N, ascending.
 
-    Parameters
-    ----------
-    settings : ContactSettings
-    forces : (n,) ndarray
-        N, ascending.
-    area : float
-        A_0, mm2.
-    first : bool
-        Whether the curve is in the first direction whose contact is solved.
-    mapped : bool
-        Whether it is at the offset of the contact maps.
-    factor : int
-        Its resolution k.
-    all_states : bool
-        Whether the study requests all states.
+    ``first`` says that the curve is in the first direction whose contact is solved, ``mapped`` that
+    it is at the offset of the contact maps, ``factor`` its resolution k; A_0 in mm2.
 
-    Returns
-    -------
-    (m,) int ndarray
-        Indices of ``forces``, ascending.
-
-    Notes
-    -----
     Closure curves, their fits and the contact domains over load are shown in the first direction,
     at the finest resolution; how they change with the resolution, at the offset of the maps. In the
     other directions only the dilatancy under its loads is.
@@ -72,21 +52,9 @@ def solve_plan(
 ) -> xr.Dataset:
     """The solve plan of a specimen: quantity, value, reason and estimated error.
 
-    Parameters
-    ----------
-    curves : xr.Dataset
-        From :func:`laws.closure.closure_curves`.
-    dilatancy : xr.Dataset
-        From :func:`laws.closure.elastic_dilatancy`.
-    solver : Solver
-    budget : xr.Dataset, optional
-        Stage ``error_budget``: with it the plan says what the spacing leaves uncertain.
-
-    Returns
-    -------
-    xr.Dataset
-        ``value``, ``reason``, ``error_of`` and ``error`` (a fraction; NaN where there is none) over
-        ``choice``; the requested accuracy as attribute ``asked``.
+    ``value``, ``reason``, ``error_of`` and ``error`` (a fraction; NaN where there is none) over
+    ``choice``; the requested accuracy as attribute ``asked``. With the stage ``error_budget`` the
+    plan says what the spacing leaves uncertain.
     """
     solved, requested = curves["solved"], solver.accuracy
     rows = [

@@ -20,23 +20,11 @@ from .states import error_attrs
 def prefractal_openings(
     specimen: xr.Dataset, joint: xr.Dataset, resolutions: Sequence[int]
 ) -> xr.DataArray:
-    """Rigid dilatancy of the pre-fractals: the opening at which each touches first.
+    """Rigid dilatancy of the pre-fractals: the opening at which each touches first, mm.
 
-    Parameters
-    ----------
-    specimen : xr.Dataset
-        From :func:`surface.specimen.make_specimen`.
-    joint : xr.Dataset
-        From :func:`joint.joint.describe_joint`.
-    resolutions : sequence of int
-        Multiples k of the scan's spacing.
-
-    Returns
-    -------
-    xr.DataArray
-        max h_k(v) less a datum, mm, over (direction, offset, resolution). The datum is max h(0) at
-        the scan's own resolution, the joint before it slides; against a plane, which mates with
-        nothing, it is the mean of h.
+    max h_k(v) less a datum, over (direction, offset, resolution). The datum is max h(0) at the
+    scan's own resolution, the joint before it slides; against a plane, which mates with nothing, it
+    is the mean of h.
     """
     cells = joint["offset_cells"].transpose("contact_direction", ...)
     directions = cells["contact_direction"].values
@@ -94,13 +82,7 @@ _SEATS = {
 def add_separation(curves: xr.Dataset, openings: xr.DataArray | None) -> None:
     """Add the separation of the mean planes to a closure stage.
 
-    Parameters
-    ----------
-    curves : xr.Dataset
-        With ``closure`` and ``closure_error`` over (direction, offset, resolution, load) and
-        ``rigid_opening`` over (direction, offset); what is found is added to it.
-    openings : xr.DataArray or None
-        From :func:`prefractal_openings`. Without it only the scan's own resolution has one.
+    Without the openings of :func:`prefractal_openings` only the scan's own resolution has one.
     """
     if openings is None:
         openings = curves["rigid_opening"].where(curves["resolution"] == 1)
@@ -124,23 +106,13 @@ def add_separation(curves: xr.Dataset, openings: xr.DataArray | None) -> None:
 def add_seated_closure(curves: xr.Dataset, seating_pressure: float) -> None:
     """Add the closures from a seating pressure, of each offset and of all, to a closure stage.
 
-    Parameters
-    ----------
-    curves : xr.Dataset
-        With ``interface_closure``, ``closure_error`` and ``resolved`` over (direction, offset,
-        resolution, load); what is found is added to it.
-    seating_pressure : float
-        Of the study, MPa: at each offset and resolution the first load from there on whose state is
-        resolved seats the joint.
-
-    Notes
-    -----
-    ``seated_closure`` counts from the seating load of its own offset, so that each curve begins as
-    early as it can. Closures of several offsets compare only from one pressure on:
-    ``closure_from_common_seat`` counts from the largest of these loads, at which enough nodes touch
-    at all offsets that have one. Those of several resolutions do from the stated pressure:
-    ``closure_from_stated_seat`` counts from the first load from there on. Below its load a closure
-    has no value, nor where the state under that load was not solved.
+    At each offset and resolution the first load from the study's seating pressure on, MPa, whose
+    state is resolved seats the joint. ``seated_closure`` counts from the seating load of its own
+    offset, so that each curve begins as early as it can. Closures of several offsets compare only
+    from one pressure on: ``closure_from_common_seat`` counts from the largest of these loads, at
+    which enough nodes touch at all offsets that have one. Those of several resolutions do from the
+    stated pressure: ``closure_from_stated_seat`` counts from the first load from there on. Below
+    its load a closure has no value, nor where the state under that load was not solved.
     """
     force = curves["normal_force"]
     solved = np.isfinite(curves["interface_closure"])

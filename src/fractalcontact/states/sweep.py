@@ -88,15 +88,7 @@ def _solved(
 
 
 def map_place(joint: xr.Dataset, settings: ContactSettings, direction: str) -> int:
-    """Offset of the contact maps in cells of a direction.
-
-    Parameters
-    ----------
-    joint : xr.Dataset
-        From :func:`joint.joint.describe_joint`.
-    settings : ContactSettings
-    direction : str
-    """
+    """Offset of the contact maps in cells of a direction."""
     offsets = joint["offset"].values
     offset = chosen_offset(settings.map_offset, np.sort(offsets))
     cells = joint["offset_cells"].sel(contact_direction=direction).values
@@ -114,27 +106,8 @@ def joint_states(
 ) -> xr.Dataset:
     """Contact states of a joint in some directions, at some of its offsets and resolutions.
 
-    Parameters
-    ----------
-    specimen, settings, solver
-        As for :class:`states.loading.JointLoading`.
-    joint : xr.Dataset
-        From :func:`joint.joint.describe_joint`.
-    directions : sequence of str
-    offsets : slice
-        Which of the joint's.
-    resolutions
-        As for :func:`contact_states`.
-
-    Returns
-    -------
-    xr.Dataset
-        As of :func:`contact_states`; ``offset`` is that of the first of the directions.
-
-    Raises
-    ------
-    NotConverged, InputError
-        As :func:`contact_states`.
+    ``offsets`` is a slice. As :func:`contact_states`; ``offset`` is that of the first of the
+    directions.
     """
     states = []
     for direction in directions:
