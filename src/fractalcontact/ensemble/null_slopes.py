@@ -38,25 +38,10 @@ def null_slopes(
 ) -> xr.Dataset:
     """Local slopes of the contact domains of one realisation, and those of its null models.
 
-    Parameters
-    ----------
-    domains : (n, ny, nx) bool ndarray
-        One a load.
-    composite : (ny, nx) ndarray
-        Composite topography.
-    spacing : float
-        mm.
-    fit_range : (float, float), optional
-        Smallest and largest box of Delta_sigma, mm; by default all between the cut-offs.
+    Domains (n, ny, nx), one a load, on cells of ``spacing``, mm; ``fit_range`` has the smallest and
+    largest box of Delta_sigma, mm, by default all between the cut-offs. :data:`NULL_SLOPES` and
+    :data:`OCTAVES`; local slopes are those of :mod:`domain.slope_curves`, NaN without a node.
 
-    Returns
-    -------
-    xr.Dataset
-        :data:`NULL_SLOPES` and :data:`OCTAVES`; local slopes as of :mod:`domain.slope_curves`. NaN
-        without a node.
-
-    Notes
-    -----
     Random nodes are not drawn: an ensemble is compared with the slopes of their expected counts.
     """
     shape, sizes = composite.shape, curve_sizes(composite.shape)

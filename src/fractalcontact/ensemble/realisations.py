@@ -94,36 +94,21 @@ def ensemble(
 ) -> xr.Dataset:
     """Contact of realisations of a specimen, in the reported direction and offset.
 
-    Parameters
-    ----------
-    specimens, joints : xr.Dataset
-        Of the stages of these names: the named specimen, which is the first realisation.
-    recipe : mapping
-        From :func:`study.configuration.resolve_embedded`. The realisations have its seed and those
-        that follow it; none is chosen. None for a scan: they are its twins, of seeds from 1.
-    realisations : int
-    settings : EnsembleSettings
-    solver : Solver
+    The named specimen is the first realisation of its recipe, which
+    :func:`study.configuration.resolve_embedded` gives; the realisations have its seed and those
+    that follow it, and none is chosen. Without a recipe they are twins of a scan, of seeds from 1.
+    The attribute ``members`` says what they are.
 
-    Returns
-    -------
-    xr.Dataset
-        :data:`STATES`, ``closure_from_common_seat`` and
-        :data:`ensemble.null_slopes.NULL_SLOPES` over (realisation, normal_force): under the
-        first load at the seat, the loads that figures draw and the heaviest. Over (realisation,):
-        :data:`EXPONENTS` under the reference load and the trends of
-        :func:`ensemble.statistics.add_trends`; over both, by how much eq. 6 is missed, ``eq6_area``
-        and ``eq6_box``; of realisations of a joint that slides :data:`ensemble.sliding.SLIDING`. Of
-        each the mean over the realisations with its interval and the spread, as
-        :func:`ensemble.statistics.add_statistics` names them. The attribute ``members`` says
-        what they are.
+    :data:`STATES`, ``closure_from_common_seat`` and :data:`ensemble.null_slopes.NULL_SLOPES` are
+    over (realisation, normal_force): under the first load at the seat, the loads that figures draw
+    and the heaviest. Over (realisation,) stand :data:`EXPONENTS` under the reference load and the
+    trends of :func:`ensemble.statistics.add_trends`; over both, by how much eq. 6 is missed,
+    ``eq6_area`` and ``eq6_box``; of realisations of a joint that slides
+    :data:`ensemble.sliding.SLIDING`. Of each there are the mean over the realisations with its
+    interval and the spread, as :func:`ensemble.statistics.add_statistics` names them.
 
-    Raises
-    ------
-    NotConverged
-        If a state could not be verified; the message names the realisation.
-    InputError
-        As :func:`ensemble.twins.twin_loadings`.
+    Raises `NotConverged`, whose message names the realisation, and `InputError` as
+    :func:`ensemble.twins.twin_loadings`.
     """
     whole = JointLoading.of_joint(
         specimens, joints, settings.contact_directions[0], settings, solver

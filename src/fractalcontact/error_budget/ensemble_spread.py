@@ -23,18 +23,8 @@ INSIDE, OUTSIDE = "within their band", "outside their band"
 def ensemble_spread(curve: LoadCurve, ensemble: xr.Dataset) -> np.ndarray:
     """Half-widths within which one more member of an ensemble lies at 95 %.
 
-    Parameters
-    ----------
-    curve : LoadCurve
-        Of the specimen.
-    ensemble : xr.Dataset
-        Stage of this name.
-
-    Returns
-    -------
-    (quantity, normal_force) ndarray
-        In the quantity's unit; NaN under loads that were not solved, or at which a member has no
-        value.
+    (quantity, normal_force), in the quantity's unit; NaN under loads that were not solved, or at
+    which a member has no value.
     """
     half = curve.over_quantities()
     for row, quantity in enumerate(BUDGET_QUANTITIES):
@@ -47,7 +37,7 @@ def ensemble_spread(curve: LoadCurve, ensemble: xr.Dataset) -> np.ndarray:
 
 
 def seated_spread(curve: LoadCurve, ensemble: xr.Dataset) -> np.ndarray:
-    """The same of the closure from the seat of the specimen, (normal_force), mm."""
+    """Half-widths of :func:`ensemble_spread` of the closure from the seat, (normal_force), mm."""
     half, places = np.full(len(curve.forces), np.nan), _places(curve, ensemble)
     seat = np.flatnonzero(curve.curve["seated_closure"].values[places] == 0)
     if seat.size:

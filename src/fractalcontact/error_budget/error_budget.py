@@ -93,13 +93,8 @@ def map_curve(
 ) -> LoadCurve:
     """The load curve at the offset of the contact maps, in one direction.
 
-    Parameters
-    ----------
-    loading : JointLoading
-        At that offset alone.
-    curves, domains : xr.Dataset
-        Stages ``closure`` and ``domains``.
-    resolution : int
+    ``loading`` is at that offset alone; ``curves`` and ``domains`` are the stages ``closure`` and
+    ``domains``.
     """
     (cells,) = loading.cells
     place = {"direction": loading.direction, "resolution": resolution}
@@ -122,32 +117,17 @@ def error_budget(
 ) -> xr.Dataset:
     """Errors of closure, separation, area, stiffness and Delta_sigma at the map offset, by source.
 
-    Parameters
-    ----------
-    loading : JointLoading
-        In the first direction of contact, at the offset of the contact maps alone.
-    curves, domains : xr.Dataset
-        Stages ``closure`` and ``domains``.
-    registration_spread : mapping of str to (normal_force,) array_like, optional
-        By quantity, half-widths of the spread over registrations of two scanned faces that are
-        statistically as good, in the quantity's unit.
-    ensemble : xr.Dataset, optional
-        Stage of this name, twins of a scan or realisations of an embedded specimen: a source of
-        its own, in place of counting and windows in the total of the population.
+    ``loading`` is in the first direction of contact, at the offset of the contact maps alone;
+    ``curves`` and ``domains`` are the stages ``closure`` and ``domains``. ``registration_spread``
+    has by quantity half-widths (normal_force,) of the spread over registrations of two scanned
+    faces that are statistically as good, in the quantity's unit. The stage ``ensemble``, twins of a
+    scan or realisations of an embedded specimen, is a source of its own, in place of counting and
+    windows in the total of the population.
 
-    Returns
-    -------
-    xr.Dataset
-        The variables of :data:`_TABLE` over (quantity, source, normal_force), and those of
-        :func:`derived.with_derived`; with twins ``within_twins`` (quantity, normal_force).
+    The variables of :data:`_TABLE` over (quantity, source, normal_force), and those of
+    :func:`derived.with_derived`; with twins ``within_twins`` (quantity, normal_force). Raises
+    `NotConverged` if a state on a finer grid, or of another window, could not be verified.
 
-    Raises
-    ------
-    NotConverged
-        If a state on a finer grid, or of another window, could not be verified.
-
-    Notes
-    -----
     All errors are half-widths of intervals of about 95 %. The sources are independent: totals are
     root sums of squares. A spread over windows holds that of counting: only the larger enters.
     """
@@ -251,22 +231,12 @@ def _largest(errors: Mapping[str, np.ndarray], sources: Sequence[str]) -> np.nda
 def over_loads(
     forces: np.ndarray, errors: np.ndarray, scale: np.ndarray, widened: float = 1.0
 ) -> np.ndarray:
-    """Errors under all loads, from those under some: their fractions interpolated.
+    """Errors (quantity, n) under all loads, from those under some: their fractions interpolated.
 
-    Parameters
-    ----------
-    forces : (n,) ndarray
-        N, ascending.
-    errors, scale : (quantity, n) ndarray
-        Errors, NaN under other loads; and what they are taken as fractions of.
-    widened : float
-        By what errors are multiplied that are not known but interpolated.
-
-    Returns
-    -------
-    (quantity, n) ndarray
-        The logarithm of the fraction is linear in that of the force between loads that are known;
-        beyond them the fraction is that of the last.
+    Errors are NaN under other loads, and fractions of ``scale`` (quantity, n); forces (n,), N,
+    ascend. The logarithm of the fraction is linear in that of the force between loads that are
+    known; beyond them the fraction is that of the last. Interpolated errors are multiplied by
+    ``widened``.
     """
     filled = errors.copy()
     for row, error, size in zip(filled, errors, np.abs(scale), strict=True):

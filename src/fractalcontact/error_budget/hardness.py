@@ -32,24 +32,9 @@ _TABLE = {
 
 
 def of_the_hardest(curve: LoadCurve) -> dict[str, tuple]:
-    """Quantities of a load curve at :data:`HARDEST` times its hardness.
+    """Quantities of a load curve at :data:`HARDEST` times its hardness, :data:`_TABLE`.
 
-    Parameters
-    ----------
-    curve : LoadCurve
-
-    Returns
-    -------
-    dict
-        Variables of the error budget as ``xr.Dataset`` takes them: ``hardest`` (quantity,
-        normal_force); ``mean_gap_hardest``, ``contact_fraction_hardest`` and
-        ``seated_closure_hardest`` (normal_force), ``reference_stiffness_hardest``
-        (reference_pressure) and ``hardest_hardness``, MPa. NaN where contacts are elastic.
-
-    Raises
-    ------
-    NotConverged
-        If a state could not be verified.
+    NaN where contacts are elastic. Raises `NotConverged`.
     """
     hardness = HARDEST * curve.loading.solving["hardness"]
     hardest, gap = _solved(curve, hardness)
@@ -85,7 +70,7 @@ def _solved(curve: LoadCurve, hardness: float) -> tuple[np.ndarray, np.ndarray]:
 def _seated(curve: LoadCurve, separation: np.ndarray) -> np.ndarray:
     """Closure from the seat of faces with these separations, mm.
 
-    Since the seat harder faces have come together by less: by the difference of their separation
+    Harder faces have come together since the seat by less: by the difference of their separation
     there, less that at the seat.
     """
     seated = curve.curve["seated_closure"].values

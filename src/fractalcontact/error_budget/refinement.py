@@ -51,17 +51,9 @@ ABSOLUTE = ("separation", "delta_sigma")
 class LoadCurve:
     """Load curve of one offset at the finest resolution, whose errors are requested.
 
-    Attributes
-    ----------
-    loading : JointLoading
-        At one offset.
-    composite : (ny, nx) ndarray
-        h, mm.
-    reference : float
-        Largest height at zero offset, mm, from which dilatancy counts; against a plane, the mean.
-    resolution : int
-    curve, domains : xr.Dataset
-        Stages ``closure`` and ``domains`` there, over normal_force.
+    The composite topography h and the largest height at zero offset, ``reference``, from which
+    dilatancy counts (against a plane, the mean), are in mm; ``curve`` and ``domains`` are the
+    stages ``closure`` and ``domains`` there, over normal_force.
     """
 
     loading: JointLoading
@@ -125,12 +117,9 @@ class LoadCurve:
 class Refinement:
     """Numbers of a load curve on finer grids.
 
-    Attributes
-    ----------
-    error, limit, order : (quantity, normal_force) ndarray
-        From :mod:`states.numerical_error`; NaN where nothing was solved.
-    finest : (normal_force,) int ndarray
-        Divisor of the finest spacing solved, 1 where none was.
+    ``error``, ``limit`` and ``order`` (quantity, normal_force) are those of
+    :mod:`states.numerical_error`, NaN where nothing was solved; ``finest`` (normal_force,) is the
+    divisor of the finest spacing solved, 1 where none was.
     """
 
     error: np.ndarray
@@ -140,20 +129,9 @@ class Refinement:
 
 
 def refined_loads(curve: LoadCurve, settings: ContactSettings, *, all_states: bool) -> np.ndarray:
-    """Loads that are solved on finer grids.
+    """Loads that are solved on finer grids: indices (n,) of the forces, ascending.
 
-    Parameters
-    ----------
-    curve : LoadCurve
-    settings : ContactSettings
-    all_states : bool
-        Whether the study requests all states.
-
-    Returns
-    -------
-    (n,) int ndarray
-        Indices of its forces, ascending, with that of the seat; none where the grid is too large or
-        the faces are flush.
+    That of the seat is among them. None where the grid is too large or the faces are flush.
     """
     too_many = FACTORS[1] ** 2 * curve.composite.size > MAX_CELLS_HALF
     if np.ptp(curve.composite) == 0 or too_many:
@@ -165,19 +143,7 @@ def refined_loads(curve: LoadCurve, settings: ContactSettings, *, all_states: bo
 
 
 def chosen_loads(curve: LoadCurve, named: Sequence[Load]) -> np.ndarray:
-    """Solved loads among the named ones, the smallest and the largest.
-
-    Parameters
-    ----------
-    curve : LoadCurve
-    named : sequence of (float, str)
-        Of the settings.
-
-    Returns
-    -------
-    (n,) int ndarray
-        Indices of its forces, ascending.
-    """
+    """Indices (n,) of solved loads: the smallest, the largest and the named ones."""
     known = _solved_loads(curve)
     wanted = np.isin(curve.forces, forces_of(named, curve.loading.area))
     if known.any():
@@ -190,19 +156,10 @@ def _solved_loads(curve: LoadCurve) -> np.ndarray:
 
 
 def refine(curve: LoadCurve, settings: ContactSettings, asked: float | None) -> Refinement:
-    """Numerical errors of a load curve.
+    """Numerical errors of a load curve; raises `NotConverged`.
 
-    Parameters
-    ----------
-    curve : LoadCurve
-    settings : ContactSettings
-    asked : float or None
-        Error of a closure that the study asks for, a fraction; None where it requests all states.
-
-    Raises
-    ------
-    NotConverged
-        If a refined state could not be verified.
+    ``asked`` is the error of a closure that the study asks for, a fraction; None where it requests
+    all states.
     """
     published = curve.values()
     levels = np.full((len(FACTORS), *published.shape), np.nan)
@@ -271,22 +228,12 @@ def _errors(curve, levels, finest) -> Refinement:
 def curve_errors(
     levels: np.ndarray, raw_area: np.ndarray, decay_length: np.ndarray, rise: float
 ) -> list[NumericalError]:
-    """Numerical errors of the quantities of a load curve.
+    """Numerical errors of each quantity of a load curve.
 
-    Parameters
-    ----------
-    levels : (3, quantity, normal_force) ndarray
-        Quantities in the order of :data:`BUDGET_QUANTITIES`, those after the stiffness or not, at
-        s, s/2 and s/4; NaN where they were not solved.
-    raw_area, decay_length : (normal_force,) ndarray
-        N s^2, mm2, and sigma_0/(d sigma/d w_int), mm, at s.
-    rise : float
-        By how much the summit of the surface is above its highest node at s, mm.
-
-    Returns
-    -------
-    list of NumericalError
-        Of each quantity.
+    ``levels`` (3, quantity, normal_force) are at s, s/2 and s/4, quantities in the order of
+    :data:`BUDGET_QUANTITIES`, those after the stiffness or not; NaN where they were not solved. At
+    s the raw area N s^2 (normal_force,) is in mm2, the length sigma_0/(d sigma/d w_int) in mm; the
+    summit of the surface is above its highest node by ``rise``, mm.
     """
     closures, separations, areas, stiffnesses, *others = levels.swapaxes(0, 1)
     edge = (raw_area - areas[0]) / raw_area

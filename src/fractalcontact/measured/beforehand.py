@@ -23,10 +23,8 @@ def check_tests(
 ) -> list[tuple[MeasuredTest, TestReadings]]:
     """Tests of a specimen with their readings, refused as the stage ``measured`` refuses them.
 
-    Raises
-    ------
-    InputError
-        For the first file, or the first thing said of it, that stops the stage before a solve.
+    Raises `InputError` for the first file, or the first thing said of it, that stops the stage
+    before a solve.
     """
     if not settings.measured:
         return []

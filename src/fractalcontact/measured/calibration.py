@@ -23,24 +23,12 @@ Family = Callable[[float], Curve]
 def fit_factor(readings: Curve, family: Family, between: tuple[float, float]) -> Estimate:
     """Factor of a constant at which the computed closure comes nearest to the measured one.
 
-    Parameters
-    ----------
-    readings : Curve
-        Measured closure, from any datum.
-    family : callable
-        Computed closure at a factor.
-    between : (float, float)
-        Smallest and largest factor that are tried; no interval leaves them.
+    Readings count from any datum; ``family`` gives the computed closure at a factor, ``between``
+    the smallest and largest factor that are tried, which no interval leaves. The estimate has the
+    reason why there is none, or little is known of it. Its interval holds the scatter of the
+    readings (the sum of squares as large as an F test allows) and the error of the computed
+    closure.
 
-    Returns
-    -------
-    Estimate
-        With the reason why there is none, or little is known of it. The interval holds the scatter
-        of the readings (the sum of squares as large as an F test allows) and the error of the
-        computed closure.
-
-    Notes
-    -----
     Least squares in the closure; the datum of the readings is fitted too, as the reading at the
     seat scatters as all others do.
     """

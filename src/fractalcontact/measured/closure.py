@@ -55,28 +55,12 @@ OF_CALIBRATION = {
 def compare_closure(
     joint: Joint, tests: Sequence[MeasuredTest], readings: Sequence[Curve]
 ) -> tuple[list[dict[str, Any]], dict[str, Any]]:
-    """Closure tests of a joint beside its computed closure.
+    """Rows of closure tests of a joint beside its computed closure, and the calibrated constant.
 
-    Parameters
-    ----------
-    joint : Joint
-    tests : sequence of MeasuredTest
-    readings : sequence of Curve
-        Of each.
-
-    Returns
-    -------
-    rows : list of dict
-        Of each test: ``readings``, ``laid`` (on the axis of the stage ``closure``), ``at``,
-        ``measured``, ``computed``, ``ratio`` and :data:`OF_CLOSURE`.
-    calibration : dict
-        :data:`OF_CALIBRATION`.
-
-    Raises
-    ------
-    InputError
-        If a closure exceeds the relief of the faces, or no computed state lies within a test.
-    NotConverged
+    A row has ``readings``, ``laid`` (on the axis of the stage ``closure``), ``at``, ``measured``,
+    ``computed``, ``ratio`` and :data:`OF_CLOSURE`; the constant has :data:`OF_CALIBRATION`. Raises
+    `NotConverged`, and `InputError` if a closure exceeds the relief of the faces, or no computed
+    state lies within a test.
     """
     for test, one in zip(tests, readings, strict=True):
         require_relief(test, one, joint.relief)

@@ -67,22 +67,11 @@ class Joint:
         return float(np.ptp(self._composite))
 
     def on_branch(self, test: MeasuredTest, largest: float, modulus: float = 1.0) -> Curve:
-        """Interface closure on the branch of a test, with the modulus and H multiplied.
+        """Interface closure on the branch of a test, with modulus and H multiplied by a factor.
 
-        In a half-space all pressures scale with E*, where the hardness does too.
-
-        Parameters
-        ----------
-        test : MeasuredTest
-        largest : float
-            Pressure that the joint has carried before, MPa: what has crushed under it stays so.
-        modulus : float, optional
-            Factor of E* and H.
-
-        Raises
-        ------
-        NotConverged
-            If a state on unloading could not be verified.
+        In a half-space all pressures scale with E*, where the hardness does too. What has crushed
+        under the largest pressure that the joint has carried before, MPa, stays so. Raises
+        `NotConverged` if a state on unloading could not be verified.
         """
         curve = self.curve
         if test.branch != LOAD and np.isfinite(self.hardness):
@@ -91,12 +80,7 @@ class Joint:
         return replace(curve, x=curve.x * modulus)
 
     def with_hardness(self, test: MeasuredTest, largest: float, hardness: float) -> Curve:
-        """Interface closure on the branch of a test at another hardness, MPa; solved anew.
-
-        Raises
-        ------
-        NotConverged
-        """
+        """Interface closure on the branch of a test at another hardness, MPa; solved anew."""
         lightest = max(test.seat, self.curve.x[0])
         return self.solved(test, lightest, largest, hardness)
 

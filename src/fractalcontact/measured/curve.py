@@ -73,12 +73,7 @@ def scatter(x: np.ndarray, y: np.ndarray) -> float:
     """Half-width of the interval of one reading, from what neighbours leave unexplained.
 
     Each reading is compared with the straight line through those on both sides (Gasser, Sroka &
-    Jennen-Steinmetz, Biometrika 73 (1986) 625).
-
-    Parameters
-    ----------
-    x, y : (n,) ndarray
-        x ascending; equal ones are passed over.
+    Jennen-Steinmetz, Biometrika 73 (1986) 625). x (n,) ascends; equal ones are passed over.
     """
     left, right = x[1:-1] - x[:-2], x[2:] - x[1:-1]
     span = left + right

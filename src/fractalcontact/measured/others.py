@@ -28,19 +28,8 @@ def computed_curve(
 ) -> Curve:
     """Computed curve of a test that is not of closure; without points where there is none.
 
-    Parameters
-    ----------
-    test : MeasuredTest
-    flow, dilatancy : xr.Dataset
-        Stages of these names.
-    strength : xr.Dataset or None
-        Stage ``strength``; None of what does not slide.
-    reported : Reported
-
-    Raises
-    ------
-    InputError
-        If the direction or the pressure was not computed.
+    Stages ``flow``, ``dilatancy`` and ``strength``, which is None of what does not slide. Raises
+    `InputError` if the direction or the pressure was not computed.
     """
     if test.kind == "flow":
         return _flow(test, flow, reported)

@@ -53,28 +53,12 @@ def measured_stage(
 ) -> dict[str, xr.Dataset]:
     """Readings of all tests of a specimen, computed values there, and their ratios.
 
-    Parameters
-    ----------
-    specimens, joints, closure, dilatancy, error_budget, flow : xr.Dataset
-        Stages of these names.
-    settings : MeasuredSettings
-    solver : Solver
-    strength : xr.Dataset, optional
-        Of a joint that slides.
-
-    Returns
-    -------
-    dict of str to xr.Dataset
-        The stage measured. Of each kind of test K the readings over (K_test, K_reading) and, over
-        (K_test, K_point), the computed curve within them: ``K_at``, ``K_measured``, ``K_computed``
-        and ``K_ratio``, with intervals; of closure also the laws and what is calibrated.
-
-    Raises
-    ------
-    InputError
-        If a file, or what is said of it, does not fit the computed curves.
-    NotConverged
-        If a state of another branch or hardness could not be verified.
+    From stages by name; ``strength`` is that of a joint that slides. Of each kind of test K the
+    readings over (K_test, K_reading) and, over (K_test, K_point), the computed curve within them:
+    ``K_at``, ``K_measured``, ``K_computed`` and ``K_ratio``, with intervals; of closure also the
+    laws and what is calibrated. Raises `InputError` if a file, or what is said of it, does not fit
+    the computed curves, and `NotConverged` if a state of another branch or hardness could not be
+    verified.
     """
     reported = Reported.read(closure)
     whole = JointLoading.of_joint(specimens, joints, reported.direction, settings, solver)

@@ -12,7 +12,7 @@ MIN_CELLS = 16
 
 
 def solvable_parts(parts: Sequence[int], shape: tuple[int, int]) -> list[int]:
-    """Divisions that are solved: the whole window, and sub-windows of `MIN_CELLS` per side or more."""
+    """Divisions that are solved: the whole window, and those of `MIN_CELLS` per side or more."""
     return [n for n in parts if n == 1 or min(shape) // n >= MIN_CELLS]
 
 

@@ -33,7 +33,7 @@ def kept_fractions(parts: int, places: np.ndarray) -> np.ndarray:
 
 
 def of_usable_sizes(values: np.ndarray, nodes: np.ndarray, fewest: int) -> np.ndarray:
-    """Values (part, window, ...) of :func:`usable_sizes` whose own are all positive, NaN of others."""
+    """Values (part, window, ...) of :func:`usable_sizes` that are all positive, NaN of others."""
     positive = ((values > 0) | np.isnan(values)).all(axis=1)
     usable = usable_sizes(nodes, fewest) & positive
     return np.where(usable[:, np.newaxis], values, np.nan)

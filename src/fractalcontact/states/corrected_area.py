@@ -41,7 +41,7 @@ def corrected_area(in_contact: ArrayLike, spacing: ArrayLike) -> np.ndarray:
 
 
 def cell_areas(in_contact: ArrayLike) -> np.ndarray:
-    """Corrected area of each node in contact, (n,), in cells; of all it is :func:`corrected_area`."""
+    """Corrected area of each node in contact, (n,), in cells; the sum is :func:`corrected_area`."""
     touching = np.asarray(in_contact, bool)
     around = np.pad(touching, 1, constant_values=True)
     y, x = np.nonzero(touching)
