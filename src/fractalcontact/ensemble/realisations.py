@@ -200,16 +200,16 @@ def _realisation(loading: JointLoading[EnsembleSettings]) -> xr.Dataset:
     states = contact_states(loading, settings.resolutions, mapped=mapped, lightly=True)
     curves = interface_states(states, window_sides(loading.specimen), settings.material.e_star)
     finest = min(settings.resolutions)
-    at = {"direction": loading.direction, "offset": loading.offsets[0], "resolution": finest}
+    place = {"direction": loading.direction, "offset": loading.offsets[0], "resolution": finest}
     touching = states[f"in_contact_{finest}"].sel(direction=loading.direction).values[0]
-    solved = states["solved"].sel(at).values
+    solved = states["solved"].sel(place).values
     cell, fitted = spacing * finest, settings.box_range
     boxes = [
-        dimension_of_domain(domain, cell, fit_range=fitted).value if one else np.nan
-        for domain, one in zip(touching, solved, strict=True)
+        dimension_of_domain(domain, cell, fit_range=fitted).value if is_solved else np.nan
+        for domain, is_solved in zip(touching, solved, strict=True)
     ]
     scaling = corrected_scaling(curves, spacing, fit_range=settings.scaling_range)
-    scaling = scaling.sel({dim: at[dim] for dim in ("direction", "offset")})
+    scaling = scaling.sel({dim: place[dim] for dim in ("direction", "offset")})
     by_area = scaling["delta_sigma"].values
     values = {
         "mean_gap": states[MAP_GAP].mean(states[MAP_GAP].dims[1:]).values,
@@ -222,7 +222,7 @@ def _realisation(loading: JointLoading[EnsembleSettings]) -> xr.Dataset:
         "difference": by_area - np.array(boxes),
     }
     for name in STATES.keys() - values.keys():
-        values[name] = curves[name].sel(at).values
+        values[name] = curves[name].sel(place).values
     table = {name: ("normal_force", *words) for name, words in STATES.items()}
     result = labelled_dataset(table, values, coords={"normal_force": curves["normal_force"]})
     composite = loading.composite(mapped)[::finest, ::finest]
@@ -248,7 +248,7 @@ def _size_exponents(loading: JointLoading[EnsembleSettings]) -> dict:
     places = [spread_windows(n, MAX_WINDOWS) for n in parts]
     table, values = {}, {}
     for exponent, (name, fewest, words) in EXPONENTS.items():
-        each = of_usable_sizes(windows[name].values, windows["nodes"].values, fewest)
-        values[exponent] = size_exponent(parts, windows["side"].values, each, places).value
+        usable = of_usable_sizes(windows[name].values, windows["nodes"].values, fewest)
+        values[exponent] = size_exponent(parts, windows["side"].values, usable, places).value
         table[exponent] = ((), "1", f"exponent of {words} against b at equal sigma_0")
     return labelled(table, values)

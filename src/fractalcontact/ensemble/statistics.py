@@ -80,20 +80,20 @@ def add_statistics(result: xr.Dataset, names: Sequence[str]) -> None:
     ``NAME_band_high``, between which one more realisation lies with 95 % probability. Intervals and
     bands end at the bounds of the quantity.
     """
-    found: dict[str, tuple | xr.DataArray] = {}
+    added: dict[str, tuple | xr.DataArray] = {}
     for name in names:
         values = result[name].transpose("realisation", ...)
         units, words = values.attrs["units"], values.attrs["long_name"]
         dims = values.dims[1:]
         bounds = _BOUNDS.get(name, (-np.inf, np.inf))
         mean = mean_interval(values.values).within(*bounds)
-        found |= mean.variables(f"{name}_mean", dims, units, f"{words}, mean over realisations")
+        added |= mean.variables(f"{name}_mean", dims, units, f"{words}, mean over realisations")
         if name in _BANDS:
             band = band_of(values.values).within(*bounds)
             for end, of_end, of_band in (("low", "lower", band.low), ("high", "upper", band.high)):
                 attrs = cf_attrs(units, f"{words}, {of_end} end of the 95 % band of one more")
-                found[f"{name}_band_{end}"] = (dims, of_band, attrs)
+                added[f"{name}_band_{end}"] = (dims, of_band, attrs)
         attrs = cf_attrs("1", f"{words}, number of realisations with a value")
-        found[f"{name}_n"] = (dims, mean.n, attrs)
+        added[f"{name}_n"] = (dims, mean.n, attrs)
     # All at once: xarray goes through all that is there each time that something is added.
-    result.update(found)
+    result.update(added)

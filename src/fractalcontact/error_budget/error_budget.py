@@ -99,12 +99,14 @@ def map_curve(
     (cells,) = loading.cells
     place = {"direction": loading.direction, "resolution": resolution}
     (offset,) = loading.offsets
-    here = [stage.sel(place).sel(offset=offset, method="nearest") for stage in (curves, domains)]
+    at_place = [
+        stage.sel(place).sel(offset=offset, method="nearest") for stage in (curves, domains)
+    ]
     composite = prefractal(loading.composite(int(cells)), resolution)
     # Against a plane there is no zero offset to open from: its distance is that of the mean plane.
     mated = loading.composite(0)
     mated = mated.max() if loading.slides else mated.mean()
-    return LoadCurve(loading, composite, float(mated), resolution, *here)
+    return LoadCurve(loading, composite, float(mated), resolution, *at_place)
 
 
 def error_budget(
@@ -134,13 +136,13 @@ def error_budget(
     finest = int(curves["resolution"].min())
     curve = map_curve(loading, curves, domains, finest)
     accuracy = loading.solver.accuracy
-    found = refine(curve, loading.settings, None if accuracy is None else accuracy["closure"])
+    refinement = refine(curve, loading.settings, None if accuracy is None else accuracy["closure"])
     values = curve.values()
     windows, n_windows, effective = _window_spread(curve)
     hardest = of_the_hardest(curve)
     errors = {
         "solver": _solver(curve),
-        "numerical": over_loads(curve.forces, found.error, _scale(curve), WIDENED),
+        "numerical": over_loads(curve.forces, refinement.error, _scale(curve), WIDENED),
         "counting": counting_error(curve),
         "window": over_loads(curve.forces, windows, _scale(curve)),
         "registration": curve.over_quantities(**(registration_spread or {})),
@@ -153,8 +155,8 @@ def error_budget(
         spread = ensemble_spread(curve, ensemble)
         errors[ensemble.attrs["members"]] = over_loads(curve.forces, spread, _scale(curve))
     errors = {source: errors[source] for source in SOURCES if source in errors}
-    reasons = _reasons(curve, errors, found, effective, registration_spread is not None)
-    budget = _budget(curve, values, errors, found, reasons, (n_windows, effective))
+    reasons = _reasons(curve, errors, refinement, effective, registration_spread is not None)
+    budget = _budget(curve, values, errors, refinement, reasons, (n_windows, effective))
     sampling = _seated_sampling(curve, ensemble, registration_spread)
     budget = with_derived(budget.assign(hardest), curve, sampling)
     if ensemble is not None and TWINS in errors:
@@ -163,17 +165,17 @@ def error_budget(
     return budget
 
 
-def _budget(curve, values, errors, found, reasons, windows) -> xr.Dataset:
+def _budget(curve, values, errors, refinement, reasons, windows) -> xr.Dataset:
     """The dataset from its parts."""
-    each = np.stack(list(errors.values()), axis=1)
+    by_source = np.stack(list(errors.values()), axis=1)
     total = np.sqrt(sum(errors[source] ** 2 for source in OF_SURFACE))
     sampling = np.fmax(errors["counting"], errors["window"])
     largest = _largest(errors, _OF_WINDOW)
     for members in (TWINS, REALISATIONS):
         if members in errors:
-            known = np.isfinite(errors[members])
-            sampling = np.where(known, errors[members], sampling)
-            largest = np.where(known, members, largest)
+            finite = np.isfinite(errors[members])
+            sampling = np.where(finite, errors[members], sampling)
+            largest = np.where(finite, members, largest)
     if curve.loading.specimen.attrs["opposite"] == "scanned":
         sampling = np.hypot(sampling, errors["registration"])
     of_population = np.hypot(total, sampling)
@@ -182,18 +184,20 @@ def _budget(curve, values, errors, found, reasons, windows) -> xr.Dataset:
     side = float(np.sqrt(curve.space.cell_area))
     n_windows, effective = windows
     table: dict[str, Any] = {
-        "error": each,
-        "relative_error": each / size[:, np.newaxis],
+        "error": by_source,
+        "relative_error": by_source / size[:, np.newaxis],
         "total": total,
         "relative_total": total / size,
         "total_of_population": of_population,
         "relative_total_of_population": of_population / size,
         "largest_source": _largest(errors, OF_SURFACE),
         "largest_source_of_population": largest,
-        "limit": found.limit,
-        "observed_order": found.order,
-        "finest_spacing": np.where(found.finest > 1, side / found.finest, np.nan),
-        "numerical_from": [_FROM[n] if found.finest.max() > 1 else "" for n in found.finest],
+        "limit": refinement.limit,
+        "observed_order": refinement.order,
+        "finest_spacing": np.where(refinement.finest > 1, side / refinement.finest, np.nan),
+        "numerical_from": [
+            _FROM[n] if refinement.finest.max() > 1 else "" for n in refinement.finest
+        ],
         "of": [PLACES[name] for name in BUDGET_QUANTITIES],
         "unit": [unit for unit, _ in BUDGET_QUANTITIES.values()],
         "meaning": [words for _, words in BUDGET_QUANTITIES.values()],
@@ -223,9 +227,9 @@ def _largest(errors: Mapping[str, np.ndarray], sources: Sequence[str]) -> np.nda
 
     The first of equal ones.
     """
-    each = np.stack([errors[source] for source in sources])
-    largest = np.argmax(np.where(np.isnan(each), -np.inf, each), axis=0)
-    return np.where(np.isnan(each).all(axis=0), "", np.array(sources)[largest])
+    by_source = np.stack([errors[source] for source in sources])
+    largest = np.argmax(np.where(np.isnan(by_source), -np.inf, by_source), axis=0)
+    return np.where(np.isnan(by_source).all(axis=0), "", np.array(sources)[largest])
 
 
 def over_loads(
@@ -242,10 +246,10 @@ def over_loads(
     for row, error, size in zip(filled, errors, np.abs(scale), strict=True):
         with np.errstate(all="ignore"):
             fraction = np.log(np.maximum(error / size, np.finfo(float).tiny))
-        known = np.isfinite(error) & np.isfinite(fraction)
-        if known.any():
-            between = np.exp(np.interp(np.log(forces), np.log(forces[known]), fraction[known]))
-            row[~known] = widened * (between * size)[~known]
+        finite = np.isfinite(error) & np.isfinite(fraction)
+        if finite.any():
+            between = np.exp(np.interp(np.log(forces), np.log(forces[finite]), fraction[finite]))
+            row[~finite] = widened * (between * size)[~finite]
     return filled
 
 
@@ -291,17 +295,17 @@ def _window_spread(curve: LoadCurve) -> tuple[np.ndarray, int, float]:
     limits = loading.settings.box_range
     if not composites:
         return spread, 1, effective
-    found = np.full((len(composites) + 1, *values.shape), np.nan)
-    found[0] = values
+    of_windows = np.full((len(composites) + 1, *values.shape), np.nan)
+    of_windows[0] = values
     for i, (whole, mated) in enumerate(composites, 1):
         composite = prefractal(whole, curve.resolution)
         states = load_steps(
             composite, curve.space, curve.forces[places], loading.solving, f"{curve.where}, windows"
         )
         for place, state in zip(places, states, strict=True):
-            found[i, :, place] = budget_values(state, float(composite.max()), mated, limits)
-    spread[:, places] = window_spread(found[:, :, places], effective)
-    return spread, len(found), effective
+            of_windows[i, :, place] = budget_values(state, float(composite.max()), mated, limits)
+    spread[:, places] = window_spread(of_windows[:, :, places], effective)
+    return spread, len(of_windows), effective
 
 
 def _seated_sampling(curve, ensemble, registration) -> np.ndarray:
@@ -327,13 +331,13 @@ def _resolution(loading, curves, domains, curve: LoadCurve) -> np.ndarray:
     return np.abs(coarser.values() - curve.values())
 
 
-def _reasons(curve, errors, found: Refinement, effective, registered: bool) -> np.ndarray:
+def _reasons(curve, errors, refinement: Refinement, effective, registered: bool) -> np.ndarray:
     """Reason why a source has no value, (quantity, source)."""
     scanned = curve.loading.specimen.attrs["opposite"] == "scanned"
     missing = {
         "solver": "not stated for these states",
         "numerical": "the grid is too large to refine, or the faces are flush"
-        if found.finest.max() == 1
+        if refinement.finest.max() == 1
         else "not resolved at any load refined",
         "secant": "no slope at any load",
         "estimator": "no other estimate at any load",

@@ -38,15 +38,15 @@ def of_the_hardest(curve: LoadCurve) -> dict[str, tuple]:
     """
     hardness = HARDEST * curve.loading.solving["hardness"]
     hardest, gap = _solved(curve, hardness)
-    of = dict(zip(BUDGET_QUANTITIES, hardest, strict=True))
+    by_quantity = dict(zip(BUDGET_QUANTITIES, hardest, strict=True))
     pressure = curve.curve["nominal_pressure"].values
     values = {
         "hardest_hardness": hardness if np.isfinite(hardness) else np.nan,
         "hardest": hardest,
         "mean_gap_hardest": gap,
-        "contact_fraction_hardest": of["area_corrected"] / curve.loading.area,
-        "seated_closure_hardest": _seated(curve, of["separation"]),
-        "reference_stiffness_hardest": at_reference_pressures(pressure, of["stiffness"]),
+        "contact_fraction_hardest": by_quantity["area_corrected"] / curve.loading.area,
+        "seated_closure_hardest": _seated(curve, by_quantity["separation"]),
+        "reference_stiffness_hardest": at_reference_pressures(pressure, by_quantity["stiffness"]),
     }
     return labelled(_TABLE, values)
 

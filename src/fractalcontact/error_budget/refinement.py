@@ -94,9 +94,9 @@ class LoadCurve:
             delta_sigma=self.domains["delta_sigma"].values,
         )
 
-    def over_quantities(self, otherwise: float = np.nan, /, **found: ArrayLike) -> np.ndarray:
+    def over_quantities(self, otherwise: float = np.nan, /, **numbers: ArrayLike) -> np.ndarray:
         """Numbers (quantity, normal_force) by the names of :data:`BUDGET_QUANTITIES`."""
-        rows = [np.asarray(found.get(name, otherwise), float) for name in BUDGET_QUANTITIES]
+        rows = [np.asarray(numbers.get(name, otherwise), float) for name in BUDGET_QUANTITIES]
         return np.array([np.broadcast_to(row, len(self.forces)) for row in rows])
 
     def decay_length(self) -> np.ndarray:
@@ -144,11 +144,11 @@ def refined_loads(curve: LoadCurve, settings: ContactSettings, *, all_states: bo
 
 def chosen_loads(curve: LoadCurve, named: Sequence[Load]) -> np.ndarray:
     """Indices (n,) of solved loads: the smallest, the largest and the named ones."""
-    known = _solved_loads(curve)
+    solved = _solved_loads(curve)
     wanted = np.isin(curve.forces, forces_of(named, curve.loading.area))
-    if known.any():
-        wanted[np.flatnonzero(known)[[0, -1]]] = True
-    return np.flatnonzero(wanted & known)
+    if solved.any():
+        wanted[np.flatnonzero(solved)[[0, -1]]] = True
+    return np.flatnonzero(wanted & solved)
 
 
 def _solved_loads(curve: LoadCurve) -> np.ndarray:

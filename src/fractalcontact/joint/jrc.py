@@ -90,10 +90,10 @@ def profile_roughness(specimen: xr.Dataset, direction: str) -> xr.Dataset:
     window = window_slices(specimen)
     levelled = [without_mean_plane(z[window]) for z in faces(specimen)]
     profiles = [np.moveaxis(z, axis, 0) for z in levelled]
-    found = roughness_of_profiles(profiles, direction_spacing(specimen, direction))
+    roughness = roughness_of_profiles(profiles, direction_spacing(specimen, direction))
     # Grasselli's law is of the lower face, which the upper block climbs.
     law = grasselli(levelled[0], spacing_of(specimen), direction)
-    return found.assign(
+    return roughness.assign(
         labelled(_GRASSELLI, {f"grasselli_{name}": value for name, value in law._asdict().items()})
     )
 
@@ -129,9 +129,9 @@ def _rms_slope(profiles: list[np.ndarray], lag: int, spacing: float) -> float:
 def _by_fits(profiles: list[np.ndarray], spacing: float) -> tuple[np.ndarray, np.ndarray]:
     """Step, mm, and JRC of each of :data:`FITS`; no JRC where whole cells come near no step."""
     lags = [max(1, round(step / spacing)) for step, _ in FITS.values()]
-    found = np.full(len(FITS), np.nan)
+    jrc = np.full(len(FITS), np.nan)
     for i, (lag, (step, fit)) in enumerate(zip(lags, FITS.values(), strict=True)):
         z2 = _rms_slope(profiles, lag, spacing)
         if abs(lag * spacing / step - 1) <= _NEAR and z2 > 0:
-            found[i] = fit(z2)
-    return spacing * np.array(lags), found
+            jrc[i] = fit(z2)
+    return spacing * np.array(lags), jrc

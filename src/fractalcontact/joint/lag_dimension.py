@@ -48,13 +48,13 @@ def lag_dimensions(
     lags = np.unique(np.round(np.geomspace(MIN_CELLS, longest, 2 * MIN_LAGS)).astype(int))
     middle = lags.size // 2
     parts = slice(None), slice(middle + 1), slice(middle, None)
-    found = {
+    values = {
         "lag_dimension": np.array([_dimensions(h, spacings, lags, parts) for h in composites]),
         "lag_min": np.array([lags[part][0] for part in parts]) * spacing,
         "lag_max": np.array([lags[part][-1] for part in parts]) * spacing,
     }
     names = ("lag_range", list(LAG_RANGES), cf_attrs("1", "choice of lags"))
-    return labelled(_TABLE, found) | {"lag_range": names}
+    return labelled(_TABLE, values) | {"lag_range": names}
 
 
 def _dimensions(

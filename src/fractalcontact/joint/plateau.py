@@ -105,7 +105,7 @@ def undecided_plateaus(
             return f"offsets end at {end}, where the faces still correlate ({last:.2f})"
         return f"the faces still correlate up to {length_words(lost)}"
 
-    words = [reason(*one) for one in zip(correlation[:, -1], uncorrelated, strict=True)]
+    words = [reason(*curve) for curve in zip(correlation[:, -1], uncorrelated, strict=True)]
     return labelled(_UNDECIDED, {"plateau_undecided": np.array(words)})
 
 
@@ -119,10 +119,13 @@ def opposite_parts(
     odd part is no measure of the tilt: the highest points differ by chance too. Intervals are those
     of the line through the second half of the offsets.
     """
-    of = dict(zip(directions, np.asarray(opened, float), strict=True))
-    pairs = {axis: pair for axis, pair in AXES.items() if set(pair) <= of.keys()}
+    by_direction = dict(zip(directions, np.asarray(opened, float), strict=True))
+    pairs = {axis: pair for axis, pair in AXES.items() if set(pair) <= by_direction.keys()}
     even, odd = (
-        np.reshape([(of[a] + sign * of[b]) / 2 for a, b in pairs.values()], (-1, offset.size))
+        np.reshape(
+            [(by_direction[a] + sign * by_direction[b]) / 2 for a, b in pairs.values()],
+            (-1, offset.size),
+        )
         for sign in (1, -1)
     )
     half = second_half(offset)

@@ -32,14 +32,16 @@ def profile_coefficients(heights: np.ndarray, spacing: float) -> xr.Dataset:
     parts = np.array([_sums(levelled, side) for side in sides])
     exponent = slope_of_sums(sides * spacing, parts, lambda sums: sums[:, 0] / sums[:, 1])
     dimension = exponent.mapped(lambda slope: 3 - slope / 2, falling=True)
-    found = roughness_of_profiles([levelled[:, None]], spacing).expand_dims(contact_direction=["x"])
+    roughness = roughness_of_profiles([levelled[:, None]], spacing).expand_dims(
+        contact_direction=["x"]
+    )
     values = {
         "range_min": exponent.over[0],
         "range_max": exponent.over[1],
         "no_dimension": "" if exponent.known else "the profile has too few cells for it",
     }
     words = ("1", "Delta_g = 3 - H of an isotropic surface with such profiles")
-    return found.assign(
+    return roughness.assign(
         dimension.variables("recommended_dimension", (), *words) | dict(labelled(_TABLE, values))
     )
 

@@ -44,11 +44,11 @@ def composite_statistics(specimen: xr.Dataset, direction: str, cells: ArrayLike)
     """
     spacing = specimen.attrs["spacing_y"], specimen.attrs["spacing_x"]
     cells = np.asarray(cells, int)
-    each = [
+    of_offsets = [
         slope_statistics(composite_topography(specimen, direction, n), spacing)[list(STATISTICS)]
         for n in cells
     ]
-    result = xr.concat(each, "offset", combine_attrs="override")
+    result = xr.concat(of_offsets, "offset", combine_attrs="override")
     offset = offsets_of(cells, direction_spacing(specimen, direction))
     result["offset"] = ("offset", offset, cf_attrs("mm", "shear offset v"))
     result.attrs = {"spacing_y": float(spacing[0]), "spacing_x": float(spacing[1])}
@@ -61,13 +61,13 @@ def joint_statistics(specimen: xr.Dataset, joint: xr.Dataset) -> xr.Dataset:
     Offsets ascend and are, as in :func:`states.states.combine`, those of the first direction.
     """
     directions = [str(name) for name in joint["contact_direction"].values]
-    each = [
+    of_directions = [
         composite_statistics(
             specimen, name, joint["offset_cells"].sel(contact_direction=name).values
         ).sortby("offset")
         for name in directions
     ]
-    result = xr.concat(each, "direction", join="override", combine_attrs="override")
+    result = xr.concat(of_directions, "direction", join="override", combine_attrs="override")
     return result.assign_coords(direction=directions)
 
 

@@ -75,12 +75,14 @@ def add_comparison(result: xr.Dataset) -> None:
     )
     kappa = Estimate.read(result, "corrected_mean_kappa")
     least, most = (result.attrs[f"{name}_kappa"] for name in ("persson", "bush_gibson_thomas"))
-    first, second = ((kappa.low <= one) & (one <= kappa.high) for one in (least, most))
+    first, second = (
+        (kappa.low <= theoretical) & (theoretical <= kappa.high) for theoretical in (least, most)
+    )
     places = [~kappa.known, first & second, first, second, kappa.value < least, kappa.value > most]
-    beside = np.select(places, ["", "both", "Persson", "Bush", BELOW, ABOVE], WITHIN)
+    position = np.select(places, ["", "both", "Persson", "Bush", BELOW, ABOVE], WITHIN)
     words = "which theories the mean kappa of the corrected area agrees with, or where it lies"
     dims = result["corrected_mean_kappa"].dims
-    result["kappa_beside_theories"] = dims, beside, cf_attrs("1", words)
+    result["kappa_beside_theories"] = dims, position, cf_attrs("1", words)
     fitted = result["reduced_pressure"].where(result["fitted"])
     ends = (getattr(fitted, end)(["offset", "normal_force"]).values for end in ("min", "max"))
     lines = [theory.persson_line(*pair) for pair in zip(*ends, strict=True)]

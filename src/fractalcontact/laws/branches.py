@@ -185,6 +185,6 @@ def _solved_states(
         pressure = np.where(stored >= np.float32(hardness), hardness, stored.astype(float))
         displacement = space.displacement(pressure)
         gap = clearance - closure + displacement
-        known = float(closure), float(force), float(residual), 0, space, hardness
-        states.append(ContactState(pressure, displacement, gap, *known))
+        numbers = float(closure), float(force), float(residual), 0, space, hardness
+        states.append(ContactState(pressure, displacement, gap, *numbers))
     return states

@@ -138,17 +138,17 @@ def _add_interface(curves: xr.Dataset, settlement: np.ndarray, area: float) -> N
         cf_attrs("MPa", "nominal pressure sigma_0 = F / A_0"),
     )
     # Added at the end, all at once: xarray goes through all that is there each time.
-    found: dict[str, xr.DataArray | tuple] = {}
+    added: dict[str, xr.DataArray | tuple] = {}
     flush = curves["composite_spread"] == 0
     closing = interface_closure(curves["closure"], curves["bulk_settlement"], flush)
     words = "interface closure w_int = w - w_b; missing where contact is too full"
     closing = determined_closure(closing, flush).transpose(*order)
-    found["interface_closure"] = closing.assign_attrs(cf_attrs("mm", words))
+    added["interface_closure"] = closing.assign_attrs(cf_attrs("mm", words))
     for name, words in (
         ("area", "real contact area A_r / A_0"),
         ("area_corrected", "real contact area A_r / A_0, corrected for the perimeter"),
     ):
-        found[f"{name}_share"] = (curves[name] / area).assign_attrs(cf_attrs("1", words))
+        added[f"{name}_share"] = (curves[name] / area).assign_attrs(cf_attrs("1", words))
     for name, fewest, words in (
         ("resolved", RESOLVED_NODES, "{} nodes or more touch, else no fit takes the state"),
         (
@@ -158,18 +158,18 @@ def _add_interface(curves: xr.Dataset, settlement: np.ndarray, area: float) -> N
         ),
     ):
         attrs = cf_attrs("1", words.format(fewest))
-        found[name] = (curves["nodes"] >= fewest).assign_attrs(attrs)
+        added[name] = (curves["nodes"] >= fewest).assign_attrs(attrs)
     stiffness = interface_stiffness(
         curves["stiffness"] / area, curves["nominal_pressure"] / curves["bulk_settlement"]
     ).where(~flush)
     words = "tangent stiffness d sigma_0 / d w_int of the interface; missing if flush"
     stiffness = stiffness.transpose(*order).assign_attrs(cf_attrs("MPa/mm", words))
-    found["interface_stiffness"] = stiffness
+    added["interface_stiffness"] = stiffness
     reason = stiffness_reason(stiffness, curves["stiffness"], flush)
     # As bare values: labels that xr.where made have no units.
     why = reason.where(curves["solved"], "").transpose(*order).values
-    found["interface_stiffness_reason"] = (order, why, reason.attrs)
-    curves.update(found)
+    added["interface_stiffness_reason"] = (order, why, reason.attrs)
+    curves.update(added)
 
 
 def stiffness_reason(

@@ -39,9 +39,9 @@ def left_out_misses(
 
     def of_curve(closure, stiffness):
         missed = np.full(len(forces), np.nan)
-        known = np.flatnonzero(np.isfinite(closure))
-        for i in range(1, len(known) - 1):
-            others, j = np.delete(known, i), known[i]
+        solved = np.flatnonzero(np.isfinite(closure))
+        for i in range(1, len(solved) - 1):
+            others, j = np.delete(solved, i), solved[i]
             read = closure_at_force(forces[j], forces[others], closure[others], stiffness[others])
             missed[j] = read - closure[j]
         return missed

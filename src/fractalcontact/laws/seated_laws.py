@@ -123,8 +123,8 @@ def at_reference_pressures(pressure: np.ndarray, values: np.ndarray) -> np.ndarr
     Pressures (n,) are nominal, MPa, and ascend; values above 0, such as stiffnesses, NaN where
     unknown. NaN outside the known states.
     """
-    known = np.isfinite(values) & (values > 0)
-    if known.sum() < 2:
+    positive = np.isfinite(values) & (values > 0)
+    if positive.sum() < 2:
         return np.full(len(REFERENCE_PRESSURES), np.nan)
-    wanted, x = np.log(REFERENCE_PRESSURES), np.log(pressure[known])
-    return np.exp(np.interp(wanted, x, np.log(values[known]), left=np.nan, right=np.nan))
+    wanted, x = np.log(REFERENCE_PRESSURES), np.log(pressure[positive])
+    return np.exp(np.interp(wanted, x, np.log(values[positive]), left=np.nan, right=np.nan))

@@ -107,10 +107,10 @@ def peak(midpoint: ArrayLike, values: ArrayLike) -> tuple[np.ndarray, np.ndarray
     values = np.asarray(values, float)
     if not len(values):
         return (np.full(values.shape[1:], np.nan),) * 2
-    known = np.where(np.isfinite(values), values, -np.inf)
-    any_known = np.isfinite(known).any(axis=0)
-    highest = np.where(any_known, known.max(axis=0), np.nan)
-    return highest, np.where(any_known, np.asarray(midpoint)[known.argmax(axis=0)], np.nan)
+    filled = np.where(np.isfinite(values), values, -np.inf)
+    any_known = np.isfinite(filled).any(axis=0)
+    highest = np.where(any_known, filled.max(axis=0), np.nan)
+    return highest, np.where(any_known, np.asarray(midpoint)[filled.argmax(axis=0)], np.nan)
 
 
 def residual(midpoint: ArrayLike, values: ArrayLike, largest: float) -> Estimate:

@@ -33,14 +33,16 @@ def fit_factor(readings: Curve, family: Family, between: tuple[float, float]) ->
     seat scatters as all others do.
     """
     tried = np.linspace(np.log(between[0]), np.log(between[1]), _TRIED)
-    values = np.array([_misfit(readings, family, one, _REACHED) for one in tried])
+    values = np.array([_misfit(readings, family, log_tried, _REACHED) for log_tried in tried])
     best = int(values.argmin())
     if not np.isfinite(values[best]):
         why = "the loads of the study do not reach the pressures of the test: widen 'loads'"
         return Estimate(reason=why)
     # Then the same readings at every factor: those that the computed loads reach at all of them.
     near = np.clip(tried[best] + np.array([-NEAR, NEAR]), tried[0], tried[-1])
-    reached = np.all([np.isfinite(family(np.exp(one)).at(readings.x).value) for one in near], 0)
+    reached = np.all(
+        [np.isfinite(family(np.exp(log_tried)).at(readings.x).value) for log_tried in near], 0
+    )
     readings = readings.where(reached)
     if readings.x.size < MIN_READINGS:
         why = f"fewer than {MIN_READINGS} readings lie within the computed loads: widen 'loads'"
@@ -79,10 +81,10 @@ def fit_factor(readings: Curve, family: Family, between: tuple[float, float]) ->
 def _misfit(readings: Curve, family: Family, log_factor: float, reached: float) -> float:
     """Mean square of what the computed closure leaves; infinite where it reaches too few."""
     computed = family(float(np.exp(log_factor))).at(readings.x).value
-    known = np.isfinite(computed)
-    if known.mean() < reached or known.sum() < MIN_READINGS:
+    finite = np.isfinite(computed)
+    if finite.mean() < reached or finite.sum() < MIN_READINGS:
         return np.inf
-    apart = readings.y[known] - computed[known]
+    apart = readings.y[finite] - computed[finite]
     return float(np.mean((apart - apart.mean()) ** 2))
 
 
@@ -101,10 +103,10 @@ def _of_computed(family: Family, readings: Curve, log_factor: float) -> float:
     """Half-width of the logarithm of the factor from the error of the computed closure."""
     step = 0.02
     top, datum = readings.x[-1], readings.x[0]
-    lower, upper, here = (
-        family(float(np.exp(log_factor + one))).at(np.array([datum, top]))
-        for one in (-step, step, 0.0)
+    lower, upper, middle = (
+        family(float(np.exp(log_factor + shift))).at(np.array([datum, top]))
+        for shift in (-step, step, 0.0)
     )
     slope = (np.diff(upper.value) - np.diff(lower.value)) / (2 * step)
-    error = np.hypot(*(here.high - here.value))
+    error = np.hypot(*(middle.high - middle.value))
     return float(error / abs(slope[0])) if slope[0] else np.inf

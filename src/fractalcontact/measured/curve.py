@@ -30,10 +30,10 @@ class Curve:
     @classmethod
     def of(cls, x: ArrayLike, y: ArrayLike, error: ArrayLike, *, log_x: bool = True) -> "Curve":
         """Curve of those points that are known; an unknown error is none."""
-        x, y, error = (np.asarray(one, float) for one in np.broadcast_arrays(x, y, error))
-        known = np.isfinite(x) & np.isfinite(y) & ((x > 0) | (not log_x))
-        order = np.argsort(x[known], kind="stable")
-        return cls(x[known][order], y[known][order], np.nan_to_num(error[known][order]), log_x)
+        x, y, error = (np.asarray(values, float) for values in np.broadcast_arrays(x, y, error))
+        finite = np.isfinite(x) & np.isfinite(y) & ((x > 0) | (not log_x))
+        order = np.argsort(x[finite], kind="stable")
+        return cls(x[finite][order], y[finite][order], np.nan_to_num(error[finite][order]), log_x)
 
     def at(self, x: np.ndarray | float) -> Estimate:
         """Values between the points, NaN outside; the error is the larger of those beside."""
@@ -103,5 +103,5 @@ def ratio(first: Estimate, second: Estimate) -> Estimate:
 
 def compared(computed: Curve, measured: Curve) -> dict[str, Any]:
     """Computed curve at its own points, the measured one there, and their ratio."""
-    found, read = computed.values, measured.at(computed.x)
-    return {"at": computed.x, "measured": read, "computed": found, "ratio": ratio(found, read)}
+    values, read = computed.values, measured.at(computed.x)
+    return {"at": computed.x, "measured": read, "computed": values, "ratio": ratio(values, read)}

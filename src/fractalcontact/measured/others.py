@@ -33,8 +33,12 @@ def computed_curve(
     """
     if test.kind == "flow":
         return _flow(test, flow, reported)
-    known = [] if strength is None else [str(one) for one in strength["contact_direction"].values]
-    require_direction(test, known)
+    directions = (
+        []
+        if strength is None
+        else [str(direction) for direction in strength["contact_direction"].values]
+    )
+    require_direction(test, directions)
     assert strength is not None  # otherwise no direction is known
     if test.kind == "dilatancy":
         along = dilatancy.sel(contact_direction=test.direction)
@@ -56,15 +60,15 @@ def computed_curve(
 
 def _flow(test: MeasuredTest, flow: xr.Dataset, reported: Reported) -> Curve:
     states = reported.states(flow)
-    at = states.sel(branch=test.branch)
+    on_branch = states.sel(branch=test.branch)
     name = f"transmissivity_{test.way}"
     error = np.hypot(
         *(
-            np.nan_to_num(states[f"transmissivity_{of}_error_{test.way}"].values)
-            for of in ("grid", "separation")
+            np.nan_to_num(states[f"transmissivity_{source}_error_{test.way}"].values)
+            for source in ("grid", "separation")
         )
     )
-    values = at[f"branch_{name}"].where(at[f"branch_{name}"] > 0).values
+    values = on_branch[f"branch_{name}"].where(on_branch[f"branch_{name}"] > 0).values
     return Curve.of(states["nominal_pressure"].values, values, error)
 
 
@@ -76,13 +80,15 @@ def _under(test: MeasuredTest, along: xr.Dataset, name: str, x: str) -> Curve:
     solved = (offsets > 0) & (2 * offsets > offsets.max())
     pressure = along["nominal_pressure"].values[solved]
     require_pressure(test, pressure)
-    of = along[[name, f"{name}_error"]].isel(normal_force=solved)
+    curves = along[[name, f"{name}_error"]].isel(normal_force=solved)
     place = float(np.interp(np.log(test.pressure), np.log(pressure), range(pressure.size)))
     low, part = int(np.floor(place)), place % 1
     high = min(low + 1, pressure.size - 1)
 
-    def between(each: xr.DataArray) -> np.ndarray:
-        first, second = (each.isel(normal_force=one).values for one in (low, high))
+    def between(curve: xr.DataArray) -> np.ndarray:
+        first, second = (curve.isel(normal_force=load).values for load in (low, high))
         return first if part < NEAR else (1 - part) * first + part * second
 
-    return Curve.of(along[x].values, between(of[name]), between(of[f"{name}_error"]), log_x=False)
+    return Curve.of(
+        along[x].values, between(curves[name]), between(curves[f"{name}_error"]), log_x=False
+    )

@@ -63,7 +63,7 @@ def measured_stage(
     reported = Reported.read(closure)
     whole = JointLoading.of_joint(specimens, joints, reported.direction, settings, solver)
     joint = Joint.of(whole, closure, error_budget)
-    found = xr.Dataset()
+    stage = xr.Dataset()
     for kind in TEST_COLUMNS:
         tests = [test for test in settings.measured if test.kind == kind]
         if not tests:
@@ -72,15 +72,15 @@ def measured_stage(
         readings = [one.curve for one in read]
         if kind == "closure":
             rows, calibration = compare_closure(joint, tests, readings)
-            found.update(stacked([calibration], OF_CALIBRATION, (), ()))
+            stage.update(stacked([calibration], OF_CALIBRATION, (), ()))
         else:
             rows = [
                 _beside(test, one, computed_curve(test, flow, dilatancy, strength, reported))
                 for test, one in zip(tests, readings, strict=True)
             ]
         rows = [row | {"note": one.said} for row, one in zip(rows, read, strict=True)]
-        found = found.merge(_of_kind(kind, tests, rows))
-    return {"measured": found}
+        stage = stage.merge(_of_kind(kind, tests, rows))
+    return {"measured": stage}
 
 
 def _beside(test: MeasuredTest, readings: Curve, computed: Curve) -> dict[str, Any]:
@@ -89,7 +89,7 @@ def _beside(test: MeasuredTest, readings: Curve, computed: Curve) -> dict[str, A
     within = computed.where(inside)
     if not within.x.size and computed.x.size:
         ends = ("computed from {:.3g} to {:.3g}, measured from {:.3g} to {:.3g}").format(
-            *(one.x[place] for one in (computed, readings) for place in (0, -1))
+            *(curve.x[place] for curve in (computed, readings) for place in (0, -1))
         )
         raise InputError(
             f"{test.file}: no computed {test.kind} lies within the readings ({ends}); add loads "
@@ -136,7 +136,7 @@ def _of_kind(kind: str, tests: Sequence[MeasuredTest], rows: Sequence[Mapping]) 
     return data.assign_coords({test: [one.label for one in tests]})
 
 
-def _last(of: Estimate) -> Estimate:
+def _last(ratio: Estimate) -> Estimate:
     """Ratio at the last point that has one."""
-    known = np.flatnonzero(np.isfinite(of.value))
-    return of[int(known[-1])] if known.size else NO_ESTIMATE
+    finite = np.flatnonzero(np.isfinite(ratio.value))
+    return ratio[int(finite[-1])] if finite.size else NO_ESTIMATE

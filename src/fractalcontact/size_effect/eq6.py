@@ -178,7 +178,7 @@ def add_decisions(result: xr.Dataset) -> None:
     result["decides"] = (result["verdict"].isin(DECIDED) & of_study).assign_attrs(attrs)
     errors = result[["closure_error", "area_error"]].to_dataarray()
     every = errors.notnull().all(("variable", "predictor"))
-    known = every & of_study if (every & of_study).any() else every
+    quotable = every & of_study if (every & of_study).any() else every
     agrees = result["decides"] & (result["verdict"] == AGREES)
     for name, counted, words in (
         ("deciding_loads", result["decides"], "loads that decide about eq. 6"),
@@ -186,7 +186,7 @@ def add_decisions(result: xr.Dataset) -> None:
     ):
         result[name] = counted.sum("normal_force").assign_attrs(cf_attrs("1", words))
     # The heaviest says most: more nodes touch. One beyond the study matters to nobody.
-    heaviest = result["normal_force"] == result["normal_force"].where(known).max()
+    heaviest = result["normal_force"] == result["normal_force"].where(quotable).max()
     attrs = cf_attrs("1", "load whose predictions for the whole window are quoted")
     result["quoted_load"] = heaviest.assign_attrs(attrs)
     result.attrs["verdict_reason"] = _verdict_reason(result)

@@ -165,12 +165,12 @@ def _add_hurst(
         fit_range = FIRST_FITTED_CELLS * cell, LAST_FITTED_FRACTION * side.values[0]
     used = within(side, *fit_range)
     result["scale_used"] = used.assign_attrs(cf_attrs("1", "size taken into the fit of eq. 2"))
-    for curve, name, of in (
+    for curve, name, surface in (
         ("sigma_z_all", "hurst", "composite topography"),
         ("face_sigma_z", "face_hurst", "lower face"),
     ):
         result.update(states[names_of(curve)])
-        add_law(result, name, side, states[curve].where(used), f"H of eq. 2, {of}")
+        add_law(result, name, side, states[curve].where(used), f"H of eq. 2, {surface}")
     expected = dimension.mapped(lambda delta: 3.0 - float(delta), falling=True)
     words = "H = 3 - Delta_g that eq. 2 expects"
     result.update(expected.variables("expected_hurst", (), "1", words))

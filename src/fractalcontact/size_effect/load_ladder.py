@@ -207,8 +207,8 @@ class _LoadedSize(SubWindows):
         Each for its corrected area, and on the average at every resolution for sigma*.
         """
         nodes = self.nodes[:, :, self.solved - 1]
-        each, mean = nodes[:, 0].min(), nodes.mean(axis=0).min()
-        return bool(each >= CORRECTED_NODES and mean >= MIN_NODES_PER_RESOLUTION)
+        fewest, mean = nodes[:, 0].min(), nodes.mean(axis=0).min()
+        return bool(fewest >= CORRECTED_NODES and mean >= MIN_NODES_PER_RESOLUTION)
 
     def real_pressure(self) -> np.ndarray:
         """:func:`real_pressure` of each sub-window, (window, step)."""
@@ -322,20 +322,20 @@ def whole_areas(
     rows, left = [], []
     for factor in factors:
         if uncut and factor in solved["resolution"]:
-            known = solved.sel(resolution=factor)
+            of_factor = solved.sel(resolution=factor)
             names = ("whole_area", "whole_area_sampling", "nodes")
-            rows.append(np.array([known[name].values for name in names]))
-            left.append(known["whole_left"].values)
+            rows.append(np.array([of_factor[name].values for name in names]))
+            left.append(of_factor["whole_left"].values)
             continue
         h = prefractal(composite, factor)
         space = loading.half_space(h.shape, factor)
         steps = load_steps(h, space, loads.values, loading.solving, f"resolution {factor}")
-        found, without = [], []
+        numbers, without = [], []
         for state, of_load in zip(steps, ends, strict=True):
             domain = state.in_contact
-            found.append((state_area(state), state_area_sampling(state), domain.sum()))
+            numbers.append((state_area(state), state_area_sampling(state), domain.sum()))
             without.append(fractions_left(domain, factor, of_load))
-        rows.append(np.transpose(found))
+        rows.append(np.transpose(numbers))
         left.append(np.array(without))
     dims = ("resolution", "normal_force")
     columns = np.swapaxes(np.array(rows), 0, 1)

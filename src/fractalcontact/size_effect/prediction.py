@@ -61,7 +61,7 @@ def predict_whole(states: xr.Dataset, delta_sigma: xr.DataArray, fewest_nodes: i
         ("area", fraction, "1", "real contact area A_r/A_0"),
     ):
         by_law = _power_law(b, curves[:, : len(loads)])
-        predictions = [by_law, *(_mean(each) for each in by_eq6[name])]
+        predictions = [by_law, *(_mean(of_sizes) for of_sizes in by_eq6[name])]
         _add(result, name, predictions, curves[0, : len(loads)], "normal_force", units, words)
     return result
 
@@ -94,10 +94,10 @@ def predict_whole_strength(laws: xr.Dataset, delta_sigma: xr.DataArray) -> xr.Da
     basic friction angle. Eq. 6 with tau* = mu sigma* has the apparent strength at a given sigma_0
     fall as b^-(2 - Delta).
     """
-    at = int(
+    place = int(
         np.argmax(laws["slope_at_equal_v_over_b"].notnull().all("normal_force").sum("part").values)
     )
-    chosen = laws.isel(share=at)
+    chosen = laws.isel(share=place)
     strength = chosen["strength_at_equal_v_over_b"].transpose("part", "normal_force").values
     strength = np.where(strength > 0, strength, np.nan)
     b, forces = laws["side"].values, laws["normal_force"].values
@@ -133,13 +133,13 @@ def _mean(predictions: np.ndarray) -> Estimate:
     return mean_interval(np.log(predictions), axis=1).mapped(np.exp)
 
 
-def _on_curve(at: np.ndarray, pressures: np.ndarray, curves: np.ndarray) -> np.ndarray:
+def _on_curve(targets: np.ndarray, pressures: np.ndarray, curves: np.ndarray) -> np.ndarray:
     """Each curve at its own pressure, by lines between the logarithms; NaN beyond its ends."""
     values = np.full(len(curves), np.nan)
-    for i, (p, curve) in enumerate(zip(at, curves, strict=True)):
-        known = np.isfinite(curve)
-        if known.any() and np.isfinite(p):
-            x, y = np.log(pressures[known]), np.log(curve[known])
+    for i, (p, curve) in enumerate(zip(targets, curves, strict=True)):
+        finite = np.isfinite(curve)
+        if finite.any() and np.isfinite(p):
+            x, y = np.log(pressures[finite]), np.log(curve[finite])
             values[i] = np.exp(np.interp(np.log(p), x, y, left=np.nan, right=np.nan))
     return values
 

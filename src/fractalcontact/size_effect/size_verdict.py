@@ -87,16 +87,16 @@ def judge_own_form(
     By :func:`judge_exponent`. ``condition`` is d ln sigma_0 / d ln sigma* of the whole window, of
     any sign, ``crossings`` the number of pressures at which the whole window has its sigma*.
     """
-    found = judge_exponent(measured, predicted)
-    if found.verdict == NOT_TESTED:
-        return found
+    judgement = judge_exponent(measured, predicted)
+    if judgement.verdict == NOT_TESTED:
+        return judgement
     if crossings != 1:
-        return found._replace(verdict=AMBIGUOUS, reason=SEVERAL)
+        return judgement._replace(verdict=AMBIGUOUS, reason=SEVERAL)
     if not abs(condition) <= WORST_CONDITION:
-        return found._replace(verdict=UNDECIDED, reason=ILL_CONDITIONED)
-    if found.verdict == AGREES and measured.width > WIDEST_SLOPE:
-        return found._replace(verdict=UNDECIDED, reason=SLOPE_TOO_WIDE)
-    return found
+        return judgement._replace(verdict=UNDECIDED, reason=ILL_CONDITIONED)
+    if judgement.verdict == AGREES and measured.width > WIDEST_SLOPE:
+        return judgement._replace(verdict=UNDECIDED, reason=SLOPE_TOO_WIDE)
+    return judgement
 
 
 def both_forms(area: Judgement, own: Judgement) -> tuple[str, str]:

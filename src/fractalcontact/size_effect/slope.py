@@ -17,16 +17,16 @@ def equal_pressure(pressures: ArrayLike, values: ArrayLike, target: float) -> tu
     curve has the value; 0 if all of the curve lies above it, so that the place is below the
     pressures solved, infinity if all lies below; NaN without a curve.
     """
-    known = np.isfinite(values)
-    if not known.any():
+    finite = np.isfinite(values)
+    if not finite.any():
         return np.nan, 0
     x, above = np.log(pressures), np.log(values) - np.log(target)
     places = []
-    for i in np.flatnonzero(known[:-1] & known[1:]):
+    for i in np.flatnonzero(finite[:-1] & finite[1:]):
         left, right = above[i], above[i + 1]
         if (left < 0) != (right < 0):
             places.append(x[i] - left * (x[i + 1] - x[i]) / (right - left))
-        elif left == 0 and not known[:i].any():  # the curve starts at the value
+        elif left == 0 and not finite[:i].any():  # the curve starts at the value
             places.append(x[i])
     if places:
         return float(np.exp(np.mean(places))), len(places)

@@ -69,16 +69,16 @@ def strength_by_size(states: xr.Dataset, material: Friction, roughness: float) -
 
     result = xr.Dataset()
     slopes = [slopes_apart(offset, curve, sign * error) for sign in (0, 1)]
-    at_peak = [peak(midpoint, of)[0] for of in (strength, off)]
+    at_peak = [peak(midpoint, intervals)[0] for intervals in (strength, off)]
     at_fractions = {
         "strength_at_equal_v_over_b": (strength, off),
         "slope_at_equal_v_over_b": (slopes[0], slopes[1] - slopes[0]),
     }
-    each: dict[str, tuple] = {"peak_strength": (_DIMS, at_peak)}
+    quantities: dict[str, tuple] = {"peak_strength": (_DIMS, at_peak)}
     for name, of_intervals in at_fractions.items():
-        taken = [_at_fractions(offset, side.values, of) for of in of_intervals]
-        each[name] = ("share", *_DIMS), taken
-    for name, (dims, (values, errors)) in each.items():
+        taken = [_at_fractions(offset, side.values, intervals) for intervals in of_intervals]
+        quantities[name] = ("share", *_DIMS), taken
+    for name, (dims, (values, errors)) in quantities.items():
         mean_of = xr.DataArray(values, dims=dims, attrs=cf_attrs(*_MEANS[name]))
         add_mean(result, name, mean_of, mean_of.copy(data=errors))
     _add_whole_window(result, side, offset, {"strength": strength, "slope": slopes[0]})
@@ -86,7 +86,8 @@ def strength_by_size(states: xr.Dataset, material: Friction, roughness: float) -
     result["share"] = ("share", np.array(OFFSET_FRACTIONS), attrs)
     # Missing sub-windows, NaN, are truncated nowhere.
     at_least, at_most = (
-        np.any(_at_fractions(offset, side.values, of) > 0, axis=2) for of in (truncated, raised)
+        np.any(_at_fractions(offset, side.values, intervals) > 0, axis=2)
+        for intervals in (truncated, raised)
     )
     apart = xr.DataArray(_in_three_steps(offset, side.values), dims="share")
     strengths = result["strength_at_equal_v_over_b"]
@@ -145,8 +146,8 @@ def add_slope_trends(laws: xr.Dataset) -> None:
     exponent = Estimate.read(laws, "slope_at_equal_v_over_b_exponent")
     trend = np.where(exponent.high < 0, FALLING, np.where(exponent.low > 0, RISING, ""))
     attrs = cf_attrs("1", f"{RISING}, {FALLING}, or empty where the exponent leaves it open")
-    of = laws["slope_at_equal_v_over_b_exponent"]
-    laws["slope_at_equal_v_over_b_trend"] = of.copy(data=trend).assign_attrs(attrs)
+    variable = laws["slope_at_equal_v_over_b_exponent"]
+    laws["slope_at_equal_v_over_b_trend"] = variable.copy(data=trend).assign_attrs(attrs)
     slope = laws["slope_at_equal_v_over_b"]
     everywhere = slope.where((slope > 0).all("normal_force"))
     middle = xr.ufuncs.exp(xr.ufuncs.log(everywhere).mean("normal_force"))
@@ -267,7 +268,13 @@ def _in_three_steps(offset: np.ndarray, side: np.ndarray) -> np.ndarray:
     """
     step = np.arange(offset.size - 1.0)[:, np.newaxis, np.newaxis, np.newaxis]
     steps = _at_fractions(offset, side, np.repeat(step, side.size, axis=1))[:, :, 0, 0]
-    return np.array([np.unique(of[np.isfinite(of)]).size >= MIN_POINTS for of in steps], bool)
+    return np.array(
+        [
+            np.unique(of_fraction[np.isfinite(of_fraction)]).size >= MIN_POINTS
+            for of_fraction in steps
+        ],
+        bool,
+    )
 
 
 def _by_barton(states: xr.Dataset, material: Friction, roughness: float) -> dict[str, np.ndarray]:

@@ -18,8 +18,8 @@ def contact_perimeter(in_contact: ArrayLike, spacing: ArrayLike) -> np.ndarray:
     the window's own edge do not count, for what lies beyond is not known.
     """
     dy, dx = np.broadcast_to(np.asarray(spacing, float), 2)
-    above, beside = _edges(in_contact)
-    return above * dx + beside * dy
+    above, across = _edges(in_contact)
+    return above * dx + across * dy
 
 
 def corrected_area(in_contact: ArrayLike, spacing: ArrayLike) -> np.ndarray:
@@ -45,8 +45,8 @@ def cell_areas(in_contact: ArrayLike) -> np.ndarray:
     touching = np.asarray(in_contact, bool)
     around = np.pad(touching, 1, constant_values=True)
     y, x = np.nonzero(touching)
-    beside = around[y, x + 1], around[y + 2, x + 1], around[y + 1, x], around[y + 1, x + 2]
-    return 1 - EDGE_EXCESS * (4 - np.sum(beside, axis=0))
+    neighbours = around[y, x + 1], around[y + 2, x + 1], around[y + 1, x], around[y + 1, x + 2]
+    return 1 - EDGE_EXCESS * (4 - np.sum(neighbours, axis=0))
 
 
 def _edges(in_contact: ArrayLike) -> tuple[np.ndarray, ...]:

@@ -108,23 +108,23 @@ def elastic_model_validity(
     by_pressure = _graded(pressure, *ends)
     place = _place(pressure, by_pressure, limits)
     words = f"contacts bear {pressure_words(pressure)} on average, {place}"
-    found = [(by_pressure, "pressure", f"{words} the {limits.words}")]
+    judgements = [(by_pressure, "pressure", f"{words} the {limits.words}")]
     if limits.criterion == HARDNESS and by_pressure == GOOD:
         share = nominal_pressure / limits.good_to
         words = f"the load is {percent(share)} of the most that contacts with a hardness of "
         words += f"{pressure_words(limits.good_to)} can carry"
-        found = [(_graded(share, MAX_TOUCHING, FULL), LOAD, words)]
+        judgements = [(_graded(share, MAX_TOUCHING, FULL), LOAD, words)]
     if np.isfinite(rms_slope):
         by_slope = _graded(rms_slope, SMALL_SLOPE, MODERATE_SLOPE)
         size = "small" if by_slope == GOOD else "steeper than assumed"
-        found.append((by_slope, SLOPE, f"rms slope {rms_slope:.3g}, {size}"))
-    found.sort(key=lambda one: -_GRADES.index(one[0]))  # the worst first
-    verdict, by, _ = found[0]
+        judgements.append((by_slope, SLOPE, f"rms slope {rms_slope:.3g}, {size}"))
+    judgements.sort(key=lambda judgement: -_GRADES.index(judgement[0]))  # the worst first
+    verdict, by, _ = judgements[0]
     # A load that the window carries with ease is no reason.
-    told = [words for grade, of, words in found if of != LOAD or grade == verdict]
+    sentences = [words for grade, cause, words in judgements if cause != LOAD or grade == verdict]
     if limits.criterion == HARDNESS:
-        told.append(DELETED)
-    reason = "; ".join(told)
+        sentences.append(DELETED)
+    reason = "; ".join(sentences)
     return Validity(verdict, pressure, reason, "" if verdict == GOOD else by, limits)
 
 

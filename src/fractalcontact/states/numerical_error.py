@@ -83,10 +83,12 @@ def numerical_error(quantity: str, values: ArrayLike, edge: ArrayLike = 0.0) -> 
     the edge overstate. That fraction of the area, of the stiffness, and of the length sigma_0/(d
     sigma/d w_int) of separations and closures is their ``edge``, of which a few per cent are added.
     """
-    found, fine = _extrapolated(values), np.isfinite(np.asarray(values, float)[2])
-    error = found.largest + found.uncertain + _of_edge(quantity, edge, fine)
-    limit = np.asarray(values, float)[0] - found.change
-    return NumericalError(error, np.where(np.isfinite(found.order), limit, np.nan), found.order)
+    extrapolated, fine = _extrapolated(values), np.isfinite(np.asarray(values, float)[2])
+    error = extrapolated.largest + extrapolated.uncertain + _of_edge(quantity, edge, fine)
+    limit = np.asarray(values, float)[0] - extrapolated.change
+    return NumericalError(
+        error, np.where(np.isfinite(extrapolated.order), limit, np.nan), extrapolated.order
+    )
 
 
 def closure_error(
@@ -99,11 +101,11 @@ def closure_error(
     ``rise``, all in mm. Closure is the summit less the separation and less the bulk settlement. The
     summit of the spline is found without any solve: what is extrapolated is the separation alone.
     """
-    found, fine = _extrapolated(separations), np.isfinite(np.asarray(separations, float)[2])
-    gain = np.asarray(rise) + found.change
-    error = np.abs(gain) + found.uncertain + _of_edge("closure", edge, fine)
-    limit = np.where(np.isfinite(found.order), closures + gain, np.nan)
-    return NumericalError(error, limit, found.order)
+    extrapolated, fine = _extrapolated(separations), np.isfinite(np.asarray(separations, float)[2])
+    gain = np.asarray(rise) + extrapolated.change
+    error = np.abs(gain) + extrapolated.uncertain + _of_edge("closure", edge, fine)
+    limit = np.where(np.isfinite(extrapolated.order), closures + gain, np.nan)
+    return NumericalError(error, limit, extrapolated.order)
 
 
 def _of_edge(quantity: str, edge: ArrayLike, fine: np.ndarray) -> np.ndarray:

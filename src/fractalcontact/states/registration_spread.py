@@ -58,8 +58,8 @@ def registration_values(
         where = f"specimen {loading.specimen.attrs['name']}, another registration"
         states = load_steps(composite, space, forces, loading.solving, where)
         datum = float(composite.max()), float(composite.mean())
-        found = [state_quantities(state, *datum) for state in states]
-        row = {name: np.array([one[name] for one in found]) for name in OF_STATES}
+        quantities = [state_quantities(state, *datum) for state in states]
+        row = {name: np.array([of_state[name] for of_state in quantities]) for name in OF_STATES}
         rows.append(row | {"seated_closure": row["closure"] - row["closure"][seat]})
     return {
         name: np.array([row[name] for row in rows]).reshape(len(rows), len(forces))
@@ -96,4 +96,7 @@ def registration_spread(
     count = len(values["closure"])
     if count < 2:
         return None
-    return {name: t_quantile(count - 1) * of.std(axis=0, ddof=1) for name, of in values.items()}
+    return {
+        name: t_quantile(count - 1) * of_motions.std(axis=0, ddof=1)
+        for name, of_motions in values.items()
+    }

@@ -127,12 +127,12 @@ def add_seated_closure(curves: xr.Dataset, seating_pressure: float) -> None:
     none = f"no state of any offset has {RESOLVED_NODES} nodes in contact"
     if seating_pressure > 0:
         none += f" at {seating_pressure:g} MPa or more"
-    found = {
+    seating = {
         "seating_pressure": seats / area,
         "common_seating_pressure": common / area,
         "no_common_seat": xr.where(common.isnull(), none, ""),
     }
-    values = {name: found[name].transpose(*dims).values for name, (dims, *_) in _SEATS.items()}
+    values = {name: seating[name].transpose(*dims).values for name, (dims, *_) in _SEATS.items()}
     curves.update(labelled(_SEATS, values))
 
 

@@ -56,8 +56,10 @@ def summit(composite: ArrayLike) -> float:
         for place, n in zip(np.unravel_index(highest, heights.shape), heights.shape, strict=True)
     )
     points = np.broadcast_arrays(rows[:, :, np.newaxis], columns[:, np.newaxis, :])
-    found = ndimage.map_coordinates(spline, points, order=3, mode="reflect", prefilter=False)
-    return float(max(found.max(), heights.max()))
+    heights_around = ndimage.map_coordinates(
+        spline, points, order=3, mode="reflect", prefilter=False
+    )
+    return float(max(heights_around.max(), heights.max()))
 
 
 def subgrid_states(
