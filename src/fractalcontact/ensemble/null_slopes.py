@@ -65,7 +65,7 @@ def null_slopes(
             }
         )
     values = {name: np.array([row[name] for row in rows]) for name in NULL_SLOPES}
-    if sizes.size < 2:  # a window too small for any has one that is missing
+    if sizes.size < 2:  # the window is too small for any slope: one is missing
         none = np.full((len(rows), 1), np.nan)
         values |= dict.fromkeys(_CURVES, none)
     return labelled_dataset({**NULL_SLOPES, **OCTAVES}, values | octaves)

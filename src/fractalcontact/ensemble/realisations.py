@@ -64,10 +64,10 @@ ISOTROPY = {
         "exponent of occupied intervals across sliding less that along it",
     ),
 }
-#: The closure that compares between realisations: from one load, at which all are resolved.
+#: Closure from one load at which all realisations are resolved, so that they can be compared.
 _SEATED = "closure_from_common_seat"
 
-#: Exponent of the corrected area less that of eq. 6: the Delta_sigma that eq. 6 has it from, words.
+#: Exponent of the corrected area less that of eq. 6: Delta_sigma that eq. 6 takes, and its words.
 _EQ6 = {
     "eq6_area": ("delta_sigma_area", "A_r(s)"),
     "eq6_box": ("delta_sigma", "boxes"),

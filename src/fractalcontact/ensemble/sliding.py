@@ -31,7 +31,7 @@ OVER_LAGS = ("lag_dimension",)
 #: Over the directions, and over the axes of two opposite directions, from the rigid slide.
 OF_DIRECTIONS, OF_AXES = ("plateau_slope", "plateau_change"), ("even_change", "odd_slope")
 
-#: Offsets solved are at least this factor apart: neighbours hardly differ.
+#: Smallest ratio of successive offsets that are solved, as neighbours hardly differ.
 OFFSET_RATIO = 1.4
 
 #: Ends of the lags, the same of all realisations.

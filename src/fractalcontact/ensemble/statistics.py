@@ -95,5 +95,5 @@ def add_statistics(result: xr.Dataset, names: Sequence[str]) -> None:
                 added[f"{name}_band_{end}"] = (dims, of_band, attrs)
         attrs = cf_attrs("1", f"{words}, number of realisations with a value")
         added[f"{name}_n"] = (dims, mean.n, attrs)
-    # All at once: xarray goes through all that is there each time that something is added.
+    # Variables are added together: each single assignment makes xarray check the whole dataset.
     result.update(added)

@@ -57,7 +57,7 @@ def _amplitude_error(curve: LoadCurve) -> float:
     """Relative standard deviation of the amplitude of the waves."""
     try:
         return amplitude_error(curve.composite, curve.space.spacing)
-    except ValueError:  # faces that are flush have none
+    except ValueError:  # flush faces have no waves
         return 0.0
 
 

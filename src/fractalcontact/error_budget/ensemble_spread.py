@@ -15,7 +15,7 @@ _OF_ENSEMBLE = {
     "stiffness": "interface_stiffness",
     "delta_sigma": "delta_sigma",
 }
-#: Yielding contacts have one area, F/H, but for the solver.
+#: Relative difference of areas by the solver alone: yielding contacts all have the area F/H.
 _ROUNDING = 1e-3
 INSIDE, OUTSIDE = "within their band", "outside their band"
 
@@ -30,7 +30,7 @@ def ensemble_spread(curve: LoadCurve, ensemble: xr.Dataset) -> np.ndarray:
     for row, quantity in enumerate(BUDGET_QUANTITIES):
         low, high = _band(ensemble, quantity)
         size = curve.loading.area if quantity == "area_corrected" else 1.0
-        # A band may end at a bound, nearer to the mean than its other end.
+        # A band that ends at a bound is not even about the mean; its larger half counts.
         mean = ensemble[f"{_OF_ENSEMBLE[quantity]}_mean"].values
         half[row, _places(curve, ensemble)] = size * np.fmax(high - mean, mean - low)
     return half

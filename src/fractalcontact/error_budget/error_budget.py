@@ -34,14 +34,13 @@ from .refinement import (
 #: window is a sample of; and, in no total, the change of the surface with its resolution, what a
 #: harder material would change, and what another estimator gives.
 OF_POPULATION = ("counting", "window", TWINS, REALISATIONS, "registration")
-#: Only the larger of these is in a total, as a spread over windows holds that of counting; where
-#: an ensemble was solved, neither is.
+#: Sources of which only the larger enters a total, as a spread over windows holds that of counting;
+#: where an ensemble was solved, neither enters.
 _OF_WINDOW = ("counting", "window")
 SOURCES = (*OF_SURFACE, *OF_POPULATION, "resolution", "model", "estimator")
 
-#: Numerical errors of states that are not refined, in errors interpolated between those that are:
-#: chance differs from state to state. Then 95 to 100 % of 100 other joints were covered, else
-#: 68 to 92 %.
+#: Factor on numerical errors that are interpolated between refined states, as chance differs from
+#: state to state. With it 95 to 100 % of 100 other joints were covered, without it 68 to 92 %.
 WIDENED = 2.0
 
 _EACH, _ALL = ("quantity", "source", "normal_force"), ("quantity", "normal_force")
@@ -81,7 +80,7 @@ _TABLE = {
 }
 
 _FROM = {1: "interpolated between loads", 2: "s and s/2", 4: "s, s/2 and s/4"}
-#: Why a source does not apply to a quantity.
+#: Reasons why a source does not apply to a quantity.
 _NONE = {
     "estimator": "applies to Delta_sigma alone",
     "secant": "applies to stiffness where contacts yield",
@@ -103,7 +102,7 @@ def map_curve(
         stage.sel(place).sel(offset=offset, method="nearest") for stage in (curves, domains)
     ]
     composite = prefractal(loading.composite(int(cells)), resolution)
-    # Against a plane there is no zero offset to open from: its distance is that of the mean plane.
+    # Against a plane there is no mated position; distances count from the mean plane.
     mated = loading.composite(0)
     mated = mated.max() if loading.slides else mated.mean()
     return LoadCurve(loading, composite, float(mated), resolution, *at_place)
@@ -255,7 +254,7 @@ def over_loads(
 
 def _scale(curve: LoadCurve) -> np.ndarray:
     """Scale of interpolated errors: the values, and of separations their length."""
-    # A separation may pass through zero, the length over which the pressure falls does not.
+    # A separation may be zero; the length over which the pressure falls by e never is.
     length = curve.over_quantities(separation=curve.decay_length())
     is_separation = np.array(list(BUDGET_QUANTITIES)) == "separation"
     return np.where(is_separation[:, np.newaxis], length, curve.values())

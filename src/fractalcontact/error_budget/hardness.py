@@ -12,7 +12,7 @@ from ..states.state_scalars import aperture
 from ..states.sweep import load_steps
 from .refinement import BUDGET_QUANTITIES, LoadCurve, budget_values
 
-#: Hardness of rough contacts over the joint wall strength: between 1 and this (Tabor's 3).
+#: Largest ratio of the hardness of rough contacts to the joint wall strength (Tabor's 3).
 HARDEST = 3.0
 
 _LOADS = ("normal_force",)

@@ -10,12 +10,12 @@ from ..states.loading import JointLoading
 
 #: Windows compared, the specimen's own among them, and the largest overlap of any two.
 MAX_WINDOWS, MAX_OVERLAP = 5, 0.5
-#: Windows' worth of area that they cover together: with less a spread says nothing.
+#: Smallest area that the windows cover together, in windows; with less a spread says nothing.
 MIN_EFFECTIVE = 2.5
-#: Places tried along a window's side.
+#: Number of places tried along a window's side.
 _PLACES = 16
 
-#: Why there is no spread over windows.
+#: Reason why there is no spread over windows.
 TOO_SMALL = "the scan is not large enough for other windows of this size"
 
 

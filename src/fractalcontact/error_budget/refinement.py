@@ -21,11 +21,11 @@ from ..states.numerical_error import NumericalError, closure_error, numerical_er
 from ..states.states import forces_of
 from ..states.subgrid import QUANTITIES, state_quantities, subgrid_states, summit
 
-#: Cells of the largest grid at s/2, and at s/4: of a study, and of one that asks for all states.
+#: Largest grids, in cells: at s/2, at s/4, and at s/4 of a study that requests all states.
 MAX_CELLS_HALF, MAX_CELLS, MAX_CELLS_FULL = 2**22, 2**20, 2**22
-#: Grids at s/4 of no more than this cost next to nothing and are solved at all loads chosen.
+#: Cells of a grid at s/4 up to which it is solved at all chosen loads, as it costs little.
 CHEAP_CELLS = 2**18
-#: Tolerance of the refined states, in that of the study: their differences count.
+#: Tolerance of refined states over that of the study; it is smaller because differences count.
 TIGHTER = 0.1
 
 #: Spacings compared, as divisors of the scan's.
@@ -34,7 +34,7 @@ FACTORS = (1, 2, 4)
 #: Quantities of the budget, in its order: unit, long name.
 _OTHERS = {"delta_sigma": ("1", "Delta_sigma by box counting")}
 BUDGET_QUANTITIES = QUANTITIES | _OTHERS
-#: Variables of the atlas that they are.
+#: Variables of the atlas, STAGE/VARIABLE, by quantity.
 PLACES = {
     "closure": "closure/interface_closure",
     "separation": "closure/separation",
@@ -42,7 +42,7 @@ PLACES = {
     "stiffness": "closure/interface_stiffness",
     "delta_sigma": "domains/delta_sigma",
 }
-#: Those that may be zero or of either sign: an error of them is stated in their unit, never as a
+#: Quantities that may be zero or of either sign: their errors are stated in their unit, never as a
 #: fraction. Faces pressed into each other have a separation below zero, single nodes no dimension.
 ABSOLUTE = ("separation", "delta_sigma")
 

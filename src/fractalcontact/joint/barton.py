@@ -8,7 +8,7 @@ import xarray as xr
 
 from ..core.limits import LARGEST_FRICTION_ANGLE
 
-#: What the functions take and return.
+#: Numbers or arrays: the type of arguments and results.
 Numbers = float | np.ndarray | xr.DataArray
 
 #: Length of the joints that JRC and JCS are tabulated for, mm.

@@ -8,9 +8,9 @@ import xarray as xr
 from ..core.window import faces, window_slices
 from .joint import DIRECTION_STEPS, direction_spacing, sliding_axis
 
-#: Equal parts of the force whose mean apparent dip is kept of every state.
+#: Number of equal parts of the force; every state keeps the mean apparent dip of each part.
 PARTS = 100
-#: Spacings that slopes are taken over: one, and another for the error of the grid.
+#: Steps in spacings over which slopes are taken; the second serves for the error of the grid.
 STEPS = (1, 2)
 
 
@@ -51,8 +51,8 @@ def _nanmedian(values: np.ndarray) -> np.ndarray:
     a, b, c, d = values
     middle = np.maximum(np.minimum(a, b), np.minimum(c, d))
     middle = (middle + np.minimum(np.maximum(a, b), np.maximum(c, d))) / 2
-    missing = ~np.isfinite(middle)  # at few nodes, by a rim
-    with warnings.catch_warnings(action="ignore"):  # where none is known
+    missing = ~np.isfinite(middle)  # nodes beside a rim
+    with warnings.catch_warnings(action="ignore"):  # nodes without any slope
         middle[missing] = np.nanmedian(values[:, missing], axis=0)
     return middle
 

@@ -204,7 +204,7 @@ def _first_below(offset, values, limit):
     return offset[below[0]] if below.size else np.nan
 
 
-#: What is kept of a rigid slide: dimensions, unit, long name.
+#: Variables of a rigid slide: dimensions, unit, long name.
 RIGID_SLIDE = {
     "rigid_dilatancy": (("direction", "rigid_offset"), "mm", "rigid dilatancy delta_r"),
     "composite_rms": (
@@ -328,7 +328,7 @@ def describe_slide(
         ratio = spacing / direction_spacing(specimen, direction)
         own = np.round(cells * ratio).astype(int)
         slid = _slid(specimen, direction, own)
-        # The first cell of all is that of no offset.
+        # The first cell is the zero offset.
         dilatancy[i], spread[i] = slid.highest - slid.highest[0], slid.spread
         correlation[i] = slid.correlation
     offsets = offsets_of(cells, spacing)

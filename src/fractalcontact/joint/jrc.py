@@ -18,7 +18,7 @@ from .joint import direction_spacing, sliding_axis
 JRC_STEP = 1.27
 #: Steps over which slopes are taken for Z2, mm, by name; None is the scan's own spacing. Tse &
 #: Cruden (1979) state 1.27 mm. Their profiles of 100 mm had 200 such steps, so that they must have
-#: been enlarged 2.5 times: a step of 0.508 mm on the rock, kept beside it.
+#: been enlarged 2.5 times: a step of 0.508 mm on the rock, which is given too.
 JRC_SAMPLINGS = {"scan": None, "0.508 mm": 0.508, "1.27 mm": JRC_STEP}
 #: Fits of the JRC to Z2 of Barton's ten profiles, each with the step they were digitised with, mm:
 #: one number without step and fit means nothing. Tse & Cruden (1979), their step as enlarged; Yang,
@@ -33,7 +33,7 @@ FITS: dict[str, tuple[float, Callable[[Any], Any]]] = {
     "Tatone and Grasselli 2010, 0.5 mm": (0.5, lambda z2: 51.85 * z2**0.60 - 10.37),
     "Tatone and Grasselli 2010, 1 mm": (1.0, lambda z2: 55.03 * z2**0.74 - 6.10),
 }
-#: A step of whole cells that differs by more than this part from a fit's is not that fit's.
+#: Largest relative difference between a step of whole cells and that of a fit.
 _NEAR = 0.25
 _TABLE = {
     "step": ("sampling", "mm", "step of Z2, whole cells"),
@@ -91,7 +91,7 @@ def profile_roughness(specimen: xr.Dataset, direction: str) -> xr.Dataset:
     levelled = [without_mean_plane(z[window]) for z in faces(specimen)]
     profiles = [np.moveaxis(z, axis, 0) for z in levelled]
     roughness = roughness_of_profiles(profiles, direction_spacing(specimen, direction))
-    # Grasselli's law is of the lower face, which the upper block climbs.
+    # Grasselli's law describes the lower face, because the upper block climbs it.
     law = grasselli(levelled[0], spacing_of(specimen), direction)
     return roughness.assign(
         labelled(_GRASSELLI, {f"grasselli_{name}": value for name, value in law._asdict().items()})

@@ -20,7 +20,7 @@ from ..roughness.fit_range import MIN_CELLS
 #: Choices of lags: the whole range, and its shorter and longer half in logarithms.
 LAG_RANGES = ("all", "short", "long")
 
-#: Lags of half the range, at the least.
+#: Smallest number of lags in half the range.
 MIN_LAGS = 4
 
 _TABLE = {

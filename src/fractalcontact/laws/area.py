@@ -17,14 +17,14 @@ from ..roughness.dimension import slope_statistics
 from ..states.states import chosen_offset, error_attrs
 from .area_theories import FLUSH, add_comparison, add_theories
 
-#: What is kept of a composite topography, by its name in :func:`slope_statistics`.
+#: Statistics of a composite topography, by their names in :func:`slope_statistics`.
 STATISTICS = ("rms_slope", "m0", "m2", "m4")
 
 #: kappa of the raw and of the corrected area.
 AREA_SLOPE = "area slope kappa = (A_r/A_0) E* h'_rms / sigma_0"
 CORRECTED_AREA_SLOPE = "area slope kappa, corrected area"
 
-#: Raw and corrected area: prefix of names, name, nodes that it needs, words.
+#: Raw and corrected area: prefix of names, variable, fewest nodes, long name of kappa.
 _AREAS = (
     ("", "area", RESOLVED_NODES, AREA_SLOPE),
     ("corrected_", "area_corrected", CORRECTED_NODES, CORRECTED_AREA_SLOPE),
@@ -199,7 +199,7 @@ def _add_kappa(result: xr.Dataset, curves: xr.Dataset, e_star: float, node: xr.D
         result.update(mean.variables(f"{prefix}mean_kappa", at_light.dims[:-1], "1", text))
         n = light.sum("normal_force")
         result[f"{prefix}mean_kappa_n"] = n.assign_attrs(cf_attrs("1", "loads in the mean"))
-        # xr.where would drop the labels of the offsets.
+        # np.where, because xr.where drops the labels of the offsets.
         reason = np.where(
             np.isnan(slope.transpose(*n.dims)),
             "the faces are flush and have no slope",

@@ -11,10 +11,10 @@ from ..core.labels import cf_attrs
 from ..core.verdicts import ABOVE, BELOW, WITHIN
 from . import theory
 
-#: Faces whose composite topography is less steep than this are flush: the rest is rounding.
+#: Smallest rms slope of faces that are not flush; less is rounding.
 FLUSH = 1e-9
 
-#: What the theories make of every composite topography: unit, long name.
+#: Areas by the theories of every composite topography: unit, long name.
 _OF_THEORIES = {
     "persson_share": ("1", "A_r/A_0 by Persson"),
     "bush_gibson_thomas_share": ("1", "A_r/A_0 by Bush, Gibson and Thomas"),
@@ -22,7 +22,7 @@ _OF_THEORIES = {
     "majumdar_bhushan_share": ("1", "A_r/A_0 by Majumdar and Bhushan"),
 }
 
-#: What they say whatever the topography.
+#: Variables that do not depend on the topography.
 _EXPONENTS = {
     "no_majumdar_bhushan": ((), "1", "why there is no area by Majumdar and Bhushan"),
     "archard_level": ("archard_level", "1", "generations n of spheres upon spheres"),

@@ -77,7 +77,7 @@ def branches(
             raise
         again, residual = [*down[::-1], full], empty.closure
     first, second = ([_numbers(state) for state in states] for states in (load, again))
-    # Unloading begins elastically at the closure where loading ended.
+    # Unloading is elastic and begins at the closure where loading ended.
     rows = [first, [*second[:-1], second[-1] | {"closure": top.closure}], second]
     values = {
         **{name: [[state[name] for state in row] for row in rows] for name in OF_BRANCHES},

@@ -14,7 +14,7 @@ from .conductance import add_conductance
 from .load_curve import left_out_misses
 from .seated_laws import add_seated_laws
 
-#: Why a state that was solved has no stiffness of the interface.
+#: Reasons why a solved state has no stiffness of the interface.
 FLUSH_FACES = "the faces lie flush: there is no interface"
 SINGLE_CELLS = (
     f"fewer than {RESOLVED_NODES} cells carry the change of the force: a stiffness would be that "
@@ -137,7 +137,7 @@ def _add_interface(curves: xr.Dataset, settlement: np.ndarray, area: float) -> N
         force / area,
         cf_attrs("MPa", "nominal pressure sigma_0 = F / A_0"),
     )
-    # Added at the end, all at once: xarray goes through all that is there each time.
+    # Variables are added together: each single assignment makes xarray check the whole dataset.
     added: dict[str, xr.DataArray | tuple] = {}
     flush = curves["composite_spread"] == 0
     closing = interface_closure(curves["closure"], curves["bulk_settlement"], flush)
@@ -166,7 +166,7 @@ def _add_interface(curves: xr.Dataset, settlement: np.ndarray, area: float) -> N
     stiffness = stiffness.transpose(*order).assign_attrs(cf_attrs("MPa/mm", words))
     added["interface_stiffness"] = stiffness
     reason = stiffness_reason(stiffness, curves["stiffness"], flush)
-    # As bare values: labels that xr.where made have no units.
+    # Bare values are stored, because labels made by xr.where have no units.
     why = reason.where(curves["solved"], "").transpose(*order).values
     added["interface_stiffness_reason"] = (order, why, reason.attrs)
     curves.update(added)
@@ -268,8 +268,8 @@ def elastic_dilatancy(curves: xr.Dataset, joint: xr.Dataset) -> xr.Dataset:
     result = joint[["rigid_dilatancy", "composite_rms"]].copy()
     finest = curves.sel(resolution=curves["resolution"].min(), drop=True)
     finest = finest.rename(direction="contact_direction")
-    # The opening at the cells whose contact was solved: that of `joint` is at the first direction's
-    # offsets, from which those of the others differ where cells are not square.
+    # The opening belongs to the cells whose contact was solved. That of `joint` is at the offsets
+    # of the first direction; where cells are not square, the other directions differ.
     slides = finest["contact_direction"] != "none"
     opening = finest["prefractal_opening"].where(slides).fillna(finest["rigid_opening"])
     elastic = opening - finest["interface_closure"]

@@ -21,14 +21,14 @@ from ..core.ranges import within
 from ..core.text import percent
 from ..core.verdicts import HYPERBOLA, NEITHER, SEMI_LOGARITHMIC, TOO_WIDE, UNDECIDED
 
-#: States a law of two parameters needs before its interval means anything.
+#: Fewest states for a law of two parameters: with fewer its interval means nothing.
 MIN_CLOSURE_POINTS = 4
 
 
-#: Logarithms of the parameters beyond which nothing is sought.
+#: Largest absolute logarithm of the parameters in the search.
 FARTHEST = 200.0
 
-#: Misfits this near to each other, as a fraction of the larger one, separate no laws.
+#: Difference of misfits, as a fraction of the larger one, up to which they separate no laws.
 EQUAL_MISFIT = 0.1
 
 
@@ -98,7 +98,7 @@ def fit_hyperbola(pressure: ArrayLike, closure: ArrayLike, seat: float = 0.0) ->
         return Hyperbola(n=sigma.size, reason=_too_few(sigma.size))
 
     def law(sigma, log_k, log_wm):
-        # A search along a straight curve, which has no asymptote, runs far.
+        # A straight curve has no asymptote: its search would overflow without this limit.
         k, w_m = np.exp(np.clip([log_k, log_wm], -FARTHEST, FARTHEST))
         return w_m * (sigma / (k * w_m + sigma) - seat / (k * w_m + seat))
 

@@ -52,7 +52,7 @@ NAMES = {
     "peak_contact_reason": ("1", "why the peak is a lower bound and no result", "normal_force"),
 }
 
-#: Why a peak is no result.
+#: Reason why a peak is no result.
 A_BOUND = f"only a lower bound, as most angles are truncated at {LARGEST_FRICTION_ANGLE:g} degrees"
 
 

@@ -215,7 +215,7 @@ _SOLVED = (
     "peak_strength",
     "peak_dilatancy_angle",
 )
-#: Why a strength by dilatancy is no result.
+#: Reasons why a strength by dilatancy is no result.
 TRUNCATED = f"friction and dilatancy angles together exceed {LARGEST_FRICTION_ANGLE:g} degrees"
 FULL = "half of the window touches, so that the faces no longer ride on asperities"
 
@@ -246,7 +246,7 @@ def _strength(
     curves = np.column_stack([rigid, elastic])
     errors = np.column_stack([np.zeros_like(rigid), error])
     if specimen.attrs["opposite"] == "match":
-        # Flush faces have no dilatancy, whatever the load: no error either.
+        # Flush faces have no dilatancy under any load, and no error of it.
         _, errors = from_flush(offset, errors)
         offset, curves = from_flush(offset, curves)
     midpoint, angles, angles_off = angles_with_errors(offset, curves, errors)
@@ -266,7 +266,7 @@ def _strength(
         "dilatancy_angle_error": angle_off,
         "friction_angle_error": stated * angle_off,
         "shear_strength_error": tau_off,
-        # The largest of several values is off by no more than the one that is off most.
+        # The error of the largest of several values is at most the largest of their errors.
         "peak_strength_error": peak(midpoint, tau_off)[0],
         "peak_dilatancy_angle_error": peak(midpoint, angle_off)[0],
         "residual_strength": residual(midpoint, tau, largest),
@@ -276,7 +276,7 @@ def _strength(
     values["peak_strength"], values["peak_offset"] = peak(midpoint, tau)
     side = window_sides(specimen)[sliding_axis(str(direction))]
     values |= _by_barton(float(jrc), material, side, pressure)
-    # Contacts that yield carry their hardness: the pressure says how much of the window touches.
+    # Yielding contacts carry their hardness, so that the pressure tells the fraction in contact.
     return values | judged_strengths(values, pressure >= MAX_TOUCHING * material.hardness)
 
 
@@ -313,7 +313,7 @@ def _by_barton(jrc: float, material: Friction, side: float, pressure: np.ndarray
     """Barton's law with the JRC and JCS as they are, and scaled to the side of the window."""
     angle, wall = material.basic_friction_angle, material.joint_wall_strength
     scaled_jrc, scaled_wall = scaled_joint(jrc, wall, side)
-    # Beyond Barton's scale there is nothing that his law was measured on.
+    # Barton's law was not measured on joints beyond his scale.
     scaled_jrc = scaled_jrc if scaled_jrc <= JRC_RANGE[1] else np.nan
     return {
         "barton_strength": barton_strength(pressure, angle, jrc, wall),

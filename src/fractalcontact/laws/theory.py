@@ -11,27 +11,27 @@ from scipy import special
 
 from ..core.labels import cf_attrs
 
-#: What the functions take and return.
+#: Numbers or arrays: the type of arguments and results.
 Numbers = float | np.ndarray | xr.DataArray
 
 #: kappa of A/A0 = kappa p / (E* h'_rms). Persson, J. Chem. Phys. 115 (2001) 3840.
 PERSSON_KAPPA = np.sqrt(8 / np.pi)
 #: Bush, Gibson & Thomas, Wear 35 (1975) 87.
 BUSH_GIBSON_THOMAS_KAPPA = np.sqrt(2 * np.pi)
-#: Where the values computed in the literature for many hills at light load lie.
+#: Range of the values computed in the literature for many hills at light load.
 COMPUTED_KAPPA = (2.1, 2.3)
 
 #: Points of a line of a theory.
 LINE_POINTS = 60
 
-#: The three as attributes of a dataset.
+#: The three values of kappa as attributes of a dataset.
 KAPPA_ATTRS = {
     "persson_kappa": float(PERSSON_KAPPA),
     "bush_gibson_thomas_kappa": float(BUSH_GIBSON_THOMAS_KAPPA),
     "computed_kappa": list(COMPUTED_KAPPA),
 }
 
-#: g of :func:`fudged_persson_area`, the middle of what computations want.
+#: g of :func:`fudged_persson_area`: the middle of the range that fits computations.
 FUDGE = 0.435
 
 #: Published areas of periodic surfaces of H = 0.8 by Green's function molecular dynamics: p/E*,

@@ -14,7 +14,7 @@ from ..states.loading import JointLoading
 from .curve import Curve
 from .readings import TestReadings, read_test
 
-#: Pressures this near to each other, as a fraction, are one.
+#: Relative difference up to which two pressures count as equal.
 NEAR = 0.01
 
 

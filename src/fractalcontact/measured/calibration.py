@@ -9,14 +9,14 @@ from ..core.estimate import Estimate
 from ..core.intervals import t_quantile
 from .curve import MIN_READINGS, Curve
 
-#: How many factors of the constant are tried.
+#: Number of factors of the constant that are tried.
 _TRIED = 81
 #: Fraction of the readings that the computed curve has to reach at a factor.
 _REACHED = 0.5
-#: Logarithm of the factors that are searched closely about the best, and what is their edge.
+#: Range of log factors about the best that is searched closely, and the width of its edge.
 NEAR, _EDGE = 0.25, 0.005
 
-#: Closure over the pressure at a factor of the constant.
+#: Function that gives the closure over the pressure at a factor of the constant.
 Family = Callable[[float], Curve]
 
 
@@ -38,7 +38,7 @@ def fit_factor(readings: Curve, family: Family, between: tuple[float, float]) ->
     if not np.isfinite(values[best]):
         why = "the loads of the study do not reach the pressures of the test: widen 'loads'"
         return Estimate(reason=why)
-    # Then the same readings at every factor: those that the computed loads reach at all of them.
+    # All factors are compared over the same readings: those that the loads reach at each of them.
     near = np.clip(tried[best] + np.array([-NEAR, NEAR]), tried[0], tried[-1])
     reached = np.all(
         [np.isfinite(family(np.exp(log_tried)).at(readings.x).value) for log_tried in near], 0

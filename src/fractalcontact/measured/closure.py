@@ -16,12 +16,12 @@ from .calibration import NEAR, fit_factor
 from .computed import CARRIED, Joint
 from .curve import Curve, compared, ratio
 
-#: How the computed curve beside a test came about.
+#: Origin of the computed curve beside a test.
 COMPUTED, FITTED, PREDICTED = "computed", "fitted", "predicted"
 #: Hardnesses that are solved to fit one, and the ends of moduli, as factors of those stated.
 _HARDNESSES = np.array([1 / 3, 3**-0.5, 1.0, 3**0.5, 3.0])
 _MODULI = (0.25, 4.0)
-#: Hardnesses that a fit needs.
+#: Fewest hardnesses for a fit.
 _MIN_HARDNESSES = 3
 
 _PARAMETERS = {
@@ -154,7 +154,7 @@ def _row(
     span = computed.where(computed.x <= readings.x[-1])
     row = {
         "readings": readings,
-        # On its branch, on the axis of the stage ``closure``: from the seat of the study on.
+        # The readings on the axis of the stage ``closure``, which counts from the study's seat.
         "laid": readings.y - readings.at(datum).value + curve.at(datum).value - joint.seat_closure,
         **compared(computed.where(inside), measured),
         "datum": datum,

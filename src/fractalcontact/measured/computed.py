@@ -17,9 +17,9 @@ from ..states.loading import JointLoading
 from ..states.settlement import bulk_settlement
 from .curve import Curve
 
-#: Of its hardness, up to which a joint is loaded.
+#: Largest pressure on a joint as a fraction of its hardness.
 CARRIED = 0.95
-#: States of a branch that is solved, evenly over the logarithm of the pressure.
+#: Number of states of a solved branch, evenly spaced in the logarithm of the pressure.
 _STATES = 8
 
 
@@ -109,7 +109,7 @@ class Joint:
         force = np.array([state.force for state in path])
         closure = np.array([state.closure for state in path])
         closure -= bulk_settlement(force, space.modulus, *sides)
-        # Between the loads of the study, and beyond them, the grid is as coarse as there.
+        # The error is that of the study's grid, which is the same at all loads.
         error = np.interp(np.log(force / area), np.log(self.curve.x), self.curve.error)
         return Curve.of(force / area, closure, error)
 

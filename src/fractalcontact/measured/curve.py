@@ -10,7 +10,7 @@ from scipy.interpolate import PchipInterpolator
 from ..core.estimate import Estimate
 from ..core.intervals import t_quantile
 
-#: Points that a curve needs, and readings that their scatter is estimated from.
+#: Fewest points of a curve, and fewest readings for an estimate of their scatter.
 MIN_POINTS, MIN_READINGS = 2, 5
 _ROUNDING = 1e-9
 
@@ -42,7 +42,7 @@ class Curve:
             nothing = np.full(x.shape, np.nan)
             return Estimate(nothing, nothing, nothing)
         places, (knots, first) = self._scale(x), np.unique(self._scale(self.x), return_index=True)
-        for end in (knots[0], knots[-1]):  # the same pressure, but for rounding
+        for end in (knots[0], knots[-1]):  # equal pressures may differ by rounding
             places = np.where(np.isclose(places, end, rtol=0, atol=_ROUNDING), end, places)
         y = PchipInterpolator(knots, self.y[first], extrapolate=False)(places)
         index = np.clip(np.searchsorted(self.x, x), 1, self.x.size - 1)

@@ -5,7 +5,7 @@ import numpy as np
 from ..core.errors import InputError
 from ..scan.columns import Column
 
-#: Of the whole range: readings that fall back no more are sorted, as noise of a gauge or a pump.
+#: Largest fall-back that is sorted, a fraction of the range: noise of a gauge or a pump.
 MAX_FALL_BACK = 0.05
 
 

@@ -8,7 +8,7 @@ from ..core.settings import MeasuredTest
 from .beforehand import NEAR, require_direction, require_pressure
 from .curve import Curve
 
-#: Why a kind of test has no computed value to compare with.
+#: Reason why a kind of test has no computed value to compare with.
 WHY_NONE = {
     "closure": "",
     "flow": "no computed state has a path through the gap on this branch",
@@ -43,7 +43,7 @@ def computed_curve(
     if test.kind == "dilatancy":
         along = dilatancy.sel(contact_direction=test.direction)
         curve = _under(test, along, "elastic_dilatancy", "offset_on_grid")
-        # A test counts its dilation from where sliding begins, under load already.
+        # A test counts its dilation from the start of sliding, when the load already acts.
         return curve.since(0.0) if curve.x.size and curve.x[0] == 0 else curve
     along = strength.sel(contact_direction=test.direction)
     if test.kind == "shear":
@@ -75,7 +75,7 @@ def _flow(test: MeasuredTest, flow: xr.Dataset, reported: Reported) -> Curve:
 def _under(test: MeasuredTest, along: xr.Dataset, name: str, x: str) -> Curve:
     """A curve over the offsets, straight over the logarithm of the pressure between loads."""
     values = along[name].transpose(..., "normal_force")
-    # Other loads are solved at the reported offset alone.
+    # Loads that are solved at the reported offset alone are left out.
     offsets = np.isfinite(values.values).sum(axis=0)
     solved = (offsets > 0) & (2 * offsets > offsets.max())
     pressure = along["nominal_pressure"].values[solved]

@@ -14,9 +14,9 @@ from .one_way import require_one_way
 
 #: Columns that are lengths; transmissivities are cubes of one, all others are pressures.
 _LENGTHS = ("displacement", "dilation", "hydraulic_aperture")
-#: Columns of which nothing is below 0.
+#: Columns without values below 0.
 _POSITIVE = ("pressure", "shear_strength", "transmissivity", "hydraulic_aperture")
-#: Of the travel: within this, dilation and displacement are one column.
+#: Difference, as a fraction of the travel, within which dilation and displacement are one column.
 _SAME = 0.05
 
 

@@ -29,7 +29,7 @@ _MEASURED = {
     "strength": ("MPa", "peak shear strength"),
 }
 _AXES = {"pressure": ("MPa", "nominal pressure"), "displacement": ("mm", "shear displacement")}
-#: What is kept of every test: field, unit, long name.
+#: Settings of every test that are stored: field, unit, long name.
 _OF_TESTS = {
     "branch": ("branch", "1", "branch of the test"),
     "cycle": ("cycle", "1", "number of the cycle"),

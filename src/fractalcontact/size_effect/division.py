@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike
 
 #: Sub-windows along each side of the window, by default: octaves and halves.
 PARTS = (1, 2, 3, 4, 6, 8)
-#: A sub-window that is solved has at least this many cells per side.
+#: Fewest cells per side of a sub-window that is solved.
 MIN_CELLS = 16
 
 

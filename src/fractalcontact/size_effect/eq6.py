@@ -55,7 +55,7 @@ DELTA_SIGMA_ESTIMATORS = {
     "box_sizes": "occupied windows",
 }
 
-#: Of them those that captions quote.
+#: Estimators that captions quote.
 _QUOTED = {name: DELTA_SIGMA_ESTIMATORS[name] for name in ("area", "box")}
 
 
@@ -185,7 +185,8 @@ def add_decisions(result: xr.Dataset) -> None:
         ("agreeing_loads", agrees, "of them, loads at which eq. 6 agrees"),
     ):
         result[name] = counted.sum("normal_force").assign_attrs(cf_attrs("1", words))
-    # The heaviest says most: more nodes touch. One beyond the study matters to nobody.
+    # The heaviest load is the best determined, because most nodes touch. A load beyond the study
+    # is quoted only where the study has none.
     heaviest = result["normal_force"] == result["normal_force"].where(quotable).max()
     attrs = cf_attrs("1", "load whose predictions for the whole window are quoted")
     result["quoted_load"] = heaviest.assign_attrs(attrs)

@@ -35,7 +35,7 @@ _OVER_LOADS = {
         "exponent of corrected A_r/A_0 against b",
     ),
 }
-#: Of them, what the bulk's part leaves of the whole: below 0 it means nothing.
+#: Those without the part of the bulk; below 0 they mean nothing.
 _OF_INTERFACE = ("interface_closure", "interface_compliance")
 
 
@@ -112,7 +112,7 @@ def _add_exponents(result: xr.Dataset, states: xr.Dataset) -> None:
     for name, (exponent, fewest, words) in _OVER_LOADS.items():
         add_mean(result, name, states[name], states[f"{name}_error"])
         if name in _OF_INTERFACE:
-            # Where contact is too full to separate the interface from the bulk.
+            # Contact is too full there to separate the interface from the bulk.
             below = result[name] < 0
             for kept in (*names_of(name), f"{name}_error"):
                 result[kept] = result[kept].where(~below)

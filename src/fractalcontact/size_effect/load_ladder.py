@@ -26,7 +26,7 @@ from ..states.sweep import load_steps
 from .division import PARTS, solvable_parts, split
 from .sub_windows import SubWindows
 
-#: A resolution is used if the smallest sub-windows keep this many nodes per side at it.
+#: Fewest nodes per side of the smallest sub-windows at a resolution that is used.
 MIN_NODES_PER_SIDE = 12
 #: The whole window is tested at the study's loads and, while sub-windows hold too few nodes, at up
 #: to this many doublings of the largest: loads that no rock would stand as an elastic body.
@@ -34,11 +34,12 @@ TESTED_DOUBLINGS = 3
 #: This many more doublings may be needed for small windows to have the sigma* of the whole; see
 #: :func:`solve_sub_windows` for when they are solved.
 SPARE_DOUBLINGS = 3
-#: Loads stay below this fraction of what the hardness lets a window carry.
+#: Largest load, as a fraction of the load that a window carries at the hardness.
 LARGEST_FRACTION = 0.98
 
-#: Takes the dataset of :func:`solve_sub_windows` of the whole window alone, its domains and the
-#: parts, and returns a dataset with ``delta_sigma`` (estimator, normal_force).
+#: Estimator of Delta_sigma: takes the dataset of :func:`solve_sub_windows` of the whole window
+#: alone, its domains and the parts; returns a dataset with ``delta_sigma`` (estimator,
+#: normal_force).
 Dimensions = Callable[[xr.Dataset, np.ndarray, Sequence[int]], xr.Dataset]
 
 
@@ -77,7 +78,7 @@ def solve_sub_windows(
     ]
     of_study = loading.forces(settings.loads) / area
     pressures = _ladder(of_study, loading.solving["hardness"])
-    # Stiffness costs a solve of its own: at the loads whose closure is looked at.
+    # A stiffness costs a further solve; it is computed at the dilatancy loads alone.
     looked_at = loading.forces(settings.dilatancy_loads) / area
     compliant = np.isclose(pressures[:, np.newaxis], looked_at, rtol=1e-9).any(axis=1)
     sizes = []
@@ -316,7 +317,7 @@ def whole_areas(
     composite = loading.composite(loading.cells.item())
     factors, loads = loading.settings.resolutions, states["normal_force"]
     solved = states.sel(part=1).isel(window=0, step=slice(len(loads)))
-    # That of solve_sub_windows is cut to whole cells of its coarsest resolution.
+    # solve_sub_windows cuts the window to whole cells of its coarsest resolution.
     uncut = not any(n % solved["resolution"].max() for n in composite.shape)
     ends = [part_ends(domain, min(factors)) for domain in domains]
     rows, left = [], []

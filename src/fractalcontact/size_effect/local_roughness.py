@@ -14,7 +14,7 @@ from ..core.window import cell_side, faces, window_slices
 from ..states.loading import JointLoading
 from .division import split
 
-#: A sub-window whose sigma_z is measured has at least this many cells per side.
+#: Fewest cells per side of a sub-window whose sigma_z is measured.
 MIN_CELLS_ROUGHNESS = 4
 
 

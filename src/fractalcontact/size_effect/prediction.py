@@ -12,8 +12,8 @@ from ..core.intervals import mean_interval
 from ..core.labels import cf_attrs
 from ..core.ranges import within
 
-#: How the whole window is predicted from smaller ones; the middle ones are eq. 6 with Delta_sigma
-#: by each estimator.
+#: Predictors of the whole window from smaller ones; the middle ones are eq. 6 with Delta_sigma by
+#: each estimator.
 PREDICTORS = ("power_law", "eq6_area", "eq6_box", "eq6_box_sizes", "no_size_effect")
 
 
@@ -49,7 +49,7 @@ def predict_whole(states: xr.Dataset, delta_sigma: xr.DataArray, fewest_nodes: i
 
     by_eq6 = {
         "closure": [at_equal_star(closure, power) for power in powers],
-        # Equal sigma_n at other sigma_0: the fractions differ as the sigma_0 do.
+        # At equal sigma_n the fractions are in proportion to sigma_0.
         "area": [
             at_equal_star(fraction, power) / (b[0] / b[1:]) ** power[:, np.newaxis]
             for power in powers

@@ -17,7 +17,7 @@ from ..core.labels import cf_attrs
 from ..core.per_curve import stacked
 from ..core.verdicts import AGREES, AMBIGUOUS, FLATTER, NOT_TESTED, STEEPER, UNDECIDED
 
-#: Exponents that differ by no more than this differ by rounding alone.
+#: Largest difference of exponents by rounding alone.
 ROUNDING = 1e-9
 #: A prediction whose 95 % interval is wider than this, end to end, is inconclusive.
 WIDEST_PREDICTION = 0.4
@@ -29,7 +29,7 @@ WIDEST_SLOPE = 1.0
 #: leaves open, 4 %, is then 40 % of sigma_0, or 0.3 of a slope over two octaves.
 WORST_CONDITION = 10.0
 
-#: Why nothing is decided, or on what grounds it is.
+#: Reasons of verdicts.
 TOO_WIDE = f"the predicted exponent is uncertain by more than {WIDEST_PREDICTION:g}"
 TOO_WIDE_MISSED = f"{TOO_WIDE}, though what is measured lies outside"
 NOTHING_PREDICTED = "eq. 6 predicts hardly any size effect"

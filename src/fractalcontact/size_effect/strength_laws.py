@@ -84,7 +84,7 @@ def strength_by_size(states: xr.Dataset, material: Friction, roughness: float) -
     _add_whole_window(result, side, offset, {"strength": strength, "slope": slopes[0]})
     attrs = cf_attrs("1", "offset as a fraction of the side, v/b")
     result["share"] = ("share", np.array(OFFSET_FRACTIONS), attrs)
-    # Missing sub-windows, NaN, are truncated nowhere.
+    # Comparisons with NaN are False, so that missing sub-windows count as not truncated.
     at_least, at_most = (
         np.any(_at_fractions(offset, side.values, intervals) > 0, axis=2)
         for intervals in (truncated, raised)
@@ -281,7 +281,7 @@ def _by_barton(states: xr.Dataset, material: Friction, roughness: float) -> dict
     """Barton's law with the JRC and JCS of each size."""
     lengths = states["side_along"].values
     scaled = scaled_joint(roughness, material.joint_wall_strength, lengths)
-    # His law was measured on his scale: beyond it there is nothing to compare with.
+    # Barton's law was not measured on joints beyond his scale.
     on_scale = np.where(np.asarray(scaled[0]) <= JRC_RANGE[1], scaled[0], np.nan)
     strength = barton_strength(
         states["nominal_pressure"].values,

@@ -23,7 +23,7 @@ from .division import PARTS, solvable_parts, split, spread_windows
 from .local_roughness import local_roughness, roughness_by_size
 from .sub_windows import SubWindows
 
-#: Sub-windows solved of each size.
+#: Largest number of sub-windows solved of each size.
 MAX_WINDOWS = 16
 
 #: Scalars of every state of a sub-window: unit, long name.

@@ -29,7 +29,7 @@ def area_sampling(in_contact: ArrayLike, pressure: ArrayLike) -> float:
     touching = np.asarray(in_contact, bool)
     if touching.all():
         return 0.0
-    # Neighbours by side or corner are one contact.
+    # Nodes that share a side or a corner belong to one contact.
     labels, contacts = scipy.ndimage.label(touching, np.ones((3, 3)))
     if contacts < MIN_POINTS or touching.mean() > MAX_TOUCHING:
         return np.nan

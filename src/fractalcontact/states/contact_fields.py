@@ -10,7 +10,7 @@ from ..core.labels import cf_attrs
 from ..core.settings import ContactSettings
 from .states import MAP_GAP, MAP_PRESSURE, forces_of
 
-#: Where a state was not solved: xarray reads it as missing.
+#: Value where a state was not solved; xarray reads it as missing.
 NOT_SOLVED = -1
 
 

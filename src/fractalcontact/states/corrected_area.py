@@ -6,8 +6,8 @@ Apart from the laws of the area, so that a new law solves no state again.
 import numpy as np
 from numpy.typing import ArrayLike
 
-#: Area that the cells along the edge of contact have too much, as a part of cell side times
-#: staircase perimeter. Yastrebov, Anciaux & Molinari, Tribol. Int. 114 (2017) 161.
+#: Excess area of the cells along the edge of contact, as a fraction of cell side times staircase
+#: perimeter. Yastrebov, Anciaux & Molinari, Tribol. Int. 114 (2017) 161.
 EDGE_EXCESS = (np.pi - 1 + np.log(2)) / 24
 
 

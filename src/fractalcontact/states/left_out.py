@@ -9,7 +9,7 @@ from ..core.datasets import domains_by_resolution
 from ..core.intervals import LEFT_OUT
 from .corrected_area import cell_areas
 
-#: Parts, which hold equally many nodes of the finest domain.
+#: Number of parts; each holds equally many nodes of the finest domain.
 PARTS_LEFT_OUT = 32
 
 

@@ -21,7 +21,7 @@ from ..joint.joint import composite_topography, direction_spacing, offsets_of
 from ..joint.overlap import suspect_nodes
 from .states import chosen_offset, forces_of, hardness_of
 
-#: Settings of a joint, and what else those who get the loading read of them.
+#: Settings of a joint, with the further fields that the receiver of a loading reads.
 P = TypeVar("P", bound=JointSettings, covariant=True)
 Q = TypeVar("Q", bound=JointSettings)
 

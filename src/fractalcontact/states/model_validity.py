@@ -32,17 +32,17 @@ CONFINED = 3.0
 MIN_RATIO, LARGEST_RATIO = 200.0, 1000.0
 
 
-#: Fraction F / (H A_0) of what a window can carry beyond which no domain is left whose dimension
-#: could be asked for.
+#: Fraction F / (H A_0) of the largest load beyond which nearly all of the window touches: a contact
+#: domain then has no dimension of its own.
 FULL = 0.87
 
 #: The real mean pressure of a fully yielded contact is its hardness, to rounding.
 _ROUNDING = 1e-6
 
-#: What a hardness leaves out.
+#: Limitation of a hardness.
 DELETED = "what is crushed is taken away, so that its volume is lost"
 
-#: From the best to the worst.
+#: Verdicts from the best to the worst.
 _GRADES = (GOOD, IN_PART, POOR)
 
 #: Verdicts of the states, over (direction, offset, load): unit and long name.
@@ -120,7 +120,7 @@ def elastic_model_validity(
         judgements.append((by_slope, SLOPE, f"rms slope {rms_slope:.3g}, {size}"))
     judgements.sort(key=lambda judgement: -_GRADES.index(judgement[0]))  # the worst first
     verdict, by, _ = judgements[0]
-    # A load that the window carries with ease is no reason.
+    # A load far below the largest that the window carries is no reason for a verdict.
     sentences = [words for grade, cause, words in judgements if cause != LOAD or grade == verdict]
     if limits.criterion == HARDNESS:
         sentences.append(DELETED)

@@ -9,13 +9,14 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-#: Orders of convergence that are believed.
+#: Smallest and largest credible order of convergence.
 MIN_ORDER, MAX_ORDER = 0.5, 3.0
 
 #: Fraction of the extrapolation, or of the last change, that is uncertain.
 UNCERTAIN = 0.5
 
-#: What no change shows, as fractions of the quantity's edge part: with three spacings and with two.
+#: Error that changes between spacings may miss, as fractions of the quantity's edge part: with
+#: three spacings and with two.
 OF_EDGE = {
     "closure": (0.025, 0.01),
     "separation": (0.005, 0.05),

@@ -42,7 +42,7 @@ def prefractal_openings(
     )
 
 
-#: Relative difference between two pressures that are one.
+#: Largest relative difference between two pressures that are equal but for rounding.
 ROUNDING = 1e-9
 
 #: Separation and seated closures: unit and long name.
@@ -87,7 +87,8 @@ def add_separation(curves: xr.Dataset, openings: xr.DataArray | None) -> None:
     if openings is None:
         openings = curves["rigid_opening"].where(curves["resolution"] == 1)
     else:
-        # By place: where cells are not square, offsets of the directions differ by part of a cell.
+        # Openings are matched by position, not by label: where cells are not square, offsets of the
+        # directions differ by part of a cell.
         openings = openings.sel(
             direction=curves["direction"].values, resolution=curves["resolution"].values
         ).drop_vars(["direction", "resolution"])
@@ -144,7 +145,7 @@ def _add_closure_from(curves: xr.Dataset, seats: xr.DataArray, name: str) -> Non
     at_its_seat = closing.where(at_seat).sum("normal_force", min_count=1)
     seated = closing - at_its_seat
     both = error + error.where(at_seat).sum("normal_force")
-    # The state at the seat less itself has no error.
+    # At the seat a closure is 0 by definition, without an error.
     both = both.where(~at_seat, 0.0)
     beyond = (force >= seats) & np.isfinite(seated)
     attrs = cf_attrs(*_WORDS[name])

@@ -34,7 +34,7 @@ SCALARS = {
     "suspect_load_share": ("1", "fraction of the force on suspicious cells of the scans"),
 }
 
-#: Ends the long name of a bound on the error that the solver's tolerance leaves.
+#: End of the long name of an error bound that the solver's tolerance leaves.
 SOLVER_ERROR = "solver error bound"
 
 #: Scalars that the tolerance of the solver leaves uncertain. The force is given.
@@ -43,11 +43,11 @@ UNCERTAIN = ("closure", "area", "nodes", "perimeter", "area_corrected", "stiffne
 ERRORS = {
     f"{name}_error": (SCALARS[name][0], f"{SCALARS[name][1]}, {SOLVER_ERROR}") for name in UNCERTAIN
 }
-#: Ends the long name of the error of a stiffness, whose own scatter is added where nodes yield.
+#: End of the long name of the error of a stiffness; where nodes yield, its scatter is added.
 WITH_SCATTER = f"{SOLVER_ERROR} and scatter"
 ERRORS["stiffness_error"] = ("N/mm", f"{SCALARS['stiffness'][1]}, {WITH_SCATTER}")
 
-#: All that is kept of a state but its contact domain.
+#: Variables of a state without its contact domain.
 STATE_VARIABLES = [*SCALARS, *ERRORS, "solved"]
 
 #: Numbers kept of every offset: name, unit, long name.
@@ -61,15 +61,15 @@ OFFSETS = {
 #: Mean apparent dip of equal parts of the force, of states that slide.
 DIP = "apparent_dip"
 
-#: Pressures of the states that are looked at closely: those of the contact maps, in the first
-#: direction and at the finest resolution, under every load. They are in one part of several.
+#: Pressures at the offset of the contact maps, in the first direction and at the finest resolution,
+#: under every load. One of the parts that jobs solve holds them.
 MAP_PRESSURE = "map_pressure"
 #: Gaps of the same states.
 MAP_GAP = "map_gap"
-#: Gaps in the first direction and at the finest resolution under the load of the maps, of every
-#: offset: what flows through the joint as it slides.
+#: Gaps of every offset in the first direction and at the finest resolution under the reference
+#: load, for the flow through the joint as it slides.
 OFFSET_GAP = "offset_gap"
-#: Fields of some parts alone.
+#: Fields that only some parts hold.
 MAP_FIELDS = (MAP_PRESSURE, MAP_GAP, OFFSET_GAP)
 
 

@@ -13,7 +13,7 @@ from .settlement import bulk_settlement, interface_closure
 from .state_scalars import state_area
 from .sweep import load_steps
 
-#: Quantities of a state whose numerical error is found: unit, long name.
+#: Quantities of a state with a numerical error: unit, long name.
 QUANTITIES = {
     "closure": ("mm", "closure w_int from first touch"),
     "separation": ("mm", "separation of the mean planes, delta_r - w"),

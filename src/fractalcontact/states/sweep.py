@@ -33,9 +33,9 @@ from .states import (
     map_fields,
 )
 
-#: Tolerances are tightened by so much where that of the study leaves too large an error.
+#: Factor by which the tolerance is tightened where that of the study leaves too large an error.
 TIGHTENING = 10.0
-#: But to no less than this: nodes that just touch are ambiguous at any tolerance.
+#: Smallest tolerance: nodes that just touch stay ambiguous at any tolerance.
 TIGHTEST = 1e-8
 
 
@@ -65,7 +65,7 @@ def load_steps(
     NotConverged
         If a state could not be verified; its note names it.
     """
-    state, composite = None, np.ascontiguousarray(composite)  # once, not at every load
+    state, composite = None, np.ascontiguousarray(composite)  # copied once for all loads
     for force in np.asarray(forces):
         state = _solved(composite, space, force, state, solving, where)
         yield state
@@ -286,7 +286,7 @@ def _exact_enough(
     space, rtol = state.space, solving["rtol"]
     sides = np.multiply(space.shape, space.spacing)
     settlement = bulk_settlement(state.force, space.modulus, *sides)
-    # Faces that are flush have no interface to close.
+    # Flush faces have no interface; their own closure is the scale of the error.
     flush = np.ptp(composite) == 0
     closing = state.closure if flush else abs(interface_closure(state.closure, settlement))
     small = accuracy["closure"] * closing
