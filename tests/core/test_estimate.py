@@ -45,6 +45,11 @@ def test_a_column_ends_in_its_unit():
     ]
 
 
+@pytest.mark.parametrize("unit", ["", "1"])
+def test_a_column_without_a_unit_ends_in_its_name(unit):
+    assert list(Estimate(1, 0, 2).columns("m", unit)) == ["m", "m_low", "m_high"]
+
+
 def test_a_missing_end_is_an_error():
     with pytest.raises(KeyError, match="k_high"):
         Estimate.read({"k": 1.0, "k_low": 0.5}, "k")
@@ -58,6 +63,13 @@ def test_an_interval_about_a_value_keeps_within_the_bounds_of_the_quantity():
     assert (found.value <= found.high).all()
     assert Estimate.about(-0.5, 1.0).ends == (-0.5, -1.5, 0.5)
     assert np.isnan(Estimate.about(0.5, np.nan, 0.0).ends[1:]).all()
+
+
+def test_a_quantity_keeps_within_its_bounds():
+    beyond = Estimate(np.array([-0.1, 1.0]), np.array([-0.5, 0.5]), np.array([0.3, 2.5]))
+    np.testing.assert_array_equal(beyond.in_plane().ends, [[0, 1], [0, 0.5], [0.3, 2]])
+    np.testing.assert_array_equal(beyond.within(0, np.inf).ends, [[0, 1], [0, 0.5], [0.3, 2.5]])
+    np.testing.assert_array_equal(beyond.width, [0.8, 2])
 
 
 def test_a_falling_function_exchanges_the_ends():
@@ -77,6 +89,8 @@ def test_estimates_are_stacked_in_the_order_of_an_array_and_taken_apart_again():
     together = Estimate.stack(each, (2, 3))
     assert together[1, 2] == each[5]
     np.testing.assert_array_equal(together.over[1], [[0, 2, 4], [6, 8, 10]])
+    shared = Estimate(np.arange(3), 0, 9, n=7, over=(1, 2), reason="few", scale=EXPONENT)
+    assert shared[2] == Estimate(2, 0, 9, n=7, over=(1, 2), reason="few", scale=EXPONENT)
     rows = Estimate.stack([SEVERAL[0], SEVERAL[1]], (2, 2))
     np.testing.assert_array_equal(rows.ends, SEVERAL.ends)
     assert rows.n.shape == rows.reason.shape == (2, 2)

@@ -1,5 +1,7 @@
 """Laws of closure curves, and which of them is named."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -7,6 +9,7 @@ from ensembles import ensemble
 from scipy import stats
 
 from fractalcontact.core.estimate import Estimate
+from fractalcontact.core.limits import GOOD_FIT
 from fractalcontact.core.verdicts import HYPERBOLA, NEITHER, SEMI_LOGARITHMIC, UNDECIDED
 from fractalcontact.laws.closure_laws import (
     add_closure_laws,
@@ -106,12 +109,42 @@ def test_a_straight_line_has_no_asymptote():
     assert np.isnan(fit.w_m.value) or fit.w_m.high > 2 * sigma.max() / 50
 
 
+def test_an_asymptote_that_is_open_by_more_than_a_factor_of_100_is_none():
+    """With more scatter a curve of little bend loses its asymptote, and with it both constants."""
+    sigma = np.linspace(1, 10, 8)
+    scatter = np.cos(5 * sigma)
+    fits = [
+        fit_hyperbola(sigma, hyperbola(sigma, w_m=20.0) * (1 + noise * scatter))
+        for noise in np.geomspace(0.01, 0.03, 120)
+    ]
+    known = [fit for fit in fits if not fit.reason]
+    assert 0 < len(known) < len(fits)
+    for fit in known:
+        for constant in (fit.k_ni, fit.w_m):
+            assert constant.high <= 100 * constant.value <= 1e4 * constant.low
+    widest = max(fit.w_m.high / fit.w_m.value for fit in known)
+    assert widest > 10
+    for fit in fits:
+        if fit.reason:
+            assert fit.reason == "the points do not bend enough to show an asymptote"
+            assert np.isnan([*fit.k_ni.ends, *fit.w_m.ends]).all()
+
+
 def test_too_few_points_give_a_reason():
     for fit in (fit_hyperbola, fit_semi_logarithmic):
         found = fit([1, 2, 3], [0.1, 0.15, -1])
-        assert np.isnan([*found[0].ends, *found[1].ends]).all()
+        parameters = [value for value in vars(found).values() if isinstance(value, Estimate)]
+        assert len(parameters) == 2
+        assert np.isnan([parameter.ends for parameter in parameters]).all()
         assert "2 points with w_int > 0, 4 needed" in found.reason
     assert law_of([1, 2, 3], [0.1, 0.15, -1]).name == ""
+
+
+@pytest.mark.parametrize("fit", [fit_hyperbola, fit_semi_logarithmic])
+def test_states_without_pressure_or_closure_are_not_fitted(fit):
+    closure = hyperbola(PRESSURE)
+    for pressure, closed in ((0, 1e-3), (0.1, 0)):
+        assert fit(np.r_[pressure, PRESSURE], np.r_[closed, closure]) == fit(PRESSURE, closure)
 
 
 # -- which law is named ----------------------------------------------------------------------------
@@ -146,9 +179,10 @@ def test_like_misfits_decide_nothing():
         ((0.01, 0.0112), HYPERBOLA),
         ((0.015, 0.01), SEMI_LOGARITHMIC),
         ((np.nan, 0.01), SEMI_LOGARITHMIC),
+        ((GOOD_FIT, 0.03), HYPERBOLA),
         ((0.021, 0.03), NEITHER),
     ):
-        pair = (fit._replace(misfit=misfit) for fit, misfit in zip(fits, misfits, strict=True))
+        pair = (replace(fit, misfit=misfit) for fit, misfit in zip(fits, misfits, strict=True))
         assert better_law(*pair).name == name, misfits
 
 
@@ -167,16 +201,16 @@ def test_like_misfits_decide_nothing():
 )
 def test_k_ni_is_undetermined_where_the_hyperbola_is_not_the_law(misfits, name, words):
     fits = fit_hyperbola(PRESSURE, hyperbola(PRESSURE)), fit_semi_logarithmic(PRESSURE, PRESSURE)
-    fits = [fit._replace(misfit=misfit) for fit, misfit in zip(fits, misfits, strict=True)]
+    fits = [replace(fit, misfit=misfit) for fit, misfit in zip(fits, misfits, strict=True)]
     law = better_law(*fits)
     assert law.name == name
     k_ni = fits[0].k_ni.value
-    known = fits[0]._replace(k_ni=Estimate(k_ni, 0.9 * k_ni, 1.1 * k_ni))
+    known = replace(fits[0], k_ni=Estimate(k_ni, 0.9 * k_ni, 1.1 * k_ni))
     why = undetermined_stiffness(known, law)
     assert bool(why) == bool(words)
     assert words in why
     # Nor is it determined by the best of laws where its interval spans decades.
-    wide = known._replace(k_ni=Estimate(k_ni, k_ni / 20, 20 * k_ni))
+    wide = replace(known, k_ni=Estimate(k_ni, k_ni / 20, 20 * k_ni))
     assert undetermined_stiffness(wide, law)
 
 
@@ -231,6 +265,8 @@ def test_states_of_few_nodes_are_not_fitted():
         # The closures of all are known: nodes are what is wanting.
         ([3] * 5 + [10, 20, 30], 8, None, "10 nodes touch in 3 of 8 states"),
         ([50] * 8, 8, (1, 2), "2 of 8 states lie in hyperbola_range"),
+        ([50] * 8, 4, (1, 2), "2 of 4 states lie in hyperbola_range"),
+        ([3] * 8, 4, None, "10 nodes touch in 0 of 4 states"),
         ([50] * 8, 3, None, "3 points with w_int > 0"),
     ],
 )
@@ -256,10 +292,14 @@ def test_the_stage_says_of_every_k_ni_whether_it_is_determined():
     assert [bool(reason) for reason in reasons] == [False, True]
 
 
-def test_the_range_of_the_study_is_that_of_both_laws():
+@pytest.mark.parametrize("last", [4, 5])
+def test_the_range_of_the_study_is_that_of_both_laws(last):
+    """From four states on, which are enough."""
     curves = made_curves(np.full(8, 50), 0.3 + 0.05 * np.log(PRESSURE))
-    add_closure_laws(curves, (100 * PRESSURE[1], 100 * PRESSURE[5]))
-    assert curves["hyperbola_n"].item() == curves["semi_logarithmic_n"].item() == 5
+    add_closure_laws(curves, (100 * PRESSURE[1], 100 * PRESSURE[last]))
+    assert curves["hyperbola_n"].item() == curves["semi_logarithmic_n"].item() == last
+    assert curves["semi_logarithmic_reason"].item() == ""
+    assert curves["closure_law"].item() == SEMI_LOGARITHMIC
 
 
 def test_change_of_k_ni_is_that_from_twice_the_spacing():

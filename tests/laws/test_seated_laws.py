@@ -5,7 +5,7 @@ import pytest
 import xarray as xr
 
 from fractalcontact.core.limits import REFERENCE_PRESSURES
-from fractalcontact.laws.seated_laws import add_seated_laws
+from fractalcontact.laws.seated_laws import add_seated_laws, at_reference_pressures, within_span
 
 PRESSURE = np.geomspace(0.25, 50, 12)
 DIMS = ("direction", "offset", "resolution", "normal_force")
@@ -115,3 +115,36 @@ def test_the_stiffness_at_a_pressure_is_read_off_a_power_law_exactly():
     light = laws_of(hyperbola(PRESSURE), stiffness=stiffness, resolved=PRESSURE < 8)
     assert np.isfinite(light["reference_stiffness"]).values.tolist() == [True, True, False]
     assert found["reference_pressure"].attrs["units"] == "MPa"
+
+
+def test_the_span_of_the_fits_ends_at_two_decades_but_for_rounding():
+    pressure = 25 * np.array([1 - 1e-12, 1, 1 + 1e-12, 1.001])
+    assert within_span(pressure, 0.25).tolist() == [True, True, True, False]
+
+
+@pytest.mark.parametrize(
+    ("stiffness", "expected"),
+    [
+        ([3.0, np.nan, 3.0], [3.0, 3.0, 3.0]),
+        ([3.0, 0.0, 3.0], [3.0, 3.0, 3.0]),  # no stiffness is 0
+        ([3.0, np.nan, np.nan], [np.nan] * 3),
+        ([np.nan, 3.0, 3.0], [np.nan, 3.0, 3.0]),
+        ([3.0, 3.0, np.nan], [3.0, np.nan, np.nan]),
+    ],
+)
+def test_a_stiffness_at_a_pressure_needs_a_state_on_either_side(stiffness, expected):
+    """States at 0.5, 2 and 20 MPa; read at 1, 5 and 10 MPa."""
+    found = at_reference_pressures(np.array([0.5, 2.0, 20.0]), np.array(stiffness))
+    np.testing.assert_allclose(found, expected, rtol=1e-12)
+
+
+def test_one_state_has_no_stiffness_even_at_its_own_pressure():
+    assert np.isnan(at_reference_pressures(np.array([5.0]), np.array([3.0]))).all()
+
+
+@pytest.mark.parametrize(("resolved", "enough"), [(4, False), (5, True)])
+def test_four_states_above_the_seat_are_enough(resolved, enough):
+    found = laws_of(seated(hyperbola(PRESSURE)), resolved=np.arange(12) < resolved)
+    assert found["seated_fit_points"] == resolved - 1  # the seat itself is not fitted
+    assert np.isfinite(found["seated_k_ni"]) == enough
+    assert ("states lie above" in found["seated_k_ni_reason"].item()) != enough

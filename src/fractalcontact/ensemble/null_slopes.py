@@ -38,25 +38,10 @@ def null_slopes(
 ) -> xr.Dataset:
     """Local slopes of the contact domains of one realisation, and those of its null models.
 
-    Parameters
-    ----------
-    domains : (n, ny, nx) bool ndarray
-        One a load.
-    composite : (ny, nx) ndarray
-        Composite topography.
-    spacing : float
-        mm.
-    fit_range : (float, float), optional
-        Smallest and largest box of Delta_sigma, mm; by default all between the cut-offs.
+    Domains (n, ny, nx), one a load, on cells of ``spacing``, mm; ``fit_range`` has the smallest and
+    largest box of Delta_sigma, mm, by default all between the cut-offs. :data:`NULL_SLOPES` and
+    :data:`OCTAVES`; local slopes are those of :mod:`domain.slope_curves`, NaN without a node.
 
-    Returns
-    -------
-    xr.Dataset
-        :data:`NULL_SLOPES` and :data:`OCTAVES`; local slopes as of :mod:`domain.slope_curves`. NaN
-        without a node.
-
-    Notes
-    -----
     Random nodes are not drawn: an ensemble is compared with the slopes of their expected counts.
     """
     shape, sizes = composite.shape, curve_sizes(composite.shape)
@@ -80,7 +65,7 @@ def null_slopes(
             }
         )
     values = {name: np.array([row[name] for row in rows]) for name in NULL_SLOPES}
-    if sizes.size < 2:  # a window too small for any has one that is missing
+    if sizes.size < 2:  # the window is too small for any slope: one is missing
         none = np.full((len(rows), 1), np.nan)
         values |= dict.fromkeys(_CURVES, none)
     return labelled_dataset({**NULL_SLOPES, **OCTAVES}, values | octaves)

@@ -64,10 +64,10 @@ ISOTROPY = {
         "exponent of occupied intervals across sliding less that along it",
     ),
 }
-#: The closure that compares between realisations: from one load, at which all are resolved.
+#: Closure from one load at which all realisations are resolved, so that they can be compared.
 _SEATED = "closure_from_common_seat"
 
-#: Exponent of the corrected area less that of eq. 6: the Delta_sigma that eq. 6 has it from, words.
+#: Exponent of the corrected area less that of eq. 6: Delta_sigma that eq. 6 takes, and its words.
 _EQ6 = {
     "eq6_area": ("delta_sigma_area", "A_r(s)"),
     "eq6_box": ("delta_sigma", "boxes"),
@@ -94,36 +94,21 @@ def ensemble(
 ) -> xr.Dataset:
     """Contact of realisations of a specimen, in the reported direction and offset.
 
-    Parameters
-    ----------
-    specimens, joints : xr.Dataset
-        Of the stages of these names: the named specimen, which is the first realisation.
-    recipe : mapping
-        From :func:`study.configuration.resolve_embedded`. The realisations have its seed and those
-        that follow it; none is chosen. None for a scan: they are its twins, of seeds from 1.
-    realisations : int
-    settings : EnsembleSettings
-    solver : Solver
+    The named specimen is the first realisation of its recipe, which
+    :func:`study.configuration.resolve_embedded` gives; the realisations have its seed and those
+    that follow it, and none is chosen. Without a recipe they are twins of a scan, of seeds from 1.
+    The attribute ``members`` says what they are.
 
-    Returns
-    -------
-    xr.Dataset
-        :data:`STATES`, ``closure_from_common_seat`` and
-        :data:`ensemble.null_slopes.NULL_SLOPES` over (realisation, normal_force): under the
-        first load at the seat, the loads that figures draw and the heaviest. Over (realisation,):
-        :data:`EXPONENTS` under the reference load and the trends of
-        :func:`ensemble.statistics.add_trends`; over both, by how much eq. 6 is missed, ``eq6_area``
-        and ``eq6_box``; of realisations of a joint that slides :data:`ensemble.sliding.SLIDING`. Of
-        each the mean over the realisations with its interval and the spread, as
-        :func:`ensemble.statistics.add_statistics` names them. The attribute ``members`` says
-        what they are.
+    :data:`STATES`, ``closure_from_common_seat`` and :data:`ensemble.null_slopes.NULL_SLOPES` are
+    over (realisation, normal_force): under the first load at the seat, the loads that figures draw
+    and the heaviest. Over (realisation,) stand :data:`EXPONENTS` under the reference load and the
+    trends of :func:`ensemble.statistics.add_trends`; over both, by how much eq. 6 is missed,
+    ``eq6_area`` and ``eq6_box``; of realisations of a joint that slides
+    :data:`ensemble.sliding.SLIDING`. Of each there are the mean over the realisations with its
+    interval and the spread, as :func:`ensemble.statistics.add_statistics` names them.
 
-    Raises
-    ------
-    NotConverged
-        If a state could not be verified; the message names the realisation.
-    InputError
-        As :func:`ensemble.twins.twin_loadings`.
+    Raises `NotConverged`, whose message names the realisation, and `InputError` as
+    :func:`ensemble.twins.twin_loadings`.
     """
     whole = JointLoading.of_joint(
         specimens, joints, settings.contact_directions[0], settings, solver
@@ -215,16 +200,16 @@ def _realisation(loading: JointLoading[EnsembleSettings]) -> xr.Dataset:
     states = contact_states(loading, settings.resolutions, mapped=mapped, lightly=True)
     curves = interface_states(states, window_sides(loading.specimen), settings.material.e_star)
     finest = min(settings.resolutions)
-    at = {"direction": loading.direction, "offset": loading.offsets[0], "resolution": finest}
+    place = {"direction": loading.direction, "offset": loading.offsets[0], "resolution": finest}
     touching = states[f"in_contact_{finest}"].sel(direction=loading.direction).values[0]
-    solved = states["solved"].sel(at).values
+    solved = states["solved"].sel(place).values
     cell, fitted = spacing * finest, settings.box_range
     boxes = [
-        dimension_of_domain(domain, cell, fit_range=fitted).value if one else np.nan
-        for domain, one in zip(touching, solved, strict=True)
+        dimension_of_domain(domain, cell, fit_range=fitted).value if is_solved else np.nan
+        for domain, is_solved in zip(touching, solved, strict=True)
     ]
     scaling = corrected_scaling(curves, spacing, fit_range=settings.scaling_range)
-    scaling = scaling.sel({dim: at[dim] for dim in ("direction", "offset")})
+    scaling = scaling.sel({dim: place[dim] for dim in ("direction", "offset")})
     by_area = scaling["delta_sigma"].values
     values = {
         "mean_gap": states[MAP_GAP].mean(states[MAP_GAP].dims[1:]).values,
@@ -237,7 +222,7 @@ def _realisation(loading: JointLoading[EnsembleSettings]) -> xr.Dataset:
         "difference": by_area - np.array(boxes),
     }
     for name in STATES.keys() - values.keys():
-        values[name] = curves[name].sel(at).values
+        values[name] = curves[name].sel(place).values
     table = {name: ("normal_force", *words) for name, words in STATES.items()}
     result = labelled_dataset(table, values, coords={"normal_force": curves["normal_force"]})
     composite = loading.composite(mapped)[::finest, ::finest]
@@ -263,7 +248,7 @@ def _size_exponents(loading: JointLoading[EnsembleSettings]) -> dict:
     places = [spread_windows(n, MAX_WINDOWS) for n in parts]
     table, values = {}, {}
     for exponent, (name, fewest, words) in EXPONENTS.items():
-        each = of_usable_sizes(windows[name].values, windows["nodes"].values, fewest)
-        values[exponent] = size_exponent(parts, windows["side"].values, each, places).value
+        usable = of_usable_sizes(windows[name].values, windows["nodes"].values, fewest)
+        values[exponent] = size_exponent(parts, windows["side"].values, usable, places).value
         table[exponent] = ((), "1", f"exponent of {words} against b at equal sigma_0")
     return labelled(table, values)

@@ -31,7 +31,7 @@ OVER_LAGS = ("lag_dimension",)
 #: Over the directions, and over the axes of two opposite directions, from the rigid slide.
 OF_DIRECTIONS, OF_AXES = ("plateau_slope", "plateau_change"), ("even_change", "odd_slope")
 
-#: Offsets solved are at least this factor apart: neighbours hardly differ.
+#: Smallest ratio of successive offsets that are solved, as neighbours hardly differ.
 OFFSET_RATIO = 1.4
 
 #: Ends of the lags, the same of all realisations.
@@ -54,25 +54,11 @@ def spread_offsets(cells: np.ndarray) -> np.ndarray:
 
 
 def sliding(loading: JointLoading[EnsembleSettings], longest: float) -> xr.Dataset:
-    """Sliding of one realisation.
+    """Sliding of one realisation at the offsets of :func:`spread_offsets`.
 
-    Parameters
-    ----------
-    loading : JointLoading
-        At the offsets of :func:`spread_offsets`.
-    longest : float
-        Longest lag of ``lag_dimension``, mm.
-
-    Returns
-    -------
-    xr.Dataset
-        :data:`SLIDING`, with ``plateau_trend`` and ``plateau_undecided`` over (direction,) as
-        :func:`joint.plateau.rigid_plateaus` has them, and the lags of ``lag_dimension``.
-
-    Raises
-    ------
-    NotConverged
-        If a state could not be verified.
+    :data:`SLIDING`, with ``plateau_trend`` and ``plateau_undecided`` over (direction,) of
+    :func:`joint.plateau.rigid_plateaus`, and the lags of ``lag_dimension``, of which the longest is
+    given in mm. Raises `NotConverged`.
     """
     settings, specimen = loading.settings, loading.specimen
     spacing = float(loading.offsets[-1] / loading.cells[-1])

@@ -47,18 +47,12 @@ TRENDS = {
 def add_trends(result: xr.Dataset) -> None:
     """Slopes per decade of load of every realisation, into ``result``.
 
-    Parameters
-    ----------
-    result : xr.Dataset
-        Over (realisation, normal_force). Gets :data:`TRENDS` with their statistics, and
-        ``NAME_used`` (normal_force).
-
-    Notes
-    -----
-    Loads at which a realisation has no value are left out of all: realisations would else be
-    compared over different loads. What is compared with the cut is so where that is no more than
-    near 2: beyond, both tend to 2, and what began lower would seem to rise faster. Two loads are
-    enough for a slope, for its error is that of the mean over the realisations.
+    ``result`` is over (realisation, normal_force). It gets :data:`TRENDS` with their statistics,
+    and ``NAME_used`` (normal_force). Loads at which a realisation has no value are left out of all:
+    realisations would else be compared over different loads. What is compared with the cut is so
+    where that is no more than near 2: beyond, both tend to 2, and what began lower would seem to
+    rise faster. Two loads are enough for a slope, for its error is that of the mean over the
+    realisations.
     """
     decades = np.log10(result["normal_force"].values)
     for name, (quantity, words) in TRENDS.items():
@@ -81,30 +75,25 @@ def add_trends(result: xr.Dataset) -> None:
 def add_statistics(result: xr.Dataset, names: Sequence[str]) -> None:
     """Mean with its 95 % interval, band and number of realisations, into ``result``.
 
-    Parameters
-    ----------
-    result : xr.Dataset
-        Of each name it gets ``NAME_mean`` with ``_low`` and ``_high``, by Student's t of the mean;
-        ``NAME_n``, the realisations that have a value; and of :data:`_BANDS` ``NAME_band_low`` and
-        ``NAME_band_high``, between which one more realisation lies with 95 % probability.
-        Intervals and bands end at the bounds of the quantity.
-    names : sequence of str
-        Variables over realisation.
+    Of each name it gets ``NAME_mean`` with ``_low`` and ``_high``, by Student's t of the mean;
+    ``NAME_n``, the realisations that have a value; and of :data:`_BANDS` ``NAME_band_low`` and
+    ``NAME_band_high``, between which one more realisation lies with 95 % probability. Intervals and
+    bands end at the bounds of the quantity.
     """
-    found: dict[str, tuple | xr.DataArray] = {}
+    added: dict[str, tuple | xr.DataArray] = {}
     for name in names:
         values = result[name].transpose("realisation", ...)
         units, words = values.attrs["units"], values.attrs["long_name"]
         dims = values.dims[1:]
         bounds = _BOUNDS.get(name, (-np.inf, np.inf))
         mean = mean_interval(values.values).within(*bounds)
-        found |= mean.variables(f"{name}_mean", dims, units, f"{words}, mean over realisations")
+        added |= mean.variables(f"{name}_mean", dims, units, f"{words}, mean over realisations")
         if name in _BANDS:
             band = band_of(values.values).within(*bounds)
             for end, of_end, of_band in (("low", "lower", band.low), ("high", "upper", band.high)):
                 attrs = cf_attrs(units, f"{words}, {of_end} end of the 95 % band of one more")
-                found[f"{name}_band_{end}"] = (dims, of_band, attrs)
+                added[f"{name}_band_{end}"] = (dims, of_band, attrs)
         attrs = cf_attrs("1", f"{words}, number of realisations with a value")
-        found[f"{name}_n"] = (dims, mean.n, attrs)
-    # All at once: xarray goes through all that is there each time that something is added.
-    result.update(found)
+        added[f"{name}_n"] = (dims, mean.n, attrs)
+    # Variables are added together: each single assignment makes xarray check the whole dataset.
+    result.update(added)

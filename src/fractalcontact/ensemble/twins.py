@@ -25,26 +25,11 @@ def twin_loadings(
 ) -> Iterator[JointLoading[EnsembleSettings]]:
     """Loadings of the twins of a scan, one a seed.
 
-    Parameters
-    ----------
-    loading : JointLoading
-        Of the scan, at one offset.
-    seeds : sequence of int
+    ``loading`` is of the scan, at one offset. Of a face with its perfect match: a twin of the face,
+    slid as the scan is. Of two scanned faces: a twin of their composite topography at the offset,
+    and of a face on a plane, of an aperture map, a twin of it, each of the window alone, against a
+    plane. Raises `InputError` if the surface is flat, or a side has fewer than eight nodes.
 
-    Yields
-    ------
-    JointLoading
-        Of a face with its perfect match: a twin of the face, slid as the scan is. Of two scanned
-        faces: a twin of their composite topography at the offset, and of a face on a plane, of an
-        aperture map, a twin of it, each of the window alone, against a plane.
-
-    Raises
-    ------
-    InputError
-        If the surface is flat, or a side has fewer than eight nodes.
-
-    Notes
-    -----
     The spectrum and the heights are those of the window that is solved. Waves longer than half of
     it are extrapolated. A twin against a plane has the mean plane of the scan; the twin of a face
     that slides on its match is level, as a tilt adds a constant to its composite topography.

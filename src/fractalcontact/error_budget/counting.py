@@ -13,14 +13,8 @@ _LARGEST_SPREAD = np.pi / np.sqrt(6)
 
 
 def counting_error(curve: LoadCurve) -> np.ndarray:
-    """Error from the number of contacts, half-width at 95 %.
+    """Error from the number of contacts, half-width at 95 %, (quantity, normal_force).
 
-    Returns
-    -------
-    (quantity, normal_force) ndarray
-
-    Notes
-    -----
     The number N of independent clusters varies by 1/sqrt(N) of itself (Poisson). So does their
     stiffness, as long as contacts act side by side. The area under a given force varies less
     (:mod:`states.area_sampling`).
@@ -63,7 +57,7 @@ def _amplitude_error(curve: LoadCurve) -> float:
     """Relative standard deviation of the amplitude of the waves."""
     try:
         return amplitude_error(curve.composite, curve.space.spacing)
-    except ValueError:  # faces that are flush have none
+    except ValueError:  # flush faces have no waves
         return 0.0
 
 

@@ -49,29 +49,16 @@ _TABLE = {
 
 
 def with_derived(budget: xr.Dataset, curve: LoadCurve, sampling: np.ndarray) -> xr.Dataset:
-    """Error budget with the errors of derived quantities.
+    """Error budget of one load curve with the errors of derived quantities, :data:`_TABLE`.
 
-    Parameters
-    ----------
-    budget : xr.Dataset
-        Of one load curve.
-    curve : LoadCurve
-    sampling : (normal_force,) ndarray
-        Sampling error of the closure from the seat, half-width at 95 %, mm.
+    ``sampling`` (normal_force,) is the sampling error of the closure from the seat, half-width at
+    95 %, mm. NaN where an error is not known.
 
-    Returns
-    -------
-    xr.Dataset
-        With the variables of :data:`_TABLE`; NaN where an error is not known.
-
-    Notes
-    -----
     Closure from the seat is the difference of two separations, less the settlement of the blocks,
     which is exact: its error is the root sum of squares of theirs. First touch, which decides the
-    error of the closure from there, is in neither. At the seat it is 0 by definition. What
-    moves the mean planes apart widens the gap by as much. The stiffness at a pressure has the
-    relative error of the states beside it, and none beyond states whose
-    error is known.
+    error of the closure from there, is in neither. At the seat it is 0 by definition. What moves
+    the mean planes apart widens the gap by as much. The stiffness at a pressure has the relative
+    error of the neighbouring states, and none beyond states whose error is known.
     """
     states = curve.curve
     separation = budget["total"].sel(quantity="separation").values

@@ -15,7 +15,7 @@ _OF_ENSEMBLE = {
     "stiffness": "interface_stiffness",
     "delta_sigma": "delta_sigma",
 }
-#: Yielding contacts have one area, F/H, but for the solver.
+#: Relative difference of areas by the solver alone: yielding contacts all have the area F/H.
 _ROUNDING = 1e-3
 INSIDE, OUTSIDE = "within their band", "outside their band"
 
@@ -23,31 +23,21 @@ INSIDE, OUTSIDE = "within their band", "outside their band"
 def ensemble_spread(curve: LoadCurve, ensemble: xr.Dataset) -> np.ndarray:
     """Half-widths within which one more member of an ensemble lies at 95 %.
 
-    Parameters
-    ----------
-    curve : LoadCurve
-        Of the specimen.
-    ensemble : xr.Dataset
-        Stage of this name.
-
-    Returns
-    -------
-    (quantity, normal_force) ndarray
-        In the quantity's unit; NaN under loads that were not solved, or at which a member has no
-        value.
+    (quantity, normal_force), in the quantity's unit; NaN under loads that were not solved, or at
+    which a member has no value.
     """
     half = curve.over_quantities()
     for row, quantity in enumerate(BUDGET_QUANTITIES):
         low, high = _band(ensemble, quantity)
         size = curve.loading.area if quantity == "area_corrected" else 1.0
-        # A band may end at a bound, nearer to the mean than its other end.
+        # A band that ends at a bound is not even about the mean; its larger half counts.
         mean = ensemble[f"{_OF_ENSEMBLE[quantity]}_mean"].values
         half[row, _places(curve, ensemble)] = size * np.fmax(high - mean, mean - low)
     return half
 
 
 def seated_spread(curve: LoadCurve, ensemble: xr.Dataset) -> np.ndarray:
-    """The same of the closure from the seat of the specimen, (normal_force), mm."""
+    """Half-widths of :func:`ensemble_spread` of the closure from the seat, (normal_force), mm."""
     half, places = np.full(len(curve.forces), np.nan), _places(curve, ensemble)
     seat = np.flatnonzero(curve.curve["seated_closure"].values[places] == 0)
     if seat.size:

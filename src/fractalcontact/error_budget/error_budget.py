@@ -34,14 +34,13 @@ from .refinement import (
 #: window is a sample of; and, in no total, the change of the surface with its resolution, what a
 #: harder material would change, and what another estimator gives.
 OF_POPULATION = ("counting", "window", TWINS, REALISATIONS, "registration")
-#: Only the larger of these is in a total, as a spread over windows holds that of counting; where
-#: an ensemble was solved, neither is.
+#: Sources of which only the larger enters a total, as a spread over windows holds that of counting;
+#: where an ensemble was solved, neither enters.
 _OF_WINDOW = ("counting", "window")
 SOURCES = (*OF_SURFACE, *OF_POPULATION, "resolution", "model", "estimator")
 
-#: Numerical errors of states that are not refined, in errors interpolated between those that are:
-#: chance differs from state to state. Then 95 to 100 % of 100 other joints were covered, else
-#: 68 to 92 %.
+#: Factor on numerical errors that are interpolated between refined states, as chance differs from
+#: state to state. With it 95 to 100 % of 100 other joints were covered, without it 68 to 92 %.
 WIDENED = 2.0
 
 _EACH, _ALL = ("quantity", "source", "normal_force"), ("quantity", "normal_force")
@@ -81,7 +80,7 @@ _TABLE = {
 }
 
 _FROM = {1: "interpolated between loads", 2: "s and s/2", 4: "s, s/2 and s/4"}
-#: Why a source does not apply to a quantity.
+#: Reasons why a source does not apply to a quantity.
 _NONE = {
     "estimator": "applies to Delta_sigma alone",
     "secant": "applies to stiffness where contacts yield",
@@ -93,23 +92,20 @@ def map_curve(
 ) -> LoadCurve:
     """The load curve at the offset of the contact maps, in one direction.
 
-    Parameters
-    ----------
-    loading : JointLoading
-        At that offset alone.
-    curves, domains : xr.Dataset
-        Stages ``closure`` and ``domains``.
-    resolution : int
+    ``loading`` is at that offset alone; ``curves`` and ``domains`` are the stages ``closure`` and
+    ``domains``.
     """
     (cells,) = loading.cells
     place = {"direction": loading.direction, "resolution": resolution}
     (offset,) = loading.offsets
-    here = [stage.sel(place).sel(offset=offset, method="nearest") for stage in (curves, domains)]
+    at_place = [
+        stage.sel(place).sel(offset=offset, method="nearest") for stage in (curves, domains)
+    ]
     composite = prefractal(loading.composite(int(cells)), resolution)
-    # Against a plane there is no zero offset to open from: its distance is that of the mean plane.
+    # Against a plane there is no mated position; distances count from the mean plane.
     mated = loading.composite(0)
     mated = mated.max() if loading.slides else mated.mean()
-    return LoadCurve(loading, composite, float(mated), resolution, *here)
+    return LoadCurve(loading, composite, float(mated), resolution, *at_place)
 
 
 def error_budget(
@@ -122,45 +118,30 @@ def error_budget(
 ) -> xr.Dataset:
     """Errors of closure, separation, area, stiffness and Delta_sigma at the map offset, by source.
 
-    Parameters
-    ----------
-    loading : JointLoading
-        In the first direction of contact, at the offset of the contact maps alone.
-    curves, domains : xr.Dataset
-        Stages ``closure`` and ``domains``.
-    registration_spread : mapping of str to (normal_force,) array_like, optional
-        By quantity, half-widths of the spread over registrations of two scanned faces that are
-        statistically as good, in the quantity's unit.
-    ensemble : xr.Dataset, optional
-        Stage of this name, twins of a scan or realisations of an embedded specimen: a source of
-        its own, in place of counting and windows in the total of the population.
+    ``loading`` is in the first direction of contact, at the offset of the contact maps alone;
+    ``curves`` and ``domains`` are the stages ``closure`` and ``domains``. ``registration_spread``
+    has by quantity half-widths (normal_force,) of the spread over registrations of two scanned
+    faces that are statistically as good, in the quantity's unit. The stage ``ensemble``, twins of a
+    scan or realisations of an embedded specimen, is a source of its own, in place of counting and
+    windows in the total of the population.
 
-    Returns
-    -------
-    xr.Dataset
-        The variables of :data:`_TABLE` over (quantity, source, normal_force), and those of
-        :func:`derived.with_derived`; with twins ``within_twins`` (quantity, normal_force).
+    The variables of :data:`_TABLE` over (quantity, source, normal_force), and those of
+    :func:`derived.with_derived`; with twins ``within_twins`` (quantity, normal_force). Raises
+    `NotConverged` if a state on a finer grid, or of another window, could not be verified.
 
-    Raises
-    ------
-    NotConverged
-        If a state on a finer grid, or of another window, could not be verified.
-
-    Notes
-    -----
     All errors are half-widths of intervals of about 95 %. The sources are independent: totals are
     root sums of squares. A spread over windows holds that of counting: only the larger enters.
     """
     finest = int(curves["resolution"].min())
     curve = map_curve(loading, curves, domains, finest)
     accuracy = loading.solver.accuracy
-    found = refine(curve, loading.settings, None if accuracy is None else accuracy["closure"])
+    refinement = refine(curve, loading.settings, None if accuracy is None else accuracy["closure"])
     values = curve.values()
     windows, n_windows, effective = _window_spread(curve)
     hardest = of_the_hardest(curve)
     errors = {
         "solver": _solver(curve),
-        "numerical": over_loads(curve.forces, found.error, _scale(curve), WIDENED),
+        "numerical": over_loads(curve.forces, refinement.error, _scale(curve), WIDENED),
         "counting": counting_error(curve),
         "window": over_loads(curve.forces, windows, _scale(curve)),
         "registration": curve.over_quantities(**(registration_spread or {})),
@@ -173,8 +154,8 @@ def error_budget(
         spread = ensemble_spread(curve, ensemble)
         errors[ensemble.attrs["members"]] = over_loads(curve.forces, spread, _scale(curve))
     errors = {source: errors[source] for source in SOURCES if source in errors}
-    reasons = _reasons(curve, errors, found, effective, registration_spread is not None)
-    budget = _budget(curve, values, errors, found, reasons, (n_windows, effective))
+    reasons = _reasons(curve, errors, refinement, effective, registration_spread is not None)
+    budget = _budget(curve, values, errors, refinement, reasons, (n_windows, effective))
     sampling = _seated_sampling(curve, ensemble, registration_spread)
     budget = with_derived(budget.assign(hardest), curve, sampling)
     if ensemble is not None and TWINS in errors:
@@ -183,17 +164,17 @@ def error_budget(
     return budget
 
 
-def _budget(curve, values, errors, found, reasons, windows) -> xr.Dataset:
+def _budget(curve, values, errors, refinement, reasons, windows) -> xr.Dataset:
     """The dataset from its parts."""
-    each = np.stack(list(errors.values()), axis=1)
+    by_source = np.stack(list(errors.values()), axis=1)
     total = np.sqrt(sum(errors[source] ** 2 for source in OF_SURFACE))
     sampling = np.fmax(errors["counting"], errors["window"])
     largest = _largest(errors, _OF_WINDOW)
     for members in (TWINS, REALISATIONS):
         if members in errors:
-            known = np.isfinite(errors[members])
-            sampling = np.where(known, errors[members], sampling)
-            largest = np.where(known, members, largest)
+            finite = np.isfinite(errors[members])
+            sampling = np.where(finite, errors[members], sampling)
+            largest = np.where(finite, members, largest)
     if curve.loading.specimen.attrs["opposite"] == "scanned":
         sampling = np.hypot(sampling, errors["registration"])
     of_population = np.hypot(total, sampling)
@@ -202,18 +183,20 @@ def _budget(curve, values, errors, found, reasons, windows) -> xr.Dataset:
     side = float(np.sqrt(curve.space.cell_area))
     n_windows, effective = windows
     table: dict[str, Any] = {
-        "error": each,
-        "relative_error": each / size[:, np.newaxis],
+        "error": by_source,
+        "relative_error": by_source / size[:, np.newaxis],
         "total": total,
         "relative_total": total / size,
         "total_of_population": of_population,
         "relative_total_of_population": of_population / size,
         "largest_source": _largest(errors, OF_SURFACE),
         "largest_source_of_population": largest,
-        "limit": found.limit,
-        "observed_order": found.order,
-        "finest_spacing": np.where(found.finest > 1, side / found.finest, np.nan),
-        "numerical_from": [_FROM[n] if found.finest.max() > 1 else "" for n in found.finest],
+        "limit": refinement.limit,
+        "observed_order": refinement.order,
+        "finest_spacing": np.where(refinement.finest > 1, side / refinement.finest, np.nan),
+        "numerical_from": [
+            _FROM[n] if refinement.finest.max() > 1 else "" for n in refinement.finest
+        ],
         "of": [PLACES[name] for name in BUDGET_QUANTITIES],
         "unit": [unit for unit, _ in BUDGET_QUANTITIES.values()],
         "meaning": [words for _, words in BUDGET_QUANTITIES.values()],
@@ -243,45 +226,35 @@ def _largest(errors: Mapping[str, np.ndarray], sources: Sequence[str]) -> np.nda
 
     The first of equal ones.
     """
-    each = np.stack([errors[source] for source in sources])
-    largest = np.argmax(np.where(np.isnan(each), -np.inf, each), axis=0)
-    return np.where(np.isnan(each).all(axis=0), "", np.array(sources)[largest])
+    by_source = np.stack([errors[source] for source in sources])
+    largest = np.argmax(np.where(np.isnan(by_source), -np.inf, by_source), axis=0)
+    return np.where(np.isnan(by_source).all(axis=0), "", np.array(sources)[largest])
 
 
 def over_loads(
     forces: np.ndarray, errors: np.ndarray, scale: np.ndarray, widened: float = 1.0
 ) -> np.ndarray:
-    """Errors under all loads, from those under some: their fractions interpolated.
+    """Errors (quantity, n) under all loads, from those under some: their fractions interpolated.
 
-    Parameters
-    ----------
-    forces : (n,) ndarray
-        N, ascending.
-    errors, scale : (quantity, n) ndarray
-        Errors, NaN under other loads; and what they are taken as fractions of.
-    widened : float
-        By what errors are multiplied that are not known but interpolated.
-
-    Returns
-    -------
-    (quantity, n) ndarray
-        The logarithm of the fraction is linear in that of the force between loads that are known;
-        beyond them the fraction is that of the last.
+    Errors are NaN under other loads, and fractions of ``scale`` (quantity, n); forces (n,), N,
+    ascend. The logarithm of the fraction is linear in that of the force between loads that are
+    known; beyond them the fraction is that of the last. Interpolated errors are multiplied by
+    ``widened``.
     """
     filled = errors.copy()
     for row, error, size in zip(filled, errors, np.abs(scale), strict=True):
         with np.errstate(all="ignore"):
             fraction = np.log(np.maximum(error / size, np.finfo(float).tiny))
-        known = np.isfinite(error) & np.isfinite(fraction)
-        if known.any():
-            between = np.exp(np.interp(np.log(forces), np.log(forces[known]), fraction[known]))
-            row[~known] = widened * (between * size)[~known]
+        finite = np.isfinite(error) & np.isfinite(fraction)
+        if finite.any():
+            between = np.exp(np.interp(np.log(forces), np.log(forces[finite]), fraction[finite]))
+            row[~finite] = widened * (between * size)[~finite]
     return filled
 
 
 def _scale(curve: LoadCurve) -> np.ndarray:
     """Scale of interpolated errors: the values, and of separations their length."""
-    # A separation may pass through zero, the length over which the pressure falls does not.
+    # A separation may be zero; the length over which the pressure falls by e never is.
     length = curve.over_quantities(separation=curve.decay_length())
     is_separation = np.array(list(BUDGET_QUANTITIES)) == "separation"
     return np.where(is_separation[:, np.newaxis], length, curve.values())
@@ -321,17 +294,17 @@ def _window_spread(curve: LoadCurve) -> tuple[np.ndarray, int, float]:
     limits = loading.settings.box_range
     if not composites:
         return spread, 1, effective
-    found = np.full((len(composites) + 1, *values.shape), np.nan)
-    found[0] = values
+    of_windows = np.full((len(composites) + 1, *values.shape), np.nan)
+    of_windows[0] = values
     for i, (whole, mated) in enumerate(composites, 1):
         composite = prefractal(whole, curve.resolution)
         states = load_steps(
             composite, curve.space, curve.forces[places], loading.solving, f"{curve.where}, windows"
         )
         for place, state in zip(places, states, strict=True):
-            found[i, :, place] = budget_values(state, float(composite.max()), mated, limits)
-    spread[:, places] = window_spread(found[:, :, places], effective)
-    return spread, len(found), effective
+            of_windows[i, :, place] = budget_values(state, float(composite.max()), mated, limits)
+    spread[:, places] = window_spread(of_windows[:, :, places], effective)
+    return spread, len(of_windows), effective
 
 
 def _seated_sampling(curve, ensemble, registration) -> np.ndarray:
@@ -357,13 +330,13 @@ def _resolution(loading, curves, domains, curve: LoadCurve) -> np.ndarray:
     return np.abs(coarser.values() - curve.values())
 
 
-def _reasons(curve, errors, found: Refinement, effective, registered: bool) -> np.ndarray:
+def _reasons(curve, errors, refinement: Refinement, effective, registered: bool) -> np.ndarray:
     """Reason why a source has no value, (quantity, source)."""
     scanned = curve.loading.specimen.attrs["opposite"] == "scanned"
     missing = {
         "solver": "not stated for these states",
         "numerical": "the grid is too large to refine, or the faces are flush"
-        if found.finest.max() == 1
+        if refinement.finest.max() == 1
         else "not resolved at any load refined",
         "secant": "no slope at any load",
         "estimator": "no other estimate at any load",

@@ -12,7 +12,7 @@ from ..states.state_scalars import aperture
 from ..states.sweep import load_steps
 from .refinement import BUDGET_QUANTITIES, LoadCurve, budget_values
 
-#: Hardness of rough contacts over the joint wall strength: between 1 and this (Tabor's 3).
+#: Largest ratio of the hardness of rough contacts to the joint wall strength (Tabor's 3).
 HARDEST = 3.0
 
 _LOADS = ("normal_force",)
@@ -32,36 +32,21 @@ _TABLE = {
 
 
 def of_the_hardest(curve: LoadCurve) -> dict[str, tuple]:
-    """Quantities of a load curve at :data:`HARDEST` times its hardness.
+    """Quantities of a load curve at :data:`HARDEST` times its hardness, :data:`_TABLE`.
 
-    Parameters
-    ----------
-    curve : LoadCurve
-
-    Returns
-    -------
-    dict
-        Variables of the error budget as ``xr.Dataset`` takes them: ``hardest`` (quantity,
-        normal_force); ``mean_gap_hardest``, ``contact_fraction_hardest`` and
-        ``seated_closure_hardest`` (normal_force), ``reference_stiffness_hardest``
-        (reference_pressure) and ``hardest_hardness``, MPa. NaN where contacts are elastic.
-
-    Raises
-    ------
-    NotConverged
-        If a state could not be verified.
+    NaN where contacts are elastic. Raises `NotConverged`.
     """
     hardness = HARDEST * curve.loading.solving["hardness"]
     hardest, gap = _solved(curve, hardness)
-    of = dict(zip(BUDGET_QUANTITIES, hardest, strict=True))
+    by_quantity = dict(zip(BUDGET_QUANTITIES, hardest, strict=True))
     pressure = curve.curve["nominal_pressure"].values
     values = {
         "hardest_hardness": hardness if np.isfinite(hardness) else np.nan,
         "hardest": hardest,
         "mean_gap_hardest": gap,
-        "contact_fraction_hardest": of["area_corrected"] / curve.loading.area,
-        "seated_closure_hardest": _seated(curve, of["separation"]),
-        "reference_stiffness_hardest": at_reference_pressures(pressure, of["stiffness"]),
+        "contact_fraction_hardest": by_quantity["area_corrected"] / curve.loading.area,
+        "seated_closure_hardest": _seated(curve, by_quantity["separation"]),
+        "reference_stiffness_hardest": at_reference_pressures(pressure, by_quantity["stiffness"]),
     }
     return labelled(_TABLE, values)
 
@@ -85,7 +70,7 @@ def _solved(curve: LoadCurve, hardness: float) -> tuple[np.ndarray, np.ndarray]:
 def _seated(curve: LoadCurve, separation: np.ndarray) -> np.ndarray:
     """Closure from the seat of faces with these separations, mm.
 
-    Since the seat harder faces have come together by less: by the difference of their separation
+    Harder faces have come together since the seat by less: by the difference of their separation
     there, less that at the seat.
     """
     seated = curve.curve["seated_closure"].values

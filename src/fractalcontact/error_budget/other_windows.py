@@ -10,27 +10,19 @@ from ..states.loading import JointLoading
 
 #: Windows compared, the specimen's own among them, and the largest overlap of any two.
 MAX_WINDOWS, MAX_OVERLAP = 5, 0.5
-#: Windows' worth of area that they cover together: with less a spread says nothing.
+#: Smallest area that the windows cover together, in windows; with less a spread says nothing.
 MIN_EFFECTIVE = 2.5
-#: Places tried along a window's side.
+#: Number of places tried along a window's side.
 _PLACES = 16
 
-#: Why there is no spread over windows.
+#: Reason why there is no spread over windows.
 TOO_SMALL = "the scan is not large enough for other windows of this size"
 
 
 def whole_composite(specimen: xr.Dataset, direction: str, cells: int) -> np.ndarray:
     """Composite topography of the whole scan at an offset, mm; NaN where either face is missing.
 
-    Parameters
-    ----------
-    specimen, direction, cells
-        As for :func:`joint.joint.composite_topography`.
-
-    Returns
-    -------
-    (ny, nx) ndarray
-        At the places of the upper face.
+    As :func:`joint.joint.composite_topography`, at the places of the upper face.
     """
     z_l, z_u = faces(specimen)
     slid = np.full(z_l.shape, np.nan)
@@ -47,22 +39,11 @@ def whole_composite(specimen: xr.Dataset, direction: str, cells: int) -> np.ndar
 
 
 def window_places(present: np.ndarray, own: tuple[slice, slice]) -> tuple[list, float]:
-    """Windows of the same size that overlap little, the specimen's own first.
+    """Windows of the same size that overlap little, the specimen's own first, and their joint area.
 
-    Parameters
-    ----------
-    present : (ny, nx) bool ndarray
-        Cells that a window may hold.
-    own : (slice, slice)
-        Rows and columns of the specimen's window.
-
-    Returns
-    -------
-    places : list of (slice, slice)
-        At most `MAX_WINDOWS`, no two of which share more than `MAX_OVERLAP` of their area: one
-        after another that which overlaps least with those before.
-    effective : float
-        The area they cover together, in windows.
+    At most `MAX_WINDOWS`, no two of which share more than `MAX_OVERLAP` of their area: one after
+    another that which overlaps least with those before. ``present`` has the cells that a window may
+    hold; the area that they cover together is in windows.
     """
     rows, columns = (part.stop - part.start for part in own)
     missing = np.zeros(np.add(present.shape, 1), int)
@@ -94,15 +75,10 @@ def window_places(present: np.ndarray, own: tuple[slice, slice]) -> tuple[list, 
 def other_composites(
     loading: JointLoading, cells: int
 ) -> tuple[list[tuple[np.ndarray, float]], float]:
-    """Composite topographies of other windows at an offset, with their heights at zero offset.
+    """Composite topographies of other windows at an offset, mm, and the area that all cover.
 
-    Returns
-    -------
-    composites : list of ((ny, nx) ndarray, float)
-        h, mm, and the largest height at zero offset, against a plane the mean one, mm; none where
-        the scan is too small.
-    effective : float
-        Windows' worth of area that these and the specimen's own cover.
+    Each comes with the largest height at zero offset, against a plane the mean one, mm. None where
+    the scan is too small. The area is in windows and holds the specimen's own.
     """
     specimen, direction = loading.specimen, loading.direction
     whole = whole_composite(specimen, direction, cells)
@@ -116,18 +92,9 @@ def other_composites(
 
 
 def window_spread(values: np.ndarray, effective: float) -> np.ndarray:
-    """Half-width within which another window's value lies, at 95 %.
+    """Half-width within which another window's value lies, at 95 %, from values (windows, ...).
 
-    Parameters
-    ----------
-    values : (windows, ...) ndarray
-    effective : float
-        Independent windows among them: what they cover together.
-
-    Returns
-    -------
-    (...) ndarray
-        Student's t, of one degree of freedom less than independent windows, times their standard
-        deviation.
+    Student's t, of one degree of freedom less than independent windows (``effective``: what they
+    cover together), times their standard deviation.
     """
     return t_quantile(effective - 1) * np.std(values, axis=0, ddof=1)

@@ -21,11 +21,11 @@ from ..states.numerical_error import NumericalError, closure_error, numerical_er
 from ..states.states import forces_of
 from ..states.subgrid import QUANTITIES, state_quantities, subgrid_states, summit
 
-#: Cells of the largest grid at s/2, and at s/4: of a study, and of one that asks for all states.
+#: Largest grids, in cells: at s/2, at s/4, and at s/4 of a study that requests all states.
 MAX_CELLS_HALF, MAX_CELLS, MAX_CELLS_FULL = 2**22, 2**20, 2**22
-#: Grids at s/4 of no more than this cost next to nothing and are solved at all loads chosen.
+#: Cells of a grid at s/4 up to which it is solved at all chosen loads, as it costs little.
 CHEAP_CELLS = 2**18
-#: Tolerance of the refined states, in that of the study: their differences count.
+#: Tolerance of refined states over that of the study; it is smaller because differences count.
 TIGHTER = 0.1
 
 #: Spacings compared, as divisors of the scan's.
@@ -34,7 +34,7 @@ FACTORS = (1, 2, 4)
 #: Quantities of the budget, in its order: unit, long name.
 _OTHERS = {"delta_sigma": ("1", "Delta_sigma by box counting")}
 BUDGET_QUANTITIES = QUANTITIES | _OTHERS
-#: Variables of the atlas that they are.
+#: Variables of the atlas, STAGE/VARIABLE, by quantity.
 PLACES = {
     "closure": "closure/interface_closure",
     "separation": "closure/separation",
@@ -42,7 +42,7 @@ PLACES = {
     "stiffness": "closure/interface_stiffness",
     "delta_sigma": "domains/delta_sigma",
 }
-#: Those that may be zero or of either sign: an error of them is stated in their unit, never as a
+#: Quantities that may be zero or of either sign: their errors are stated in their unit, never as a
 #: fraction. Faces pressed into each other have a separation below zero, single nodes no dimension.
 ABSOLUTE = ("separation", "delta_sigma")
 
@@ -51,17 +51,9 @@ ABSOLUTE = ("separation", "delta_sigma")
 class LoadCurve:
     """Load curve of one offset at the finest resolution, whose errors are requested.
 
-    Attributes
-    ----------
-    loading : JointLoading
-        At one offset.
-    composite : (ny, nx) ndarray
-        h, mm.
-    reference : float
-        Largest height at zero offset, mm, from which dilatancy counts; against a plane, the mean.
-    resolution : int
-    curve, domains : xr.Dataset
-        Stages ``closure`` and ``domains`` there, over normal_force.
+    The composite topography h and the largest height at zero offset, ``reference``, from which
+    dilatancy counts (against a plane, the mean), are in mm; ``curve`` and ``domains`` are the
+    stages ``closure`` and ``domains`` there, over normal_force.
     """
 
     loading: JointLoading
@@ -102,9 +94,9 @@ class LoadCurve:
             delta_sigma=self.domains["delta_sigma"].values,
         )
 
-    def over_quantities(self, otherwise: float = np.nan, /, **found: ArrayLike) -> np.ndarray:
+    def over_quantities(self, otherwise: float = np.nan, /, **numbers: ArrayLike) -> np.ndarray:
         """Numbers (quantity, normal_force) by the names of :data:`BUDGET_QUANTITIES`."""
-        rows = [np.asarray(found.get(name, otherwise), float) for name in BUDGET_QUANTITIES]
+        rows = [np.asarray(numbers.get(name, otherwise), float) for name in BUDGET_QUANTITIES]
         return np.array([np.broadcast_to(row, len(self.forces)) for row in rows])
 
     def decay_length(self) -> np.ndarray:
@@ -125,12 +117,9 @@ class LoadCurve:
 class Refinement:
     """Numbers of a load curve on finer grids.
 
-    Attributes
-    ----------
-    error, limit, order : (quantity, normal_force) ndarray
-        From :mod:`states.numerical_error`; NaN where nothing was solved.
-    finest : (normal_force,) int ndarray
-        Divisor of the finest spacing solved, 1 where none was.
+    ``error``, ``limit`` and ``order`` (quantity, normal_force) are those of
+    :mod:`states.numerical_error`, NaN where nothing was solved; ``finest`` (normal_force,) is the
+    divisor of the finest spacing solved, 1 where none was.
     """
 
     error: np.ndarray
@@ -140,20 +129,9 @@ class Refinement:
 
 
 def refined_loads(curve: LoadCurve, settings: ContactSettings, *, all_states: bool) -> np.ndarray:
-    """Loads that are solved on finer grids.
+    """Loads that are solved on finer grids: indices (n,) of the forces, ascending.
 
-    Parameters
-    ----------
-    curve : LoadCurve
-    settings : ContactSettings
-    all_states : bool
-        Whether the study requests all states.
-
-    Returns
-    -------
-    (n,) int ndarray
-        Indices of its forces, ascending, with that of the seat; none where the grid is too large or
-        the faces are flush.
+    That of the seat is among them. None where the grid is too large or the faces are flush.
     """
     too_many = FACTORS[1] ** 2 * curve.composite.size > MAX_CELLS_HALF
     if np.ptp(curve.composite) == 0 or too_many:
@@ -165,24 +143,12 @@ def refined_loads(curve: LoadCurve, settings: ContactSettings, *, all_states: bo
 
 
 def chosen_loads(curve: LoadCurve, named: Sequence[Load]) -> np.ndarray:
-    """Solved loads among the named ones, the smallest and the largest.
-
-    Parameters
-    ----------
-    curve : LoadCurve
-    named : sequence of (float, str)
-        Of the settings.
-
-    Returns
-    -------
-    (n,) int ndarray
-        Indices of its forces, ascending.
-    """
-    known = _solved_loads(curve)
+    """Indices (n,) of solved loads: the smallest, the largest and the named ones."""
+    solved = _solved_loads(curve)
     wanted = np.isin(curve.forces, forces_of(named, curve.loading.area))
-    if known.any():
-        wanted[np.flatnonzero(known)[[0, -1]]] = True
-    return np.flatnonzero(wanted & known)
+    if solved.any():
+        wanted[np.flatnonzero(solved)[[0, -1]]] = True
+    return np.flatnonzero(wanted & solved)
 
 
 def _solved_loads(curve: LoadCurve) -> np.ndarray:
@@ -190,19 +156,10 @@ def _solved_loads(curve: LoadCurve) -> np.ndarray:
 
 
 def refine(curve: LoadCurve, settings: ContactSettings, asked: float | None) -> Refinement:
-    """Numerical errors of a load curve.
+    """Numerical errors of a load curve; raises `NotConverged`.
 
-    Parameters
-    ----------
-    curve : LoadCurve
-    settings : ContactSettings
-    asked : float or None
-        Error of a closure that the study asks for, a fraction; None where it requests all states.
-
-    Raises
-    ------
-    NotConverged
-        If a refined state could not be verified.
+    ``asked`` is the error of a closure that the study asks for, a fraction; None where it requests
+    all states.
     """
     published = curve.values()
     levels = np.full((len(FACTORS), *published.shape), np.nan)
@@ -271,22 +228,12 @@ def _errors(curve, levels, finest) -> Refinement:
 def curve_errors(
     levels: np.ndarray, raw_area: np.ndarray, decay_length: np.ndarray, rise: float
 ) -> list[NumericalError]:
-    """Numerical errors of the quantities of a load curve.
+    """Numerical errors of each quantity of a load curve.
 
-    Parameters
-    ----------
-    levels : (3, quantity, normal_force) ndarray
-        Quantities in the order of :data:`BUDGET_QUANTITIES`, those after the stiffness or not, at
-        s, s/2 and s/4; NaN where they were not solved.
-    raw_area, decay_length : (normal_force,) ndarray
-        N s^2, mm2, and sigma_0/(d sigma/d w_int), mm, at s.
-    rise : float
-        By how much the summit of the surface is above its highest node at s, mm.
-
-    Returns
-    -------
-    list of NumericalError
-        Of each quantity.
+    ``levels`` (3, quantity, normal_force) are at s, s/2 and s/4, quantities in the order of
+    :data:`BUDGET_QUANTITIES`, those after the stiffness or not; NaN where they were not solved. At
+    s the raw area N s^2 (normal_force,) is in mm2, the length sigma_0/(d sigma/d w_int) in mm; the
+    summit of the surface is above its highest node by ``rise``, mm.
     """
     closures, separations, areas, stiffnesses, *others = levels.swapaxes(0, 1)
     edge = (raw_area - areas[0]) / raw_area

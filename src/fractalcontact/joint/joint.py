@@ -154,17 +154,9 @@ def rigid_dilatancy(
 
 
 def face_correlation(specimen: xr.Dataset, direction: str, cells: ArrayLike) -> np.ndarray:
-    """Correlation of the two faces under the window, each less its own mean plane.
+    """Pearson's correlation (n,) of the faces under the window at offsets in cells.
 
-    Parameters
-    ----------
-    specimen, direction, cells
-        As for :func:`rigid_dilatancy`.
-
-    Returns
-    -------
-    (n,) ndarray
-        Pearson's coefficient; NaN where a face is a plane.
+    Each face is taken less its own mean plane; NaN where one is a plane.
     """
     return _slid(specimen, direction, np.asarray(cells, int)).correlation
 
@@ -184,33 +176,17 @@ def _slid(specimen: xr.Dataset, direction: str, cells: np.ndarray) -> Slide:
 def correlation_ranges(
     offset: np.ndarray, correlation: np.ndarray, area: float
 ) -> tuple[np.ndarray, np.ndarray, float]:
-    """Correlation lengths of the faces, and the offsets from which they are uncorrelated.
+    """Correlation lengths of the faces, offsets from which they are uncorrelated, and the limit.
 
-    Parameters
-    ----------
-    offset : (n,) array_like
-        v, mm, ascending.
-    correlation : (directions, n) array_like
-        From :func:`face_correlation`.
-    area : float
-        Of the window, mm2.
+    The correlation length l, mm, is the first offset at which the correlation (directions, n) is at
+    most 1/e; uncorrelated is the first offset, mm, at which it no longer differs from zero, as it
+    is at most 1.96 sqrt(pi l^2 / (2 A_0)), the limit. The window's area A_0 is in mm2.
 
-    Returns
-    -------
-    length : (directions,) ndarray
-        Correlation length l, mm: the first v where the correlation is at most 1/e.
-    uncorrelated : (directions,) ndarray
-        The first v, mm, where it no longer differs from zero.
-    limit : float
-        Up to here it does not: 1.96 sqrt(pi l^2 / (2 A_0)).
-
-    Notes
-    -----
-    Chance alone correlates two unrelated faces with a variance of (integral of rho^2)/A_0
-    (Bartlett 1935, here in the plane); the integral is pi l^2 / 2 for a Gaussian and for an
-    exponential rho. l is the geometric mean over the directions that reach it; without one, or with
-    a window that holds so few lengths l that chance explains more than 1/e, nothing can be said
-    and the last two results are NaN.
+    Chance alone correlates two unrelated faces with a variance of (integral of rho^2)/A_0 (Bartlett
+    1935, here in the plane); the integral is pi l^2 / 2 for a Gaussian and for an exponential rho.
+    In the limit l is the geometric mean over the directions that reach it; without one, or with a
+    window that holds so few lengths l that chance explains more than 1/e, nothing can be said and
+    the last two results are NaN.
     """
     length = np.array([_first_below(offset, row, np.exp(-1)) for row in correlation])
     reached = length[np.isfinite(length) & (length > 0)]
@@ -228,7 +204,7 @@ def _first_below(offset, values, limit):
     return offset[below[0]] if below.size else np.nan
 
 
-#: What is kept of a rigid slide: dimensions, unit, long name.
+#: Variables of a rigid slide: dimensions, unit, long name.
 RIGID_SLIDE = {
     "rigid_dilatancy": (("direction", "rigid_offset"), "mm", "rigid dilatancy delta_r"),
     "composite_rms": (
@@ -322,19 +298,9 @@ def describe_joint(specimen: xr.Dataset, settings: SpecimenSettings) -> xr.Datas
 
 
 def window_tilts(specimen: xr.Dataset, axes: Sequence[str]) -> dict[str, tuple]:
-    """Tilt of the window's mean plane against that of the whole lower face.
+    """Tilt of the window's mean plane against that of the whole lower face, by axis, a slope.
 
-    Parameters
-    ----------
-    specimen : xr.Dataset
-    axes : sequence of str
-        Of :data:`joint.plateau.AXES`; the tilt is positive where the face rises to East or
-        North.
-
-    Returns
-    -------
-    dict
-        ``window_tilt`` (axis) as ``xr.Dataset`` takes it, a slope.
+    The tilt is positive where the face rises to East or North.
     """
     slopes = dict(
         zip(
@@ -353,14 +319,8 @@ def describe_slide(
 ) -> xr.Dataset:
     """Rigid dilatancy, its plateaus, and correlation of the faces at every cell.
 
-    Parameters
-    ----------
-    specimen : xr.Dataset
-    directions : sequence of str
-    cells : (n,) int ndarray
-        Offsets in cells of the reference direction, from 0.
-    spacing : float
-        Of that direction, mm.
+    ``cells`` are offsets of the reference direction, from 0, and ``spacing`` is that of its cells,
+    mm.
     """
     dilatancy = np.full((len(directions), len(cells)), np.nan)
     spread, correlation = dilatancy.copy(), dilatancy.copy()
@@ -368,7 +328,7 @@ def describe_slide(
         ratio = spacing / direction_spacing(specimen, direction)
         own = np.round(cells * ratio).astype(int)
         slid = _slid(specimen, direction, own)
-        # The first cell of all is that of no offset.
+        # The first cell is the zero offset.
         dilatancy[i], spread[i] = slid.highest - slid.highest[0], slid.spread
         correlation[i] = slid.correlation
     offsets = offsets_of(cells, spacing)
@@ -392,18 +352,9 @@ def describe_slide(
 def with_spreads(joint: xr.Dataset, specimen: xr.Dataset) -> xr.Dataset:
     """Rigid dilatancy over the spread of the composite topography, and the spread expected.
 
-    Parameters
-    ----------
-    joint : xr.Dataset
-        ``rigid_dilatancy``, ``composite_rms`` and ``face_correlation`` (direction, rigid_offset),
-        ``uncorrelated_offset`` (direction).
-    specimen : xr.Dataset
-
-    Returns
-    -------
-    xr.Dataset
-        With ``dilatancy_over_rms`` (NaN where faces are flush), ``composite_rms_expected`` from
-        the heights of both faces and their correlation, and ``mean_uncorrelated_offset``.
+    ``dilatancy_over_rms`` is NaN where faces are flush; ``composite_rms_expected`` follows from the
+    heights of both faces and their correlation; ``mean_uncorrelated_offset`` is that of all
+    directions.
     """
     window = window_slices(specimen)
     lower, upper = (float(np.std(without_mean_plane(z[window]))) for z in faces(specimen))

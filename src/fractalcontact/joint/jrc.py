@@ -18,7 +18,7 @@ from .joint import direction_spacing, sliding_axis
 JRC_STEP = 1.27
 #: Steps over which slopes are taken for Z2, mm, by name; None is the scan's own spacing. Tse &
 #: Cruden (1979) state 1.27 mm. Their profiles of 100 mm had 200 such steps, so that they must have
-#: been enlarged 2.5 times: a step of 0.508 mm on the rock, kept beside it.
+#: been enlarged 2.5 times: a step of 0.508 mm on the rock, which is given too.
 JRC_SAMPLINGS = {"scan": None, "0.508 mm": 0.508, "1.27 mm": JRC_STEP}
 #: Fits of the JRC to Z2 of Barton's ten profiles, each with the step they were digitised with, mm:
 #: one number without step and fit means nothing. Tse & Cruden (1979), their step as enlarged; Yang,
@@ -33,7 +33,7 @@ FITS: dict[str, tuple[float, Callable[[Any], Any]]] = {
     "Tatone and Grasselli 2010, 0.5 mm": (0.5, lambda z2: 51.85 * z2**0.60 - 10.37),
     "Tatone and Grasselli 2010, 1 mm": (1.0, lambda z2: 55.03 * z2**0.74 - 6.10),
 }
-#: A step of whole cells that differs by more than this part from a fit's is not that fit's.
+#: Largest relative difference between a step of whole cells and that of a fit.
 _NEAR = 0.25
 _TABLE = {
     "step": ("sampling", "mm", "step of Z2, whole cells"),
@@ -90,24 +90,16 @@ def profile_roughness(specimen: xr.Dataset, direction: str) -> xr.Dataset:
     window = window_slices(specimen)
     levelled = [without_mean_plane(z[window]) for z in faces(specimen)]
     profiles = [np.moveaxis(z, axis, 0) for z in levelled]
-    found = roughness_of_profiles(profiles, direction_spacing(specimen, direction))
-    # Grasselli's law is of the lower face, which the upper block climbs.
+    roughness = roughness_of_profiles(profiles, direction_spacing(specimen, direction))
+    # Grasselli's law describes the lower face, because the upper block climbs it.
     law = grasselli(levelled[0], spacing_of(specimen), direction)
-    return found.assign(
+    return roughness.assign(
         labelled(_GRASSELLI, {f"grasselli_{name}": value for name, value in law._asdict().items()})
     )
 
 
 def roughness_of_profiles(levelled: list[np.ndarray], spacing: float) -> xr.Dataset:
-    """Profile roughness of levelled profiles along the first axis of arrays.
-
-    Parameters
-    ----------
-    levelled : list of (n, m) ndarray
-        Heights, mm.
-    spacing : float
-        Along the first axis, mm.
-    """
+    """Profile roughness of levelled heights (n, m), mm, along the first axis of arrays."""
     lags = [1 if step is None else max(1, round(step / spacing)) for step in JRC_SAMPLINGS.values()]
     z2 = np.array([_rms_slope(levelled, lag, spacing) for lag in lags])
     jrc = np.array([joint_roughness(value) if value > 0 else np.nan for value in z2])
@@ -137,9 +129,9 @@ def _rms_slope(profiles: list[np.ndarray], lag: int, spacing: float) -> float:
 def _by_fits(profiles: list[np.ndarray], spacing: float) -> tuple[np.ndarray, np.ndarray]:
     """Step, mm, and JRC of each of :data:`FITS`; no JRC where whole cells come near no step."""
     lags = [max(1, round(step / spacing)) for step, _ in FITS.values()]
-    found = np.full(len(FITS), np.nan)
+    jrc = np.full(len(FITS), np.nan)
     for i, (lag, (step, fit)) in enumerate(zip(lags, FITS.values(), strict=True)):
         z2 = _rms_slope(profiles, lag, spacing)
         if abs(lag * spacing / step - 1) <= _NEAR and z2 > 0:
-            found[i] = fit(z2)
-    return spacing * np.array(lags), found
+            jrc[i] = fit(z2)
+    return spacing * np.array(lags), jrc

@@ -20,7 +20,7 @@ from ..roughness.fit_range import MIN_CELLS
 #: Choices of lags: the whole range, and its shorter and longer half in logarithms.
 LAG_RANGES = ("all", "short", "long")
 
-#: Lags of half the range, at the least.
+#: Smallest number of lags in half the range.
 MIN_LAGS = 4
 
 _TABLE = {
@@ -37,35 +37,24 @@ _TABLE = {
 def lag_dimensions(
     composites: Sequence[np.ndarray], spacings: tuple[float, ...], longest: float
 ) -> dict[str, tuple]:
-    """Dimension of composite topographies over fixed lags.
+    """Dimension of composite topographies over fixed lags, from two cells to the longest, mm.
 
-    Parameters
-    ----------
-    composites : sequence of (ny, nx) ndarray
-        Heights by offset, mm.
-    spacings : (float, float)
-        Sides (y, x) of a cell, mm.
-    longest : float
-        Longest lag, mm; the shortest is that of two cells.
-
-    Returns
-    -------
-    dict of str to (dims, values, attributes)
-        ``lag_dimension`` (offset, lag_range), ``lag_min`` and ``lag_max`` (lag_range), and the
-        coordinate ``lag_range``, :data:`LAG_RANGES`. Missing where the faces are flush.
+    ``lag_dimension`` (offset, lag_range), ``lag_min`` and ``lag_max`` (lag_range), mm, and the
+    coordinate ``lag_range``, :data:`LAG_RANGES`, as ``xr.Dataset`` takes them. Cells have the sides
+    (y, x) of ``spacings``, mm. Missing where the faces are flush.
     """
     spacing = max(spacings)
     longest = max(longest / spacing, MIN_LAGS * MIN_CELLS)
     lags = np.unique(np.round(np.geomspace(MIN_CELLS, longest, 2 * MIN_LAGS)).astype(int))
     middle = lags.size // 2
     parts = slice(None), slice(middle + 1), slice(middle, None)
-    found = {
+    values = {
         "lag_dimension": np.array([_dimensions(h, spacings, lags, parts) for h in composites]),
         "lag_min": np.array([lags[part][0] for part in parts]) * spacing,
         "lag_max": np.array([lags[part][-1] for part in parts]) * spacing,
     }
     names = ("lag_range", list(LAG_RANGES), cf_attrs("1", "choice of lags"))
-    return labelled(_TABLE, found) | {"lag_range": names}
+    return labelled(_TABLE, values) | {"lag_range": names}
 
 
 def _dimensions(

@@ -16,22 +16,11 @@ from .joint import slid_window
 
 
 def suspect_nodes(specimen: xr.Dataset, direction: str, cells: int) -> np.ndarray:
-    """Suspicious nodes of the composite topography of the window at an offset.
+    """Suspicious nodes (ny, nx) of the composite topography of the window at an offset in cells.
 
-    Parameters
-    ----------
-    specimen : xr.Dataset
-        From :func:`surface.specimen.make_specimen`.
-    direction : {"E", "N", "W", "S", "none"}
-    cells : int
-        Offset in cells of the scan.
-
-    Returns
-    -------
-    (ny, nx) bool ndarray
-        Where the cell of either face is an outlier, a lone spike, filled, far from any point
-        measured, or in a deep overlap. At zero offset also where the faces overlap at all: a
-        node is there made of the two cells that were scanned at one place.
+    Where the cell of either face is an outlier, a lone spike, filled, far from any point measured,
+    or in a deep overlap. At zero offset also where the faces overlap at all: a node is there made
+    of the two cells that were scanned at one place.
     """
     window = window_slices(specimen)
     if "suspect_lower" not in specimen:
@@ -48,20 +37,9 @@ def suspect_nodes(specimen: xr.Dataset, direction: str, cells: int) -> np.ndarra
 
 
 def overlapping_nodes(specimen: xr.Dataset, direction: str, cells: int) -> np.ndarray:
-    """Overlap at nodes of the composite topography of the window at an offset.
+    """Nodes (ny, nx) of the window at an offset in cells where the scanned faces overlap.
 
-    Parameters
-    ----------
-    specimen : xr.Dataset
-        From :func:`surface.specimen.make_specimen`.
-    direction : {"E", "N", "W", "S", "none"}
-    cells : int
-        Offset in cells of the scan.
-
-    Returns
-    -------
-    (ny, nx) bool ndarray
-        Where the cell of either face lies in the overlap of the faces as scanned and registered.
+    The cell of either face lies in the overlap of the faces as scanned and registered.
     """
     window = window_slices(specimen)
     overlap = specimen["overlap"].values.astype(bool)
@@ -71,18 +49,8 @@ def overlapping_nodes(specimen: xr.Dataset, direction: str, cells: int) -> np.nd
 def node_marks(specimen: xr.Dataset, joint: xr.Dataset) -> dict[str, tuple]:
     """Marks of nodes that rest on overlapping or suspicious cells, as ``xr.Dataset`` takes them.
 
-    Parameters
-    ----------
-    specimen : xr.Dataset
-        From :func:`surface.specimen.make_specimen`.
-    joint : xr.Dataset
-        From :func:`joint.joint.describe_joint`.
-
-    Returns
-    -------
-    dict
-        ``node_mark`` (direction, offset, y_1, x_1) at the scan's own spacing: 2 where the faces
-        overlap as scanned, 1 on otherwise suspicious cells, 0 elsewhere.
+    ``node_mark`` (direction, offset, y_1, x_1) at the scan's own spacing: 2 where the faces overlap
+    as scanned, 1 on otherwise suspicious cells, 0 elsewhere.
     """
     marks = [
         [
@@ -99,13 +67,7 @@ def node_marks(specimen: xr.Dataset, joint: xr.Dataset) -> dict[str, tuple]:
 
 
 def suspect_load_share(pressure: np.ndarray, suspicious: np.ndarray) -> float:
-    """Fraction of the force that suspicious nodes carry.
-
-    Parameters
-    ----------
-    pressure : (ny, nx) ndarray
-    suspicious : (ny, nx) bool ndarray
-    """
+    """Fraction of the force that suspicious nodes carry."""
     if not suspicious.any():
         return 0.0
     total = float(pressure.sum())
@@ -115,16 +77,8 @@ def suspect_load_share(pressure: np.ndarray, suspicious: np.ndarray) -> float:
 def fits_undetermined(curves: xr.Dataset) -> xr.DataArray:
     """Curves whose fits rest on errors of the scans.
 
-    Parameters
-    ----------
-    curves : xr.Dataset
-        From :func:`laws.closure.closure_curves`, or a part of it with all loads.
-
-    Returns
-    -------
-    xr.DataArray of bool
-        Where suspicious cells carry more than half of the load in half or more of the states that
-        have the nodes to be fitted; of all states where none has.
+    Suspicious cells carry more than half of the load in half or more of the states that have the
+    nodes to be fitted; of all states where none has.
     """
     decisive = decided_by_scan(curves["suspect_load_share"])
     enough = curves["nodes"] >= RESOLVED_NODES
@@ -136,17 +90,9 @@ def fits_undetermined(curves: xr.Dataset) -> xr.DataArray:
 def load_warning(curves: xr.Dataset, reported: Reported) -> str:
     """Warning where errors of the scans carry the load that decides a number, "" if nowhere.
 
-    Parameters
-    ----------
-    curves : xr.Dataset
-        From :func:`laws.closure.closure_curves`.
-    reported : Reported
-
-    Returns
-    -------
-    str
-        On the reported direction and resolution: the offsets at which suspicious cells carry more
-        than half of the reference load, and those at which they do so in half of the states fitted.
+    It names, for the reported direction and resolution, the offsets at which suspicious cells carry
+    more than half of the reference load, and those at which they do so in half of the states
+    fitted.
     """
     finest = reported.curves(curves)
     mapped = finest["suspect_load_share"].isel(normal_force=reported.reference)

@@ -12,6 +12,7 @@ from ..core.estimate import Estimate, rows_of
 from ..core.fitting import MIN_POINTS, LineFit, fit_line
 from ..core.labels import cf_attrs
 from ..core.limits import LEVEL_CHANGE
+from ..core.per_curve import stacked
 from ..core.text import length_words
 from ..core.verdicts import FALLING, LEVEL, RISING
 
@@ -19,15 +20,15 @@ _HALF = "rigid dilatancy over the second half of the offsets"
 #: Quantities of every direction: unit and long name. Intervals take the offsets as independent.
 _WORDS = {
     "plateau_level": ("mm", f"mean {_HALF}"),
-    **rows_of("plateau_slope", "1", f"slope of the {_HALF}"),
-    **rows_of("plateau_change", "1", f"change of the {_HALF}, a fraction of its mean"),
+    "plateau_slope": ("1", f"slope of the {_HALF}"),
+    "plateau_change": ("1", f"change of the {_HALF}, a fraction of its mean"),
     "plateau_intercept": ("mm", f"line through the {_HALF}, at no offset"),
     "plateau_offset_min": ("mm", "smallest offset of that line"),
     "plateau_offset_max": ("mm", "largest offset of that line"),
     "plateau_trend": ("1", f"trend of the {_HALF}: {LEVEL}, {RISING} or {FALLING}"),
     "no_plateau": ("1", "why it has no line"),
 }
-#: Whether the trend says anything of a plateau: dimensions, unit, long name.
+#: Reason why a trend decides nothing about a plateau: dimensions, unit, long name.
 _UNDECIDED = {
     "plateau_undecided": ("direction", "1", f"why there is no verdict on a plateau of the {_HALF}")
 }
@@ -58,19 +59,7 @@ def second_half(offset: np.ndarray) -> np.ndarray:
 def relative_change(slope: Any, offset: np.ndarray, mean: Any) -> Any:
     """Change of a line over offsets as a fraction of its mean; positive where it rises.
 
-    Parameters
-    ----------
-    slope : float or ndarray
-        mm/mm.
-    offset : (n,) ndarray
-        mm, those of the line.
-    mean : float or ndarray
-        Of what the line goes through, mm.
-
-    Returns
-    -------
-    float or ndarray
-        NaN where the mean is zero.
+    NaN where the mean is zero.
     """
     size = np.where(np.asarray(mean) == 0, np.nan, np.abs(mean))
     return slope * np.ptp(offset) / size
@@ -81,26 +70,10 @@ def rigid_plateaus(
 ) -> dict[str, tuple]:
     """Level, slope and trend of the rigid dilatancy over the second half of the offsets.
 
-    Parameters
-    ----------
-    offset : (n,) ndarray
-        v, mm, ascending.
-    opened : (directions, n) array_like
-        delta_r, mm.
-    directions : sequence of str
-
-    Returns
-    -------
-    dict
-        Variables over (direction,) as ``xr.Dataset`` takes them: ``plateau_level``,
-        ``plateau_slope`` and ``plateau_change`` with their 95 % intervals, ``plateau_intercept``
-        and the ends of the fit, ``plateau_trend`` and ``no_plateau``. Without a line all are
-        missing but the reason.
-
-    Notes
-    -----
-    A change of up to a tenth of the mean is called level. The intervals are those of one
-    least-squares line whose points count as independent; neighbouring offsets are not.
+    Offsets v (n,) and openings delta_r (directions, n) are in mm. Without a line all are missing
+    but the reason ``no_plateau``. A change of up to a tenth of the mean is called level. The
+    intervals are those of one least-squares line whose points count as independent; neighbouring
+    offsets are not.
     """
     half = second_half(offset)
     v, opened = offset[half], np.asarray(opened, float)[:, half]
@@ -108,32 +81,19 @@ def rigid_plateaus(
         _plateau(fit_line(v, row), row.mean(), v, direction)
         for row, direction in zip(opened, directions, strict=True)
     ]
-    table = {name: ("direction", *words) for name, words in _WORDS.items()}
-    return labelled(table, {name: np.array([row[name] for row in rows]) for name in _WORDS})
+    return stacked(rows, _WORDS, ["direction"])
 
 
 def undecided_plateaus(
     offset: np.ndarray, correlation: np.ndarray, uncorrelated: np.ndarray
 ) -> dict[str, tuple]:
-    """Reason why trends over the second half of the offsets say nothing of a plateau.
+    """Reason why trends over the second half of the offsets say nothing of a plateau, by direction.
 
     Faces that match open as long as they still correlate: a plateau begins beyond (the spread of
-    the composite topography is then that of two unrelated faces).
-
-    Parameters
-    ----------
-    offset : (n,) ndarray
-        v, mm, ascending.
-    correlation : (directions, n) ndarray
-        Of the faces.
-    uncorrelated : (directions,) ndarray
-        First offset where it does not differ from zero, mm; NaN where there is none.
-
-    Returns
-    -------
-    dict
-        ``plateau_undecided`` (direction,) as ``xr.Dataset`` takes it; empty where the second half
-        lies beyond that offset, or nothing slides.
+    the composite topography is then that of two unrelated faces). ``correlation`` (directions, n)
+    is that of the faces over the offsets, mm, ``uncorrelated`` the first offset where it does not
+    differ from zero, NaN where there is none. Empty where the second half lies beyond that offset,
+    or nothing slides.
     """
     first = offset[second_half(offset)][0]
 
@@ -145,42 +105,33 @@ def undecided_plateaus(
             return f"offsets end at {end}, where the faces still correlate ({last:.2f})"
         return f"the faces still correlate up to {length_words(lost)}"
 
-    words = [reason(*one) for one in zip(correlation[:, -1], uncorrelated, strict=True)]
+    words = [reason(*curve) for curve in zip(correlation[:, -1], uncorrelated, strict=True)]
     return labelled(_UNDECIDED, {"plateau_undecided": np.array(words)})
 
 
 def opposite_parts(
     offset: np.ndarray, opened: ArrayLike, directions: Sequence[str]
 ) -> dict[str, tuple]:
-    """Even and odd part of the rigid dilatancy over opposite directions.
+    """Even and odd part of the rigid dilatancy over opposite directions, mm, by axis.
 
     A tilt a of the window against the plane that was removed from the face adds a v in one
     direction and - a v in the opposite one, so that the even part is of the roughness alone. The
-    odd part is no measure of the tilt: the highest points differ by chance too.
-
-    Parameters
-    ----------
-    offset, opened, directions
-        As :func:`rigid_plateaus` takes them.
-
-    Returns
-    -------
-    dict
-        Coordinate ``axis``, of those both of whose directions are there, and variables as
-        ``xr.Dataset`` takes them: ``even_dilatancy`` and ``odd_dilatancy`` (axis, rigid_offset),
-        mm; ``even_change`` and ``odd_slope`` (axis), with the 95 % intervals of the line through
-        the second half of the offsets.
+    odd part is no measure of the tilt: the highest points differ by chance too. Intervals are those
+    of the line through the second half of the offsets.
     """
-    of = dict(zip(directions, np.asarray(opened, float), strict=True))
-    pairs = {axis: pair for axis, pair in AXES.items() if set(pair) <= of.keys()}
+    by_direction = dict(zip(directions, np.asarray(opened, float), strict=True))
+    pairs = {axis: pair for axis, pair in AXES.items() if set(pair) <= by_direction.keys()}
     even, odd = (
-        np.reshape([(of[a] + sign * of[b]) / 2 for a, b in pairs.values()], (-1, offset.size))
+        np.reshape(
+            [(by_direction[a] + sign * by_direction[b]) / 2 for a, b in pairs.values()],
+            (-1, offset.size),
+        )
         for sign in (1, -1)
     )
     half = second_half(offset)
     v = offset[half]
     rows = [_plateau(fit_line(v, row), row.mean(), v, "none") for row in even[:, half]]
-    changes = Estimate.stack(Estimate.read(row, "plateau_change") for row in rows)
+    changes = Estimate.stack(row["plateau_change"] for row in rows)
     slopes = Estimate.stack(fit_line(v, row).slope for row in odd[:, half])
     values = {"even_dilatancy": even, "odd_dilatancy": odd}
     values |= changes.columns("even_change") | slopes.columns("odd_slope")
@@ -194,8 +145,8 @@ def _plateau(line: LineFit, mean: float, v: np.ndarray, direction: str) -> dict[
     change = slope.mapped(lambda rise: float(relative_change(rise, v, mean)))
     return {
         "plateau_level": mean if slope.known else np.nan,
-        **slope.columns("plateau_slope"),
-        **change.columns("plateau_change"),
+        "plateau_slope": slope,
+        "plateau_change": change,
         "plateau_intercept": line.intercept.value,
         "plateau_offset_min": first_and_last[0],
         "plateau_offset_max": first_and_last[1],

@@ -18,25 +18,12 @@ _TABLE = {
 
 
 def profile_coefficients(heights: np.ndarray, spacing: float) -> xr.Dataset:
-    """Z2, JRC and Delta_g = 3 - H of a profile, H by the roughness length (Malinverno 1990).
+    """Z2, JRC and Delta_g = 3 - H of a profile (n,), mm, H by the roughness length.
 
-    Parameters
-    ----------
-    heights : (n,) ndarray
-        mm, in even steps.
-    spacing : float
-        mm.
-
-    Returns
-    -------
-    xr.Dataset
-        As :func:`joint.jrc.profile_roughness`, over ``contact_direction`` "x" too;
-        ``recommended_dimension`` with its interval, of an isotropic surface with such profiles.
-
-    Notes
-    -----
-    Malinverno, Geophys. Res. Lett. 17 (1990) 1953: the variance about the line of windows of
-    length b grows as b^(2H). Windows shorter than 8 cells are left out; nothing else is corrected.
+    As :func:`joint.jrc.profile_roughness`, over ``contact_direction`` "x" too;
+    ``recommended_dimension`` with its interval is that of an isotropic surface with such profiles.
+    Malinverno, Geophys. Res. Lett. 17 (1990) 1953: the variance about the line of windows of length
+    b grows as b^(2H). Windows shorter than 8 cells are left out; nothing else is corrected.
     """
     x = np.arange(heights.size)
     levelled = heights - np.polyval(np.polyfit(x, heights, 1), x)
@@ -45,14 +32,16 @@ def profile_coefficients(heights: np.ndarray, spacing: float) -> xr.Dataset:
     parts = np.array([_sums(levelled, side) for side in sides])
     exponent = slope_of_sums(sides * spacing, parts, lambda sums: sums[:, 0] / sums[:, 1])
     dimension = exponent.mapped(lambda slope: 3 - slope / 2, falling=True)
-    found = roughness_of_profiles([levelled[:, None]], spacing).expand_dims(contact_direction=["x"])
+    roughness = roughness_of_profiles([levelled[:, None]], spacing).expand_dims(
+        contact_direction=["x"]
+    )
     values = {
         "range_min": exponent.over[0],
         "range_max": exponent.over[1],
         "no_dimension": "" if exponent.known else "the profile has too few cells for it",
     }
     words = ("1", "Delta_g = 3 - H of an isotropic surface with such profiles")
-    return found.assign(
+    return roughness.assign(
         dimension.variables("recommended_dimension", (), *words) | dict(labelled(_TABLE, values))
     )
 

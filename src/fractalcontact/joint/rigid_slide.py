@@ -15,9 +15,9 @@ from roughcontact.kernel_cache import njit
 
 from ..core.mean_plane import without_mean_plane
 
-#: Values of a block of rows that is transformed at once.
+#: Number of values in a block of rows, which are transformed together.
 _BLOCK = 1 << 21
-#: Of what a face has about its mean, what its mean plane must leave to be more than rounding.
+#: Smallest fraction of a face's variance that its mean plane leaves; less is rounding.
 _LEFT = 1e-13
 
 
@@ -33,27 +33,11 @@ class Slide(NamedTuple):
 
 
 def slide(lower: np.ndarray, upper: np.ndarray, corners: np.ndarray) -> Slide:
-    """Slide the lower face under a window.
+    """Slide of the whole lower face under a window, heights in mm.
 
-    Parameters
-    ----------
-    lower : (ny, nx) float64 ndarray
-        Heights of the whole lower face, mm; none missing where the window comes to lie.
-    upper : (my, mx) float64 ndarray
-        Heights of the upper face in the window, mm.
-    corners : (n, 2) int ndarray
-        Row and column of the lower face under the window's first cell, one of which is the same at
-        all places.
-
-    Returns
-    -------
-    Slide
-        Of h = lower - upper at each place.
-
-    Raises
-    ------
-    ValueError
-        If neither the rows nor the columns are all the same.
+    ``corners`` (n, 2) have the row and column of the lower face under the window's first cell, one
+    of which is the same at all places; h is lower less upper. No height may be missing where the
+    window comes to lie. Raises ValueError if neither rows nor columns are all the same.
     """
     sums = np.zeros((len(corners), 2))
     highest = np.full(len(corners), -np.inf)
@@ -75,7 +59,7 @@ def _composite_sums(lower, upper, corners, highest, sums):
         for k in range(len(corners)):
             top, left = corners[k]
             below = lower[top + i, left : left + nx]
-            # From the first cell: a height over sea level must not cost digits.
+            # Sums count from the first cell, so that heights above sea level cost no digits.
             first = lower[top, left] - upper[0, 0]
             largest, total, squares = highest[k], 0.0, 0.0
             for j in range(nx):
@@ -95,7 +79,8 @@ def _correlation(lower, upper, corners):
     (top, left), (last_top, last_left) = corners.min(axis=0), corners.max(axis=0)
     strip = lower[top : last_top + upper.shape[0], left : last_left + upper.shape[1]]
     under, places = without_mean_plane(upper), corners - (top, left)
-    # Where only the row changes, all is turned, y and x below too: it slides along the last axis.
+    # Where only the row changes, arrays are transposed so that the slide is along the last axis;
+    # y and x are exchanged below too.
     if last_left == left:
         strip, under, places = strip.T, under.T, places[:, ::-1]
     elif last_top != top:
@@ -105,7 +90,8 @@ def _correlation(lower, upper, corners):
     if of_under <= _LEFT * about_mean:  # the upper face is a plane, tilted or not
         return np.full(len(corners), np.nan)
     product, of_z, along_y, along_x = (sums[places[:, 1]] for sums in _sums(strip, under))
-    # The plane's part of the sum of squares: rows are orthogonal to columns.
+    # The sum of squares of the mean plane is that of rows plus that of columns: both are
+    # orthogonal.
     my, mx = under.shape
     with np.errstate(divide="ignore", invalid="ignore"):  # one row, or one column
         planes = along_y**2 / (mx * np.sum(_middled(my) ** 2))
@@ -133,7 +119,8 @@ def _sums(strip, under):
     column, square = strip.sum(axis=0), np.einsum("ij,ij->j", strip, strip)
     total = np.correlate(column, window)
     of_z = np.maximum(np.correlate(square, window) - total**2 / under.size, 0.0)
-    # A sum, not a matrix product: the last bit must not depend on the number of cores.
+    # einsum sums in one order; a matrix product would make the last bit depend on the number of
+    # cores.
     along_y = np.correlate(np.einsum("i,ij->j", _middled(my), strip), window)
     return product, of_z, along_y, np.correlate(column, _middled(mx))
 

@@ -1,27 +1,30 @@
 """Power law of the real contact area, and the theories beside it."""
 
+from typing import Any
+
 import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from ..core.estimate import Estimate, rows_of
+from ..core.estimate import rows_of
 from ..core.fitting import MIN_POINTS, fit_line
 from ..core.intervals import mean_interval
 from ..core.labels import cf_attrs
 from ..core.limits import CORRECTED_NODES, LIGHT_LOAD, RESOLVED_NODES
+from ..core.per_curve import per_curve
 from ..joint.joint import composite_topography, direction_spacing, offsets_of
 from ..roughness.dimension import slope_statistics
 from ..states.states import chosen_offset, error_attrs
 from .area_theories import FLUSH, add_comparison, add_theories
 
-#: What is kept of a composite topography, by its name in :func:`slope_statistics`.
+#: Statistics of a composite topography, by their names in :func:`slope_statistics`.
 STATISTICS = ("rms_slope", "m0", "m2", "m4")
 
 #: kappa of the raw and of the corrected area.
 AREA_SLOPE = "area slope kappa = (A_r/A_0) E* h'_rms / sigma_0"
 CORRECTED_AREA_SLOPE = "area slope kappa, corrected area"
 
-#: Raw and corrected area: prefix of names, name, nodes that it needs, words.
+#: Raw and corrected area: prefix of names, variable, fewest nodes, long name of kappa.
 _AREAS = (
     ("", "area", RESOLVED_NODES, AREA_SLOPE),
     ("corrected_", "area_corrected", CORRECTED_NODES, CORRECTED_AREA_SLOPE),
@@ -32,33 +35,20 @@ FULL_CONTACT = "the faces touch everywhere at every load"
 
 
 def composite_statistics(specimen: xr.Dataset, direction: str, cells: ArrayLike) -> xr.Dataset:
-    """Slopes and spectral moments of the composite topography at each offset.
+    """Slopes and spectral moments of the composite topography at offsets (n,) in cells.
 
-    Parameters
-    ----------
-    specimen, direction
-        As for :func:`joint.joint.composite_topography`.
-    cells : (n,) int array_like
-        Offsets in cells.
-
-    Returns
-    -------
-    xr.Dataset
-        :data:`STATISTICS` over (offset,), at the scan's own spacing: slopes are differences of
-        neighbouring nodes and grow as the spacing falls. Attributes ``spacing_y``, ``spacing_x``.
-
-    Notes
-    -----
-    On a self-affine surface of H = 0.8 whose spectrum reaches to the smallest wave of the grid the
-    differences give 0.93 to 0.94 of the slope of the waves themselves.
+    Over (offset,) at the scan's own spacing: :data:`STATISTICS`. Slopes are differences of
+    neighbouring nodes and grow as the spacing falls: on a self-affine surface of H = 0.8 whose
+    spectrum reaches to the smallest wave of the grid they give 0.93 to 0.94 of the slope of the
+    waves themselves. Attributes: ``spacing_y``, ``spacing_x``, mm.
     """
     spacing = specimen.attrs["spacing_y"], specimen.attrs["spacing_x"]
     cells = np.asarray(cells, int)
-    each = [
+    of_offsets = [
         slope_statistics(composite_topography(specimen, direction, n), spacing)[list(STATISTICS)]
         for n in cells
     ]
-    result = xr.concat(each, "offset", combine_attrs="override")
+    result = xr.concat(of_offsets, "offset", combine_attrs="override")
     offset = offsets_of(cells, direction_spacing(specimen, direction))
     result["offset"] = ("offset", offset, cf_attrs("mm", "shear offset v"))
     result.attrs = {"spacing_y": float(spacing[0]), "spacing_x": float(spacing[1])}
@@ -66,28 +56,18 @@ def composite_statistics(specimen: xr.Dataset, direction: str, cells: ArrayLike)
 
 
 def joint_statistics(specimen: xr.Dataset, joint: xr.Dataset) -> xr.Dataset:
-    """`composite_statistics` of every direction whose contact is solved.
+    """:data:`STATISTICS` over (direction, offset) of every direction whose contact is solved.
 
-    Parameters
-    ----------
-    specimen : xr.Dataset
-    joint : xr.Dataset
-        From :func:`joint.joint.describe_joint`.
-
-    Returns
-    -------
-    xr.Dataset
-        :data:`STATISTICS` over (direction, offset), offsets ascending and, as in
-        :func:`states.states.combine`, those of the first direction.
+    Offsets ascend and are, as in :func:`states.states.combine`, those of the first direction.
     """
     directions = [str(name) for name in joint["contact_direction"].values]
-    each = [
+    of_directions = [
         composite_statistics(
             specimen, name, joint["offset_cells"].sel(contact_direction=name).values
         ).sortby("offset")
         for name in directions
     ]
-    result = xr.concat(each, "direction", join="override", combine_attrs="override")
+    result = xr.concat(of_directions, "direction", join="override", combine_attrs="override")
     return result.assign_coords(direction=directions)
 
 
@@ -98,34 +78,18 @@ def area_laws(
     dimension: float,
     map_offset: float | None = None,
 ) -> xr.Dataset:
-    """Growth of the real contact area with the force, beside the theories for the surface.
+    """Growth of the real contact area with the force at the finest resolution, beside the theories.
 
-    Parameters
-    ----------
-    curves : xr.Dataset
-        From :func:`laws.closure.closure_curves`; the finest resolution is used.
-    statistics : xr.Dataset
-        From :func:`joint_statistics`, of the same directions and offsets.
-    e_star : float
-        E*, MPa.
-    dimension : float
-        Delta_g of the surface, for Majumdar and Bhushan's law; NaN leaves that out, and
-        ``no_majumdar_bhushan`` says why.
-    map_offset : float, optional
-        Of the contact maps, mm; as :func:`states.states.chosen_offset` takes it.
+    ``statistics`` are those of :func:`joint_statistics`, E* is in MPa, ``dimension`` is Delta_g of
+    the surface for Majumdar and Bhushan's law (NaN leaves that out, and ``no_majumdar_bhushan``
+    says why), and ``map_offset``, mm, is taken as by :func:`states.states.chosen_offset`.
 
-    Returns
-    -------
-    xr.Dataset
-        Over (direction, offset): the statistics; the law A_r ~ F^m of the corrected area,
-        ``corrected_`` before the names of :data:`LAW`; means of kappa at light load;
-        ``no_corrected_law`` and ``no_mean_kappa``, reasons. Over (direction, offset, load):
-        ``fitted``, ``light``, ``reduced_pressure``, ``kappa`` and ``corrected_kappa``, and the
-        fractions A_r/A_0 of the theories; what :func:`laws.area_theories.add_comparison` and
-        :func:`add_area_offset` add. The kappas have an ``_error``, the solver's.
+    Over (direction, offset) the stage has the statistics, the law A_r ~ F^m of the corrected area
+    and the means of kappa at light load, each with a reason where there is none; over the loads too
+    the ``fitted`` and ``light`` ones, ``reduced_pressure``, both kappas with their solver error,
+    and the fractions A_r/A_0 of the theories; and what :func:`laws.area_theories.add_comparison`
+    and :func:`add_area_offset` add.
 
-    Notes
-    -----
     Flush faces have no slope: kappa and all theories are NaN, and full contact is no law. The
     interval of a mean kappa is over loads on one surface; other surfaces scatter more (see
     :mod:`experiments.area_slope`). Fits and means take states of `RESOLVED_NODES` nodes or more,
@@ -143,7 +107,14 @@ def area_laws(
         fitted = (share > (fewest - 0.5) * node) & (share < 1 - 0.5 * node)
         attrs = cf_attrs("1", f"{fewest} nodes touch, not all: load used in fits of the {words}")
         result[f"{prefix}fitted"] = fitted.assign_attrs(attrs)
-    _add_laws(result, finest)
+    law = {
+        "area": finest["area_corrected"],
+        "touching": finest["area_share"],
+        "fitted": result["corrected_fitted"],
+        "raw_fitted": result["fitted"],
+        "force": finest["normal_force"],
+    }
+    result.update(per_curve(law, _law, _NAMES))
     _add_kappa(result, finest, e_star, node)
     add_theories(result, finest, e_star, dimension, float(np.sqrt(np.prod(spacing))))
     add_comparison(result)
@@ -152,16 +123,9 @@ def area_laws(
 
 
 def add_area_offset(result: xr.Dataset, map_offset: float | None) -> None:
-    """Add the offset whose areas are reported: that of the contact maps.
+    """Add the offset whose areas are reported, mm: that of the contact maps.
 
-    Where the faces are flush there, it is the one chosen of those at which they are not.
-
-    Parameters
-    ----------
-    result : xr.Dataset
-        From :func:`area_laws`.
-    map_offset : float or None
-        mm.
+    Where the faces are flush there, it is chosen among the offsets at which they are not.
     """
     rough = result["reduced_pressure"].notnull().all("normal_force")
     offsets = result["offset"].values
@@ -173,51 +137,42 @@ def add_area_offset(result: xr.Dataset, map_offset: float | None) -> None:
     result["area_offset"] = "direction", chosen, attrs
 
 
-#: What is kept of a law A_r ~ F^m: name, field of the fit in logarithms, unit, long name.
-LAW = {
-    **rows_of("exponent", "1", "exponent m of real contact area against force"),
-    **rows_of("unit_area", "mm2", "real contact area at 1 N by the fitted law"),
-    "force_low": ("N", "smallest force fitted"),
-    "force_high": ("N", "largest force fitted"),
-    "n": ("1", "loads fitted"),
-}
+#: Law A_r ~ F^m of the corrected area: unit, long name.
+_NAMES = {
+    f"corrected_{name}": (units, f"{words}, corrected area")
+    for name, (units, words) in {
+        **rows_of("exponent", "1", "exponent m of real contact area against force"),
+        **rows_of("unit_area", "mm2", "real contact area at 1 N by the fitted law"),
+        "force_low": ("N", "smallest force fitted"),
+        "force_high": ("N", "largest force fitted"),
+        "n": ("1", "loads fitted"),
+    }.items()
+} | {"no_corrected_law": ("1", "reason why there is no law of the area, corrected")}
 
 
-def _add_laws(result: xr.Dataset, curves: xr.Dataset) -> None:
-    """Power law of the corrected area, and the reason for none."""
-    dims = ("direction", "offset")
-    force = np.log(curves["normal_force"].values)
-    fitted = result["corrected_fitted"].transpose(*dims, "normal_force").values
-    area = np.log(curves["area_corrected"].transpose(*dims, "normal_force").where(fitted).values)
-    lines = np.empty(area.shape[:2], object)
-    for index in np.ndindex(lines.shape):
-        lines[index] = fit_line(force[fitted[index]], area[index][fitted[index]])
-    exponent = Estimate.stack((line.slope for line in lines.flat), lines.shape)
-    at_one = Estimate.stack((line.intercept for line in lines.flat), lines.shape)
-    first, last = np.exp(exponent.over)
-    values = exponent.columns("exponent") | at_one.mapped(np.exp).columns("unit_area")
-    values |= {"force_low": first, "force_high": last, "n": exponent.n}
-    for key, (units, words) in LAW.items():
-        attrs = cf_attrs(units, f"{words}, corrected area")
-        result[f"corrected_{key}"] = (dims, values[key], attrs)
-    reasons = _reasons_for_no_law(result, curves)
-    words = "reason why there is no law of the area, corrected"
-    result["no_corrected_law"] = dims, reasons, cf_attrs("1", words)
-
-
-def _reasons_for_no_law(result: xr.Dataset, curves: xr.Dataset) -> np.ndarray:
-    """Reason why a curve has no law of the area, (direction, offset); empty if it has one."""
-    full = (curves["area_share"] > 0.5).all("normal_force") & ~result["fitted"].any("normal_force")
-    n = result["corrected_n"].values.astype(int)
-    reasons = [
-        "" if loads >= MIN_POINTS else FULL_CONTACT if whole else _too_few(loads)
-        for loads, whole in zip(n.ravel(), full.values.ravel(), strict=True)
-    ]
-    return np.array(reasons).reshape(n.shape)
-
-
-def _too_few(n: int) -> str:
-    return f"{n} of {MIN_POINTS} loads with {CORRECTED_NODES} nodes in contact, but not all"
+def _law(
+    area: np.ndarray,
+    touching: np.ndarray,
+    fitted: np.ndarray,
+    raw_fitted: np.ndarray,
+    force: np.ndarray,
+) -> dict[str, Any]:
+    """Power law of the corrected area of one load curve, or the reason for none."""
+    exponent, at_one, _ = fit_line(np.log(force[fitted]), np.log(area[fitted]))
+    low, high = np.exp(exponent.over)
+    reason = ""
+    if exponent.n < MIN_POINTS:
+        full = (touching > 0.5).all() and not raw_fitted.any()
+        few = f"{exponent.n} of {MIN_POINTS} loads with {CORRECTED_NODES} nodes in contact"
+        reason = FULL_CONTACT if full else f"{few}, but not all"
+    return {
+        **exponent.columns("corrected_exponent"),
+        **at_one.mapped(np.exp).columns("corrected_unit_area"),
+        "corrected_force_low": low,
+        "corrected_force_high": high,
+        "corrected_n": exponent.n,
+        "no_corrected_law": reason,
+    }
 
 
 def _add_kappa(result: xr.Dataset, curves: xr.Dataset, e_star: float, node: xr.DataArray) -> None:
@@ -244,7 +199,7 @@ def _add_kappa(result: xr.Dataset, curves: xr.Dataset, e_star: float, node: xr.D
         result.update(mean.variables(f"{prefix}mean_kappa", at_light.dims[:-1], "1", text))
         n = light.sum("normal_force")
         result[f"{prefix}mean_kappa_n"] = n.assign_attrs(cf_attrs("1", "loads in the mean"))
-        # xr.where would drop the labels of the offsets.
+        # np.where, because xr.where drops the labels of the offsets.
         reason = np.where(
             np.isnan(slope.transpose(*n.dims)),
             "the faces are flush and have no slope",

@@ -11,10 +11,10 @@ from ..core.labels import cf_attrs
 from ..core.verdicts import ABOVE, BELOW, WITHIN
 from . import theory
 
-#: Faces whose composite topography is less steep than this are flush: the rest is rounding.
+#: Smallest rms slope of faces that are not flush; less is rounding.
 FLUSH = 1e-9
 
-#: What the theories make of every composite topography: unit, long name.
+#: Areas by the theories of every composite topography: unit, long name.
 _OF_THEORIES = {
     "persson_share": ("1", "A_r/A_0 by Persson"),
     "bush_gibson_thomas_share": ("1", "A_r/A_0 by Bush, Gibson and Thomas"),
@@ -22,7 +22,7 @@ _OF_THEORIES = {
     "majumdar_bhushan_share": ("1", "A_r/A_0 by Majumdar and Bhushan"),
 }
 
-#: What they say whatever the topography.
+#: Variables that do not depend on the topography.
 _EXPONENTS = {
     "no_majumdar_bhushan": ((), "1", "why there is no area by Majumdar and Bhushan"),
     "archard_level": ("archard_level", "1", "generations n of spheres upon spheres"),
@@ -32,20 +32,10 @@ _EXPONENTS = {
 def add_theories(
     result: xr.Dataset, curves: xr.Dataset, e_star: float, dimension: float, spacing: float
 ) -> None:
-    """Add the areas that theories make of the surface to the laws.
+    """Add the areas that theories make of the surface to the laws, over (direction, offset, load).
 
-    Parameters
-    ----------
-    result : xr.Dataset
-        Statistics of the composite topographies over (direction, offset); all is added to it.
-    curves : xr.Dataset
-        ``nominal_pressure`` over the loads.
-    e_star : float
-        E*, MPa.
-    dimension : float
-        Delta_g of the surface; NaN leaves Majumdar and Bhushan out.
-    spacing : float
-        Of the scan, mm.
+    ``result`` holds the statistics of the composite topographies, ``curves`` the loads; E* in MPa,
+    the scan's spacing in mm. Delta_g = NaN leaves Majumdar and Bhushan out.
     """
     rough = result.where(result["rms_slope"] > FLUSH)
     force, pressure = curves["normal_force"], curves["nominal_pressure"]
@@ -75,13 +65,7 @@ def add_theories(
 
 
 def add_comparison(result: xr.Dataset) -> None:
-    """Add which theories the laws agree with, and Persson's kappa over the pressures of the laws.
-
-    Parameters
-    ----------
-    result : xr.Dataset
-        Laws of the area over (direction, offset), with what :func:`add_theories` adds.
-    """
+    """Add the theories that the laws agree with, and Persson's kappa over their pressures."""
     low, high = (result[f"corrected_exponent_{end}"] for end in ("low", "high"))
     levels = result["archard_level"]
     archard = levels.copy(data=theory.archard_exponent(levels.values))
@@ -91,12 +75,14 @@ def add_comparison(result: xr.Dataset) -> None:
     )
     kappa = Estimate.read(result, "corrected_mean_kappa")
     least, most = (result.attrs[f"{name}_kappa"] for name in ("persson", "bush_gibson_thomas"))
-    first, second = ((kappa.low <= one) & (one <= kappa.high) for one in (least, most))
+    first, second = (
+        (kappa.low <= theoretical) & (theoretical <= kappa.high) for theoretical in (least, most)
+    )
     places = [~kappa.known, first & second, first, second, kappa.value < least, kappa.value > most]
-    beside = np.select(places, ["", "both", "Persson", "Bush", BELOW, ABOVE], WITHIN)
+    position = np.select(places, ["", "both", "Persson", "Bush", BELOW, ABOVE], WITHIN)
     words = "which theories the mean kappa of the corrected area agrees with, or where it lies"
     dims = result["corrected_mean_kappa"].dims
-    result["kappa_beside_theories"] = dims, beside, cf_attrs("1", words)
+    result["kappa_beside_theories"] = dims, position, cf_attrs("1", words)
     fitted = result["reduced_pressure"].where(result["fitted"])
     ends = (getattr(fitted, end)(["offset", "normal_force"]).values for end in ("min", "max"))
     lines = [theory.persson_line(*pair) for pair in zip(*ends, strict=True)]

@@ -51,31 +51,12 @@ def branches(
 ) -> xr.Dataset:
     """States of loading, of unloading from the largest load to none, and of reloading to it.
 
-    Parameters
-    ----------
-    composite : (ny, nx) ndarray
-        h, mm.
-    loaded : (n,) sequence of ContactState
-        Of that topography under ascending forces above zero; they are not solved again.
-    solving : mapping
-        ``hardness`` and ``rtol`` of :func:`roughcontact.load_path`.
-    where : str
-        What is loaded, for errors.
+    ``loaded`` are the states of the composite topography, mm, under ascending forces above zero,
+    which are not solved again; ``solving`` has ``hardness`` and ``rtol`` of
+    :func:`roughcontact.load_path`, and ``where`` names what is loaded in errors.
+    :data:`OF_BRANCHES` are over ``branch`` and ``normal_force``, N; the unloading branch begins
+    with the state that loading ended with. Raises `NotConverged`.
 
-    Returns
-    -------
-    xr.Dataset
-        :data:`OF_BRANCHES` over ``branch`` and ``normal_force`` (N), of which the unloading branch
-        begins with the state that loading ended with; :data:`OF_CYCLE`; the maps ``permanent_set``
-        (mm) and ``yielded`` of the cycle.
-
-    Raises
-    ------
-    NotConverged
-        If a state could not be verified; its note names it.
-
-    Notes
-    -----
     Below the largest load the contact is elastic on the heights that loading has left: unloading
     and reloading are one curve, solved once, and where nothing has yielded that of loading.
     """
@@ -96,7 +77,7 @@ def branches(
             raise
         again, residual = [*down[::-1], full], empty.closure
     first, second = ([_numbers(state) for state in states] for states in (load, again))
-    # Unloading begins elastically at the closure where loading ended.
+    # Unloading is elastic and begins at the closure where loading ended.
     rows = [first, [*second[:-1], second[-1] | {"closure": top.closure}], second]
     values = {
         **{name: [[state[name] for state in row] for row in rows] for name in OF_BRANCHES},
@@ -144,21 +125,9 @@ _OF_INTERFACE = {
 def joint_branches(loading: JointLoading, curves: xr.Dataset, mapped: xr.Dataset) -> xr.Dataset:
     """Branches of a joint at the reported offset, over the loads that closure laws are fitted to.
 
-    Parameters
-    ----------
-    loading : JointLoading
-        At that offset alone.
-    curves : xr.Dataset
-        The stage ``closure``.
-    mapped : xr.Dataset
-        Fields of the states at that offset, from :func:`states.states.map_states`.
-
-    Returns
-    -------
-    xr.Dataset
-        That of :func:`branches` and closures and stiffness of the interface, up to
-        :data:`core.limits.SEATED_SPAN` times the seating pressure: what was loaded until the whole
-        window crushes tells nothing of a joint in use.
+    ``loading`` is at that offset alone, ``curves`` the stage ``closure``, ``mapped`` the fields by
+    :func:`states.states.map_states`. Loads end at :data:`core.limits.SEATED_SPAN` times the seating
+    pressure: a window that was loaded until all of it crushes tells nothing of a joint in use.
     """
     (cells,), (offset,) = loading.cells, loading.offsets
     factor = int(curves["resolution"].min())
@@ -216,6 +185,6 @@ def _solved_states(
         pressure = np.where(stored >= np.float32(hardness), hardness, stored.astype(float))
         displacement = space.displacement(pressure)
         gap = clearance - closure + displacement
-        known = float(closure), float(force), float(residual), 0, space, hardness
-        states.append(ContactState(pressure, displacement, gap, *known))
+        numbers = float(closure), float(force), float(residual), 0, space, hardness
+        states.append(ContactState(pressure, displacement, gap, *numbers))
     return states

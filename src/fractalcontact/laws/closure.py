@@ -14,7 +14,7 @@ from .conductance import add_conductance
 from .load_curve import left_out_misses
 from .seated_laws import add_seated_laws
 
-#: Why a state that was solved has no stiffness of the interface.
+#: Reasons why a solved state has no stiffness of the interface.
 FLUSH_FACES = "the faces lie flush: there is no interface"
 SINGLE_CELLS = (
     f"fewer than {RESOLVED_NODES} cells carry the change of the force: a stiffness would be that "
@@ -24,35 +24,18 @@ FULL_CONTACT = "contact is so full that joint and blocks together are no softer 
 
 
 def determined_closure(closing: xr.DataArray, flush: xr.DataArray) -> xr.DataArray:
-    """Interface closure where it is determined: missing where contact is too full for one.
+    """Interface closure, mm, where it is determined: missing where contact is too full for one.
 
     Faces in full contact are loaded like a rigid punch, which settles less than the uniform
     pressure of w_b does: by some 0.08 F/(E* b) for a square. Where the rough faces close by less
-    than that, w - w_b is negative, which no closure is, and says nothing of the interface.
-
-    Parameters
-    ----------
-    closing : xr.DataArray
-        w_int of :func:`interface_closure`, mm.
-    flush : xr.DataArray of bool
-        Where faces match everywhere: nothing closes there, and that is known.
-
-    Returns
-    -------
-    xr.DataArray
-        NaN where w_int <= 0 and the faces are not flush.
+    than that, w - w_b is negative, which no closure is, and says nothing of the interface. Where
+    faces are flush nothing closes, and that is known.
     """
     return closing.where((closing > 0) | flush)
 
 
 def full_contact_warning(curves: xr.Dataset) -> str:
-    """Warning where contact is so full that no interface is left to measure, "" if nowhere.
-
-    Parameters
-    ----------
-    curves : xr.Dataset
-        From :func:`closure_curves`.
-    """
+    """Warning where contact is so full that no interface is left to measure, "" if nowhere."""
     finest = curves.sel(resolution=curves["resolution"].min())
     solved = finest["solved"]
     full = int((solved & finest["interface_closure"].isnull()).sum())
@@ -124,18 +107,7 @@ def interface_curves(
     openings: xr.DataArray | None = None,
     seating_pressure: float = 0.0,
 ) -> xr.Dataset:
-    """Closure curves of the interface without the laws that they follow.
-
-    Parameters
-    ----------
-    states, window, e_star, openings, seating_pressure
-        As of :func:`closure_curves`.
-
-    Returns
-    -------
-    xr.Dataset
-        That of :func:`closure_curves` without its fits.
-    """
+    """Closure curves of :func:`closure_curves` without the laws that they follow."""
     result = interface_states(states, window, e_star)
     add_conductance(result, e_star)
     _add_errors(result, window[0] * window[1], e_star)
@@ -145,17 +117,9 @@ def interface_curves(
 
 
 def interface_states(states: xr.Dataset, window: tuple[float, float], e_star: float) -> xr.Dataset:
-    """Closure, stiffness and contact of the interface alone: no errors, no separation, no seat.
+    """Closure, stiffness and contact of the interface alone, from each state by itself.
 
-    Parameters
-    ----------
-    states, window, e_star
-        As of :func:`closure_curves`.
-
-    Returns
-    -------
-    xr.Dataset
-        Of what :func:`interface_curves` gives, that which follows from each state for itself.
+    Without the errors, separation and seats of :func:`interface_curves`.
     """
     result = states[[*STATE_VARIABLES, *OFFSETS]].copy()
     settlement = bulk_settlement(states["normal_force"].values, e_star, *window)
@@ -173,18 +137,18 @@ def _add_interface(curves: xr.Dataset, settlement: np.ndarray, area: float) -> N
         force / area,
         cf_attrs("MPa", "nominal pressure sigma_0 = F / A_0"),
     )
-    # Added at the end, all at once: xarray goes through all that is there each time.
-    found: dict[str, xr.DataArray | tuple] = {}
+    # Variables are added together: each single assignment makes xarray check the whole dataset.
+    added: dict[str, xr.DataArray | tuple] = {}
     flush = curves["composite_spread"] == 0
     closing = interface_closure(curves["closure"], curves["bulk_settlement"], flush)
     words = "interface closure w_int = w - w_b; missing where contact is too full"
     closing = determined_closure(closing, flush).transpose(*order)
-    found["interface_closure"] = closing.assign_attrs(cf_attrs("mm", words))
+    added["interface_closure"] = closing.assign_attrs(cf_attrs("mm", words))
     for name, words in (
         ("area", "real contact area A_r / A_0"),
         ("area_corrected", "real contact area A_r / A_0, corrected for the perimeter"),
     ):
-        found[f"{name}_share"] = (curves[name] / area).assign_attrs(cf_attrs("1", words))
+        added[f"{name}_share"] = (curves[name] / area).assign_attrs(cf_attrs("1", words))
     for name, fewest, words in (
         ("resolved", RESOLVED_NODES, "{} nodes or more touch, else no fit takes the state"),
         (
@@ -194,18 +158,18 @@ def _add_interface(curves: xr.Dataset, settlement: np.ndarray, area: float) -> N
         ),
     ):
         attrs = cf_attrs("1", words.format(fewest))
-        found[name] = (curves["nodes"] >= fewest).assign_attrs(attrs)
+        added[name] = (curves["nodes"] >= fewest).assign_attrs(attrs)
     stiffness = interface_stiffness(
         curves["stiffness"] / area, curves["nominal_pressure"] / curves["bulk_settlement"]
     ).where(~flush)
     words = "tangent stiffness d sigma_0 / d w_int of the interface; missing if flush"
     stiffness = stiffness.transpose(*order).assign_attrs(cf_attrs("MPa/mm", words))
-    found["interface_stiffness"] = stiffness
+    added["interface_stiffness"] = stiffness
     reason = stiffness_reason(stiffness, curves["stiffness"], flush)
-    # As bare values: labels that xr.where made have no units.
+    # Bare values are stored, because labels made by xr.where have no units.
     why = reason.where(curves["solved"], "").transpose(*order).values
-    found["interface_stiffness_reason"] = (order, why, reason.attrs)
-    curves.update(found)
+    added["interface_stiffness_reason"] = (order, why, reason.attrs)
+    curves.update(added)
 
 
 def stiffness_reason(
@@ -213,12 +177,7 @@ def stiffness_reason(
 ) -> xr.DataArray:
     """Reason why states have no stiffness of the interface; "" if they have one.
 
-    Parameters
-    ----------
-    interface, total : xr.DataArray
-        Stiffness of the interface, and of it and the blocks; NaN where there is none.
-    flush : xr.DataArray or bool
-        Where faces match everywhere.
+    ``total`` is the stiffness of interface and blocks together.
     """
     why = xr.where(total.isnull(), SINGLE_CELLS, FULL_CONTACT)
     why = xr.where(interface.notnull(), "", xr.where(flush, FLUSH_FACES, why))
@@ -285,55 +244,32 @@ def _spacing_error(closure: xr.DataArray) -> xr.DataArray:
 
 
 def interface_stiffness(total: xr.DataArray, bulk: xr.DataArray) -> xr.DataArray:
-    """Stiffness of the interface alone, from that of the whole, of which the bulk is a part.
+    """Stiffness of the interface alone, MPa/mm: 1/k = 1/k_int + 1/k_bulk, compliances add up.
 
-    The two compliances add up: 1/k = 1/k_int + 1/k_bulk.
-
-    Parameters
-    ----------
-    total, bulk : xr.DataArray
-        d sigma_0 / dw and sigma_0 / w_b, MPa/mm.
-
-    Returns
-    -------
-    xr.DataArray
-        d sigma_0 / d w_int, MPa/mm; NaN where the whole is not more compliant than the bulk
-        (contact so full that it answers like a punch).
+    ``total`` is d sigma_0/dw, ``bulk`` sigma_0/w_b. NaN where the whole is no more compliant than
+    the bulk: contact is so full that it answers like a punch.
     """
     compliance = 1 / total - 1 / bulk
     return 1 / compliance.where(compliance > 0)
 
 
 def elastic_dilatancy(curves: xr.Dataset, joint: xr.Dataset) -> xr.Dataset:
-    """delta(F, v) = delta_r(v) - w_int(F, v) at the scan's own resolution (eq. 4).
+    """delta(F, v) = delta_r(v) - w_int(F, v) at the scan's own resolution (eq. 4), mm.
 
-    Parameters
-    ----------
-    curves : xr.Dataset
-        From :func:`closure_curves`.
-    joint : xr.Dataset
-        From :func:`joint.joint.describe_joint`.
+    Over (contact_direction, offset, normal_force), with ``separation`` and ``left_out_error``, the
+    error of interpolating the closure curve at this force where its own state is left out;
+    ``offset_on_grid`` over (contact_direction, offset), and the rigid dilatancy of `joint`.
 
-    Returns
-    -------
-    xr.Dataset
-        Rigid dilatancy over (direction, rigid_offset); ``elastic_dilatancy``, ``separation`` and
-        ``left_out_error`` over (contact_direction, offset, normal_force), the latter what
-        interpolating the closure curve at this force gives wrong when its own state is left out;
-        ``offset_on_grid`` over (contact_direction, offset).
-
-    Notes
-    -----
     delta_r and w_int both hang on the highest node, which cancels in their difference: with the
-    separation of the mean planes u = delta_r - w and the bulk settlement w_b it is
-    delta = u + w_b, but for flush faces, whose w_int is 0, and for a surface against a plane,
-    whose u is counted from its mean plane.
+    separation of the mean planes u = delta_r - w and the bulk settlement w_b it is delta = u + w_b,
+    but for flush faces, whose w_int is 0, and for a surface against a plane, whose u is counted
+    from its mean plane.
     """
     result = joint[["rigid_dilatancy", "composite_rms"]].copy()
     finest = curves.sel(resolution=curves["resolution"].min(), drop=True)
     finest = finest.rename(direction="contact_direction")
-    # The opening at the cells whose contact was solved: that of `joint` is at the first direction's
-    # offsets, from which those of the others differ where cells are not square.
+    # The opening belongs to the cells whose contact was solved. That of `joint` is at the offsets
+    # of the first direction; where cells are not square, the other directions differ.
     slides = finest["contact_direction"] != "none"
     opening = finest["prefractal_opening"].where(slides).fillna(finest["rigid_opening"])
     elastic = opening - finest["interface_closure"]

@@ -8,19 +8,11 @@ from numpy.typing import ArrayLike
 def closure_at_force(
     force: float, forces: ArrayLike, closures: ArrayLike, stiffnesses: ArrayLike
 ) -> float:
-    """Closure at a force, read from a solved closure curve, mm; NaN outside the curve.
+    """Closure at a force, mm, read from a solved closure curve; NaN outside the curve.
 
-    Parameters
-    ----------
-    force : float
-        F, N.
-    forces, closures, stiffnesses : (n,) array_like
-        F (ascending, > 0), w (mm) and dF/dw (N/mm) of the states of the curve. A stiffness that is
-        missing is taken from the states around.
-
-    Notes
-    -----
-    Cubic Hermite interpolation of log w against log F, with the slope F/(w dF/dw) of each state.
+    Forces F (n,), N, ascend from above 0; closures w in mm, stiffnesses dF/dw in N/mm. Cubic
+    Hermite interpolation of log w against log F, with the slope F/(w dF/dw) of each state; a
+    stiffness that is missing is taken from the neighbouring states.
     """
     from scipy.interpolate import CubicHermiteSpline
 
@@ -35,22 +27,11 @@ def closure_at_force(
 def left_out_misses(
     forces: np.ndarray, closures: xr.DataArray, stiffnesses: xr.DataArray
 ) -> xr.DataArray:
-    """Leave-one-out errors of closure curves: each state read from the others.
+    """Leave-one-out errors of closure curves, mm: each state read from the others, less its own.
 
-    Parameters
-    ----------
-    forces : (n,) ndarray
-        F, N, ascending.
-    closures, stiffnesses : DataArray (..., normal_force)
-        w (mm) and dF/dw (N/mm); NaN where a state was not solved.
+    Forces (n,) in N ascend; closures, mm, and stiffnesses, N/mm, are NaN where a state was not
+    solved. The first and the last state of a curve have no error.
 
-    Returns
-    -------
-    DataArray (..., normal_force)
-        Closure read less closure solved, mm; NaN for the first and the last state of a curve.
-
-    Notes
-    -----
     The interpolation bridges two intervals, so that the error between states is overstated, by 16
     where the curve is smooth. Where few nodes touch it is not: of load steps three to a decade on
     twins of rock joints, every second left out, the error held in two of three.
@@ -58,9 +39,9 @@ def left_out_misses(
 
     def of_curve(closure, stiffness):
         missed = np.full(len(forces), np.nan)
-        known = np.flatnonzero(np.isfinite(closure))
-        for i in range(1, len(known) - 1):
-            others, j = np.delete(known, i), known[i]
+        solved = np.flatnonzero(np.isfinite(closure))
+        for i in range(1, len(solved) - 1):
+            others, j = np.delete(solved, i), solved[i]
             read = closure_at_force(forces[j], forces[others], closure[others], stiffness[others])
             missed[j] = read - closure[j]
         return missed

@@ -7,24 +7,26 @@ asperities, the sum can pass the vertical, and what is stated as strength is tru
 """
 
 from collections.abc import Mapping
+from functools import partial
 from typing import Any
 
 import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from ..core.datasets import labelled
-from ..core.estimate import Estimate, rows_of
+from ..core.estimate import Estimate
 from ..core.intervals import mean_interval
 from ..core.labels import cf_attrs
 from ..core.limits import JRC_RANGE, LARGEST_FRICTION_ANGLE, MAX_TOUCHING
+from ..core.per_curve import per_curve
 from ..core.settings import Friction, Material, StrengthSettings
 from ..core.window import nominal_area, window_sides
 from ..joint.barton import LABORATORY_LENGTH, barton_strength, scaled_joint
-from ..joint.contact_strength import contact_strength
 from ..joint.joint import rigid_dilatancy, sliding_axis
 from ..joint.jrc import profile_roughness
 from ..states.states import DIP, SOLVER_ERROR
+from .contact_strength import NAMES as CONTACT_FIELDS
+from .contact_strength import contact_strength
 
 #: Residual strength is the mean over the intervals beyond this fraction of the largest offset.
 RESIDUAL_FROM = 0.5
@@ -33,17 +35,7 @@ RESIDUAL_FROM = 0.5
 def from_flush(offset: ArrayLike, dilatancy: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
     """A dilatancy curve of faces that match: it starts from v = 0 and delta = 0 under any load.
 
-    Parameters
-    ----------
-    offset : (n,) array_like
-        mm, ascending, >= 0.
-    dilatancy : (n, ...) array_like
-        mm.
-
-    Returns
-    -------
-    offset : (m,) ndarray
-    dilatancy : (m, ...) ndarray
+    Offsets (n,) ascend from 0 or more, dilatancies (n, ...) likewise in mm.
     """
     offset, dilatancy = np.asarray(offset, float), np.asarray(dilatancy, float)
     slid = offset > 0
@@ -52,21 +44,10 @@ def from_flush(offset: ArrayLike, dilatancy: ArrayLike) -> tuple[np.ndarray, np.
 
 
 def dilatancy_angle(offset: ArrayLike, dilatancy: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
-    """Dilatancy angle i = atan(d delta / dv) between successive offsets.
+    """Middle of intervals of offsets, mm, and dilatancy angle i = atan(d delta / dv), degrees.
 
-    Parameters
-    ----------
-    offset : (n,) array_like
-        v, mm, ascending. Where faces match, start it with :func:`from_flush`.
-    dilatancy : (n, ...) array_like
-        delta, mm.
-
-    Returns
-    -------
-    midpoint : (n - 1,) ndarray
-        Middle of the intervals, mm.
-    angle : (n - 1, ...) ndarray
-        Degrees.
+    Offsets v (n,) ascend, dilatancies delta (n, ...) likewise in mm. Where faces match, start the
+    curve with :func:`from_flush`.
     """
     offset, dilatancy = np.asarray(offset, float), np.asarray(dilatancy, float)
     step = np.diff(offset).reshape(-1, *[1] * (dilatancy.ndim - 1))
@@ -77,21 +58,10 @@ def dilatancy_angle(offset: ArrayLike, dilatancy: ArrayLike) -> tuple[np.ndarray
 def angles_with_errors(
     offset: ArrayLike, dilatancy: ArrayLike, error: ArrayLike
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Dilatancy angle by :func:`dilatancy_angle`, with its error bound.
+    """Middle of the intervals, mm, dilatancy angle and its error bound, degrees.
 
-    Parameters
-    ----------
-    offset, dilatancy
-        As for :func:`dilatancy_angle`.
-    error : (n, ...) array_like
-        Bound on the error of each dilatancy, mm.
-
-    Returns
-    -------
-    midpoint, angle
-    off : (n - 1, ...) ndarray
-        Bound on the error of each angle, degrees: both ends of an interval may be off, in opposite
-        directions.
+    As :func:`dilatancy_angle`, with a bound on the error of each dilatancy, mm: both ends of an
+    interval may be off, in opposite directions.
     """
     midpoint, angle = dilatancy_angle(offset, dilatancy)
     ends = [slopes_apart(offset, dilatancy, sign * np.asarray(error)) for sign in (-1, 1)]
@@ -106,21 +76,10 @@ def slopes_apart(offset: ArrayLike, dilatancy: ArrayLike, off: ArrayLike) -> np.
 
 
 def shear_strength(pressure: ArrayLike, friction_angle: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
-    """tau = sigma_n tan(angle), the angle truncated to 0 and `LARGEST_FRICTION_ANGLE`.
+    """tau = sigma_n tan(angle), MPa, the angle truncated to 0 and `LARGEST_FRICTION_ANGLE`.
 
-    Parameters
-    ----------
-    pressure : array_like
-        sigma_n, MPa.
-    friction_angle : array_like
-        Effective friction angle, degrees; NaN gives NaN.
-
-    Returns
-    -------
-    strength : ndarray
-        MPa.
-    truncated : ndarray of int
-        1 where the angle was truncated at the largest, -1 at 0, else 0.
+    Effective friction angles are in degrees; NaN gives NaN. Second comes where the angle was
+    truncated: 1 at the largest, -1 at 0, else 0.
     """
     angle = np.asarray(friction_angle, float)
     truncated = (angle > LARGEST_FRICTION_ANGLE).astype(int) - (angle < 0)
@@ -131,20 +90,9 @@ def shear_strength(pressure: ArrayLike, friction_angle: ArrayLike) -> tuple[np.n
 def strength_with_error(
     pressure: ArrayLike, friction_angle: np.ndarray, off: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Shear strength by :func:`shear_strength`, with its error bound.
+    """Shear strength by :func:`shear_strength`, where it was truncated, and its error bound, MPa.
 
-    Parameters
-    ----------
-    pressure, friction_angle
-        As for :func:`shear_strength`.
-    off : ndarray
-        Bound on the error of the angles, degrees.
-
-    Returns
-    -------
-    strength, truncated
-    error : ndarray
-        MPa.
+    ``off`` bounds the error of the angles, degrees.
     """
     strength, truncated = shear_strength(pressure, friction_angle)
     ends = [shear_strength(pressure, friction_angle + sign * off)[0] for sign in (-1, 1)]
@@ -154,28 +102,19 @@ def strength_with_error(
 def peak(midpoint: ArrayLike, values: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
     """Largest value over the intervals (the first axis) and the offset where it is first reached.
 
-    Returns
-    -------
-    value, where : ndarray
-        NaN where there is no value.
+    NaN where there is no value.
     """
     values = np.asarray(values, float)
     if not len(values):
         return (np.full(values.shape[1:], np.nan),) * 2
-    known = np.where(np.isfinite(values), values, -np.inf)
-    any_known = np.isfinite(known).any(axis=0)
-    highest = np.where(any_known, known.max(axis=0), np.nan)
-    return highest, np.where(any_known, np.asarray(midpoint)[known.argmax(axis=0)], np.nan)
+    filled = np.where(np.isfinite(values), values, -np.inf)
+    any_known = np.isfinite(filled).any(axis=0)
+    highest = np.where(any_known, filled.max(axis=0), np.nan)
+    return highest, np.where(any_known, np.asarray(midpoint)[filled.argmax(axis=0)], np.nan)
 
 
 def residual(midpoint: ArrayLike, values: ArrayLike, largest: float) -> Estimate:
-    """Mean over the intervals beyond `RESIDUAL_FROM` of the largest offset, with its interval.
-
-    Returns
-    -------
-    Estimate
-        With one interval of offsets there is no interval of the mean.
-    """
+    """Mean over the intervals beyond `RESIDUAL_FROM` of the largest offset, with its interval."""
     beyond = np.asarray(midpoint) >= RESIDUAL_FROM * largest
     return mean_interval(np.asarray(values, float)[beyond])
 
@@ -188,51 +127,44 @@ def joint_strength(
 ) -> xr.Dataset:
     """Dilatancy angle, friction angle and shear strength over the offsets, peak and residual.
 
-    Parameters
-    ----------
-    dilatancy : xr.Dataset
-        From :func:`laws.closure.elastic_dilatancy`.
-    joint : xr.Dataset
-        From :func:`joint.joint.describe_joint`.
-    specimen : xr.Dataset
-        That slides: not one against a plane.
-    settings : StrengthSettings
-        What depends on a quantity that is not stated is NaN.
+    ``dilatancy`` is that of :func:`laws.closure.elastic_dilatancy`; the specimen slides.
+    :data:`FIELDS`, what :func:`joint.jrc.profile_roughness` gives and, where dips are known,
+    :data:`laws.contact_strength.NAMES`, over ``contact_direction`` and others. ``interval`` holds
+    midpoints of the offsets in the first direction, ``midpoint`` those of each. What depends on a
+    quantity that is not stated is NaN.
 
-    Returns
-    -------
-    xr.Dataset
-        Over (contact_direction, interval, normal_force), (contact_direction, normal_force) and
-        (contact_direction, sampling): :data:`FIELDS` and what
-        :func:`joint.jrc.profile_roughness` gives. What rests on solved states has an
-        ``_error``, the solver's. ``interval`` holds midpoints of the offsets in the first
-        direction, ``midpoint`` those of each.
-
-    Notes
-    -----
     Barton's phi_r is taken as the basic angle (faces that are not weathered), his JRC_0 as that of
     the window: Z2 at a fixed step hardly depends on the length of the profile. His correction for
     scale then goes from `LABORATORY_LENGTH` to the window's own length along the sliding.
     """
     material = settings.material
     pressure = dilatancy["normal_force"].values / nominal_area(specimen)
-    directions = [str(d) for d in dilatancy["contact_direction"].values]
-    parts = [
-        _one_direction(dilatancy, joint, specimen, material, direction, pressure)
-        for direction in directions
-    ]
-    result = xr.concat(parts, "contact_direction", join="override", combine_attrs="override")
+    directions = dilatancy["contact_direction"]
+    roughness = [profile_roughness(specimen, str(d)) for d in directions.values]
+    result = xr.concat(roughness, directions, combine_attrs="override")
+    of_direction = {
+        "direction": directions,
+        "offset": dilatancy["offset_on_grid"],
+        "elastic": dilatancy["elastic_dilatancy"],
+        "error": dilatancy["elastic_dilatancy_error"],
+        "cells": joint["offset_cells"].sel(contact_direction=directions),
+        "jrc": result["jrc_used"],
+    }
+    strength = partial(_strength, specimen=specimen, material=material, pressure=pressure)
+    result.update(per_curve(of_direction, strength, FIELDS, ("offset", "normal_force")))
+    result["scaled_roughness"].attrs["laboratory_length_mm"] = LABORATORY_LENGTH
+    if DIP in dilatancy:
+        of_contact = partial(
+            contact_strength, pressure=pressure, angle=material.basic_friction_angle
+        )
+        along = ("dip_step", "offset", "normal_force", "force_part")
+        result.update(per_curve({"dips": dilatancy[DIP]}, of_contact, CONTACT_FIELDS, along))
+    interval = "interval", result["midpoint"].values[0], result["midpoint"].attrs
     result = result.assign_coords(
-        contact_direction=directions,
-        normal_force=dilatancy["normal_force"],
-        offset=dilatancy["offset"],
-        interval=("interval", result["midpoint"].values[0], cf_attrs("mm", FIELDS["midpoint"][1])),
+        normal_force=dilatancy["normal_force"], offset=dilatancy["offset"], interval=interval
     )
-    result["nominal_pressure"] = (
-        "normal_force",
-        pressure,
-        cf_attrs("MPa", "nominal pressure sigma_0"),
-    )
+    attrs = cf_attrs("MPa", "nominal pressure sigma_0")
+    result["nominal_pressure"] = ("normal_force", pressure, attrs)
     for name, units, words in (
         ("basic_friction_angle", "degree", "basic friction angle phi_b"),
         ("joint_wall_strength", "MPa", "joint wall compressive strength JCS"),
@@ -241,35 +173,41 @@ def joint_strength(
     return result
 
 
+_EACH, _LOAD = ("interval", "normal_force"), ("normal_force",)
 _QUANTITIES = {
-    "midpoint": ("mm", "middle of the interval of offsets"),
-    "dilatancy_angle": ("degree", "dilatancy angle i"),
-    "rigid_dilatancy_angle": ("degree", "dilatancy angle of the rigid joint, F = 0"),
-    "friction_angle": ("degree", "effective friction angle phi_b + i, not truncated"),
-    "shear_strength": ("MPa", "shear strength tau"),
+    "midpoint": ("mm", "middle of the interval of offsets", "interval"),
+    "dilatancy_angle": ("degree", "dilatancy angle i", *_EACH),
+    "rigid_dilatancy_angle": ("degree", "dilatancy angle of the rigid joint, F = 0", "interval"),
+    "friction_angle": ("degree", "effective friction angle phi_b + i, not truncated", *_EACH),
+    "shear_strength": ("MPa", "shear strength tau", *_EACH),
     "truncated_high": (
         "1",
         f"intervals whose angle was truncated at {LARGEST_FRICTION_ANGLE:g} degrees",
+        *_LOAD,
     ),
-    "truncated_low": ("1", "intervals whose angle was truncated at 0"),
-    "shear_strength_valid": ("1", "the shear strength is a result"),
-    "shear_strength_reason": ("1", "why the shear strength is no result"),
-    "peak_strength_valid": ("1", "the peak strength is a result"),
-    "peak_strength_reason": ("1", "why the peak strength is no result"),
-    "peak_strength": ("MPa", "largest shear strength over the offsets"),
-    "peak_offset": ("mm", "offset where it is first reached"),
-    "peak_dilatancy_angle": ("degree", "largest dilatancy angle over the offsets"),
-    **rows_of("residual_strength", "MPa", "mean shear strength beyond half of the largest offset"),
-    **rows_of("residual_angle", "degree", "mean dilatancy angle beyond half of the largest offset"),
-    "residual_n": ("1", "intervals beyond half of the largest offset"),
-    "barton_strength": ("MPa", "peak strength by Barton's law"),
-    "peak_over_barton": ("1", "largest shear strength over the peak by Barton's law"),
+    "truncated_low": ("1", "intervals whose angle was truncated at 0", *_LOAD),
+    "shear_strength_valid": ("1", "the shear strength is a result", *_EACH),
+    "shear_strength_reason": ("1", "why the shear strength is no result", *_EACH),
+    "peak_strength_valid": ("1", "the peak strength is a result", *_LOAD),
+    "peak_strength_reason": ("1", "why the peak strength is no result", *_LOAD),
+    "peak_strength": ("MPa", "largest shear strength over the offsets", *_LOAD),
+    "peak_offset": ("mm", "offset where it is first reached", *_LOAD),
+    "peak_dilatancy_angle": ("degree", "largest dilatancy angle over the offsets", *_LOAD),
+    "residual_strength": ("MPa", "mean shear strength beyond half of the largest offset", *_LOAD),
+    "residual_angle": (
+        "degree",
+        "mean dilatancy angle beyond half of the largest offset",
+        *_LOAD,
+    ),
+    "residual_n": ("1", "intervals beyond half of the largest offset", *_LOAD),
+    "barton_strength": ("MPa", "peak strength by Barton's law", *_LOAD),
+    "peak_over_barton": ("1", "largest shear strength over the peak by Barton's law", *_LOAD),
     "scaled_roughness": ("1", "JRC_n for the window's length; missing above 20"),
     "scaled_wall_strength": ("MPa", "JCS_n for the window's length"),
-    "barton_scaled_strength": ("MPa", "peak strength by Barton's law with JRC_n and JCS_n"),
+    "barton_scaled_strength": ("MPa", "peak strength by Barton's law with JRC_n and JCS_n", *_LOAD),
 }
 
-#: What rests on solved states, and has a solver error bound for that.
+#: Quantities that rest on solved states, and have a solver error bound for that.
 _SOLVED = (
     "dilatancy_angle",
     "friction_angle",
@@ -277,33 +215,45 @@ _SOLVED = (
     "peak_strength",
     "peak_dilatancy_angle",
 )
-#: Why a strength by dilatancy is no result.
+#: Reasons why a strength by dilatancy is no result.
 TRUNCATED = f"friction and dilatancy angles together exceed {LARGEST_FRICTION_ANGLE:g} degrees"
 FULL = "half of the window touches, so that the faces no longer ride on asperities"
 
-#: Unit and long name of each quantity.
+#: Quantities of one direction: unit, long name, dimensions.
 FIELDS = _QUANTITIES | {
-    f"{name}_error": (_QUANTITIES[name][0], f"{_QUANTITIES[name][1]}, {SOLVER_ERROR}")
-    for name in _SOLVED
+    f"{name}_error": (units, f"{words}, {SOLVER_ERROR}", *dims)
+    for name, (units, words, *dims) in _QUANTITIES.items()
+    if name in _SOLVED
 }
 
 
-def _one_direction(
-    dilatancy: xr.Dataset,
-    joint: xr.Dataset,
+def _strength(
+    direction: np.ndarray,
+    offset: np.ndarray,
+    elastic: np.ndarray,
+    error: np.ndarray,
+    cells: np.ndarray,
+    jrc: np.ndarray,
+    *,
     specimen: xr.Dataset,
     material: Material,
-    direction: str,
     pressure: np.ndarray,
-) -> xr.Dataset:
-    """All of :func:`joint_strength` for one direction."""
-    angle_b = material.basic_friction_angle
-    largest = dilatancy["offset_on_grid"].sel(contact_direction=direction).values[-1]
-    curves = _curves_with_rigid(dilatancy, joint, specimen, direction)
-    midpoint, angles, angles_off = angles_with_errors(*curves)
+) -> dict[str, Any]:
+    """:data:`FIELDS` of one direction, from its elastic dilatancy (offset, load) and error, mm."""
+    angle_b, largest = material.basic_friction_angle, offset[-1]
+    rigid, _ = rigid_dilatancy(specimen, str(direction), cells)
+    # Openings of rigid faces are read off the heights: they have no solver error.
+    curves = np.column_stack([rigid, elastic])
+    errors = np.column_stack([np.zeros_like(rigid), error])
+    if specimen.attrs["opposite"] == "match":
+        # Flush faces have no dilatancy under any load, and no error of it.
+        _, errors = from_flush(offset, errors)
+        offset, curves = from_flush(offset, curves)
+    midpoint, angles, angles_off = angles_with_errors(offset, curves, errors)
     rigid_angle, angle, angle_off = angles[:, 0], angles[:, 1:], angles_off[:, 1:]
     tau, truncated, tau_off = strength_with_error(pressure, angle_b + angle, angle_off)
     stated = np.where(np.isfinite(angle_b), 1.0, np.nan)
+    mean_angle = residual(midpoint, angle, largest)
     values = {
         "midpoint": midpoint,
         "dilatancy_angle": angle,
@@ -316,40 +266,26 @@ def _one_direction(
         "dilatancy_angle_error": angle_off,
         "friction_angle_error": stated * angle_off,
         "shear_strength_error": tau_off,
-        # The largest of several values is off by no more than the one that is off most.
+        # The error of the largest of several values is at most the largest of their errors.
         "peak_strength_error": peak(midpoint, tau_off)[0],
         "peak_dilatancy_angle_error": peak(midpoint, angle_off)[0],
+        "residual_strength": residual(midpoint, tau, largest),
+        "residual_angle": mean_angle,
+        "residual_n": mean_angle.n,
     }
     values["peak_strength"], values["peak_offset"] = peak(midpoint, tau)
-    for name, of_intervals in (("strength", tau), ("angle", angle)):
-        mean = residual(midpoint, of_intervals, largest)
-        values |= mean.columns(f"residual_{name}") | {"residual_n": mean.n}
-
-    roughness = profile_roughness(specimen, direction)
-    side = window_sides(specimen)[sliding_axis(direction)]
-    values |= _by_barton(roughness["jrc_used"].item(), material, side, pressure)
-    # Contacts that yield carry their hardness: the pressure says how much of the window touches.
-    full = pressure >= MAX_TOUCHING * material.hardness
-    values |= judged_strengths(values, full)
-    table = {name: (_dims(name, of_name), *FIELDS[name]) for name, of_name in values.items()}
-    result = roughness.assign(labelled(table, values))
-    if DIP in dilatancy:
-        dips = dilatancy[DIP].sel(contact_direction=direction)
-        result = result.assign(contact_strength(dips, pressure, angle_b))
-    result["scaled_roughness"].attrs["laboratory_length_mm"] = LABORATORY_LENGTH
-    return result
+    side = window_sides(specimen)[sliding_axis(str(direction))]
+    values |= _by_barton(float(jrc), material, side, pressure)
+    # Yielding contacts carry their hardness, so that the pressure tells the fraction in contact.
+    return values | judged_strengths(values, pressure >= MAX_TOUCHING * material.hardness)
 
 
 def judged_strengths(values: Mapping[str, ArrayLike], full: np.ndarray) -> dict[str, np.ndarray]:
-    """Validity of shear and peak strengths, and the peaks over Barton's.
+    """Validity of shear and peak strengths of one direction, and the peaks over Barton's.
 
-    Parameters
-    ----------
-    values : mapping of str to array_like
-        ``midpoint`` (n,), ``friction_angle`` (n, load), ``peak_strength``, ``peak_offset`` and
-        ``barton_strength`` (load,) of one direction.
-    full : (load,) ndarray of bool
-        Where more than :data:`core.limits.MAX_TOUCHING` of the window touches.
+    ``values`` has ``midpoint`` (n,), ``friction_angle`` (n, load), ``peak_strength``,
+    ``peak_offset`` and ``barton_strength`` (load,); ``full`` (load,) is True where more than
+    :data:`core.limits.MAX_TOUCHING` of the window touches.
     """
     midpoint, angle, peak_offset, peaks, barton = (
         np.asarray(values[name])
@@ -373,33 +309,11 @@ def judged_strengths(values: Mapping[str, ArrayLike], full: np.ndarray) -> dict[
     }
 
 
-def _curves_with_rigid(
-    dilatancy: xr.Dataset, joint: xr.Dataset, specimen: xr.Dataset, direction: str
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Offsets (n,), dilatancy and its error (n, 1 + load), mm, the rigid joint's first."""
-    curve = dilatancy.sel(contact_direction=direction)
-    cells = joint["offset_cells"].sel(contact_direction=direction).values
-    rigid, _ = rigid_dilatancy(specimen, direction, cells)
-    offset = curve["offset_on_grid"].values
-    elastic, error = (
-        curve[name].transpose("offset", "normal_force").values
-        for name in ("elastic_dilatancy", "elastic_dilatancy_error")
-    )
-    both = np.column_stack([rigid, elastic])
-    # Openings of rigid faces are read off the heights.
-    errors = np.column_stack([np.zeros_like(rigid), error])
-    if specimen.attrs["opposite"] == "match":
-        # Flush faces have no dilatancy, whatever the load: no error either.
-        _, errors = from_flush(offset, errors)
-        offset, both = from_flush(offset, both)
-    return offset, both, errors
-
-
 def _by_barton(jrc: float, material: Friction, side: float, pressure: np.ndarray) -> dict[str, Any]:
     """Barton's law with the JRC and JCS as they are, and scaled to the side of the window."""
     angle, wall = material.basic_friction_angle, material.joint_wall_strength
     scaled_jrc, scaled_wall = scaled_joint(jrc, wall, side)
-    # Beyond Barton's scale there is nothing that his law was measured on.
+    # Barton's law was not measured on joints beyond his scale.
     scaled_jrc = scaled_jrc if scaled_jrc <= JRC_RANGE[1] else np.nan
     return {
         "barton_strength": barton_strength(pressure, angle, jrc, wall),
@@ -407,9 +321,3 @@ def _by_barton(jrc: float, material: Friction, side: float, pressure: np.ndarray
         "scaled_wall_strength": scaled_wall,
         "barton_scaled_strength": barton_strength(pressure, angle, scaled_jrc, scaled_wall),
     }
-
-
-def _dims(name: str, values: ArrayLike) -> tuple[str, ...]:
-    if name in ("midpoint", "rigid_dilatancy_angle"):
-        return ("interval",)
-    return {0: (), 1: ("normal_force",), 2: ("interval", "normal_force")}[np.ndim(values)]

@@ -14,7 +14,7 @@ from ..states.loading import JointLoading
 from .curve import Curve
 from .readings import TestReadings, read_test
 
-#: Pressures this near to each other, as a fraction, are one.
+#: Relative difference up to which two pressures count as equal.
 NEAR = 0.01
 
 
@@ -23,10 +23,8 @@ def check_tests(
 ) -> list[tuple[MeasuredTest, TestReadings]]:
     """Tests of a specimen with their readings, refused as the stage ``measured`` refuses them.
 
-    Raises
-    ------
-    InputError
-        For the first file, or the first thing said of it, that stops the stage before a solve.
+    Raises `InputError` for the first file, or the first thing said of it, that stops the stage
+    before a solve.
     """
     if not settings.measured:
         return []
@@ -37,17 +35,17 @@ def check_tests(
     loads = [*settings.dilatancy_loads, settings.map_load]
     checked = []
     for test in settings.measured:
-        found = read_test(test)
+        readings = read_test(test)
         if test.kind == "closure":
             (offset,) = loading.cells
             composite = prefractal(loading.composite(int(offset)), min(settings.resolutions))
-            require_relief(test, found.curve, float(np.ptp(composite)))
+            require_relief(test, readings.curve, float(np.ptp(composite)))
             require_calibration(test, hardness)
         elif test.kind != "flow":
             require_direction(test, settings.contact_directions if loading.slides else ())
         if np.isfinite(test.pressure):
             require_pressure(test, loading.forces(loads) / loading.area)
-        checked.append((test, found))
+        checked.append((test, readings))
     return checked
 
 
@@ -75,14 +73,14 @@ def require_calibration(test: MeasuredTest, hardness: float) -> None:
         )
 
 
-def require_direction(test: MeasuredTest, known: Collection[str]) -> None:
+def require_direction(test: MeasuredTest, computed: Collection[str]) -> None:
     """Refuse a direction of sliding that is none of those computed; none are of a plane."""
-    if not known:
+    if not computed:
         raise InputError(f"{test.file}: a surface against a plane does not slide; remove the test")
-    if test.direction not in known:
+    if test.direction not in computed:
         raise InputError(
             f"{test.file}: sliding towards {test.direction} was not computed, only towards "
-            f"{', '.join(known)}; add it to 'contact_directions'"
+            f"{', '.join(computed)}; add it to 'contact_directions'"
         )
 
 
@@ -91,7 +89,7 @@ def require_pressure(test: MeasuredTest, pressure: np.ndarray) -> None:
     if not pressure.size or not (
         pressure[0] * (1 - NEAR) <= test.pressure <= pressure[-1] * (1 + NEAR)
     ):
-        ends = ", ".join(f"{one:.3g}" for one in pressure) or "none"
+        ends = ", ".join(f"{value:.3g}" for value in pressure) or "none"
         raise InputError(
             f"{test.file}: {test.pressure:g} MPa lies outside of the pressures at which "
             f"{test.kind} was computed ({ends} MPa); add it to 'loads' and 'dilatancy_loads'"

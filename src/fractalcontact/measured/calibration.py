@@ -9,50 +9,40 @@ from ..core.estimate import Estimate
 from ..core.intervals import t_quantile
 from .curve import MIN_READINGS, Curve
 
-#: How many factors of the constant are tried.
+#: Number of factors of the constant that are tried.
 _TRIED = 81
 #: Fraction of the readings that the computed curve has to reach at a factor.
 _REACHED = 0.5
-#: Logarithm of the factors that are searched closely about the best, and what is their edge.
+#: Range of log factors about the best that is searched closely, and the width of its edge.
 NEAR, _EDGE = 0.25, 0.005
 
-#: Closure over the pressure at a factor of the constant.
+#: Function that gives the closure over the pressure at a factor of the constant.
 Family = Callable[[float], Curve]
 
 
 def fit_factor(readings: Curve, family: Family, between: tuple[float, float]) -> Estimate:
     """Factor of a constant at which the computed closure comes nearest to the measured one.
 
-    Parameters
-    ----------
-    readings : Curve
-        Measured closure, from any datum.
-    family : callable
-        Computed closure at a factor.
-    between : (float, float)
-        Smallest and largest factor that are tried; no interval leaves them.
+    Readings count from any datum; ``family`` gives the computed closure at a factor, ``between``
+    the smallest and largest factor that are tried, which no interval leaves. The estimate has the
+    reason why there is none, or little is known of it. Its interval holds the scatter of the
+    readings (the sum of squares as large as an F test allows) and the error of the computed
+    closure.
 
-    Returns
-    -------
-    Estimate
-        With the reason why there is none, or little is known of it. The interval holds the scatter
-        of the readings (the sum of squares as large as an F test allows) and the error of the
-        computed closure.
-
-    Notes
-    -----
     Least squares in the closure; the datum of the readings is fitted too, as the reading at the
     seat scatters as all others do.
     """
     tried = np.linspace(np.log(between[0]), np.log(between[1]), _TRIED)
-    values = np.array([_misfit(readings, family, one, _REACHED) for one in tried])
+    values = np.array([_misfit(readings, family, log_tried, _REACHED) for log_tried in tried])
     best = int(values.argmin())
     if not np.isfinite(values[best]):
         why = "the loads of the study do not reach the pressures of the test: widen 'loads'"
         return Estimate(reason=why)
-    # Then the same readings at every factor: those that the computed loads reach at all of them.
+    # All factors are compared over the same readings: those that the loads reach at each of them.
     near = np.clip(tried[best] + np.array([-NEAR, NEAR]), tried[0], tried[-1])
-    reached = np.all([np.isfinite(family(np.exp(one)).at(readings.x).value) for one in near], 0)
+    reached = np.all(
+        [np.isfinite(family(np.exp(log_tried)).at(readings.x).value) for log_tried in near], 0
+    )
     readings = readings.where(reached)
     if readings.x.size < MIN_READINGS:
         why = f"fewer than {MIN_READINGS} readings lie within the computed loads: widen 'loads'"
@@ -91,10 +81,10 @@ def fit_factor(readings: Curve, family: Family, between: tuple[float, float]) ->
 def _misfit(readings: Curve, family: Family, log_factor: float, reached: float) -> float:
     """Mean square of what the computed closure leaves; infinite where it reaches too few."""
     computed = family(float(np.exp(log_factor))).at(readings.x).value
-    known = np.isfinite(computed)
-    if known.mean() < reached or known.sum() < MIN_READINGS:
+    finite = np.isfinite(computed)
+    if finite.mean() < reached or finite.sum() < MIN_READINGS:
         return np.inf
-    apart = readings.y[known] - computed[known]
+    apart = readings.y[finite] - computed[finite]
     return float(np.mean((apart - apart.mean()) ** 2))
 
 
@@ -113,10 +103,10 @@ def _of_computed(family: Family, readings: Curve, log_factor: float) -> float:
     """Half-width of the logarithm of the factor from the error of the computed closure."""
     step = 0.02
     top, datum = readings.x[-1], readings.x[0]
-    lower, upper, here = (
-        family(float(np.exp(log_factor + one))).at(np.array([datum, top]))
-        for one in (-step, step, 0.0)
+    lower, upper, middle = (
+        family(float(np.exp(log_factor + shift))).at(np.array([datum, top]))
+        for shift in (-step, step, 0.0)
     )
     slope = (np.diff(upper.value) - np.diff(lower.value)) / (2 * step)
-    error = np.hypot(*(here.high - here.value))
+    error = np.hypot(*(middle.high - middle.value))
     return float(error / abs(slope[0])) if slope[0] else np.inf

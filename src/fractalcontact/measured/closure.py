@@ -16,12 +16,12 @@ from .calibration import NEAR, fit_factor
 from .computed import CARRIED, Joint
 from .curve import Curve, compared, ratio
 
-#: How the computed curve beside a test came about.
+#: Origin of the computed curve beside a test.
 COMPUTED, FITTED, PREDICTED = "computed", "fitted", "predicted"
 #: Hardnesses that are solved to fit one, and the ends of moduli, as factors of those stated.
 _HARDNESSES = np.array([1 / 3, 3**-0.5, 1.0, 3**0.5, 3.0])
 _MODULI = (0.25, 4.0)
-#: Hardnesses that a fit needs.
+#: Fewest hardnesses for a fit.
 _MIN_HARDNESSES = 3
 
 _PARAMETERS = {
@@ -32,15 +32,15 @@ _PARAMETERS = {
 #: Numbers of a closure test: unit, long name.
 OF_CLOSURE = {
     **{
-        f"closure_{name}_{of}": ("1" if of == "ratio" else unit, f"{words}, {of}")
+        f"{name}_{of}": ("1" if of == "ratio" else unit, f"{words}, {of}")
         for name, (unit, words) in _PARAMETERS.items()
         for of in ("measured", "computed", "ratio")
     },
-    "closure_datum": ("MPa", "pressure from which both closures count"),
-    "closure_largest": ("MPa", "pressure that the joint had carried before"),
-    "closure_rock": ("mm/MPa", "displacement of the rock, which was subtracted"),
-    "closure_status": ("1", "how the calibrated curve came about: computed, fitted or predicted"),
-    "closure_ratio_calibrated": ("1", "calibrated over measured closure at the end"),
+    "datum": ("MPa", "pressure from which both closures count"),
+    "largest": ("MPa", "pressure that the joint had carried before"),
+    "rock": ("mm/MPa", "displacement of the rock, which was subtracted"),
+    "status": ("1", "how the calibrated curve came about: computed, fitted or predicted"),
+    "ratio_calibrated": ("1", "calibrated over measured closure at the end"),
 }
 #: The calibrated constant: unit, long name.
 OF_CALIBRATION = {
@@ -55,33 +55,19 @@ OF_CALIBRATION = {
 def compare_closure(
     joint: Joint, tests: Sequence[MeasuredTest], readings: Sequence[Curve]
 ) -> tuple[list[dict[str, Any]], dict[str, Any]]:
-    """Closure tests of a joint beside its computed closure.
+    """Rows of closure tests of a joint beside its computed closure, and the calibrated constant.
 
-    Parameters
-    ----------
-    joint : Joint
-    tests : sequence of MeasuredTest
-    readings : sequence of Curve
-        Of each.
-
-    Returns
-    -------
-    rows : list of dict
-        Of each test: ``readings``, ``laid`` (on the axis of the stage ``closure``), ``at``,
-        ``measured``, ``computed``, ``ratio`` and :data:`OF_CLOSURE`.
-    calibration : dict
-        :data:`OF_CALIBRATION`.
-
-    Raises
-    ------
-    InputError
-        If a closure exceeds the relief of the faces, or no computed state lies within a test.
-    NotConverged
+    A row has ``readings``, ``laid`` (on the axis of the stage ``closure``), ``at``, ``measured``,
+    ``computed``, ``ratio`` and :data:`OF_CLOSURE`; the constant has :data:`OF_CALIBRATION`. Raises
+    `NotConverged`, and `InputError` if a closure exceeds the relief of the faces, or no computed
+    state lies within a test.
     """
-    for test, one in zip(tests, readings, strict=True):
-        require_relief(test, one, joint.relief)
+    for test, curve in zip(tests, readings, strict=True):
+        require_relief(test, curve, joint.relief)
     calibrated = _Calibrated(joint, tests, readings)
-    rows = [_row(joint, test, one, calibrated) for test, one in zip(tests, readings, strict=True)]
+    rows = [
+        _row(joint, test, curve, calibrated) for test, curve in zip(tests, readings, strict=True)
+    ]
     return rows, calibrated.described()
 
 
@@ -99,10 +85,10 @@ class _Calibrated:
         self.factor = NO_ESTIMATE
         if self.test is None:
             return
-        one = readings[tests.index(self.test)]
+        curve = readings[tests.index(self.test)]
         require_calibration(self.test, joint.hardness)
-        fitted = self._ladder(one) if self.test.calibrate == "hardness" else self._scaled(one)
-        self.factor = fit_factor(one.where(one.x >= self.test.seat), *fitted)
+        fitted = self._ladder(curve) if self.test.calibrate == "hardness" else self._scaled(curve)
+        self.factor = fit_factor(curve.where(curve.x >= self.test.seat), *fitted)
 
     def at(self, test: MeasuredTest, largest: float, factor: float) -> Curve:
         """Computed closure on the branch of a test at a factor of the constant."""
@@ -124,7 +110,7 @@ class _Calibrated:
                 f"{self.joint.hardness:.3g} MPa to fit that; state a larger one in the material"
             )
         solved = [self.at(self.test, largest, factor) for factor in carry]
-        curves = PchipInterpolator(np.log(carry), np.array([one.y for one in solved]))
+        curves = PchipInterpolator(np.log(carry), np.array([curve.y for curve in solved]))
         first = solved[0]
 
         def family(factor: float) -> Curve:
@@ -145,7 +131,7 @@ class _Calibrated:
         return {
             "calibrated_constant": constant,
             "calibrated_test": self.test.label if self.test else "",
-            "calibrated_value": self.factor.mapped(lambda one: one * stated),
+            "calibrated_value": self.factor.mapped(lambda factor: factor * stated),
             "calibrated_factor": self.factor,
             "calibration_reason": reason,
         }
@@ -168,19 +154,19 @@ def _row(
     span = computed.where(computed.x <= readings.x[-1])
     row = {
         "readings": readings,
-        # On its branch, on the axis of the stage ``closure``: from the seat of the study on.
+        # The readings on the axis of the stage ``closure``, which counts from the study's seat.
         "laid": readings.y - readings.at(datum).value + curve.at(datum).value - joint.seat_closure,
         **compared(computed.where(inside), measured),
-        "closure_datum": datum,
-        "closure_largest": largest,
-        "closure_rock": test.compliance,
-        "closure_status": COMPUTED,
-        "closure_ratio_calibrated": NO_ESTIMATE,
+        "datum": datum,
+        "largest": largest,
+        "rock": test.compliance,
+        "status": COMPUTED,
+        "ratio_calibrated": NO_ESTIMATE,
     }
     row |= _laws(measured, span, datum)
     if calibrated.factor.known:
-        row["closure_status"] = FITTED if test is calibrated.test else PREDICTED
-        row["closure_ratio_calibrated"] = _with_constant(calibrated, test, largest, datum, readings)
+        row["status"] = FITTED if test is calibrated.test else PREDICTED
+        row["ratio_calibrated"] = _with_constant(calibrated, test, largest, datum, readings)
     return row
 
 
@@ -192,15 +178,15 @@ def _with_constant(calibrated: _Calibrated, test, largest, datum, readings) -> E
     """
     best, *ends = np.log(calibrated.factor.ends)
     nearby = [best + np.clip(end - best, -NEAR, NEAR) for end in ends]
-    curves = [calibrated.at(test, largest, float(np.exp(one))) for one in (best, *nearby)]
-    datum = max(datum, *(one.x[0] for one in curves))
-    top = min(readings.x[-1], *(one.x[-1] for one in curves))
+    curves = [calibrated.at(test, largest, float(np.exp(log))) for log in (best, *nearby)]
+    datum = max(datum, *(curve.x[0] for curve in curves))
+    top = min(readings.x[-1], *(curve.x[-1] for curve in curves))
     if top <= datum:
         return NO_ESTIMATE
-    value, *beside = (one.since(datum).at(top) for one in curves)
+    value, *at_ends = (curve.since(datum).at(top) for curve in curves)
     apart = max(
-        abs(one.value - value.value) * (end - best) / (near - best)
-        for one, end, near in zip(beside, ends, nearby, strict=True)
+        abs(at_end.value - value.value) * (end - best) / (near - best)
+        for at_end, end, near in zip(at_ends, ends, nearby, strict=True)
     )
     half = np.hypot(apart, value.high - value.value)
     computed = Estimate(value.value, value.value - half, value.value + half)
@@ -209,17 +195,17 @@ def _with_constant(calibrated: _Calibrated, test, largest, datum, readings) -> E
 
 def _laws(measured: Curve, computed: Curve, datum: float) -> Mapping[str, Estimate]:
     """Parameters of both laws, fitted to both curves over the same pressures."""
-    found: dict[str, dict[str, Estimate]] = {}
+    parameters: dict[str, dict[str, Estimate]] = {}
     for name, curve in (("measured", measured), ("computed", computed)):
         fitted = (curve.x <= SEATED_SPAN * datum) & (curve.y > 0)
         bent = fit_hyperbola(curve.x[fitted], curve.y[fitted], datum)
         logarithm = fit_semi_logarithmic(curve.x[fitted], curve.y[fitted])
-        found[name] = {"k_ni": bent.k_ni, "v_m": bent.w_m, "chi": logarithm.b}
+        parameters[name] = {"k_ni": bent.k_ni, "v_m": bent.w_m, "chi": logarithm.b}
     return {
-        f"closure_{parameter}_{of}": value
+        f"{parameter}_{of}": value
         for parameter in _PARAMETERS
         for of, value in (
-            *((name, found[name][parameter]) for name in found),
-            ("ratio", ratio(found["computed"][parameter], found["measured"][parameter])),
+            *((name, parameters[name][parameter]) for name in parameters),
+            ("ratio", ratio(parameters["computed"][parameter], parameters["measured"][parameter])),
         )
     }

@@ -17,9 +17,9 @@ from ..states.loading import JointLoading
 from ..states.settlement import bulk_settlement
 from .curve import Curve
 
-#: Of its hardness, up to which a joint is loaded.
+#: Largest pressure on a joint as a fraction of its hardness.
 CARRIED = 0.95
-#: States of a branch that is solved, evenly over the logarithm of the pressure.
+#: Number of states of a solved branch, evenly spaced in the logarithm of the pressure.
 _STATES = 8
 
 
@@ -67,22 +67,11 @@ class Joint:
         return float(np.ptp(self._composite))
 
     def on_branch(self, test: MeasuredTest, largest: float, modulus: float = 1.0) -> Curve:
-        """Interface closure on the branch of a test, with the modulus and H multiplied.
+        """Interface closure on the branch of a test, with modulus and H multiplied by a factor.
 
-        In a half-space all pressures scale with E*, where the hardness does too.
-
-        Parameters
-        ----------
-        test : MeasuredTest
-        largest : float
-            Pressure that the joint has carried before, MPa: what has crushed under it stays so.
-        modulus : float, optional
-            Factor of E* and H.
-
-        Raises
-        ------
-        NotConverged
-            If a state on unloading could not be verified.
+        In a half-space all pressures scale with E*, where the hardness does too. What has crushed
+        under the largest pressure that the joint has carried before, MPa, stays so. Raises
+        `NotConverged` if a state on unloading could not be verified.
         """
         curve = self.curve
         if test.branch != LOAD and np.isfinite(self.hardness):
@@ -91,12 +80,7 @@ class Joint:
         return replace(curve, x=curve.x * modulus)
 
     def with_hardness(self, test: MeasuredTest, largest: float, hardness: float) -> Curve:
-        """Interface closure on the branch of a test at another hardness, MPa; solved anew.
-
-        Raises
-        ------
-        NotConverged
-        """
+        """Interface closure on the branch of a test at another hardness, MPa; solved anew."""
         lightest = max(test.seat, self.curve.x[0])
         return self.solved(test, lightest, largest, hardness)
 
@@ -125,7 +109,7 @@ class Joint:
         force = np.array([state.force for state in path])
         closure = np.array([state.closure for state in path])
         closure -= bulk_settlement(force, space.modulus, *sides)
-        # Between the loads of the study, and beyond them, the grid is as coarse as there.
+        # The error is that of the study's grid, which is the same at all loads.
         error = np.interp(np.log(force / area), np.log(self.curve.x), self.curve.error)
         return Curve.of(force / area, closure, error)
 

@@ -10,7 +10,7 @@ from scipy.interpolate import PchipInterpolator
 from ..core.estimate import Estimate
 from ..core.intervals import t_quantile
 
-#: Points that a curve needs, and readings that their scatter is estimated from.
+#: Fewest points of a curve, and fewest readings for an estimate of their scatter.
 MIN_POINTS, MIN_READINGS = 2, 5
 _ROUNDING = 1e-9
 
@@ -30,10 +30,10 @@ class Curve:
     @classmethod
     def of(cls, x: ArrayLike, y: ArrayLike, error: ArrayLike, *, log_x: bool = True) -> "Curve":
         """Curve of those points that are known; an unknown error is none."""
-        x, y, error = (np.asarray(one, float) for one in np.broadcast_arrays(x, y, error))
-        known = np.isfinite(x) & np.isfinite(y) & ((x > 0) | (not log_x))
-        order = np.argsort(x[known], kind="stable")
-        return cls(x[known][order], y[known][order], np.nan_to_num(error[known][order]), log_x)
+        x, y, error = (np.asarray(values, float) for values in np.broadcast_arrays(x, y, error))
+        finite = np.isfinite(x) & np.isfinite(y) & ((x > 0) | (not log_x))
+        order = np.argsort(x[finite], kind="stable")
+        return cls(x[finite][order], y[finite][order], np.nan_to_num(error[finite][order]), log_x)
 
     def at(self, x: np.ndarray | float) -> Estimate:
         """Values between the points, NaN outside; the error is the larger of those beside."""
@@ -42,7 +42,7 @@ class Curve:
             nothing = np.full(x.shape, np.nan)
             return Estimate(nothing, nothing, nothing)
         places, (knots, first) = self._scale(x), np.unique(self._scale(self.x), return_index=True)
-        for end in (knots[0], knots[-1]):  # the same pressure, but for rounding
+        for end in (knots[0], knots[-1]):  # equal pressures may differ by rounding
             places = np.where(np.isclose(places, end, rtol=0, atol=_ROUNDING), end, places)
         y = PchipInterpolator(knots, self.y[first], extrapolate=False)(places)
         index = np.clip(np.searchsorted(self.x, x), 1, self.x.size - 1)
@@ -73,12 +73,7 @@ def scatter(x: np.ndarray, y: np.ndarray) -> float:
     """Half-width of the interval of one reading, from what neighbours leave unexplained.
 
     Each reading is compared with the straight line through those on both sides (Gasser, Sroka &
-    Jennen-Steinmetz, Biometrika 73 (1986) 625).
-
-    Parameters
-    ----------
-    x, y : (n,) ndarray
-        x ascending; equal ones are passed over.
+    Jennen-Steinmetz, Biometrika 73 (1986) 625). x (n,) ascends; equal ones are passed over.
     """
     left, right = x[1:-1] - x[:-2], x[2:] - x[1:-1]
     span = left + right
@@ -108,5 +103,5 @@ def ratio(first: Estimate, second: Estimate) -> Estimate:
 
 def compared(computed: Curve, measured: Curve) -> dict[str, Any]:
     """Computed curve at its own points, the measured one there, and their ratio."""
-    found, read = computed.values, measured.at(computed.x)
-    return {"at": computed.x, "measured": read, "computed": found, "ratio": ratio(found, read)}
+    values, read = computed.values, measured.at(computed.x)
+    return {"at": computed.x, "measured": read, "computed": values, "ratio": ratio(values, read)}

@@ -5,28 +5,17 @@ import numpy as np
 from ..core.errors import InputError
 from ..scan.columns import Column
 
-#: Of the whole range: readings that fall back no more are sorted, as noise of a gauge or a pump.
+#: Largest fall-back that is sorted, a fraction of the range: noise of a gauge or a pump.
 MAX_FALL_BACK = 0.05
 
 
 def require_one_way(branch: str, name: str, column: Column) -> str:
     """Sentence on readings that fall back a little and were sorted; "" without any.
 
-    Readings are sorted by their pressure or displacement. That is right while they fall back
-    within the noise of the gauge, and mixes two branches, or two ways of sliding, where they do
-    not.
-
-    Parameters
-    ----------
-    branch : {"load", "unload", "reload", ""}
-    name : str
-        Of the column: "pressure" or "displacement".
-    column : Column
-
-    Raises
-    ------
-    InputError
-        If a reading falls back by more than `MAX_FALL_BACK` of the range; with its line.
+    The branch is "load", "unload", "reload" or "", the name that of the column: "pressure" or
+    "displacement". Readings are sorted by it. That is right while they fall back within the noise
+    of the gauge, and mixes two branches, or two ways of sliding, where they do not: `InputError`,
+    with its line, if a reading falls back by more than `MAX_FALL_BACK` of the range.
     """
     falls = branch == "unload"
     values = -column.values if falls else column.values

@@ -8,7 +8,7 @@ from ..core.settings import MeasuredTest
 from .beforehand import NEAR, require_direction, require_pressure
 from .curve import Curve
 
-#: Why a kind of test has no computed value to compare with.
+#: Reason why a kind of test has no computed value to compare with.
 WHY_NONE = {
     "closure": "",
     "flow": "no computed state has a path through the gap on this branch",
@@ -28,29 +28,22 @@ def computed_curve(
 ) -> Curve:
     """Computed curve of a test that is not of closure; without points where there is none.
 
-    Parameters
-    ----------
-    test : MeasuredTest
-    flow, dilatancy : xr.Dataset
-        Stages of these names.
-    strength : xr.Dataset or None
-        Stage ``strength``; None of what does not slide.
-    reported : Reported
-
-    Raises
-    ------
-    InputError
-        If the direction or the pressure was not computed.
+    Stages ``flow``, ``dilatancy`` and ``strength``, which is None of what does not slide. Raises
+    `InputError` if the direction or the pressure was not computed.
     """
     if test.kind == "flow":
         return _flow(test, flow, reported)
-    known = [] if strength is None else [str(one) for one in strength["contact_direction"].values]
-    require_direction(test, known)
+    directions = (
+        []
+        if strength is None
+        else [str(direction) for direction in strength["contact_direction"].values]
+    )
+    require_direction(test, directions)
     assert strength is not None  # otherwise no direction is known
     if test.kind == "dilatancy":
         along = dilatancy.sel(contact_direction=test.direction)
         curve = _under(test, along, "elastic_dilatancy", "offset_on_grid")
-        # A test counts its dilation from where sliding begins, under load already.
+        # A test counts its dilation from the start of sliding, when the load already acts.
         return curve.since(0.0) if curve.x.size and curve.x[0] == 0 else curve
     along = strength.sel(contact_direction=test.direction)
     if test.kind == "shear":
@@ -67,33 +60,35 @@ def computed_curve(
 
 def _flow(test: MeasuredTest, flow: xr.Dataset, reported: Reported) -> Curve:
     states = reported.states(flow)
-    at = states.sel(branch=test.branch)
+    on_branch = states.sel(branch=test.branch)
     name = f"transmissivity_{test.way}"
     error = np.hypot(
         *(
-            np.nan_to_num(states[f"transmissivity_{of}_error_{test.way}"].values)
-            for of in ("grid", "separation")
+            np.nan_to_num(states[f"transmissivity_{source}_error_{test.way}"].values)
+            for source in ("grid", "separation")
         )
     )
-    values = at[f"branch_{name}"].where(at[f"branch_{name}"] > 0).values
+    values = on_branch[f"branch_{name}"].where(on_branch[f"branch_{name}"] > 0).values
     return Curve.of(states["nominal_pressure"].values, values, error)
 
 
 def _under(test: MeasuredTest, along: xr.Dataset, name: str, x: str) -> Curve:
     """A curve over the offsets, straight over the logarithm of the pressure between loads."""
     values = along[name].transpose(..., "normal_force")
-    # Other loads are solved at the reported offset alone.
+    # Loads that are solved at the reported offset alone are left out.
     offsets = np.isfinite(values.values).sum(axis=0)
     solved = (offsets > 0) & (2 * offsets > offsets.max())
     pressure = along["nominal_pressure"].values[solved]
     require_pressure(test, pressure)
-    of = along[[name, f"{name}_error"]].isel(normal_force=solved)
+    curves = along[[name, f"{name}_error"]].isel(normal_force=solved)
     place = float(np.interp(np.log(test.pressure), np.log(pressure), range(pressure.size)))
     low, part = int(np.floor(place)), place % 1
     high = min(low + 1, pressure.size - 1)
 
-    def between(each: xr.DataArray) -> np.ndarray:
-        first, second = (each.isel(normal_force=one).values for one in (low, high))
+    def between(curve: xr.DataArray) -> np.ndarray:
+        first, second = (curve.isel(normal_force=load).values for load in (low, high))
         return first if part < NEAR else (1 - part) * first + part * second
 
-    return Curve.of(along[x].values, between(of[name]), between(of[f"{name}_error"]), log_x=False)
+    return Curve.of(
+        along[x].values, between(curves[name]), between(curves[f"{name}_error"]), log_x=False
+    )

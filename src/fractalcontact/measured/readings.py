@@ -14,24 +14,15 @@ from .one_way import require_one_way
 
 #: Columns that are lengths; transmissivities are cubes of one, all others are pressures.
 _LENGTHS = ("displacement", "dilation", "hydraulic_aperture")
-#: Columns of which nothing is below 0.
+#: Columns without values below 0.
 _POSITIVE = ("pressure", "shear_strength", "transmissivity", "hydraulic_aperture")
-#: Of the travel: within this, dilation and displacement are one column.
+#: Difference, as a fraction of the travel, within which dilation and displacement are one column.
 _SAME = 0.05
 
 
 @dataclass(frozen=True, eq=False)
 class TestReadings:
-    """Readings of a test, and sentences on them.
-
-    Attributes
-    ----------
-    curve : Curve
-    note : str
-        What was done to the readings; "" if nothing was.
-    warning : str
-        What to look at; "" if nothing is.
-    """
+    """Readings of a test; ``note``: what was done to them, ``warning``: what to check, or ""."""
 
     curve: Curve
     note: str
@@ -44,21 +35,14 @@ class TestReadings:
 
 
 def read_test(test: MeasuredTest) -> TestReadings:
-    """Readings of a test.
+    """Readings of a test over the pressure, MPa, or the shear displacement, mm.
 
-    Returns
-    -------
-    TestReadings
-        Over the pressure, MPa, or the shear displacement, mm. A hydraulic aperture h is given as
-        the transmissivity h^3/12. The error is that stated, else the scatter of the readings; of a
-        transmissivity it is a fraction of each.
+    A hydraulic aperture h is given as the transmissivity h^3/12. The error is that stated, else the
+    scatter of the readings; of a transmissivity it is a fraction of each.
 
-    Raises
-    ------
-    InputError
-        If the file cannot be read, a unit is not that of its column, a pressure is below 0, the
-        pressure does not go the way of the branch or the displacement that of sliding, the joint
-        would open under pressure or close while it slides, or no closure is left beside the rock.
+    Raises `InputError` if the file cannot be read, a unit is not that of its column, a pressure is
+    below 0, the pressure does not go the way of the branch or the displacement that of sliding, the
+    joint would open under pressure or close while it slides, or no closure is left beside the rock.
     """
     columns = read_columns(test.file, test.columns)
     (of_x, x), (of_y, y) = ((name, _in_program_units(name, one)) for name, one in columns.items())

@@ -7,11 +7,10 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from ..core.arrays import padded
 from ..core.datasets import titled
 from ..core.errors import InputError
 from ..core.estimate import NO_ESTIMATE, Estimate
-from ..core.labels import cf_attrs
+from ..core.per_curve import stacked
 from ..core.reported import Reported
 from ..core.settings import TEST_COLUMNS, MeasuredSettings, MeasuredTest, Solver
 from ..states.loading import JointLoading
@@ -30,7 +29,7 @@ _MEASURED = {
     "strength": ("MPa", "peak shear strength"),
 }
 _AXES = {"pressure": ("MPa", "nominal pressure"), "displacement": ("mm", "shear displacement")}
-#: What is kept of every test: field, unit, long name.
+#: Settings of every test that are stored: field, unit, long name.
 _OF_TESTS = {
     "branch": ("branch", "1", "branch of the test"),
     "cycle": ("cycle", "1", "number of the cycle"),
@@ -54,33 +53,17 @@ def measured_stage(
 ) -> dict[str, xr.Dataset]:
     """Readings of all tests of a specimen, computed values there, and their ratios.
 
-    Parameters
-    ----------
-    specimens, joints, closure, dilatancy, error_budget, flow : xr.Dataset
-        Stages of these names.
-    settings : MeasuredSettings
-    solver : Solver
-    strength : xr.Dataset, optional
-        Of a joint that slides.
-
-    Returns
-    -------
-    dict of str to xr.Dataset
-        The stage measured. Of each kind of test K the readings over (K_test, K_reading) and, over
-        (K_test, K_point), the computed curve within them: ``K_at``, ``K_measured``, ``K_computed``
-        and ``K_ratio``, with intervals; of closure also the laws and what is calibrated.
-
-    Raises
-    ------
-    InputError
-        If a file, or what is said of it, does not fit the computed curves.
-    NotConverged
-        If a state of another branch or hardness could not be verified.
+    From stages by name; ``strength`` is that of a joint that slides. Of each kind of test K the
+    readings over (K_test, K_reading) and, over (K_test, K_point), the computed curve within them:
+    ``K_at``, ``K_measured``, ``K_computed`` and ``K_ratio``, with intervals; of closure also the
+    laws and what is calibrated. Raises `InputError` if a file, or what is said of it, does not fit
+    the computed curves, and `NotConverged` if a state of another branch or hardness could not be
+    verified.
     """
     reported = Reported.read(closure)
     whole = JointLoading.of_joint(specimens, joints, reported.direction, settings, solver)
     joint = Joint.of(whole, closure, error_budget)
-    found = xr.Dataset()
+    stage = xr.Dataset()
     for kind in TEST_COLUMNS:
         tests = [test for test in settings.measured if test.kind == kind]
         if not tests:
@@ -89,15 +72,15 @@ def measured_stage(
         readings = [one.curve for one in read]
         if kind == "closure":
             rows, calibration = compare_closure(joint, tests, readings)
-            found.update(_labelled(calibration, OF_CALIBRATION, ()))
+            stage.update(stacked([calibration], OF_CALIBRATION, (), ()))
         else:
             rows = [
                 _beside(test, one, computed_curve(test, flow, dilatancy, strength, reported))
                 for test, one in zip(tests, readings, strict=True)
             ]
         rows = [row | {"note": one.said} for row, one in zip(rows, read, strict=True)]
-        found = found.merge(_of_kind(kind, tests, rows))
-    return {"measured": found}
+        stage = stage.merge(_of_kind(kind, tests, rows))
+    return {"measured": stage}
 
 
 def _beside(test: MeasuredTest, readings: Curve, computed: Curve) -> dict[str, Any]:
@@ -106,7 +89,7 @@ def _beside(test: MeasuredTest, readings: Curve, computed: Curve) -> dict[str, A
     within = computed.where(inside)
     if not within.x.size and computed.x.size:
         ends = ("computed from {:.3g} to {:.3g}, measured from {:.3g} to {:.3g}").format(
-            *(one.x[place] for one in (computed, readings) for place in (0, -1))
+            *(curve.x[place] for curve in (computed, readings) for place in (0, -1))
         )
         raise InputError(
             f"{test.file}: no computed {test.kind} lies within the readings ({ends}); add loads "
@@ -123,75 +106,37 @@ def _beside(test: MeasuredTest, readings: Curve, computed: Curve) -> dict[str, A
 def _of_kind(kind: str, tests: Sequence[MeasuredTest], rows: Sequence[Mapping]) -> xr.Dataset:
     """Variables of the tests of a kind, rows of unequal length filled with NaN."""
     unit, words = _MEASURED[kind]
-    of_x = TEST_COLUMNS[kind][0]
-    unit_x, x_words = _AXES[of_x]
+    axis = TEST_COLUMNS[kind][0]
+    axis_unit, axis_words = _AXES[axis]
     test, reading, point = (f"{kind}_{name}" for name in ("test", "reading", "point"))
-    variables: dict[str, Any] = {
-        f"{kind}_{of_x}": (
-            (test, reading),
-            _filled([row["readings"].x for row in rows]),
-            cf_attrs(unit_x, f"{x_words} of a reading"),
-        ),
-        f"{kind}_at": (
-            (test, point),
-            _filled([row["at"] for row in rows]),
-            cf_attrs(unit_x, f"{x_words} of a computed state"),
-        ),
+    names = {
+        axis: (axis_unit, f"{axis_words} of a reading", reading),
+        "at": (axis_unit, f"{axis_words} of a computed state", point),
+        "read": (unit, f"{words}, a reading", reading),
+        "measured": (unit, f"{words}, measured", point),
+        "computed": (unit, f"{words}, computed", point),
+        "ratio": ("1", f"{words}, computed over measured", point),
+        "ratio_at_last": ("1", f"{words}, computed over measured at the last state"),
+        "reason": ("1", "why nothing is compared"),
+        "note": ("1", "what to know of the readings"),
+        **{name: (unit, said) for name, (_, unit, said) in _OF_TESTS.items()},
+        **(OF_CLOSURE if kind == "closure" else {}),
     }
-    read = [replace(row["readings"], y=row["laid"]).values for row in rows]
-    for name, dim, of, each in (
-        ("read", reading, unit, read),
-        ("measured", point, unit, [row["measured"] for row in rows]),
-        ("computed", point, unit, [row["computed"] for row in rows]),
-        ("ratio", point, "1", [row["ratio"] for row in rows]),
-    ):
-        value, low, high = (_filled([one.ends[k] for one in each]) for k in range(3))
-        whole = Estimate(value, low, high)
-        what = {
-            "read": f"{words}, a reading",
-            "ratio": f"{words}, computed over measured",
-        }.get(name, f"{words}, {name}")
-        variables |= whole.variables(f"{kind}_{name}", (test, dim), of, what)
-    last = [_last(row["ratio"]) for row in rows]
-    variables |= Estimate.stack(last).variables(
-        f"{kind}_ratio_at_last", test, "1", f"{words}, computed over measured at the last state"
-    )
-    why = [row.get("reason", "") for row in rows]
-    variables[f"{kind}_reason"] = (test, why, cf_attrs("1", "why nothing is compared"))
-    notes = [row["note"] for row in rows]
-    variables[f"{kind}_note"] = (test, notes, cf_attrs("1", "what to know of the readings"))
-    data = xr.Dataset(variables, {test: [one.label for one in tests]})
-    data.update(
-        {
-            f"{kind}_{name}": (test, [getattr(one, field) for one in tests], cf_attrs(unit, said))
-            for name, (field, unit, said) in _OF_TESTS.items()
-        }
-    )
-    if kind == "closure":
-        of_tests = {name: [row[name] for row in rows] for name in OF_CLOSURE}
-        data.update(_labelled(of_tests, OF_CLOSURE, (test,)))
-    return data
+    results = [
+        {axis: row["readings"].x, "read": replace(row["readings"], y=row["laid"]).values}
+        | {"ratio_at_last": _last(row["ratio"]), "reason": ""}
+        | {name: getattr(one, field) for name, (field, *_) in _OF_TESTS.items()}
+        | {name: value for name, value in row.items() if name in names}
+        for one, row in zip(tests, rows, strict=True)
+    ]
+    variables = stacked(results, names, [test])
+    data = xr.Dataset({f"{kind}_{name}": variables[name] for name in variables})
+    if not data.sizes[point]:  # no test has a computed state: each gets a missing one
+        data = data.pad({point: (0, 1)}, keep_attrs=True)
+    return data.assign_coords({test: [one.label for one in tests]})
 
 
-def _last(of: Estimate) -> Estimate:
+def _last(ratio: Estimate) -> Estimate:
     """Ratio at the last point that has one."""
-    known = np.flatnonzero(np.isfinite(of.value))
-    return of[int(known[-1])] if known.size else NO_ESTIMATE
-
-
-def _labelled(values: Mapping[str, Any], table: Mapping[str, tuple], dims: tuple) -> dict:
-    """Numbers, texts and estimates of a table as variables."""
-    found: dict[str, Any] = {}
-    for name, value in values.items():
-        unit, words = table[name]
-        first = value[0] if dims else value
-        if isinstance(first, Estimate):
-            whole = Estimate.stack(value) if dims else value
-            found |= whole.variables(name, dims, unit, words)
-        else:
-            found[name] = (dims, np.array(value), cf_attrs(unit, words))
-    return found
-
-
-def _filled(rows: Sequence[np.ndarray]) -> np.ndarray:
-    return padded(rows, max(1, *map(len, rows)))
+    finite = np.flatnonzero(np.isfinite(ratio.value))
+    return ratio[int(finite[-1])] if finite.size else NO_ESTIMATE

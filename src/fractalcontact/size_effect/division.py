@@ -7,35 +7,20 @@ from numpy.typing import ArrayLike
 
 #: Sub-windows along each side of the window, by default: octaves and halves.
 PARTS = (1, 2, 3, 4, 6, 8)
-#: A sub-window that is solved has at least this many cells per side.
+#: Fewest cells per side of a sub-window that is solved.
 MIN_CELLS = 16
 
 
 def solvable_parts(parts: Sequence[int], shape: tuple[int, int]) -> list[int]:
-    """Divisions whose sub-windows are solved: the whole window, and those with `MIN_CELLS`.
-
-    Parameters
-    ----------
-    parts : sequence of int
-        Sub-windows along each side.
-    shape : (int, int)
-        Rows and columns of the window.
-    """
+    """Divisions that are solved: the whole window, and those of `MIN_CELLS` per side or more."""
     return [n for n in parts if n == 1 or min(shape) // n >= MIN_CELLS]
 
 
 def split(heights: ArrayLike, parts: int) -> np.ndarray:
-    """Cut a grid into parts x parts equal sub-windows without overlap.
+    """Parts x parts equal sub-windows of a grid, without overlap.
 
-    Parameters
-    ----------
-    heights : (ny, nx) array_like
-    parts : int
-
-    Returns
-    -------
-    (parts**2, ny // parts, nx // parts) ndarray
-        Row by row. Cells that do not divide are left at the edges, as evenly as can be.
+    (parts**2, ny // parts, nx // parts), row by row. Cells that do not divide are left at the
+    edges, as evenly as can be.
     """
     heights = np.asarray(heights)
     ny, nx = (n // parts for n in heights.shape)
@@ -49,13 +34,7 @@ def _first_cells(shape: tuple[int, ...], parts: int) -> list[int]:
 
 
 def spread_windows(parts: int, most: int) -> np.ndarray:
-    """Sub-windows of parts x parts that are solved: at most ``most``, on an even lattice.
-
-    Returns
-    -------
-    (n,) int ndarray
-        Places in what :func:`split` returns.
-    """
+    """Places in what :func:`split` returns of at most ``most`` sub-windows, on an even lattice."""
     along = min(parts, max(1, int(np.sqrt(most))))
     place = ((np.arange(along) + 0.5) * parts / along).astype(int)
     return (place[:, np.newaxis] * parts + place).ravel()

@@ -55,50 +55,35 @@ DELTA_SIGMA_ESTIMATORS = {
     "box_sizes": "occupied windows",
 }
 
-#: Of them those that captions quote.
+#: Estimators that captions quote.
 _QUOTED = {name: DELTA_SIGMA_ESTIMATORS[name] for name in ("area", "box")}
 
 
 def size_test(loading: JointLoading[WindowSettings]) -> xr.Dataset:
     """Size test of a joint: contact against b at equal sigma_0 and at equal sigma*, and eq. 6.
 
-    Parameters
-    ----------
-    loading : JointLoading
-        Offsets ascending. Contact is tested at the study's map offset (without one the third).
+    Contact is tested at the study's map offset (without one the third). The stage has, over
+    (estimator, normal_force), ``delta_sigma`` and ``predicted_slope`` of the whole window with
+    intervals; over (normal_force) the measured ``slope`` of all windows of a size taken together,
+    and ``sensitivity``, which explains it; over (normal_force, part) ``equal_pressure`` (with an
+    ``_error``, the solver's, which is infinite where the value may not be reached at all) and
+    ``crossings``; and what :func:`size_effect.size_law.size_law`,
+    :func:`size_effect.size_verdict.size_verdicts`, :func:`size_effect.prediction.predict_whole` and
+    :func:`add_decisions` give. Loads ``beyond_study`` are there while sub-windows hold too few
+    nodes under those of the study, see :data:`size_effect.load_ladder.TESTED_DOUBLINGS`. Raises
+    `NotConverged`.
 
-    Returns
-    -------
-    xr.Dataset
-        From :func:`size_effect.size_law.size_law` and
-        :func:`size_effect.size_verdict.size_verdicts`. Over (estimator, normal_force):
-        ``delta_sigma`` and ``predicted_slope`` of the whole window with intervals.
-        Over (normal_force): the measured ``slope`` of all windows of a size taken together, with
-        ``_low``, ``_high``, ``_n``, ``_b_min``, ``_b_max``, and ``sensitivity``, which explains it.
-        Over (normal_force, part): ``equal_pressure`` (with an ``_error``, the solver's, which is
-        infinite where the value may not be reached at all), ``crossings``; what is predicted for
-        the whole window, see :func:`size_effect.prediction.predict_whole`; what
-        :func:`add_decisions` adds. Loads ``beyond_study`` are there while sub-windows hold too few
-        nodes under those of the study, see :data:`size_effect.load_ladder.TESTED_DOUBLINGS`.
-
-    Notes
-    -----
     All windows of a size together have sigma_n = sum F / sum A_n: of windows one by one, small ones
     hold too few nodes for a sigma* that means anything. A size counts where its windows hold
-    `MIN_NODES_PER_RESOLUTION` on the average. Without that rule the lightest loads show the
-    slope -2 exactly: one node in every window.
+    `MIN_NODES_PER_RESOLUTION` on the average. Without that rule the lightest loads show the slope
+    -2 exactly: one node in every window.
 
     The interval of that slope is of a regression over sizes, which are pieces of one joint and not
     independent; that of the exponents at equal sigma_0 is over windows. Where a curve
     sigma*(sigma_0) meets the target several times, the geometric mean of the places is taken and
     they are counted; where that is so for the whole window, its sigma* does not determine sigma_0
-    and the verdict is "ambiguous". The composite topography of a sub-window
-    is loaded as it lies, see :func:`size_effect.windows.window_states`.
-
-    Raises
-    ------
-    NotConverged
-        If a state could not be verified; the message names it.
+    and the verdict is "ambiguous". The composite topography of a sub-window is loaded as it lies,
+    see :func:`size_effect.windows.window_states`.
     """
     mapped = loading.at_map_offset()
 
@@ -183,28 +168,26 @@ def _slope_of_occupied(domain: np.ndarray, parts: Sequence[int]) -> Estimate:
 def add_decisions(result: xr.Dataset) -> None:
     """Loads that decide about eq. 6, the load whose predictions are quoted, and the reason.
 
-    Parameters
-    ----------
-    result : xr.Dataset
-        Of :func:`size_test`: gets ``decides`` (estimator, normal_force), ``deciding_loads`` and
-        ``agreeing_loads`` (estimator), ``quoted_load`` (normal_force), the heaviest of the study
-        (else beyond it) with a prediction of closure and area by every predictor, and the
-        attribute ``verdict_reason``, why eq. 6 is judged as it is.
+    ``result`` gets ``decides`` (estimator, normal_force), ``deciding_loads`` and ``agreeing_loads``
+    (estimator), ``quoted_load`` (normal_force), the heaviest of the study (else beyond it) with a
+    prediction of closure and area by every predictor, and the attribute ``verdict_reason``, why eq.
+    6 is judged as it is.
     """
     of_study = ~result["beyond_study"].astype(bool)
     attrs = cf_attrs("1", "whether a load of the study decides about eq. 6")
     result["decides"] = (result["verdict"].isin(DECIDED) & of_study).assign_attrs(attrs)
     errors = result[["closure_error", "area_error"]].to_dataarray()
     every = errors.notnull().all(("variable", "predictor"))
-    known = every & of_study if (every & of_study).any() else every
+    quotable = every & of_study if (every & of_study).any() else every
     agrees = result["decides"] & (result["verdict"] == AGREES)
     for name, counted, words in (
         ("deciding_loads", result["decides"], "loads that decide about eq. 6"),
         ("agreeing_loads", agrees, "of them, loads at which eq. 6 agrees"),
     ):
         result[name] = counted.sum("normal_force").assign_attrs(cf_attrs("1", words))
-    # The heaviest says most: more nodes touch. One beyond the study matters to nobody.
-    heaviest = result["normal_force"] == result["normal_force"].where(known).max()
+    # The heaviest load is the best determined, because most nodes touch. A load beyond the study
+    # is quoted only where the study has none.
+    heaviest = result["normal_force"] == result["normal_force"].where(quotable).max()
     attrs = cf_attrs("1", "load whose predictions for the whole window are quoted")
     result["quoted_load"] = heaviest.assign_attrs(attrs)
     result.attrs["verdict_reason"] = _verdict_reason(result)

@@ -35,7 +35,7 @@ _OVER_LOADS = {
         "exponent of corrected A_r/A_0 against b",
     ),
 }
-#: Of them, what the bulk's part leaves of the whole: below 0 it means nothing.
+#: Those without the part of the bulk; below 0 they mean nothing.
 _OF_INTERFACE = ("interface_closure", "interface_compliance")
 
 
@@ -48,21 +48,8 @@ def joint_by_size(
 ) -> xr.Dataset:
     """Size laws of a joint: closure, roughness and strength of its sub-windows against b.
 
-    Parameters
-    ----------
-    states, dimension
-        As for :func:`size_laws`.
-    specimen : xr.Dataset
-        From :func:`surface.specimen.make_specimen`.
-    lags : (float, float) or None
-        Range stated for Delta_g, or below a roll-off, mm: eq. 2 is fitted over windows that look at
-        the same waves.
-    material : Friction
-
-    Returns
-    -------
-    xr.Dataset
-        From :func:`size_laws`.
+    As :func:`size_laws`, with the JRC of the window and eq. 2 fitted over windows that look at the
+    waves of the lags, mm, stated for Delta_g or below a roll-off.
     """
     roughness, direction = np.nan, states["direction"].item()
     if direction != "none":
@@ -81,34 +68,20 @@ def size_laws(
 ) -> xr.Dataset:
     """Means over the sub-windows of each size, and the powers of b they follow.
 
-    Parameters
-    ----------
-    states : xr.Dataset
-        From :func:`size_effect.windows.window_states`.
-    material : Friction
-    roughness : float
-        JRC of the window as used in Barton's law (``jrc_used`` of
-        :func:`joint.jrc.profile_roughness`); NaN for a joint that does not slide.
-    dimension : Estimate
-        Delta_g of the face: eq. 2 expects H = 3 - Delta_g.
-    fit_range : (float, float), optional
-        Smallest and largest b of the fits of sigma_z, mm. By default from `FIRST_FITTED_CELLS`
-        cells to `LAST_FITTED_FRACTION` of the window.
+    ``states`` are those of :func:`size_effect.windows.window_states`, ``roughness`` is the JRC of
+    the window as used in Barton's law (``jrc_used`` of :func:`joint.jrc.profile_roughness`; NaN for
+    a joint that does not slide), and ``dimension`` Delta_g of the face: eq. 2 expects H = 3 -
+    Delta_g. The fits of sigma_z take sides b within ``fit_range``, mm, by default from
+    `FIRST_FITTED_CELLS` cells to `LAST_FITTED_FRACTION` of the window.
 
-    Returns
-    -------
-    xr.Dataset
-        Eq. 2: ``hurst`` (offset) of the composite topography and ``face_hurst``, with ``_low``,
-        ``_high``, ``_n``; ``expected_hurst`` with its interval; the curves they come from.
-        Closure: ``interface_closure``, ``interface_compliance``, ``area_share``,
-        ``corrected_area_share`` and ``mean_gap`` (part, offset, load) with the interval of the mean
-        over the sub-windows and the ``_error`` of the solver, and the exponents of closure,
-        compliance and corrected area (offset, normal_force) with intervals over disjoint
-        sub-windows, see :func:`size_effect.size_exponents.size_exponent`. Strength, where the
-        joint slides: see :func:`size_effect.strength_laws.strength_by_size`.
+    Eq. 2: ``hurst`` (offset) of the composite topography, ``face_hurst`` and ``expected_hurst``,
+    and the curves they come from. Closure: ``interface_closure``, ``interface_compliance``,
+    ``area_share``, ``corrected_area_share`` and ``mean_gap`` (part, offset, load) with the interval
+    of the mean over the sub-windows and the ``_error`` of the solver, and the exponents of closure,
+    compliance and corrected area (offset, normal_force) with intervals over disjoint sub-windows,
+    see :func:`size_effect.size_exponents.size_exponent`. Strength, where the joint slides: see
+    :func:`size_effect.strength_laws.strength_by_size`.
 
-    Notes
-    -----
     Any other power law is a line through the logarithms of the means, one a size. The largest size
     is one window: nothing is known of the scatter of its value, and it weighs as much as the
     others. Small sub-windows are pieces of large ones, so that the sizes are not independent
@@ -139,7 +112,7 @@ def _add_exponents(result: xr.Dataset, states: xr.Dataset) -> None:
     for name, (exponent, fewest, words) in _OVER_LOADS.items():
         add_mean(result, name, states[name], states[f"{name}_error"])
         if name in _OF_INTERFACE:
-            # Where contact is too full to separate the interface from the bulk.
+            # Contact is too full there to separate the interface from the bulk.
             below = result[name] < 0
             for kept in (*names_of(name), f"{name}_error"):
                 result[kept] = result[kept].where(~below)
@@ -151,14 +124,7 @@ def _add_exponents(result: xr.Dataset, states: xr.Dataset) -> None:
 
 
 def add_fitted(result: xr.Dataset) -> None:
-    """Means that each exponent is fitted to, marked in ``result`` as ``NAME_fitted``.
-
-    Parameters
-    ----------
-    result : xr.Dataset
-        Means over ``part``, exponents with the range of b that they were fitted over, and
-        ``face_sigma_z``, ``face_hurst`` and ``scale_used``.
-    """
+    """Means that each exponent is fitted to, marked in ``result`` as ``NAME_fitted``."""
     for name, (exponent, *_) in _OVER_LOADS.items():
         inside = within(result["side"], result[f"{exponent}_b_min"], result[f"{exponent}_b_max"])
         fitted = result[exponent].notnull() & (result[name] > 0) & inside
@@ -173,11 +139,7 @@ def add_fitted(result: xr.Dataset) -> None:
 def add_lines(result: xr.Dataset) -> None:
     """Lines of the power laws over the sizes that they are fitted to, into ``result``.
 
-    Parameters
-    ----------
-    result : xr.Dataset
-        As :func:`add_fitted` leaves it, with ``expected_hurst``: gets ``interface_closure_law``,
-        ``interface_compliance_law`` and ``face_sigma_z_expected``, eq. 2.
+    ``interface_closure_law``, ``interface_compliance_law`` and ``face_sigma_z_expected``, eq. 2.
     """
     for name in _OF_INTERFACE:
         fitted, exponent = result[name].where(result[f"{name}_fitted"]), _OVER_LOADS[name][0]
@@ -203,12 +165,12 @@ def _add_hurst(
         fit_range = FIRST_FITTED_CELLS * cell, LAST_FITTED_FRACTION * side.values[0]
     used = within(side, *fit_range)
     result["scale_used"] = used.assign_attrs(cf_attrs("1", "size taken into the fit of eq. 2"))
-    for curve, name, of in (
+    for curve, name, surface in (
         ("sigma_z_all", "hurst", "composite topography"),
         ("face_sigma_z", "face_hurst", "lower face"),
     ):
         result.update(states[names_of(curve)])
-        add_law(result, name, side, states[curve].where(used), f"H of eq. 2, {of}")
+        add_law(result, name, side, states[curve].where(used), f"H of eq. 2, {surface}")
     expected = dimension.mapped(lambda delta: 3.0 - float(delta), falling=True)
     words = "H = 3 - Delta_g that eq. 2 expects"
     result.update(expected.variables("expected_hurst", (), "1", words))

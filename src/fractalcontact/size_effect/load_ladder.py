@@ -1,6 +1,6 @@
 """The load ladder: all sub-windows of a joint at one offset, loaded step by step, for eq. 6."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 import xarray as xr
@@ -11,6 +11,7 @@ from ..core.datasets import labelled_dataset
 from ..core.intervals import LEFT_OUT
 from ..core.labels import cf_attrs
 from ..core.limits import CORRECTED_NODES, RESOLVED_NODES
+from ..core.per_curve import stacked
 from ..core.ranges import within
 from ..core.settings import JointSettings
 from ..domain.renormalisation import MIN_NODES_PER_RESOLUTION
@@ -18,13 +19,14 @@ from ..joint.joint import prefractal
 from ..states.area_sampling import state_area_sampling
 from ..states.left_out import PARTS_LEFT_OUT, fractions_left, part_ends
 from ..states.loading import JointLoading
-from ..states.settlement import bulk_settlement, interface_closure
+from ..states.settlement import interface_closure
 from ..states.state_scalars import state_area
 from ..states.states import SCALARS, SOLVER_ERROR
 from ..states.sweep import load_steps
 from .division import PARTS, solvable_parts, split
+from .sub_windows import SubWindows
 
-#: A resolution is used if the smallest sub-windows keep this many nodes per side at it.
+#: Fewest nodes per side of the smallest sub-windows at a resolution that is used.
 MIN_NODES_PER_SIDE = 12
 #: The whole window is tested at the study's loads and, while sub-windows hold too few nodes, at up
 #: to this many doublings of the largest: loads that no rock would stand as an elastic body.
@@ -32,11 +34,12 @@ TESTED_DOUBLINGS = 3
 #: This many more doublings may be needed for small windows to have the sigma* of the whole; see
 #: :func:`solve_sub_windows` for when they are solved.
 SPARE_DOUBLINGS = 3
-#: Loads stay below this fraction of what the hardness lets a window carry.
+#: Largest load, as a fraction of the load that a window carries at the hardness.
 LARGEST_FRACTION = 0.98
 
-#: Takes the dataset of :func:`solve_sub_windows` of the whole window alone, its domains and the
-#: parts, and returns a dataset with ``delta_sigma`` (estimator, normal_force).
+#: Estimator of Delta_sigma: takes the dataset of :func:`solve_sub_windows` of the whole window
+#: alone, its domains and the parts; returns a dataset with ``delta_sigma`` (estimator,
+#: normal_force).
 Dimensions = Callable[[xr.Dataset, np.ndarray, Sequence[int]], xr.Dataset]
 
 
@@ -47,35 +50,13 @@ def solve_sub_windows(
 ) -> tuple[xr.Dataset, np.ndarray]:
     """States of all sub-windows of several sizes under the study's loads and some beyond.
 
-    Parameters
-    ----------
-    loading : JointLoading
-        At one offset.
-    parts : sequence of int
-        Sub-windows along each side, of which :func:`size_effect.division.solvable_parts` are taken.
-    estimate : callable, optional
+    At the one offset of ``loading``, of the divisions among ``parts`` that
+    :func:`size_effect.division.solvable_parts` gives. The dataset has what ``estimate`` returned,
+    :data:`_OF_SIZES` by ``part``, NaN for steps that no window of a size needs, ``whole_area``,
+    ``whole_area_sampling`` and ``whole_left`` of :mod:`states.left_out`, and ``ladder_pressure``
+    (step), whose first steps are those of the loads. Second come the contact domains (load, ny, nx)
+    of the whole window at the finest resolution. Raises `NotConverged`.
 
-    Returns
-    -------
-    states : xr.Dataset
-        What was estimated, and
-        ``nodes`` (part, window, resolution, step) in contact and ``nodes_error``, those that the
-        solver leaves ambiguous; ``interface_closure`` and :data:`OF_WINDOWS` (part, window, step)
-        at the finest resolution, ``whole_area`` and ``whole_area_sampling`` (resolution, step)
-        and ``whole_left`` (resolution, step, left_out) of :mod:`states.left_out`,
-        ``side`` b and ``windows`` (part), ``ladder_pressure`` (step) whose first steps are those
-        of the loads. Steps that no
-        window of a size needs are NaN.
-    domains : (load, ny, nx) bool ndarray
-        Contact domain of the whole window at the finest resolution.
-
-    Raises
-    ------
-    NotConverged
-        As :func:`size_effect.windows.window_states`.
-
-    Notes
-    -----
     Sub-windows are cut to whole cells of the coarsest resolution, so that all of them cover the
     same area at each.
 
@@ -97,14 +78,14 @@ def solve_sub_windows(
     ]
     of_study = loading.forces(settings.loads) / area
     pressures = _ladder(of_study, loading.solving["hardness"])
-    # Stiffness costs a solve of its own: at the loads whose closure is looked at.
+    # A stiffness costs a further solve; it is computed at the dilatancy loads alone.
     looked_at = loading.forces(settings.dilatancy_loads) / area
     compliant = np.isclose(pressures[:, np.newaxis], looked_at, rtol=1e-9).any(axis=1)
     sizes = []
     for n in parts:
         windows = _cut(composite, n, max(factors))
         where = f"{n} x {n} parts"
-        size = _LoadedSize(loading, windows, factors, pressures, where, compliant)
+        size = _LoadedSize(loading, windows, pressures, where, factors, compliant)
         size.extend(len(of_study))
         sizes.append(size)
     n_tested, most = len(of_study), min(len(of_study) + TESTED_DOUBLINGS, len(pressures))
@@ -130,22 +111,10 @@ def solve_sub_windows(
     return states.assign_coords(direction=loading.direction, offset=offset), domains
 
 
-class _LoadedSize:
-    """All sub-windows of one size at all resolutions, loaded step by step.
+class _LoadedSize(SubWindows):
+    """All sub-windows of one size at all resolutions, and what eq. 6 takes of their states.
 
-    Parameters
-    ----------
-    loading : JointLoading
-    windows : (window, ny, nx) ndarray
-        Composite topographies, mm.
-    factors : sequence of int
-        Resolutions k, the finest first.
-    pressures : (step,) ndarray
-        Nominal, MPa.
-    what : str
-        For errors.
-    compliant : (step,) bool ndarray
-        Steps whose compliance is found, where `RESOLVED_NODES` nodes touch.
+    Compliance is computed at the steps ``compliant`` (step,), where `RESOLVED_NODES` nodes touch.
 
     Attributes
     ----------
@@ -163,70 +132,51 @@ class _LoadedSize:
         Of a window alone at the finest resolution, a step each.
     bulk_compliance : float
         Bulk settlement over sigma_0, mm/MPa.
-    solved : int
-        Steps solved so far.
     """
 
     def __init__(
         self,
         loading: JointLoading[JointSettings],
         windows: np.ndarray,
-        factors: Sequence[int],
         pressures: np.ndarray,
-        what: str,
+        where: str,
+        factors: Sequence[int],
         compliant: np.ndarray,
     ) -> None:
-        cells = np.array(windows.shape[1:])
-        self.sides, self.pressures, self.factors = cells * loading.spacing, pressures, factors
+        super().__init__(loading, windows, pressures, where, factors)
         self.spacing = np.sqrt(loading.spacing.prod()) * np.array(factors)
-        self.loads = pressures * self.sides.prod()
         self.nodes = np.full((len(windows), len(factors), len(pressures)), np.nan)
-        self.ambiguous = self.nodes.copy()
+        self.ambiguous, self.corrected = self.nodes.copy(), self.nodes.copy()
         names = ("interface_closure", *OF_WINDOWS)
         self.finest = {name: np.full((len(windows), len(pressures)), np.nan) for name in names}
-        self.corrected = self.nodes.copy()
         self.sampling = self.nodes[0].copy()
         self.left = np.full((*self.sampling.shape, PARTS_LEFT_OUT), np.nan)
         self._compliant = compliant
         self.domains: list[np.ndarray] = []
         self._ends: list[np.ndarray] = []
-        self.solved = 0
-        modulus = loading.settings.material.e_star
-        self._settlement = bulk_settlement(self.loads, modulus, *self.sides)
-        self.bulk_compliance = self._settlement[0] / pressures[0]
-        self._flush = [np.ptp(window) == 0 for window in windows]
-        self._states: dict[tuple[int, int], Iterator[ContactState]] = {}
-        for k, factor in enumerate(factors):
-            space = loading.half_space(cells // factor, factor)
-            for j, window in enumerate(windows):
-                where = f"{what}, sub-window {j}, resolution {factor}"
-                h = prefractal(window, factor)
-                self._states[j, k] = load_steps(h, space, self.loads, loading.solving, where)
+        self.bulk_compliance = self.settlement[0] / pressures[0]
 
-    def extend(self, steps: int) -> None:
-        """Load every sub-window by this many steps more, as far as there are any."""
-        following = range(self.solved, min(self.solved + steps, len(self.loads)))
-        for (j, k), rising in self._states.items():
-            for step, state in zip(following, rising, strict=False):
-                self.nodes[j, k, step] = np.count_nonzero(state.in_contact)
-                self.ambiguous[j, k, step] = state.ambiguous
-                if k == 0 or len(self.nodes) == 1:
-                    self.corrected[j, k, step] = state_area(state)
-                if len(self.nodes) == 1:
-                    domain = state.in_contact
-                    if k == 0:
-                        self.domains.append(domain)
-                        self._ends.append(part_ends(domain, self.factors[0]))
-                    self.sampling[k, step] = state_area_sampling(state)
-                    self.left[k, step] = fractions_left(domain, self.factors[k], self._ends[step])
-                if k == 0:
-                    for name, value in self._of_state(state, j, step).items():
-                        self.finest[name][j, step] = value
-        self.solved = following.stop
+    def keep(self, state: ContactState, window: int, resolution: int, step: int) -> None:
+        """Store the numbers of a state; of a window alone also its domain."""
+        place, alone = (window, resolution, step), len(self.nodes) == 1
+        self.nodes[place] = np.count_nonzero(state.in_contact)
+        self.ambiguous[place] = state.ambiguous
+        if resolution == 0 or alone:
+            self.corrected[place] = state_area(state)
+        if alone:
+            domain, factor = state.in_contact, self.factors[resolution]
+            if resolution == 0:
+                self.domains.append(domain)
+                self._ends.append(part_ends(domain, factor))
+            self.sampling[resolution, step] = state_area_sampling(state)
+            self.left[resolution, step] = fractions_left(domain, factor, self._ends[step])
+        if resolution == 0:
+            for name, value in self._of_state(state, window, step).items():
+                self.finest[name][window, step] = value
 
     def _of_state(self, state: ContactState, window: int, step: int) -> dict[str, float]:
         """Fields of a state kept at the finest resolution."""
-        flush, settlement = self._flush[window], self._settlement[step]
+        flush, settlement = self.flush[window], self.settlement[step]
         area, domain = self.sides.prod(), state.in_contact
         ny, nx = domain.shape
         middle = np.s_[ny // 4 : ny - ny // 4, nx // 4 : nx - nx // 4]
@@ -258,16 +208,15 @@ class _LoadedSize:
         Each for its corrected area, and on the average at every resolution for sigma*.
         """
         nodes = self.nodes[:, :, self.solved - 1]
-        each, mean = nodes[:, 0].min(), nodes.mean(axis=0).min()
-        return bool(each >= CORRECTED_NODES and mean >= MIN_NODES_PER_RESOLUTION)
+        fewest, mean = nodes[:, 0].min(), nodes.mean(axis=0).min()
+        return bool(fewest >= CORRECTED_NODES and mean >= MIN_NODES_PER_RESOLUTION)
 
     def real_pressure(self) -> np.ndarray:
         """:func:`real_pressure` of each sub-window, (window, step)."""
-        return real_pressure(self.loads, self.nodes.swapaxes(1, 2), self.spacing)
+        return real_pressure(self.forces, self.nodes.swapaxes(1, 2), self.spacing)
 
 
-_OF_WINDOW = ("part", "window", "step")
-#: What is known of every sub-window at the finest resolution, for
+#: Quantities of every sub-window at the finest resolution, for
 #: :mod:`size_effect.size_law`: unit, long name.
 OF_WINDOWS = {
     "area_fraction": ("1", "corrected real contact area A_r/A_0 of a sub-window"),
@@ -276,12 +225,18 @@ OF_WINDOWS = {
     "central_load": ("1", "load on the central half of a sub-window over that of an even spread"),
 }
 
-_OF_NODES = ("part", "window", "resolution", "step")
+_WINDOW, _NODES = ("window", "step"), ("window", "resolution", "step")
+#: Quantities of every size: unit, long name, dimensions.
+_OF_SIZES = {
+    "nodes": ("1", "nodes in contact", *_NODES),
+    "nodes_error": ("1", f"nodes in contact, {SOLVER_ERROR}", *_NODES),
+    "interface_closure": ("mm", "interface closure w_int = w - w_b of a sub-window", *_WINDOW),
+    **{name: (*words, *_WINDOW) for name, words in OF_WINDOWS.items()},
+    "bulk_compliance": ("mm/MPa", "bulk settlement of a sub-window over sigma_0"),
+    "side": ("mm", "side b of the sub-windows"),
+    "windows": ("1", "sub-windows solved of each size"),
+}
 _TABLE = {
-    "nodes": (_OF_NODES, "1", "nodes in contact"),
-    "nodes_error": (_OF_NODES, "1", f"nodes in contact, {SOLVER_ERROR}"),
-    "interface_closure": (_OF_WINDOW, "mm", "interface closure w_int = w - w_b of a sub-window"),
-    **{name: (_OF_WINDOW, *words) for name, words in OF_WINDOWS.items()},
     "whole_area": (
         ("resolution", "step"),
         "mm2",
@@ -289,9 +244,6 @@ _TABLE = {
     ),
     "whole_area_sampling": (("resolution", "step"), *SCALARS["area_sampling"]),
     "whole_left": (("resolution", "step", LEFT_OUT), "1", "fraction of it without a part"),
-    "bulk_compliance": ("part", "mm/MPa", "bulk settlement of a sub-window over sigma_0"),
-    "side": ("part", "mm", "side b of the sub-windows"),
-    "windows": ("part", "1", "sub-windows solved of each size"),
     "nominal_pressure": ("normal_force", "MPa", "nominal pressure sigma_0 of the whole window"),
     "beyond_study": ("normal_force", "1", "whether the load is larger than those of the study"),
     "ladder_pressure": ("step", "MPa", "nominal pressures that every window was loaded with"),
@@ -307,62 +259,47 @@ def _labelled(
     area: float,
 ) -> xr.Dataset:
     """The dataset of :func:`solve_sub_windows`; windows that a size does not have are NaN."""
-    pressures = sizes[0].pressures
-    n_windows, n_factors = max(parts) ** 2, len(sizes[0].spacing)
-    nodes = np.full((len(parts), n_windows, n_factors, len(pressures)), np.nan)
-    ambiguous = nodes.copy()
-    finest = {
-        name: np.full((len(parts), n_windows, len(pressures)), np.nan) for name in sizes[0].finest
-    }
-    for i, size in enumerate(sizes):
-        taken = slice(len(size.nodes))
-        nodes[i, taken], ambiguous[i, taken] = size.nodes, size.ambiguous
-        for name, values_of_size in size.finest.items():
-            finest[name][i, taken] = values_of_size
-    tested = pressures[:n_tested]
+    whole = sizes[0]
+    tested = whole.pressures[:n_tested]
     values = {
-        "nodes": nodes,
-        "nodes_error": ambiguous,
-        "whole_area": sizes[0].corrected[0],
-        "whole_area_sampling": sizes[0].sampling,
-        "whole_left": sizes[0].left,
-        "bulk_compliance": [size.bulk_compliance for size in sizes],
-        "side": [np.sqrt(size.sides.prod()) for size in sizes],
-        "windows": np.square(parts),
+        "whole_area": whole.corrected[0],
+        "whole_area_sampling": whole.sampling,
+        "whole_left": whole.left,
         "nominal_pressure": tested,
         "beyond_study": tested > largest_of_study,
-        "ladder_pressure": pressures,
-        "spacing": sizes[0].spacing,
-        **finest,
+        "ladder_pressure": whole.pressures,
+        "spacing": whole.spacing,
     }
+    of_sizes = [
+        {
+            "nodes": size.nodes,
+            "nodes_error": size.ambiguous,
+            "bulk_compliance": size.bulk_compliance,
+            "side": np.sqrt(size.sides.prod()),
+            "windows": len(size.nodes),
+            **size.finest,
+        }
+        for size in sizes
+    ]
     coords = {
         "part": ("part", parts, cf_attrs("1", "sub-windows along a side of the window")),
         "resolution": (
             "resolution",
-            sizes[0].factors,
+            whole.factors,
             cf_attrs("1", "multiple k of the scan's spacing"),
         ),
         "normal_force": ("normal_force", tested * area, cf_attrs("N", "force on the whole window")),
     }
-    return labelled_dataset(_TABLE, values, coords=coords)
+    states = labelled_dataset(_TABLE, values, coords=coords)
+    return states.assign(stacked(of_sizes, _OF_SIZES, ["part"]))
 
 
 def real_pressure(force: np.ndarray, nodes: np.ndarray, spacing: np.ndarray) -> np.ndarray:
-    """Geometric mean of sigma_n over the resolutions, MPa.
+    """Geometric mean of sigma_n over the resolutions (..., step), MPa.
 
-    Parameters
-    ----------
-    force : (..., step) ndarray
-        N.
-    nodes : (..., step, resolution) ndarray
-        In contact; the mean number for several windows together.
-    spacing : (resolution,) ndarray
-        mm.
-
-    Returns
-    -------
-    (..., step) ndarray
-        NaN where there are fewer than `MIN_NODES_PER_RESOLUTION` nodes at a resolution.
+    Forces (..., step) are in N, nodes (..., step, resolution) those in contact, the mean number for
+    several windows together, spacings (resolution,) in mm. NaN where there are fewer than
+    `MIN_NODES_PER_RESOLUTION` nodes at a resolution.
     """
     nodes = np.where(within(nodes, MIN_NODES_PER_RESOLUTION, np.inf), nodes, np.nan)
     return np.exp(np.log(force[..., np.newaxis] / (nodes * spacing**2)).mean(axis=-1))
@@ -373,44 +310,33 @@ def whole_areas(
 ) -> xr.Dataset:
     """Corrected real area of the whole window at all resolutions of the study.
 
-    Parameters
-    ----------
-    loading : JointLoading
-        As for :func:`solve_sub_windows`.
-    states : xr.Dataset
-        From :func:`solve_sub_windows`, which has solved some of the resolutions.
-    domains : (load, ny, nx) bool ndarray
-        From there.
-
-    Returns
-    -------
-    xr.Dataset
-        ``area_corrected``, mm2, ``area_sampling`` and ``nodes`` (resolution, normal_force), and
-        ``left`` (resolution, normal_force, left_out) of :mod:`states.left_out`.
+    ``states`` and ``domains`` are those of :func:`solve_sub_windows`, which has solved some of the
+    resolutions. ``area_corrected``, mm2, ``area_sampling`` and ``nodes`` (resolution,
+    normal_force), and ``left`` (resolution, normal_force, left_out) of :mod:`states.left_out`.
     """
     composite = loading.composite(loading.cells.item())
     factors, loads = loading.settings.resolutions, states["normal_force"]
     solved = states.sel(part=1).isel(window=0, step=slice(len(loads)))
-    # That of solve_sub_windows is cut to whole cells of its coarsest resolution.
+    # solve_sub_windows cuts the window to whole cells of its coarsest resolution.
     uncut = not any(n % solved["resolution"].max() for n in composite.shape)
     ends = [part_ends(domain, min(factors)) for domain in domains]
     rows, left = [], []
     for factor in factors:
         if uncut and factor in solved["resolution"]:
-            known = solved.sel(resolution=factor)
+            of_factor = solved.sel(resolution=factor)
             names = ("whole_area", "whole_area_sampling", "nodes")
-            rows.append(np.array([known[name].values for name in names]))
-            left.append(known["whole_left"].values)
+            rows.append(np.array([of_factor[name].values for name in names]))
+            left.append(of_factor["whole_left"].values)
             continue
         h = prefractal(composite, factor)
         space = loading.half_space(h.shape, factor)
         steps = load_steps(h, space, loads.values, loading.solving, f"resolution {factor}")
-        found, without = [], []
+        numbers, without = [], []
         for state, of_load in zip(steps, ends, strict=True):
             domain = state.in_contact
-            found.append((state_area(state), state_area_sampling(state), domain.sum()))
+            numbers.append((state_area(state), state_area_sampling(state), domain.sum()))
             without.append(fractions_left(domain, factor, of_load))
-        rows.append(np.transpose(found))
+        rows.append(np.transpose(numbers))
         left.append(np.array(without))
     dims = ("resolution", "normal_force")
     columns = np.swapaxes(np.array(rows), 0, 1)

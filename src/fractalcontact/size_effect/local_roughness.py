@@ -14,23 +14,15 @@ from ..core.window import cell_side, faces, window_slices
 from ..states.loading import JointLoading
 from .division import split
 
-#: A sub-window whose sigma_z is measured has at least this many cells per side.
+#: Fewest cells per side of a sub-window whose sigma_z is measured.
 MIN_CELLS_ROUGHNESS = 4
 
 
 def local_roughness(windows: ArrayLike) -> np.ndarray:
-    """sigma_z, mm: rms height of each window about its own mean plane.
+    """sigma_z (n,), mm: rms height of each window (n, ny, nx) about its own mean plane.
 
-    Parameters
-    ----------
-    windows : (n, ny, nx) array_like
-        Complete, mm.
-
-    Returns
-    -------
-    (n,) ndarray
-        With the three degrees of freedom of the plane taken off, as the roughness-length estimator
-        of :mod:`roughness.dimension` has it.
+    The three degrees of freedom of the plane are taken off, as the roughness-length estimator of
+    :mod:`roughness.dimension` has it.
     """
     residuals = without_mean_planes(windows)
     ny, nx = residuals.shape[1:]
@@ -45,14 +37,10 @@ _SCALES = {
 
 
 def roughness_by_size(loading: JointLoading) -> xr.Dataset:
-    """sigma_z of the face and of the composite topography in sub-windows of many sizes.
+    """sigma_z of the face and of the composite topography in sub-windows of many sizes, mm.
 
-    Returns
-    -------
-    xr.Dataset
-        Means over all sub-windows of a size with ``_low`` and ``_high`` (95 %): ``face_sigma_z``
-        (scale) of the lower face under the window, ``sigma_z_all`` (offset, scale) of the composite
-        topography. ``scale_side`` b in mm and ``scale_n``, sub-windows of that size.
+    Means with intervals over all sub-windows of a size: ``face_sigma_z`` (scale) of the lower face
+    under the window, ``sigma_z_all`` (offset, scale) of the composite topography.
     """
     specimen = loading.specimen
     lower = faces(specimen)[0][window_slices(specimen)]

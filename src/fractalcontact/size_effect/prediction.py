@@ -12,37 +12,26 @@ from ..core.intervals import mean_interval
 from ..core.labels import cf_attrs
 from ..core.ranges import within
 
-#: How the whole window is predicted from smaller ones; the middle ones are eq. 6 with Delta_sigma
-#: by each estimator.
+#: Predictors of the whole window from smaller ones; the middle ones are eq. 6 with Delta_sigma by
+#: each estimator.
 PREDICTORS = ("power_law", "eq6_area", "eq6_box", "eq6_box_sizes", "no_size_effect")
 
 
 def predict_whole(states: xr.Dataset, delta_sigma: xr.DataArray, fewest_nodes: int) -> xr.Dataset:
     """Closure and real area of the whole window, from smaller windows and as solved.
 
-    Parameters
-    ----------
-    states : xr.Dataset
-        From :func:`size_effect.load_ladder.solve_sub_windows`.
-    delta_sigma : xr.DataArray (estimator, normal_force)
-        Of the whole window.
-    fewest_nodes : int
-        A size is used where its windows hold this many nodes on the average.
+    ``states`` are those of :func:`size_effect.load_ladder.solve_sub_windows`, ``delta_sigma``
+    (estimator, normal_force) is that of the whole window; a size is used where its windows hold
+    ``fewest_nodes`` on the average. ``predicted_closure``, ``predicted_area`` (predictor,
+    normal_force) with intervals, ``direct_closure``, ``direct_area`` (normal_force), and
+    ``closure_error``, ``area_error`` (predictor, load) = predicted / direct - 1, at the finest
+    resolution.
 
-    Returns
-    -------
-    xr.Dataset
-        ``predicted_closure``, ``predicted_area`` (predictor, normal_force) with intervals,
-        ``direct_closure``, ``direct_area`` (normal_force), and ``closure_error``, ``area_error``
-        (predictor, load) = predicted / direct - 1. At the finest resolution.
-
-    Notes
-    -----
     The power law goes through the means of the smaller sizes at the same sigma_0. Eq. 6 says that
-    the whole at sigma_0 has the sigma*, so the real pressure, of windows of side b' at
-    sigma_0 (b/b')^(2 - Delta); every smaller size gives one prediction and their geometric mean is
-    taken. That they close as much then, too, is what "governing parameter" is taken to mean here;
-    the paper does not say it. Without a size effect the whole is as its parts at the same sigma_0.
+    the whole at sigma_0 has the sigma*, so the real pressure, of windows of side b' at sigma_0
+    (b/b')^(2 - Delta); every smaller size gives one prediction and their geometric mean is taken.
+    That they close as much then, too, is what "governing parameter" is taken to mean here; the
+    paper does not say it. Without a size effect the whole is as its parts at the same sigma_0.
     """
     b, pressures = states["side"].values, states["ladder_pressure"].values
     loads = pressures[: states.sizes["normal_force"]]
@@ -60,7 +49,7 @@ def predict_whole(states: xr.Dataset, delta_sigma: xr.DataArray, fewest_nodes: i
 
     by_eq6 = {
         "closure": [at_equal_star(closure, power) for power in powers],
-        # Equal sigma_n at other sigma_0: the fractions differ as the sigma_0 do.
+        # At equal sigma_n the fractions are in proportion to sigma_0.
         "area": [
             at_equal_star(fraction, power) / (b[0] / b[1:]) ** power[:, np.newaxis]
             for power in powers
@@ -72,7 +61,7 @@ def predict_whole(states: xr.Dataset, delta_sigma: xr.DataArray, fewest_nodes: i
         ("area", fraction, "1", "real contact area A_r/A_0"),
     ):
         by_law = _power_law(b, curves[:, : len(loads)])
-        predictions = [by_law, *(_mean(each) for each in by_eq6[name])]
+        predictions = [by_law, *(_mean(of_sizes) for of_sizes in by_eq6[name])]
         _add(result, name, predictions, curves[0, : len(loads)], "normal_force", units, words)
     return result
 
@@ -96,31 +85,19 @@ _STRENGTH = {
 
 
 def predict_whole_strength(laws: xr.Dataset, delta_sigma: xr.DataArray) -> xr.Dataset:
-    """Shear strength of the whole window at v/b as small windows predict it, and as solved.
+    """Shear strength of the whole window at v/b as small windows predict it, and as solved, MPa.
 
-    Parameters
-    ----------
-    laws : xr.Dataset
-        From :func:`size_effect.laws.joint_by_size`, of a joint that slides.
-    delta_sigma : xr.DataArray (estimator, normal_force)
-        Of the whole window.
-
-    Returns
-    -------
-    xr.Dataset
-        ``predicted_strength`` (predictor, dilatancy_load), ``direct_strength`` (dilatancy_load),
-        ``strength_error``; ``strength_share``, the v/b at which most sizes
-        can be compared. NaN where the study states no basic friction angle.
-
-    Notes
-    -----
-    Eq. 6 with tau* = mu sigma* has the apparent strength at a given sigma_0 fall as
-    b^-(2 - Delta).
+    ``laws`` are those of :func:`size_effect.laws.joint_by_size` of a joint that slides,
+    ``delta_sigma`` (estimator, normal_force) is that of the whole window. ``predicted_strength``
+    and ``strength_error`` (predictor, dilatancy_load), ``direct_strength`` (dilatancy_load), and
+    ``strength_share``, the v/b at which most sizes can be compared. NaN where the study states no
+    basic friction angle. Eq. 6 with tau* = mu sigma* has the apparent strength at a given sigma_0
+    fall as b^-(2 - Delta).
     """
-    at = int(
+    place = int(
         np.argmax(laws["slope_at_equal_v_over_b"].notnull().all("normal_force").sum("part").values)
     )
-    chosen = laws.isel(share=at)
+    chosen = laws.isel(share=place)
     strength = chosen["strength_at_equal_v_over_b"].transpose("part", "normal_force").values
     strength = np.where(strength > 0, strength, np.nan)
     b, forces = laws["side"].values, laws["normal_force"].values
@@ -156,13 +133,13 @@ def _mean(predictions: np.ndarray) -> Estimate:
     return mean_interval(np.log(predictions), axis=1).mapped(np.exp)
 
 
-def _on_curve(at: np.ndarray, pressures: np.ndarray, curves: np.ndarray) -> np.ndarray:
+def _on_curve(targets: np.ndarray, pressures: np.ndarray, curves: np.ndarray) -> np.ndarray:
     """Each curve at its own pressure, by lines between the logarithms; NaN beyond its ends."""
     values = np.full(len(curves), np.nan)
-    for i, (p, curve) in enumerate(zip(at, curves, strict=True)):
-        known = np.isfinite(curve)
-        if known.any() and np.isfinite(p):
-            x, y = np.log(pressures[known]), np.log(curve[known])
+    for i, (p, curve) in enumerate(zip(targets, curves, strict=True)):
+        finite = np.isfinite(curve)
+        if finite.any() and np.isfinite(p):
+            x, y = np.log(pressures[finite]), np.log(curve[finite])
             values[i] = np.exp(np.interp(np.log(p), x, y, left=np.nan, right=np.nan))
     return values
 

@@ -7,6 +7,7 @@ all that is cut from it (jackknife).
 """
 
 from collections.abc import Sequence
+from functools import partial
 
 import numpy as np
 import xarray as xr
@@ -21,19 +22,10 @@ QUARTERS = 4
 
 
 def kept_fractions(parts: int, places: np.ndarray) -> np.ndarray:
-    """Fraction of each sub-window that is left where a quarter of the window is left out.
+    """Fraction (4, n) of each sub-window that is left where a quarter of the window is left out.
 
-    Parameters
-    ----------
-    parts : int
-        Sub-windows along each side.
-    places : (n,) int ndarray
-        As :func:`size_effect.division.split` orders them.
-
-    Returns
-    -------
-    (4, n) ndarray
-        1 outside the quarter, 0 in it; of a division into thirds some lie across.
+    1 outside the quarter, 0 in it; of a division into thirds some lie across. ``places`` (n,) are
+    those of :func:`size_effect.division.split`.
     """
     first = np.clip(parts / 2 - np.arange(parts), 0, 1)  # in the first half, along one side
     y, x = first[places // parts], first[places % parts]
@@ -41,32 +33,18 @@ def kept_fractions(parts: int, places: np.ndarray) -> np.ndarray:
 
 
 def of_usable_sizes(values: np.ndarray, nodes: np.ndarray, fewest: int) -> np.ndarray:
-    """Values (part, window, ...) of usable sizes whose own are all positive, NaN of others.
-
-    Parameters
-    ----------
-    values : (part, window, ...) ndarray
-    nodes, fewest
-        As for :func:`usable_sizes`.
-    """
+    """Values (part, window, ...) of :func:`usable_sizes` that are all positive, NaN of others."""
     positive = ((values > 0) | np.isnan(values)).all(axis=1)
     usable = usable_sizes(nodes, fewest) & positive
     return np.where(usable[:, np.newaxis], values, np.nan)
 
 
 def usable_sizes(nodes: np.ndarray, fewest: int) -> np.ndarray:
-    """Sizes all of whose sub-windows hold nodes enough, (part, ...) bool.
+    """Sizes (part, ...) all of whose sub-windows hold nodes enough; nodes (part, window, ...).
 
-    Parameters
-    ----------
-    nodes : (part, window, ...) ndarray
-        In contact; NaN where there are fewer sub-windows.
-    fewest : int
-
-    Notes
-    -----
-    One state of too few nodes leaves out its size, not itself: those left would be the windows that
-    touch most, and small windows would seem to touch more.
+    Nodes are NaN where there are fewer sub-windows. One state of too few nodes leaves out its size,
+    not itself: those left would be the windows that touch most, and small windows would seem to
+    touch more.
     """
     solved = np.isfinite(nodes)
     return solved.any(axis=1) & (within(nodes, fewest, np.inf) | ~solved).all(axis=1)
@@ -77,25 +55,10 @@ def size_exponent(
 ) -> Estimate:
     """Exponent d ln(quantity) / d ln b of one quantity, of means over disjoint sub-windows.
 
-    Parameters
-    ----------
-    parts : sequence of int
-        Sub-windows along each side, one number a size.
-    sides : (part,) ndarray
-        b, mm.
-    values : (part, window) ndarray
-        Positive; a size without a value in its first window is left out.
-    places : sequence of (n,) int ndarray
-        Where the sub-windows of each size lie.
+    Sides (part,) in mm; positive values (part, window), of which a size without one in its first
+    window is left out; ``places`` where the sub-windows of each size lie. NaN with fewer than two
+    sizes, or where no size has several windows.
 
-    Returns
-    -------
-    Estimate
-        Over the logarithms of the sides used, mm; NaN with fewer than two sizes, or where no size
-        has several windows.
-
-    Notes
-    -----
     The line through the logarithms of the means, all sizes alike. Its error has two independent
     parts: that of all sizes with several windows, by the jackknife over quarters, in which what
     they share cancels; and that of the whole window, a single one, for which the scatter of the
@@ -135,24 +98,12 @@ def add_size_exponents(
     places: Sequence[np.ndarray],
     words: str,
 ) -> None:
-    """Exponents of a quantity of sub-windows against b, into ``result``.
+    """Exponents of a quantity (part, window, ...) of sub-windows against b, into ``result``.
 
-    Parameters
-    ----------
-    result : xr.Dataset
-        With ``part`` and ``side``, filled as by :func:`size_effect.window_means.add_exponents`.
-    values : xr.DataArray (part, window, ...)
-        NaN where a size is not used.
-    places : sequence of (n,) int ndarray
-        As for :func:`size_exponent`.
-    words : str
-        What the exponent is of.
+    As :func:`size_effect.window_means.add_exponents`. The quantity is NaN where a size is not used,
+    ``places`` are those of :func:`size_exponent`, and ``words`` say what the exponent is of.
     """
-    values = values.transpose("part", "window", ...)
-    dims, rows = tuple(map(str, values.dims[2:])), values.values
     parts, sides = result["part"].values.tolist(), result["side"].values
-    each = [
-        size_exponent(parts, sides, rows[(slice(None), slice(None), *index)], places)
-        for index in np.ndindex(rows.shape[2:])
-    ]
-    add_exponents(result, name, each, dims, words, "sizes used")
+    exponent = partial(size_exponent, parts, sides, places=places)
+    along = ("part", "window")
+    add_exponents(result, name, {"values": values}, exponent, along, words, "sizes used")

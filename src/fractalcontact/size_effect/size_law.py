@@ -34,22 +34,12 @@ _TABLE = {
 def size_law(states: xr.Dataset) -> xr.Dataset:
     """Corrected area, compliance and mean gap against b at equal nominal pressure.
 
-    Parameters
-    ----------
-    states : xr.Dataset
-        From :func:`size_effect.load_ladder.solve_sub_windows`.
+    ``states`` are those of :func:`size_effect.load_ladder.solve_sub_windows`. Over (normal_force,
+    part): :data:`QUANTITIES`, means over the disjoint sub-windows of a size with the interval over
+    them, NaN where one of them holds too few nodes; ``min_nodes``, ``edge_ratio`` and
+    ``central_load``. Over (normal_force,): ``area_exponent``, ``compliance_exponent`` and
+    ``gap_exponent``, by :func:`size_effect.size_exponents.add_size_exponents`.
 
-    Returns
-    -------
-    xr.Dataset
-        Over (normal_force, part): :data:`QUANTITIES`, means over the disjoint sub-windows of a size
-        with the interval over them, NaN where one of them holds too few nodes; ``min_nodes``,
-        ``edge_ratio`` and ``central_load``. Over (normal_force,): ``area_exponent``,
-        ``compliance_exponent`` and ``gap_exponent``, as
-        :func:`size_effect.size_exponents.add_size_exponents` makes them.
-
-    Notes
-    -----
     Edges: a window stands alone, and the rigid block presses its rim harder where the bulk is soft
     beside the interface. Both compliances are equal (``edge_ratio`` 1) at sides of about the
     elastic length E* d w_int / d sigma_0; longer windows carry like a punch, at their rim. The

@@ -14,9 +14,10 @@ import xarray as xr
 
 from ..core.estimate import Estimate
 from ..core.labels import cf_attrs
+from ..core.per_curve import stacked
 from ..core.verdicts import AGREES, AMBIGUOUS, FLATTER, NOT_TESTED, STEEPER, UNDECIDED
 
-#: Exponents that differ by no more than this differ by rounding alone.
+#: Largest difference of exponents by rounding alone.
 ROUNDING = 1e-9
 #: A prediction whose 95 % interval is wider than this, end to end, is inconclusive.
 WIDEST_PREDICTION = 0.4
@@ -28,7 +29,7 @@ WIDEST_SLOPE = 1.0
 #: leaves open, 4 %, is then 40 % of sigma_0, or 0.3 of a slope over two octaves.
 WORST_CONDITION = 10.0
 
-#: Why nothing is decided, or on what grounds it is.
+#: Reasons of verdicts.
 TOO_WIDE = f"the predicted exponent is uncertain by more than {WIDEST_PREDICTION:g}"
 TOO_WIDE_MISSED = f"{TOO_WIDE}, though what is measured lies outside"
 NOTHING_PREDICTED = "eq. 6 predicts hardly any size effect"
@@ -51,16 +52,8 @@ class Judgement(NamedTuple):
 def judge_exponent(measured: Estimate, predicted: Estimate) -> Judgement:
     """Judgement of a measured exponent beside the predicted one: the rule of both forms.
 
-    Parameters
-    ----------
-    measured, predicted : Estimate
-        NaN where unknown.
-
-    Returns
-    -------
-    Judgement
-        Undecided where the prediction is wide or next to nothing, or where the measured interval
-        holds both the prediction and zero.
+    Undecided where the prediction is wide or next to nothing, or where the measured interval holds
+    both the prediction and zero.
     """
     value = measured.value - predicted.value
     low = value - np.hypot(measured.value - measured.low, predicted.high - predicted.value)
@@ -89,40 +82,27 @@ def judge_exponent(measured: Estimate, predicted: Estimate) -> Judgement:
 def judge_own_form(
     measured: Estimate, predicted: Estimate, condition: float, crossings: int
 ) -> Judgement:
-    """As :func:`judge_exponent`, of the slope at equal sigma*: only where that determines sigma_0.
+    """Judgement of the slope at equal sigma*, where that determines sigma_0.
 
-    Parameters
-    ----------
-    measured, predicted : Estimate
-    condition : float
-        d ln sigma_0 / d ln sigma* of the whole window, of any sign.
-    crossings : int
-        Pressures at which the whole window has its sigma*.
+    By :func:`judge_exponent`. ``condition`` is d ln sigma_0 / d ln sigma* of the whole window, of
+    any sign, ``crossings`` the number of pressures at which the whole window has its sigma*.
     """
-    found = judge_exponent(measured, predicted)
-    if found.verdict == NOT_TESTED:
-        return found
+    judgement = judge_exponent(measured, predicted)
+    if judgement.verdict == NOT_TESTED:
+        return judgement
     if crossings != 1:
-        return found._replace(verdict=AMBIGUOUS, reason=SEVERAL)
+        return judgement._replace(verdict=AMBIGUOUS, reason=SEVERAL)
     if not abs(condition) <= WORST_CONDITION:
-        return found._replace(verdict=UNDECIDED, reason=ILL_CONDITIONED)
-    if found.verdict == AGREES and measured.width > WIDEST_SLOPE:
-        return found._replace(verdict=UNDECIDED, reason=SLOPE_TOO_WIDE)
-    return found
+        return judgement._replace(verdict=UNDECIDED, reason=ILL_CONDITIONED)
+    if judgement.verdict == AGREES and measured.width > WIDEST_SLOPE:
+        return judgement._replace(verdict=UNDECIDED, reason=SLOPE_TOO_WIDE)
+    return judgement
 
 
 def both_forms(area: Judgement, own: Judgement) -> tuple[str, str]:
-    """Verdict and reason on eq. 6 under one load, from both of its forms.
+    """Verdict and reason on eq. 6 under one load: the well-conditioned form's.
 
-    Parameters
-    ----------
-    area, own : Judgement
-        Of the exponent of A_r/A_0, and of eq. 6's own form.
-
-    Returns
-    -------
-    verdict, reason : str
-        The well-conditioned form's; where that agrees, what its own form adds.
+    Where that agrees, what its own form adds.
     """
     if area.verdict != AGREES:
         return area.verdict, area.reason
@@ -131,28 +111,26 @@ def both_forms(area: Judgement, own: Judgement) -> tuple[str, str]:
     return UNDECIDED, own.reason
 
 
-_FORMS = {
-    "area": ("A_r/A_0 at equal sigma_0", "exponent of A_r/A_0"),
-    "slope": ("its own form, at equal sigma*", "slope of log sigma_0"),
+_AREA_FORM, _OWN_FORM = "A_r/A_0 at equal sigma_0", "its own form, at equal sigma*"
+_NAMES = {
+    "verdict": ("1", "whether eq. 6 agrees, both forms together"),
+    "reason": ("1", "why undecided, both forms together"),
+    "area_verdict": ("1", f"whether eq. 6 agrees, {_AREA_FORM}"),
+    "area_reason": ("1", f"why undecided, {_AREA_FORM}"),
+    "area_difference": ("1", "exponent of A_r/A_0 less -(2 - Delta_sigma)"),
+    "slope_verdict": ("1", f"whether eq. 6 agrees, {_OWN_FORM}"),
+    "slope_reason": ("1", f"why undecided, {_OWN_FORM}"),
+    "slope_difference": ("1", "slope of log sigma_0 less -(2 - Delta_sigma)"),
 }
 
 
 def size_verdicts(result: xr.Dataset) -> xr.Dataset:
     """Verdicts on eq. 6 by estimator and load, in both forms and together.
 
-    Parameters
-    ----------
-    result : xr.Dataset
-        With ``area_exponent``, ``slope`` and ``predicted_slope`` with intervals, ``sensitivity``
-        and ``crossings`` as of :func:`size_effect.eq6.size_test`.
-
-    Returns
-    -------
-    xr.Dataset
-        Over (estimator, normal_force): ``area_difference``, ``slope_difference`` with intervals,
-        ``area_verdict``, ``slope_verdict``, ``verdict`` of both, each with its ``_reason``
-        (``reason`` of both). Over (normal_force,): ``condition_number``,
-        ``well_conditioned`` and ``size_effect``.
+    ``result`` has ``area_exponent``, ``slope``, ``predicted_slope``, ``sensitivity`` and
+    ``crossings`` of :func:`size_effect.eq6.size_test`. :data:`_NAMES` over (estimator,
+    normal_force); ``condition_number``, ``well_conditioned`` and ``size_effect`` over
+    (normal_force,).
     """
     dims = ("estimator", "normal_force")
     predicted = Estimate.read(result.transpose(*dims, ...), "predicted_slope")
@@ -164,31 +142,19 @@ def size_verdicts(result: xr.Dataset) -> xr.Dataset:
     with np.errstate(divide="ignore"):
         condition = 1 / result["sensitivity"].values
     shape = predicted.value.shape
-    differences: dict[str, list[Estimate]] = {form: [] for form in _FORMS}
-    names = ("area_verdict", "area_reason", "slope_verdict", "slope_reason", "verdict", "reason")
-    words: dict[str, np.ndarray] = {name: np.empty(shape, object) for name in names}
-    for index in np.ndindex(shape):
-        load = index[1]
-        of_area = judge_exponent(measured["area"][load], predicted[index])
+    results = []
+    for place in np.ndindex(shape):
+        load = place[1]
+        area = judge_exponent(measured["area"][load], predicted[place])
         own = judge_own_form(
-            measured["slope"][load], predicted[index], float(condition[load]), int(crossings[load])
+            measured["slope"][load], predicted[place], float(condition[load]), int(crossings[load])
         )
-        differences["area"].append(of_area.difference)
-        differences["slope"].append(own.difference)
-        found = (*of_area[:2], *own[:2], *both_forms(of_area, own))
-        for name, word in zip(names, found, strict=True):
-            words[name][index] = word
-    verdicts = xr.Dataset()
-    for form, (of, quantity) in _FORMS.items():
-        difference = Estimate.stack(differences[form], shape)
-        text = f"{quantity} less -(2 - Delta_sigma)"
-        verdicts.update(difference.variables(f"{form}_difference", dims, "1", text))
-        for name, text in (("verdict", "whether eq. 6 agrees"), ("reason", "why undecided")):
-            attrs = cf_attrs("1", f"{text}, {of}")
-            verdicts[f"{form}_{name}"] = (dims, words[f"{form}_{name}"].astype(str), attrs)
-    for name, text in (("verdict", "whether eq. 6 agrees"), ("reason", "why undecided")):
-        attrs = cf_attrs("1", f"{text}, both forms together")
-        verdicts[name] = (dims, words[name].astype(str), attrs)
+        verdict, reason = both_forms(area, own)
+        judged = {"verdict": verdict, "reason": reason}
+        for form, judgement in (("area", area), ("slope", own)):
+            judged |= {f"{form}_{name}": value for name, value in judgement._asdict().items()}
+        results.append(judged)
+    verdicts = xr.Dataset(stacked(results, _NAMES, dims, shape))
     attrs = cf_attrs("1", "d ln sigma_0 / d ln sigma* of the whole window")
     verdicts["condition_number"] = ("normal_force", condition, attrs)
     single = (crossings == 1) & (abs(condition) <= WORST_CONDITION)

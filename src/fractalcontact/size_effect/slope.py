@@ -5,39 +5,28 @@ import xarray as xr
 from numpy.typing import ArrayLike
 
 from ..core.datasets import labelled_dataset
-from ..core.fitting import fit_line
 from ..states.states import SOLVER_ERROR
 from .load_ladder import real_pressure
-from .window_means import add_exponents
+from .window_means import add_law
 
 
 def equal_pressure(pressures: ArrayLike, values: ArrayLike, target: float) -> tuple[float, int]:
-    """Pressures at which a curve has a value, by lines between the logarithms.
+    """Pressure at which a curve has a value, by lines between the logarithms, and its crossings.
 
-    Parameters
-    ----------
-    pressures, values : (n,) array_like
-        The curve; NaN where it is not known.
-    target : float
-
-    Returns
-    -------
-    pressure : float
-        Geometric mean of all places where the curve has the value; 0 if all of the curve lies above
-        it, so that the place is below the pressures solved, infinity if all lies below; NaN without
-        a curve.
-    crossings : int
+    Values (n,) are NaN where unknown. The pressure is the geometric mean of all places where the
+    curve has the value; 0 if all of the curve lies above it, so that the place is below the
+    pressures solved, infinity if all lies below; NaN without a curve.
     """
-    known = np.isfinite(values)
-    if not known.any():
+    finite = np.isfinite(values)
+    if not finite.any():
         return np.nan, 0
     x, above = np.log(pressures), np.log(values) - np.log(target)
     places = []
-    for i in np.flatnonzero(known[:-1] & known[1:]):
+    for i in np.flatnonzero(finite[:-1] & finite[1:]):
         left, right = above[i], above[i + 1]
         if (left < 0) != (right < 0):
             places.append(x[i] - left * (x[i + 1] - x[i]) / (right - left))
-        elif left == 0 and not known[:i].any():  # the curve starts at the value
+        elif left == 0 and not finite[:i].any():  # the curve starts at the value
             places.append(x[i])
     if places:
         return float(np.exp(np.mean(places))), len(places)
@@ -45,13 +34,10 @@ def equal_pressure(pressures: ArrayLike, values: ArrayLike, target: float) -> tu
 
 
 def real_pressures(states: xr.Dataset) -> np.ndarray:
-    """Geometric mean of sigma_n over the resolutions, MPa, of all windows of a size together.
+    """Geometric mean of sigma_n over the resolutions, MPa, (part, step), of all windows of a size.
 
-    Returns
-    -------
-    (part, step) ndarray
-        From the sum of F over the sum of A_n. NaN where the windows hold fewer than
-        `MIN_NODES_PER_RESOLUTION` nodes on the average at a resolution.
+    From the sum of F over the sum of A_n. NaN where the windows hold fewer than
+    `MIN_NODES_PER_RESOLUTION` nodes on the average at a resolution.
     """
     nodes = states["nodes"].mean("window").transpose("part", "step", "resolution")
     force = states["side"].values[:, np.newaxis] ** 2 * states["ladder_pressure"].values
@@ -59,12 +45,9 @@ def real_pressures(states: xr.Dataset) -> np.ndarray:
 
 
 def real_pressure_errors(states: xr.Dataset) -> np.ndarray:
-    """Solver error bounds of the logarithms of :func:`real_pressures`.
+    """Solver error bounds of the logarithms of :func:`real_pressures`, (part, step).
 
-    Returns
-    -------
-    (part, step) ndarray
-        Infinite where no node is certain to touch, NaN where the windows were not solved.
+    Infinite where no node is certain to touch, NaN where the windows were not solved.
     """
     nodes, off = (
         states[name].mean("window").transpose("part", "step", "resolution")
@@ -78,18 +61,10 @@ def real_pressure_errors(states: xr.Dataset) -> np.ndarray:
 def _places(
     pressures: np.ndarray, curves: np.ndarray, n_loads: int
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Pressures at which the windows of a size have the real pressure of the whole, by load.
+    """Pressures at which each size has the real pressure of the whole window, and crossings.
 
-    Parameters
-    ----------
-    pressures : (step,) ndarray
-    curves : (part, step) ndarray
-        As :func:`real_pressures` has them.
-    n_loads : int
-
-    Returns
-    -------
-    equal, crossings : (normal_force, part) ndarray
+    Both are (normal_force, part). Curves (part, step) are those of :func:`real_pressures`, over the
+    pressures (step,).
     """
     equal = np.full((n_loads, len(curves)), np.nan)
     crossings = np.zeros(equal.shape, int)
@@ -138,19 +113,9 @@ _TABLE = {
 
 
 def slopes_at_equal_star(states: xr.Dataset, n_loads: int) -> xr.Dataset:
-    """Pressures at equal sigma*, their slope over b, and its explanation.
+    """Pressures at equal sigma*, their slope over b, and its explanation: see `size_test`.
 
-    Parameters
-    ----------
-    states : xr.Dataset
-        From :func:`size_effect.load_ladder.solve_sub_windows`.
-    n_loads : int
-        The first steps, under which the whole window is tested.
-
-    Returns
-    -------
-    xr.Dataset
-        See :func:`size_effect.eq6.size_test`.
+    The whole window is tested under the first ``n_loads`` steps.
     """
     pressures = states["ladder_pressure"].values
     curves, errors = real_pressures(states), real_pressure_errors(states)
@@ -168,10 +133,8 @@ def slopes_at_equal_star(states: xr.Dataset, n_loads: int) -> xr.Dataset:
             "sensitivity": sensitivity[:n_loads],
         },
     )
-    log_b = np.log(states["side"].values)
-    slopes = [fit_line(log_b, row).slope for row in np.log(equal)]
     words = "slope of log sigma_0 over log b at equal sigma*, all windows of a size"
-    add_exponents(result, "slope", slopes, "normal_force", words)
+    add_law(result, "slope", states["side"], result["equal_pressure"], words, "points fitted")
     return result
 
 

@@ -34,39 +34,27 @@ OFFSET_FRACTIONS = (0.01, 0.02, 0.05, 0.1)
 def strength_by_size(states: xr.Dataset, material: Friction, roughness: float) -> xr.Dataset:
     """Strength of the sub-windows, each from its own elastic dilatancy curve.
 
-    Parameters
-    ----------
-    states, material, roughness
-        As for :func:`size_effect.laws.size_laws`.
+    Arguments as for :func:`size_effect.laws.size_laws`. Means over sub-windows with their interval
+    and the ``_error`` of the solver: ``peak_strength`` (part, normal_force), and
+    ``truncated_fraction_at_peak``, the fraction of sub-windows whose angle was truncated there;
+    ``barton_scaled_strength`` with the JRC and JCS of that size by Barton and Bandis' law (which
+    was measured on joints of 50 mm and more), none where that JRC is beyond Barton's scale of 0 to
+    20.
 
-    Returns
-    -------
-    xr.Dataset
-        Means over sub-windows with ``_low``, ``_high`` and the ``_error`` of the solver:
-        ``peak_strength`` (part, normal_force); ``truncated_fraction_at_peak`` (part,
-        normal_force), the fraction of sub-windows whose angle was truncated there;
-        ``barton_scaled_strength`` (part, normal_force) with the JRC and JCS of that size by Barton
-        and Bandis' law (which was measured on joints of 50 mm and more); none where that JRC is
-        beyond Barton's scale of 0 to 20.
+    At offsets in proportion to the size, v = (v/b) b, over (share, part, load): mean
+    ``strength_at_equal_v_over_b`` and ``slope_at_equal_v_over_b`` (d delta/dv, not truncated),
+    ``truncated_fraction_at_equal_v_over_b`` and their exponents (share, load), where the v of the
+    sizes lie in three steps of sliding or more. ``share`` holds the fractions v/b.
+    ``strength_of_whole_at_equal_v`` and ``slope_of_whole_at_equal_v`` are those of the whole window
+    at the same v, and ``slope_at_equal_v_exponent`` (share, load) is the exponent against b of the
+    slope of the sub-windows over it. Besides those of :func:`with_slope_angles`.
 
-        At offsets in proportion to the size, v = (v/b) b, over (share, part, load): mean
-        ``strength_at_equal_v_over_b`` and ``slope_at_equal_v_over_b`` (d delta/dv, not truncated),
-        ``truncated_fraction_at_equal_v_over_b`` (the fraction of sub-windows whose angle was
-        truncated there) and their exponents (share, load), where the v of the sizes lie in three
-        steps of sliding or more. ``share`` holds the fractions v/b.
-        ``strength_of_whole_at_equal_v`` and ``slope_of_whole_at_equal_v`` (share, part, load) are
-        those of the whole window at the same v, and ``slope_at_equal_v_exponent`` (share, load) the
-        exponent against b of the slope of the sub-windows over it. Besides those of
-        :func:`with_slope_angles`.
-
-    Notes
-    -----
     A strength whose angle is truncated is a lower bound: the exponent at one v/b is the largest
     that the bounds allow, and its interval has no lower end.
 
     At one v/b both v and b grow, and a face without any effect of size has the slopes of its whole
-    window at these v: ``slope_at_equal_v_exponent`` is then 0. A self-affine face has
-    d delta/dv ~ v^(H - 1), which at one v/b falls as b^(H - 1).
+    window at these v: ``slope_at_equal_v_exponent`` is then 0. A self-affine face has d delta/dv ~
+    v^(H - 1), which at one v/b falls as b^(H - 1).
 
     The largest of several noisy values grows with their noise, which is larger in a small
     sub-window, so part of any size effect on a peak is scatter itself, as in a laboratory.
@@ -81,29 +69,36 @@ def strength_by_size(states: xr.Dataset, material: Friction, roughness: float) -
 
     result = xr.Dataset()
     slopes = [slopes_apart(offset, curve, sign * error) for sign in (0, 1)]
-    at_peak = [peak(midpoint, of)[0] for of in (strength, off)]
+    at_peak = [peak(midpoint, intervals)[0] for intervals in (strength, off)]
     at_fractions = {
         "strength_at_equal_v_over_b": (strength, off),
         "slope_at_equal_v_over_b": (slopes[0], slopes[1] - slopes[0]),
     }
-    each: dict[str, tuple] = {"peak_strength": (_DIMS, at_peak)}
+    quantities: dict[str, tuple] = {"peak_strength": (_DIMS, at_peak)}
     for name, of_intervals in at_fractions.items():
-        taken = [_at_fractions(offset, side.values, of) for of in of_intervals]
-        each[name] = ("share", *_DIMS), taken
-    for name, (dims, (values, errors)) in each.items():
+        taken = [_at_fractions(offset, side.values, intervals) for intervals in of_intervals]
+        quantities[name] = ("share", *_DIMS), taken
+    for name, (dims, (values, errors)) in quantities.items():
         mean_of = xr.DataArray(values, dims=dims, attrs=cf_attrs(*_MEANS[name]))
         add_mean(result, name, mean_of, mean_of.copy(data=errors))
     _add_whole_window(result, side, offset, {"strength": strength, "slope": slopes[0]})
     attrs = cf_attrs("1", "offset as a fraction of the side, v/b")
     result["share"] = ("share", np.array(OFFSET_FRACTIONS), attrs)
-    # Missing sub-windows, NaN, are truncated nowhere.
+    # Comparisons with NaN are False, so that missing sub-windows count as not truncated.
     at_least, at_most = (
-        np.any(_at_fractions(offset, side.values, of) > 0, axis=2) for of in (truncated, raised)
+        np.any(_at_fractions(offset, side.values, intervals) > 0, axis=2)
+        for intervals in (truncated, raised)
     )
     apart = xr.DataArray(_in_three_steps(offset, side.values), dims="share")
     strengths = result["strength_at_equal_v_over_b"]
     strengths = strengths.where(apart & strengths.copy(data=~at_most))
-    _add_largest(result, side, strengths, at_least)
+    name = "strength_at_equal_v_over_b"
+    bounds = strengths.copy(data=at_least)
+    curves = {"strength": strengths, "bound": bounds, "side": side}
+    words = f"exponent of {name} against b, the largest where angles are truncated"
+    add_exponents(
+        result, f"{name}_exponent", curves, _largest_exponent, side.dims, words, "sizes fitted"
+    )
     name = "slope_at_equal_v_over_b"
     words = f"exponent of {name} against b"
     add_law(result, f"{name}_exponent", side, result[name].where(apart), words)
@@ -121,21 +116,10 @@ def strength_by_size(states: xr.Dataset, material: Friction, roughness: float) -
 
 
 def with_slope_angles(laws: xr.Dataset, pressure: np.ndarray) -> xr.Dataset:
-    """Strengths at one v/b as limit slope angles (Fig. 11).
+    """Size laws with strengths at one v/b as limit slope angles, degrees (Fig. 11).
 
-    Parameters
-    ----------
-    laws : xr.Dataset
-        ``strength_at_equal_v_over_b`` with its interval, ``truncated_fraction_at_equal_v_over_b``
-        and ``barton_scaled_strength``.
-    pressure : (n_load,) ndarray
-        sigma_0, MPa.
-
-    Returns
-    -------
-    xr.Dataset
-        With ``limit_slope_angle`` and ``strength_at_equal_v_over_b_valid`` (share, part,
-        normal_force), and ``barton_slope_angle`` (part, normal_force).
+    ``limit_slope_angle`` and ``strength_at_equal_v_over_b_valid`` (share, part, normal_force), and
+    ``barton_slope_angle`` (part, normal_force). Pressures sigma_0 (n_load,) in MPa.
     """
     dims = ("share", *_DIMS[::2])
     strength = Estimate.read(laws.transpose(*dims, ...), "strength_at_equal_v_over_b")
@@ -153,20 +137,17 @@ def with_slope_angles(laws: xr.Dataset, pressure: np.ndarray) -> xr.Dataset:
 
 
 def add_slope_trends(laws: xr.Dataset) -> None:
-    """Slope of the dilatancy over b at one v/b, and that of a self-affine face.
+    """Slope of the dilatancy over b at one v/b, and that of a self-affine face, into ``laws``.
 
-    Parameters
-    ----------
-    laws : xr.Dataset
-        Of :func:`size_effect.laws.size_laws`: gets ``slope_at_equal_v_over_b_trend`` (share,
-        normal_force), and ``slope_at_equal_v_over_b_expected`` (share, part), b^(H - 1) through the
-        mean over the loads of the sizes whose slopes are all positive, if three are.
+    ``slope_at_equal_v_over_b_trend`` (share, normal_force), and
+    ``slope_at_equal_v_over_b_expected`` (share, part), b^(H - 1) through the mean over the loads of
+    the sizes whose slopes are all positive, if three are.
     """
     exponent = Estimate.read(laws, "slope_at_equal_v_over_b_exponent")
     trend = np.where(exponent.high < 0, FALLING, np.where(exponent.low > 0, RISING, ""))
     attrs = cf_attrs("1", f"{RISING}, {FALLING}, or empty where the exponent leaves it open")
-    of = laws["slope_at_equal_v_over_b_exponent"]
-    laws["slope_at_equal_v_over_b_trend"] = of.copy(data=trend).assign_attrs(attrs)
+    variable = laws["slope_at_equal_v_over_b_exponent"]
+    laws["slope_at_equal_v_over_b_trend"] = variable.copy(data=trend).assign_attrs(attrs)
     slope = laws["slope_at_equal_v_over_b"]
     everywhere = slope.where((slope > 0).all("normal_force"))
     middle = xr.ufuncs.exp(xr.ufuncs.log(everywhere).mean("normal_force"))
@@ -178,13 +159,7 @@ def add_slope_trends(laws: xr.Dataset) -> None:
 
 
 def slope_angle(strength: ArrayLike, pressure: ArrayLike) -> np.ndarray:
-    """Limit slope angle atan(tau / sigma_0), degrees: a block on a plane so steep just slides.
-
-    Parameters
-    ----------
-    strength, pressure : array_like
-        MPa.
-    """
+    """Limit slope angle atan(tau / sigma_0), degrees: a block on a plane so steep just slides."""
     return np.degrees(np.arctan(np.asarray(strength) / pressure))
 
 
@@ -192,7 +167,7 @@ _DIMS = ("part", "window", "normal_force")
 
 #: Means over sub-windows: unit, long name.
 _MEANS = {
-    "peak_strength": FIELDS["peak_strength"],
+    "peak_strength": FIELDS["peak_strength"][:2],
     "strength_at_equal_v_over_b": ("MPa", "shear strength at one v/b"),
     "slope_at_equal_v_over_b": ("1", "slope d delta/dv at one v/b"),
 }
@@ -249,28 +224,17 @@ def _dilatancy_curves(states: xr.Dataset) -> tuple[np.ndarray, np.ndarray, np.nd
     return offset, curve, error
 
 
-def _add_largest(
-    result: xr.Dataset, side: xr.DataArray, strength: xr.DataArray, at_least: np.ndarray
-) -> None:
-    """Exponent of strengths (share, part, load), some of them lower bounds, into ``result``.
+def _largest_exponent(strength: np.ndarray, bound: np.ndarray, side: np.ndarray) -> Estimate:
+    """Exponent of strengths (part,) against b, some of which are lower bounds.
 
     A line falls faster as values left of its middle rise. So a fit with bounds at small sizes is
     the largest exponent that they allow; those at sizes beyond the middle are left out.
     """
-    x, dims = np.log(side.values), ("share", "normal_force")
-    values = strength.transpose(*dims, "part").values
-    at_least = np.moveaxis(at_least, 1, 2)
-    exponents = []
-    for index in np.ndindex(values.shape[:-1]):
-        kept = values[index] > 0
-        while (beyond := kept & at_least[index] & (kept.sum() * x > x[kept].sum())).any():
-            kept &= ~beyond
-        slope = fit_line(x[kept], np.log(values[index][kept])).slope
-        held = slope.known and at_least[index][kept].any()
-        exponents.append(replace(slope, low=-np.inf) if held else slope)
-    name = "strength_at_equal_v_over_b"
-    words = f"exponent of {name} against b, the largest where angles are truncated"
-    add_exponents(result, f"{name}_exponent", exponents, dims, words, "sizes fitted")
+    x, kept = np.log(side), strength > 0
+    while (beyond := kept & bound & (kept.sum() * x > x[kept].sum())).any():
+        kept &= ~beyond
+    slope = fit_line(x[kept], np.log(strength[kept])).slope
+    return replace(slope, low=-np.inf) if slope.known and bound[kept].any() else slope
 
 
 def _add_whole_window(
@@ -281,14 +245,8 @@ def _add_whole_window(
 ) -> None:
     """Strength and slope of the whole window at the v of each size, and slopes over that.
 
-    Parameters
-    ----------
-    result : xr.Dataset
-        With ``strength_at_equal_v_over_b`` and ``slope_at_equal_v_over_b``.
-    offset : (n,) ndarray
-        mm.
-    over_offsets : mapping of str to (n - 1, part, window, load) ndarray
-        ``strength``, MPa, and ``slope``. Part 1 is the whole window.
+    ``over_offsets`` has ``strength``, MPa, and ``slope`` (n - 1, part, window, load) between the
+    offsets (n,), mm. The first part is the whole window.
     """
     for name, values in over_offsets.items():
         of_sizes = result[f"{name}_at_equal_v_over_b"]
@@ -310,14 +268,20 @@ def _in_three_steps(offset: np.ndarray, side: np.ndarray) -> np.ndarray:
     """
     step = np.arange(offset.size - 1.0)[:, np.newaxis, np.newaxis, np.newaxis]
     steps = _at_fractions(offset, side, np.repeat(step, side.size, axis=1))[:, :, 0, 0]
-    return np.array([np.unique(of[np.isfinite(of)]).size >= MIN_POINTS for of in steps], bool)
+    return np.array(
+        [
+            np.unique(of_fraction[np.isfinite(of_fraction)]).size >= MIN_POINTS
+            for of_fraction in steps
+        ],
+        bool,
+    )
 
 
 def _by_barton(states: xr.Dataset, material: Friction, roughness: float) -> dict[str, np.ndarray]:
     """Barton's law with the JRC and JCS of each size."""
     lengths = states["side_along"].values
     scaled = scaled_joint(roughness, material.joint_wall_strength, lengths)
-    # His law was measured on his scale: beyond it there is nothing to compare with.
+    # Barton's law was not measured on joints beyond his scale.
     on_scale = np.where(np.asarray(scaled[0]) <= JRC_RANGE[1], scaled[0], np.nan)
     strength = barton_strength(
         states["nominal_pressure"].values,
@@ -330,18 +294,9 @@ def _by_barton(states: xr.Dataset, material: Friction, roughness: float) -> dict
 def _at_fractions(offset: np.ndarray, side: np.ndarray, values: np.ndarray) -> np.ndarray:
     """Values of the interval of offsets that holds v, for each v/b of `OFFSET_FRACTIONS` and b.
 
-    Parameters
-    ----------
-    offset : (n,) ndarray
-        Ends of the intervals, mm.
-    side : (part,) ndarray
-        b, mm.
-    values : (n - 1, part, window, load) ndarray
-
-    Returns
-    -------
-    (share, part, window, normal_force) ndarray
-        NaN where v is smaller than the first step of sliding or larger than the last offset.
+    Offsets (n,), mm, are the ends of the intervals, sides (part,) in mm, values (n - 1, part,
+    window, load). Of them (share, part, window, normal_force) are taken, NaN where v is smaller
+    than the first step of sliding or larger than the last offset.
     """
     taken = np.full((len(OFFSET_FRACTIONS), *values.shape[1:]), np.nan)
     tolerance = 1e-9 * offset[-1]

@@ -1,6 +1,7 @@
 """Means over the sub-windows of each size, and their power laws, into a dataset."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -9,6 +10,7 @@ from ..core.estimate import Estimate
 from ..core.fitting import fit_line
 from ..core.intervals import mean_interval
 from ..core.labels import cf_attrs
+from ..core.per_curve import per_curve
 from ..states.states import error_attrs
 
 
@@ -17,14 +19,7 @@ def add_mean(
 ) -> None:
     """Mean over the sub-windows with its interval, into ``result``.
 
-    Parameters
-    ----------
-    result : xr.Dataset
-        Gets ``name``, ``_low`` and ``_high`` and, with ``errors``, ``_error``.
-    values : xr.DataArray (..., window, ...)
-        Labelled; NaN where missing.
-    errors : xr.DataArray, optional
-        Solver error bounds of the values: their mean bounds that of the mean.
+    With solver error bounds of the values also an ``_error``: their mean bounds that of the mean.
     """
     dims = tuple(dim for dim in values.dims if dim != "window")
     units, long_name = values.attrs["units"], values.attrs["long_name"]
@@ -37,30 +32,23 @@ def add_mean(
 
 
 def add_law(
-    result: xr.Dataset, name: str, side: xr.DataArray, values: xr.DataArray, words: str
+    result: xr.Dataset,
+    name: str,
+    side: xr.DataArray,
+    values: xr.DataArray,
+    words: str,
+    points: str = "sizes fitted",
 ) -> None:
-    """Exponent of positive values against the side b, into ``result``.
+    """Exponent of values (..., size, ...) against the side b (size,), mm, into ``result``.
 
-    Parameters
-    ----------
-    result : xr.Dataset
-        As :func:`add_exponents` fills it.
-    side : xr.DataArray (size,)
-        b, mm, along the dimension of the sizes.
-    values : xr.DataArray (..., size, ...)
-        Those that are not positive, or missing, are left out.
-    words : str
-        What the exponent is of.
+    As :func:`add_exponents`. Values that are not positive, or missing, are left out.
     """
-    (size,) = side.dims
-    dims = tuple(str(dim) for dim in values.dims if dim != size)
-    rows = values.transpose(*dims, size).values
-    positive = np.where(rows > 0, rows, np.nan)
-    lines = [
-        fit_line(np.log(side.values), np.log(positive[index]))
-        for index in np.ndindex(rows.shape[:-1])
-    ]
-    add_exponents(result, name, [line.slope for line in lines], dims, words, "sizes fitted")
+    add_exponents(result, name, {"values": values, "side": side}, _power, side.dims, words, points)
+
+
+def _power(values: np.ndarray, side: np.ndarray) -> Estimate:
+    """Exponent of one curve over the side b."""
+    return fit_line(np.log(side), np.log(np.where(values > 0, values, np.nan))).slope
 
 
 def power_through(
@@ -68,20 +56,8 @@ def power_through(
 ) -> xr.DataArray:
     """Power of b with a known exponent through the middle of values on logarithmic axes.
 
-    Parameters
-    ----------
-    values : xr.DataArray (..., size, ...)
-        Those that are not positive, or missing, are left out.
-    side : xr.DataArray (size,)
-        b, mm.
-    exponent : xr.DataArray
-    words : str
-        What the line is.
-
-    Returns
-    -------
-    xr.DataArray
-        As ``values``, missing where these are left out or the exponent is unknown.
+    Values (..., size, ...) that are not positive, or missing, are left out, and so is the line
+    there and where the exponent is unknown. Sides b (size,) in mm; ``words`` say what the line is.
     """
     positive, (size,) = values.where(values > 0), side.dims
     powers = exponent * xr.ufuncs.log(side)
@@ -93,31 +69,37 @@ def power_through(
 def add_exponents(
     result: xr.Dataset,
     name: str,
-    exponents: Sequence[Estimate],
-    dims: str | tuple[str, ...],
+    curves: Mapping[Any, xr.DataArray],
+    function: Callable[..., Estimate],
+    along: Sequence[Any],
     words: str,
-    points: str = "points fitted",
+    points: str,
 ) -> None:
-    """Exponents by lines through logarithms over log b, into ``result``.
+    """Exponents against the side b of every curve, into ``result``.
 
     Parameters
     ----------
     result : xr.Dataset
         Gets ``name`` with the ends of its interval, ``_n`` and the smallest and largest b fitted,
         ``_b_min`` and ``_b_max``.
-    exponents : sequence of Estimate
-        Fitted over log b, b in mm; in the order of a C array over ``dims``.
-    dims : str or tuple of str
-        Of ``result``.
+    curves, along
+        As of :func:`core.per_curve.per_curve`.
+    function : callable
+        Exponent of one curve, fitted over log b, b in mm.
     words : str
         What the exponent is of.
     points : str
         What was fitted.
     """
-    over = (dims,) if isinstance(dims, str) else dims
-    found = Estimate.stack(exponents, tuple(result.sizes[dim] for dim in over))
-    first, last = np.exp(found.over)
-    result.update(found.variables(name, over, "1", words))
-    result[f"{name}_n"] = (over, found.n, cf_attrs("1", f"{words}, {points}"))
-    result[f"{name}_b_min"] = (over, first, cf_attrs("mm", "smallest b of that fit"))
-    result[f"{name}_b_max"] = (over, last, cf_attrs("mm", "largest b of that fit"))
+    names = {
+        name: ("1", words),
+        f"{name}_n": ("1", f"{words}, {points}"),
+        f"{name}_b_min": ("mm", "smallest b of that fit"),
+        f"{name}_b_max": ("mm", "largest b of that fit"),
+    }
+
+    def of_curve(**curve: Any) -> dict[str, Any]:
+        exponent = function(**curve)
+        return dict(zip(names, (exponent, exponent.n, *np.exp(exponent.over)), strict=True))
+
+    result.update(per_curve(curves, of_curve, names, along))

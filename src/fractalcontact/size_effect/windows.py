@@ -9,21 +9,21 @@ from collections.abc import Sequence
 import numpy as np
 import xarray as xr
 
-from roughcontact.elastic.halfspace import HalfSpace
+from roughcontact.contact.state import ContactState
 
 from ..core.datasets import labelled_dataset
 from ..core.labels import cf_attrs
 from ..core.settings import JointSettings
 from ..joint.joint import sliding_axis
 from ..states.loading import JointLoading
-from ..states.settlement import bulk_settlement, interface_closure
+from ..states.settlement import interface_closure
 from ..states.state_scalars import state_area, state_errors
 from ..states.states import SOLVER_ERROR
-from ..states.sweep import load_steps
 from .division import PARTS, solvable_parts, split, spread_windows
 from .local_roughness import local_roughness, roughness_by_size
+from .sub_windows import SubWindows
 
-#: Sub-windows solved of each size.
+#: Largest number of sub-windows solved of each size.
 MAX_WINDOWS = 16
 
 #: Scalars of every state of a sub-window: unit, long name.
@@ -72,22 +72,7 @@ def window_states(
 ) -> xr.Dataset:
     """Contact states of sub-windows of several sizes, and how rough those of many more are.
 
-    Parameters
-    ----------
-    loading, parts, most
-        As of :func:`solved_windows`.
-
-    Returns
-    -------
-    xr.Dataset
-        That of :func:`solved_windows`, and ``face_sigma_z`` (scale) and ``sigma_z_all`` (offset,
-        scale) with the interval of their mean over all sub-windows of many more sizes
-        (``scale_side``), see :func:`size_effect.local_roughness.roughness_by_size`.
-
-    Raises
-    ------
-    NotConverged
-        As :func:`solved_windows`.
+    That of :func:`solved_windows`, and of :func:`size_effect.local_roughness.roughness_by_size`.
     """
     solved = solved_windows(loading, parts, most)
     return solved.merge(roughness_by_size(loading))
@@ -100,34 +85,16 @@ def solved_windows(
 ) -> xr.Dataset:
     """Contact states of sub-windows of several sizes, under the study's dilatancy loads.
 
-    Parameters
-    ----------
-    loading : JointLoading
-        Offsets ascending. The ``dilatancy_loads`` of its settings are taken as nominal pressures:
-        forces there act on the whole window.
-    parts : sequence of int
-        Sub-windows along each side, of which :func:`size_effect.division.solvable_parts` are taken.
-    most : int
-        Sub-windows solved of each size.
+    The loads are taken as nominal pressures: forces there act on the whole window. Of ``parts``
+    those of :func:`size_effect.division.solvable_parts` are taken, at most ``most`` sub-windows of
+    each size. :data:`STATES` over (part, window, offset, normal_force) and :data:`SHAPES` over
+    (part, window, offset) are NaN where there are fewer sub-windows; ``side`` b (part), mm, is the
+    square root of their area. Raises `NotConverged`, whose note names the state.
 
-    Returns
-    -------
-    xr.Dataset
-        :data:`STATES` over (part, window, offset, normal_force) and :data:`SHAPES` over (part,
-        window, offset), NaN where there are fewer sub-windows; ``side`` b (part), the square root
-        of their area.
-
-    Raises
-    ------
-    NotConverged
-        If a state could not be verified; the message names it.
-
-    Notes
-    -----
-    The composite topography of a sub-window is loaded as it lies in the whole one. The
-    blocks of the model do not turn (sect. 4), and only so the states of the parts can be compared
-    with those of the whole, of which they are pieces. A laboratory would seat a specimen of that
-    size; the part of its closure that comes from tilt alone then vanishes.
+    The composite topography of a sub-window is loaded as it lies in the whole one. The blocks of
+    the model do not turn (sect. 4), and only so the states of the parts can be compared with those
+    of the whole, of which they are pieces. A laboratory would seat a specimen of that size; the
+    part of its closure that comes from tilt alone then vanishes.
     """
     area, cells = loading.area, loading.cells
     pressures = loading.forces(loading.settings.dilatancy_loads) / area
@@ -139,19 +106,17 @@ def solved_windows(
     settlement = np.full((len(parts), len(pressures)), np.nan)
     sides = np.full((len(parts), 2), np.nan)
     for k, n in enumerate(parts):
-        size = _SubWindows(loading, n, chosen[k])
-        sides[k] = size.sides
-        forces = pressures * sides[k].prod()
-        settlement[k] = bulk_settlement(forces, size.space.modulus, *sides[k])
+        mated = split(loading.composite(0), n)[chosen[k]]
         for i, offset in enumerate(cells):
-            composites = size.composites(offset)
-            for name, of_windows in size.shapes(composites).items():
+            composites = split(loading.composite(offset), n)[chosen[k]]
+            where = f"{n} x {n} parts, offset {offset} cells"
+            size = _Solved(loading, composites, pressures, where, places=chosen[k])
+            size.extend(len(pressures))
+            opened = composites.max(axis=(1, 2)) - mated.max(axis=(1, 2))
+            shapes = {"rigid_opening": opened, "sigma_z": local_roughness(composites)}
+            for name, of_windows in (size.values | shapes).items():
                 values[name][k, : len(composites), i] = of_windows
-            for j, composite in enumerate(composites):
-                where = f"{n} x {n} parts, sub-window {chosen[k][j]}, offset {offset} cells"
-                states = _solved(composite, size.space, forces, settlement[k], loading, where)
-                for name, of_loads in states.items():
-                    values[name][k, j, i] = of_loads
+            sides[k], settlement[k] = size.sides, size.settlement
     values |= {
         "side": np.sqrt(sides.prod(axis=1)),
         "side_along": sides[:, sliding_axis(loading.direction)],
@@ -175,59 +140,37 @@ def solved_windows(
     )
 
 
-class _SubWindows:
-    """The sub-windows of one size that are solved, over the offsets of a joint."""
+class _Solved(SubWindows):
+    """Sub-windows all of whose states are kept, as ``values`` of :data:`STATES` (window, load)."""
 
-    def __init__(
-        self, loading: JointLoading[JointSettings], parts: int, chosen: np.ndarray
-    ) -> None:
-        ny, nx = loading.shape
-        shape = ny // parts, nx // parts
-        self.sides = shape * loading.spacing
-        self.space = loading.half_space(shape)
-        self._loading, self._parts, self._chosen = loading, parts, chosen
-        self._mated = self.composites(0)
+    def __init__(self, loading: JointLoading[JointSettings], windows: np.ndarray, *more, **options):
+        super().__init__(loading, windows, *more, **options)
+        shape = len(windows), len(self.forces)
+        self.values = {name: np.full(shape, np.nan) for name in STATES}
 
-    def composites(self, cells: int) -> np.ndarray:
-        """Composite topographies (n, ny, nx) at an offset in cells, mm."""
-        return split(self._loading.composite(cells), self._parts)[self._chosen]
-
-    def shapes(self, composites: np.ndarray) -> dict[str, np.ndarray]:
-        """:data:`SHAPES` (n,) of the composite topographies at an offset."""
-        opened = composites.max(axis=(1, 2)) - self._mated.max(axis=(1, 2))
-        return {"rigid_opening": opened, "sigma_z": local_roughness(composites)}
-
-
-def _solved(
-    composite: np.ndarray,
-    space: HalfSpace,
-    forces: np.ndarray,
-    settlement: np.ndarray,
-    loading: JointLoading[JointSettings],
-    where: str,
-) -> dict[str, np.ndarray]:
-    """:data:`STATES` (n_load,) of one sub-window under rising forces."""
-    ny, nx = space.shape
-    area = space.cell_area * ny * nx
-    flush = np.ptp(composite) == 0
-    values = {name: np.full(len(forces), np.nan) for name in STATES}
-    for j, state in enumerate(load_steps(composite, space, forces, loading.solving, where)):
-        for name in ("closure", "area", "stiffness"):
-            values[name][j] = getattr(state, name)
-        values["nodes"][j] = np.count_nonzero(state.in_contact)
-        values["mean_gap"][j] = 0.0 if flush else state.gap.mean()
-        values["corrected_area_share"][j] = state_area(state) / area
-        off = state_errors(state)
-        values["corrected_area_share_error"][j] = off["area_corrected_error"] / area
-        values["interface_closure_error"][j] = off["closure_error"]
-        values["area_share_error"][j] = off["area_error"] / area
-        stiffness_error = off["stiffness_error"]
-        values["interface_compliance_error"][j] = stiffness_error * area / state.stiffness**2
-    values["area_share"] = values["area"] / area
-    values["interface_closure"] = interface_closure(values["closure"], settlement, flush)
-    if flush:
-        values["interface_closure_error"][:] = 0.0
-        values["interface_compliance_error"][:] = np.nan
-    else:
-        values["interface_compliance"] = area / values["stiffness"] - settlement * area / forces
-    return values
+    def keep(self, state: ContactState, window: int, resolution: int, step: int) -> None:
+        """Store :data:`STATES` of a state."""
+        rows, columns = state.space.shape
+        area = state.space.cell_area * rows * columns
+        flush, settlement = self.flush[window], self.settlement[step]
+        errors, stiffness = state_errors(state), state.stiffness
+        numbers = {
+            "closure": state.closure,
+            "interface_closure": interface_closure(state.closure, settlement, flush),
+            "area": state.area,
+            "area_share": state.area / area,
+            "stiffness": stiffness,
+            "corrected_area_share": state_area(state) / area,
+            "mean_gap": 0.0 if flush else state.gap.mean(),
+            "nodes": np.count_nonzero(state.in_contact),
+            "interface_closure_error": 0.0 if flush else errors["closure_error"],
+            "area_share_error": errors["area_error"] / area,
+            "corrected_area_share_error": errors["area_corrected_error"] / area,
+        }
+        if not flush:
+            bulk = settlement * area / self.forces[step]
+            numbers["interface_compliance"] = area / stiffness - bulk
+            error = errors["stiffness_error"] * area / stiffness**2
+            numbers["interface_compliance_error"] = error
+        for name, value in numbers.items():
+            self.values[name][window, step] = value

@@ -15,33 +15,21 @@ from .corrected_area import cell_areas, corrected_area
 def area_sampling(in_contact: ArrayLike, pressure: ArrayLike) -> float:
     """Relative sampling error of the corrected area under a given force, half-width at 95 %.
 
-    Parameters
-    ----------
-    in_contact : (ny, nx) bool array_like
-        Nodes in contact.
-    pressure : (ny, nx) array_like
-        In any unit, 0 outside contact.
+    The pressure (ny, nx) may be in any unit, 0 outside contact. NaN of fewer than three contacts,
+    whose spread has at most one degree of freedom, and where more than `MAX_TOUCHING` of the window
+    touches, so that contacts are not separate; 0 where all of it does.
 
-    Returns
-    -------
-    float
-        NaN of fewer than three contacts, whose spread has at most one degree of freedom, and where
-        more than `MAX_TOUCHING` of the window touches, so that contacts are not separate; 0 where
-        all of it does.
-
-    Notes
-    -----
     A_r = F / p, p being the real mean pressure: what another window of the same surface changes
     under the same force is p alone. Its error is that of a ratio of two sums over n independent
-    contacts, which carry fractions f of the force on fractions a of the area: the variance of
-    ln A_r is n/(n - 1) times the sum of (a - f)^2 (Cochran, Sampling Techniques, 1977, ch. 6).
-    Where all contacts bear one pressure, as at the hardness, it is 0. Counts of the contacts
-    (1/sqrt(n)) would also have the force vary, and state 1.6 to 2.3 times as much.
+    contacts, which carry fractions f of the force on fractions a of the area: the variance of ln
+    A_r is n/(n - 1) times the sum of (a - f)^2 (Cochran, Sampling Techniques, 1977, ch. 6). Where
+    all contacts bear one pressure, as at the hardness, it is 0. Counts of the contacts (1/sqrt(n))
+    would also have the force vary, and state 1.6 to 2.3 times as much.
     """
     touching = np.asarray(in_contact, bool)
     if touching.all():
         return 0.0
-    # Neighbours by side or corner are one contact.
+    # Nodes that share a side or a corner belong to one contact.
     labels, contacts = scipy.ndimage.label(touching, np.ones((3, 3)))
     if contacts < MIN_POINTS or touching.mean() > MAX_TOUCHING:
         return np.nan

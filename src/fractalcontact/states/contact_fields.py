@@ -10,7 +10,7 @@ from ..core.labels import cf_attrs
 from ..core.settings import ContactSettings
 from .states import MAP_GAP, MAP_PRESSURE, forces_of
 
-#: Where a state was not solved: xarray reads it as missing.
+#: Value where a state was not solved; xarray reads it as missing.
 NOT_SOLVED = -1
 
 
@@ -23,28 +23,13 @@ def contact_fields(
 ) -> xr.Dataset:
     """Stage contact: contact domains of all states, and fields at the offset of the maps.
 
-    Parameters
-    ----------
-    domains : xr.Dataset
-        From :func:`states.states.contact_domains`.
-    parts : sequence of xr.Dataset
-        From :func:`states.sweep.contact_states`.
-    joint : xr.Dataset
-        From :func:`joint.joint.describe_joint`: its window has the coordinates.
-    settings : ContactSettings
-    area : float
-        A_0, mm2.
+    ``domains`` come from :func:`states.states.contact_domains`, ``parts`` from
+    :func:`states.sweep.contact_states`, the coordinates from the window of ``joint``; A_0 in mm2.
+    ``in_contact_k`` (direction, offset, normal_force, y_k, x_k) is 1 in contact, 0 not, missing
+    where the state was not solved; ``map_pressure``, MPa, and, under the loads of the maps and of
+    the dilatancy alone, ``map_gap``, mm, are float32 (normal_force, y_k, x_k). Attributes
+    ``map_direction``, ``map_offset`` (mm), ``map_load`` (N) and ``map_resolution`` say where.
 
-    Returns
-    -------
-    xr.Dataset
-        ``in_contact_k`` (direction, offset, normal_force, y_k, x_k): 1 in contact, 0 not, missing
-        where the state was not solved; ``map_pressure`` in MPa and, under the loads of the maps and
-        of the dilatancy alone, ``map_gap`` in mm (normal_force, y_k, x_k), float32. Attributes
-        ``map_direction``, ``map_offset`` (mm), ``map_load`` (N) and ``map_resolution`` say where.
-
-    Notes
-    -----
     Missing is -1 in the file and its ``_FillValue``, so that xarray, and whatever else knows
     netCDF's attributes, gives NaN; compare with 1 to select cells in contact.
     """

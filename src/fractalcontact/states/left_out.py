@@ -9,29 +9,16 @@ from ..core.datasets import domains_by_resolution
 from ..core.intervals import LEFT_OUT
 from .corrected_area import cell_areas
 
-#: Parts, which hold equally many nodes of the finest domain.
+#: Number of parts; each holds equally many nodes of the finest domain.
 PARTS_LEFT_OUT = 32
 
 
 def part_ends(domain: np.ndarray, factor: int) -> np.ndarray:
-    """Ends of parts of equally many nodes along Morton's curve.
+    """Ends (PARTS_LEFT_OUT - 1,) of parts of equally many nodes along Morton's curve.
 
-    Parameters
-    ----------
-    domain : (ny, nx) bool ndarray
-        Nodes in contact at the finest resolution.
-    factor : int
-        Multiple k of the scan's spacing.
-
-    Returns
-    -------
-    (PARTS_LEFT_OUT - 1,) int ndarray
-        Empty without a node.
-
-    Notes
-    -----
-    Contact gathers on few hills, which squares of the window would cut unevenly, and leave empty
-    elsewhere. Morton's curve keeps neighbours together, so that its parts are compact.
+    Of the domain at the finest resolution, a multiple k of the scan's spacing; empty without a
+    node. Contact gathers on few hills, which squares of the window would cut unevenly, and leave
+    empty elsewhere. Morton's curve keeps neighbours together, so that its parts are compact.
     """
     places = np.sort(_places(domain, factor))
     first = np.arange(1, PARTS_LEFT_OUT) * places.size // PARTS_LEFT_OUT
@@ -39,19 +26,10 @@ def part_ends(domain: np.ndarray, factor: int) -> np.ndarray:
 
 
 def fractions_left(domain: np.ndarray, factor: int, ends: np.ndarray) -> np.ndarray:
-    """Fraction of the corrected area of a domain that is left without each part.
+    """Fraction (PARTS_LEFT_OUT,) of a domain's corrected area that is left without each part.
 
-    Parameters
-    ----------
-    domain, factor
-        As of :func:`part_ends`, at any resolution.
-    ends : (PARTS_LEFT_OUT - 1,) int ndarray
-        From :func:`part_ends` of the finest domain.
-
-    Returns
-    -------
-    (PARTS_LEFT_OUT,) ndarray
-        NaN without a node, or without ends.
+    ``ends`` are those of :func:`part_ends` of the finest domain. NaN without a node, or without
+    ends.
     """
     places = _places(domain, factor)
     if not (places.size and ends.size):
@@ -62,16 +40,9 @@ def fractions_left(domain: np.ndarray, factor: int, ends: np.ndarray) -> np.ndar
 
 
 def left_of_fields(fields: xr.Dataset) -> xr.DataArray:
-    """:func:`fractions_left` of all contact domains of a specimen.
+    """:func:`fractions_left` of all contact domains ``in_contact_k`` of a specimen.
 
-    Parameters
-    ----------
-    fields : xr.Dataset
-        ``in_contact_k`` as :func:`domain.analysis.analyse_domains` takes them.
-
-    Returns
-    -------
-    DataArray (direction, offset, resolution, normal_force, left_out)
+    Over (direction, offset, resolution, normal_force, left_out).
     """
     domains = {k: domain.values for k, domain in domains_by_resolution(fields).items()}
     factors = list(domains)

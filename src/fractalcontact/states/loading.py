@@ -16,12 +16,12 @@ from roughcontact.elastic.halfspace import HalfSpace
 
 from ..core.settings import JointSettings, Load, Solver
 from ..core.window import nominal_area
-from ..joint.contact_strength import STEPS, contact_dips
+from ..joint.contact_dips import STEPS, contact_dips
 from ..joint.joint import composite_topography, direction_spacing, offsets_of
 from ..joint.overlap import suspect_nodes
 from .states import chosen_offset, forces_of, hardness_of
 
-#: Settings of a joint, and what else those who get the loading read of them.
+#: Settings of a joint, with the further fields that the receiver of a loading reads.
 P = TypeVar("P", bound=JointSettings, covariant=True)
 Q = TypeVar("Q", bound=JointSettings)
 

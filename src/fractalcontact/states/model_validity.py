@@ -10,8 +10,9 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from ..core.datasets import labelled_dataset
+from ..core.datasets import labelled
 from ..core.limits import MAX_TOUCHING
+from ..core.per_curve import per_curve
 from ..core.settings import Material
 from ..core.text import percent
 from ..core.validity import LOAD, SLOPE, Limits, Validity, pressure_words
@@ -31,17 +32,17 @@ CONFINED = 3.0
 MIN_RATIO, LARGEST_RATIO = 200.0, 1000.0
 
 
-#: Fraction F / (H A_0) of what a window can carry beyond which no domain is left whose dimension
-#: could be asked for.
+#: Fraction F / (H A_0) of the largest load beyond which nearly all of the window touches: a contact
+#: domain then has no dimension of its own.
 FULL = 0.87
 
 #: The real mean pressure of a fully yielded contact is its hardness, to rounding.
 _ROUNDING = 1e-6
 
-#: What a hardness leaves out.
+#: Limitation of a hardness.
 DELETED = "what is crushed is taken away, so that its volume is lost"
 
-#: From the best to the worst.
+#: Verdicts from the best to the worst.
 _GRADES = (GOOD, IN_PART, POOR)
 
 #: Verdicts of the states, over (direction, offset, load): unit and long name.
@@ -64,43 +65,31 @@ _OF_MATERIAL = {
 def model_validity(area: xr.Dataset, scaling: xr.Dataset, material: Material) -> xr.Dataset:
     """Verdicts on the elastic model in every state at the scan's own resolution.
 
-    Parameters
-    ----------
-    area, scaling : xr.Dataset
-        Of the stages of these names.
-    material : Material
-
-    Returns
-    -------
-    xr.Dataset
-        ``verdict``, ``pressure``, ``reason`` and ``decided_by`` over (direction, offset, load), and
-        the :class:`Limits` of the material.
+    :data:`_OF_STATES` over (direction, offset, load), and the :class:`Limits` of the material.
     """
     dims = ("direction", "offset", "normal_force")
     finest = scaling["sigma_n"].sel(resolution=scaling["resolution"].min(), drop=True)
     pressures, slopes = xr.align(finest.transpose(*dims), area["rms_slope"], join="exact")
-    of_offsets, of_loads = slopes.transpose(*dims[:2]).values, pressures["nominal_pressure"].values
-    judged = np.empty(pressures.shape, object)
-    for place in np.ndindex(judged.shape):
-        pressure, slope = float(pressures.values[place]), float(of_offsets[place[:2]])
-        nominal = float(of_loads[place[2]])
-        judged[place] = elastic_model_validity(pressure, slope, material, nominal)
-    values: dict[str, Any] = {
-        name: np.array([getattr(one, name) for one in judged.flat]).reshape(judged.shape)
-        for name in _OF_STATES
+    of_state = {
+        "pressure": pressures,
+        "rms_slope": slopes,
+        "nominal_pressure": pressures["nominal_pressure"],
     }
-    table: dict[str, Any] = {
-        **{name: (dims, *words) for name, words in _OF_STATES.items()},
-        **{name: ((), *words) for name, words in _OF_MATERIAL.items()},
-    }
-    limits = material_limits(material)
-    return labelled_dataset(table, values | limits._asdict(), coords=dict(pressures.coords))
+
+    def judged(**state: np.ndarray) -> dict[str, Any]:
+        numbers = {name: float(value) for name, value in state.items()}
+        validity = elastic_model_validity(**numbers, material=material)
+        return {name: getattr(validity, name) for name in _OF_STATES}
+
+    result = xr.Dataset(per_curve(of_state, judged, _OF_STATES, along=()), pressures.coords)
+    of_material = {name: ((), *words) for name, words in _OF_MATERIAL.items()}
+    return result.assign(labelled(of_material, material_limits(material)._asdict()))
 
 
 def elastic_model_validity(
     pressure: float, rms_slope: float, material: Material, nominal_pressure: float = 0.0
 ) -> Validity:
-    """Judge the elastic model under one load: the worse of pressure and slope counts.
+    """Verdict on the elastic model under one load: the worse of pressure and slope counts.
 
     Of contacts that crush at a hardness the pressure is no test: they are judged by the fraction of
     what the window can carry, good up to half of it, poor beyond 87 %. Else good up to the joint
@@ -108,15 +97,9 @@ def elastic_model_validity(
     strength lies between E/1000 and E/200: good up to the first, poor from three times the second.
     Slopes are good up to 0.3, in part up to 0.75.
 
-    Parameters
-    ----------
-    pressure : float
-        Real mean pressure, MPa: ``sigma_n`` of the stage ``scaling``. NaN gives no verdict.
-    rms_slope : float
-        Of the composite topography; NaN counts nothing.
-    material : Material
-    nominal_pressure : float, optional
-        F / A_0, MPa.
+    The pressure is the real mean one, MPa, ``sigma_n`` of the stage ``scaling``; NaN gives no
+    verdict. The rms slope is of the composite topography; NaN counts nothing. The nominal pressure
+    F / A_0 is in MPa.
     """
     limits = material_limits(material)
     if not np.isfinite(pressure):
@@ -125,23 +108,23 @@ def elastic_model_validity(
     by_pressure = _graded(pressure, *ends)
     place = _place(pressure, by_pressure, limits)
     words = f"contacts bear {pressure_words(pressure)} on average, {place}"
-    found = [(by_pressure, "pressure", f"{words} the {limits.words}")]
+    judgements = [(by_pressure, "pressure", f"{words} the {limits.words}")]
     if limits.criterion == HARDNESS and by_pressure == GOOD:
         share = nominal_pressure / limits.good_to
         words = f"the load is {percent(share)} of the most that contacts with a hardness of "
         words += f"{pressure_words(limits.good_to)} can carry"
-        found = [(_graded(share, MAX_TOUCHING, FULL), LOAD, words)]
+        judgements = [(_graded(share, MAX_TOUCHING, FULL), LOAD, words)]
     if np.isfinite(rms_slope):
         by_slope = _graded(rms_slope, SMALL_SLOPE, MODERATE_SLOPE)
         size = "small" if by_slope == GOOD else "steeper than assumed"
-        found.append((by_slope, SLOPE, f"rms slope {rms_slope:.3g}, {size}"))
-    found.sort(key=lambda one: -_GRADES.index(one[0]))  # the worst first
-    verdict, by, _ = found[0]
-    # A load that the window carries with ease is no reason.
-    told = [words for grade, of, words in found if of != LOAD or grade == verdict]
+        judgements.append((by_slope, SLOPE, f"rms slope {rms_slope:.3g}, {size}"))
+    judgements.sort(key=lambda judgement: -_GRADES.index(judgement[0]))  # the worst first
+    verdict, by, _ = judgements[0]
+    # A load far below the largest that the window carries is no reason for a verdict.
+    sentences = [words for grade, cause, words in judgements if cause != LOAD or grade == verdict]
     if limits.criterion == HARDNESS:
-        told.append(DELETED)
-    reason = "; ".join(told)
+        sentences.append(DELETED)
+    reason = "; ".join(sentences)
     return Validity(verdict, pressure, reason, "" if verdict == GOOD else by, limits)
 
 

@@ -9,13 +9,14 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-#: Orders of convergence that are believed.
+#: Smallest and largest credible order of convergence.
 MIN_ORDER, MAX_ORDER = 0.5, 3.0
 
 #: Fraction of the extrapolation, or of the last change, that is uncertain.
 UNCERTAIN = 0.5
 
-#: What no change shows, as fractions of the quantity's edge part: with three spacings and with two.
+#: Error that changes between spacings may miss, as fractions of the quantity's edge part: with
+#: three spacings and with two.
 OF_EDGE = {
     "closure": (0.025, 0.01),
     "separation": (0.005, 0.05),
@@ -66,19 +67,12 @@ def _extrapolated(values: ArrayLike) -> _Extrapolated:
 
 
 def numerical_error(quantity: str, values: ArrayLike, edge: ArrayLike = 0.0) -> NumericalError:
-    """Numerical error of values at the spacing s, from those at s, s/2 and s/4.
+    """Numerical error of values (3, ...) at the spacing s, from those at s, s/2 and s/4.
 
-    Parameters
-    ----------
-    quantity : str
-        One of :data:`OF_EDGE`, but the closure, or any other.
-    values : (3, ...) array_like
-        The coarsest first; NaN at s/4 where that was not solved.
-    edge : (...) array_like
-        The values' part that depends on the cells at the edge of contact: see Notes.
+    Values at s/4 are NaN where that was not solved. ``quantity`` is one of :data:`OF_EDGE`, but the
+    closure, or any other; ``edge`` (...) is the values' part that depends on the cells at the edge
+    of contact.
 
-    Notes
-    -----
     Where the changes from s to s/2 and from s/2 to s/4 have one sign and the second is smaller,
     their ratio gives the order, and Richardson's extrapolation the limit: the error is the distance
     from it and a fraction of the extrapolation. Else nothing is extrapolated, and the error is the
@@ -87,42 +81,32 @@ def numerical_error(quantity: str, values: ArrayLike, edge: ArrayLike = 0.0) -> 
 
     Contact changes by whole nodes, so that a change may be small by chance. By how much, the edge
     shows: (A_r - A)/A_r, raw and corrected area, is the fraction of the contact that its cells at
-    the edge overstate. That fraction of the area, of the stiffness, and of the length
-    sigma_0/(d sigma/d w_int) of separations and closures is their ``edge``, of which a few per cent
-    are added.
+    the edge overstate. That fraction of the area, of the stiffness, and of the length sigma_0/(d
+    sigma/d w_int) of separations and closures is their ``edge``, of which a few per cent are added.
     """
-    found, fine = _extrapolated(values), np.isfinite(np.asarray(values, float)[2])
-    error = found.largest + found.uncertain + _of_edge(quantity, edge, fine)
-    limit = np.asarray(values, float)[0] - found.change
-    return NumericalError(error, np.where(np.isfinite(found.order), limit, np.nan), found.order)
+    extrapolated, fine = _extrapolated(values), np.isfinite(np.asarray(values, float)[2])
+    error = extrapolated.largest + extrapolated.uncertain + _of_edge(quantity, edge, fine)
+    limit = np.asarray(values, float)[0] - extrapolated.change
+    return NumericalError(
+        error, np.where(np.isfinite(extrapolated.order), limit, np.nan), extrapolated.order
+    )
 
 
 def closure_error(
     closures: ArrayLike, separations: ArrayLike, edge: ArrayLike, rise: ArrayLike
 ) -> NumericalError:
-    """Numerical error of closures from first contact, whose summit is known.
+    """Numerical error of closures (...) from first contact, mm, whose summit is known.
 
-    Parameters
-    ----------
-    closures : (...) array_like
-        At s, mm.
-    separations : (3, ...) array_like
-        Separations of the mean planes at s, s/2 and s/4, mm.
-    edge : (...) array_like
-        As for :func:`numerical_error`, mm.
-    rise : (...) array_like
-        By how much the summit of the surface is above the highest node at s, mm.
-
-    Notes
-    -----
-    Closure is the summit less the separation and less the bulk settlement. The summit of the spline
-    is found without any solve: what is extrapolated is the separation alone.
+    ``separations`` (3, ...) are those of the mean planes at s, s/2 and s/4, ``edge`` is that of
+    :func:`numerical_error`, and the summit of the surface is above the highest node at s by
+    ``rise``, all in mm. Closure is the summit less the separation and less the bulk settlement. The
+    summit of the spline is found without any solve: what is extrapolated is the separation alone.
     """
-    found, fine = _extrapolated(separations), np.isfinite(np.asarray(separations, float)[2])
-    gain = np.asarray(rise) + found.change
-    error = np.abs(gain) + found.uncertain + _of_edge("closure", edge, fine)
-    limit = np.where(np.isfinite(found.order), closures + gain, np.nan)
-    return NumericalError(error, limit, found.order)
+    extrapolated, fine = _extrapolated(separations), np.isfinite(np.asarray(separations, float)[2])
+    gain = np.asarray(rise) + extrapolated.change
+    error = np.abs(gain) + extrapolated.uncertain + _of_edge("closure", edge, fine)
+    limit = np.where(np.isfinite(extrapolated.order), closures + gain, np.nan)
+    return NumericalError(error, limit, extrapolated.order)
 
 
 def _of_edge(quantity: str, edge: ArrayLike, fine: np.ndarray) -> np.ndarray:

@@ -27,31 +27,11 @@ def solved_loads(
     factor: int,
     all_states: bool,
 ) -> np.ndarray:
-    """Load steps of a curve that the plan solves.
+    """Load steps of a curve that the plan solves: indices (m,) of the forces, N, ascending.
 
-    Parameters
-    ----------
-    settings : ContactSettings
-    forces : (n,) ndarray
-        N, ascending.
-    area : float
-        A_0, mm2.
-    first : bool
-        Whether the curve is in the first direction whose contact is solved.
-    mapped : bool
-        Whether it is at the offset of the contact maps.
-    factor : int
-        Its resolution k.
-    all_states : bool
-        Whether the study requests all states.
+    ``first`` says that the curve is in the first direction whose contact is solved, ``mapped`` that
+    it is at the offset of the contact maps, ``factor`` its resolution k; A_0 in mm2.
 
-    Returns
-    -------
-    (m,) int ndarray
-        Indices of ``forces``, ascending.
-
-    Notes
-    -----
     Closure curves, their fits and the contact domains over load are shown in the first direction,
     at the finest resolution; how they change with the resolution, at the offset of the maps. In the
     other directions only the dilatancy under its loads is.
@@ -72,21 +52,9 @@ def solve_plan(
 ) -> xr.Dataset:
     """The solve plan of a specimen: quantity, value, reason and estimated error.
 
-    Parameters
-    ----------
-    curves : xr.Dataset
-        From :func:`laws.closure.closure_curves`.
-    dilatancy : xr.Dataset
-        From :func:`laws.closure.elastic_dilatancy`.
-    solver : Solver
-    budget : xr.Dataset, optional
-        Stage ``error_budget``: with it the plan says what the spacing leaves uncertain.
-
-    Returns
-    -------
-    xr.Dataset
-        ``value``, ``reason``, ``error_of`` and ``error`` (a fraction; NaN where there is none) over
-        ``choice``; the requested accuracy as attribute ``asked``.
+    ``value``, ``reason``, ``error_of`` and ``error`` (a fraction; NaN where there is none) over
+    ``choice``; the requested accuracy as attribute ``asked``. With the stage ``error_budget`` the
+    plan says what the spacing leaves uncertain.
     """
     solved, requested = curves["solved"], solver.accuracy
     rows = [
@@ -128,8 +96,8 @@ def _requested(accuracy: Mapping[str, float] | None) -> str:
 
 def _largest(values: xr.DataArray) -> float:
     """Largest value that is not missing, or NaN."""
-    known = values.values[np.isfinite(values.values)]
-    return float(known.max(initial=-np.inf)) if known.size else np.nan
+    finite = values.values[np.isfinite(values.values)]
+    return float(finite.max(initial=-np.inf)) if finite.size else np.nan
 
 
 def _of_tolerance(curves, solver: Solver, requested):
@@ -148,14 +116,14 @@ def _of_loads(curves, dilatancy, requested):
     closure = curves["interface_closure"].sel(resolution=curves["resolution"].min())
     misses = dilatancy["left_out_error"].rename(contact_direction="direction")
     errors = abs(misses / closure.where(closure != 0))
-    known = errors.values[np.isfinite(errors.values)]
+    finite = errors.values[np.isfinite(errors.values)]
     value = f"{closure.sizes['normal_force']} in the first direction, none interpolated"
-    if not known.size:
+    if not finite.size:
         return "load steps", value, "too few to interpolate between", "", np.nan
-    within = np.mean(known <= requested["closure"]) if requested else np.nan
+    within = np.mean(finite <= requested["closure"]) if requested else np.nan
     reason = (
         f"interpolated between its neighbours a closure would be off by "
-        f"{100 * np.median(known):.1f} % (median) to {100 * known.max():.0f} %"
+        f"{100 * np.median(finite):.1f} % (median) to {100 * finite.max():.0f} %"
         + (f"; {100 * within:.0f} % would be as exact as requested" if requested else "")
     )
     return "load steps", value, reason, "interface closure, if every second were left out", np.nan
@@ -213,19 +181,19 @@ def _of_spacing(budget, requested):
     """Numerical error of the closure, and whether that asked for can be had at this spacing."""
     errors = budget["relative_error"].sel(quantity="closure", source="numerical").values
     refined = np.isfinite(budget["finest_spacing"].values)
-    known = refined & np.isfinite(errors)
+    determined = refined & np.isfinite(errors)
     name = "numerical error of the closure"
-    if not known.any():
+    if not determined.any():
         words = str(budget["reason"].sel(quantity="closure", source="numerical").values)
         return name, "not known", words or "no refined state gives one", "", np.nan
     spacings = budget["finest_spacing"].values[refined]
     value = f"refined at {refined.sum()} of {len(refined)} loads, down to {spacings.min():.3g} mm"
-    of_known = errors[known]
+    of_known = errors[determined]
     least, most = (100 * float(f"{end:.2g}") for end in (of_known.min(), of_known.max()))
     reason = f"at this spacing {least:g} to {most:g} %"
     if requested is not None:
         asked = requested["closure"]
         reached = int(np.count_nonzero(of_known <= asked))
-        reason += f"; {100 * asked:g} % reached under {reached} of {known.sum()} loads"
-    of = "interface closure, by the grid (same surface)"
-    return name, value, reason, of, float(of_known.max())
+        reason += f"; {100 * asked:g} % reached under {reached} of {determined.sum()} loads"
+    quantity = "interface closure, by the grid (same surface)"
+    return name, value, reason, quantity, float(of_known.max())

@@ -22,19 +22,10 @@ QUANTITIES = (*OF_STATES, "seated_closure")
 
 
 def moved_specimen(specimen: xr.Dataset, motion: Motion) -> xr.Dataset:
-    """A specimen of two faces with its upper face moved once more.
+    """A specimen of two faces with its upper face moved once more, by a small motion.
 
-    Parameters
-    ----------
-    specimen : xr.Dataset
-    motion : Motion
-        Small: from :func:`registration.registration_scatter.stored_motions`.
-
-    Returns
-    -------
-    xr.Dataset
-        Heights are interpolated by a cubic spline; where a cell around is missing the height
-        stays, but for the tilt.
+    Heights are interpolated by a cubic spline; where a cell around is missing the height stays, but
+    for the tilt.
     """
     upper = specimen["upper"].assign_attrs(
         spacing_x=specimen.attrs["spacing_x"], spacing_y=specimen.attrs["spacing_y"]
@@ -50,24 +41,10 @@ def registration_values(
 ) -> dict[str, np.ndarray]:
     """Closures, separation, area and stiffness of each registration that is as good.
 
-    Parameters
-    ----------
-    loading : JointLoading
-        Of two scanned faces, at one offset.
-    loads : sequence of (float, str), optional
-        Those solved; the study's if left out.
-
-    Returns
-    -------
-    dict of str to (motion, load) ndarray
-        By :data:`QUANTITIES`. The separation is max h - mean h - w: that of the faces' mean planes
-        within the window, which needs no highest node of the mated faces. Empty along the motions
-        where the specimen holds none.
-
-    Raises
-    ------
-    NotConverged
-        If a state could not be verified.
+    Arrays (motion, load) by :data:`QUANTITIES`, under the study's loads unless others are given;
+    empty along the motions where the specimen holds none. The separation is max h - mean h - w:
+    that of the faces' mean planes within the window, which needs no highest node of the mated
+    faces. Raises `NotConverged`.
     """
     (cells,) = loading.cells
     forces = loading.forces(loading.settings.loads if loads is None else loads)
@@ -81,8 +58,8 @@ def registration_values(
         where = f"specimen {loading.specimen.attrs['name']}, another registration"
         states = load_steps(composite, space, forces, loading.solving, where)
         datum = float(composite.max()), float(composite.mean())
-        found = [state_quantities(state, *datum) for state in states]
-        row = {name: np.array([one[name] for one in found]) for name in OF_STATES}
+        quantities = [state_quantities(state, *datum) for state in states]
+        row = {name: np.array([of_state[name] for of_state in quantities]) for name in OF_STATES}
         rows.append(row | {"seated_closure": row["closure"] - row["closure"][seat]})
     return {
         name: np.array([row[name] for row in rows]).reshape(len(rows), len(forces))
@@ -119,4 +96,7 @@ def registration_spread(
     count = len(values["closure"])
     if count < 2:
         return None
-    return {name: t_quantile(count - 1) * of.std(axis=0, ddof=1) for name, of in values.items()}
+    return {
+        name: t_quantile(count - 1) * of_motions.std(axis=0, ddof=1)
+        for name, of_motions in values.items()
+    }

@@ -20,23 +20,11 @@ from .states import error_attrs
 def prefractal_openings(
     specimen: xr.Dataset, joint: xr.Dataset, resolutions: Sequence[int]
 ) -> xr.DataArray:
-    """Rigid dilatancy of the pre-fractals: the opening at which each touches first.
+    """Rigid dilatancy of the pre-fractals: the opening at which each touches first, mm.
 
-    Parameters
-    ----------
-    specimen : xr.Dataset
-        From :func:`surface.specimen.make_specimen`.
-    joint : xr.Dataset
-        From :func:`joint.joint.describe_joint`.
-    resolutions : sequence of int
-        Multiples k of the scan's spacing.
-
-    Returns
-    -------
-    xr.DataArray
-        max h_k(v) less a datum, mm, over (direction, offset, resolution). The datum is max h(0) at
-        the scan's own resolution, the joint before it slides; against a plane, which mates with
-        nothing, it is the mean of h.
+    max h_k(v) less a datum, over (direction, offset, resolution). The datum is max h(0) at the
+    scan's own resolution, the joint before it slides; against a plane, which mates with nothing, it
+    is the mean of h.
     """
     cells = joint["offset_cells"].transpose("contact_direction", ...)
     directions = cells["contact_direction"].values
@@ -54,7 +42,7 @@ def prefractal_openings(
     )
 
 
-#: Relative difference between two pressures that are one.
+#: Largest relative difference between two pressures that are equal but for rounding.
 ROUNDING = 1e-9
 
 #: Separation and seated closures: unit and long name.
@@ -94,18 +82,13 @@ _SEATS = {
 def add_separation(curves: xr.Dataset, openings: xr.DataArray | None) -> None:
     """Add the separation of the mean planes to a closure stage.
 
-    Parameters
-    ----------
-    curves : xr.Dataset
-        With ``closure`` and ``closure_error`` over (direction, offset, resolution, load) and
-        ``rigid_opening`` over (direction, offset); what is found is added to it.
-    openings : xr.DataArray or None
-        From :func:`prefractal_openings`. Without it only the scan's own resolution has one.
+    Without the openings of :func:`prefractal_openings` only the scan's own resolution has one.
     """
     if openings is None:
         openings = curves["rigid_opening"].where(curves["resolution"] == 1)
     else:
-        # By place: where cells are not square, offsets of the directions differ by part of a cell.
+        # Openings are matched by position, not by label: where cells are not square, offsets of the
+        # directions differ by part of a cell.
         openings = openings.sel(
             direction=curves["direction"].values, resolution=curves["resolution"].values
         ).drop_vars(["direction", "resolution"])
@@ -124,23 +107,13 @@ def add_separation(curves: xr.Dataset, openings: xr.DataArray | None) -> None:
 def add_seated_closure(curves: xr.Dataset, seating_pressure: float) -> None:
     """Add the closures from a seating pressure, of each offset and of all, to a closure stage.
 
-    Parameters
-    ----------
-    curves : xr.Dataset
-        With ``interface_closure``, ``closure_error`` and ``resolved`` over (direction, offset,
-        resolution, load); what is found is added to it.
-    seating_pressure : float
-        Of the study, MPa: at each offset and resolution the first load from there on whose state is
-        resolved seats the joint.
-
-    Notes
-    -----
-    ``seated_closure`` counts from the seating load of its own offset, so that each curve begins as
-    early as it can. Closures of several offsets compare only from one pressure on:
-    ``closure_from_common_seat`` counts from the largest of these loads, at which enough nodes touch
-    at all offsets that have one. Those of several resolutions do from the stated pressure:
-    ``closure_from_stated_seat`` counts from the first load from there on. Below its load a closure
-    has no value, nor where the state under that load was not solved.
+    At each offset and resolution the first load from the study's seating pressure on, MPa, whose
+    state is resolved seats the joint. ``seated_closure`` counts from the seating load of its own
+    offset, so that each curve begins as early as it can. Closures of several offsets compare only
+    from one pressure on: ``closure_from_common_seat`` counts from the largest of these loads, at
+    which enough nodes touch at all offsets that have one. Those of several resolutions do from the
+    stated pressure: ``closure_from_stated_seat`` counts from the first load from there on. Below
+    its load a closure has no value, nor where the state under that load was not solved.
     """
     force = curves["normal_force"]
     solved = np.isfinite(curves["interface_closure"])
@@ -155,12 +128,12 @@ def add_seated_closure(curves: xr.Dataset, seating_pressure: float) -> None:
     none = f"no state of any offset has {RESOLVED_NODES} nodes in contact"
     if seating_pressure > 0:
         none += f" at {seating_pressure:g} MPa or more"
-    found = {
+    seating = {
         "seating_pressure": seats / area,
         "common_seating_pressure": common / area,
         "no_common_seat": xr.where(common.isnull(), none, ""),
     }
-    values = {name: found[name].transpose(*dims).values for name, (dims, *_) in _SEATS.items()}
+    values = {name: seating[name].transpose(*dims).values for name, (dims, *_) in _SEATS.items()}
     curves.update(labelled(_SEATS, values))
 
 
@@ -172,7 +145,7 @@ def _add_closure_from(curves: xr.Dataset, seats: xr.DataArray, name: str) -> Non
     at_its_seat = closing.where(at_seat).sum("normal_force", min_count=1)
     seated = closing - at_its_seat
     both = error + error.where(at_seat).sum("normal_force")
-    # The state at the seat less itself has no error.
+    # At the seat a closure is 0 by definition, without an error.
     both = both.where(~at_seat, 0.0)
     beyond = (force >= seats) & np.isfinite(seated)
     attrs = cf_attrs(*_WORDS[name])

@@ -52,6 +52,6 @@ def interface_closure(closure: _Numbers, settlement: _Numbers, flush: Any = Fals
         to a uniform pressure.
     """
     closing = closure - settlement
-    if isinstance(closing, xr.DataArray):  # xr.where would drop the labels of the coordinates
+    if isinstance(closing, xr.DataArray):  # xr.where drops labels of coordinates
         return closing.where(~flush, 0.0)
     return np.where(flush, 0.0, closing)

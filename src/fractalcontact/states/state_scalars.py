@@ -25,25 +25,11 @@ def aperture(state: ContactState) -> np.ndarray:
 def numbers_of(
     state: ContactState, suspicious: np.ndarray | None = None, *, stiff: bool = True
 ) -> dict[str, Any]:
-    """Scalars of a contact state, stored without its fields.
+    """Scalars of a contact state and their errors, stored without its fields.
 
-    Parameters
-    ----------
-    state : ContactState
-    suspicious : (ny, nx) bool ndarray, optional
-        Nodes of suspicious cells, from :func:`joint.overlap.suspect_nodes`; none if left out.
-    stiff : bool
-        Whether the stiffness is wanted, which takes more solves; else it is NaN.
-
-    Returns
-    -------
-    dict
-        :data:`states.states.SCALARS` and :data:`states.states.ERRORS`.
-
-    Raises
-    ------
-    NotConverged
-        As :attr:`contact.state.ContactState.stiffness`.
+    :data:`states.states.SCALARS` and :data:`states.states.ERRORS`. Suspicious nodes are those of
+    :func:`joint.overlap.suspect_nodes`, none if left out. The stiffness takes more solves; it is
+    NaN where it is not wanted. Raises `NotConverged` as that does.
     """
     spacing, gap = state.space.spacing, aperture(state)
     slope = state.slope if stiff else Slope(np.nan, np.nan)

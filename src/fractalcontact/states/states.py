@@ -34,7 +34,7 @@ SCALARS = {
     "suspect_load_share": ("1", "fraction of the force on suspicious cells of the scans"),
 }
 
-#: Ends the long name of a bound on the error that the solver's tolerance leaves.
+#: End of the long name of an error bound that the solver's tolerance leaves.
 SOLVER_ERROR = "solver error bound"
 
 #: Scalars that the tolerance of the solver leaves uncertain. The force is given.
@@ -43,11 +43,11 @@ UNCERTAIN = ("closure", "area", "nodes", "perimeter", "area_corrected", "stiffne
 ERRORS = {
     f"{name}_error": (SCALARS[name][0], f"{SCALARS[name][1]}, {SOLVER_ERROR}") for name in UNCERTAIN
 }
-#: Ends the long name of the error of a stiffness, whose own scatter is added where nodes yield.
+#: End of the long name of the error of a stiffness; where nodes yield, its scatter is added.
 WITH_SCATTER = f"{SOLVER_ERROR} and scatter"
 ERRORS["stiffness_error"] = ("N/mm", f"{SCALARS['stiffness'][1]}, {WITH_SCATTER}")
 
-#: All that is kept of a state but its contact domain.
+#: Variables of a state without its contact domain.
 STATE_VARIABLES = [*SCALARS, *ERRORS, "solved"]
 
 #: Numbers kept of every offset: name, unit, long name.
@@ -61,15 +61,15 @@ OFFSETS = {
 #: Mean apparent dip of equal parts of the force, of states that slide.
 DIP = "apparent_dip"
 
-#: Pressures of the states that are looked at closely: those of the contact maps, in the first
-#: direction and at the finest resolution, under every load. They are in one part of several.
+#: Pressures at the offset of the contact maps, in the first direction and at the finest resolution,
+#: under every load. One of the parts that jobs solve holds them.
 MAP_PRESSURE = "map_pressure"
 #: Gaps of the same states.
 MAP_GAP = "map_gap"
-#: Gaps in the first direction and at the finest resolution under the load of the maps, of every
-#: offset: what flows through the joint as it slides.
+#: Gaps of every offset in the first direction and at the finest resolution under the reference
+#: load, for the flow through the joint as it slides.
 OFFSET_GAP = "offset_gap"
-#: Fields of some parts alone.
+#: Fields that only some parts hold.
 MAP_FIELDS = (MAP_PRESSURE, MAP_GAP, OFFSET_GAP)
 
 
@@ -79,30 +79,14 @@ def error_attrs(attrs: Mapping[str, str], kind: str = SOLVER_ERROR) -> dict[str,
 
 
 def forces_of(loads: Sequence[Load], area: float) -> np.ndarray:
-    """Loads as forces, N, ascending: pressures are nominal, on ``area`` in mm2.
-
-    Parameters
-    ----------
-    loads : sequence of (float, str)
-        Value and kind, "force" (N) or "pressure" (MPa).
-    area : float
-
-    Returns
-    -------
-    (n,) ndarray
-    """
+    """Loads as forces (n,), N, ascending: pressures, MPa, are nominal, on ``area`` in mm2."""
     return np.unique([value * area if kind == "pressure" else value for value, kind in loads])
 
 
 def with_pressure(stage: xr.Dataset, area: float) -> xr.Dataset:
-    """A stage with the nominal pressure as a second coordinate of its loads.
+    """A stage with the nominal pressure as a second coordinate of its loads; A_0 in mm2.
 
-    Parameters
-    ----------
-    stage : xr.Dataset
-        Over ``normal_force`` (N), or over no load at all: then it is handed back as it is.
-    area : float
-        A_0, mm2.
+    A stage over no load is handed back as it is.
     """
     if "normal_force" not in stage.dims:
         return stage
@@ -117,15 +101,7 @@ def force_range(loads: Sequence[Load] | None, specimen: xr.Dataset) -> tuple[flo
 
 
 def chosen_offset(wanted: float | None, offsets: ArrayLike) -> float:
-    """Offset of the contact maps: the study's, else the third; mm.
-
-    Parameters
-    ----------
-    wanted : float or None
-        ``map_offset`` of the settings.
-    offsets : (n,) array_like
-        Those solved.
-    """
+    """Offset of the contact maps, mm: the one nearest to that of the study, else the third."""
     offsets = np.asarray(offsets)
     if wanted is None:
         return float(offsets[min(2, len(offsets) - 1)])
@@ -212,17 +188,9 @@ def contact_domains(states: xr.Dataset) -> xr.Dataset:
 def map_fields(
     pressures: ArrayLike, gaps: ArrayLike, offset: float, direction: str, factor: int
 ) -> dict[str, tuple]:
-    """Variables :data:`MAP_PRESSURE` and :data:`MAP_GAP`, with their state in attributes.
+    """Variables :data:`MAP_PRESSURE`, MPa, and :data:`MAP_GAP`, mm, with their state in attributes.
 
-    Parameters
-    ----------
-    pressures, gaps : (normal_force, ny, nx) array_like
-        MPa, mm.
-    offset : float
-        mm.
-    direction : str
-    factor : int
-        Resolution k.
+    Arrays are (normal_force, ny, nx), the offset is in mm, ``factor`` the resolution k.
     """
     of_place = {"offset": offset, "direction": direction, "resolution": factor}
     dims = ("normal_force", f"y_{factor}", f"x_{factor}")
@@ -237,18 +205,10 @@ def map_fields(
 
 
 def map_states(parts: Sequence[xr.Dataset]) -> xr.Dataset:
-    """Pressures of the states that are looked at closely, under every load.
+    """Pressures of the states that are looked at closely, under every load: ``pressure``, MPa.
 
-    Parameters
-    ----------
-    parts : sequence of xr.Dataset
-        From :func:`states.sweep.contact_states`.
-
-    Returns
-    -------
-    xr.Dataset
-        ``pressure``, MPa, (normal_force, y, x), with the scalars ``direction``, ``offset`` and
-        ``resolution``, the multiple k of the scan's spacing.
+    Over (normal_force, y, x), with the scalars ``direction``, ``offset`` and ``resolution``, the
+    multiple k of the scan's spacing.
     """
     part = next(part for part in parts if MAP_PRESSURE in part)
     pressure = part[MAP_PRESSURE]

@@ -13,7 +13,7 @@ from .settlement import bulk_settlement, interface_closure
 from .state_scalars import state_area
 from .sweep import load_steps
 
-#: Quantities of a state whose numerical error is found: unit, long name.
+#: Quantities of a state with a numerical error: unit, long name.
 QUANTITIES = {
     "closure": ("mm", "closure w_int from first touch"),
     "separation": ("mm", "separation of the mean planes, delta_r - w"),
@@ -30,20 +30,6 @@ SUMMIT_NODES, SUMMIT_POINTS = 64, 16
 def subgrid(composite: ArrayLike, factor: int) -> np.ndarray:
     """Composite topography on cells ``factor`` times smaller: the cubic spline through its nodes.
 
-    Parameters
-    ----------
-    composite : (ny, nx) array_like
-        h at the centres of the cells, mm.
-    factor : int
-        From 1.
-
-    Returns
-    -------
-    (factor ny, factor nx) ndarray
-        h at the centres of the smaller cells, mm.
-
-    Notes
-    -----
     Nodes are centres of cells, so that n cells of s and 2 n cells of s/2 cover the same window, and
     the same nominal area, but have no centre in common; of odd factors each old centre is a new
     one. All are samples of one surface. Within half a cell of the window's edge the spline has no
@@ -58,13 +44,7 @@ def subgrid(composite: ArrayLike, factor: int) -> np.ndarray:
 
 
 def summit(composite: ArrayLike) -> float:
-    """Largest height of the spline of :func:`subgrid`, mm.
-
-    Parameters
-    ----------
-    composite : (ny, nx) array_like
-        h, mm.
-    """
+    """Largest height of the spline of :func:`subgrid`, mm."""
     from scipy import ndimage
 
     heights = np.asarray(composite, float)
@@ -76,8 +56,10 @@ def summit(composite: ArrayLike) -> float:
         for place, n in zip(np.unravel_index(highest, heights.shape), heights.shape, strict=True)
     )
     points = np.broadcast_arrays(rows[:, :, np.newaxis], columns[:, np.newaxis, :])
-    found = ndimage.map_coordinates(spline, points, order=3, mode="reflect", prefilter=False)
-    return float(max(found.max(), heights.max()))
+    heights_around = ndimage.map_coordinates(
+        spline, points, order=3, mode="reflect", prefilter=False
+    )
+    return float(max(heights_around.max(), heights.max()))
 
 
 def subgrid_states(
@@ -88,19 +70,10 @@ def subgrid_states(
     solving: Mapping[str, Any],
     where: str,
 ) -> Iterator[tuple[ContactState, float]]:
-    """Contact states of a composite topography on cells ``factor`` times smaller.
+    """Contact states on cells ``factor`` times smaller, and the largest height on their grid, mm.
 
-    Parameters
-    ----------
-    composite, space, forces, solving, where
-        As for :func:`states.sweep.load_steps`.
-    factor : int
-
-    Yields
-    ------
-    state : ContactState
-    highest : float
-        Largest height on its grid, from which its closure counts, mm.
+    Arguments as for :func:`states.sweep.load_steps`. The closure of a state counts from that
+    height.
     """
     heights = subgrid(composite, factor)
     spacing = space.spacing[0] / factor, space.spacing[1] / factor
@@ -116,19 +89,11 @@ def state_quantities(
 ) -> dict[str, float]:
     """The :data:`QUANTITIES` of a contact state.
 
-    Parameters
-    ----------
-    state : ContactState
-    highest : float
-        Largest height of its composite topography, on its own grid, mm.
-    reference : float
-        Largest height at zero offset on the scan's grid, mm, from which dilatancy counts.
-
-    Notes
-    -----
-    The separation is ``highest - reference - w``. The largest height rises as the grid gets finer,
-    and so does the closure counted from it: their difference is the place of the rigid plane and
-    knows nothing of the summit. The reference is a length of the joint and stays what it is.
+    ``highest`` is the largest height of its composite topography, on its own grid, ``reference``
+    that at zero offset on the scan's grid, from which dilatancy counts, mm. The separation is
+    ``highest - reference - w``. The largest height rises as the grid gets finer, and so does the
+    closure counted from it: their difference is the place of the rigid plane and knows nothing of
+    the summit. The reference is a length of the joint and stays what it is.
     """
     space = state.space
     sides = np.multiply(space.shape, space.spacing)

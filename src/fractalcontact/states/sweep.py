@@ -15,7 +15,7 @@ from roughcontact.errors import NotConverged
 from ..core.datasets import labelled_dataset
 from ..core.labels import cf_attrs
 from ..core.settings import ContactSettings, Solver
-from ..joint.contact_strength import PARTS, STEPS, dips_by_force
+from ..joint.contact_dips import PARTS, STEPS, dips_by_force
 from ..joint.joint import prefractal, rigid_dilatancy
 from .loading import JointLoading
 from .plan import solved_loads
@@ -33,9 +33,9 @@ from .states import (
     map_fields,
 )
 
-#: Tolerances are tightened by so much where that of the study leaves too large an error.
+#: Factor by which the tolerance is tightened where that of the study leaves too large an error.
 TIGHTENING = 10.0
-#: But to no less than this: nodes that just touch are ambiguous at any tolerance.
+#: Smallest tolerance: nodes that just touch stay ambiguous at any tolerance.
 TIGHTEST = 1e-8
 
 
@@ -65,7 +65,7 @@ def load_steps(
     NotConverged
         If a state could not be verified; its note names it.
     """
-    state, composite = None, np.ascontiguousarray(composite)  # once, not at every load
+    state, composite = None, np.ascontiguousarray(composite)  # copied once for all loads
     for force in np.asarray(forces):
         state = _solved(composite, space, force, state, solving, where)
         yield state
@@ -88,15 +88,7 @@ def _solved(
 
 
 def map_place(joint: xr.Dataset, settings: ContactSettings, direction: str) -> int:
-    """Offset of the contact maps in cells of a direction.
-
-    Parameters
-    ----------
-    joint : xr.Dataset
-        From :func:`joint.joint.describe_joint`.
-    settings : ContactSettings
-    direction : str
-    """
+    """Offset of the contact maps in cells of a direction."""
     offsets = joint["offset"].values
     offset = chosen_offset(settings.map_offset, np.sort(offsets))
     cells = joint["offset_cells"].sel(contact_direction=direction).values
@@ -114,27 +106,8 @@ def joint_states(
 ) -> xr.Dataset:
     """Contact states of a joint in some directions, at some of its offsets and resolutions.
 
-    Parameters
-    ----------
-    specimen, settings, solver
-        As for :class:`states.loading.JointLoading`.
-    joint : xr.Dataset
-        From :func:`joint.joint.describe_joint`.
-    directions : sequence of str
-    offsets : slice
-        Which of the joint's.
-    resolutions
-        As for :func:`contact_states`.
-
-    Returns
-    -------
-    xr.Dataset
-        As of :func:`contact_states`; ``offset`` is that of the first of the directions.
-
-    Raises
-    ------
-    NotConverged, InputError
-        As :func:`contact_states`.
+    ``offsets`` is a slice. As :func:`contact_states`; ``offset`` is that of the first of the
+    directions.
     """
     states = []
     for direction in directions:
@@ -313,7 +286,7 @@ def _exact_enough(
     space, rtol = state.space, solving["rtol"]
     sides = np.multiply(space.shape, space.spacing)
     settlement = bulk_settlement(state.force, space.modulus, *sides)
-    # Faces that are flush have no interface to close.
+    # Flush faces have no interface; their own closure is the scale of the error.
     flush = np.ptp(composite) == 0
     closing = state.closure if flush else abs(interface_closure(state.closure, settlement))
     small = accuracy["closure"] * closing

@@ -4,18 +4,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-import xarray as xr
 from made_settings import made_settings
 from made_stages import scan, stages_of
 
-from fractalcontact.joint.contact_strength import (
-    PARTS,
-    contact_dips,
-    contact_strength,
-    dips_by_force,
-    friction_of_dips,
-)
+from fractalcontact.joint.contact_dips import PARTS, contact_dips, dips_by_force
 from fractalcontact.joint.joint import composite_topography
+from fractalcontact.laws.contact_strength import contact_strength, friction_of_dips
 from fractalcontact.study.configuration import solver_settings
 from fractalcontact.surface.specimen import make_specimen, window_arguments
 from fractalcontact.surface.synthesis import self_affine
@@ -122,18 +116,15 @@ def test_parts_of_the_force_keep_its_mean_dip_and_split_nodes():
 
 
 def test_no_friction_angle_is_no_strength():
-    dims = ("offset", "normal_force", "dip_step", "force_part")
-    dips = xr.DataArray(np.zeros((1, 1, 2, PARTS)), dims=dims)
-    found = contact_strength(dips, np.array([5.0]), np.nan)
+    found = contact_strength(np.zeros((2, 1, 1, PARTS)), np.array([5.0]), np.nan)
     assert np.isnan(found["contact_strength"]).all()
     assert np.isnan(found["contact_truncated"]).all()
 
 
 def test_an_interval_ends_where_every_angle_is_truncated():
-    dims = ("offset", "normal_force", "dip_step", "force_part")
-    dips = np.zeros((1, 1, 2, PARTS))
-    dips[..., 0, :] = 39
-    found = contact_strength(xr.DataArray(dips, dims=dims), np.array([5.0]), BASIC)
+    dips = np.zeros((2, 1, 1, PARTS))
+    dips[0] = 39
+    found = contact_strength(dips, np.array([5.0]), BASIC)
     ends = found["peak_contact_strength_low"], found["peak_contact_strength_high"]
     half = 5 * (np.tan(np.radians(BASIC + 39)) - np.tan(np.radians(BASIC)))
     most = 5 * np.tan(np.radians(70))
