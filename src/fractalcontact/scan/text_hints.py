@@ -11,7 +11,7 @@ from ..core.units import length_unit
 from .draft import Hints, add_words
 from .options import DELIMITERS, ScanOptions
 from .table_hints import add_axes, add_columns, axis_of, coordinate_columns
-from .text_lines import COMMENT_MARKS, cells_of, cleaned, is_number, open_text, words_of
+from .text_lines import COMMENT_MARKS, cells_of, cleaned, is_number, open_text, value_of, words_of
 from .text_style import add_style
 
 _MAX_LINES = 2_000
@@ -219,13 +219,7 @@ def _words_in_cells(hints: Hints, rows: list[list[str]], width: int, form: ScanO
 
 def _numbers(rows: list[list[str]], width: int, form: ScanOptions) -> np.ndarray:
     """The rows of most numbers, NaN where there is none."""
-    mark, thousands = form.decimal or ".", form.thousands
-    table = []
-    for row in rows:
-        if len(row) == width:
-            plain = [cell.replace(thousands, "") if thousands else cell for cell in row]
-            table.append([float(cell.replace(mark, ".")) if is_number(cell, form) else np.nan
-                          for cell in plain])  # fmt: skip
+    table = [[value_of(cell, form) for cell in row] for row in rows if len(row) == width]
     return np.array(table, dtype=float).reshape(-1, max(width, 1))
 
 
