@@ -209,18 +209,17 @@ def _choose_spacing(raw, options, unit_xy, path: Path, overrides: list) -> tuple
     if raw.spacing is not None and unit_xy is not None:
         factor = length_factor(unit_xy, f"{path}: unit_xy")
         stated = factor * raw.spacing[0], factor * raw.spacing[1]
+    spacing = stated
     if options.spacing is not None:
         spacing = spacing_mm(options.spacing, unit_xy, f"{path}: key 'spacing'")
-        check_spacing(spacing, path)
-        if stated and not np.allclose(spacing, stated, rtol=1e-6, atol=0):
-            overrides.append(
-                f"spacing {spacing[0]:.6g} x {spacing[1]:.6g} mm from the sidecar, the file says "
-                f"{stated[0]:.6g} x {stated[1]:.6g} mm"
-            )
-        return spacing
-    assert stated is not None  # it was required, with its unit
-    check_spacing(stated, path)
-    return stated
+    assert spacing is not None  # it was required, with its unit
+    check_spacing(spacing, path)
+    if stated and not np.allclose(spacing, stated, rtol=1e-6, atol=0):
+        overrides.append(
+            f"spacing {spacing[0]:.6g} x {spacing[1]:.6g} mm from the sidecar, the file says "
+            f"{stated[0]:.6g} x {stated[1]:.6g} mm"
+        )
+    return spacing
 
 
 def _without_missing(values: np.ndarray, marks: tuple[float, ...]) -> np.ndarray:
