@@ -22,20 +22,10 @@ def array_hints(
     read: Callable[[str], np.ndarray],
     words: list[tuple[str, str]] | None = None,
 ) -> Hints:
-    """Hints of the names and the other numbers of a file on its array of heights.
+    """Hints on the array of heights, from the shapes of all 2-D arrays and other contents.
 
-    Parameters
-    ----------
-    tables : mapping of str to tuple
-        Shapes of the 2-D arrays, by name.
-    wanted : str or None
-        The array that the sidecar names.
-    small : mapping of str to float
-        Single numbers in the file, by name: a spacing may be among them.
-    read : callable
-        The numbers of an array.
-    words : list of (str, str), optional
-        Attributes of the file: where each stands, and its text.
+    ``small`` holds single numbers by name, one of which may be a spacing; ``words`` attributes,
+    each with the place where it stands.
     """
     hints = Hints()
     names = sorted(tables, key=lambda name: (not _HEIGHTS.search(words_of(name.lower())), name))

@@ -126,19 +126,9 @@ def read_columns(path: Path | str, wanted: Mapping[str, str]) -> dict[str, Colum
 
 
 def read_profile(path: Path | str) -> tuple[np.ndarray, float]:
-    """Heights of a profile in even steps.
+    """Heights (n,) of a profile and their spacing, both in mm.
 
-    Parameters
-    ----------
-    path : path-like
-        Text: a line such as ``x [mm], z [um]``, then numbers, x ascending in even steps.
-
-    Returns
-    -------
-    heights : (n,) ndarray
-        mm.
-    spacing : float
-        mm.
+    The file is a text with a first line such as ``x [mm], z [um]``, and x ascending in even steps.
 
     Raises
     ------
@@ -175,13 +165,7 @@ def _lines(path: Path) -> list[tuple[int, str]]:
 def _places(
     path: Path, line: int, head: str, wanted: Mapping[str, str]
 ) -> tuple[str, list[str], dict[str, tuple[int, str]]]:
-    """Delimiter and headings of a table; number and unit of each column that is wanted.
-
-    Raises
-    ------
-    InputError
-        If no delimiter, or more than one column, gives a heading.
-    """
+    """Delimiter and headings of a table; number and unit of each wanted column."""
     by_count = sorted(_DELIMITERS, key=head.count, reverse=True)
     for delimiter in by_count:
         headings = _cells(path, line, head, delimiter)

@@ -39,19 +39,12 @@ class ReaderBug(RuntimeError):
 
 
 def read_confined(path: Path, options: ScanOptions) -> RawScan:
-    """Read a scan file in a process with bounded memory, time and files.
-
-    Parameters
-    ----------
-    path : Path
-        A regular file.
-    options : ScanOptions
+    """Read a regular file in a process with bounded memory, time and files.
 
     Raises
     ------
     InputError
-        What the reader found wrong with the file or lacking in its sidecar; also if it crashed or
-        went beyond its limits.
+        If the reader refuses the file or lacks a key, crashes, or goes beyond its limits.
     ReaderBug
         For any other exception of the reader.
     """

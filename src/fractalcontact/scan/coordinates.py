@@ -20,22 +20,10 @@ UNEVEN = 0.01
 def read_coordinates(
     files: Mapping[str, Path], unit: str | None, options: ScanOptions
 ) -> dict[str, np.ndarray]:
-    """Coordinates of the columns (x) and rows (y) of a matrix.
+    """Coordinates of the columns (x) and rows (y) of a matrix in mm, ascending or descending.
 
-    Parameters
-    ----------
-    files : mapping of str to Path
-        From :func:`scan.options.coordinate_files`. Each holds a row or a column of numbers, or a
-        matrix, in which x changes along the rows and y from row to row.
-    unit : str or None
-        Their unit.
-    options : ScanOptions
-        How they are written.
-
-    Returns
-    -------
-    dict of str to (n,) ndarray
-        By key, in mm, as they stand: ascending or descending.
+    Each file of :func:`scan.options.coordinate_files` holds a row or a column of numbers in
+    ``unit``, or a matrix, in which x changes along the rows and y from row to row.
 
     Raises
     ------

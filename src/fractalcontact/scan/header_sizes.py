@@ -38,11 +38,6 @@ def refuse_other_size(
     of ``nx`` or ``ncols`` with one of ``ny`` or ``nrows``; and for a matrix, two whole numbers in
     one line or in two that follow each other, as ``DIMENSIONS 70 60 1`` and ``70 x 60``, which are
     other sides of as many cells. A size that the sidecar confirms rules.
-
-    Raises
-    ------
-    InputError
-        With both sizes.
     """
     if options.confirmed is None and (other := _other_size(header, shape, options)):
         stated, reason = other

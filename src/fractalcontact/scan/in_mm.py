@@ -32,14 +32,7 @@ LARGEST_NUMBER = 1e12  # mm; coordinates of a country's grid reach 1e10
 
 
 class ScanFile(NamedTuple):
-    """Content of a file, in its own units.
-
-    Attributes
-    ----------
-    path : Path
-    raw : RawScan
-    checksum : str
-    """
+    """Path, content in its own units, and checksum of a file."""
 
     path: Path
     raw: RawScan
@@ -160,9 +153,9 @@ def _choose_unit(key: str, stated: str | None, options: ScanOptions, overrides: 
 
 
 def _refuse_one_unit_for_two(raw: RawScan, options: ScanOptions, path: Path) -> None:
-    """Refuse the key ``unit`` where the file gives x and y a unit that heights do not share.
+    """Refuse ``unit`` where the file gives x and y a unit that heights do not share.
 
-    It is meant of the heights, most likely, and would change the spacing as well.
+    The owner most likely means the heights, and the key would change the spacing as well.
     """
     if options.unit is None or raw.unit_xy is None or (options.unit_xy and options.unit_z):
         return
@@ -251,18 +244,9 @@ def _refuse_unconfirmed(found: dict, raw: RawScan, options: ScanOptions, path: P
 
 
 def size_and_relief(heights: np.ndarray, layout: str) -> dict:
-    """Confirmed properties of a file: its rows and columns or points, and its relief.
+    """Properties of a file for ``confirmed``: ``shape`` or ``points``, and ``relief``.
 
-    Parameters
-    ----------
-    heights : ndarray
-        Numbers of the file, NaN where missing.
-    layout : {"matrix", "points", "mesh"}
-
-    Returns
-    -------
-    dict
-        ``shape`` or ``points``; ``relief``, the highest less the lowest number of the file.
+    The relief is the highest less the lowest number of the file; NaN are missing.
     """
     size = {"shape": heights.shape} if layout == "matrix" else {"points": len(heights)}
     if not np.isfinite(heights).any():

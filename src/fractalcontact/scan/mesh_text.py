@@ -65,11 +65,6 @@ def read_ply_header(stream: BinaryIO, path: Path) -> PlyHeader:
     """Header of a PLY file; the stream then stands behind it.
 
     Comments and ``obj_info`` may hold any word, ``end_header`` among them.
-
-    Raises
-    ------
-    InputError
-        If it is no such header.
     """
     lines, count = [], 0
     for raw in stream:
@@ -101,10 +96,7 @@ def read_ply_header(stream: BinaryIO, path: Path) -> PlyHeader:
 def read_ascii_ply(stream: BinaryIO, header: PlyHeader, path: Path) -> MeshText:
     """Vertices and triangles of an ASCII PLY file, read behind its header.
 
-    Raises
-    ------
-    InputError
-        If it has more or fewer lines than its header states, or a line has other numbers.
+    More or fewer lines than the header states, and a line of other numbers, are refused.
     """
     content = stream.read().decode("latin-1")
     lines = content.split("\n")
@@ -174,11 +166,7 @@ def _polygon(fields: list[list[float]], element: Element) -> list[float]:
 def read_obj(path: Path) -> MeshText:
     """Vertices and triangles of an OBJ file; all its objects and groups are one mesh.
 
-    Raises
-    ------
-    InputError
-        If a line of a vertex or face is incomplete, or fewer of them are there than a comment
-        states.
+    An incomplete line is refused, and a file with fewer vertices or faces than a comment states.
     """
     content = path.read_bytes().decode("latin-1").replace("\r\n", "\n").replace("\\\n", " ")
     vertices: list[list[float]] = []

@@ -15,13 +15,8 @@ from .keys import ScanKeys
 class ScanOptions(SimpleNamespace):
     """Statements of a sidecar about a scan file: each key of `ScanKeys`, None where not stated.
 
-    A file that describes itself needs none of them, any other is read only as they say: see
+    A file that describes itself needs none of them; any other is read only as they state, see
     :mod:`scan.stated`. They are not changed; :meth:`but` makes others.
-
-    Raises
-    ------
-    TypeError
-        If a name is not that of a key.
     """
 
     def __init__(self, **stated: Any):
@@ -79,14 +74,9 @@ POINT_KEYS = ("columns", "grid")
 
 
 def parse_options(options: Mapping | None, where: str) -> ScanOptions:
-    """Statements on how one file is read.
+    """Statements on one file, from keys of `ScanKeys` other than ``lower`` and ``upper``.
 
-    Parameters
-    ----------
-    options : mapping or None
-        Keys of `ScanKeys` for one file, so neither ``lower`` nor ``upper``; each is optional.
-    where : str
-        The scan file, for errors.
+    ``where`` names the scan file in errors.
 
     Raises
     ------
@@ -113,14 +103,7 @@ def _as_list(value: Any) -> Any:
 
 
 def of_face(options: Mapping | None, face: str) -> dict[str, Any]:
-    """Keys of one face of a pair: those of both, then those under ``lower`` or ``upper``.
-
-    Parameters
-    ----------
-    options : mapping or None
-        Scan keys of a sidecar.
-    face : {"lower", "upper"}
-    """
+    """Keys of one face of a pair: those of both, then those under ``lower`` or ``upper``."""
     common = {key: value for key, value in (options or {}).items() if key not in FACES}
     return {**common, **((options or {}).get(face) or {})}
 
@@ -142,14 +125,7 @@ def _refuse_one_mark_for_two(options: dict, where: str) -> None:
 
 
 def coordinate_files(path: Path, options: Mapping[str, Any]) -> dict[str, Path]:
-    """Files of the coordinates of a matrix, by key; empty if its sidecar names none.
-
-    Parameters
-    ----------
-    path : Path
-        Of the matrix.
-    options : mapping
-        Scan keys of its sidecar.
+    """Files of the coordinates of the matrix at ``path``, by key; empty if its sidecar names none.
 
     Raises
     ------
@@ -175,13 +151,7 @@ def coordinate_files(path: Path, options: Mapping[str, Any]) -> dict[str, Path]:
 
 
 def length_mm(value: Any, unit_xy: str | None, where: str) -> float:
-    """Read a spacing: a text with its own unit, or a number in ``unit_xy``.
-
-    Raises
-    ------
-    InputError
-        If it has no unit, or is not a finite number above zero.
-    """
+    """Spacing in mm: a text with its own unit, or a number in ``unit_xy``, above zero."""
     if isinstance(value, str):
         length = quantity(value, "length", where)
     elif not _is_number(value):

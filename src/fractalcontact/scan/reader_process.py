@@ -50,14 +50,7 @@ class Limits:
 
 
 def limits_for(size: int, formats: Sequence[Format]) -> Limits:
-    """Limits for a file of this many bytes, inflated where it is an archive.
-
-    Parameters
-    ----------
-    size : int
-    formats : sequence of Format
-        Those it may have: the most generous counts.
-    """
+    """Limits for a file of ``size`` bytes, inflated; the most generous format counts."""
     memory_per_byte = max((form.memory_per_byte for form in formats), default=0)
     seconds_per_megabyte = max((form.seconds_per_megabyte for form in formats), default=0)
     seconds = BASE_SECONDS + seconds_per_megabyte * size // 10**6

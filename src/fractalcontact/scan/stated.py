@@ -19,45 +19,27 @@ from .tables import choose_array
 
 @dataclass(frozen=True)
 class Needs:
-    """Kind of a file that does not describe itself.
+    """Needs of a file that does not describe itself."""
 
-    Attributes
-    ----------
-    text : bool
-        Lines of numbers: how they are written is to be stated.
-    table : bool
-        Rows and columns that may be a matrix or points.
-    grid : bool
-        A matrix whose format says its spacing, its first row and its missing cells.
-    arrays : sequence of str
-        Arrays, channels or pages of which ``variable`` names one.
-    """
-
-    text: bool = False
-    table: bool = False
-    grid: bool = False
-    arrays: Sequence[str] = ()
+    text: bool = False  # lines of numbers, whose writing is to be stated
+    table: bool = False  # rows and columns that may be a matrix or points
+    grid: bool = False  # a matrix whose format gives spacing, first row and missing cells
+    arrays: Sequence[str] = ()  # arrays, channels or pages of which `variable` names one
 
 
 def require_stated(
     path: Path, options: ScanOptions, needs: Needs, hints: Callable[[], Hints]
 ) -> None:
-    """Refuse a file of which the sidecar does not state all that its reading depends on.
+    """Refuse a file whose sidecar does not state all that its reading depends on.
 
-    Parameters
-    ----------
-    path : Path
-    options : ScanOptions
-    needs : Needs
-    hints : callable
-        What the file seems to say, only asked where something is lacking: for the draft.
+    ``hints`` is called for the draft only where something is lacking.
 
     Raises
     ------
     IncompleteSidecar
         With the sidecar to write.
     InputError
-        If the sidecar says that the file holds a profile.
+        If the sidecar states that the file holds a profile.
     """
     if options.kind == "profile":
         raise InputError(

@@ -57,20 +57,13 @@ _MAX_QUOTED = 3
 
 @dataclass
 class Stated:
-    """Statements and mentions of a header, by key of a sidecar.
+    """Statements and mentions of a header, by key of a sidecar."""
 
-    Attributes
-    ----------
-    values : dict of str to list of (value, str)
-        What lines state, each with its place and text.
-    mentions : dict of str to list of str
-        Lines with a word of the key among others.
-    lengths : list of (str, list of float, str, str)
-        Name, numbers and unit of lengths, and the line.
-    """
-
+    #: What lines state, each with its place and text.
     values: dict[str, list[tuple[Any, str]]] = field(default_factory=dict)
+    #: Lines with a word of the key among others.
     mentions: dict[str, list[str]] = field(default_factory=dict)
+    #: Name, numbers and unit of lengths, and the line.
     lengths: list[tuple[str, list[float], str, str]] = field(default_factory=list)
 
     def quoted(self, key: str) -> str:
@@ -85,13 +78,7 @@ class Stated:
 
 
 def statements(lines: Iterable[tuple[str, str]]) -> Stated:
-    """Statements and mentions in lines of words.
-
-    Parameters
-    ----------
-    lines : iterable of (str, str)
-        Where a line stands ("line 3"), and its text.
-    """
+    """Statements and mentions in lines of words; a line is its place ("line 3") and its text."""
     found = Stated()
     steps: dict[str, list[tuple[str, str]]] = {"x": [], "y": []}
     for where, line in lines:

@@ -22,20 +22,7 @@ EVEN = 0.1
 
 
 def choose_array(names: list[str], wanted: str | None, path: Path) -> str:
-    """Name of the array of heights: the one the sidecar's ``variable`` names, or the only one.
-
-    Parameters
-    ----------
-    names : list of str
-        The arrays that could be heights.
-    wanted : str or None
-    path : Path
-
-    Raises
-    ------
-    InputError
-        If the wanted one is absent, or none is named where there are several or none at all.
-    """
+    """Name of the array of heights: the one the sidecar's ``variable`` names, or the only one."""
     if not names:
         raise InputError(
             f"{path}: holds no 2-D array of real numbers, so no heights; export it again"
@@ -68,20 +55,12 @@ def refuse_unknown_channel(names: list[str], wanted: str | None, path: Path) -> 
 
 @dataclass(frozen=True)
 class TextParts:
-    """Parts of a text file beside the table of its numbers.
+    """Parts of a text file beside the table of its numbers."""
 
-    Attributes
-    ----------
-    names : list of str or None
-        Cells of the last header line.
-    above : ndarray or None
-        The row of coordinates in front of the table, where the sidecar says there is one.
-    breaks : mapping of int to int
-        Rows before which an empty line, a comment or a header stands, and the number of that line.
-    """
-
-    names: list[str] | None = None
+    names: list[str] | None = None  # cells of the last header line
+    #: Row of coordinates in front of the table, where the sidecar states one.
     above: np.ndarray | None = None
+    #: Row before which a line without numbers stands, and the number of that line.
     breaks: Mapping[int, int] = field(default_factory=dict)
 
 
@@ -92,23 +71,10 @@ def table_to_raw(
     parts: TextParts = TextParts(),
     **stated: Any,
 ) -> RawScan:
-    """Heights or points of a table, as ``layout``, ``columns`` and ``axes`` of the sidecar say.
+    """Heights or points of a table (rows, columns), as ``layout``, ``columns`` and ``axes`` state.
 
-    Parameters
-    ----------
-    table : ndarray, shape (rows, columns)
-    options : ScanOptions
-    where : str
-        The file, for errors.
-    parts : TextParts
-    **stated
-        Further fields of `RawScan`.
-
-    Raises
-    ------
-    InputError
-        If a wanted column is absent, coordinates beside a matrix are uneven, or several tables
-        stand under one another.
+    ``stated`` are further fields of `RawScan`. An absent column, uneven coordinates beside a matrix
+    and several tables under one another are refused.
     """
     if options.layout != "points":
         return _matrix(table, options, where, parts, stated)
@@ -193,10 +159,10 @@ def _by_cell(points: np.ndarray, where: str) -> np.ndarray:
 
 
 def _refuse_stacked(rows: int, breaks: Mapping[int, int], options: ScanOptions, where: str) -> None:
-    """Refuse what may be several tables under one another, parted by lines.
+    """Refuse tables under one another, parted by lines without numbers.
 
-    Lines between rows in even steps part none. What else they part is read if the sidecar confirms
-    the size of the whole.
+    Lines between rows in even steps part none. Other lines are accepted if the sidecar confirms the
+    size of the whole.
     """
     sizes = np.diff([0, *breaks, rows])
     if len(sizes) < 2 or options.confirmed is not None:

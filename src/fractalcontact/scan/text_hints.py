@@ -38,15 +38,10 @@ def first_lines(path: Path) -> list[str]:
 
 
 def named_columns(path: Path) -> tuple[dict[str, Any], dict[str, Any]] | None:
-    """Keys of a table whose columns are named x, y and z, each with a unit of length.
+    """Scan keys, and units for `RawScan`, of a table whose columns name x, y, z and units.
 
     The names stand in the line above the numbers, one for each column: ``x [mm], y [mm], z [um]``.
-
-    Returns
-    -------
-    (dict, dict) or None
-        Scan keys, and units for `RawScan`; None for any other text, and where a comma or point
-        might mean two things.
+    None for any other text, and where a comma or point might mean two things.
     """
     lines = first_lines(path)
     number = _first_numbers(lines[: _MAX_ABOVE + 1])

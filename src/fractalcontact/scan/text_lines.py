@@ -124,12 +124,9 @@ def last_number_cut(
 
 
 def notes_on_end(rows: Sequence[str], content: str, path: Path) -> tuple[str, ...]:
-    """Notes on the last number of a text, compared with those that end the rows above.
+    """Notes on the last number of a text, compared with the last ones of the rows.
 
-    Raises
-    ------
-    InputError
-        If the number is cut off.
+    A number that is cut off is refused.
     """
     if content.endswith("\n") or not rows:
         return ()

@@ -48,17 +48,9 @@ class Mark(NamedTuple):
 
 
 def find_marks(heights: np.ndarray) -> list[Mark]:
-    """Numbers that are likely to mark missing cells.
+    """Numbers that are likely to mark missing cells, those far outside the others first.
 
-    Parameters
-    ----------
-    heights : ndarray
-        A matrix, or the heights of points (n,), in the file's unit; NaN where missing.
-
-    Returns
-    -------
-    list of Mark
-        Those far outside first.
+    Heights are a matrix or those of points (n,), in the file's unit; NaN where missing.
     """
     present = np.isfinite(heights)
     marks: list[Mark] = []
@@ -80,21 +72,11 @@ def find_marks(heights: np.ndarray) -> list[Mark]:
 
 
 def possible_marks(heights: np.ndarray) -> list[tuple[float, int]]:
-    """Numbers among the heights that may mark missing cells, and may be heights.
+    """Numbers that may mark missing cells or be heights, and their cells, the most frequent first.
 
     Those are 0, -1, the usual marks, and the lowest and highest number, where they occur more often
     than the numbers next to them; a whole number among many of more digits; any number that occurs
-    several times as often as those next to it.
-
-    Parameters
-    ----------
-    heights : ndarray
-        In the file's unit; NaN where missing.
-
-    Returns
-    -------
-    list of (float, int)
-        Number and cells that hold it, the most frequent first.
+    several times as often as those next to it. Heights are in the file's unit; NaN where missing.
     """
     z = heights[np.isfinite(heights)]
     levels, counts = np.unique(z, return_counts=True)
@@ -142,27 +124,10 @@ def _is_apart(levels: np.ndarray, n: int) -> bool:
 
 
 def refuse_or_warn(heights: np.ndarray, path: object, triangles: np.ndarray | None = None) -> str:
-    """Refuse heights far outside the others; returns a sentence on a number that repeats.
+    """Refuse heights far outside the others; sentence on a number that repeats, "" for none.
 
-    Parameters
-    ----------
-    heights : ndarray
-        As for `find_marks`.
-    path : path-like
-        The file, for errors.
-    triangles : (m, 3) int ndarray, optional
-        Of a mesh, whose number that repeats may be the flat bottom of a body. Nothing is suspected
-        of a closed one: gridding says what it is.
-
-    Returns
-    -------
-    str
-        "" if nothing is suspected.
-
-    Raises
-    ------
-    InputError
-        With the key to write.
+    Of a mesh, a number that repeats may be the flat bottom of a body. Nothing is suspected of a
+    closed one: gridding notes that it is one.
     """
     marks = find_marks(heights)
     if not marks and np.isin(heights, _USUAL).any():

@@ -29,25 +29,13 @@ _NO_COORDINATES = b"This is a netCDF dimension but not a netCDF variable"
 
 @dataclass(frozen=True)
 class Variable:
-    """An array in a file.
-
-    Attributes
-    ----------
-    shape : tuple of int
-    dtype : dtype
-    dimensions : tuple of str
-        For each axis the name of the variable that holds its coordinates, if there is one.
-    attributes : dict
-        Those that say how the numbers are meant.
-    read : callable
-        Gives the numbers as stored.
-    """
+    """Array in a file."""
 
     shape: tuple
     dtype: np.dtype
-    dimensions: tuple
-    attributes: dict
-    read: Callable[[], np.ndarray]
+    dimensions: tuple  # names of the variables of coordinates, one an axis
+    attributes: dict  # those that determine the meaning of the numbers
+    read: Callable[[], np.ndarray]  # returns the numbers as stored
 
 
 @contextmanager
@@ -60,13 +48,7 @@ def open_variables(path: Path) -> Iterator[dict[str, Variable]]:
 
 
 def choose_variable(variables: dict, wanted: str | None, path: Path) -> str:
-    """Choose the 2-D numeric variable that ``wanted`` names, or the only one.
-
-    Raises
-    ------
-    InputError
-        If it is absent, ambiguous or too large.
-    """
+    """Name of the wanted or only 2-D numeric variable; a huge one is refused."""
     name = choose_array(table_names(variables), wanted, path)
     refuse_larger(math.prod(variables[name].shape) * 8, path)
     return name

@@ -26,13 +26,7 @@ _SMALL = 1000  # bytes of an array of one number
 
 
 def read_npy(path: Path, options: ScanOptions) -> RawScan:
-    """Read a ``.npy`` file.
-
-    Raises
-    ------
-    InputError
-        If it is damaged, pickled, or no 2-D array of numbers.
-    """
+    """Array of a ``.npy`` file; a damaged or pickled one is refused."""
     with reading(path, ".npy array"):
         _refuse_pickled(path)
         # Mapped, so that a header promising more than the file holds fails at once.
@@ -47,13 +41,7 @@ def read_npy(path: Path, options: ScanOptions) -> RawScan:
 
 
 def read_npz(path: Path, options: ScanOptions) -> RawScan:
-    """Read one array of a ``.npz`` file, and only the headers of the others.
-
-    Raises
-    ------
-    InputError
-        If it is damaged, or the wanted array is absent, ambiguous or pickled.
-    """
+    """One array of a ``.npz`` file and the headers of the others; a pickled one is refused."""
     with reading(path, ".npz archive"):
         with zipfile.ZipFile(path) as archive:
             tables = _tables_of(archive)

@@ -21,14 +21,9 @@ _COUNT = 4  # bytes in front of an array, its number of items
 
 
 def read_gwyddion(path: Path, options: ScanOptions) -> RawScan:
-    """Read a height channel: the one key ``variable`` names, or the first.
+    """Height channel that ``variable`` names, or the first.
 
     A channel's size is that of all pixels, its first row the top; masked pixels are missing.
-
-    Raises
-    ------
-    InputError
-        If the file is damaged, no channel holds heights, or the wanted one is absent.
     """
     import SurfaceTopography
     from SurfaceTopography.IO import GWYReader

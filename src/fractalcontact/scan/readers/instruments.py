@@ -54,15 +54,10 @@ def instrument_formats() -> dict[str, tuple[str, ...]]:
 
 
 def read_instrument(path: Path, options: ScanOptions) -> RawScan:
-    """Read an instrument's file; its content must confirm the format of the extension.
+    """Heights in an instrument's file, whose content must confirm the format of its extension.
 
-    A size the file states is that of all cells, n dx, so the spacing is size / n.
-    SurfaceTopography indexes heights [x, y] with both ascending, so they are transposed.
-
-    Raises
-    ------
-    InputError
-        If the file is damaged, holds line scans or no heights, or lacks the channel asked for.
+    A size the file states is that of all cells, n dx, so the spacing is size / n. SurfaceTopography
+    indexes heights [x, y] with both ascending, so they are transposed.
     """
     reasons = []
     for format_name in instrument_formats()[path.suffix.lstrip(".").lower()]:

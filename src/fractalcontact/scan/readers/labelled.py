@@ -44,20 +44,12 @@ class Axis:
 
 
 def read_labelled(path: Path, options: ScanOptions) -> RawScan:
-    """Read one 2-D variable of a netCDF or HDF5 file.
+    """2-D variable of a netCDF or HDF5 file.
 
     A variable whose attribute ``units``, and those of the coordinates x and y of its dimensions,
-    are units of length describes itself; ``positive: down`` of it is honoured, in any case. Any
-    other is read as its sidecar says. Packing, fill values and valid ranges are decoded (CF
-    conventions); where a variable ``mask`` is not zero, cells are missing (SurfaceTopography's
-    convention).
-
-    Raises
-    ------
-    InputError
-        If the file is damaged, the wanted variable absent or ambiguous, a coordinate irregular or
-        contradicting itself, ``positive`` neither up nor down, the data lie in another file, or the
-        sidecar does not state all that is needed.
+    are units of length describes itself, and its ``positive: down`` is honoured. Any other is read
+    as its sidecar states. Packing, fill values and valid ranges are decoded (CF conventions); where
+    a variable ``mask`` is not zero, cells are missing (SurfaceTopography's convention).
     """
     with reading(path, "netCDF or HDF5 file"), open_variables(path) as variables:
         names = table_names(variables)

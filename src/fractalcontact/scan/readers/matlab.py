@@ -21,13 +21,7 @@ _HDF5_HEADER = b"MATLAB 7.3 MAT-file"
 
 
 def read_mat(path: Path, options: ScanOptions) -> RawScan:
-    """Read one matrix of a ``.mat`` file, and only the headers of the others.
-
-    Raises
-    ------
-    InputError
-        If the file is damaged, or the wanted matrix is absent, ambiguous, complex or no numbers.
-    """
+    """One matrix of a ``.mat`` file and the headers of the others; a complex one is refused."""
     with open(path, "rb") as stream:
         is_hdf5 = stream.read(len(_HDF5_HEADER)) == _HDF5_HEADER
     with reading(path, ".mat file"):

@@ -19,13 +19,7 @@ _ROUNDED = 1e-3  # of the range that a header states: programs round it
 
 
 def read_surfer(path: Path, options: ScanOptions) -> RawScan:
-    """Read a text grid: its ranges go from the first node to the last, its first row is the lowest.
-
-    Raises
-    ------
-    InputError
-        If the file is damaged, or holds more or fewer heights than it says.
-    """
+    """Heights of a text grid; its ranges go from first to last node, the lowest row first."""
     with reading(path, "Surfer text grid"):
         content = path.read_text(encoding="latin-1")
         words = content.replace(",", " ").split()

@@ -45,19 +45,13 @@ _Row = tuple[int, list[str]]
 
 
 def read_text(path: Path, options: ScanOptions) -> RawScan:
-    """Read a text file of heights or of points, block by block: only the numbers are kept.
+    """Heights or points in a text file, read block by block: only the numbers are kept.
 
-    Delimiter, decimal mark, header and what the columns hold are those of the sidecar; of a table
-    whose columns are named x, y and z, each with a unit of length, those of that line. No other
-    word of the file counts. Lines that begin with ``#``, ``%``, ``!`` or ``//``, and repeats of a
-    header line, are passed over behind the header. A point cut short at the very end of the file is
-    left out with a note.
-
-    Raises
-    ------
-    InputError
-        If the sidecar does not state all that is needed, a line is not as it says, or the numbers
-        of rows, columns or points disagree with those that the header states.
+    Delimiter, decimal mark, header and columns are those of the sidecar; of a table whose columns
+    are named x, y and z, each with a unit of length, those of that line. No other word of the file
+    counts. Behind the header, lines that begin with ``#``, ``%``, ``!`` or ``//`` and repeats of a
+    header line are passed over. A point cut short at the very end of the file is left out with a
+    note.
     """
     units: dict[str, str] = {}
     is_laid_out = any(getattr(options, key) is not None for key in LAYOUT_KEYS)

@@ -20,16 +20,11 @@ _UPRIGHT = 1
 
 
 def read_tiff(path: Path, options: ScanOptions) -> RawScan:
-    """Read a page of a TIFF file as heights, as its sidecar says.
+    """Heights in a page of a TIFF file, as its sidecar states.
 
     GDAL's scale, offset and number for missing cells are used. A pixel size that ImageJ or a
-    GeoTIFF states is only compared with the sidecar's.
-
-    Raises
-    ------
-    InputError
-        If the file is damaged, a colour image, or grey in 8 bits; the last is read if the sidecar
-        says ``unit_z``, so that somebody has thought of what a grey level means.
+    GeoTIFF states is only compared with the sidecar's. Grey levels of 8 bits are read only with a
+    stated ``unit_z``, so that somebody has thought of what a level means.
     """
     import tifffile
 

@@ -25,16 +25,10 @@ _OLD_ROOT, _ROOT = "ISO5436", "ISO5436_2"
 
 
 def read_x3p(path: Path, options: ScanOptions) -> RawScan:
-    """Read one layer of an X3P file; lengths are metres by the standard.
+    """Layer of an X3P file; lengths are metres by the standard.
 
     A regular grid is a matrix; an irregular one and a point cloud are points, in the file's global
-    coordinates.
-
-    Raises
-    ------
-    InputError
-        If the file is damaged, holds a profile, or has several layers of which key ``variable``
-        names none. That it does not match the checksums it states is a warning.
+    coordinates. A file that does not match the checksums it states is read with a warning.
     """
     import x3pio
 
