@@ -40,13 +40,8 @@ def grid_pair(
 ) -> tuple[xr.DataArray, xr.DataArray]:
     """Two faces on one common grid, registered and cropped to their common area.
 
-    Parameters
-    ----------
-    lower, upper : Measured
-    registration : {"rigid", "translation", "none"}
-        See `pairs.register`.
-    mirror_upper : {"x", "y"} or None
-        The direction that runs the other way in an upper face scanned on its back.
+    ``registration`` is that of `pairs.register`; ``mirror_upper`` the direction, x or y, that runs
+    the other way in an upper face scanned on its back.
 
     Raises
     ------

@@ -86,16 +86,9 @@ def outline_mask(
 def within_outline(
     apertures: xr.DataArray, outline: str | Mapping[str, Any] | None, where: str
 ) -> xr.DataArray:
-    """Aperture map without the cells outside its outline.
+    """Aperture map (y, x) in mm, or its negative, without the cells outside its outline.
 
-    Parameters
-    ----------
-    apertures : xr.DataArray
-        The map, or its negative, (y, x) in mm.
-    outline : str, mapping or None
-        As of :func:`outline_mask`.
-    where : str
-        For errors.
+    ``outline`` is that of :func:`outline_mask`; ``where`` is named in errors.
 
     Raises
     ------
@@ -189,23 +182,10 @@ def _length(value: Any, where: str) -> float:
 def outline_warning(
     values: np.ndarray, touching: np.ndarray, outline: object, threshold: float = np.inf
 ) -> str:
-    """Warning of an outline that leaves contact outside, or of zeros taken for nominal area.
+    """Warning of contact outside an outline, or of zeros taken for nominal area, or "".
 
-    Parameters
-    ----------
-    values : (ny, nx) ndarray
-        As the file has them; NaN where nothing was measured.
-    touching : (ny, nx) bool ndarray
-        Cells in contact.
-    outline : object
-        What the sidecar says; anything but None silences the warning of zeros.
-    threshold : float, optional
-        Above what a cell is in contact, outside the outline too.
-
-    Returns
-    -------
-    str
-        Empty if there is nothing to warn of.
+    ``values`` (ny, nx) are those of the file, NaN where nothing was measured; cells outside the
+    outline touch above ``threshold``. Any stated ``outline`` silences the warning of zeros.
     """
     absent = np.isnan(values)
     empty = ~(touching | absent)

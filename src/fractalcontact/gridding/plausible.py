@@ -38,11 +38,8 @@ _SAMPLE = 500
 def check_surface(heights: np.ndarray, spacing: tuple[float, float], path: Path) -> list[str]:
     """Warnings on gridded heights (ny, nx) in mm, NaN where missing, with cells dx, dy in mm.
 
-    Raises
-    ------
-    InputError
-        If they cannot be those of a rough surface: too few, constant, coordinates, or of a size
-        that no scan has.
+    Heights that cannot be those of a rough surface are refused: too few, constant, coordinates, or
+    of a size that no scan has.
     """
     if min(heights.shape) < SMALLEST_SIDE:
         raise InputError(
@@ -83,11 +80,8 @@ def check_surface(heights: np.ndarray, spacing: tuple[float, float], path: Path)
 def check_spacing(spacing: tuple[float, float], path: Path) -> None:
     """Refuse cells dx, dy in mm that no instrument measures.
 
-    Raises
-    ------
-    InputError
-        If a spacing is no length above zero, below the size of an atom, or more than
-        `LARGEST_ASPECT` times the other.
+    Those are a side that is no length above zero, less than an atom, or more than `LARGEST_ASPECT`
+    times the other.
     """
     dx, dy = spacing
     cells = f"{path}: cells of {dx:.4g} x {dy:.4g} mm are not plausible"

@@ -62,25 +62,13 @@ def match(lower: xr.DataArray, upper: xr.DataArray, motion: Motion) -> float:
 def best_match(
     lower: xr.DataArray, upper: xr.DataArray, rotations: Sequence[float] | np.ndarray = ROTATIONS
 ) -> tuple[Motion, float]:
-    """Try all shifts, and some rotations, of the upper face.
+    """Best match of the upper face over all shifts and some rotations, and its correlation.
 
-    Parameters
-    ----------
-    lower, upper : DataArray (y, x)
-        From `for_comparison`; of one spacing, anywhere in the plane.
-    rotations : sequence of float
-        Radians.
+    Both faces are those of `for_comparison`, of one spacing, anywhere in the plane; rotations are
+    in radians. The motion is in whole cells and one of the rotations.
 
-    Returns
-    -------
-    motion : Motion
-        In whole cells and one of the rotations.
-    correlation : float
-
-    Notes
-    -----
-    Masked normalised cross-correlation: Padfield, IEEE Trans. Image Process. 21 (2012) 2706. Of
-    all shifts the one with the largest r sqrt(n) is taken, n the number of cells in common.
+    Masked normalised cross-correlation: Padfield, IEEE Trans. Image Process. 21 (2012) 2706. Of all
+    shifts the one with the largest r sqrt(n) is taken, n the number of cells in common.
     """
     centre = float(upper.x.mean()), float(upper.y.mean())
     spacing = np.array([lower.attrs["spacing_x"], lower.attrs["spacing_y"]])
@@ -145,17 +133,9 @@ def _masked_correlations(a: np.ndarray, b: np.ndarray) -> tuple[np.ndarray, np.n
 
 
 def mirror_images(lower: xr.DataArray, upper: xr.DataArray) -> dict:
-    """Best correlation of mirror images of the upper face.
+    """Best correlation of mirror images of the upper face, by the signs of x, y and z.
 
-    Parameters
-    ----------
-    lower, upper : DataArray (y, x)
-        From `for_comparison`.
-
-    Returns
-    -------
-    dict
-        Correlation by the signs of x, y and z; the face itself, (1, 1, 1), is left out.
+    Both faces are those of `for_comparison`; the face itself, (1, 1, 1), is left out.
     """
     images = [signs for signs in itertools.product((1, -1), repeat=3) if signs != (1, 1, 1)]
     return {

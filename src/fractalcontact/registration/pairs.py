@@ -197,12 +197,9 @@ def _spreads(lower, first, second) -> list[float | None]:
 def crop_to_common(
     lower: xr.DataArray, upper: xr.DataArray, where: str
 ) -> tuple[xr.DataArray, xr.DataArray]:
-    """Crop both faces to their common rectangle; their cells coincide.
+    """Both faces cropped to their common rectangle, where their cells coincide.
 
-    Raises
-    ------
-    InputError
-        If it has fewer than 8 cells along a side.
+    A rectangle of fewer than 8 cells along a side is refused.
     """
     pair = _common_rectangle(lower, upper)
     if pair is None:

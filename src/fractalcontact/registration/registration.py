@@ -33,26 +33,17 @@ _ROUNDING = 1e-9  # relative: gaps that differ by less are one
 def find_motion(
     lower: xr.DataArray, upper: xr.DataArray, mode: str = "rigid"
 ) -> tuple[Motion, dict]:
-    """Find the rigid motion of the upper face that minimises the robust spread of the gap.
+    """Motion of the upper face that minimises the robust spread of the gap, and its record.
 
     The start is the best match over all shifts (and rotations up to 12 degrees), or no motion at
     all if that leads to as good a match. From there Gauss-Newton steps, on grids of growing
-    fineness, lower the biweight spread of the gap over the cells both faces have. Outliers are
-    left out.
+    fineness, lower the biweight spread of the gap over the cells both faces have. Outliers are left
+    out.
 
-    Parameters
-    ----------
-    lower, upper : DataArray (y, x)
-        Heights in mm of one spacing, anywhere in the plane.
-    mode : {"rigid", "translation"}
-        With rotation and tilt, or without.
-
-    Returns
-    -------
-    motion : Motion
-        About the centroid of the cells both faces have after it. Its height is free.
-    found : dict
-        ``match``: correlation of the faces without their longest waves; ``converged``.
+    Heights are in mm, of one spacing, anywhere in the plane. ``mode`` is "rigid", with rotation and
+    tilt, or "translation". The motion is about the centroid of the cells both faces have after it,
+    and its height is free. The record has ``match``, the correlation of the faces without their
+    longest waves, and ``converged``.
     """
     faces = [face.where(~find_outliers(face.values)) for face in (lower, upper)]
     compared = for_comparison(*faces)
@@ -161,18 +152,9 @@ def biweight_limit(gap: np.ndarray) -> float:
 def biweight_spread(gap: np.ndarray, limit: float) -> float:
     """Spread of the gap, mm: the standard deviation where all cells lie well within the limit.
 
-    Parameters
-    ----------
-    gap : ndarray
-        NaN where missing.
-    limit : float
-        From :func:`biweight_limit`.
-
-    Returns
-    -------
-    float
-        Root of twice the mean biweight loss, limit^2/6 (1 - (1 - (r/limit)^2)^3) with r the
-        distance from the biweight mean; infinite where no cell is present.
+    It is the root of twice the mean biweight loss, limit^2/6 (1 - (1 - (r/limit)^2)^3) with r the
+    distance from the biweight mean and the limit of :func:`biweight_limit`; infinite without any
+    cell.
     """
     known = gap[np.isfinite(gap)]
     if not known.size:
@@ -222,26 +204,11 @@ PARAMETERS = ("end_x", "end_y", "rotation", "slope_x", "slope_y")
 def linearised(
     lower: xr.DataArray, gap: np.ndarray, motion: Motion, limit: float, mode: str
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """First-order change of the gap with the motion, and the weight of each cell.
+    """First-order change of the gap (ny, nx) with the motion, and the weight of each cell.
 
-    Parameters
-    ----------
-    lower : DataArray (y, x)
-    gap : (ny, nx) ndarray
-        After the motion; NaN where missing.
-    motion : Motion
-    limit : float
-        From :func:`biweight_limit`.
-    mode : {"rigid", "translation"}
-
-    Returns
-    -------
-    usable : (ny, nx) bool ndarray
-        The n cells with a gap and a slope.
-    terms : (k + 1, n) ndarray
-        Derivative by each of the k :data:`PARAMETERS` that are free, and 1, of the height.
-    weights : (n,) ndarray
-        From 0 to 1.
+    Returned are the mask (ny, nx) of the n cells with a gap and a slope; the derivatives (k + 1, n)
+    by each of the k :data:`PARAMETERS` that are free, and 1, of the height; and weights (n,) from 0
+    to 1.
     """
     spacing = lower.attrs["spacing_y"], lower.attrs["spacing_x"]
     x, y = grid_nodes(lower)

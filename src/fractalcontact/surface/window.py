@@ -52,24 +52,10 @@ class _Wanted(NamedTuple):
 
 
 def place_window(specimen: xr.Dataset, request: WindowRequest) -> dict:
-    """Size and place of a window: hole-free, whole cells, where it can slide.
+    """Size and place of a window in whole cells, hole-free, where it can slide.
 
-    Parameters
-    ----------
-    specimen : xr.Dataset
-        Without a window.
-    request : WindowRequest
-
-    Returns
-    -------
-    dict
-        Attributes ``window_y0``, ``window_x0``, ``window_ny``, ``window_nx``, ``window_mm`` and
-        ``window_note``.
-
-    Raises
-    ------
-    InputError
-        If there is no place for it.
+    Returned are the attributes ``window_y0``, ``window_x0``, ``window_ny``, ``window_nx``,
+    ``window_mm`` and ``window_note``. A window without a place is refused.
     """
     name, multiple = specimen.attrs["name"], request.multiple
     if not (isinstance(multiple, int) and multiple >= 1):
@@ -274,11 +260,7 @@ def _largest_square(valid: np.ndarray, spacing) -> tuple[int, int]:
 def hole_free_square(valid: np.ndarray, spacing: tuple[float, float]) -> tuple[slice, slice]:
     """Rows and columns of the largest square without holes, the one nearest to the middle.
 
-    Parameters
-    ----------
-    valid : (ny, nx) bool ndarray
-    spacing : (float, float)
-        (dy, dx), mm: it is square in mm.
+    It is square in mm by the spacing (dy, dx).
     """
     shape = _largest_square(valid, spacing)
     corner = _nearest(_free_places(valid, shape), shape, _middle(valid.shape), spacing)
