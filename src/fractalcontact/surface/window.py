@@ -12,6 +12,7 @@ from scipy import ndimage
 
 from ..core.directions import DIRECTIONS, axis_and_sign, slides
 from ..core.errors import InputError
+from ..core.limits import SMALLEST_SIDE
 from ..core.text import percent
 from ..core.window import spacing_of
 
@@ -69,6 +70,11 @@ def place_window(specimen: xr.Dataset, request: WindowRequest) -> dict:
         _require_inside(specimen, request.window_centre, middle)
     shape = tuple(n // multiple * multiple for n in wanted.cells)
     _require_room(specimen, wanted, shape, multiple)
+    if automatic and min(shape) < SMALLEST_SIDE and (holes := _hole_words(specimen)):
+        raise InputError(
+            f"{name}: holes leave a window of {shape[1]} x {shape[0]} cells (x, y), where at least "
+            f"{SMALLEST_SIDE} x {SMALLEST_SIDE} hold any roughness{holes}"
+        )
     corner, place_note = _find_place(specimen, shape, wanted, request.window_centre is not None)
     notes = [place_note] if place_note else []
     if automatic and slides(specimen.attrs["opposite"]):
