@@ -10,7 +10,7 @@ import numpy as np
 from ..core.units import length_unit
 from .draft import Hints, add_words
 from .options import DELIMITERS, ScanOptions
-from .table_hints import add_axes, add_columns, axis_of, coordinate_columns
+from .table_hints import add_axes, add_columns, axis_of, coordinate_columns, height_column
 from .text_lines import COMMENT_MARKS, cells_of, cleaned, is_number, open_text, value_of, words_of
 from .text_style import add_style
 
@@ -54,8 +54,8 @@ def named_columns(path: Path) -> tuple[dict[str, Any], dict[str, Any]] | None:
         cells = _GLUED.findall(line) if delimiter == " " else line.split(delimiter)
         if delimiter == " " and "".join(cells).replace(" ", "") != line.replace(" ", ""):
             continue
-        found = [_NAMED.fullmatch(words_of(cell).strip("\"'")) for cell in cells]
-        axes = [match[1].lower() if match and length_unit(match[2]) else "" for match in found]
+        matches = [_NAMED.fullmatch(words_of(cell).strip("\"'")) for cell in cells]
+        axes = [match[1].lower() if match and length_unit(match[2]) else "" for match in matches]
         if sorted(filter(None, axes)) != ["x", "y", "z"]:
             continue
         data = [cells_of(text.rstrip(), delimiter) for text in lines[number:] if text.strip()]
@@ -64,7 +64,7 @@ def named_columns(path: Path) -> tuple[dict[str, Any], dict[str, Any]] | None:
         columns = tuple(axes.index(axis) for axis in "xyz")
         if not _is_plain([row[c].strip() for row in data for c in columns if c < len(row)]):
             return None
-        unit_x, unit_y, unit_z = (found[c][2] for c in columns)  # type: ignore[index]
+        unit_x, unit_y, unit_z = (matches[c][2] for c in columns)  # type: ignore[index]
         if unit_x != unit_y:
             return None
         keys = {"delimiter": name, "decimal": ".", "header": number, "layout": "points"}
@@ -93,8 +93,8 @@ def text_hints(path: Path) -> Hints:
     lines, hints = first_lines(path), Hints()
     start = _table_start(lines)
     above, data = lines[:start], [line for line in lines[start:] if line.strip()]
-    known = set(above)
-    data = [line for line in data if not line.startswith(COMMENT_MARKS) and line not in known]
+    header = set(above)
+    data = [line for line in data if not line.startswith(COMMENT_MARKS) and line not in header]
     name, decimal, thousands = add_style(hints, data, f"in the numbers of line {start + 1}")
     delimiter = DELIMITERS[name]
     form = ScanOptions(delimiter=name, decimal=decimal, thousands=thousands or None)
@@ -154,9 +154,7 @@ def _heights_of(hints: Hints, table: np.ndarray) -> np.ndarray:
     if layout == "points":
         if "columns" in hints.keys and "columns" not in hints.doubts:
             return table[:, hints.keys["columns"].value[2]]
-        lateral = coordinate_columns(table)
-        rest = [n for n in range(table.shape[1]) if n not in lateral]
-        return table[:, rest[0] if len(rest) == 1 else min(2, table.shape[1] - 1)]
+        return table[:, height_column(table)]
     axes = hints.keys["axes"].value if "axes" in hints.keys else "both"
     return table[axes in ("both", "row") :, axes in ("both", "column") :]
 

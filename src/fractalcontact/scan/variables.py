@@ -23,7 +23,7 @@ _ATTRIBUTES = (
     *("_Unsigned", "spacing"),
     *("_FillValue", "missing_value", "valid_min", "valid_max", "valid_range"),
 )
-#: What netCDF-4 writes into HDF5 for a dimension without coordinates.
+#: Mark of netCDF-4 in HDF5 for a dimension without coordinates.
 _NO_COORDINATES = b"This is a netCDF dimension but not a netCDF variable"
 
 
@@ -63,6 +63,15 @@ def table_names(variables: dict) -> list[str]:
         and min(variable.shape) > 1
         and name.rpartition("/")[2] != MASK
     ]
+
+
+def single_numbers(variables: dict) -> dict[str, float]:
+    """Variables that hold one number alone, by name."""
+    return {
+        name: float(variable.read().ravel()[0])
+        for name, variable in variables.items()
+        if math.prod(variable.shape) == 1 and variable.dtype.kind in "fiu"
+    }
 
 
 @contextmanager
@@ -113,15 +122,15 @@ def _read_hdf5(dataset, path: Path) -> np.ndarray:
         raise InputError(
             f"{path}: dataset {dataset.name!r} lies in another file; store the numbers in this one"
         )
-    if dataset.chunks:  # one is unpacked as a whole
+    if dataset.chunks:  # a chunk is unpacked as a whole
         refuse_larger(math.prod(dataset.chunks) * dataset.dtype.itemsize, path)
     return dataset[()]
 
 
 def _attributes(stored) -> dict:
     """Known attributes, texts as str."""
-    known = {name: stored[name] for name in _ATTRIBUTES if name in stored}
-    return {name: _plain(value) for name, value in known.items()}
+    attributes = {name: stored[name] for name in _ATTRIBUTES if name in stored}
+    return {name: _plain(value) for name, value in attributes.items()}
 
 
 def _plain(value: Any) -> Any:
