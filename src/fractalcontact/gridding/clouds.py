@@ -25,7 +25,7 @@ _OVERHANG_OF_POINTS = (
     "of the points lies beneath others and is left out: an instrument above would not see it",
 )
 
-#: From this share of points that lie over another one on they are no repeats by chance.
+#: A larger share of points above another one is no repeat by chance.
 _MANY_STACKED = 0.05
 
 
@@ -48,14 +48,14 @@ class Cloud:
     mesh: Mesh | None
     attrs: dict  # of the result, on the points
     notes: tuple[str, ...]  # what was done, and what a user should know
-    parted: float = 0.0  # Share of the points, as in the file, that lie on one of two faces.
+    parted: float = 0.0  # share of the points of the file that lie on one of two faces
 
     @property
     def area_per_point(self) -> float:
         """In mm2."""
         if self.density is not None:
             return self.density.area
-        assert self.lattice is not None  # one of both is known once overhangs were looked for
+        assert self.lattice is not None  # without a lattice there is a density
         return self.lattice.dx * self.lattice.dy
 
     @property
@@ -119,7 +119,7 @@ def grid_cloud(cloud: Cloud, lattice: pts.Lattice) -> tuple[np.ndarray, str]:
 def place_cloud(cloud: Cloud) -> tuple[np.ndarray, str]:
     """Heights of a cloud on the lattice its points lie on, and how they came there."""
     mesh, lattice = cloud.mesh, cloud.lattice
-    assert lattice is not None  # else there is nothing to place them on
+    assert lattice is not None  # the caller has checked it
     heights = pts.place_on_lattice(cloud.points, lattice)
     gridding = "the points lie on a regular grid; each is its node, "
     if mesh is None:
@@ -206,7 +206,7 @@ def _turned(cloud: Cloud, scan, normal: np.ndarray, centre: np.ndarray) -> Cloud
         notes.append(f"{missing} points without a height have no place after the turn")
     turned = _merge(replace(scan, values=values))
     attrs = turned.attrs | {"levelled_degrees": float(degrees)}
-    # Not on a lattice, whatever chance says: the heights have moved the points.
+    # Turned points lie on a lattice by chance alone.
     return replace(turned, lattice=None, attrs=attrs, notes=(*notes, *turned.notes))
 
 

@@ -40,13 +40,9 @@ def grid_pair(
 ) -> tuple[xr.DataArray, xr.DataArray]:
     """Two faces on one common grid, registered and cropped to their common area.
 
-    ``registration`` is that of `pairs.register`; ``mirror_upper`` the direction, x or y, that runs
-    the other way in an upper face scanned on its back.
-
-    Raises
-    ------
-    InputError
-        If two matrices have different spacings, or as `pairs.register`.
+    ``registration`` is that of `pairs.register`. ``mirror_upper`` is the direction, x or y, that
+    runs the other way in an upper face scanned on its back. Matrices of different spacings are
+    refused.
     """
     assert (lower.layout == "matrix") == (upper.layout == "matrix")  # `read_faces` refused others
     where = f"{lower.path} and {upper.path}"

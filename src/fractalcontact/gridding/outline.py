@@ -39,31 +39,15 @@ def outline_mask(
     x: np.ndarray,
     where: str,
 ) -> np.ndarray:
-    """Cells of a map within its outline.
+    """Cells (ny, nx) of a map whose centres lie within its outline.
 
-    Parameters
-    ----------
-    outline : str, mapping or None
-        "rectangle", the whole map, as without an outline; "disc", the largest disc in it;
-        ``{"disc": {"centre": [x, y], "diameter": d}}``; ``{"polygon": [[x, y], ...]}``;
-        ``{"mask": value}``: cells of this value lie outside. Numbers are mm in the coordinates of
-        the map, texts have a unit.
-    values : (ny, nx) ndarray
-        As the file has them.
-    y, x : ndarray
-        Centres of the cells, mm, ascending.
-    where : str
-        For errors.
+    An outline is "rectangle", the whole map, as without an outline; "disc", the largest disc in it;
+    ``{"disc": {"centre": [x, y], "diameter": d}}``; ``{"polygon": [[x, y], ...]}``; or ``{"mask":
+    value}``: cells of this value lie outside. Numbers are mm in the coordinates of the map, texts
+    have a unit.
 
-    Returns
-    -------
-    (ny, nx) bool ndarray
-        Whether the centre of the cell lies within.
-
-    Raises
-    ------
-    InputError
-        If the outline is no area, or no cell lies within.
+    ``values`` (ny, nx) are those of the file, ``y`` and ``x`` the centres of the cells in mm,
+    ascending. An outline that is no area, or that holds no cell, is refused.
     """
     if outline is None or outline == "rectangle":
         return np.ones(values.shape, bool)
@@ -88,13 +72,8 @@ def within_outline(
 ) -> xr.DataArray:
     """Aperture map (y, x) in mm, or its negative, without the cells outside its outline.
 
-    ``outline`` is that of :func:`outline_mask`; ``where`` is named in errors.
-
-    Raises
-    ------
-    InputError
-        If no outline is stated and zeros reach in from the corners, or the outline runs through
-        zeros: they would count as contact.
+    Zeros that would count as contact are refused: those that reach in from the corners without a
+    stated outline, and those that the outline runs through.
     """
     values = apertures.values
     inside = outline_mask(outline, values, apertures.y.values, apertures.x.values, where)

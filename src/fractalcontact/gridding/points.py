@@ -13,7 +13,7 @@ LATTICE_TOLERANCE = 0.1
 LATTICE_MIN_FILL = 0.2
 #: Far above any profilometer; a stray point would otherwise ask for all memory.
 MAX_CELLS = 200_000_000
-#: Nor does anybody interpolate so finely; a small file would still ask for gigabytes.
+#: A finer grid would only interpolate, and a small file would need gigabytes.
 CELLS_PER_POINT = 1000
 _FEW_CELLS = 10_000_000
 #: Coordinates in single precision are worth a note when rounded by this fraction of the distance
@@ -100,9 +100,9 @@ def single_precision_note(points: np.ndarray) -> str:
     Points (n, 3) are those of the file: any factor of units would hide the rounding.
     """
     for part in blocks(len(points)):
-        known = points[part][np.isfinite(points[part]).all(axis=1), :2]
+        coordinates = points[part][np.isfinite(points[part]).all(axis=1), :2]
         with np.errstate(over="ignore"):
-            if np.any(known.astype(np.float32) != known):
+            if np.any(coordinates.astype(np.float32) != coordinates):
                 return ""
     points = points[np.isfinite(points).all(axis=1)]
     if len(points) < 2:

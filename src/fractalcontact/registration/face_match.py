@@ -13,15 +13,15 @@ from .surface_motion import Motion, Surface, correlation, grid_nodes
 
 #: Cells along the longer side of the grid on which faces are compared.
 CELLS = 128
-#: The longest waves of a self-affine surface decide its correlation and are so few that any two
-#: faces agree somewhere. Compared is what is left without waves of more than about a third of the
-#: smaller face.
+#: Waves of more than about a third of the smaller face are removed before faces are compared: the
+#: longest waves of a self-affine surface decide its correlation, and are so few that any two faces
+#: agree somewhere.
 _LONGEST_WAVE = 1 / 3
 #: Smallest fraction of the smaller face that the other must cover.
 _SMALLEST_OVERLAP = 0.4
 #: Rotations tried; the search that follows finds those between.
 ROTATIONS = np.radians(np.arange(-12, 13, 2))
-LARGEST_ROTATION = 10  # degrees: what is found reliably, for messages
+LARGEST_ROTATION = 10  # degrees that are found reliably, for messages
 
 
 def averaged(heights: xr.DataArray, factor: int) -> xr.DataArray:

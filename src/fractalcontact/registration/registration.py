@@ -53,7 +53,7 @@ def find_motion(
     motion, converged = _refine(coarse, start, mode)
     if _have_common_cells(*coarse):
         nearer = _refine(coarse, Motion(), mode)
-        # What repeats itself fits in many places.
+        # A periodic surface fits in many places.
         if match(*compared, nearer[0]) > match(*compared, motion) - _CLEARLY_BETTER:
             motion, converged = nearer
     for factor in factors[1:]:
@@ -116,10 +116,10 @@ def _descend(problem: _Problem, motion: Motion, limit: float) -> tuple[Motion, b
     spread = biweight_spread(gap, limit)
     if not np.isfinite(spread):  # no shift brings enough cells together: there is no start
         return motion, False
-    enough = np.isfinite(gap).sum() / 2  # nor may a better gap be bought by parting the faces
+    enough = np.isfinite(gap).sum() / 2  # no step may lower the gap by parting the faces
     for _ in range(_MAX_STEPS):
         both = np.isfinite(gap)
-        # About the centroid shift and rotation hardly interact.
+        # Shift and rotation about the centroid hardly interact.
         motion = motion.about(x[both].mean(), y[both].mean())
         step = _gauss_newton_step(lower, gap, motion, limit, problem.mode)
         size = np.hypot(*step[:2]) + abs(step[2]) * np.hypot(np.ptp(x[both]), np.ptp(y[both])) / 2
@@ -130,7 +130,7 @@ def _descend(problem: _Problem, motion: Motion, limit: float) -> tuple[Motion, b
             if new_spread < spread and np.isfinite(new_gap).sum() >= enough:
                 break
         else:
-            return motion, True  # no step in the direction of descent lowers it: the minimum
+            return motion, True  # no step of descent lowers the spread
         motion, gap, spread = tried, new_gap, new_spread
         if size <= small:
             return motion, True
@@ -142,11 +142,11 @@ def biweight_limit(gap: np.ndarray) -> float:
 
     Infinite where most cells have one gap, or none is known.
     """
-    known = gap[np.isfinite(gap)]
-    if not known.size:
+    gaps = gap[np.isfinite(gap)]
+    if not gaps.size:
         return np.inf
-    scale = _NORMAL * float(np.median(abs(known - np.median(known))))
-    return _BIWEIGHT * scale if scale > _ROUNDING * np.abs(known).max() else np.inf
+    scale = _NORMAL * float(np.median(abs(gaps - np.median(gaps))))
+    return _BIWEIGHT * scale if scale > _ROUNDING * np.abs(gaps).max() else np.inf
 
 
 def biweight_spread(gap: np.ndarray, limit: float) -> float:
@@ -156,24 +156,24 @@ def biweight_spread(gap: np.ndarray, limit: float) -> float:
     distance from the biweight mean and the limit of :func:`biweight_limit`; infinite without any
     cell.
     """
-    known = gap[np.isfinite(gap)]
-    if not known.size:
+    gaps = gap[np.isfinite(gap)]
+    if not gaps.size:
         return np.inf
     if np.isinf(limit):
-        return float(known.std())
-    part = np.minimum(((known - _centre(known, limit)) / limit) ** 2, 1.0)
+        return float(gaps.std())
+    part = np.minimum(((gaps - _centre(gaps, limit)) / limit) ** 2, 1.0)
     return float(np.sqrt(limit**2 / 3 * np.mean(1 - (1 - part) ** 3)))
 
 
-def _centre(known: np.ndarray, limit: float) -> float:
+def _centre(gaps: np.ndarray, limit: float) -> float:
     """Biweight mean, by a few steps from the median."""
-    centre = float(np.median(known))
+    centre = float(np.median(gaps))
     for _ in range(3):
-        weights = _biweights(known - centre, limit)
+        weights = _biweights(gaps - centre, limit)
         total = np.sum(weights)
         if not total > 0:  # all lie far from their median
             break
-        centre = float(np.sum(weights * known) / total)
+        centre = float(np.sum(weights * gaps) / total)
     return centre
 
 
@@ -212,7 +212,7 @@ def linearised(
     """
     spacing = lower.attrs["spacing_y"], lower.attrs["spacing_x"]
     x, y = grid_nodes(lower)
-    # The mean of both faces' gradients: that of the upper one is its gap's plus the lower one's.
+    # Mean gradient of both faces; the upper one has that of the lower one plus that of the gap.
     slope_y, slope_x = np.gradient(lower.values + gap / 2, *spacing)
     dx, dy = x - motion.end[0], y - motion.end[1]
     columns = [-slope_x, -slope_y, slope_x * dy - slope_y * dx, dx, dy]
@@ -220,8 +220,8 @@ def linearised(
         columns = columns[:2]
     usable = np.isfinite(gap) & np.isfinite(slope_x) & np.isfinite(slope_y)
     terms = np.array([np.asarray(c)[usable] for c in (*columns, np.ones_like(x))])
-    known = gap[usable]
-    weights = _biweights(known - _centre(known, limit), limit)
+    gaps = gap[usable]
+    weights = _biweights(gaps - _centre(gaps, limit), limit)
     return usable, terms, weights
 
 

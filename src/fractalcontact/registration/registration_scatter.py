@@ -17,7 +17,7 @@ from .surface_motion import Motion
 MOTIONS, BLOCKS = 20, 6
 #: A block with fewer of its cells present is left out.
 _MIN_CELLS = 16
-#: Fewest blocks of which a draw makes sense.
+#: Fewest blocks to draw from.
 _MIN_BLOCKS = 8
 
 

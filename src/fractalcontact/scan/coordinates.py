@@ -23,14 +23,10 @@ def read_coordinates(
     """Coordinates of the columns (x) and rows (y) of a matrix in mm, ascending or descending.
 
     Each file of :func:`scan.options.coordinate_files` holds a row or a column of numbers in
-    ``unit``, or a matrix, in which x changes along the rows and y from row to row.
-
-    Raises
-    ------
-    InputError
-        If there is no unit, or the numbers are no coordinates of an even grid.
+    ``unit``, or a matrix, in which x changes along the rows and y from row to row. Numbers without
+    a unit, or that are no coordinates of an even grid, are refused.
     """
-    found = {}
+    coordinates = {}
     for key, path in files.items():
         if unit is None:
             raise InputError(f"{path}: of unknown unit; write 'unit_xy: mm' into the sidecar")
@@ -48,8 +44,8 @@ def read_coordinates(
                 f"{path}: {key} goes in steps of {steps.min():.4g} to {steps.max():.4g}; an even "
                 "grid is needed, so interpolate it first"
             )
-        found[key] = line * length_factor(unit, f"{path}: unit")
-    return found
+        coordinates[key] = line * length_factor(unit, f"{path}: unit")
+    return coordinates
 
 
 def _one_line(values: np.ndarray, axis: int) -> np.ndarray | None:

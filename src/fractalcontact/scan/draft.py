@@ -1,6 +1,6 @@
 """Drafts of sidecars from the hints in a file, each line with its source, for the owner to check.
 
-Nothing here is ever believed: a draft is shown, with the relief it would give, and read by nobody.
+A draft is shown with the relief it would give; no part of the program reads it.
 """
 
 import re
@@ -207,8 +207,8 @@ def _missing(hints: Hints, kind: str | None) -> tuple[Any, str]:
                 heights[np.isclose(heights, mark.value, rtol=1e-6, atol=0)] = np.nan
         suspects = possible_marks(heights)
     if not suspects and "missing" not in hints.doubts:
-        found = marks if len(marks) > 1 else marks[0] if marks else NO_MARK
-        return found, "; ".join(said) or "no unusual number in the part that was read"
+        value = marks if len(marks) > 1 else marks[0] if marks else NO_MARK
+        return value, "; ".join(said) or "no unusual number in the part that was read"
     choices = [f"{cells} cells hold {number(value)}" for value, cells in suspects[:_MAX_MARKS]]
     if any(value == 0 for value, _ in suspects) and kind is None:
         choices.append("zeros of an aperture map are contact")

@@ -11,7 +11,7 @@ from .raw import reading, refuse_larger
 
 #: No measured heights deflate better than this; a bomb does, up to 1 : 1032.
 LARGEST_RATIO = 200
-#: A few constant or empty members may: the ratio counts above this many bytes only.
+#: The ratio counts above this many bytes: a few constant or empty members may exceed it.
 UNSUSPICIOUS = 64 * 1024**2
 
 
@@ -21,18 +21,18 @@ def regular_file(path: Path) -> os.stat_result:
     A pipe or a device is refused unopened: reading it could wait for ever.
     """
     try:
-        found = path.stat()
+        status = path.stat()
     except (OSError, ValueError) as error:
         raise InputError(f"{path}: no such file, or it cannot be reached ({error})") from error
-    if not stat.S_ISREG(found.st_mode):
-        kind = "a folder" if stat.S_ISDIR(found.st_mode) else "a pipe, socket or device"
+    if not stat.S_ISREG(status.st_mode):
+        kind = "a folder" if stat.S_ISDIR(status.st_mode) else "a pipe, socket or device"
         raise InputError(f"{path}: {kind}, not a file; put the scan file itself here")
     if not os.access(path, os.R_OK):
         raise InputError(f"{path}: no permission to read it; allow it, 'chmod u+r' on the file")
-    if found.st_size == 0:
+    if status.st_size == 0:
         raise InputError(f"{path}: the file is empty")
-    refuse_larger(found.st_size, path)
-    return found
+    refuse_larger(status.st_size, path)
+    return status
 
 
 def is_unchanged(before: os.stat_result, after: os.stat_result) -> bool:

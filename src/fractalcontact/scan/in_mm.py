@@ -75,7 +75,7 @@ def in_mm(file: ScanFile, options: ScanOptions, *, are_heights: bool = True) -> 
         if note := single_precision_note(raw.values):
             notes.append(note)
         assert unit_xy is not None  # points were required to have one
-        values = np.require(raw.values, requirements="W")  # nobody else has them: changed in place
+        values = np.require(raw.values, requirements="W")  # changed in place: not shared
         values[:, 2] = heights
         values[:, :2] *= length_factor(unit_xy, f"{path}: unit_xy")
         spacing = None
@@ -219,26 +219,26 @@ def _without_missing(values: np.ndarray, marks: tuple[float, ...]) -> np.ndarray
     """A copy, in file units, with the missing numbers and infinities as NaN."""
     absent = ~np.isfinite(values)
     for mark in marks:
-        # Markers such as 3.4e38 come back from text and float32 not quite the same.
+        # Text and float32 change the last digits of markers such as 3.4e38.
         absent |= np.isclose(values, mark, rtol=1e-6, atol=0)
     return np.where(absent, np.nan, values)
 
 
-def _refuse_unconfirmed(found: dict, raw: RawScan, options: ScanOptions, path: Path) -> None:
+def _refuse_unconfirmed(size: dict, raw: RawScan, options: ScanOptions, path: Path) -> None:
     """Refuse a file of another size or relief than its owner has looked at and confirmed."""
     if options.confirmed is None:
         return
     for key, value in options.confirmed.items():
-        if key not in found:
+        if key not in size:
             raise InputError(
                 f"{path}: its sidecar confirms {key!r}, but it is read as {raw.layout} with "
-                f"{', '.join(found)}; run 'make describe FILE={path}' and confirm that"
+                f"{', '.join(size)}; run 'make describe FILE={path}' and confirm that"
             )
-        if not np.allclose(value, found[key], rtol=SAME_RELIEF, atol=0):
+        if not np.allclose(value, size[key], rtol=SAME_RELIEF, atol=0):
             raise InputError(
                 f"{path}: its sidecar confirms {key} {_plain(value)}, the file holds "
-                f"{_plain(found[key])}: this is another file, or its sidecar was changed; 'make "
-                f"describe FILE={path}' draws it, then write '{key}: {_plain(found[key])}' under "
+                f"{_plain(size[key])}: this is another file, or its sidecar was changed; 'make "
+                f"describe FILE={path}' draws it, then write '{key}: {_plain(size[key])}' under "
                 "'confirmed'"
             )
 

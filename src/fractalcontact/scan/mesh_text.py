@@ -103,10 +103,10 @@ def read_ascii_ply(stream: BinaryIO, header: PlyHeader, path: Path) -> MeshText:
     rows = [(n, words) for n, line in enumerate(lines, header.lines + 1) if (words := line.split())]
     promised = sum(element.length for element in header.elements)
     if len(rows) != promised:
-        each = " and ".join(f"{element.length} x {element.name}" for element in header.elements)
+        counts = " and ".join(f"{element.length} x {element.name}" for element in header.elements)
         raise InputError(
-            f"{path}: its header states {each}, one a line, but {len(rows)} lines stand below it; "
-            "the file is cut off or damaged, so export it again"
+            f"{path}: its header states {counts}, one a line, but {len(rows)} lines stand below "
+            "it; the file is cut off or damaged, so export it again"
         )
     vertices, triangles = np.empty((0, 3)), np.empty((0, 3), np.int64)
     start, last = 0, rows
@@ -152,7 +152,7 @@ def _coordinates(fields: list, element: Element, path: Path) -> np.ndarray:
         )
     types = {name: _TYPES[kind] for name, kind, _ in element.properties}
     table = np.array(fields, dtype=np.float64).reshape(len(fields), len(names))
-    # As a binary file of these types has them.
+    # Rounded to the declared types, as a binary file has them.
     return np.column_stack([table[:, names.index(axis)].astype(types[axis]) for axis in "xyz"])
 
 
@@ -177,9 +177,9 @@ def read_obj(path: Path) -> MeshText:
     for number, line in enumerate(lines, 1):
         key, _, rest = line.strip().replace("\t", " ").partition(" ")
         if key not in kinds:
-            if found := _STATED.match(line.strip()):
-                what = (found["what"] or found["named"]).lower()
-                stated[what] = max(stated[what], int(found["n"] or found["m"]))
+            if count := _STATED.match(line.strip()):
+                what = (count["what"] or count["named"]).lower()
+                stated[what] = max(stated[what], int(count["n"] or count["m"]))
             continue
         kinds[key].append(rest)
         try:

@@ -58,13 +58,13 @@ class ScanOptions(SimpleNamespace):
 CONTACT_MAP = "contact-map"
 #: Keys that say how the numbers of a text are written.
 WRITING_KEYS = ("delimiter", "decimal", "thousands", "header")
-#: What parts the numbers of a line, by the key `delimiter`; a blank is white space of any length.
+#: Signs between numbers by the key `delimiter`; a blank is white space of any length.
 DELIMITERS = {"comma": ",", "semicolon": ";", "tab": "\t", "blank": " "}
-#: What the key `missing` says where every number is a height, however it looks.
+#: Value of the key `missing` where every number is a height, however it looks.
 NO_MARK = "none"
 #: Keys that say how two faces lie to each other.
 PAIR_KEYS = ("registration", "mirror_upper")
-#: Keys that hold what is stated of one face alone.
+#: Keys of statements on one face alone.
 FACES = ("lower", "upper")
 #: Keys that name the files of the coordinates, where x, y and z are three files.
 COORDINATE_KEYS = ("x", "y")
@@ -74,14 +74,9 @@ POINT_KEYS = ("columns", "grid")
 
 
 def parse_options(options: Mapping | None, where: str) -> ScanOptions:
-    """Statements on one file, from keys of `ScanKeys` other than ``lower`` and ``upper``.
+    """Statements on the file ``where``, from keys of `ScanKeys` but ``lower`` and ``upper``.
 
-    ``where`` names the scan file in errors.
-
-    Raises
-    ------
-    InputError
-        If a key is unknown or a value is of the wrong kind.
+    An unknown key, and a value of the wrong kind, are refused.
     """
     document = {key: _as_list(value) for key, value in (options or {}).items()}
     known = [key for key in ScanKeys.model_fields if key not in FACES]
@@ -94,7 +89,7 @@ def parse_options(options: Mapping | None, where: str) -> ScanOptions:
             length_factor(stated[key], f"{where}: {key}")
     _refuse_one_mark_for_two(stated, where)
     return ScanOptions(
-        **{key: tuple(one) if isinstance(one, list) else one for key, one in stated.items()}
+        **{key: tuple(value) if isinstance(value, list) else value for key, value in stated.items()}
     )
 
 
@@ -127,10 +122,8 @@ def _refuse_one_mark_for_two(options: dict, where: str) -> None:
 def coordinate_files(path: Path, options: Mapping[str, Any]) -> dict[str, Path]:
     """Files of the coordinates of the matrix at ``path``, by key; empty if its sidecar names none.
 
-    Raises
-    ------
-    InputError
-        If one of the two is missing, or a name is not that of another file in the same folder.
+    One without the other is refused, and a name that is not that of another file in the same
+    folder.
     """
     named = {key: str(options[key]) for key in COORDINATE_KEYS if options.get(key) is not None}
     if not named:

@@ -32,11 +32,7 @@ class RawScan:
 
 
 class IncompleteSidecar(InputError):
-    """Error of a file that needs a sidecar, and whose sidecar is incomplete.
-
-    ``draft`` holds the indented lines of a sidecar as the file seems to mean; unknown values are
-    empty.
-    """
+    """Error of a file whose sidecar is absent or incomplete, with the lines of a ``draft``."""
 
     def __init__(self, message: str, draft: str):
         super().__init__(f"{message}\n{draft}")

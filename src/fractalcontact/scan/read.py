@@ -116,12 +116,8 @@ def read_matrix(
     """Matrix of any quantity in a file, its spacing (dx, dy) in mm, and its provenance.
 
     Values (ny, nx) are multiplied by the length of ``unit_z`` in mm; NaN where missing, y
-    ascending.
-
-    Raises
-    ------
-    InputError
-        As `read_scan`, but for numbers that cannot be heights; also if the file holds points.
+    ascending. Points are refused, and otherwise what `read_scan` refuses, but for numbers that
+    cannot be heights.
     """
     measured = measure(Path(path), options, are_heights=False)
     if measured.layout != "matrix":

@@ -15,7 +15,7 @@ from .raw import RawScan
 
 #: Numbered columns and rows may leave at most this many empty cells for each cell that they fill.
 MAX_EMPTY_PER_POINT = 20
-#: Lines that part more blocks of points than this part scan lines.
+#: More blocks of points than this are scan lines, not clouds.
 _MAX_CLOUDS = 4
 #: Coordinates may stray this fraction of a step from equal steps: rounding in the export.
 EVEN = 0.1
@@ -92,12 +92,12 @@ def _matrix(
     table: np.ndarray, options: ScanOptions, where: str, parts: TextParts, stated: dict
 ) -> RawScan:
     """Heights without the coordinates, or counts, in the first row and column of a matrix."""
-    axes, above, beside = options.axes, parts.above, None
+    axes, above, left = options.axes, parts.above, None
     _refuse_stacked(len(table), parts.breaks, options, where)
     if axes in ("both", "row") and above is None:
         above, table = table[0], table[1:]
     if axes in ("both", "column"):
-        beside, table = table[:, 0], table[:, 1:]
+        left, table = table[:, 0], table[:, 1:]
     if above is not None:
         above = above[-table.shape[1] :] if table.shape[1] else above
         if len(above) != table.shape[1]:
@@ -105,7 +105,7 @@ def _matrix(
                 f"{where}: its first row holds {len(above)} numbers, the others {table.shape[1]} "
                 "heights; write 'axes: none' or 'axes: column' if it holds no coordinates"
             )
-    for name, numbers in (("row", above), ("column", beside)):
+    for name, numbers in (("row", above), ("column", left)):
         if numbers is not None and len(np.unique(numbers)) < len(numbers):
             raise InputError(
                 f"{where}: its first {name} holds a number twice, so that it holds neither counts "
@@ -116,8 +116,8 @@ def _matrix(
             _step(numbers, name, where)
     if axes == "both" and options.spacing is None:
         assert above is not None  # it was taken off
-        assert beside is not None
-        dx, dy = _step(above, "row", where), _step(beside, "column", where)
+        assert left is not None
+        dx, dy = _step(above, "row", where), _step(left, "column", where)
         table = table[:, ::-1] if dx < 0 else table
         stated |= {"spacing": (abs(dx), abs(dy)), "first_row": "top" if dy < 0 else "bottom"}
     return RawScan(table, "matrix", **stated)

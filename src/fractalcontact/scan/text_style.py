@@ -7,7 +7,7 @@ from .options import DELIMITERS
 from .text_lines import cells_of
 
 _SAMPLE = 200
-#: Numbers without a mark, of four and more digits, that are no more than marks of missing cells.
+#: Largest fraction of ungrouped numbers of four and more digits: marks of missing cells, perhaps.
 _MAX_UNGROUPED = 0.1
 _DIGITS = re.compile(r"[-+]?\d[\d.,']*(?:[eEdD][-+]?\d+)?")
 

@@ -30,7 +30,7 @@ _APART = 0.2
 _ENDS_OF_COUNTS = (0.0, 255.0, 65535.0, -32768.0, 32767.0)
 #: This many marks are looked for.
 _MAX_MARKS = 4
-#: A mark comes back from text and single precision not quite the same.
+#: Text and single precision change a mark by less than this fraction.
 _SAME = 1e-6
 
 
@@ -55,19 +55,19 @@ def find_marks(heights: np.ndarray) -> list[Mark]:
     present = np.isfinite(heights)
     marks: list[Mark] = []
     while len(marks) < _MAX_MARKS and present.any():
-        found = _far_outside(heights, present)
-        outside = found is not None
-        if found is None:
-            found = _repeated(heights, present)
-        if found is None:
+        mark = _far_outside(heights, present)
+        outside = mark is not None
+        if mark is None:
+            mark = _repeated(heights, present)
+        if mark is None:
             break
-        alike = present & np.isclose(heights, found, rtol=_SAME, atol=0)
+        alike = present & np.isclose(heights, mark, rtol=_SAME, atol=0)
         present &= ~alike
         cells = int(alike.sum())
         if not present.any():
             break
         low, high = float(heights[present].min()), float(heights[present].max())
-        marks.append(Mark(found, cells, outside, low, high))
+        marks.append(Mark(mark, cells, outside, low, high))
     return marks
 
 
@@ -84,7 +84,7 @@ def possible_marks(heights: np.ndarray) -> list[tuple[float, int]]:
         return []
     is_whole = levels == np.round(levels)
     in_counts = 2 * int(counts[is_whole].sum()) > z.size
-    # Of numbers of two decimals one in a hundred is whole: then a whole number is no rarity.
+    # One in a hundred numbers of two decimals is whole by chance: no rarity.
     digits = next((d for d in range(7) if _has_digits(levels, d)), 7)
     is_rare = not in_counts and z.size * 10.0**-digits < _RARE
     usual = np.isin(levels, (0.0, -1.0, *_USUAL))
@@ -92,19 +92,19 @@ def possible_marks(heights: np.ndarray) -> list[tuple[float, int]]:
     ends[[0, -1]] = True
     looked_at = np.flatnonzero(ends | usual | (counts >= _FEWEST) | (is_rare & is_whole))
     looked_at = looked_at[np.argsort(-counts[looked_at], kind="stable")][:_MAX_LOOKED_AT]
-    # Numbers of few digits meet by chance: then many occur as often as the most frequent ones.
+    # Numbers of few digits repeat by chance, many as often as the most frequent one.
     most = 2 * int(np.median(np.sort(counts)[-_MAX_LOOKED_AT // 10 :]))
-    found = []
+    suspects = []
     for n in map(int, looked_at):
-        beside = np.r_[counts[max(0, n - _BESIDE) : n], counts[n + 1 : n + 1 + _BESIDE]].max()
+        neighbours = np.r_[counts[max(0, n - _BESIDE) : n], counts[n + 1 : n + 1 + _BESIDE]].max()
         is_special = ends[n] or usual[n]
-        often = counts[n] > max(beside, 1) if is_special else counts[n] > max(2 * beside, most)
+        often = counts[n] > (max(neighbours, 1) if is_special else max(2 * neighbours, most))
         is_lone = is_rare and (is_special or counts[n] > 1)
         lone = is_whole[n] and (is_lone or (in_counts and _is_apart(levels, n)))
         of_counts = in_counts and ends[n] and levels[n] in _ENDS_OF_COUNTS
         if often or lone or of_counts or levels[n] in _USUAL:
-            found.append((float(levels[n]), int(counts[n])))
-    return found
+            suspects.append((float(levels[n]), int(counts[n])))
+    return suspects
 
 
 def _has_digits(levels: np.ndarray, digits: int) -> bool:
@@ -126,15 +126,14 @@ def _is_apart(levels: np.ndarray, n: int) -> bool:
 def refuse_or_warn(heights: np.ndarray, path: object, triangles: np.ndarray | None = None) -> str:
     """Refuse heights far outside the others; sentence on a number that repeats, "" for none.
 
-    Of a mesh, a number that repeats may be the flat bottom of a body. Nothing is suspected of a
-    closed one: gridding notes that it is one.
+    Of a mesh, such a number may be the flat bottom of a body; a closed one is left to gridding.
     """
     marks = find_marks(heights)
     if not marks and np.isin(heights, _USUAL).any():
         z = heights[np.isfinite(heights)]
         ends = float(z.min()), float(z.max())
-        found = [(value, cells) for value, cells in possible_marks(z) if value in _USUAL]
-        marks = [Mark(value, cells, True, *ends) for value, cells in found]
+        usual = [(value, cells) for value, cells in possible_marks(z) if value in _USUAL]
+        marks = [Mark(value, cells, True, *ends) for value, cells in usual]
     if marks and triangles is not None and is_closed(triangles):
         return ""
     far = [mark for mark in marks if mark.outside]
@@ -187,7 +186,7 @@ def _far_outside(heights: np.ndarray, present: np.ndarray) -> float | None:
         gap = sign * (float(others.min() if sign > 0 else others.max()) - extreme)
         drawn = _drawn(others)
         low, high = np.percentile(drawn, [25, 75])
-        # Another mark among the others may be in a quarter of the cells: then its turn comes first.
+        # A second mark in a quarter of the cells widens the quartiles; it is found first.
         if high > low and gap > _FAR * (high - low) and np.unique(drawn).size >= _MIN_LEVELS:
             return extreme
     return None
@@ -196,12 +195,12 @@ def _far_outside(heights: np.ndarray, present: np.ndarray) -> float | None:
 def _repeated(heights: np.ndarray, present: np.ndarray) -> float | None:
     """A number that repeats many times as often as any other, or alone fills whole blocks."""
     drawn = _drawn(heights[present])
-    found = _dominant(drawn)
-    if found is None and heights.ndim == 2:
-        found = _dominant(heights[_flat(heights) & present], fewest=_REPEATED // 3)
-        if found is not None and np.unique(drawn).size < _MIN_LEVELS:
+    value = _dominant(drawn)
+    if value is None and heights.ndim == 2:
+        value = _dominant(heights[_flat(heights) & present], fewest=_REPEATED // 3)
+        if value is not None and np.unique(drawn).size < _MIN_LEVELS:
             return None
-    return found
+    return value
 
 
 def _dominant(values: np.ndarray, fewest: int = _REPEATED) -> float | None:

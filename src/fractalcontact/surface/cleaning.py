@@ -10,7 +10,7 @@ from ..core.strips import strips
 from ..core.window import spacing_of
 from .suspect import Suspects, find_suspects
 
-#: What becomes of outlying cells, by the key ``outliers``.
+#: Treatments of outlying cells, values of the key ``outliers``.
 _TREATED = {
     "keep": "kept",
     "mask": "made missing",
@@ -48,16 +48,11 @@ def clean_faces(
     ``judged`` is False of a synthetic surface: no suspicious cells are looked for where they would
     be kept.
 
-    Returns
-    -------
-    faces : list of DataArray
-    cells : dict
-        ``outlier``, ``spike`` and ``filled``, in any of the faces; ``overlap`` of the faces as they
-        are now; ``sparse``, far from any point measured, of any face; ``suspect_lower`` and, of two
-        faces, ``suspect_upper``: all of these, of an overlap the deep ones. (y, x) bool ndarrays.
-    attrs : dict
-        ``outliers``, ``outlier_count``, ``spike_count``, ``filled_count`` and, in words,
-        ``cleaning``.
+    Returned are the faces; masks (y, x) of cells: ``outlier``, ``spike`` and ``filled``, in any of
+    the faces; ``overlap`` of the faces as they are now; ``sparse``, far from any point measured, of
+    any face; ``suspect_lower`` and, of two faces, ``suspect_upper``: all of these, of an overlap
+    the deep ones; and the attributes ``outliers``, ``outlier_count``, ``spike_count``,
+    ``filled_count`` and, in words, ``cleaning``.
     """
     if outliers not in _TREATED:
         allowed = ", ".join(repr(value) for value in _TREATED)
@@ -159,7 +154,7 @@ def find_outliers(heights: np.ndarray) -> np.ndarray:
     present = np.isfinite(heights)
     if min(heights.shape) < _SIDE or present.sum() < _FEWEST or np.ptp(heights[present]) == 0:
         return flagged
-    # Less the plane, because surroundings are one-sided at a rim.
+    # The plane is taken off because surroundings are one-sided at a rim.
     z = without_mean_plane(heights)
     deviation, margin, relief = _surroundings(z, present)
     if not np.isfinite(deviation).any():

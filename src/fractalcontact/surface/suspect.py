@@ -19,11 +19,11 @@ CONFIRMED = 4.0
 #: neighbours, exceed this many times what is typical: no error of the registration or of the mean
 #: gap, which neighbours share, makes it.
 DEEP = 3.0
-#: Fewer neighbours present, or cells around, and a cell is not judged.
+#: A cell with fewer neighbours, or fewer cells around it, is not judged.
 _MIN_NEIGHBOURS, _MIN_AROUND = 5, 12
 _HALF = 3  # cells around: 7 x 7 but the one in the middle
 _NORMAL = 1.4826  # standard deviation of a normal distribution / its median absolute deviation
-#: What arithmetic may add to equal heights, as a part of the largest.
+#: Rounding of equal heights, as a fraction of the largest.
 _ROUNDING = 1e-12
 _NEIGHBOURS = [(i, j) for i in (-1, 0, 1) for j in (-1, 0, 1) if (i, j) != (0, 0)]
 
@@ -62,7 +62,7 @@ def find_suspects(scans: list[xr.DataArray]) -> Suspects:
         overlap = gap < -_ROUNDING * max(np.nanmax(abs(scan.values)) for scan in scans)
         deep = overlap & (np.maximum(gap, _deviation(gap)) < -DEEP * typical_deviation(gap))
     for spike, ratio in zip(spikes, towards, strict=True):
-        # What stands off towards the other face takes away from the gap.
+        # A cell that stands off towards the other face narrows the gap.
         confirmed = (overlap & (ratio > CONFIRMED)) | (
             (abs(ratio) > CONFIRMED) & (abs(of_gap) > CONFIRMED) & (ratio * of_gap < 0)
         )
@@ -83,7 +83,7 @@ def stand_off(heights: np.ndarray) -> np.ndarray:
     """Deviation of each cell (ny, nx) from its neighbours, over the typical deviation nearby.
 
     It is positive upwards; 0 where the cell is missing, cannot be judged, or deviates by less than
-    `CONFIRMED`, so that most need no surroundings.
+    `CONFIRMED`.
     """
     deviation = _deviation(heights)
     typical = _typical(deviation, heights)

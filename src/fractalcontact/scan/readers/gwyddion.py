@@ -50,7 +50,7 @@ def read_gwyddion(path: Path, options: ScanOptions) -> RawScan:
         values,
         "matrix",
         reader=f"SurfaceTopography {SurfaceTopography.__version__} / gwy",
-        # Without its unit a size is none: new files have one pixel a unit.
+        # A size without a unit is no length: new files state one unit per pixel.
         spacing=spacing if unit_xy else None,
         unit_xy=stated_unit(unit_xy),
         unit_z=stated_unit(unit_z),
