@@ -15,6 +15,8 @@ from stated import ARRAY, CORONA, GRANITE, NANOVEA, POINTS, SURFDIFF, read_faces
 from fractalcontact.core.errors import InputError
 from fractalcontact.scan import read
 from fractalcontact.scan.confined import read_confined
+from fractalcontact.scan.options import ScanOptions
+from fractalcontact.scan.readers import text
 
 scans = pytest.mark.scans
 needs_scans = pytest.mark.skipif(not SCANS.is_dir(), reason="the folder of real scans is absent")
@@ -542,6 +544,45 @@ def test_a_truncated_npy_is_named(tmp_path):
     path.write_bytes(path.read_bytes()[:-100])
     with pytest.raises(InputError, match=r"rock\.npy: not a readable"):
         read_scan(path, {"unit": "mm", "spacing": 0.1})
+
+
+@pytest.mark.parametrize("layout", ["matrix", "points"])
+@pytest.mark.parametrize("end", ["", "\n"])
+def test_a_text_reads_the_same_in_blocks_of_any_size(tmp_path, monkeypatch, layout, end):
+    """Large files are read in blocks, whose ends are no lines without numbers."""
+    z = surface((40, 15))
+    rows = z if layout == "matrix" else lattice_points(z)
+    options = ScanOptions(delimiter="semicolon", decimal=".", header=2, layout=layout, axes="row")
+    options = options.but(kind="face", unit="mm", spacing=1.0, first_row="top", heights="up")
+    options = options.but(missing="nan")
+    if layout == "points":
+        options = options.but(axes=None, spacing=None, first_row=None, columns=(0, 1, 2))
+    lines = ["# by hand", "a;b;c", *(";".join(f"{v:.4f}" for v in row) for row in rows)]
+    lines[2] = ";".join(map(str, range(rows.shape[1]))) if layout == "matrix" else lines[2]
+    lines[20:20] = ["", "# remark"]
+    path = tmp_path / "rock.txt"
+    path.write_text("\n".join(lines) + end)
+    keys = options.but(confirmed={}) if layout == "matrix" else options
+    whole = text.read_text(path, keys)
+    for size in (1, 100, 700):
+        monkeypatch.setattr(text, "_BLOCK", size)
+        parts = text.read_text(path, keys)
+        np.testing.assert_array_equal(parts.values, whole.values)
+        assert parts.notes == whole.notes
+    if layout == "matrix":
+        with pytest.raises(InputError, match=r"line 22 holds no numbers, and 22 more rows"):
+            text.read_text(path, options)
+
+
+@pytest.mark.parametrize("wrong", ["0.5.1", "1,25", "1e", "n/a"])
+def test_a_cell_that_is_no_number_is_named_with_its_line(tmp_path, wrong):
+    rows = [[f"{value:.4f}" for value in row] for row in np.nan_to_num(surface((40, 9)))]
+    rows[30][4] = wrong
+    path = tmp_path / "rock.txt"
+    path.write_text("\n".join(map(";".join, rows)) + "\n")
+    stated = ARRAY | {"delimiter": "semicolon", "decimal": ".", "header": 0, "unit": "mm"}
+    with pytest.raises(InputError, match=rf"rock\.txt: line 31 holds '{re.escape(wrong)}'"):
+        read.read_scan(path, stated | {"spacing": 1})
 
 
 def test_unreadable_text_is_named_with_its_line(tmp_path):

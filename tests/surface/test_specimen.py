@@ -243,6 +243,17 @@ def test_the_place_that_a_refusal_names_is_free(seed):
         make_specimen(scan_of(z), window=float(side) + 0.5)
 
 
+def test_a_window_that_holes_leave_too_small_names_the_key_that_fills_them():
+    z = rough((40, 40))
+    z[3:-3:4, 3:-3:4] = np.nan
+    with pytest.raises(InputError, match=r"a window of 4 x 4 cells .*'fill_holes: 1' fills"):
+        make_specimen(scan_of(z), opposite="flat")
+    filled = make_specimen(scan_of(z), opposite="flat", fill_holes=1)
+    assert filled.attrs["window_ny"] == 40
+    z = rough((9, 9))  # of a scan this small a small window is all there is
+    assert make_specimen(scan_of(z)).attrs["window_ny"] == 4
+
+
 def test_faces_on_different_grids_are_refused():
     with pytest.raises(InputError, match="not on one grid"):
         make_specimen(scan_of(rough()), scan_of(rough(), x0=0.5))

@@ -25,7 +25,7 @@ _OVERHANG_OF_POINTS = (
     "of the points lies beneath others and is left out: an instrument above would not see it",
 )
 
-#: From this share of points that lie over another one on they are no repeats by chance.
+#: A larger share of points above another one is no repeat by chance.
 _MANY_STACKED = 0.05
 
 
@@ -39,41 +39,23 @@ class Mesh:
 
 @dataclass(frozen=True)
 class Cloud:
-    """The points of one scan.
-
-    Attributes
-    ----------
-    path : Path
-    points : ndarray, shape (n, 3)
-        In mm, no two at the same x, y; heights may be missing where they lie on a lattice.
-    lattice : Lattice or None
-        The regular grid that all points lie on.
-    density : Density or None
-        None on a lattice.
-    mesh : Mesh or None
-    attrs : dict
-        What is known about the points, for the result.
-    notes : tuple of str
-        What was done to them, and what a user should know.
-    parted : float
-        Share of the points, as in the file, that lie on one of two faces.
-    """
+    """Points of one scan, ready for a grid."""
 
     path: Path
-    points: np.ndarray
-    lattice: pts.Lattice | None
-    density: dense.Density | None
+    points: np.ndarray  # (n, 3) in mm, no two at one x, y; heights may be missing on a lattice
+    lattice: pts.Lattice | None  # regular grid that all points lie on
+    density: dense.Density | None  # None on a lattice
     mesh: Mesh | None
-    attrs: dict
-    notes: tuple[str, ...]
-    parted: float = 0.0
+    attrs: dict  # of the result, on the points
+    notes: tuple[str, ...]  # what was done, and what a user should know
+    parted: float = 0.0  # share of the points of the file that lie on one of two faces
 
     @property
     def area_per_point(self) -> float:
         """In mm2."""
         if self.density is not None:
             return self.density.area
-        assert self.lattice is not None  # one of both is known once overhangs were looked for
+        assert self.lattice is not None  # without a lattice there is a density
         return self.lattice.dx * self.lattice.dy
 
     @property
@@ -86,16 +68,11 @@ class Cloud:
 
 
 def prepare_clouds(scans: Sequence[Measured]) -> list[Cloud]:
-    """Make the clouds of one or two faces ready for one grid.
+    """Clouds of one or two faces, ready for one grid.
 
     Points on a regular grid of x and y are one height to a node and stay as they are. Others are
     turned level if they lie steeply, faces together; then the points hidden under others are left
-    out.
-
-    Raises
-    ------
-    InputError
-        If a scan has too few points, all on one line, or those of two faces.
+    out. Too few points, points on one line and those of two faces in one file are refused.
     """
     clouds = [_merge(scan) for scan in scans]
     if scans[0].level and any(cloud.lattice is None for cloud in clouds):
@@ -114,13 +91,7 @@ def moved_cloud(cloud: Cloud, motions: Sequence[Motion]) -> Cloud:
 
 
 def grid_cloud(cloud: Cloud, lattice: pts.Lattice) -> tuple[np.ndarray, str]:
-    """Heights of a cloud on a grid, and how they came there.
-
-    Returns
-    -------
-    heights : ndarray, shape (ny, nx)
-    gridding : str
-    """
+    """Heights (ny, nx) of a cloud on a grid, and the words of how they came there."""
     where = str(cloud.path)
     area = cloud.area_per_point
     across = places_across(lattice, area)
@@ -148,7 +119,7 @@ def grid_cloud(cloud: Cloud, lattice: pts.Lattice) -> tuple[np.ndarray, str]:
 def place_cloud(cloud: Cloud) -> tuple[np.ndarray, str]:
     """Heights of a cloud on the lattice its points lie on, and how they came there."""
     mesh, lattice = cloud.mesh, cloud.lattice
-    assert lattice is not None  # else there is nothing to place them on
+    assert lattice is not None  # the caller has checked it
     heights = pts.place_on_lattice(cloud.points, lattice)
     gridding = "the points lie on a regular grid; each is its node, "
     if mesh is None:
@@ -235,7 +206,7 @@ def _turned(cloud: Cloud, scan, normal: np.ndarray, centre: np.ndarray) -> Cloud
         notes.append(f"{missing} points without a height have no place after the turn")
     turned = _merge(replace(scan, values=values))
     attrs = turned.attrs | {"levelled_degrees": float(degrees)}
-    # Not on a lattice, whatever chance says: the heights have moved the points.
+    # Turned points lie on a lattice by chance alone.
     return replace(turned, lattice=None, attrs=attrs, notes=(*notes, *turned.notes))
 
 

@@ -31,21 +31,11 @@ FAR = 1.5
 
 @dataclass(frozen=True)
 class Density:
-    """Density of the points of one cloud.
+    """Density of the points of one cloud."""
 
-    Attributes
-    ----------
-    distance : float
-        Median distance to the nearest neighbour, mm.
-    area : float
-        Area per point where points are, mm2.
-    circle : float
-        Radius of the largest circle without points that is no hole, mm.
-    """
-
-    distance: float
-    area: float
-    circle: float
+    distance: float  # median distance to the nearest neighbour, mm
+    area: float  # area per point where points are, mm2
+    circle: float  # radius of the largest circle without points that is no hole, mm
 
     @property
     def uneven(self) -> bool:
@@ -77,19 +67,9 @@ def neighbour_distance(points: np.ndarray, tree: cKDTree) -> float:
 
 
 def measure_density(points: np.ndarray, tree: cKDTree) -> Density | None:
-    """Measure how densely points lie, from all of them or from patches.
+    """Density of points (n, 3), no two at one x, y, from all of them or from patches.
 
-    Parameters
-    ----------
-    points : ndarray, shape (n, 3)
-        No two at the same x, y.
-    tree : cKDTree
-        Of these points.
-
-    Returns
-    -------
-    Density or None
-        None if the points lie on one line.
+    ``tree`` holds these points; None if they lie on one line.
     """
     if on_one_line(points[:, :2]):
         return None
@@ -126,14 +106,7 @@ def _circles(xy: np.ndarray, reach: float) -> tuple[np.ndarray, np.ndarray]:
 
 
 def points_per_cell(points: np.ndarray, heights: np.ndarray, lattice: Lattice) -> float:
-    """Median number of points in a measured cell; NaN without measured cells.
-
-    Parameters
-    ----------
-    points : ndarray, shape (n, 3)
-    heights : ndarray, shape (ny, nx)
-        NaN where missing.
-    """
+    """Median number of points (n, 3) in a measured cell of heights (ny, nx), or NaN."""
     measured = np.isfinite(heights)
     n_measured = int(measured.sum())
     if n_measured == 0:
@@ -159,18 +132,9 @@ def _cells_of(points: np.ndarray, lattice: Lattice) -> np.ndarray:
 
 
 def far_from_points(points: np.ndarray, lattice: Lattice, area: float) -> np.ndarray:
-    """Cells of a grid that lie far from every point of a cloud: their heights are interpolated.
+    """Cells (ny, nx) far from every point of a cloud, whose heights are interpolated.
 
-    Parameters
-    ----------
-    points : ndarray, shape (n, 3)
-    lattice : Lattice
-    area : float
-        Area per point where points are, mm2.
-
-    Returns
-    -------
-    ndarray of bool, shape (ny, nx)
+    ``area`` is that per point where points are, mm2.
     """
     x = lattice.x0 + lattice.dx * np.arange(lattice.nx)
     y = lattice.y0 + lattice.dy * np.arange(lattice.ny)

@@ -25,16 +25,10 @@ def _nodes_between(low, high, count):
 def raise_to_triangles(
     heights: np.ndarray, u: np.ndarray, v: np.ndarray, z: np.ndarray, triangles: np.ndarray
 ) -> None:
-    """Raise heights at the nodes of a grid to the triangles above them.
+    """Raise heights (rows, columns) at the nodes of a grid, in place, to the triangles above them.
 
-    Parameters
-    ----------
-    heights : ndarray, shape (rows, columns)
-        Changed in place; NaN where nothing is yet.
-    u, v, z : ndarray, shape (n,)
-        Corners: place along columns and rows, in nodes from the first one, and height.
-    triangles : (m, 3) int ndarray
-        Corners of each, in any order.
+    Heights are NaN where nothing is yet. Corners have a place ``u`` along columns and ``v`` along
+    rows, in nodes from the first one, and a height ``z``; ``triangles`` (m, 3) are rows of these.
     """
     rows, columns = heights.shape
     for t in range(triangles.shape[0]):

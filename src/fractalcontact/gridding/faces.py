@@ -2,27 +2,23 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import xarray as xr
 
 from ..core.errors import InputError
-from ..core.limits import SMALLEST_SIDE
 from ..registration.pairs import MIRRORS, register
 from ..registration.surface_motion import Motion
 from .clouds import Cloud, grid_cloud, moved_cloud, place_cloud, prepare_clouds
 from .density import far_from_points, points_per_cell
-from .doubtful import doubts, refuse_coordinates
 from .measured import NOTE, Measured, warnings_of
-from .plausible import check_relief, check_spacing
+from .plausible import check_surface
 from .points import Lattice, covering_lattice
 
 #: Two matrices are one grid when their spacings agree this well (relative).
 SAME_SPACING = 1e-6
 #: Two lattices are one grid when their nodes coincide within this fraction of a cell.
 SAME_NODES = 0.01
-CONSTANT = 1e-12  # relative: what interpolating a constant surface leaves
 
 
 def grid_one(scan: Measured) -> xr.DataArray:
@@ -44,18 +40,9 @@ def grid_pair(
 ) -> tuple[xr.DataArray, xr.DataArray]:
     """Two faces on one common grid, registered and cropped to their common area.
 
-    Parameters
-    ----------
-    lower, upper : Measured
-    registration : {"rigid", "translation", "none"}
-        See `pairs.register`.
-    mirror_upper : {"x", "y"} or None
-        The direction that runs the other way in an upper face scanned on its back.
-
-    Raises
-    ------
-    InputError
-        If two matrices have different spacings, or as `pairs.register`.
+    ``registration`` is that of `pairs.register`. ``mirror_upper`` is the direction, x or y, that
+    runs the other way in an upper face scanned on its back. Matrices of different spacings are
+    refused.
     """
     assert (lower.layout == "matrix") == (upper.layout == "matrix")  # `read_faces` refused others
     where = f"{lower.path} and {upper.path}"
@@ -126,15 +113,15 @@ def _interpolated_heights(scan: Measured, cloud: Cloud, spacing: float) -> xr.Da
 
 def _label(heights, lattice, scan: Measured, gridding: str, cloud=None) -> xr.DataArray:
     """Check the heights and give them coordinates, units and provenance."""
-    _check_surface(heights, lattice, scan.path)
+    words = check_surface(heights, (lattice.dx, lattice.dy), scan.path)
+    notes = [f"{NOTE}{sentence}" for sentence in words]
     provenance = dict(scan.provenance)
-    found = [f"{NOTE}{doubt}" for doubt in doubts(heights)]
     if cloud is not None:
         provenance |= cloud.attrs
         provenance["points_per_cell"] = points_per_cell(cloud.points, heights, lattice)
-        found = [*cloud.notes, *found]
-    provenance["notes"] = "; ".join(filter(None, (provenance["notes"], *found)))
-    provenance["warnings"] = "\n".join(filter(None, (provenance["warnings"], warnings_of(found))))
+        notes = [*cloud.notes, *notes]
+    provenance["notes"] = "; ".join(filter(None, (provenance["notes"], *notes)))
+    provenance["warnings"] = "\n".join(filter(None, (provenance["warnings"], warnings_of(notes))))
     x = lattice.x0 + lattice.dx * np.arange(lattice.nx)
     y = lattice.y0 + lattice.dy * np.arange(lattice.ny)
     return xr.DataArray(
@@ -155,25 +142,6 @@ def _label(heights, lattice, scan: Measured, gridding: str, cloud=None) -> xr.Da
             "missing_share": float(np.isnan(heights).mean()),
         },
     )
-
-
-def _check_surface(heights: np.ndarray, lattice: Lattice, path: Path) -> None:
-    """Refuse what cannot be the scan of a rough surface."""
-    if min(heights.shape) < SMALLEST_SIDE:
-        raise InputError(
-            f"{path}: {heights.shape[1]} x {heights.shape[0]} cells (x, y) are too few; at least "
-            f"{SMALLEST_SIDE} x {SMALLEST_SIDE} are needed"
-        )
-    present = heights[np.isfinite(heights)]
-    if present.size == 0:
-        raise InputError(f"{path}: all cells are missing")
-    if np.ptp(present) <= CONSTANT * np.abs(present).max():
-        raise InputError(
-            f"{path}: a constant surface: every height is {present[0]:g} mm, so this is no scan"
-        )
-    check_spacing((lattice.dx, lattice.dy), path)
-    refuse_coordinates(heights, path)
-    check_relief(heights, (lattice.dx, lattice.dy), path)
 
 
 def _differing_grid(z_l: xr.DataArray, z_u: xr.DataArray) -> str | None:

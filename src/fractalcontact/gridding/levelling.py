@@ -19,27 +19,15 @@ _THICKEST = 0.5
 def common_plane(
     clouds: list[np.ndarray], upward: ArrayLike | None = None
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Plane of least squared normal distances through one cloud, or two faces together.
+    """Unit normal (3,) and centre (3,) of the plane through one cloud, or two faces together.
 
-    Parameters
-    ----------
-    clouds : list of ndarray, shape (n, 3)
-        Finite, in mm. Faces count alike, and a gap between them does not tilt the plane.
-    upward : (3,) array_like, optional
-        Side of the plane that is up where it stands nearly upright; else larger x, then y.
+    Clouds (n, 3) are finite, in mm. Faces count alike, and a gap between them does not tilt the
+    plane. The normal points up; of a plane that stands nearly upright, to the side of ``upward``,
+    else to larger x, then y. A body has no plane: its normal points up.
 
-    Returns
-    -------
-    normal : ndarray, shape (3,)
-        Of length 1; its z is not negative unless ``upward`` decides. Of a body, which has no
-        plane, upwards.
-    centre : ndarray, shape (3,)
-        Point of the plane.
-
-    Notes
-    -----
-    The normal is the direction of the smallest principal component (Pearson 1901). A least-squares
-    plane of z over x, y would lie too flat, and not exist for a cloud that stands upright.
+    The normal is the direction of the smallest principal component (Pearson 1901), so that squared
+    normal distances are least. A least-squares plane of z over x, y would lie too flat, and not
+    exist for a cloud that stands upright.
     """
     parts = [cloud[_within_fences(cloud)] for cloud in clouds]
     centres = [part.mean(axis=0) for part in parts]
@@ -64,19 +52,10 @@ def is_steep(normal: np.ndarray) -> bool:
 
 
 def turn_level(points: np.ndarray, normal: np.ndarray, centre: np.ndarray) -> np.ndarray:
-    """Turn points about a horizontal axis through ``centre`` until ``normal`` points up.
+    """Points (n, 3), turned about a horizontal axis through ``centre`` until ``normal`` is up.
 
-    The smallest turn that does so: the axis is the plane's horizontal line, x stays towards x as
-    far as it can, and left stays left (no mirror image).
-
-    Parameters
-    ----------
-    points : ndarray, shape (n, 3)
-        In mm; not changed.
-
-    Returns
-    -------
-    ndarray, shape (n, 3)
+    The turn is the smallest that does so: its axis is the plane's horizontal line, x stays towards
+    x as far as it can, and left stays left (no mirror image).
     """
     return (points - centre) @ turning_matrix(normal).T + centre
 

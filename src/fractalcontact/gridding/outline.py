@@ -39,31 +39,15 @@ def outline_mask(
     x: np.ndarray,
     where: str,
 ) -> np.ndarray:
-    """Cells of a map within its outline.
+    """Cells (ny, nx) of a map whose centres lie within its outline.
 
-    Parameters
-    ----------
-    outline : str, mapping or None
-        "rectangle", the whole map, as without an outline; "disc", the largest disc in it;
-        ``{"disc": {"centre": [x, y], "diameter": d}}``; ``{"polygon": [[x, y], ...]}``;
-        ``{"mask": value}``: cells of this value lie outside. Numbers are mm in the coordinates of
-        the map, texts have a unit.
-    values : (ny, nx) ndarray
-        As the file has them.
-    y, x : ndarray
-        Centres of the cells, mm, ascending.
-    where : str
-        For errors.
+    An outline is "rectangle", the whole map, as without an outline; "disc", the largest disc in it;
+    ``{"disc": {"centre": [x, y], "diameter": d}}``; ``{"polygon": [[x, y], ...]}``; or ``{"mask":
+    value}``: cells of this value lie outside. Numbers are mm in the coordinates of the map, texts
+    have a unit.
 
-    Returns
-    -------
-    (ny, nx) bool ndarray
-        Whether the centre of the cell lies within.
-
-    Raises
-    ------
-    InputError
-        If the outline is no area, or no cell lies within.
+    ``values`` (ny, nx) are those of the file, ``y`` and ``x`` the centres of the cells in mm,
+    ascending. An outline that is no area, or that holds no cell, is refused.
     """
     if outline is None or outline == "rectangle":
         return np.ones(values.shape, bool)
@@ -86,22 +70,10 @@ def outline_mask(
 def within_outline(
     apertures: xr.DataArray, outline: str | Mapping[str, Any] | None, where: str
 ) -> xr.DataArray:
-    """Aperture map without the cells outside its outline.
+    """Aperture map (y, x) in mm, or its negative, without the cells outside its outline.
 
-    Parameters
-    ----------
-    apertures : xr.DataArray
-        The map, or its negative, (y, x) in mm.
-    outline : str, mapping or None
-        As of :func:`outline_mask`.
-    where : str
-        For errors.
-
-    Raises
-    ------
-    InputError
-        If no outline is stated and zeros reach in from the corners, or the outline runs through
-        zeros: they would count as contact.
+    Zeros that would count as contact are refused: those that reach in from the corners without a
+    stated outline, and those that the outline runs through.
     """
     values = apertures.values
     inside = outline_mask(outline, values, apertures.y.values, apertures.x.values, where)
@@ -189,23 +161,10 @@ def _length(value: Any, where: str) -> float:
 def outline_warning(
     values: np.ndarray, touching: np.ndarray, outline: object, threshold: float = np.inf
 ) -> str:
-    """Warning of an outline that leaves contact outside, or of zeros taken for nominal area.
+    """Warning of contact outside an outline, or of zeros taken for nominal area, or "".
 
-    Parameters
-    ----------
-    values : (ny, nx) ndarray
-        As the file has them; NaN where nothing was measured.
-    touching : (ny, nx) bool ndarray
-        Cells in contact.
-    outline : object
-        What the sidecar says; anything but None silences the warning of zeros.
-    threshold : float, optional
-        Above what a cell is in contact, outside the outline too.
-
-    Returns
-    -------
-    str
-        Empty if there is nothing to warn of.
+    ``values`` (ny, nx) are those of the file, NaN where nothing was measured; cells outside the
+    outline touch above ``threshold``. Any stated ``outline`` silences the warning of zeros.
     """
     absent = np.isnan(values)
     empty = ~(touching | absent)

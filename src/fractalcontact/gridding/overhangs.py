@@ -47,25 +47,14 @@ TWO_FACES = 0.2
 
 
 def find_hidden(points: np.ndarray, tree: cKDTree) -> tuple[float, np.ndarray | None]:
-    """Find the points of a cloud that lie beneath others.
+    """Share of the points that lie beneath others, and their mask; None if few (`FEW_HIDDEN`) do.
 
     A point is hidden if those of its nearest neighbours in the plane that are far above it (steeper
     than 80 degrees, and well beyond the noise) surround it, while others share its level: it is
     part of a layer under a roof. Steps, upright walls and single spikes hide nothing.
 
-    Parameters
-    ----------
-    points : ndarray, shape (n, 3)
-        Finite, no two at the same x, y.
-    tree : cKDTree
-        Of their x, y.
-
-    Returns
-    -------
-    share : float
-        Share of the points that are hidden.
-    hidden : (n,) bool ndarray or None
-        None if they are so few (`FEW_HIDDEN`) in a sample that the others are not looked at.
+    Points (n, 3) are finite, no two at the same x, y; ``tree`` holds their x, y. The share is that
+    of a sample; where it is small, the other points are not looked at.
     """
     sample = sample_points(points)
     _, nearest = tree.query(sample[:, :2], k=[2])  # the first is the point itself
@@ -103,14 +92,8 @@ def _hidden(some: np.ndarray, points: np.ndarray, tree: cKDTree, noise: float) -
 def layered_share(points: np.ndarray, tree: cKDTree) -> float:
     """Share of the points whose neighbour in the plane belongs to another layer.
 
-    Half of them in a closed body or two faces in one file: no surface over x and y.
-
-    Parameters
-    ----------
-    points : ndarray, shape (n, 3)
-        Finite, no two at the same x, y.
-    tree : cKDTree
-        Of their x, y.
+    It is a half in a closed body, or two faces in one file: no surface over x and y. Points (n, 3)
+    are finite, no two at the same x, y; ``tree`` holds their x, y.
     """
     sample = sample_points(points)
     distances, neighbours = tree.query(sample[:, :2], k=min(_NEIGHBOURS + 1, len(points)))
@@ -122,12 +105,7 @@ def layered_share(points: np.ndarray, tree: cKDTree) -> float:
 def parted_share(points: np.ndarray, tree: cKDTree) -> float:
     """Share of the points that lie on one of two faces, their neighbour in the plane on the other.
 
-    Parameters
-    ----------
-    points : ndarray, shape (n, 3)
-        Finite; several heights may stand at the same x, y.
-    tree : cKDTree
-        Of their x, y.
+    Points (n, 3) are finite, and several may stand at the same x, y; ``tree`` holds their x, y.
     """
     sample = sample_points(points)
     k = min(_AROUND, len(points))
@@ -155,14 +133,8 @@ def mean_layers(
 ) -> float:
     """Mean number of triangles above each other where a mesh is: 1 of a surface, 2 of two faces.
 
-    Parameters
-    ----------
-    vertices : ndarray, shape (n, 3)
-    triangles : (m, 3) int ndarray
-    heights : (ny, nx) ndarray
-        Of the mesh on a grid; NaN where no triangle is.
-    cell : float
-        Area of a cell of the grid, mm2.
+    ``heights`` (ny, nx) are those of the mesh on a grid with cells of ``cell`` mm2, NaN without
+    triangle.
     """
     covered = np.count_nonzero(np.isfinite(heights)) * cell
     area = float(doubled_area(vertices[:, :2], triangles).sum()) / 2
@@ -181,20 +153,10 @@ def is_closed(triangles: np.ndarray) -> bool:
 
 
 def downward_share(vertices: np.ndarray, triangles: np.ndarray) -> tuple[float, float]:
-    """Share of a mesh's area that faces down, and that faces the other way than most of it.
+    """Shares of the area of a level mesh that face down, and against most of it.
 
-    Parameters
-    ----------
-    vertices : ndarray, shape (n, 3)
-        In mm, level.
-    triangles : (m, 3) int ndarray
-
-    Returns
-    -------
-    down : float
-        By the sense in which the triangles are wound.
-    against_majority : float
-        The smaller of up and down: overhangs. NaN if the triangles are not wound alike.
+    The first goes by the sense in which triangles are wound. The second is the smaller of up and
+    down: overhangs; NaN if the triangles are not wound alike.
     """
     normal = triangle_normals(vertices, triangles)
     area = np.sqrt((normal**2).sum(axis=1))

@@ -13,7 +13,7 @@ LATTICE_TOLERANCE = 0.1
 LATTICE_MIN_FILL = 0.2
 #: Far above any profilometer; a stray point would otherwise ask for all memory.
 MAX_CELLS = 200_000_000
-#: Nor does anybody interpolate so finely; a small file would still ask for gigabytes.
+#: A finer grid would only interpolate, and a small file would need gigabytes.
 CELLS_PER_POINT = 1000
 _FEW_CELLS = 10_000_000
 #: Coordinates in single precision are worth a note when rounded by this fraction of the distance
@@ -42,21 +42,10 @@ class Repeats:
 
 
 def merge_points(points: np.ndarray) -> tuple[np.ndarray, Repeats]:
-    """Drop points without finite coordinates; average the heights at the same x, y.
+    """Points (m, 3) with one height at each x, y, the mean of all there, and counts of the repeats.
 
-    A point that is there twice counts once in the average.
-
-    Parameters
-    ----------
-    points : ndarray, shape (n, 3)
-        Missing heights are NaN.
-
-    Returns
-    -------
-    merged : ndarray, shape (m, 3)
-        m <= n; a height is NaN where none was measured at its x, y.
-    repeats : Repeats
-        Points beyond the first.
+    Points without finite x, y are dropped, and one that is there twice counts once. A height is NaN
+    where none was measured.
     """
     placed = np.isfinite(points[:, :2]).all(axis=1)
     if not placed.all():
@@ -95,18 +84,7 @@ def _in_rows(points: np.ndarray) -> bool:
 
 
 def refuse_one_place(points: np.ndarray, path: object) -> None:
-    """Refuse points that all stand at one x, y: rounded coordinates, nearly always.
-
-    Parameters
-    ----------
-    points : ndarray, shape (n, 3)
-    path : path-like
-        The file, for errors.
-
-    Raises
-    ------
-    InputError
-    """
+    """Refuse points (n, 3) that all stand at one x, y: rounded coordinates, nearly always."""
     low, high = (f.reduce(points[:, :2], axis=0) for f in (np.fmin, np.fmax))
     if len(points) > 1 and (low == high).all():
         raise InputError(
@@ -119,15 +97,12 @@ def refuse_one_place(points: np.ndarray, path: object) -> None:
 def single_precision_note(points: np.ndarray) -> str:
     """Sentence on the rounding of x and y by single precision; "" if it is harmless.
 
-    Parameters
-    ----------
-    points : ndarray, shape (n, 3)
-        As the file has them: any factor of units would hide the rounding.
+    Points (n, 3) are those of the file: any factor of units would hide the rounding.
     """
     for part in blocks(len(points)):
-        known = points[part][np.isfinite(points[part]).all(axis=1), :2]
+        coordinates = points[part][np.isfinite(points[part]).all(axis=1), :2]
         with np.errstate(over="ignore"):
-            if np.any(known.astype(np.float32) != known):
+            if np.any(coordinates.astype(np.float32) != coordinates):
                 return ""
     points = points[np.isfinite(points).all(axis=1)]
     if len(points) < 2:
@@ -147,14 +122,9 @@ def single_precision_note(points: np.ndarray) -> str:
 
 
 def find_lattice(points: np.ndarray, distance: float) -> Lattice | None:
-    """Find the regular grid that all points lie on, or None if they do not.
+    """Regular grid that all points (n, 3) lie on, no two at one x, y; None if they do not.
 
-    Parameters
-    ----------
-    points : ndarray, shape (n, 3)
-        No two at the same x, y.
-    distance : float
-        Median distance of nearest neighbours, in mm.
+    ``distance`` is the median one of nearest neighbours, mm.
     """
     tolerance = LATTICE_TOLERANCE * distance
     along_x, along_y = (_find_levels(points[:, axis], tolerance) for axis in (0, 1))
@@ -191,12 +161,7 @@ def _find_levels(coordinate: np.ndarray, tolerance: float) -> tuple[float, float
 
 
 def place_on_lattice(points: np.ndarray, lattice: Lattice) -> np.ndarray:
-    """Heights on the nodes of a grid; nodes without a point are missing.
-
-    Returns
-    -------
-    ndarray, shape (ny, nx)
-    """
+    """Heights (ny, nx) on the nodes of a grid; nodes without a point are missing."""
     heights = np.full((lattice.ny, lattice.nx), np.nan)
     for part in blocks(len(points)):
         x, y, z = points[part].T
@@ -207,14 +172,9 @@ def place_on_lattice(points: np.ndarray, lattice: Lattice) -> np.ndarray:
 
 
 def covering_lattice(points: np.ndarray, spacing: float, where: str) -> Lattice:
-    """Make the grid that covers a cloud.
+    """Grid that covers a cloud; a grid without a node, or absurdly large, is refused.
 
     Nodes are whole multiples of the spacing, so that grids of the same spacing coincide.
-
-    Raises
-    ------
-    InputError
-        If the cloud has no node, or the grid would be absurdly large.
     """
     low, high = points[:, :2].min(axis=0), points[:, :2].max(axis=0)
     first = np.ceil(low / spacing - 1e-9)

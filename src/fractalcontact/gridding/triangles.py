@@ -26,32 +26,13 @@ _MAX_LAYERS = 200
 def interpolate_points(
     points: np.ndarray, lattice: Lattice, largest_circle: float, across: int, where: str
 ) -> np.ndarray:
-    """Interpolate heights linearly on the Delaunay triangles of the points.
+    """Heights (ny, nx) by linear interpolation on the Delaunay triangles of points (n, 3).
 
-    Triangles whose circumcircle, which holds no other point, has a radius above ``largest_circle``
-    (mm) span holes or the outside (alpha shape: Edelsbrunner, Kirkpatrick & Seidel 1983); cells in
-    them are missing.
-
-    Parameters
-    ----------
-    points : ndarray, shape (n, 3)
-        Finite, no two at the same x, y.
-    lattice : Lattice
-    largest_circle : float
-        R in mm.
-    across : int
-        Each cell is the mean over ``across`` x ``across`` places in it (1: its centre).
-    where : str
-        The file, for errors.
-
-    Returns
-    -------
-    ndarray, shape (ny, nx)
-
-    Raises
-    ------
-    InputError
-        If the points lie on one line, or a million of them in one spot.
+    Triangles whose circumcircle, which holds no other point, has a radius above ``largest_circle``,
+    R in mm, span holes or the outside (alpha shape: Edelsbrunner, Kirkpatrick & Seidel 1983); cells
+    in them are missing. Each cell is the mean over ``across`` x ``across`` places in it (1: its
+    centre). Points are finite, no two at the same x, y. Points on one line, or a million in one
+    spot, are refused.
 
     Notes
     -----
@@ -96,28 +77,11 @@ def interpolate_points(
 def interpolate_mesh(
     vertices: np.ndarray, triangles: np.ndarray, lattice: Lattice, across: int, where: str
 ) -> np.ndarray:
-    """Heights of the mesh's own triangles, the top-most where several lie above each other.
+    """Heights (ny, nx) of the mesh's own triangles, the top-most where several lie.
 
-    Parameters
-    ----------
-    vertices : ndarray, shape (n, 3)
-    triangles : (m, 3) int ndarray
-        Rows of ``vertices``, in any sense of rotation.
-    lattice : Lattice
-    across : int
-        As for `interpolate_points`.
-    where : str
-        The file, for errors.
-
-    Returns
-    -------
-    ndarray, shape (ny, nx)
-        NaN where no triangle is.
-
-    Raises
-    ------
-    InputError
-        If the triangles cover the grid absurdly often.
+    ``triangles`` (m, 3) are rows of ``vertices`` (n, 3), in any sense of rotation; ``across`` as
+    for `interpolate_points`. Cells without a triangle are NaN. Triangles that cover the grid
+    absurdly often are refused.
     """
     corners = vertices[:, :2][triangles]
     extent = np.ptp(corners, axis=1) / (lattice.dx, lattice.dy)
@@ -169,10 +133,7 @@ def circumradius(xy: np.ndarray, triangles: np.ndarray) -> np.ndarray:
 def _tiles(points, lattice: Lattice, rows: slice, columns: slice, margin: float, most_cells: int):
     """Halve the grid until few points lie within ``margin`` of each part; empty parts are left out.
 
-    Yields
-    ------
-    rows, columns : slice
-    near : ndarray, shape (n, 3)
+    Yields rows and columns as slices, and the points (n, 3) near them.
     """
     part = _part(lattice, rows, columns)
     half_x, half_y = lattice.dx / 2, lattice.dy / 2  # places in a cell are not all at its centre

@@ -13,15 +13,15 @@ from .surface_motion import Motion, Surface, correlation, grid_nodes
 
 #: Cells along the longer side of the grid on which faces are compared.
 CELLS = 128
-#: The longest waves of a self-affine surface decide its correlation and are so few that any two
-#: faces agree somewhere. Compared is what is left without waves of more than about a third of the
-#: smaller face.
+#: Waves of more than about a third of the smaller face are removed before faces are compared: the
+#: longest waves of a self-affine surface decide its correlation, and are so few that any two faces
+#: agree somewhere.
 _LONGEST_WAVE = 1 / 3
 #: Smallest fraction of the smaller face that the other must cover.
 _SMALLEST_OVERLAP = 0.4
 #: Rotations tried; the search that follows finds those between.
 ROTATIONS = np.radians(np.arange(-12, 13, 2))
-LARGEST_ROTATION = 10  # degrees: what is found reliably, for messages
+LARGEST_ROTATION = 10  # degrees that are found reliably, for messages
 
 
 def averaged(heights: xr.DataArray, factor: int) -> xr.DataArray:
@@ -62,25 +62,13 @@ def match(lower: xr.DataArray, upper: xr.DataArray, motion: Motion) -> float:
 def best_match(
     lower: xr.DataArray, upper: xr.DataArray, rotations: Sequence[float] | np.ndarray = ROTATIONS
 ) -> tuple[Motion, float]:
-    """Try all shifts, and some rotations, of the upper face.
+    """Best match of the upper face over all shifts and some rotations, and its correlation.
 
-    Parameters
-    ----------
-    lower, upper : DataArray (y, x)
-        From `for_comparison`; of one spacing, anywhere in the plane.
-    rotations : sequence of float
-        Radians.
+    Both faces are those of `for_comparison`, of one spacing, anywhere in the plane; rotations are
+    in radians. The motion is in whole cells and one of the rotations.
 
-    Returns
-    -------
-    motion : Motion
-        In whole cells and one of the rotations.
-    correlation : float
-
-    Notes
-    -----
-    Masked normalised cross-correlation: Padfield, IEEE Trans. Image Process. 21 (2012) 2706. Of
-    all shifts the one with the largest r sqrt(n) is taken, n the number of cells in common.
+    Masked normalised cross-correlation: Padfield, IEEE Trans. Image Process. 21 (2012) 2706. Of all
+    shifts the one with the largest r sqrt(n) is taken, n the number of cells in common.
     """
     centre = float(upper.x.mean()), float(upper.y.mean())
     spacing = np.array([lower.attrs["spacing_x"], lower.attrs["spacing_y"]])
@@ -145,17 +133,9 @@ def _masked_correlations(a: np.ndarray, b: np.ndarray) -> tuple[np.ndarray, np.n
 
 
 def mirror_images(lower: xr.DataArray, upper: xr.DataArray) -> dict:
-    """Best correlation of mirror images of the upper face.
+    """Best correlation of mirror images of the upper face, by the signs of x, y and z.
 
-    Parameters
-    ----------
-    lower, upper : DataArray (y, x)
-        From `for_comparison`.
-
-    Returns
-    -------
-    dict
-        Correlation by the signs of x, y and z; the face itself, (1, 1, 1), is left out.
+    Both faces are those of `for_comparison`; the face itself, (1, 1, 1), is left out.
     """
     images = [signs for signs in itertools.product((1, -1), repeat=3) if signs != (1, 1, 1)]
     return {

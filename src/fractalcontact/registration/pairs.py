@@ -32,7 +32,7 @@ _TOUCHING = 0.01
 #: 0.2 degrees carries a peak sideways by 0.35 % of its height.
 _SMALL_TILT = math.tan(math.radians(0.2))
 _MAX_PASSES = 4
-#: What the upper face is, when a mirror image of it matches: by the signs of x, y and z.
+#: Kind of upper face whose mirror image matches, by the signs of x, y and z.
 _IMAGES = {
     (-1, 1, -1): "was scanned on its back: its heights point down and its x runs the other way",
     (1, -1, -1): "was scanned on its back: its heights point down and its y runs the other way",
@@ -42,7 +42,7 @@ _IMAGES = {
     (-1, 1, 1): "is mirrored: its x runs the other way",
     (1, -1, 1): "is mirrored: its y runs the other way",
 }
-#: What the sidecar's key `mirror_upper` does to x, y and z.
+#: Signs of x, y and z by the sidecar's key `mirror_upper`.
 MIRRORS = {None: (1, 1, 1), "x": (-1, 1, -1), "y": (1, -1, -1)}
 
 
@@ -63,35 +63,21 @@ def register(
     mean plane. Where the mean gap is not known, because the face was turned over or shares no area
     with the lower one as given, the upper face is set down until 1 % of the cells touch.
 
-    Parameters
-    ----------
-    lower, upper : DataArray (y, x)
-        Heights in mm; the cells of both grids coincide, or are whole cells apart.
-    mode : {"rigid", "translation", "none"}
-    where : str
-        Both files, for errors.
-    mirrored : {"x", "y"} or None
-        How the upper face was turned over before.
-    regrid : callable, optional
-        Grids the upper face anew from its points after a list of motions. Without it the face is
-        interpolated between its cells, unless moving it by whole cells does as well.
+    Heights are in mm; the cells of both grids coincide, or are whole cells apart. ``mode`` is
+    "rigid", "translation" or "none"; ``mirrored``, x or y, how the upper face was turned over
+    before. ``regrid`` grids the upper face anew from its points after a list of motions. Without it
+    the face is interpolated between its cells, unless moving it by whole cells does as well.
 
-    Returns
-    -------
-    lower, upper : DataArray (y, x)
-        On one grid. The upper one has the attribute ``registration``, JSON: ``mode``; ``applied``;
-        ``shift_x_mm``, ``shift_y_mm``, ``rotation_degrees`` (from East to North),
-        ``tilt_x_degrees``, ``tilt_y_degrees`` (positive where the face rises towards larger x or
-        y) of the motion of the upper face, 0 if it was not moved; ``gap_mean_before_mm``,
-        ``gap_sd_before_mm``, ``gap_spread_before_mm`` (biweight), ``correlation_before`` (of the
-        levelled faces) and the same ``_after``, null where they share no area; ``match``; and in
-        words ``note``.
+    Both faces come back on one grid. The upper one has the attribute ``registration``, JSON:
+    ``mode``; ``applied``; ``shift_x_mm``, ``shift_y_mm``, ``rotation_degrees`` (from East to
+    North), ``tilt_x_degrees``, ``tilt_y_degrees`` (positive where the face rises towards larger x
+    or y) of the motion of the upper face, 0 if it was not moved; ``gap_mean_before_mm``,
+    ``gap_sd_before_mm``, ``gap_spread_before_mm`` (biweight), ``correlation_before`` (of the
+    levelled faces) and the same ``_after``, null where they share no area; ``match``; and in words
+    ``note``.
 
-    Raises
-    ------
-    InputError
-        If a mirror image of the upper face matches and the face itself does not, or the faces
-        share no area.
+    A mirror image of the upper face that matches where the face itself does not is refused, and
+    faces that share no area.
     """
     before = gap_statistics(lower, upper)
     below = "" if mirrored else _upside_down(lower, upper, before, mode, where)
@@ -197,12 +183,9 @@ def _spreads(lower, first, second) -> list[float | None]:
 def crop_to_common(
     lower: xr.DataArray, upper: xr.DataArray, where: str
 ) -> tuple[xr.DataArray, xr.DataArray]:
-    """Crop both faces to their common rectangle; their cells coincide.
+    """Both faces cropped to their common rectangle, where their cells coincide.
 
-    Raises
-    ------
-    InputError
-        If it has fewer than 8 cells along a side.
+    A rectangle of fewer than 8 cells along a side is refused.
     """
     pair = _common_rectangle(lower, upper)
     if pair is None:

@@ -33,26 +33,17 @@ _ROUNDING = 1e-9  # relative: gaps that differ by less are one
 def find_motion(
     lower: xr.DataArray, upper: xr.DataArray, mode: str = "rigid"
 ) -> tuple[Motion, dict]:
-    """Find the rigid motion of the upper face that minimises the robust spread of the gap.
+    """Motion of the upper face that minimises the robust spread of the gap, and its record.
 
     The start is the best match over all shifts (and rotations up to 12 degrees), or no motion at
     all if that leads to as good a match. From there Gauss-Newton steps, on grids of growing
-    fineness, lower the biweight spread of the gap over the cells both faces have. Outliers are
-    left out.
+    fineness, lower the biweight spread of the gap over the cells both faces have. Outliers are left
+    out.
 
-    Parameters
-    ----------
-    lower, upper : DataArray (y, x)
-        Heights in mm of one spacing, anywhere in the plane.
-    mode : {"rigid", "translation"}
-        With rotation and tilt, or without.
-
-    Returns
-    -------
-    motion : Motion
-        About the centroid of the cells both faces have after it. Its height is free.
-    found : dict
-        ``match``: correlation of the faces without their longest waves; ``converged``.
+    Heights are in mm, of one spacing, anywhere in the plane. ``mode`` is "rigid", with rotation and
+    tilt, or "translation". The motion is about the centroid of the cells both faces have after it,
+    and its height is free. The record has ``match``, the correlation of the faces without their
+    longest waves, and ``converged``.
     """
     faces = [face.where(~find_outliers(face.values)) for face in (lower, upper)]
     compared = for_comparison(*faces)
@@ -62,7 +53,7 @@ def find_motion(
     motion, converged = _refine(coarse, start, mode)
     if _have_common_cells(*coarse):
         nearer = _refine(coarse, Motion(), mode)
-        # What repeats itself fits in many places.
+        # A periodic surface fits in many places.
         if match(*compared, nearer[0]) > match(*compared, motion) - _CLEARLY_BETTER:
             motion, converged = nearer
     for factor in factors[1:]:
@@ -125,10 +116,10 @@ def _descend(problem: _Problem, motion: Motion, limit: float) -> tuple[Motion, b
     spread = biweight_spread(gap, limit)
     if not np.isfinite(spread):  # no shift brings enough cells together: there is no start
         return motion, False
-    enough = np.isfinite(gap).sum() / 2  # nor may a better gap be bought by parting the faces
+    enough = np.isfinite(gap).sum() / 2  # no step may lower the gap by parting the faces
     for _ in range(_MAX_STEPS):
         both = np.isfinite(gap)
-        # About the centroid shift and rotation hardly interact.
+        # Shift and rotation about the centroid hardly interact.
         motion = motion.about(x[both].mean(), y[both].mean())
         step = _gauss_newton_step(lower, gap, motion, limit, problem.mode)
         size = np.hypot(*step[:2]) + abs(step[2]) * np.hypot(np.ptp(x[both]), np.ptp(y[both])) / 2
@@ -139,7 +130,7 @@ def _descend(problem: _Problem, motion: Motion, limit: float) -> tuple[Motion, b
             if new_spread < spread and np.isfinite(new_gap).sum() >= enough:
                 break
         else:
-            return motion, True  # no step in the direction of descent lowers it: the minimum
+            return motion, True  # no step of descent lowers the spread
         motion, gap, spread = tried, new_gap, new_spread
         if size <= small:
             return motion, True
@@ -151,47 +142,38 @@ def biweight_limit(gap: np.ndarray) -> float:
 
     Infinite where most cells have one gap, or none is known.
     """
-    known = gap[np.isfinite(gap)]
-    if not known.size:
+    gaps = gap[np.isfinite(gap)]
+    if not gaps.size:
         return np.inf
-    scale = _NORMAL * float(np.median(abs(known - np.median(known))))
-    return _BIWEIGHT * scale if scale > _ROUNDING * np.abs(known).max() else np.inf
+    scale = _NORMAL * float(np.median(abs(gaps - np.median(gaps))))
+    return _BIWEIGHT * scale if scale > _ROUNDING * np.abs(gaps).max() else np.inf
 
 
 def biweight_spread(gap: np.ndarray, limit: float) -> float:
     """Spread of the gap, mm: the standard deviation where all cells lie well within the limit.
 
-    Parameters
-    ----------
-    gap : ndarray
-        NaN where missing.
-    limit : float
-        From :func:`biweight_limit`.
-
-    Returns
-    -------
-    float
-        Root of twice the mean biweight loss, limit^2/6 (1 - (1 - (r/limit)^2)^3) with r the
-        distance from the biweight mean; infinite where no cell is present.
+    It is the root of twice the mean biweight loss, limit^2/6 (1 - (1 - (r/limit)^2)^3) with r the
+    distance from the biweight mean and the limit of :func:`biweight_limit`; infinite without any
+    cell.
     """
-    known = gap[np.isfinite(gap)]
-    if not known.size:
+    gaps = gap[np.isfinite(gap)]
+    if not gaps.size:
         return np.inf
     if np.isinf(limit):
-        return float(known.std())
-    part = np.minimum(((known - _centre(known, limit)) / limit) ** 2, 1.0)
+        return float(gaps.std())
+    part = np.minimum(((gaps - _centre(gaps, limit)) / limit) ** 2, 1.0)
     return float(np.sqrt(limit**2 / 3 * np.mean(1 - (1 - part) ** 3)))
 
 
-def _centre(known: np.ndarray, limit: float) -> float:
+def _centre(gaps: np.ndarray, limit: float) -> float:
     """Biweight mean, by a few steps from the median."""
-    centre = float(np.median(known))
+    centre = float(np.median(gaps))
     for _ in range(3):
-        weights = _biweights(known - centre, limit)
+        weights = _biweights(gaps - centre, limit)
         total = np.sum(weights)
         if not total > 0:  # all lie far from their median
             break
-        centre = float(np.sum(weights * known) / total)
+        centre = float(np.sum(weights * gaps) / total)
     return centre
 
 
@@ -222,30 +204,15 @@ PARAMETERS = ("end_x", "end_y", "rotation", "slope_x", "slope_y")
 def linearised(
     lower: xr.DataArray, gap: np.ndarray, motion: Motion, limit: float, mode: str
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """First-order change of the gap with the motion, and the weight of each cell.
+    """First-order change of the gap (ny, nx) with the motion, and the weight of each cell.
 
-    Parameters
-    ----------
-    lower : DataArray (y, x)
-    gap : (ny, nx) ndarray
-        After the motion; NaN where missing.
-    motion : Motion
-    limit : float
-        From :func:`biweight_limit`.
-    mode : {"rigid", "translation"}
-
-    Returns
-    -------
-    usable : (ny, nx) bool ndarray
-        The n cells with a gap and a slope.
-    terms : (k + 1, n) ndarray
-        Derivative by each of the k :data:`PARAMETERS` that are free, and 1, of the height.
-    weights : (n,) ndarray
-        From 0 to 1.
+    Returned are the mask (ny, nx) of the n cells with a gap and a slope; the derivatives (k + 1, n)
+    by each of the k :data:`PARAMETERS` that are free, and 1, of the height; and weights (n,) from 0
+    to 1.
     """
     spacing = lower.attrs["spacing_y"], lower.attrs["spacing_x"]
     x, y = grid_nodes(lower)
-    # The mean of both faces' gradients: that of the upper one is its gap's plus the lower one's.
+    # Mean gradient of both faces; the upper one has that of the lower one plus that of the gap.
     slope_y, slope_x = np.gradient(lower.values + gap / 2, *spacing)
     dx, dy = x - motion.end[0], y - motion.end[1]
     columns = [-slope_x, -slope_y, slope_x * dy - slope_y * dx, dx, dy]
@@ -253,8 +220,8 @@ def linearised(
         columns = columns[:2]
     usable = np.isfinite(gap) & np.isfinite(slope_x) & np.isfinite(slope_y)
     terms = np.array([np.asarray(c)[usable] for c in (*columns, np.ones_like(x))])
-    known = gap[usable]
-    weights = _biweights(known - _centre(known, limit), limit)
+    gaps = gap[usable]
+    weights = _biweights(gaps - _centre(gaps, limit), limit)
     return usable, terms, weights
 
 

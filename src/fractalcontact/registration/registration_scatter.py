@@ -17,28 +17,19 @@ from .surface_motion import Motion
 MOTIONS, BLOCKS = 20, 6
 #: A block with fewer of its cells present is left out.
 _MIN_CELLS = 16
-#: Fewest blocks of which a draw makes sense.
+#: Fewest blocks to draw from.
 _MIN_BLOCKS = 8
 
 
 def scattered_motions(lower: xr.DataArray, upper: xr.DataArray) -> list[Motion]:
     """Further motions of the upper face that the faces do not distinguish from none.
 
-    Parameters
-    ----------
-    lower, upper : DataArray (y, x)
-        On one grid, from `registration.pairs.register`.
+    The faces are on one grid, from `registration.pairs.register`. There are `MOTIONS` of them,
+    about the middle of the common area; none where the faces do not match, were given in one frame
+    (``registration: none``), or have too few blocks.
 
-    Returns
-    -------
-    list of Motion
-        `MOTIONS` of them, about the middle of the common area; empty where the faces do not match,
-        were given in one frame (``registration: none``), or have too few blocks.
-
-    Notes
-    -----
-    One Gauss-Newton step from the motion found, in the sums of each draw of blocks, less that in
-    the sums of all: the same draws each time (a fixed seed), so that results repeat.
+    Each is one Gauss-Newton step from the motion found, in the sums of each draw of blocks, less
+    that in the sums of all: the same draws each time (a fixed seed), so that results repeat.
     """
     record = json.loads(upper.attrs.get("registration", "{}"))
     if record.get("mode", "none") == "none" or "do not match" in record["note"]:
@@ -103,16 +94,8 @@ _TABLE = {
 def motion_variables(motions: list[Motion]) -> dict[str, tuple]:
     """Variables (registration_motion) of a specimen that hold further motions of its upper face.
 
-    Parameters
-    ----------
-    motions : list of Motion
-        From :func:`scattered_motions`.
-
-    Returns
-    -------
-    dict
-        As ``Dataset.assign`` takes them; the point they turn about as attributes ``pivot_x_mm``,
-        ``pivot_y_mm`` of each.
+    They are as ``Dataset.assign`` takes them, with the point that the face turns about as
+    attributes ``pivot_x_mm`` and ``pivot_y_mm``.
     """
     values = [
         (*motion.shift, float(np.degrees(motion.rotation)), *motion.slope) for motion in motions

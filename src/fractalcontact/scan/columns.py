@@ -20,7 +20,7 @@ _WORDS_OF = {",": "comma", ";": "semicolon", "\t": "tab"}
 #: Steps of a profile may differ from their mean by this part of it.
 _EVEN = 0.01
 _SPREADSHEETS = (".xls", ".xlsx", ".ods")
-#: What old programs write at the end of a text.
+#: Sign that old programs write at the end of a text.
 _END_OF_FILE = "\x1a"
 _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 _MONTHS = (
@@ -37,24 +37,13 @@ _DATE = re.compile(
 
 @dataclass(frozen=True, eq=False)
 class Column:
-    """Numbers of a column in the unit that its heading states.
-
-    Attributes
-    ----------
-    values : (n,) ndarray
-    unit : str
-    file : Path
-    heading : str
-        As it stands in the file.
-    lines : (n + 1,) int ndarray
-        Numbers of the lines, that of the heading first.
-    """
+    """Numbers (n,) of a column in the unit that its heading states."""
 
     values: np.ndarray
     unit: str
     file: Path
-    heading: str
-    lines: np.ndarray
+    heading: str  # as it stands in the file
+    lines: np.ndarray  # (n + 1,) numbers of the lines, that of the heading first
 
     @property
     def where(self) -> str:
@@ -83,28 +72,16 @@ class Column:
 
 
 def read_columns(path: Path | str, wanted: Mapping[str, str]) -> dict[str, Column]:
-    """Columns of a text table.
+    """Columns (n,) of a text table, by the names of ``wanted``.
 
-    Parameters
-    ----------
-    path : path-like
-        Text: a line of headings, then numbers, between them a comma, a semicolon or a tab. Where it
-        is no comma, numbers may have a decimal comma.
-    wanted : mapping of str to str
-        Heading with its unit by name, ``{"pressure": "sn [MPa]"}``. A heading without brackets
-        stands for ``x [UNIT]`` with any unit; the file's may lack the unit that is stated here.
-        Signs that look alike, as the micro sign and the Greek mu, are one.
+    The table is a line of headings, then numbers, between them a comma, a semicolon or a tab. Where
+    it is no comma, numbers may have a decimal comma. ``wanted`` gives the heading with its unit by
+    name, ``{"pressure": "sn [MPa]"}``. A heading without brackets stands for ``x [UNIT]`` with any
+    unit; that of the file may lack the unit that is stated here. Signs that look alike, as the
+    micro sign and the Greek mu, are one.
 
-    Returns
-    -------
-    dict of str to Column
-        Each (n,), of the names of ``wanted``.
-
-    Raises
-    ------
-    InputError
-        If the file is a spreadsheet, cannot be read, lacks a heading or its unit or has it twice,
-        a line has more cells than the heading, or a cell is no finite number.
+    Refused are a spreadsheet, a heading or unit that is lacking or there twice, a line with more
+    cells than the heading, and a cell that is no finite number.
     """
     path = Path(path)
     if path.suffix.lower() in _SPREADSHEETS:
@@ -114,39 +91,24 @@ def read_columns(path: Path | str, wanted: Mapping[str, str]) -> dict[str, Colum
     delimiter, headings, places = _places(path, head_line, head.lstrip("#% "), wanted)
     rows = list(_rows(path, lines[1:], delimiter, headings))
     numbers = np.array([head_line, *(number for number, _ in rows)])
-    found = {}
+    columns = {}
     for name, (place, unit) in places.items():
         heading = headings[place]
         values = [
             _number(row[place] if place < len(row) else None, delimiter, (path, line, heading))
             for line, row in rows
         ]
-        found[name] = Column(np.array(values, float), unit, path, heading, numbers)
-    return found
+        columns[name] = Column(np.array(values, float), unit, path, heading, numbers)
+    return columns
 
 
 def read_profile(path: Path | str) -> tuple[np.ndarray, float]:
-    """Heights of a profile in even steps.
+    """Heights (n,) of a profile and their spacing, both in mm.
 
-    Parameters
-    ----------
-    path : path-like
-        Text: a line such as ``x [mm], z [um]``, then numbers, x ascending in even steps.
-
-    Returns
-    -------
-    heights : (n,) ndarray
-        mm.
-    spacing : float
-        mm.
-
-    Raises
-    ------
-    InputError
-        As :func:`read_columns`, or if its x do not rise in even steps.
+    The file is a text with a first line such as ``x [mm], z [um]``; its x must rise in even steps.
     """
     columns = read_columns(path, {"x": "x", "z": "z"}).values()
-    x, z = (one.values * length_factor(one.unit, one.where) for one in columns)
+    x, z = (column.values * length_factor(column.unit, column.where) for column in columns)
     steps = np.diff(x)
     even = x.size > 1 and steps.min() > 0 and np.ptp(steps) <= 2 * _EVEN * steps.mean()
     if not even:
@@ -175,13 +137,7 @@ def _lines(path: Path) -> list[tuple[int, str]]:
 def _places(
     path: Path, line: int, head: str, wanted: Mapping[str, str]
 ) -> tuple[str, list[str], dict[str, tuple[int, str]]]:
-    """Delimiter and headings of a table; number and unit of each column that is wanted.
-
-    Raises
-    ------
-    InputError
-        If no delimiter, or more than one column, gives a heading.
-    """
+    """Delimiter and headings of a table; number and unit of each wanted column."""
     by_count = sorted(_DELIMITERS, key=head.count, reverse=True)
     for delimiter in by_count:
         headings = _cells(path, line, head, delimiter)
@@ -195,20 +151,21 @@ def _places(
             f"{path}: line {line} does not name these columns, it is '{printable(head, 60)}'; "
             f"expected their names and units, such as '{example}', and numbers in every other line"
         )
-    for name, found in matches.items():
-        if len(found) > 1:
-            numbers = " and ".join(str(place + 1) for place, _ in found)
+    for name, places in matches.items():
+        if len(places) > 1:
+            numbers = " and ".join(str(place + 1) for place, _ in places)
             raise InputError(
                 f"{path}: line {line}: columns {numbers} are both '{wanted[name]}'; rename one, or "
                 f"state the heading with its unit in 'columns: {{{name}: ...}}'"
             )
-    return delimiter, headings, {name: found[0] for name, found in matches.items()}
+    return delimiter, headings, {name: places[0] for name, places in matches.items()}
 
 
 def _matches(stated: str, headings: list[str]) -> list[tuple[int, str]]:
     """Numbers and units of the columns that a heading names; those in the same case before all."""
-    exact = [same for number, one in enumerate(headings) if (same := _same(stated, one, number))]
-    return [one for one in exact if _plain(headings[one[0]]) == _plain(stated)] or exact
+    matches = [_same(stated, heading, number) for number, heading in enumerate(headings)]
+    exact = [match for match in matches if match]
+    return [match for match in exact if _plain(headings[match[0]]) == _plain(stated)] or exact
 
 
 def _same(stated: str, heading: str, number: int) -> tuple[int, str] | None:
@@ -235,8 +192,8 @@ def _name_and_unit(heading: str) -> tuple[str, str]:
 
 def _same_unit(stated: str, of_file: str) -> bool:
     """True if nothing else is stated than the unit of a file, however a length is written."""
-    known = length_unit(stated)
-    return stated in ("", of_file) or (known is not None and known == length_unit(of_file))
+    unit = length_unit(stated)
+    return stated in ("", of_file) or (unit is not None and unit == length_unit(of_file))
 
 
 def _plain(text: str) -> str:

@@ -39,23 +39,12 @@ class ReaderBug(RuntimeError):
 
 
 def read_confined(path: Path, options: ScanOptions) -> RawScan:
-    """Read a scan file in a process with bounded memory, time and files.
+    """Content of a regular file, read in a process with bounded memory, time and files.
 
-    Parameters
-    ----------
-    path : Path
-        A regular file.
-    options : ScanOptions
-
-    Raises
-    ------
-    InputError
-        What the reader found wrong with the file or lacking in its sidecar; also if it crashed or
-        went beyond its limits.
-    ReaderBug
-        For any other exception of the reader.
+    A reader that refuses the file, crashes or goes beyond its limits raises `InputError`; any other
+    exception of a reader is a `ReaderBug`.
     """
-    # The reader process may have another present folder.
+    # The reader process may run in another folder.
     folder = "/" if path.is_absolute() else os.getcwd()
     request = {"path": str(path), "folder": folder, "options": options.stated()}
     lines, raw, status = _ask(request, path)
@@ -96,7 +85,7 @@ def _ask(request: dict, path: Path):
             _server = _Server()
         try:
             return _server.read(request, path)
-        except BaseException:  # even Ctrl-C: half an answer must not be taken for the next one
+        except BaseException:  # after Ctrl-C the rest of this answer would be read as the next
             stop_reader()
             raise
 

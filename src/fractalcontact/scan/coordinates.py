@@ -20,29 +20,13 @@ UNEVEN = 0.01
 def read_coordinates(
     files: Mapping[str, Path], unit: str | None, options: ScanOptions
 ) -> dict[str, np.ndarray]:
-    """Coordinates of the columns (x) and rows (y) of a matrix.
+    """Coordinates of the columns (x) and rows (y) of a matrix in mm, ascending or descending.
 
-    Parameters
-    ----------
-    files : mapping of str to Path
-        From :func:`scan.options.coordinate_files`. Each holds a row or a column of numbers, or a
-        matrix, in which x changes along the rows and y from row to row.
-    unit : str or None
-        Their unit.
-    options : ScanOptions
-        How they are written.
-
-    Returns
-    -------
-    dict of str to (n,) ndarray
-        By key, in mm, as they stand: ascending or descending.
-
-    Raises
-    ------
-    InputError
-        If there is no unit, or the numbers are no coordinates of an even grid.
+    Each file of :func:`scan.options.coordinate_files` holds a row or a column of numbers in
+    ``unit``, or a matrix, in which x changes along the rows and y from row to row. Numbers without
+    a unit, or that are no coordinates of an even grid, are refused.
     """
-    found = {}
+    coordinates = {}
     for key, path in files.items():
         if unit is None:
             raise InputError(f"{path}: of unknown unit; write 'unit_xy: mm' into the sidecar")
@@ -60,8 +44,8 @@ def read_coordinates(
                 f"{path}: {key} goes in steps of {steps.min():.4g} to {steps.max():.4g}; an even "
                 "grid is needed, so interpolate it first"
             )
-        found[key] = line * length_factor(unit, f"{path}: unit")
-    return found
+        coordinates[key] = line * length_factor(unit, f"{path}: unit")
+    return coordinates
 
 
 def _one_line(values: np.ndarray, axis: int) -> np.ndarray | None:

@@ -1,6 +1,6 @@
 """Drafts of sidecars from the hints in a file, each line with its source, for the owner to check.
 
-Nothing here is ever believed: a draft is shown, with the relief it would give, and read by nobody.
+A draft is shown with the relief it would give; no part of the program reads it.
 """
 
 import re
@@ -45,25 +45,16 @@ class Suggestion:
 
 @dataclass
 class Hints:
-    """Hints in a file on the keys of its sidecar.
-
-    Attributes
-    ----------
-    keys : dict of str to Suggestion
-    doubts : dict of str to str
-        What the file leaves open of a key, and what the choices are: its line stays empty.
-    optional : set of str
-        Keys that a draft has a line for though not every such file needs them.
-    lengths : list of (str, list of float, str, str)
-        Lengths that the file states: name, numbers, unit, line.
-    heights : ndarray or None
-        Some of its numbers, in which marks of missing cells are looked for.
-    """
+    """Hints in a file on the keys of its sidecar."""
 
     keys: dict[str, Suggestion] = field(default_factory=dict)
+    #: Open choices of a key, whose line stays empty.
     doubts: dict[str, str] = field(default_factory=dict)
+    #: Keys that a draft has a line for though not every such file needs them.
     optional: set[str] = field(default_factory=set)
+    #: Lengths that the file states: name, numbers, unit, line.
     lengths: list[tuple[str, list[float], str, str]] = field(default_factory=list)
+    #: Some numbers of the file, in which marks of missing cells are looked for.
     heights: np.ndarray | None = None
 
     def add(self, key: str, value: Any, source: str, others: Sequence[str] = ()) -> None:
@@ -102,13 +93,9 @@ def image_hints(values: np.ndarray, mark: float | None = None) -> Hints:
 
 
 def add_words(hints: Hints, lines: Iterable[tuple[str, str]]) -> None:
-    """Suggest what lines state of units, spacing, rows, heights and missing cells; ask the rest.
+    """Add what lines state of units, spacing, rows, heights and missing cells; ask the rest.
 
-    Parameters
-    ----------
-    hints : Hints
-    lines : iterable of (str, str)
-        Where a line stands ("line 3", "attribute units"), and its text.
+    A line is the place where it stands ("line 3", "attribute units") and its text.
     """
     stated = statements(lines)
     hints.lengths += stated.lengths
@@ -151,17 +138,9 @@ def drafted_options(options: ScanOptions, hints: Hints) -> ScanOptions:
 def draft_lines(
     options: ScanOptions, hints: Hints, required: set[str], arrays: Sequence[str] = ()
 ) -> list[str]:
-    """Lines of a sidecar: a key, its value, and in a comment where the value comes from.
+    """Lines of a sidecar: each key, its value, and in a comment the source of the value.
 
-    Parameters
-    ----------
-    options : ScanOptions
-        What is stated already.
-    hints : Hints
-    required : set of str
-        Keys to write; those that are stated are written too.
-    arrays : sequence of str
-        Names of which ``variable`` is one.
+    Keys are those that are required or stated already; ``arrays`` are the names for ``variable``.
     """
     drafted = drafted_options(options, hints)
     lines = []
@@ -228,8 +207,8 @@ def _missing(hints: Hints, kind: str | None) -> tuple[Any, str]:
                 heights[np.isclose(heights, mark.value, rtol=1e-6, atol=0)] = np.nan
         suspects = possible_marks(heights)
     if not suspects and "missing" not in hints.doubts:
-        found = marks if len(marks) > 1 else marks[0] if marks else NO_MARK
-        return found, "; ".join(said) or "no unusual number in the part that was read"
+        value = marks if len(marks) > 1 else marks[0] if marks else NO_MARK
+        return value, "; ".join(said) or "no unusual number in the part that was read"
     choices = [f"{cells} cells hold {number(value)}" for value, cells in suspects[:_MAX_MARKS]]
     if any(value == 0 for value, _ in suspects) and kind is None:
         choices.append("zeros of an aperture map are contact")

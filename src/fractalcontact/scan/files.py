@@ -11,33 +11,28 @@ from .raw import reading, refuse_larger
 
 #: No measured heights deflate better than this; a bomb does, up to 1 : 1032.
 LARGEST_RATIO = 200
-#: A few constant or empty members may: the ratio counts above this many bytes only.
+#: The ratio counts above this many bytes: a few constant or empty members may exceed it.
 UNSUSPICIOUS = 64 * 1024**2
 
 
 def regular_file(path: Path) -> os.stat_result:
-    """Size and identity of a file that can be read.
+    """Size and identity of a file; one that is absent, unreadable, empty or too large is refused.
 
-    A pipe or a device is never opened: that could wait for ever.
-
-    Raises
-    ------
-    InputError
-        If it is absent, empty, far too large, or no regular file.
+    A pipe or a device is refused unopened: reading it could wait for ever.
     """
     try:
-        found = path.stat()
+        status = path.stat()
     except (OSError, ValueError) as error:
         raise InputError(f"{path}: no such file, or it cannot be reached ({error})") from error
-    if not stat.S_ISREG(found.st_mode):
-        kind = "a folder" if stat.S_ISDIR(found.st_mode) else "a pipe, socket or device"
+    if not stat.S_ISREG(status.st_mode):
+        kind = "a folder" if stat.S_ISDIR(status.st_mode) else "a pipe, socket or device"
         raise InputError(f"{path}: {kind}, not a file; put the scan file itself here")
     if not os.access(path, os.R_OK):
         raise InputError(f"{path}: no permission to read it; allow it, 'chmod u+r' on the file")
-    if found.st_size == 0:
+    if status.st_size == 0:
         raise InputError(f"{path}: the file is empty")
-    refuse_larger(found.st_size, path)
-    return found
+    refuse_larger(status.st_size, path)
+    return status
 
 
 def is_unchanged(before: os.stat_result, after: os.stat_result) -> bool:
@@ -47,17 +42,9 @@ def is_unchanged(before: os.stat_result, after: os.stat_result) -> bool:
 
 
 def inflated_size(path: Path) -> int:
-    """Size of a file, or what its directory says that an archive (.npz, .x3p, ...) inflates to.
+    """Bytes of a file, or of the content of an archive (.npz, .x3p, ...) by its directory.
 
-    Returns
-    -------
-    int
-        Bytes.
-
-    Raises
-    ------
-    InputError
-        If those are far too many, more than measured heights deflate to, or the archive is damaged.
+    Refused are far too many bytes, a ratio that no measured heights reach, and a damaged archive.
     """
     size = path.stat().st_size
     if zipfile.is_zipfile(path):
@@ -77,11 +64,7 @@ def inflated_size(path: Path) -> int:
 def require_whole(path: Path) -> None:
     """Refuse an archive with a member that is damaged, encrypted or not as long as promised.
 
-    No member's name matters: nothing is ever unpacked to disk.
-
-    Raises
-    ------
-    InputError
+    Names of members do not matter: nothing is ever unpacked to disk.
     """
     if zipfile.is_zipfile(path):
         with reading(path, "archive"), zipfile.ZipFile(path) as archive:
@@ -90,13 +73,7 @@ def require_whole(path: Path) -> None:
 
 
 def sha256(path: Path) -> str:
-    """Checksum of a file's content, in hexadecimal digits.
-
-    Raises
-    ------
-    InputError
-        If the file has gone since it was looked at.
-    """
+    """Checksum of a file's content, in hexadecimal digits; a file that has gone is refused."""
     try:
         with open(path, "rb", opener=_without_waiting) as stream:
             return hashlib.file_digest(stream, "sha256").hexdigest()

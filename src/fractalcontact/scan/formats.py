@@ -41,13 +41,9 @@ def likely_formats(extension: str) -> list[Format]:
 
 
 def read_raw(path: Path, options: ScanOptions) -> RawScan:
-    """Read a file by the format that takes it; called in the reader process alone.
+    """Content of a file, read by the format that takes it; runs in the reader process alone.
 
-    Raises
-    ------
-    InputError
-        If no format has the file's ending, or none takes its content; if the library of the format
-        is not installed; or as the reader.
+    A file that no format takes, or whose library is not installed, is refused.
     """
     try:
         return _read_by_format(path, options)

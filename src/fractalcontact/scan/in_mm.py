@@ -32,14 +32,7 @@ LARGEST_NUMBER = 1e12  # mm; coordinates of a country's grid reach 1e10
 
 
 class ScanFile(NamedTuple):
-    """Content of a file, in its own units.
-
-    Attributes
-    ----------
-    path : Path
-    raw : RawScan
-    checksum : str
-    """
+    """Path, content in its own units, and checksum of a file."""
 
     path: Path
     raw: RawScan
@@ -82,7 +75,7 @@ def in_mm(file: ScanFile, options: ScanOptions, *, are_heights: bool = True) -> 
         if note := single_precision_note(raw.values):
             notes.append(note)
         assert unit_xy is not None  # points were required to have one
-        values = np.require(raw.values, requirements="W")  # nobody else has them: changed in place
+        values = np.require(raw.values, requirements="W")  # changed in place: not shared
         values[:, 2] = heights
         values[:, :2] *= length_factor(unit_xy, f"{path}: unit_xy")
         spacing = None
@@ -160,9 +153,9 @@ def _choose_unit(key: str, stated: str | None, options: ScanOptions, overrides: 
 
 
 def _refuse_one_unit_for_two(raw: RawScan, options: ScanOptions, path: Path) -> None:
-    """Refuse the key ``unit`` where the file gives x and y a unit that heights do not share.
+    """Refuse ``unit`` where the file gives x and y a unit that heights do not share.
 
-    It is meant of the heights, most likely, and would change the spacing as well.
+    The owner most likely means the heights, and the key would change the spacing as well.
     """
     if options.unit is None or raw.unit_xy is None or (options.unit_xy and options.unit_z):
         return
@@ -209,61 +202,51 @@ def _choose_spacing(raw, options, unit_xy, path: Path, overrides: list) -> tuple
     if raw.spacing is not None and unit_xy is not None:
         factor = length_factor(unit_xy, f"{path}: unit_xy")
         stated = factor * raw.spacing[0], factor * raw.spacing[1]
+    spacing = stated
     if options.spacing is not None:
         spacing = spacing_mm(options.spacing, unit_xy, f"{path}: key 'spacing'")
-        check_spacing(spacing, path)
-        if stated and not np.allclose(spacing, stated, rtol=1e-6, atol=0):
-            overrides.append(
-                f"spacing {spacing[0]:.6g} x {spacing[1]:.6g} mm from the sidecar, the file says "
-                f"{stated[0]:.6g} x {stated[1]:.6g} mm"
-            )
-        return spacing
-    assert stated is not None  # it was required, with its unit
-    check_spacing(stated, path)
-    return stated
+    assert spacing is not None  # it was required, with its unit
+    check_spacing(spacing, path)
+    if stated and not np.allclose(spacing, stated, rtol=1e-6, atol=0):
+        overrides.append(
+            f"spacing {spacing[0]:.6g} x {spacing[1]:.6g} mm from the sidecar, the file says "
+            f"{stated[0]:.6g} x {stated[1]:.6g} mm"
+        )
+    return spacing
 
 
 def _without_missing(values: np.ndarray, marks: tuple[float, ...]) -> np.ndarray:
     """A copy, in file units, with the missing numbers and infinities as NaN."""
     absent = ~np.isfinite(values)
     for mark in marks:
-        # Markers such as 3.4e38 come back from text and float32 not quite the same.
+        # Text and float32 change the last digits of markers such as 3.4e38.
         absent |= np.isclose(values, mark, rtol=1e-6, atol=0)
     return np.where(absent, np.nan, values)
 
 
-def _refuse_unconfirmed(found: dict, raw: RawScan, options: ScanOptions, path: Path) -> None:
+def _refuse_unconfirmed(size: dict, raw: RawScan, options: ScanOptions, path: Path) -> None:
     """Refuse a file of another size or relief than its owner has looked at and confirmed."""
     if options.confirmed is None:
         return
     for key, value in options.confirmed.items():
-        if key not in found:
+        if key not in size:
             raise InputError(
                 f"{path}: its sidecar confirms {key!r}, but it is read as {raw.layout} with "
-                f"{', '.join(found)}; run 'make describe FILE={path}' and confirm that"
+                f"{', '.join(size)}; run 'make describe FILE={path}' and confirm that"
             )
-        if not np.allclose(value, found[key], rtol=SAME_RELIEF, atol=0):
+        if not np.allclose(value, size[key], rtol=SAME_RELIEF, atol=0):
             raise InputError(
                 f"{path}: its sidecar confirms {key} {_plain(value)}, the file holds "
-                f"{_plain(found[key])}: this is another file, or its sidecar was changed; 'make "
-                f"describe FILE={path}' draws it, then write '{key}: {_plain(found[key])}' under "
+                f"{_plain(size[key])}: this is another file, or its sidecar was changed; 'make "
+                f"describe FILE={path}' draws it, then write '{key}: {_plain(size[key])}' under "
                 "'confirmed'"
             )
 
 
 def size_and_relief(heights: np.ndarray, layout: str) -> dict:
-    """Confirmed properties of a file: its rows and columns or points, and its relief.
+    """Properties of a file for ``confirmed``: ``shape`` or ``points``, and ``relief``.
 
-    Parameters
-    ----------
-    heights : ndarray
-        Numbers of the file, NaN where missing.
-    layout : {"matrix", "points", "mesh"}
-
-    Returns
-    -------
-    dict
-        ``shape`` or ``points``; ``relief``, the highest less the lowest number of the file.
+    The relief is the highest less the lowest number of the file; NaN are missing.
     """
     size = {"shape": heights.shape} if layout == "matrix" else {"points": len(heights)}
     if not np.isfinite(heights).any():

@@ -65,11 +65,6 @@ def read_ply_header(stream: BinaryIO, path: Path) -> PlyHeader:
     """Header of a PLY file; the stream then stands behind it.
 
     Comments and ``obj_info`` may hold any word, ``end_header`` among them.
-
-    Raises
-    ------
-    InputError
-        If it is no such header.
     """
     lines, count = [], 0
     for raw in stream:
@@ -101,20 +96,17 @@ def read_ply_header(stream: BinaryIO, path: Path) -> PlyHeader:
 def read_ascii_ply(stream: BinaryIO, header: PlyHeader, path: Path) -> MeshText:
     """Vertices and triangles of an ASCII PLY file, read behind its header.
 
-    Raises
-    ------
-    InputError
-        If it has more or fewer lines than its header states, or a line has other numbers.
+    More or fewer lines than the header states, and a line of other numbers, are refused.
     """
     content = stream.read().decode("latin-1")
     lines = content.split("\n")
     rows = [(n, words) for n, line in enumerate(lines, header.lines + 1) if (words := line.split())]
     promised = sum(element.length for element in header.elements)
     if len(rows) != promised:
-        each = " and ".join(f"{element.length} x {element.name}" for element in header.elements)
+        counts = " and ".join(f"{element.length} x {element.name}" for element in header.elements)
         raise InputError(
-            f"{path}: its header states {each}, one a line, but {len(rows)} lines stand below it; "
-            "the file is cut off or damaged, so export it again"
+            f"{path}: its header states {counts}, one a line, but {len(rows)} lines stand below "
+            "it; the file is cut off or damaged, so export it again"
         )
     vertices, triangles = np.empty((0, 3)), np.empty((0, 3), np.int64)
     start, last = 0, rows
@@ -160,7 +152,7 @@ def _coordinates(fields: list, element: Element, path: Path) -> np.ndarray:
         )
     types = {name: _TYPES[kind] for name, kind, _ in element.properties}
     table = np.array(fields, dtype=np.float64).reshape(len(fields), len(names))
-    # As a binary file of these types has them.
+    # Rounded to the declared types, as a binary file has them.
     return np.column_stack([table[:, names.index(axis)].astype(types[axis]) for axis in "xyz"])
 
 
@@ -174,11 +166,7 @@ def _polygon(fields: list[list[float]], element: Element) -> list[float]:
 def read_obj(path: Path) -> MeshText:
     """Vertices and triangles of an OBJ file; all its objects and groups are one mesh.
 
-    Raises
-    ------
-    InputError
-        If a line of a vertex or face is incomplete, or fewer of them are there than a comment
-        states.
+    An incomplete line is refused, and a file with fewer vertices or faces than a comment states.
     """
     content = path.read_bytes().decode("latin-1").replace("\r\n", "\n").replace("\\\n", " ")
     vertices: list[list[float]] = []
@@ -189,9 +177,9 @@ def read_obj(path: Path) -> MeshText:
     for number, line in enumerate(lines, 1):
         key, _, rest = line.strip().replace("\t", " ").partition(" ")
         if key not in kinds:
-            if found := _STATED.match(line.strip()):
-                what = (found["what"] or found["named"]).lower()
-                stated[what] = max(stated[what], int(found["n"] or found["m"]))
+            if count := _STATED.match(line.strip()):
+                what = (count["what"] or count["named"]).lower()
+                stated[what] = max(stated[what], int(count["n"] or count["m"]))
             continue
         kinds[key].append(rest)
         try:

@@ -15,13 +15,8 @@ from .keys import ScanKeys
 class ScanOptions(SimpleNamespace):
     """Statements of a sidecar about a scan file: each key of `ScanKeys`, None where not stated.
 
-    A file that describes itself needs none of them, any other is read only as they say: see
+    A file that describes itself needs none of them; any other is read only as they state, see
     :mod:`scan.stated`. They are not changed; :meth:`but` makes others.
-
-    Raises
-    ------
-    TypeError
-        If a name is not that of a key.
     """
 
     def __init__(self, **stated: Any):
@@ -63,13 +58,13 @@ class ScanOptions(SimpleNamespace):
 CONTACT_MAP = "contact-map"
 #: Keys that say how the numbers of a text are written.
 WRITING_KEYS = ("delimiter", "decimal", "thousands", "header")
-#: What parts the numbers of a line, by the key `delimiter`; a blank is white space of any length.
+#: Signs between numbers by the key `delimiter`; a blank is white space of any length.
 DELIMITERS = {"comma": ",", "semicolon": ";", "tab": "\t", "blank": " "}
-#: What the key `missing` says where every number is a height, however it looks.
+#: Value of the key `missing` where every number is a height, however it looks.
 NO_MARK = "none"
 #: Keys that say how two faces lie to each other.
 PAIR_KEYS = ("registration", "mirror_upper")
-#: Keys that hold what is stated of one face alone.
+#: Keys of statements on one face alone.
 FACES = ("lower", "upper")
 #: Keys that name the files of the coordinates, where x, y and z are three files.
 COORDINATE_KEYS = ("x", "y")
@@ -79,19 +74,9 @@ POINT_KEYS = ("columns", "grid")
 
 
 def parse_options(options: Mapping | None, where: str) -> ScanOptions:
-    """Statements on how one file is read.
+    """Statements on the file ``where``, from keys of `ScanKeys` but ``lower`` and ``upper``.
 
-    Parameters
-    ----------
-    options : mapping or None
-        Keys of `ScanKeys` for one file, so neither ``lower`` nor ``upper``; each is optional.
-    where : str
-        The scan file, for errors.
-
-    Raises
-    ------
-    InputError
-        If a key is unknown or a value is of the wrong kind.
+    An unknown key, and a value of the wrong kind, are refused.
     """
     document = {key: _as_list(value) for key, value in (options or {}).items()}
     known = [key for key in ScanKeys.model_fields if key not in FACES]
@@ -104,7 +89,7 @@ def parse_options(options: Mapping | None, where: str) -> ScanOptions:
             length_factor(stated[key], f"{where}: {key}")
     _refuse_one_mark_for_two(stated, where)
     return ScanOptions(
-        **{key: tuple(one) if isinstance(one, list) else one for key, one in stated.items()}
+        **{key: tuple(value) if isinstance(value, list) else value for key, value in stated.items()}
     )
 
 
@@ -113,14 +98,7 @@ def _as_list(value: Any) -> Any:
 
 
 def of_face(options: Mapping | None, face: str) -> dict[str, Any]:
-    """Keys of one face of a pair: those of both, then those under ``lower`` or ``upper``.
-
-    Parameters
-    ----------
-    options : mapping or None
-        Scan keys of a sidecar.
-    face : {"lower", "upper"}
-    """
+    """Keys of one face of a pair: those of both, then those under ``lower`` or ``upper``."""
     common = {key: value for key, value in (options or {}).items() if key not in FACES}
     return {**common, **((options or {}).get(face) or {})}
 
@@ -142,19 +120,10 @@ def _refuse_one_mark_for_two(options: dict, where: str) -> None:
 
 
 def coordinate_files(path: Path, options: Mapping[str, Any]) -> dict[str, Path]:
-    """Files of the coordinates of a matrix, by key; empty if its sidecar names none.
+    """Files of the coordinates of the matrix at ``path``, by key; empty if its sidecar names none.
 
-    Parameters
-    ----------
-    path : Path
-        Of the matrix.
-    options : mapping
-        Scan keys of its sidecar.
-
-    Raises
-    ------
-    InputError
-        If one of the two is missing, or a name is not that of another file in the same folder.
+    One without the other is refused, and a name that is not that of another file in the same
+    folder.
     """
     named = {key: str(options[key]) for key in COORDINATE_KEYS if options.get(key) is not None}
     if not named:
@@ -175,13 +144,7 @@ def coordinate_files(path: Path, options: Mapping[str, Any]) -> dict[str, Path]:
 
 
 def length_mm(value: Any, unit_xy: str | None, where: str) -> float:
-    """Read a spacing: a text with its own unit, or a number in ``unit_xy``.
-
-    Raises
-    ------
-    InputError
-        If it has no unit, or is not a finite number above zero.
-    """
+    """Spacing in mm: a text with its own unit, or a number in ``unit_xy``, above zero."""
     if isinstance(value, str):
         length = quantity(value, "length", where)
     elif not _is_number(value):

@@ -16,50 +16,23 @@ LARGEST_FILE = 4 * 1024**3  # bytes, also for what an archive inflates to or a h
 
 @dataclass(frozen=True)
 class RawScan:
-    """The numbers of one file, before units.
+    """Numbers of one file as its reader returns them, in the units of the file."""
 
-    Attributes
-    ----------
-    values : ndarray
-        A matrix (rows, columns) of heights, or points (n, 3).
-    layout : {"matrix", "points", "mesh"}
-    reader : str
-        Software or method that read the file.
-    unit_xy, unit_z : str or None
-        Units the file states.
-    spacing : (float, float) or None
-        dx, dy the file states, in ``unit_xy``.
-    first_row : {"bottom", "top"} or None
-        Where the first row of a matrix lies; None where the file does not say.
-    heights : {"up", "down"} or None
-        Which way the numbers grow; None where the file does not say.
-    notes : tuple of str
-        What a user should know about the reading.
-    triangles : (m, 3) int ndarray or None
-        Of a mesh: rows of ``values``; None for a cloud.
-    """
-
-    values: np.ndarray
-    layout: str
-    reader: str
+    values: np.ndarray  # matrix (rows, columns) of heights, or points (n, 3)
+    layout: str  # "matrix", "points" or "mesh"
+    reader: str  # software or method that read the file
     unit_xy: str | None = None
     unit_z: str | None = None
-    spacing: tuple[float, float] | None = None
-    first_row: str | None = None
+    spacing: tuple[float, float] | None = None  # dx, dy that the file states, in `unit_xy`
+    first_row: str | None = None  # "bottom" or "top"; None where the file states neither
+    #: Direction of growing numbers, "up" or "down"; None where not stated.
     heights: str | None = None
-    notes: tuple[str, ...] = ()
-    triangles: np.ndarray | None = None
+    notes: tuple[str, ...] = ()  # for the user, about the reading
+    triangles: np.ndarray | None = None  # (m, 3), rows of `values`; None for a cloud
 
 
 class IncompleteSidecar(InputError):
-    """Error of a file that needs a sidecar, and whose sidecar is incomplete.
-
-    Attributes
-    ----------
-    draft : str
-        Lines of a sidecar for it, indented, as the file seems to mean; a value that it does not
-        tell is empty.
-    """
+    """Error of a file whose sidecar is absent or incomplete, with the lines of a ``draft``."""
 
     def __init__(self, message: str, draft: str):
         super().__init__(f"{message}\n{draft}")
@@ -77,14 +50,7 @@ def refuse_larger(n_bytes: int, path: Path | str) -> None:
 
 @contextmanager
 def reading(path: Path | str, kind: str) -> Iterator[None]:
-    """Turn any error of a library on a damaged file into one clean `InputError`.
-
-    Parameters
-    ----------
-    path : Path
-    kind : str
-        What the file should be, for the message.
-    """
+    """Turn any error of a library on a damaged file into one `InputError` with its ``kind``."""
     try:
         yield
     except InputError:

@@ -113,26 +113,11 @@ def read_faces(
 def read_matrix(
     path: Path | str, options: Mapping | None = None
 ) -> tuple[np.ndarray, tuple[float, float], dict]:
-    """Read a file that holds a matrix of any quantity.
+    """Matrix of any quantity in a file, its spacing (dx, dy) in mm, and its provenance.
 
-    Parameters
-    ----------
-    path : path-like
-    options : mapping, optional
-        As for `read_scan`.
-
-    Returns
-    -------
-    values : (ny, nx) ndarray
-        Times the length of ``unit_z`` in mm; NaN where missing, y ascending.
-    spacing : (float, float)
-        (dx, dy) in mm.
-    provenance : dict
-
-    Raises
-    ------
-    InputError
-        As `read_scan`, but for numbers that cannot be heights; also if the file holds points.
+    Values (ny, nx) are multiplied by the length of ``unit_z`` in mm; NaN where missing, y
+    ascending. Points are refused, and otherwise what `read_scan` refuses, but for numbers that
+    cannot be heights.
     """
     measured = measure(Path(path), options, are_heights=False)
     if measured.layout != "matrix":
@@ -142,20 +127,10 @@ def read_matrix(
 
 
 def measure(path: Path, options: Mapping | None, *, are_heights: bool = True) -> Measured:
-    """Numbers of a file in mm, before they are on a grid, as its sidecar says.
+    """Numbers of a file in mm, before they are on a grid, as its sidecar states.
 
-    Parameters
-    ----------
-    path : Path
-    options : mapping or None
-        As for `read_scan`.
-    are_heights : bool, optional
-        False of a contact map, whose numbers may be anything.
-
-    Raises
-    ------
-    InputError
-        As `read_scan`, but for a surface that is none.
+    ``are_heights`` is False of a contact map, whose numbers may be anything. Errors are those of
+    `read_scan`, but for a surface that is none.
     """
     given = parse_options(options, str(path))
     return in_mm(_read(path, given), given, are_heights=are_heights)

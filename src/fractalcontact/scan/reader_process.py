@@ -30,12 +30,12 @@ from .transfer import from_text, send_scan, to_text
 
 #: Bytes beyond what the process has at the start, for a file of any size.
 BASE_MEMORY = 1024**3
-#: Seconds of processor time, likewise.
+#: Seconds of processor time for a file of any size.
 BASE_SECONDS = 8
 #: A machine shared with others, or a slow disc, may take this many times as long by the clock.
 PATIENCE = 4
 _MAX_FILES = 64
-#: Characters; sentences of this program are far shorter, whatever they quote.
+#: Longest message in characters; sentences of this program are far shorter.
 _LONGEST_MESSAGE = 1600
 _LONGEST_DRAFT = 6000
 
@@ -50,14 +50,7 @@ class Limits:
 
 
 def limits_for(size: int, formats: Sequence[Format]) -> Limits:
-    """Limits for a file of this many bytes, inflated where it is an archive.
-
-    Parameters
-    ----------
-    size : int
-    formats : sequence of Format
-        Those it may have: the most generous counts.
-    """
+    """Limits for a file of ``size`` bytes, inflated; the most generous format counts."""
     memory_per_byte = max((form.memory_per_byte for form in formats), default=0)
     seconds_per_megabyte = max((form.seconds_per_megabyte for form in formats), default=0)
     seconds = BASE_SECONDS + seconds_per_megabyte * size // 10**6
@@ -96,9 +89,9 @@ def _import_libraries(extension: str) -> None:
 
     for form in likely_formats(extension):
         for name in form.libraries:
-            with contextlib.suppress(ImportError):  # the fork meets it too, and reports it
+            with contextlib.suppress(ImportError):  # the fork reports the error
                 import_module(name)
-    gc.freeze()  # what the forks share is not gone through, and so not copied
+    gc.freeze()  # objects that forks share are not touched, so not copied
 
 
 def _read_and_exit(request: dict, writable: int) -> None:
@@ -144,7 +137,7 @@ def _read(request: dict, stream) -> None:
         report = {"outcome": "incomplete", "message": _readable(error.message)}
         stream.write(to_text(report | {"draft": _readable(draft, _LONGEST_DRAFT)}))
     except InputError as error:
-        # Readers that meet any error of a library halfway call it a damaged file.
+        # A reader may report a lack of memory as a damaged file.
         outcome = "memory" if _is_from_memory(error) else "refused"
         stream.write(to_text({"outcome": outcome, "message": _readable(str(error))}))
     except OSError as error:  # the disc or the network, or what a library asked of them

@@ -19,45 +19,20 @@ from .tables import choose_array
 
 @dataclass(frozen=True)
 class Needs:
-    """Kind of a file that does not describe itself.
+    """Needs of a file that does not describe itself."""
 
-    Attributes
-    ----------
-    text : bool
-        Lines of numbers: how they are written is to be stated.
-    table : bool
-        Rows and columns that may be a matrix or points.
-    grid : bool
-        A matrix whose format says its spacing, its first row and its missing cells.
-    arrays : sequence of str
-        Arrays, channels or pages of which ``variable`` names one.
-    """
-
-    text: bool = False
-    table: bool = False
-    grid: bool = False
-    arrays: Sequence[str] = ()
+    text: bool = False  # lines of numbers, whose writing is to be stated
+    table: bool = False  # rows and columns that may be a matrix or points
+    grid: bool = False  # a matrix whose format gives spacing, first row and missing cells
+    arrays: Sequence[str] = ()  # arrays, channels or pages of which `variable` names one
 
 
 def require_stated(
     path: Path, options: ScanOptions, needs: Needs, hints: Callable[[], Hints]
 ) -> None:
-    """Refuse a file of which the sidecar does not state all that its reading depends on.
+    """Refuse a file whose sidecar lacks a statement that its reading depends on, with a draft.
 
-    Parameters
-    ----------
-    path : Path
-    options : ScanOptions
-    needs : Needs
-    hints : callable
-        What the file seems to say, only asked where something is lacking: for the draft.
-
-    Raises
-    ------
-    IncompleteSidecar
-        With the sidecar to write.
-    InputError
-        If the sidecar says that the file holds a profile.
+    ``hints`` is called for the draft only where something is lacking. A profile is refused as well.
     """
     if options.kind == "profile":
         raise InputError(
@@ -68,17 +43,17 @@ def require_stated(
         choose_array(list(needs.arrays), options.variable, path)
     if not (lacks := lacking(options, needs)):
         return
-    found = hints()
+    clues = hints()
     if word := OPENING.search(path.stem):
         if word[0].lower().startswith(APERTURE):
-            found.state("kind", APERTURE, f"its name says {word[0]!r}")
+            clues.state("kind", APERTURE, f"its name says {word[0]!r}")
         else:
-            found.ask("kind", f"its name says {word[0]!r}")
-    found.ask_openings()
-    complete = drafted_options(options, found)
+            clues.ask("kind", f"its name says {word[0]!r}")
+    clues.ask_openings()
+    complete = drafted_options(options, clues)
     required = set(required_keys(complete, needs))
     # A layout that only the draft knows asks for keys of its own.
-    draft = "\n".join(draft_lines(options, found, required, needs.arrays))
+    draft = "\n".join(draft_lines(options, clues, required, needs.arrays))
     stated = options.but(registration=None, mirror_upper=None, grid=None)
     states_some = stated != ScanOptions()
     name, _ = split_file_name(path.name)

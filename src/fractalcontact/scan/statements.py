@@ -57,20 +57,13 @@ _MAX_QUOTED = 3
 
 @dataclass
 class Stated:
-    """Statements and mentions of a header, by key of a sidecar.
+    """Statements and mentions of a header, by key of a sidecar."""
 
-    Attributes
-    ----------
-    values : dict of str to list of (value, str)
-        What lines state, each with its place and text.
-    mentions : dict of str to list of str
-        Lines with a word of the key among others.
-    lengths : list of (str, list of float, str, str)
-        Name, numbers and unit of lengths, and the line.
-    """
-
+    #: What lines state, each with its place and text.
     values: dict[str, list[tuple[Any, str]]] = field(default_factory=dict)
+    #: Lines with a word of the key among others.
     mentions: dict[str, list[str]] = field(default_factory=dict)
+    #: Name, numbers and unit of lengths, and the line.
     lengths: list[tuple[str, list[float], str, str]] = field(default_factory=list)
 
     def quoted(self, key: str) -> str:
@@ -85,42 +78,36 @@ class Stated:
 
 
 def statements(lines: Iterable[tuple[str, str]]) -> Stated:
-    """Statements and mentions in lines of words.
-
-    Parameters
-    ----------
-    lines : iterable of (str, str)
-        Where a line stands ("line 3"), and its text.
-    """
-    found = Stated()
+    """Statements and mentions in lines of words; a line is its place ("line 3") and its text."""
+    stated = Stated()
     steps: dict[str, list[tuple[str, str]]] = {"x": [], "y": []}
     for where, line in lines:
         if len(line) > _MAX_LINE:
             continue
         source = f'{where}: "{printable(line.strip(), 50)}"'
         text = line.lstrip("#%!/;* \t").strip().strip("\"'").strip()
-        _read_line(found, steps, text, source)
+        _read_line(stated, steps, text, source)
     if steps["x"] and steps["y"]:
         pairs = [[x, y] for (x, _), (y, _) in zip(steps["x"], steps["y"], strict=False)]
         sources = [x if x == y else f"{x}, {y}"
                    for (_, x), (_, y) in zip(steps["x"], steps["y"], strict=False)]  # fmt: skip
-        found.values.setdefault("spacing", []).extend(zip(pairs, sources, strict=True))
+        stated.values.setdefault("spacing", []).extend(zip(pairs, sources, strict=True))
     else:
         for _, source in steps["x"] + steps["y"]:
-            found.mentions.setdefault("spacing", []).append(source)
-    return found
+            stated.mentions.setdefault("spacing", []).append(source)
+    return stated
 
 
-def _read_line(found: Stated, steps: dict, text: str, source: str) -> None:
+def _read_line(stated: Stated, steps: dict, text: str, source: str) -> None:
     """Take up one line."""
     lower = text.lower()
     said: dict[str, Any] = {}
     if units := _units(text):
         said |= units
     elif any(length_unit(word) for word in re.findall(_WORD, text)):
-        _mention(found, "unit", source)
+        _mention(stated, "unit", source)
     if not _add_steps(said, steps, text, source) and _is_of_steps(lower):
-        _mention(found, "spacing", source)
+        _mention(stated, "spacing", source)
     if (mark := _MARK.fullmatch(text)) and (mark["value"] or _is_no_data(mark["name"])):
         said["missing"] = float(mark["number"].replace(",", "."))
     if rows := _ROWS.fullmatch(lower):
@@ -129,19 +116,19 @@ def _read_line(found: Stated, steps: dict, text: str, source: str) -> None:
     if words & _DOWN and words & {"positive", "heights", "z", "depths"} and words <= _OF_DEPTH:
         said["heights"] = "down"
     for key, value in said.items():
-        found.values.setdefault(key, []).append((value, source))
+        stated.values.setdefault(key, []).append((value, source))
     for key, pattern in _MENTIONS.items():
         if key not in said and pattern.search(lower):
-            _mention(found, key, source)
+            _mention(stated, key, source)
     for match in _LENGTH.finditer(text):
         if length_unit(match[3]) and "spacing" not in said:
             numbers = [float(n.replace(",", ".")) for n in match.groups()[:2] if n]
             name = text[: match.start()].strip(" :=")
-            found.lengths.append((name, numbers, match[3], source))
+            stated.lengths.append((name, numbers, match[3], source))
 
 
-def _mention(found: Stated, key: str, source: str) -> None:
-    found.mentions.setdefault(key, []).append(source)
+def _mention(stated: Stated, key: str, source: str) -> None:
+    stated.mentions.setdefault(key, []).append(source)
 
 
 def _is_no_data(name: str) -> bool:
@@ -169,13 +156,13 @@ def _units(text: str) -> dict[str, str]:
         elif word not in _NEUTRAL and token not in _SIGNS:
             return {}
         before = word
-    found: dict[str, str] = {}
+    units: dict[str, str] = {}
     for group, unit in groups:
         is_up, is_lateral = bool(group & _UP), bool(group & _LATERAL)
         key = "unit" if is_up == is_lateral else "unit_z" if is_up else "unit_xy"
-        if found.setdefault(key, unit) != unit:
+        if units.setdefault(key, unit) != unit:
             return {}
-    return {} if names else found
+    return {} if names else units
 
 
 def _add_steps(said: dict, steps: dict, text: str, source: str) -> bool:

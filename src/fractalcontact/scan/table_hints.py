@@ -8,7 +8,7 @@ import numpy as np
 from ..core.labels import listed
 from .draft import Hints
 
-#: What x, y and z are called, without signs and units; cells are counted under the last two.
+#: Names of x, y and z without signs and units; `_CELLS` are names of counted cells.
 _AXES = {
     "x": re.compile(r"(pos(ition)?)?x|x(pos(ition)?|coord(inate)?s?|value)?|easting|east"),
     "y": re.compile(r"(pos(ition)?)?y|y(pos(ition)?|coord(inate)?s?|value)?|northing|north"),
@@ -83,10 +83,17 @@ def coordinate_columns(table: np.ndarray) -> list[int]:
     if len(table) < _MIN_POINTS:
         return []
     counts = [len(np.unique(column[np.isfinite(column)])) for column in table.T]
-    found = [n for n, count in enumerate(counts) if 3 < count <= len(table) / 3]
-    pairs = [(a, b) for a in found for b in found if a < b
+    gridlike = [n for n, count in enumerate(counts) if 3 < count <= len(table) / 3]
+    pairs = [(a, b) for a in gridlike for b in gridlike if a < b
              and 0.7 * len(table) <= counts[a] * counts[b] <= 2 * len(table)]  # fmt: skip
     return list(pairs[0]) if len(pairs) == 1 else []
+
+
+def height_column(table: np.ndarray) -> int:
+    """Column that is likely to hold heights: the only one that holds no places of a grid."""
+    lateral = coordinate_columns(table)
+    others = [n for n in range(table.shape[1]) if n not in lateral]
+    return others[0] if len(others) == 1 else min(2, table.shape[1] - 1)
 
 
 def _counts_cells(numbers: np.ndarray) -> bool:
@@ -107,8 +114,8 @@ def add_axes(hints: Hints, table: np.ndarray) -> None:
     is_row, is_column = _stands_out(row, inside), _stands_out(column, inside.T)
     whole = np.all(inside[np.isfinite(inside)] == np.round(inside[np.isfinite(inside)]))
     in_counts = [
-        _counts_up(numbers) and not whole and not _runs(beside)
-        for numbers, beside in ((row, inside[0]), (column, inside[:, 0]))
+        _counts_up(numbers) and not whole and not _runs(neighbours)
+        for numbers, neighbours in ((row, inside[0]), (column, inside[:, 0]))
     ]
     if is_row and is_column and _is_even(row) and _is_even(column):
         hints.add("axes", "both", "both run in equal steps, as coordinates or counts do")

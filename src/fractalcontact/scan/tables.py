@@ -15,27 +15,14 @@ from .raw import RawScan
 
 #: Numbered columns and rows may leave at most this many empty cells for each cell that they fill.
 MAX_EMPTY_PER_POINT = 20
-#: Lines that part more blocks of points than this part scan lines.
+#: More blocks of points than this are scan lines, not clouds.
 _MAX_CLOUDS = 4
 #: Coordinates may stray this fraction of a step from equal steps: rounding in the export.
 EVEN = 0.1
 
 
 def choose_array(names: list[str], wanted: str | None, path: Path) -> str:
-    """Name of the array of heights: the one the sidecar's ``variable`` names, or the only one.
-
-    Parameters
-    ----------
-    names : list of str
-        The arrays that could be heights.
-    wanted : str or None
-    path : Path
-
-    Raises
-    ------
-    InputError
-        If the wanted one is absent, or none is named where there are several or none at all.
-    """
+    """Name of the array of heights: the one the sidecar's ``variable`` names, or the only one."""
     if not names:
         raise InputError(
             f"{path}: holds no 2-D array of real numbers, so no heights; export it again"
@@ -68,20 +55,12 @@ def refuse_unknown_channel(names: list[str], wanted: str | None, path: Path) -> 
 
 @dataclass(frozen=True)
 class TextParts:
-    """Parts of a text file beside the table of its numbers.
+    """Parts of a text file beside the table of its numbers."""
 
-    Attributes
-    ----------
-    names : list of str or None
-        Cells of the last header line.
-    above : ndarray or None
-        The row of coordinates in front of the table, where the sidecar says there is one.
-    breaks : mapping of int to int
-        Rows before which an empty line, a comment or a header stands, and the number of that line.
-    """
-
-    names: list[str] | None = None
+    names: list[str] | None = None  # cells of the last header line
+    #: Row of coordinates in front of the table, where the sidecar states one.
     above: np.ndarray | None = None
+    #: Row before which a line without numbers stands, and the number of that line.
     breaks: Mapping[int, int] = field(default_factory=dict)
 
 
@@ -92,23 +71,10 @@ def table_to_raw(
     parts: TextParts = TextParts(),
     **stated: Any,
 ) -> RawScan:
-    """Heights or points of a table, as ``layout``, ``columns`` and ``axes`` of the sidecar say.
+    """Heights or points of a table (rows, columns), as ``layout``, ``columns`` and ``axes`` state.
 
-    Parameters
-    ----------
-    table : ndarray, shape (rows, columns)
-    options : ScanOptions
-    where : str
-        The file, for errors.
-    parts : TextParts
-    **stated
-        Further fields of `RawScan`.
-
-    Raises
-    ------
-    InputError
-        If a wanted column is absent, coordinates beside a matrix are uneven, or several tables
-        stand under one another.
+    ``stated`` are further fields of `RawScan`. An absent column, uneven coordinates beside a matrix
+    and several tables under one another are refused.
     """
     if options.layout != "points":
         return _matrix(table, options, where, parts, stated)
@@ -126,12 +92,12 @@ def _matrix(
     table: np.ndarray, options: ScanOptions, where: str, parts: TextParts, stated: dict
 ) -> RawScan:
     """Heights without the coordinates, or counts, in the first row and column of a matrix."""
-    axes, above, beside = options.axes, parts.above, None
+    axes, above, left = options.axes, parts.above, None
     _refuse_stacked(len(table), parts.breaks, options, where)
     if axes in ("both", "row") and above is None:
         above, table = table[0], table[1:]
     if axes in ("both", "column"):
-        beside, table = table[:, 0], table[:, 1:]
+        left, table = table[:, 0], table[:, 1:]
     if above is not None:
         above = above[-table.shape[1] :] if table.shape[1] else above
         if len(above) != table.shape[1]:
@@ -139,7 +105,7 @@ def _matrix(
                 f"{where}: its first row holds {len(above)} numbers, the others {table.shape[1]} "
                 "heights; write 'axes: none' or 'axes: column' if it holds no coordinates"
             )
-    for name, numbers in (("row", above), ("column", beside)):
+    for name, numbers in (("row", above), ("column", left)):
         if numbers is not None and len(np.unique(numbers)) < len(numbers):
             raise InputError(
                 f"{where}: its first {name} holds a number twice, so that it holds neither counts "
@@ -150,8 +116,8 @@ def _matrix(
             _step(numbers, name, where)
     if axes == "both" and options.spacing is None:
         assert above is not None  # it was taken off
-        assert beside is not None
-        dx, dy = _step(above, "row", where), _step(beside, "column", where)
+        assert left is not None
+        dx, dy = _step(above, "row", where), _step(left, "column", where)
         table = table[:, ::-1] if dx < 0 else table
         stated |= {"spacing": (abs(dx), abs(dy)), "first_row": "top" if dy < 0 else "bottom"}
     return RawScan(table, "matrix", **stated)
@@ -193,10 +159,10 @@ def _by_cell(points: np.ndarray, where: str) -> np.ndarray:
 
 
 def _refuse_stacked(rows: int, breaks: Mapping[int, int], options: ScanOptions, where: str) -> None:
-    """Refuse what may be several tables under one another, parted by lines.
+    """Refuse tables under one another, parted by lines without numbers.
 
-    Lines between rows in even steps part none. What else they part is read if the sidecar confirms
-    the size of the whole.
+    Lines between rows in even steps part none. Other lines are accepted if the sidecar confirms the
+    size of the whole.
     """
     sizes = np.diff([0, *breaks, rows])
     if len(sizes) < 2 or options.confirmed is not None:

@@ -10,8 +10,8 @@ import numpy as np
 from ..core.units import length_unit
 from .draft import Hints, add_words
 from .options import DELIMITERS, ScanOptions
-from .table_hints import add_axes, add_columns, axis_of, coordinate_columns
-from .text_lines import COMMENT_MARKS, cells_of, cleaned, is_number, open_text, words_of
+from .table_hints import add_axes, add_columns, axis_of, coordinate_columns, height_column
+from .text_lines import COMMENT_MARKS, cells_of, cleaned, is_number, open_text, value_of, words_of
 from .text_style import add_style
 
 _MAX_LINES = 2_000
@@ -38,15 +38,10 @@ def first_lines(path: Path) -> list[str]:
 
 
 def named_columns(path: Path) -> tuple[dict[str, Any], dict[str, Any]] | None:
-    """Keys of a table whose columns are named x, y and z, each with a unit of length.
+    """Scan keys, and units for `RawScan`, of a table whose columns name x, y, z and units.
 
     The names stand in the line above the numbers, one for each column: ``x [mm], y [mm], z [um]``.
-
-    Returns
-    -------
-    (dict, dict) or None
-        Scan keys, and units for `RawScan`; None for any other text, and where a comma or point
-        might mean two things.
+    None for any other text, and where a comma or point might mean two things.
     """
     lines = first_lines(path)
     number = _first_numbers(lines[: _MAX_ABOVE + 1])
@@ -59,8 +54,8 @@ def named_columns(path: Path) -> tuple[dict[str, Any], dict[str, Any]] | None:
         cells = _GLUED.findall(line) if delimiter == " " else line.split(delimiter)
         if delimiter == " " and "".join(cells).replace(" ", "") != line.replace(" ", ""):
             continue
-        found = [_NAMED.fullmatch(words_of(cell).strip("\"'")) for cell in cells]
-        axes = [match[1].lower() if match and length_unit(match[2]) else "" for match in found]
+        matches = [_NAMED.fullmatch(words_of(cell).strip("\"'")) for cell in cells]
+        axes = [match[1].lower() if match and length_unit(match[2]) else "" for match in matches]
         if sorted(filter(None, axes)) != ["x", "y", "z"]:
             continue
         data = [cells_of(text.rstrip(), delimiter) for text in lines[number:] if text.strip()]
@@ -69,7 +64,7 @@ def named_columns(path: Path) -> tuple[dict[str, Any], dict[str, Any]] | None:
         columns = tuple(axes.index(axis) for axis in "xyz")
         if not _is_plain([row[c].strip() for row in data for c in columns if c < len(row)]):
             return None
-        unit_x, unit_y, unit_z = (found[c][2] for c in columns)  # type: ignore[index]
+        unit_x, unit_y, unit_z = (matches[c][2] for c in columns)  # type: ignore[index]
         if unit_x != unit_y:
             return None
         keys = {"delimiter": name, "decimal": ".", "header": number, "layout": "points"}
@@ -98,8 +93,8 @@ def text_hints(path: Path) -> Hints:
     lines, hints = first_lines(path), Hints()
     start = _table_start(lines)
     above, data = lines[:start], [line for line in lines[start:] if line.strip()]
-    known = set(above)
-    data = [line for line in data if not line.startswith(COMMENT_MARKS) and line not in known]
+    header = set(above)
+    data = [line for line in data if not line.startswith(COMMENT_MARKS) and line not in header]
     name, decimal, thousands = add_style(hints, data, f"in the numbers of line {start + 1}")
     delimiter = DELIMITERS[name]
     form = ScanOptions(delimiter=name, decimal=decimal, thousands=thousands or None)
@@ -159,9 +154,7 @@ def _heights_of(hints: Hints, table: np.ndarray) -> np.ndarray:
     if layout == "points":
         if "columns" in hints.keys and "columns" not in hints.doubts:
             return table[:, hints.keys["columns"].value[2]]
-        lateral = coordinate_columns(table)
-        rest = [n for n in range(table.shape[1]) if n not in lateral]
-        return table[:, rest[0] if len(rest) == 1 else min(2, table.shape[1] - 1)]
+        return table[:, height_column(table)]
     axes = hints.keys["axes"].value if "axes" in hints.keys else "both"
     return table[axes in ("both", "row") :, axes in ("both", "column") :]
 
@@ -219,13 +212,7 @@ def _words_in_cells(hints: Hints, rows: list[list[str]], width: int, form: ScanO
 
 def _numbers(rows: list[list[str]], width: int, form: ScanOptions) -> np.ndarray:
     """The rows of most numbers, NaN where there is none."""
-    mark, thousands = form.decimal or ".", form.thousands
-    table = []
-    for row in rows:
-        if len(row) == width:
-            plain = [cell.replace(thousands, "") if thousands else cell for cell in row]
-            table.append([float(cell.replace(mark, ".")) if is_number(cell, form) else np.nan
-                          for cell in plain])  # fmt: skip
+    table = [[value_of(cell, form) for cell in row] for row in rows if len(row) == width]
     return np.array(table, dtype=float).reshape(-1, max(width, 1))
 
 

@@ -1,7 +1,6 @@
-"""Lines of a text file: encoding, cells, numbers, the counts that a header states."""
+"""Lines of a text file: encoding, cells, numbers, and a last number that may be cut off."""
 
 import codecs
-import math
 import re
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -15,8 +14,10 @@ COMMENT_MARKS = ("#", "%", "//", "!")
 _TYPOGRAPHY = str.maketrans("\u2212\u2012\u2013\u00a0\u2009\u202f", "---   ")
 _FORTRAN_EXPONENT = re.compile(r"(?<=[\d.,])[dD](?=[-+]?\d)")
 _QUOTED = re.compile(r'"[^"]*"')
-_ORDINARY = re.compile(r"[-+0-9.,;eE \t]*")
+ORDINARY = re.compile(r"[-+0-9.,;eE \t]*")
 _ENDING = re.compile(r"(?:[.,](?P<decimals>\d*))?(?:[eEdD](?P<exponent>[-+]?\d*))?$")
+#: A number or its beginning; a cut character of UTF-16 is the last sign.
+_BEGUN = re.compile(r"(?=.)[-+\d.,']*(?:[eEdD][-+]?\d*)?\ufffd?")
 _BLOCK = 2**24  # bytes
 MAX_ROWS = 60  # last rows whose numbers tell how the last one is written
 DOUBTFUL_END = (
@@ -25,12 +26,6 @@ DOUBTFUL_END = (
 )
 #: Characters of a line of words that are looked at: patterns take the square of them, at worst.
 MAX_WORDS = 200
-#: What programs call the sides of a matrix in its header.
-_SIDES = re.compile(
-    r"[#%!/\s\"']*(?:(?P<x>nx|ncols|n_cols|columns)|(?P<y>ny|nrows|n_rows|rows))[\s:=,;\t]+"
-    r"(?P<n>\d{1,12})[\s\"']*",
-    re.IGNORECASE,
-)
 
 
 def open_text(path: Path) -> TextIO:
@@ -79,7 +74,7 @@ def cells_of(line: str, delimiter: str) -> list[str]:
 
 def cleaned(line: str, delimiter: str, missing_words: Sequence[str] = ()) -> str:
     """A line with typographers' signs, Fortran's exponents and quotes as numbers have them."""
-    if _ORDINARY.fullmatch(line):
+    if ORDINARY.fullmatch(line):
         return line
     for word in missing_words:
         if delimiter == " " and " " in word:
@@ -90,37 +85,36 @@ def cleaned(line: str, delimiter: str, missing_words: Sequence[str] = ()) -> str
     return line
 
 
-def is_number(cell: str, options: ScanOptions) -> bool:
-    """True if a cell is a number as the sidecar says numbers are written."""
+def value_of(cell: str, options: ScanOptions) -> float | None:
+    """Number in a cell, as the sidecar says numbers are written; None without one."""
     text = cell.replace(options.thousands, "") if options.thousands else cell
     try:
-        float(text.replace(options.decimal or ".", "."))
+        return float(text.replace(options.decimal or ".", "."))
     except ValueError:
-        return False
-    return True
+        return None
+
+
+def is_number(cell: str, options: ScanOptions) -> bool:
+    """True if a cell is a number as the sidecar says numbers are written."""
+    return value_of(cell, options) is not None
 
 
 def last_number_cut(
-    rows: Sequence[str],
-    delimiter: str,
-    layout: str | None,
-    is_mark: Callable[[str], bool] = lambda cell: False,
+    numbers: Sequence[str], is_mark: Callable[[str], bool] = lambda cell: False
 ) -> str:
     """Judgement of the last number of a file without a final line end: cut, doubtful or "".
 
     It is cut if it breaks off the form of the numbers above: as many decimals each, exponents of
     two digits, or fewer characters than any of them. It is doubtful if it has fewer characters than
-    most. Of points those of the last column count, of a matrix all; marks of missing cells do not.
+    most. Marks of missing cells do not count.
     """
-    first = -1 if layout == "points" else 0
-    latest = [cells_of(row, delimiter)[first:] for row in rows[-MAX_ROWS:]]
-    *others, last = [cell.strip() for cells in latest for cell in cells]
+    *others, last = map(str.strip, numbers)
     others = [other for other in others if re.search(r"\d", other) and not is_mark(other)]
-    if len(others) < 3 or is_mark(last):
+    if len(others) < 3 or is_mark(last) or not _BEGUN.fullmatch(last):
         return ""
-    if last and not re.search(r"[\d.,]$|^[a-zA-Z#]", last):  # ends in e, + or -
+    if last[-1] not in "0123456789.,":
         return "cut"
-    if not re.search(r"\d", last):  # a word, or empty
+    if not re.search(r"\d", last):
         return ""
     last, others = last.lstrip("+-"), [other.lstrip("+-") for other in others]
     lengths = sorted(map(len, others))
@@ -130,25 +124,19 @@ def last_number_cut(
 
 
 def notes_on_end(rows: Sequence[str], content: str, path: Path) -> tuple[str, ...]:
-    """Notes on the last number of a text between blanks; one that is cut off is refused.
+    """Notes on the last number of a text, compared with the last ones of the rows.
 
-    Parameters
-    ----------
-    rows : list of str
-        The last lines that hold as many numbers each; the last numbers of the lines are compared.
-    content : str
-        The file, of which only the end counts.
-    path : Path
+    A number that is cut off is refused.
     """
     if content.endswith("\n") or not rows:
         return ()
-    cut = last_number_cut(rows, " ", "points")
-    if cut == "cut":
+    end = last_number_cut([row.split()[-1] for row in rows[-MAX_ROWS:]])
+    if end == "cut":
         raise InputError(
             f"{path}: its last line breaks off within a number: {rows[-1][-40:]!r}; the file is "
             "cut off, so export it again; if it is whole, end its last line with a line break"
         )
-    return (DOUBTFUL_END,) if cut else ()
+    return (DOUBTFUL_END,) if end else ()
 
 
 def _breaks_form(last: tuple[int, int | None], forms: list[tuple[int, int | None]]) -> bool:
@@ -171,57 +159,3 @@ def _form(number: str) -> tuple[int, int | None]:
     exponent = match["exponent"]
     digits = None if exponent is None else len(exponent.lstrip("+-"))
     return len(match["decimals"] or ""), digits
-
-
-def refuse_other_counts(
-    header: Sequence[str], shape: tuple[int, ...], options: ScanOptions, where: str
-) -> None:
-    """Refuse a table of another size than its header states: rows wrapped, or a file cut off.
-
-    A line of ``nx`` or ``ncols`` and one of ``ny`` or ``nrows`` count, and a line of whole numbers
-    alone. Nothing is read otherwise because of them, and a size that the sidecar confirms rules.
-
-    Parameters
-    ----------
-    header : sequence of str
-    shape : (int, int)
-        Rows and columns that were read.
-    options : ScanOptions
-    where : str
-        The file, for errors.
-
-    Raises
-    ------
-    InputError
-        With both sizes.
-    """
-    if options.confirmed is not None:
-        return
-    sides = {}
-    for line in header:
-        if match := _SIDES.fullmatch(line):
-            sides["x" if match["x"] else "y"] = int(match["n"])
-        elif re.fullmatch(r"\s*\d{1,9}(?:[\s,;]+\d{1,9}){0,2}[\s,;]*", line):
-            counts = [int(word) for word in re.findall(r"\d+", line)]
-            if not _agree(counts, shape):
-                raise _other_size(where, shape, line.strip())
-    beside = options.axes in ("both", "column")
-    is_matrix = options.layout != "points" and len(sides) == 2
-    if is_matrix and (sides["y"], sides["x"]) != (shape[0], shape[1] - beside):
-        raise _other_size(where, shape, f"{sides['x']} columns and {sides['y']} rows")
-
-
-def _agree(counts: list[int], shape: tuple[int, ...]) -> bool:
-    """True if counts are those of rows, columns or points, with or without coordinates."""
-    rows, columns = shape
-    near = {rows, columns, rows - 1, columns - 1, rows + 1, columns + 1, rows * columns}
-    return set(counts) <= near or math.prod(counts) == rows
-
-
-def _other_size(where: str, shape: tuple[int, ...], stated: str) -> InputError:
-    rows, columns = shape
-    return InputError(
-        f"{where}: its header states {stated!r}, but {rows} rows of {columns} numbers were read: "
-        "rows may be wrapped, or the file cut off; export it again, each row in one line, or "
-        f"write 'confirmed: {{shape: [{rows}, {columns}]}}' into the sidecar if that is right"
-    )

@@ -7,7 +7,7 @@ from .options import DELIMITERS
 from .text_lines import cells_of
 
 _SAMPLE = 200
-#: Numbers without a mark, of four and more digits, that are no more than marks of missing cells.
+#: Largest fraction of ungrouped numbers of four and more digits: marks of missing cells, perhaps.
 _MAX_UNGROUPED = 0.1
 _DIGITS = re.compile(r"[-+]?\d[\d.,']*(?:[eEdD][-+]?\d+)?")
 
@@ -15,11 +15,7 @@ _DIGITS = re.compile(r"[-+]?\d[\d.,']*(?:[eEdD][-+]?\d+)?")
 def add_style(hints: Hints, data: list[str], source: str) -> tuple[str, str, str]:
     """Suggest how numbers are written; a sign that may part thousands is asked.
 
-    Returns
-    -------
-    (str, str, str)
-        Delimiter by its name, decimal mark and thousands mark ("" without) that the other hints
-        are taken by.
+    Returned are the delimiter by its name, the decimal mark and the thousands mark ("" without).
     """
     name, decimal = _delimiter(data)
     cells = [cell.strip().strip("\"'") for line in data[:_SAMPLE]

@@ -41,13 +41,7 @@ def refuse_unknown_coding(page: Any, path: Path) -> None:
 
 
 def lzw_decode(data: bytes, out: int) -> bytes:
-    """First ``out`` bytes of a segment in TIFF's LZW code.
-
-    Raises
-    ------
-    ValueError
-        If a code stands there that no encoder writes.
-    """
+    """First ``out`` bytes of a segment in TIFF's LZW code; ValueError if damaged."""
     single = [bytes([value]) for value in range(256)] + [b"", b""]  # clear and end stand for none
     table: list[bytes] = []
     width, before = _MIN_WIDTH, b""
@@ -82,15 +76,9 @@ def lzw_decode(data: bytes, out: int) -> bytes:
 
 
 def floatpred_decode(data: np.ndarray, axis: int = -2, out: Any = None) -> np.ndarray:
-    """Numbers of rows whose bytes are stored as differences, the highest bytes of all first.
+    """Numbers (..., columns, 1) of rows stored as differences of bytes, highest bytes first.
 
-    Parameters
-    ----------
-    data : ndarray of float, shape (..., columns, 1)
-    axis : int
-        Of the columns; only -2.
-    out : object
-        Not used: tifffile states it.
+    ``axis`` is that of the columns, only -2; tifffile states ``out``, which is not used.
     """
     columns, size = data.shape[-2], data.dtype.itemsize
     rows = np.ascontiguousarray(data).view(np.uint8).reshape(-1, columns * size)

@@ -36,16 +36,7 @@ def send_scan(raw: RawScan, stream: BinaryIO) -> None:
 
 
 def receive_scan(message: dict, stream: Any, most_bytes: int) -> RawScan | None:
-    """Read the scan that a line announces, or None if it breaks off.
-
-    Parameters
-    ----------
-    message : dict
-        From `from_text`.
-    stream : raw binary stream
-    most_bytes : int
-        What the reader process could hold; more is not believed.
-    """
+    """Scan that a line announces, None if it breaks off or exceeds ``most_bytes``."""
     content = {key: value for key, value in message.items() if key not in ("outcome", "arrays")}
     for name, head in message["arrays"].items():
         dtype = np.dtype(head["dtype"])

@@ -30,7 +30,7 @@ _APART = 0.2
 _ENDS_OF_COUNTS = (0.0, 255.0, 65535.0, -32768.0, 32767.0)
 #: This many marks are looked for.
 _MAX_MARKS = 4
-#: A mark comes back from text and single precision not quite the same.
+#: Text and single precision change a mark by less than this fraction.
 _SAME = 1e-6
 
 
@@ -48,53 +48,35 @@ class Mark(NamedTuple):
 
 
 def find_marks(heights: np.ndarray) -> list[Mark]:
-    """Numbers that are likely to mark missing cells.
+    """Numbers that are likely to mark missing cells, those far outside the others first.
 
-    Parameters
-    ----------
-    heights : ndarray
-        A matrix, or the heights of points (n,), in the file's unit; NaN where missing.
-
-    Returns
-    -------
-    list of Mark
-        Those far outside first.
+    Heights are a matrix or those of points (n,), in the file's unit; NaN where missing.
     """
     present = np.isfinite(heights)
     marks: list[Mark] = []
     while len(marks) < _MAX_MARKS and present.any():
-        found = _far_outside(heights, present)
-        outside = found is not None
-        if found is None:
-            found = _repeated(heights, present)
-        if found is None:
+        mark = _far_outside(heights, present)
+        outside = mark is not None
+        if mark is None:
+            mark = _repeated(heights, present)
+        if mark is None:
             break
-        alike = present & np.isclose(heights, found, rtol=_SAME, atol=0)
+        alike = present & np.isclose(heights, mark, rtol=_SAME, atol=0)
         present &= ~alike
         cells = int(alike.sum())
         if not present.any():
             break
         low, high = float(heights[present].min()), float(heights[present].max())
-        marks.append(Mark(found, cells, outside, low, high))
+        marks.append(Mark(mark, cells, outside, low, high))
     return marks
 
 
 def possible_marks(heights: np.ndarray) -> list[tuple[float, int]]:
-    """Numbers among the heights that may mark missing cells, and may be heights.
+    """Numbers that may mark missing cells or be heights, and their cells, the most frequent first.
 
     Those are 0, -1, the usual marks, and the lowest and highest number, where they occur more often
     than the numbers next to them; a whole number among many of more digits; any number that occurs
-    several times as often as those next to it.
-
-    Parameters
-    ----------
-    heights : ndarray
-        In the file's unit; NaN where missing.
-
-    Returns
-    -------
-    list of (float, int)
-        Number and cells that hold it, the most frequent first.
+    several times as often as those next to it. Heights are in the file's unit; NaN where missing.
     """
     z = heights[np.isfinite(heights)]
     levels, counts = np.unique(z, return_counts=True)
@@ -102,7 +84,7 @@ def possible_marks(heights: np.ndarray) -> list[tuple[float, int]]:
         return []
     is_whole = levels == np.round(levels)
     in_counts = 2 * int(counts[is_whole].sum()) > z.size
-    # Of numbers of two decimals one in a hundred is whole: then a whole number is no rarity.
+    # One in a hundred numbers of two decimals is whole by chance: no rarity.
     digits = next((d for d in range(7) if _has_digits(levels, d)), 7)
     is_rare = not in_counts and z.size * 10.0**-digits < _RARE
     usual = np.isin(levels, (0.0, -1.0, *_USUAL))
@@ -110,19 +92,19 @@ def possible_marks(heights: np.ndarray) -> list[tuple[float, int]]:
     ends[[0, -1]] = True
     looked_at = np.flatnonzero(ends | usual | (counts >= _FEWEST) | (is_rare & is_whole))
     looked_at = looked_at[np.argsort(-counts[looked_at], kind="stable")][:_MAX_LOOKED_AT]
-    # Numbers of few digits meet by chance: then many occur as often as the most frequent ones.
+    # Numbers of few digits repeat by chance, many as often as the most frequent one.
     most = 2 * int(np.median(np.sort(counts)[-_MAX_LOOKED_AT // 10 :]))
-    found = []
+    suspects = []
     for n in map(int, looked_at):
-        beside = np.r_[counts[max(0, n - _BESIDE) : n], counts[n + 1 : n + 1 + _BESIDE]].max()
+        neighbours = np.r_[counts[max(0, n - _BESIDE) : n], counts[n + 1 : n + 1 + _BESIDE]].max()
         is_special = ends[n] or usual[n]
-        often = counts[n] > max(beside, 1) if is_special else counts[n] > max(2 * beside, most)
+        often = counts[n] > (max(neighbours, 1) if is_special else max(2 * neighbours, most))
         is_lone = is_rare and (is_special or counts[n] > 1)
         lone = is_whole[n] and (is_lone or (in_counts and _is_apart(levels, n)))
         of_counts = in_counts and ends[n] and levels[n] in _ENDS_OF_COUNTS
         if often or lone or of_counts or levels[n] in _USUAL:
-            found.append((float(levels[n]), int(counts[n])))
-    return found
+            suspects.append((float(levels[n]), int(counts[n])))
+    return suspects
 
 
 def _has_digits(levels: np.ndarray, digits: int) -> bool:
@@ -142,34 +124,16 @@ def _is_apart(levels: np.ndarray, n: int) -> bool:
 
 
 def refuse_or_warn(heights: np.ndarray, path: object, triangles: np.ndarray | None = None) -> str:
-    """Refuse heights far outside the others; returns a sentence on a number that repeats.
+    """Refuse heights far outside the others; sentence on a number that repeats, "" for none.
 
-    Parameters
-    ----------
-    heights : ndarray
-        As for `find_marks`.
-    path : path-like
-        The file, for errors.
-    triangles : (m, 3) int ndarray, optional
-        Of a mesh, whose number that repeats may be the flat bottom of a body. Nothing is suspected
-        of a closed one: gridding says what it is.
-
-    Returns
-    -------
-    str
-        "" if nothing is suspected.
-
-    Raises
-    ------
-    InputError
-        With the key to write.
+    Of a mesh, such a number may be the flat bottom of a body; a closed one is left to gridding.
     """
     marks = find_marks(heights)
     if not marks and np.isin(heights, _USUAL).any():
         z = heights[np.isfinite(heights)]
         ends = float(z.min()), float(z.max())
-        found = [(value, cells) for value, cells in possible_marks(z) if value in _USUAL]
-        marks = [Mark(value, cells, True, *ends) for value, cells in found]
+        usual = [(value, cells) for value, cells in possible_marks(z) if value in _USUAL]
+        marks = [Mark(value, cells, True, *ends) for value, cells in usual]
     if marks and triangles is not None and is_closed(triangles):
         return ""
     far = [mark for mark in marks if mark.outside]
@@ -222,7 +186,7 @@ def _far_outside(heights: np.ndarray, present: np.ndarray) -> float | None:
         gap = sign * (float(others.min() if sign > 0 else others.max()) - extreme)
         drawn = _drawn(others)
         low, high = np.percentile(drawn, [25, 75])
-        # Another mark among the others may be in a quarter of the cells: then its turn comes first.
+        # A second mark in a quarter of the cells widens the quartiles; it is found first.
         if high > low and gap > _FAR * (high - low) and np.unique(drawn).size >= _MIN_LEVELS:
             return extreme
     return None
@@ -231,12 +195,12 @@ def _far_outside(heights: np.ndarray, present: np.ndarray) -> float | None:
 def _repeated(heights: np.ndarray, present: np.ndarray) -> float | None:
     """A number that repeats many times as often as any other, or alone fills whole blocks."""
     drawn = _drawn(heights[present])
-    found = _dominant(drawn)
-    if found is None and heights.ndim == 2:
-        found = _dominant(heights[_flat(heights) & present], fewest=_REPEATED // 3)
-        if found is not None and np.unique(drawn).size < _MIN_LEVELS:
+    value = _dominant(drawn)
+    if value is None and heights.ndim == 2:
+        value = _dominant(heights[_flat(heights) & present], fewest=_REPEATED // 3)
+        if value is not None and np.unique(drawn).size < _MIN_LEVELS:
             return None
-    return found
+    return value
 
 
 def _dominant(values: np.ndarray, fewest: int = _REPEATED) -> float | None:

@@ -23,31 +23,19 @@ _ATTRIBUTES = (
     *("_Unsigned", "spacing"),
     *("_FillValue", "missing_value", "valid_min", "valid_max", "valid_range"),
 )
-#: What netCDF-4 writes into HDF5 for a dimension without coordinates.
+#: Mark of netCDF-4 in HDF5 for a dimension without coordinates.
 _NO_COORDINATES = b"This is a netCDF dimension but not a netCDF variable"
 
 
 @dataclass(frozen=True)
 class Variable:
-    """An array in a file.
-
-    Attributes
-    ----------
-    shape : tuple of int
-    dtype : dtype
-    dimensions : tuple of str
-        For each axis the name of the variable that holds its coordinates, if there is one.
-    attributes : dict
-        Those that say how the numbers are meant.
-    read : callable
-        Gives the numbers as stored.
-    """
+    """Array in a file."""
 
     shape: tuple
     dtype: np.dtype
-    dimensions: tuple
-    attributes: dict
-    read: Callable[[], np.ndarray]
+    dimensions: tuple  # names of the variables of coordinates, one an axis
+    attributes: dict  # those that determine the meaning of the numbers
+    read: Callable[[], np.ndarray]  # returns the numbers as stored
 
 
 @contextmanager
@@ -60,13 +48,7 @@ def open_variables(path: Path) -> Iterator[dict[str, Variable]]:
 
 
 def choose_variable(variables: dict, wanted: str | None, path: Path) -> str:
-    """Choose the 2-D numeric variable that ``wanted`` names, or the only one.
-
-    Raises
-    ------
-    InputError
-        If it is absent, ambiguous or too large.
-    """
+    """Name of the wanted or only 2-D numeric variable; a huge one is refused."""
     name = choose_array(table_names(variables), wanted, path)
     refuse_larger(math.prod(variables[name].shape) * 8, path)
     return name
@@ -81,6 +63,15 @@ def table_names(variables: dict) -> list[str]:
         and min(variable.shape) > 1
         and name.rpartition("/")[2] != MASK
     ]
+
+
+def single_numbers(variables: dict) -> dict[str, float]:
+    """Variables that hold one number alone, by name."""
+    return {
+        name: float(variable.read().ravel()[0])
+        for name, variable in variables.items()
+        if math.prod(variable.shape) == 1 and variable.dtype.kind in "fiu"
+    }
 
 
 @contextmanager
@@ -131,15 +122,15 @@ def _read_hdf5(dataset, path: Path) -> np.ndarray:
         raise InputError(
             f"{path}: dataset {dataset.name!r} lies in another file; store the numbers in this one"
         )
-    if dataset.chunks:  # one is unpacked as a whole
+    if dataset.chunks:  # a chunk is unpacked as a whole
         refuse_larger(math.prod(dataset.chunks) * dataset.dtype.itemsize, path)
     return dataset[()]
 
 
 def _attributes(stored) -> dict:
     """Known attributes, texts as str."""
-    known = {name: stored[name] for name in _ATTRIBUTES if name in stored}
-    return {name: _plain(value) for name, value in known.items()}
+    attributes = {name: stored[name] for name in _ATTRIBUTES if name in stored}
+    return {name: _plain(value) for name, value in attributes.items()}
 
 
 def _plain(value: Any) -> Any:

@@ -10,7 +10,7 @@ from ..core.strips import strips
 from ..core.window import spacing_of
 from .suspect import Suspects, find_suspects
 
-#: What becomes of outlying cells, by the key ``outliers``.
+#: Treatments of outlying cells, values of the key ``outliers``.
 _TREATED = {
     "keep": "kept",
     "mask": "made missing",
@@ -41,37 +41,18 @@ def clean_faces(
 ) -> tuple[list[xr.DataArray], dict[str, np.ndarray], dict]:
     """Suspicious cells of the scanned faces counted, masked or filled, and small holes filled.
 
-    Parameters
-    ----------
-    scans : list of DataArray (y, x)
-        Heights in mm on one grid, as `scan.read_faces` gives them, the lower face first.
-    outliers : {"keep", "mask", "fill"}
-        "keep" leaves outliers as they are, "mask" makes them missing. "fill" puts the harmonic
-        surface in place of outliers, lone spikes and deep overlaps (of the face that stands off
-        more), see `surface.suspect`.
-    largest_hole : int
-        Rows and columns of the largest hole that is filled; 0 fills none.
-    judged : bool
-        False looks for no suspicious cells where they would be kept: of a surface that was made,
-        none was measured wrong.
-    name : str
-        The specimen, for errors.
+    Scans are heights (y, x) in mm on one grid, the lower face first. ``outliers`` "keep" leaves
+    outliers as they are, "mask" makes them missing, and "fill" puts the harmonic surface in place
+    of outliers, lone spikes and deep overlaps (of the face that stands off more), see
+    `surface.suspect`. ``largest_hole`` is the rows and columns of the largest hole that is filled.
+    ``judged`` is False of a synthetic surface: no suspicious cells are looked for where they would
+    be kept.
 
-    Returns
-    -------
-    faces : list of DataArray
-    cells : dict
-        ``outlier``, ``spike`` and ``filled``, in any of the faces; ``overlap`` of the faces as they
-        are now; ``sparse``, far from any point measured, of any face; ``suspect_lower`` and, of two
-        faces, ``suspect_upper``: all of these, of an overlap the deep ones. (y, x) bool ndarrays.
-    attrs : dict
-        ``outliers``, ``outlier_count``, ``spike_count``, ``filled_count`` and, in words,
-        ``cleaning``.
-
-    Raises
-    ------
-    InputError
-        If a setting is none of those allowed, or every cell would be masked.
+    Returned are the faces; masks (y, x) of cells: ``outlier``, ``spike`` and ``filled``, in any of
+    the faces; ``overlap`` of the faces as they are now; ``sparse``, far from any point measured, of
+    any face; ``suspect_lower`` and, of two faces, ``suspect_upper``: all of these, of an overlap
+    the deep ones; and the attributes ``outliers``, ``outlier_count``, ``spike_count``,
+    ``filled_count`` and, in words, ``cleaning``.
     """
     if outliers not in _TREATED:
         allowed = ", ".join(repr(value) for value in _TREATED)
@@ -158,7 +139,7 @@ def _in_words(attrs: dict, largest_hole: int, missing: int) -> str:
 
 
 def find_outliers(heights: np.ndarray) -> np.ndarray:
-    """Find spikes of a scan: single cells and clusters of up to 3 x 3.
+    """Mask (ny, nx) of spikes of a scan in any unit: cells and clusters of up to 3 x 3.
 
     A cell's surroundings are the present cells of the 7 x 7 around it (at the rim of the scan, of
     the nearest 7 x 7 inside), of the surface without its mean plane. The nine highest and the nine
@@ -168,22 +149,12 @@ def find_outliers(heights: np.ndarray) -> np.ndarray:
     |height - median of the surroundings|, as in the rule of Hampel 1974, and at least the step in
     which heights are recorded), and by more than 3 times the range of those that remain. A cell
     with fewer than 25 present cells around it is not judged.
-
-    Parameters
-    ----------
-    heights : (ny, nx) ndarray
-        NaN where missing; any unit.
-
-    Returns
-    -------
-    (ny, nx) bool ndarray
-        False where missing.
     """
     flagged = np.zeros(heights.shape, dtype=bool)
     present = np.isfinite(heights)
     if min(heights.shape) < _SIDE or present.sum() < _FEWEST or np.ptp(heights[present]) == 0:
         return flagged
-    # Less the plane, because surroundings are one-sided at a rim.
+    # The plane is taken off because surroundings are one-sided at a rim.
     z = without_mean_plane(heights)
     deviation, margin, relief = _surroundings(z, present)
     if not np.isfinite(deviation).any():
@@ -232,30 +203,15 @@ def fill_holes(
     largest: int,
     removed: np.ndarray | None = None,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Fill small holes with the harmonic surface that continues their rims.
+    """Copy of heights (ny, nx) with small holes filled harmonically, and the mask of filled cells.
 
     A hole is a set of missing cells connected along rows and columns. It is filled if it does not
     touch the rim of the array and has at most ``largest`` rows and columns; the other missing cells
     stay missing. The surface solves the five-point Laplace equation with the cells around the hole
-    as its boundary values, so it has no extremum of its own.
+    as its boundary values, so it has no extremum of its own. The spacing is (dy, dx).
 
-    Parameters
-    ----------
-    heights : (ny, nx) ndarray
-        NaN where missing.
-    spacing : (float, float)
-        (dy, dx), in one unit.
-    largest : int
-        0 fills nothing.
-    removed : (ny, nx) bool ndarray, optional
-        Missing cells whose holes are filled whatever their size, where they hold no other missing
-        cells and do not touch the rim.
-
-    Returns
-    -------
-    heights : (ny, nx) ndarray
-        A copy.
-    filled : (ny, nx) bool ndarray
+    Holes of ``removed`` cells are filled whatever their size, where they hold no other missing
+    cells and do not touch the rim.
     """
     fillable = _small_holes(~np.isfinite(heights), largest, removed)
     filled = heights.copy()

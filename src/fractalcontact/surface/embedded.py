@@ -63,9 +63,9 @@ def _without_roll_off(make: Callable[..., np.ndarray]) -> Callable[..., np.ndarr
 
 
 def _cantor_punch(shape: tuple[int, int], recipe: Mapping) -> np.ndarray:
-    """The extruded punch of two parts, of three nodes a generation, whose profile has Delta_g - 1.
+    """Extruded punch of two parts and three nodes a generation, with Delta_g of ``recipe``.
 
-    Dimension of the profile: 1 + ln(2/lowering)/ln 3, see
+    That of the profile is 1 + ln(2/lowering)/ln 3, see
     :func:`surface.known_dimension.cantor_punch`.
     """
     lowering = 2 / 3 ** (recipe["dimension"] - 2)

@@ -22,10 +22,9 @@ def weierstrass_mandelbrot(
 ) -> np.ndarray:
     """Weierstrass-Mandelbrot surface: waves of frequencies in geometric series.
 
-    Parameters, returns and errors as :func:`surface.synthesis.self_affine`, without its roll-off.
+    Parameters, returns and errors are those of :func:`surface.synthesis.self_affine`, without roll-
+    off.
 
-    Notes
-    -----
     Ausloos & Berman, Proc. R. Soc. A 400 (1985) 331: amplitudes gamma^(-H n) at frequencies
     gamma^n, from waves of twice the longer side to waves of two nodes, in evenly spread directions
     with random phases. The whole fan of directions is turned at random from frequency to frequency.
@@ -54,10 +53,8 @@ def random_midpoint(
 ) -> np.ndarray:
     """Surface by a random iterated function: midpoints, and random additions everywhere.
 
-    Parameters, returns and errors as :func:`weierstrass_mandelbrot`.
+    Parameters, returns and errors are those of :func:`weierstrass_mandelbrot`.
 
-    Notes
-    -----
     Voss' successive random additions (Saupe in Peitgen & Saupe (1988), The Science of Fractal
     Images, sect. 2.3.2): each step halves the spacing, sets the new nodes to the mean of their
     neighbours and adds to all nodes a number of standard deviation 2^(-H step). Displacing the new
@@ -81,38 +78,19 @@ def random_midpoint(
 def cantor_punch(
     generations: int, *, parts: int = 2, narrowing: float = 1.5, lowering: float = 1.3
 ) -> np.ndarray:
-    """Profile of a Cantor punch: steps upon steps, each generation narrower and lower.
+    """Profile (n,) of a Cantor punch: steps upon steps, each generation narrower and lower.
 
     Each step of a generation carries ``parts`` equal steps of the next, evenly spread from one of
-    its ends to the other, ``narrowing`` times narrower together and ``lowering`` times lower.
+    its ends to the other, ``narrowing`` times narrower together and ``lowering`` times lower. Its
+    length is 1, as is the height of the first step; it has ``(parts narrowing)^generations`` nodes.
 
-    Parameters
-    ----------
-    generations : int
-        From 1; the profile has ``(parts narrowing)^generations`` nodes.
-    parts : int
-        From 2.
-    narrowing : float
-        More than 1, with a whole ``parts narrowing``, so that all steps end at nodes.
-    lowering : float
-        More than 1.
+    ``parts`` is 2 or more, ``narrowing`` and ``lowering`` more than 1, and ``parts narrowing``
+    whole, so that all steps end at nodes; ValueError otherwise.
 
-    Returns
-    -------
-    (n,) float64 ndarray
-        Heights; the profile's length is 1, as is the height of the first step.
-
-    Raises
-    ------
-    ValueError
-        If a step would not end at a node.
-
-    Notes
-    -----
     Borodich & Mosolov, J. Appl. Math. Mech. 56 (1992) 681; its parts and ratios as in Warren &
     Krajcinovic, Int. J. Solids Struct. 33 (1996) 1. The set at which it touches a plane has the
-    dimension ln(parts) / ln(parts narrowing); the profile, counted with the flanks of its steps,
-    1 + ln(parts / lowering) / ln(parts narrowing), or 1 if that is less.
+    dimension ln(parts) / ln(parts narrowing); the profile, counted with the flanks of its steps, 1
+    + ln(parts / lowering) / ln(parts narrowing), or 1 if that is less.
     """
     ratio = round(parts * narrowing)
     gap = (ratio - parts) / (parts - 1)
@@ -131,15 +109,5 @@ def cantor_punch(
 
 
 def extruded(profile: ArrayLike, rows: int) -> np.ndarray:
-    """A surface that is the same profile along every row: one dimension more than the profile.
-
-    Parameters
-    ----------
-    profile : (nx,) array_like
-    rows : int
-
-    Returns
-    -------
-    (rows, nx) ndarray
-    """
+    """Surface (rows, nx) of one profile in every row: one dimension more than the profile."""
     return np.tile(np.asarray(profile), (rows, 1))

@@ -149,18 +149,9 @@ def window_arguments(settings: SpecimenSettings) -> dict:
 
 
 def largest_offset(specimen: xr.Dataset, direction: str) -> int:
-    """Cells the lower window can slide before it leaves the scan or meets a hole.
+    """Cells the lower window can slide within the scan and its holes; 0 against a flat face.
 
-    Parameters
-    ----------
-    specimen : Dataset
-    direction : {"E", "N", "W", "S"}
-        E: the lower window moves to larger x, h = z_l(xi + v d) - z_u(xi).
-
-    Returns
-    -------
-    int
-        0 against a flat face, on which sliding changes nothing.
+    Towards E the lower window moves to larger x, h = z_l(xi + v d) - z_u(xi).
     """
     axis, sign = axis_and_sign(direction)
     if not slides(specimen.attrs["opposite"]):

@@ -19,11 +19,11 @@ CONFIRMED = 4.0
 #: neighbours, exceed this many times what is typical: no error of the registration or of the mean
 #: gap, which neighbours share, makes it.
 DEEP = 3.0
-#: Fewer neighbours present, or cells around, and a cell is not judged.
+#: A cell with fewer neighbours, or fewer cells around it, is not judged.
 _MIN_NEIGHBOURS, _MIN_AROUND = 5, 12
 _HALF = 3  # cells around: 7 x 7 but the one in the middle
 _NORMAL = 1.4826  # standard deviation of a normal distribution / its median absolute deviation
-#: What arithmetic may add to equal heights, as a part of the largest.
+#: Rounding of equal heights, as a fraction of the largest.
 _ROUNDING = 1e-12
 _NEIGHBOURS = [(i, j) for i in (-1, 0, 1) for j in (-1, 0, 1) if (i, j) != (0, 0)]
 
@@ -42,15 +42,8 @@ class Suspects(NamedTuple):
 
 
 def find_suspects(scans: list[xr.DataArray]) -> Suspects:
-    """Find lone spikes of one or two faces, and where two faces overlap.
+    """Lone spikes of one or two faces on one grid, the lower first, and cells that overlap.
 
-    Parameters
-    ----------
-    scans : list of DataArray (y, x)
-        Heights on one grid, the lower face first, as `scan.read_faces` gives them.
-
-    Notes
-    -----
     A cell of one face is a spike where it stands off the median of its eight neighbours by more
     than 8 times the typical deviation of a cell around it (1.4826 times the median of such
     deviations in the 7 x 7 around, at least that of the whole scan), or by more than 4 times where
@@ -69,7 +62,7 @@ def find_suspects(scans: list[xr.DataArray]) -> Suspects:
         overlap = gap < -_ROUNDING * max(np.nanmax(abs(scan.values)) for scan in scans)
         deep = overlap & (np.maximum(gap, _deviation(gap)) < -DEEP * typical_deviation(gap))
     for spike, ratio in zip(spikes, towards, strict=True):
-        # What stands off towards the other face takes away from the gap.
+        # A cell that stands off towards the other face narrows the gap.
         confirmed = (overlap & (ratio > CONFIRMED)) | (
             (abs(ratio) > CONFIRMED) & (abs(of_gap) > CONFIRMED) & (ratio * of_gap < 0)
         )
@@ -80,29 +73,17 @@ def find_suspects(scans: list[xr.DataArray]) -> Suspects:
 def height_is_known(upper: xr.DataArray) -> bool:
     """True if the mean gap was measured; else the upper face was set down until some cells touch.
 
-    Parameters
-    ----------
-    upper : DataArray
-        With the attribute ``registration`` of :func:`registration.pairs.register`, if it was
-        registered.
+    The attribute ``registration`` of :func:`registration.pairs.register` tells, if there is one.
     """
     record = json.loads(upper.attrs.get("registration", "{}"))
     return record.get("gap_mean_before_mm", 0.0) is not None
 
 
 def stand_off(heights: np.ndarray) -> np.ndarray:
-    """Deviation of each cell from its neighbours, in multiples of the typical one around it.
+    """Deviation of each cell (ny, nx) from its neighbours, over the typical deviation nearby.
 
-    Parameters
-    ----------
-    heights : (ny, nx) ndarray
-        NaN where missing; any unit.
-
-    Returns
-    -------
-    (ny, nx) ndarray
-        Signed, positive upwards; 0 where it is missing, cannot be judged, or is less than
-        `CONFIRMED`, so that most need no surroundings.
+    It is positive upwards; 0 where the cell is missing, cannot be judged, or deviates by less than
+    `CONFIRMED`.
     """
     deviation = _deviation(heights)
     typical = _typical(deviation, heights)
@@ -166,20 +147,10 @@ def _middle(ordered: np.ndarray, counts: np.ndarray) -> np.ndarray:
 def overlap_statistics(
     specimen: xr.Dataset, window: tuple[slice, slice]
 ) -> dict[str, tuple[float, float]]:
-    """Overlap and gap of the two faces, in the whole scan and in the window.
+    """Overlap and gap of the two faces of a specimen, as pairs (scan, window).
 
-    Parameters
-    ----------
-    specimen : Dataset
-        From :func:`surface.specimen.make_specimen`, of two scanned faces.
-    window : (slice, slice)
-        Its rows and columns.
-
-    Returns
-    -------
-    dict
-        ``cells``, ``fraction`` (of the cells both faces have), ``depth`` (mm, the deepest),
-        ``gap_mean`` and ``gap_sd`` (mm): pairs (scan, window).
+    ``window`` is its rows and columns. The numbers are ``cells``, ``fraction`` (of the cells both
+    faces have), ``depth`` (mm, the deepest), ``gap_mean`` and ``gap_sd`` (mm).
     """
     gap = specimen["upper"].values - specimen["lower"].values
     overlap = specimen["overlap"].values

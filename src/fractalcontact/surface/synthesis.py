@@ -85,29 +85,17 @@ def band_limited(
 
     Its power spectral density is C(q) = C_0 q^(-2 (1 + H)) for q_r < q <= q_s, C(q_r) below and 0
     above, with q_r = 2 pi / roll_off and q_s = 2 pi / cut_off. The heights are not scaled: larger
-    surfaces continue smaller ones in the mean, and the mean square height is the integral of
-    C(q) d^2q / (2 pi)^2.
+    surfaces continue smaller ones in the mean, and the mean square height is the integral of C(q)
+    d^2q / (2 pi)^2. Noise, patch and the other parameters are those of :func:`self_affine`.
 
     Parameters
     ----------
-    shape, spacing, hurst, seed
-        As for :func:`self_affine`, as are the noise and the patch that is cut from it.
     prefactor : float
         C_0, mm^(2 - 2H).
     cut_off : float
         Shortest wavelength, mm; two spacings or more.
     roll_off : float or None
         Wavelength above which the spectrum is flat, mm; None without one.
-
-    Returns
-    -------
-    (ny, nx) float64
-        Heights about their mean plane, mm.
-
-    Raises
-    ------
-    ValueError
-        If H, a length, the prefactor or the shape is out of range.
 
     Notes
     -----
@@ -150,13 +138,7 @@ def band_slope(
 
 
 def check_surface(shape: tuple[int, int], hurst: float, spacing: float, rms: float) -> None:
-    """Refuse parameters from which no surface can be made.
-
-    Raises
-    ------
-    ValueError
-        If H, a length or the shape is out of range.
-    """
+    """Refuse H, lengths and a shape from which no surface can be made, with ValueError."""
     if not 0 < hurst < 1:
         raise ValueError(f"the Hurst exponent must lie between 0 and 1, not {hurst}")
     if min(spacing, rms) <= 0:
@@ -177,22 +159,11 @@ def grid_side(shape: tuple[int, int]) -> int:
 
 
 def filtered_noise(density: np.ndarray, shape: tuple[int, int], seed: int) -> np.ndarray:
-    """Gaussian patch: white noise of variance one whose spectrum is multiplied by a density.
+    """Gaussian patch in mm: white noise of variance one whose spectrum is multiplied by a density.
 
-    Parameters
-    ----------
-    density : (side, side // 2 + 1) ndarray
-        Power spectral density over the area of a cell, mm2, on the half plane of
-        `scipy.fft.rfft2` of the periodic grid of :func:`grid_side` nodes.
-    shape : (ny, nx)
-        Of the patch.
-    seed : int
-        The same seed gives the same bits.
-
-    Returns
-    -------
-    (ny, nx) float64
-        mm.
+    ``density`` (side, side // 2 + 1) is the power spectral density over the area of a cell, mm2, on
+    the half plane of `scipy.fft.rfft2` of the periodic grid of :func:`grid_side` nodes. The same
+    seed gives the same bits.
     """
     side = len(density)
     noise = np.random.Generator(np.random.PCG64(seed)).standard_normal((side, side))
@@ -234,17 +205,6 @@ def _power_spectral_density(
 
 
 def disc_outline(shape: tuple[int, int], spacing: float, diameter: float) -> np.ndarray:
-    """Cells whose centres lie within a disc at the middle of the grid.
-
-    Parameters
-    ----------
-    shape : (ny, nx)
-    spacing, diameter : float
-        In mm.
-
-    Returns
-    -------
-    (ny, nx) bool
-    """
+    """Cells (ny, nx) whose centres lie within a disc at the middle of the grid; lengths in mm."""
     y, x = ((np.arange(n) - (n - 1) / 2) * spacing for n in shape)
     return np.hypot(y[:, np.newaxis], x[np.newaxis, :]) <= diameter / 2

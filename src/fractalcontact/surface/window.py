@@ -12,6 +12,7 @@ from scipy import ndimage
 
 from ..core.directions import DIRECTIONS, axis_and_sign, slides
 from ..core.errors import InputError
+from ..core.limits import SMALLEST_SIDE
 from ..core.text import percent
 from ..core.window import spacing_of
 
@@ -52,24 +53,10 @@ class _Wanted(NamedTuple):
 
 
 def place_window(specimen: xr.Dataset, request: WindowRequest) -> dict:
-    """Size and place of a window: hole-free, whole cells, where it can slide.
+    """Size and place of a window in whole cells, hole-free, where it can slide.
 
-    Parameters
-    ----------
-    specimen : xr.Dataset
-        Without a window.
-    request : WindowRequest
-
-    Returns
-    -------
-    dict
-        Attributes ``window_y0``, ``window_x0``, ``window_ny``, ``window_nx``, ``window_mm`` and
-        ``window_note``.
-
-    Raises
-    ------
-    InputError
-        If there is no place for it.
+    Returned are the attributes ``window_y0``, ``window_x0``, ``window_ny``, ``window_nx``,
+    ``window_mm`` and ``window_note``. A window without a place is refused.
     """
     name, multiple = specimen.attrs["name"], request.multiple
     if not (isinstance(multiple, int) and multiple >= 1):
@@ -83,6 +70,11 @@ def place_window(specimen: xr.Dataset, request: WindowRequest) -> dict:
         _require_inside(specimen, request.window_centre, middle)
     shape = tuple(n // multiple * multiple for n in wanted.cells)
     _require_room(specimen, wanted, shape, multiple)
+    if automatic and min(shape) < SMALLEST_SIDE and (holes := _hole_words(specimen)):
+        raise InputError(
+            f"{name}: holes leave a window of {shape[1]} x {shape[0]} cells (x, y), where at least "
+            f"{SMALLEST_SIDE} x {SMALLEST_SIDE} hold any roughness{holes}"
+        )
     corner, place_note = _find_place(specimen, shape, wanted, request.window_centre is not None)
     notes = [place_note] if place_note else []
     if automatic and slides(specimen.attrs["opposite"]):
@@ -274,11 +266,7 @@ def _largest_square(valid: np.ndarray, spacing) -> tuple[int, int]:
 def hole_free_square(valid: np.ndarray, spacing: tuple[float, float]) -> tuple[slice, slice]:
     """Rows and columns of the largest square without holes, the one nearest to the middle.
 
-    Parameters
-    ----------
-    valid : (ny, nx) bool ndarray
-    spacing : (float, float)
-        (dy, dx), mm: it is square in mm.
+    It is square in mm by the spacing (dy, dx).
     """
     shape = _largest_square(valid, spacing)
     corner = _nearest(_free_places(valid, shape), shape, _middle(valid.shape), spacing)

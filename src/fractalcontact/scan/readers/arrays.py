@@ -3,18 +3,16 @@
 import contextlib
 import math
 import zipfile
-from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 
 from ...core.errors import InputError
-from ..array_hints import array_hints
-from ..draft import Hints
+from ..array_hints import require_array
 from ..format import Format
 from ..options import ScanOptions
 from ..raw import RawScan, reading, refuse_larger
-from ..stated import Needs, require_stated
 from ..tables import choose_array, is_table, table_to_raw
 
 _HEADER_READERS = {
@@ -26,13 +24,7 @@ _SMALL = 1000  # bytes of an array of one number
 
 
 def read_npy(path: Path, options: ScanOptions) -> RawScan:
-    """Read a ``.npy`` file.
-
-    Raises
-    ------
-    InputError
-        If it is damaged, pickled, or no 2-D array of numbers.
-    """
+    """Array of a ``.npy`` file; a damaged or pickled one is refused."""
     with reading(path, ".npy array"):
         _refuse_pickled(path)
         # Mapped, so that a header promising more than the file holds fails at once.
@@ -42,43 +34,22 @@ def read_npy(path: Path, options: ScanOptions) -> RawScan:
             f"{path}: expected a 2-D array of numbers, found {values.dtype} of shape {values.shape}"
         )
     refuse_larger(values.size * 8, path)
-    _require(path, options, {"": values.shape}, lambda name: values)
+    require_array(path, options, {"": values.shape}, lambda name: values)
     return table_to_raw(_as_float(values), options, str(path), reader=_reader("npy"))
 
 
 def read_npz(path: Path, options: ScanOptions) -> RawScan:
-    """Read one array of a ``.npz`` file, and only the headers of the others.
-
-    Raises
-    ------
-    InputError
-        If it is damaged, or the wanted array is absent, ambiguous or pickled.
-    """
+    """One array of a ``.npz`` file and the headers of the others; a pickled one is refused."""
     with reading(path, ".npz archive"):
         with zipfile.ZipFile(path) as archive:
             tables = _tables_of(archive)
-        _require(path, options, tables, lambda name: _array_of(path, name))
+        read = partial(_array_of, path)
+        require_array(path, options, tables, read, partial(_single_numbers, path))
         variable = choose_array(list(tables), options.variable, path)
         refuse_larger(math.prod(tables[variable]) * 8, path)
-        values = _array_of(path, variable)
+        values = read(variable)
     notes = (f"array {variable!r} of the archive",)
     return table_to_raw(_as_float(values), options, str(path), reader=_reader("npz"), notes=notes)
-
-
-def _require(
-    path: Path,
-    options: ScanOptions,
-    tables: dict[str, tuple],
-    read: Callable[[str], np.ndarray],
-) -> None:
-    """Refuse arrays of which the sidecar does not say all."""
-    needs = Needs(table=True, arrays=list(tables))
-
-    def hints() -> Hints:
-        small = _single_numbers(path) if path.suffix.lower() == ".npz" else {}
-        return array_hints(tables, options.variable, small, read)
-
-    require_stated(path, options, needs, hints)
 
 
 def _array_of(path: Path, name: str) -> np.ndarray:
@@ -90,14 +61,14 @@ def _single_numbers(path: Path) -> dict[str, float]:
     """Single numbers of an archive by name: a spacing may be among them."""
     with zipfile.ZipFile(path) as archive:
         small = [m.filename for m in archive.infolist() if m.file_size < _SMALL]
-    found = {}
+    numbers = {}
     for member in small:
         name = member.removesuffix(".npy")
         with contextlib.suppress(ValueError, KeyError):  # pickled, or no array
             values = _array_of(path, name)
             if values.size == 1 and values.dtype.kind in "fiu":
-                found[name] = float(values.ravel()[0])
-    return found
+                numbers[name] = float(values.ravel()[0])
+    return numbers
 
 
 def _refuse_pickled(path: Path) -> None:

@@ -21,14 +21,9 @@ _COUNT = 4  # bytes in front of an array, its number of items
 
 
 def read_gwyddion(path: Path, options: ScanOptions) -> RawScan:
-    """Read a height channel: the one key ``variable`` names, or the first.
+    """Height channel that ``variable`` names, or the first.
 
     A channel's size is that of all pixels, its first row the top; masked pixels are missing.
-
-    Raises
-    ------
-    InputError
-        If the file is damaged, no channel holds heights, or the wanted one is absent.
     """
     import SurfaceTopography
     from SurfaceTopography.IO import GWYReader
@@ -55,7 +50,7 @@ def read_gwyddion(path: Path, options: ScanOptions) -> RawScan:
         values,
         "matrix",
         reader=f"SurfaceTopography {SurfaceTopography.__version__} / gwy",
-        # Without its unit a size is none: new files have one pixel a unit.
+        # A size without a unit is no length: new files state one unit per pixel.
         spacing=spacing if unit_xy else None,
         unit_xy=stated_unit(unit_xy),
         unit_z=stated_unit(unit_z),

@@ -35,8 +35,8 @@ LATERAL_FAULTS = {
 #: the last and others over all cells: MountainsMap writes (n - 1) dx to .bcrf, TrueMap to .tmd,
 #: GelSight writes n dx to .tmd. Like SurfaceTopography and Gwyddion we take n dx.
 LENGTH_UNCLEAR = ("bcr", "tmd")
-#: Formats whose rows are stored as an image's are, and as SurfaceTopography gives them: the first
-#: one lies at the smallest y here, where Gwyddion draws it at the top.
+#: Formats whose first row lies at the smallest y, as SurfaceTopography gives them; Gwyddion draws
+#: it at the top, as that of an image.
 FIRST_ROW_UNCLEAR = ("sur", "sdf", "bcr", "vk")
 
 
@@ -54,15 +54,10 @@ def instrument_formats() -> dict[str, tuple[str, ...]]:
 
 
 def read_instrument(path: Path, options: ScanOptions) -> RawScan:
-    """Read an instrument's file; its content must confirm the format of the extension.
+    """Heights in an instrument's file, whose content must confirm the format of its extension.
 
-    A size the file states is that of all cells, n dx, so the spacing is size / n.
-    SurfaceTopography indexes heights [x, y] with both ascending, so they are transposed.
-
-    Raises
-    ------
-    InputError
-        If the file is damaged, holds line scans or no heights, or lacks the channel asked for.
+    A size the file states is that of all cells, n dx, so the spacing is size / n. SurfaceTopography
+    indexes heights [x, y] with both ascending, so they are transposed.
     """
     reasons = []
     for format_name in instrument_formats()[path.suffix.lstrip(".").lower()]:
@@ -88,7 +83,7 @@ def _read_format(path: Path, format_name: str, wanted: str | None) -> RawScan:
     try:
         channel, notes = _choose_channel(reader, wanted, path)
         states_size = channel.physical_sizes is not None
-        # A format that states no size wants one: any will do, it is not passed on.
+        # SurfaceTopography requires a size; where none is stated, this one is not used.
         given = {} if states_size else {"physical_sizes": channel.nb_grid_pts}
         topography = reader.topography(channel_index=channel.index, **given)
         heights = np.ma.filled(np.ma.array(topography.heights(), dtype=np.float64), np.nan)
@@ -159,7 +154,7 @@ def _spacing(topography) -> tuple[float, float]:
     return dx, dy
 
 
-#: Those of SurfaceTopography, which takes a second to import.
+#: Endings that SurfaceTopography reads, listed because its import takes a second.
 _ENDINGS = (
     "001 002 003 004 005 al3d apx bcr bcrf cur dat datx di ezd frt hgt ibw jpk lext mdt mi mnt nid "
     "nms oir opd opdx os3d plu plux poir qep sdf spm stp sur tif tiff tmd tom top vk3 vk4 vk6 vk7 "

@@ -3,8 +3,8 @@
 import re
 import warnings
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -13,18 +13,23 @@ from ...core.labels import printable
 from ...core.text import percent
 from ...core.units import length_factor
 from ...gridding.measured import NOTE
-from ..array_hints import array_hints
-from ..draft import Hints
+from ..array_hints import require_array
 from ..format import Format
 from ..options import ScanOptions
 from ..raw import RawScan, reading, stated_unit
-from ..stated import Needs, require_stated
 from ..tables import table_to_raw
-from ..variables import MASK, Variable, choose_variable, open_variables, table_names
+from ..variables import (
+    MASK,
+    Variable,
+    choose_variable,
+    open_variables,
+    single_numbers,
+    table_names,
+)
 
 #: Coordinates may stray this fraction of a cell from equal steps: float32 leaves as much.
 REGULAR = 0.01
-#: What netCDF leaves in cells that nobody wrote.
+#: Numbers that netCDF leaves in cells that were not written.
 _UNWRITTEN = {
     "f4": 9.969209968386869e36,
     "f8": 9.969209968386869e36,
@@ -44,20 +49,12 @@ class Axis:
 
 
 def read_labelled(path: Path, options: ScanOptions) -> RawScan:
-    """Read one 2-D variable of a netCDF or HDF5 file.
+    """2-D variable of a netCDF or HDF5 file.
 
     A variable whose attribute ``units``, and those of the coordinates x and y of its dimensions,
-    are units of length describes itself; ``positive: down`` of it is honoured, in any case. Any
-    other is read as its sidecar says. Packing, fill values and valid ranges are decoded (CF
-    conventions); where a variable ``mask`` is not zero, cells are missing (SurfaceTopography's
-    convention).
-
-    Raises
-    ------
-    InputError
-        If the file is damaged, the wanted variable absent or ambiguous, a coordinate irregular or
-        contradicting itself, ``positive`` neither up nor down, the data lie in another file, or the
-        sidecar does not state all that is needed.
+    are units of length describes itself, and its ``positive: down`` is honoured. Any other is read
+    as its sidecar states. Packing, fill values and valid ranges are decoded (CF conventions); where
+    a variable ``mask`` is not zero, cells are missing (SurfaceTopography's convention).
     """
     with reading(path, "netCDF or HDF5 file"), open_variables(path) as variables:
         names = table_names(variables)
@@ -65,8 +62,11 @@ def read_labelled(path: Path, options: ScanOptions) -> RawScan:
         laid_out = options.layout or options.axes or options.columns
         axes = None if laid_out else _coordinates(variables.get(wanted or ""), variables, path)
         if axes is None and not (len(names) > 1 and wanted is None and _any_conforms(variables)):
-            needs = Needs(table=True, arrays=names)
-            require_stated(path, options, needs, lambda: _hints(variables, names, options))
+            tables = {name: variables[name].shape for name in names}
+            single, words = partial(single_numbers, variables), _words(variables, names)
+            require_array(
+                path, options, tables, lambda name: decoded(variables[name])[0], single, words
+            )
         name = choose_variable(variables, options.variable, path)
         values, notes = _values(name, variables)
     notes = (f"variable {name!r}", *notes)
@@ -87,7 +87,7 @@ def read_labelled(path: Path, options: ScanOptions) -> RawScan:
         unit_xy=columns.unit,
         unit_z=_unit(variables[name]),
         spacing=(abs(columns.step), dy),
-        # The coordinates say where the rows lie, and they ascend by now.
+        # Rows ascend in y by now, as their coordinates state.
         first_row="bottom",
         heights=_direction(attributes, options, f"{path}: variable {name!r}"),
         notes=notes,
@@ -145,7 +145,7 @@ def decoded(variable: Variable) -> tuple[np.ndarray, int]:
             attributes[key] = np.float64(np.asarray(attributes[key]).item())
     dims = [f"axis_{n}" for n in range(stored.ndim)]
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", xr.SerializationWarning)  # of two marks for missing
+        warnings.simplefilter("ignore", xr.SerializationWarning)  # of two marks in a file
         coded = xr.Variable(dims, stored, attributes)
         values = xr.conventions.decode_cf_variable("z", coded, decode_times=False).values
     values = np.array(values, dtype=np.float64)
@@ -182,8 +182,8 @@ def _coordinates(variable: Variable | None, variables: dict, path: Path) -> list
     if variable is None or _unit(variable) is None:
         return None
     axes = [_axis(dimension, variables, path) for dimension in variable.dimensions]
-    found = [axis for axis in axes if axis is not None]
-    return found if sorted(axis.letter for axis in found) == ["x", "y"] else None
+    complete = [axis for axis in axes if axis is not None]
+    return complete if sorted(axis.letter for axis in complete) == ["x", "y"] else None
 
 
 def _axis(dimension: str, variables: dict, path: Path) -> Axis | None:
@@ -216,14 +216,8 @@ def _axis(dimension: str, variables: dict, path: Path) -> Axis | None:
     return Axis(letter, float(step), unit)
 
 
-def _hints(variables: dict, names: list[str], options: ScanOptions) -> Hints:
-    """Hints of names, single numbers and attributes."""
-    tables = {name: variables[name].shape for name in names}
-    small: dict[str, Any] = {
-        name: variable.read().ravel()[0]
-        for name, variable in variables.items()
-        if np.prod(variable.shape) == 1 and variable.dtype.kind in "fiu"
-    }
+def _words(variables: dict, names: list[str]) -> list[tuple[str, str]]:
+    """Attributes of the variables, each with its place."""
     words = []
     for name, variable in variables.items():
         # Units of coordinates are those of x and y, whatever the array of heights is called.
@@ -233,9 +227,7 @@ def _hints(variables: dict, names: list[str], options: ScanOptions) -> Hints:
             if key in variable.attributes:
                 text = f"{quantity} {key}: {variable.attributes[key]}"
                 words.append((f"attribute {key} of {name}", text))
-    return array_hints(
-        tables, options.variable, small, lambda name: decoded(variables[name])[0], words
-    )
+    return words
 
 
 def _reader(path: Path) -> str:

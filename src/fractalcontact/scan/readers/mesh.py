@@ -20,14 +20,9 @@ from ..raw import RawScan, reading
 
 
 def read_mesh(path: Path, options: ScanOptions) -> RawScan:
-    """Read a mesh, or the points of a PLY or OBJ cloud.
+    """Mesh, or the points of a PLY or OBJ cloud.
 
     STL repeats each vertex in every triangle that meets there; the repeats are joined.
-
-    Raises
-    ------
-    InputError
-        If the file is damaged, contradicts its counts or holds no vertices.
     """
     file_type = path.suffix.lstrip(".").lower()
     with open(path, "rb") as stream:

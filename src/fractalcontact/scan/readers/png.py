@@ -15,13 +15,7 @@ _GREY = ("I;16", "I;16B", "I", "L")
 
 
 def read_png(path: Path, options: ScanOptions) -> RawScan:
-    """Read a grey PNG image as heights, as its sidecar says: ``unit_z: 0.01 um`` is one grey level.
-
-    Raises
-    ------
-    InputError
-        If the file is damaged, a colour image, or the sidecar does not state all that is needed.
-    """
+    """Heights in a grey PNG image, as its sidecar states: ``unit_z: 0.01 um`` is one grey level."""
     import PIL
     from PIL import Image
 

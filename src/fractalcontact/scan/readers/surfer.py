@@ -13,19 +13,14 @@ from ..stated import Needs, require_stated
 from ..text_lines import MAX_ROWS, notes_on_end
 
 _MARK = b"DSAA"
-_BLANK = 1.70141e38  # of a cell without height; versions differ in the last digits
+#: A cell without height holds 1.70141e38; versions differ in the last digits.
+_BLANK = 1.70141e38 * (1 - 1e-4)
 _HEAD = 9  # words in front of the heights
 _ROUNDED = 1e-3  # of the range that a header states: programs round it
 
 
 def read_surfer(path: Path, options: ScanOptions) -> RawScan:
-    """Read a text grid: its ranges go from the first node to the last, its first row is the lowest.
-
-    Raises
-    ------
-    InputError
-        If the file is damaged, or holds more or fewer heights than it says.
-    """
+    """Heights of a text grid; its ranges go from first to last node, the lowest row first."""
     with reading(path, "Surfer text grid"):
         content = path.read_text(encoding="latin-1")
         words = content.replace(",", " ").split()
@@ -40,11 +35,11 @@ def read_surfer(path: Path, options: ScanOptions) -> RawScan:
         )
     require_stated(path, options, Needs(grid=True), Hints)
     notes: tuple[str, ...] = ()
-    if values[-1] < _BLANK * (1 - 1e-4):
+    if values[-1] < _BLANK:
         latest = zip(words[_HEAD:][-MAX_ROWS:], values[-MAX_ROWS:], strict=True)
-        known = [word for word, value in latest if value < _BLANK * (1 - 1e-4)]
-        notes = notes_on_end(known, content, path)
-    values[values >= _BLANK * (1 - 1e-4)] = np.nan
+        heights = [word for word, value in latest if value < _BLANK]
+        notes = notes_on_end(heights, content, path)
+    values[values >= _BLANK] = np.nan
     notes += _notes_on_range(values, z_low, z_high, path)
     spacing = (x_high - x_low) / (nx - 1), (y_high - y_low) / (ny - 1)
     return RawScan(
@@ -60,8 +55,7 @@ def read_surfer(path: Path, options: ScanOptions) -> RawScan:
 def _notes_on_range(values: np.ndarray, low: float, high: float, path: Path) -> tuple[str, ...]:
     """Note on heights outside the range that the header states.
 
-    The last height alone outside it is one that is cut off, and refused. Where more are, the range
-    itself is hardly one of these heights.
+    The last height alone outside it is cut off, and refused. Where more are, the range is wrong.
     """
     margin = _ROUNDED * max(high - low, abs(low), abs(high))
     outside = (values < low - margin) | (values > high + margin)

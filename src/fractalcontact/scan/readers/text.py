@@ -1,8 +1,10 @@
 """Matrices and points in text files, read as their sidecar says they are written."""
 
+import csv
 import io
-import re
 from collections import Counter
+from collections.abc import Iterator
+from itertools import islice
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +12,7 @@ import numpy as np
 from ...core.errors import InputError
 from ...core.labels import printable
 from ..format import Format
+from ..header_sizes import refuse_other_size
 from ..options import DELIMITERS, NO_MARK, ScanOptions
 from ..raw import RawScan
 from ..stated import Needs, require_stated
@@ -19,15 +22,15 @@ from ..text_lines import (
     COMMENT_MARKS,
     DOUBTFUL_END,
     MAX_ROWS,
+    ORDINARY,
     cells_of,
     cleaned,
     is_number,
     last_number_cut,
     open_text,
-    refuse_other_counts,
+    value_of,
     wide_encoding,
 )
-from ..wrapped_rows import refuse_wrapped
 
 _NAN = ("", "nan", "NaN", "NAN", "-nan", "-NaN", "+nan")
 #: Keys that say how a text is laid out; a table that describes itself needs none of them.
@@ -36,38 +39,35 @@ _BLOCK = 2**24  # characters read at once
 _SAMPLE = 200  # lines that tell how many numbers stand in one
 _PLAIN = b"0123456789+-.,;eE \t\n"
 
+#: Number of a line, and its cells; None for a line without numbers.
+_Line = tuple[int, list[str] | None]
+_Row = tuple[int, list[str]]
+
 
 def read_text(path: Path, options: ScanOptions) -> RawScan:
-    """Read a text file of heights or of points, block by block: only the numbers are kept.
+    """Heights or points in a text file, read block by block: only the numbers are kept.
 
-    Delimiter, decimal mark, header and what the columns hold are those of the sidecar; of a table
-    whose columns are named x, y and z, each with a unit of length, those of that line. No other
-    word of the file counts. Lines that begin with ``#``, ``%``, ``!`` or ``//``, and repeats of a
-    header line, are passed over behind the header. A point cut short at the very end of the file is
-    left out with a note.
-
-    Raises
-    ------
-    InputError
-        If the sidecar does not state all that is needed, a line is not as it says, or the numbers
-        of rows, columns or points disagree with those that the header states.
+    Delimiter, decimal mark, header and columns are those of the sidecar; of a table whose columns
+    are named x, y and z, each with a unit of length, those of that line. No other word of the file
+    counts. Behind the header, lines that begin with ``#``, ``%``, ``!`` or ``//`` and repeats of a
+    header line are passed over. A point cut short at the very end of the file is left out with a
+    note.
     """
     units: dict[str, str] = {}
-    if all(getattr(options, key) is None for key in LAYOUT_KEYS) and (found := named_columns(path)):
-        keys, units = found
+    is_laid_out = any(getattr(options, key) is not None for key in LAYOUT_KEYS)
+    if not is_laid_out and (names := named_columns(path)):
+        keys, units = names
         options = options.but(**keys)
     else:
         needs = Needs(text=True, table=True)
         require_stated(path, options, needs, lambda: text_hints(path))
-    reading = _Reading(path, options)
     with open_text(path) as stream:
-        reading.header = [stream.readline().rstrip("\n") for _ in range(options.header or 0)]
+        header = [stream.readline().rstrip("\n") for _ in range(options.header or 0)]
+        reading = _Reading(path, options, header)
         while block := stream.read(_BLOCK) + stream.readline():
             reading.add(block)
     table, parts, notes = reading.finish()
-    reading.refuse_numbers_above()
-    refuse_other_counts(reading.header, table.shape, options, str(path))
-    refuse_wrapped(reading.header, table.shape, options, str(path))
+    refuse_other_size(header, table.shape, options, str(path))
     return table_to_raw(table, options, str(path), parts, reader=_reader(), notes=notes, **units)
 
 
@@ -82,72 +82,252 @@ def is_text(path: Path) -> bool:
 class _Reading:
     """Numbers of a text file, collected by blocks of whole lines."""
 
-    def __init__(self, path: Path, options: ScanOptions):
-        self.path, self.options = path, options
+    def __init__(self, path: Path, options: ScanOptions, header: list[str]):
+        self.path, self.options, self.header = path, options, header
         self.delimiter = DELIMITERS[options.delimiter or "blank"]
-        self.header: list[str] = []
+        self._words = tuple(word for word in options.missing_words if word)
+        self._no_height = (*_NAN, *options.missing_words)
         self._width = 0  # numbers in a line
         self._trailing = False  # lines end with a delimiter that parts nothing
-        #: By row before which something else than numbers stands, the number of that line.
+        self._has_frame = options.layout != "points" and options.axes in ("both", "row")
+        self._above: _Row | None = None  # the first row, of coordinates
+        #: Row before which a line without numbers stands, and the number of that line.
         self._breaks: dict[int, int] = {}
         self._parts: list[np.ndarray] = []
         self._rows = 0  # taken up so far
-        self._lines = options.header or 0  # before the next block
-        self._short: tuple[int, str, str] | None = None  # number, text and fault of a cut line
-        self._latest: list[str] = []  # lines of the blocks before
+        self._lines = len(header)  # before the next block
+        self._latest: list[str] = []  # last lines of the blocks before
+        #: A line of another count, with its fault: the last one may be cut short.
+        self._odd: tuple[int, list[str], str] | None = None
         self._is_doubtful = False  # the last number is short, and no line end stands behind it
-        self._above: list[str] | None = None  # cells of a first row of coordinates
-        self._has_frame = options.layout != "points" and options.axes in ("both", "row")
 
     def add(self, block: str) -> None:
         """Take up the next block."""
-        # The quick way passes no line it has not understood; what it refuses is read line by line.
-        plain = None
-        if not self._width and not self._has_frame:
-            breaks = dict(self._breaks)
-            if first := self._data_lines(block.split("\n", _SAMPLE)[:_SAMPLE]):
-                self._measure([line for _, line in first])
-            self._breaks = breaks
-        if self._width and not self._short:
-            plain = _plain_block(block, self.delimiter, self._width, self._trailing)
-        if plain is None:
-            self._add_lines(block)
-        else:
-            part = self._parse(plain, self._width + self._trailing)
-            if self._doubted(part).any():
-                self._add_lines(block)
-            else:
-                self._take(part)
+        if not self._width:
+            self._measure(block)
+        part = self._quickly(block)
+        if part is None:
+            part = self._by_lines(block)
+        if len(part):
+            self._parts.append(part)
+            self._rows += len(part)
         self._lines += block.count("\n")
-        self._latest = [*self._latest, *block.rstrip("\n").rsplit("\n", MAX_ROWS)[-MAX_ROWS:]][
-            -MAX_ROWS:
-        ]
+        ending = block.rstrip("\n").rsplit("\n", MAX_ROWS)
+        self._latest = [*self._latest, *ending][-MAX_ROWS:]
 
     def finish(self) -> tuple[np.ndarray, TextParts, tuple[str, ...]]:
         """Table (rows, columns), the text around it, and the notes."""
-        notes: tuple[str, ...] = ()
-        if self._short:
-            number, line, fault = self._short
+        notes = (DOUBTFUL_END,) if self._is_doubtful else ()
+        if self._odd:
+            number, cells, fault = self._odd
             if self.options.layout != "points" or not self._rows:
+                line = self.delimiter.join(cells)
                 raise InputError(
                     f"{self.path}: its last line ({number}) {fault}, after {self._rows} rows of "
                     f"{self._width}: {line[-40:]!r}; the file is cut off, so export it again"
                 )
             notes = (f"the last line ({number}) was cut short and is left out",)
-        if self._is_doubtful:
-            notes = (DOUBTFUL_END,)
-        if not self._parts:
+        if not self._rows:
             raise InputError(
                 f"{self.path}: no line of numbers after its header of {self.options.header} "
                 "lines; write the number of lines above the first number, 'header: 1'"
             )
+        self._refuse_numbers_above()
         table = np.concatenate(self._parts)
         self._parts.clear()
         breaks = {row: line for row, line in self._breaks.items() if 0 < row < len(table)}
-        above = None if self._above is None else self._coordinates(self._above)
-        return table, TextParts(self._names(), above, breaks), notes
+        return table, TextParts(self._names(), self._coordinates(), breaks), notes
 
-    def refuse_numbers_above(self) -> None:
+    def _measure(self, block: str) -> None:
+        """Take the width from the first rows, and whether each ends with a delimiter."""
+        numbers = (cells for _, cells in self._stream(block) if cells is not None)
+        rows = list(islice(numbers, _SAMPLE + 1))
+        if self._has_frame and self._above is None:
+            rows = rows[1:]
+        rows = rows[: max(1, len(rows) - 1)]  # the last may be cut
+        if not rows:
+            return
+        empty = [not cells[-1].strip() for cells in rows]
+        self._trailing = self.delimiter != " " and all(empty)
+        widths = Counter(map(len, rows))
+        if len(widths) > 1:  # a delimiter ends some lines, or a line is spoilt
+            widths = Counter(len(cells) - end for cells, end in zip(rows, empty, strict=True))
+            self._width = widths.most_common(1)[0][0]
+        else:
+            self._width = len(rows[0]) - self._trailing
+
+    def _stream(self, block: str) -> Iterator[_Line]:
+        """Number and cells of each line of a block; no cells of a line that holds no numbers."""
+        header = set(self.header)
+        for number, line in enumerate(block.removesuffix("\n").split("\n"), self._lines + 1):
+            line = line.strip(" \r\x1a\f")
+            is_comment = line.startswith(COMMENT_MARKS) and not line.startswith(self._words)
+            # Between tabs, all cells of a row may be empty.
+            tabs = self._width - 1 + self._trailing
+            is_empty_row = self.delimiter == "\t" and self._width > 1 and line.count("\t") == tabs
+            if (not line.strip() and not is_empty_row) or is_comment or line in header:
+                yield number, None
+            else:
+                yield number, self._cells(line)
+
+    def _cells(self, line: str) -> list[str]:
+        line = cleaned(line, self.delimiter, self._words)
+        if self.delimiter not in " \t":
+            line = line.replace("\t", " ")
+        return cells_of(line, self.delimiter)
+
+    def _quickly(self, block: str) -> np.ndarray | None:
+        """Numbers of a block of plain rows; None where each line must be looked at."""
+        if not self._width or self._odd or (self._has_frame and self._above is None):
+            return None
+        content = _plain_block(block, self.delimiter, self._width, self._trailing)
+        if content is None:
+            return None
+        try:
+            part = self._parse(io.BytesIO(content), self._width + self._trailing)
+        except ValueError:
+            return None
+        part = part[:, : self._width]
+        return None if self._doubted(part).any() else part
+
+    def _by_lines(self, block: str) -> np.ndarray:
+        """Numbers of a block, line by line; a line of another count may only be the last."""
+        rows: list[_Row] = []
+        follows = False
+        for number, cells in self._stream(block):
+            if cells is None:
+                self._breaks[self._rows + len(rows)] = number
+            elif self._has_frame and self._above is None:
+                self._above = number, cells
+            elif self._odd:
+                follows = True
+                break
+            else:
+                if len(cells) == self._width + 1 and not cells[-1].strip():
+                    cells.pop()
+                if len(cells) == self._width:
+                    rows.append((number, cells))
+                else:
+                    self._odd = number, cells, f"holds {len(cells)} numbers"
+        if rows and not self._odd and not block.endswith("\n"):
+            self._judge_end(rows)
+        part = self._numbers(rows)
+        if self._odd:
+            number, cells, _ = self._odd
+            if len(cells) <= self._width:
+                self._refuse_words(number, cells[:-1])
+            if follows or len(cells) > self._width:
+                raise InputError(
+                    f"{self.path}: line {number} has {len(cells)} values, earlier lines have "
+                    f"{self._width}: is 'delimiter: {self.options.delimiter}' right, and is each "
+                    "row in one line? Correct the line, or export the file again with a mark such "
+                    "as nan in each missing cell"
+                )
+        return part
+
+    def _judge_end(self, rows: list[_Row]) -> None:
+        """Take off the last row of a file without a final line end if its number is cut."""
+        width = self._width
+        above = (self._cells(line.strip()) for line in self._latest)
+        whole = [cells[:width] for cells in above
+                 if len(cells) >= width and not any(map(str.strip, cells[width:]))]  # fmt: skip
+        latest = [*whole, *(cells for _, cells in rows)][-MAX_ROWS:]
+        first = -1 if self.options.layout == "points" else 0
+        numbers = [cell for cells in latest for cell in cells[first:]]
+        end = last_number_cut(numbers, self._is_mark)
+        if end == "cut":
+            self._odd = *rows.pop(), "breaks off within a number"
+        self._is_doubtful = end == "doubtful"
+
+    def _is_mark(self, cell: str) -> bool:
+        """True for the number that marks missing cells, which has a form of its own."""
+        return value_of(cell, self.options) in self.options.marks
+
+    def _numbers(self, rows: list[_Row]) -> np.ndarray:
+        """Numbers of rows; a cell that is empty or infinite, and no mark, is refused."""
+        part = self._parsed(rows)
+        for row, column in np.argwhere(self._doubted(part)):
+            number, cells = rows[row]
+            cell = cells[column].strip()
+            if not cell or np.isinf(part[row, column]):
+                mark = cell or '""'
+                raise InputError(
+                    f"{self.path}: line {number}, cell {column + 1} "
+                    f"{f'is {cell[:40]!r}, no finite number' if cell else 'is empty'}, and its "
+                    f"sidecar does not say that such cells are missing; write 'missing: {mark}' if "
+                    "they are, else export the file again"
+                )
+        return part
+
+    def _doubted(self, part: np.ndarray) -> np.ndarray:
+        """Cells (rows, columns) that are infinite, or without a number though none is missing."""
+        doubted = np.isinf(part)
+        if self.options.missing == NO_MARK and self.delimiter != " ":
+            doubted |= np.isnan(part)
+        if doubted.any() and self.options.layout == "points":
+            chosen, names = self.options.columns or (0, 1, 2), self._names()
+            used = [column_index(c, names, part.shape[1], str(self.path)) for c in chosen]
+            doubted[:, np.setdiff1d(range(part.shape[1]), used)] = False
+        return doubted
+
+    def _parsed(self, rows: list[_Row]) -> np.ndarray:
+        """Numbers of rows of as many cells each; halved until the line is found that holds none."""
+        if not rows:
+            return np.empty((0, self._width))
+        content = "\n".join(self.delimiter.join(cells) for _, cells in rows)
+        try:
+            return self._parse(io.StringIO(content), len(rows[0][1]))
+        except ValueError:
+            if len(rows) > 1:
+                middle = len(rows) // 2
+                return np.concatenate([self._parsed(rows[:middle]), self._parsed(rows[middle:])])
+            self._refuse_words(*rows[0])
+            raise self._no_number(rows[0][0], content) from None
+
+    def _parse(self, source: io.StringIO | io.BytesIO, width: int) -> np.ndarray:
+        import pandas as pd
+
+        options = self.options
+        frame = pd.read_csv(
+            source,
+            sep=r"\s+" if self.delimiter == " " else self.delimiter,
+            decimal=options.decimal or ".",
+            thousands=options.thousands,
+            header=None,
+            names=range(width),
+            index_col=False,
+            skipinitialspace=True,
+            skip_blank_lines=self.delimiter != "\t",
+            na_values=self._no_height,
+            keep_default_na=False,
+            quoting=csv.QUOTE_NONE,
+            dtype=np.float64,
+        )
+        return frame.to_numpy()
+
+    def _refuse_words(self, number: int, cells: list[str]) -> None:
+        """Refuse a line with a cell that is neither a number nor a mark of missing cells."""
+        for cell in cells:
+            if not self._holds_number(cell.strip()):
+                raise self._no_number(number, cell.strip())
+
+    def _holds_number(self, cell: str) -> bool:
+        return cell in self._no_height or is_number(cell, self.options)
+
+    def _no_number(self, number: int, cell: str) -> InputError:
+        place = f"{self.path}: line {number} holds '{printable(cell, 40)}'"
+        if ORDINARY.fullmatch(cell):
+            return InputError(
+                f"{place}, but its numbers do not fit its sidecar, delimiter "
+                f"{self.options.delimiter} and decimal {self.options.decimal!r}; correct the "
+                "sidecar, and write 'thousands' if digits are grouped"
+            )
+        return InputError(
+            f"{place}, which is no number by its sidecar; write 'header: {number}' if the line "
+            f"stands above the numbers, 'missing: {cell[:20]}' if the word marks a missing cell"
+        )
+
+    def _refuse_numbers_above(self) -> None:
         """Refuse a header that ends in rows of numbers, as the sidecar of two files may say."""
         last, first = 0, len(self.header) + 1
         for number in range(len(self.header), 0, -1):
@@ -165,20 +345,14 @@ class _Reading:
 
     def _is_row(self, line: str) -> bool:
         """True if a line holds as many numbers as those that were read, or coordinates above."""
-        words = self.options.missing_words
-        line = cleaned(line, self.delimiter, words)
-        cells = [cell.strip() for cell in cells_of(line, self.delimiter)]
+        cells = [cell.strip() for cell in self._cells(line)]
         if len(cells) > self._width and not cells[-1]:
             cells.pop()
-        empty = sum(cell in (*_NAN, *words) for cell in cells)
+        empty = sum(cell in self._no_height for cell in cells)
         numbers = sum(is_number(cell, self.options) for cell in cells)
         widths = (self._width, self._width - 1) if self._has_frame else (self._width,)
-        is_whole = all(cell in (*_NAN, *words) or is_number(cell, self.options) for cell in cells)
-        return is_whole and len(cells) in widths and numbers >= max(2, empty)
-
-    def _take(self, part: np.ndarray) -> None:
-        self._parts.append(part)
-        self._rows += len(part)
+        is_whole = len(cells) in widths and all(map(self._holds_number, cells))
+        return is_whole and numbers >= max(2, empty)
 
     def _names(self) -> list[str] | None:
         """Cells of the last header line, which is above the numbers."""
@@ -187,175 +361,16 @@ class _Reading:
         cells = cells_of(self.header[-1].lstrip("#%!/ "), self.delimiter)
         return [cell.strip().strip("\"'") for cell in cells]
 
-    def _coordinates(self, cells: list[str]) -> np.ndarray:
+    def _coordinates(self) -> np.ndarray | None:
         """Numbers of the first row, whose corner may be a word or empty."""
+        if self._above is None:
+            return None
+        number, cells = self._above
         if len(cells) > self._width and not cells[-1].strip():
             cells = cells[:-1]
         if self.options.axes == "both" and len(cells) == self._width:
             cells = cells[1:]
-        return self._parse(self.delimiter.join(cells), len(cells)).ravel()
-
-    def _add_lines(self, block: str) -> None:
-        data = self._data_lines(block.split("\n"))
-        if not data:
-            return
-        if self._has_frame and self._above is None:
-            self._above = cells_of(data.pop(0)[1], self.delimiter)
-            self._breaks = {max(row - 1, 0): line for row, line in self._breaks.items()}
-        if not self._width and data:
-            self._measure([line for _, line in data])
-        rows = self._whole_rows(data, block.endswith("\n"))
-        if rows:
-            part = self._parse("\n".join(rows), self._width)
-            self._refuse_no_height(part, rows, [number for number, _ in data])
-            self._take(part)
-
-    def _doubted(self, part: np.ndarray) -> np.ndarray:
-        """Cells (rows, columns) that are infinite, or without a number though none is missing."""
-        doubted = np.isinf(part)
-        if self.options.missing == NO_MARK and self.delimiter != " ":
-            doubted |= np.isnan(part)
-        if doubted.any() and self.options.layout == "points":
-            chosen, names = self.options.columns or (0, 1, 2), self._names()
-            used = [column_index(c, names, part.shape[1], str(self.path)) for c in chosen]
-            doubted[:, np.setdiff1d(range(part.shape[1]), used)] = False
-        return doubted
-
-    def _refuse_no_height(self, part: np.ndarray, rows: list[str], numbers: list[int]) -> None:
-        """Refuse a cell that is empty or infinite, and no mark of missing cells."""
-        for row, column in np.argwhere(self._doubted(part)):
-            cell = cells_of(rows[row], self.delimiter)[column].strip()
-            if not cell or np.isinf(part[row, column]):
-                mark = cell or '""'
-                raise InputError(
-                    f"{self.path}: line {numbers[row]}, cell {column + 1} "
-                    f"{f'is {cell[:40]!r}, no finite number' if cell else 'is empty'}, and its "
-                    f"sidecar does not say that such cells are missing; write 'missing: {mark}' if "
-                    "they are, else export the file again"
-                )
-
-    def _measure(self, lines: list[str]) -> None:
-        """Take the width from the first lines, and whether each ends with a delimiter."""
-        sample = lines[: max(1, min(len(lines) - 1, _SAMPLE))]
-        self._trailing = self.delimiter != " " and all(
-            line.rstrip(" ").endswith(self.delimiter) for line in sample
-        )
-        cells = [cells_of(line, self.delimiter) for line in sample]
-        widths = Counter(len(row) for row in cells)
-        if len(widths) > 1:  # a delimiter ends some lines, or a line is spoilt
-            widths = Counter(len(row) - (not row[-1].strip()) for row in cells)
-            self._width = widths.most_common(1)[0][0]
-        else:
-            self._width = len(cells[0]) - self._trailing
-
-    def _data_lines(self, lines: list[str]) -> list[tuple[int, str]]:
-        """Number and text of the lines of numbers; the places of all other lines are kept."""
-        data: list[tuple[int, str]] = []
-        words = tuple(word for word in self.options.missing_words if word)
-        header = set(self.header)
-        for number, line in enumerate(lines, self._lines + 1):
-            line = line.strip(" \r\x1a\f")
-            is_mark = bool(words) and line.startswith(words)
-            is_comment = line.startswith(COMMENT_MARKS) and not is_mark
-            tabs = self.delimiter == "\t" and self._width > 1
-            is_empty_row = tabs and line.count("\t") == self._width - 1 + self._trailing
-            if (not line.strip() and not is_empty_row) or is_comment or line in header:
-                self._breaks[self._rows + len(data)] = number
-                continue
-            data.append((number, cleaned(line, self.delimiter, words)))
-        return data
-
-    def _whole_rows(self, data: list[tuple[int, str]], is_ended: bool) -> list[str]:
-        """Lines of as many numbers each; one cut short may be the last."""
-        rows: list[str] = []
-        for number, line in data:
-            if self._short:
-                raise self._wrong_width(*self._short[:2])
-            if self.delimiter not in " \t":
-                line = line.replace("\t", " ")
-            cells = cells_of(line, self.delimiter)
-            if len(cells) == self._width + 1 and not cells[-1].strip():
-                cells = cells[:-1]
-            if len(cells) > self._width:
-                raise self._wrong_width(number, line)
-            if len(cells) < self._width:
-                self._refuse_words(number, line, cells[:-1])
-                self._short = (number, line, f"holds {len(cells)} numbers")
-                continue
-            rows.append(self.delimiter.join(cells))
-            self._refuse_words(number, line, cells)
-        if rows and not is_ended and not self._short:
-            above = (cells_of(line.strip(), self.delimiter) for line in self._latest)
-            whole = [
-                self.delimiter.join(cells[: self._width])
-                for cells in above
-                if len(cells) >= self._width and not any(map(str.strip, cells[self._width :]))
-            ]
-            layout = self.options.layout
-            cut = last_number_cut([*whole, *rows], self.delimiter, layout, self._is_mark)
-            if cut == "cut":
-                self._short = (data[-1][0], rows.pop(), "breaks off within a number")
-            self._is_doubtful = cut == "doubtful"
-        return rows
-
-    def _is_mark(self, cell: str) -> bool:
-        """True for the number that marks missing cells, which has a form of its own."""
-        if not self.options.marks or not is_number(cell, self.options):
-            return False
-        plain = cell.replace(self.options.thousands or "", "").replace(
-            self.options.decimal or ".", "."
-        )
-        return float(plain) in self.options.marks
-
-    def _refuse_words(self, number: int, line: str, cells: list[str]) -> None:
-        if not re.search(r"[^-+0-9.,;eE \t]", line):
-            return
-        known = (*_NAN, *self.options.missing_words)
-        for cell in cells:
-            cell = cell.strip()
-            if cell not in known and not is_number(cell, self.options):
-                raise InputError(
-                    f"{self.path}: line {number} holds {cell[:40]!r}, which is no number by its "
-                    f"sidecar; write 'header: {number}' if the line stands above the numbers, "
-                    f"'missing: {cell[:20]}' if the word marks a missing cell"
-                )
-
-    def _wrong_width(self, number: int, line: str) -> InputError:
-        found = len(cells_of(line, self.delimiter))
-        return InputError(
-            f"{self.path}: line {number} has {found} values, earlier lines have {self._width}: "
-            f"is 'delimiter: {self.options.delimiter}' right, and is each row in one line? "
-            "Correct the line, or export the file again with a mark such as nan in each missing "
-            "cell"
-        )
-
-    def _parse(self, content: str | bytes, width: int) -> np.ndarray:
-        import pandas as pd
-
-        options = self.options
-        source = io.StringIO(content) if isinstance(content, str) else io.BytesIO(content)
-        try:
-            frame = pd.read_csv(
-                source,
-                sep=r"\s+" if self.delimiter == " " else self.delimiter,
-                decimal=options.decimal or ".",
-                thousands=options.thousands,
-                header=None,
-                names=range(width),
-                index_col=False,
-                skipinitialspace=True,
-                skip_blank_lines=self.delimiter != "\t",
-                na_values=[*_NAN, *options.missing_words],
-                keep_default_na=False,
-                dtype=np.float64,
-            )
-        except (ValueError, pd.errors.ParserError) as error:
-            raise InputError(
-                f"{self.path}: its numbers do not fit its sidecar, delimiter {options.delimiter} "
-                f"and decimal {options.decimal!r} ({printable(error, 80)}); correct the sidecar, "
-                "and write 'thousands' if digits are grouped"
-            ) from error
-        return frame.to_numpy()[:, : self._width or width]
+        return self._parsed([(number, cells)]).ravel()
 
 
 def _plain_block(block: str, delimiter: str, width: int, trailing: bool) -> bytes | None:

@@ -20,16 +20,11 @@ _UPRIGHT = 1
 
 
 def read_tiff(path: Path, options: ScanOptions) -> RawScan:
-    """Read a page of a TIFF file as heights, as its sidecar says.
+    """Heights in a page of a TIFF file, as its sidecar states.
 
     GDAL's scale, offset and number for missing cells are used. A pixel size that ImageJ or a
-    GeoTIFF states is only compared with the sidecar's.
-
-    Raises
-    ------
-    InputError
-        If the file is damaged, a colour image, or grey in 8 bits; the last is read if the sidecar
-        says ``unit_z``, so that somebody has thought of what a grey level means.
+    GeoTIFF states is only compared with the sidecar's. Grey levels of 8 bits are read only with a
+    stated ``unit_z``, so that somebody has thought of what a level means.
     """
     import tifffile
 
@@ -38,7 +33,7 @@ def read_tiff(path: Path, options: ScanOptions) -> RawScan:
         names = [f"page {number}" for number in range(1, len(file.pages) + 1)]
         page = file.pages[0 if options.variable not in names else names.index(options.variable)]
         _refuse_images(page, options, path)
-        # A draft looks into the picture, which has to be readable by then.
+        # The draft below reads the picture, so its coding is checked first.
         refuse_larger(math.prod(page.shape) * 8, path)
         refuse_unknown_coding(page, path)
         stated = _imagej(file, page) or _geotiff(page)
@@ -119,14 +114,14 @@ def _gdal_scale(page, path: Path) -> tuple[float, float]:
     from defusedxml import ElementTree
 
     text = page.tags.valueof(_GDAL)
-    found = {"scale": 1.0, "offset": 0.0}
+    factors = {"scale": 1.0, "offset": 0.0}
     if text is not None:
         for item in ElementTree.fromstring(str(text).strip("\0 ")).iter("Item"):
-            if item.get("sample", "0") == "0" and item.get("role") in found:
-                found[str(item.get("role"))] = float(item.text or "nan")
-    if not all(map(math.isfinite, found.values())):
+            if item.get("sample", "0") == "0" and item.get("role") in factors:
+                factors[str(item.get("role"))] = float(item.text or "nan")
+    if not all(map(math.isfinite, factors.values())):
         raise InputError(f"{path}: GDAL's scale or offset is no number; export it again")
-    return found["scale"], found["offset"]
+    return factors["scale"], factors["offset"]
 
 
 def _hints(names: list[str], stated: dict, page) -> Hints:

@@ -25,16 +25,10 @@ _OLD_ROOT, _ROOT = "ISO5436", "ISO5436_2"
 
 
 def read_x3p(path: Path, options: ScanOptions) -> RawScan:
-    """Read one layer of an X3P file; lengths are metres by the standard.
+    """Layer of an X3P file; lengths are metres by the standard.
 
     A regular grid is a matrix; an irregular one and a point cloud are points, in the file's global
-    coordinates.
-
-    Raises
-    ------
-    InputError
-        If the file is damaged, holds a profile, or has several layers of which key ``variable``
-        names none. That it does not match the checksums it states is a warning.
+    coordinates. A file that does not match the checksums it states is read with a warning.
     """
     import x3pio
 
@@ -43,7 +37,7 @@ def read_x3p(path: Path, options: ScanOptions) -> RawScan:
         try:
             file = x3pio.read(source)
         except x3pio.X3pChecksumError as error:
-            # The archive's own checksums hold, or nothing could be unpacked.
+            # The checksums of the zip archive hold, else unpacking had failed.
             notes = (*notes, f"{NOTE}{error}{_CHANGED}")
             if not isinstance(source, str):
                 source.seek(0)
@@ -72,24 +66,24 @@ def _open(path: Path):
     from defusedxml import ElementTree
 
     with zipfile.ZipFile(path) as archive:
-        found = [
+        indices = [
             name
             for name in archive.namelist()
             if PurePosixPath(name).name == _INDEX and not name.startswith("__MACOSX")
         ]
-        if len(found) != 1:
-            raise InputError(f"{path}: an X3P file has one {_INDEX}, this one has {len(found)}")
-        index = archive.read(found[0])
+        if len(indices) != 1:
+            raise InputError(f"{path}: an X3P file has one {_INDEX}, this one has {len(indices)}")
+        index = archive.read(indices[0])
         root = ElementTree.fromstring(index)
         origin = (root.findtext("Record1/Axes/Origin") or "").strip()
         if root.tag != _OLD_ROOT:
             return str(path), origin, ()
-        notes = _verify_index(archive, PurePosixPath(found[0]).parent, index, root)
+        notes = _verify_index(archive, PurePosixPath(indices[0]).parent, index, root)
         root.tag = _ROOT
         repacked = io.BytesIO()
         with zipfile.ZipFile(repacked, "w") as copy:
-            copy.writestr(found[0], ElementTree.tostring(root))
-            for name in set(archive.namelist()) - {found[0]} - _checksum_files(found[0], root):
+            copy.writestr(indices[0], ElementTree.tostring(root))
+            for name in set(archive.namelist()) - {indices[0]} - _checksum_files(indices[0], root):
                 copy.writestr(name, archive.read(name))
     repacked.seek(0)
     return repacked, origin, notes
