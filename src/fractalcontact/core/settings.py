@@ -254,26 +254,11 @@ class StrengthSettings:
 class MeasuredTest:
     """A laboratory test; what has no meaning for its kind is NaN or empty.
 
-    Attributes
-    ----------
-    kind : str
-        Key of `TEST_COLUMNS`.
-    file : str
-    columns : dict of str to str
-        Heading in the file by column; that of the curve's axis comes first.
-    branch : {"load", "unload", "reload", ""}
-    cycle : int
-    way : {"along", "across", ""}
-        Of the flow.
-    direction : str
-        Of sliding.
-    seat, pressure, largest_pressure : float
-        That the displacement counts from, that is held, and that the joint has carried, MPa.
-    compliance : float
-        Of the rock between the gauge points, mm/MPa.
-    error : float
-        Half-width of the interval of a reading, 95 %, mm or MPa.
-    calibrate : {"modulus", "hardness", ""}
+    ``columns`` are headings in the file by column, that of the curve's axis first; ``way`` is that
+    of the flow, ``direction`` that of sliding. Displacement is counted from ``seat``; ``pressure``
+    is held, ``largest_pressure`` was carried before (MPa). ``compliance`` is that of the rock
+    between the gauge points (mm/MPa), ``error`` the half-width of the 95 % interval of a reading
+    (mm or MPa), ``calibrate`` "modulus" or "hardness".
     """
 
     kind: str
@@ -361,14 +346,9 @@ class Solver:
 
 
 def read(section: type[S], stated: Mapping[str, Any]) -> S:
-    """The part of some settings that a class names.
+    """Settings of a class from a mapping, such as ``dataclasses.asdict`` of :class:`Settings`.
 
-    Parameters
-    ----------
-    section : type
-        Of this module.
-    stated : mapping
-        By key, such as ``dataclasses.asdict`` of :class:`Settings`; other keys are passed over.
+    Further keys are passed over.
     """
     types = get_type_hints(section)
     return section(
@@ -380,7 +360,7 @@ def read(section: type[S], stated: Mapping[str, Any]) -> S:
 
 
 def _read(kind: Any, value: Any) -> Any:
-    """A value, or each of a list, as its class where it has one."""
+    """Value, or each value of a list, as an instance of its class where it has one."""
     if get_origin(kind) is list and is_dataclass(of := get_args(kind)[0]):
         return [read(of, one) for one in value]  # type: ignore[arg-type]
     return read(kind, value) if is_dataclass(kind) else value  # type: ignore[arg-type]

@@ -17,29 +17,15 @@ COMPARISON = "comparison"
 
 
 def in_parts(config: Mapping[str, Any], specimens: Collection[str]) -> bool:
-    """True if the atlas of a study has one file a specimen, and one more for all of them.
-
-    Parameters
-    ----------
-    config : mapping
-        A study that passed the schema.
-    specimens : collection of str
-    """
+    """True if the atlas of a checked study has one file a specimen and one more for all of them."""
     unsaid = WHOLE if len(specimens) <= MAX_WHOLE else PARTS
     return bool(config.get("atlas", unsaid) == PARTS)
 
 
 def drawn_of(config: Mapping[str, Any], specimens: Collection[str], opposite: str) -> list[str]:
-    """Names of the figures that are drawn of each specimen.
+    """Names of the figures drawn of each specimen with an opposite face.
 
-    Parameters
-    ----------
-    config : mapping
-        A study that passed the schema.
-    specimens : collection of str
-        All of the study: where the atlas is in parts none is drawn unless the study asks for them.
-    opposite : str
-        As of :func:`study.figure_list.figures_of`.
+    Where the atlas is in parts, none is drawn unless the study asks for it.
     """
     asked = config.get("figures", NONE if in_parts(config, specimens) else ALL)
     known = figures_of(opposite)
@@ -57,11 +43,6 @@ def explored(config: Mapping[str, Any], specimens: Collection[str]) -> list[str]
 def of_study_alone(names: Collection[str]) -> list[str]:
     """Figures of a study that read no stage of its specimens one by one.
 
-    Those stages are not in the atlas of all specimens where that is in parts.
-
-    Parameters
-    ----------
-    names : collection of str
-        From :func:`study.figure_list.study_figures_of`.
+    The atlas of all specimens lacks those stages where it is in parts.
     """
     return [name for name in names if "specimens" not in all_figures()[name].needs]

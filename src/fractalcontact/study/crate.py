@@ -79,12 +79,8 @@ class Workflow:
         Its main file, in that folder.
     parts : tuple of str
         Patterns of its other files there.
-    language : str
-        Name of the workflow system.
-    url : str
-        Address of the workflow system.
-    version : str
-        Of the workflow system.
+    language, url, version : str
+        Name, address and version of the workflow system.
     """
 
     folder: Path
@@ -100,21 +96,8 @@ def write_crate(
 ) -> None:
     """Describe the results of a study, beside a copy of the files of its workflow.
 
-    Parameters
-    ----------
-    results : path-like
-        Folder of the study; without an atlas in it, nothing is written.
-    workflow : Workflow
-        What made them; its files are copied to the folder ``code``.
-    study : str
-        Name of the study.
-    inputs : mapping of str to str
-        SHA-256 of the scans by path; they stay where they are.
-
-    Raises
-    ------
-    OutputError
-        If the disk is full or the folder cannot be written to.
+    ``inputs`` are SHA-256 of the scans by path; they stay where they are. The files of the workflow
+    are copied to the folder ``code``. Nothing is written without an atlas.
     """
     results = Path(results)
     atlas = results / _ATLAS
@@ -164,7 +147,7 @@ def _refer(names: Iterable[str]) -> list[dict[str, str]] | dict[str, str]:
 def _heads(
     study: str, citation: Mapping, date: str, main: str, parts: Iterable[str]
 ) -> list[dict[str, Any]]:
-    """The descriptor and the root, which every crate has, and the profiles that it follows."""
+    """Descriptor and root, which every crate has, and the profiles that it follows."""
     licence = _LICENCES + citation["license"]
     return [
         {
@@ -205,7 +188,7 @@ def _author_ids(citation: Mapping) -> list[str]:
 
 
 def _people(citation: Mapping) -> list[dict[str, Any]]:
-    """The authors: people have a family name, groups a name."""
+    """Authors: people have a family name, groups a name."""
     found = []
     for one, person in zip(_author_ids(citation), citation["authors"], strict=True):
         if "family-names" in person:
@@ -220,7 +203,7 @@ def _people(citation: Mapping) -> list[dict[str, Any]]:
 def _workflow_entities(
     results: Path, workflow: Workflow, citation: Mapping, code: list[str]
 ) -> list[dict[str, Any]]:
-    """The main file of the workflow, its other files, its language."""
+    """Main file of the workflow, its other files, its language."""
     language = {"@id": "#language"}
     described = [_described(results, name) for name in code]
     described[0] |= {
@@ -251,7 +234,7 @@ def _action(
     entities: list[dict],
     inputs: Mapping[str, str],
 ) -> dict[str, Any]:
-    """The run of the workflow: made of the configuration and the scans, all other files."""
+    """Run of the workflow: from the configuration and the scans to all other files."""
     names = [entity["@id"] for entity in entities]
     taken = [name for name in names if name == _CONFIGURATION]
     return {

@@ -1,7 +1,7 @@
-"""Laboratory tests of a specimen as its sidecar or the study states them under ``measured``.
+"""Laboratory tests of a specimen, stated by its sidecar or the study under ``measured``.
 
-A measured curve says little without what its displacement contains, its seat, branch and cycle:
-what is not said is refused with what to write.
+A measured curve means little without what its displacement contains, its seat, branch and cycle:
+a test that lacks one of them is refused with what to write.
 """
 
 from collections.abc import Iterable, Mapping
@@ -38,16 +38,7 @@ def test_files(stated: Mapping[str, Any], folder: Path) -> list[Path]:
 
 
 def resolve_tests(stated: Tests | None, where: str, folder: Path) -> list[MeasuredTest]:
-    """Tests of a specimen, their quantities in mm and MPa.
-
-    Parameters
-    ----------
-    stated : Tests or None
-        ``measured``.
-    where : str
-        For errors.
-    folder : Path
-        That the files stand in.
+    """Tests of a specimen in mm and MPa, their files in a folder.
 
     Raises
     ------
@@ -73,12 +64,7 @@ def resolve_tests(stated: Tests | None, where: str, folder: Path) -> list[Measur
 
 
 def require_files(tests: Iterable[MeasuredTest]) -> None:
-    """Refuse tests whose file is missing, or a link out of its folder.
-
-    Raises
-    ------
-    InputError
-    """
+    """Refuse tests whose file is missing, or a link out of its folder."""
     for path in (Path(test.file) for test in tests):
         if not path.exists():
             raise InputError(f"{path}: no such file, which 'measured' names; put it there")

@@ -1,8 +1,8 @@
-"""YAML of studies and sidecars, read as plain data: one loader, so that both mean the same.
+"""YAML of studies and sidecars, read as plain data by one loader, so that both mean the same.
 
-Words and numbers mean what they look like: ``1e-3`` is a number, ``no``, ``1:30`` and
-``2020-01-01`` are words, ``010`` is ten. A key is the text that stands there, and stands once.
-Tags and nesting without end are refused. Anchors and aliases are for studies alone.
+Words and numbers mean what they look like: ``1e-3`` is a number; ``no``, ``1:30`` and
+``2020-01-01`` are words; ``010`` is ten. Keys are texts, each stated once. Tags and endless nesting
+are refused. Anchors and aliases are for studies alone.
 """
 
 import re
@@ -29,20 +29,10 @@ _MERGE = "<<"
 
 
 def load_yaml(text: str | bytes, source: Path | str, *, anchors: bool = False) -> Any:
-    """Plain data that a text in YAML holds.
+    """Plain data of a text in YAML: texts, numbers, truth values, None, lists and mappings.
 
-    Parameters
-    ----------
-    text : str or bytes
-    source : path-like
-        The file, for errors.
-    anchors : bool, optional
-        Allow anchors, aliases and merged mappings (``<<``), which untrusted files have no use for.
-
-    Returns
-    -------
-    object
-        Texts, numbers, truth values, None, lists and mappings whose keys are texts.
+    ``anchors`` allows anchors, aliases and merged mappings (``<<``), which untrusted files have no
+    use for.
 
     Raises
     ------
@@ -86,7 +76,7 @@ class _Loader(yaml.SafeLoader):
         return node
 
     def compose_mapping_node(self, anchor):
-        """A mapping whose keys are the texts that stand there, each once."""
+        """Mapping whose keys are texts, each stated once."""
         node = super().compose_mapping_node(anchor)
         lines: dict[str, int] = {}
         for key, _ in node.value:
@@ -104,13 +94,13 @@ class _Loader(yaml.SafeLoader):
         return node
 
     def construct_yaml_int(self, node):
-        """Decimal, also with a zero in front; one of many digits is a number like any other."""
+        """Decimal integer, also with a leading zero; a float if it has many digits."""
         of = int if len(node.value) <= _MAX_DIGITS else float
         return of(node.value)
 
 
 class _AnchorLoader(_Loader):
-    """The same with anchors, aliases and merged mappings."""
+    """The same loader with anchors, aliases and merged mappings."""
 
     allows_anchors = True
 

@@ -1,10 +1,8 @@
 """Memory and time requested by jobs, from models over the nodes of their grids.
 
 A job asks for :data:`ROOM` times what the model says. ``docs/scaling.md`` has the measurements
-beside what is asked for.
-
-What a scheduler counts is more than the script of a job takes: Snakemake runs twice around it, once
-to start the step of the job and once in it (:data:`AROUND`).
+beside what is asked for. A scheduler counts more than the script of a job: Snakemake runs twice
+around it, once to start the step of the job and once in it (:data:`AROUND`).
 """
 
 from collections.abc import Iterable, Mapping
@@ -28,16 +26,15 @@ ROOM, ROOM_OF_TIME = 1.6, 5.0
 
 @dataclass(frozen=True)
 class Cost:
-    """Resources of the job of a rule.
+    """Resources of the job of a rule: ``start`` and ``seconds`` whatever its grid is.
 
     Attributes
     ----------
     start : float
-        Megabytes whatever its grid is.
+        Megabytes.
     bytes_per_node : float
-        Of the grid.
     seconds : float
-        Of the clock on a core of its own, whatever its grid is.
+        Of the clock on a core of its own.
     us_per_node : float
         Microseconds.
     state : float
@@ -88,17 +85,7 @@ _PLAIN_NODE, _PACKED_NODE = 6, 4
 
 
 def memory(rule: str, nodes: float, states: int = 1) -> int:
-    """Requested memory of a job, MB.
-
-    Parameters
-    ----------
-    rule : str
-        Of :data:`COSTS`.
-    nodes : float
-        Of its grid.
-    states : int, optional
-        Contact states that it keeps.
-    """
+    """Requested memory, MB, of the job of a rule on a grid of some nodes that keeps some states."""
     cost = COSTS[rule]
     finer = OF_FINER * min(FINER * nodes, MAX_FINER) if rule == "closure_and_box_counts" else 0.0
     of_grid = finer + nodes * (cost.bytes_per_node + cost.state * states)
@@ -107,40 +94,21 @@ def memory(rule: str, nodes: float, states: int = 1) -> int:
 
 
 def seconds(rule: str, nodes: float, states: int = 1) -> float:
-    """Seconds that the model says a job takes on a core of its own.
-
-    Parameters
-    ----------
-    rule : str
-        Of :data:`COSTS`.
-    nodes : float
-        Of its grid.
-    states : int, optional
-        Contact states that it keeps.
-    """
+    """Seconds that the job of a rule takes on a core of its own by the model."""
     cost = COSTS[rule]
     return cost.seconds + nodes * (cost.us_per_node + cost.solve * states) / 1e6
 
 
 def minutes(rule: str, nodes: float, states: int = 1) -> int:
-    """Requested time of a job, minutes.
-
-    Parameters
-    ----------
-    rule, nodes, states
-        As of :func:`seconds`.
-    """
+    """Requested time of the job of a rule, minutes."""
     needed = seconds(rule, nodes, states=states) / 60
     return max(MIN_TIME, round(ROOM_OF_TIME * needed))
 
 
 def reading_memory(files: Iterable[Path | str]) -> int:
-    """Requested memory, MB, to read, grid, clean and describe the faces of a specimen.
+    """Requested memory, MB, to read, grid, clean and describe the one or two faces of a specimen.
 
-    Parameters
-    ----------
-    files : iterable of path-like
-        One face or two. Those that are not there, which the job explains, count as empty.
+    Missing files, which the job explains, count as empty.
     """
     files = list(map(Path, files))
     read = sum(_size(path) * (_PLAIN if _is_plain(path) else _PACKED) for path in files) / 1e6
@@ -164,15 +132,9 @@ def nodes_of_recipe(recipe: Mapping[str, Any]) -> float:
 
 
 def nodes_of_window(settings: SpecimenSettings, spacing: object, of_face: float) -> float:
-    """Most nodes of the window of a specimen.
+    """Most nodes of the window of a specimen, which is a part of its face.
 
-    Parameters
-    ----------
-    settings : SpecimenSettings
-    spacing : float, str or None
-        Distance of nodes: mm, or as a sidecar has it; None where the file alone knows.
-    of_face : float
-        Nodes of a face, of which it is a part.
+    ``spacing`` is in mm, or as a sidecar states it; None where the file alone states it.
     """
     window = settings.window
     if window is None:

@@ -35,28 +35,16 @@ Listed = tuple[dict[str, ScanFiles], dict[str, InputError]]
 
 
 def list_grouped(folder: Path | str, groups: str | None) -> Listed:
-    """Specimens of a study, and the errors of files that give none.
+    """Specimens of a study and errors of other files, as of :func:`study.scan_files.list_scans`.
 
-    Parameters
-    ----------
-    folder : path-like
-        ``scans`` of the study.
-    groups : str or None
-        ``groups`` of the study: "folders", the path of a table, or None for files of the folder
-        alone.
-
-    Returns
-    -------
-    scans : dict of str to ScanFiles
-        By specimen name, sorted. With folders, a specimen is called GROUP_NAME after its folder and
-        its file, and ``scans/GROUP.yaml`` is the sidecar of all of the group.
-    refused : dict of str to InputError
+    ``groups`` is "folders", the path of a table, or None for the files of the folder alone. With
+    folders, a specimen is called GROUP_NAME after its folder and its file, and
+    ``scans/GROUP.yaml`` is the sidecar of all of the group.
 
     Raises
     ------
     InputError
-        If the folder or the table does not exist, or the table cannot be read or has a column that
-        is no key.
+        If the folder or the table does not exist, or the table cannot be read.
     """
     if groups is None:
         return list_scans(folder)
@@ -66,7 +54,7 @@ def list_grouped(folder: Path | str, groups: str | None) -> Listed:
 
 
 def grouped_notes(folder: Path | str, groups: str | None) -> list[str]:
-    """As :func:`study.scan_files.folder_notes`, of the folders of groups too."""
+    """Notes of :func:`study.scan_files.folder_notes`, on the folders of groups too."""
     notes = folder_notes(folder)
     if groups == FOLDERS:
         notes += [note for path in _group_folders(Path(folder)) for note in folder_notes(path)]

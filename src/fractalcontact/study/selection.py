@@ -1,4 +1,4 @@
-"""Embedded specimens of a study that are one surface twice."""
+"""Embedded specimens of a study that share one surface."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -10,7 +10,7 @@ BESIDE_SURFACE = ("label", "chosen_for", "realisations")
 
 
 def is_capped_variant(study: Mapping[str, Any], name: str | None) -> bool:
-    """True if an embedded specimen with a hardness stands in the study once more without one."""
+    """True if a study has the surface of an embedded specimen with a hardness again without one."""
     embedded = study.get("embedded", {})
     if name not in embedded or not _has_hardness(study, name):
         return False
