@@ -239,13 +239,13 @@ class _Schema(GenerateJsonSchema):
         return self.generate_inner(schema["schema"])
 
     def generate(self, schema: Any, mode: Any = "validation") -> dict[str, Any]:
-        made = super().generate(schema, mode)
-        for section in (made, *made.get("$defs", {}).values()):
+        document = super().generate(schema, mode)
+        for section in (document, *document.get("$defs", {}).values()):
             for name, node in section["properties"].items():
-                if "description" not in node and (form := _section(made, node)):
+                if "description" not in node and (form := _section(document, node)):
                     words = {"description": _mapping_words(form)}
                     section["properties"][name] = dict(sorted((node | words).items()))
-        return made
+        return document
 
 
 def _mapping_words(form: Mapping) -> str:
@@ -263,11 +263,11 @@ class _WithTexts(_Schema):
     """The same with the texts below the fields of the classes."""
 
     def model_schema(self, schema: Any) -> Any:
-        made = super().model_schema(schema)
+        document = super().model_schema(schema)
         for name, text in texts_of(schema["cls"]).items():
-            if name in made["properties"]:
-                made["properties"][name]["markdownDescription"] = text
-        return made
+            if name in document["properties"]:
+                document["properties"][name]["markdownDescription"] = text
+        return document
 
 
 @cache

@@ -49,7 +49,7 @@ _ContactDirections = Annotated[
         only="sliding",
     ),
 ]
-#: Columns of each kind of laboratory test: that of the curve's axis, then what is measured over it.
+#: Columns of each kind of laboratory test: the axis of the curve, then the measured quantity.
 TEST_COLUMNS = {
     "closure": ("pressure", "displacement"),
     "flow": ("pressure", "transmissivity"),
@@ -362,5 +362,5 @@ def read(section: type[S], stated: Mapping[str, Any]) -> S:
 def _read(kind: Any, value: Any) -> Any:
     """Value, or each value of a list, as an instance of its class where it has one."""
     if get_origin(kind) is list and is_dataclass(of := get_args(kind)[0]):
-        return [read(of, one) for one in value]  # type: ignore[arg-type]
+        return [read(of, item) for item in value]  # type: ignore[arg-type]
     return read(kind, value) if is_dataclass(kind) else value  # type: ignore[arg-type]

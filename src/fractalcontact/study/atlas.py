@@ -12,8 +12,9 @@ from ..core.netcdf import COMPRESSED_FROM, encoding, versions
 
 #: Significant digits of the maps of pressure and gap, which the atlas has in single precision.
 FIELD_DIGITS = 3
-#: Heights kept in equal steps, with the steps to either side of their middle: of composites, which
-#: follow from the faces, as many as 16 bits hold; of faces 16 times as many, some nanometres each.
+#: Variables of heights that are stored in equal steps, and the steps to either side of the middle.
+#: Composites follow from the faces and get what 16 bits hold; faces get 16 times as many steps, of
+#: some nanometres each.
 HEIGHTS = {"composite": 2**15 - 2, "lower": 2**19 - 2, "upper": 2**19 - 2}
 
 
@@ -149,10 +150,10 @@ def _in_steps(dataset: xr.Dataset) -> dict[Hashable, dict]:
     kept: dict[Hashable, dict] = {}
     for name in HEIGHTS.keys() & dataset.variables.keys():
         values = dataset[name].values
-        known = values[np.isfinite(values)]
-        if values.nbytes < COMPRESSED_FROM or not known.size or known.min() == known.max():
+        heights = values[np.isfinite(values)]
+        if values.nbytes < COMPRESSED_FROM or not heights.size or heights.min() == heights.max():
             continue
-        low, high, most = float(known.min()), float(known.max()), HEIGHTS[name]
+        low, high, most = float(heights.min()), float(heights.max()), HEIGHTS[name]
         kept[name] = {
             "dtype": "int16" if most < 2**15 else "int32",
             "scale_factor": (high - low) / (2 * most),
@@ -220,7 +221,9 @@ def read_named_atlas(
         groups = {"/": file}
         for name, stage in file.groups.items():
             members = {group.path: group for group in (stage, *stage.groups.values())}
-            held |= {at.strip("/") for at, one in members.items() if one.variables or one.groups}
+            held |= {
+                key.strip("/") for key, group in members.items() if group.variables or group.groups
+            }
             if name not in without and (only is None or name in only):
                 groups |= members
         loaded = {
@@ -244,7 +247,7 @@ def _checksums(specimens):
 
 def _demand_labels(dataset, where):
     for name in dataset.variables:
-        # What a Dataset has as a method, users could not reach as an attribute.
+        # Users could not reach the variable as an attribute of the dataset.
         if hasattr(xr.Dataset, str(name)):
             raise ValueError(f"{where}: variable {name} has the name of a method of xarray.Dataset")
     for name, variable in dataset.data_vars.items():

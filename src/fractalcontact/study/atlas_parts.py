@@ -180,18 +180,12 @@ def read_group(path: Path | str, group: str) -> tuple[xr.Dataset, Mapping[str, A
     InputError
         If it cannot be read.
     """
-    import netCDF4
-
-    try:
-        file = netCDF4.Dataset(path)
-    except OSError as error:
-        raise InputError(f"{path}: cannot be read as netCDF-4 ({error})") from error
-    with file:
+    with _opened(path) as file:
         try:
-            found = file[group]
+            members = file[group]
         except (IndexError, KeyError):
             raise KeyError(f"{path}: no group {group}") from None
-        dataset = xr.open_dataset(xr.backends.NetCDF4DataStore(found)).load()
+        dataset = xr.open_dataset(xr.backends.NetCDF4DataStore(members)).load()
         return dataset, {name: file.getncattr(name) for name in file.ncattrs()}
 
 
@@ -208,11 +202,15 @@ def _mapping(attrs: Mapping[Any, Any], name: str, path: Path) -> dict[str, Any]:
 
 def _contents(path):
     """Attributes of a file, and the names of its groups by stage."""
+    with _opened(path) as file:
+        attrs = {name: file.getncattr(name) for name in file.ncattrs()}
+        return attrs, {name: tuple(stage.groups) for name, stage in file.groups.items()}
+
+
+def _opened(path):
     import netCDF4
 
     try:
-        with netCDF4.Dataset(path) as file:
-            attrs = {name: file.getncattr(name) for name in file.ncattrs()}
-            return attrs, {name: tuple(stage.groups) for name, stage in file.groups.items()}
+        return netCDF4.Dataset(path)
     except OSError as error:
         raise InputError(f"{path}: cannot be read as netCDF-4 ({error})") from error

@@ -5,14 +5,14 @@ from typing import Any
 
 from .figure_list import all_figures, figures_of
 
-#: Specimens up to which an atlas is one file unless the study says otherwise. A file of many takes
-#: memory for all of them to write, and time for all of them to open.
+#: Most specimens of an atlas in one file, unless the study says otherwise. Writing one file of many
+#: specimens takes memory for all of them, and opening it takes time for all of them.
 MAX_WHOLE = 30
-#: Whether the atlas is one file, or one a specimen.
+#: Forms of an atlas: one file, or one file a specimen.
 WHOLE, PARTS = "whole", "parts"
-#: Word for all figures, and for none.
+#: Words of a study for all figures and for none.
 ALL, NONE = "all", "none"
-#: Key that the figures over several specimens ask for: every study of more than one has it.
+#: Key that asks for the figures over several specimens; every study of more than one has it.
 COMPARISON = "comparison"
 
 
@@ -27,11 +27,11 @@ def drawn_of(config: Mapping[str, Any], specimens: Collection[str], opposite: st
 
     Where the atlas is in parts, none is drawn unless the study asks for it.
     """
-    asked = config.get("figures", NONE if in_parts(config, specimens) else ALL)
-    known = figures_of(opposite)
-    if asked == ALL:
-        return known
-    return [] if asked == NONE else [name for name in known if name in asked]
+    stated = config.get("figures", NONE if in_parts(config, specimens) else ALL)
+    names = figures_of(opposite)
+    if stated == ALL:
+        return names
+    return [] if stated == NONE else [name for name in names if name in stated]
 
 
 def explored(config: Mapping[str, Any], specimens: Collection[str]) -> list[str]:

@@ -58,9 +58,9 @@ def resolve_study(config: Mapping, source: str, *, leave_out: bool = False) -> S
     scans, stated, refused = read_scans(config)
     folder = config.get("scans", "scans")
     check_names(scans, config, folder, source)
-    known = {*scans, *refused, *config.get("embedded", {})}
+    names = {*scans, *refused, *config.get("embedded", {})}
     for key in ("specimens", "explorer"):
-        if unknown := sorted(set(config.get(key, {})) - known):
+        if unknown := sorted(set(config.get(key, {})) - names):
             raise InputError(
                 f"{source}: {key}.{unknown[0]}: neither embedded nor a scan in {folder}"
             )
@@ -115,7 +115,7 @@ def _stated_of(scan: ScanFiles, of_group: tuple[dict, dict]) -> tuple[dict, dict
     own = ({**of_file[0], **of_row[0]}, {**of_file[1], **of_row[1]})
     refuse_idle_keys(scan, *own)
     keys, settings = {**of_group[0], **own[0]}, {**of_group[1], **own[1]}
-    # An aperture map is pressed as its negative is against a plane.
+    # The contact of an aperture map is that of its negative with a plane.
     return keys, settings | ({"opposite": APERTURE} if keys.get("kind") == APERTURE else {})
 
 
@@ -174,19 +174,21 @@ def check_study(config: Mapping, source: str) -> None:
 
 def _check_statements(names, source: str) -> None:
     """Refuse statements of the paper that are judged on no specimen."""
-    known = claims_of("one")
+    statements = claims_of("one")
     for name in names:
-        if name not in known:
-            raise InputError(f"{source}.chosen_for: no statement {name!r}{nearest(name, known)}")
+        if name not in statements:
+            raise InputError(
+                f"{source}.chosen_for: no statement {name!r}{nearest(name, statements)}"
+            )
 
 
 def _check_figures(names, source: str) -> None:
     """Refuse names that are no figure of a specimen."""
-    known = figures_of("match")
+    figures = figures_of("match")
     for name in () if isinstance(names, str) else names:
-        if name not in known:
+        if name not in figures:
             raise InputError(
-                f"{source}: figures: no figure {name!r} of specimens{nearest(name, known)}"
+                f"{source}: figures: no figure {name!r} of specimens{nearest(name, figures)}"
             )
 
 

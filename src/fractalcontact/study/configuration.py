@@ -24,11 +24,11 @@ from .measured import resolve_tests
 from .scan_files import ScanFiles
 from .selection import BESIDE_SURFACE, is_capped_variant
 
-#: Nodes per side of an embedded specimen.
+#: Least nodes per side of an embedded specimen.
 MIN_NODES_PER_SIDE = 2
-#: Of its hardness, up to which a specimen carries the loads that the study's defaults name.
+#: Largest pressure among the loads of the defaults that a specimen carries, over its hardness.
 LARGEST_SHARE = 0.95
-#: Tolerance of a study that asks for everything.
+#: Relative tolerance of a study of full accuracy.
 FULL_RTOL = 1e-6
 
 
@@ -114,7 +114,7 @@ class _Layers:
         self.texts, self.values = {}, {}
         for texts, said_in, above in layers:
             self.texts |= texts
-            # The program itself states it of aperture maps; no study or sidecar can.
+            # The program alone states this value, of aperture maps; no study or sidecar can.
             is_map = texts.get("opposite") == APERTURE
             said = {key: text for key, text in texts.items() if not (is_map and key == "opposite")}
             self.values |= stated(validate(SettingsKeys, said, said_in, above))
@@ -149,7 +149,7 @@ class _Layers:
         if "loads" in self._own or "loads" in self._study:
             return loads
         most = LARGEST_SHARE * hardness
-        return [one for one in loads if one[1] == "force" or one[0] <= most] or loads
+        return [load for load in loads if load[1] == "force" or load[0] <= most] or loads
 
     def reported_offset(self):
         """Offset that is reported; by default two faces are reported as they were scanned."""

@@ -31,13 +31,13 @@ from pathlib import Path
 from ..core.directions import slides
 from ..core.packages import SOURCES, installed
 
-#: Folders of the figures, one folder a group; what they share is in :mod:`figures.kit`.
+#: Folders of the figures, each with a folder a group; :mod:`figures.kit` is shared code.
 FOLDERS = [SOURCES / name / "figures" for name in installed()]
 _SHARED = "kit"
 
 SPECIMEN, JOINT, STUDY = "specimen", "joint", "study"
 
-#: A constant and its value, which may go on in indented lines and end in a closing bracket.
+#: A constant and its value, which may continue in indented lines and end in a closing bracket.
 _CONSTANT = re.compile(
     r"^(TITLE|SUBJECT|NEEDS|ORDER|KEY|SECTION) = (.*\n(?:(?:[ \t]+.*|[)\]}].*)\n)*)", re.MULTILINE
 )

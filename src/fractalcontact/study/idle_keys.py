@@ -31,7 +31,7 @@ def refuse_idle_keys(scan: ScanFiles, keys: Mapping, settings: Mapping) -> None:
 def _keys_for(only: str) -> list[str]:
     """Keys that have a meaning only for some files or specimens."""
     keys = schema_of(SidecarKeys)["properties"]
-    return [name for name, one in keys.items() if one.get("x-only") == only]
+    return [name for name, node in keys.items() if node.get("x-only") == only]
 
 
 def _idle(scan: ScanFiles, keys: Mapping, settings: Mapping) -> Iterator[tuple[Sequence[str], str]]:

@@ -28,7 +28,7 @@ from ..scan.keys import ScanKeys
 from .measured_keys import Tests
 from .scan_files import LONGEST_NAME
 
-#: Results keep it in eight bytes.
+#: Seed of random numbers; results store it in eight bytes.
 Seed = Annotated[int, key("a whole number from 0, of up to 18 digits", ge=0, le=10**18 - 1)]
 Seeds = Annotated[list[Seed], key("two or more different whole numbers", min_length=2), *different]
 _Count = Annotated[int, key("a whole number from 1 to 16384", ge=1, le=MAX_NODES_PER_SIDE)]
@@ -512,8 +512,8 @@ class StudyKeys(Section):
     """`{closure, delta_sigma}`: the requested accuracy of a closure, as a fraction of it (`1 %`
     or `0.01`), and of a Delta_sigma. Or `full`: all states are solved, whatever it costs. See
     below"""
-    solver: Annotated[SolverKeys, key("")] = SolverKeys()
-    grain: Annotated[GrainKeys, key("")] = GrainKeys()
+    solver: SolverKeys = SolverKeys()
+    grain: GrainKeys = GrainKeys()
 
     @model_validator(mode="after")
     def _needs_materials(self) -> "StudyKeys":
@@ -536,4 +536,4 @@ def stated(section: Section) -> dict[str, Any]:
 def unsaid_settings() -> dict[str, Any]:
     """Settings of a specimen that no layer states, as a user would write them."""
     properties = schema_of(SettingsKeys)["properties"]
-    return {name: one["default"] for name, one in properties.items() if "default" in one}
+    return {name: node["default"] for name, node in properties.items() if "default" in node}

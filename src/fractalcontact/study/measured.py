@@ -15,7 +15,7 @@ from .measured_keys import Tests
 from .scan_files import refuse_outside_link
 
 _NAN = float("nan")
-#: Values of a test whose kind has no such key.
+#: Values of keys that the kind of a test does not have.
 _UNSAID: dict[str, Any] = {
     **dict.fromkeys(("branch", "way", "direction", "calibrate"), ""),
     **dict.fromkeys(("seat", "pressure", "largest_pressure", "error"), _NAN),
@@ -43,7 +43,7 @@ def resolve_tests(stated: Tests | None, where: str, folder: Path) -> list[Measur
     Raises
     ------
     InputError
-        If a test contradicts itself or another one.
+        If a test contradicts itself or another label.
     """
     tests = [
         _resolved(kind, test, f"{where}.{kind}", folder)
@@ -51,7 +51,7 @@ def resolve_tests(stated: Tests | None, where: str, folder: Path) -> list[Measur
         for test in getattr(stated, kind, ())
     ]
     labels = [(test.kind, test.label) for test in tests]
-    if twice := next((one for one in labels if labels.count(one) > 1), None):
+    if twice := next((label for label in labels if labels.count(label) > 1), None):
         raise InputError(
             f"{where}.{twice[0]}: two tests are '{twice[1]}'; keep one, or state another 'cycle'"
         )

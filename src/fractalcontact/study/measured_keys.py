@@ -33,10 +33,10 @@ def _stretch(text: Any) -> float:
     parts = _STRETCH.fullmatch(text[:_MAX_GAUGE])
     if parts is None:
         raise wrong(_GAUGE)
-    found = float(parts["number"]) * length_factor(parts["unit"], repr(text))
-    if found < 0:
+    compliance = float(parts["number"]) * length_factor(parts["unit"], repr(text))
+    if compliance < 0:
         raise InputError("rock does not stretch under pressure; write it above 0")
-    return found
+    return compliance
 
 
 def _compliance(gauge: Any) -> float:
@@ -48,7 +48,7 @@ _NAN = float("nan")
 
 
 class _Test(Section):
-    # Sidecars are untrusted input: nothing outside the folder of the scans is read.
+    # Sidecars are untrusted input: no file outside the folder of the scans is read.
     file: Annotated[
         str,
         key(

@@ -24,7 +24,7 @@ _WORDS = (
     ("int", r"[-+]?[0-9]+"),
     ("float", r"[-+]?(\.[0-9]+|[0-9]+(\.[0-9]*)?)([eE][-+]?[0-9]+)?|[-+]?\.inf|\.nan"),
 )
-#: Key of a mapping that takes over the keys of others, ``<<: *anchor``.
+#: Key that merges the keys of another mapping into its own, ``<<: *anchor``.
 _MERGE = "<<"
 
 
@@ -112,6 +112,7 @@ def _refusal(problem: str, where: Any) -> yaml.MarkedYAMLError:
 for _name, _pattern in _WORDS:
     _Loader.add_implicit_resolver(_STANDARD + _name, re.compile(rf"(?:{_pattern})\Z"), None)
 _Loader.add_constructor(_STANDARD + "int", _Loader.construct_yaml_int)
-# Resolvers and constructors of a class are copied when one is added to it, not when it is derived.
+# PyYAML copies the resolvers and constructors of a class when one is added, not when a class is
+# derived. The derived class therefore takes those of its base here.
 _AnchorLoader.yaml_implicit_resolvers = _Loader.yaml_implicit_resolvers
 _AnchorLoader.yaml_constructors = _Loader.yaml_constructors

@@ -14,13 +14,13 @@ from ..core.directions import slides
 from ..core.settings import JointSettings, SpecimenSettings
 from ..core.units import quantity
 
-#: Megabytes and minutes below which no job asks: the interpreter and its libraries, and Snakemake
-#: twice before the first second of work, on a busy file system.
+#: Least megabytes and minutes that a job asks for. The interpreter, its libraries and two processes
+#: of Snakemake start before the first second of work, on a busy file system.
 MIN_MEMORY, MIN_TIME = 300, 5
 #: Megabytes of the two processes of Snakemake around the script of a job on a cluster.
 AROUND = 280
-#: How much more is asked for than the models say, of memory and of time: other nodes are slower,
-#: and surfaces differ in what their contact takes.
+#: Requested memory and time over those of the models: other computers are slower, and the cost of
+#: contact differs between surfaces.
 ROOM, ROOM_OF_TIME = 1.6, 5.0
 
 
@@ -51,11 +51,10 @@ class Cost:
     solve: float = 0.0
 
 
-#: By rule, memory fitted to grids of 128 to 2048 nodes along a side, seconds to 256, 512 and 1024
-#: of a surface against a plane and to a joint of 520 states (``docs/scaling.md``). States of
-#: ``ensemble`` are realisations. Of
-#: ``roughness_and_composite`` the nodes are those of a face, else of the window;
-#: ``atlas_part`` is ``figures`` without any.
+#: Costs by rule. Memory is fitted to grids of 128 to 2048 nodes per side. Seconds are fitted to a
+#: surface against a plane with 256, 512 and 1024 nodes per side and to a joint of 520 states
+#: (``docs/scaling.md``). States of ``ensemble`` are realisations. Nodes are those of the window,
+#: for ``roughness_and_composite`` of a face. ``atlas_part`` is ``figures`` without any figure.
 COSTS = {
     "synthetic_scan": Cost(80, 130, 0.5, 0.4),
     "roughness_and_composite": Cost(270, 100, 4, 3.5),
@@ -69,17 +68,17 @@ COSTS = {
     "atlas_part": Cost(190, 180, 3, 1, 1),
     "size_effect_part": Cost(170, 1000, 10, 50),
 }
-#: The analysis solves some states again on finer grids: up to four times as fine, up to this many
-#: nodes, of this many bytes each.
+#: The analysis solves some states again on finer grids: times as many nodes, most nodes, and bytes
+#: of each node.
 FINER, MAX_FINER, OF_FINER = 16, 1024**2, 320
 
-#: Bytes of memory for each byte of a file of plain numbers: 12 million points
-#: x, y, z (315 MB as text, 288 MB as they are) take some 2 GB, those of a scattered cloud more.
+#: Bytes of memory for each byte of a file of plain numbers. 12 million points x, y, z (315 MB as
+#: text, 288 MB as binary numbers) take some 2 GB; those of a scattered cloud take more.
 _PLAIN = 8
-#: Bytes of memory for each byte of any other file: heights in two bytes, or packed to one.
+#: Bytes of memory for each byte of any other file, whose heights take two bytes, or one if packed.
 _PACKED = 60
 _PLAIN_ENDINGS = {".asc", ".csv", ".dat", ".npy", ".obj", ".ply", ".stl", ".tsv", ".txt", ".xyz"}
-#: Bytes of a file for each of its nodes, by ending (points are three numbers each), and of others.
+#: Bytes of a file for each of its nodes by ending, three numbers a point, and for other endings.
 _NODE = {".npy": 4, ".xyz": 20, ".ply": 12, ".stl": 25, ".obj": 25}
 _PLAIN_NODE, _PACKED_NODE = 6, 4
 
@@ -138,7 +137,8 @@ def nodes_of_window(settings: SpecimenSettings, spacing: object, of_face: float)
     """
     window = settings.window
     if window is None:
-        # Half the side of the largest hole-free square, so that it can slide; all against a plane.
+        # The window has half the side of the largest square without holes, so that it can slide;
+        # against a plane it has all of it.
         return of_face / 4 if slides(settings.opposite) else of_face
     if spacing is None:
         return of_face

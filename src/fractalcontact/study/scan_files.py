@@ -12,24 +12,26 @@ from ..core.file_names import SIDECAR_SUFFIXES, specimen_name, split_file_name
 from ..core.labels import printable
 
 _IGNORED = ("README", "LICENSE")
-#: Files that systems and editors leave in a folder, by name, ending or beginning, in lower case.
+#: Names, endings and beginnings, in lower case, of files that systems and editors leave behind.
 _LEFT_BY_SYSTEMS = ("thumbs.db", "desktop.ini", "icon\r", "ehthumbs.db")
 _LEFT_BEHIND = (
     *("~", ".bak", ".orig", ".rej", ".tmp", ".swp", ".swo", ".save", ".asv", ".autosave"),
     *(".part", ".partial", ".filepart", ".crdownload", ".download", ".opdownload"),
 )
-#: Endings of what `make describe` writes: drafts of sidecars and pictures, which nothing reads.
+#: Endings of drafts of sidecars and pictures, which `make describe` writes and nothing reads.
 DRAFTS = (".draft.yaml", ".draft.png", ".draft.html")
 _DRAFT = ".draft"
 _LOCKS = ("~$", "._", ".~lock.")
 #: Emacs' ``#rock.npy#`` and nano's ``rock.npy.save.1``.
 _SAVED_BY_EDITORS = re.compile(r"#[^#]{1,250}#|[^#]{1,240}\.save\.\d{1,3}")
-#: How others name the faces of a joint: what stands before, the mark, the face, the ending.
+#: Other names of the lower face of a joint and of its upper one.
 _OTHER_FACE = {"lower": "upper", "bottom": "top", "sidea": "sideb", "side1": "side2"}
 _FACE = re.compile(r"(?:[_ -]|(?<=[a-z0-9])(?=[A-Z]))(?i:lower|bottom|side[a1])(?![a-zA-Z0-9])")
-#: Results are files and folders of this name and a few letters more; 255 bytes is what discs take.
+#: Longest name of a specimen. Results have this name and a few letters more, and file systems take
+#: names of 255 bytes.
 LONGEST_NAME = 220
-#: Control characters, invisible and direction marks, undecodable bytes, line separators.
+#: Unicode categories of control characters, invisible and direction marks, undecodable bytes and
+#: line separators.
 _INVISIBLE = ("Cc", "Cf", "Cs", "Zl", "Zp")
 
 
@@ -169,8 +171,8 @@ def is_passed_over(name: str) -> bool:
 
 def _is_left_behind(name: str) -> bool:
     name = name.lower()
-    known = name in _LEFT_BY_SYSTEMS or name.endswith(_LEFT_BEHIND) or name.startswith(_LOCKS)
-    return known or bool(_SAVED_BY_EDITORS.fullmatch(name))
+    is_listed = name in _LEFT_BY_SYSTEMS or name.endswith(_LEFT_BEHIND) or name.startswith(_LOCKS)
+    return is_listed or bool(_SAVED_BY_EDITORS.fullmatch(name))
 
 
 def _likely_pairs(names: list[str]) -> Iterator[tuple[str, str, str, str]]:
@@ -178,12 +180,12 @@ def _likely_pairs(names: list[str]) -> Iterator[tuple[str, str, str, str]]:
 
     Such as ``rock_lower.xyz`` and ``rock_upper.xyz``, or ``rock-bottom.x3p`` and ``rock-top.x3p``.
     """
-    known = {name.lower(): name for name in names}
+    spelled = {name.lower(): name for name in names}
     for name in names:
         stem, ending = Path(name).stem, Path(name).suffix
         if not _FACE.search(stem) or ending.lower() in SIDECAR_SUFFIXES:
             continue
-        other = known.get(f"{_FACE.sub(_turned, stem)}{ending}".lower())
+        other = spelled.get(f"{_FACE.sub(_turned, stem)}{ending}".lower())
         common = _FACE.sub("", stem)
         if other and common and other != name:
             yield name, other, f"{common}.lower{ending}", f"{common}.upper{ending}"

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import Any
 
-#: Key that figures of one surface, elastic and capped, ask for: every study that has one.
+#: Key that asks for figures of one surface, elastic and capped; every study with one has it.
 CAPPED_VARIANTS = "capped_variants"
 #: Keys of a recipe that do not change its surface.
 BESIDE_SURFACE = ("label", "chosen_for", "realisations")
@@ -29,6 +29,6 @@ def _surface_of(recipe):
 def _has_hardness(study, name):
     """True if the study caps the pressure of a specimen."""
     stated = {**study["defaults"], **study.get("specimens", {}).get(name, {})}["material"]
-    # An unknown material is refused where it is resolved.
+    # `configuration` refuses an unknown material.
     definition = stated if isinstance(stated, Mapping) else study["materials"].get(stated, {})
     return definition.get("hardness", "none") != "none"
