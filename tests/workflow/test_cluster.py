@@ -1,6 +1,7 @@
 """What can be said of a cluster without one: the profile, and jobs that a killed run left."""
 
 import json
+import os
 import re
 import subprocess
 import sys
@@ -71,6 +72,21 @@ def test_jobs_of_this_folder_alone_are_left_in_the_queue(answers, tmp_path, monk
     monkeypatch.chdir(tmp_path)
     assert left_in_queue(PROFILE) == ["7", "12"]
     assert left_in_queue(ROOT / "workflow/profiles/default") == []
+
+
+def test_jobs_that_wait_count_as_those_that_run(tmp_path, monkeypatch):
+    """Every state of a job that has not ended is asked for, of this user alone."""
+    words = []
+
+    def squeue(command, **settings):
+        words.extend(command)
+        return subprocess.CompletedProcess(command, 0, "", "")
+
+    monkeypatch.setattr(cluster.subprocess, "run", squeue)
+    assert left_in_queue(PROFILE) == []
+    (states,) = [word for word in words if word.startswith("--states=")]
+    assert {"PENDING", "RUNNING", "CONFIGURING", "COMPLETING"} <= set(states[9:].split(","))
+    assert f"--user={os.getuid()}" in words
 
 
 def test_no_cluster_has_no_queue(tmp_path, monkeypatch):
