@@ -171,6 +171,8 @@ def test_why_the_cluster_ended_a_job_is_said_in_its_users_words():
     }
     for line, why in lines.items():
         assert why in ended_by_cluster(["Building DAG of jobs...", line, ""])
+    memory, time = list(lines)[1], next(iter(lines))
+    assert "its time" in ended_by_cluster([memory, time])  # the last attempt counts
     assert not ended_by_cluster(["a room DUE TO TIME LIMIT", "Finished jobid: 0"])
     assert not ended_by_cluster([])
 
@@ -211,3 +213,14 @@ def test_further_attempt_repeats_an_error_that_it_would_find_again(tmp_path, err
         assert done.stderr == ""
         assert "rock.npy: no numbers; write some" in (tmp_path / "job.log").read_text()
         assert ("works" in done.stdout) == expected
+
+
+def test_an_error_that_was_not_the_end_of_an_attempt_is_not_repeated(tmp_path):
+    """A library may have said it, before the cluster ended the job."""
+    paths = {"workflow": str(ROOT / "workflow"), "package": str(ROOT / "src")}
+    (tmp_path / "job.log").write_text("error: of a library\nand then it was killed\n")
+    command = [sys.executable, "-c", SCRIPT.format(error="InputError", **paths)]
+    done = subprocess.run(
+        [*command, '{"attempt": 2}'], cwd=tmp_path, capture_output=True, text=True, timeout=120
+    )
+    assert "works" in done.stdout
