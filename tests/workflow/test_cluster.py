@@ -116,31 +116,18 @@ def test_a_queue_that_the_cluster_does_not_tell_is_not_an_empty_one(tmp_path, mo
         assert left_in_queue(ROOT / "workflow/profiles/default") == []
 
 
-def refusal(folder):
-    """The one line of an error in which a run on the cluster ends at once."""
+@pytest.mark.usefixtures("answers")
+def test_run_is_refused_while_the_queue_is_unknown(tmp_path, project):  # noqa: F811
+    script(tmp_path / "tools/squeue", DOWN)
     words = ("workflow/run.py", "config/smoke.yaml", "--profile", "slurm")
     done = subprocess.run(
-        [sys.executable, *words], cwd=folder, capture_output=True, text=True, timeout=120
+        [sys.executable, *words], cwd=project, capture_output=True, text=True, timeout=120
     )
     assert done.returncode == 1
     assert "Traceback" not in done.stderr
     (line,) = [line for line in done.stderr.splitlines() if line.startswith("error: ")]
-    return line
-
-
-@pytest.mark.usefixtures("answers")
-def test_run_is_refused_while_the_queue_is_unknown(tmp_path, project):  # noqa: F811
-    script(tmp_path / "tools/squeue", DOWN)
-    line = refusal(project)
     assert "Unable to contact slurm controller" in line
     assert "begin again" in line
-    assert not (project / "results").exists()
-
-
-def test_run_beside_jobs_of_a_killed_one_is_refused(answers, project):  # noqa: F811
-    answers("squeue", f"7|{project}")
-    line = refusal(project)
-    assert "scancel 7" in line
     assert not (project / "results").exists()
 
 

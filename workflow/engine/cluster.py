@@ -26,12 +26,8 @@ def left_in_queue(profile):
     """Numbers of the jobs of this folder that wait or run on the cluster of a profile.
 
     They would write the same files as a new run. Running jobs hold the guard of ``running``, but
-    only the cluster knows those that wait. Empty where the executor of the profile is not SLURM.
-
-    Raises
-    ------
-    InputError
-        If the cluster does not say what is in its queue, which may then hold such jobs.
+    only the cluster knows those that wait; if it does not answer, that is an InputError. Empty
+    where the executor of the profile is not SLURM.
     """
     text = (Path(profile) / "config.yaml").read_text(encoding="utf-8")
     if not re.search(r"^executor: *slurm *$", text, flags=re.MULTILINE):

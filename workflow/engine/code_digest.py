@@ -22,14 +22,8 @@ _DISTRIBUTIONS = {"mpl_toolkits": "matplotlib", "yaml": "PyYAML"}
 class Code:
     """Python packages in a folder, of which every file is read once.
 
-    Parameters
-    ----------
-    folder : path-like
-        Folder of the packages.
-    root : path-like
-        Folder that names of files are relative to, so that a moved checkout keeps its digests.
-    beside : path-like, optional
-        Folder whose modules scripts import too, beside those of their own folder.
+    Names of files are relative to ``root``, so that a moved checkout keeps its digests. Scripts
+    import modules of the folder ``beside`` too, beside those of their own folder.
     """
 
     def __init__(self, folder: Path | str, root: Path | str, beside: Path | str = ""):
@@ -38,13 +32,10 @@ class Code:
         self._read = cache(_read)
 
     def digest(self, *names: Path | str) -> str:
-        """Sixteen digits that change with any file behind these, and with the libraries they use.
+        """Sixteen digits that change with any file behind these names and the libraries they use.
 
-        Parameters
-        ----------
-        *names : path-like
-            Files of scripts; or, below the folder of the packages, modules
-            ("package/room/module.py") and whole rooms ("package/room").
+        A name is the file of a script or, below the folder of the packages, a module
+        ("package/room/module.py") or a whole room ("package/room").
         """
         files = sorted(self.files_behind(*names))
         lines = [f"{os.path.relpath(file, self.root)} {self._read(file)[0]}" for file in files]

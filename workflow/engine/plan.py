@@ -26,19 +26,10 @@ FILE = Path(".snakemake/fractalcontact-plan.pickle")
 
 
 class Plan:
-    """Study of a run, and the SHA-256 of the files that it reads.
+    """Study of a run, as ``study``, and the SHA-256 of the files that it reads.
 
-    Parameters
-    ----------
-    workflow : snakemake.workflow.Workflow
-    config : dict
-        The study as its user wrote it; in a job of a cluster it becomes that of the plan.
-    source : str
-        Its file, for errors.
-
-    Attributes
-    ----------
-    study : fractalcontact.study.checks.Study
+    ``config`` is the study as its user wrote it; in a job of a cluster it becomes that of the plan.
+    ``source`` is its file, for errors.
     """
 
     def __init__(self, workflow, config, source):

@@ -253,7 +253,7 @@ def _mapping_words(form: Mapping) -> str:
     needed = [name for name in form["properties"] if name in form.get("required", ())]
     optional = [name for name in form["properties"] if name not in needed]
     if not optional:
-        return f"a mapping with {', '.join(needed[:-1])} and {needed[-1]}"
+        return f"a mapping with {' and '.join(filter(None, (', '.join(needed[:-1]), needed[-1])))}"
     if not needed:
         return f"a mapping with any of {', '.join(optional)}"
     return f"a mapping with {', '.join(needed)} and, if wanted, {', '.join(optional)}"
