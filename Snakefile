@@ -23,7 +23,8 @@ include: "workflow/rules/pages.smk"
 include: "workflow/rules/records.smk"
 
 
-# Before Snakemake looks at what there is, in a dry run too: results of which it has lost the record are made again.
+# Results whose record Snakemake has lost are made again. Mark them before Snakemake looks at the files, in a
+# dry run too.
 remake_without_record()
 
 
@@ -45,6 +46,6 @@ rule all:
         rules.atlas.output,
         collect_everything,
         expand(rules.refused.output, refused=range(len(REFUSED))),
-    # Without it some hundred names are printed.
+    # Snakemake would else print some hundred names of files.
     message:
         "everything of the study"

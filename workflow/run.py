@@ -1,11 +1,11 @@
-"""What `make` runs: Snakemake on a study, after all that can be known beforehand was looked at.
+"""Start of a study, which `make` calls: checks beforehand, then Snakemake.
 
 python workflow/run.py STUDY [--dry-run] [--profile NAME] [--full] [--verbose] -- WORDS
 
-WORDS are options and targets of Snakemake. The study is read as plain data first, as Snakemake runs
-Python that stands in one which says `__use_yte__: true`. What a killed run left is taken away, and
-damaged files are set aside. Told to end, it ends all jobs. The terminal gets a line a job, from the
-logger plugin in workflow/logger; Snakemake's own words are in .snakemake/log.
+WORDS are options and targets of Snakemake. The study is first read as plain data, because Snakemake
+runs Python code in a study that says `__use_yte__: true`. Leftovers of a killed run are removed and
+damaged files are set aside. When the run is told to end, it ends all jobs. The terminal gets a line
+a job, from the logger plugin in workflow/engine; Snakemake's own words are in .snakemake/log.
 """
 
 import argparse
@@ -20,7 +20,7 @@ import time
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
-# The code of this checkout, wherever its environment was installed from: it may have been moved.
+# Import the code of this checkout, which may have been moved since its environment was installed.
 sys.path.insert(0, str(ROOT / "src"))
 from engine import running
 from engine.cluster import left_in_queue
@@ -31,19 +31,19 @@ from fractalcontact.core.errors import InputError
 from fractalcontact.study.documents import read_study, study_name
 from fractalcontact.study.scan_files import list_scans
 
-#: Seconds that another run is waited for, which may only be beginning; and that jobs get to end
-#: when they are told to.
+#: Seconds to wait for another run, which may only be looking at its results; and seconds within
+#: which jobs must end when they are told to.
 WAIT, GRACE, CLUSTER_GRACE = 3, 20, 120
-#: What a shell does not take as it is.
+#: Characters that a shell does not take literally.
 SPLITS = r"[\s'\"\\$`&;|<>()*?\[\]#!{}]"
-#: Environment variable with the number of the process of `make`, where that started this.
+#: Environment variable with the process number of `make`, if `make` started this.
 MAKE = "FRACTALCONTACT_MAKE"
-#: Megabytes free below which a study is not begun: the default one makes some 100.
+#: Free megabytes below which no study begins; the default one makes some 100.
 MIN_FREE = 50
 
 
 def main():
-    """Run the study of the command line; what is wrong with it is said in one sentence."""
+    """Run the study of the command line; an error of input is one sentence."""
     options, passed = _options()
     try:
         _require_plain_path()
@@ -74,7 +74,7 @@ def _options():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("study", type=Path)
     parser.add_argument("--profile", default="default", help="of workflow/profiles")
-    # Only Linux surely forks what libraries have loaded.
+    # Loaded libraries survive a fork on Linux, not surely elsewhere.
     forks = "fractalcontact" if sys.platform == "linux" else "local"
     parser.add_argument("--executor", default=forks, help="or local, that of Snakemake")
     parser.add_argument("--full", action="store_true", help="at full cost, beside the study")
@@ -97,7 +97,7 @@ def _command(options, name):
 
 
 def _require_plain_path():
-    """Snakemake puts the path of the interpreter into a shell as it is."""
+    """Refuse an interpreter whose path a shell splits: Snakemake does not quote it in commands."""
     if re.search(SPLITS, sys.executable):
         raise InputError(
             f"{sys.executable}: Snakemake cannot start scripts from a folder whose name has spaces "
@@ -106,7 +106,7 @@ def _require_plain_path():
 
 
 def _require_past(scans):
-    """A result would be older than a scan from the future, which Snakemake takes for an error."""
+    """Refuse scans from the future: Snakemake refuses a result that is older than its scan."""
     for path in sorted(scans.glob("*")):
         if path.is_file() and path.stat().st_mtime > time.time() + 1:
             raise InputError(
@@ -116,7 +116,7 @@ def _require_past(scans):
 
 
 def _require_room(results):
-    """Say before minutes are spent that there is no place for what they would give."""
+    """Refuse results without room for a study, or in a folder that is not writable."""
     folder = next(path for path in (results, *results.parents) if path.exists())
     if not folder.is_dir() or not os.access(folder, os.W_OK | os.X_OK):
         raise InputError(f"{folder}: no folder that can be written to; allow it (chmod u+w)")
@@ -129,7 +129,7 @@ def _require_room(results):
 
 
 def _clean(options, results):
-    """Take away what a killed run left, where nothing is at work; set aside what is damaged."""
+    """Remove leftovers of a killed run and set damaged files aside, if no other run is active."""
     guard, has_locks = running.alone(WAIT)
     if guard is None:
         raise InputError(
@@ -154,7 +154,7 @@ def _clean(options, results):
 
 
 def _spoilt(results):
-    """Files that are not any more as their jobs left them, or that nothing is known of, and why."""
+    """Files that differ from their checksums or have none, and the reason."""
     digests = checksums.Digests()
     checked = checksums.check(results, digests.of)
     digests.save()
@@ -163,16 +163,16 @@ def _spoilt(results):
 
 
 def _run(command, options, results):
-    """Exit code of Snakemake, whose whole family of processes ends with this one."""
-    # Where Snakemake finds its plugins, and those the modules beside them.
+    """Exit code of Snakemake, all of whose processes end with this one."""
+    # Snakemake finds its plugins there, and the plugins find the modules beside them.
     path = [str(ROOT / name) for name in ("src", "workflow", "workflow/engine")]
     path += filter(None, [os.environ.get("PYTHONPATH")])
-    told = {"PYTHONPATH": os.pathsep.join(path), "FRACTALCONTACT_RESULTS": str(results)}
+    variables = {"PYTHONPATH": os.pathsep.join(path), "FRACTALCONTACT_RESULTS": str(results)}
     cluster, child = options.profile != "default", None
     try:
         _answer_signals(_stop)
         child = subprocess.Popen(
-            command, env=os.environ | told, stderr=subprocess.PIPE, start_new_session=True
+            command, env=os.environ | variables, stderr=subprocess.PIPE, start_new_session=True
         )
         for line in child.stderr:
             if options.verbose or not line.startswith(b"Using workflow specific profile"):
@@ -203,9 +203,9 @@ def _answer_signals(how):
 
 
 def _end(child, *, cluster):
-    """Tell all processes of the run to end; those that do not are ended.
+    """Tell all processes of the run to end, and kill those that do not.
 
-    Jobs on a cluster are taken back by Snakemake alone, and only where it is interrupted.
+    Only Snakemake takes back its jobs on a cluster, and only when it is interrupted.
     """
     with contextlib.suppress(ProcessLookupError, subprocess.TimeoutExpired):
         if cluster:
@@ -219,14 +219,14 @@ def _end(child, *, cluster):
 
 
 def _leave(status):
-    """End, and where it failed end the `make` that started this: it would add a line of its own."""
+    """Exit, and after a failure end `make` too, which would add a line of its own."""
     if status and MAKE in os.environ:
         os.kill(int(os.environ[MAKE]), signal.SIGPIPE)
     sys.exit(status)
 
 
 def _name_own_study(study, source):
-    """Say how the user's scans are computed without the synthetic specimens of a study."""
+    """Say how to compute the user's scans without the synthetic specimens of a study."""
     folder = study.get("scans", "scans")
     if not (study.get("embedded") and folder and Path(folder).is_dir() and list_scans(folder)[0]):
         return
@@ -236,12 +236,12 @@ def _name_own_study(study, source):
 
 
 def _name_leftovers(results):
-    """Say which specimens have files here that the study does not know any more."""
+    """Name the specimens that have files here but are no longer in the study."""
     listed = results / "specimens.txt"
     if not listed.is_file():
         return
-    made = [*results.glob("specimens/*.nc"), *results.glob("contact_maps/*.nc")]
-    left = {path.stem for path in made} - set(listed.read_text(encoding="utf-8").split())
+    datasets = [*results.glob("specimens/*.nc"), *results.glob("contact_maps/*.nc")]
+    left = {path.stem for path in datasets} - set(listed.read_text(encoding="utf-8").split())
     if left:
         _say(
             f"{results} keeps files of {', '.join(sorted(left))}, which the study no longer has; "
@@ -250,7 +250,7 @@ def _name_leftovers(results):
 
 
 def _name_page(results):
-    """The last line of a run: where the results can be looked at, if these are the last ones."""
+    """Print the address of the result page, if it belongs to the last results."""
     page, atlas = results / "index.html", results / "atlas.nc"
     if page.is_file() and atlas.is_file() and page.stat().st_mtime >= atlas.stat().st_mtime:
         with contextlib.suppress(BrokenPipeError):

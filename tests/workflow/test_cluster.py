@@ -1,6 +1,7 @@
 """What can be said of a cluster without one: the profile, and jobs that a killed run left."""
 
 import json
+import os
 import re
 import subprocess
 import sys
@@ -73,6 +74,21 @@ def test_jobs_of_this_folder_alone_are_left_in_the_queue(answers, tmp_path, monk
     assert left_in_queue(ROOT / "workflow/profiles/default") == []
 
 
+def test_jobs_that_wait_count_as_those_that_run(tmp_path, monkeypatch):
+    """Every state of a job that has not ended is asked for, of this user alone."""
+    words = []
+
+    def squeue(command, **settings):
+        words.extend(command)
+        return subprocess.CompletedProcess(command, 0, "", "")
+
+    monkeypatch.setattr(cluster.subprocess, "run", squeue)
+    assert left_in_queue(PROFILE) == []
+    (states,) = [word for word in words if word.startswith("--states=")]
+    assert {"PENDING", "RUNNING", "CONFIGURING", "COMPLETING"} <= set(states[9:].split(","))
+    assert f"--user={os.getuid()}" in words
+
+
 def test_no_cluster_has_no_queue(tmp_path, monkeypatch):
     monkeypatch.setenv("PATH", str(tmp_path))
     monkeypatch.chdir(tmp_path)
@@ -100,31 +116,18 @@ def test_a_queue_that_the_cluster_does_not_tell_is_not_an_empty_one(tmp_path, mo
         assert left_in_queue(ROOT / "workflow/profiles/default") == []
 
 
-def refusal(folder):
-    """The one line of an error in which a run on the cluster ends at once."""
+@pytest.mark.usefixtures("answers")
+def test_run_is_refused_while_the_queue_is_unknown(tmp_path, project):  # noqa: F811
+    script(tmp_path / "tools/squeue", DOWN)
     words = ("workflow/run.py", "config/smoke.yaml", "--profile", "slurm")
     done = subprocess.run(
-        [sys.executable, *words], cwd=folder, capture_output=True, text=True, timeout=120
+        [sys.executable, *words], cwd=project, capture_output=True, text=True, timeout=120
     )
     assert done.returncode == 1
     assert "Traceback" not in done.stderr
     (line,) = [line for line in done.stderr.splitlines() if line.startswith("error: ")]
-    return line
-
-
-@pytest.mark.usefixtures("answers")
-def test_run_is_refused_while_the_queue_is_unknown(tmp_path, project):  # noqa: F811
-    script(tmp_path / "tools/squeue", DOWN)
-    line = refusal(project)
     assert "Unable to contact slurm controller" in line
     assert "begin again" in line
-    assert not (project / "results").exists()
-
-
-def test_run_beside_jobs_of_a_killed_one_is_refused(answers, project):  # noqa: F811
-    answers("squeue", f"7|{project}")
-    line = refusal(project)
-    assert "scancel 7" in line
     assert not (project / "results").exists()
 
 
@@ -155,6 +158,8 @@ def test_why_the_cluster_ended_a_job_is_said_in_its_users_words():
     }
     for line, why in lines.items():
         assert why in ended_by_cluster(["Building DAG of jobs...", line, ""])
+    memory, time = list(lines)[1], next(iter(lines))
+    assert "its time" in ended_by_cluster([memory, time])  # the last attempt counts
     assert not ended_by_cluster(["a room DUE TO TIME LIMIT", "Finished jobid: 0"])
     assert not ended_by_cluster([])
 
@@ -195,3 +200,14 @@ def test_further_attempt_repeats_an_error_that_it_would_find_again(tmp_path, err
         assert done.stderr == ""
         assert "rock.npy: no numbers; write some" in (tmp_path / "job.log").read_text()
         assert ("works" in done.stdout) == expected
+
+
+def test_an_error_that_was_not_the_end_of_an_attempt_is_not_repeated(tmp_path):
+    """A library may have said it, before the cluster ended the job."""
+    paths = {"workflow": str(ROOT / "workflow"), "package": str(ROOT / "src")}
+    (tmp_path / "job.log").write_text("error: of a library\nand then it was killed\n")
+    command = [sys.executable, "-c", SCRIPT.format(error="InputError", **paths)]
+    done = subprocess.run(
+        [*command, '{"attempt": 2}'], cwd=tmp_path, capture_output=True, text=True, timeout=120
+    )
+    assert "works" in done.stdout

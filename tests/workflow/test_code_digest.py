@@ -27,6 +27,18 @@ def test_a_new_law_of_closure_area_or_strength_solves_nothing_again():
     assert not any("/laws/" in file for file in behind)
 
 
+def test_code_of_a_script_follows_from_the_function_that_it_calls():
+    paths = CODE.files_behind(ROOT / "workflow/scripts/windows.py")
+    files = {Path(path).relative_to(ROOT).as_posix() for path in paths}
+    rooms = {file.split("/")[2] for file in files if file.count("/") > 2}
+    assert {"workflow/engine/job.py", "workflow/scripts/_files.py"} <= files
+    assert "src/fractalcontact/stages/windows.py" in files
+    assert {"size_effect", "contact", "states"} <= rooms
+    # Another stage does not make it again, nor do rooms above.
+    assert not {"study", "figures", "pages"} & rooms
+    assert "src/fractalcontact/stages/report.py" not in files
+
+
 def test_all_that_a_stage_has_loaded_when_it_is_called_counts():
     code = (
         "import sys, fractalcontact.stages.windows\n"

@@ -71,6 +71,18 @@ def test_a_script_is_given_its_job_and_of_one_thread_finds_everything_loaded(
     assert told == ["a_rule", {"study": "test"}, os.getcwd(), str(threads), loaded, False]
 
 
+def test_jobs_of_one_thread_are_forks_of_one_interpreter(executor, tmp_path):
+    """However many jobs a run has; a job of more threads starts an interpreter of its own."""
+    parents = []
+    for threads in (1, 1, 2):
+        script = "import os; open(snakemake.input[0], 'w').write(str(os.getppid()))"
+        assert end_of(executor, tmp_path, script, threads) == 0
+        parents.append(int((tmp_path / "told.json").read_text()))
+    server, again, own = parents
+    assert server == again
+    assert own == os.getpid() != server
+
+
 @pytest.mark.parametrize(
     ("text", "code"),
     [

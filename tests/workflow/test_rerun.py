@@ -1,25 +1,22 @@
 """What a change makes again, on one small study that was made up to its atlas and one figure."""
 
 import base64
+import itertools
 import json
 import os
 import shutil
 import subprocess
 import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
 import yaml
-from projects import ROOT, copy_project, jobs_of, made, rough_heights, run, small_study, write_scan
+from projects import copy_project, jobs_of, made, rough_heights, run, small_study, write_scan
 from stage_names import OF_SPECIMENS
 from stated import array_sidecar
 
 from fractalcontact.core.checksums import sha256
 from fractalcontact.study.atlas import read_atlas
-
-sys.path.append(str(ROOT / "workflow"))
-from engine.code_digest import Code
 
 pytestmark = pytest.mark.workflow
 STUDY = "config/test.yaml"
@@ -193,17 +190,13 @@ KINDS = {
     ATLAS: ("atlas", change_label),
     FIGURE: ("figures_against_plane", change_label),
 }
-#: One way for each kind in `make test`, all of them in `make test-all`.
-_QUICK = list(zip(KINDS, LOSSES, strict=False))
+#: Every kind and every way; test_provenance.py has what is done with each record.
+LOST = list(zip(itertools.cycle(KINDS), LOSSES, strict=False))
 
 
 @pytest.mark.parametrize(
     ("name", "how"),
-    [
-        pytest.param(name, how, marks=[] if (name, how) in _QUICK else pytest.mark.full)
-        for name in KINDS
-        for how in LOSSES
-    ],
+    [*LOST[: len(KINDS)], *(pytest.param(*lost, marks=pytest.mark.full) for lost in LOST[4:])],
 )
 def test_a_change_is_seen_though_the_record_of_a_result_is_lost(project, name, how):
     rule, change = KINDS[name]
@@ -213,7 +206,7 @@ def test_a_change_is_seen_though_the_record_of_a_result_is_lost(project, name, h
 
 
 def test_the_atlas_is_of_the_scan_and_the_study_of_now_though_records_are_lost(project):
-    for name, how in _QUICK:
+    for name, how in LOST[: len(KINDS)]:
         lose(project, name, how)
     change_scan(project)
     change_loads(project)
@@ -288,21 +281,3 @@ def test_a_job_on_a_cluster_works_with_what_its_run_was_planned_with(project):
     done = run(project, STUDY, *words, "--target-jobs", f"{RULE}:specimen=rock")
     assert done.returncode == 0, done.stderr[-3000:]
     assert specimen.read_bytes() == before
-
-
-def _rooms_behind(script):
-    """Rooms of the package whose files count for a script, and the files that do."""
-    code = Code(ROOT / "src", ROOT, ROOT / "workflow")
-    found = code.files_behind(ROOT / f"workflow/scripts/{script}.py")
-    files = {Path(path).relative_to(ROOT).parts for path in found}
-    return {parts[2] for parts in files if len(parts) > 3}, {"/".join(parts) for parts in files}
-
-
-def test_code_of_a_script_follows_from_the_function_that_it_calls():
-    rooms, files = _rooms_behind("windows")
-    assert {"workflow/engine/job.py", "workflow/scripts/_files.py"} <= files
-    assert "src/fractalcontact/stages/windows.py" in files
-    assert {"size_effect", "contact", "states"} <= rooms
-    # Another stage does not make it again, nor what stands above.
-    assert not {"study", "figures", "pages"} & rooms
-    assert "src/fractalcontact/stages/report.py" not in files

@@ -1,10 +1,15 @@
-"""What scripts share: scans that must not change while a study runs."""
+"""Parts that scripts share: inputs by name, unchanged scans, figures that failed."""
 
 import importlib
+import logging
+from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
+import xarray as xr
 from places import ROOT
 
+from fractalcontact.core import netcdf
 from fractalcontact.core.checksums import sha256
 from fractalcontact.core.errors import InputError
 
@@ -27,3 +32,27 @@ def test_a_scan_that_changed_while_the_study_ran_is_refused(files, tmp_path):
     with pytest.raises(InputError, match=r"rock\.npy: changed while the study ran"):
         files.require_unchanged(digests)
     files.require_unchanged({str(scan): ""})  # what the study makes itself has no digest
+
+
+def test_inputs_are_read_by_name_and_empty_ones_are_left_out(files, tmp_path):
+    paths = {stage: str(tmp_path / stage / "rock.nc") for stage in ("closure", "area")}
+    for stage, path in paths.items():
+        Path(path).parent.mkdir()
+        netcdf.write(xr.Dataset({"x": ("i", [1.0])}, attrs={"title": stage}), path)
+    inputs = {"closure": paths["closure"], "parts": list(paths.values()), "ensemble": []}
+    read = files.read_inputs(inputs)
+    assert read.keys() == {"closure", "parts"}
+    assert read["closure"].title == "closure"
+    assert [part.title for part in read["parts"]] == ["closure", "area"]
+    stages, made_with = files.read_stages(paths.values())
+    assert {stage: list(of) for stage, of in stages.items()} == {key: ["rock"] for key in paths}
+    assert made_with["area"]["rock"]["numpy"]
+
+
+def test_figures_that_failed_are_listed_with_their_folder(files, tmp_path, caplog):
+    figures = importlib.import_module("_figures")
+    drawn = SimpleNamespace(captions={"relief": "Heights."}, failures={"joint": "KeyError: 'x'"})
+    for result, folder, listed in ((drawn, "rock/", "rock/joint\n"), (None, "rock/", "")):
+        figures.say_drawn(result, tmp_path / "undrawn.txt", folder, logging.getLogger())
+        assert (tmp_path / "undrawn.txt").read_text() == listed
+    assert "figure joint was not drawn\nKeyError: 'x'" in caplog.text

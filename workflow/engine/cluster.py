@@ -1,4 +1,4 @@
-"""What a cluster knows of jobs: which a killed run left in its queue, and why it ended one."""
+"""Queue of the cluster after a killed run, and its reasons for ending a job."""
 
 import os
 import re
@@ -7,11 +7,11 @@ from pathlib import Path
 
 from fractalcontact.core.errors import InputError
 
-#: Seconds that the cluster gets to say what is in its queue.
+#: Seconds within which the cluster must say what is in its queue.
 PATIENCE = 60
 _MORE = "the next attempt, if one is left (retries in the profile), asks for twice as much"
 _MEMORY = f"the cluster ended it, it took more memory than asked for; {_MORE}"
-#: What SLURM writes when it ends a job, into the log that its executor names beside the job's own.
+#: Signs in the log of SLURM's executor, which it names beside the job's own, and their reasons.
 ENDED = {
     "DUE TO TIME LIMIT": f"the cluster ended it, its time was over; {_MORE}",
     "Exceeded job memory limit": _MEMORY,
@@ -25,13 +25,9 @@ ENDED = {
 def left_in_queue(profile):
     """Numbers of the jobs of this folder that wait or run on the cluster of a profile.
 
-    They would write what a new run writes too. Those that run hold the guard of ``running``; those
-    that wait are known to the cluster alone. Where its executor is not SLURM, nothing is known.
-
-    Raises
-    ------
-    InputError
-        If the cluster does not say what is in its queue, which may then hold such jobs.
+    They would write the same files as a new run. Running jobs hold the guard of ``running``, but
+    only the cluster knows those that wait; if it does not answer, that is an InputError. Empty
+    where the executor of the profile is not SLURM.
     """
     text = (Path(profile) / "config.yaml").read_text(encoding="utf-8")
     if not re.search(r"^executor: *slurm *$", text, flags=re.MULTILINE):
@@ -62,7 +58,7 @@ def left_in_queue(profile):
 
 
 def ended_by_cluster(lines):
-    """Why the cluster ended a job, in words for its user; nothing if it did not say so."""
+    """Reason why the cluster ended a job, from the lines of its log; empty if it gave none."""
     for line in reversed(lines):
         for sign, why in ENDED.items():
             if sign in line and "slurm" in line:

@@ -1,8 +1,8 @@
 """Digest of the code of a job: a changed digest makes its results again.
 
-Code counts by rooms, the folders of a package: a job's own modules, file by file, and every room
-that they import from, whole, with all rooms below those. So a change in a room concerns the jobs of
-that room and of those above it, and one in tests or documents none.
+Code counts by rooms, the folders of a package: a job's own modules count file by file, and every
+room that they import from counts whole, with all rooms below it. So a change in a room makes the
+jobs of that room and of those above it run again, and a change in tests or documents none.
 """
 
 import hashlib
@@ -13,23 +13,17 @@ from collections.abc import Iterable, Iterator
 from functools import cache, cached_property
 from pathlib import Path
 
-#: What a file imports from, at the beginning of any line: a word too many does no harm.
+#: Module of an import at the beginning of any line. A line of prose that matches does no harm.
 _IMPORTED = re.compile(rb"^[ \t]*(?:from|import)[ \t]+([.\w]+)", re.MULTILINE)
-#: Distributions that are not called what one imports.
+#: Distributions whose name differs from that of their module.
 _DISTRIBUTIONS = {"mpl_toolkits": "matplotlib", "yaml": "PyYAML"}
 
 
 class Code:
     """Python packages in a folder, of which every file is read once.
 
-    Parameters
-    ----------
-    folder : path-like
-        Where the packages lie.
-    root : path-like
-        Names of files count from there, so that a moved checkout stays the same.
-    beside : path-like, optional
-        Folder whose modules scripts import too, beside those of their own.
+    Names of files are relative to ``root``, so that a moved checkout keeps its digests. Scripts
+    import modules of the folder ``beside`` too, beside those of their own folder.
     """
 
     def __init__(self, folder: Path | str, root: Path | str, beside: Path | str = ""):
@@ -38,13 +32,10 @@ class Code:
         self._read = cache(_read)
 
     def digest(self, *names: Path | str) -> str:
-        """Sixteen digits that change with any file behind these, and with libraries they use.
+        """Sixteen digits that change with any file behind these names and the libraries they use.
 
-        Parameters
-        ----------
-        *names : path-like
-            Files of scripts, or below the folder of the packages modules ("package/room/module.py")
-            and whole rooms ("package/room").
+        A name is the file of a script or, below the folder of the packages, a module
+        ("package/room/module.py") or a whole room ("package/room").
         """
         files = sorted(self.files_behind(*names))
         lines = [f"{os.path.relpath(file, self.root)} {self._read(file)[0]}" for file in files]
@@ -68,7 +59,7 @@ class Code:
         return found
 
     def _inits(self, file: str) -> list[str]:
-        """Files that run before a module: those of its folder and of its room."""
+        """Files that run before a module: ``__init__.py`` of its folder and of its room."""
         folders = {os.path.dirname(file), self._room_of(file)} - {None}
         inits = [f"{folder}/__init__.py" for folder in folders]
         return [init for init in inits if self._room_of(init) and os.path.isfile(init)]
@@ -78,14 +69,14 @@ class Code:
         named = {module.partition(".")[0] for file in files for module in self._read(file)[1]}
         named |= {"llvmlite"} if "numba" in named else set()
         own = {os.path.basename(room) for room in self._rooms} | sys.stdlib_module_names | {""}
-        found = {name: _version(name) for name in sorted(named - own)}
-        return {name: version for name, version in found.items() if version}
+        versions = {name: _version(name) for name in sorted(named - own)}
+        return {name: version for name, version in versions.items() if version}
 
     @cached_property
     def _rooms(self) -> dict[str, list[str]]:
         """Files of each room, of any kind: templates and tables too.
 
-        Files that lie directly in a package are a room of their own.
+        The files that lie directly in a package are a room of their own.
         """
         rooms: dict[str, list[str]] = {}
         for package in _folders(self.folder):
@@ -112,21 +103,21 @@ class Code:
             its = self._room_of(target)
             if its is None:
                 near = [home, *([self.beside] if self.beside and not above else [])]
-                found = [f"{place}/{inner.replace('.', '/')}.py" for place in near]
-                yield from [path for path in found if room is None and os.path.isfile(path)]
+                candidates = [f"{place}/{inner.replace('.', '/')}.py" for place in near]
+                yield from [path for path in candidates if room is None and os.path.isfile(path)]
                 continue
             if its == room and whole:
                 continue
             package = f"{self.folder}/{target[len(self.folder) + 1 :].partition('/')[0]}"
             if target == package:  # what of it, only the running program knows
-                yield from (one for one in self._rooms if one.startswith(package))
+                yield from (path for path in self._rooms if path.startswith(package))
             elif room in (None, its) and os.path.isfile(f"{target}.py"):
                 yield from (f"{target}.py", package)
             else:
                 yield from (its, package)
 
     def _room_of(self, path: str) -> str | None:
-        """Room of a path, or its package; None outside all of them."""
+        """Room of a path, or its package; None outside all packages."""
         if not path.startswith(f"{self.folder}/"):
             return None
         package, room, *_ = [*path[len(self.folder) + 1 :].split("/"), ""]

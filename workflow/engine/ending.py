@@ -1,21 +1,21 @@
-"""SIGTERM answered in a thread, so that a run which is told to end does end.
+"""SIGTERM answered in a thread, so that a run that is told to end does end.
 
-Snakemake 9.27 answers it in its main thread, with a lock that is not reentrant
+Snakemake 9.27 answers the signal in its main thread, with a lock that is not reentrant
 (``JobScheduler.exit_gracefully``). The main thread may hold that lock, as it does while it takes in
-jobs that are done: then the run waits for itself for ever. A thread waits until the lock is free.
-Jobs that have not begun are not begun either. All this costs nothing until a run is told to end. To
-do without it, leave ``answer_in_thread`` out of ``begin`` in ``workflow/rules/records.smk``.
+finished jobs; the run then waits for itself for ever. A thread waits until the lock is free. Jobs
+that have not begun do not begin any more. The cost is nothing until a run is told to end. To do
+without, leave ``answer_in_thread`` out of ``begin`` in ``workflow/rules/records.smk``.
 """
 
 import signal
 import threading
 
-#: Set once this run was told to end.
+#: Set when this run is told to end.
 TOLD = threading.Event()
 
 
 def answer_in_thread(number: int = signal.SIGTERM) -> None:
-    """Let a thread answer a signal as the main thread would, which must be the one that calls."""
+    """Let a thread answer a signal as the main thread would. The main thread must call this."""
     answer = signal.getsignal(number)
 
     def begin_answer(*told):

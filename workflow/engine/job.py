@@ -1,4 +1,4 @@
-"""What every script does around its one call: a log, checked inputs, errors a user can read."""
+"""Frame of every script: a log, checked inputs, checksums of outputs, readable errors."""
 
 import contextlib
 import logging
@@ -9,8 +9,8 @@ import sys
 import time
 from pathlib import Path
 
-# Read when numpy is imported. Two threads of BLAS that wait for each other make the L-BFGS-B of
-# another code four times slower; our own threads are another matter.
+# BLAS reads this when numpy is imported. Two threads of BLAS that wait for each other make the
+# L-BFGS-B of another code four times slower. The threads of our own kernels are set elsewhere.
 os.environ["OPENBLAS_NUM_THREADS"] = "1"
 
 from fractalcontact.core import checksums
@@ -20,23 +20,23 @@ from roughcontact.errors import NotConverged, is_interrupt
 
 from . import running
 
-#: What a job says, and exits with, that is told to end.
+#: Last words and exit code of a job that is told to end.
 STOPPED, STOPPED_CODE = "stopped before it was done", 143
-#: What stands in a log below an error that every further attempt would find again.
+#: Line of a log below an error that every further attempt would meet again.
 CERTAIN = "no further attempt can do better"
-#: What systems count memory in.
+#: Bytes of the unit of ``ru_maxrss``, which differs between systems.
 _KILOBYTE = 1 if sys.platform == "darwin" else 1024
 log = logging.getLogger("fractalcontact")
 
 
 @contextlib.contextmanager
 def job(snakemake):
-    """One job: its inputs are as they were made, its outputs leave their checksums, it has a log.
+    """Frame of one job: inputs are checked, outputs leave checksums, everything goes to a log.
 
-    Where the input is at fault, or the disk is full, its log has one clear line and no traceback.
-    What a further attempt on a cluster would find again it says at once, without working again.
-    The log's last line says what the job spent on its work, imports not counted, and of that on
-    contact solves: ``benchmarks/study_cost.py`` and the result page add them up.
+    If the input is at fault, or the disk is full, the log gets one clear line and no traceback. On
+    a cluster a further attempt that would fail the same way repeats that line at once. The last
+    line of the log states the time of the work, imports not counted, and of its contact solves,
+    which ``benchmarks/study_cost.py`` and the result page add up.
     """
     found_before = _found_before(snakemake)
     _begin_log(snakemake.log[0])
@@ -76,12 +76,12 @@ def job(snakemake):
         sys.exit(1)
 
 
-#: Standard error as it was before the log took it.
+#: Copy of standard error, which the log takes over.
 _terminal = os.dup(2)
 
 
 def _begin_log(path):
-    """Let the log take what the job says, and what libraries write past it."""
+    """Write to the log what the job says, and what libraries write past it."""
     try:
         logging.basicConfig(
             filename=path, filemode="w", encoding="utf-8", level=logging.INFO, format="%(message)s"
@@ -92,7 +92,7 @@ def _begin_log(path):
 
 
 def _say_error(said):
-    """In the log, or in the terminal where the log stands on the same full disk."""
+    """Write an error to the log, or to the terminal if the log is on the full disk."""
     logging.raiseExceptions = False
     log.error("error: %s", said)
     if said not in Path(logging.getLogger().handlers[0].baseFilename).read_text("utf-8"):
@@ -100,7 +100,7 @@ def _say_error(said):
 
 
 def _found_before(snakemake):
-    """The error of the attempt before this one, if it would be that of this one too."""
+    """Error of the attempt before this one, if this one would fail the same way."""
     path = Path(snakemake.log[0])
     if snakemake.resources.get("attempt", 1) == 1 or not path.is_file():
         return ""
@@ -119,5 +119,5 @@ def _stop(number, frame):
 
 
 def _below(folder, paths):
-    """Those files that the study itself makes."""
+    """Files among these that the study itself makes."""
     return [path for path in map(Path, paths) if path.is_relative_to(folder)]

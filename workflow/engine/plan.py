@@ -1,8 +1,8 @@
-"""Study that a run was planned with, which its jobs on a cluster take from there.
+"""Plan of a run: its study, which jobs on a cluster load instead of reading it again.
 
-Snakemake reads the workflow again in every job of a cluster, hours later: what is edited meanwhile,
-and specimens that come or go, would give results of neither study. They are the next run's. The
-plan costs some 10 ms a run. It is not used on one machine, where jobs do not read the workflow.
+Cluster jobs read the workflow again, hours later. Without a plan, edits made meanwhile and
+specimens that come or go would give results of neither study; with it they affect only the next
+run. The plan costs some 10 ms a run. On one machine jobs do not read the workflow and need none.
 """
 
 import functools
@@ -21,24 +21,15 @@ from fractalcontact.study.checks import resolve_study
 from fractalcontact.study.documents import read_study
 from fractalcontact.study.scan_groups import grouped_notes
 
-#: Of the checkout in which a run works.
+#: File of the plan, in the checkout of the run.
 FILE = Path(".snakemake/fractalcontact-plan.pickle")
 
 
 class Plan:
-    """Study of a run, and the SHA-256 of the files that it reads.
+    """Study of a run, as ``study``, and the SHA-256 of the files that it reads.
 
-    Parameters
-    ----------
-    workflow : snakemake.workflow.Workflow
-    config : dict
-        The study as its user wrote it; in a job of a cluster it becomes that of the plan.
-    source : str
-        Its file, for errors.
-
-    Attributes
-    ----------
-    study : fractalcontact.study.checks.Study
+    ``config`` is the study as its user wrote it; in a job of a cluster it becomes that of the plan.
+    ``source`` is its file, for errors.
     """
 
     def __init__(self, workflow, config, source):
@@ -53,7 +44,7 @@ class Plan:
             planned, self.study, self._known = pickle.loads(FILE.read_bytes())
             config.clear()
             config.update(planned)
-        # Taken before any job: a scan that is replaced meanwhile belongs to the next run.
+        # Digests are taken before any job: a scan replaced meanwhile belongs to the next run.
         self._digest = functools.cache(self._digest_of)
 
     def _digest_of(self, path):
@@ -67,7 +58,7 @@ class Plan:
     def digests(self, *files):
         """SHA-256 of scan files or laboratory tests, by path.
 
-        Times say nothing of a file that was moved, copied or unpacked over another.
+        Modification times are no substitute: a file may be moved, copied or unpacked over another.
         """
         return {str(path): self._digest(str(path)) for path in files}
 
@@ -100,8 +91,8 @@ def read_again(workflow, config):
 
 def checked(config, source):
     """A study that passed all checks; what its user should know is said."""
-    # What is wrong with one scan stops only that where the user asks so on the command line, which
-    # Snakemake itself looks at later.
+    # With --keep-going an error of one scan stops only that scan. Snakemake reads this option from
+    # the command line too, but later.
     keep_going = bool({"-k", "--keep-going"} & set(sys.argv))
     study = resolve_study(config, source, leave_out=keep_going)
     if folder := config.get("scans", "scans"):

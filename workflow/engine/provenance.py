@@ -1,9 +1,9 @@
-"""Results of which Snakemake has lost the record of how they were made: they are made again.
+"""Results whose record Snakemake has lost: they are made again.
 
 Snakemake compares the parameters and inputs of a file with its record. It takes a file for up to
 date whose record is lost or unreadable, and one that was made from a result that has since been
 removed, even if the job of that result failed after its scan was replaced. And where the job of a
-file that is flagged `update` fails, it puts the file of before back, and records it as made by that
+file that is flagged `update` fails, Snakemake restores the old file but records it as made by that
 job.
 """
 
@@ -31,7 +31,7 @@ def mark_without_provenance(results, settings):
         records = FilePersistence()
     is_there = functools.cache(lambda path: Path(path).exists())
     files = [IOFile(f"{results}/{line[66:].rstrip()}") for line in checksums.lines_of(results)]
-    # Snakemake would warn of each damaged record, by a name in base64.
+    # Snakemake would warn of each damaged record, and name it in base64.
     logging.disable(logging.WARNING)
     lacking = [file for file in files if not _has_provenance(file, records, results, is_there)]
     logging.disable(logging.NOTSET)
@@ -56,10 +56,10 @@ def _has_provenance(file, records, results, is_there):
 
 
 def _is_put_back(file, record, sums):
-    """True of a file whose job, the last of Snakemake's record, failed: it has left no checksums.
+    """True of an old file that was restored when its job failed and so left no checksums.
 
-    Both times are younger than the checksums then, as they are after ``--touch``; but its log does
-    not say that it is done.
+    The record and the file are both younger than the checksums then, as they are after ``--touch``;
+    but the last line of the job's log does not say that it is done.
     """
     left = os.stat(sums).st_mtime
     if (record.starttime or 0) <= left or os.stat(file).st_mtime <= left:

@@ -1,9 +1,9 @@
-"""Who is at work in this checkout: so that nobody takes away the lock of what lives.
+"""Guard of a checkout: locks that tell whether a run or a job is still at work in it.
 
-Snakemake's own lock is a file that a killed run leaves behind, and does not say whose it is. So
-every process that works here, the runs and each of their jobs, holds a shared lock of the system on
-one file for as long as it lives, however it ends. Who gets that file for itself alone knows that
-nothing is at work here. (A job that still waits in a cluster's queue is not.)
+Snakemake's own lock is a file that a killed run leaves behind without the number of its process.
+Therefore every run and every job holds a shared lock of the system on one file for as long as its
+process lives, however it ends. A process that gets the exclusive lock knows that no other is at
+work here. (A job that still waits in a cluster's queue is not at work.)
 """
 
 import errno
@@ -12,21 +12,21 @@ import os
 import time
 
 FILE = ".snakemake.guard"
-#: First word of the last line of a job's log: it is done.
+#: First word of the last line in the log of a job that is done.
 DONE = "worked"
-#: File systems that know no such locks: nothing can be told there.
+#: Errors of file systems without locks.
 _NO_LOCKS = (errno.ENOLCK, errno.ENOSYS, errno.EOPNOTSUPP)
 
 
 def mark():
-    """Say that this process is at work, until it ends."""
+    """Take the shared lock until this process ends."""
     share(os.open(FILE, os.O_RDWR | os.O_CREAT, 0o666))
 
 
 def alone(seconds):
-    """Keep everybody else from working: a handle for `share`, None if others are at work so long.
+    """Handle of the exclusive lock, and whether the file system has locks.
 
-    And whether the file system has locks. Where it has none, others may be at work.
+    The handle is None if others work for that many seconds. Without locks others may be at work.
     """
     handle, end = os.open(FILE, os.O_RDWR | os.O_CREAT, 0o666), time.monotonic() + seconds
     while time.monotonic() < end:
@@ -39,10 +39,10 @@ def alone(seconds):
 
 
 def share(handle):
-    """Let others work again; this process still counts as one that does.
+    """Turn the exclusive lock into a shared one, so that others may work again.
 
-    For a moment nobody holds the file. Another run may take it then, which finds what this one has
-    just left behind: nothing that it could harm.
+    For a moment nobody holds a lock. Another run may take the exclusive one then; it finds what
+    this run has just left behind, and can harm nothing.
     """
     _locked(handle, fcntl.LOCK_SH)
 

@@ -1,5 +1,4 @@
-# All that was computed, in one file; or of many specimens in one a specimen, and one of what they
-# have together.
+# The atlas: all results in one file; in a campaign one file a specimen, and one for the whole study.
 
 #: Files that the rules above make of every specimen, whatever its kind, with {specimen} in their names.
 STAGE_PATTERNS = [
@@ -10,7 +9,7 @@ STAGE_PATTERNS = [
 ]
 MAP_FILES = expand(rules.contact_map.output, specimen=MAPS)
 SPECIMEN_ATLAS = f"{RESULTS}/atlas/{{specimen}}.nc"
-# What of a specimen is compared with others, beside its atlas, which takes long to open.
+# The numbers of a specimen that are compared with others. Its atlas has them too but takes long to open.
 SPECIMEN_ROW = f"{RESULTS}/rows/{{specimen}}.nc"
 
 #: Files of all stages of all specimens.
@@ -23,7 +22,7 @@ STAGE_FILES = [
 ]
 
 
-# All that the rules above made, with the verdicts on what the paper says of several specimens.
+# Results of all rules above, and the verdicts on the paper's statements about several specimens.
 rule atlas:
     input:
         stages=[] if IN_PARTS else STAGE_FILES,
@@ -31,9 +30,10 @@ rule atlas:
         maps=MAP_FILES,
         laboratory=LABORATORY,
     output:
-        # `update` here and below: Snakemake would remove what readers have before its job begins.
+        # `update`, here and below, keeps the file until the new one is complete. Snakemake would else
+        # remove it before the job begins, while somebody may be reading it.
         update(f"{RESULTS}/atlas.nc"),
-        # Which specimens it has, one a line: kept from being lost without a word.
+        # Names of its specimens, one a line. A run that would lose one of them is refused.
         names=update(f"{RESULTS}/specimens.txt"),
     log:
         f"{RESULTS}/logs/atlas.log",

@@ -1,5 +1,5 @@
-# What every file of rules uses: the checked study, its specimens, and what a rule says of its jobs.
-# Its imports are light, without xarray, numba or matplotlib: on a cluster every job reads it.
+# The checked study, its specimens, and helpers for parameters and resources, which all files of rules use.
+# Imports are light, without xarray, numba or matplotlib, because every job on a cluster reads this file.
 import functools
 import sys
 from dataclasses import asdict
@@ -7,13 +7,13 @@ from pathlib import Path
 
 from snakemake.exceptions import WorkflowError
 
-# The folder of this workflow, also where another workflow imports it as a module.
+# The folder of this workflow. It is right too where another workflow imports this one as a module.
 ROOT = Path(workflow.current_basedir.get_path_or_uri(secret_free=True)).parents[1]
 sys.path.insert(0, str(ROOT / "workflow"))
 
 from engine import use_checkout
 
-# The packages of this checkout's src, not those of an installed one.
+# Jobs import the packages in src of this checkout, not those of an installed one.
 use_checkout(ROOT)
 
 from engine.code_digest import Code
@@ -27,7 +27,7 @@ from fractalcontact.study import resources as estimates
 from fractalcontact.study.configuration import resolve_embedded
 
 SOURCE = str(workflow.configfiles[-1]) if workflow.configfiles else "config/paper.yaml"
-# Checks the study, reads the sidecars and digests the scans; once a run, not once a job.
+# The plan checks the study, reads the sidecars and digests the scans once a run, not once a job.
 RUN = Plan(workflow, config, SOURCE)
 STUDY = RUN.study
 RESULTS = f"results/{config['study']}"
@@ -40,24 +40,40 @@ SPECIMENS = sorted(SETTINGS)
 #: Surfaces against a plane, which cannot slide, and all others.
 FLAT = [name for name in SPECIMENS if not slides(SETTINGS[name].opposite)]
 SLIDING = sorted(set(SPECIMENS) - set(FLAT))
-#: Measured maps of contact. They have no settings, and STUDY.labels has their labels alone; those of
-#: specimens are among their settings.
+#: Measured maps of contact, which have labels but no settings.
 MAPS = list(LABELS)
-#: Surfaces that the study makes, with their recipes, and those with tests in a real laboratory.
+#: Recipes of surfaces that the study makes, and specimens with tests in a real laboratory.
 RECIPES = {name: recipe for name, recipe in config.get("embedded", {}).items() if name in SETTINGS}
 TESTED = [name for name in SPECIMENS if SETTINGS[name].measured]
-#: Members of the ensembles that the study wants: twins of scans, realisations of its own surfaces.
+#: Number of members of each ensemble: twins of a scan, or realisations of a surface of the study.
 TWINS = {name: SETTINGS[name].twins for name in SPECIMENS if SETTINGS[name].twins}
 ENSEMBLES = TWINS | {
     name: recipe["realisations"] for name, recipe in RECIPES.items() if "realisations" in recipe
 }
-#: Whether this is a campaign: a study whose specimens each have an atlas of their own, as they
-#: are many; atlas.nc holds one row of each. Then nothing asks for all that was made of each of them.
+#: True for a campaign, a study of many specimens. Each specimen then has an atlas of its own and a row
+#: in atlas.nc, and the rule `all` does not ask for every file of every specimen.
 IN_PARTS = campaign.in_parts(config, SPECIMENS)
+#: Priorities by rule, 0 for all others. Snakemake begins jobs of high priority first. The longest jobs
+#: begin early, so that no core works alone at the end of a run.
+PRIORITY = {
+    "ensemble": 2,  # closure_and_box_counts waits for it
+    "windows": 1,  # the longest job of a specimen; strength waits for it
+    "roll_off": 1,
+    "size_strength": 1,
+    "size_effect_part": 1,
+    # Short jobs, for a core that has nothing else to do at the end.
+    "area_slope": -1,
+    "estimator_bias": -1,
+    # Figures are drawn after what the atlas of the study needs, else one core makes it alone at the end.
+    # Figures of joints take longer and begin first. In a campaign nobody wants to wait for the figures.
+    "figures": 0 if IN_PARTS else -2,
+    "figures_against_plane": 0 if IN_PARTS else -3,
+    "explorer": -4,  # at the same time as the result page
+}
 
 
-# Any name without a slash: to look for each file among ten thousand names takes minutes. Whoever
-# asks for a specimen that is none is told so by `known`.
+# A specimen is any name without a slash, because matching each file with ten thousand names takes
+# minutes. `known` refuses names that are no specimen.
 wildcard_constraints:
     specimen="[^/]+",
     directions=r"\d+",
@@ -82,9 +98,9 @@ def names_of(some, others):
 
 
 def settings_of(section):
-    """Input of `params`: the settings of a specimen that a class of `core.settings` names.
+    """Parameter with the settings of a specimen that a class of `core.settings` names.
 
-    Only these make a job run again: a changed friction angle or label solves nothing.
+    A job runs again if one of these changes: a changed friction angle or label solves nothing.
     """
     return lambda wildcards: asdict(settings.read(section, RECORDS[known(wildcards)]))
 
@@ -95,8 +111,8 @@ digest = functools.cache(Code(ROOT / "src", ROOT, ROOT / "workflow").digest)
 def code(script, *names):
     """Parameter that changes with the code that a script of workflow/scripts runs.
 
-    Snakemake's own trigger sees the script, but not what it imports. Named here are modules, or
-    folders of src, that the script imports only while it runs.
+    Snakemake's own trigger sees the script but not its imports. `names` are modules, or folders of
+    src, that the script imports only while it runs, where the digest cannot find them.
     """
     return lambda wildcards: digest(ROOT / f"workflow/scripts/{script}.py", *names)
 
@@ -122,7 +138,7 @@ def window_nodes(name):
 
 
 def most_offsets(name):
-    """Most shear offsets of a specimen: how many "auto" finds is known only later."""
+    """Most shear offsets of a specimen; their number under "auto" is known only later."""
     return len(SETTINGS[name].offsets or range(AUTOMATIC_OFFSETS + 1))
 
 
@@ -132,19 +148,19 @@ def kept_states(name):
 
 
 def doubled(amount):
-    """Memory or time, a number or a function of wildcards: twice as much at every further attempt.
+    """Memory or time, a number or a function of wildcards, doubled at every further attempt.
 
-    So what a cluster has ended for its memory or its time is done by the next.
+    So a job that a cluster ended for its memory or its time gets more in the next attempt.
     """
     asked = amount if callable(amount) else lambda wildcards: amount
     return lambda wildcards, attempt: asked(wildcards) * 2 ** (attempt - 1)
 
 
 def memory(job, nodes=window_nodes, states=kept_states):
-    """Megabytes that a job asks for, by the nodes of its grid and its number of states."""
+    """Requested megabytes of a job, by the nodes of its grid and its number of states."""
     return doubled(lambda wc: estimates.memory(job, nodes(known(wc)), states(wc.specimen)))
 
 
 def minutes(job, nodes=window_nodes, states=kept_states):
-    """Minutes that a job asks for, likewise."""
+    """Requested minutes of a job, by the nodes of its grid and its number of states."""
     return doubled(lambda wc: estimates.minutes(job, nodes(known(wc)), states(wc.specimen)))

@@ -1,9 +1,9 @@
-# Contact of the composite topographies, the costly part, and what follows from its states: closure,
+# Contact states of the composite topographies, which cost most of a study, and their analysis: closure,
 # dilatancy, box counts and renormalisation; flow; strength (sections 4 to 6 of the paper).
 
 
 def grain(key, n):
-    """Slices of n things for as many jobs as the study's `grain` asks for."""
+    """Slices of n items for the jobs, each with as many items as the study's `grain` states."""
     size = config.get("grain", {}).get(key, "all")
     size = max(n, 1) if size == "all" else size
     return [slice(start, min(start + size, n)) for start in range(0, n, size)]
@@ -14,7 +14,7 @@ def parts_of(name):
     stated = SETTINGS[name]
     return {
         "directions": grain("directions", len(stated.contact_directions)),
-        # Where there are fewer offsets, a job without any writes an empty part.
+        # The scan may turn out to have fewer offsets; a job without any writes an empty part.
         "offsets": grain("offsets", most_offsets(name)),
         "resolutions": grain("resolutions", len(stated.resolutions)),
     }
@@ -60,13 +60,13 @@ def contact_files_of(name):
 
 
 def contact_files(wildcards):
-    """The same, as an input of rules."""
+    """Files of the contact jobs of a specimen, as an input of rules."""
     return contact_files_of(known(wildcards))
 
 
-# Realisations of a surface that the study makes (its seed and those that follow), or twins of a scan:
-# random surfaces with its spectrum. Their spread is an error of what is published. It takes about as
-# long as `windows`, and closure_and_box_counts waits for it.
+# Realisations of a surface that the study makes (its seed and those that follow), or twins of a scan,
+# which are random surfaces with its spectrum. Their spread enters the errors of published numbers. The
+# job takes about as long as `windows`, and closure_and_box_counts waits for it.
 rule ensemble:
     input:
         specimens=rules.roughness_and_composite.output.specimens,
@@ -77,7 +77,7 @@ rule ensemble:
         f"{RESULTS}/logs/ensemble/{{specimen}}.log",
     wildcard_constraints:
         specimen=alternation(ENSEMBLES),
-    priority: 2
+    priority: PRIORITY["ensemble"]
     resources:
         mem_mb=memory("ensemble", states=lambda name: ENSEMBLES[name]),
         runtime=minutes("ensemble", states=lambda name: ENSEMBLES[name]),
@@ -98,9 +98,10 @@ ENSEMBLE = branch(lambda wildcards: wildcards.specimen in ENSEMBLES, then=rules.
 
 
 # Closure, dilatancy, contact area, box counts and renormalisation of the states that `contact` solved,
-# and the errors of what is published, by source. For these some states are solved again on finer grids
-# and in other windows. All of it is short beside `contact`, so one job. `branches` are loading and
-# unloading, `choices` says how each solve was done, and contact/{specimen}.nc has the states of all jobs.
+# and the errors of published numbers by source. For the errors some states are solved again on finer grids
+# and in other windows. One job does all of it, since four jobs would read the same states four times and
+# cost the smoke study 5 % more processor time. `branches` are loading and unloading, `choices` is the
+# solve plan, and contact/{specimen}.nc has the states of all jobs.
 rule closure_and_box_counts:
     input:
         specimens=rules.roughness_and_composite.output.specimens,
@@ -134,7 +135,7 @@ rule closure_and_box_counts:
         "../scripts/closure_and_box_counts.py"
 
 
-# Sparse equations of all open cells, so a job of its own.
+# Flow through the apertures. It solves sparse equations of all open cells, so it is a job of its own.
 rule flow:
     input:
         specimens=rules.roughness_and_composite.output.specimens,
@@ -171,7 +172,7 @@ rule windows:
         size_test=f"{RESULTS}/size_test/{{specimen}}.nc",
     log:
         f"{RESULTS}/logs/windows/{{specimen}}.log",
-    priority: 1
+    priority: PRIORITY["windows"]
     resources:
         mem_mb=memory("windows"),
         runtime=minutes("windows"),
@@ -185,8 +186,8 @@ rule windows:
         "../scripts/windows.py"
 
 
-# Shear strength, size laws and the comparison with the paper. This job alone reads friction angles, wall
-# strengths and labels of specimens, and it solves nothing.
+# Shear strength, size laws and the comparison with the paper. This job alone reads the friction angles,
+# wall strengths and labels of specimens. It solves no contact.
 rule strength:
     input:
         specimens=rules.roughness_and_composite.output.specimens,
@@ -224,7 +225,7 @@ rule strength:
         "../scripts/strength.py"
 
 
-# A surface against a plane does not slide: the same without its strength.
+# The same without strength, for a surface against a plane, which does not slide.
 use rule strength as size_laws_against_plane with:
     output:
         windows=f"{RESULTS}/windows/{{specimen}}.nc",
@@ -239,8 +240,8 @@ use rule strength as size_laws_against_plane with:
         "{wildcards.specimen}: size laws and the paper's statements"
 
 
-# Tests of the joint in a real laboratory beside the computed curves. Little is solved: another hardness,
-# or what has crushed under the largest pressure of a test.
+# Tests of the joint in a real laboratory beside the computed curves. The job solves contact only for
+# another hardness, or for what has crushed under the largest pressure of a test.
 rule measured:
     input:
         specimens=rules.roughness_and_composite.output.specimens,

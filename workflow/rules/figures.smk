@@ -2,7 +2,8 @@
 from fractalcontact.study.figure_list import all_figures, study_figures_of
 from fractalcontact.study.selection import CAPPED_VARIANTS
 
-# Measured contact maps ask for their figures themselves, and so do several specimens.
+# Keys that ask for figures of the study: those of the study itself, measured contact maps, and several
+# specimens.
 ASKED = [*config, *(["contact_maps"] if MAPS else [])]
 if len(SPECIMENS) > 1:
     ASKED.append(campaign.COMPARISON)
@@ -17,9 +18,9 @@ OF_FLAT = campaign.drawn_of(config, SPECIMENS, "flat")
 
 
 def drawings(names, folder="{specimen}/", category="{specimen}"):
-    """Files of figures: each PNG with its title for the report, and what goes with it.
+    """Files of figures, each PNG with its title for the report.
 
-    Those that are there stay until the new ones take their places.
+    `update` keeps the old files until the new ones are complete.
     """
     files = {name: f"{RESULTS}/figures/{folder}{name}" for name in names}
     endings = "svg", "csv", "txt"
@@ -32,9 +33,9 @@ def drawings(names, folder="{specimen}/", category="{specimen}"):
 
 
 def configuration_of(wildcards):
-    """What the atlas of one specimen says of the study: what the study says of others is left out.
+    """Configuration in the atlas of one specimen, without that of the others.
 
-    So a change of those draws nothing of it again.
+    So a change of another specimen draws no figure of this one again.
     """
     name = known(wildcards)
     stated = {key: config[key] for key in ("study", "accuracy", "solver") if key in config}
@@ -47,9 +48,9 @@ def configuration_of(wildcards):
 UNDRAWN = f"{RESULTS}/undrawn/{{specimen}}.txt"
 
 
-# This job first writes the atlas of one specimen (and its row, in a campaign), and draws from that: it
-# needs no atlas.nc. So a new scan draws only its own figures, and one bad scan does not keep the others
-# from theirs. A new contact map draws all again, as it stands beside every specimen.
+# Atlas of one specimen (and its row, in a campaign), and the figures drawn from it. The job does not need
+# atlas.nc, so a new scan draws only its own figures, and a bad scan stops no other specimen's figures. A
+# new contact map draws all figures again, because they show it beside every specimen.
 rule figures:
     input:
         STAGE_PATTERNS,
@@ -66,9 +67,7 @@ rule figures:
         f"{RESULTS}/logs/figures/{{specimen}}.log",
     wildcard_constraints:
         specimen=names_of(SLIDING, FLAT),
-    # After what the atlas of the study waits for: else, at the end, one core draws from it alone.
-    # The longer jobs first. Of a campaign nobody wants to wait that long.
-    priority: 0 if IN_PARTS else -2
+    priority: PRIORITY["figures"]
     resources:
         mem_mb=memory("figures" if OF_JOINT else "atlas_part"),
         runtime=minutes("figures" if OF_JOINT else "atlas_part"),
@@ -82,7 +81,7 @@ rule figures:
         "../scripts/figures.py"
 
 
-# A surface against a plane does not slide: no strength, and fewer figures.
+# The same for a surface against a plane, which does not slide: no strength, and fewer figures.
 use rule figures as figures_against_plane with:
     input:
         STAGE_PATTERNS,
@@ -99,14 +98,14 @@ use rule figures as figures_against_plane with:
         f"{RESULTS}/logs/figures_against_plane/{{specimen}}.log",
     wildcard_constraints:
         specimen=names_of(FLAT, SLIDING),
-    priority: 0 if IN_PARTS else -3
+    priority: PRIORITY["figures_against_plane"]
     params:
         names=OF_FLAT,
         configuration=configuration_of,
         code=code("figures", "fractalcontact/figures"),
 
 
-# What only the whole study shows.
+# Figures that compare all specimens, or show experiments.
 rule study_figures:
     input:
         rules.atlas.output[0],
@@ -128,15 +127,15 @@ rule study_figures:
         "../scripts/study_figures.py"
 
 
-# A figure that fails keeps no other from being drawn, of this specimen or another; but the study has
-# not succeeded, and ends here with the names of those that failed.
+# A figure that fails stops no other figure. This job then ends the study with the names of those that
+# failed.
 rule all_drawn:
     input:
         undrawn=[
             *expand(UNDRAWN, specimen=SPECIMENS),
             *([rules.study_figures.output.undrawn] if STUDY_FIGURES else []),
         ],
-        # Not before everything else is there: a job that fails keeps others from being begun.
+        # The job waits for the atlas, because Snakemake begins no further job once one has failed.
         atlas=rules.atlas.output[0],
     output:
         f"{RESULTS}/all_drawn.txt",
@@ -146,35 +145,38 @@ rule all_drawn:
         mem_mb=doubled(500),
         runtime=doubled(5),
     params:
-        reason="not drawn, because of an error of the program: NAMES; their pictures say so, the "
-        f"logs in {RESULTS}/logs/figures hold the whole error; everything else is done",
-        code=code("refused"),
+        logs=f"{RESULTS}/logs/figures",
+        code=code("all_drawn"),
     message:
         "the study: whether all figures were drawn"
     script:
-        "../scripts/refused.py"
+        "../scripts/all_drawn.py"
 
 
-def figure_files(specimen, endings=("png", "svg", "csv", "txt")):
-    """Files of the figures of a specimen, that one which is removed is made again."""
+#: Endings of the files of a figure: pictures, numbers, caption.
+ENDINGS = ("png", "svg", "csv", "txt")
+
+
+def figure_files(specimen, endings=ENDINGS):
+    """Files of the figures of a specimen with these endings."""
     names = OF_JOINT if specimen in SLIDING else OF_FLAT
-    files = [f"{RESULTS}/figures/{specimen}/{name}" for name in names]
-    return [f"{file}.{ending}" for file in files for ending in endings]
+    return expand(f"{RESULTS}/figures/{specimen}/{{name}}.{{ending}}", name=names, ending=endings)
 
 
-def all_figure_files():
-    """Every file of the figures of a study."""
-    of_specimens = [path for specimen in SPECIMENS for path in figure_files(specimen)]
-    return [*(rules.study_figures.output if STUDY_FIGURES else []), *of_specimens]
+def all_figure_files(endings=ENDINGS):
+    """Files of all figures of the study and of its specimens with these endings."""
+    of_study = expand(f"{RESULTS}/figures/{{name}}.{{ending}}", name=STUDY_FIGURES, ending=endings)
+    return [*of_study, *(path for name in SPECIMENS for path in figure_files(name, endings))]
 
 
 def collect_everything(wildcards):
-    """Every file of the study: what was removed, or damaged and so removed, is made again.
+    """Every file of the study, so that one that was removed or set aside is made again.
 
-    Of a campaign what its atlas is made of is not asked for, file by file: it would take minutes to
-    find that nothing is to be done.
+    A campaign does not ask for the files behind its atlas: to find that nothing is to be done would
+    take minutes.
     """
-    made = [*LABORATORY, *rules.all_drawn.output, *all_figure_files(), *RESULT_PAGE]
+    drawn = [*rules.all_drawn.output, *rules.all_drawn.input.undrawn, *all_figure_files()]
+    made = [*LABORATORY, *drawn, *RESULT_PAGE]
     if IN_PARTS:
         return made
     return [

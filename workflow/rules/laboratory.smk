@@ -1,5 +1,5 @@
-# Experiments on synthetic surfaces, and how fast and how exact the solver is: each where the study
-# has its key. The longest come first: begun last they would keep one core busy and the others idle.
+# Experiments on synthetic surfaces, and speed and accuracy of the solver. Each is made where the study has
+# its key.
 from contactlab.experiments.size_tasks import size_jobs
 from fractalcontact.study.configuration import resolve_roll_off
 
@@ -11,14 +11,14 @@ except InputError as error:
 
 SCENES, KINDS, PEERS = [], [], []
 if {"speed", "stability"} & set(config):
-    # What knows the solvers takes long to import.
+    # These imports load the solvers and take long.
     from contactlab.accuracy.hard_problems import KINDS as ALL_KINDS
     from contactlab.accuracy.reference import problems_of
     from contactlab.methods.registry import installed_peers
 
     SCENES = list(problems_of(config["speed"])) if "speed" in config else []
     KINDS = list(ALL_KINDS) if "stability" in config else []
-    #: Other codes that are measured: one that is installed later makes it run again.
+    #: Other codes that are measured. As a parameter, one that is installed later makes the jobs run again.
     PEERS = list(installed_peers())
 #: Kinds of hard problem that one job judges.
 KINDS_A_JOB = 14
@@ -34,7 +34,7 @@ rule roll_off:
         f"{RESULTS}/roll_off/surfaces.nc",
     log:
         f"{RESULTS}/logs/roll_off/surfaces.log",
-    priority: 1
+    priority: PRIORITY["roll_off"]
     resources:
         mem_mb=doubled(4000),
         runtime=doubled(30),
@@ -52,7 +52,7 @@ rule size_strength:
         f"{RESULTS}/size_strength/surfaces.nc",
     log:
         f"{RESULTS}/logs/size_strength/surfaces.log",
-    priority: 1
+    priority: PRIORITY["size_strength"]
     resources:
         mem_mb=doubled(4000),
         runtime=doubled(120),
@@ -71,8 +71,7 @@ rule area_slope:
         f"{RESULTS}/area_slope/surfaces.nc",
     log:
         f"{RESULTS}/logs/area_slope/surfaces.log",
-    # Short: it fills the core that has nothing else to do at the end.
-    priority: -1
+    priority: PRIORITY["area_slope"]
     resources:
         mem_mb=doubled(4000),
         runtime=doubled(60),
@@ -91,7 +90,7 @@ rule estimator_bias:
         f"{RESULTS}/estimator_bias/surfaces.nc",
     log:
         f"{RESULTS}/logs/estimator_bias/surfaces.log",
-    priority: -1
+    priority: PRIORITY["estimator_bias"]
     resources:
         mem_mb=doubled(4000),
         runtime=doubled(60),
@@ -110,7 +109,7 @@ def memory_of_part(wildcards):
     return estimates.memory("size_effect_part", side**2)
 
 
-# Surfaces of one class a job, minutes each, in any order; small classes share a job.
+# Surfaces of one class a job, which takes minutes; small classes share a job. The order does not matter.
 rule size_effect_part:
     output:
         f"{RESULTS}/size_effect_parts/{{part}}.nc",
@@ -118,7 +117,7 @@ rule size_effect_part:
         f"{RESULTS}/logs/size_effect_parts/{{part}}.log",
     wildcard_constraints:
         part=alternation(SIZE_PARTS),
-    priority: 1
+    priority: PRIORITY["size_effect_part"]
     resources:
         mem_mb=doubled(memory_of_part),
         runtime=doubled(60),
@@ -152,7 +151,7 @@ rule size_effect:
         "../scripts/size_effect.py"
 
 
-# It measures time, and takes all cores, so that nothing runs beside it.
+# The job measures time. It takes all cores, so that no other job disturbs it.
 rule speed:
     output:
         f"{RESULTS}/speed/{{scene}}.nc",

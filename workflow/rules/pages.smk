@@ -1,5 +1,5 @@
-# The explorer, contact states of all specimens or of those named on one page; and the result page: an
-# index, a page a specimen and tables beside them.
+# The explorer, one page with the contact states of all specimens or of those named; and the result page,
+# which is an index, a page a specimen and tables.
 from fractalcontact.pages import files as page_files
 
 #: Specimens that the explorer shows.
@@ -7,7 +7,7 @@ EXPLORED = campaign.explored(config, SPECIMENS)
 
 
 def with_endings(path, endings):
-    """Files of a specimen, one an ending: "cards/{specimen}.{ending}" with ["yaml", "json"], say."""
+    """Files of a specimen, one for each ending, such as "cards/{specimen}.{ending}"."""
     return expand(f"{RESULTS}/{path}", specimen="{specimen}", ending=endings)
 
 
@@ -16,12 +16,11 @@ rule explorer:
         rules.atlas.output[0],
         expand(SPECIMEN_ATLAS, specimen=EXPLORED) if IN_PARTS else [],
     output:
-        # `update`: what readers have stays until the new file takes its place.
+        # `update` keeps the page until the new one takes its place.
         update(f"{RESULTS}/explorer.html"),
     log:
         f"{RESULTS}/logs/explorer.log",
-    # After the figures: beside the result page, no core has nothing to do at the end.
-    priority: -4
+    priority: PRIORITY["explorer"]
     resources:
         mem_mb=doubled(3000),
         runtime=doubled(10),
@@ -34,15 +33,15 @@ rule explorer:
         "../scripts/explorer.py"
 
 
-# The card of a specimen, constants with their intervals which the page and other codes read; its
-# aperture map for other programs (in a campaign the command export_aperture writes it on demand); and its
-# page. All from its own atlas: one more specimen writes no other's again.
+# Card of a specimen, constants with their intervals which the page and other codes read; its aperture map
+# for other programs (in a campaign the command export_aperture writes it on demand); and its page. The job
+# reads the specimen's own atlas alone, so that one more specimen writes no other card again.
 rule card_and_page:
     input:
         SPECIMEN_ATLAS,
-        # Captions stand for the pictures, of which no page is made: the same job leaves both.
+        # Captions stand for the pictures, which no page reads: one job makes both.
         lambda wildcards: figure_files(known(wildcards), ["txt"]),
-        # Aperture maps are those of the jobs of contact, which the atlas rounds.
+        # Aperture maps take the gaps from the contact jobs, because the atlas rounds them.
         lambda wildcards: [] if IN_PARTS else contact_files_of(known(wildcards)),
     output:
         update(f"{RESULTS}/{page_files.SPECIMEN_PAGE}"),
@@ -54,7 +53,7 @@ rule card_and_page:
         mem_mb=doubled(1500),
         runtime=doubled(10),
     params:
-        # Of itself alone: one specimen more or less changes no other's page.
+        # The specimen itself, if the explorer shows it. Others would change this page.
         explored=lambda wildcards: [name for name in EXPLORED if name == wildcards.specimen],
         apertures=not IN_PARTS,
         code=code("card_and_page", "fractalcontact/cards", "fractalcontact/pages"),
@@ -65,7 +64,7 @@ rule card_and_page:
 
 
 PAGES = expand(list(rules.card_and_page.output), specimen=SPECIMENS)
-# None of measured contact maps alone, nor of many specimens of which the study names none.
+# There is no explorer of measured contact maps alone, nor of a campaign that names no specimen for it.
 EXPLORER = list(rules.explorer.output) if EXPLORED else []
 INDEX = [f"{RESULTS}/{name}" for name in page_files.FILES]
 RESULT_PAGE = [*INDEX, *EXPLORER, *PAGES]
@@ -75,8 +74,8 @@ rule result_page:
     input:
         rules.atlas.output[0],
         expand(SPECIMEN_ATLAS, specimen=SPECIMENS) if IN_PARTS else [],
-        lambda wildcards: [path for path in all_figure_files() if path.endswith(".txt")],
-        # Its first screen is that of the cards.
+        lambda wildcards: all_figure_files(["txt"]),
+        # The first screen of the index takes its numbers from the cards.
         PAGES,
     output:
         update(INDEX),
@@ -86,7 +85,7 @@ rule result_page:
         mem_mb=doubled(2000),
         runtime=doubled(10),
     params:
-        # The index links to the explorer, which may be made after it or beside it.
+        # The index links to the explorer, which may be made later.
         explored=EXPLORED,
         code=code("result_page", "fractalcontact/pages"),
     message:
@@ -95,7 +94,7 @@ rule result_page:
         "../scripts/result_page.py"
 
 
-# `make report`: the pages, and what they are made of.
+# Target of `make report`: the pages, and everything that they are made of.
 rule pages:
     input:
         lambda wildcards: RESULT_PAGE,

@@ -1,5 +1,5 @@
-# What a run looks at before its first job, and leaves behind after its last: a guard of results, its
-# plan, checksums, and what was made of what in linked data.
+# Work before the first job and after the last: a guard of results, the plan of the run, checksums, and
+# provenance as linked data.
 import os
 import threading
 
@@ -12,7 +12,7 @@ from snakemake.logging import logger
 
 
 def remake_without_record():
-    """Mark results that Snakemake would take for up to date though its record of them is lost."""
+    """Mark results whose record is lost, which Snakemake would take for up to date."""
     if workflow.is_main_process and (
         again := provenance.mark_without_provenance(RESULTS, workflow.workflow_settings)
     ):
@@ -24,13 +24,13 @@ def remake_without_record():
 
 
 def begin():
-    """Refuse what would lose results; else say that a run is at work, and its plan."""
+    """Mark this run as at work, refuse to lose specimens, and save the plan of the run."""
     running.mark()
-    # Elsewhere no signal is answered: another program may call Snakemake from any thread.
+    # Python answers signals in the main thread alone; a program may call Snakemake from another.
     if threading.current_thread() is threading.main_thread():
         answer_in_thread()
     try:
-        # Only the user says that specimens may go, never a study.
+        # The user alone may let specimens go, not the file of a study.
         if "FRACTALCONTACT_DROP" not in os.environ:
             guards.refuse_loss(RESULTS, [*SETTINGS, *LABELS])
         RUN.save()
@@ -39,13 +39,13 @@ def begin():
 
 
 def end():
-    """Write checksums of all that was made, and what it is: be everything done or not."""
+    """Write checksums and the RO-Crate of the results, whether or not the run succeeded."""
     checksums.write_manifest(RESULTS)
     scans = {path: digest for path, digest in RUN.all_digests().items() if digest}
     crate.write_crate(RESULTS, WORKFLOW, config["study"], scans)
 
 
-#: What made a study, for its crate of linked data.
+#: The workflow, for the RO-Crate of the results.
 WORKFLOW = crate.Workflow(
     folder=ROOT,
     main="Snakefile",

@@ -1,5 +1,5 @@
-# Scan files, a user's or the study's own; the levelled faces, their roughness, and the composite
-# topographies of one face slid over the other (section 4 of the paper).
+# Scan files of users, or synthetic ones of the study; the levelled faces, their roughness, and the
+# composite topographies of one face slid over the other (section 4 of the paper).
 from fractalcontact.study.sidecar import sidecar_of_matrix
 
 
@@ -22,7 +22,7 @@ rule synthetic_scan:
 
 
 def scan_files(wildcards):
-    """The faces of a specimen, or a measured map, wherever they come from.
+    """Scan files of a specimen or of a measured map.
 
     `ancient` ignores their dates: a changed content changes `digests`, which makes the job run again.
     """
@@ -32,7 +32,7 @@ def scan_files(wildcards):
 
 
 def scan_digests(wildcards):
-    """Digests of these, but of what the study makes itself."""
+    """SHA-256 of these files; none for a surface that the study makes itself."""
     return RUN.digests(*SCANS[wildcards.specimen].files) if wildcards.specimen in SCANS else {}
 
 
@@ -43,14 +43,14 @@ def reading_options(wildcards):
 
 
 def memory_of_reading(wildcards):
-    """Megabytes that the job of a specimen asks for, by the size of its scan files."""
+    """Requested megabytes of the job of a specimen, by the size of its scan files."""
     name = known(wildcards)
     if name in SCANS:
         return estimates.reading_memory(SCANS[name].files)
     return estimates.memory("roughness_and_composite", face_nodes(name))
 
 
-# Seconds of work, so one job: to read the scan is most of it.
+# One job, because reading the scan takes most of its seconds.
 rule roughness_and_composite:
     input:
         scan_files,
@@ -75,7 +75,7 @@ rule roughness_and_composite:
         "../scripts/roughness_and_composite.py"
 
 
-# A measured map of contact goes straight to the analysis of domains. Its {specimen} is the name of a map.
+# Measured map of contact and its dimension. Nothing is solved; {specimen} is the name of the map.
 rule contact_map:
     input:
         scan_files,
@@ -99,11 +99,11 @@ rule contact_map:
         "../scripts/contact_map.py"
 
 
-#: What is wrong with scans that are left out.
+#: Errors of the scans that are left out.
 REFUSED = [str(STUDY.refused[name]) for name in sorted(STUDY.refused)]
 
 
-# A scan that the study leaves out, with --keep-going: its job fails and says why, others go on.
+# A scan that the study leaves out with --keep-going. The job fails with the error; other jobs go on.
 rule refused:
     output:
         f"{RESULTS}/refused/{{refused}}.txt",

@@ -14,7 +14,7 @@ from fractalcontact.study.atlas_parts import Trees
 with job(snakemake):
     atlas, params = Path(snakemake.input[0]), snakemake.params
     results = atlas.parent.parent
-    # To read the atlas is most of the work: once for both.
+    # Reading the atlas is most of the work, so it is read once for both.
     trees = Trees(atlas, {*OF_CARDS, *OF_PAGES})
     write_cards(atlas, results, params.apertures, trees)
     place = replace(Place.of(results), atlas=atlas)

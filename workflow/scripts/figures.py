@@ -9,7 +9,7 @@ from engine.job import job
 from fractalcontact.core import netcdf
 from fractalcontact.stages.atlas import join_stages, row_of
 
-# The job ends with its figures: to collect what they leave takes half a second of eleven.
+# Collecting the garbage of figures takes half a second of eleven, and the job ends after them.
 gc.disable()
 
 with job(snakemake) as log:

@@ -27,7 +27,7 @@ def schemas() -> dict[str, str]:
     draft = {"$schema": "https://json-schema.org/draft/2020-12/schema"}
     return {
         f"config/schema/{name}.schema.json": json.dumps(
-            draft | schema_of(section), indent=1, ensure_ascii=False
+            draft | schema_of(section, with_texts=True), indent=1, ensure_ascii=False
         )
         + "\n"
         for name, section in sections.items()
@@ -93,10 +93,23 @@ def _write(path: str, text: str) -> None:
 
 
 def _rows(section: Any, above: str = "") -> Iterator[tuple[str, str, str]]:
-    """Key, words and what holds without it."""
-    for name, node in schema_of(section)["properties"].items():
+    """Key, its text or words, and what holds without it."""
+    schema = schema_of(section, with_texts=True)
+    for name, node in schema["properties"].items():
         words = node.get("markdownDescription", node.get("description", ""))
-        yield f"{above}{name}", words, node.get("x-unsaid", "")
+        unsaid = node.get("x-unsaid") or _unsaid(section.model_fields[name], node)
+        yield f"{above}{name}", words, unsaid
+
+
+def _unsaid(field: Any, node: dict[str, Any]) -> str:
+    """What holds for a key that is left out, by its default."""
+    if field.is_required():
+        return "required"
+    value = node.get("default", field.default)
+    if isinstance(value, str | int):
+        return f"`{value}`" if isinstance(value, str) else str(value)
+    is_auto = any(form.get("const") == "auto" for form in node.get("anyOf", ()))
+    return "`auto`" if is_auto else "none"
 
 
 def _study_rows() -> Iterator[tuple[str, str, str]]:
@@ -118,13 +131,15 @@ def _published_rows() -> Iterator[tuple[str, ...]]:
 
 def _test_rows() -> Iterator[tuple[str, str, str]]:
     """Keys of laboratory tests, and the kinds that have each."""
-    kinds = {kind: schema_of(of) for kind, of in measured_keys.KINDS.items()}
-    rows = {row[0]: row for of in measured_keys.KINDS.values() for row in _rows(of)}
-    for name, words, unsaid in rows.values():
+    kinds = {kind: schema_of(of, with_texts=True) for kind, of in measured_keys.KINDS.items()}
+    for name in dict.fromkeys(name for one in kinds.values() for name in one["properties"]):
         having = [kind for kind, schema in kinds.items() if name in schema["properties"]]
+        nodes = [kinds[kind]["properties"][name] for kind in having]
+        text = next(node["markdownDescription"] for node in nodes if "markdownDescription" in node)
+        unsaid = nodes[0].get("x-unsaid", "")
         of = "all" if len(having) == len(kinds) else ", ".join(having)
         is_required = all(name in kinds[kind]["required"] for kind in having)
-        yield name, words, f"{of}{', required' * is_required}{unsaid and f'; unsaid, {unsaid}'}"
+        yield name, text, f"{of}{', required' * is_required}{unsaid and f'; unsaid, {unsaid}'}"
 
 
 def _table(head: tuple[str, ...], rows: Iterator[tuple[str, ...]]) -> str:

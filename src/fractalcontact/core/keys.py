@@ -1,10 +1,13 @@
 """Keys of a study and its sidecars: types of values with units, and errors with the remedy.
 
-A section is a pydantic class. Its fields are keys with type, unit, bounds, default and words;
-schemas, tables of keys and errors are made from them.
+A section is a pydantic class. Its fields are keys with type, unit, bounds, default and words, and
+below each the text that explains it; schemas, tables of keys and errors are made from them.
 """
 
+import ast
 import difflib
+import inspect
+import itertools
 import re
 from collections.abc import Iterable, Mapping
 from functools import cache
@@ -41,35 +44,35 @@ S = TypeVar("S", bound=Section)
 
 
 def key(
-    words: str,
-    doc: str = "",
+    words: str | None = None,
+    *,
     unsaid: str = "",
     default: Any = None,
     fill: str = "",
     only: str = "",
+    **bounds: Any,
 ) -> Any:
-    """Description of a key.
+    """Words on a key. The text below a field is the cell of the key in tables of keys.
 
     Parameters
     ----------
-    words : str
-        The expected value, in errors: "expected {words}".
-    doc : str, optional
-        Cell of the key in tables of keys, in Markdown; `words` by default.
+    words : str, optional
+        The expected value, in errors: "expected {words}"; by default those of its type.
     unsaid : str, optional
-        Cell of the default in these tables.
+        The cell of what holds where the key is left out, if its default does not say it.
     default : optional
         Value, as the user would write it, of a key that is left out.
     fill : str, optional
         Question of a draft to its owner.
     only : {"contact map", "map", "heights", "pair", "sliding", ""}, optional
         The only files or specimens for which the key has a meaning.
+    **bounds
+        Bounds of :func:`pydantic.Field`.
     """
-    extra = {"markdownDescription": doc, "x-unsaid": unsaid, "default": default}
-    extra |= {"x-fill": fill, "x-only": only}
-    return Field(
-        description=words, json_schema_extra={k: v for k, v in extra.items() if v not in ("", None)}
-    )
+    extra = {"x-unsaid": unsaid, "default": default, "x-fill": fill, "x-only": only}
+    stated = {name: value for name, value in extra.items() if value not in ("", None)}
+    said: dict[str, Any] = {} if words is None else {"description": words}
+    return Field(**said, json_schema_extra=stated, **bounds)
 
 
 # -- types of values -------------------------------------------------------------------------------
@@ -175,6 +178,7 @@ def auto(form: Any) -> StatedAs:
 Range = Annotated[
     tuple[float, float] | None,
     auto(Annotated[list[Length], Field(min_length=2, max_length=2), AfterValidator(tuple)]),
+    key("auto, or two lengths [smallest, largest] such as [0.2 mm, 2 mm]"),
 ]
 Natural = Annotated[int, Field(ge=1, description="a whole number from 1")]
 Direction = Annotated[Literal["E", "N", "W", "S"], Field(description="E, N, W or S")]
@@ -215,16 +219,71 @@ def nearest(word: object, known: Iterable) -> str:
 
 
 class _Schema(GenerateJsonSchema):
-    """JSON schema with the defaults that :func:`key` states, not those that stand for None."""
+    """JSON schema with the defaults that :func:`key` states, not those that stand for None.
+
+    Keys of a section without words of their own get those of its class.
+    """
 
     def default_schema(self, schema: Any) -> Any:
         return self.generate_inner(schema["schema"])
 
+    def generate(self, schema: Any, mode: Any = "validation") -> dict[str, Any]:
+        document = super().generate(schema, mode)
+        for section in (document, *document.get("$defs", {}).values()):
+            for name, node in section["properties"].items():
+                if "description" not in node and (form := _section(document, node)):
+                    words = {"description": _mapping_words(form)}
+                    section["properties"][name] = dict(sorted((node | words).items()))
+        return document
+
+
+def _mapping_words(form: Mapping) -> str:
+    """Words for a section: its keys, those that may be left out last."""
+    needed = [name for name in form["properties"] if name in form.get("required", ())]
+    optional = [name for name in form["properties"] if name not in needed]
+    if not optional:
+        return f"a mapping with {' and '.join(filter(None, (', '.join(needed[:-1]), needed[-1])))}"
+    if not needed:
+        return f"a mapping with any of {', '.join(optional)}"
+    return f"a mapping with {', '.join(needed)} and, if wanted, {', '.join(optional)}"
+
+
+class _WithTexts(_Schema):
+    """The same with the texts below the fields of the classes."""
+
+    def model_schema(self, schema: Any) -> Any:
+        document = super().model_schema(schema)
+        for name, text in texts_of(schema["cls"]).items():
+            if name in document["properties"]:
+                document["properties"][name]["markdownDescription"] = text
+        return document
+
 
 @cache
-def schema_of(section: type[Section]) -> dict[str, Any]:
-    """JSON schema of a section."""
-    return section.model_json_schema(schema_generator=_Schema)
+def schema_of(section: type[Section], *, with_texts: bool = False) -> dict[str, Any]:
+    """JSON schema of a section; with the texts below its fields, which tables and editors show."""
+    return section.model_json_schema(schema_generator=_WithTexts if with_texts else _Schema)
+
+
+def texts_of(section: type) -> dict[str, str]:
+    """Texts below the fields of a class and its bases, a line each, read from their sources."""
+    texts: dict[str, str] = {}
+    for base in section.__mro__:
+        if "texts_of" in vars(base):  # made from another class, without a source of its own
+            texts = texts_of(base.texts_of) | texts  # type: ignore[attr-defined]
+        elif base.__module__.startswith(f"{__package__.partition('.')[0]}."):
+            texts = _own_texts(base) | texts
+    return texts
+
+
+def _own_texts(section: type) -> dict[str, str]:
+    statements: Any = ast.parse(inspect.getsource(section)).body[0]
+    texts = {}
+    for pair in itertools.pairwise(statements.body):
+        match pair:
+            case ast.AnnAssign(target=ast.Name(name)), ast.Expr(ast.Constant(str(text))):
+                texts[name] = " ".join(text.split())
+    return texts
 
 
 #: Kinds of errors of a value with several forms, from the least to the most specific.
@@ -312,7 +371,7 @@ def _nodes(section: type[Section], path: tuple) -> list[dict]:
         below = [child for form in _forms(schema, nodes[-1]) if (child := _child(form, part))]
         if not below:
             return nodes
-        nodes.append(below[0] | {"properties": _properties(schema, below[0])})
+        nodes.append(below[0] | {"properties": _section(schema, below[0]).get("properties", {})})
     return nodes
 
 
@@ -333,6 +392,6 @@ def _child(form: dict, part: Any) -> dict | None:
     return form.get("properties", {}).get(part) or (more if isinstance(more, dict) else None)
 
 
-def _properties(schema: dict, node: dict) -> dict:
-    found = (form["properties"] for form in _forms(schema, node) if form.get("properties"))
-    return next(found, {})
+def _section(schema: dict, node: dict) -> dict:
+    """Form of a value that is a section; empty if there is none."""
+    return next((form for form in _forms(schema, node) if form.get("properties")), {})

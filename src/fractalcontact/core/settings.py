@@ -1,8 +1,8 @@
 """Settings of a specimen, a class for each reader: the function of a stage names the one it takes.
 
-A field with :func:`core.keys.key` is a key that a study or a sidecar may state; the others follow
-from them. Lengths are in mm, forces in N, pressures in MPa, angles in degrees, and None stands for
-"auto".
+An annotated field is a key that a study or a sidecar may state, with its text below; the others
+follow from them. Lengths are in mm, forces in N, pressures in MPa, angles in degrees, and None
+stands for "auto".
 """
 
 from collections.abc import Mapping
@@ -27,34 +27,29 @@ from .keys import (
 )
 
 S = TypeVar("S")
-_Pair = Annotated[list[Length], Field(min_length=2, max_length=2)]
 _Loads = Annotated[list[Load], Field(min_length=1)]
 _Directions = Annotated[
     list[str], StatedAs(Annotated[list[Direction], Field(min_length=1), *different])
 ]
-_Multiple = Annotated[
-    int, Field(ge=1, le=MAX_NODES_PER_SIDE, description="a whole number from 1 to 16384")
-]
+_Multiple = Annotated[int, key("a whole number from 1 to 16384", ge=1, le=MAX_NODES_PER_SIDE)]
 _Resolutions = Annotated[
     list[_Multiple],
-    Field(min_length=1),
-    *different,
     key(
         "whole multiples k of the scan's spacing, such as [1, 2, 4, 8]",
-        doc="multiples k of the scan's spacing; every k-th node is kept",
         unsaid="required in `defaults`",
+        min_length=1,
     ),
+    *different,
 ]
 _ContactDirections = Annotated[
     _Directions,
     key(
-        only="sliding",
-        words="sliding directions whose contact is solved, some of E, N, W, S",
-        doc="those of them whose contact is solved; most figures show the first",
+        "sliding directions whose contact is solved, some of E, N, W, S",
         unsaid="`directions`",
+        only="sliding",
     ),
 ]
-#: Columns of each kind of laboratory test: the curve's axis, then the quantity measured over it.
+#: Columns of each kind of laboratory test: the axis of the curve, then the measured quantity.
 TEST_COLUMNS = {
     "closure": ("pressure", "displacement"),
     "flow": ("pressure", "transmissivity"),
@@ -97,102 +92,68 @@ class SpecimenSettings:
     opposite: Annotated[
         str,
         StatedAs(Literal["match", "flat"]),
-        key(
-            "match (the other face fits perfectly) or flat (a rigid plane)",
-            doc=(
-                "the face that was not scanned: `match` fits perfectly, `flat` is a rigid plane"
-                " (the surface then does not slide). Refused where both were scanned"
-            ),
-            unsaid="`match`",
-            default="match",
-        ),
+        key("match (the other face fits perfectly) or flat (a rigid plane)", default="match"),
     ]
+    """the face that was not scanned: `match` fits perfectly, `flat` is a rigid plane (the
+    surface then does not slide). Refused where both were scanned"""
     outliers: Annotated[
         str,
         StatedAs(Literal["keep", "mask", "fill"]),
         key(
-            (
-                "keep (outlying cells stay), mask (they become missing) or fill (they, lone "
-                "spikes and deep overlaps are filled)"
-            ),
-            doc=(
-                "`keep`: outlying cells are counted and shown, not altered. `mask`: they become"
-                " missing. `fill`: outlying cells, lone spikes and deep overlaps of two faces "
-                "(`scans/README.md`) are filled from the cells around"
-            ),
-            unsaid="`keep`",
+            "keep (outlying cells stay), mask (they become missing) or fill (they, lone spikes "
+            "and deep overlaps are filled)",
             default="keep",
         ),
     ]
+    """`keep`: outlying cells are counted and shown, not altered. `mask`: they become missing.
+    `fill`: outlying cells, lone spikes and deep overlaps of two faces (`scans/README.md`) are
+    filled from the cells around"""
     fill_holes: Annotated[
         int,
-        Field(ge=0, le=MAX_NODES_PER_SIDE),
         key(
             "rows and columns of the largest hole to be filled, a whole number of cells from 0",
-            doc="side of the largest hole that is filled, rows or columns of cells; 0 fills none",
             default=0,
-            unsaid="0",
+            ge=0,
+            le=MAX_NODES_PER_SIDE,
         ),
     ]
+    """side of the largest hole that is filled, rows or columns of cells; 0 fills none"""
     window: Annotated[
-        float | None,
-        auto(Length),
-        key(
-            "auto, or the side of the square window such as 20 mm",
-            doc=(
-                "side of the square window, or `auto`: half of the largest square without "
-                "holes, so that it can slide"
-            ),
-            unsaid="`auto`",
-        ),
+        float | None, auto(Length), key("auto, or the side of the square window such as 20 mm")
     ]
+    """side of the square window, or `auto`: half of the largest square without holes, so that
+    it can slide"""
     window_centre: Annotated[
         list[float] | None,
-        StatedAs(_Pair),
-        key(
-            "two lengths [x, y] in the scan's own coordinates",
-            doc="`[x, y]` in the scan's own coordinates, within the scan",
-            unsaid="the middle",
-        ),
+        StatedAs(Annotated[list[Length], Field(min_length=2, max_length=2)]),
+        key("two lengths [x, y] in the scan's own coordinates", unsaid="the middle"),
     ]
+    """`[x, y]` in the scan's own coordinates, within the scan"""
     directions: Annotated[
         _Directions,
         key(
             "sliding directions of the rigid dilatancy, some of E, N, W, S",
-            doc="sliding directions of the rigid dilatancy, some of `E, N, W, S`",
             unsaid="all four",
             default=["E", "N", "W", "S"],
             only="sliding",
         ),
     ]
+    """sliding directions of the rigid dilatancy, some of `E, N, W, S`"""
     contact_directions: _ContactDirections
+    """those of them whose contact is solved; most figures show the first"""
     offsets: Annotated[
         list[float] | None,
         auto(Annotated[list[Offset], Field(min_length=1)]),
-        key(
-            "auto, or a list of shear offsets v such as [0.1 mm, 0.3 mm]",
-            doc=(
-                "shear offsets v, rounded to whole cells of the scan; or `auto`: eight between "
-                "one cell and the largest possible, and zero where two faces were scanned"
-            ),
-            unsaid="`auto`",
-            only="sliding",
-        ),
+        key("auto, or a list of shear offsets v such as [0.1 mm, 0.3 mm]", only="sliding"),
     ]
+    """shear offsets v, rounded to whole cells of the scan; or `auto`: eight between one cell
+    and the largest possible, and zero where two faces were scanned"""
     resolutions: _Resolutions
-    surface_range: Annotated[
-        Range,
-        key(
-            "auto, or two lengths [smallest, largest] such as [0.2 mm, 2 mm]",
-            doc=(
-                "`[smallest, largest]` lag of the Delta_g fits, or `auto`: 4 cells to an eighth"
-                " of the side, or to a quarter of a roll-off that is seen (then from 2 cells if"
-                " need be). A stated range is used as it is, with a warning if it reaches "
-                "beyond that quarter"
-            ),
-            unsaid="`auto`",
-        ),
-    ]
+    """multiples k of the scan's spacing; every k-th node is kept"""
+    surface_range: Range
+    """`[smallest, largest]` lag of the Delta_g fits, or `auto`: 4 cells to an eighth of the
+    side, or to a quarter of a roll-off that is seen (then from 2 cells if need be). A stated
+    range is used as it is, with a warning if it reaches beyond that quarter"""
 
 
 @dataclass(frozen=True)
@@ -204,24 +165,19 @@ class JointSettings:
         _Loads,
         key(
             "a list of forces (10 kN) or nominal pressures (25 MPa)",
-            doc=(
-                "forces, or nominal pressures F / A_0. A specimen leaves out pressures in "
-                "`defaults` of 0.95 H and more, which its hardness cannot carry"
-            ),
             unsaid="required in `defaults`",
         ),
     ]
+    """forces, or nominal pressures F / A_0. A specimen leaves out pressures in `defaults` of
+    0.95 H and more, which its hardness cannot carry"""
     dilatancy_loads: Annotated[
         _Loads,
         key(
             "loads, all of them in loads, whose elastic dilatancy is drawn",
-            doc=(
-                "loads of the elastic dilatancy curves, of strength and of sub-windows, among "
-                "`loads`"
-            ),
             unsaid="the three largest",
         ),
     ]
+    """loads of the elastic dilatancy curves, of strength and of sub-windows, among `loads`"""
     resolutions: _Resolutions
     contact_directions: _ContactDirections
     map_offset: Annotated[
@@ -229,11 +185,11 @@ class JointSettings:
         StatedAs(Length),
         key(
             "a length with its unit, such as 0.3 mm",
-            doc="offset of the contact maps over resolutions and loads",
             unsaid="0 of two scanned faces, else the third",
             only="sliding",
         ),
     ]
+    """offset of the contact maps over resolutions and loads"""
 
 
 @dataclass(frozen=True)
@@ -241,13 +197,9 @@ class ContactSettings(JointSettings):
     """Settings that choose the contact states."""
 
     map_load: Annotated[
-        Load,
-        key(
-            "a force or a pressure among the loads, such as 25 MPa",
-            doc="load of the contact maps, among `loads`",
-            unsaid="the largest",
-        ),
+        Load, key("a force or a pressure among the loads, such as 25 MPa", unsaid="the largest")
     ]
+    """load of the contact maps, among `loads`"""
 
     @property
     def drawn_loads(self) -> list[Load]:
@@ -267,50 +219,22 @@ class WindowSettings(JointSettings):
 class StateSettings(ContactSettings):
     """Settings of the analysis of contact states: curves, laws, domains."""
 
-    box_range: Annotated[
-        Range,
-        key(
-            "auto, or two lengths [smallest, largest] such as [0.2 mm, 2 mm]",
-            doc=(
-                "`[smallest, largest]` box of the box counts, or `auto`: all box sizes between "
-                "the cut-offs"
-            ),
-            unsaid="`auto`",
-        ),
-    ]
-    scaling_range: Annotated[
-        Range,
-        key(
-            "auto, or two lengths [smallest, largest] such as [0.2 mm, 2 mm]",
-            doc="`[smallest, largest]` spacing s of the fits of A_r(s), or `auto` for all",
-            unsaid="`auto`",
-        ),
-    ]
+    box_range: Range
+    """`[smallest, largest]` box of the box counts, or `auto`: all box sizes between the cut-offs"""
+    scaling_range: Range
+    """`[smallest, largest]` spacing s of the fits of A_r(s), or `auto` for all"""
     hyperbola_range: Annotated[
         list[Load] | None,
         auto(Annotated[list[Load], Field(min_length=2, max_length=2)]),
-        key(
-            "auto, or two loads [smallest, largest] between which closure laws are fitted",
-            doc=(
-                "`[smallest, largest]` load of the closure fits, or `auto` for all with 10 "
-                "nodes or more"
-            ),
-            unsaid="`auto`",
-        ),
+        key("auto, or two loads [smallest, largest] between which closure laws are fitted"),
     ]
+    """`[smallest, largest]` load of the closure fits, or `auto` for all with 10 nodes or more"""
     seating_pressure: Annotated[
-        Pressure,
-        key(
-            "a pressure with its unit, such as 0.25 MPa",
-            doc=(
-                "nominal pressure from which closure and its laws are counted, as a laboratory "
-                "seats its specimen. The seat is, at each offset, the first of `loads` from "
-                "this pressure on with 10 nodes or more"
-            ),
-            unsaid="`0.25 MPa`",
-            default="0.25 MPa",
-        ),
+        Pressure, key("a pressure with its unit, such as 0.25 MPa", default="0.25 MPa")
     ]
+    """nominal pressure from which closure and its laws are counted, as a laboratory seats its
+    specimen. The seat is, at each offset, the first of `loads` from this pressure on with 10
+    nodes or more"""
 
 
 @dataclass(frozen=True)
@@ -330,27 +254,11 @@ class StrengthSettings:
 class MeasuredTest:
     """A laboratory test; fields without a meaning for its kind are NaN or empty.
 
-    Attributes
-    ----------
-    kind : str
-        Key of `TEST_COLUMNS`.
-    file : str
-    columns : dict of str to str
-        Heading in the file by column; that of the curve's axis comes first.
-    branch : {"load", "unload", "reload", ""}
-    cycle : int
-    way : {"along", "across", ""}
-        Direction of the flow.
-    direction : str
-        Direction of sliding.
-    seat, pressure, largest_pressure : float
-        Pressures of the zero of displacement, during the test, and largest in the joint's history,
-        MPa.
-    compliance : float
-        Compliance of the rock between the gauge points, mm/MPa.
-    error : float
-        Half-width of the interval of a reading, 95 %, mm or MPa.
-    calibrate : {"modulus", "hardness", ""}
+    ``columns`` are headings in the file by column, that of the curve's axis first; ``way`` is that
+    of the flow, ``direction`` that of sliding. Displacement is counted from ``seat``; ``pressure``
+    is held, ``largest_pressure`` was carried before (MPa). ``compliance`` is that of the rock
+    between the gauge points (mm/MPa), ``error`` the half-width of the 95 % interval of a reading
+    (mm or MPa), ``calibrate`` "modulus" or "hardness".
     """
 
     kind: str
@@ -390,25 +298,23 @@ class ReportSettings(StrengthSettings):
     opposite: str
     label: Annotated[
         str,
-        Field(pattern=LINE % 200),
         key(
             "what it is, in up to 200 characters on one line, without $",
-            doc="what it is, in words: one line of up to 200 characters, without `$`",
             unsaid="its name",
+            pattern=LINE % 200,
         ),
     ]
+    """what it is, in words: one line of up to 200 characters, without `$`"""
     group: Annotated[
         str,
-        Field(pattern=LINE % 100),
         key(
             "the group of specimens it belongs to, up to 100 characters on one line, without $",
-            doc=(
-                "the group of specimens it belongs to, up to 100 characters: groups are "
-                "compared in figures and in `study_comparison` of the atlas"
-            ),
             unsaid="its folder's name with `groups: folders`, else none",
+            pattern=LINE % 100,
         ),
     ]
+    """the group of specimens it belongs to, up to 100 characters: groups are compared in
+    figures and in `study_comparison` of the atlas"""
     chosen_for: dict[str, str]
     capped_variant: bool
 
@@ -421,18 +327,13 @@ class Settings(SpecimenSettings, StateSettings, WindowSettings, MeasuredSettings
     twins: Annotated[
         int,
         StatedAs(Literal[0] | Annotated[int, Field(ge=3, le=1000)]),
-        key(
-            "0 for none, or a number of twins of the scan from 3 to 1000",
-            doc=(
-                "of a scan: number of twins (0, or 3 or more), random surfaces with the "
-                "measured spectrum, solved in the reported direction and offset alone. Their "
-                "spread says how far the scan's numbers may differ from those of the whole "
-                "joint ([Twins of a scan](../docs/conventions.md#twins-of-a-scan)). In "
-                "`defaults` it concerns scans alone; an embedded specimen has `realisations`"
-            ),
-            unsaid="0",
-        ),
+        key("0 for none, or a number of twins of the scan from 3 to 1000", unsaid="0"),
     ]
+    """of a scan: number of twins (0, or 3 or more), random surfaces with the measured spectrum,
+    solved in the reported direction and offset alone. Their spread says how far the scan's
+    numbers may differ from those of the whole joint ([Twins of a
+    scan](../docs/conventions.md#twins-of-a-scan)). In `defaults` it concerns scans alone; an
+    embedded specimen has `realisations`"""
 
 
 @dataclass(frozen=True)
@@ -445,7 +346,10 @@ class Solver:
 
 
 def read(section: type[S], stated: Mapping[str, Any]) -> S:
-    """Part of some settings, by key, that a class of this module names; other keys are ignored."""
+    """Settings of a class from a mapping, such as ``dataclasses.asdict`` of :class:`Settings`.
+
+    Further keys are passed over.
+    """
     types = get_type_hints(section)
     return section(
         **{
@@ -456,7 +360,7 @@ def read(section: type[S], stated: Mapping[str, Any]) -> S:
 
 
 def _read(kind: Any, value: Any) -> Any:
-    """Value, or each value of a list, as its class where it has one."""
+    """Value, or each value of a list, as an instance of its class where it has one."""
     if get_origin(kind) is list and is_dataclass(of := get_args(kind)[0]):
         return [read(of, item) for item in value]  # type: ignore[arg-type]
     return read(kind, value) if is_dataclass(kind) else value  # type: ignore[arg-type]

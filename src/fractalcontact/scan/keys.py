@@ -15,19 +15,17 @@ _Text = Annotated[str, Field(min_length=1)]
 _TwoSteps = Annotated[list[float | str], Field(min_length=2, max_length=2)]
 _Mark = Annotated[str, Field(max_length=40)]
 _Marks = Annotated[list[float | _Mark], Field(min_length=1, max_length=20)]
-_Point = Annotated[
-    list[float | str], Field(min_length=2, max_length=2, description="a place [x, y] in mm")
-]
+_Point = Annotated[list[float | str], key("a place [x, y] in mm", min_length=2, max_length=2)]
 
 
 class ConfirmedKeys(Section):
     """Shape and relief that the owner of a file looked at."""
 
     shape: Annotated[
-        list[Natural], Field(min_length=2, max_length=2), key("two whole numbers [rows, columns]")
+        list[Natural], key("two whole numbers [rows, columns]", min_length=2, max_length=2)
     ] = []
-    points: Annotated[Natural, key("a whole number from 1")] = 1
-    relief: Annotated[float, Field(ge=0), key("a number from 0")] = 0.0
+    points: Natural = 1
+    relief: Annotated[float, key("a number from 0", ge=0)] = 0.0
 
 
 class FaceKeys(Section):
@@ -36,10 +34,8 @@ class FaceKeys(Section):
     delimiter: Annotated[
         Literal["comma", "semicolon", "tab", "blank"],
         key(
-            (
-                "comma, semicolon, tab or blank (white space of any length): what parts the "
-                "numbers of a text"
-            ),
+            "comma, semicolon, tab or blank (white space of any length): what parts the "
+            "numbers of a text",
             fill="comma, semicolon, tab or blank",
         ),
     ] = "comma"
@@ -49,17 +45,19 @@ class FaceKeys(Section):
     thousands: Annotated[
         Literal[".", ",", "'"],
         key(
-            (
-                "the mark between groups of three digits, where a text has one: '.', ',' or an "
-                "apostrophe"
-            ),
+            "the mark between groups of three digits, where a text has one: '.', ',' or an "
+            "apostrophe",
             fill="the mark between groups of three digits",
         ),
     ] = "'"
     header: Annotated[
         int,
-        Field(ge=0, le=MAX_HEADER_LINES),
-        key("number of lines above the numbers of a text", fill="lines above the first number"),
+        key(
+            "number of lines above the numbers of a text",
+            fill="lines above the first number",
+            ge=0,
+            le=MAX_HEADER_LINES,
+        ),
     ] = 0
     layout: Annotated[
         Literal["matrix", "points"],
@@ -71,21 +69,20 @@ class FaceKeys(Section):
     ] = ""
     columns: Annotated[
         list[str | Annotated[int, Field(ge=0)]],
-        Field(min_length=3, max_length=3),
         key(
             "the columns of x, y, z, as names or counted from 0",
             fill="those of x, y and z, counted from 0",
             only="heights",
+            min_length=3,
+            max_length=3,
         ),
     ] = []
     axes: Annotated[
         Literal["none", "both", "row", "column"],
         key(
-            (
-                "none, both, row or column: which of the first row and column of a matrix hold "
-                "coordinates or counts instead of heights; of both, without spacing, they are "
-                "the coordinates"
-            ),
+            "none, both, row or column: which of the first row and column of a matrix hold "
+            "coordinates or counts instead of heights; of both, without spacing, they are "
+            "the coordinates",
             fill="none, both, row or column: where coordinates stand instead of heights",
         ),
     ] = "none"
@@ -110,10 +107,8 @@ class FaceKeys(Section):
     spacing: Annotated[
         Annotated[float, Field(gt=0)] | _Text | _TwoSteps,
         key(
-            (
-                "the spacing of neighbouring cells: a number in the file's unit, a length such "
-                "as 0.1 mm, or a pair [dx, dy]"
-            ),
+            "the spacing of neighbouring cells: a number in the file's unit, a length such "
+            "as 0.1 mm, or a pair [dx, dy]",
             fill="between neighbouring cells, 0.1 mm, or [dx, dy]",
         ),
     ] = ""
@@ -152,7 +147,7 @@ class FaceKeys(Section):
 class DiscKeys(Section):
     """A disc."""
 
-    centre: Annotated[_Point, key("a place [x, y] in mm")] = []
+    centre: _Point = []
     diameter: Annotated[float | str, key("a length, in mm where it is a number")] = 0.0
 
 
@@ -161,7 +156,7 @@ class OutlineKeys(Section):
 
     disc: Annotated[DiscKeys, key("a mapping with centre and diameter")] = DiscKeys()
     polygon: Annotated[
-        list[_Point], Field(min_length=3, max_length=1000), key("three or more places [x, y]")
+        list[_Point], key("three or more places [x, y]", min_length=3, max_length=1000)
     ] = []
     mask: Annotated[float, key("the number of the cells outside")] = 0.0
 
@@ -182,10 +177,8 @@ class ScanKeys(FaceKeys):
     kind: Annotated[
         Literal["face", "contact-map", "aperture", "profile", "surface", "contact_map"],
         key(
-            (
-                "face, contact-map, aperture (the opening between two faces) or profile (which "
-                "has a card alone, by profile_card)"
-            ),
+            "face, contact-map, aperture (the opening between two faces) or profile (which "
+            "has a card alone, by profile_card)",
             fill="face, aperture or contact-map",
         ),
     ] = "face"
@@ -198,26 +191,20 @@ class ScanKeys(FaceKeys):
     threshold: Annotated[
         float | _Thresholds,
         key(
-            (
-                "the number above which a cell of a contact map is in contact, or a list of "
-                "such numbers"
-            ),
+            "the number above which a cell of a contact map is in contact, or a list of "
+            "such numbers",
             only="contact map",
         ),
     ] = 0.0
     outline: Annotated[
         Literal["disc", "rectangle"] | OutlineKeys,
         key(
-            (
-                "disc, rectangle, or one of {disc: {centre: [x, y], diameter: d}}, {polygon: "
-                "[[x, y], ...]}, {mask: number}"
-            ),
+            "disc, rectangle, or one of {disc: {centre: [x, y], diameter: d}}, {polygon: "
+            "[[x, y], ...]}, {mask: number}",
             only="map",
         ),
     ] = "disc"
-    series: Annotated[
-        Label, key("what it is, in up to 200 characters on one line, without $", only="contact map")
-    ] = ""
+    series: Annotated[Label, key(only="contact map")] = ""
     x: Annotated[
         _FileName,
         key("the plain name of the file of x beside that of a contact map", only="contact map"),

@@ -12,8 +12,9 @@ from ..core.netcdf import COMPRESSED_FROM, encoding, versions
 
 #: Significant digits of the maps of pressure and gap, which the atlas has in single precision.
 FIELD_DIGITS = 3
-#: Heights kept in equal steps, with the steps to either side of their middle: of composites, which
-#: follow from the faces, as many as 16 bits hold; of faces 16 times as many, some nanometres each.
+#: Variables of heights that are stored in equal steps, and the steps to either side of the middle.
+#: Composites follow from the faces and get what 16 bits hold; faces get 16 times as many steps, of
+#: some nanometres each.
 HEIGHTS = {"composite": 2**15 - 2, "lower": 2**19 - 2, "upper": 2**19 - 2}
 
 
@@ -36,18 +37,18 @@ def write_atlas(
         Stage to specimen to dataset. Its attribute ``title`` describes the stage.
     path : path-like
     study : str
-        Its name.
+        Name of the study.
     configuration : mapping
         The study's configuration, kept word for word as JSON.
     made_with : mapping of str to mapping of str to dict, optional
         Stage to specimen to the versions each part was made with, from
         :func:`core.netcdf.read_with_versions`; those in use by default.
     parts_in : mapping of str to str, optional
-        Files with the stages of each specimen, if they are not in this one: below its folder.
+        Files with the stages of each specimen, below the folder of this one, if they are not in it.
     checksums : mapping of str to mapping of str to str, optional
-        SHA-256 of the scans of these, by specimen and face.
+        SHA-256 of the scans in ``parts_in``, by specimen and face.
     differing : mapping of str to list of str, optional
-        Of these, those by versions that differ from those in use.
+        Parts in ``parts_in`` by versions that differ from those in use.
 
     Returns
     -------
@@ -99,7 +100,7 @@ def _by_versions(made_with):
 
 
 def words_of(used: Mapping[str, str]) -> str:
-    """Versions of libraries, by their names, in a line."""
+    """Names and versions of libraries in one line."""
     return ", ".join(f"{library} {version}" for library, version in sorted(used.items()))
 
 
@@ -107,18 +108,18 @@ class _DeferredWriter:
     """Buffer of variables, written once every variable of a file is declared.
 
     Each change from declaring to writing makes the netCDF library go through the whole file: with
-    two thousand variables that was nine tenths of the time.
+    two thousand variables that took nine tenths of the time.
     """
 
     def __init__(self):
         self.pending = []
 
     def add(self, source, target, region=None):
-        """Called by xarray for each variable."""
+        """Keep a variable; xarray calls this."""
         self.pending.append((source, target))
 
     def write(self):
-        """Write all that was kept."""
+        """Write all variables."""
         for source, target in self.pending:
             target[...] = source
 
@@ -144,15 +145,15 @@ def _write_groups(groups, path):
 def _in_steps(dataset: xr.Dataset) -> dict[Hashable, dict]:
     """Encoding of heights: equal steps of :data:`HEIGHTS` between the lowest and the highest.
 
-    Of the 64 bits of a height most are noise that no compression removes.
+    Most of the 64 bits of a height are noise that no compression removes.
     """
     kept: dict[Hashable, dict] = {}
     for name in HEIGHTS.keys() & dataset.variables.keys():
         values = dataset[name].values
-        known = values[np.isfinite(values)]
-        if values.nbytes < COMPRESSED_FROM or not known.size or known.min() == known.max():
+        heights = values[np.isfinite(values)]
+        if values.nbytes < COMPRESSED_FROM or not heights.size or heights.min() == heights.max():
             continue
-        low, high, most = float(known.min()), float(known.max()), HEIGHTS[name]
+        low, high, most = float(heights.min()), float(heights.max()), HEIGHTS[name]
         kept[name] = {
             "dtype": "int16" if most < 2**15 else "int32",
             "scale_factor": (high - low) / (2 * most),
@@ -168,8 +169,8 @@ def _in_steps(dataset: xr.Dataset) -> dict[Hashable, dict]:
 def _as_characters(dataset: xr.Dataset) -> dict[Hashable, dict]:
     """Encoding of words: arrays of characters, which every reader can open repeatedly.
 
-    As strings of variable length, netCDF's usual way, they end a process with a segmentation fault
-    that opens the file, or any group of it, while it holds the file open already, closes one of the
+    Strings of variable length, netCDF's usual form, end a process with a segmentation fault that
+    opens the file, or any group of it, while it holds the file open already, closes one of the
     two and opens it once more: HDF5 keeps the type of such strings once for a file, with a pointer
     to the handle that was open first (netcdf4-python issues 261 and 1444, xarray issue 9093).
     A notebook does that easily, with ``open_datatree`` in a cell that runs twice.
@@ -199,9 +200,9 @@ def read_atlas(
 
     Notes
     -----
-    Group by group, from a file that is opened once and closed: to open every group for itself takes
-    a quarter of a second each, because all the others are gone through. What the process has
-    opened before, with this or with xarray's ``open_datatree``, makes no difference.
+    The file is opened once, read group by group and closed. Opening every group by itself takes a
+    quarter of a second each, because all the others are gone through. Handles that the process has
+    opened before make no difference.
     """
     return read_named_atlas(path, without, only)[0]
 
@@ -209,18 +210,9 @@ def read_atlas(
 def read_named_atlas(
     path: Path | str, without: Collection[str] = (), only: Collection[str] | None = None
 ) -> tuple[xr.DataTree, frozenset[str]]:
-    """Atlas as :func:`read_atlas` gives it, and the names of all groups that hold anything.
+    """Atlas as by :func:`read_atlas`, and names of all groups that hold anything, left out or not.
 
-    Parameters
-    ----------
-    path, without, only
-        As of :func:`read_atlas`.
-
-    Returns
-    -------
-    atlas : xr.DataTree
-    groups : frozenset of str
-        "STAGE" and "STAGE/SPECIMEN", those left out too.
+    A name is "STAGE" or "STAGE/SPECIMEN".
     """
     import netCDF4
 
@@ -229,7 +221,9 @@ def read_named_atlas(
         groups = {"/": file}
         for name, stage in file.groups.items():
             members = {group.path: group for group in (stage, *stage.groups.values())}
-            held |= {at.strip("/") for at, one in members.items() if one.variables or one.groups}
+            held |= {
+                key.strip("/") for key, group in members.items() if group.variables or group.groups
+            }
             if name not in without and (only is None or name in only):
                 groups |= members
         loaded = {
@@ -253,7 +247,7 @@ def _checksums(specimens):
 
 def _demand_labels(dataset, where):
     for name in dataset.variables:
-        # What a Dataset has as a method, users could not reach as an attribute.
+        # Users could not reach the variable as an attribute of the dataset.
         if hasattr(xr.Dataset, str(name)):
             raise ValueError(f"{where}: variable {name} has the name of a method of xarray.Dataset")
     for name, variable in dataset.data_vars.items():

@@ -38,9 +38,9 @@ def open_atlas(path: Path | str) -> "Atlas":
 class Atlas:
     """Atlas whose stages are read one by one, at their first use.
 
-    ``atlas["closure/NAME"]`` is a dataset in memory, which nobody but its user keeps, and
-    ``atlas.stage("closure")`` goes from specimen to specimen: a thousand specimens take the memory
-    of one. No file stays open.
+    ``atlas["closure/NAME"]`` is a dataset in memory, and ``atlas.stage("closure")`` goes from
+    specimen to specimen without keeping any: a thousand specimens take the memory of one. No file
+    stays open.
 
     Attributes
     ----------
@@ -49,7 +49,7 @@ class Atlas:
         ``study``, ``configuration``, ``versions``, ``scan_checksums``: as of the file.
     specimens : tuple of str
     stages : tuple of str
-        What it holds, of specimens or of the study.
+        Stages of specimens and of the study.
     groups : dict of str to str
         Group of each specimen, as the study states it; empty where it states none.
     """
@@ -92,19 +92,7 @@ class Atlas:
         return read_group(self._file(name), f"{stage}/{name}")[0]
 
     def stage(self, stage: str, group: str | None = None) -> Iterator[tuple[str, xr.Dataset]]:
-        """One stage of one specimen after the other, those that have it.
-
-        Parameters
-        ----------
-        stage : str
-        group : str, optional
-            Only specimens of this group.
-
-        Yields
-        ------
-        name : str
-        dataset : xr.Dataset
-        """
+        """Name and dataset of each specimen that has a stage; of one group alone if it is named."""
         for name in self.specimens:
             if group is None or self.groups[name] == group:
                 try:
@@ -138,6 +126,8 @@ class Atlas:
 class Trees:
     """Atlas as trees in memory: one of all specimens, or one a specimen, read when asked for.
 
+    Only the stages named are read.
+
     Attributes
     ----------
     root : xr.DataTree
@@ -148,13 +138,6 @@ class Trees:
         Files of the specimens, below the folder of the atlas; empty where it is one file.
     held : frozenset of str
         Names of the groups of the file, those left out too.
-
-    Parameters
-    ----------
-    path : path-like
-        The atlas.
-    stages : collection of str
-        Stages to read, no others.
     """
 
     def __init__(self, path: Path | str, stages: Collection[str]):
@@ -168,7 +151,7 @@ class Trees:
     ) -> tuple[xr.DataTree, frozenset[str], Path]:
         """Tree with the stages of a specimen, names of the groups of its file, and the file.
 
-        Of an atlas in parts more stages can be left out.
+        ``without`` leaves out stages of an atlas in parts.
         """
         if name not in self.parts:
             return self.root, self.held, self.path
@@ -176,7 +159,7 @@ class Trees:
         return *read_named_atlas(file, without, self._stages), file
 
     def closure(self, name: str) -> Subject:
-        """A specimen with its closure curves alone, which say what is reported."""
+        """Closure curves of a specimen alone, which determine what is reported."""
         if name in self.parts:
             curves = read_group(self._file(name), f"closure/{name}")[0]
         else:
@@ -188,13 +171,7 @@ class Trees:
 
 
 def read_group(path: Path | str, group: str) -> tuple[xr.Dataset, Mapping[str, Any]]:
-    """One group of a netCDF-4 file in memory, and the attributes of the file.
-
-    Parameters
-    ----------
-    path : path-like
-    group : str
-        "STAGE/SPECIMEN".
+    """One group "STAGE/SPECIMEN" of a netCDF-4 file in memory, and the attributes of the file.
 
     Raises
     ------
@@ -203,23 +180,17 @@ def read_group(path: Path | str, group: str) -> tuple[xr.Dataset, Mapping[str, A
     InputError
         If it cannot be read.
     """
-    import netCDF4
-
-    try:
-        file = netCDF4.Dataset(path)
-    except OSError as error:
-        raise InputError(f"{path}: cannot be read as netCDF-4 ({error})") from error
-    with file:
+    with _opened(path) as file:
         try:
-            found = file[group]
+            members = file[group]
         except (IndexError, KeyError):
             raise KeyError(f"{path}: no group {group}") from None
-        dataset = xr.open_dataset(xr.backends.NetCDF4DataStore(found)).load()
+        dataset = xr.open_dataset(xr.backends.NetCDF4DataStore(members)).load()
         return dataset, {name: file.getncattr(name) for name in file.ncattrs()}
 
 
 def _mapping(attrs: Mapping[Any, Any], name: str, path: Path) -> dict[str, Any]:
-    """An attribute of an atlas that holds a mapping as JSON; empty where there is none."""
+    """Mapping that an attribute of an atlas holds as JSON; empty where there is none."""
     try:
         held = json.loads(attrs.get(name, "{}"))
     except (TypeError, ValueError) as error:
@@ -231,11 +202,15 @@ def _mapping(attrs: Mapping[Any, Any], name: str, path: Path) -> dict[str, Any]:
 
 def _contents(path):
     """Attributes of a file, and the names of its groups by stage."""
+    with _opened(path) as file:
+        attrs = {name: file.getncattr(name) for name in file.ncattrs()}
+        return attrs, {name: tuple(stage.groups) for name, stage in file.groups.items()}
+
+
+def _opened(path):
     import netCDF4
 
     try:
-        with netCDF4.Dataset(path) as file:
-            attrs = {name: file.getncattr(name) for name in file.ncattrs()}
-            return attrs, {name: tuple(stage.groups) for name, stage in file.groups.items()}
+        return netCDF4.Dataset(path)
     except OSError as error:
         raise InputError(f"{path}: cannot be read as netCDF-4 ({error})") from error

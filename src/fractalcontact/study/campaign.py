@@ -5,47 +5,33 @@ from typing import Any
 
 from .figure_list import all_figures, figures_of
 
-#: Specimens up to which an atlas is one file unless the study says otherwise. A file of many takes
-#: memory for all of them to write, and time for all of them to open.
+#: Most specimens of an atlas in one file, unless the study says otherwise. Writing one file of many
+#: specimens takes memory for all of them, and opening it takes time for all of them.
 MAX_WHOLE = 30
-#: Whether the atlas is one file, or one a specimen.
+#: Forms of an atlas: one file, or one file a specimen.
 WHOLE, PARTS = "whole", "parts"
-#: Word for all figures, and for none.
+#: Words of a study for all figures and for none.
 ALL, NONE = "all", "none"
-#: Key that the figures over several specimens ask for: every study of more than one has it.
+#: Key that asks for the figures over several specimens; every study of more than one has it.
 COMPARISON = "comparison"
 
 
 def in_parts(config: Mapping[str, Any], specimens: Collection[str]) -> bool:
-    """True if the atlas of a study has one file a specimen, and one more for all of them.
-
-    Parameters
-    ----------
-    config : mapping
-        A study that passed the schema.
-    specimens : collection of str
-    """
+    """True if the atlas of a checked study has one file a specimen and one more for all of them."""
     unsaid = WHOLE if len(specimens) <= MAX_WHOLE else PARTS
     return bool(config.get("atlas", unsaid) == PARTS)
 
 
 def drawn_of(config: Mapping[str, Any], specimens: Collection[str], opposite: str) -> list[str]:
-    """Names of the figures that are drawn of each specimen.
+    """Names of the figures drawn of each specimen with an opposite face.
 
-    Parameters
-    ----------
-    config : mapping
-        A study that passed the schema.
-    specimens : collection of str
-        All of the study: where the atlas is in parts none is drawn unless the study asks for them.
-    opposite : str
-        As of :func:`study.figure_list.figures_of`.
+    Where the atlas is in parts, none is drawn unless the study asks for it.
     """
-    asked = config.get("figures", NONE if in_parts(config, specimens) else ALL)
-    known = figures_of(opposite)
-    if asked == ALL:
-        return known
-    return [] if asked == NONE else [name for name in known if name in asked]
+    stated = config.get("figures", NONE if in_parts(config, specimens) else ALL)
+    names = figures_of(opposite)
+    if stated == ALL:
+        return names
+    return [] if stated == NONE else [name for name in names if name in stated]
 
 
 def explored(config: Mapping[str, Any], specimens: Collection[str]) -> list[str]:
@@ -57,11 +43,6 @@ def explored(config: Mapping[str, Any], specimens: Collection[str]) -> list[str]
 def of_study_alone(names: Collection[str]) -> list[str]:
     """Figures of a study that read no stage of its specimens one by one.
 
-    Those stages are not in the atlas of all specimens where that is in parts.
-
-    Parameters
-    ----------
-    names : collection of str
-        From :func:`study.figure_list.study_figures_of`.
+    The atlas of all specimens lacks those stages where it is in parts.
     """
     return [name for name in names if "specimens" not in all_figures()[name].needs]

@@ -25,22 +25,20 @@ from .sidecar import is_contact_map, read_yaml
 
 @dataclass(frozen=True)
 class Study:
-    """A study that passed all checks.
+    """A study that passed all checks, by names of its specimens.
 
     Attributes
     ----------
     scans : dict of str to ScanFiles
-        By specimen or contact map.
+        Specimens and measured contact maps.
     settings : dict of str to Settings
-        By specimen, scanned or embedded.
+        Specimens, scanned or embedded.
     options : dict of str to dict
-        By scan: how to read it, the scan keys of its sidecar.
+        Scan keys of the sidecars of all scans.
     labels : dict of str to str
-        By measured contact map, which have no settings.
-    solver : Solver
+        Measured contact maps, which have no settings.
     refused : dict of str to InputError
-        What is wrong with scans that were left out, by specimen or file name; empty where the first
-        such thing was raised.
+        Error of each scan that was left out, by specimen or file name.
     """
 
     scans: dict[str, ScanFiles]
@@ -52,29 +50,17 @@ class Study:
 
 
 def resolve_study(config: Mapping, source: str, *, leave_out: bool = False) -> Study:
-    """Check a study with its scan files and sidecars, and work out all settings.
+    """Check a study with its scan files and sidecars, and resolve all settings.
 
-    Parameters
-    ----------
-    config : mapping
-        The study as read from YAML.
-    source : str
-        The file the study came from, for errors.
-    leave_out : bool, optional
-        Leave out scans with whose files, sidecars or settings something is wrong.
-
-    Raises
-    ------
-    InputError
-        For the first thing that is wrong.
+    With ``leave_out``, faulty scans are left out; else the first fault raises InputError.
     """
     check_study(config, source)
     scans, stated, refused = read_scans(config)
     folder = config.get("scans", "scans")
     check_names(scans, config, folder, source)
-    known = {*scans, *refused, *config.get("embedded", {})}
+    names = {*scans, *refused, *config.get("embedded", {})}
     for key in ("specimens", "explorer"):
-        if unknown := sorted(set(config.get(key, {})) - known):
+        if unknown := sorted(set(config.get(key, {})) - names):
             raise InputError(
                 f"{source}: {key}.{unknown[0]}: neither embedded nor a scan in {folder}"
             )
@@ -100,20 +86,10 @@ def resolve_study(config: Mapping, source: str, *, leave_out: bool = False) -> S
 def read_scans(
     config: Mapping,
 ) -> tuple[dict[str, ScanFiles], dict[str, tuple[dict, dict]], dict[str, InputError]]:
-    """Scan files of a study with their settings.
+    """Scan files of a checked study, their scan keys and settings, and errors of faulty ones.
 
-    Parameters
-    ----------
-    config : mapping
-        A study that :func:`check_study` has passed.
-
-    Returns
-    -------
-    scans : dict of str to ScanFiles
-    stated : dict of str to tuple
-        Scan keys and settings of each: of its group, then its sidecar's, then its table's.
-    refused : dict of str to InputError
-        What is wrong with some, by specimen or file name.
+    Keys of a group are overridden by those of the sidecar, and these by those of the table. Errors
+    are by specimen or file name.
     """
     folder = config.get("scans", "scans")
     scans, refused = list_grouped(folder, config.get("groups")) if folder else ({}, {})
@@ -133,13 +109,13 @@ def read_scans(
 
 
 def _stated_of(scan: ScanFiles, of_group: tuple[dict, dict]) -> tuple[dict, dict]:
-    """Keys stated for one specimen; keys of its group need not apply to every member."""
+    """Scan keys and settings of one specimen; keys of its group need not apply to every member."""
     of_file = read_sidecar(scan.sidecar)
     of_row = _split(dict(scan.row), scan.row_of) if scan.row else ({}, {})
     own = ({**of_file[0], **of_row[0]}, {**of_file[1], **of_row[1]})
     refuse_idle_keys(scan, *own)
     keys, settings = {**of_group[0], **own[0]}, {**of_group[1], **own[1]}
-    # An aperture map is pressed as its negative is against a plane.
+    # The contact of an aperture map is that of its negative with a plane.
     return keys, settings | ({"opposite": APERTURE} if keys.get("kind") == APERTURE else {})
 
 
@@ -165,7 +141,7 @@ def _coordinates(scan: ScanFiles, keys: Mapping) -> tuple[Path, ...]:
 def _test_files(
     scans: Mapping[str, ScanFiles], own: Mapping[str, Mapping], config: Mapping
 ) -> set[Path]:
-    """Files of laboratory tests, which sidecars or the study name: no scans either."""
+    """Files of laboratory tests named by sidecars or the study, which are no scans either."""
     files: set[Path] = set()
     for name, stated in ({name: {} for name in config.get("embedded", {})} | dict(own)).items():
         folder = scans[name].lower.parent if name in scans else Path(config.get("scans") or ".")
@@ -175,19 +151,12 @@ def _test_files(
 
 
 def check_study(config: Mapping, source: str) -> None:
-    """Check a study: its keys, and whether they go with each other.
-
-    Parameters
-    ----------
-    config : mapping
-        The study as read from YAML.
-    source : str
-        The file it came from, for errors.
+    """Check the keys of a study, as read from YAML, and their combinations.
 
     Raises
     ------
     InputError
-        For the first thing that is wrong: the file, the key, what was expected.
+        For the first fault: the file, the key, what was expected.
     """
     validate(StudyKeys, config, source)
     check_names({}, config, None, source)
@@ -204,20 +173,22 @@ def check_study(config: Mapping, source: str) -> None:
 
 
 def _check_statements(names, source: str) -> None:
-    """Refuse statements that no specimen is asked."""
-    known = claims_of("one")
+    """Refuse statements of the paper that are judged on no specimen."""
+    statements = claims_of("one")
     for name in names:
-        if name not in known:
-            raise InputError(f"{source}.chosen_for: no statement {name!r}{nearest(name, known)}")
+        if name not in statements:
+            raise InputError(
+                f"{source}.chosen_for: no statement {name!r}{nearest(name, statements)}"
+            )
 
 
 def _check_figures(names, source: str) -> None:
-    """Refuse figures that are none of a specimen."""
-    known = figures_of("match")
+    """Refuse names that are no figure of a specimen."""
+    figures = figures_of("match")
     for name in () if isinstance(names, str) else names:
-        if name not in known:
+        if name not in figures:
             raise InputError(
-                f"{source}: figures: no figure {name!r} of specimens{nearest(name, known)}"
+                f"{source}: figures: no figure {name!r} of specimens{nearest(name, figures)}"
             )
 
 
@@ -226,22 +197,8 @@ def check_names(
 ) -> None:
     """Refuse embedded specimens whose results would be taken for others.
 
-    Parameters
-    ----------
-    scans : iterable of str
-        Names of the specimens that are scanned.
-    config : mapping
-        A study that :func:`check_study` has passed.
-    folder : path-like
-        Where the scans are, for errors.
-    source : str
-        The file the study came from, for errors.
-
-    Raises
-    ------
-    InputError
-        If one has the name of a scan or of another, upper and lower case being alike: on many
-        discs they would be one file. Or a name that no scan could have either.
+    Names must differ from each other and from those of the scans in more than upper and lower case,
+    as on many disks they would be one file, and must be possible for a scan too.
     """
     taken: dict[str, tuple[str, str | None]] = {
         name.lower(): (name, f"a scan in {folder}") for name in scans
@@ -262,24 +219,7 @@ def check_names(
 
 
 def read_sidecar(path: Path | None) -> tuple[dict, dict]:
-    """Scan keys and settings of a sidecar, checked.
-
-    Parameters
-    ----------
-    path : Path or None
-        None of a scan that has no sidecar.
-
-    Returns
-    -------
-    scan : dict
-        How to read the file, for :func:`scan.read.read_faces`.
-    settings : dict
-        What differs from the study's defaults.
-
-    Raises
-    ------
-    InputError
-    """
+    """Scan keys and settings of a sidecar, checked; empty without a sidecar."""
     if path is None:
         return {}, {}
     return _split(read_yaml(path), str(path))

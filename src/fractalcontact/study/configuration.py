@@ -24,11 +24,11 @@ from .measured import resolve_tests
 from .scan_files import ScanFiles
 from .selection import BESIDE_SURFACE, is_capped_variant
 
-#: Nodes per side of an embedded specimen.
+#: Least nodes per side of an embedded specimen.
 MIN_NODES_PER_SIDE = 2
-#: Of its hardness, up to which a specimen carries the loads that the study's defaults name.
+#: Largest pressure among the loads of the defaults that a specimen carries, over its hardness.
 LARGEST_SHARE = 0.95
-#: Tolerance of a study that asks for everything.
+#: Relative tolerance of a study of full accuracy.
 FULL_RTOL = 1e-6
 
 
@@ -40,13 +40,13 @@ def resolve_settings(
     Parameters
     ----------
     config : mapping
-        A study that passed the schema.
+        A study that passed :func:`study.checks.check_study`.
     name : str or None
         The specimen; None for the defaults alone.
     own : mapping
         Settings of its sidecar.
     source : str
-        For errors.
+        The file of the study, for errors.
     scan : ScanFiles, optional
         Of a specimen that was scanned. With both faces ``opposite`` has no effect.
 
@@ -92,10 +92,8 @@ def resolve_settings(
 class _Layers:
     """Settings of one specimen by layer: defaults, the study's own, its sidecar's.
 
-    Attributes
-    ----------
-    values, texts : dict
-        By key, in mm, N and MPa, and as the user wrote them, of the last layer that states it.
+    ``values`` and ``texts`` hold by key the value of the last layer that states it, in mm, N and
+    MPa and as its user wrote it.
     """
 
     def __init__(self, config, name, own, source, scan):
@@ -116,7 +114,7 @@ class _Layers:
         self.texts, self.values = {}, {}
         for texts, said_in, above in layers:
             self.texts |= texts
-            # The program itself states it of aperture maps; no study or sidecar can.
+            # The program alone states this value, of aperture maps; no study or sidecar can.
             is_map = texts.get("opposite") == APERTURE
             said = {key: text for key, text in texts.items() if not (is_map and key == "opposite")}
             self.values |= stated(validate(SettingsKeys, said, said_in, above))
@@ -130,14 +128,14 @@ class _Layers:
         return str(self._scan.said_in) if self._scan else f"sidecar of {self._name}"
 
     def where(self, key):
-        """Place of a setting, for errors."""
+        """File and key of a setting, for errors."""
         if key in self._own:
             return f"{self._said_in()}: {key}"
         place = f"specimens.{self._name}" if key in self._study else "defaults"
         return f"{self._source}: {place}.{key}"
 
     def twins(self):
-        """Number of twins of a scan, the defaults' too; embedded specimens have realisations."""
+        """Number of twins of a scan; embedded specimens have realisations."""
         if self._scan is None and "twins" in self._study:
             raise InputError(
                 f"{self.where('twins')}: {self._name} is no scan; write 'realisations: "
@@ -146,23 +144,23 @@ class _Layers:
         return self.values.get("twins", 0) if self._scan else 0
 
     def solved_loads(self, hardness):
-        """Loads that are solved; of the defaults only those that the hardness can carry."""
+        """Loads to be solved: of those in the defaults only what the hardness can carry."""
         loads = self.values["loads"]
         if "loads" in self._own or "loads" in self._study:
             return loads
         most = LARGEST_SHARE * hardness
-        return [one for one in loads if one[1] == "force" or one[0] <= most] or loads
+        return [load for load in loads if load[1] == "force" or load[0] <= most] or loads
 
     def reported_offset(self):
-        """Offset that is reported: of two faces as they were scanned, unless something is said."""
+        """Offset that is reported; by default two faces are reported as they were scanned."""
         offsets = self.values.get("offsets")
         as_scanned = self._scan and self._scan.upper and (offsets is None or 0.0 in offsets)
         return self.values.get("map_offset", 0.0 if as_scanned else None)
 
     def chosen_loads(self, key, loads):
-        """Loads of a figure: the named ones, which must be solved, or the largest three.
+        """Loads that a key names among the solved ones; the three largest without it.
 
-        Of those that the study's defaults name, the ones that the hardness of a specimen can carry.
+        Loads that the defaults name and the hardness of the specimen cannot carry are left out.
         """
         if key not in self.values:
             return loads[-3:]
@@ -175,7 +173,7 @@ class _Layers:
         return [pair for pair in chosen if pair in loads] or loads[-len(chosen) :]
 
     def _not_solved(self, key, text):
-        """Error of a load that is drawn but not solved, in the later file of both."""
+        """Error of a load that is drawn but not solved; names the file of the later layer."""
         if "loads" in self._own and key not in self._own:
             return InputError(
                 f"{self.where('loads')}: {self.texts['loads']} lacks {text!r}, which "
@@ -203,8 +201,8 @@ def resolve_embedded(recipe: Mapping, where: str) -> dict:
     Raises
     ------
     InputError
-        If a length has no unit of length or is not positive, the nodes are too few or too many, or
-        the construction has no such surface.
+        If a length is wrong, the nodes are too few or too many, or the construction has no such
+        surface.
     """
     source, _, above = where.rpartition(": ")
     parsed = validate(EmbeddedKeys, recipe, source, above)
@@ -233,13 +231,7 @@ def resolve_embedded(recipe: Mapping, where: str) -> dict:
 
 
 def resolve_roll_off(config: Mapping, source: str) -> dict:
-    """Recipe, window (mm) and seeds of synthetic joints with and without a roll-off.
-
-    Raises
-    ------
-    InputError
-        If the specimen named is not embedded or has no roll-off.
-    """
+    """Recipe, window (mm) and seeds of synthetic joints with and without a roll-off."""
     stated, where = config["roll_off"], f"{source}: roll_off"
     embedded = config.get("embedded", {})
     name = stated["embedded"]
@@ -253,20 +245,7 @@ def resolve_roll_off(config: Mapping, source: str) -> dict:
 
 
 def solver_settings(config: Mapping, source: str) -> Solver:
-    """Settings of the contact solver; ``rtol`` follows from the accuracy where it is not stated.
-
-    Parameters
-    ----------
-    config : mapping
-        A study that passed the schema.
-    source : str
-        For errors.
-
-    Raises
-    ------
-    InputError
-        If an accuracy is no fraction.
-    """
+    """Settings of the contact solver; ``rtol`` follows from the accuracy where it is not stated."""
     stated = config.get("accuracy", {})
     solver = dict(validate(SolverKeys, config.get("solver", {}), source, "solver"))
     if stated == "full":
@@ -280,7 +259,7 @@ def solver_settings(config: Mapping, source: str) -> Solver:
 
 
 def _material(config, material, where, scanned: bool) -> Material:
-    """Material with E* of two like bodies and its optional properties.
+    """Material with E* = E / (2 (1 - nu^2)) of two like bodies and its optional properties.
 
     The contacts of a scanned rock crush at the joint wall strength, unless its hardness is stated.
     """

@@ -35,7 +35,7 @@ _PROFILES = {
 }
 _BIOSCHEMAS = "https://bioschemas.org/profiles/ComputationalWorkflow/1.0-RELEASE"
 _LICENCES = "https://spdx.org/licenses/"
-#: Media types that the standard library does not know, or not everywhere.
+#: Media types that the standard library does not know on every system.
 _MEDIA = {
     ".nc": "application/x-netcdf",
     ".npy": "application/x-npy",
@@ -44,7 +44,7 @@ _MEDIA = {
     ".smk": "text/x-python",
     ".py": "text/x-python",
 }
-#: What files are, where neither a stage nor a figure says it.
+#: Descriptions of files that belong to no stage and no figure.
 _FILES = {
     "atlas.nc": "atlas: every number of the study, as netCDF-4",
     "specimens.txt": "names of the specimens",
@@ -79,12 +79,8 @@ class Workflow:
         Its main file, in that folder.
     parts : tuple of str
         Patterns of its other files there.
-    language : str
-        Name of the workflow system.
-    url : str
-        Address of the workflow system.
-    version : str
-        Of the workflow system.
+    language, url, version : str
+        Name, address and version of the workflow system.
     """
 
     folder: Path
@@ -100,34 +96,21 @@ def write_crate(
 ) -> None:
     """Describe the results of a study, beside a copy of the files of its workflow.
 
-    Parameters
-    ----------
-    results : path-like
-        Folder of the study; without an atlas in it, nothing is written.
-    workflow : Workflow
-        What made them; its files are copied to the folder ``code``.
-    study : str
-        Name of the study.
-    inputs : mapping of str to str
-        SHA-256 of the scans by path; they stay where they are.
-
-    Raises
-    ------
-    OutputError
-        If the disk is full or the folder cannot be written to.
+    ``inputs`` are SHA-256 of the scans by path; they stay where they are. The files of the workflow
+    are copied to the folder ``code``. Nothing is written without an atlas.
     """
     results = Path(results)
     atlas = results / _ATLAS
     if not atlas.is_file():
         return
-    made = atlas.stat().st_mtime
-    date = f"{datetime.datetime.fromtimestamp(made, datetime.UTC):%Y-%m-%dT%H:%M:%S+00:00}"
+    time = atlas.stat().st_mtime
+    date = f"{datetime.datetime.fromtimestamp(time, datetime.UTC):%Y-%m-%dT%H:%M:%S+00:00}"
     citation = yaml.safe_load((workflow.folder / "CITATION.cff").read_text(encoding="utf-8"))
     code = _copied(results, workflow)
     files = [line.rstrip("\n").partition("  ")[::2] for line in checksums.lines_of(results)]
     entities = [_file(results, name, digest) for digest, name in files]
     graph = [
-        *_heads(study, citation, date, code[0], [*code, *(one["@id"] for one in entities)]),
+        *_heads(study, citation, date, code[0], [*code, *(entity["@id"] for entity in entities)]),
         *_people(citation),
         *_workflow_entities(results, workflow, citation, code),
         _action(study, date, _author_ids(citation), code[0], entities, inputs),
@@ -157,14 +140,14 @@ def _copied(results: Path, workflow: Workflow) -> list[str]:
 
 def _refer(names: Iterable[str]) -> list[dict[str, str]] | dict[str, str]:
     """References to entities; one alone is no list."""
-    found = [{"@id": name} for name in names]
-    return found[0] if len(found) == 1 else found
+    references = [{"@id": name} for name in names]
+    return references[0] if len(references) == 1 else references
 
 
 def _heads(
     study: str, citation: Mapping, date: str, main: str, parts: Iterable[str]
 ) -> list[dict[str, Any]]:
-    """The descriptor and the root, which every crate has, and the profiles that it follows."""
+    """Descriptor and root, which every crate has, and the profiles that it follows."""
     licence = _LICENCES + citation["license"]
     return [
         {
@@ -205,22 +188,22 @@ def _author_ids(citation: Mapping) -> list[str]:
 
 
 def _people(citation: Mapping) -> list[dict[str, Any]]:
-    """The authors: people have a family name, groups a name."""
-    found = []
-    for one, person in zip(_author_ids(citation), citation["authors"], strict=True):
+    """Authors: people have a family name, groups a name."""
+    people = []
+    for identifier, person in zip(_author_ids(citation), citation["authors"], strict=True):
         if "family-names" in person:
             names = {"familyName": person["family-names"], "givenName": person["given-names"]}
             name = f"{person['given-names']} {person['family-names']}"
-            found.append({"@id": one, "@type": "Person", "name": name, **names})
+            people.append({"@id": identifier, "@type": "Person", "name": name, **names})
         else:
-            found.append({"@id": one, "@type": "Organization", "name": person["name"]})
-    return found
+            people.append({"@id": identifier, "@type": "Organization", "name": person["name"]})
+    return people
 
 
 def _workflow_entities(
     results: Path, workflow: Workflow, citation: Mapping, code: list[str]
 ) -> list[dict[str, Any]]:
-    """The main file of the workflow, its other files, its language."""
+    """Main file of the workflow, its other files, its language."""
     language = {"@id": "#language"}
     described = [_described(results, name) for name in code]
     described[0] |= {
@@ -251,7 +234,7 @@ def _action(
     entities: list[dict],
     inputs: Mapping[str, str],
 ) -> dict[str, Any]:
-    """The run of the workflow: made of the configuration and the scans, all other files."""
+    """Run of the workflow: from the configuration and the scans to all other files."""
     names = [entity["@id"] for entity in entities]
     taken = [name for name in names if name == _CONFIGURATION]
     return {

@@ -15,13 +15,13 @@ _MAX_VALUES = 100_000
 
 
 def read_study(path: Path | str) -> dict:
-    """A study's own file, or its schema: all of YAML, since its user wrote it.
+    """Mapping in the file of a study: all of YAML, since its user wrote it.
 
     Raises
     ------
     InputError
         If it cannot be read, is no mapping, or is more than plain data: Snakemake would run Python
-        that stands in a study which asks for it, and studies come from colleagues and supplements.
+        code in a study that asks for it, and studies come from colleagues and supplements.
     """
     try:
         text = Path(path).read_text(encoding="utf-8")
@@ -50,20 +50,7 @@ def read_study(path: Path | str) -> dict:
 
 
 def study_name(document: Mapping, source: Path | str) -> str:
-    """Name of a study, which its results stand under.
-
-    Parameters
-    ----------
-    document : mapping
-        From :func:`read_study`.
-    source : path-like
-        For errors.
-
-    Raises
-    ------
-    InputError
-        If there is none, or one that could lead anywhere else.
-    """
+    """Name of a study and of the folder of its results; refused where it could lead elsewhere."""
     name = document.get("study")
     if not isinstance(name, str) or not re.fullmatch(r"[A-Za-z0-9][A-Za-z0-9_-]{0,99}", name):
         raise InputError(

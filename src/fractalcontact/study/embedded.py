@@ -1,7 +1,6 @@
-"""Embedded specimens: synthetic surfaces that a study makes itself, written as ordinary scan files.
+"""Embedded specimens: synthetic surfaces of a study, written as ordinary scan files.
 
-They enter the program through the same door as a measured surface. Their heights are those of
-:mod:`surface.embedded`.
+They are read like measured surfaces. Their heights are those of :mod:`surface.embedded`.
 """
 
 from pathlib import Path
@@ -14,26 +13,15 @@ from .sidecar import sidecar_of_matrix
 
 
 def write_scan(path: Path, heights: np.ndarray, spacing: float, *, sidecar: dict) -> None:
-    """Write heights as a scan file NAME.npy with its sidecar NAME.yaml.
+    """Write heights in mm, rows ascending in y, as a scan NAME.npy with its sidecar NAME.yaml.
 
     Both files appear whole or not at all; the sidecar comes first, so that no scan is ever seen
-    without its unit.
-
-    Parameters
-    ----------
-    path : Path
-        The scan, ending in ``.npy``; its folder is made where it is missing.
-    heights : (ny, nx) array
-        In mm, NaN where missing, rows ascending in y.
-    spacing : float
-        In mm.
-    sidecar : dict
-        Further keys, such as ``title`` or ``material``. `unit` and `spacing` are added.
+    without its unit. ``spacing`` is in mm; ``sidecar`` holds further keys, such as ``material``.
 
     Raises
     ------
     ValueError
-        If the path does not end in ``.npy`` or the sidecar contradicts the unit or spacing.
+        If the path does not end in ``.npy``, or the sidecar states a key of the scan itself.
     """
     path = Path(path)
     if path.suffix != ".npy":

@@ -31,13 +31,13 @@ from pathlib import Path
 from ..core.directions import slides
 from ..core.packages import SOURCES, installed
 
-#: Folders of the figures, one folder a group; what they share is in :mod:`figures.kit`.
+#: Folders of the figures, each with a folder a group; :mod:`figures.kit` is shared code.
 FOLDERS = [SOURCES / name / "figures" for name in installed()]
 _SHARED = "kit"
 
 SPECIMEN, JOINT, STUDY = "specimen", "joint", "study"
 
-#: A constant and its value, which may go on in indented lines and end in a closing bracket.
+#: A constant and its value, which may continue in indented lines and end in a closing bracket.
 _CONSTANT = re.compile(
     r"^(TITLE|SUBJECT|NEEDS|ORDER|KEY|SECTION) = (.*\n(?:(?:[ \t]+.*|[)\]}].*)\n)*)", re.MULTILINE
 )
@@ -45,26 +45,7 @@ _CONSTANT = re.compile(
 
 @dataclass(frozen=True)
 class Figure:
-    """Statements of a figure's module.
-
-    Attributes
-    ----------
-    name : str
-        Of its module, and of its files.
-    module : str
-        Path of its module below the folder of the packages, without ending:
-        "fractalcontact/figures/joint/strength".
-    title : str
-    subject : str
-        "specimen", "joint" or "study".
-    needs : tuple of str
-        Stages of the atlas.
-    order : float
-    key : str
-        Of the configuration; empty where no key asks for it.
-    section : str
-        Of the result page; empty where its stages say it.
-    """
+    """Statements of a figure's module, and ``module``, its path below ``src`` without ending."""
 
     name: str
     module: str
@@ -77,17 +58,12 @@ class Figure:
 
 
 def read_figure(path: Path | str) -> Figure:
-    """Statements of a figure's module, read without importing it.
-
-    Parameters
-    ----------
-    path : path-like
-        ``GROUP/NAME.py``.
+    """Statements of a figure's module ``GROUP/NAME.py``, read without importing it.
 
     Raises
     ------
     ValueError
-        If a constant is missing or is no literal, or if the subject is none of those known.
+        If a constant is missing or no literal, or the subject is unknown.
     """
     path = Path(path)
     stated = {}
@@ -110,13 +86,7 @@ def read_figure(path: Path | str) -> Figure:
 
 @cache
 def all_figures() -> dict[str, Figure]:
-    """Every figure by name, in order.
-
-    Raises
-    ------
-    ValueError
-        If two have one name, or as :func:`read_figure`.
-    """
+    """Every figure by name, in order; ValueError if two have one name."""
     paths = [
         path
         for folder in FOLDERS
@@ -133,25 +103,13 @@ def all_figures() -> dict[str, Figure]:
 
 
 def figures_of(opposite: str) -> list[str]:
-    """Names of the figures that make sense for a specimen.
-
-    Parameters
-    ----------
-    opposite : str
-        Of :func:`core.directions.slides`.
-    """
+    """Names of the figures that make sense for a specimen with this opposite face."""
     subjects = {SPECIMEN, JOINT} if slides(opposite) else {SPECIMEN}
     return [name for name, figure in all_figures().items() if figure.subject in subjects]
 
 
 def study_figures_of(experiments: Container[str]) -> list[str]:
-    """Names of the figures of a whole study.
-
-    Parameters
-    ----------
-    experiments : container of str
-        Keys of what it asks for, other names do not matter: its configuration.
-    """
+    """Names of the figures of a whole study whose keys are among those of its configuration."""
     return [
         name
         for name, figure in all_figures().items()

@@ -8,21 +8,10 @@ from ..core.errors import InputError
 
 
 def refuse_loss(results: Path | str, names: Iterable[str]) -> None:
-    """Refuse to remove specimens from an atlas unless the user asks for it.
+    """Refuse to remove specimens from the atlas of a study, unless its user asks for it.
 
     A folder that is not mounted, or half copied, looks like one from which scans were removed.
-
-    Parameters
-    ----------
-    results : path-like
-        Folder of the study.
-    names : iterable of str
-        Specimens and contact maps that it has now.
-
-    Raises
-    ------
-    InputError
-        If there is an atlas and it has others.
+    ``names`` are the specimens and contact maps that the study has now.
     """
     results = Path(results)
     places = [results, results / checksums.ASIDE]

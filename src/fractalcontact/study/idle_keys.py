@@ -1,4 +1,4 @@
-"""Keys of a sidecar that would change nothing: they were meant to, so they are refused."""
+"""Keys of a sidecar that would change nothing. They were meant to, so they are refused."""
 
 from collections.abc import Iterator, Mapping, Sequence
 
@@ -15,19 +15,7 @@ _UNNAMED = (".npy", ".csv", ".tsv", ".xyz", ".stl", ".ply", ".obj")
 
 
 def refuse_idle_keys(scan: ScanFiles, keys: Mapping, settings: Mapping) -> None:
-    """Refuse keys without meaning for the files of a specimen.
-
-    Parameters
-    ----------
-    scan : ScanFiles
-    keys, settings : mapping
-        Scan keys and settings of its sidecar.
-
-    Raises
-    ------
-    InputError
-        For the first of them.
-    """
+    """Refuse scan keys and settings of a sidecar that have no meaning for its files."""
     kind = keys.get("kind")
     if kind in (CONTACT_MAP, APERTURE) and scan.upper is not None:
         raise InputError(
@@ -43,7 +31,7 @@ def refuse_idle_keys(scan: ScanFiles, keys: Mapping, settings: Mapping) -> None:
 def _keys_for(only: str) -> list[str]:
     """Keys that have a meaning only for some files or specimens."""
     keys = schema_of(SidecarKeys)["properties"]
-    return [name for name, one in keys.items() if one.get("x-only") == only]
+    return [name for name, node in keys.items() if node.get("x-only") == only]
 
 
 def _idle(scan: ScanFiles, keys: Mapping, settings: Mapping) -> Iterator[tuple[Sequence[str], str]]:

@@ -28,47 +28,31 @@ from ..scan.keys import ScanKeys
 from .measured_keys import Tests
 from .scan_files import LONGEST_NAME
 
-#: Results keep it in eight bytes.
-Seed = Annotated[
-    int, Field(ge=0, le=10**18 - 1, description="a whole number from 0, of up to 18 digits")
-]
-_SEEDS = "two or more different whole numbers"
-Seeds = Annotated[list[Seed], Field(min_length=2, description=_SEEDS), *different]
-_Count = Annotated[
-    int, Field(ge=1, le=MAX_NODES_PER_SIDE, description="a whole number from 1 to 16384")
-]
+#: Seed of random numbers; results store it in eight bytes.
+Seed = Annotated[int, key("a whole number from 0, of up to 18 digits", ge=0, le=10**18 - 1)]
+Seeds = Annotated[list[Seed], key("two or more different whole numbers", min_length=2), *different]
+_Count = Annotated[int, key("a whole number from 1 to 16384", ge=1, le=MAX_NODES_PER_SIDE)]
 Sizes = Annotated[
-    list[_Count],
-    Field(min_length=1, description="one or more whole numbers from 1 to 16384"),
-    *different,
+    list[_Count], key("one or more whole numbers from 1 to 16384", min_length=1), *different
 ]
-_Side = Annotated[
-    int, Field(ge=16, le=MAX_NODES_PER_SIDE, description="nodes along a side, from 16 to 16384")
-]
-_Fraction = Annotated[float, Field(gt=0, lt=1, description="a number between 0 and 1")]
-_FRACTIONS = "one or more numbers between 0 and 1"
-Fractions = Annotated[list[_Fraction], Field(min_length=1, description=_FRACTIONS), *different]
-_Positive = Annotated[float, Field(gt=0, description="a number above 0")]
-Positives = Annotated[
-    list[_Positive], Field(min_length=1, description="one or more numbers above 0")
-]
+_Side = Annotated[int, key("nodes along a side, from 16 to 16384", ge=16, le=MAX_NODES_PER_SIDE)]
+_Fraction = Annotated[float, key("a number between 0 and 1", gt=0, lt=1)]
+_FRACTIONS = "one or more numbers between 0 and 1, with a decimal point (1.0e-3)"
+Fractions = Annotated[list[_Fraction], key(_FRACTIONS, min_length=1), *different]
+_Positive = Annotated[float, key("a number above 0", gt=0)]
+Positives = Annotated[list[_Positive], key("one or more numbers above 0", min_length=1)]
 Wavelength = Annotated[
-    float,
-    Field(ge=2, le=MAX_NODES_PER_SIDE, description="a wavelength in nodes, from 2 to 16384"),
+    float, key("a wavelength in nodes, from 2 to 16384", ge=2, le=MAX_NODES_PER_SIDE)
 ]
-_Surfaces = Annotated[
-    int, Field(ge=2, le=10000, description="a number of surfaces from 2 to 10000")
-]
+_Surfaces = Annotated[int, key("a number of surfaces from 2 to 10000", ge=2, le=10000)]
 
 
 class MaterialKeys(Section):
     """A material."""
 
     modulus: Annotated[Pressure, key("a pressure with its unit, such as 20 GPa")]
-    poisson: Annotated[float, Field(gt=-1, le=0.5), key("Poisson's ratio, above -1 and up to 0.5")]
-    basic_friction_angle: Annotated[Angle, key("an angle with its unit, such as 30 deg")] = float(
-        "nan"
-    )
+    poisson: Annotated[float, key("Poisson's ratio, above -1 and up to 0.5", gt=-1, le=0.5)]
+    basic_friction_angle: Angle = float("nan")
     joint_wall_strength: Annotated[Pressure, key("a pressure with its unit, such as 80 MPa")] = (
         float("nan")
     )
@@ -83,6 +67,7 @@ _KEYS: Any = {
     if hasattr(hint, "__metadata__")
 }
 _FromSettings: Any = create_model("_FromSettings", __base__=Section, **_KEYS)
+_FromSettings.texts_of = Settings
 
 
 class SettingsKeys(_FromSettings):
@@ -92,121 +77,63 @@ class SettingsKeys(_FromSettings):
         str | MaterialKeys,
         key(
             "the name of a material of the study, or a mapping with modulus and poisson",
-            doc=(
-                "a name from `materials`, or `{modulus, poisson, basic_friction_angle, "
-                "joint_wall_strength, hardness}` as above, the last three optional"
-            ),
             unsaid="required in `defaults`: it holds for a scan whose sidecar states none",
         ),
     ] = ""
+    """a name from `materials`, or `{modulus, poisson, basic_friction_angle,
+    joint_wall_strength, hardness}` as above, the last three optional"""
     measured: Annotated[
-        Tests,
-        key(
-            "laboratory tests by kind, closure, flow, dilatancy, shear or strength",
-            doc=(
-                "laboratory tests of the specimen, by kind: `closure`, `flow`, `dilatancy`, "
-                "`shear`, `strength`, each a test or a list of tests (below)"
-            ),
-            unsaid="none",
-        ),
+        Tests, key("laboratory tests by kind, closure, flow, dilatancy, shear or strength")
     ] = Tests()
+    """laboratory tests of the specimen, by kind: `closure`, `flow`, `dilatancy`, `shear`,
+    `strength`, each a test or a list of tests (below)"""
 
 
 class EmbeddedKeys(Section):
     """A synthetic specimen of the study itself."""
 
-    label: Annotated[
-        Label,
-        key(
-            "what it is, in up to 200 characters on one line, without $",
-            doc=(
-                "what it is, in words: one line of up to 200 characters, without `$`; stands in"
-                " every figure"
-            ),
-        ),
-    ]
-    size: Annotated[
-        PositiveLength,
-        key(
-            "a length with its unit, such as 20 mm",
-            doc="side of the square, or diameter of the disc: 2 to 16384 times the spacing",
-        ),
-    ]
-    spacing: Annotated[
-        PositiveLength,
-        key(
-            "a length with its unit, such as 20 mm",
-            doc="distance of neighbouring nodes",
-        ),
-    ]
-    outline: Annotated[
-        Literal["square", "disc"], key("square or disc", doc="`square` (default) or `disc`")
-    ] = "square"
+    label: Label
+    """what it is, in words: one line of up to 200 characters, without `$`; stands in every
+    figure"""
+    size: PositiveLength
+    """side of the square, or diameter of the disc: 2 to 16384 times the spacing"""
+    spacing: PositiveLength
+    """distance of neighbouring nodes"""
+    outline: Annotated[Literal["square", "disc"], key("square or disc")] = "square"
+    """`square` (default) or `disc`"""
     construction: Annotated[
         Literal["spectrum", "weierstrass-mandelbrot", "random-midpoint", "cantor-punch"],
-        key(
-            "spectrum, weierstrass-mandelbrot, random-midpoint or cantor-punch",
-            doc=(
-                "`spectrum` (default: spectral synthesis), `weierstrass-mandelbrot` (a sum of "
-                "waves), `random-midpoint` (a random iterated function) or `cantor-punch` "
-                "(steps upon steps, the same along y; 3^n nodes per side, contact dimension 1 +"
-                " ln 2/ln 3)"
-            ),
-        ),
+        key("spectrum, weierstrass-mandelbrot, random-midpoint or cantor-punch"),
     ] = "spectrum"
+    """`spectrum` (default: spectral synthesis), `weierstrass-mandelbrot` (a sum of waves),
+    `random-midpoint` (a random iterated function) or `cantor-punch` (steps upon steps, the same
+    along y; 3^n nodes per side, contact dimension 1 + ln 2/ln 3)"""
     dimension: Annotated[
-        float,
-        Field(gt=2, lt=3),
-        key("surface dimension Delta_g = 3 - H, between 2 and 3", doc="Delta_g = 3 - H"),
+        float, key("surface dimension Delta_g = 3 - H, between 2 and 3", gt=2, lt=3)
     ]
-    rms: Annotated[
-        PositiveLength,
-        key(
-            "a length with its unit, such as 20 mm",
-            doc="standard deviation of the heights",
-        ),
-    ]
+    """Delta_g = 3 - H"""
+    rms: PositiveLength
+    """standard deviation of the heights"""
     roll_off: Annotated[
         PositiveLength | None,
-        key(
-            "a length, or null for a surface that is self-affine at every scale",
-            doc=(
-                "wavelength above which the spectrum is flat; `null` for none, as it is for all"
-                " other constructions"
-            ),
-        ),
+        key("a length, or null for a surface that is self-affine at every scale"),
     ] = None
-    seed: Annotated[
-        Seed,
-        key(
-            "a whole number from 0, of up to 18 digits",
-            doc="the same seed gives the same bits; a `cantor-punch` has no chance in it",
-        ),
-    ]
-    realisations: Annotated[
-        int,
-        Field(ge=3, le=1000),
-        key(
-            "surfaces of the ensemble, from 3 to 1000",
-            doc=(
-                "number of surfaces of its ensemble (3 or more): its own seed and those that "
-                "follow, none chosen, solved at the reported offset under a few loads. The "
-                "paper's statements on joints of a kind are then judged on their mean and its "
-                "95 % interval; without `realisations` on the one specimen"
-            ),
-        ),
-    ] = 0
+    """wavelength above which the spectrum is flat; `null` for none, as it is for all other
+    constructions"""
+    seed: Seed
+    """the same seed gives the same bits; a `cantor-punch` has no chance in it"""
+    realisations: Annotated[int, key("surfaces of the ensemble, from 3 to 1000", ge=3, le=1000)] = 0
+    """number of surfaces of its ensemble (3 or more): its own seed and those that follow, none
+    chosen, solved at the reported offset under a few loads. The paper's statements on joints of
+    a kind are then judged on their mean and its 95 % interval; without `realisations` on the
+    one specimen"""
     chosen_for: Annotated[
         dict[str, Label],
-        key(
-            "how the specimen was chosen for what the paper says, by statement of the atlas",
-            doc=(
-                "how the specimen was chosen for a statement of the paper, `{STATEMENT: how}`. "
-                "The verdict on that statement is then marked circular. The names are those of "
-                "`statement` in the atlas"
-            ),
-        ),
+        key("how the specimen was chosen for what the paper says, by statement of the atlas"),
     ] = {}
+    """how the specimen was chosen for a statement of the paper, `{STATEMENT: how}`. The verdict
+    on that statement is then marked circular. The names are those of `statement` in the
+    atlas"""
 
 
 class SidecarKeys(SettingsKeys, ScanKeys):
@@ -219,234 +146,131 @@ class SidecarKeys(SettingsKeys, ScanKeys):
 class RollOffKeys(Section):
     """Synthetic joints with and without a roll-off."""
 
-    embedded: Annotated[
-        str,
-        key(
-            "name of an embedded specimen with a roll_off",
-            doc="the specimen whose recipe is used; it must have a `roll_off`",
-        ),
-    ]
-    window: Annotated[
-        Length,
-        key("a length with its unit, such as 20 mm", doc="side of the window"),
-    ]
-    seeds: Annotated[Seeds, key("two or more different whole numbers", doc="two or more")]
+    embedded: Annotated[str, key("name of an embedded specimen with a roll_off")]
+    """the specimen whose recipe is used; it must have a `roll_off`"""
+    window: Length
+    """side of the window"""
+    seeds: Seeds
+    """two or more"""
 
 
 class AreaSlopeKeys(Section):
     """Real contact area at light load."""
 
-    dimension: Annotated[
-        float, Field(gt=2, lt=3), key("surface dimension, between 2 and 3", doc="Delta_g")
-    ]
-    nodes: Annotated[
-        int, Field(ge=16, le=MAX_NODES_PER_SIDE), key("nodes along a side", doc="nodes per side")
-    ]
-    seeds: Annotated[Seeds, key("two or more different whole numbers", doc="two or more")]
+    dimension: Annotated[float, key("surface dimension, between 2 and 3", gt=2, lt=3)]
+    """Delta_g"""
+    nodes: Annotated[int, key("nodes along a side", ge=16, le=MAX_NODES_PER_SIDE)]
+    """nodes per side"""
+    seeds: Seeds
+    """two or more"""
     roll_off_share: Annotated[
-        float,
-        Field(gt=0, lt=1),
-        key(
-            "roll-off length as a share of the side, between 0 and 1",
-            doc="roll-off length as a fraction of the side",
-        ),
+        float, key("roll-off length as a share of the side, between 0 and 1", gt=0, lt=1)
     ]
+    """roll-off length as a fraction of the side"""
     loads: Annotated[
-        list[
-            Annotated[
-                float, Field(gt=0, le=0.02, description="p / (E* h'_rms), above 0 and up to 0.02")
-            ]
-        ],
-        Field(min_length=1),
-        key(
-            "numbers p / (E* h'_rms), above 0 and up to 0.02",
-            doc="reduced pressures p / (E\\* h'_rms), up to 0.02",
-        ),
+        list[Annotated[float, key("p / (E* h'_rms), above 0 and up to 0.02", gt=0, le=0.02)]],
+        key("numbers p / (E* h'_rms), above 0 and up to 0.02", min_length=1),
     ]
+    r"""reduced pressures p / (E\* h'_rms), up to 0.02"""
 
 
 class ArmKeys(Section):
     """An arm of the experiment on the size effect."""
 
-    sizes: Annotated[Sizes, key("one or more whole numbers from 1 to 16384")]
+    sizes: Sizes
     surfaces: Annotated[
-        list[_Surfaces], Field(min_length=1), key("as many numbers of surfaces as there are sizes")
+        list[_Surfaces], key("as many numbers of surfaces as there are sizes", min_length=1)
     ]
     cut_offs: Annotated[
-        list[Wavelength], Field(min_length=2), *different, key("two or more wavelengths in nodes")
+        list[Wavelength], key("two or more wavelengths in nodes", min_length=2), *different
     ] = []
     constructions: Annotated[
         list[Literal["weierstrass-mandelbrot", "random-midpoint", "cantor-punch"]],
-        Field(min_length=1),
+        key("a list of weierstrass-mandelbrot, random-midpoint or cantor-punch", min_length=1),
         *different,
-        key("a list of weierstrass-mandelbrot, random-midpoint or cantor-punch"),
     ] = []
 
 
-_ARM = "a mapping with sizes and surfaces, cut_offs of the arm R and constructions of G"
+_ARM = key("a mapping with sizes and surfaces, cut_offs of the arm R and constructions of G")
+_Arm = Annotated[ArmKeys, _ARM]
+_OptionalArm = Annotated[ArmKeys | None, _ARM]
 
 
 class ArmsKeys(Section):
     """Arms of the experiment on the size effect."""
 
-    R: Annotated[ArmKeys, key(_ARM)]
-    S1: Annotated[ArmKeys, key(_ARM)]
-    S2: Annotated[ArmKeys | None, key(_ARM)] = None
-    S3: Annotated[ArmKeys | None, key(_ARM)] = None
-    W: Annotated[ArmKeys | None, key(_ARM)] = None
-    G: Annotated[ArmKeys | None, key(_ARM)] = None
+    R: _Arm
+    S1: _Arm
+    S2: _OptionalArm = None
+    S3: _OptionalArm = None
+    W: _OptionalArm = None
+    G: _OptionalArm = None
 
 
 class SizeEffectKeys(Section):
     """Resolution, size and geometry of the contact, varied one by one."""
 
-    hurst: Annotated[
-        Fractions,
-        key(
-            "one or more numbers between 0 and 1, with a decimal point (1.0e-3)",
-            doc="Hurst exponents H of the surfaces",
-        ),
-    ]
-    loads: Annotated[
-        Positives,
-        key(
-            "one or more numbers above 0",
-            doc=(
-                "p/(E\\* h'_rms); h'_rms is that of the arm and size with its shortest cut-off, "
-                "from the spectrum"
-            ),
-        ),
-    ]
-    cut_off: Annotated[
-        Wavelength,
-        key(
-            "a wavelength in nodes, from 2 to 16384",
-            doc="shortest wavelength of the arms S1, S2 and S3",
-        ),
-    ]
-    roll_off: Annotated[
-        Wavelength,
-        key(
-            "a wavelength in nodes, from 2 to 16384",
-            doc=(
-                "wavelength above which the spectrum is flat, of arm S1; sizes from 4 of it on "
-                "enter the exponents"
-            ),
-        ),
-    ]
+    hurst: Fractions
+    """Hurst exponents H of the surfaces"""
+    loads: Positives
+    r"""p/(E\* h'_rms); h'_rms is that of the arm and size with its shortest cut-off, from the
+    spectrum"""
+    cut_off: Wavelength
+    """shortest wavelength of the arms S1, S2 and S3"""
+    roll_off: Wavelength
+    """wavelength above which the spectrum is flat, of arm S1; sizes from 4 of it on enter the
+    exponents"""
     roll_off_fraction: Annotated[
-        float,
-        Field(gt=0, le=1),
-        key(
-            "roll-off length as a fraction of the side, above 0 and up to 1",
-            doc="the same as a fraction of the side, of the arms R and S2; S3 has none",
-        ),
+        float, key("roll-off length as a fraction of the side, above 0 and up to 1", gt=0, le=1)
     ]
-    arms: Annotated[
-        ArmsKeys,
-        key(
-            "a mapping with the arms R and S1, and S2, S3, W or G if wanted",
-            doc=(
-                "by name (`R` and `S1` at least; `S2`, `S3`, `W`, `G`): `sizes`, nodes per "
-                "side; `surfaces`, one number for each size; of `R` also `cut_offs`, the "
-                "shortest wavelengths; of `G` `constructions`, a list of "
-                "`weierstrass-mandelbrot`, `random-midpoint` and `cantor-punch`. The windows of"
-                " `W` are cut from surfaces of its largest size"
-            ),
-        ),
-    ]
+    """the same as a fraction of the side, of the arms R and S2; S3 has none"""
+    arms: Annotated[ArmsKeys, key("a mapping with the arms R and S1, and S2, S3, W or G if wanted")]
+    """by name (`R` and `S1` at least; `S2`, `S3`, `W`, `G`): `sizes`, nodes per side;
+    `surfaces`, one number for each size; of `R` also `cut_offs`, the shortest wavelengths; of
+    `G` `constructions`, a list of `weierstrass-mandelbrot`, `random-midpoint` and
+    `cantor-punch`. The windows of `W` are cut from surfaces of its largest size"""
 
 
 class SizeStrengthKeys(Section):
     """Strength of synthetic mated joints over their size."""
 
-    hurst: Annotated[
-        Fractions,
-        key(
-            "one or more numbers between 0 and 1, with a decimal point (1.0e-3)",
-            doc="Hurst exponents H of the faces",
-        ),
-    ]
+    hurst: Fractions
+    """Hurst exponents H of the faces"""
     loads: Annotated[
         list[Annotated[float, Field(gt=0, le=1)]],
-        Field(min_length=1),
+        key("one or more numbers p / (E* h'_rms), above 0 and up to 1", min_length=1),
         *different,
-        key(
-            "one or more numbers p / (E* h'_rms), above 0 and up to 1",
-            doc=(
-                "p/(E\\* h'_rms), h'_rms = √2 `rms_slope`, that of the composite topography far "
-                "beyond the cut-off"
-            ),
-        ),
     ]
-    hardness: Annotated[
-        float,
-        Field(gt=0),
-        key(
-            "a number H / (E* h'_rms) above 0",
-            doc="H/(E\\* h'_rms) of capped contact; without it only elastic contact is solved",
-        ),
-    ] = float("inf")
-    cut_off: Annotated[
-        Wavelength,
-        key(
-            "a wavelength in nodes, from 2 to 16384",
-            doc="shortest wavelength, nodes",
-        ),
-    ]
-    roll_off: Annotated[
-        Wavelength,
-        key(
-            "a wavelength in nodes, from 2 to 16384",
-            doc=(
-                "wavelength above which the spectrum is flat, nodes; sizes from 4 roll-offs on "
-                "enter the exponents"
-            ),
-        ),
-    ]
+    r"""p/(E\* h'_rms), h'_rms = √2 `rms_slope`, that of the composite topography far beyond the
+    cut-off"""
+    hardness: Annotated[float, key("a number H / (E* h'_rms) above 0", gt=0)] = float("inf")
+    r"""H/(E\* h'_rms) of capped contact; without it only elastic contact is solved"""
+    cut_off: Wavelength
+    """shortest wavelength, nodes"""
+    roll_off: Wavelength
+    """wavelength above which the spectrum is flat, nodes; sizes from 4 roll-offs on enter the
+    exponents"""
     rms_slope: Annotated[
-        float,
-        Field(gt=0, le=10),
-        key(
-            "rms slope h'_rms of a face, above 0 and up to 10",
-            doc="h'_rms of a face: sets the heights, and so the angles",
-        ),
+        float, key("rms slope h'_rms of a face, above 0 and up to 10", gt=0, le=10)
     ]
+    """h'_rms of a face: sets the heights, and so the angles"""
     basic_friction_angle: Annotated[
-        float,
-        Field(ge=0, lt=90),
-        key(
-            "basic friction angle, degrees, from 0 and below 90",
-            doc="φ_b, degrees (a plain number)",
-        ),
+        float, key("basic friction angle, degrees, from 0 and below 90", ge=0, lt=90)
     ]
-    offsets: Annotated[
-        Sizes,
-        key(
-            "one or more whole numbers from 1 to 16384",
-            doc=(
-                "displacements v, nodes. Where they and the sizes double, intervals of v are "
-                "equal fractions of several sizes"
-            ),
-        ),
-    ]
+    """φ_b, degrees (a plain number)"""
+    offsets: Sizes
+    """displacements v, nodes. Where they and the sizes double, intervals of v are equal
+    fractions of several sizes"""
     sizes: Annotated[
         list[_Side],
-        Field(min_length=2),
+        key("two or more whole numbers from 16 to 16384, nodes along a side", min_length=2),
         *different,
-        key(
-            "two or more whole numbers from 16 to 16384, nodes along a side",
-            doc="nodes per side",
-        ),
     ]
+    """nodes per side"""
     surfaces: Annotated[
-        list[_Surfaces],
-        Field(min_length=2),
-        key(
-            "as many numbers of surfaces as there are sizes",
-            doc="number of joints of each size",
-        ),
+        list[_Surfaces], key("as many numbers of surfaces as there are sizes", min_length=2)
     ]
+    """number of joints of each size"""
 
 
 class EstimatorBiasKeys(Section):
@@ -454,12 +278,11 @@ class EstimatorBiasKeys(Section):
 
     hurst: Annotated[Fractions, key("Hurst exponents H of the surfaces")]
     sizes: Annotated[Sizes, key("nodes per side, whole numbers from 1 to 16384")]
-    seeds: Annotated[Seeds, key(_SEEDS)]
+    seeds: Seeds
     roll_offs: Annotated[
         list[Annotated[float, Field(gt=0, le=1)] | None],
-        Field(min_length=1),
+        key("one or more fractions of the side above 0, or null for none", min_length=1),
         *different,
-        key("one or more fractions of the side above 0, or null for none"),
     ] = [None]
 
 
@@ -468,110 +291,55 @@ class SpeedKeys(Section):
 
     sizes: Annotated[
         list[_Side],
-        Field(min_length=1),
+        key("one or more whole numbers from 16 to 16384, nodes along a side", min_length=1),
         *different,
-        key(
-            "one or more whole numbers from 16 to 16384, nodes along a side",
-            doc="nodes per side, from 16",
-        ),
     ]
-    hurst: Annotated[
-        Fractions,
-        key(
-            "one or more numbers between 0 and 1, with a decimal point (1.0e-3)",
-            doc="H of the surfaces",
-        ),
-    ]
-    contact: Annotated[
-        Fractions,
-        key(
-            "one or more numbers between 0 and 1, with a decimal point (1.0e-3)",
-            doc="fractions of the nodes in contact",
-        ),
-    ]
-    seed: Annotated[Seed, key("a whole number from 0, of up to 18 digits", doc="of the surfaces")]
-    tolerances: Annotated[
-        Fractions,
-        key(
-            "one or more numbers between 0 and 1, with a decimal point (1.0e-3)",
-            doc="tried from loose to tight",
-        ),
-    ]
-    runs: Annotated[
-        Natural,
-        key("a whole number from 1", doc="of each solver or model, in turn; the median counts"),
-    ]
-    longest: Annotated[
-        float,
-        Field(gt=0),
-        key(
-            "a number of seconds above 0",
-            doc=(
-                "seconds: a method that takes longer is run once, and (except ours) at no "
-                "tighter tolerance"
-            ),
-        ),
-    ]
-    slow_nodes: Annotated[
-        int,
-        Field(ge=0),
-        key(
-            "a whole number from 0",
-            doc=(
-                "methods that need the influence of every node on every other are tried up to "
-                "this many interpenetrating nodes"
-            ),
-        ),
-    ]
-    error: Annotated[
-        float,
-        Field(gt=0, lt=1),
-        key(
-            "a number between 0 and 1, such as 1e-4",
-            doc="error of the force at which sizes are compared",
-        ),
-    ]
+    """nodes per side, from 16"""
+    hurst: Fractions
+    """H of the surfaces"""
+    contact: Fractions
+    """fractions of the nodes in contact"""
+    seed: Seed
+    """of the surfaces"""
+    tolerances: Fractions
+    """tried from loose to tight"""
+    runs: Natural
+    """of each solver or model, in turn; the median counts"""
+    longest: Annotated[float, key("a number of seconds above 0", gt=0)]
+    """seconds: a method that takes longer is run once, and (except ours) at no tighter tolerance"""
+    slow_nodes: Annotated[int, key("a whole number from 0", ge=0)]
+    """methods that need the influence of every node on every other are tried up to this many
+    interpenetrating nodes"""
+    error: Annotated[float, key("a number between 0 and 1, such as 1e-4", gt=0, lt=1)]
+    """error of the force at which sizes are compared"""
 
 
 class ConvergenceKeys(Section):
     """The solver compared with exact solutions."""
 
-    cells: Annotated[
-        Sizes,
-        key("one or more whole numbers from 1 to 16384", doc="cells across the contact radius"),
-    ]
-    placements: Annotated[
-        Natural, key("a whole number from 1", doc="positions of the centre within a cell, each way")
-    ]
-    trials: Annotated[
-        Natural,
-        key("a whole number from 1", doc="cases in which Richardson's extrapolation is tried"),
-    ]
+    cells: Sizes
+    """cells across the contact radius"""
+    placements: Natural
+    """positions of the centre within a cell, each way"""
+    trials: Natural
+    """cases in which Richardson's extrapolation is tried"""
     trial_cells: Annotated[
         list[Annotated[float, Field(ge=4)]],
-        Field(min_length=2, max_length=2),
-        key(
-            "two numbers [fewest, most] from 4",
-            doc="`[fewest, most]` cells across the radius there, at the finest spacing",
-        ),
+        key("two numbers [fewest, most] from 4", min_length=2, max_length=2),
     ]
-    seed: Annotated[Seed, key("a whole number from 0, of up to 18 digits", doc="of the cases")]
+    """`[fewest, most]` cells across the radius there, at the finest spacing"""
+    seed: Seed
+    """of the cases"""
 
 
 class StabilityKeys(Section):
     """Solvers judged on problems that methods fail on."""
 
-    draws: Annotated[Natural, key("a whole number from 1", doc="test problems of each kind")]
-    elimination: Annotated[
-        Natural,
-        key(
-            "a whole number from 1",
-            doc=(
-                "rough test problems per kernel, on which dropping nodes in tension alone is "
-                "tried, as the paper does"
-            ),
-        ),
-    ]
+    draws: Natural
+    """test problems of each kind"""
+    elimination: Natural
+    """rough test problems per kernel, on which dropping nodes in tension alone is tried, as the
+    paper does"""
 
 
 # -- the study -------------------------------------------------------------------------------------
@@ -591,59 +359,37 @@ class SolverKeys(Section):
 
     rtol: Annotated[
         float,
-        Field(gt=0, le=0.01),
         key(
             "a number between 0 and 0.01, such as 1e-6",
-            doc=(
-                "largest KKT residual (violation of the contact conditions), as a fraction of "
-                "the closure, such as `1e-6`"
-            ),
             unsaid="follows from `accuracy`; `1.0e-6` where that is `full`",
+            gt=0,
+            le=0.01,
         ),
     ] = float("nan")
+    """largest KKT residual (violation of the contact conditions), as a fraction of the closure,
+    such as `1e-6`"""
     kernel: Annotated[
         Literal["love", "rigid square", "equal-area disc", "inscribed disc"],
-        key(
-            "love, or the paper's rigid plate as rigid square, equal-area disc or inscribed disc",
-            doc=(
-                "`love`, or the paper's rigid plate read as `rigid square`, `equal-area disc` "
-                "or `inscribed disc`"
-            ),
-            unsaid="`love`",
-        ),
+        key("love, or the paper's rigid plate as rigid square, equal-area disc or inscribed disc"),
     ] = "love"
+    """`love`, or the paper's rigid plate read as `rigid square`, `equal-area disc` or
+    `inscribed disc`"""
 
 
-_Part = Literal["all"] | Natural
+_Part = Annotated[
+    Literal["all"] | Natural, key("all, or how many one job takes (a whole number from 1)")
+]
 
 
 class GrainKeys(Section):
     """Work of one job."""
 
-    directions: Annotated[
-        _Part,
-        key(
-            "all, or how many one job takes (a whole number from 1)",
-            doc="how many directions one job solves, or `all`",
-            unsaid="`all`",
-        ),
-    ] = "all"
-    offsets: Annotated[
-        _Part,
-        key(
-            "all, or how many one job takes (a whole number from 1)",
-            doc="how many offsets one job solves, or `all`",
-            unsaid="`all`",
-        ),
-    ] = "all"
-    resolutions: Annotated[
-        _Part,
-        key(
-            "all, or how many one job takes (a whole number from 1)",
-            doc="how many resolutions one job solves, or `all`",
-            unsaid="`all`",
-        ),
-    ] = "all"
+    directions: _Part = "all"
+    """how many directions one job solves, or `all`"""
+    offsets: _Part = "all"
+    """how many offsets one job solves, or `all`"""
+    resolutions: _Part = "all"
+    """how many resolutions one job solves, or `all`"""
 
 
 _MATERIAL = matching(
@@ -662,222 +408,112 @@ class StudyKeys(Section):
 
     study: Annotated[
         str,
-        Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9_-]{0,99}$"),
         key(
-            (
-                "the study's name, up to 100 letters, digits, _ and - (it names the folder "
-                "under results)"
-            ),
-            doc=(
-                "its name, up to 100 letters, digits, `_` and `-`; everything goes to "
-                "`results/NAME/`"
-            ),
-            unsaid="required",
+            "the study's name, up to 100 letters, digits, _ and - (it names the folder under "
+            "results)",
+            pattern="^[A-Za-z0-9][A-Za-z0-9_-]{0,99}$",
         ),
     ]
+    """its name, up to 100 letters, digits, `_` and `-`; everything goes to `results/NAME/`"""
     scans: Annotated[
-        str | None,
-        key(
-            "the folder whose files become specimens, or null for none",
-            doc=(
-                "folder whose files become specimens; `null` for none. A missing folder is an "
-                "error, an empty one a warning"
-            ),
-            unsaid="`scans`",
-        ),
+        str | None, key("the folder whose files become specimens, or null for none")
     ] = "scans"
+    """folder whose files become specimens; `null` for none. A missing folder is an error, an
+    empty one a warning"""
     groups: Annotated[
         str,
-        Field(min_length=1),
         key(
-            (
-                "the word folders (each folder in that of the scans is a group) or the path of "
-                "a table (CSV)"
-            ),
-            doc=(
-                "how the scans of many specimens are distinguished: `folders` (each folder in "
-                "that of the scans is a group) or the path of a table (CSV); see "
-                "`scans/README.md`"
-            ),
+            "the word folders (each folder in that of the scans is a group) or the path of a "
+            "table (CSV)",
             unsaid="files of the folder itself alone",
+            min_length=1,
         ),
     ] = ""
+    """how the scans of many specimens are distinguished: `folders` (each folder in that of the
+    scans is a group) or the path of a table (CSV); see `scans/README.md`"""
     atlas: Annotated[
         Literal["whole", "parts"],
         key(
             "whole (one file) or parts (one file a specimen)",
-            doc=(
-                "`whole`: one file, `atlas.nc`. `parts`: one file for each specimen, "
-                "`atlas/SPECIMEN.nc`, and `atlas.nc` for what they have together. `open_atlas` "
-                "reads both"
-            ),
             unsaid="`whole` up to 30 specimens, else `parts`",
         ),
     ] = "whole"
+    """`whole`: one file, `atlas.nc`. `parts`: one file for each specimen, `atlas/SPECIMEN.nc`,
+    and `atlas.nc` for what they have together. `open_atlas` reads both"""
     figures: Annotated[
         Literal["all", "none"] | _Names,
         key(
-            "all, none, or a list of names of figures",
-            doc="figures of each specimen: `all`, `none`, or a list of their names",
-            unsaid="`all`; `none` for an atlas in parts",
+            "all, none, or a list of names of figures", unsaid="`all`; `none` for an atlas in parts"
         ),
     ] = "all"
+    """figures of each specimen: `all`, `none`, or a list of their names"""
     explorer: Annotated[
-        _Names,
-        key(
-            "a list of names of specimens",
-            doc=(
-                "names of the specimens whose contact states the explorer shows, such as "
-                "`[granite, joint_3]`"
-            ),
-            unsaid="all; none for an atlas in parts",
-        ),
+        _Names, key("a list of names of specimens", unsaid="all; none for an atlas in parts")
     ] = []
+    """names of the specimens whose contact states the explorer shows, such as `[granite,
+    joint_3]`"""
     materials: Annotated[
         dict[Annotated[str, _MATERIAL], MaterialKeys],
-        Field(min_length=1),
         key(
             "materials by name",
-            doc=(
-                "name (up to 200 characters on one line, without `$`): `{modulus, poisson, "
-                "basic_friction_angle, joint_wall_strength, hardness}`. Both blocks have one "
-                "material: E\\* = E / (2 (1 - nu²)). Shear strength needs the angle and the "
-                "strength (`30 deg`, `80 MPa`: Barton's JCS); without them it is missing. "
-                "`hardness` (`80 MPa`) caps the pressure: an elastic-perfectly plastic surface,"
-                " whose contacts crush; `none` is elastic contact. By default it is the joint "
-                "wall strength for scans that state one, and none for embedded specimens, as "
-                "the paper's model is elastic"
-            ),
             unsaid="required where there are specimens, not for contact maps alone",
+            min_length=1,
         ),
     ] = {}
+    r"""name (up to 200 characters on one line, without `$`): `{modulus, poisson,
+    basic_friction_angle, joint_wall_strength, hardness}`. Both blocks have one material: E\* =
+    E / (2 (1 - nu²)). Shear strength needs the angle and the strength (`30 deg`, `80 MPa`:
+    Barton's JCS); without them it is missing. `hardness` (`80 MPa`) caps the pressure: an
+    elastic-perfectly plastic surface, whose contacts crush; `none` is elastic contact. By
+    default it is the joint wall strength for scans that state one, and none for embedded
+    specimens, as the paper's model is elastic"""
     embedded: Annotated[
         dict[Annotated[str, _SPECIMEN], EmbeddedKeys],
-        key(
-            "specimens the study makes for itself, by name",
-            doc=(
-                "synthetic specimens of the study itself, by name (up to 220 letters, digits, "
-                "`_`, `.` and `-`), see below. A name may not differ from another one's, or "
-                "from a scan's, in upper and lower case alone"
-            ),
-            unsaid="none",
-        ),
+        key("specimens the study makes for itself, by name"),
     ] = {}
+    """synthetic specimens of the study itself, by name (up to 220 letters, digits, `_`, `.` and
+    `-`), see below. A name may not differ from another one's, or from a scan's, in upper and
+    lower case alone"""
     defaults: Annotated[
-        SettingsKeys | None,
-        key(
-            "",
-            doc="settings of every specimen, see below",
-            unsaid="required where there are specimens",
-        ),
+        SettingsKeys | None, key("", unsaid="required where there are specimens")
     ] = None
+    """settings of every specimen, see below"""
     specimens: Annotated[
-        dict[str, SettingsKeys],
-        key(
-            "settings that differ from the defaults, by specimen name",
-            doc="name: settings that differ from the defaults",
-            unsaid="none",
-        ),
+        dict[str, SettingsKeys], key("settings that differ from the defaults, by specimen name")
     ] = {}
-    roll_off: Annotated[
-        RollOffKeys | None,
-        key(
-            "a mapping with embedded, window and seeds",
-            doc=(
-                "synthetic joints with and without a roll-off, to see what makes the plateau of"
-                " the dilatancy, see below"
-            ),
-            unsaid="none",
-        ),
-    ] = None
-    size_effect: Annotated[
-        SizeEffectKeys | None,
-        key(
-            "a mapping with hurst, loads, cut_off, roll_off, roll_off_fraction and arms",
-            doc=(
-                "synthetic surfaces on which resolution, size and geometry of the contact are "
-                "varied one by one, see below"
-            ),
-            unsaid="none",
-        ),
-    ] = None
-    size_strength: Annotated[
-        SizeStrengthKeys | None,
-        key(
-            (
-                "a mapping with hurst, loads, cut_off, roll_off, rms_slope, "
-                "basic_friction_angle, offsets, sizes, surfaces and, if wanted, hardness"
-            ),
-            doc=(
-                "synthetic mated joints that slide, whose strength is compared over their size,"
-                " see below"
-            ),
-            unsaid="none",
-        ),
-    ] = None
-    estimator_bias: Annotated[
-        EstimatorBiasKeys | None,
-        key(
-            "a mapping with hurst, sizes, seeds and, if wanted, roll_offs",
-            doc=(
-                "synthetic surfaces of known dimension on which the bias of the estimators of "
-                "Delta_g is measured, see below"
-            ),
-            unsaid="none",
-        ),
-    ] = None
-    area_slope: Annotated[
-        AreaSlopeKeys | None,
-        key(
-            "a mapping with dimension, nodes, seeds, roll_off_share and loads",
-            doc=(
-                "synthetic surfaces on which the real contact area at light load is compared "
-                "with the theories, see below"
-            ),
-            unsaid="none",
-        ),
-    ] = None
-    speed: Annotated[
-        SpeedKeys | None,
-        key(
-            (
-                "a mapping with sizes, hurst, contact, seed, tolerances, runs, longest, "
-                "slow_nodes and error"
-            ),
-            doc="solvers and cheaper models timed on test problems, see below",
-            unsaid="none",
-        ),
-    ] = None
-    convergence: Annotated[
-        ConvergenceKeys | None,
-        key(
-            "a mapping with cells, placements, trials, trial_cells and seed",
-            doc="the solver compared with exact solutions, see below",
-            unsaid="none",
-        ),
-    ] = None
-    stability: Annotated[
-        StabilityKeys | None,
-        key(
-            "a mapping with draws and elimination",
-            doc="solvers judged on test problems that methods fail on, see below",
-            unsaid="none",
-        ),
-    ] = None
+    """name: settings that differ from the defaults"""
+    roll_off: RollOffKeys | None = None
+    """synthetic joints with and without a roll-off, to see what makes the plateau of the
+    dilatancy, see below"""
+    size_effect: SizeEffectKeys | None = None
+    """synthetic surfaces on which resolution, size and geometry of the contact are varied one
+    by one, see below"""
+    size_strength: SizeStrengthKeys | None = None
+    """synthetic mated joints that slide, whose strength is compared over their size, see below"""
+    estimator_bias: EstimatorBiasKeys | None = None
+    """synthetic surfaces of known dimension on which the bias of the estimators of Delta_g is
+    measured, see below"""
+    area_slope: AreaSlopeKeys | None = None
+    """synthetic surfaces on which the real contact area at light load is compared with the
+    theories, see below"""
+    speed: SpeedKeys | None = None
+    """solvers and cheaper models timed on test problems, see below"""
+    convergence: ConvergenceKeys | None = None
+    """the solver compared with exact solutions, see below"""
+    stability: StabilityKeys | None = None
+    """solvers judged on test problems that methods fail on, see below"""
     accuracy: Annotated[
         Literal["full"] | AccuracyKeys,
         key(
             "full, or a mapping with closure (1 %) and delta_sigma (0.02)",
-            doc=(
-                "`{closure, delta_sigma}`: the requested accuracy of a closure, as a fraction "
-                "of it (`1 %` or `0.01`), and of a Delta_sigma. Or `full`: all states are "
-                "solved, whatever it costs. See below"
-            ),
             unsaid="`{closure: 1 %, delta_sigma: 0.02}`",
         ),
     ] = AccuracyKeys()
-    solver: Annotated[SolverKeys, key("")] = SolverKeys()
-    grain: Annotated[GrainKeys, key("")] = GrainKeys()
+    """`{closure, delta_sigma}`: the requested accuracy of a closure, as a fraction of it (`1 %`
+    or `0.01`), and of a Delta_sigma. Or `full`: all states are solved, whatever it costs. See
+    below"""
+    solver: SolverKeys = SolverKeys()
+    grain: GrainKeys = GrainKeys()
 
     @model_validator(mode="after")
     def _needs_materials(self) -> "StudyKeys":
@@ -900,4 +536,4 @@ def stated(section: Section) -> dict[str, Any]:
 def unsaid_settings() -> dict[str, Any]:
     """Settings of a specimen that no layer states, as a user would write them."""
     properties = schema_of(SettingsKeys)["properties"]
-    return {name: one["default"] for name, one in properties.items() if "default" in one}
+    return {name: node["default"] for name, node in properties.items() if "default" in node}

@@ -1,7 +1,7 @@
-"""Laboratory tests of a specimen as its sidecar or the study states them under ``measured``.
+"""Laboratory tests of a specimen, stated by its sidecar or the study under ``measured``.
 
-A measured curve says little without what its displacement contains, its seat, branch and cycle:
-what is not said is refused with what to write.
+A measured curve means little without what its displacement contains, its seat, branch and cycle:
+a test that lacks one of them is refused with what to write.
 """
 
 from collections.abc import Iterable, Mapping
@@ -15,7 +15,7 @@ from .measured_keys import Tests
 from .scan_files import refuse_outside_link
 
 _NAN = float("nan")
-#: Values of a test whose kind has no such key.
+#: Values of keys that the kind of a test does not have.
 _UNSAID: dict[str, Any] = {
     **dict.fromkeys(("branch", "way", "direction", "calibrate"), ""),
     **dict.fromkeys(("seat", "pressure", "largest_pressure", "error"), _NAN),
@@ -38,21 +38,12 @@ def test_files(stated: Mapping[str, Any], folder: Path) -> list[Path]:
 
 
 def resolve_tests(stated: Tests | None, where: str, folder: Path) -> list[MeasuredTest]:
-    """Tests of a specimen, their quantities in mm and MPa.
-
-    Parameters
-    ----------
-    stated : Tests or None
-        ``measured``.
-    where : str
-        For errors.
-    folder : Path
-        That the files stand in.
+    """Tests of a specimen in mm and MPa, their files in a folder.
 
     Raises
     ------
     InputError
-        If a test contradicts itself or another one.
+        If a test contradicts itself or another label.
     """
     tests = [
         _resolved(kind, test, f"{where}.{kind}", folder)
@@ -60,7 +51,7 @@ def resolve_tests(stated: Tests | None, where: str, folder: Path) -> list[Measur
         for test in getattr(stated, kind, ())
     ]
     labels = [(test.kind, test.label) for test in tests]
-    if twice := next((one for one in labels if labels.count(one) > 1), None):
+    if twice := next((label for label in labels if labels.count(label) > 1), None):
         raise InputError(
             f"{where}.{twice[0]}: two tests are '{twice[1]}'; keep one, or state another 'cycle'"
         )
@@ -73,12 +64,7 @@ def resolve_tests(stated: Tests | None, where: str, folder: Path) -> list[Measur
 
 
 def require_files(tests: Iterable[MeasuredTest]) -> None:
-    """Refuse tests whose file is missing, or a link out of its folder.
-
-    Raises
-    ------
-    InputError
-    """
+    """Refuse tests whose file is missing, or a link out of its folder."""
     for path in (Path(test.file) for test in tests):
         if not path.exists():
             raise InputError(f"{path}: no such file, which 'measured' names; put it there")

@@ -1,8 +1,8 @@
-"""YAML of studies and sidecars, read as plain data: one loader, so that both mean the same.
+"""YAML of studies and sidecars, read as plain data by one loader, so that both mean the same.
 
-Words and numbers mean what they look like: ``1e-3`` is a number, ``no``, ``1:30`` and
-``2020-01-01`` are words, ``010`` is ten. A key is the text that stands there, and stands once.
-Tags and nesting without end are refused. Anchors and aliases are for studies alone.
+Words and numbers mean what they look like: ``1e-3`` is a number; ``no``, ``1:30`` and
+``2020-01-01`` are words; ``010`` is ten. Keys are texts, each stated once. Tags and endless nesting
+are refused. Anchors and aliases are for studies alone.
 """
 
 import re
@@ -24,25 +24,15 @@ _WORDS = (
     ("int", r"[-+]?[0-9]+"),
     ("float", r"[-+]?(\.[0-9]+|[0-9]+(\.[0-9]*)?)([eE][-+]?[0-9]+)?|[-+]?\.inf|\.nan"),
 )
-#: Key of a mapping that takes over the keys of others, ``<<: *anchor``.
+#: Key that merges the keys of another mapping into its own, ``<<: *anchor``.
 _MERGE = "<<"
 
 
 def load_yaml(text: str | bytes, source: Path | str, *, anchors: bool = False) -> Any:
-    """Plain data that a text in YAML holds.
+    """Plain data of a text in YAML: texts, numbers, truth values, None, lists and mappings.
 
-    Parameters
-    ----------
-    text : str or bytes
-    source : path-like
-        The file, for errors.
-    anchors : bool, optional
-        Allow anchors, aliases and merged mappings (``<<``), which untrusted files have no use for.
-
-    Returns
-    -------
-    object
-        Texts, numbers, truth values, None, lists and mappings whose keys are texts.
+    ``anchors`` allows anchors, aliases and merged mappings (``<<``), which untrusted files have no
+    use for.
 
     Raises
     ------
@@ -86,7 +76,7 @@ class _Loader(yaml.SafeLoader):
         return node
 
     def compose_mapping_node(self, anchor):
-        """A mapping whose keys are the texts that stand there, each once."""
+        """Mapping whose keys are texts, each stated once."""
         node = super().compose_mapping_node(anchor)
         lines: dict[str, int] = {}
         for key, _ in node.value:
@@ -104,13 +94,13 @@ class _Loader(yaml.SafeLoader):
         return node
 
     def construct_yaml_int(self, node):
-        """Decimal, also with a zero in front; one of many digits is a number like any other."""
+        """Decimal integer, also with a leading zero; a float if it has many digits."""
         of = int if len(node.value) <= _MAX_DIGITS else float
         return of(node.value)
 
 
 class _AnchorLoader(_Loader):
-    """The same with anchors, aliases and merged mappings."""
+    """The same loader with anchors, aliases and merged mappings."""
 
     allows_anchors = True
 
@@ -122,6 +112,7 @@ def _refusal(problem: str, where: Any) -> yaml.MarkedYAMLError:
 for _name, _pattern in _WORDS:
     _Loader.add_implicit_resolver(_STANDARD + _name, re.compile(rf"(?:{_pattern})\Z"), None)
 _Loader.add_constructor(_STANDARD + "int", _Loader.construct_yaml_int)
-# Resolvers and constructors of a class are copied when one is added to it, not when it is derived.
+# PyYAML copies the resolvers and constructors of a class when one is added, not when a class is
+# derived. The derived class therefore takes those of its base here.
 _AnchorLoader.yaml_implicit_resolvers = _Loader.yaml_implicit_resolvers
 _AnchorLoader.yaml_constructors = _Loader.yaml_constructors

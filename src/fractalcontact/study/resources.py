@@ -1,10 +1,8 @@
 """Memory and time requested by jobs, from models over the nodes of their grids.
 
 A job asks for :data:`ROOM` times what the model says. ``docs/scaling.md`` has the measurements
-beside what is asked for.
-
-What a scheduler counts is more than the script of a job takes: Snakemake runs twice around it, once
-to start the step of the job and once in it (:data:`AROUND`).
+beside what is asked for. A scheduler counts more than the script of a job: Snakemake runs twice
+around it, once to start the step of the job and once in it (:data:`AROUND`).
 """
 
 from collections.abc import Iterable, Mapping
@@ -16,28 +14,27 @@ from ..core.directions import slides
 from ..core.settings import JointSettings, SpecimenSettings
 from ..core.units import quantity
 
-#: Megabytes and minutes below which no job asks: the interpreter and its libraries, and Snakemake
-#: twice before the first second of work, on a busy file system.
+#: Least megabytes and minutes that a job asks for. The interpreter, its libraries and two processes
+#: of Snakemake start before the first second of work, on a busy file system.
 MIN_MEMORY, MIN_TIME = 300, 5
 #: Megabytes of the two processes of Snakemake around the script of a job on a cluster.
 AROUND = 280
-#: How much more is asked for than the models say, of memory and of time: other nodes are slower,
-#: and surfaces differ in what their contact takes.
+#: Requested memory and time over those of the models: other computers are slower, and the cost of
+#: contact differs between surfaces.
 ROOM, ROOM_OF_TIME = 1.6, 5.0
 
 
 @dataclass(frozen=True)
 class Cost:
-    """Resources of the job of a rule.
+    """Resources of the job of a rule: ``start`` and ``seconds`` whatever its grid is.
 
     Attributes
     ----------
     start : float
-        Megabytes whatever its grid is.
+        Megabytes.
     bytes_per_node : float
-        Of the grid.
     seconds : float
-        Of the clock on a core of its own, whatever its grid is.
+        Of the clock on a core of its own.
     us_per_node : float
         Microseconds.
     state : float
@@ -54,11 +51,10 @@ class Cost:
     solve: float = 0.0
 
 
-#: By rule, memory fitted to grids of 128 to 2048 nodes along a side, seconds to 256, 512 and 1024
-#: of a surface against a plane and to a joint of 520 states (``docs/scaling.md``). States of
-#: ``ensemble`` are realisations. Of
-#: ``roughness_and_composite`` the nodes are those of a face, else of the window;
-#: ``atlas_part`` is ``figures`` without any.
+#: Costs by rule. Memory is fitted to grids of 128 to 2048 nodes per side. Seconds are fitted to a
+#: surface against a plane with 256, 512 and 1024 nodes per side and to a joint of 520 states
+#: (``docs/scaling.md``). States of ``ensemble`` are realisations. Nodes are those of the window,
+#: for ``roughness_and_composite`` of a face. ``atlas_part`` is ``figures`` without any figure.
 COSTS = {
     "synthetic_scan": Cost(80, 130, 0.5, 0.4),
     "roughness_and_composite": Cost(270, 100, 4, 3.5),
@@ -72,33 +68,23 @@ COSTS = {
     "atlas_part": Cost(190, 180, 3, 1, 1),
     "size_effect_part": Cost(170, 1000, 10, 50),
 }
-#: The analysis solves some states again on finer grids: up to four times as fine, up to this many
-#: nodes, of this many bytes each.
+#: The analysis solves some states again on finer grids: times as many nodes, most nodes, and bytes
+#: of each node.
 FINER, MAX_FINER, OF_FINER = 16, 1024**2, 320
 
-#: Bytes of memory for each byte of a file of plain numbers: 12 million points
-#: x, y, z (315 MB as text, 288 MB as they are) take some 2 GB, those of a scattered cloud more.
+#: Bytes of memory for each byte of a file of plain numbers. 12 million points x, y, z (315 MB as
+#: text, 288 MB as binary numbers) take some 2 GB; those of a scattered cloud take more.
 _PLAIN = 8
-#: Bytes of memory for each byte of any other file: heights in two bytes, or packed to one.
+#: Bytes of memory for each byte of any other file, whose heights take two bytes, or one if packed.
 _PACKED = 60
 _PLAIN_ENDINGS = {".asc", ".csv", ".dat", ".npy", ".obj", ".ply", ".stl", ".tsv", ".txt", ".xyz"}
-#: Bytes of a file for each of its nodes, by ending (points are three numbers each), and of others.
+#: Bytes of a file for each of its nodes by ending, three numbers a point, and for other endings.
 _NODE = {".npy": 4, ".xyz": 20, ".ply": 12, ".stl": 25, ".obj": 25}
 _PLAIN_NODE, _PACKED_NODE = 6, 4
 
 
 def memory(rule: str, nodes: float, states: int = 1) -> int:
-    """Requested memory of a job, MB.
-
-    Parameters
-    ----------
-    rule : str
-        Of :data:`COSTS`.
-    nodes : float
-        Of its grid.
-    states : int, optional
-        Contact states that it keeps.
-    """
+    """Requested memory, MB, of the job of a rule on a grid of some nodes that keeps some states."""
     cost = COSTS[rule]
     finer = OF_FINER * min(FINER * nodes, MAX_FINER) if rule == "closure_and_box_counts" else 0.0
     of_grid = finer + nodes * (cost.bytes_per_node + cost.state * states)
@@ -107,40 +93,21 @@ def memory(rule: str, nodes: float, states: int = 1) -> int:
 
 
 def seconds(rule: str, nodes: float, states: int = 1) -> float:
-    """Seconds that the model says a job takes on a core of its own.
-
-    Parameters
-    ----------
-    rule : str
-        Of :data:`COSTS`.
-    nodes : float
-        Of its grid.
-    states : int, optional
-        Contact states that it keeps.
-    """
+    """Seconds that the job of a rule takes on a core of its own by the model."""
     cost = COSTS[rule]
     return cost.seconds + nodes * (cost.us_per_node + cost.solve * states) / 1e6
 
 
 def minutes(rule: str, nodes: float, states: int = 1) -> int:
-    """Requested time of a job, minutes.
-
-    Parameters
-    ----------
-    rule, nodes, states
-        As of :func:`seconds`.
-    """
+    """Requested time of the job of a rule, minutes."""
     needed = seconds(rule, nodes, states=states) / 60
     return max(MIN_TIME, round(ROOM_OF_TIME * needed))
 
 
 def reading_memory(files: Iterable[Path | str]) -> int:
-    """Requested memory, MB, to read, grid, clean and describe the faces of a specimen.
+    """Requested memory, MB, to read, grid, clean and describe the one or two faces of a specimen.
 
-    Parameters
-    ----------
-    files : iterable of path-like
-        One face or two. Those that are not there, which the job explains, count as empty.
+    Missing files, which the job explains, count as empty.
     """
     files = list(map(Path, files))
     read = sum(_size(path) * (_PLAIN if _is_plain(path) else _PACKED) for path in files) / 1e6
@@ -164,19 +131,14 @@ def nodes_of_recipe(recipe: Mapping[str, Any]) -> float:
 
 
 def nodes_of_window(settings: SpecimenSettings, spacing: object, of_face: float) -> float:
-    """Most nodes of the window of a specimen.
+    """Most nodes of the window of a specimen, which is a part of its face.
 
-    Parameters
-    ----------
-    settings : SpecimenSettings
-    spacing : float, str or None
-        Distance of nodes: mm, or as a sidecar has it; None where the file alone knows.
-    of_face : float
-        Nodes of a face, of which it is a part.
+    ``spacing`` is in mm, or as a sidecar states it; None where the file alone states it.
     """
     window = settings.window
     if window is None:
-        # Half the side of the largest hole-free square, so that it can slide; all against a plane.
+        # The window has half the side of the largest square without holes, so that it can slide;
+        # against a plane it has all of it.
         return of_face / 4 if slides(settings.opposite) else of_face
     if spacing is None:
         return of_face

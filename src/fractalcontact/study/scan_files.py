@@ -12,30 +12,32 @@ from ..core.file_names import SIDECAR_SUFFIXES, specimen_name, split_file_name
 from ..core.labels import printable
 
 _IGNORED = ("README", "LICENSE")
-#: Files that systems and editors leave in a folder, by name, ending or beginning, in lower case.
+#: Names, endings and beginnings, in lower case, of files that systems and editors leave behind.
 _LEFT_BY_SYSTEMS = ("thumbs.db", "desktop.ini", "icon\r", "ehthumbs.db")
 _LEFT_BEHIND = (
     *("~", ".bak", ".orig", ".rej", ".tmp", ".swp", ".swo", ".save", ".asv", ".autosave"),
     *(".part", ".partial", ".filepart", ".crdownload", ".download", ".opdownload"),
 )
-#: Endings of what `make describe` writes: drafts of sidecars and pictures, which nothing reads.
+#: Endings of drafts of sidecars and pictures, which `make describe` writes and nothing reads.
 DRAFTS = (".draft.yaml", ".draft.png", ".draft.html")
 _DRAFT = ".draft"
 _LOCKS = ("~$", "._", ".~lock.")
 #: Emacs' ``#rock.npy#`` and nano's ``rock.npy.save.1``.
 _SAVED_BY_EDITORS = re.compile(r"#[^#]{1,250}#|[^#]{1,240}\.save\.\d{1,3}")
-#: How others name the faces of a joint: what stands before, the mark, the face, the ending.
+#: Other names of the lower face of a joint and of its upper one.
 _OTHER_FACE = {"lower": "upper", "bottom": "top", "sidea": "sideb", "side1": "side2"}
 _FACE = re.compile(r"(?:[_ -]|(?<=[a-z0-9])(?=[A-Z]))(?i:lower|bottom|side[a1])(?![a-zA-Z0-9])")
-#: Results are files and folders of this name and a few letters more; 255 bytes is what discs take.
+#: Longest name of a specimen. Results have this name and a few letters more, and file systems take
+#: names of 255 bytes.
 LONGEST_NAME = 220
-#: Control characters, invisible and direction marks, undecodable bytes, line separators.
+#: Unicode categories of control characters, invisible and direction marks, undecodable bytes and
+#: line separators.
 _INVISIBLE = ("Cc", "Cf", "Cs", "Zl", "Zp")
 
 
 @dataclass(frozen=True)
 class ScanFiles:
-    """The files of one specimen.
+    """Files of one specimen.
 
     Attributes
     ----------
@@ -46,15 +48,15 @@ class ScanFiles:
     upper : Path or None
         The scan of the upper face, if there is one.
     sidecar : Path or None
-        What the user says about the scan, for both faces.
+        Statements of the user on the scan, for both faces.
     coordinates : tuple of Path
         Files of x and y of a contact map, where its sidecar names them.
     group : str
-        Folder of a group that it stands in; empty where there are none.
+        Folder of its group; empty where there are none.
     shared : Path or None
         Sidecar of that folder.
     row : mapping of str to object
-        What a table says of it, as a sidecar would.
+        Keys that a table states of it, as a sidecar would.
     row_of : str
         Table and line of that, for errors.
     """
@@ -83,28 +85,17 @@ class ScanFiles:
 def list_scans(
     folder: Path | str, group_folders: Collection[str] = ()
 ) -> tuple[dict[str, ScanFiles], dict[str, InputError]]:
-    """Specimens of a folder, and errors of its other files.
+    """Specimens of a folder by name, sorted, and errors of its other files.
 
     ``NAME.ext`` is one face, ``NAME.lower.ext`` and ``NAME.upper.ext`` are two, ``NAME.yaml`` is
-    the sidecar of either. Hidden files, README*, LICENSE*, sub-folders and what systems and editors
-    leave behind are passed over: :func:`folder_notes` says so.
+    the sidecar of either. Hidden files, README*, LICENSE*, sub-folders and files left behind by
+    systems and editors are passed over (:func:`folder_notes`). ``group_folders`` are folders that
+    are groups of specimens: a sidecar NAME.yaml of one is no scan's.
 
-    Parameters
-    ----------
-    folder : path-like
-    group_folders : collection of str, optional
-        Its folders that are groups of specimens: a sidecar NAME.yaml of one is no scan's.
-
-    Returns
-    -------
-    scans : dict of str to ScanFiles
-        By specimen name, sorted.
-    refused : dict of str to InputError
-        By specimen name, or by file name where it gives none, the first thing wrong with each: two
-        files claim one name, or names that differ in case alone; a face lacks its counterpart, a
-        sidecar has no scan; a name is too long, has no usable character, invisible ones or braces;
-        a link leads out of the folder; a file is a pipe or a device, or a folder has the name of a
-        scan file.
+    Errors, by specimen name or else by file name, are of the first fault of each: two files claim
+    one name, or names differ in case alone; a face lacks its counterpart, a sidecar has no scan; a
+    name is too long, has no usable character, invisible ones or braces; a link leads out of the
+    folder; a file is a pipe or a device, or a folder has the name of a scan file.
 
     Raises
     ------
@@ -153,13 +144,7 @@ def list_scans(
 
 
 def folder_notes(folder: Path | str) -> list[str]:
-    """Notes on the names in a folder: files passed over, pairs that are none.
-
-    Returns
-    -------
-    list of str
-        A sentence each.
-    """
+    """Notes on the names in a folder, a sentence each: files passed over, pairs that are none."""
     folder = Path(folder)
     if not folder.is_dir():
         return []
@@ -186,8 +171,8 @@ def is_passed_over(name: str) -> bool:
 
 def _is_left_behind(name: str) -> bool:
     name = name.lower()
-    known = name in _LEFT_BY_SYSTEMS or name.endswith(_LEFT_BEHIND) or name.startswith(_LOCKS)
-    return known or bool(_SAVED_BY_EDITORS.fullmatch(name))
+    is_listed = name in _LEFT_BY_SYSTEMS or name.endswith(_LEFT_BEHIND) or name.startswith(_LOCKS)
+    return is_listed or bool(_SAVED_BY_EDITORS.fullmatch(name))
 
 
 def _likely_pairs(names: list[str]) -> Iterator[tuple[str, str, str, str]]:
@@ -195,12 +180,12 @@ def _likely_pairs(names: list[str]) -> Iterator[tuple[str, str, str, str]]:
 
     Such as ``rock_lower.xyz`` and ``rock_upper.xyz``, or ``rock-bottom.x3p`` and ``rock-top.x3p``.
     """
-    known = {name.lower(): name for name in names}
+    spelled = {name.lower(): name for name in names}
     for name in names:
         stem, ending = Path(name).stem, Path(name).suffix
         if not _FACE.search(stem) or ending.lower() in SIDECAR_SUFFIXES:
             continue
-        other = known.get(f"{_FACE.sub(_turned, stem)}{ending}".lower())
+        other = spelled.get(f"{_FACE.sub(_turned, stem)}{ending}".lower())
         common = _FACE.sub("", stem)
         if other and common and other != name:
             yield name, other, f"{common}.lower{ending}", f"{common}.upper{ending}"
@@ -222,12 +207,7 @@ def _is_named_like_a_scan(folder: Path) -> bool:
 
 
 def refuse_misleading(path: Path) -> None:
-    """Refuse names that look like others, or do things to a terminal; they are not repeated.
-
-    Raises
-    ------
-    InputError
-    """
+    """Refuse names that look like others or act on a terminal; errors do not repeat them."""
     if any(unicodedata.category(character) in _INVISIBLE for character in path.name):
         raise InputError(
             f"{path.parent}: the file name {path.name!a} has invisible characters (line "
@@ -238,12 +218,7 @@ def refuse_misleading(path: Path) -> None:
 
 
 def refuse_unusable(name: str, path: Path) -> None:
-    """Refuse a specimen's name that is empty, a draft's, or too long for the files of its results.
-
-    Raises
-    ------
-    InputError
-    """
+    """Refuse a specimen's name that is empty, a draft's, or too long for its results."""
     if not name:
         raise InputError(f"{path}: give the file a name with letters or digits in it")
     if name.lower().endswith(_DRAFT):
@@ -261,7 +236,7 @@ def refuse_unusable(name: str, path: Path) -> None:
 def case_alone(roles: dict[str, dict[str, Path]]) -> dict[str, InputError]:
     """Errors of names that differ in upper and lower case alone, by name.
 
-    On many discs Rock.nc and rock.nc are one file: one result would overwrite the other.
+    On many disks Rock.nc and rock.nc are one file: one result would overwrite the other.
     """
     spelled: dict[str, str] = {}
     refused = {}
@@ -277,7 +252,7 @@ def case_alone(roles: dict[str, dict[str, Path]]) -> dict[str, InputError]:
 
 
 def _scan_files(name: str, roles: dict[str, Path]) -> ScanFiles:
-    """Check that the files of one specimen go together."""
+    """Files of one specimen, which must go together."""
     only, lower, upper = roles.get("only"), roles.get("lower"), roles.get("upper")
     face = lower or upper
     if only and face:
@@ -320,12 +295,7 @@ def _without_scan(sidecar: Path) -> InputError:
 
 
 def refuse_outside_link(path: Path, folder: Path) -> None:
-    """Refuse links out of a folder: untrusted folders must not make the program read other files.
-
-    Raises
-    ------
-    InputError
-    """
+    """Refuse links out of a folder, through which untrusted folders would have other files read."""
     try:
         target = path.resolve(strict=True)
     except (OSError, RuntimeError) as error:  # a loop is one or the other, by version of Python

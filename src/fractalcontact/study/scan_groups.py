@@ -21,42 +21,30 @@ from .scan_files import (
 )
 from .sidecar import plain_value
 
-#: What a study writes under ``groups`` for folders; anything else is the name of a table.
+#: Word of a study for ``groups`` that are folders; any other text is the name of a table.
 FOLDERS = "folders"
-#: Columns of a table that say which files a specimen has; all others are keys of a sidecar.
+#: Columns of a table with the files and the name of a specimen; all others are keys of a sidecar.
 _FILES, _NAME = ("file", "lower", "upper"), "name"
-#: Keys whose cells are words even where they look like numbers.
+#: Keys whose cells are texts even where they look like numbers.
 _WORDS = ("group", "label", "material")
 LARGEST_TABLE = 64 * 2**20  # bytes
 _DELIMITERS = ",;\t"
 
-#: What :func:`study.scan_files.list_scans` gives.
+#: Result of :func:`study.scan_files.list_scans`.
 Listed = tuple[dict[str, ScanFiles], dict[str, InputError]]
 
 
 def list_grouped(folder: Path | str, groups: str | None) -> Listed:
-    """Specimens of a study, and the errors of files that give none.
+    """Specimens of a study and errors of other files, as of :func:`study.scan_files.list_scans`.
 
-    Parameters
-    ----------
-    folder : path-like
-        ``scans`` of the study.
-    groups : str or None
-        ``groups`` of the study: "folders", the path of a table, or None for files of the folder
-        alone.
-
-    Returns
-    -------
-    scans : dict of str to ScanFiles
-        By specimen name, sorted. With folders, a specimen is called GROUP_NAME after its folder and
-        its file, and ``scans/GROUP.yaml`` is the sidecar of all of the group.
-    refused : dict of str to InputError
+    ``groups`` is "folders", the path of a table, or None for the files of the folder alone. With
+    folders, a specimen is called GROUP_NAME after its folder and its file, and
+    ``scans/GROUP.yaml`` is the sidecar of all of the group.
 
     Raises
     ------
     InputError
-        If the folder or the table does not exist, or the table cannot be read or has a column that
-        is no key.
+        If the folder or the table does not exist, or the table cannot be read.
     """
     if groups is None:
         return list_scans(folder)
@@ -66,7 +54,7 @@ def list_grouped(folder: Path | str, groups: str | None) -> Listed:
 
 
 def grouped_notes(folder: Path | str, groups: str | None) -> list[str]:
-    """As :func:`study.scan_files.folder_notes`, of the folders of groups too."""
+    """Notes of :func:`study.scan_files.folder_notes`, on the folders of groups too."""
     notes = folder_notes(folder)
     if groups == FOLDERS:
         notes += [note for path in _group_folders(Path(folder)) for note in folder_notes(path)]
@@ -107,6 +95,11 @@ def _list_folders(folder: Path) -> Listed:
                 scans[name] = replace(scan, name=name, group=subfolder.name, shared=shared)
             except InputError as error:
                 refused[f"{subfolder.name}/{scan.name}"] = error
+    return _without_clashes(scans, refused)
+
+
+def _without_clashes(scans: dict[str, ScanFiles], refused: dict[str, InputError]) -> Listed:
+    """Specimens, sorted, whose names differ in more than upper and lower case; errors of others."""
     clashes = case_alone({name: {"only": scan.lower} for name, scan in scans.items()})
     kept = {name: scans[name] for name in sorted(scans.keys() - clashes.keys())}
     return kept, refused | clashes
@@ -114,12 +107,12 @@ def _list_folders(folder: Path) -> Listed:
 
 def _sidecar_beside(folder: Path, stem: str) -> Path | None:
     """Sidecar NAME.yaml (or .yml) of a folder; a link out of the folder is refused."""
-    found = [path for ending in SIDECAR_SUFFIXES if (path := folder / f"{stem}{ending}").exists()]
-    if len(found) > 1:
-        raise InputError(f"{found[0]} and {found[1].name}: two sidecars of {stem}; remove one")
-    for path in found:
+    paths = [path for ending in SIDECAR_SUFFIXES if (path := folder / f"{stem}{ending}").exists()]
+    if len(paths) > 1:
+        raise InputError(f"{paths[0]} and {paths[1].name}: two sidecars of {stem}; remove one")
+    for path in paths:
         refuse_outside_link(path, folder)
-    return found[0] if found else None
+    return paths[0] if paths else None
 
 
 def _one_name(name, first, second):
@@ -152,9 +145,7 @@ def _list_table(folder: Path, table: Path) -> Listed:
             scans[name] = scan
         except InputError as error:
             refused[f"{where} {printable(name)}".strip()] = error
-    clashes = case_alone({name: {"only": scan.lower} for name, scan in scans.items()})
-    kept = {name: scans[name] for name in sorted(scans.keys() - clashes.keys())}
-    return kept, refused | clashes
+    return _without_clashes(scans, refused)
 
 
 def _rows(table: Path) -> list[tuple[int, dict[str, str]]]:
@@ -207,12 +198,12 @@ def _require_columns(table: Path, head: Sequence[str]) -> None:
 
 def _scan_of_row(folder: Path, cells: Mapping[str, str], where: str) -> ScanFiles:
     faces = {key: _path(folder, cells[key], f"{where}: {key}") for key in _FILES if cells.get(key)}
-    one, lower, upper = (faces.get(key) for key in _FILES)
-    if (one is None) == (lower is None or upper is None) or (one and (lower or upper)):
+    only, lower, upper = (faces.get(key) for key in _FILES)
+    if (only is None) == (lower is None or upper is None) or (only and (lower or upper)):
         raise InputError(
             f"{where}: expected one face under 'file', or two under 'lower' and 'upper'"
         )
-    first = one or lower
+    first = only or lower
     assert first is not None
     original, _ = split_file_name(first.name)
     stated = cells.get(_NAME) or original

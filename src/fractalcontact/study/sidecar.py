@@ -12,18 +12,12 @@ LARGEST_SIDECAR = 64 * 1024  # bytes
 
 
 def is_contact_map(scan_options: Mapping) -> bool:
-    """True if a sidecar says that its file is a map of contact, not of heights."""
+    """True if a sidecar declares its file a map of contact."""
     return scan_options.get("kind") == CONTACT_MAP
 
 
 def sidecar_of_matrix(spacing: float) -> dict[str, str]:
-    """Scan keys of an array of heights in mm, its rows ascending in y: all that must be stated.
-
-    Parameters
-    ----------
-    spacing : float
-        Distance of two cells, mm.
-    """
+    """Scan keys of an array of heights in mm, rows ascending in y, at a spacing in mm."""
     return {
         "kind": "face",
         "layout": "matrix",
@@ -37,12 +31,7 @@ def sidecar_of_matrix(spacing: float) -> dict[str, str]:
 
 
 def read_yaml(path: Path | str) -> dict:
-    """Mapping in a YAML file.
-
-    Returns
-    -------
-    dict
-        Keys are texts; values texts, numbers, truth values, None, lists or such mappings.
+    """Mapping in a YAML file, of plain data.
 
     Raises
     ------
@@ -68,17 +57,5 @@ def read_yaml(path: Path | str) -> dict:
 
 
 def plain_value(text: str, where: str) -> Any:
-    """One value as a sidecar would have it behind its key: "20 mm", "[1, 2]", "true".
-
-    Parameters
-    ----------
-    text : str
-    where : str
-        For errors.
-
-    Raises
-    ------
-    InputError
-        If it is no such value.
-    """
+    """Value of a text as behind the key of a sidecar: "20 mm", "[1, 2]", "true"."""
     return load_yaml(text[:LARGEST_SIDECAR], where)

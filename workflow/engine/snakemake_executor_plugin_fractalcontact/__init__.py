@@ -1,13 +1,13 @@
 """Jobs as forks of one process that has loaded all modules and kernels: an executor plugin.
 
 Snakemake's own local executor starts Python for every script, which then imports modules and loads
-kernels for 2.5 s of processor time. Here `multiprocessing` keeps a server that has them loaded, and
-forks it for every job of one thread. A job of more threads gets a process of its own, as libraries
-take their number of threads when they are loaded.
+kernels for 2.5 s of processor time. Here `multiprocessing` keeps a server that has loaded them, and
+forks it for every job of one thread. A job of more threads gets a process of its own, because
+libraries take their number of threads when they are loaded.
 
 Without it (``make EXECUTOR=local``, ``snakemake`` without ``--executor fractalcontact``, a cluster,
-anything but Linux) the same scripts run as Snakemake starts them, with the same results to the last
-bit: tests/workflow/test_executor.py.
+any system but Linux) Snakemake starts the same scripts, with the same results to the last bit:
+tests/workflow/test_executor.py.
 """
 
 import contextlib
@@ -36,30 +36,30 @@ common_settings = CommonSettings(
     pass_envvar_declarations_to_cmd=True,
     auto_deploy_default_storage_provider=False,
 )
-#: What the server imports before its first job.
+#: Modules that the server imports before its first job.
 LOADED = [__name__, f"{__name__}.loaded"]
-#: What libraries take their number of threads from, as Snakemake states it to scripts.
+#: Variables from which libraries take their number of threads, as Snakemake sets them for scripts.
 THREADS = ("OMP", "GOTO", "OPENBLAS", "MKL", "VECLIB_MAXIMUM", "NUMEXPR")
-#: For glibc: arrays of up to 256 MB use again what the job has freed, of which up to 1 GB is kept.
-#: To clear new pages for each of them took a seventh of the time of a flow.
+#: Settings of glibc: arrays of up to 256 MB reuse freed memory, of which up to 1 GB is kept. To
+#: clear new pages for each array took a seventh of the time of a flow.
 MEMORY = {"MALLOC_MMAP_THRESHOLD_": str(2**28), "MALLOC_TRIM_THRESHOLD_": str(2**30)}
 
 
 class Executor(RealExecutor):
-    """Runs jobs on this machine."""
+    """Executor of jobs on this machine."""
 
     def __post_init__(self):
-        """Start nothing yet: the server starts with the first job."""
+        """Prepare the server, which starts with the first job."""
         self.forks = multiprocessing.get_context("forkserver")
         self.forks.set_forkserver_preload(LOADED)
         self.alone = multiprocessing.get_context("spawn")
-        # Processes are started and asked for their ends one by one: whenever it starts one,
-        # `multiprocessing` asks for those of all others.
+        # One thread at a time starts or joins a process, because `multiprocessing` looks at all
+        # others whenever it starts one.
         self.one_by_one = threading.Lock()
         self.pool = ThreadPoolExecutor(self.cores + 5)  # as many as Snakemake's own has
 
     def run_job(self, job):
-        """Start a job; a thread waits for its end and says it to the scheduler."""
+        """Start a job; a thread waits for its end and reports it to the scheduler."""
         is_script = not job.is_group() and job.is_script
         if is_script:
             self.workflow.async_run(job.prepare())
@@ -90,7 +90,7 @@ class Executor(RealExecutor):
             return process.exitcode
 
     def _run_otherwise(self, job):
-        """Exit code of what is no script: Snakemake itself runs it, in a process of its own."""
+        """Exit code of a job without a script, which Snakemake runs in a process of its own."""
         if not job.is_group() and job.is_norun:
             return 0
         return subprocess.run(self.format_job_exec(job), shell=True).returncode
@@ -103,7 +103,7 @@ class Executor(RealExecutor):
             self.report_job_error(info, msg=f"{error!r} " if error else None)
 
     def shutdown(self):
-        """Wait for the jobs that run."""
+        """Wait for the running jobs."""
         self.pool.shutdown()
 
     cancel = shutdown
@@ -123,7 +123,7 @@ class Executor(RealExecutor):
 
 
 def run_script(script: str, given: Snakemake) -> None:
-    """Run a script as Snakemake does: it finds what it is given under the name ``snakemake``."""
+    """Run a script as Snakemake does, with its job under the name ``snakemake``."""
     os.environ.update(_threads(given.threads))
     for name in MEMORY:  # read when the process started
         os.environ.pop(name, None)
@@ -138,7 +138,7 @@ def _threads(number):
 
 @contextlib.contextmanager
 def _environment(told):
-    """Variables that hold for a process that is started meanwhile."""
+    """Set variables for processes that are started meanwhile."""
     before = {name: os.environ.get(name) for name in told}
     os.environ.update(told)
     try:

@@ -6,7 +6,7 @@ import pkgutil
 
 from roughcontact.kernel_cache import load_cached
 
-#: Rooms whose modules are loaded, with all that they import; the others are so too, or rarely used.
+#: Rooms whose modules are loaded. These import most other rooms; the rest is rarely used.
 ROOMS = (
     *("fractalcontact.cards", "fractalcontact.ensemble", "fractalcontact.figures"),
     *("fractalcontact.joint", "fractalcontact.laws", "fractalcontact.pages"),
@@ -18,8 +18,8 @@ for room in ROOMS:
     package = importlib.import_module(room)
     for module in pkgutil.walk_packages(package.__path__, f"{package.__name__}."):
         importlib.import_module(module.name)
-# Libraries that the rooms, or xarray when it first reads or writes a file, import only where they
-# use them: every job would, pint alone for 0.1 s.
+# Libraries that the rooms, or xarray when it first reads or writes a file, import only inside
+# functions. Without this every job would import them, pint alone for 0.1 s.
 LATER = (
     *("engine.job", "netCDF4", "pandas.io.formats.csvs", "pint", "scipy.optimize", "scipy.stats"),
     *("snakemake.io", "xarray.backends.netCDF4_"),

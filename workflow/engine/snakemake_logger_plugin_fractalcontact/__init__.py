@@ -1,7 +1,7 @@
-"""Lines that a user reads while a study is made: one a job, and errors with their logs.
+"""Lines of a run in the terminal: one a job, and errors with their logs. A logger plugin.
 
-A logger plugin, which Snakemake finds by the name of its package on the path that workflow/run.py
-gives it; Snakemake's own log in .snakemake/log keeps everything.
+Snakemake finds it by the name of its package on the path that workflow/run.py gives it. Snakemake's
+own log in .snakemake/log keeps everything.
 """
 
 import os
@@ -17,18 +17,18 @@ from snakemake_interface_logger_plugins.base import LogHandlerBase
 from engine.cluster import ended_by_cluster
 from engine.ending import TOLD
 
-#: Columns of the terminal; lines of warnings at the end, of which the result page has all.
+#: Columns of the terminal, and most lines of warnings at the end; the result page has all of them.
 WIDTH, MAX_WARNINGS = 120, 24
-#: Bytes free on a disk below which it counts as full.
+#: Free bytes below which a disk counts as full.
 MIN_FREE_BYTES = 2**20
 #: Environment variable with the folder of the study's results.
 RESULTS = "FRACTALCONTACT_RESULTS"
-#: Rules that make nothing themselves: what they ask for is made when they come.
+#: Rules without work of their own, which only ask for files.
 _TARGETS = ("all", "pages")
 _FULL = ("No space left on device", "Disk quota exceeded", "no space left on its disk")
-#: In what Snakemake says of params: digests of code, of both runs or of one.
+#: Digests of code among the parameters that Snakemake names, of both runs or of one.
 _DIGESTS = "(?:'?[0-9a-f]{16}'?,?|<nothing exclusive>)+"
-#: What is found in Snakemake's reasons, and what is said of them; the first that fits.
+#: Patterns in Snakemake's reasons and their words here; the first match counts.
 _REASONS = {
     "Missing output files": "not made yet",
     "Forced execution": "left incomplete, or asked for",
@@ -41,25 +41,25 @@ _REASONS = {
     ),
     "Params have changed": "settings changed",
 }
-#: Where in the workflow an error was noticed, before what it says.
+#: Place in the workflow where an error was noticed, in front of its message.
 _PLACE = re.compile(r"\w+(?: in (?:rule .*|file \".*\", line \d+))?:")
-#: Of a job that failed, a line for each file that is there as before, or was never there.
+#: Messages on the files of a failed job that were restored, or never existed; they are left out.
 _UNSAID = re.compile("Restored previous version of |Cannot restore .*: no backup found")
-#: What would do things to a terminal.
+#: Control characters, which act on a terminal.
 _CONTROL = re.compile(r"[\x00-\x08\x0b-\x1f\x7f-\x9f]")
 
 
 class LogHandler(LogHandlerBase):
-    """Writes lines in place of what Snakemake writes to the terminal."""
+    """Handler that prints lines in place of Snakemake's."""
 
     writes_to_stream = has_filter = has_formatter = True
     writes_to_file = needs_rulegraph = False
 
     def __post_init__(self):
-        """Begin with nothing said."""
+        """Begin without any job."""
         self.results = os.environ.get(RESULTS, "results")
         self.dry_run, self.begin = self.common_settings.dryrun, time.time()
-        #: Jobs by number: title, rule, logs, reason; when those at work began; those that failed.
+        #: By number of job: title, logs and reason; start of running jobs; titles of failed ones.
         self.jobs, self.running, self.failed = {}, {}, {}
         self.total, self.done, self.errors, self.warnings = 0, 0, [], {}
         self.nothing = self.stopped = self.closed = False
@@ -124,7 +124,7 @@ class LogHandler(LogHandlerBase):
         self.errors.append("\n".join(s for s in lines if not s.startswith('  File "')).strip())
 
     def _lines_of(self, logs):
-        """Text that a job wrote into its logs in this run."""
+        """Lines that a job wrote into its logs in this run."""
         for path in map(Path, logs):
             try:
                 if path.stat().st_mtime >= self.begin - 2:
@@ -133,7 +133,7 @@ class LogHandler(LogHandlerBase):
                 continue
 
     def _error_of(self, logs):
-        """Why a job failed, in its own words; nothing of one that was told to stop."""
+        """Reason why a job failed, in its own words; empty for a job that was told to stop."""
         lines = [line for line in self._lines_of(logs) if line.strip()]
         said = [line[len("error: ") :] for line in lines if line.startswith("error: ")]
         if said:
@@ -141,7 +141,7 @@ class LogHandler(LogHandlerBase):
         if TOLD.is_set() or "stopped before it was done" in lines[-1:]:
             self.stopped = True
             return ""
-        # Of a full disk the log may say nothing, which stands on it too.
+        # A log on a full disk may be empty.
         place = self.results if os.path.isdir(self.results) else "."
         if _is_full(lines) or shutil.disk_usage(place).free < MIN_FREE_BYTES:
             return f"{self.results}: no space left on its disk; make room there and run again"
@@ -150,7 +150,7 @@ class LogHandler(LogHandlerBase):
         return ended_by_cluster(lines) or "ended without an error message: killed, or out of memory"
 
     def close(self):
-        """Say how the run ended: what there is to know of the data, or why it did not finish."""
+        """Print how the run ended, with the warnings of the data or the reason of its failure."""
         super().close()
         if self.closed:
             return
@@ -172,7 +172,7 @@ class LogHandler(LogHandlerBase):
         self._say_warnings()
 
     def _list_jobs(self):
-        """A table of what would be done, and why."""
+        """Print a table of the jobs that would run, with reasons."""
         rows = sorted(
             (title, next((why for key, why in _REASONS.items() if re.search(key, reason)), reason))
             for title, _, reason in self.jobs.values()
