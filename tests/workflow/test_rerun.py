@@ -305,4 +305,4 @@ def test_code_of_a_script_follows_from_the_function_that_it_calls():
     assert {"size_effect", "contact", "states"} <= rooms
     # Another stage does not make it again, nor what stands above.
     assert not {"study", "figures", "pages"} & rooms
-    assert "src/fractalcontact/stages/report.py" not in files
+    assert "src/fractalcontact/stages/strength.py" not in files

@@ -1,17 +1,16 @@
 """Card of a joint: the numbers of one specimen, each with its interval and model."""
 
 import json
-import math
 from collections.abc import Mapping
 from dataclasses import asdict
 from typing import Any
 
 from ..core.labels import OPPOSITE, printable
 from ..core.subject import Subject
-from ..core.text import with_unit
 from ..core.window import spacing_of, window_sides
+from ..pages.first_screen import is_synthetic, model_of
 from ..pages.lights import lights_of, trust_of
-from ..report.published import read, row_of, shown_in
+from ..report.published import read_at, row_of, shown_in
 from .entries import entries, entry_of, number, rounded
 from .methods import methods_of, references_of
 
@@ -69,7 +68,7 @@ def card_of(subject: Subject, study: Mapping[str, Any], made: Mapping[str, Any])
         "entries": {row.name: entry_of(row, subject, model) for row in entries()},
         "errors": errors_of(subject),
         "lights": [asdict(light) for light in lights],
-        "trust": dict(zip(("word", "reason", "help"), trust_of(lights), strict=True)),
+        "trust": trust_of(lights)._asdict(),
         "licence": LICENCE,
         "versions": dict(made["versions"]),
         "scan_checksums": dict(made["scan_checksums"].get(subject.name, {})),
@@ -83,17 +82,6 @@ def made_of(attributes: Mapping[Any, Any]) -> dict[str, Any]:
     return {key: json.loads(attributes.get(key, "{}")) for key in ("versions", "scan_checksums")}
 
 
-def model_of(subject: Subject) -> str:
-    """Contact model: elastic, or with the pressure capped at the hardness."""
-    hardness = float(subject.settings["material"]["hardness"])
-    return f"crushing at H = {with_unit(hardness, 'MPa')}" if math.isfinite(hardness) else "elastic"
-
-
-def is_synthetic(name: str, study: Mapping[str, Any]) -> bool:
-    """True if a specimen is made by the study and no scan: a twin, or a mathematical joint."""
-    return name in study.get("embedded", {})
-
-
 def geometry_of(subject: Subject) -> dict[str, Any]:
     """Spacing, window, offset, seat and reference pressure: chosen, so without intervals."""
     side_y, side_x = window_sides(subject["specimens"])
@@ -105,9 +93,8 @@ def geometry_of(subject: Subject) -> dict[str, Any]:
     }
     found = {name: {"value": rounded(one), "unit": "mm"} for name, one in lengths.items()}
     row = row_of("seating_pressure")
-    (seat,) = read(row, subject)
     return found | {
-        "seat": number(row, subject, seat) | {"unit": row.unit},
+        "seat": number(row, subject, read_at(row, subject)) | {"unit": row.unit},
         "reference_pressure": {"value": reference_pressure_of(subject), "unit": "MPa"},
     }
 
@@ -122,7 +109,7 @@ def errors_of(subject: Subject) -> list[dict[str, Any]]:
     pressure, budget = reference_pressure_of(subject), subject.state("error_budget")
     found = []
     for row in shown_in("errors"):
-        one = read(row, subject)[subject.reported.reference]
+        one = read_at(row, subject)
         found.append(
             {
                 "quantity": row.budget,

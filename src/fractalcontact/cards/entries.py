@@ -1,6 +1,7 @@
 """Entries of a card, from the register of published numbers."""
 
 import math
+from collections.abc import Mapping
 from typing import Any
 
 from ..core import text
@@ -54,6 +55,17 @@ def entry_of(row: Row, subject: Subject, model: str) -> dict[str, Any]:
             for place, one in zip(at, numbers, strict=True)
         ]
     }
+
+
+def row_at(curve: Mapping[str, Any], pressure: float) -> dict[str, Any]:
+    """Row of an entry at a pressure, MPa, or its absence with the reason."""
+    rows = (row for row in curve.get("values", ()) if row["at"].get("pressure") == pressure)
+    return next(rows, {"missing": curve.get("missing", "not solved there")})
+
+
+def reference_of(card: Mapping[str, Any]) -> float:
+    """Reference pressure of a card, MPa; NaN where it has no contact."""
+    return float(card["geometry"].get("reference_pressure", {}).get("value", math.nan))
 
 
 def number(row: Row, subject: Subject, found: Number) -> dict[str, Any]:

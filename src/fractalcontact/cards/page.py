@@ -6,15 +6,9 @@ from typing import Any
 
 from ..core.text import MISSING, measured, percent, short, with_unit
 from ..pages.captions import symbols
-from ..pages.first_screen import (
-    STRENGTH_RULES,
-    facts_of,
-    hardnesses_of,
-    offset_of,
-    row_at,
-    window_of,
-)
+from ..pages.first_screen import STRENGTH_RULES
 from ..report.published import row_of
+from .entries import row_at
 
 #: Tables of curves over pressure, by title: the sections that share one.
 _AGAINST_PRESSURE = {
@@ -26,22 +20,22 @@ _UNITS = {"1": "%", "degree": "°"}
 _RULES_HEAD = "peak τ, range of all rules"
 
 
-def page_of(card: Mapping[str, Any]) -> dict[str, Any]:
+def page_of(card: Mapping[str, Any], block: Mapping[str, Any] | None = None) -> dict[str, Any]:
     """Values of the template ``card.html``.
 
     Parameters
     ----------
     card : mapping
         Of ``card.schema.json``.
+    block : mapping, optional
+        First numbers of a joint, of :func:`pages.first_screen.block_of`.
     """
     entries = card["entries"]
     printed = {key: one for key, one in entries.items() if one.get("print", True)}
     stiffness = [entries[key] for key in ("tangent_stiffness", "reload_stiffness")]
     return {
         "card": card,
-        "facts": facts_of(card) if card["kind"] == "joint" else [],
-        "window": window_of(card) if card["kind"] == "joint" else "",
-        "offset": offset_of(card) if card["kind"] == "joint" else "",
+        "block": block or {},
         "stiffness": over_pressure(stiffness),
         "tables": list(_tables(printed)),
         "tests": tests_of(entries),
@@ -49,7 +43,7 @@ def page_of(card: Mapping[str, Any]) -> dict[str, Any]:
         "jrc": jrc_table(entries["jrc"], entries["jrc_by_fit"]),
         # An elastic joint has no hardness to state.
         "missing": missing_of({key: one for key, one in printed.items() if key != "hardness"}),
-        "hardest": hardnesses_of(card)[1],
+        "hardest": entries.get("hardest_hardness", {}).get("value", math.nan),
         # What harder contacts change stands in a column of its own.
         "errors": errors_of(card, without=("model",)),
         "number": lambda value, digits=2: MISSING if value is None else short(value, digits),

@@ -14,6 +14,7 @@ from ..core.errors import InputError
 from ..core.labels import printable
 from ..core.subject import Subject, configuration_of
 from ..pages.files import APERTURE, APERTURE_ENDINGS, CARD
+from ..pages.first_screen import block_of, is_synthetic
 from ..pages.templating import write_page
 from ..study.atlas_parts import Trees
 from .apertures import aperture_at, write_aperture
@@ -54,7 +55,9 @@ def write_cards(
     study, made = configuration_of(trees.root)["study"], made_of(trees.root.attrs)
     for name in trees.names:
         tree = trees.of(name, without={"contact"})[0]
-        write_card(card_of(Subject.of(tree, name), study, made), folder)
+        subject = Subject.of(tree, name)
+        block = block_of(subject, is_synthetic(name, study))
+        write_card(card_of(subject, study, made), folder, block)
         if trees.parts or not apertures:
             continue
         contact = trees.root[f"contact/{name}"].to_dataset()[["map_gap"]]
@@ -64,8 +67,10 @@ def write_cards(
     return trees.names
 
 
-def write_card(card: Mapping[str, Any], folder: Path | str) -> None:
-    """Write the three files of a card, each whole or not at all."""
+def write_card(
+    card: Mapping[str, Any], folder: Path | str, block: Mapping[str, Any] | None = None
+) -> None:
+    """Write the three files of a card, each whole or not at all; the printed one with its block."""
     texts = {
         "yaml": yaml.safe_dump(dict(card), sort_keys=False, allow_unicode=True, width=100),
         "json": json.dumps(card, indent=1, allow_nan=False, ensure_ascii=False) + "\n",
@@ -74,7 +79,7 @@ def write_card(card: Mapping[str, Any], folder: Path | str) -> None:
         with atomic_write(Path(folder) / CARD.format(specimen=card["name"], ending=ending)) as file:
             file.write_text(text, encoding="utf-8")
     page = Path(folder) / CARD.format(specimen=card["name"], ending="html")
-    write_page(page, "card.html", page_of(card))
+    write_page(page, "card.html", page_of(card, block))
 
 
 def read_card(path: Path | str) -> dict[str, Any]:

@@ -6,6 +6,7 @@ Each repeats what a stage of the atlas says; the limits are those that the stage
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from ..core.limits import CORRECTED_NODES, NEARLY, RESOLVED_NODES
 from ..core.subject import Subject
@@ -164,18 +165,23 @@ def _model(subject):
 _TRUST = {POOR: "low", IN_PART: "limited", GOOD: "good"}
 
 
-def trust_of(lights: Sequence[Light]) -> tuple[str, str, str]:
-    """Trust in a specimen by its worst light, why, and what would help.
+class Trust(NamedTuple):
+    """Trust in a specimen.
 
-    Returns
-    -------
-    word, reason, help : str
-        "low", "limited" or "good"; the reason of the first light of that word, the model's before
-        others, and which others there are; what would help of all these.
+    ``word`` is "low", "limited" or "good"; ``reason`` is that of the first of its worst lights, the
+    model's before others, and which others there are; ``help`` is what would help of all these.
     """
+
+    word: str
+    reason: str
+    help: str
+
+
+def trust_of(lights: Sequence[Light]) -> Trust:
+    """Trust in a specimen by its worst light."""
     worst = next((word for word in _TRUST if any(one.word == word for one in lights)), GOOD)
     if worst == GOOD:
-        return _TRUST[GOOD], "every light that applies is good", ""
+        return Trust(_TRUST[GOOD], "every light that applies is good", "")
     of_worst = [one for one in lights if one.word == worst]
     first, *others = deciding = sorted(of_worst, key=lambda one: one.key != "model")
     reason = f"{first.title}: {first.reason}"
@@ -183,4 +189,4 @@ def trust_of(lights: Sequence[Light]) -> tuple[str, str, str]:
         alike = "partly good" if worst == IN_PART else worst
         reason += f". Also {alike}: {', '.join(one.key for one in others)}"
     helps = [f"{one.help} ({one.key})" for one in deciding if one.help not in ("", STEEP)]
-    return _TRUST[worst], reason, "; ".join(helps) or first.help
+    return Trust(_TRUST[worst], reason, "; ".join(helps) or first.help)

@@ -38,12 +38,13 @@ from ..report.published import Number, Row, row_of, shown_in
 from ..study.atlas_parts import Trees
 from ..study.figure_list import JOINT, SPECIMEN, STUDY, all_figures
 from .captions import symbols
-from .cards import SECTIONS, cards_of, section_of
 from .cells import absent, bare_words, error_words, estimate_words, shown, sort_value, value_words
 from .common_loads import common_loads, main_load
 from .curves import curves_table
+from .figure_cards import SECTIONS, cards_of, section_of
 from .files import (
     APERTURE,
+    CARD,
     CONFIGURATION,
     CURVES,
     INDEX,
@@ -52,7 +53,7 @@ from .files import (
     SUMMARY,
     TABLES,
 )
-from .first_screen import blocks_of
+from .first_screen import block_of, is_synthetic, quoted_methods
 from .history import history
 from .laboratory import calibration_of, tests_of
 from .matrix import Row as Judged
@@ -71,6 +72,7 @@ NEEDS = (
     "flow",
     "dilatancy",
     "measured",
+    "strength",
     "area",
     "domains",
     "scaling",
@@ -134,7 +136,6 @@ def write_specimen_pages(
     """
     trees = trees or Trees(place.atlas, NEEDS)
     head = _head(place, trees.root) | {"explored": explored}
-    blocks = {one["name"]: one for one in blocks_of(trees.names, place.folder)}
     for name in trees.names:
         tree, groups, file = trees.of(name)
         subject, found = Subject.of(tree, name), matrix_of(tree, [name])
@@ -142,7 +143,7 @@ def write_specimen_pages(
             place, subject, sheet_of(subject), found, (_as_typed(file), groups)
         )
         path = place.folder / SPECIMEN_PAGE.format(specimen=name)
-        write_page(path, "specimen.html", head | values | {"block": blocks.get(name)})
+        write_page(path, "specimen.html", head | values | quoted_methods(name, place.folder))
 
 
 def write_index(place: Place, explored: Collection[str]) -> list[str]:
@@ -165,9 +166,11 @@ def write_index(place: Place, explored: Collection[str]) -> list[str]:
     reported = [trees.closure(name) for name in names]
     loads = common_loads(reported, _comparison(atlas))
     head = _head(place, atlas)
-    blocks = {one["name"]: one for one in blocks_of(names, place.folder)}
     head["explored"] = explored
-    specimens, curves, rows, reliefs = [], [], [], {}
+    specimens, curves, rows, blocks, reliefs = [], [], [], [], {}
+    cards = {name: place.folder / CARD.format(specimen=name, ending="json") for name in names}
+    carded = [name for name, path in cards.items() if path.is_file()]
+    study = configuration_of(atlas)["study"]
     # One after the other: those of an atlas in parts would not all fit into memory.
     for name in names:
         tree = trees.of(name)[0]
@@ -176,6 +179,8 @@ def write_index(place: Place, explored: Collection[str]) -> list[str]:
         rows.append(matrix_of(tree, [name]))
         reliefs[name] = relief_thumbnail(subject["specimens"])
         curves.append(curves_table(str(atlas.attrs["study"]), [subject]))
+        if name in carded and len(carded) <= _BLOCKS:
+            blocks.append(block_of(subject, is_synthetic(name, study)))
     matrix, first = merged(rows), main_load(loads, reported)
     table = _finite(pd.concat(curves) if curves else curves_table("", []))
     judged = statement_table(str(atlas.attrs["study"]), [*matrix, *of_study(atlas)])
@@ -184,8 +189,8 @@ def write_index(place: Place, explored: Collection[str]) -> list[str]:
         "reliefs": reliefs,
         "loads": loads,
         "first_load": first,
-        "blocks": list(blocks.values()) if len(blocks) <= _BLOCKS else [],
-        "with_card": blocks.keys(),
+        "blocks": blocks,
+        "with_card": carded,
     }
     write_page(place.folder / INDEX, "index.html", head | values)
     return names

@@ -12,7 +12,7 @@ from ..core.subject import Subject
 from ..core.validity import Validity
 from ..core.window import spacing_of, window_sides
 from ..report.columns import columns_of, old_columns_of
-from ..report.published import Number, read, shown_in
+from ..report.published import Number, read, shown_in, under_load
 from .common_loads import CommonLoad
 from .lights import Light, lights_of, validity_at
 
@@ -50,9 +50,8 @@ class Sheet:
 
     def of(self, name: str, load: int | None = None) -> Number:
         """Number of a quantity under a load, by default the reference load."""
-        numbers = self.numbers[name]
-        of_loads = len(numbers) == len(self.forces) and "pressure" in numbers[0].at
-        return numbers[self.reference if load is None else load] if of_loads else numbers[0]
+        number = self.reference if load is None else load
+        return under_load(self.numbers[name], number, len(self.forces))
 
 
 def sheet_of(subject: Subject, common: Sequence[CommonLoad] = ()) -> Sheet:

@@ -220,6 +220,17 @@ def read(row: Row, subject: Subject) -> list[Number]:
     return list(_numbers(row, subject, array))
 
 
+def read_at(row: Row, subject: Subject, load: int | None = None) -> Number:
+    """Number of a quantity under a load, by default the reference load, or its only number."""
+    number = subject.reported.reference if load is None else load
+    return under_load(read(row, subject), number, subject.forces.size)
+
+
+def under_load(numbers: list[Number], load: int, loads: int) -> Number:
+    """Number under a load of those of a quantity; the first of what is not over all loads."""
+    return numbers[load if len(numbers) == loads and "pressure" in numbers[0].at else 0]
+
+
 def array_of(row: Row, subject: Subject, source: str) -> xr.DataArray | None:
     """Variable "STAGE/VARIABLE" at the state of a row; None if the atlas lacks it."""
     stage, _, variable = source.partition("/")

@@ -11,7 +11,7 @@ from typing import Any
 
 from ...core.limits import JRC_RANGE, JRC_SAMPLING
 from ...core.text import exact, number
-from ...pages.first_screen import reference_of, row_at
+from ..entries import reference_of, row_at
 from .constants import in_words
 
 ENDING = "ags"

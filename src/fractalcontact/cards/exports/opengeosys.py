@@ -10,7 +10,7 @@ from typing import Any
 from xml.etree import ElementTree as xml
 
 from ...core.text import exact, short
-from ...pages.first_screen import reference_of, row_at
+from ..entries import reference_of, row_at
 from ._xml import comment, headed, text_of_element
 from .constants import Constants, over_pressure
 
