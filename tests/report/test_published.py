@@ -233,7 +233,8 @@ def test_each_quantity_stands_once_and_is_shown_somewhere():
     names = [row.name for row in published()]
     assert len(names) == len(set(names)) > 60
     kept = shown_in("shown")
-    assert {row.shown for row in kept} == {"atlas"}
+    # A row of the atlas alone says what it tells.
+    assert all(len(row.shown.split()) > 3 for row in kept)
     assert not any(row in kept for row in shown_in(*(PLACES.keys() - {"shown"})))
     assert shown_in(*PLACES) == published()
     for place in ("summary", "curves", "page", "index"):

@@ -17,6 +17,7 @@ from ..core.datasets import labelled_dataset
 from ..core.estimate import NO_ESTIMATE, Estimate, rows_of
 from ..core.limits import MIN_NODES
 from ..core.ranges import in_cells
+from ..core.reported import states_at
 from .box_dimension import dimension_of_domain
 from .counted_domain import QUANTITIES, CountedDomain, errors_of
 from .departure import departure_of
@@ -195,7 +196,7 @@ def nulls_of_map_states(
         ``resolution`` of the states.
     """
     factor = int(states["resolution"])
-    here = composites.sel(offset=float(states["offset"]), method="nearest").values
+    here = states_at(composites, offset=float(states["offset"])).values
     domains = states["pressure"].values > 0
     nulls = null_models(domains, spacing * factor, here[::factor, ::factor], fit_range=fit_range)
     names = ("normal_force", "direction", "offset", "resolution")

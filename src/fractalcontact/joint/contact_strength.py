@@ -35,7 +35,6 @@ TABLE = {
         "MPa",
         "change of it with slopes over twice the spacing, no interval",
     ),
-    "contact_dip": (_STATES, "degree", "mean apparent dip along the sliding, weighed by the force"),
     "contact_truncated": (
         _STATES,
         "1",
@@ -196,7 +195,6 @@ def contact_strength(dips: xr.DataArray, pressure: np.ndarray, angle: float) -> 
     values = {
         "contact_strength": tau,
         "contact_strength_grid_error": error,
-        "contact_dip": dips.values[0].mean(-1),
         "contact_truncated": truncated[0],
         **peak.columns("peak_contact_strength"),
         "peak_contact_truncated": peaks[2],
