@@ -42,13 +42,8 @@ STAGES = (
 def card_of(subject: Subject, study: Mapping[str, Any], made: Mapping[str, Any]) -> dict[str, Any]:
     """Card of a specimen, as plain data of ``card.schema.json``.
 
-    Parameters
-    ----------
-    subject : Subject
-    study : mapping
-        As its user wrote it: embedded specimens are synthetic.
-    made : mapping
-        ``versions`` by library and ``scan_checksums`` by specimen, attributes of the atlas.
+    ``study`` is as its user wrote it; ``made`` has ``versions`` by library and ``scan_checksums``
+    by specimen, attributes of the atlas.
     """
     model = model_of(subject)
     lights = lights_of(subject)
@@ -100,7 +95,7 @@ def geometry_of(subject: Subject) -> dict[str, Any]:
 
 
 def reference_pressure_of(subject: Subject) -> float | None:
-    """Nominal pressure of the reference load, MPa: first numbers, maps and exports are of it."""
+    """Nominal pressure of the reference load, MPa."""
     return rounded(float(subject["closure"]["nominal_pressure"][subject.reported.reference]))
 
 
@@ -127,7 +122,7 @@ def errors_of(subject: Subject) -> list[dict[str, Any]]:
 
 
 def _by_source(budget, quantity, size):
-    """Errors of a quantity by their source, zero where they are rounding."""
+    """Errors of a quantity by their source; those of rounding are zero."""
     if quantity not in budget["quantity"]:
         return {}
     errors = budget["error"].sel(quantity=quantity)

@@ -20,19 +20,9 @@ def entries() -> list[Row]:
 
 
 def entry_of(row: Row, subject: Subject, model: str) -> dict[str, Any]:
-    """Entry of a card with its values.
+    """Entry of a card: a number where no dimension is left, else a curve with ``values``.
 
-    Parameters
-    ----------
-    row : Row
-    subject : Subject
-    model : str
-        What the contact was solved as.
-
-    Returns
-    -------
-    dict
-        Of ``card.schema.json``: a number where no dimension is left, else a curve with ``values``.
+    ``model`` is the contact model of the card.
     """
     found: dict[str, Any] = {"title": row.title, "section": row.section, "unit": row.unit}
     found["model"] = model if row.model == "contact" else row.model
@@ -69,7 +59,7 @@ def reference_of(card: Mapping[str, Any]) -> float:
 
 
 def number(row: Row, subject: Subject, found: Number) -> dict[str, Any]:
-    """A number as the card writes it, with its ends and errors, or why it is missing."""
+    """Number as a card writes it, with its ends and errors, or why it is missing."""
     if found.missing:
         return {"missing": found.missing}
     written: dict[str, Any] = dict(
@@ -89,7 +79,7 @@ def number(row: Row, subject: Subject, found: Number) -> dict[str, Any]:
 
 
 def rounded(value: float) -> float | None:
-    """A number with the digits of a card; None where it is not finite."""
+    """Number with the digits of a card; None where it is not finite."""
     return text.rounded(value, _DIGITS) if math.isfinite(value) else None
 
 

@@ -21,13 +21,7 @@ _SOURCES = (
 
 
 def methods_of(card: Mapping[str, Any]) -> str:
-    """Methods paragraph of a card, ready to be quoted.
-
-    Parameters
-    ----------
-    card : mapping
-        Of ``card.schema.json``, but for its ``methods``.
-    """
+    """Methods paragraph, ready to be quoted, of a card without its ``methods``."""
     return " ".join(
         (_faces(card), _contact(card), _laws(card), _strength(card), _versions(card["versions"]))
     )

@@ -21,15 +21,7 @@ _RULES_HEAD = "peak τ, range of all rules"
 
 
 def page_of(card: Mapping[str, Any], block: Mapping[str, Any] | None = None) -> dict[str, Any]:
-    """Values of the template ``card.html``.
-
-    Parameters
-    ----------
-    card : mapping
-        Of ``card.schema.json``.
-    block : mapping, optional
-        First numbers of a joint, of :func:`pages.first_screen.block_of`.
-    """
+    """Values of the template ``card.html``; ``block`` has the first numbers of a joint."""
     entries = card["entries"]
     printed = {key: one for key, one in entries.items() if one.get("print", True)}
     stiffness = [entries[key] for key in ("tangent_stiffness", "reload_stiffness")]
@@ -77,7 +69,7 @@ def _tables(printed):
 
 
 def _over_rules(cells):
-    """Range of the strength over its rules: none of their errors is that of the strength."""
+    """Range of the strength over its rules: the error of a rule is not that of the strength."""
     values = [one["value"] for one in cells if "value" in one]
     found = {"value": min(values), "to": max(values)} if values else {"missing": "no rule applies"}
     return {"unit": "MPa"} | found
@@ -159,7 +151,7 @@ def errors_of(card: Mapping[str, Any], without: Collection[str] = ()) -> dict[st
 
 
 def in_words(number: Mapping[str, Any]) -> str:
-    """A number of a table, fractions in per cent; a dash where there is none."""
+    """Number of a table, fractions in per cent; a dash where there is none."""
     if "value" not in number:
         return MISSING
     if "to" in number:

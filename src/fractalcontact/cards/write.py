@@ -32,7 +32,7 @@ NEEDS = (*STAGES, "contact")
 def write_cards(
     path: Path | str, folder: Path | str, apertures: bool = True, trees: Trees | None = None
 ) -> list[str]:
-    """Write the card of every specimen of an atlas: ``cards/NAME.yaml``, ``.json`` and ``.html``.
+    """Specimens of an atlas, whose cards ``cards/NAME.yaml``, ``.json``, ``.html`` are written.
 
     Parameters
     ----------
@@ -45,11 +45,6 @@ def write_cards(
         of an atlas in parts.
     trees : Trees, optional
         The atlas with at least the stages of :data:`NEEDS`, where it is read already.
-
-    Returns
-    -------
-    list of str
-        Specimens that have one.
     """
     trees = trees or Trees(path, NEEDS)
     study, made = configuration_of(trees.root)["study"], made_of(trees.root.attrs)
@@ -70,7 +65,7 @@ def write_cards(
 def write_card(
     card: Mapping[str, Any], folder: Path | str, block: Mapping[str, Any] | None = None
 ) -> None:
-    """Write the three files of a card, each whole or not at all; the printed one with its block."""
+    """Write the three files of a card, each whole or not at all; the printed one with a block."""
     texts = {
         "yaml": yaml.safe_dump(dict(card), sort_keys=False, allow_unicode=True, width=100),
         "json": json.dumps(card, indent=1, allow_nan=False, ensure_ascii=False) + "\n",
@@ -83,7 +78,7 @@ def write_card(
 
 
 def read_card(path: Path | str) -> dict[str, Any]:
-    """A card from its YAML or JSON.
+    """Card from its YAML or JSON.
 
     Raises
     ------

@@ -58,17 +58,9 @@ confirmed:                # what was read when this was drafted; a file that dif
 class Described:
     """Report on one specimen.
 
-    Attributes
-    ----------
-    name : str
-    state : str
-        "draft", "complete", "written" or "refused".
-    sizes : list of str
-        Cells or points of each face, relief in the numbers of the file, share of missing cells.
-    to_fill : list of str
-        Keys of the draft that the program could not tell.
-    sentences : list of str
-    picture : Path or None
+    ``state`` is "draft", "complete", "written" or "refused". ``sizes`` has cells or points of each
+    face, its relief in the numbers of the file and its fraction of missing cells; ``to_fill`` names
+    keys of the draft that the file does not determine.
     """
 
     name: str
@@ -83,17 +75,9 @@ class Described:
 class Face:
     """One file as it would be read.
 
-    Attributes
-    ----------
-    path : Path
-    options : dict
-        Scan keys that it is read with.
-    measured : Measured or None
-        None if it is refused.
-    notes : list of str
-        What its picture says beside it.
-    among : list of float
-        Numbers among the heights that may mark missing cells, where the draft names none.
+    ``options`` are its scan keys, ``measured`` is None if it is refused, ``notes`` stand beside its
+    picture. ``among`` are numbers among the heights that may mark missing cells, where the draft
+    names none.
     """
 
     path: Path
@@ -104,14 +88,7 @@ class Face:
 
 
 def describe(scan: ScanFiles, *, always: bool = False) -> Described:
-    """Draft the sidecar of a scan and draw what would be read.
-
-    Parameters
-    ----------
-    scan : ScanFiles
-    always : bool, optional
-        Draw also what needs no draft.
-    """
+    """Report on a scan, its sidecar drafted and its picture drawn; ``always`` draws every scan."""
     stated = _stated(scan)
     faces = {"lower": scan.lower} | ({"upper": scan.upper} if scan.upper else {})
     drafts = {face: _draft_of(path, of_face(stated, face)) for face, path in faces.items()}
@@ -135,7 +112,7 @@ def describe(scan: ScanFiles, *, always: bool = False) -> Described:
 
 
 def _stated(scan: ScanFiles) -> dict[str, Any]:
-    """Scan keys of a sidecar, or of a draft that its owner may have mended."""
+    """Scan keys of a sidecar, or of a draft that its owner may have completed in part."""
     if scan.sidecar is not None:
         return read_sidecar(scan.sidecar)[0]
     draft = _beside(scan, ".yaml")
@@ -159,7 +136,7 @@ def _draft_of(path: Path, options: Mapping[str, Any]) -> tuple[list[str], dict[s
 
 
 def _read_as_drafted(path: Path, stated: Mapping, face: str, draft: Mapping[str, Any]) -> Face:
-    """A file as its draft says, lines that are not filled in shown in some way."""
+    """File as its draft says; keys that are not filled in take the values of `_SHOWN`."""
     blanks = [key for key, value in draft.items() if value is None]
     filled = {key: value for key, value in draft.items() if value is not None}
     options = {**of_face(stated, face), **filled}
@@ -275,14 +252,9 @@ def _beside(scan: ScanFiles, ending: str) -> Path:
 
 
 def write_alike(scan: ScanFiles, like: Mapping[str, Any]) -> Described:
-    """Give a scan the sidecar of another one of the same instrument, if it fits.
+    """Report on a scan that gets the sidecar of another scan of the same instrument, if it fits.
 
-    Parameters
-    ----------
-    scan : ScanFiles
-        Without a sidecar.
-    like : mapping
-        What the sidecar of the other one says, complete.
+    ``scan`` has no sidecar; ``like`` is the whole content of the other one.
     """
     blocks = [of_face(like, face) for face in FACES][: len(scan.files)]
     faces = [Face(*pair) for pair in zip(scan.files, map(_scan_keys, blocks), strict=True)]

@@ -16,14 +16,7 @@ _LINES, _WIDTH = 8, 110  # of text
 
 
 def draw_faces(faces: Sequence[Any], path: Path) -> None:
-    """Draw files as they would be read, one row each.
-
-    Parameters
-    ----------
-    faces : sequence of commands.describe.Face
-    path : Path
-        The PNG to write.
-    """
+    """Draw files (:class:`commands.describe.Face`) as they would be read into a PNG, a row each."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 

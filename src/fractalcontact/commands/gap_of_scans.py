@@ -55,26 +55,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def gap_of(lower: Path, upper: Path, keys: Mapping, outliers: str = "keep") -> xr.DataArray:
-    """Gap between two scanned faces that lie as the registration leaves them.
+    """Gap (y, x) between two scanned faces as the registration leaves them, ``aperture`` in mm.
 
-    Parameters
-    ----------
-    lower, upper : Path
-    keys : mapping
-        How they are read, see `scan.read.read_faces`.
-    outliers : {"keep", "mask", "fill"}
-        See `surface.cleaning.clean_faces`.
-
-    Returns
-    -------
-    DataArray (y, x)
-        ``aperture``, mm: height of the upper face above the lower one, below zero where the faces
-        overlap, NaN where a face is missing. Attributes: ``registration`` and ``cleaning``.
-
-    Raises
-    ------
-    InputError
-        As `read_faces` and `clean_faces`.
+    It is the height of the upper face above the lower one: below zero where the faces overlap, NaN
+    where a face is missing. ``keys`` are those of `scan.read.read_faces`, ``outliers`` is that of
+    `surface.cleaning.clean_faces`; both may raise InputError. Attributes ``registration`` and
+    ``cleaning`` say what was done.
     """
     low, high = read_faces(lower, upper, keys)
     assert high is not None  # two files were given

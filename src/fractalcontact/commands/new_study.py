@@ -23,19 +23,10 @@ TEMPLATE = Path(__file__).with_suffix(".yaml")
 
 
 def new_study(path: Path, scans: Path) -> list[Described]:
-    """Write the study of a folder's scans, and draft sidecars beside them.
+    """Reports on the scans of a folder, whose study is written with drafts of missing sidecars.
 
-    Parameters
-    ----------
-    path : Path
-        The study's file; its stem is the study's name.
-    scans : Path
-        The folder.
-
-    Returns
-    -------
-    list of Described
-        One a scan, and one a file that is refused by its name.
+    ``path`` is the file of the study, its stem the name. Files that are refused by their names have
+    reports too.
 
     Raises
     ------

@@ -26,17 +26,7 @@ _POWER = re.compile(r"\^(-?\([^()]*\)|-?[\w.]*\w)")
 
 
 class Caption(NamedTuple):
-    """A caption in parts.
-
-    Attributes
-    ----------
-    finding : str
-        What the figure finds, without numbers in brackets; empty where there is none.
-    text : list of str
-        What is drawn.
-    rest : list of str
-        What is found, in sentences.
-    """
+    """Caption in parts: finding (may be empty), what is drawn, and what is found, in sentences."""
 
     finding: str
     text: list[str]
@@ -46,10 +36,7 @@ class Caption(NamedTuple):
 def take_apart(caption: str) -> Caption:
     """Parts of a caption file: heading, empty line, one sentence a line.
 
-    Parameters
-    ----------
-    caption : str
-        As a figure's text file holds it; one without an empty line is what is drawn alone.
+    A file without an empty line says what is drawn alone.
     """
     heading, parts, lines = caption.rstrip("\n").partition("\n\n")
     if not parts:
@@ -61,10 +48,7 @@ def take_apart(caption: str) -> Caption:
 def symbols(text: object) -> Markup:
     """Text with its symbols as printed: Delta_g as Δ with a lowered g, mm2 as mm².
 
-    Parameters
-    ----------
-    text : object
-        Escaped first: it may be untrusted input.
+    It may be untrusted input, and is escaped first.
     """
     safe = str(escape(text))
     safe = _SYMBOL.sub(_lowered, safe)

@@ -17,29 +17,29 @@ from .summary import Sheet
 
 
 def absent(row: Row, one: Number) -> str:
-    """Why a page prints no number; empty where it prints one."""
+    """Reason why a page prints no number; empty where it prints one."""
     return one.missing or (row.zero if row.zero and one.value == 0 else "")
 
 
 def value_words(row: Row, one: Number) -> str:
-    """A number in the unit that suits it."""
+    """Number in the unit that suits it."""
     return bare_words(one) if row.unit == "1" else with_unit(one.value, row.unit)
 
 
 def bare_words(one: Number) -> str:
-    """A number without its unit; of a count every digit."""
+    """Number without its unit; of a count every digit."""
     return short(one.value, 3 if abs(one.value) < 1000 else 6)
 
 
 def error_words(row: Row, one: Number, error: float) -> str:
-    """An error in per cent of the number, or in its unit where that may be zero or negative."""
+    """Error in per cent of the number, or in its unit where that may be zero or negative."""
     in_unit = row.signed or not one.estimate.known or one.value == 0
     words = with_unit(error, row.unit, 2) if in_unit else percent(abs(error / one.value))
     return plus_minus(error, words)
 
 
 def estimate_words(one: Number) -> str:
-    """A number with its interval, as figures print it."""
+    """Number with its interval, as figures print it."""
     found = one.estimate
     if not found.known:
         return MISSING
@@ -56,5 +56,5 @@ def sort_value(sheet: Sheet, row: Row, load: int | None = None) -> float | str:
 
 
 def shown(value: float) -> float | str:
-    """A number as an attribute of the page: empty where it is missing."""
+    """Number as an attribute of the page: empty where it is missing."""
     return value if math.isfinite(value) else ""

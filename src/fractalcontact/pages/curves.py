@@ -25,11 +25,10 @@ COLUMNS = (
 
 
 def curves_table(study: str, subjects: list[Subject]) -> pd.DataFrame:
-    """Curves of specimens, one row a point; points that were not solved are left out.
+    """Curves of specimens, one row a point, with the total error of this surface or their interval.
 
-    Closure, tangent stiffness and corrected area with the total error of this surface, both
-    Delta_sigma with their intervals. A point is ``resolved`` where ten nodes touch and, of a
-    dimension, where its interval determines it; figures draw the others hollow.
+    A point is ``resolved`` where ten nodes touch and, of a dimension, where its interval determines
+    it; figures draw the others hollow. Points that were not solved are left out.
     """
     rows: list[dict[str, Any]] = []
     for subject in subjects:

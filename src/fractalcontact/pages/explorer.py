@@ -34,16 +34,9 @@ NEEDS = (
 def write_explorer(
     atlas_path: Path | str, path: Path | str, names: Sequence[str] | None = None
 ) -> None:
-    """Write the page on all contact states of specimens: one file that needs no other.
+    """Write ``explorer.html``, all contact states of specimens, beside atlas and result page.
 
-    Parameters
-    ----------
-    atlas_path : path-like
-        Atlas of the study.
-    path : path-like
-        ``explorer.html`` beside the atlas and the result page, to which it links.
-    names : sequence of str, optional
-        Of the specimens; all of the study by default.
+    It is one file that needs no other. ``names`` are all specimens by default.
 
     Raises
     ------

@@ -69,21 +69,11 @@ def cards_of(
     groups: Collection[str],
     specimen: str = "",
 ) -> list[Card]:
-    """Cards of the figures that are there.
+    """Cards of the figures whose files exist in a folder.
 
-    Parameters
-    ----------
-    names : sequence of str
-    folder : pathlib.Path
-        With their files.
-    address : str
-        Of that folder, relative to the page.
-    atlas : str
-        Path of the atlas, as a user would type it.
-    groups : collection of str
-        Names of the groups that it has.
-    specimen : str, optional
-        Of which they are; empty of a whole study.
+    ``address`` is that of the folder, relative to the page; ``atlas`` and ``groups`` are the path
+    of the atlas as a user would type it, and the names of its groups. ``specimen`` is empty of
+    figures of a whole study.
     """
     found = []
     for name in names:
@@ -116,18 +106,10 @@ def cards_of(
 
 
 def redrawn(name: str, specimen: str, atlas: str, groups: Collection[str]) -> str:
-    """Lines of Python that read what a figure shows with xarray, and draw it again.
+    """Lines of Python that read the stages of a figure with xarray, and draw it again.
 
-    Parameters
-    ----------
-    name : str
-        Of the figure.
-    specimen : str
-        Empty for a figure of a study.
-    atlas : str
-        Path of the atlas.
-    groups : collection of str
-        Names of the groups that it has; what a figure would read of others is not there to read.
+    Stages that are none of the ``groups`` of the atlas are left out. ``specimen`` is empty for a
+    figure of a study.
     """
     stages = all_figures()[name].needs
     subject = repr(specimen)
@@ -154,7 +136,7 @@ def redrawn(name: str, specimen: str, atlas: str, groups: Collection[str]) -> st
 
 
 def _group_of(stage, specimen):
-    """Group of a stage: the specimen's, if there is one; measured maps have their own."""
+    """Group of a stage: that of the specimen, if there is one; measured maps have their own."""
     return f"{stage}/{specimen}" if specimen and stage != "contact_maps" else stage
 
 
@@ -164,7 +146,7 @@ def png_size(path: Path) -> tuple[int, int]:
     Raises
     ------
     ValueError
-        If it is none.
+        If it is no PNG file.
     """
     with open(path, "rb") as file:
         head = file.read(24)

@@ -16,18 +16,10 @@ _WORDS = {
 
 
 class Test(NamedTuple):
-    """A test: computed over measured at the last computed state within it.
+    """Laboratory test: computed over measured value at the last computed state within it.
 
-    Attributes
-    ----------
-    words : str
-    note : str
-        What to know of its readings; empty if nothing is.
-    ratio : Number
-    status : str
-        "computed", or "fitted" and "predicted" with the constant that is fitted to a test.
-    calibrated : Number or None
-        The same ratio with that constant; None without.
+    ``note`` is what to know of its readings. ``status`` is "computed", or "fitted" or "predicted"
+    where a constant is fitted to a test; ``calibrated`` is the same ratio with that constant.
     """
 
     words: str
@@ -38,7 +30,7 @@ class Test(NamedTuple):
 
 
 def tests_of(subject: Subject) -> list[Test]:
-    """Laboratory tests of a specimen; none of one without."""
+    """Laboratory tests of a specimen."""
     found = []
     for kind, words in _WORDS.items():
         ratios = [one for one in read(row_of(f"{kind}_over_measured"), subject) if one.at]

@@ -31,18 +31,10 @@ SIGNS = {GOOD: "●", IN_PART: "◐", POOR: "○", NOT_JUDGED: "–"}
 
 @dataclass(frozen=True)
 class Light:
-    """One light.
+    """Light of a specimen: its key in the summary, its title on the page, and its verdict.
 
-    Attributes
-    ----------
-    key, title : str
-        Its name in the summary, and on the page.
-    word : str
-        :data:`GOOD`, :data:`IN_PART`, :data:`POOR` or :data:`NOT_JUDGED`.
-    reason : str
-        What decided it.
-    help : str
-        What would make it better; empty where it is good or not judged.
+    ``word`` is :data:`GOOD`, :data:`IN_PART`, :data:`POOR` or :data:`NOT_JUDGED`, ``reason`` what
+    decided it, ``help`` what would make it better: empty where it is good or not judged.
     """
 
     key: str
@@ -63,7 +55,7 @@ def lights_of(subject: Subject) -> list[Light]:
 
 
 def validity_at(subject: Subject, number: int) -> Validity:
-    """The verdict on the elastic model under the load of this number, with its real pressure."""
+    """Verdict on the elastic model under the load of this number, with its real pressure."""
     return Validity.of(subject.states("elastic_model").isel(normal_force=number))
 
 

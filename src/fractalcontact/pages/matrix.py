@@ -25,22 +25,12 @@ SIGNS = {
 
 @dataclass(frozen=True)
 class Cell:
-    """A verdict on a statement, and where it comes from.
+    """Verdict on a statement, with its sign and the class of its colour.
 
-    Attributes
-    ----------
-    verdict, sign, kind : str
-        In words; a sign; the class of its colour.
-    numbers, note : str
-        What decides it, and what to know of that.
-    explanation : str
-        What a null model does in the same data; empty where none is compared.
-    judged_on : str
-        The specimen, or realisations of its kind.
-    circular : str
-        How the specimen was chosen for it; empty where it was not.
-    figure : str
-        Name of a figure that shows it; empty where there is none.
+    ``numbers`` decide it, ``note`` and ``explanation`` (what a null model does in the same data)
+    stand beside them. It is judged on the specimen, or on realisations of its kind. ``circular``
+    says how the specimen was chosen for it; ``figure`` is the name of one that shows it. Both may
+    be empty.
     """
 
     verdict: str
@@ -56,7 +46,7 @@ class Cell:
 
 @dataclass(frozen=True)
 class Row:
-    """A statement, the rule that judges it, and its verdicts by specimen."""
+    """Statement, the rule that judges it, and its verdicts by specimen."""
 
     name: str
     figure: str
@@ -66,14 +56,7 @@ class Row:
 
 
 def matrix_of(atlas: xr.DataTree, specimens: Sequence[str]) -> list[Row]:
-    """Statements that any of the specimens is asked, in the order of the paper.
-
-    Parameters
-    ----------
-    atlas : xr.DataTree
-        With the stage ``statements``.
-    specimens : sequence of str
-    """
+    """Statements that are asked of any of the specimens, in the order of the paper."""
     tables = {name: atlas[f"statements/{name}"].to_dataset() for name in specimens}
     return [row for one in claims_of("one").values() if (row := _row(one, tables)).cells]
 

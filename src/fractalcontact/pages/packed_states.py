@@ -101,22 +101,10 @@ class _Numbers:
 def packed_states(atlas: xr.DataTree, name: str) -> dict[str, Any]:
     """All contact states of a specimen, as JSON can hold them.
 
-    Parameters
-    ----------
-    atlas : xr.DataTree
-        From :func:`study.atlas.read_atlas`, with the stages of one specimen.
-    name : str
-        The specimen; it has a group in the stage ``closure``.
-
-    Returns
-    -------
-    dict
-        Coordinates (`direction`, `offset`, `resolution`, `normal_force`, `nominal_pressure`,
-        `rigid_direction`, `rigid_offset`), `arrays` (stage, variable, units, meaning, dims, shape,
-        start of each in `numbers`), `numbers` (text), `of_joint`, `reasons`, `window`, `domains`
-        (text by resolution, direction and offset), `marks` and `fields`. Arrays called
-        ``total/ROW`` are errors of all sources; ``undetermined/ROW``, and for the rows `of_joint`
-        ``undetermined/by_scan``, say where the pages call a number undetermined.
+    ``numbers`` is the text of all arrays; ``arrays`` has the stage, variable, units, meaning,
+    dimensions, shape and start of each in it. Arrays called ``total/ROW`` are errors of all
+    sources; ``undetermined/ROW``, and for the rows ``of_joint`` ``undetermined/by_scan``, say where
+    the pages call a number undetermined. ``domains`` are texts by resolution, direction and offset.
     """
     subject = Subject.of(atlas, name)
     stages = dict(subject.stages)
@@ -154,7 +142,7 @@ def packed_states(atlas: xr.DataTree, name: str) -> dict[str, Any]:
 
 
 def _of_all_states(subject: Subject) -> xr.Dataset:
-    """Shown numbers of the flow over all states; missing but at the reported offset."""
+    """Flow over all states; it is missing but at the reported offset."""
     reported, closure = subject.reported, subject["closure"]
     shown = [one.variable for one in shown_in("explorer") if one.stage == "flow"]
     flow = subject["flow"][shown].expand_dims(

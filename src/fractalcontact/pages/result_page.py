@@ -98,15 +98,8 @@ _BLOCKS, _COLUMNS = 12, 30
 class Place:
     """Paths of the files of a study.
 
-    Attributes
-    ----------
-    atlas : pathlib.Path
-    figures : pathlib.Path
-        Folder of the figures.
-    logs : pathlib.Path
-        Folder of the logs of jobs, whose last lines say how long they worked; may be missing.
-    folder : pathlib.Path
-        Where the pages go: they name figures, atlas and explorer as what stands there.
+    Pages go to ``folder``, and name figures, atlas and explorer as files there. The last lines of
+    ``logs``, which may be missing, say how long the jobs worked.
     """
 
     atlas: Path
@@ -123,16 +116,10 @@ class Place:
 def write_specimen_pages(
     place: Place, explored: Collection[str], trees: Trees | None = None
 ) -> None:
-    """Write the pages of the specimens of an atlas, which may be that of one of a study.
+    """Write the pages of the specimens of an atlas, which may hold one specimen of a study.
 
-    Parameters
-    ----------
-    place : Place
-        With their cards, if there are any.
-    explored : collection of str
-        Specimens that the explorer shows.
-    trees : Trees, optional
-        The atlas with at least the stages of :data:`NEEDS`, where it is read already.
+    ``explored`` are the specimens that the explorer shows. ``trees`` is the atlas with at least the
+    stages of :data:`NEEDS`, where it is read already.
     """
     trees = trees or Trees(place.atlas, NEEDS)
     head = _head(place, trees.root) | {"explored": explored}
@@ -147,19 +134,9 @@ def write_specimen_pages(
 
 
 def write_index(place: Place, explored: Collection[str]) -> list[str]:
-    """Write the index of a study, and beside it the other files of :data:`files.FILES`.
+    """Specimens of a study, whose index is written with the other files of :data:`files.FILES`.
 
-    Parameters
-    ----------
-    place : Place
-        With the cards of its specimens, if there are any.
-    explored : collection of str
-        Specimens that the explorer shows, which may be made later.
-
-    Returns
-    -------
-    list of str
-        Its specimens.
+    ``explored`` are the specimens that the explorer shows; it may be written later.
     """
     trees = Trees(place.atlas, NEEDS)
     atlas, names = trees.root, trees.names
@@ -200,7 +177,7 @@ def write_index(place: Place, explored: Collection[str]) -> list[str]:
 
 
 def _head(place, atlas):
-    """Context of the templates: study, date, versions, duration, formatting functions."""
+    """Values of all templates: study, date, versions, formatting functions."""
     made = datetime.datetime.fromtimestamp(place.atlas.stat().st_mtime, datetime.UTC)
     return {
         "study": printable(atlas.attrs["study"]),
@@ -366,7 +343,7 @@ def _specimen_values(
 
 
 def _quantities(subject: Subject, sheet: Sheet) -> list[tuple[Row, Number, str, str]]:
-    """Quantities of the specimen's page: row, number, name, and where the scan lies among twins."""
+    """Rows of the specimen's page: number, name, and where the scan lies among its twins."""
     budget, found = subject.state("error_budget"), []
     for row in shown_in("page"):
         within = ""
@@ -394,7 +371,7 @@ def _write_files(
 
 
 def _write_configuration(path: Path, atlas: xr.DataTree) -> None:
-    """The study as its user wrote it, without comments: ready to be run again."""
+    """Write the study as its user wrote it, without comments: it can be run again."""
     stated: Mapping[str, Any] = configuration_of(atlas)["study"]
     text = yaml.safe_dump(dict(stated), sort_keys=False, allow_unicode=True)
     with atomic_write(path) as temporary:
@@ -402,7 +379,7 @@ def _write_configuration(path: Path, atlas: xr.DataTree) -> None:
 
 
 def _write_tables(place: Place) -> None:
-    """All numbers drawn in figures, with those of the whole study, in one archive."""
+    """Write all numbers drawn in figures, with the tables of the study, into one archive."""
     members = [(place.folder / name, name) for name in (SUMMARY, CURVES, STATEMENTS)]
     for path in sorted(place.figures.rglob("*.csv")):
         members.append((path, f"figures/{path.relative_to(place.figures).as_posix()}"))

@@ -20,7 +20,7 @@ _IN_SCRIPT |= {"\u2029": "\\u2029"}
 
 @cache
 def environment() -> Environment:
-    """The one environment: labels and names are untrusted input, so nothing is taken as HTML."""
+    """Environment of the templates, which escapes all text: labels are untrusted input."""
     made = Environment(
         loader=FileSystemLoader(TEMPLATES),
         autoescape=True,
@@ -34,7 +34,7 @@ def environment() -> Environment:
 
 
 def script_data(value: Any) -> Markup:
-    """A value as JSON that may stand inside a ``script`` element.
+    """JSON of a value that may stand inside a ``script`` element.
 
     Raises
     ------

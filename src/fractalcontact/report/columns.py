@@ -10,7 +10,7 @@ from .published import Number, Row
 def columns_of(row: Row, one: Number) -> dict[str, Any]:
     """Columns of a number: NAME, NAME_low, NAME_high, NAME_error_surface and so on, the unit last.
 
-    NAME_error alone is the bound of the solver's error, as in the atlas and the tables of figures.
+    NAME_error alone is the solver error bound, as in the atlas and the tables of figures.
     """
     name = _column(row, one)
     found = {"": one.value}

@@ -10,7 +10,7 @@ from ..core.subject import Subject
 
 
 def _unstated(key: str, words: str) -> Callable[[Subject], str]:
-    """Reason for what needs a number of the material; empty where it is stated."""
+    """Reason for a quantity that needs a number of the material; empty where it is stated."""
 
     def reason(subject: Subject) -> str:
         stated = subject.settings["material"].get(key)
@@ -21,14 +21,14 @@ def _unstated(key: str, words: str) -> Callable[[Subject], str]:
 
 
 def _not_sliding(subject: Subject) -> str:
-    """Reason for what needs faces that slide."""
+    """Reason for a quantity that needs faces that slide."""
     if "strength" in subject.stages:
         return ""
     return f"nothing slides: {OPPOSITE[subject['specimens'].attrs['opposite']]}"
 
 
 def _too_few_offsets(subject: Subject) -> str:
-    """Reason for what needs offsets in the reported direction."""
+    """Reason for a quantity that needs offsets in the reported direction."""
     if subject.direction == "none":
         return "does not slide"
     return "" if subject.direction in subject["joints"]["direction"] else "too few offsets"

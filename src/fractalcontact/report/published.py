@@ -39,16 +39,16 @@ BY_SCAN = "suspicious cells of the scan carry most of the force"
 
 
 class Number(NamedTuple):
-    """A published number, unrounded.
+    """Published number, unrounded.
 
     Attributes
     ----------
     at : dict
-        Pressure, offset, direction and the like that it is of; empty for a single number.
+        Pressure, offset, direction and the like; empty for a single number.
     estimate : Estimate
-        Value as the atlas has it, with its interval; ``reason`` is what to know of it.
+        Value of the atlas with its interval; ``reason`` is a remark on it.
     missing : str
-        Why it is no result; empty of one that is.
+        Why it is no result; empty of a result.
     determined : bool
         False where the interval of a fit or dimension, its stage, or the scan says so.
     error, population : float
@@ -67,12 +67,12 @@ class Number(NamedTuple):
 
     @property
     def value(self) -> float:
-        """Value as the atlas has it."""
+        """Value of the atlas."""
         return float(self.estimate.value)
 
     @property
     def remark(self) -> str:
-        """Why it is missing or undetermined, or what to know of it."""
+        """Reason why it is missing or undetermined, or a remark on it."""
         if self.missing or self.estimate.reason or self.determined:
             return self.missing or str(self.estimate.reason)
         if self.estimate.determined:
@@ -82,14 +82,7 @@ class Number(NamedTuple):
 
 @dataclass(frozen=True)
 class Row:
-    """A quantity of the register; ``published.yaml`` explains the keys.
-
-    Attributes
-    ----------
-    name, title, unit : str
-    source : str
-        "STAGE/VARIABLE".
-    """
+    """Quantity of the register; ``published.yaml`` explains the keys. ``source`` is ``from``."""
 
     name: str
     title: str
@@ -135,7 +128,7 @@ class Row:
 
     @property
     def variable(self) -> str:
-        """Its name in that stage."""
+        """Name in that stage."""
         return self.source.partition("/")[2]
 
     @property
@@ -195,16 +188,8 @@ def row_of(name: str) -> Row:
 def read(row: Row, subject: Subject) -> list[Number]:
     """Numbers of a quantity of a specimen at its reported state.
 
-    Parameters
-    ----------
-    row : Row
-    subject : Subject
-
-    Returns
-    -------
-    list of Number
-        One a value of the dimensions that are left, in C order; a single one without ``at`` where
-        the specimen lacks the quantity.
+    There is one for each value of the dimensions that are left, in C order; a single one without
+    ``at`` where the specimen lacks the quantity.
     """
     for need in row.needs:
         if why := NEEDS[need](subject):
@@ -249,19 +234,10 @@ def fitted_over(row: Row, subject: Subject) -> tuple[float, float, str] | None:
 
 
 def total_of(row: Row, subject: Subject, kind: str = "total") -> xr.DataArray | None:
-    """Errors of a quantity, or its values for harder contacts, as the error budget has them.
+    """Errors of a quantity over the loads or reference pressures, as the error budget has them.
 
-    Parameters
-    ----------
-    row : Row
-    subject : Subject
-    kind : str
-        "total", "total_of_population" or "hardest".
-
-    Returns
-    -------
-    xr.DataArray or None
-        Over the loads, or the reference pressures; None without.
+    ``kind`` is "total", "total_of_population" or "hardest": the last are its values for harder
+    contacts. None without a budget.
     """
     budget = subject.stages.get("error_budget")
     if budget is None or not row.budget:
@@ -316,7 +292,7 @@ def _numbers(row: Row, subject: Subject, array: xr.DataArray) -> Iterator[Number
 
 
 def _missing(row: Row, estimate: Estimate, valid: bool, why: str) -> str:
-    """Why a number is no result: a fit that is not valid is undetermined instead."""
+    """Reason why a number is no result; a fit that is not valid is undetermined instead."""
     if not valid and not row.range:
         return why or (row.note if estimate.known else "") or row.missing
     return "" if estimate.known else why or row.missing
@@ -339,5 +315,5 @@ def _beside(row, dim):
 
 
 def _plain(label: Any) -> Any:
-    """A label without numpy's type."""
+    """Label without numpy's type."""
     return label.item() if isinstance(label, np.generic) else label

@@ -98,34 +98,16 @@ def flow_stages(
     settings: JointSettings,
     solver: Solver,
 ) -> dict[str, xr.Dataset]:
-    """Stage of the flow through one specimen.
+    """Stage of the flow through one specimen; of a surface against a plane, ``along`` is along x.
 
-    Parameters
-    ----------
-    specimens, joints : xr.Dataset
-        Of the stages of these names, from :func:`stages.specimen.specimen_stages`.
-    closure, branches, error_budget : xr.Dataset
-        Likewise, from :func:`stages.states.state_stages`.
-    parts : sequence of xr.Dataset
-        Contact states, from :func:`states.sweep.joint_states`.
-    settings : JointSettings
-    solver : Solver
-
-    Returns
-    -------
-    dict of str to xr.Dataset
-        The stage flow. Of a surface against a plane, which does not slide, ``along`` is along x.
+    ``parts`` are contact states from :func:`states.sweep.joint_states`, the rest stages by name.
+    Unloading and reloading are one elastic curve on the heights less the permanent set of the stage
+    ``branches``; where nothing yields, all branches are that of loading.
 
     Raises
     ------
     NotConverged
         If a state of unloading could not be verified.
-
-    Notes
-    -----
-    What a cycle has pressed in stays: unloading and reloading are elastic on the heights less the
-    permanent set of the stage ``branches``, and one curve. Where nothing yields, all branches are
-    that of loading.
     """
     reported = Reported.read(closure)
     loading = JointLoading.of_joint(specimens, joints, reported.direction, settings, solver)
@@ -230,7 +212,7 @@ def _numbers(gap, spacing, axis, *, errors):
 
 
 def _percolation_pressures(pressure, flows):
-    """Largest pressure with a path through the gap, and the smallest without one; NaN for none."""
+    """Largest pressure with a path through the gap and smallest without one, MPa; NaN for none."""
     opened, closed = pressure[flows > 0], pressure[flows == 0]
     return np.append(np.nan, opened)[-1], np.append(closed, np.nan)[0]
 
@@ -280,7 +262,7 @@ def _of_branches(composite, space, loading, branches, both, loaded):
 
 
 def _over_offsets(parts, offsets, both, reported, loaded):
-    """Numbers over the offsets under the reference load; those of the reported one are loaded."""
+    """Numbers over the offsets under the reference load; the reported offset takes ``loaded``."""
     known, load = offsets == reported.offset, reported.reference
     values = {name: np.where(known, one[load], np.nan) for name, one in loaded.items()}
     for part in (part for part in parts if OFFSET_GAP in part):

@@ -61,23 +61,11 @@ def state_stages(
     solver: Solver,
     ensemble: xr.Dataset | None = None,
 ) -> dict[str, xr.Dataset]:
-    """Stages that are computed from the contact states of one specimen.
+    """Stages that are computed from the contact states of one specimen, by name.
 
-    Parameters
-    ----------
-    specimens, surface_dimension, joints : xr.Dataset
-        Of the stages of these names, from :func:`stages.specimen.specimen_stages`.
-    parts : sequence of xr.Dataset
-        Contact states, from :func:`states.sweep.joint_states`.
-    settings : StateSettings
-    solver : Solver
-    ensemble : xr.Dataset, optional
-        Stage of this name: twins of a scan, or realisations.
-
-    Returns
-    -------
-    dict of str to xr.Dataset
-        By stage.
+    ``parts`` are contact states from :func:`states.sweep.joint_states`; ``ensemble`` is the stage
+    of this name, of twins of a scan or of realisations. The branches and the error budget solve
+    some states again.
     """
     states, mapped = combine(parts), map_states(parts)
     spacing, area = cell_side(specimens), nominal_area(specimens)
@@ -157,7 +145,7 @@ def requested_accuracy(solver: Solver) -> dict[str, tuple]:
 
 
 def _reported(curves: xr.Dataset, settings: StateSettings, area: float) -> Reported:
-    """States that the study wants published."""
+    """States that the study publishes."""
     return Reported.choose(
         curves,
         direction=str(settings.contact_directions[0]),

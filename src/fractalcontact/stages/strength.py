@@ -33,17 +33,8 @@ from ..states.states import with_pressure
 def strength_stages(settings: ReportSettings, **stages: xr.Dataset) -> dict[str, xr.Dataset]:
     """Stages that solve nothing: a friction angle, wall strength or label makes these alone again.
 
-    Parameters
-    ----------
-    settings : ReportSettings
-    **stages : xr.Dataset
-        Of one specimen by name, those that the rule ``strength`` takes.
-
-    Returns
-    -------
-    dict of str to xr.Dataset
-        By stage: windows, elastic_model, statements, comparison and, of a joint that slides,
-        strength.
+    ``stages`` are those that the rule ``strength`` takes, of one specimen, by name. A joint that
+    does not slide has no stage strength.
     """
     laws = size_and_strength(stages, settings)
     every, stated = stages | laws, asdict(settings)

@@ -158,20 +158,8 @@ def span_finding(
     It holds where the smallest value is near 0 and the largest reaches the upper end: 2 for plastic
     contact, more than 1 for elastic contact. It holds in part where the values pass 1 from surely
     below, and fails where the upper end is surely missed, or where no value is surely below 1
-    though that of as many random nodes is.
-
-    Parameters
-    ----------
-    delta : Estimate
-        (n,), each with a value.
-    random : (n,) ndarray
-        That of random nodes.
-    pressures : (n,) ndarray
-        MPa, ascending.
-    note : str
-        Begins with a small letter.
-    plastic : bool
-        Whether contacts yield.
+    though that of as many random nodes is. ``delta`` and ``random`` are (n,), ``pressures`` MPa,
+    ascending.
     """
     lowest, highest = int(np.argmin(delta.value)), int(np.argmax(delta.value))
     lower, upper = delta[lowest], delta[highest]

@@ -19,15 +19,9 @@ PLATEAUS, DIRECTIONS = 2, 4
 class Plateaus(NamedTuple):
     """Rigid dilatancy over the second half of v, by direction, as the stage ``joints`` has it.
 
-    Attributes
-    ----------
-    directions : list of str
-    trend : (n,) ndarray of str
-        :data:`core.verdicts.LEVEL`, ``RISING`` or ``FALLING``.
-    change : (n,) ndarray
-        Of the fitted line, a fraction of the mean.
-    undecided : str
-        Why the trend of some direction says nothing of a plateau; empty where all do.
+    ``trend`` (n,) has :data:`core.verdicts.LEVEL`, ``RISING`` or ``FALLING``, ``change`` (n,) that
+    of the fitted line, a fraction of the mean. ``undecided`` says why the trend of some direction
+    does not decide about a plateau; it is empty where all do.
     """
 
     directions: list[str]
