@@ -1,7 +1,7 @@
 """Each writer shows the number of the register: cards, tables, explorer, index, pages.
 
-That the register's number is the atlas's is shown in ``tests/report``, that tables of figures have
-the atlas's in ``tests/figures/test_contract.py``. ``RESULTS=results/paper`` takes the results of a
+How the register reads the atlas is tested in ``tests/report``, tables of figures in
+``tests/figures/test_contract.py``. ``RESULTS=results/paper`` takes the results of a
 study that was made already.
 """
 
@@ -354,6 +354,43 @@ def test_the_study_has_numbers_of_every_kind(subjects):
     for by_scan in (True, False):
         assert any(row.by_scan == by_scan and not one.determined for row, one in numbers)
     assert sum(one.determined and one.estimate.known for _, one in numbers) > 200
+
+
+#: Variables of the reported state that rows of the register are of, and their place in the budget.
+SOURCES = {
+    "seated_closure": ("closure", "seated_closure", ""),
+    "interface_closure": ("closure", "interface_closure", "closure"),
+    "separation": ("closure", "separation", "separation"),
+    "interface_stiffness": ("closure", "interface_stiffness", "stiffness"),
+    "tangent_stiffness": ("closure", "reference_stiffness", ""),
+    "area_corrected": ("closure", "area_corrected", "area_corrected"),
+    "mean_gap": ("closure", "mean_gap", ""),
+    "nodes": ("closure", "nodes", ""),
+    "k_ni": ("closure", "seated_k_ni", ""),
+    "k_ni_change": ("closure", "seated_k_ni_change", ""),
+    "delta_sigma": ("domains", "delta_sigma", "delta_sigma"),
+    "sigma_n": ("scaling", "sigma_n", ""),
+}
+
+
+@pytest.mark.parametrize("name", SOURCES)
+def test_the_register_has_the_numbers_of_the_reported_state(subjects, name):
+    stage, variable, quantity = SOURCES[name]
+    for subject in subjects:
+        states, closure = subject[stage], subject["closure"]
+        place = {"direction": closure["reported_direction"].item(), "resolution": 1}
+        states = states.sel({dim: at for dim, at in place.items() if dim in states[variable].dims})
+        states = states.sel(offset=closure["reported_offset"].item(), method="nearest")
+        numbers = read(row_of(name), subject)
+        np.testing.assert_array_equal([one.value for one in numbers], np.ravel(states[variable]))
+        if f"{variable}_low" in states:
+            low = [one.estimate.low for one in numbers]
+            np.testing.assert_array_equal(low, np.ravel(states[f"{variable}_low"]))
+        if quantity:
+            budget = subject["error_budget"].sel(quantity=quantity)
+            for field, total in (("error", "total"), ("population", "total_of_population")):
+                errors = [getattr(one, field) for one in numbers]
+                np.testing.assert_array_equal(errors, budget[total])
 
 
 def test_units_of_the_register_are_those_of_the_atlas(subjects):

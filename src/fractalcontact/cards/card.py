@@ -10,7 +10,7 @@ from ..core.subject import Subject
 from ..core.window import spacing_of, window_sides
 from ..pages.first_screen import is_synthetic, model_of
 from ..pages.lights import lights_of, trust_of
-from ..report.published import read_at, row_of, shown_in
+from ..report.published import read_at, row_of, shown_in, stages_of
 from .entries import entries, entry_of, number, rounded
 from .methods import methods_of, references_of
 
@@ -20,23 +20,8 @@ FORM = 1
 _ROUNDING = 1e-9
 #: Of numbers and sentences of a card.
 LICENCE = "CC0-1.0"
-#: Stages that a card reads, those that a specimen has.
-STAGES = (
-    "specimens",
-    "quality",
-    "surface_dimension",
-    "area",
-    "closure",
-    "branches",
-    "domains",
-    "scaling",
-    "flow",
-    "strength",
-    "measured",
-    "choices",
-    "error_budget",
-    "elastic_model",
-)
+#: Stages that a card reads, of those that a specimen has.
+STAGES = stages_of("section", "errors") | {"quality", "choices", "elastic_model"}
 
 
 def card_of(subject: Subject, study: Mapping[str, Any], made: Mapping[str, Any]) -> dict[str, Any]:

@@ -4,8 +4,7 @@ import math
 from collections.abc import Collection, Mapping
 from typing import Any
 
-from ..core.text import MISSING, measured, percent, short, with_unit
-from ..pages.captions import symbols
+from ..core.text import MISSING, measured, percent, short
 from ..pages.first_screen import STRENGTH_RULES
 from ..report.published import row_of
 from .entries import row_at
@@ -41,9 +40,6 @@ def page_of(card: Mapping[str, Any], block: Mapping[str, Any] | None = None) -> 
         "number": lambda value, digits=2: MISSING if value is None else short(value, digits),
         "words": in_words,
         "ends": ends_in_words,
-        "short": short,
-        "with_unit": with_unit,
-        "symbols": symbols,
     }
 
 

@@ -26,7 +26,7 @@ SCHEMA = Path(__file__).with_name("card.schema.json")
 
 
 #: Stages that the cards and the aperture maps read.
-NEEDS = (*STAGES, "contact")
+NEEDS = STAGES | {"contact"}
 
 
 def write_cards(

@@ -8,6 +8,7 @@ from matplotlib import colormaps
 from matplotlib.colors import to_hex
 
 from ..core.labels import printable
+from ..report.published import stages_of
 from ..study.atlas_parts import Trees
 from .packed_states import packed_states
 from .templating import write_page
@@ -19,16 +20,7 @@ COLOURS = 33
 #: Letters of a specimen's label that are shown.
 MAX_LABEL = 100
 #: Stages that the page shows.
-NEEDS = (
-    "specimens",
-    "contact",
-    "closure",
-    "flow",
-    "dilatancy",
-    "domains",
-    "scaling",
-    "error_budget",
-)
+NEEDS = stages_of("explorer") | {"contact"}
 
 
 def write_explorer(

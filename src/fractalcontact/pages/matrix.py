@@ -23,6 +23,10 @@ SIGNS = {
 }
 
 
+#: Words of a verdict, as the stages and the table have them.
+_WORDS = ("verdict", "numbers", "note", "explanation", "judged_on")
+
+
 @dataclass(frozen=True)
 class Cell:
     """Verdict on a statement, with its sign and the class of its colour.
@@ -34,14 +38,22 @@ class Cell:
     """
 
     verdict: str
-    sign: str
-    kind: str
     numbers: str
     note: str
     explanation: str
     judged_on: str
     circular: str
     figure: str
+
+    @property
+    def sign(self) -> str:
+        """Sign of the verdict."""
+        return SIGNS[self.verdict][0]
+
+    @property
+    def kind(self) -> str:
+        """Class of its colour."""
+        return SIGNS[self.verdict][1]
 
 
 @dataclass(frozen=True)
@@ -92,11 +104,7 @@ def statement_table(study: str, rows: Iterable[Row]) -> pd.DataFrame:
             "statement": row.name,
             "figure": row.figure,
             "claim": row.claim,
-            "verdict": cell.verdict,
-            "numbers": cell.numbers,
-            "note": cell.note,
-            "explanation": cell.explanation,
-            "judged_on": cell.judged_on,
+            **{name: getattr(cell, name) for name in _WORDS},
             "chosen_for": cell.circular,
         }
         for row in rows
@@ -124,16 +132,6 @@ def _figure_of(claim, found):
 
 
 def _cell(found, figure):
-    verdict = str(found["verdict"].item())
-    sign, kind = SIGNS[verdict]
-    return Cell(
-        verdict=verdict,
-        sign=sign,
-        kind=kind,
-        numbers=str(found["numbers"].item()),
-        note=str(found["note"].item()),
-        explanation=str(found["explanation"].item()),
-        judged_on=str(found["judged_on"].item()),
-        circular=str(found["circular_reason"].item()) if bool(found["circular"]) else "",
-        figure=figure,
-    )
+    words = {name: str(found[name].item()) for name in _WORDS}
+    circular = str(found["circular_reason"].item()) if found["circular"] else ""
+    return Cell(**words, circular=circular, figure=figure)

@@ -24,20 +24,10 @@ from ..core.labels import OPPOSITE, printable
 from ..core.measured_maps import measured_maps
 from ..core.subject import Subject, configuration_of
 from ..core.tables import write_table
-from ..core.text import (
-    duration,
-    interval,
-    measured,
-    number,
-    percent,
-    short,
-    undetermined,
-    with_unit,
-)
-from ..report.published import Number, Row, row_of, shown_in
+from ..core.text import duration, interval, number, undetermined
+from ..report.published import Number, Row, row_of, shown_in, stages_of
 from ..study.atlas_parts import Trees
 from ..study.figure_list import JOINT, SPECIMEN, STUDY, all_figures
-from .captions import symbols
 from .cells import absent, bare_words, error_words, estimate_words, shown, sort_value, value_words
 from .common_loads import common_loads, main_load
 from .curves import curves_table
@@ -63,27 +53,10 @@ from .templating import write_page
 from .thumbnails import relief_thumbnail
 
 #: Stages that the pages read; the fields of contact, the largest, are not among them.
-NEEDS = (
-    "specimens",
-    "quality",
-    "surface_dimension",
-    "joints",
-    "closure",
-    "flow",
-    "dilatancy",
-    "measured",
-    "strength",
-    "area",
-    "domains",
-    "scaling",
-    "error_budget",
-    "choices",
-    "elastic_model",
-    "statements",
-    "study_statements",
-    "study_comparison",
-    "contact_maps",
-)
+NEEDS = stages_of("summary", "curves", "page", "index", "section") | {
+    *("quality", "choices", "statements"),
+    *("study_statements", "study_comparison", "contact_maps"),
+}
 #: Time that all members of an archive have, so that the same tables are the same archive.
 _ZIP_TIME = (1980, 1, 1, 0, 0, 0)
 #: Letters of a label in a table.
@@ -186,11 +159,6 @@ def _head(place, atlas):
         "versions_differ": json.loads(atlas.attrs.get("versions_differ", "{}")),
         "atlas_size": f"{number(place.atlas.stat().st_size / 1e6, 0)} MB",
         "atlas_path": _as_typed(place.atlas),
-        "short": short,
-        "measured": measured,
-        "with_unit": with_unit,
-        "percent": percent,
-        "symbols": symbols,
         "absent": absent,
         "value_words": value_words,
         "bare_words": bare_words,

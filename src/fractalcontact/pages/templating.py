@@ -11,6 +11,8 @@ from markupsafe import Markup
 
 from ..core.atomic import atomic_write
 from ..core.labels import printable
+from ..core.text import measured, percent, short, with_unit
+from .captions import symbols
 
 TEMPLATES = Path(__file__).parent / "templates"
 #: What ends a script, opens a comment, or ends a line of JavaScript alone, as JSON may hold it.
@@ -21,16 +23,17 @@ _IN_SCRIPT |= {"\u2029": "\\u2029"}
 @cache
 def environment() -> Environment:
     """Environment of the templates, which escapes all text: labels are untrusted input."""
-    made = Environment(
+    templates = Environment(
         loader=FileSystemLoader(TEMPLATES),
         autoescape=True,
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    made.filters["data"] = script_data
-    made.filters["printable"] = printable
-    return made
+    templates.filters |= {"data": script_data, "printable": printable}
+    numbers = {of.__name__: of for of in (measured, percent, short, with_unit, symbols)}
+    templates.globals |= {"inlined": inlined, **numbers}
+    return templates
 
 
 def script_data(value: Any) -> Markup:
@@ -54,7 +57,7 @@ def inlined(name: str) -> Markup:
 
 def render(template: str, values: Mapping[str, Any]) -> str:
     """HTML of a template with these values."""
-    return environment().get_template(template).render(inlined=inlined, **values)
+    return environment().get_template(template).render(**values)
 
 
 def write_page(path: Path | str, template: str, values: Mapping[str, Any]) -> None:

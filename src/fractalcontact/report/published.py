@@ -176,6 +176,17 @@ def shown_in(*places: str) -> tuple[Row, ...]:
     return tuple(row for row in published() if any(getattr(row, place) for place in places))
 
 
+def stages_of(*places: str) -> set[str]:
+    """Stages that the numbers of some places are read from, with those of the reported state."""
+    sources = [
+        source
+        for row in shown_in(*places)
+        for source in (row.source, row.error, row.flag, row.reason, row.misfit, *row.range)
+    ]
+    stages = {source.partition("/")[0] for source in sources} - {"", "settings"}
+    return stages | {"specimens", "closure", "error_budget"}
+
+
 @cache
 def row_of(name: str) -> Row:
     """Row of this name."""
