@@ -45,25 +45,25 @@ def aperture_at(
         If the pressure lies outside those whose maps are kept.
     """
     maps = _gaps(contact, results, name).dropna("normal_force", how="all")
-    known = maps["nominal_pressure"].values
+    kept = maps["nominal_pressure"].values
     if pressure is None:
         force = contact.attrs["map_load"]
-        pressure = float(known[np.argmin(np.abs(maps["normal_force"].values - force))])
-    if not known[0] * (1 - SAME) <= pressure <= known[-1] * (1 + SAME):
+        pressure = float(kept[np.argmin(np.abs(maps["normal_force"].values - force))])
+    if not kept[0] * (1 - SAME) <= pressure <= kept[-1] * (1 + SAME):
         raise InputError(
             f"{name}: no aperture at {exact(pressure)} MPa; its maps are kept at "
-            f"{', '.join(f'{exact(one, 4)}' for one in known)} MPa, so write a pressure "
+            f"{', '.join(f'{exact(one, 4)}' for one in kept)} MPa, so write a pressure "
             "between the "
             "first and the last, or add it to 'loads' of the study (without the folder 'contact' "
             "of its results, to 'dilatancy_loads')"
         )
-    place = np.interp(np.log(pressure), np.log(known), np.arange(known.size))
+    place = np.interp(np.log(pressure), np.log(kept), np.arange(kept.size))
     low, nearest = int(place), round(place)
-    if abs(known[nearest] - pressure) <= SAME * pressure:
+    if abs(kept[nearest] - pressure) <= SAME * pressure:
         values, source = maps.values[nearest], f"computed at {exact(pressure, 4)} MPa"
     else:
         values = (low + 1 - place) * maps.values[low] + (place - low) * maps.values[low + 1]
-        ends = f"{exact(known[low], 4)} and {exact(known[low + 1], 4)} MPa"
+        ends = f"{exact(kept[low], 4)} and {exact(kept[low + 1], 4)} MPa"
         source = f"interpolated in ln(pressure) between {ends}"
     attrs = cf_attrs("mm", "aperture, 0 in contact") | {
         "specimen": name,

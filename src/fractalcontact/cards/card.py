@@ -18,7 +18,7 @@ from .methods import methods_of, references_of
 FORM = 1
 #: Errors below this fraction of their quantity are rounding.
 _ROUNDING = 1e-9
-#: Of numbers and sentences of a card.
+#: Licence of the numbers and sentences of a card.
 LICENCE = "CC0-1.0"
 #: Stages that a card reads, of those that a specimen has.
 STAGES = stages_of("section", "errors") | {"quality", "choices", "elastic_model"}
@@ -71,9 +71,9 @@ def geometry_of(subject: Subject) -> dict[str, Any]:
         "window_y": side_y,
         "offset": subject.offset,
     }
-    found = {name: {"value": rounded(one), "unit": "mm"} for name, one in lengths.items()}
+    geometry = {name: {"value": rounded(length), "unit": "mm"} for name, length in lengths.items()}
     row = row_of("seating_pressure")
-    return found | {
+    return geometry | {
         "seat": number(row, subject, read_at(row, subject)) | {"unit": row.unit},
         "reference_pressure": {"value": reference_pressure_of(subject), "unit": "MPa"},
     }
@@ -87,23 +87,23 @@ def reference_pressure_of(subject: Subject) -> float | None:
 def errors_of(subject: Subject) -> list[dict[str, Any]]:
     """Errors by source of the quantities under the reference load, half-widths at 95 %."""
     pressure, budget = reference_pressure_of(subject), subject.state("error_budget")
-    found = []
+    rows = []
     for row in shown_in("errors"):
-        one = read_at(row, subject)
-        found.append(
+        number = read_at(row, subject)
+        rows.append(
             {
                 "quantity": row.budget,
                 "title": row.page,
                 "unit": row.unit,
                 "pressure": pressure,
-                "value": rounded(one.value),
-                "of_this_surface": rounded(one.error),
-                "of_its_population": rounded(one.population),
-                "hardest": rounded(one.hardest),
-                "sources": _by_source(budget, row.budget, abs(one.value)),
+                "value": rounded(number.value),
+                "of_this_surface": rounded(number.error),
+                "of_its_population": rounded(number.population),
+                "hardest": rounded(number.hardest),
+                "sources": _by_source(budget, row.budget, abs(number.value)),
             }
         )
-    return found
+    return rows
 
 
 def _by_source(budget, quantity, size):

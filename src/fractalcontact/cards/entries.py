@@ -58,22 +58,22 @@ def reference_of(card: Mapping[str, Any]) -> float:
     return float(card["geometry"].get("reference_pressure", {}).get("value", math.nan))
 
 
-def number(row: Row, subject: Subject, found: Number) -> dict[str, Any]:
+def number(row: Row, subject: Subject, published: Number) -> dict[str, Any]:
     """Number as a card writes it, with its ends and errors, or why it is missing."""
-    if found.missing:
-        return {"missing": found.missing}
+    if published.missing:
+        return {"missing": published.missing}
     written: dict[str, Any] = dict(
-        zip(("value", "low", "high"), map(rounded, found.estimate.ends), strict=True)
+        zip(("value", "low", "high"), map(rounded, published.estimate.ends), strict=True)
     )
     if row.range:
-        written["determined"] = found.determined
-        if found.estimate.reason:
-            written["note"] = found.estimate.reason
-    for key, value in (("of_its_population", found.population), ("hardest", found.hardest)):
+        written["determined"] = published.determined
+        if published.estimate.reason:
+            written["note"] = published.estimate.reason
+    for key, value in (("of_its_population", published.population), ("hardest", published.hardest)):
         if math.isfinite(value):
             written[key] = rounded(value)
     misfit = array_of(row, subject, row.misfit)
-    if misfit is not None and found.determined:
+    if misfit is not None and published.determined:
         written["note"] = f"misses the curve by {text.percent(misfit.item())}"
     return written
 

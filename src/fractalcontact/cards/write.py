@@ -87,23 +87,23 @@ def read_card(path: Path | str) -> dict[str, Any]:
     """
     path = Path(path)
     try:
-        # JSON is YAML.
-        found = yaml.safe_load(path.read_text(encoding="utf-8"))
+        # A YAML parser reads JSON too.
+        card = yaml.safe_load(path.read_text(encoding="utf-8"))
     except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
         raise InputError(
             f"{path}: cannot be read ({type(error).__name__}); expected a card, such as "
             "results/paper/cards/sandstone_twin.yaml"
         ) from None
-    if not isinstance(found, dict) or found.get("form") != FORM or "entries" not in found:
+    if not isinstance(card, dict) or card.get("form") != FORM or "entries" not in card:
         raise InputError(
             f"{path}: no card of form {FORM}; expected 'form: {FORM}' and 'entries', as in "
             "results/paper/cards/sandstone_twin.yaml"
         )
     schema = Draft202012Validator(json.loads(SCHEMA.read_text(encoding="utf-8")))
-    if wrong := best_match(schema.iter_errors(found)):
+    if wrong := best_match(schema.iter_errors(card)):
         key = ".".join(map(str, wrong.absolute_path))
         raise InputError(
             f"{path}: no whole card: {key and f'{key}: '}{printable(wrong.message, 120)}; mend "
             "that, or let the study write its cards again (make)"
         )
-    return found
+    return card

@@ -304,7 +304,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("folder", nargs="?", help="default: the study's")
     parser.add_argument("--study", default="config/paper.yaml")
     options = parser.parse_args(arguments)
-    # Names may hold what a terminal's encoding does not.
+    # Names may have letters that the encoding of the terminal lacks.
     sys.stdout.reconfigure(errors="backslashreplace")  # type: ignore[union-attr]  # a text file
     study = read_study(options.study)
     check_study(study, options.study)

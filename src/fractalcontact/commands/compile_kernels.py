@@ -18,12 +18,12 @@ from ..roughness.dimension import surface_dimension
 from ..states.state_scalars import aperture
 from ..surface.synthesis import self_affine
 
-#: Nodes per side: from here on the solver uses all of its parts.
+#: Nodes per side from which the solver uses all of its parts.
 SIDE = 200
-#: And from here on those for light contact.
+#: Nodes per side from which it also uses the parts for light contact.
 LARGE_SIDE = 512
-#: Force, N, that one node carries: numbers of one node lie in memory in two ways at once, for which
-#: kernels are compiled of their own.
+#: Force, N, that one node carries: arrays of one node are contiguous in two orders at once, and
+#: numba compiles kernels of their own for them.
 ONE_NODE = 1e-6
 
 

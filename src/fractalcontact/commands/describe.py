@@ -35,15 +35,15 @@ from .describe_picture import draw_faces
 
 DRAFT = ".draft"
 PAGE = f"scans{DRAFT}.html"
-#: What is shown where a line is not filled in yet; the picture says so.
+#: Values shown for lines that are not filled in yet; the picture says so.
 _SHOWN = {
     **{"unit": "mm", "unit_xy": "mm", "unit_z": "mm", "spacing": "1 mm", "first_row": "bottom"},
     **{"kind": "face", "decimal": ".", "layout": "matrix", "columns": [0, 1, 2], "axes": "none"},
     **{"heights": "up", "missing": NO_MARK},
 }
-#: Numbers that may mark missing cells, named at most.
+#: Most numbers named that may mark missing cells.
 _MAX_NAMED = 4
-#: Files of one instrument may differ in relief by this factor from the one that was looked at.
+#: Largest factor between the reliefs of files of one instrument.
 ALIKE = 5.0
 _HEAD = """\
 # Draft of the sidecar of {files}: what the file seems to say. Nobody has looked at it yet.
@@ -178,13 +178,13 @@ def _marks(face: Face) -> dict[float, bool]:
     unit = options.get("unit_z") or options.get("unit") or "mm"
     sign = -1 if options.get("heights") == "down" or options.get("kind") == APERTURE else 1
     factor = sign * length_factor(str(unit), str(face.path))
-    # In the file's own unit, without what the conversion leaves in the last digits.
+    # Heights in the file's own unit, without rounding errors of the conversion.
     own = np.round(heights / factor, 9 - int(np.log10(np.nanmax(np.abs(heights / factor)) + 1)))
     if options.get("kind") == APERTURE:
         own = own[own != 0]
-    found = {float(f"{mark.value:.7g}"): mark.outside for mark in find_marks(own)}
-    rest = np.where(np.isin(own, [mark for mark, outside in found.items() if outside]), np.nan, own)
-    return found | {float(f"{value:.7g}"): False for value, _ in possible_marks(rest)}
+    marks = {float(f"{mark.value:.7g}"): mark.outside for mark in find_marks(own)}
+    rest = np.where(np.isin(own, [mark for mark, outside in marks.items() if outside]), np.nan, own)
+    return marks | {float(f"{value:.7g}"): False for value, _ in possible_marks(rest)}
 
 
 def _draft_text(scan: ScanFiles, lines: list[str], drafts: Mapping, shown: Mapping) -> str:
@@ -374,7 +374,7 @@ def row_lines(row: Described) -> list[str]:
     first = f"{printable(row.name, 24):24} {row.state:9} {' | '.join(row.sizes)}{fill}"
     return [
         first,
-        *(f"    {printable(one, 300)}" for one in dict.fromkeys(row.sentences)),
+        *(f"    {printable(sentence, 300)}" for sentence in dict.fromkeys(row.sentences)),
     ]
 
 

@@ -43,7 +43,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     out = Path(given.out)
     if out.suffix not in MAP_ENDINGS:
         raise InputError(f"{out}: write a file that ends in {', '.join(MAP_ENDINGS)}")
-    # Settings of a study in the same sidecar, such as a material, say nothing of the gap.
+    # Settings of a study in the same sidecar, such as a material, do not change the gap.
     keys, _ = read_sidecar(Path(given.keys) if given.keys else None)
     gap = gap_of(Path(given.lower), Path(given.upper), keys, given.outliers)
     picture = out.with_suffix(".png")
@@ -67,12 +67,12 @@ def gap_of(lower: Path, upper: Path, keys: Mapping, outliers: str = "keep") -> x
     cleaned, _, attrs = clean_faces([low, high], outliers=outliers, name=str(lower))
     gap = (cleaned[1] - cleaned[0]).rename("aperture")
     source = f"{upper.name} above {lower.name}"
-    found = {
+    done = {
         "registration": high.attrs["registration"],
         "cleaning": attrs["cleaning"],
         "source": source,
     }
-    return gap.assign_attrs(units="mm", long_name="gap between the faces", **found)
+    return gap.assign_attrs(units="mm", long_name="gap between the faces", **done)
 
 
 def words(gap: xr.DataArray) -> list[str]:
@@ -83,13 +83,13 @@ def words(gap: xr.DataArray) -> list[str]:
     dx, dy = (float(np.diff(gap[axis].values).mean()) for axis in "xy")
     shares = np.percentile(present, _PERCENTILES)
     overlapping = percent(float(np.mean(present < 0)))
-    each = ", ".join(f"{p} %: {g:.4g}" for p, g in zip(_PERCENTILES, shares, strict=True))
+    percentiles = ", ".join(f"{p} %: {g:.4g}" for p, g in zip(_PERCENTILES, shares, strict=True))
     lines = [
         f"{gap.attrs['source']}: {nx} x {ny} cells of {dx:.4g} x {dy:.4g} mm, "
         f"{percent(1 - present.size / gap.size)} without a height of both",
         f"gap: mean {present.mean():.4g} mm, standard deviation {present.std():.4g} mm, "
         f"{present.min():.4g} to {present.max():.4g} mm",
-        f"percentiles of the gap, mm: {each}",
+        f"percentiles of the gap, mm: {percentiles}",
         f"overlap: the upper face lies below the lower one in {overlapping} of the cells",
         f"suspicious cells: {gap.attrs['cleaning']}",
     ]
@@ -112,7 +112,7 @@ def _draw(gap: xr.DataArray, path: Path) -> None:
     figure = Figure(figsize=(11, 4.8), layout="constrained")
     FigureCanvasAgg(figure)
     of_map, histogram = figure.subplots(1, 2, width_ratios=(3, 2))
-    low, high = np.nanpercentile(gap, [0.5, 99.5])  # a few spikes must not hide the rest
+    low, high = np.nanpercentile(gap, [0.5, 99.5])  # spikes would hide the rest
     image = of_map.pcolormesh(
         gap["x"], gap["y"], gap, cmap=colours(), vmin=low, vmax=high, rasterized=True
     )

@@ -35,18 +35,18 @@ def new_study(path: Path, scans: Path) -> list[Described]:
     """
     if path.exists():
         raise InputError(f"{path} exists and stays; for another study: make new NAME=other")
-    found, refused = list_scans(scans)
-    if not found and not refused:
+    files, refused = list_scans(scans)
+    if not files and not refused:
         raise InputError(
             f"{scans}: no scan in this folder; put a file there (scans/README.md names the "
             "formats), then: make new"
         )
     rows = [Described(key, "refused", sentences=[str(why)]) for key, why in refused.items()]
-    rows += [describe_or_refuse(found[key]) for key in sorted(found, key=natural_key)]
+    rows += [describe_or_refuse(files[key]) for key in sorted(files, key=natural_key)]
     text = string.Template(TEMPLATE.read_text(encoding="utf-8")).substitute(
         name=path.stem,
         scans=yaml.safe_dump({"scans": str(scans)}, width=math.inf).rstrip(),
-        specimens=listed(found) or "none",
+        specimens=listed(files) or "none",
     )
     with atomic_write(path) as temporary:
         temporary.write_text(text, encoding="utf-8")

@@ -41,8 +41,8 @@ def take_apart(caption: str) -> Caption:
     heading, parts, lines = caption.rstrip("\n").partition("\n\n")
     if not parts:
         return Caption("", [heading] if heading else [], [])
-    shown, *found = lines.splitlines()
-    return Caption(heading, [shown], found)
+    shown, *findings = lines.splitlines()
+    return Caption(heading, [shown], findings)
 
 
 def symbols(text: object) -> Markup:
@@ -53,11 +53,11 @@ def symbols(text: object) -> Markup:
     safe = str(escape(text))
     safe = _SYMBOL.sub(_lowered, safe)
     safe = _PRIME.sub(r"h′<sub>\1</sub>", safe)
-    safe = _ALONE.sub(lambda found: _GREEK[found[1]], safe)
-    safe = _UNIT.sub(lambda found: found[1] + "²³"["23".index(found[2])], safe)
-    return Markup(_POWER.sub(lambda found: f"<sup>{found[1]}</sup>", safe))
+    safe = _ALONE.sub(lambda match: _GREEK[match[1]], safe)
+    safe = _UNIT.sub(lambda match: match[1] + "²³"["23".index(match[2])], safe)
+    return Markup(_POWER.sub(lambda match: f"<sup>{match[1]}</sup>", safe))
 
 
-def _lowered(found):
-    base, index = found.groups()
+def _lowered(match):
+    base, index = match.groups()
     return f"{_GREEK.get(base, base)}<sub>{_GREEK.get(index, index)}</sub>"

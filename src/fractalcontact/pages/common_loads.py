@@ -29,16 +29,23 @@ def common_loads(
     ``comparison``, the stage ``study_comparison``, has the pressure that each load is compared
     under; a single specimen has none.
     """
-    compared = {one.name: _compared(one, comparison) for one in subjects}
-    solved = {one.name: np.isfinite(one.states("closure")["closure"].values) for one in subjects}
-    quoted = sorted({float(compared[one.name][i]) for one in subjects for i in one.reported.quoted})
-    found: list[CommonLoad] = []
+    compared = {subject.name: _compared(subject, comparison) for subject in subjects}
+    solved = {
+        subject.name: np.isfinite(subject.states("closure")["closure"].values)
+        for subject in subjects
+    }
+    quoted = sorted(
+        {float(compared[subject.name][i]) for subject in subjects for i in subject.reported.quoted}
+    )
+    loads: list[CommonLoad] = []
     for pressure in quoted:
         places = {name: np.flatnonzero(compared[name] == pressure) for name in compared}
-        numbers = {name: int(at[0]) for name, at in places.items() if solved[name][at].any()}
+        numbers = {
+            name: int(place[0]) for name, place in places.items() if solved[name][place].any()
+        }
         if numbers:
-            found.append(CommonLoad(f"p{len(found)}", pressure, numbers))
-    return found
+            loads.append(CommonLoad(f"p{len(loads)}", pressure, numbers))
+    return loads
 
 
 def _compared(subject, comparison):
@@ -52,7 +59,9 @@ def main_load(loads: Sequence[CommonLoad], subjects: Sequence[Subject]) -> Commo
     """Load shown first: that of most specimens, then of most contact maps, then the largest."""
 
     def rank(load):
-        maps = sum(load.numbers.get(one.name) == one.reported.reference for one in subjects)
+        maps = sum(
+            load.numbers.get(subject.name) == subject.reported.reference for subject in subjects
+        )
         return len(load.numbers), maps, load.pressure
 
     return max(loads, key=rank, default=None)

@@ -17,7 +17,7 @@ from .templating import write_page
 COLOUR_MAP = "cividis"
 #: Colours of the map that the page gets; it interpolates between them.
 COLOURS = 33
-#: Letters of a specimen's label that are shown.
+#: Most letters of a specimen's label.
 MAX_LABEL = 100
 #: Stages that the page shows.
 NEEDS = stages_of("explorer") | {"contact"}
@@ -44,7 +44,9 @@ def write_explorer(
         "study": study,
         "index": {
             "study": study,
-            "specimens": [{key: one[key] for key in ("name", "label")} for one in specimens],
+            "specimens": [
+                {key: specimen[key] for key in ("name", "label")} for specimen in specimens
+            ],
             "colours": _colours(),
         },
         "specimens": specimens,

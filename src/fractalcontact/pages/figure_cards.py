@@ -22,7 +22,7 @@ SECTIONS = {
     "size effect": "Size effect",
     "trust": "How far to trust it",
 }
-#: What a figure reads puts it into a section: the first of these that it needs any stage of.
+#: Section of a figure by the stages that it needs: the first with any of them.
 _BY_STAGE = (
     ("trust", ("choices", "error_budget")),
     ("size effect", ("windows", "window_states", "size_test")),
@@ -32,7 +32,7 @@ _BY_STAGE = (
     ("closure", ("closure", "area")),
     ("joint", ("joints",)),
 )
-#: Files of a figure that a page offers, those that are there, and their names on it.
+#: Endings of the files of a figure that a page offers, and their names on it.
 FILES = {"png": "PNG", "svg": "SVG", "pdf": "PDF", "csv": "CSV"}
 _PNG = b"\x89PNG\r\n\x1a\n"
 
@@ -75,7 +75,7 @@ def cards_of(
     of the atlas as a user would type it, and the names of its groups. ``specimen`` is empty of
     figures of a whole study.
     """
-    found = []
+    cards = []
     for name in names:
         picture, caption = folder / f"{name}.png", folder / f"{name}.txt"
         if not (picture.is_file() and caption.is_file()):
@@ -84,7 +84,7 @@ def cards_of(
         width, height = png_size(picture)
         title = all_figures()[name].title
         start = f"{quote(address)}/{quote(name)}"
-        found.append(
+        cards.append(
             Card(
                 name=name,
                 title=title,
@@ -102,7 +102,7 @@ def cards_of(
                 code=redrawn(name, specimen, atlas, groups),
             )
         )
-    return found
+    return cards
 
 
 def redrawn(name: str, specimen: str, atlas: str, groups: Collection[str]) -> str:
@@ -114,7 +114,7 @@ def redrawn(name: str, specimen: str, atlas: str, groups: Collection[str]) -> st
     stages = all_figures()[name].needs
     subject = repr(specimen)
     if not specimen:
-        # A study of synthetic surfaces, or of measured maps, alone has no specimens to list.
+        # A study of synthetic surfaces alone, or of measured maps alone, has no specimens.
         of_specimens = "specimens" in stages
         subject = "sorted(atlas['specimens'].children)" if of_specimens else "[]"
     of_stages = {stage: _group_of(stage, specimen) for stage in stages}

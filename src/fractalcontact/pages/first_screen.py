@@ -17,7 +17,7 @@ from .lights import lights_of, trust_of
 
 #: Intervals as the register names them, in words.
 _ALONE = {"solver": " solver error alone", "all errors of this surface": " this surface"}
-#: Keeps an interval on one line.
+#: Space that keeps an interval on one line.
 _NBSP = "\u00a0"
 #: Rules for the peak shear strength, by their rows, in words.
 STRENGTH_RULES = {
@@ -137,7 +137,7 @@ class _Block:
         """Number in words and what stands below it; a dash with the reason where it is missing."""
         if number.missing:
             return Fact(title, "–", list(filter(None, (number.missing, beside))))
-        # One unit for a number and its interval, the same in all blocks.
+        # A number and its interval have one unit, the same in all blocks.
         size, shown = (100.0, " %") if unit == "%" else (1.0, f" {unit}".removesuffix(" 1"))
         ends = _ends(number, size, _ALONE.get(interval, ""))
         notes = ends, self._of_joint(number, size), self._harder(number, size), beside
@@ -163,8 +163,8 @@ class _Block:
     def at_twice(self) -> str:
         """Change of the stiffness at twice the spacing, which no interval contains."""
         change = _value(self.number("stiffness_change"))
-        known = math.isfinite(change) and change != 0
-        return f"changes by {percent(change, sign='+')} at twice the spacing" if known else ""
+        is_known = math.isfinite(change) and change != 0
+        return f"changes by {percent(change, sign='+')} at twice the spacing" if is_known else ""
 
     def jrc(self) -> Fact:
         """JRC at the step of its law, in the reported direction."""
@@ -182,15 +182,15 @@ class _Block:
         No rule's error is that of the strength: the rules differ by more.
         """
         numbers = {words: self.number(name) for name, words in STRENGTH_RULES.items()}
-        missing = {words: one.missing for words, one in numbers.items() if one.missing}
-        known = [(one.value, words) for words, one in numbers.items() if not one.missing]
-        known.sort(key=lambda rule: rule[0])
-        if not known:
+        missing = {words: number.missing for words, number in numbers.items() if number.missing}
+        rules = [(number.value, words) for words, number in numbers.items() if not number.missing]
+        rules.sort(key=lambda rule: rule[0])
+        if not rules:
             return Fact(title, "–", [missing["dilatancy"]])
-        lines = [f"range of {len(known)} rules:"] if len(known) > 1 else []
-        lines += [f"{of} {short(value)} {_ends(numbers[of])}".rstrip() for value, of in known]
+        lines = [f"range of {len(rules)} rules:"] if len(rules) > 1 else []
+        lines += [f"{of} {short(value)} {_ends(numbers[of])}".rstrip() for value, of in rules]
         lines += [f"no value by {words}: {why}" for words, why in missing.items()]
-        ends = dict.fromkeys(short(value) for value, _ in (known[0], known[-1]))
+        ends = dict.fromkeys(short(value) for value, _ in (rules[0], rules[-1]))
         return Fact(title, f"{' to '.join(ends)} MPa", lines)
 
     def _of_joint(self, number: Number, size: float) -> str:

@@ -5,7 +5,7 @@ from typing import NamedTuple
 from ..core.subject import Subject
 from ..report.published import Number, read, row_of
 
-#: What each kind of test measures, in the order of the page.
+#: Quantity that each kind of test measures, in the order of the page.
 _WORDS = {
     "closure": "closure",
     "flow": "transmissivity",
@@ -31,17 +31,17 @@ class Test(NamedTuple):
 
 def tests_of(subject: Subject) -> list[Test]:
     """Laboratory tests of a specimen."""
-    found = []
+    tests = []
     for kind, words in _WORDS.items():
-        ratios = [one for one in read(row_of(f"{kind}_over_measured"), subject) if one.at]
-        for i, one in enumerate(ratios):
-            beside: tuple = ()
+        ratios = [ratio for ratio in read(row_of(f"{kind}_over_measured"), subject) if ratio.at]
+        for i, ratio in enumerate(ratios):
+            fitted: tuple = ()
             if kind == "closure":
                 status = str(subject["measured"]["closure_status"].values[i])
-                beside = (status, read(row_of("calibrated_over_measured"), subject)[i])
+                fitted = (status, read(row_of("calibrated_over_measured"), subject)[i])
             note = str(subject["measured"][f"{kind}_note"].values[i])
-            found.append(Test(f"{words}: {one.at['test']}", note, one, *beside))
-    return found
+            tests.append(Test(f"{words}: {ratio.at['test']}", note, ratio, *fitted))
+    return tests
 
 
 def calibration_of(subject: Subject) -> tuple[str, Number, str]:

@@ -52,18 +52,18 @@ from .summary import Sheet, sheet_of, summary_table
 from .templating import write_page
 from .thumbnails import relief_thumbnail
 
-#: Stages that the pages read; the fields of contact, the largest, are not among them.
+#: Stages that the pages read. The fields of contact, the largest stage, are left out.
 NEEDS = stages_of("summary", "curves", "page", "index", "section") | {
     *("quality", "choices", "statements"),
     *("study_statements", "study_comparison", "contact_maps"),
 }
-#: Time that all members of an archive have, so that the same tables are the same archive.
+#: Time stamp of all members of an archive: the same tables then give the same archive.
 _ZIP_TIME = (1980, 1, 1, 0, 0, 0)
-#: Letters of a label in a table.
+#: Most letters of a label in a table.
 _LONGEST = 120
-#: What the log of a job ends with.
+#: Last line of the log of a job.
 _WORKED = re.compile(r"^worked ([\d.]+) s", re.MULTILINE)
-#: Joints up to which each has a block on the first screen, and verdicts a column each.
+#: Most joints with a block each on the first screen, and with a column each of verdicts.
 _BLOCKS, _COLUMNS = 12, 30
 
 
@@ -98,9 +98,9 @@ def write_specimen_pages(
     head = _head(place, trees.root) | {"explored": explored}
     for name in trees.names:
         tree, groups, file = trees.of(name)
-        subject, found = Subject.of(tree, name), matrix_of(tree, [name])
+        subject, rows = Subject.of(tree, name), matrix_of(tree, [name])
         values = _specimen_values(
-            place, subject, sheet_of(subject), found, (_as_typed(file), groups)
+            place, subject, sheet_of(subject), rows, (_as_typed(file), groups)
         )
         path = place.folder / SPECIMEN_PAGE.format(specimen=name)
         write_page(path, "specimen.html", head | values | quoted_methods(name, place.folder))
@@ -121,7 +121,7 @@ def write_index(place: Place, explored: Collection[str]) -> list[str]:
     cards = {name: place.folder / CARD.format(specimen=name, ending="json") for name in names}
     carded = [name for name, path in cards.items() if path.is_file()]
     study = configuration_of(atlas)["study"]
-    # One after the other: those of an atlas in parts would not all fit into memory.
+    # Specimens are read one after the other: an atlas in parts may not fit into memory.
     for name in names:
         tree = trees.of(name)[0]
         subject = Subject.of(tree, name)
@@ -151,10 +151,10 @@ def write_index(place: Place, explored: Collection[str]) -> list[str]:
 
 def _head(place, atlas):
     """Values of all templates: study, date, versions, formatting functions."""
-    made = datetime.datetime.fromtimestamp(place.atlas.stat().st_mtime, datetime.UTC)
+    written = datetime.datetime.fromtimestamp(place.atlas.stat().st_mtime, datetime.UTC)
     return {
         "study": printable(atlas.attrs["study"]),
-        "date": f"{made:%Y-%m-%d %H:%M} UTC",
+        "date": f"{written:%Y-%m-%d %H:%M} UTC",
         "versions": json.loads(atlas.attrs["versions"]),
         "versions_differ": json.loads(atlas.attrs.get("versions_differ", "{}")),
         "atlas_size": f"{number(place.atlas.stat().st_size / 1e6, 0)} MB",
@@ -183,9 +183,9 @@ def _as_typed(path):
 def _columns() -> dict[str, list[Row]]:
     """Columns of the table of specimens from the register, by the kind of their cells."""
     columns: dict[str, list[Row]] = {"dimension": [], "budget": [], "number": []}
-    for one in shown_in("index"):
-        kind = "dimension" if one.dimension else "budget" if one.budget else "number"
-        columns[kind].append(one)
+    for row in shown_in("index"):
+        kind = "dimension" if row.dimension else "budget" if row.budget else "number"
+        columns[kind].append(row)
     return columns
 
 
@@ -312,15 +312,15 @@ def _specimen_values(
 
 def _quantities(subject: Subject, sheet: Sheet) -> list[tuple[Row, Number, str, str]]:
     """Rows of the specimen's page: number, name, and where the scan lies among its twins."""
-    budget, found = subject.state("error_budget"), []
+    budget, quantities = subject.state("error_budget"), []
     for row in shown_in("page"):
         within = ""
         if "within_twins" in budget and row.budget in budget["quantity"]:
             within = str(budget["within_twins"].sel(quantity=row.budget).item())
         several = "{" in row.page
         numbers = sheet.numbers[row.name] if several else [sheet.of(row.name)]
-        found += [(row, one, row.page.format(**one.at), within) for one in numbers]
-    return found
+        quantities += [(row, number, row.page.format(**number.at), within) for number in numbers]
+    return quantities
 
 
 # -- the files beside them -------------------------------------------------------------------------
@@ -355,7 +355,7 @@ def _write_tables(place: Place) -> None:
     with zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED) as archive:
         for path, name in members:
             member = zipfile.ZipInfo(name, _ZIP_TIME)
-            member.external_attr = 0o644 << 16  # who unpacks it may read it
+            member.external_attr = 0o644 << 16  # unpacked files can be read
             archive.writestr(member, path.read_bytes(), zipfile.ZIP_DEFLATED)
     with atomic_write(place.folder / TABLES) as temporary:
         temporary.write_bytes(stream.getvalue())

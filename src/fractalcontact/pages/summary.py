@@ -75,8 +75,8 @@ def sheet_of(subject: Subject, common: Sequence[CommonLoad] = ()) -> Sheet:
     )
 
 
-def _words(found, *replaced):
-    return str(found.item()).replace(*replaced) if replaced else str(found.item())
+def _words(variable, *replaced):
+    return str(variable.item()).replace(*replaced) if replaced else str(variable.item())
 
 
 def _dilatancy(subject):
@@ -119,23 +119,23 @@ def _of_specimen(sheet):
 
 def _of_load(sheet, load):
     model = sheet.models[load]
-    found = {
+    columns = {
         "normal_force_N": sheet.forces[load],
         "nominal_pressure_MPa": sheet.pressures[load],
         "load_of_maps": load == sheet.reference,
         "elastic_model": model.verdict,
     }
     numbers = [
-        (row, one)
+        (row, number)
         for row in shown_in("summary")
-        for one in _quoted(sheet, row, load)
-        if one.at or "{" not in row.summary
+        for number in _quoted(sheet, row, load)
+        if number.at or "{" not in row.summary
     ]
-    for row, one in numbers:
-        found |= columns_of(row, one)
-    for row, one in numbers:
-        found |= old_columns_of(row, one)
-    return found
+    for row, number in numbers:
+        columns |= columns_of(row, number)
+    for row, number in numbers:
+        columns |= old_columns_of(row, number)
+    return columns
 
 
 def _quoted(sheet, row, load):

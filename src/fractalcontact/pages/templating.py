@@ -15,7 +15,7 @@ from ..core.text import measured, percent, short, with_unit
 from .captions import symbols
 
 TEMPLATES = Path(__file__).parent / "templates"
-#: What ends a script, opens a comment, or ends a line of JavaScript alone, as JSON may hold it.
+#: Letters that end a script, open a comment or end a line of JavaScript, escaped as in JSON.
 _IN_SCRIPT = {"<": "\\u003c", ">": "\\u003e", "&": "\\u0026", "\u2028": "\\u2028"}
 _IN_SCRIPT |= {"\u2029": "\\u2029"}
 

@@ -14,8 +14,8 @@ def _unstated(key: str, words: str) -> Callable[[Subject], str]:
 
     def reason(subject: Subject) -> str:
         stated = subject.settings["material"].get(key)
-        known = stated is not None and math.isfinite(stated)
-        return "" if known else f"no {words} is stated"
+        is_stated = stated is not None and math.isfinite(stated)
+        return "" if is_stated else f"no {words} is stated"
 
     return reason
 
@@ -35,11 +35,11 @@ def _too_few_offsets(subject: Subject) -> str:
 
 
 def _no_jrc(subject: Subject) -> str:
-    known = np.isfinite(subject.states("strength")["jrc_used"].item())
-    return "" if known else "no JRC at the step of its law"
+    is_known = np.isfinite(subject.states("strength")["jrc_used"].item())
+    return "" if is_known else "no JRC at the step of its law"
 
 
-#: Reason by what a quantity may need; empty where it is there.
+#: Reason why a specimen lacks what a quantity needs; empty where it has it.
 NEEDS: Mapping[str, Callable[[Subject], str]] = {
     "sliding": _not_sliding,
     "offsets": _too_few_offsets,

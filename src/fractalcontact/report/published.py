@@ -19,7 +19,7 @@ from ..core.verdicts import TOO_WIDE
 from .needs import NEEDS
 
 _FILE = Path(__file__).with_suffix(".yaml")
-#: What stands for a dimension beside each number of a curve: name there, coordinate, unit.
+#: Label of each number of a curve by its dimension: name, coordinate, unit.
 _BESIDE = {
     "normal_force": ("pressure", "nominal_pressure", "MPa"),
     "reference_pressure": ("pressure", "reference_pressure", "MPa"),
@@ -31,10 +31,10 @@ _BESIDE = {
     "branch": ("branch", "branch", "1"),
     **{f"{kind}_test": ("test", f"{kind}_test", "1") for kind in TEST_COLUMNS},
 }
-#: Units of what stands beside a number.
+#: Units of the labels of a number.
 UNITS_AT = {name: unit for name, _, unit in _BESIDE.values()} | {"step": "mm", "fit_step": "mm"}
 _NOT_SOLVED = "not solved under this load"
-#: Why a number whose interval is narrow is undetermined.
+#: Reason why a number with a narrow interval is undetermined.
 BY_SCAN = "suspicious cells of the scan carry most of the force"
 
 
@@ -207,7 +207,7 @@ def read(row: Row, subject: Subject) -> list[Number]:
             return [Number({}, Estimate(), why)]
     if row.stage == "settings":
         stated = subject.settings["material"].get(row.variable)
-        # No bound on the pressure is an infinite one.
+        # Settings have an infinite hardness where nothing bounds the pressure.
         value = float(stated) if stated is not None and math.isfinite(stated) else math.nan
         return [Number({}, Estimate(value), "" if math.isfinite(value) else row.missing)]
     array = array_of(row, subject, row.source)

@@ -14,7 +14,7 @@ from ..statements.study import judge_study
 from ..study.atlas import words_of, write_atlas
 from ..study.atlas_parts import read_group
 
-#: Name of the one group of what is judged for the study as a whole.
+#: Group of the stages of the study as a whole.
 WHOLE = "study"
 
 
@@ -37,7 +37,7 @@ def join_stages(
     made_with : mapping of str to mapping of str to dict, optional
         Versions of libraries. This and the result are those of :func:`study.atlas.write_atlas`.
     """
-    # A label is only words: no job that solves has it, so that a new one solves nothing again.
+    # Labels are added here: no job that solves takes one, so a new label solves nothing again.
     for name, dataset in stages.get("specimens", {}).items():
         settings = configuration["settings"][name]
         dataset.attrs["label"] = settings["label"]
@@ -59,8 +59,8 @@ def row_of(path: Path | str, name: str) -> xr.Dataset:
     Its attributes ``scan_checksums`` and ``versions_differ`` go into the atlas of all.
     """
     row, attrs = read_group(path, f"comparison/{name}")
-    known = {key: attrs[key] for key in ("scan_checksums", "versions_differ") if key in attrs}
-    return row.drop_encoding().assign_attrs(known)
+    kept = {key: attrs[key] for key in ("scan_checksums", "versions_differ") if key in attrs}
+    return row.drop_encoding().assign_attrs(kept)
 
 
 def join_rows(
@@ -126,7 +126,7 @@ def _together(stages, settings):
         return {}
     together = {"study_comparison": {WHOLE: compare_specimens(stages["comparison"])}}
     own = {
-        # Measured contact maps, the study's, stand under names of their own.
+        # Measured contact maps belong to the study and are not among the stages of a specimen.
         name: {stage: parts[name] for stage, parts in stages.items() if name in parts}
         for name, stated in settings.items()
         if not stated["capped_variant"]

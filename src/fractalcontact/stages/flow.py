@@ -144,9 +144,13 @@ def flow_stages(
         "branch": branches["branch"].values,
         "gap_probability": ("gap_probability", list(QUANTILES), probability),
     }
-    for one in "yx":
-        nodes = joints[f"window_{one}"].values[:: reported.resolution]
-        coords[f"flow_{one}"] = (f"flow_{one}", nodes, cf_attrs("mm", f"{one} of the node"))
+    for axis_name in "yx":
+        nodes = joints[f"window_{axis_name}"].values[:: reported.resolution]
+        coords[f"flow_{axis_name}"] = (
+            f"flow_{axis_name}",
+            nodes,
+            cf_attrs("mm", f"{axis_name} of the node"),
+        )
     attrs = {f"flow_axis_{way}": axis for way, axis in axes.items()}
     stage = labelled_dataset(_TABLE, values, coords, attrs)
     return {"flow": with_pressure(stage, nominal_area(specimens))}
@@ -162,7 +166,7 @@ def _both_ways(axes, spacing, gap):
 
 def _over_loads(way, axis, gaps, spacing, states, error, reported):
     """Numbers of the flow one way on loading, and the flux map under the reference load."""
-    # What does not slide has no across: a second direction, at the loads that are quoted.
+    # A joint that does not slide has no way across: its second way is solved at quoted loads.
     every = way == WAYS[0] or reported.direction != "none"
     rows = {
         load: _numbers(gap, spacing, axis, errors=load in reported.quoted)
@@ -236,10 +240,10 @@ def _separation_error(gap, flow, total):
 
     The mean gap is off by as much as the separation, whatever node touches first.
     """
-    known = np.isfinite(gap + flow)
+    is_known = np.isfinite(gap + flow)
     error = np.full(flow.shape, np.nan)
-    if known.sum() > 1:
-        error[known] = np.abs(np.gradient(flow[known], gap[known])) * total[known]
+    if is_known.sum() > 1:
+        error[is_known] = np.abs(np.gradient(flow[is_known], gap[is_known])) * total[is_known]
     return error
 
 
@@ -247,10 +251,13 @@ def _of_branches(composite, space, loading, branches, both, loaded):
     """Numbers of all branches: on loading as given, else NaN above the largest load."""
     held, top = branches["permanent_set"].values, branches["normal_force"].values[-1]
     forces = loading.forces(loading.settings.loads)
-    values = {name: np.tile(one, (branches.sizes["branch"], 1)) for name, one in loaded.items()}
-    for one in values.values():
-        one[1:, forces > top] = np.nan
-    # What has not crushed unloads and reloads as it was loaded.
+    values = {
+        name: np.tile(over_branches, (branches.sizes["branch"], 1))
+        for name, over_branches in loaded.items()
+    }
+    for over_branches in values.values():
+        over_branches[1:, forces > top] = np.nan
+    # A joint that has not crushed unloads and reloads along its loading curve.
     if held.any():
         descending, elastic = np.flatnonzero(forces <= top)[::-1], {"rtol": loading.solver.rtol}
         where = f"specimen {loading.specimen.attrs['name']}, unloading"
@@ -263,12 +270,14 @@ def _of_branches(composite, space, loading, branches, both, loaded):
 
 def _over_offsets(parts, offsets, both, reported, loaded):
     """Numbers over the offsets under the reference load; the reported offset takes ``loaded``."""
-    known, load = offsets == reported.offset, reported.reference
-    values = {name: np.where(known, one[load], np.nan) for name, one in loaded.items()}
+    is_reported, load = offsets == reported.offset, reported.reference
+    values = {
+        name: np.where(is_reported, over_loads[load], np.nan) for name, over_loads in loaded.items()
+    }
     for part in (part for part in parts if OFFSET_GAP in part):
         for gap, offset in zip(part[OFFSET_GAP].values, part["offset"].values, strict=True):
             number = int(np.argmin(np.abs(offsets - offset)))
-            if not known[number]:
+            if not is_reported[number]:
                 for name, value in both(gap.astype(float)).items():
                     values[name][number] = value
     return values

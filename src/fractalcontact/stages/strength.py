@@ -51,15 +51,15 @@ def size_and_strength(
 ) -> dict[str, xr.Dataset]:
     """Stage windows (laws over the side b) and, of a joint that slides, stage strength."""
     specimens, laws = stages["specimens"], _size_laws(stages, settings)
-    made = {"windows": laws}
+    results = {"windows": laws}
     if slides(specimens.attrs["opposite"]):
         whole = predict_whole_strength(laws, stages["size_test"]["delta_sigma"])
-        made["windows"] = laws.merge(whole)
-        made["strength"] = joint_strength(
+        results["windows"] = laws.merge(whole)
+        results["strength"] = joint_strength(
             stages["dilatancy"], stages["joints"], specimens, settings
         )
     area = nominal_area(specimens)
-    return {name: with_pressure(stage, area) for name, stage in made.items()}
+    return {name: with_pressure(stage, area) for name, stage in results.items()}
 
 
 def _size_laws(stages: Mapping[str, xr.Dataset], settings: StrengthSettings) -> xr.Dataset:

@@ -18,8 +18,8 @@ from ..core.reported import Reported
 from ..core.text import percent
 from ..core.window import nominal_area
 
-#: What is compared, each with its 95 % interval: unit and long name; the first once a specimen,
-#: the others under every load.
+#: Compared quantities, each with its 95 % interval: unit and long name; once a specimen, and under
+#: every load.
 ONCE = {"delta_g": ("1", "surface dimension Delta_g, the recommended estimate")}
 UNDER_LOAD = {
     "stiffness": ("MPa/mm", "tangent stiffness d sigma_0 / d w_int at the map offset"),
@@ -28,7 +28,7 @@ UNDER_LOAD = {
     "size_exponent": ("1", "exponent of corrected A_r/A_0 against b at equal sigma_0"),
 }
 QUANTITIES = ONCE | UNDER_LOAD
-#: Name of the group of specimens that belong to none.
+#: Group of specimens for which the study states none.
 UNGROUPED = "no group"
 #: Digits to which nominal pressures must agree that specimens are compared under one.
 _DIGITS = 4

@@ -13,7 +13,7 @@ from ..core.subject import Subject
 from ..core.text import compact, loads_of, number
 from ..core.verdicts import FAILS, HOLDS, ILL_POSED, PARTLY, UNDETERMINED
 
-#: Why a joint under a hardness may be asked nothing of its contact area.
+#: Reason why statements on the contact area are ill-posed under a hardness.
 BY_CONSTRUCTION = "A_r = F/H, because all contacts yield"
 
 

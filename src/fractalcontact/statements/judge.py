@@ -20,7 +20,7 @@ from ..core.verdicts import UNDETERMINED
 from . import closure, nulls, scaling, sliding
 from .findings import Finding, Joint
 
-#: Which of its two materials the paper would take a study's for, by words in its name.
+#: Material of the paper by words in the name of a study's material.
 MATERIALS = {"sandstone": "rock", "rock": "rock", "concrete": "concrete"}
 
 

@@ -9,7 +9,7 @@ from ..core.text import compact, number
 from ..core.verdicts import FAILS, HOLDS, PARTLY, UNDETERMINED
 from .findings import Finding
 
-#: A local slope from here on is of boxes that are all occupied.
+#: Least local slope of boxes that are all occupied.
 FULL = 1.98
 
 #: Box sides whose ends have a smaller ratio show no power law.

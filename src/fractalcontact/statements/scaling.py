@@ -21,7 +21,7 @@ from .findings import (
 )
 from .local_slopes import one_slope
 
-#: Decades of load over which a change with the load is judged at the least.
+#: Least decades of load over which a change with the load is judged.
 MIN_DECADES = 1.0
 
 #: Dimension of a line: structured contact points have less, linear contact structures more.
@@ -285,7 +285,7 @@ def strength_falls_with_size(joint: Joint) -> Finding:
     each = [beyond_margin(strength[i], margin, rising=False) for i in range(cases)]
     clear, no_fall = each.count(HOLDS), each.count(FAILS)
     falls = clear + each.count(PARTLY)
-    # Where nothing is sure in some cases, those that are decide.
+    # Undetermined cases do not count.
     verdict = PARTLY if falls else FAILS if no_fall else UNDETERMINED
     bounded = int(np.isneginf(strength.low).sum())
     return Finding(

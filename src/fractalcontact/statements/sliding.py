@@ -12,7 +12,7 @@ from ..core.verdicts import FAILS, HOLDS, LEVEL, PARTLY, RISING, UNDETERMINED
 from .evidence import Evidence, of_a_kind
 from .findings import Finding, Joint, no_offsets, power_of_offset, share
 
-#: Directions in which the paper's concrete has a plateau, of those it slid in.
+#: Directions in which the paper's concrete has a plateau, and in which it slid.
 PLATEAUS, DIRECTIONS = 2, 4
 
 
