@@ -7,12 +7,11 @@ from html.parser import HTMLParser
 import jsonschema
 import numpy as np
 import pytest
-import xarray as xr
 from code_blocks import run_code
 from made_tests import PART
 from page_study import HOSTILE
 
-from fractalcontact.cards.card import errors_of, geometry_of, is_synthetic
+from fractalcontact.cards.card import geometry_of, is_synthetic
 from fractalcontact.cards.entries import entries, entry_of
 from fractalcontact.cards.page import page_of
 from fractalcontact.cards.write import SCHEMA, read_card, write_card
@@ -92,21 +91,6 @@ def test_tests_and_grasselli_s_parameters_stand_on_the_card(folder, cards):
     assert "missing" in cards["flat.1"]["entries"]["grasselli"]
 
 
-def test_numbers_are_those_of_the_atlas_at_the_reported_state(cards, subjects):
-    for name, card in cards.items():
-        closure = subjects[name].states("closure")
-        found = card["entries"]
-        rows = found["tangent_stiffness"]["values"]
-        values = [row.get("value", np.nan) for row in rows]
-        np.testing.assert_allclose(values, closure["reference_stiffness"], rtol=1e-5)
-        assert [row["at"]["pressure"] for row in rows] == [1, 5, 10]
-        for row in found["seated_closure"]["values"]:
-            state = np.isclose(closure["nominal_pressure"], row["at"]["pressure"], rtol=1e-4)
-            (value,) = closure["seated_closure"].values[state]
-            np.testing.assert_allclose(row.get("value", np.nan), value, rtol=1e-5, atol=1e-12)
-        assert card["geometry"]["offset"]["value"] == pytest.approx(subjects[name].offset)
-
-
 def test_a_fit_has_its_range_and_says_whether_it_determines_its_number(cards, subjects):
     for name, card in cards.items():
         closure = subjects[name].states("closure")
@@ -117,18 +101,6 @@ def test_a_fit_has_its_range_and_says_whether_it_determines_its_number(cards, su
                 says = bool(closure["seated_k_ni_determined"])
                 assert found["determined"] <= says
                 assert says or found["note"]
-
-
-def test_truncated_strengths_are_missing_with_the_word_for_it(cards, subjects):
-    strength = subjects["pair"].states("strength")
-    valid = strength["peak_strength_valid"].values.astype(bool)
-    rows = cards["pair"]["entries"]["peak_strength"]["values"]
-    assert ["value" in row for row in rows] == (
-        valid & np.isfinite(strength["peak_strength"].values)
-    ).tolist()
-    for row, value in zip(rows, strength["peak_strength"].values, strict=True):
-        if "missing" in row and np.isfinite(value):
-            assert "truncated at 70 degrees" in row["missing"]
 
 
 def test_what_does_not_slide_has_no_strength_and_says_so(cards):
@@ -239,28 +211,6 @@ def test_what_is_no_card_is_refused_in_a_sentence(tmp_path):
         read_card(tmp_path / "none.yaml")
 
 
-def test_a_mean_gap_that_the_atlas_has_stands_on_the_card(folder, cards, subjects):
-    """Stages that other rooms add are read by their names."""
-    subject = subjects["pair"]
-    closure = subject["closure"]
-    gap = (0 * closure["closure"] + 0.25).assign_attrs(units="mm", long_name="mean gap")
-    other = Subject(
-        dict(subject.stages) | {"closure": closure.assign(mean_gap=gap)}, subject.settings, "pair"
-    )
-    state = gap.isel(offset=0, resolution=0, drop=True).rename(direction="contact_direction")
-    flow = xr.Dataset(
-        {
-            "hydraulic_aperture_along": state,
-            "branch_mean_gap": state.expand_dims(branch=["load", "unload"]),
-        }
-    )
-    other = Subject(dict(other.stages) | {"flow": flow}, subject.settings, "pair")
-    for entry in entries():
-        if entry.name in ("mean_gap", "hydraulic_aperture", "branch_mean_gap"):
-            found = entry_of(entry, other, "elastic")
-            assert {row["value"] for row in found["values"] if "value" in row} == {0.25}
-
-
 def test_the_documented_lines_read_a_card(tmp_path, cards, monkeypatch):
     write_card(cards["pair"] | {"name": "small_twin"}, tmp_path / "results/smoke")
     monkeypatch.chdir(tmp_path)
@@ -274,21 +224,6 @@ def test_the_window_of_oblong_cells_has_its_own_sides(subjects):
     found = geometry_of(Subject(oblong, pair.settings, pair.name))
     lengths = [found[name]["value"] for name in ("window_x", "window_y", "spacing")]
     assert lengths == [3.0, 10.0, 0.25]
-
-
-@pytest.mark.parametrize("name", NAMES)
-def test_errors_stand_under_the_sample_that_they_are_of(subjects, name):
-    budget, compared = subjects[name].state("error_budget"), 0
-    names = {"of_this_surface": "total", "of_its_population": "total_of_population"}
-    for row in errors_of(subjects[name]):
-        if row["quantity"] not in budget["quantity"].values:
-            continue  # of numbers that the budget has under a name of their own
-        errors = budget.sel(quantity=row["quantity"])
-        for of, variable in names.items():
-            if row[of] is not None:
-                assert row[of] == pytest.approx(float(errors[variable]), rel=1e-4), (row, of)
-                compared += 1
-    assert compared
 
 
 def test_what_a_study_makes_itself_is_synthetic_and_a_scan_of_a_like_name_is_not(cards):

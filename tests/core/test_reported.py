@@ -67,8 +67,9 @@ def test_the_reported_offset_of_a_variable_is_the_nearest(curves, reported):
 
 
 def test_the_reported_state_is_selected_in_one_module():
-    """Whoever wants it asks Reported, or the subject, which does."""
-    asked = re.compile(r"\.sel\([^)]*offset\s*=\s*(self|subject|joint|reported)\b")
+    """So is the state nearest to any offset: others ask Reported, or :func:`states_at`."""
+    inside = r"(?:[^()]|\([^()]*\))*"
+    asked = re.compile(rf"\.sel\({inside}\boffset\s*=({inside}\bmethod|\s*\w+\.offset\b)")
     source = Path(fractalcontact.__file__).parent
     found = [
         path.relative_to(source).as_posix()

@@ -20,14 +20,16 @@ from page_study import HOSTILE, STUDY, write_pages
 from spreadsheets import FORMULA, formulas_in
 
 from fractalcontact.core.claims import claims_of
+from fractalcontact.core.estimate import Estimate
 from fractalcontact.core.subject import Subject
-from fractalcontact.core.text import short, with_unit
+from fractalcontact.core.text import with_unit
 from fractalcontact.core.verdicts import TOO_WIDE
 from fractalcontact.figures.draw import drawer_of
 from fractalcontact.figures.kit.drawing import print_style
+from fractalcontact.pages import first_screen, result_page
 from fractalcontact.pages.common_loads import common_loads, main_load
 from fractalcontact.pages.files import FILES
-from fractalcontact.pages.first_screen import block_of, blocks_of, facts_of
+from fractalcontact.pages.first_screen import block_of, quoted_methods
 from fractalcontact.pages.lights import lights_of, validity_at
 from fractalcontact.pages.matrix import (
     counted,
@@ -35,6 +37,7 @@ from fractalcontact.pages.matrix import (
     of_study,
 )
 from fractalcontact.pages.summary import sheet_of
+from fractalcontact.report.published import Number, read_at
 from fractalcontact.roughness.quality_words import overlap_words
 from fractalcontact.statements.comparison import compared_pressures
 from fractalcontact.statements.judge import rule_of
@@ -151,66 +154,6 @@ def test_nothing_is_fetched(pages):
         assert re.findall(r"https?://(?!x\.example)", text) == []
         assert "fetch(" not in text
         assert "innerHTML" not in text
-
-
-def test_summary_has_the_numbers_of_the_atlas(results, atlas):
-    table = pd.read_csv(results / "summary.csv").set_index(["specimen", "nominal_pressure_MPa"])
-    assert sorted({name for name, _ in table.index}) == ["flat.1", "pair"]
-    assert len(table) == 2 * 3  # two loads of the dilatancy, one of the maps
-    for (name, pressure), row in table.iterrows():
-        closure = atlas[f"closure/{name}"].to_dataset()
-        state = {"offset": row["offset_mm"], "normal_force": row["normal_force_N"]}
-        here = closure.sel(direction=row["direction"], resolution=1)
-        here = here.sel(state, method="nearest")
-        assert here["nominal_pressure"].item() == pytest.approx(pressure)
-        budget = atlas[f"error_budget/{name}"].to_dataset()
-        budget = budget.sel(normal_force=row["normal_force_N"], method="nearest")
-        closures = budget.sel(quantity="closure")
-        surface = atlas[f"surface_dimension/{name}"].to_dataset()
-        domains = atlas[f"domains/{name}"].to_dataset().sel(direction=row["direction"])
-        domains = domains.sel(resolution=1).sel(state, method="nearest")
-        wanted = {
-            "interface_closure_mm": here["interface_closure"],
-            "stiffness_MPa_per_mm": here["interface_stiffness"],
-            "contact_nodes": here["nodes"],
-            "k_ni_MPa_per_mm": here["seated_k_ni"],
-            "interface_closure_error_surface_mm": closures["total"],
-            "interface_closure_error_population_mm": closures["total_of_population"],
-            "k_ni_change_at_twice_the_spacing": here["seated_k_ni_change"],
-            "delta_g": surface["recommended_dimension"],
-            "delta_sigma_boxes": domains["delta_sigma"],
-            "delta_sigma_boxes_high": domains["delta_sigma_high"],
-        }
-        for column, value in wanted.items():
-            np.testing.assert_allclose(row[column], float(value), rtol=1e-7, err_msg=column)
-        assert row["load_of_maps"] == (abs(pressure - 125) < 1e-9)
-
-
-def test_the_page_prints_the_numbers_of_the_summary(results, pages):
-    table = pd.read_csv(results / "summary.csv")
-    text = (results / "index.html").read_text(encoding="utf-8")
-    for _, row in table.iterrows():
-        shown = float(f"{row['interface_closure_mm']:.3g}")
-        by_scan = row["suspect_load_share"] > 0.5
-        assert (f">({shown:.3g} mm ±" if by_scan else f">{shown:.3g} mm<small>") in text
-        assert f'data-sort="{float(row["contact_nodes"])}"' in text
-
-
-def test_curves_are_those_of_the_atlas(results, atlas):
-    table = pd.read_csv(results / "curves.csv")
-    for name in ("pair", "flat.1"):
-        subject = Subject.of(atlas, name)
-        states = subject.states("closure")
-        own = table[table["specimen"] == name]
-        drawn = own[own["quantity"] == "closure from first touch"]
-        known = np.isfinite(states["interface_closure"].values)
-        np.testing.assert_allclose(drawn["value"], states["interface_closure"].values[known])
-        np.testing.assert_allclose(
-            drawn["nominal_pressure_MPa"], subject["closure"]["nominal_pressure"].values[known]
-        )
-        assert (drawn["low"].dropna() <= drawn["value"][drawn["low"].notna()]).all()
-        few = states["nodes"].values[known] < 10
-        assert (drawn["resolved"].values == ~few).all()
 
 
 def test_verdicts_are_those_of_the_atlas(results, atlas, pages):
@@ -483,37 +426,46 @@ def test_the_verdict_on_the_elastic_model_is_that_of_the_atlas(results):
         assert caption.heading == "The contact model is partly good"
 
 
-def test_the_first_screen_says_of_each_joint_what_its_card_says(results):
+def test_the_first_screen_has_a_block_of_each_joint(results, atlas):
     html = (results / "index.html").read_text(encoding="utf-8")
     for name in NAMES:
-        card = json.loads((results / f"cards/{name}.json").read_text(encoding="utf-8"))
-        block = block_of(card)
+        block = block_of(Subject.of(atlas, name), synthetic=False)
         shown = re.search(rf'id="joint-{re.escape(name)}">(.*?)</article>', html, re.DOTALL)[1]
-        assert f"Trust: {card['trust']['word']}." in shown
+        assert f"Trust: {block['trust'].word}." in shown
         for fact in block["facts"]:
             assert f"<dt>{fact.title}</dt><dd><strong>{fact.words}</strong>" in shown
             assert fact.words != "–" or fact.notes
         for ending in ("html", "yaml", "json"):
             assert f'href="cards/{name}.{ending}"' in shown
         assert {fact.title.partition(" at ")[2] for fact in block["facts"]} <= {"125 MPa", ""}
-        (stiffness,) = (one for one in card["errors"] if one["quantity"] == "stiffness")
-        words = block["facts"][0].words
-        assert words == f"{short(stiffness['value'])} MPa/mm"
         assert block["window"].startswith("window ")
         assert block["window"].capitalize() in shown
     assert "at no offset" in html
+    assert quoted_methods("none", results) == {}
 
 
-def test_the_first_screen_says_what_no_interval_holds(results):
-    """Hardness of single contacts, the rules of strength, the spacing."""
-    card = json.loads((results / "cards/pair.json").read_text(encoding="utf-8"))
-    at = {"pressure": card["geometry"]["reference_pressure"]["value"]}
-    number = {"low": None, "high": None, "at": at}
-    tau = {"peak_strength": 26.8, "barton_strength": 18.9, "contact_strength": 45.5}
-    for key, value in tau.items():
-        card["entries"][key] = {"values": [number | {"value": value}]}
-    card["entries"]["barton_scaled_strength"] = {"missing": "JRC_n is above 20"}
-    fact = facts_of(card)[-1]
+@pytest.fixture
+def facts_with(atlas, monkeypatch):
+    """First numbers of a joint, some of them replaced."""
+
+    def facts(synthetic=False, **numbers):
+        def read(row, subject):
+            return numbers.get(row.name) or read_at(row, subject)
+
+        monkeypatch.setattr(first_screen, "read_at", read)
+        return first_screen.facts_of(Subject.of(atlas, "pair"), synthetic)
+
+    return facts
+
+
+def of(value, low=np.nan, high=np.nan, **fields):
+    return Number({"pressure": 125.0}, Estimate(value, low, high), **fields)
+
+
+def test_the_strength_is_the_range_of_its_rules(facts_with):
+    rules = {"peak_strength": of(26.8), "barton_strength": of(18.9), "contact_strength": of(45.5)}
+    rules["barton_scaled_strength"] = of(np.nan, missing="JRC_n is above 20")
+    fact = facts_with(**rules)[-1]
     assert fact.words == "18.9 to 45.5 MPa"
     assert fact.notes == [
         "range of 3 rules:",
@@ -521,30 +473,30 @@ def test_the_first_screen_says_what_no_interval_holds(results):
         "no value by Barton and Bandis: JRC_n is above 20",
     ]
     bound = "only a lower bound, as most angles are truncated at 70 degrees"
-    card["entries"]["contact_strength"] = {"values": [{"missing": bound, "at": at}]}
-    fact = facts_of(card)[-1]
+    fact = facts_with(**rules | {"contact_strength": of(40.0, missing=bound)})[-1]
     assert fact.words == "18.9 to 26.8 MPa"
     assert f"no value by contact: {bound}" in fact.notes
-    contact = number | {"value": 0.0333, "low": 0.033, "high": 0.034, "hardest": 0.0111}
-    of_surface = {"interval": "all errors of this surface", "values": [contact]}
-    card["entries"] |= {
-        "contact_fraction": of_surface,
-        "hardness": {"value": 150.0},
-        "hardest_hardness": {"value": 450.0},
-    }
-    fact = facts_of(card)[3]
+    none = {name: of(np.nan, missing=f"none by {name}") for name in rules}
+    assert facts_with(**none)[-1][1:] == ("–", ["none by peak_strength"])
+
+
+def test_the_first_screen_says_what_no_interval_holds(facts_with):
+    """Hardness of single contacts, the spacing, the slope of the gap."""
+    contact = of(0.0333, 0.033, 0.034, hardest=0.0111)
+    crushing = {"hardness": of(150.0), "hardest_hardness": of(450.0)}
+    fact = facts_with(contact_fraction=contact, **crushing)[3]
     assert fact.words == "3.33 %"
     assert fact.notes == [
         "[3.30,\u00a03.40] this surface",
         "3.33 to 1.11 for hardness H to 3\u00a0H",
     ]
-    card["entries"] |= {
-        "contact_fraction": {"values": [number | {"value": at["pressure"] / 150.0}]},
-        "stiffness_change": {"values": [number | {"value": -0.086}]},
-        "hydraulic_aperture": {"values": [number | {"value": 0.5}]},
-        "gap_slope": {"values": [number | {"value": 1.3}]},
-    }
-    facts = facts_of(card)
+    facts = facts_with(
+        contact_fraction=of(125.0 / 150.0),
+        stiffness_change=of(-0.086),
+        hydraulic_aperture=of(0.5),
+        gap_slope=of(1.3),
+        **crushing,
+    )
     assert "changes by −8.6 % at twice the spacing" in facts[0].notes
     assert facts[2].notes[-1].endswith("; cubic law not valid (gap slope 1.3)")
     assert facts[3].notes[-1] == "all contacts crush: sigma_0/H"
@@ -558,24 +510,19 @@ def test_the_first_screen_says_what_no_interval_holds(results):
         (3.2, True, "unknown for the whole joint (± 3.2)"),
     ],
 )
-def test_an_error_larger_than_its_number_leaves_it_unknown(results, half, synthetic, words):
-    card = json.loads((results / "cards/pair.json").read_text(encoding="utf-8")) | {
-        "synthetic": synthetic
-    }
-    at = {"pressure": card["geometry"]["reference_pressure"]["value"]}
-    gap = {"value": 0.434, "low": None, "high": None, "at": at, "of_its_population": half}
-    card["entries"]["mean_gap"] = {"values": [gap]}
-    assert words in facts_of(card)[2].notes
+def test_an_error_larger_than_its_number_leaves_it_unknown(facts_with, half, synthetic, words):
+    assert words in facts_with(synthetic, mean_gap=of(0.434, population=half))[2].notes
 
 
-def test_synthetic_joints_stand_behind_scanned_ones_under_their_own_heading(results, tmp_path):
-    (tmp_path / "cards").mkdir()
-    for name in NAMES:
-        card = json.loads((results / f"cards/{name}.json").read_text(encoding="utf-8"))
-        card["synthetic"] = name == "flat.1"
-        (tmp_path / f"cards/{name}.json").write_text(json.dumps(card), encoding="utf-8")
-    assert [one["name"] for one in blocks_of(NAMES, tmp_path)] == ["pair", "flat.1"]
-    assert blocks_of(["none"], tmp_path) == []
+def test_synthetic_joints_stand_behind_scanned_ones_under_their_own_heading(
+    results, tmp_path, monkeypatch
+):
+    shutil.copytree(results, tmp_path / "tiny")
+    monkeypatch.setattr(result_page, "is_synthetic", lambda name, study: name == "flat.1")
+    result_page.write_index(result_page.Place.of(tmp_path / "tiny"), [])
+    html = (tmp_path / "tiny/index.html").read_text(encoding="utf-8")
+    places = [html.index(f'id="{name}"') for name in ("joint-pair", "synthetic", "joint-flat.1")]
+    assert places == sorted(places)
 
 
 def test_the_summary_states_what_twice_the_spacing_changes(atlas):

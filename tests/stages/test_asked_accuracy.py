@@ -1,12 +1,12 @@
 """The error of the closure that a study asks for, beside which the page shows the grid's."""
 
-from fractalcontact.stages.errors import asked
+from fractalcontact.stages.states import requested_accuracy
 from fractalcontact.study.configuration import solver_settings
 
 
 def test_a_study_that_asks_for_all_states_is_compared_with_the_usual_error():
     def error(study):
-        _, value, attrs = asked(solver_settings(study, "study"))["closure_accuracy"]
+        _, value, attrs = requested_accuracy(solver_settings(study, "study"))["closure_accuracy"]
         assert attrs["units"] == "1"
         return value
 

@@ -42,7 +42,7 @@ RESOLVED = {
     "strength": (
         *("jrc_used", "grasselli_theta_max", "grasselli_roughness", "dilatancy_angle"),
         *("rigid_dilatancy_angle", "peak_strength", "shear_strength", "residual_strength"),
-        *("contact_strength", "contact_dip"),
+        "contact_strength",
     ),
     "windows": ("direct_strength",),
     "elastic_model": ("pressure",),

@@ -16,8 +16,7 @@ from unchecked_settings import resolve_unchecked
 from fractalcontact.core.window import window_sides
 from fractalcontact.joint.joint import describe_joint
 from fractalcontact.laws.closure import closure_curves
-from fractalcontact.stages.report import OF_STRENGTH
-from fractalcontact.stages.strength import strength_stages
+from fractalcontact.stages.strength import size_and_strength
 from fractalcontact.states.separation import prefractal_openings
 from fractalcontact.states.states import SOLVER_ERROR, combine
 from fractalcontact.states.sweep import joint_states
@@ -195,9 +194,8 @@ def test_size_laws_below_a_roll_off_are_in_the_units_that_they_state():
         made["surface_dimension"] = made["surface_dimension"].assign(
             roll_off=2.0 * length, range_max=1.0 * length
         )
-        given = {need: made[need] for need in OF_STRENGTH}
         settings = rock_joint(length, stress)[1]
-        found.append(strength_stages(**given, settings=settings)["windows"])
+        found.append(size_and_strength(made, settings)["windows"])
     first, other = found
     assert np.isfinite(first["face_hurst"]).any()
     assert not first["face_hurst"].equals(stages()["windows"]["face_hurst"])

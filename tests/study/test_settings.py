@@ -13,16 +13,16 @@ from fractalcontact.core import settings
 from fractalcontact.ensemble.realisations import ensemble
 from fractalcontact.measured.stage import measured_stage
 from fractalcontact.stages.flow import flow_stages
-from fractalcontact.stages.report import report_stages
 from fractalcontact.stages.specimen import stages_of_scan
 from fractalcontact.stages.states import state_stages
+from fractalcontact.stages.strength import strength_stages
 from fractalcontact.stages.windows import window_stages
 from fractalcontact.states.sweep import joint_states
 from fractalcontact.study.configuration import solver_settings
 
 SOLVER = solver_settings({}, "study")
 SPECIMEN, CONTACT, STATES, FLOW, WINDOWS, REPORT, ENSEMBLE, TESTS = JOBS = (
-    *(stages_of_scan, joint_states, state_stages, flow_stages, window_stages, report_stages),
+    *(stages_of_scan, joint_states, state_stages, flow_stages, window_stages, strength_stages),
     *(ensemble, measured_stage),
 )
 #: Rules by what their scripts call.

@@ -8,9 +8,9 @@ import xarray as xr
 
 from fractalcontact.core import settings as sections
 from fractalcontact.stages.flow import flow_stages
-from fractalcontact.stages.report import report_stages
 from fractalcontact.stages.specimen import specimen_stages
 from fractalcontact.stages.states import state_stages
+from fractalcontact.stages.strength import strength_stages
 from fractalcontact.stages.windows import window_stages
 from fractalcontact.states.sweep import joint_states
 from fractalcontact.surface.specimen import make_specimen, window_arguments
@@ -31,7 +31,7 @@ LATER = {
     "closure": (state_stages, _OF_JOINT),
     "flow": (flow_stages, ("specimens", "joints", "closure", "branches", "error_budget")),
     "windows": (
-        report_stages,
+        strength_stages,
         (
             *(*_OF_JOINT, "window_states", "size_test", "closure", "dilatancy", "area", "domains"),
             *("scaling", "domain_measures", "error_budget"),

@@ -36,7 +36,7 @@ def test_code_of_a_script_follows_from_the_function_that_it_calls():
     assert {"size_effect", "contact", "states"} <= rooms
     # Another stage does not make it again, nor do rooms above.
     assert not {"study", "figures", "pages"} & rooms
-    assert "src/fractalcontact/stages/report.py" not in files
+    assert "src/fractalcontact/stages/strength.py" not in files
 
 
 def test_all_that_a_stage_has_loaded_when_it_is_called_counts():

@@ -4,11 +4,11 @@ from _files import read_inputs, write_outputs
 from engine.job import job
 
 from fractalcontact.core.settings import ReportSettings, read
-from fractalcontact.stages.report import report_stages
+from fractalcontact.stages.strength import strength_stages
 
 with job(snakemake) as log:
     given = snakemake.params
-    stages = report_stages(
+    stages = strength_stages(
         **read_inputs(snakemake.input),
         settings=read(ReportSettings, given.settings),
     )

@@ -55,9 +55,9 @@ def estimator_bias(recipe: Mapping[str, Any]) -> xr.Dataset:
         of the intervals' halves), ``coverage`` (fraction of the intervals that hold H) and
         ``fitted`` (fraction of surfaces with one: a short roll-off leaves too few lags). Over
         (hurst, size, roll_off): ``roll_off_seen``, fraction of surfaces. Over estimator, for H >=
-        0.5: ``worst_bias``, ``overall_error`` (rms) and ``min_coverage``; for smaller H
-        ``rough_coverage``. Attributes ``first_cells`` and ``last_part``: default range;
-        ``recommended``: estimator; ``tolerated_bias`` and ``promised_coverage``: the targets.
+        0.5: ``worst_bias``, ``overall_error`` (rms) and ``min_coverage``. Attributes
+        ``first_cells`` and ``last_part``: default range; ``recommended``: estimator;
+        ``tolerated_bias`` and ``promised_coverage``: what is aimed at.
     """
     exponents, sizes, seeds = (np.unique(recipe[key]) for key in ("hurst", "sizes", "seeds"))
     stated = [np.inf if part is None else float(part) for part in recipe.get("roll_offs", [None])]
@@ -150,9 +150,6 @@ def _with_verdicts(result: xr.Dataset) -> xr.Dataset:
     }
     for name, words in table.items():
         result[name] = values[name].assign_attrs(cf_attrs("1", words))
-    rough = result["coverage"].where(result["hurst"] < FROM_HURST).min(all_surfaces)
-    words = f"smallest coverage of any size and roll-off, H below {FROM_HURST:g}"
-    result["rough_coverage"] = rough.assign_attrs(cf_attrs("1", words))
     result.attrs = {
         "tolerated_bias": TOLERATED,
         "promised_coverage": PROMISED,

@@ -23,25 +23,21 @@ MAP_ENDINGS = (".csv", ".nc", ".vtk")
 def aperture_at(
     contact: xr.Dataset, pressure: float | None, name: str, results: Path | str | None = None
 ) -> xr.DataArray:
-    """Aperture map at a pressure, 0 in contact.
+    """Aperture map (y, x) of a specimen at a pressure, mm, 0 in contact.
+
+    Between two computed loads it is interpolated linearly in ln(pressure); the attribute ``source``
+    says so.
 
     Parameters
     ----------
     contact : xr.Dataset
-        Of the stage of this name, whose ``map_gap`` an atlas rounds, under some of the loads.
+        Stage of this name, whose ``map_gap`` an atlas rounds and keeps under some of the loads.
     pressure : float or None
         MPa; None for the reference load.
     name : str
         The specimen.
     results : path-like, optional
-        Folder of the results of a study, for the gaps of all loads as solved: they are in its
-        folder ``contact``, if that is there.
-
-    Returns
-    -------
-    xr.DataArray
-        (y, x) in mm, in the coordinates of the scan. The attribute ``source`` says whether it is
-        computed or interpolated, linearly in ln(pressure), between two computed loads.
+        Folder of the results; its folder ``contact``, if it is there, has all gaps as solved.
 
     Raises
     ------
@@ -49,25 +45,25 @@ def aperture_at(
         If the pressure lies outside those whose maps are kept.
     """
     maps = _gaps(contact, results, name).dropna("normal_force", how="all")
-    known = maps["nominal_pressure"].values
+    kept = maps["nominal_pressure"].values
     if pressure is None:
         force = contact.attrs["map_load"]
-        pressure = float(known[np.argmin(np.abs(maps["normal_force"].values - force))])
-    if not known[0] * (1 - SAME) <= pressure <= known[-1] * (1 + SAME):
+        pressure = float(kept[np.argmin(np.abs(maps["normal_force"].values - force))])
+    if not kept[0] * (1 - SAME) <= pressure <= kept[-1] * (1 + SAME):
         raise InputError(
             f"{name}: no aperture at {exact(pressure)} MPa; its maps are kept at "
-            f"{', '.join(f'{exact(one, 4)}' for one in known)} MPa, so write a pressure "
+            f"{', '.join(f'{exact(one, 4)}' for one in kept)} MPa, so write a pressure "
             "between the "
             "first and the last, or add it to 'loads' of the study (without the folder 'contact' "
             "of its results, to 'dilatancy_loads')"
         )
-    place = np.interp(np.log(pressure), np.log(known), np.arange(known.size))
+    place = np.interp(np.log(pressure), np.log(kept), np.arange(kept.size))
     low, nearest = int(place), round(place)
-    if abs(known[nearest] - pressure) <= SAME * pressure:
+    if abs(kept[nearest] - pressure) <= SAME * pressure:
         values, source = maps.values[nearest], f"computed at {exact(pressure, 4)} MPa"
     else:
         values = (low + 1 - place) * maps.values[low] + (place - low) * maps.values[low + 1]
-        ends = f"{exact(known[low], 4)} and {exact(known[low + 1], 4)} MPa"
+        ends = f"{exact(kept[low], 4)} and {exact(kept[low + 1], 4)} MPa"
         source = f"interpolated in ln(pressure) between {ends}"
     attrs = cf_attrs("mm", "aperture, 0 in contact") | {
         "specimen": name,
@@ -93,9 +89,9 @@ def _gaps(contact, results, name):
 
 
 def aperture_at_points(aperture: xr.DataArray, path: Path | str) -> pd.DataFrame:
-    """Aperture at the points of a CSV file with columns x and y in mm; missing outside the window.
+    """Aperture at the points of a CSV file with columns x and y in mm, bilinear between nodes.
 
-    Between nodes it is bilinear.
+    It is missing outside the window.
 
     Raises
     ------
@@ -131,13 +127,8 @@ def outside_words(aperture: xr.DataArray, points: pd.DataFrame) -> str:
 def write_aperture(aperture: xr.DataArray | pd.DataFrame, path: Path | str) -> None:
     """Write an aperture map, or apertures at points, whole or not at all.
 
-    Parameters
-    ----------
-    aperture : xr.DataArray or pd.DataFrame
-        Points have a CSV file alone.
-    path : path-like
-        Its ending is .csv (columns x, y, aperture), .nc (netCDF by the CF conventions) or .vtk
-        (legacy VTK, structured points).
+    The ending of the path says the form: .csv (columns x, y, aperture; the only one for points),
+    .nc (netCDF by the CF conventions) or .vtk (legacy VTK, structured points).
 
     Raises
     ------

@@ -1,17 +1,16 @@
 """Card of a joint: the numbers of one specimen, each with its interval and model."""
 
 import json
-import math
 from collections.abc import Mapping
 from dataclasses import asdict
 from typing import Any
 
 from ..core.labels import OPPOSITE, printable
 from ..core.subject import Subject
-from ..core.text import with_unit
 from ..core.window import spacing_of, window_sides
+from ..pages.first_screen import is_synthetic, model_of
 from ..pages.lights import lights_of, trust_of
-from ..report.published import read, row_of, shown_in
+from ..report.published import read_at, row_of, shown_in, stages_of
 from .entries import entries, entry_of, number, rounded
 from .methods import methods_of, references_of
 
@@ -19,37 +18,17 @@ from .methods import methods_of, references_of
 FORM = 1
 #: Errors below this fraction of their quantity are rounding.
 _ROUNDING = 1e-9
-#: Of numbers and sentences of a card.
+#: Licence of the numbers and sentences of a card.
 LICENCE = "CC0-1.0"
-#: Stages that a card reads, those that a specimen has.
-STAGES = (
-    "specimens",
-    "quality",
-    "surface_dimension",
-    "area",
-    "closure",
-    "branches",
-    "domains",
-    "scaling",
-    "flow",
-    "strength",
-    "measured",
-    "choices",
-    "error_budget",
-    "elastic_model",
-)
+#: Stages that a card reads, of those that a specimen has.
+STAGES = stages_of("section", "errors") | {"quality", "choices", "elastic_model"}
 
 
 def card_of(subject: Subject, study: Mapping[str, Any], made: Mapping[str, Any]) -> dict[str, Any]:
     """Card of a specimen, as plain data of ``card.schema.json``.
 
-    Parameters
-    ----------
-    subject : Subject
-    study : mapping
-        As its user wrote it: embedded specimens are synthetic.
-    made : mapping
-        ``versions`` by library and ``scan_checksums`` by specimen, attributes of the atlas.
+    ``study`` is as its user wrote it; ``made`` has ``versions`` by library and ``scan_checksums``
+    by specimen, attributes of the atlas.
     """
     model = model_of(subject)
     lights = lights_of(subject)
@@ -69,7 +48,7 @@ def card_of(subject: Subject, study: Mapping[str, Any], made: Mapping[str, Any])
         "entries": {row.name: entry_of(row, subject, model) for row in entries()},
         "errors": errors_of(subject),
         "lights": [asdict(light) for light in lights],
-        "trust": dict(zip(("word", "reason", "help"), trust_of(lights), strict=True)),
+        "trust": trust_of(lights)._asdict(),
         "licence": LICENCE,
         "versions": dict(made["versions"]),
         "scan_checksums": dict(made["scan_checksums"].get(subject.name, {})),
@@ -83,17 +62,6 @@ def made_of(attributes: Mapping[Any, Any]) -> dict[str, Any]:
     return {key: json.loads(attributes.get(key, "{}")) for key in ("versions", "scan_checksums")}
 
 
-def model_of(subject: Subject) -> str:
-    """Contact model: elastic, or with the pressure capped at the hardness."""
-    hardness = float(subject.settings["material"]["hardness"])
-    return f"crushing at H = {with_unit(hardness, 'MPa')}" if math.isfinite(hardness) else "elastic"
-
-
-def is_synthetic(name: str, study: Mapping[str, Any]) -> bool:
-    """True if a specimen is made by the study and no scan: a twin, or a mathematical joint."""
-    return name in study.get("embedded", {})
-
-
 def geometry_of(subject: Subject) -> dict[str, Any]:
     """Spacing, window, offset, seat and reference pressure: chosen, so without intervals."""
     side_y, side_x = window_sides(subject["specimens"])
@@ -103,44 +71,43 @@ def geometry_of(subject: Subject) -> dict[str, Any]:
         "window_y": side_y,
         "offset": subject.offset,
     }
-    found = {name: {"value": rounded(one), "unit": "mm"} for name, one in lengths.items()}
+    geometry = {name: {"value": rounded(length), "unit": "mm"} for name, length in lengths.items()}
     row = row_of("seating_pressure")
-    (seat,) = read(row, subject)
-    return found | {
-        "seat": number(row, subject, seat) | {"unit": row.unit},
+    return geometry | {
+        "seat": number(row, subject, read_at(row, subject)) | {"unit": row.unit},
         "reference_pressure": {"value": reference_pressure_of(subject), "unit": "MPa"},
     }
 
 
 def reference_pressure_of(subject: Subject) -> float | None:
-    """Nominal pressure of the reference load, MPa: first numbers, maps and exports are of it."""
+    """Nominal pressure of the reference load, MPa."""
     return rounded(float(subject["closure"]["nominal_pressure"][subject.reported.reference]))
 
 
 def errors_of(subject: Subject) -> list[dict[str, Any]]:
     """Errors by source of the quantities under the reference load, half-widths at 95 %."""
     pressure, budget = reference_pressure_of(subject), subject.state("error_budget")
-    found = []
+    rows = []
     for row in shown_in("errors"):
-        one = read(row, subject)[subject.reported.reference]
-        found.append(
+        number = read_at(row, subject)
+        rows.append(
             {
                 "quantity": row.budget,
                 "title": row.page,
                 "unit": row.unit,
                 "pressure": pressure,
-                "value": rounded(one.value),
-                "of_this_surface": rounded(one.error),
-                "of_its_population": rounded(one.population),
-                "hardest": rounded(one.hardest),
-                "sources": _by_source(budget, row.budget, abs(one.value)),
+                "value": rounded(number.value),
+                "of_this_surface": rounded(number.error),
+                "of_its_population": rounded(number.population),
+                "hardest": rounded(number.hardest),
+                "sources": _by_source(budget, row.budget, abs(number.value)),
             }
         )
-    return found
+    return rows
 
 
 def _by_source(budget, quantity, size):
-    """Errors of a quantity by their source, zero where they are rounding."""
+    """Errors of a quantity by their source; those of rounding are zero."""
     if quantity not in budget["quantity"]:
         return {}
     errors = budget["error"].sel(quantity=quantity)

@@ -1,6 +1,7 @@
 """Entries of a card, from the register of published numbers."""
 
 import math
+from collections.abc import Mapping
 from typing import Any
 
 from ..core import text
@@ -19,19 +20,9 @@ def entries() -> list[Row]:
 
 
 def entry_of(row: Row, subject: Subject, model: str) -> dict[str, Any]:
-    """Entry of a card with its values.
+    """Entry of a card: a number where no dimension is left, else a curve with ``values``.
 
-    Parameters
-    ----------
-    row : Row
-    subject : Subject
-    model : str
-        What the contact was solved as.
-
-    Returns
-    -------
-    dict
-        Of ``card.schema.json``: a number where no dimension is left, else a curve with ``values``.
+    ``model`` is the contact model of the card.
     """
     found: dict[str, Any] = {"title": row.title, "section": row.section, "unit": row.unit}
     found["model"] = model if row.model == "contact" else row.model
@@ -56,28 +47,39 @@ def entry_of(row: Row, subject: Subject, model: str) -> dict[str, Any]:
     }
 
 
-def number(row: Row, subject: Subject, found: Number) -> dict[str, Any]:
-    """A number as the card writes it, with its ends and errors, or why it is missing."""
-    if found.missing:
-        return {"missing": found.missing}
+def row_at(curve: Mapping[str, Any], pressure: float) -> dict[str, Any]:
+    """Row of an entry at a pressure, MPa, or its absence with the reason."""
+    rows = (row for row in curve.get("values", ()) if row["at"].get("pressure") == pressure)
+    return next(rows, {"missing": curve.get("missing", "not solved there")})
+
+
+def reference_of(card: Mapping[str, Any]) -> float:
+    """Reference pressure of a card, MPa; NaN where it has no contact."""
+    return float(card["geometry"].get("reference_pressure", {}).get("value", math.nan))
+
+
+def number(row: Row, subject: Subject, published: Number) -> dict[str, Any]:
+    """Number as a card writes it, with its ends and errors, or why it is missing."""
+    if published.missing:
+        return {"missing": published.missing}
     written: dict[str, Any] = dict(
-        zip(("value", "low", "high"), map(rounded, found.estimate.ends), strict=True)
+        zip(("value", "low", "high"), map(rounded, published.estimate.ends), strict=True)
     )
     if row.range:
-        written["determined"] = found.determined
-        if found.estimate.reason:
-            written["note"] = found.estimate.reason
-    for key, value in (("of_its_population", found.population), ("hardest", found.hardest)):
+        written["determined"] = published.determined
+        if published.estimate.reason:
+            written["note"] = published.estimate.reason
+    for key, value in (("of_its_population", published.population), ("hardest", published.hardest)):
         if math.isfinite(value):
             written[key] = rounded(value)
     misfit = array_of(row, subject, row.misfit)
-    if misfit is not None and found.determined:
+    if misfit is not None and published.determined:
         written["note"] = f"misses the curve by {text.percent(misfit.item())}"
     return written
 
 
 def rounded(value: float) -> float | None:
-    """A number with the digits of a card; None where it is not finite."""
+    """Number with the digits of a card; None where it is not finite."""
     return text.rounded(value, _DIGITS) if math.isfinite(value) else None
 
 

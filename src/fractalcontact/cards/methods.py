@@ -21,13 +21,7 @@ _SOURCES = (
 
 
 def methods_of(card: Mapping[str, Any]) -> str:
-    """Methods paragraph of a card, ready to be quoted.
-
-    Parameters
-    ----------
-    card : mapping
-        Of ``card.schema.json``, but for its ``methods``.
-    """
+    """Methods paragraph, ready to be quoted, of a card without its ``methods``."""
     return " ".join(
         (_faces(card), _contact(card), _laws(card), _strength(card), _versions(card["versions"]))
     )
@@ -40,11 +34,11 @@ def references_of(methods: str) -> list[str]:
 
 def _faces(card):
     where = {name: one.get("value") for name, one in card["geometry"].items()}
-    made = "synthetic surface" if card["synthetic"] else "scanned surface"
+    surface = "synthetic surface" if card["synthetic"] else "scanned surface"
     offset = with_unit(where["offset"], "mm") if where["offset"] else "zero"
     slid = "" if card["direction"] == "none" else f" at a shear offset of {offset}"
     return (
-        f"A window of {short(where['window_x'])} x {short(where['window_y'])} mm of the {made} "
+        f"A window of {short(where['window_x'])} x {short(where['window_y'])} mm of the {surface} "
         f"({card['faces']}; spacing {with_unit(where['spacing'], 'mm')}) was compressed{slid}."
     )
 
@@ -67,14 +61,14 @@ def _contact(card):
 
 def _laws(card):
     laws = {"hyperbola": card["entries"]["k_ni"], "logarithm": card["entries"]["chi"]}
-    fitted = [name for name, one in laws.items() if "value" in one]
+    fitted = [name for name, law in laws.items() if "value" in law]
     if not fitted:
         return f"No closure law was fitted: {laws['hyperbola']['missing']}."
-    found = laws[fitted[0]]["range"]
+    span = laws[fitted[0]]["range"]
     return (
         f"A {' and a '.join(fitted)} (Bandis et al. 1983) {'was' if len(fitted) == 1 else 'were'} "
-        f"fitted by least squares to the closure from a seat of {with_unit(found['low'], 'MPa')} "
-        f"to {with_unit(found['high'], 'MPa')}; intervals are at 95 %."
+        f"fitted by least squares to the closure from a seat of {with_unit(span['low'], 'MPa')} "
+        f"to {with_unit(span['high'], 'MPa')}; intervals are at 95 %."
     )
 
 

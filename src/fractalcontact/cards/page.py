@@ -4,17 +4,10 @@ import math
 from collections.abc import Collection, Mapping
 from typing import Any
 
-from ..core.text import MISSING, measured, percent, short, with_unit
-from ..pages.captions import symbols
-from ..pages.first_screen import (
-    STRENGTH_RULES,
-    facts_of,
-    hardnesses_of,
-    offset_of,
-    row_at,
-    window_of,
-)
+from ..core.text import MISSING, measured, percent, short
+from ..pages.first_screen import STRENGTH_RULES
 from ..report.published import row_of
+from .entries import row_at
 
 #: Tables of curves over pressure, by title: the sections that share one.
 _AGAINST_PRESSURE = {
@@ -26,38 +19,27 @@ _UNITS = {"1": "%", "degree": "°"}
 _RULES_HEAD = "peak τ, range of all rules"
 
 
-def page_of(card: Mapping[str, Any]) -> dict[str, Any]:
-    """Values of the template ``card.html``.
-
-    Parameters
-    ----------
-    card : mapping
-        Of ``card.schema.json``.
-    """
+def page_of(card: Mapping[str, Any], block: Mapping[str, Any] | None = None) -> dict[str, Any]:
+    """Values of the template ``card.html``; ``block`` has the first numbers of a joint."""
     entries = card["entries"]
-    printed = {key: one for key, one in entries.items() if one.get("print", True)}
+    printed = {key: entry for key, entry in entries.items() if entry.get("print", True)}
     stiffness = [entries[key] for key in ("tangent_stiffness", "reload_stiffness")]
     return {
         "card": card,
-        "facts": facts_of(card) if card["kind"] == "joint" else [],
-        "window": window_of(card) if card["kind"] == "joint" else "",
-        "offset": offset_of(card) if card["kind"] == "joint" else "",
+        "block": block or {},
         "stiffness": over_pressure(stiffness),
         "tables": list(_tables(printed)),
         "tests": tests_of(entries),
         "grasselli": grasselli_rows(entries),
         "jrc": jrc_table(entries["jrc"], entries["jrc_by_fit"]),
         # An elastic joint has no hardness to state.
-        "missing": missing_of({key: one for key, one in printed.items() if key != "hardness"}),
-        "hardest": hardnesses_of(card)[1],
-        # What harder contacts change stands in a column of its own.
+        "missing": missing_of({key: entry for key, entry in printed.items() if key != "hardness"}),
+        "hardest": entries.get("hardest_hardness", {}).get("value", math.nan),
+        # The change with the hardness has a column of its own.
         "errors": errors_of(card, without=("model",)),
         "number": lambda value, digits=2: MISSING if value is None else short(value, digits),
         "words": in_words,
         "ends": ends_in_words,
-        "short": short,
-        "with_unit": with_unit,
-        "symbols": symbols,
     }
 
 
@@ -65,13 +47,13 @@ def _tables(printed):
     """Title, heads with units and rows of the tables over pressure that have any number."""
     for title, sections in _AGAINST_PRESSURE.items():
         curves = {
-            key: one
-            for key, one in printed.items()
-            if one["section"] in sections and has_values(one)
+            key: entry
+            for key, entry in printed.items()
+            if entry["section"] in sections and has_values(entry)
         }
         heads = [
-            (row_of(key).head or one["title"], _UNITS.get(one["unit"], one["unit"]))
-            for key, one in curves.items()
+            (row_of(key).head or entry["title"], _UNITS.get(entry["unit"], entry["unit"]))
+            for key, entry in curves.items()
         ]
         rows = over_pressure(list(curves.values()))
         rules = [i for i, key in enumerate(curves) if key in STRENGTH_RULES]
@@ -83,19 +65,19 @@ def _tables(printed):
 
 
 def _over_rules(cells):
-    """Range of the strength over its rules: none of their errors is that of the strength."""
-    values = [one["value"] for one in cells if "value" in one]
-    found = {"value": min(values), "to": max(values)} if values else {"missing": "no rule applies"}
-    return {"unit": "MPa"} | found
+    """Range of the strength over its rules: the error of a rule is not that of the strength."""
+    values = [cell["value"] for cell in cells if "value" in cell]
+    spread = {"value": min(values), "to": max(values)} if values else {"missing": "no rule applies"}
+    return {"unit": "MPa"} | spread
 
 
 def tests_of(entries: Mapping[str, Any]) -> list[tuple[str, str, Mapping[str, Any]]]:
     """Quantity, test and computed over measured value of each laboratory test."""
     return [
-        (one["title"], row["at"]["test"], row | {"unit": ""})
-        for one in entries.values()
-        if one["section"] == "tests"
-        for row in one.get("values", ())
+        (entry["title"], row["at"]["test"], row | {"unit": ""})
+        for entry in entries.values()
+        if entry["section"] == "tests"
+        for row in entry.get("values", ())
         if "value" in row
     ]
 
@@ -103,12 +85,12 @@ def tests_of(entries: Mapping[str, Any]) -> list[tuple[str, str, Mapping[str, An
 def grasselli_rows(entries: Mapping[str, Any]) -> list[dict[str, str]]:
     """Direction, theta*_max, C, A_0 and roughness of Grasselli's law, in words."""
     names = ("grasselli_theta_max", "grasselli_c", "grasselli_a_0", "grasselli")
-    found: dict[str, dict[str, str]] = {}
+    by_direction: dict[str, dict[str, str]] = {}
     for name in names:
         for row in entries.get(name, {}).get("values", ()):
             if "value" in row:
-                found.setdefault(row["at"]["direction"], {})[name] = short(row["value"])
-    return [{"direction": direction} | values for direction, values in found.items()]
+                by_direction.setdefault(row["at"]["direction"], {})[name] = short(row["value"])
+    return [{"direction": direction} | values for direction, values in by_direction.items()]
 
 
 def has_values(entry: Mapping[str, Any]) -> bool:
@@ -118,60 +100,65 @@ def has_values(entry: Mapping[str, Any]) -> bool:
 
 def over_pressure(curves: list[Mapping[str, Any]]) -> list[tuple[float, list[dict[str, Any]]]]:
     """Rows of a table: pressure, MPa, and a number of each curve there, with its unit."""
-    pressures = sorted({row["at"]["pressure"] for one in curves for row in one.get("values", ())})
-    return [(at, [row_at(one, at) | {"unit": one["unit"]} for one in curves]) for at in pressures]
+    pressures = sorted(
+        {row["at"]["pressure"] for curve in curves for row in curve.get("values", ())}
+    )
+    return [
+        (pressure, [row_at(curve, pressure) | {"unit": curve["unit"]} for curve in curves])
+        for pressure in pressures
+    ]
 
 
 def jrc_table(*entries: Mapping[str, Any]) -> dict[str, Any]:
     """JRC by step (rows, mm) and fit (columns), in each direction; nothing where no fit has one."""
-    found: dict[float, dict[str, dict[str, float]]] = {}
-    for row in (row for one in entries for row in one.get("values", ()) if "value" in row):
+    by_step: dict[float, dict[str, dict[str, float]]] = {}
+    for row in (row for entry in entries for row in entry.get("values", ()) if "value" in row):
         at = row["at"]
         fit = at.get("fit", "Tse and Cruden 1979").partition(", ")[0]
         step = at.get("step", at.get("fit_step"))
-        found.setdefault(step, {}).setdefault(fit, {})[at["direction"]] = row["value"]
-    each = [numbers for fits in found.values() for numbers in fits.values()]
-    directions = sorted({name for numbers in each for name in numbers})
+        by_step.setdefault(step, {}).setdefault(fit, {})[at["direction"]] = row["value"]
+    cells = [numbers for fits in by_step.values() for numbers in fits.values()]
+    directions = sorted({name for numbers in cells for name in numbers})
     return {
         "directions": directions,
-        "fits": sorted({fit for fits in found.values() for fit in fits}),
+        "fits": sorted({fit for fits in by_step.values() for fit in fits}),
         "rows": {
             short(step): {
                 fit: " / ".join(short(numbers.get(name, math.nan)) for name in directions)
-                for fit, numbers in found[step].items()
+                for fit, numbers in by_step[step].items()
             }
-            for step in sorted(found)
+            for step in sorted(by_step)
         },
     }
 
 
 def missing_of(entries: Mapping[str, Any]) -> dict[str, list[str]]:
     """Titles of quantities without a number, or without one at some places, by the reason."""
-    found: dict[str, list[str]] = {}
-    for one in entries.values():
-        title = f"{one['title']} (in part)" if has_values(one) else one["title"]
-        for row in (one, *one.get("values", ())):
-            titles = found.setdefault(row["missing"], []) if "missing" in row else None
+    by_reason: dict[str, list[str]] = {}
+    for entry in entries.values():
+        title = f"{entry['title']} (in part)" if has_values(entry) else entry["title"]
+        for row in (entry, *entry.get("values", ())):
+            titles = by_reason.setdefault(row["missing"], []) if "missing" in row else None
             if titles is not None and title not in titles:
                 titles.append(title)
-    return found
+    return by_reason
 
 
 def errors_of(card: Mapping[str, Any], without: Collection[str] = ()) -> dict[str, Any]:
     """Rows of the table of errors, of quantities that have a value, and the sources of any."""
-    rows = [one for one in card["errors"] if one["value"] is not None]
-    sources = dict.fromkeys(source for one in rows for source, error in one["sources"].items())
+    rows = [row for row in card["errors"] if row["value"] is not None]
+    sources = dict.fromkeys(source for row in rows for source, error in row["sources"].items())
     return {"rows": rows, "sources": [of for of in sources if of not in without]}
 
 
 def in_words(number: Mapping[str, Any]) -> str:
-    """A number of a table, fractions in per cent; a dash where there is none."""
+    """Number of a table, fractions in per cent; a dash where there is none."""
     if "value" not in number:
         return MISSING
     if "to" in number:
         return " to ".join(dict.fromkeys((short(number["value"]), short(number["to"]))))
     value = number["value"]
-    # As many digits as its interval has, if there is one: it would seem to lie outside.
+    # With fewer digits than its interval a value would seem to lie outside.
     digits = 2 if number.get("low") is None else 3
     return percent(value, digits).removesuffix(" %") if number.get("unit") == "1" else short(value)
 

@@ -26,28 +26,19 @@ _REFERENCES = [
 
 
 class _Profile(Subject):
-    """A profile as a specimen whose only state is its roughness."""
+    """Profile as a specimen whose only state is its roughness."""
 
     def states(self, stage: str) -> xr.Dataset:
-        """The stage itself: nothing is selected of it."""
+        """Stage itself: no state of it is selected."""
         return self[stage]
 
 
 def card_of_profile(
     name: str, found: xr.Dataset, cells: int, spacing: float, checksum: str
 ) -> dict[str, Any]:
-    """Card of a profile, of ``card.schema.json``.
+    """Card of a profile of some cells at a spacing (mm), whose file has this SHA-256.
 
-    Parameters
-    ----------
-    name : str
-    found : xr.Dataset
-        From :func:`joint.profile.profile_coefficients`.
-    cells : int
-    spacing : float
-        mm.
-    checksum : str
-        SHA-256 of its file.
+    ``found`` is from :func:`joint.profile.profile_coefficients`.
     """
     subject = _Profile({"surface_dimension": found, "strength": found}, {"material": {}}, name)
     read = {row.name: entry_of(row, subject, "none") for row in entries()}

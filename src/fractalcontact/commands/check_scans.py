@@ -66,16 +66,8 @@ INDENT = "    "
 class Checked:
     """Report on one specimen, or on a file that makes none.
 
-    Attributes
-    ----------
-    name : str
-    cells : dict
-        Text by column of the table; empty if it was refused.
-    lines : list of str
-        Sentences below it.
-    warnings : list of str
-    refusal : str
-        Why it cannot be read; "" if it can.
+    ``cells`` has text by column of the table, and is empty if it was refused; ``lines`` are
+    sentences below it; ``refusal`` is why it cannot be read.
     """
 
     name: str
@@ -86,21 +78,10 @@ class Checked:
 
 
 def check_scans(folder: Path | str, study: Mapping, source: str) -> Iterator[Checked]:
-    """Go through all scans of a folder, one after the other.
+    """Reports on all scans of a folder, numbers in names sorted as numbers.
 
-    Parameters
-    ----------
-    folder : path-like
-    study : mapping
-        A study that :func:`study.checks.check_study` has passed.
-    source : str
-        The file the study came from, for errors.
-
-    Yields
-    ------
-    Checked
-        By name, numbers in names as numbers; what is wrong with one does not keep the others from
-        being read.
+    ``study`` has passed :func:`study.checks.check_study`; ``source`` is its file, for errors. A
+    refused scan does not keep the others from being read.
     """
     scans, stated, refused = read_scans({**study, "scans": folder})
     for name in sorted(scans.keys() | refused.keys(), key=natural_key):
@@ -118,7 +99,7 @@ def check_scans(folder: Path | str, study: Mapping, source: str) -> Iterator[Che
 
 
 def _embedded(study, source):
-    """Laboratory tests of specimens that the study makes itself; what else they are is known."""
+    """Laboratory tests of specimens that the study generates; the study states all else of them."""
     for name in sorted(study.get("embedded", {}), key=natural_key):
         row, tests = Checked(name, lines=[f"embedded in {source}"]), []
         try:
@@ -132,7 +113,7 @@ def _embedded(study, source):
 
 
 def _check(scan, study, source, stated):
-    """Read one specimen as the rules of the study do, with its scan keys and settings."""
+    """Report on one specimen, read as the rules of the study read it."""
     if scan.name in study.get("embedded", {}):
         raise InputError(f"'{scan.name}' is also an embedded specimen of {source}; rename one")
     options, own = stated
@@ -154,14 +135,14 @@ def _check(scan, study, source, stated):
 
 
 def _require_solvable(specimen, settings):
-    """Refuse what the study would refuse once the specimen is read: its offsets and loads."""
+    """Refuse offsets and loads that the study would refuse after reading the specimen."""
     every = dict.fromkeys([*settings.directions, *settings.contact_directions])
     choose_offsets(specimen, settings.offsets, list(every))
     hardness_of(settings, specimen)
 
 
 def _add_tests(row, tests):
-    """Add a sentence on each laboratory test, and what to look at in its readings."""
+    """Add a sentence on each laboratory test, and warnings of its readings."""
     for test, read in tests:
         name = printable(Path(test.file).name)
         row.lines.append(f"{test.kind} test {test.label}: {name}, {read.curve.x.size} readings")
@@ -264,7 +245,7 @@ def _pair(lengths):
 
 
 def _file_names(scan):
-    """Files of a specimen and the source of its settings, with the folder of its group."""
+    """Files of a specimen and the source of its settings, below the folder of its group."""
     names = [path.name for path in (*scan.files, scan.sidecar, scan.shared) if path]
     within = f"group {printable(scan.group)}: " if scan.group else ""
     stated = f", {printable(scan.row_of)}" if scan.row_of else ""
@@ -272,7 +253,7 @@ def _file_names(scan):
 
 
 def _shown(error, scan):
-    """The message with file names that no terminal acts on."""
+    """Message of an error; file names in it cannot control a terminal."""
     message = str(error)
     for path in (scan.lower, scan.upper, scan.sidecar, scan.shared):
         if path is not None:
@@ -284,13 +265,7 @@ def _shown(error, scan):
 
 
 def table_lines(checked: Checked) -> list[str]:
-    """Lines of the table for one specimen.
-
-    Returns
-    -------
-    list of str
-        None longer than `WIDTH`, if no word is.
-    """
+    """Lines of the table for one specimen, of at most `WIDTH` letters unless a word is longer."""
     name = printable(checked.name, COLUMNS["specimen"])
     row = _row(checked.cells | {"specimen": name}) if checked.cells else name
     sentences = [*checked.lines]
@@ -308,7 +283,7 @@ def _row(cells):
 
 
 def _wrapped(sentence):
-    """Sentence broken into lines; its own line breaks (text of a sidecar) are kept."""
+    """Lines of a sentence; its own line breaks (text of a sidecar) are kept."""
     lines = []
     for line in sentence.split("\n"):
         lead = INDENT + " " * (len(line) - len(line.lstrip()))
@@ -329,7 +304,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("folder", nargs="?", help="default: the study's")
     parser.add_argument("--study", default="config/paper.yaml")
     options = parser.parse_args(arguments)
-    # Names may hold what a terminal's encoding does not.
+    # Names may have letters that the encoding of the terminal lacks.
     sys.stdout.reconfigure(errors="backslashreplace")  # type: ignore[union-attr]  # a text file
     study = read_study(options.study)
     check_study(study, options.study)
@@ -337,7 +312,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _print_table(folder, study, source):
-    """Print the content of each file of a folder; 1 if one was refused."""
+    """Print the report on each file of a folder; 1 if one was refused, else 0."""
     counts = {"ok": 0, "with warnings": 0, "refused": 0}
     _write([_row({key: key for key in COLUMNS}), "-" * WIDTH])
     for checked in check_scans(folder, study, source):

@@ -18,23 +18,17 @@ from ..roughness.dimension import surface_dimension
 from ..states.state_scalars import aperture
 from ..surface.synthesis import self_affine
 
-#: Nodes per side: from here on the solver uses all of its parts.
+#: Nodes per side from which the solver uses all of its parts.
 SIDE = 200
-#: And from here on those for light contact.
+#: Nodes per side from which it also uses the parts for light contact.
 LARGE_SIDE = 512
-#: Force, N, that one node carries: numbers of one node lie in memory in two ways at once, for which
-#: kernels are compiled of their own.
+#: Force, N, that one node carries: arrays of one node are contiguous in two orders at once, and
+#: numba compiles kernels of their own for them.
 ONE_NODE = 1e-6
 
 
 def compile_kernels() -> list[float]:
-    """Run every kernel that a study uses, on a small synthetic joint: the compiled code is kept.
-
-    Returns
-    -------
-    list of float
-        Stiffnesses of the states solved on the way, N/mm.
-    """
+    """Stiffnesses, N/mm, of small states that run all kernels of a study: compiled code is kept."""
     surface = self_affine((SIDE, SIDE), 1.0, 0.8, seed=1, rms=1.0)
     surface_dimension(surface, 1.0)
     surface[0, 0] = np.nan
@@ -58,9 +52,9 @@ def compile_kernels() -> list[float]:
 
 
 def _light_states() -> list[ContactState]:
-    """States of a window so large, under loads so light, that its candidates alone are solved.
+    """States of a large window under light loads, whose candidates alone are solved.
 
-    The lightest have so few that pairs of them are summed directly, or one alone.
+    Under the lightest loads pairs of the few candidates are summed directly, or one stands alone.
     """
     surface = self_affine((LARGE_SIDE, LARGE_SIDE), 1.0, 0.8, seed=1, rms=1.0)
     space = HalfSpace(surface.shape, (1.0, 1.0), 1.0)
@@ -73,7 +67,7 @@ def _light_states() -> list[ContactState]:
 
 
 def _large_states() -> list[ContactState]:
-    """States of a window so large that convolutions are split, load steps begun on coarse grids."""
+    """States of a window whose convolutions are split and whose steps begin on coarse grids."""
     side = max(MIN_FINE_SIDE, MIN_SPLIT_SIDE)
     surface = self_affine((side, side), 1.0, 0.8, seed=1, rms=1.0)
     space = HalfSpace(surface.shape, (1.0, 1.0), 1.0)

@@ -35,15 +35,15 @@ from .describe_picture import draw_faces
 
 DRAFT = ".draft"
 PAGE = f"scans{DRAFT}.html"
-#: What is shown where a line is not filled in yet; the picture says so.
+#: Values shown for lines that are not filled in yet; the picture says so.
 _SHOWN = {
     **{"unit": "mm", "unit_xy": "mm", "unit_z": "mm", "spacing": "1 mm", "first_row": "bottom"},
     **{"kind": "face", "decimal": ".", "layout": "matrix", "columns": [0, 1, 2], "axes": "none"},
     **{"heights": "up", "missing": NO_MARK},
 }
-#: Numbers that may mark missing cells, named at most.
+#: Most numbers named that may mark missing cells.
 _MAX_NAMED = 4
-#: Files of one instrument may differ in relief by this factor from the one that was looked at.
+#: Largest factor between the reliefs of files of one instrument.
 ALIKE = 5.0
 _HEAD = """\
 # Draft of the sidecar of {files}: what the file seems to say. Nobody has looked at it yet.
@@ -58,17 +58,9 @@ confirmed:                # what was read when this was drafted; a file that dif
 class Described:
     """Report on one specimen.
 
-    Attributes
-    ----------
-    name : str
-    state : str
-        "draft", "complete", "written" or "refused".
-    sizes : list of str
-        Cells or points of each face, relief in the numbers of the file, share of missing cells.
-    to_fill : list of str
-        Keys of the draft that the program could not tell.
-    sentences : list of str
-    picture : Path or None
+    ``state`` is "draft", "complete", "written" or "refused". ``sizes`` has cells or points of each
+    face, its relief in the numbers of the file and its fraction of missing cells; ``to_fill`` names
+    keys of the draft that the file does not determine.
     """
 
     name: str
@@ -83,17 +75,9 @@ class Described:
 class Face:
     """One file as it would be read.
 
-    Attributes
-    ----------
-    path : Path
-    options : dict
-        Scan keys that it is read with.
-    measured : Measured or None
-        None if it is refused.
-    notes : list of str
-        What its picture says beside it.
-    among : list of float
-        Numbers among the heights that may mark missing cells, where the draft names none.
+    ``options`` are its scan keys, ``measured`` is None if it is refused, ``notes`` stand beside its
+    picture. ``among`` are numbers among the heights that may mark missing cells, where the draft
+    names none.
     """
 
     path: Path
@@ -104,14 +88,7 @@ class Face:
 
 
 def describe(scan: ScanFiles, *, always: bool = False) -> Described:
-    """Draft the sidecar of a scan and draw what would be read.
-
-    Parameters
-    ----------
-    scan : ScanFiles
-    always : bool, optional
-        Draw also what needs no draft.
-    """
+    """Report on a scan, its sidecar drafted and its picture drawn; ``always`` draws every scan."""
     stated = _stated(scan)
     faces = {"lower": scan.lower} | ({"upper": scan.upper} if scan.upper else {})
     drafts = {face: _draft_of(path, of_face(stated, face)) for face, path in faces.items()}
@@ -135,7 +112,7 @@ def describe(scan: ScanFiles, *, always: bool = False) -> Described:
 
 
 def _stated(scan: ScanFiles) -> dict[str, Any]:
-    """Scan keys of a sidecar, or of a draft that its owner may have mended."""
+    """Scan keys of a sidecar, or of a draft that its owner may have completed in part."""
     if scan.sidecar is not None:
         return read_sidecar(scan.sidecar)[0]
     draft = _beside(scan, ".yaml")
@@ -159,7 +136,7 @@ def _draft_of(path: Path, options: Mapping[str, Any]) -> tuple[list[str], dict[s
 
 
 def _read_as_drafted(path: Path, stated: Mapping, face: str, draft: Mapping[str, Any]) -> Face:
-    """A file as its draft says, lines that are not filled in shown in some way."""
+    """File as its draft says; keys that are not filled in take the values of `_SHOWN`."""
     blanks = [key for key, value in draft.items() if value is None]
     filled = {key: value for key, value in draft.items() if value is not None}
     options = {**of_face(stated, face), **filled}
@@ -201,13 +178,13 @@ def _marks(face: Face) -> dict[float, bool]:
     unit = options.get("unit_z") or options.get("unit") or "mm"
     sign = -1 if options.get("heights") == "down" or options.get("kind") == APERTURE else 1
     factor = sign * length_factor(str(unit), str(face.path))
-    # In the file's own unit, without what the conversion leaves in the last digits.
+    # Heights in the file's own unit, without rounding errors of the conversion.
     own = np.round(heights / factor, 9 - int(np.log10(np.nanmax(np.abs(heights / factor)) + 1)))
     if options.get("kind") == APERTURE:
         own = own[own != 0]
-    found = {float(f"{mark.value:.7g}"): mark.outside for mark in find_marks(own)}
-    rest = np.where(np.isin(own, [mark for mark, outside in found.items() if outside]), np.nan, own)
-    return found | {float(f"{value:.7g}"): False for value, _ in possible_marks(rest)}
+    marks = {float(f"{mark.value:.7g}"): mark.outside for mark in find_marks(own)}
+    rest = np.where(np.isin(own, [mark for mark, outside in marks.items() if outside]), np.nan, own)
+    return marks | {float(f"{value:.7g}"): False for value, _ in possible_marks(rest)}
 
 
 def _draft_text(scan: ScanFiles, lines: list[str], drafts: Mapping, shown: Mapping) -> str:
@@ -275,14 +252,9 @@ def _beside(scan: ScanFiles, ending: str) -> Path:
 
 
 def write_alike(scan: ScanFiles, like: Mapping[str, Any]) -> Described:
-    """Give a scan the sidecar of another one of the same instrument, if it fits.
+    """Report on a scan that gets the sidecar of another scan of the same instrument, if it fits.
 
-    Parameters
-    ----------
-    scan : ScanFiles
-        Without a sidecar.
-    like : mapping
-        What the sidecar of the other one says, complete.
+    ``scan`` has no sidecar; ``like`` is the whole content of the other one.
     """
     blocks = [of_face(like, face) for face in FACES][: len(scan.files)]
     faces = [Face(*pair) for pair in zip(scan.files, map(_scan_keys, blocks), strict=True)]
@@ -402,7 +374,7 @@ def row_lines(row: Described) -> list[str]:
     first = f"{printable(row.name, 24):24} {row.state:9} {' | '.join(row.sizes)}{fill}"
     return [
         first,
-        *(f"    {printable(one, 300)}" for one in dict.fromkeys(row.sentences)),
+        *(f"    {printable(sentence, 300)}" for sentence in dict.fromkeys(row.sentences)),
     ]
 
 

@@ -16,14 +16,7 @@ _LINES, _WIDTH = 8, 110  # of text
 
 
 def draw_faces(faces: Sequence[Any], path: Path) -> None:
-    """Draw files as they would be read, one row each.
-
-    Parameters
-    ----------
-    faces : sequence of commands.describe.Face
-    path : Path
-        The PNG to write.
-    """
+    """Draw files (:class:`commands.describe.Face`) as they would be read into a PNG, a row each."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
@@ -65,7 +58,7 @@ def _draw_relief(figure, axes, face, label):
         title = f"{len(measured.values)} points"
         z = measured.values[:, 2]
     present = z[np.isfinite(z)]
-    if present.size:  # a few spikes must not hide the relief
+    if present.size:  # spikes would hide the relief
         image.set_clim(*np.percentile(present, [0.5, 99.5]))
     figure.colorbar(image, ax=axes, label=label, extend="both")
     axes.set(xlabel="x (mm)", ylabel="y (mm)", title=f"{printable(face.path.name, 60)}: {title}")
@@ -83,7 +76,7 @@ def draw_histogram(axes: Any, z: np.ndarray, label: str) -> None:
     """Histogram of values in mm; their ends, median and missing share above it."""
     present = z[np.isfinite(z)]
     if present.size:
-        # A margin of 1 um, as all may be alike.
+        # The margin of 1 um gives equal values a range too.
         ends = (present.min() - 1e-3, present.max() + 1e-3)
         axes.hist(present, bins=60, range=ends, color="0.4")
         axes.set_title(

@@ -38,15 +38,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def exported(card: dict[str, Any], code: str) -> str:
-    """Constants of a card as a code reads them.
-
-    Parameters
-    ----------
-    card : dict
-        Of ``card.schema.json``.
-    code : str
-        Of :data:`CODES`.
-    """
+    """Text of the constants of a card for one of :data:`CODES`."""
     return import_module(f"fractalcontact.cards.exports.{code}").text_of(card)
 
 

@@ -43,7 +43,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     out = Path(given.out)
     if out.suffix not in MAP_ENDINGS:
         raise InputError(f"{out}: write a file that ends in {', '.join(MAP_ENDINGS)}")
-    # Settings of a study in the same sidecar, such as a material, say nothing of the gap.
+    # Settings of a study in the same sidecar, such as a material, do not change the gap.
     keys, _ = read_sidecar(Path(given.keys) if given.keys else None)
     gap = gap_of(Path(given.lower), Path(given.upper), keys, given.outliers)
     picture = out.with_suffix(".png")
@@ -55,38 +55,24 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def gap_of(lower: Path, upper: Path, keys: Mapping, outliers: str = "keep") -> xr.DataArray:
-    """Gap between two scanned faces that lie as the registration leaves them.
+    """Gap (y, x) between two scanned faces as the registration leaves them, ``aperture`` in mm.
 
-    Parameters
-    ----------
-    lower, upper : Path
-    keys : mapping
-        How they are read, see `scan.read.read_faces`.
-    outliers : {"keep", "mask", "fill"}
-        See `surface.cleaning.clean_faces`.
-
-    Returns
-    -------
-    DataArray (y, x)
-        ``aperture``, mm: height of the upper face above the lower one, below zero where the faces
-        overlap, NaN where a face is missing. Attributes: ``registration`` and ``cleaning``.
-
-    Raises
-    ------
-    InputError
-        As `read_faces` and `clean_faces`.
+    It is the height of the upper face above the lower one: below zero where the faces overlap, NaN
+    where a face is missing. ``keys`` are those of `scan.read.read_faces`, ``outliers`` is that of
+    `surface.cleaning.clean_faces`; both may raise InputError. Attributes ``registration`` and
+    ``cleaning`` say what was done.
     """
     low, high = read_faces(lower, upper, keys)
     assert high is not None  # two files were given
     cleaned, _, attrs = clean_faces([low, high], outliers=outliers, name=str(lower))
     gap = (cleaned[1] - cleaned[0]).rename("aperture")
     source = f"{upper.name} above {lower.name}"
-    found = {
+    done = {
         "registration": high.attrs["registration"],
         "cleaning": attrs["cleaning"],
         "source": source,
     }
-    return gap.assign_attrs(units="mm", long_name="gap between the faces", **found)
+    return gap.assign_attrs(units="mm", long_name="gap between the faces", **done)
 
 
 def words(gap: xr.DataArray) -> list[str]:
@@ -97,13 +83,13 @@ def words(gap: xr.DataArray) -> list[str]:
     dx, dy = (float(np.diff(gap[axis].values).mean()) for axis in "xy")
     shares = np.percentile(present, _PERCENTILES)
     overlapping = percent(float(np.mean(present < 0)))
-    each = ", ".join(f"{p} %: {g:.4g}" for p, g in zip(_PERCENTILES, shares, strict=True))
+    percentiles = ", ".join(f"{p} %: {g:.4g}" for p, g in zip(_PERCENTILES, shares, strict=True))
     lines = [
         f"{gap.attrs['source']}: {nx} x {ny} cells of {dx:.4g} x {dy:.4g} mm, "
         f"{percent(1 - present.size / gap.size)} without a height of both",
         f"gap: mean {present.mean():.4g} mm, standard deviation {present.std():.4g} mm, "
         f"{present.min():.4g} to {present.max():.4g} mm",
-        f"percentiles of the gap, mm: {each}",
+        f"percentiles of the gap, mm: {percentiles}",
         f"overlap: the upper face lies below the lower one in {overlapping} of the cells",
         f"suspicious cells: {gap.attrs['cleaning']}",
     ]
@@ -126,7 +112,7 @@ def _draw(gap: xr.DataArray, path: Path) -> None:
     figure = Figure(figsize=(11, 4.8), layout="constrained")
     FigureCanvasAgg(figure)
     of_map, histogram = figure.subplots(1, 2, width_ratios=(3, 2))
-    low, high = np.nanpercentile(gap, [0.5, 99.5])  # a few spikes must not hide the rest
+    low, high = np.nanpercentile(gap, [0.5, 99.5])  # spikes would hide the rest
     image = of_map.pcolormesh(
         gap["x"], gap["y"], gap, cmap=colours(), vmin=low, vmax=high, rasterized=True
     )

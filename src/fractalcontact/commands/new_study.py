@@ -23,19 +23,10 @@ TEMPLATE = Path(__file__).with_suffix(".yaml")
 
 
 def new_study(path: Path, scans: Path) -> list[Described]:
-    """Write the study of a folder's scans, and draft sidecars beside them.
+    """Reports on the scans of a folder, whose study is written with drafts of missing sidecars.
 
-    Parameters
-    ----------
-    path : Path
-        The study's file; its stem is the study's name.
-    scans : Path
-        The folder.
-
-    Returns
-    -------
-    list of Described
-        One a scan, and one a file that is refused by its name.
+    ``path`` is the file of the study, its stem the name. Files that are refused by their names have
+    reports too.
 
     Raises
     ------
@@ -44,18 +35,18 @@ def new_study(path: Path, scans: Path) -> list[Described]:
     """
     if path.exists():
         raise InputError(f"{path} exists and stays; for another study: make new NAME=other")
-    found, refused = list_scans(scans)
-    if not found and not refused:
+    files, refused = list_scans(scans)
+    if not files and not refused:
         raise InputError(
             f"{scans}: no scan in this folder; put a file there (scans/README.md names the "
             "formats), then: make new"
         )
     rows = [Described(key, "refused", sentences=[str(why)]) for key, why in refused.items()]
-    rows += [describe_or_refuse(found[key]) for key in sorted(found, key=natural_key)]
+    rows += [describe_or_refuse(files[key]) for key in sorted(files, key=natural_key)]
     text = string.Template(TEMPLATE.read_text(encoding="utf-8")).substitute(
         name=path.stem,
         scans=yaml.safe_dump({"scans": str(scans)}, width=math.inf).rstrip(),
-        specimens=listed(found) or "none",
+        specimens=listed(files) or "none",
     )
     with atomic_write(path) as temporary:
         temporary.write_text(text, encoding="utf-8")

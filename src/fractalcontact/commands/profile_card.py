@@ -28,8 +28,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
     given = parser.parse_args(arguments)
     heights, spacing = read_profile(given.file)
     name = specimen_name(Path(given.file).stem)
-    found = profile_coefficients(heights, spacing)
-    write_card(card_of_profile(name, found, heights.size, spacing, sha256(given.file)), given.out)
+    coefficients = profile_coefficients(heights, spacing)
+    write_card(
+        card_of_profile(name, coefficients, heights.size, spacing, sha256(given.file)), given.out
+    )
     sys.stdout.write(f"{Path(given.out, 'cards', f'{name}.html')}\n")
     return 0
 

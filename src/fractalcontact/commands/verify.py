@@ -27,7 +27,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     counts = [f"{len(getattr(checked, word))} {word}" for word in words]
     wrong = not checked.intact or any(getattr(checked, word) for word in words[1:])
     if wrong:
-        KNOWN.unlink(missing_ok=True)  # what was kept of the files before their damage
+        KNOWN.unlink(missing_ok=True)  # it describes the files before their damage
     advice = "; 'make' makes again all files that the study needs" if wrong else ""
     sys.stdout.write(f"{results}: {', '.join(counts)}{advice}\n")
     return int(wrong)

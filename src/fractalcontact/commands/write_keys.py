@@ -4,6 +4,7 @@ python -m fractalcontact.commands.write_keys
 """
 
 import json
+import re
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -125,8 +126,9 @@ def _published_rows() -> Iterator[tuple[str, ...]]:
     for row in published():
         if row.stage != "settings":
             shown = ", ".join(words for key, words in PLACES.items() if getattr(row, key))
-            title = row.title.replace("*", "\\*").replace("|", "\\|").replace("_", "\\_")
-            yield row.source, row.unit.replace("*", "\\*"), title, shown
+            shown += f": {row.shown}" if row.shown else ""
+            cells = (row.unit, row.title, shown)
+            yield row.source, *(re.sub(r"([*|_])", r"\\\1", cell) for cell in cells)
 
 
 def _test_rows() -> Iterator[tuple[str, str, str]]:

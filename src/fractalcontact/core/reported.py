@@ -114,12 +114,11 @@ class Reported:
 
     def along(self, stage: xr.Dataset) -> xr.Dataset:
         """A stage in the reported direction."""
-        return stage.sel({name: self.direction for name in _DIRECTIONS if name in stage.dims})
+        return states_at(stage, direction=self.direction)
 
     def curves(self, stage: xr.Dataset) -> xr.Dataset:
         """A stage in the reported direction, at the reported resolution."""
-        along = self.along(stage)
-        return along.sel(resolution=self.resolution) if "resolution" in along.dims else along
+        return states_at(stage, direction=self.direction, resolution=self.resolution)
 
     def states(self, stage: xr.Dataset) -> xr.Dataset:
         """A stage in the reported direction, at the reported offset and resolution."""
@@ -127,10 +126,24 @@ class Reported:
 
     def at_offset(self, states: _States) -> _States:
         """States at the reported offset, at every resolution that they are over."""
-        if "offset" not in states.dims:
-            return states
-        return states.sel(offset=self.offset, method="nearest")
+        return states_at(states, offset=self.offset)
 
     def state(self, stage: xr.Dataset) -> xr.Dataset:
         """A stage at the reported state under the reference load."""
         return self.states(stage).sel(normal_force=self.force, method="nearest")
+
+
+def states_at(
+    stage: _States,
+    *,
+    direction: str | None = None,
+    offset: float | None = None,
+    resolution: int | None = None,
+) -> _States:
+    """States at a direction, the nearest offset (mm) and a resolution, of those a stage is over."""
+    labels = dict.fromkeys(_DIRECTIONS, direction) | {"resolution": resolution}
+    known = {dim: at for dim, at in labels.items() if at is not None and dim in stage.dims}
+    stage = stage.sel(known) if known else stage
+    if offset is None or "offset" not in stage.dims:
+        return stage
+    return stage.sel(offset=offset, method="nearest")

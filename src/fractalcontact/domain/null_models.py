@@ -18,6 +18,7 @@ from ..core.estimate import NO_ESTIMATE, Estimate
 from ..core.limits import MIN_NODES
 from ..core.per_curve import stacked
 from ..core.ranges import in_cells
+from ..core.reported import states_at
 from .box_dimension import dimension_of_domain
 from .counted_domain import QUANTITIES, CountedDomain, errors_of
 from .departure import departure_of
@@ -174,7 +175,7 @@ def nulls_of_map_states(
     loads and the scalars ``direction``, ``offset`` and ``resolution`` of the states.
     """
     factor = int(states["resolution"])
-    composite = composites.sel(offset=float(states["offset"]), method="nearest").values
+    composite = states_at(composites, offset=float(states["offset"])).values
     domains = states["pressure"].values > 0
     nulls = null_models(
         domains, spacing * factor, composite[::factor, ::factor], fit_range=fit_range

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 from ..core.datasets import labelled_dataset
 from ..core.labels import OF_SURFACE, REALISATIONS, TWINS, cf_attrs
 from ..core.limits import MIN_NODES
+from ..core.reported import states_at
 from ..core.settings import StateSettings
 from ..joint.joint import prefractal
 from ..states.loading import JointLoading
@@ -96,16 +97,14 @@ def map_curve(
     ``domains``.
     """
     (cells,) = loading.cells
-    place = {"direction": loading.direction, "resolution": resolution}
     (offset,) = loading.offsets
-    at_place = [
-        stage.sel(place).sel(offset=offset, method="nearest") for stage in (curves, domains)
-    ]
+    place = {"direction": loading.direction, "offset": offset, "resolution": resolution}
+    stages = [states_at(stage, **place) for stage in (curves, domains)]
     composite = prefractal(loading.composite(int(cells)), resolution)
     # Against a plane there is no mated position; distances count from the mean plane.
     mated = loading.composite(0)
     mated = mated.max() if loading.slides else mated.mean()
-    return LoadCurve(loading, composite, float(mated), resolution, *at_place)
+    return LoadCurve(loading, composite, float(mated), resolution, *stages)
 
 
 def error_budget(

@@ -13,6 +13,7 @@ from roughcontact.errors import NotConverged
 
 from ..core.datasets import labelled, labelled_dataset
 from ..core.labels import cf_attrs
+from ..core.reported import states_at
 from ..joint.joint import prefractal
 from ..states.loading import JointLoading
 from ..states.separation import ROUNDING
@@ -131,8 +132,7 @@ def joint_branches(loading: JointLoading, curves: xr.Dataset, mapped: xr.Dataset
     """
     (cells,), (offset,) = loading.cells, loading.offsets
     factor = int(curves["resolution"].min())
-    curve = curves.sel(direction=loading.direction, resolution=factor)
-    curve = curve.sel(offset=offset, method="nearest")
+    curve = states_at(curves, direction=loading.direction, offset=offset, resolution=factor)
     seating = float(curve["seating_pressure"])
     light = within_span(curve["nominal_pressure"].values, seating)
     curve = curve.isel(normal_force=light | (light.sum() < 2))

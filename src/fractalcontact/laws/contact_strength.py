@@ -26,11 +26,6 @@ NAMES = {
         "change of it with slopes over twice the spacing, no interval",
         *("offset", "normal_force"),
     ),
-    "contact_dip": (
-        "degree",
-        "mean apparent dip along the sliding, weighed by the force",
-        *("offset", "normal_force"),
-    ),
     "contact_truncated": (
         "1",
         f"fraction of the force at {LARGEST_FRICTION_ANGLE:g} degrees, where angles are truncated",
@@ -86,7 +81,6 @@ def contact_strength(dips: np.ndarray, pressure: np.ndarray, angle: float) -> di
     return {
         "contact_strength": tau,
         "contact_strength_grid_error": error,
-        "contact_dip": dips[0].mean(-1),
         "contact_truncated": truncated[0],
         **peak.columns("peak_contact_strength"),
         "peak_contact_truncated": truncated[0][place, loads],

@@ -26,17 +26,7 @@ _POWER = re.compile(r"\^(-?\([^()]*\)|-?[\w.]*\w)")
 
 
 class Caption(NamedTuple):
-    """A caption in parts.
-
-    Attributes
-    ----------
-    finding : str
-        What the figure finds, without numbers in brackets; empty where there is none.
-    text : list of str
-        What is drawn.
-    rest : list of str
-        What is found, in sentences.
-    """
+    """Caption in parts: finding (may be empty), what is drawn, and what is found, in sentences."""
 
     finding: str
     text: list[str]
@@ -46,34 +36,28 @@ class Caption(NamedTuple):
 def take_apart(caption: str) -> Caption:
     """Parts of a caption file: heading, empty line, one sentence a line.
 
-    Parameters
-    ----------
-    caption : str
-        As a figure's text file holds it; one without an empty line is what is drawn alone.
+    A file without an empty line says what is drawn alone.
     """
     heading, parts, lines = caption.rstrip("\n").partition("\n\n")
     if not parts:
         return Caption("", [heading] if heading else [], [])
-    shown, *found = lines.splitlines()
-    return Caption(heading, [shown], found)
+    shown, *findings = lines.splitlines()
+    return Caption(heading, [shown], findings)
 
 
 def symbols(text: object) -> Markup:
     """Text with its symbols as printed: Delta_g as Δ with a lowered g, mm2 as mm².
 
-    Parameters
-    ----------
-    text : object
-        Escaped first: it may be untrusted input.
+    It may be untrusted input, and is escaped first.
     """
     safe = str(escape(text))
     safe = _SYMBOL.sub(_lowered, safe)
     safe = _PRIME.sub(r"h′<sub>\1</sub>", safe)
-    safe = _ALONE.sub(lambda found: _GREEK[found[1]], safe)
-    safe = _UNIT.sub(lambda found: found[1] + "²³"["23".index(found[2])], safe)
-    return Markup(_POWER.sub(lambda found: f"<sup>{found[1]}</sup>", safe))
+    safe = _ALONE.sub(lambda match: _GREEK[match[1]], safe)
+    safe = _UNIT.sub(lambda match: match[1] + "²³"["23".index(match[2])], safe)
+    return Markup(_POWER.sub(lambda match: f"<sup>{match[1]}</sup>", safe))
 
 
-def _lowered(found):
-    base, index = found.groups()
+def _lowered(match):
+    base, index = match.groups()
     return f"{_GREEK.get(base, base)}<sub>{_GREEK.get(index, index)}</sub>"

@@ -11,16 +11,9 @@ from ..core.subject import Subject
 
 @dataclass(frozen=True)
 class CommonLoad:
-    """A nominal pressure, and the load of each specimen that was solved there.
+    """Nominal pressure, and the number of the load of each specimen that was solved there.
 
-    Attributes
-    ----------
-    key : str
-        Its name on the page.
-    pressure : float
-        MPa, as the comparison of specimens has it.
-    numbers : dict of str to int
-        Number of the load by specimen; those not solved there are left out.
+    ``key`` is its name on the page, ``pressure`` that of the comparison of specimens, MPa.
     """
 
     key: str
@@ -33,37 +26,42 @@ def common_loads(
 ) -> list[CommonLoad]:
     """Pressures quoted of any specimen, ascending, with the loads of all specimens there.
 
-    Parameters
-    ----------
-    subjects : sequence of Subject
-    comparison : xr.Dataset, optional
-        Stage ``study_comparison``, with the pressure that each load is compared under; a single
-        specimen has none.
+    ``comparison``, the stage ``study_comparison``, has the pressure that each load is compared
+    under; a single specimen has none.
     """
-    compared = {one.name: _compared(one, comparison) for one in subjects}
-    solved = {one.name: np.isfinite(one.states("closure")["closure"].values) for one in subjects}
-    quoted = sorted({float(compared[one.name][i]) for one in subjects for i in one.reported.quoted})
-    found: list[CommonLoad] = []
+    compared = {subject.name: _compared(subject, comparison) for subject in subjects}
+    solved = {
+        subject.name: np.isfinite(subject.states("closure")["closure"].values)
+        for subject in subjects
+    }
+    quoted = sorted(
+        {float(compared[subject.name][i]) for subject in subjects for i in subject.reported.quoted}
+    )
+    loads: list[CommonLoad] = []
     for pressure in quoted:
         places = {name: np.flatnonzero(compared[name] == pressure) for name in compared}
-        numbers = {name: int(at[0]) for name, at in places.items() if solved[name][at].any()}
+        numbers = {
+            name: int(place[0]) for name, place in places.items() if solved[name][place].any()
+        }
         if numbers:
-            found.append(CommonLoad(f"p{len(found)}", pressure, numbers))
-    return found
+            loads.append(CommonLoad(f"p{len(loads)}", pressure, numbers))
+    return loads
 
 
 def _compared(subject, comparison):
-    """Pressures that its loads are compared under (n,), MPa."""
+    """Pressures that the loads of a specimen are compared under (n,), MPa."""
     if comparison is None:
         return subject["closure"]["nominal_pressure"].values
     return comparison["compared_pressure"].sel(specimen=subject.name).values
 
 
 def main_load(loads: Sequence[CommonLoad], subjects: Sequence[Subject]) -> CommonLoad | None:
-    """Load to show first: that of most specimens, then of most contact maps, then the largest."""
+    """Load shown first: that of most specimens, then of most contact maps, then the largest."""
 
     def rank(load):
-        maps = sum(load.numbers.get(one.name) == one.reported.reference for one in subjects)
+        maps = sum(
+            load.numbers.get(subject.name) == subject.reported.reference for subject in subjects
+        )
         return len(load.numbers), maps, load.pressure
 
     return max(loads, key=rank, default=None)

@@ -25,22 +25,21 @@ COLUMNS = (
 
 
 def curves_table(study: str, subjects: list[Subject]) -> pd.DataFrame:
-    """Curves of specimens, one row a point; points that were not solved are left out.
+    """Curves of specimens, one row a point, with the total error of this surface or their interval.
 
-    Closure, tangent stiffness and corrected area with the total error of this surface, both
-    Delta_sigma with their intervals. A point is ``resolved`` where ten nodes touch and, of a
-    dimension, where its interval determines it; figures draw the others hollow.
+    A point is ``resolved`` where ten nodes touch and, of a dimension, where its interval determines
+    it; figures draw the others hollow. Points that were not solved are left out.
     """
     rows: list[dict[str, Any]] = []
     for subject in subjects:
         start = (study, subject.name, subject.label, subject.direction, subject.offset)
         enough = subject.states("closure")["resolved"].values.astype(bool)
         for row in shown_in("curves"):
-            for one, resolved in zip(read(row, subject), enough, strict=True):
-                # At the seat closure is 0 by definition.
-                if one.estimate.known and not (row.zero and one.value == 0):
-                    ends = (float(end) for end in one.estimate.ends)
-                    says = bool(resolved) and (one.determined or not row.dimension)
-                    values = (row.curves, row.unit, float(one.at["pressure"]), *ends, says)
+            for number, resolved in zip(read(row, subject), enough, strict=True):
+                # Closure is 0 at the seat by definition.
+                if number.estimate.known and not (row.zero and number.value == 0):
+                    ends = (float(end) for end in number.estimate.ends)
+                    says = bool(resolved) and (number.determined or not row.dimension)
+                    values = (row.curves, row.unit, float(number.at["pressure"]), *ends, says)
                     rows.append(dict(zip(COLUMNS, (*start, *values), strict=True)))
     return pd.DataFrame(rows, columns=list(COLUMNS))

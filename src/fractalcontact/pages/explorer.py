@@ -8,6 +8,7 @@ from matplotlib import colormaps
 from matplotlib.colors import to_hex
 
 from ..core.labels import printable
+from ..report.published import stages_of
 from ..study.atlas_parts import Trees
 from .packed_states import packed_states
 from .templating import write_page
@@ -16,34 +17,18 @@ from .templating import write_page
 COLOUR_MAP = "cividis"
 #: Colours of the map that the page gets; it interpolates between them.
 COLOURS = 33
-#: Letters of a specimen's label that are shown.
+#: Most letters of a specimen's label.
 MAX_LABEL = 100
 #: Stages that the page shows.
-NEEDS = (
-    "specimens",
-    "contact",
-    "closure",
-    "flow",
-    "dilatancy",
-    "domains",
-    "scaling",
-    "error_budget",
-)
+NEEDS = stages_of("explorer") | {"contact"}
 
 
 def write_explorer(
     atlas_path: Path | str, path: Path | str, names: Sequence[str] | None = None
 ) -> None:
-    """Write the page on all contact states of specimens: one file that needs no other.
+    """Write ``explorer.html``, all contact states of specimens, beside atlas and result page.
 
-    Parameters
-    ----------
-    atlas_path : path-like
-        Atlas of the study.
-    path : path-like
-        ``explorer.html`` beside the atlas and the result page, to which it links.
-    names : sequence of str, optional
-        Of the specimens; all of the study by default.
+    It is one file that needs no other. ``names`` are all specimens by default.
 
     Raises
     ------
@@ -59,7 +44,9 @@ def write_explorer(
         "study": study,
         "index": {
             "study": study,
-            "specimens": [{key: one[key] for key in ("name", "label")} for one in specimens],
+            "specimens": [
+                {key: specimen[key] for key in ("name", "label")} for specimen in specimens
+            ],
             "colours": _colours(),
         },
         "specimens": specimens,

@@ -1,14 +1,14 @@
 """Names of the files of the result page: known to the workflow, which imports nothing heavy."""
 
-#: In the folder of the results of a study.
+#: Pages and tables in the folder of the results of a study.
 INDEX, EXPLORER = "index.html", "explorer.html"
 SUMMARY, CURVES, STATEMENTS = "summary.csv", "curves.csv", "statements.csv"
 TABLES, CONFIGURATION = "tables.zip", "study.yaml"
-#: Those made with the index.
+#: Files made with the index.
 FILES = (INDEX, SUMMARY, CURVES, STATEMENTS, TABLES, CONFIGURATION)
 #: Page of a specimen, below that folder.
 SPECIMEN_PAGE = "pages/{specimen}.html"
 #: Aperture map of a specimen under the reference load, and the endings that it has.
 APERTURE, APERTURE_ENDINGS = "apertures/{specimen}.{ending}", ("csv", "nc", "vtk")
-#: Card of a specimen, likewise.
+#: Card of a specimen, and its endings.
 CARD, CARD_ENDINGS = "cards/{specimen}.{ending}", ("yaml", "json", "html")

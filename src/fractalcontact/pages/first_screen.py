@@ -1,20 +1,25 @@
-"""First screen of a result page: one block of first numbers for each joint, from its card."""
+"""First screen of a result page: one block of first numbers for each joint, from the register."""
 
 import json
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from ..core.labels import OPPOSITE, printable
 from ..core.limits import JRC_SAMPLING
+from ..core.subject import Subject
 from ..core.text import measured, percent, short, with_unit
+from ..core.window import spacing_of, window_sides
+from ..report.published import Number, read, read_at, row_of
 from .files import CARD
+from .lights import lights_of, trust_of
 
-#: Intervals as cards name them, in words.
+#: Intervals as the register names them, in words.
 _ALONE = {"solver": " solver error alone", "all errors of this surface": " this surface"}
-#: Keeps an interval on one line.
+#: Space that keeps an interval on one line.
 _NBSP = "\u00a0"
-#: Rules for the peak shear strength, by their entries, in words.
+#: Rules for the peak shear strength, by their rows, in words.
 STRENGTH_RULES = {
     "peak_strength": "dilatancy",
     "contact_strength": "contact",
@@ -25,8 +30,6 @@ STRENGTH_RULES = {
 _STEEP_GAP = 1.0
 #: Relative difference from the area of contacts that all crush.
 _SAME = 0.01
-#: Where a card has the half-width of a number for other surfaces of its kind.
-_KIND = "of_its_population"
 
 
 class Fact(NamedTuple):
@@ -37,179 +40,185 @@ class Fact(NamedTuple):
     notes: list[str]
 
 
-def blocks_of(names: Sequence[str], folder: Path) -> list[dict[str, Any]]:
-    """Cards of the specimens that have one, scans first, each with what its block prints.
-
-    Parameters
-    ----------
-    names : sequence of str
-    folder : pathlib.Path
-        Of the results.
-    """
-    paths = [folder / CARD.format(specimen=name, ending="json") for name in names]
-    cards = [json.loads(path.read_text(encoding="utf-8")) for path in paths if path.is_file()]
-    return sorted((block_of(card) for card in cards), key=lambda one: one["synthetic"])
-
-
-def block_of(card: Mapping[str, Any]) -> dict[str, Any]:
-    """A card with its state and window in words, and its ``facts``, a list of :class:`Fact`."""
-    state = f"{offset_of(card)}; contact {card['model']}"
-    return {**card, "state": state, "window": window_of(card), "facts": facts_of(card)}
+def block_of(subject: Subject, synthetic: bool) -> dict[str, Any]:
+    """Block of a joint; ``facts`` is a list of :class:`Fact`."""
+    return {
+        "name": subject.name,
+        "label": printable(subject.label),
+        "synthetic": synthetic,
+        "offset": offset_words(subject),
+        "model": model_of(subject),
+        "window": window_words(subject),
+        "facts": facts_of(subject, synthetic),
+        "trust": trust_of(lights_of(subject)),
+    }
 
 
-def window_of(card: Mapping[str, Any]) -> str:
+def is_synthetic(name: str, study: Mapping[str, Any]) -> bool:
+    """True if the study generates a specimen: a twin of a scan, or a mathematical joint."""
+    return name in study.get("embedded", {})
+
+
+def quoted_methods(name: str, folder: Path) -> dict[str, Any]:
+    """Methods paragraph of a card and its references; empty of a specimen without a card."""
+    path = folder / CARD.format(specimen=name, ending="json")
+    if not path.is_file():
+        return {}
+    card = json.loads(path.read_text(encoding="utf-8"))
+    return {key: card[key] for key in ("methods", "references")}
+
+
+def model_of(subject: Subject) -> str:
+    """Contact model: elastic, or with the pressure capped at the hardness."""
+    hardness = float(subject.settings["material"]["hardness"])
+    return f"crushing at H = {with_unit(hardness, 'MPa')}" if math.isfinite(hardness) else "elastic"
+
+
+def window_words(subject: Subject) -> str:
     """Sides and spacing of the window of a joint, and how they were chosen."""
-    size = {key: one.get("value", math.nan) for key, one in card["geometry"].items()}
-    sides = f"{short(size['window_x'])} × {short(size['window_y'])} mm"
-    chosen = f": {card['window']}" if card.get("window") else ""
-    return f"window {sides}, spacing {with_unit(size['spacing'], 'mm')}{chosen}"
+    specimen = subject["specimens"]
+    side_y, side_x = window_sides(specimen)
+    note = f": {specimen.attrs['window_note']}" if specimen.attrs["window_note"] else ""
+    spacing = with_unit(max(spacing_of(specimen)), "mm")
+    return f"window {short(side_x)} × {short(side_y)} mm, spacing {spacing}{note}"
 
 
-def facts_of(card: Mapping[str, Any]) -> list[Fact]:
-    """First numbers of a joint, all at the reference pressure of its study."""
-    pressure = reference_of(card)
-    at = f"at {short(pressure)} MPa"
-    stiffness, seated, gap, hydraulic, contact = (
-        row_at(card["entries"][key], pressure)
-        for key in (
-            *("interface_stiffness", "seated_closure", "mean_gap"),
-            *("hydraulic_aperture", "contact_fraction"),
-        )
-    )
-    since = f"counted from {with_unit(card['geometry']['seat'].get('value', math.nan), 'MPa')}"
-    if not seated.get("value"):
-        seated, since = (
-            row_at(card["entries"]["interface_closure"], pressure),
-            "counted from first touch",
-        )
-    flowing = ""
-    if "value" in hydraulic:
-        flowing = f"hydraulic aperture {short(hydraulic['value'])} mm {_ends(hydraulic)}".rstrip()
-        slope = row_at(card["entries"]["gap_slope"], pressure).get("value", 0.0)
-        if slope > _STEEP_GAP:
-            flowing += f"; cubic law not valid (gap slope {short(slope)})"
-    crushed = hardnesses_of(card)[0] * contact.get("value", math.nan)
-    by_load = "all contacts crush: sigma_0/H" if abs(crushed / pressure - 1) < _SAME else ""
+def offset_words(subject: Subject) -> str:
+    """Offset of a joint in words."""
+    if subject.direction == "none":
+        return "without sliding"
+    if subject.offset:
+        return f"slid by {with_unit(subject.offset, 'mm')} towards {subject.direction}"
+    faces = OPPOSITE[subject["specimens"].attrs["opposite"]]
+    return "in the mated position" if faces.startswith("one") else "at no offset"
+
+
+def facts_of(subject: Subject, synthetic: bool = False) -> list[Fact]:
+    """First numbers of a joint, all under the reference load of its study."""
+    pressure = float(subject["closure"]["nominal_pressure"][subject.reported.reference])
+    at, block = f"at {short(pressure)} MPa", _Block(subject, synthetic)
+    contact = block.number("contact_fraction")
+    crushed = block.hardness * _value(contact)
     facts = [
-        _fact(card, f"normal stiffness {at}", stiffness, "MPa/mm", _at_twice(card)),
-        _fact(card, f"closure {at}", seated, "mm", since),
-        _fact(card, f"mean gap {at}", gap, "mm", flowing),
-        _fact(card, f"contact {at}", contact, "%", by_load),
+        block.fact(f"normal stiffness {at}", "interface_stiffness", "MPa/mm", block.at_twice()),
+        block.closure(f"closure {at}"),
+        block.fact(f"mean gap {at}", "mean_gap", "mm", block.flow()),
+        block.fact(
+            f"contact {at}",
+            "contact_fraction",
+            "%",
+            "all contacts crush: sigma_0/H" if abs(crushed / pressure - 1) < _SAME else "",
+        ),
     ]
-    if card["direction"] != "none":
-        facts.append(_fact(card, "JRC", *_jrc(card)))
-        facts.append(_strength(card, f"shear strength {at}", pressure))
+    if subject.direction != "none":
+        facts += [block.jrc(), block.strength(f"shear strength {at}")]
     return facts
 
 
-def hardnesses_of(card: Mapping[str, Any]) -> tuple[float, float]:
-    """Range of the hardness of single contacts, MPa; NaN where contacts are elastic."""
-    ends = (card["entries"].get(key, {}) for key in ("hardness", "hardest_hardness"))
-    low, high = (one.get("value", math.nan) for one in ends)
-    return low, high
+class _Block:
+    """Facts of one joint, from its published numbers under the reference load."""
+
+    def __init__(self, subject: Subject, synthetic: bool):
+        self.subject, self.synthetic = subject, synthetic
+        self.hardness, self.hardest = (
+            self.number(name).value for name in ("hardness", "hardest_hardness")
+        )
+
+    def number(self, name: str) -> Number:
+        return read_at(row_of(name), self.subject)
+
+    def fact(self, title: str, name: str, unit: str, beside: str = "") -> Fact:
+        """Number of a row; below it its interval, the whole joint's and that of harder contacts."""
+        return self.written(title, self.number(name), unit, beside, row_of(name).interval)
+
+    def written(
+        self, title: str, number: Number, unit: str, beside: str, interval: str = ""
+    ) -> Fact:
+        """Number in words and what stands below it; a dash with the reason where it is missing."""
+        if number.missing:
+            return Fact(title, "–", list(filter(None, (number.missing, beside))))
+        # A number and its interval have one unit, the same in all blocks.
+        size, shown = (100.0, " %") if unit == "%" else (1.0, f" {unit}".removesuffix(" 1"))
+        ends = _ends(number, size, _ALONE.get(interval, ""))
+        notes = ends, self._of_joint(number, size), self._harder(number, size), beside
+        words = f"{short(size * number.value)}{shown}"
+        return Fact(title, words, list(filter(None, notes)))
+
+    def closure(self, title: str) -> Fact:
+        """Closure from the seat; from first touch under a load below the seat."""
+        if _value(self.number("seated_closure")) > 0:
+            seat = with_unit(self.number("seating_pressure").value, "MPa")
+            return self.fact(title, "seated_closure", "mm", f"counted from {seat}")
+        return self.fact(title, "interface_closure", "mm", "counted from first touch")
+
+    def flow(self) -> str:
+        """Hydraulic aperture in words, and whether the gap is too steep for the cubic law."""
+        aperture, slope = (self.number(name) for name in ("hydraulic_aperture", "gap_slope"))
+        if aperture.missing:
+            return ""
+        words = f"hydraulic aperture {short(aperture.value)} mm {_ends(aperture)}".rstrip()
+        steep = _value(slope) > _STEEP_GAP
+        return words + f"; cubic law not valid (gap slope {short(slope.value)})" * steep
+
+    def at_twice(self) -> str:
+        """Change of the stiffness at twice the spacing, which no interval contains."""
+        change = _value(self.number("stiffness_change"))
+        is_known = math.isfinite(change) and change != 0
+        return f"changes by {percent(change, sign='+')} at twice the spacing" if is_known else ""
+
+    def jrc(self) -> Fact:
+        """JRC at the step of its law, in the reported direction."""
+        law = {"sampling": JRC_SAMPLING, "direction": self.subject.direction}
+        for number in read(row_of("jrc"), self.subject):
+            if law.items() <= number.at.items():
+                step = with_unit(number.at["step"], "mm")
+                by = f"by Tse and Cruden at a step of {step}; they used {JRC_SAMPLING}"
+                return self.written("JRC", number, "1", by)
+        return Fact("JRC", "–", ["no profile is long enough"])
+
+    def strength(self, title: str) -> Fact:
+        """Range of the rules for the strength, then each rule with its own error.
+
+        No rule's error is that of the strength: the rules differ by more.
+        """
+        numbers = {words: self.number(name) for name, words in STRENGTH_RULES.items()}
+        missing = {words: number.missing for words, number in numbers.items() if number.missing}
+        rules = [(number.value, words) for words, number in numbers.items() if not number.missing]
+        rules.sort(key=lambda rule: rule[0])
+        if not rules:
+            return Fact(title, "–", [missing["dilatancy"]])
+        lines = [f"range of {len(rules)} rules:"] if len(rules) > 1 else []
+        lines += [f"{of} {short(value)} {_ends(numbers[of])}".rstrip() for value, of in rules]
+        lines += [f"no value by {words}: {why}" for words, why in missing.items()]
+        ends = dict.fromkeys(short(value) for value, _ in (rules[0], rules[-1]))
+        return Fact(title, f"{' to '.join(ends)} MPa", lines)
+
+    def _of_joint(self, number: Number, size: float) -> str:
+        """Half-width for the whole joint; larger than the number, it says how little is known."""
+        if not math.isfinite(number.population):
+            return ""
+        half = short(size * number.population, 2)
+        if number.population <= abs(number.value):
+            return f"± {half} for the whole joint"
+        remedy = "" if self.synthetic else "; 'twins' in the study would narrow it"
+        return f"unknown for the whole joint (± {half}{remedy})"
+
+    def _harder(self, number: Number, size: float) -> str:
+        """A number for both ends of the hardness of single contacts; empty where it is elastic."""
+        if not math.isfinite(number.hardest):
+            return ""
+        values = dict.fromkeys(short(size * one) for one in (number.value, number.hardest))
+        times = short(self.hardest / self.hardness)
+        return f"{' to '.join(values)} for hardness H to {times}{_NBSP}H"
 
 
-def reference_of(card: Mapping[str, Any]) -> float:
-    """Reference pressure of a card, MPa; NaN where it has no contact."""
-    return float(card["geometry"].get("reference_pressure", {}).get("value", math.nan))
+def _value(number: Number) -> float:
+    """Value of a number; NaN where it is no result."""
+    return math.nan if number.missing else number.value
 
 
-def offset_of(card: Mapping[str, Any]) -> str:
-    """Offset of a joint in words."""
-    offset = card["geometry"]["offset"]["value"]
-    if card["direction"] == "none":
-        return "without sliding"
-    if offset:
-        return f"slid by {with_unit(offset, 'mm')} towards {card['direction']}"
-    return "in the mated position" if card["faces"].startswith("one") else "at no offset"
-
-
-def row_at(curve: Mapping[str, Any], pressure: float) -> dict[str, Any]:
-    """Row of a curve of a card at a pressure, MPa, or its absence with the reason."""
-    # With the errors that its interval contains.
-    beside = {"interval": curve.get("interval", "")}
-    rows = [row for row in curve.get("values", ()) if row["at"].get("pressure") == pressure]
-    return rows[0] | beside if rows else {"missing": curve.get("missing", "not solved there")}
-
-
-def _jrc(card):
-    """Row of the JRC at the step of its law, in the reported direction, and its step in words."""
-    for row in card["entries"]["jrc"].get("values", ()):
-        at = row["at"]
-        if (at["sampling"], at["direction"]) == (JRC_SAMPLING, card["direction"]):
-            step = with_unit(at["step"], "mm")
-            return row, "1", f"by Tse and Cruden at a step of {step}; they used {JRC_SAMPLING}"
-    return {"missing": "no profile is long enough"}, "1", ""
-
-
-def _strength(card, title, pressure):
-    """Range of the rules for the strength, then each rule with its own error.
-
-    No rule's error is that of the strength: the rules differ by more.
-    """
-    rows = {words: row_at(card["entries"][key], pressure) for key, words in STRENGTH_RULES.items()}
-    known = {words: row for words, row in rows.items() if "value" in row}
-    if not known:
-        return Fact(title, "–", [rows["dilatancy"]["missing"]])
-    values = sorted(row["value"] for row in known.values())
-    lines = [
-        f"{words} {short(row['value'])} {_ends(row, of='')}".rstrip()
-        for words, row in sorted(known.items(), key=lambda one: one[1]["value"])
-    ]
-    if len(known) > 1:
-        lines.insert(0, f"range of {len(known)} rules:")
-    lines += [
-        f"no value by {words}: {row['missing']}"
-        for words, row in rows.items()
-        if words not in known
-    ]
-    ends = dict.fromkeys(short(value) for value in (values[0], values[-1]))
-    return Fact(title, f"{' to '.join(ends)} MPa", lines)
-
-
-def _fact(card, title, row, unit, beside=""):
-    """Number in words, below it its interval, what others of its kind and harder contacts have.
-
-    Or a dash with the reason why it is missing.
-    """
-    if "missing" in row:
-        return Fact(title, "–", list(filter(None, (row["missing"], beside))))
-    # One unit for a number and its interval, the same in all blocks.
-    size, shown = (100.0, " %") if unit == "%" else (1.0, f" {unit}".removesuffix(" 1"))
-    words = f"{short(size * row['value'])}{shown}"
-    notes = _ends(row, size), _of_joint(card, row, size), _harder(card, row, size), beside
-    return Fact(title, words, list(filter(None, notes)))
-
-
-def _of_joint(card, row, size):
-    """Half-width for the whole joint; larger than the number, it says how little is known."""
-    if _KIND not in row:
-        return ""
-    half = short(size * row[_KIND], 2)
-    if row[_KIND] <= abs(row["value"]):
-        return f"± {half} for the whole joint"
-    remedy = "" if card["synthetic"] else "; 'twins' in the study would narrow it"
-    return f"unknown for the whole joint (± {half}{remedy})"
-
-
-def _ends(row, size=1.0, of=None):
+def _ends(number: Number, size: float = 1.0, of: str = "") -> str:
     """Interval of a number, and what it is of; empty if it is narrower than it prints."""
-    low, high = ("" if row[end] is None else measured(size * row[end]) for end in ("low", "high"))
-    alone = _ALONE.get(row.get("interval", ""), "") if of is None else of
-    return f"[{low},{_NBSP}{high}]{alone}" if low != high else ""
-
-
-def _at_twice(card):
-    """Change of the stiffness with the spacing, which no interval contains."""
-    change = row_at(card["entries"]["stiffness_change"], reference_of(card)).get("value")
-    return f"changes by {percent(change, sign='+')} at twice the spacing" if change else ""
-
-
-def _harder(card, row, size):
-    """A number at both ends of the hardness of single contacts; empty where they are elastic."""
-    if "hardest" not in row:
-        return ""
-    each = row["value"], row["hardest"]
-    ends = " to ".join(dict.fromkeys(short(size * value) for value in each))
-    soft, hard = hardnesses_of(card)
-    return f"{ends} for hardness H to {short(hard / soft)}{_NBSP}H"
+    ends = number.estimate.ends[1:]
+    low, high = (measured(size * end) if math.isfinite(end) else "" for end in ends)
+    return f"[{low},{_NBSP}{high}]{of}" if low != high else ""

@@ -10,7 +10,7 @@ from ..core.limits import STEEP_TILT
 from ..core.text import compact
 from ..core.window import face_words, window_sides
 
-#: Longest file name and note that stand on a page whole; of longer ones both ends are shown.
+#: Longest file name and note that a page shows whole; of longer ones it shows both ends.
 MAX_NAME, MAX_NOTE = 60, 400
 
 
@@ -65,25 +65,25 @@ def _registration_words(text):
     """Motion of the upper face and its effect on the gap, in words."""
     if not text:
         return ""
-    found = json.loads(text)
+    motion = json.loads(text)
     gap = ", ".join(
-        f"{name} {_known(found[f'{key}_before{unit}'])} → {_known(found[f'{key}_after{unit}'])}"
+        f"{name} {_known(motion[f'{key}_before{unit}'])} → {_known(motion[f'{key}_after{unit}'])}"
         for name, key, unit in (
             ("gap sd in mm", "gap_sd", "_mm"),
             ("mean", "gap_mean", "_mm"),
             ("correlation", "correlation", ""),
         )
     )
-    gap += "".join(f"; {part}" for part in found.get("note", "").split("; ") if "NOTE" in part)
-    if not found["applied"]:
-        return f"Registration ({found['mode']}): upper face not moved; {gap}"
+    gap += "".join(f"; {part}" for part in motion.get("note", "").split("; ") if "NOTE" in part)
+    if not motion["applied"]:
+        return f"Registration ({motion['mode']}): upper face not moved; {gap}"
     return (
-        f"Registration ({found['mode']}): upper face moved by "
-        f"{compact(found['shift_x_mm'], 4)} mm in x, "
-        f"{compact(found['shift_y_mm'], 4)} mm in y, turned by "
-        f"{compact(found['rotation_degrees'])} degrees, "
-        f"tilted by {compact(found['tilt_x_degrees'])} and "
-        f"{compact(found['tilt_y_degrees'])} degrees; {gap}"
+        f"Registration ({motion['mode']}): upper face moved by "
+        f"{compact(motion['shift_x_mm'], 4)} mm in x, "
+        f"{compact(motion['shift_y_mm'], 4)} mm in y, turned by "
+        f"{compact(motion['rotation_degrees'])} degrees, "
+        f"tilted by {compact(motion['tilt_x_degrees'])} and "
+        f"{compact(motion['tilt_y_degrees'])} degrees; {gap}"
     )
 
 

@@ -5,7 +5,7 @@ from typing import NamedTuple
 from ..core.subject import Subject
 from ..report.published import Number, read, row_of
 
-#: What each kind of test measures, in the order of the page.
+#: Quantity that each kind of test measures, in the order of the page.
 _WORDS = {
     "closure": "closure",
     "flow": "transmissivity",
@@ -16,18 +16,10 @@ _WORDS = {
 
 
 class Test(NamedTuple):
-    """A test: computed over measured at the last computed state within it.
+    """Laboratory test: computed over measured value at the last computed state within it.
 
-    Attributes
-    ----------
-    words : str
-    note : str
-        What to know of its readings; empty if nothing is.
-    ratio : Number
-    status : str
-        "computed", or "fitted" and "predicted" with the constant that is fitted to a test.
-    calibrated : Number or None
-        The same ratio with that constant; None without.
+    ``note`` is what to know of its readings. ``status`` is "computed", or "fitted" or "predicted"
+    where a constant is fitted to a test; ``calibrated`` is the same ratio with that constant.
     """
 
     words: str
@@ -38,18 +30,18 @@ class Test(NamedTuple):
 
 
 def tests_of(subject: Subject) -> list[Test]:
-    """Laboratory tests of a specimen; none of one without."""
-    found = []
+    """Laboratory tests of a specimen."""
+    tests = []
     for kind, words in _WORDS.items():
-        ratios = [one for one in read(row_of(f"{kind}_over_measured"), subject) if one.at]
-        for i, one in enumerate(ratios):
-            beside: tuple = ()
+        ratios = [ratio for ratio in read(row_of(f"{kind}_over_measured"), subject) if ratio.at]
+        for i, ratio in enumerate(ratios):
+            fitted: tuple = ()
             if kind == "closure":
                 status = str(subject["measured"]["closure_status"].values[i])
-                beside = (status, read(row_of("calibrated_over_measured"), subject)[i])
+                fitted = (status, read(row_of("calibrated_over_measured"), subject)[i])
             note = str(subject["measured"][f"{kind}_note"].values[i])
-            found.append(Test(f"{words}: {one.at['test']}", note, one, *beside))
-    return found
+            tests.append(Test(f"{words}: {ratio.at['test']}", note, ratio, *fitted))
+    return tests
 
 
 def calibration_of(subject: Subject) -> tuple[str, Number, str]:

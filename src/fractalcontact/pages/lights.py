@@ -6,6 +6,7 @@ Each repeats what a stage of the atlas says; the limits are those that the stage
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from ..core.limits import CORRECTED_NODES, NEARLY, RESOLVED_NODES
 from ..core.subject import Subject
@@ -13,7 +14,7 @@ from ..core.text import compact, number, with_unit
 from ..core.validity import SLOPE, Validity
 from ..core.verdicts import GOOD, HARDNESS, IN_PART, NOT_JUDGED, POOR, STRENGTH, USUAL
 
-#: What would make lights better.
+#: Remedies for lights that are not good.
 FINER_SCAN = "points measured closer together, heights without the instrument's filter, less noise"
 MARKS = (
     "faces scanned with common marks; or the same joint with 'outliers: fill' in its sidecar, "
@@ -24,24 +25,16 @@ STEEP = "a laboratory test beside the computed curve; a finer scan would not hel
 CRUSH = "a 'hardness' in the material, such as the joint wall strength, at which contacts crush"
 STATE = "'joint_wall_strength' of the rock in its material, at which contacts then crush"
 
-#: A sign for each, so that no colour is needed.
+#: Sign of each verdict, so that no colour is needed.
 SIGNS = {GOOD: "●", IN_PART: "◐", POOR: "○", NOT_JUDGED: "–"}
 
 
 @dataclass(frozen=True)
 class Light:
-    """One light.
+    """Light of a specimen: its key in the summary, its title on the page, and its verdict.
 
-    Attributes
-    ----------
-    key, title : str
-        Its name in the summary, and on the page.
-    word : str
-        :data:`GOOD`, :data:`IN_PART`, :data:`POOR` or :data:`NOT_JUDGED`.
-    reason : str
-        What decided it.
-    help : str
-        What would make it better; empty where it is good or not judged.
+    ``word`` is :data:`GOOD`, :data:`IN_PART`, :data:`POOR` or :data:`NOT_JUDGED`, ``reason`` what
+    decided it, ``help`` what would make it better: empty where it is good or not judged.
     """
 
     key: str
@@ -62,7 +55,7 @@ def lights_of(subject: Subject) -> list[Light]:
 
 
 def validity_at(subject: Subject, number: int) -> Validity:
-    """The verdict on the elastic model under the load of this number, with its real pressure."""
+    """Verdict on the elastic model under the load of this number, with its real pressure."""
     return Validity.of(subject.states("elastic_model").isel(normal_force=number))
 
 
@@ -77,15 +70,15 @@ def _scan(subject):
     )
     if _is_pair(subject):
         load = ""
-    found = [text for text in (quality, load) if text]
-    if not found:
+    warnings = [text for text in (quality, load) if text]
+    if not warnings:
         reason = "all resolutions lie within the fractal range; suspicious cells carry little force"
         return Light("scan", "Scan", GOOD, reason)
     helps = "'outliers: mask' leaves suspicious cells out" if load else FINER_SCAN
     # The noise or the filter of the instrument decides at all resolutions, or at the finer ones.
     below = subject["quality"]["below_range"].values
     word = POOR if below.all() or load else IN_PART
-    return Light("scan", "Scan", word, "; ".join(found), helps)
+    return Light("scan", "Scan", word, "; ".join(warnings), helps)
 
 
 def _faces(subject):
@@ -102,7 +95,7 @@ def _faces(subject):
 
 def _nodes(subject):
     nodes = subject.state("closure")["nodes"].item()
-    # A state that was not solved has none: the comparison is then false, as it should be.
+    # A state that was not solved has NaN nodes: both comparisons are false, and it is poor.
     word = GOOD if nodes >= CORRECTED_NODES else IN_PART if nodes >= RESOLVED_NODES else POOR
     reason = (
         f"{number(nodes, 0)} nodes are in contact under the reference load; fits need "
@@ -127,12 +120,12 @@ def _grid(subject):
     budget = subject.state("error_budget")
     seated = float(subject.state("closure")["seated_closure"]) > 0
     start = "the seat" if seated else "first touch"
-    here = budget.sel(quantity="separation" if seated else "closure")
-    error = float(here["relative_error"].sel(source="numerical"))
+    errors = budget.sel(quantity="separation" if seated else "closure")
+    error = float(errors["relative_error"].sel(source="numerical"))
     if seated:
         error = float(budget["seated_closure_relative"])
     if math.isnan(error):
-        why = str(here["reason"].sel(source="numerical").item()) or "no finer grid was solved"
+        why = str(errors["reason"].sel(source="numerical").item()) or "no finer grid was solved"
         return Light(key, title, NOT_JUDGED, why)
     word = GOOD if error <= asked else IN_PART if error <= NEARLY else POOR
     reason = (
@@ -140,7 +133,7 @@ def _grid(subject):
         f"{compact(100 * error, 2)} % "
         f"({compact(100 * asked, 2)} % requested, usable up to {number(100 * NEARLY, 0)} %)"
     )
-    helps = "" if word == GOOD else _finer(subject, error / asked, float(here["observed_order"]))
+    helps = "" if word == GOOD else _finer(subject, error / asked, float(errors["observed_order"]))
     return Light(key, title, word, reason, helps)
 
 
@@ -153,34 +146,39 @@ def _finer(subject, excess, order):
 
 
 def _model(subject):
-    found = validity_at(subject, subject.reported.reference)
-    reason = f"under the reference load, {found.reason}"
-    by_pressure = {HARDNESS: LIGHTER, STRENGTH: CRUSH, USUAL: STATE}[found.limits.criterion]
-    helps = {"": "", SLOPE: STEEP}.get(found.decided_by, by_pressure)
-    return Light("model", "Validity of the model", found.verdict, reason, helps)
+    validity = validity_at(subject, subject.reported.reference)
+    reason = f"under the reference load, {validity.reason}"
+    by_pressure = {HARDNESS: LIGHTER, STRENGTH: CRUSH, USUAL: STATE}[validity.limits.criterion]
+    helps = {"": "", SLOPE: STEEP}.get(validity.decided_by, by_pressure)
+    return Light("model", "Validity of the model", validity.verdict, reason, helps)
 
 
-#: How far the lights let a specimen be trusted, by the worst of them.
+#: Trust in a specimen by its worst light.
 _TRUST = {POOR: "low", IN_PART: "limited", GOOD: "good"}
 
 
-def trust_of(lights: Sequence[Light]) -> tuple[str, str, str]:
-    """Trust in a specimen by its worst light, why, and what would help.
+class Trust(NamedTuple):
+    """Trust in a specimen.
 
-    Returns
-    -------
-    word, reason, help : str
-        "low", "limited" or "good"; the reason of the first light of that word, the model's before
-        others, and which others there are; what would help of all these.
+    ``word`` is "low", "limited" or "good"; ``reason`` is that of the first of its worst lights, the
+    model's before others, and which others there are; ``help`` is what would help of all these.
     """
-    worst = next((word for word in _TRUST if any(one.word == word for one in lights)), GOOD)
+
+    word: str
+    reason: str
+    help: str
+
+
+def trust_of(lights: Sequence[Light]) -> Trust:
+    """Trust in a specimen by its worst light."""
+    worst = next((word for word in _TRUST if any(light.word == word for light in lights)), GOOD)
     if worst == GOOD:
-        return _TRUST[GOOD], "every light that applies is good", ""
-    of_worst = [one for one in lights if one.word == worst]
-    first, *others = deciding = sorted(of_worst, key=lambda one: one.key != "model")
+        return Trust(_TRUST[GOOD], "every light that applies is good", "")
+    of_worst = [light for light in lights if light.word == worst]
+    first, *others = deciding = sorted(of_worst, key=lambda light: light.key != "model")
     reason = f"{first.title}: {first.reason}"
     if others:
         alike = "partly good" if worst == IN_PART else worst
-        reason += f". Also {alike}: {', '.join(one.key for one in others)}"
-    helps = [f"{one.help} ({one.key})" for one in deciding if one.help not in ("", STEEP)]
-    return _TRUST[worst], reason, "; ".join(helps) or first.help
+        reason += f". Also {alike}: {', '.join(light.key for light in others)}"
+    helps = [f"{light.help} ({light.key})" for light in deciding if light.help not in ("", STEEP)]
+    return Trust(_TRUST[worst], reason, "; ".join(helps) or first.help)

@@ -13,7 +13,7 @@ from ..core.claims import claims_of
 from ..core.verdicts import FAILS, HOLDS, ILL_POSED, PARTLY, UNDETERMINED
 from ..study.figure_list import SPECIMEN, all_figures
 
-#: A sign for each verdict, and the class of its colour.
+#: Sign of each verdict, and the class of its colour.
 SIGNS = {
     HOLDS: ("●", "holds"),
     PARTLY: ("◐", "partly"),
@@ -23,29 +23,21 @@ SIGNS = {
 }
 
 
+#: Words of a verdict, as the stages and the table have them.
+_WORDS = ("verdict", "numbers", "note", "explanation", "judged_on")
+
+
 @dataclass(frozen=True)
 class Cell:
-    """A verdict on a statement, and where it comes from.
+    """Verdict on a statement, with its sign and the class of its colour.
 
-    Attributes
-    ----------
-    verdict, sign, kind : str
-        In words; a sign; the class of its colour.
-    numbers, note : str
-        What decides it, and what to know of that.
-    explanation : str
-        What a null model does in the same data; empty where none is compared.
-    judged_on : str
-        The specimen, or realisations of its kind.
-    circular : str
-        How the specimen was chosen for it; empty where it was not.
-    figure : str
-        Name of a figure that shows it; empty where there is none.
+    ``numbers`` decide it, ``note`` and ``explanation`` (what a null model does in the same data)
+    stand beside them. It is judged on the specimen, or on realisations of its kind. ``circular``
+    says how the specimen was chosen for it; ``figure`` is the name of one that shows it. Both may
+    be empty.
     """
 
     verdict: str
-    sign: str
-    kind: str
     numbers: str
     note: str
     explanation: str
@@ -53,10 +45,20 @@ class Cell:
     circular: str
     figure: str
 
+    @property
+    def sign(self) -> str:
+        """Sign of the verdict."""
+        return SIGNS[self.verdict][0]
+
+    @property
+    def kind(self) -> str:
+        """Class of its colour."""
+        return SIGNS[self.verdict][1]
+
 
 @dataclass(frozen=True)
 class Row:
-    """A statement, the rule that judges it, and its verdicts by specimen."""
+    """Statement, the rule that judges it, and its verdicts by specimen."""
 
     name: str
     figure: str
@@ -66,22 +68,15 @@ class Row:
 
 
 def matrix_of(atlas: xr.DataTree, specimens: Sequence[str]) -> list[Row]:
-    """Statements that any of the specimens is asked, in the order of the paper.
-
-    Parameters
-    ----------
-    atlas : xr.DataTree
-        With the stage ``statements``.
-    specimens : sequence of str
-    """
+    """Statements that are asked of any of the specimens, in the order of the paper."""
     tables = {name: atlas[f"statements/{name}"].to_dataset() for name in specimens}
-    return [row for one in claims_of("one").values() if (row := _row(one, tables)).cells]
+    return [row for claim in claims_of("one").values() if (row := _row(claim, tables)).cells]
 
 
-def merged(found: Iterable[Iterable[Row]]) -> list[Row]:
+def merged(matrices: Iterable[Iterable[Row]]) -> list[Row]:
     """Statements of several specimens together, in the order of the paper."""
     rows: dict[str, Row] = {}
-    for row in (row for one in found for row in one):
+    for row in (row for matrix in matrices for row in matrix):
         rows.setdefault(row.name, replace(row, cells={})).cells.update(row.cells)
     return [rows[name] for name in claims_of("one") if name in rows]
 
@@ -97,29 +92,25 @@ def of_study(atlas: xr.DataTree) -> list[Row]:
     if "study_statements" not in atlas.children:
         return []
     table = atlas["study_statements/study"].to_dataset()
-    return [_row(one, {"": table}) for one in claims_of("several").values()]
+    return [_row(claim, {"": table}) for claim in claims_of("several").values()]
 
 
 def statement_table(study: str, rows: Iterable[Row]) -> pd.DataFrame:
     """Verdicts as a table, one row a statement and specimen; of several together without a name."""
-    found = [
+    records = [
         {
             "study": study,
             "specimen": specimen,
             "statement": row.name,
             "figure": row.figure,
             "claim": row.claim,
-            "verdict": cell.verdict,
-            "numbers": cell.numbers,
-            "note": cell.note,
-            "explanation": cell.explanation,
-            "judged_on": cell.judged_on,
+            **{name: getattr(cell, name) for name in _WORDS},
             "chosen_for": cell.circular,
         }
         for row in rows
         for specimen, cell in row.cells.items()
     ]
-    return pd.DataFrame(found) if found else pd.DataFrame(columns=["study", "specimen"])
+    return pd.DataFrame(records) if records else pd.DataFrame(columns=["study", "specimen"])
 
 
 def _row(claim, tables):
@@ -128,29 +119,21 @@ def _row(claim, tables):
         for specimen, table in tables.items()
         if claim.name in table["statement"].values
     }
-    cells = {specimen: _cell(found, _figure_of(claim, found)) for specimen, found in asked.items()}
-    rule = next((str(found["rule"].item()) for found in asked.values()), "")
+    cells = {
+        specimen: _cell(judged, _figure_of(claim, judged)) for specimen, judged in asked.items()
+    }
+    rule = next((str(judged["rule"].item()) for judged in asked.values()), "")
     return Row(claim.name, claim.figure, claim.claim, rule, cells)
 
 
-def _figure_of(claim, found):
+def _figure_of(claim, judged):
     """The figure that shows a statement; of a surface against a plane many are not drawn."""
-    if not claim.shown_in or found.attrs.get("direction", "") != "none":
+    if not claim.shown_in or judged.attrs.get("direction", "") != "none":
         return claim.shown_in
     return claim.shown_in if all_figures()[claim.shown_in].subject == SPECIMEN else ""
 
 
-def _cell(found, figure):
-    verdict = str(found["verdict"].item())
-    sign, kind = SIGNS[verdict]
-    return Cell(
-        verdict=verdict,
-        sign=sign,
-        kind=kind,
-        numbers=str(found["numbers"].item()),
-        note=str(found["note"].item()),
-        explanation=str(found["explanation"].item()),
-        judged_on=str(found["judged_on"].item()),
-        circular=str(found["circular_reason"].item()) if bool(found["circular"]) else "",
-        figure=figure,
-    )
+def _cell(judged, figure):
+    words = {name: str(judged[name].item()) for name in _WORDS}
+    circular = str(judged["circular_reason"].item()) if judged["circular"] else ""
+    return Cell(**words, circular=circular, figure=figure)

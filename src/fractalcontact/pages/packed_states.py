@@ -20,7 +20,7 @@ from ..core.subject import Subject
 from ..core.window import cell_side
 from ..report.published import shown_in, total_of
 
-#: Order of the dimensions of all that is packed; one-dimensional coordinates stand apart.
+#: Order of the dimensions of packed arrays; one-dimensional coordinates stand apart.
 ORDER = (
     "rigid_direction",
     "rigid_offset",
@@ -31,9 +31,9 @@ ORDER = (
     "scale",
     "mean_scale",
 )
-#: Why a state has no flow.
+#: Reason why a state has no flow.
 NO_FLOW = "computed at the reported offset alone, or has no path"
-#: What the curves need besides.
+#: Variables that the curves need besides the rows of the register.
 CURVES = (
     ("closure", "solved"),
     ("closure", "resolved"),
@@ -49,11 +49,11 @@ CURVES = (
 )
 #: Ends of intervals and error bounds, where a quantity has them.
 BOUNDS = ("_low", "_high", "_error")
-#: Of the texts: 9 takes ten times as long, for a page smaller by a fortieth.
+#: Level of compression: level 9 takes ten times as long for a page smaller by a fortieth.
 COMPRESSION = 5
-#: Steps that the largest gap of a specimen has; the code after the last stands for a missing gap.
+#: Steps of the largest gap of a specimen; the code after the last is a missing gap.
 GAP_STEPS = 1000
-#: Gaps that a page may hold of one specimen; of a larger window only those under the map load.
+#: Most gaps of one specimen on a page; of a larger window only the reference load is kept.
 MAX_GAPS = 2_000_000
 
 
@@ -101,22 +101,10 @@ class _Numbers:
 def packed_states(atlas: xr.DataTree, name: str) -> dict[str, Any]:
     """All contact states of a specimen, as JSON can hold them.
 
-    Parameters
-    ----------
-    atlas : xr.DataTree
-        From :func:`study.atlas.read_atlas`, with the stages of one specimen.
-    name : str
-        The specimen; it has a group in the stage ``closure``.
-
-    Returns
-    -------
-    dict
-        Coordinates (`direction`, `offset`, `resolution`, `normal_force`, `nominal_pressure`,
-        `rigid_direction`, `rigid_offset`), `arrays` (stage, variable, units, meaning, dims, shape,
-        start of each in `numbers`), `numbers` (text), `of_joint`, `reasons`, `window`, `domains`
-        (text by resolution, direction and offset), `marks` and `fields`. Arrays called
-        ``total/ROW`` are errors of all sources; ``undetermined/ROW``, and for the rows `of_joint`
-        ``undetermined/by_scan``, say where the pages call a number undetermined.
+    ``numbers`` is the text of all arrays; ``arrays`` has the stage, variable, units, meaning,
+    dimensions, shape and start of each in it. Arrays called ``total/ROW`` are errors of all
+    sources; ``undetermined/ROW``, and for the rows ``of_joint`` ``undetermined/by_scan``, say where
+    the pages call a number undetermined. ``domains`` are texts by resolution, direction and offset.
     """
     subject = Subject.of(atlas, name)
     stages = dict(subject.stages)
@@ -127,7 +115,7 @@ def packed_states(atlas: xr.DataTree, name: str) -> dict[str, Any]:
     stages["flow"] = _of_all_states(subject)
     numbers = _Numbers([], {})
     rows = shown_in("explorer")
-    for stage, variable in (*((one.stage, one.variable) for one in rows), *CURVES):
+    for stage, variable in (*((row.stage, row.variable) for row in rows), *CURVES):
         _add_with_bounds(numbers, stages[stage], stage, variable)
     numbers.add("domains", "law_count", stages["domains"]["law_count"], key="law_count")
     _add_undetermined(numbers, stages)
@@ -140,8 +128,8 @@ def packed_states(atlas: xr.DataTree, name: str) -> dict[str, Any]:
             key: stages["dilatancy"][key].values.tolist()
             for key in ("rigid_direction", "rigid_offset")
         },
-        "rows": [one.source for one in rows],
-        "of_joint": [one.source for one in rows if one.by_scan],
+        "rows": [row.source for row in rows],
+        "of_joint": [row.source for row in rows if row.by_scan],
         "reasons": _reasons(stages),
         "totals": _totals(subject, numbers),
         "arrays": numbers.entries,
@@ -154,9 +142,9 @@ def packed_states(atlas: xr.DataTree, name: str) -> dict[str, Any]:
 
 
 def _of_all_states(subject: Subject) -> xr.Dataset:
-    """Shown numbers of the flow over all states; missing but at the reported offset."""
+    """Flow over all states; it is missing but at the reported offset."""
     reported, closure = subject.reported, subject["closure"]
-    shown = [one.variable for one in shown_in("explorer") if one.stage == "flow"]
+    shown = [row.variable for row in shown_in("explorer") if row.stage == "flow"]
     flow = subject["flow"][shown].expand_dims(
         direction=[reported.direction],
         offset=[reported.offset],
@@ -178,27 +166,27 @@ def _add_undetermined(numbers, stages):
     by_scan = decided_by_scan(stages["closure"]["suspect_load_share"])
     attrs = cf_attrs("1", "whether suspicious cells of the scans decide what follows from contact")
     numbers.add("closure", "", by_scan.assign_attrs(attrs), key="undetermined/by_scan")
-    for one in (one for one in shown_in("explorer") if one.dimension):
+    for row in (row for row in shown_in("explorer") if row.dimension):
         says = xr.apply_ufunc(
             lambda *ends: Estimate(*ends, scale=DIMENSION).determined,
-            *(stages[one.stage][name] for name in names_of(one.variable)),
+            *(stages[row.stage][name] for name in names_of(row.variable)),
             vectorize=True,
         )
         attrs = cf_attrs("1", "whether its interval is too wide to be of use")
-        numbers.add(one.stage, "", (~says).assign_attrs(attrs), key=f"undetermined/{one.source}")
+        numbers.add(row.stage, "", (~says).assign_attrs(attrs), key=f"undetermined/{row.source}")
 
 
 def _reasons(stages):
     """Reason why a number of a solved state is missing, as on the result page."""
     words = {}
-    for one in shown_in("explorer"):
-        stage, _, variable = one.reason.partition("/")
-        if one.reason:
-            words[one.source] = stages[stage][variable]
-        elif one.why or one.stage == "flow":
-            values = stages[one.stage][one.variable]
-            words[one.source] = xr.where(
-                np.isfinite(values), "", one.missing if one.why else NO_FLOW
+    for row in shown_in("explorer"):
+        stage, _, variable = row.reason.partition("/")
+        if row.reason:
+            words[row.source] = stages[stage][variable]
+        elif row.why or row.stage == "flow":
+            values = stages[row.stage][row.variable]
+            words[row.source] = xr.where(
+                np.isfinite(values), "", row.missing if row.why else NO_FLOW
             )
     return {key: _listed(of_states) for key, of_states in words.items()}
 
@@ -214,12 +202,12 @@ def _totals(subject, numbers):
     """Errors of all sources at the offset of the maps, by the quantity that has them."""
     budget = subject["error_budget"]
     slides = budget.attrs["direction"] != "none"
-    for one in shown_in("explorer"):
-        total = total_of(one, subject)
-        if total is None or (one.stage == "dilatancy" and not slides):
+    for row in shown_in("explorer"):
+        total = total_of(row, subject)
+        if total is None or (row.stage == "dilatancy" and not slides):
             continue
-        total = total.assign_attrs(cf_attrs(one.unit, "error of all sources"))
-        numbers.add("error_budget", "total", total, key=f"total/{one.source}")
+        total = total.assign_attrs(cf_attrs(row.unit, "error of all sources"))
+        numbers.add("error_budget", "total", total, key=f"total/{row.source}")
     return {
         "direction": str(budget.attrs["direction"]),
         "offset": float(budget.attrs["offset_mm"]),
@@ -295,7 +283,7 @@ def _fields(contact, flow):
     flux = flow["flux_map_along"].values[np.newaxis]
     is_open = bool(np.nansum(flux) > 0)
     fields["flow"] = {"units": "times the mean", "loads": [reference] * is_open}
-    # To 0.4 %: what lies behind is noise that does not deflate.
+    # Rounded to 0.4 %: the digits below are noise that does not deflate.
     rounded = (flux.astype("<f4").view("<u4") + 0x8000 & 0xFFFF0000).view("<f4")
     fields["flow"] |= _pressures(rounded) if is_open else {}
     return fields

@@ -24,26 +24,17 @@ from ..core.labels import OPPOSITE, printable
 from ..core.measured_maps import measured_maps
 from ..core.subject import Subject, configuration_of
 from ..core.tables import write_table
-from ..core.text import (
-    duration,
-    interval,
-    measured,
-    number,
-    percent,
-    short,
-    undetermined,
-    with_unit,
-)
-from ..report.published import Number, Row, row_of, shown_in
+from ..core.text import duration, interval, number, undetermined
+from ..report.published import Number, Row, row_of, shown_in, stages_of
 from ..study.atlas_parts import Trees
 from ..study.figure_list import JOINT, SPECIMEN, STUDY, all_figures
-from .captions import symbols
-from .cards import SECTIONS, cards_of, section_of
 from .cells import absent, bare_words, error_words, estimate_words, shown, sort_value, value_words
 from .common_loads import common_loads, main_load
 from .curves import curves_table
+from .figure_cards import SECTIONS, cards_of, section_of
 from .files import (
     APERTURE,
+    CARD,
     CONFIGURATION,
     CURVES,
     INDEX,
@@ -52,7 +43,7 @@ from .files import (
     SUMMARY,
     TABLES,
 )
-from .first_screen import blocks_of
+from .first_screen import block_of, is_synthetic, quoted_methods
 from .history import history
 from .laboratory import calibration_of, tests_of
 from .matrix import Row as Judged
@@ -61,34 +52,18 @@ from .summary import Sheet, sheet_of, summary_table
 from .templating import write_page
 from .thumbnails import relief_thumbnail
 
-#: Stages that the pages read; the fields of contact, the largest, are not among them.
-NEEDS = (
-    "specimens",
-    "quality",
-    "surface_dimension",
-    "joints",
-    "closure",
-    "flow",
-    "dilatancy",
-    "measured",
-    "area",
-    "domains",
-    "scaling",
-    "error_budget",
-    "choices",
-    "elastic_model",
-    "statements",
-    "study_statements",
-    "study_comparison",
-    "contact_maps",
-)
-#: Time that all members of an archive have, so that the same tables are the same archive.
+#: Stages that the pages read. The fields of contact, the largest stage, are left out.
+NEEDS = stages_of("summary", "curves", "page", "index", "section") | {
+    *("quality", "choices", "statements"),
+    *("study_statements", "study_comparison", "contact_maps"),
+}
+#: Time stamp of all members of an archive: the same tables then give the same archive.
 _ZIP_TIME = (1980, 1, 1, 0, 0, 0)
-#: Letters of a label in a table.
+#: Most letters of a label in a table.
 _LONGEST = 120
-#: What the log of a job ends with.
+#: Last line of the log of a job.
 _WORKED = re.compile(r"^worked ([\d.]+) s", re.MULTILINE)
-#: Joints up to which each has a block on the first screen, and verdicts a column each.
+#: Most joints with a block each on the first screen, and with a column each of verdicts.
 _BLOCKS, _COLUMNS = 12, 30
 
 
@@ -96,15 +71,8 @@ _BLOCKS, _COLUMNS = 12, 30
 class Place:
     """Paths of the files of a study.
 
-    Attributes
-    ----------
-    atlas : pathlib.Path
-    figures : pathlib.Path
-        Folder of the figures.
-    logs : pathlib.Path
-        Folder of the logs of jobs, whose last lines say how long they worked; may be missing.
-    folder : pathlib.Path
-        Where the pages go: they name figures, atlas and explorer as what stands there.
+    Pages go to ``folder``, and name figures, atlas and explorer as files there. The last lines of
+    ``logs``, which may be missing, say how long the jobs worked.
     """
 
     atlas: Path
@@ -121,54 +89,39 @@ class Place:
 def write_specimen_pages(
     place: Place, explored: Collection[str], trees: Trees | None = None
 ) -> None:
-    """Write the pages of the specimens of an atlas, which may be that of one of a study.
+    """Write the pages of the specimens of an atlas, which may hold one specimen of a study.
 
-    Parameters
-    ----------
-    place : Place
-        With their cards, if there are any.
-    explored : collection of str
-        Specimens that the explorer shows.
-    trees : Trees, optional
-        The atlas with at least the stages of :data:`NEEDS`, where it is read already.
+    ``explored`` are the specimens that the explorer shows. ``trees`` is the atlas with at least the
+    stages of :data:`NEEDS`, where it is read already.
     """
     trees = trees or Trees(place.atlas, NEEDS)
     head = _head(place, trees.root) | {"explored": explored}
-    blocks = {one["name"]: one for one in blocks_of(trees.names, place.folder)}
     for name in trees.names:
         tree, groups, file = trees.of(name)
-        subject, found = Subject.of(tree, name), matrix_of(tree, [name])
+        subject, rows = Subject.of(tree, name), matrix_of(tree, [name])
         values = _specimen_values(
-            place, subject, sheet_of(subject), found, (_as_typed(file), groups)
+            place, subject, sheet_of(subject), rows, (_as_typed(file), groups)
         )
         path = place.folder / SPECIMEN_PAGE.format(specimen=name)
-        write_page(path, "specimen.html", head | values | {"block": blocks.get(name)})
+        write_page(path, "specimen.html", head | values | quoted_methods(name, place.folder))
 
 
 def write_index(place: Place, explored: Collection[str]) -> list[str]:
-    """Write the index of a study, and beside it the other files of :data:`files.FILES`.
+    """Specimens of a study, whose index is written with the other files of :data:`files.FILES`.
 
-    Parameters
-    ----------
-    place : Place
-        With the cards of its specimens, if there are any.
-    explored : collection of str
-        Specimens that the explorer shows, which may be made later.
-
-    Returns
-    -------
-    list of str
-        Its specimens.
+    ``explored`` are the specimens that the explorer shows; it may be written later.
     """
     trees = Trees(place.atlas, NEEDS)
     atlas, names = trees.root, trees.names
     reported = [trees.closure(name) for name in names]
     loads = common_loads(reported, _comparison(atlas))
     head = _head(place, atlas)
-    blocks = {one["name"]: one for one in blocks_of(names, place.folder)}
     head["explored"] = explored
-    specimens, curves, rows, reliefs = [], [], [], {}
-    # One after the other: those of an atlas in parts would not all fit into memory.
+    specimens, curves, rows, blocks, reliefs = [], [], [], [], {}
+    cards = {name: place.folder / CARD.format(specimen=name, ending="json") for name in names}
+    carded = [name for name, path in cards.items() if path.is_file()]
+    study = configuration_of(atlas)["study"]
+    # Specimens are read one after the other: an atlas in parts may not fit into memory.
     for name in names:
         tree = trees.of(name)[0]
         subject = Subject.of(tree, name)
@@ -176,6 +129,8 @@ def write_index(place: Place, explored: Collection[str]) -> list[str]:
         rows.append(matrix_of(tree, [name]))
         reliefs[name] = relief_thumbnail(subject["specimens"])
         curves.append(curves_table(str(atlas.attrs["study"]), [subject]))
+        if name in carded and len(carded) <= _BLOCKS:
+            blocks.append(block_of(subject, is_synthetic(name, study)))
     matrix, first = merged(rows), main_load(loads, reported)
     table = _finite(pd.concat(curves) if curves else curves_table("", []))
     judged = statement_table(str(atlas.attrs["study"]), [*matrix, *of_study(atlas)])
@@ -184,8 +139,8 @@ def write_index(place: Place, explored: Collection[str]) -> list[str]:
         "reliefs": reliefs,
         "loads": loads,
         "first_load": first,
-        "blocks": list(blocks.values()) if len(blocks) <= _BLOCKS else [],
-        "with_card": blocks.keys(),
+        "blocks": blocks,
+        "with_card": carded,
     }
     write_page(place.folder / INDEX, "index.html", head | values)
     return names
@@ -195,20 +150,15 @@ def write_index(place: Place, explored: Collection[str]) -> list[str]:
 
 
 def _head(place, atlas):
-    """Context of the templates: study, date, versions, duration, formatting functions."""
-    made = datetime.datetime.fromtimestamp(place.atlas.stat().st_mtime, datetime.UTC)
+    """Values of all templates: study, date, versions, formatting functions."""
+    written = datetime.datetime.fromtimestamp(place.atlas.stat().st_mtime, datetime.UTC)
     return {
         "study": printable(atlas.attrs["study"]),
-        "date": f"{made:%Y-%m-%d %H:%M} UTC",
+        "date": f"{written:%Y-%m-%d %H:%M} UTC",
         "versions": json.loads(atlas.attrs["versions"]),
         "versions_differ": json.loads(atlas.attrs.get("versions_differ", "{}")),
         "atlas_size": f"{number(place.atlas.stat().st_size / 1e6, 0)} MB",
         "atlas_path": _as_typed(place.atlas),
-        "short": short,
-        "measured": measured,
-        "with_unit": with_unit,
-        "percent": percent,
-        "symbols": symbols,
         "absent": absent,
         "value_words": value_words,
         "bare_words": bare_words,
@@ -233,9 +183,9 @@ def _as_typed(path):
 def _columns() -> dict[str, list[Row]]:
     """Columns of the table of specimens from the register, by the kind of their cells."""
     columns: dict[str, list[Row]] = {"dimension": [], "budget": [], "number": []}
-    for one in shown_in("index"):
-        kind = "dimension" if one.dimension else "budget" if one.budget else "number"
-        columns[kind].append(one)
+    for row in shown_in("index"):
+        kind = "dimension" if row.dimension else "budget" if row.budget else "number"
+        columns[kind].append(row)
     return columns
 
 
@@ -361,16 +311,16 @@ def _specimen_values(
 
 
 def _quantities(subject: Subject, sheet: Sheet) -> list[tuple[Row, Number, str, str]]:
-    """Quantities of the specimen's page: row, number, name, and where the scan lies among twins."""
-    budget, found = subject.state("error_budget"), []
+    """Rows of the specimen's page: number, name, and where the scan lies among its twins."""
+    budget, quantities = subject.state("error_budget"), []
     for row in shown_in("page"):
         within = ""
         if "within_twins" in budget and row.budget in budget["quantity"]:
             within = str(budget["within_twins"].sel(quantity=row.budget).item())
         several = "{" in row.page
         numbers = sheet.numbers[row.name] if several else [sheet.of(row.name)]
-        found += [(row, one, row.page.format(**one.at), within) for one in numbers]
-    return found
+        quantities += [(row, number, row.page.format(**number.at), within) for number in numbers]
+    return quantities
 
 
 # -- the files beside them -------------------------------------------------------------------------
@@ -389,7 +339,7 @@ def _write_files(
 
 
 def _write_configuration(path: Path, atlas: xr.DataTree) -> None:
-    """The study as its user wrote it, without comments: ready to be run again."""
+    """Write the study as its user wrote it, without comments: it can be run again."""
     stated: Mapping[str, Any] = configuration_of(atlas)["study"]
     text = yaml.safe_dump(dict(stated), sort_keys=False, allow_unicode=True)
     with atomic_write(path) as temporary:
@@ -397,7 +347,7 @@ def _write_configuration(path: Path, atlas: xr.DataTree) -> None:
 
 
 def _write_tables(place: Place) -> None:
-    """All numbers drawn in figures, with those of the whole study, in one archive."""
+    """Write all numbers drawn in figures, with the tables of the study, into one archive."""
     members = [(place.folder / name, name) for name in (SUMMARY, CURVES, STATEMENTS)]
     for path in sorted(place.figures.rglob("*.csv")):
         members.append((path, f"figures/{path.relative_to(place.figures).as_posix()}"))
@@ -405,7 +355,7 @@ def _write_tables(place: Place) -> None:
     with zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED) as archive:
         for path, name in members:
             member = zipfile.ZipInfo(name, _ZIP_TIME)
-            member.external_attr = 0o644 << 16  # who unpacks it may read it
+            member.external_attr = 0o644 << 16  # unpacked files can be read
             archive.writestr(member, path.read_bytes(), zipfile.ZIP_DEFLATED)
     with atomic_write(place.folder / TABLES) as temporary:
         temporary.write_bytes(stream.getvalue())

@@ -12,30 +12,18 @@ from ..core.subject import Subject
 from ..core.validity import Validity
 from ..core.window import spacing_of, window_sides
 from ..report.columns import columns_of, old_columns_of
-from ..report.published import Number, read, shown_in
+from ..report.published import Number, read, shown_in, under_load
 from .common_loads import CommonLoad
 from .lights import Light, lights_of, validity_at
 
 
 @dataclass(frozen=True)
 class Sheet:
-    """Published numbers of a specimen by their names in the register, and the words beside them.
+    """Published numbers of a specimen by their names in the register, with what stands beside them.
 
-    Attributes
-    ----------
-    words : dict of str to str
-        Name, label, direction and the like.
-    lengths : dict of str to float
-        Offset, window and spacing, mm.
-    numbers : dict of str to list of Number
-    loads : list of int
-        Numbers of the loads that are quoted.
-    reference : int
-        Number of the reference load.
-    forces, pressures : list of float
-        Of all loads, N and MPa.
-    models : dict of int to Validity
-        Verdict on the elastic model under each quoted load, with its real pressure.
+    ``words`` and ``lengths`` (mm) are those of the specimen. ``loads`` are the numbers of the
+    quoted loads, ``forces`` (N) and ``pressures`` (MPa) those of all; ``models`` has the verdict on
+    the elastic model under each quoted load.
     """
 
     words: dict[str, str]
@@ -50,20 +38,12 @@ class Sheet:
 
     def of(self, name: str, load: int | None = None) -> Number:
         """Number of a quantity under a load, by default the reference load."""
-        numbers = self.numbers[name]
-        of_loads = len(numbers) == len(self.forces) and "pressure" in numbers[0].at
-        return numbers[self.reference if load is None else load] if of_loads else numbers[0]
+        number = self.reference if load is None else load
+        return under_load(self.numbers[name], number, len(self.forces))
 
 
 def sheet_of(subject: Subject, common: Sequence[CommonLoad] = ()) -> Sheet:
-    """Published numbers of a specimen.
-
-    Parameters
-    ----------
-    subject : Subject
-    common : sequence of CommonLoad, optional
-        Loads at which it is compared with others: quoted too.
-    """
+    """Published numbers of a specimen; loads at which it is compared with others are quoted too."""
     compared = {load.numbers[subject.name] for load in common if subject.name in load.numbers}
     loads = sorted(compared.union(subject.reported.quoted))
     specimen, states = subject["specimens"], subject.states("closure")
@@ -95,12 +75,12 @@ def sheet_of(subject: Subject, common: Sequence[CommonLoad] = ()) -> Sheet:
     )
 
 
-def _words(found, *replaced):
-    return str(found.item()).replace(*replaced) if replaced else str(found.item())
+def _words(variable, *replaced):
+    return str(variable.item()).replace(*replaced) if replaced else str(variable.item())
 
 
 def _dilatancy(subject):
-    """Trend of the rigid dilatancy, and why it says nothing of a plateau."""
+    """Trend of the rigid dilatancy, and why it does not decide about a plateau."""
     joints, trend, undecided = subject["joints"], "", ""
     if subject.direction in joints["direction"]:
         along = subject.along("joints")
@@ -115,16 +95,9 @@ def _dilatancy(subject):
 def summary_table(
     study: str, sheets: Sequence[Sheet], maps: Mapping[str, xr.Dataset]
 ) -> pd.DataFrame:
-    """The summary as a table; units end the names of its columns.
+    """Summary as a table, one row a specimen and pressure; units end the names of its columns.
 
-    One row a specimen and pressure; of a study of measured contact maps alone, one row a map.
-
-    Parameters
-    ----------
-    study : str
-    sheets : sequence of Sheet
-    maps : mapping of str to xr.Dataset
-        Measured contact maps by name.
+    A study of measured contact maps alone has one row a map.
     """
     if maps and not sheets:
         table = map_table(maps)
@@ -146,25 +119,23 @@ def _of_specimen(sheet):
 
 def _of_load(sheet, load):
     model = sheet.models[load]
-    found = {
+    columns = {
         "normal_force_N": sheet.forces[load],
         "nominal_pressure_MPa": sheet.pressures[load],
         "load_of_maps": load == sheet.reference,
         "elastic_model": model.verdict,
-        "elastic_model_good_to_MPa": model.limits.good_to,
-        "elastic_model_poor_from_MPa": model.limits.poor_from,
     }
     numbers = [
-        (row, one)
+        (row, number)
         for row in shown_in("summary")
-        for one in _quoted(sheet, row, load)
-        if one.at or "{" not in row.summary
+        for number in _quoted(sheet, row, load)
+        if number.at or "{" not in row.summary
     ]
-    for row, one in numbers:
-        found |= columns_of(row, one)
-    for row, one in numbers:
-        found |= old_columns_of(row, one)
-    return found
+    for row, number in numbers:
+        columns |= columns_of(row, number)
+    for row, number in numbers:
+        columns |= old_columns_of(row, number)
+    return columns
 
 
 def _quoted(sheet, row, load):

@@ -11,30 +11,33 @@ from markupsafe import Markup
 
 from ..core.atomic import atomic_write
 from ..core.labels import printable
+from ..core.text import measured, percent, short, with_unit
+from .captions import symbols
 
 TEMPLATES = Path(__file__).parent / "templates"
-#: What ends a script, opens a comment, or ends a line of JavaScript alone, as JSON may hold it.
+#: Letters that end a script, open a comment or end a line of JavaScript, escaped as in JSON.
 _IN_SCRIPT = {"<": "\\u003c", ">": "\\u003e", "&": "\\u0026", "\u2028": "\\u2028"}
 _IN_SCRIPT |= {"\u2029": "\\u2029"}
 
 
 @cache
 def environment() -> Environment:
-    """The one environment: labels and names are untrusted input, so nothing is taken as HTML."""
-    made = Environment(
+    """Environment of the templates, which escapes all text: labels are untrusted input."""
+    templates = Environment(
         loader=FileSystemLoader(TEMPLATES),
         autoescape=True,
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    made.filters["data"] = script_data
-    made.filters["printable"] = printable
-    return made
+    templates.filters |= {"data": script_data, "printable": printable}
+    numbers = {of.__name__: of for of in (measured, percent, short, with_unit, symbols)}
+    templates.globals |= {"inlined": inlined, **numbers}
+    return templates
 
 
 def script_data(value: Any) -> Markup:
-    """A value as JSON that may stand inside a ``script`` element.
+    """JSON of a value that may stand inside a ``script`` element.
 
     Raises
     ------
@@ -54,7 +57,7 @@ def inlined(name: str) -> Markup:
 
 def render(template: str, values: Mapping[str, Any]) -> str:
     """HTML of a template with these values."""
-    return environment().get_template(template).render(inlined=inlined, **values)
+    return environment().get_template(template).render(**values)
 
 
 def write_page(path: Path | str, template: str, values: Mapping[str, Any]) -> None:

@@ -14,13 +14,7 @@ SIDE = 96
 
 
 def relief_thumbnail(specimen: xr.Dataset) -> str:
-    """The lower face of the window, lit from the upper left, as an address that holds the picture.
-
-    Parameters
-    ----------
-    specimen : xr.Dataset
-        From :func:`surface.specimen.make_specimen`.
-    """
+    """Lower face of a specimen's window, lit from the upper left, as an address of its picture."""
     heights = specimen["lower"][window_slices(specimen)].astype(float)
     step = -(-max(heights.shape) // SIDE)
     means = heights.coarsen(dict.fromkeys(heights.dims, step), boundary="trim").mean()

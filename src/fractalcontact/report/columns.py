@@ -7,35 +7,42 @@ from ..core.estimate import column_of
 from .published import Number, Row
 
 
-def columns_of(row: Row, one: Number) -> dict[str, Any]:
+def columns_of(row: Row, number: Number) -> dict[str, Any]:
     """Columns of a number: NAME, NAME_low, NAME_high, NAME_error_surface and so on, the unit last.
 
-    NAME_error alone is the bound of the solver's error, as in the atlas and the tables of figures.
+    NAME_error alone is the solver error bound, as in the atlas and the tables of figures.
     """
-    name = _column(row, one)
-    found = {"": one.value}
+    name = _column(row, number)
+    fields = {"": number.value}
     if row.uncertain:
-        found |= {"low": one.estimate.low, "high": one.estimate.high}
+        fields |= {"low": number.estimate.low, "high": number.estimate.high}
     if row.budget:
-        found |= {"error_surface": one.error, "error_population": one.population}
-        found["hardest"] = one.hardest
-    columns: dict[str, Any] = {column_of(name, row.unit, of): each for of, each in found.items()}
+        fields |= {"error_surface": number.error, "error_population": number.population}
+        fields["hardest"] = number.hardest
+    columns: dict[str, Any] = {column_of(name, row.unit, of): value for of, value in fields.items()}
     if row.range or row.dimension:
-        columns[column_of(name, "", "determined")] = one.determined
+        columns[column_of(name, "", "determined")] = number.determined
     if row.why:
-        columns[column_of(name, "", "reason")] = one.remark
+        columns[column_of(name, "", "reason")] = number.remark
     return columns
 
 
-def old_columns_of(row: Row, one: Number) -> dict[str, Any]:
+def old_columns_of(row: Row, number: Number) -> dict[str, Any]:
     """Columns of a fit by the names that they had in release 1.0, the unit first."""
     if not row.range or row.unit == "1":
         return {}
-    start = column_of(_column(row, one), row.unit)
-    ends = {"low": one.estimate.low, "high": one.estimate.high, "determined": one.determined}
-    return {f"{start}_{of}": each for of, each in ends.items()}
+    start = column_of(_column(row, number), row.unit)
+    ends = {
+        "low": number.estimate.low,
+        "high": number.estimate.high,
+        "determined": number.determined,
+    }
+    return {f"{start}_{of}": value for of, value in ends.items()}
 
 
-def _column(row, one):
-    of = {key: re.sub(r"\W+", "_", at) if isinstance(at, str) else at for key, at in one.at.items()}
-    return row.summary.format(**of)
+def _column(row, number):
+    labels = {
+        key: re.sub(r"\W+", "_", label) if isinstance(label, str) else label
+        for key, label in number.at.items()
+    }
+    return row.summary.format(**labels)

@@ -10,36 +10,36 @@ from ..core.subject import Subject
 
 
 def _unstated(key: str, words: str) -> Callable[[Subject], str]:
-    """Reason for what needs a number of the material; empty where it is stated."""
+    """Reason for a quantity that needs a number of the material; empty where it is stated."""
 
     def reason(subject: Subject) -> str:
         stated = subject.settings["material"].get(key)
-        known = stated is not None and math.isfinite(stated)
-        return "" if known else f"no {words} is stated"
+        is_stated = stated is not None and math.isfinite(stated)
+        return "" if is_stated else f"no {words} is stated"
 
     return reason
 
 
 def _not_sliding(subject: Subject) -> str:
-    """Reason for what needs faces that slide."""
+    """Reason for a quantity that needs faces that slide."""
     if "strength" in subject.stages:
         return ""
     return f"nothing slides: {OPPOSITE[subject['specimens'].attrs['opposite']]}"
 
 
 def _too_few_offsets(subject: Subject) -> str:
-    """Reason for what needs offsets in the reported direction."""
+    """Reason for a quantity that needs offsets in the reported direction."""
     if subject.direction == "none":
         return "does not slide"
     return "" if subject.direction in subject["joints"]["direction"] else "too few offsets"
 
 
 def _no_jrc(subject: Subject) -> str:
-    known = np.isfinite(subject.states("strength")["jrc_used"].item())
-    return "" if known else "no JRC at the step of its law"
+    is_known = np.isfinite(subject.states("strength")["jrc_used"].item())
+    return "" if is_known else "no JRC at the step of its law"
 
 
-#: Reason by what a quantity may need; empty where it is there.
+#: Reason why a specimen lacks what a quantity needs; empty where it has it.
 NEEDS: Mapping[str, Callable[[Subject], str]] = {
     "sliding": _not_sliding,
     "offsets": _too_few_offsets,

@@ -19,7 +19,7 @@ from ..core.verdicts import TOO_WIDE
 from .needs import NEEDS
 
 _FILE = Path(__file__).with_suffix(".yaml")
-#: What stands for a dimension beside each number of a curve: name there, coordinate, unit.
+#: Label of each number of a curve by its dimension: name, coordinate, unit.
 _BESIDE = {
     "normal_force": ("pressure", "nominal_pressure", "MPa"),
     "reference_pressure": ("pressure", "reference_pressure", "MPa"),
@@ -31,24 +31,24 @@ _BESIDE = {
     "branch": ("branch", "branch", "1"),
     **{f"{kind}_test": ("test", f"{kind}_test", "1") for kind in TEST_COLUMNS},
 }
-#: Units of what stands beside a number.
+#: Units of the labels of a number.
 UNITS_AT = {name: unit for name, _, unit in _BESIDE.values()} | {"step": "mm", "fit_step": "mm"}
 _NOT_SOLVED = "not solved under this load"
-#: Why a number whose interval is narrow is undetermined.
+#: Reason why a number with a narrow interval is undetermined.
 BY_SCAN = "suspicious cells of the scan carry most of the force"
 
 
 class Number(NamedTuple):
-    """A published number, unrounded.
+    """Published number, unrounded.
 
     Attributes
     ----------
     at : dict
-        Pressure, offset, direction and the like that it is of; empty for a single number.
+        Pressure, offset, direction and the like; empty for a single number.
     estimate : Estimate
-        Value as the atlas has it, with its interval; ``reason`` is what to know of it.
+        Value of the atlas with its interval; ``reason`` is a remark on it.
     missing : str
-        Why it is no result; empty of one that is.
+        Why it is no result; empty of a result.
     determined : bool
         False where the interval of a fit or dimension, its stage, or the scan says so.
     error, population : float
@@ -67,12 +67,12 @@ class Number(NamedTuple):
 
     @property
     def value(self) -> float:
-        """Value as the atlas has it."""
+        """Value of the atlas."""
         return float(self.estimate.value)
 
     @property
     def remark(self) -> str:
-        """Why it is missing or undetermined, or what to know of it."""
+        """Reason why it is missing or undetermined, or a remark on it."""
         if self.missing or self.estimate.reason or self.determined:
             return self.missing or str(self.estimate.reason)
         if self.estimate.determined:
@@ -82,14 +82,7 @@ class Number(NamedTuple):
 
 @dataclass(frozen=True)
 class Row:
-    """A quantity of the register; ``published.yaml`` explains the keys.
-
-    Attributes
-    ----------
-    name, title, unit : str
-    source : str
-        "STAGE/VARIABLE".
-    """
+    """Quantity of the register; ``published.yaml`` explains the keys. ``source`` is ``from``."""
 
     name: str
     title: str
@@ -135,7 +128,7 @@ class Row:
 
     @property
     def variable(self) -> str:
-        """Its name in that stage."""
+        """Name in that stage."""
         return self.source.partition("/")[2]
 
     @property
@@ -183,6 +176,17 @@ def shown_in(*places: str) -> tuple[Row, ...]:
     return tuple(row for row in published() if any(getattr(row, place) for place in places))
 
 
+def stages_of(*places: str) -> set[str]:
+    """Stages that the numbers of some places are read from, with those of the reported state."""
+    sources = [
+        source
+        for row in shown_in(*places)
+        for source in (row.source, row.error, row.flag, row.reason, row.misfit, *row.range)
+    ]
+    stages = {source.partition("/")[0] for source in sources} - {"", "settings"}
+    return stages | {"specimens", "closure", "error_budget"}
+
+
 @cache
 def row_of(name: str) -> Row:
     """Row of this name."""
@@ -195,29 +199,32 @@ def row_of(name: str) -> Row:
 def read(row: Row, subject: Subject) -> list[Number]:
     """Numbers of a quantity of a specimen at its reported state.
 
-    Parameters
-    ----------
-    row : Row
-    subject : Subject
-
-    Returns
-    -------
-    list of Number
-        One a value of the dimensions that are left, in C order; a single one without ``at`` where
-        the specimen lacks the quantity.
+    There is one for each value of the dimensions that are left, in C order; a single one without
+    ``at`` where the specimen lacks the quantity.
     """
     for need in row.needs:
         if why := NEEDS[need](subject):
             return [Number({}, Estimate(), why)]
     if row.stage == "settings":
         stated = subject.settings["material"].get(row.variable)
-        # No bound on the pressure is an infinite one.
+        # Settings have an infinite hardness where nothing bounds the pressure.
         value = float(stated) if stated is not None and math.isfinite(stated) else math.nan
         return [Number({}, Estimate(value), "" if math.isfinite(value) else row.missing)]
     array = array_of(row, subject, row.source)
     if array is None:
         return [Number({}, Estimate(), row.absent or row.missing)]
     return list(_numbers(row, subject, array))
+
+
+def read_at(row: Row, subject: Subject, load: int | None = None) -> Number:
+    """Number of a quantity under a load, by default the reference load, or its only number."""
+    number = subject.reported.reference if load is None else load
+    return under_load(read(row, subject), number, subject.forces.size)
+
+
+def under_load(numbers: list[Number], load: int, loads: int) -> Number:
+    """Number under a load of those of a quantity; the first of what is not over all loads."""
+    return numbers[load if len(numbers) == loads and "pressure" in numbers[0].at else 0]
 
 
 def array_of(row: Row, subject: Subject, source: str) -> xr.DataArray | None:
@@ -238,19 +245,10 @@ def fitted_over(row: Row, subject: Subject) -> tuple[float, float, str] | None:
 
 
 def total_of(row: Row, subject: Subject, kind: str = "total") -> xr.DataArray | None:
-    """Errors of a quantity, or its values for harder contacts, as the error budget has them.
+    """Errors of a quantity over the loads or reference pressures, as the error budget has them.
 
-    Parameters
-    ----------
-    row : Row
-    subject : Subject
-    kind : str
-        "total", "total_of_population" or "hardest".
-
-    Returns
-    -------
-    xr.DataArray or None
-        Over the loads, or the reference pressures; None without.
+    ``kind`` is "total", "total_of_population" or "hardest": the last are its values for harder
+    contacts. None without a budget.
     """
     budget = subject.stages.get("error_budget")
     if budget is None or not row.budget:
@@ -305,7 +303,7 @@ def _numbers(row: Row, subject: Subject, array: xr.DataArray) -> Iterator[Number
 
 
 def _missing(row: Row, estimate: Estimate, valid: bool, why: str) -> str:
-    """Why a number is no result: a fit that is not valid is undetermined instead."""
+    """Reason why a number is no result; a fit that is not valid is undetermined instead."""
     if not valid and not row.range:
         return why or (row.note if estimate.known else "") or row.missing
     return "" if estimate.known else why or row.missing
@@ -328,5 +326,5 @@ def _beside(row, dim):
 
 
 def _plain(label: Any) -> Any:
-    """A label without numpy's type."""
+    """Label without numpy's type."""
     return label.item() if isinstance(label, np.generic) else label

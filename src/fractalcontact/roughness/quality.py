@@ -300,7 +300,6 @@ def _point_pitch(specimen, face):
 
 _RANGE = {
     "resolution": ("resolution", "mm", "spacing s of the nodes"),
-    "multiple": ("resolution", "1", "multiple k of the scan's spacing"),
     "below_range": ("resolution", "1", "shortest wave 2 s lies below the fractal range"),
 }
 
@@ -330,7 +329,6 @@ def _compared_with_range(end: Estimate, resolutions, side):
     """End of the range, and the resolutions that go below it."""
     values = {
         "resolution": resolutions * side,
-        "multiple": resolutions,
         "below_range": 2 * (resolutions * side) < end.value,
     }
     words = "shortest wavelength of the fractal range"

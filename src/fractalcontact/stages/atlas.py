@@ -14,7 +14,7 @@ from ..statements.study import judge_study
 from ..study.atlas import words_of, write_atlas
 from ..study.atlas_parts import read_group
 
-#: Name of the one group of what is judged for the study as a whole.
+#: Group of the stages of the study as a whole.
 WHOLE = "study"
 
 
@@ -32,17 +32,12 @@ def join_stages(
         Stage to specimen to dataset.
     path : path-like
     configuration : mapping
-        ``study``, as its user wrote it, and ``settings``, from
-        :func:`study.configuration.resolve_settings` by specimen.
+        ``study``, as its user wrote it, and ``settings`` by specimen, from
+        :func:`study.configuration.resolve_settings`.
     made_with : mapping of str to mapping of str to dict, optional
-        As :func:`study.atlas.write_atlas` takes it.
-
-    Returns
-    -------
-    dict of str to list of str
-        As :func:`study.atlas.write_atlas` gives it.
+        Versions of libraries. This and the result are those of :func:`study.atlas.write_atlas`.
     """
-    # A label is only words: no job that solves has it, so that a new one solves nothing again.
+    # Labels are added here: no job that solves takes one, so a new label solves nothing again.
     for name, dataset in stages.get("specimens", {}).items():
         settings = configuration["settings"][name]
         dataset.attrs["label"] = settings["label"]
@@ -59,22 +54,13 @@ def join_stages(
 
 
 def row_of(path: Path | str, name: str) -> xr.Dataset:
-    """Row of the comparison of a specimen, from an atlas of its own.
+    """Row of the comparison of a specimen, from an atlas of its own that :func:`join_stages` wrote.
 
-    Parameters
-    ----------
-    path : path-like
-        From :func:`join_stages`.
-    name : str
-
-    Returns
-    -------
-    xr.Dataset
-        With what the atlas of all must know: attributes ``scan_checksums``, ``versions_differ``.
+    Its attributes ``scan_checksums`` and ``versions_differ`` go into the atlas of all.
     """
     row, attrs = read_group(path, f"comparison/{name}")
-    known = {key: attrs[key] for key in ("scan_checksums", "versions_differ") if key in attrs}
-    return row.drop_encoding().assign_attrs(known)
+    kept = {key: attrs[key] for key in ("scan_checksums", "versions_differ") if key in attrs}
+    return row.drop_encoding().assign_attrs(kept)
 
 
 def join_rows(
@@ -86,20 +72,9 @@ def join_rows(
 ) -> dict[str, list[str]]:
     """Write the common part of an atlas in parts.
 
-    Parameters
-    ----------
-    rows : mapping of str to (xr.Dataset, mapping)
-        From :func:`row_of` by specimen, with the versions each was made with. Their atlases are
-        ``atlas/SPECIMEN.nc`` below the folder of ``path``.
-    stages : mapping of str to mapping of str to xr.Dataset
-        Of the study: what it has once, and measured contact maps.
-    path, configuration, made_with
-        As of :func:`join_stages`.
-
-    Returns
-    -------
-    dict of str to list of str
-        As :func:`study.atlas.write_atlas` gives it, specimens by their names alone.
+    ``rows`` has by specimen what :func:`row_of` gives, and the versions that the row was made with;
+    their atlases are ``atlas/SPECIMEN.nc`` below the folder of ``path``. ``stages`` has what the
+    study has once, and measured contact maps. The rest is as of :func:`join_stages`.
     """
     checksums: dict[str, dict[str, str]] = {}
     differing: dict[str, list[str]] = {}
@@ -123,10 +98,9 @@ def join_rows(
 
 
 def _without_remade_fields(stages):
-    """Stages without most composite topographies, the bulk of them.
+    """Stages with composite topographies at two offsets: the largest, and that of the contact maps.
 
-    They are missing, but for the largest offset and that of the contact maps; the file of the
-    stage has all.
+    Composites are the bulk of an atlas. The file of the stage keeps all of them.
     """
     joints = {}
     for name, joint in stages.get("joints", {}).items():
@@ -152,7 +126,7 @@ def _together(stages, settings):
         return {}
     together = {"study_comparison": {WHOLE: compare_specimens(stages["comparison"])}}
     own = {
-        # Measured contact maps, the study's, stand under names of their own.
+        # Measured contact maps belong to the study and are not among the stages of a specimen.
         name: {stage: parts[name] for stage, parts in stages.items() if name in parts}
         for name, stated in settings.items()
         if not stated["capped_variant"]

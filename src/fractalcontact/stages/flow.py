@@ -98,34 +98,16 @@ def flow_stages(
     settings: JointSettings,
     solver: Solver,
 ) -> dict[str, xr.Dataset]:
-    """Stage of the flow through one specimen.
+    """Stage of the flow through one specimen; of a surface against a plane, ``along`` is along x.
 
-    Parameters
-    ----------
-    specimens, joints : xr.Dataset
-        Of the stages of these names, from :func:`stages.specimen.specimen_stages`.
-    closure, branches, error_budget : xr.Dataset
-        Likewise, from :func:`stages.states.state_stages`.
-    parts : sequence of xr.Dataset
-        Contact states, from :func:`states.sweep.joint_states`.
-    settings : JointSettings
-    solver : Solver
-
-    Returns
-    -------
-    dict of str to xr.Dataset
-        The stage flow. Of a surface against a plane, which does not slide, ``along`` is along x.
+    ``parts`` are contact states from :func:`states.sweep.joint_states`, the rest stages by name.
+    Unloading and reloading are one elastic curve on the heights less the permanent set of the stage
+    ``branches``; where nothing yields, all branches are that of loading.
 
     Raises
     ------
     NotConverged
         If a state of unloading could not be verified.
-
-    Notes
-    -----
-    What a cycle has pressed in stays: unloading and reloading are elastic on the heights less the
-    permanent set of the stage ``branches``, and one curve. Where nothing yields, all branches are
-    that of loading.
     """
     reported = Reported.read(closure)
     loading = JointLoading.of_joint(specimens, joints, reported.direction, settings, solver)
@@ -162,9 +144,13 @@ def flow_stages(
         "branch": branches["branch"].values,
         "gap_probability": ("gap_probability", list(QUANTILES), probability),
     }
-    for one in "yx":
-        nodes = joints[f"window_{one}"].values[:: reported.resolution]
-        coords[f"flow_{one}"] = (f"flow_{one}", nodes, cf_attrs("mm", f"{one} of the node"))
+    for axis_name in "yx":
+        nodes = joints[f"window_{axis_name}"].values[:: reported.resolution]
+        coords[f"flow_{axis_name}"] = (
+            f"flow_{axis_name}",
+            nodes,
+            cf_attrs("mm", f"{axis_name} of the node"),
+        )
     attrs = {f"flow_axis_{way}": axis for way, axis in axes.items()}
     stage = labelled_dataset(_TABLE, values, coords, attrs)
     return {"flow": with_pressure(stage, nominal_area(specimens))}
@@ -180,7 +166,7 @@ def _both_ways(axes, spacing, gap):
 
 def _over_loads(way, axis, gaps, spacing, states, error, reported):
     """Numbers of the flow one way on loading, and the flux map under the reference load."""
-    # What does not slide has no across: a second direction, at the loads that are quoted.
+    # A joint that does not slide has no way across: its second way is solved at quoted loads.
     every = way == WAYS[0] or reported.direction != "none"
     rows = {
         load: _numbers(gap, spacing, axis, errors=load in reported.quoted)
@@ -230,7 +216,7 @@ def _numbers(gap, spacing, axis, *, errors):
 
 
 def _percolation_pressures(pressure, flows):
-    """Largest pressure with a path through the gap, and the smallest without one; NaN for none."""
+    """Largest pressure with a path through the gap and smallest without one, MPa; NaN for none."""
     opened, closed = pressure[flows > 0], pressure[flows == 0]
     return np.append(np.nan, opened)[-1], np.append(closed, np.nan)[0]
 
@@ -254,10 +240,10 @@ def _separation_error(gap, flow, total):
 
     The mean gap is off by as much as the separation, whatever node touches first.
     """
-    known = np.isfinite(gap + flow)
+    is_known = np.isfinite(gap + flow)
     error = np.full(flow.shape, np.nan)
-    if known.sum() > 1:
-        error[known] = np.abs(np.gradient(flow[known], gap[known])) * total[known]
+    if is_known.sum() > 1:
+        error[is_known] = np.abs(np.gradient(flow[is_known], gap[is_known])) * total[is_known]
     return error
 
 
@@ -265,10 +251,13 @@ def _of_branches(composite, space, loading, branches, both, loaded):
     """Numbers of all branches: on loading as given, else NaN above the largest load."""
     held, top = branches["permanent_set"].values, branches["normal_force"].values[-1]
     forces = loading.forces(loading.settings.loads)
-    values = {name: np.tile(one, (branches.sizes["branch"], 1)) for name, one in loaded.items()}
-    for one in values.values():
-        one[1:, forces > top] = np.nan
-    # What has not crushed unloads and reloads as it was loaded.
+    values = {
+        name: np.tile(over_branches, (branches.sizes["branch"], 1))
+        for name, over_branches in loaded.items()
+    }
+    for over_branches in values.values():
+        over_branches[1:, forces > top] = np.nan
+    # A joint that has not crushed unloads and reloads along its loading curve.
     if held.any():
         descending, elastic = np.flatnonzero(forces <= top)[::-1], {"rtol": loading.solver.rtol}
         where = f"specimen {loading.specimen.attrs['name']}, unloading"
@@ -280,13 +269,15 @@ def _of_branches(composite, space, loading, branches, both, loaded):
 
 
 def _over_offsets(parts, offsets, both, reported, loaded):
-    """Numbers over the offsets under the reference load; those of the reported one are loaded."""
-    known, load = offsets == reported.offset, reported.reference
-    values = {name: np.where(known, one[load], np.nan) for name, one in loaded.items()}
+    """Numbers over the offsets under the reference load; the reported offset takes ``loaded``."""
+    is_reported, load = offsets == reported.offset, reported.reference
+    values = {
+        name: np.where(is_reported, over_loads[load], np.nan) for name, over_loads in loaded.items()
+    }
     for part in (part for part in parts if OFFSET_GAP in part):
         for gap, offset in zip(part[OFFSET_GAP].values, part["offset"].values, strict=True):
             number = int(np.argmin(np.abs(offsets - offset)))
-            if not known[number]:
+            if not is_reported[number]:
                 for name, value in both(gap.astype(float)).items():
                     values[name][number] = value
     return values

@@ -22,26 +22,9 @@ def stages_of_scan(
     settings: SpecimenSettings,
     name: str,
 ) -> dict[str, xr.Dataset]:
-    """Stages of one specimen from its scan files.
+    """Stages of :func:`specimen_stages` from scan files: the lower face, and the upper if scanned.
 
-    Parameters
-    ----------
-    files : sequence of str
-        The lower face, and the upper one where it was scanned.
-    options : mapping
-        Scan keys of the sidecar.
-    settings : SpecimenSettings
-    name : str
-
-    Returns
-    -------
-    dict of str to xr.Dataset
-        As of :func:`specimen_stages`.
-
-    Raises
-    ------
-    InputError
-        If a file cannot be read, or the window finds no place.
+    ``options`` are the scan keys of the sidecar. Raises InputError as :func:`prepare_specimen`.
     """
     lower, upper = files[0], files[1] if len(files) > 1 else None
     return specimen_stages(prepare_specimen(lower, upper, options, settings, name), settings)
@@ -54,7 +37,7 @@ def prepare_specimen(
     settings: SpecimenSettings,
     name: str,
 ) -> xr.Dataset:
-    """Read the faces of a specimen, level them and place the window.
+    """Specimen of :func:`surface.specimen.make_specimen`: faces read and levelled, window placed.
 
     Of two registered faces it also holds further motions that are statistically as good.
 
@@ -66,11 +49,6 @@ def prepare_specimen(
         Scan keys of the sidecar.
     settings : SpecimenSettings
     name : str
-
-    Returns
-    -------
-    xr.Dataset
-        As :func:`surface.specimen.make_specimen` makes it.
 
     Raises
     ------
@@ -91,19 +69,7 @@ def prepare_specimen(
     joints="offsets and composite topographies",
 )
 def specimen_stages(specimen: xr.Dataset, settings: SpecimenSettings) -> dict[str, xr.Dataset]:
-    """Stages of one levelled specimen, itself among them.
-
-    Parameters
-    ----------
-    specimen : xr.Dataset
-        From :func:`prepare_specimen`.
-    settings : SpecimenSettings
-
-    Returns
-    -------
-    dict of str to xr.Dataset
-        By stage: specimens, surface_dimension, quality and joints.
-    """
+    """Stages specimens, surface_dimension, quality and joints of one levelled specimen."""
     return {
         "specimens": specimen,
         "joints": describe_joint(specimen, settings),

@@ -6,19 +6,27 @@ import numpy as np
 import xarray as xr
 
 from ..core.datasets import titled
+from ..core.labels import cf_attrs
 from ..core.reported import Reported
 from ..core.settings import Solver, StateSettings
+from ..core.tolerance import ACCURACY
+from ..core.units import share_of
 from ..core.window import cell_side, nominal_area, window_sides
 from ..domain.analysis import analyse_domains, scaling_over_resolutions
 from ..domain.measures import measures_of_map_states
 from ..domain.null_models import beside_domains, nulls_of_map_states
 from ..domain.renormalisation import extrapolated_pressure
+from ..error_budget.error_budget import error_budget
 from ..joint.overlap import load_warning, node_marks
 from ..laws.area import area_laws, joint_statistics
+from ..laws.branches import joint_branches
 from ..laws.closure import closure_curves, elastic_dilatancy, full_contact_warning
 from ..roughness.recommended import best_dimension
 from ..states.contact_fields import contact_fields
 from ..states.left_out import left_of_fields
+from ..states.loading import JointLoading
+from ..states.plan import solve_plan
+from ..states.registration_spread import registration_spread
 from ..states.separation import prefractal_openings
 from ..states.states import (
     DIP,
@@ -30,7 +38,6 @@ from ..states.states import (
     map_states,
     with_pressure,
 )
-from .errors import error_stages
 
 
 @titled(
@@ -54,24 +61,11 @@ def state_stages(
     solver: Solver,
     ensemble: xr.Dataset | None = None,
 ) -> dict[str, xr.Dataset]:
-    """Stages that are computed from the contact states of one specimen.
+    """Stages that are computed from the contact states of one specimen, by name.
 
-    Parameters
-    ----------
-    specimens, surface_dimension, joints : xr.Dataset
-        Of the stages of these names, from :func:`stages.specimen.specimen_stages`.
-    parts : sequence of xr.Dataset
-        Contact states, from :func:`states.sweep.joint_states`.
-    settings : StateSettings
-    solver : Solver
-    ensemble : xr.Dataset, optional
-        Stage of this name: twins of a scan, or realisations.
-
-    Returns
-    -------
-    dict of str to xr.Dataset
-        By stage; the error budget and what it completes with them, by
-        :func:`stages.errors.error_stages`.
+    ``parts`` are contact states from :func:`states.sweep.joint_states`; ``ensemble`` is the stage
+    of this name, of twins of a scan or of realisations. The branches and the error budget solve
+    some states again.
     """
     states, mapped = combine(parts), map_states(parts)
     spacing, area = cell_side(specimens), nominal_area(specimens)
@@ -122,21 +116,36 @@ def state_stages(
         "domain_measures": measures_of_map_states(mapped, spacing),
     }
     stages = {name: with_pressure(stage, area) for name, stage in stages.items()}
-    return stages | error_stages(
-        specimens,
-        joints,
+    # Some states are solved again, on finer grids and on unloading, in the reported direction.
+    joint = JointLoading.of_joint(specimens, joints, reported.direction, settings, solver)
+    loading = joint.at_map_offset()
+    budget = error_budget(
+        loading,
         stages["closure"],
-        stages["dilatancy"],
         stages["domains"],
-        mapped,
-        settings=settings,
-        solver=solver,
+        registration_spread=registration_spread(loading),
         ensemble=ensemble,
     )
+    plan = solve_plan(stages["closure"], stages["dilatancy"], solver, budget)
+    return stages | {
+        "branches": joint_branches(loading, stages["closure"], mapped),
+        "error_budget": with_pressure(budget, area),
+        "choices": plan.assign(requested_accuracy(solver)),
+    }
+
+
+def requested_accuracy(solver: Solver) -> dict[str, tuple]:
+    """Requested error of the closure, as ``xr.Dataset`` takes it.
+
+    A study that solves all states at full cost requests none: the usual error stands for it.
+    """
+    accuracy = solver.accuracy or {"closure": share_of(ACCURACY["closure"])}
+    words = cf_attrs("1", "requested error of the closure, a fraction")
+    return {"closure_accuracy": ((), accuracy["closure"], words)}
 
 
 def _reported(curves: xr.Dataset, settings: StateSettings, area: float) -> Reported:
-    """States that the study wants published."""
+    """States that the study publishes."""
     return Reported.choose(
         curves,
         direction=str(settings.contact_directions[0]),

@@ -1,64 +1,72 @@
-"""Strength of a specimen, and the effect of the side of its sub-windows, without a solve."""
+"""Strength of a specimen, laws of the size of its sub-windows, and verdicts, without a solve."""
+
+from collections.abc import Mapping
+from dataclasses import asdict
 
 import numpy as np
 import xarray as xr
 
+from ..core.datasets import titled
 from ..core.directions import slides
-from ..core.settings import StrengthSettings
+from ..core.settings import ReportSettings, StrengthSettings
 from ..core.window import cell_side, nominal_area
 from ..laws.strength import joint_strength
 from ..roughness.fit_range import MIN_CELLS
 from ..roughness.recommended import best_dimension
 from ..size_effect.laws import joint_by_size
 from ..size_effect.prediction import predict_whole_strength
+from ..statements.comparison import specimen_row
+from ..statements.judge import judge
+from ..states.model_validity import model_validity
 from ..states.states import with_pressure
 
 
-def strength_stages(
-    specimens: xr.Dataset,
-    surface_dimension: xr.Dataset,
-    joints: xr.Dataset,
-    window_states: xr.Dataset,
-    size_test: xr.Dataset,
-    dilatancy: xr.Dataset,
-    settings: StrengthSettings,
-) -> dict[str, xr.Dataset]:
-    """Stages that read friction angles, so that a change of one makes no others again.
+@titled(
+    windows="closure, roughness and strength of sub-windows against their size",
+    strength="dilatancy and friction angles, shear strength",
+    elastic_model=(
+        "verdict on the elastic model: real mean pressure against strength, slope of the faces"
+    ),
+    statements="the paper's statements, and their verdicts",
+    comparison="quantities of a specimen for comparison with others, with their errors",
+)
+def strength_stages(settings: ReportSettings, **stages: xr.Dataset) -> dict[str, xr.Dataset]:
+    """Stages that solve nothing: a friction angle, wall strength or label makes these alone again.
 
-    Parameters
-    ----------
-    specimens, surface_dimension, joints : xr.Dataset
-        Of the stages of these names, from :func:`stages.specimen.specimen_stages`.
-    window_states, size_test : xr.Dataset
-        Likewise, from :func:`stages.windows.window_stages`.
-    dilatancy : xr.Dataset
-        From :func:`stages.states.state_stages`.
-    settings : StrengthSettings
-
-    Returns
-    -------
-    dict of str to xr.Dataset
-        By stage: windows (roughness, closure and strength over the side b) and, of a joint that
-        slides, strength.
+    ``stages`` are those that the rule ``strength`` takes, of one specimen, by name. A joint that
+    does not slide has no stage strength.
     """
-    laws = _size_laws(specimens, surface_dimension, window_states, settings)
-    stages = {"windows": laws}
+    laws = size_and_strength(stages, settings)
+    every, stated = stages | laws, asdict(settings)
+    return {
+        **laws,
+        "elastic_model": model_validity(every["area"], every["scaling"], settings.material),
+        "statements": judge(every, stated),
+        "comparison": specimen_row(every, stated),
+    }
+
+
+def size_and_strength(
+    stages: Mapping[str, xr.Dataset], settings: StrengthSettings
+) -> dict[str, xr.Dataset]:
+    """Stage windows (laws over the side b) and, of a joint that slides, stage strength."""
+    specimens, laws = stages["specimens"], _size_laws(stages, settings)
+    results = {"windows": laws}
     if slides(specimens.attrs["opposite"]):
-        stages["windows"] = laws.merge(predict_whole_strength(laws, size_test["delta_sigma"]))
-        stages["strength"] = joint_strength(dilatancy, joints, specimens, settings)
+        whole = predict_whole_strength(laws, stages["size_test"]["delta_sigma"])
+        results["windows"] = laws.merge(whole)
+        results["strength"] = joint_strength(
+            stages["dilatancy"], stages["joints"], specimens, settings
+        )
     area = nominal_area(specimens)
-    return {name: with_pressure(stage, area) for name, stage in stages.items()}
+    return {name: with_pressure(stage, area) for name, stage in results.items()}
 
 
-def _size_laws(
-    specimens: xr.Dataset,
-    surface_dimension: xr.Dataset,
-    window_states: xr.Dataset,
-    settings: StrengthSettings,
-) -> xr.Dataset:
+def _size_laws(stages: Mapping[str, xr.Dataset], settings: StrengthSettings) -> xr.Dataset:
     """Size laws, fitted below a roll-off where there is one."""
+    surface, specimens = stages["surface_dimension"], stages["specimens"]
     lags = settings.surface_range
-    if lags is None and np.isfinite(surface_dimension["roll_off"]):
-        lags = MIN_CELLS * cell_side(specimens), float(surface_dimension["range_max"])
-    dimension = best_dimension(surface_dimension)
-    return joint_by_size(window_states, specimens, dimension, lags, settings.material)
+    if lags is None and np.isfinite(surface["roll_off"]):
+        lags = MIN_CELLS * cell_side(specimens), float(surface["range_max"])
+    dimension = best_dimension(surface)
+    return joint_by_size(stages["window_states"], specimens, dimension, lags, settings.material)

@@ -20,22 +20,10 @@ from ..states.states import with_pressure
 def window_stages(
     specimens: xr.Dataset, joints: xr.Dataset, settings: WindowSettings, solver: Solver
 ) -> dict[str, xr.Dataset]:
-    """Stages that solve sub-windows of one specimen, along its first direction of contact.
+    """Stages window_states and size_test, along the first direction of contact.
 
-    What no solve needs is made of them by :func:`stages.strength.strength_stages`: a friction angle
-    solves nothing again.
-
-    Parameters
-    ----------
-    specimens, joints : xr.Dataset
-        Of the stages of these names, from :func:`stages.specimen.specimen_stages`.
-    settings : WindowSettings
-    solver : Solver
-
-    Returns
-    -------
-    dict of str to xr.Dataset
-        By stage: window_states and size_test.
+    :func:`stages.strength.strength_stages` makes of them what no solve needs, so that a friction
+    angle solves nothing again.
     """
     direction = settings.contact_directions[0]
     joint = JointLoading.of_joint(specimens, joints, direction, settings, solver)

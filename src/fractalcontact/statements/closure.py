@@ -27,7 +27,7 @@ from .findings import (
 #: Relative difference between two pressures that are one.
 ROUNDING = 1e-9
 
-#: Offsets that could differ are this factor apart.
+#: Least ratio of two offsets at which a joint could differ.
 MIN_SPREAD = 3.0
 
 #: Closure from first contact is an extreme of the sample; compliance is a property of the joint.

@@ -18,8 +18,8 @@ from ..core.reported import Reported
 from ..core.text import percent
 from ..core.window import nominal_area
 
-#: What is compared, each with its 95 % interval: unit and long name; the first once a specimen,
-#: the others under every load.
+#: Compared quantities, each with its 95 % interval: unit and long name; once a specimen, and under
+#: every load.
 ONCE = {"delta_g": ("1", "surface dimension Delta_g, the recommended estimate")}
 UNDER_LOAD = {
     "stiffness": ("MPa/mm", "tangent stiffness d sigma_0 / d w_int at the map offset"),
@@ -28,7 +28,7 @@ UNDER_LOAD = {
     "size_exponent": ("1", "exponent of corrected A_r/A_0 against b at equal sigma_0"),
 }
 QUANTITIES = ONCE | UNDER_LOAD
-#: Name of the group of specimens that belong to none.
+#: Group of specimens for which the study states none.
 UNGROUPED = "no group"
 #: Digits to which nominal pressures must agree that specimens are compared under one.
 _DIGITS = 4
@@ -48,20 +48,8 @@ def _table(prefix=(), names=QUANTITIES):
 def specimen_row(stages: Mapping[str, xr.Dataset], settings: Mapping) -> xr.Dataset:
     """Compared quantities of a specimen, each with its 95 % interval.
 
-    Parameters
-    ----------
-    stages : mapping of str to xr.Dataset
-        Of the specimen: ``specimens``, ``surface_dimension``, ``closure``, ``domains``,
-        ``dilatancy``, ``size_test`` and ``error_budget``.
-    settings : mapping
-        From :func:`study.configuration.resolve_settings`.
-
-    Returns
-    -------
-    xr.Dataset
-        ``delta_g`` and, over (load,), ``nominal_pressure`` (MPa), ``stiffness`` (MPa/mm),
-        ``delta_sigma``, ``dilatancy`` (mm) and ``size_exponent``, in the first direction that was
-        solved; NaN where there is none. Attributes ``group``, ``label``, ``opposite``.
+    Over (load,) there are ``nominal_pressure`` (MPa) and :data:`UNDER_LOAD`, in the first direction
+    that was solved; NaN where there is none. Attributes ``group``, ``label``, ``opposite``.
     """
     closure, surface = stages["closure"], stages["surface_dimension"]
     reported = Reported.read(closure)
@@ -120,22 +108,10 @@ def _size_exponent(size_test, pressures):
 def compare_specimens(rows: Mapping[str, xr.Dataset]) -> xr.Dataset:
     """Rows of all specimens side by side, and how the quantities spread within each group.
 
-    Parameters
-    ----------
-    rows : mapping of str to xr.Dataset
-        By specimen, from :func:`specimen_row`.
-
-    Returns
-    -------
-    xr.Dataset
-        The variables of the rows over (specimen,) and (specimen, load), NaN behind the last load of
-        specimens that have fewer; ``compared_pressure`` from :func:`compared_pressures`, ``group``
-        and ``label`` of each. And of each quantity, over
-        (group_name,) and, under every nominal pressure that is a load of any (those that
-        differ by up to 5 % are one), (group_name, pressure): ``NAME_mean`` with its 95 % interval
-        (Student's t over specimens: NaN of one alone), ``NAME_deviation`` between specimens,
-        ``NAME_n`` of them, and ``NAME_error``, the median half-width of their own intervals.
-        Besides what :func:`with_common_pressure` gives.
+    ``rows`` are by specimen, from :func:`specimen_row`. Behind the last load of specimens that have
+    fewer, values are NaN. Of each quantity, over (group_name,) and under every pressure of
+    :func:`compared_pressures` (group_name, pressure), there are :data:`_STATISTICS`, the interval
+    of the mean by Student's t: NaN of one specimen. Besides :func:`with_common_pressure`.
     """
     names = sorted(rows)
     most = max((rows[name].sizes["load"] for name in names), default=0)
@@ -163,19 +139,10 @@ def compare_specimens(rows: Mapping[str, xr.Dataset]) -> xr.Dataset:
 
 
 def with_common_pressure(comparison: xr.Dataset) -> xr.Dataset:
-    """Pressure under which most specimens are loaded, and every quantity of each under it.
+    """Comparison with every quantity under the pressure under which most specimens are loaded.
 
-    Parameters
-    ----------
-    comparison : xr.Dataset
-        Of :func:`compare_specimens`.
-
-    Returns
-    -------
-    xr.Dataset
-        With ``common_pressure`` (MPa; of several the largest; NaN without any) and
-        ``NAME_at_common_pressure`` (specimen,) with its interval, NaN where a specimen was not
-        loaded so.
+    ``common_pressure`` (MPa) is of several the largest, NaN without any;
+    ``NAME_at_common_pressure`` (specimen,) is NaN where a specimen was not loaded so.
     """
     counts = comparison[["stiffness_n", "delta_sigma_n"]].sum("group_name")
     values = (counts["stiffness_n"] + counts["delta_sigma_n"]).values[::-1]
@@ -209,20 +176,11 @@ def rounded_pressures(pressures: np.ndarray) -> np.ndarray:
 
 
 def compared_pressures(pressures: np.ndarray) -> np.ndarray:
-    """Nominal pressures under which specimens are compared: those that differ little are one.
+    """Nominal pressures under which specimens are compared, MPa (specimen, load).
 
-    Windows of one nominal size differ a little in area, and a load in N is then another pressure.
-
-    Parameters
-    ----------
-    pressures : (specimen, load) array_like
-        MPa, NaN where a specimen has fewer loads.
-
-    Returns
-    -------
-    (specimen, load) ndarray
-        For each the median of those within :data:`ALIKE` of the least; two loads of one specimen
-        stay two.
+    Windows of one nominal size differ a little in area, and a load in N is then another pressure:
+    each is the median of those within :data:`ALIKE` of the least. Two loads of one specimen stay
+    two. NaN where a specimen has fewer loads.
     """
     rounded = rounded_pressures(pressures)
     places = np.argwhere(np.isfinite(rounded))

@@ -51,12 +51,8 @@ class OverLoads(NamedTuple):
 class Trend:
     """Slope of Delta_sigma over the decades of load.
 
-    Attributes
-    ----------
-    slope, departure : Estimate
-        Of Delta_sigma, and of what it has more than the bearing-area cut where that is not near 2.
-    pressures : (n,) ndarray
-        Nominal pressures of the fit, MPa.
+    ``departure`` is the slope of its excess over the bearing-area cut where that is not near 2;
+    ``pressures`` (n,) are those of the fit, MPa.
     """
 
     slope: Estimate
@@ -174,8 +170,7 @@ class Evidence:
 
     def interval_difference(self) -> Estimate:
         """Exponent of occupied intervals across sliding less that along it, at reference load."""
-        measures = self.joint["domain_measures"]
-        measures = measures.sel(normal_force=self.joint.force, method="nearest")
+        measures = self.joint.state("domain_measures")
         along, across = (Estimate.read(measures, f"interval_dimension_{way}") for way in WAYS)
         return difference_of(across, along)
 
@@ -375,7 +370,7 @@ def evidence_of(joint: Joint) -> Evidence:
 
 def at_reference(joint: Joint, evidence: Evidence) -> xr.Dataset:
     """Local slopes and their departures under the reference load."""
-    return evidence.slopes().sel(normal_force=joint.force, method="nearest")
+    return joint.reported.state(evidence.slopes())
 
 
 def of_a_kind(rule: Callable[[Joint, Evidence], Finding]) -> Callable[[Joint], Finding]:

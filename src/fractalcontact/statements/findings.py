@@ -13,7 +13,7 @@ from ..core.subject import Subject
 from ..core.text import compact, loads_of, number
 from ..core.verdicts import FAILS, HOLDS, ILL_POSED, PARTLY, UNDETERMINED
 
-#: Why a joint under a hardness may be asked nothing of its contact area.
+#: Reason why statements on the contact area are ill-posed under a hardness.
 BY_CONSTRUCTION = "A_r = F/H, because all contacts yield"
 
 
@@ -154,15 +154,7 @@ def power_of_offset(
 def under_every_load(joint: Joint, rule: Callable[[float], Finding], forces: np.ndarray) -> Finding:
     """Finding of a rule at the load nearest to the reference that decides, its verdict that of all.
 
-    What a rule with a fixed limit finds at one load may be otherwise at the next.
-
-    Parameters
-    ----------
-    joint : Joint
-    rule : callable
-        From a load, N, to its finding.
-    forces : (n,) ndarray
-        Loads asked, N.
+    ``rule`` leads from a load, N, to a finding. With a fixed limit it may differ from load to load.
     """
     found = {force: rule(force) for force in forces}
     decided = {force: one for force, one in found.items() if one.verdict != UNDETERMINED}
@@ -195,16 +187,8 @@ def beyond_margin(found: Estimate, margin: float, *, rising: bool) -> str:
     """Verdict on a claim of a sign, with an equivalence margin.
 
     It holds where the whole interval lies beyond the margin, in part where all of it has the sign
-    and some lies beyond, and fails where none does: a change smaller than the margin counts
-    as none.
-
-    Parameters
-    ----------
-    found : Estimate
-        What is to have the sign.
-    margin : float
-    rising : bool
-        Whether the sign is to be positive.
+    and some lies beyond, and fails where none does: a change smaller than the margin counts as
+    none.
     """
     gain = found if rising else found.mapped(np.negative, falling=True)
     if gain.high <= margin:

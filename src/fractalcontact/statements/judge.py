@@ -20,18 +20,12 @@ from ..core.verdicts import UNDETERMINED
 from . import closure, nulls, scaling, sliding
 from .findings import Finding, Joint
 
-#: Which of its two materials the paper would take a study's for, by words in its name.
+#: Material of the paper by words in the name of a study's material.
 MATERIALS = {"sandstone": "rock", "rock": "rock", "concrete": "concrete"}
 
 
 def rule_of(name: str) -> Callable[..., Finding]:
-    """Function that judges a statement about one joint: the one of its name.
-
-    Raises
-    ------
-    KeyError
-        If no rule has this name.
-    """
+    """Function that judges a statement about one joint: the one of its name."""
     for room in (closure, sliding, scaling, nulls):
         if hasattr(room, name):
             return getattr(room, name)
@@ -45,14 +39,11 @@ def material_of(settings: Mapping) -> str:
 
 
 def statements_for(settings: Mapping) -> tuple[str, ...]:
-    """Names of the statements that are asked of a specimen.
+    """Names of the statements that are asked of a specimen, from its settings.
 
-    Parameters
-    ----------
-    settings : mapping
-        Of :class:`core.settings.ReportSettings`: its ``opposite``, its ``material`` (what the paper
-        says of one of its materials is asked of that one) and ``capped_variant``, whether it stands
-        in its study once more without a hardness: what a hardness cannot change is answered there.
+    A statement on one of the paper's materials is asked of that one. A joint that stands in its
+    study once more without a hardness (``capped_variant``) is not asked what a hardness cannot
+    change.
     """
     material = material_of(settings)
     sliding = slides(settings["opposite"])
@@ -66,20 +57,10 @@ def statements_for(settings: Mapping) -> tuple[str, ...]:
 
 
 def judge(stages: Mapping[str, xr.Dataset], settings: Mapping) -> xr.Dataset:
-    """Judge every statement of :func:`statements_for` a joint.
+    """Judge every statement of :func:`statements_for` a joint, as :func:`table_of` has it.
 
-    Parameters
-    ----------
-    stages : mapping of str to xr.Dataset
-        As :class:`findings.Joint` has them.
-    settings : mapping
-        As :func:`statements_for` takes it, with ``chosen_for``: statements that the specimen was
-        chosen for, and how.
-
-    Returns
-    -------
-    xr.Dataset
-        As :func:`table_of` makes it; attributes ``direction`` and ``force``, N.
+    ``chosen_for`` of the settings names statements that the specimen was chosen for, and how.
+    Attributes ``direction`` and ``force``, N.
     """
     joint = Joint(dict(stages), dict(settings))
     rules = {name: rule_of(name) for name in statements_for(settings)}
@@ -94,24 +75,17 @@ def table_of(
     circular: Mapping[str, str],
     asked: str = "this specimen",
 ) -> xr.Dataset:
-    """Statements judged, as a dataset.
+    """Statements judged, over (statement,).
 
     Parameters
     ----------
     rules : mapping of str to callable
-        From what is judged to a finding, by the statement's name.
+        Functions from the subject to a finding, by the statement's name.
     subject : findings.Joint, or several by their names
-        What is judged.
     circular : mapping of str to str
         How the specimen was chosen for a statement, by the statement's name.
     asked : str, optional
-        What the subject is, in words.
-
-    Returns
-    -------
-    xr.Dataset
-        ``figure``, ``claim``, ``short``, ``rule``, ``verdict``, ``numbers``, ``note``,
-        ``explanation``, ``judged_on``, ``circular`` and ``circular_reason`` over (statement,).
+        The subject in words.
     """
     found = [rule(subject) for rule in rules.values()]
     claims = [all_claims()[name] for name in rules]
@@ -150,6 +124,6 @@ def table_of(
 
 
 def _note(finding: Finding, claim: Claim) -> str:
-    """Note on a finding, ending with what would decide it where it is open."""
+    """Note on a finding, ending with what would decide it where it is undetermined."""
     remedy = claim.decides if finding.verdict == UNDETERMINED else ""
     return "; ".join(filter(None, (finding.note, remedy)))

@@ -9,7 +9,7 @@ from ..core.text import compact, number
 from ..core.verdicts import FAILS, HOLDS, PARTLY, UNDETERMINED
 from .findings import Finding
 
-#: A local slope from here on is of boxes that are all occupied.
+#: Least local slope of boxes that are all occupied.
 FULL = 1.98
 
 #: Box sides whose ends have a smaller ratio show no power law.
@@ -23,11 +23,7 @@ def one_slope(state: xr.Dataset) -> Finding:
     of ±0.25 meets the interval of each: what differs by its scatter alone is no curvature. Nor are
     they where large boxes are all occupied, with a slope of 2, and small ones surely have less, by
     more than 0.1: that is the crossover to a filled plane, which any domain of many nodes has.
-
-    Parameters
-    ----------
-    state : xr.Dataset
-        Of the stage ``domains``, of one domain that is compared with its null models.
+    ``state`` is that of one domain, compared with its null models.
     """
     if np.isnan(state["local_slope_random_p"]):
         return Finding(UNDETERMINED, str(state["null_reason"].item()))

@@ -24,7 +24,7 @@ from .local_slopes import one_slope
 #: Dimensions whose difference from the bearing-area cut's shows whether the two are related.
 _DIMENSIONS = ("delta_sigma", "correlation_dimension")
 
-#: Probabilities below this are not written.
+#: Least probability that is written.
 _LEAST_P = 1e-6
 
 #: Null models of a contact domain, in words.

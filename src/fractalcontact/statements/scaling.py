@@ -21,7 +21,7 @@ from .findings import (
 )
 from .local_slopes import one_slope
 
-#: Decades of load over which a change with the load is judged at the least.
+#: Least decades of load over which a change with the load is judged.
 MIN_DECADES = 1.0
 
 #: Dimension of a line: structured contact points have less, linear contact structures more.
@@ -158,20 +158,8 @@ def span_finding(
     It holds where the smallest value is near 0 and the largest reaches the upper end: 2 for plastic
     contact, more than 1 for elastic contact. It holds in part where the values pass 1 from surely
     below, and fails where the upper end is surely missed, or where no value is surely below 1
-    though that of as many random nodes is.
-
-    Parameters
-    ----------
-    delta : Estimate
-        (n,), each with a value.
-    random : (n,) ndarray
-        That of random nodes.
-    pressures : (n,) ndarray
-        MPa, ascending.
-    note : str
-        Begins with a small letter.
-    plastic : bool
-        Whether contacts yield.
+    though that of as many random nodes is. ``delta`` and ``random`` are (n,), ``pressures`` MPa,
+    ascending.
     """
     lowest, highest = int(np.argmin(delta.value)), int(np.argmax(delta.value))
     lower, upper = delta[lowest], delta[highest]
@@ -297,7 +285,7 @@ def strength_falls_with_size(joint: Joint) -> Finding:
     each = [beyond_margin(strength[i], margin, rising=False) for i in range(cases)]
     clear, no_fall = each.count(HOLDS), each.count(FAILS)
     falls = clear + each.count(PARTLY)
-    # Where nothing is sure in some cases, those that are decide.
+    # Undetermined cases do not count.
     verdict = PARTLY if falls else FAILS if no_fall else UNDETERMINED
     bounded = int(np.isneginf(strength.low).sum())
     return Finding(

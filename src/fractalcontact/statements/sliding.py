@@ -12,22 +12,16 @@ from ..core.verdicts import FAILS, HOLDS, LEVEL, PARTLY, RISING, UNDETERMINED
 from .evidence import Evidence, of_a_kind
 from .findings import Finding, Joint, no_offsets, power_of_offset, share
 
-#: Directions in which the paper's concrete has a plateau, of those it slid in.
+#: Directions in which the paper's concrete has a plateau, and in which it slid.
 PLATEAUS, DIRECTIONS = 2, 4
 
 
 class Plateaus(NamedTuple):
     """Rigid dilatancy over the second half of v, by direction, as the stage ``joints`` has it.
 
-    Attributes
-    ----------
-    directions : list of str
-    trend : (n,) ndarray of str
-        :data:`core.verdicts.LEVEL`, ``RISING`` or ``FALLING``.
-    change : (n,) ndarray
-        Of the fitted line, a fraction of the mean.
-    undecided : str
-        Why the trend of some direction says nothing of a plateau; empty where all do.
+    ``trend`` (n,) has :data:`core.verdicts.LEVEL`, ``RISING`` or ``FALLING``, ``change`` (n,) that
+    of the fitted line, a fraction of the mean. ``undecided`` says why the trend of some direction
+    does not decide about a plateau; it is empty where all do.
     """
 
     directions: list[str]

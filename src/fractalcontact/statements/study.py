@@ -23,20 +23,10 @@ def judge_study(
     stages: Mapping[str, Mapping[str, xr.Dataset]],
     settings: Mapping[str, Mapping],
 ) -> xr.Dataset:
-    """Judge the statements that need several specimens.
+    """Judge the statements that need several specimens, as :func:`judge.table_of` has it.
 
-    Parameters
-    ----------
-    stages : mapping of str to mapping of str to xr.Dataset
-        Of each specimen, as :class:`findings.Joint` has them, with ``surface_dimension``. Without
-        those that only repeat another under a hardness.
-    settings : mapping of str to mapping
-        By specimen.
-
-    Returns
-    -------
-    xr.Dataset
-        As :func:`judge.table_of` makes it.
+    ``stages`` and ``settings`` are by specimen, with ``surface_dimension``, without specimens that
+    only repeat another under a hardness.
     """
     joints = {name: Joint(dict(parts), dict(settings[name])) for name, parts in stages.items()}
     return table_of(

@@ -11,7 +11,7 @@ from typing import Any
 
 from ...core.limits import JRC_RANGE, JRC_SAMPLING
 from ...core.text import exact, number
-from ...pages.first_screen import reference_of, row_at
+from ..entries import reference_of, row_at
 from .constants import in_words
 
 ENDING = "ags"
@@ -95,5 +95,5 @@ def _list(name: str, headings: Sequence[str], rows: Sequence[Sequence[str]]) -> 
 
 def _line(fields: Sequence[str]) -> str:
     """Fields in quotes, ASCII only; a quote within a field is doubled."""
-    plain = (" ".join(one.split()).encode("ascii", "replace").decode() for one in fields)
-    return ",".join('"' + one.replace('"', '""') + '"' for one in plain)
+    plain = (" ".join(text.split()).encode("ascii", "replace").decode() for text in fields)
+    return ",".join('"' + text.replace('"', '""') + '"' for text in plain)

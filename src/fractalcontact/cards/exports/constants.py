@@ -14,15 +14,9 @@ UNITS_SI = {"MPa/mm": "Pa/m", "MPa": "Pa", "mm": "m", "1": "-"}
 
 @dataclass(frozen=True)
 class Constants:
-    """Constants under the keys of a code, in its units.
+    """Constants under the keys of a code, in its units, with notes on each.
 
-    Attributes
-    ----------
-    values : dict of str to float
-    notes : dict of str to str
-        What each is, with its interval, as the card has it.
-    left_out : dict of str to str
-        Keys whose meaning no number of the card has, and why.
+    ``left_out`` has the keys whose meaning no number of the card has, and why.
     """
 
     values: dict[str, float] = field(default_factory=dict)
@@ -44,7 +38,7 @@ class Constants:
 
 
 def in_words(entry: Mapping[str, Any], row: Mapping[str, Any]) -> str:
-    """A number with its interval and unit, in the units of the card."""
+    """Number with its interval and unit, in the units of the card."""
     low, high = ("" if row[end] is None else short(row[end]) for end in ("low", "high"))
     ends = f" [{low}, {high}]" if low != high else ""
     unit = "" if entry["unit"] == "1" else f" {entry['unit']}"

@@ -8,7 +8,7 @@ import pandas as pd
 from ...core.tables import table_text
 
 ENDING = "csv"
-#: What stands beside numbers of a curve.
+#: Labels beside the numbers of a curve.
 _BESIDE = ("pressure", "offset", "direction", "step")
 
 

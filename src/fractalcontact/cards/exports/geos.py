@@ -19,17 +19,17 @@ ENDING = "xml"
 
 def constants_of(card: Mapping[str, Any]) -> Constants:
     """Attributes of ``BartonBandis`` that a card has a number for."""
-    entries, found = card["entries"], Constants()
+    entries, constants = card["entries"], Constants()
     k_ni, v_m = entries["k_ni"], entries["v_m"]
-    found.add("referenceAperture", v_m, v_m, "v_m of the hyperbola, from zero load")
-    # Only to learn whether k_ni is one: the attribute is of both.
-    found.add("referenceNormalStress", k_ni, k_ni, "k_ni of the hyperbola")
-    if {"referenceAperture", "referenceNormalStress"} <= set(found.values):
-        found.values["referenceNormalStress"] = 9e6 * k_ni["value"] * v_m["value"]
-        found.notes["referenceNormalStress"] = "Pa; 9 k_ni v_m, at which 90 % of v_m is closed"
-        return found
+    constants.add("referenceAperture", v_m, v_m, "v_m of the hyperbola, from zero load")
+    # Added to learn whether k_ni is a result: the attribute is made of k_ni and v_m.
+    constants.add("referenceNormalStress", k_ni, k_ni, "k_ni of the hyperbola")
+    if {"referenceAperture", "referenceNormalStress"} <= set(constants.values):
+        constants.values["referenceNormalStress"] = 9e6 * k_ni["value"] * v_m["value"]
+        constants.notes["referenceNormalStress"] = "Pa; 9 k_ni v_m, at which 90 % of v_m is closed"
+        return constants
     left = {
-        key: found.left_out.get(key, "needs k_ni and v_m")
+        key: constants.left_out.get(key, "needs k_ni and v_m")
         for key in ("referenceAperture", "referenceNormalStress")
     }
     return Constants(left_out=left)
@@ -51,7 +51,7 @@ def apertures_of(card: Mapping[str, Any]) -> list[tuple[float, float]]:
 def text_of(card: Mapping[str, Any]) -> str:
     """Parts of a problem file: the aperture law of a fracture and, where known, its table."""
     root = headed("Problem", card, "GEOS")
-    laws, found = xml.SubElement(root, "Constitutive"), constants_of(card)
+    laws, constants = xml.SubElement(root, "Constitutive"), constants_of(card)
     if rows := apertures_of(card):
         name = f"{card['name']}_aperture_table"
         laws.append(
@@ -74,8 +74,8 @@ def text_of(card: Mapping[str, Any]) -> str:
                 "has no mean gap and hydraulic aperture under one pressure"
             )
         )
-    if found.values:
-        attributes = {key: exact(value) for key, value in found.values.items()}
+    if constants.values:
+        attributes = {key: exact(value) for key, value in constants.values.items()}
         laws.append(
             comment(
                 "takes the mechanical for the hydraulic aperture, which is "
@@ -83,6 +83,6 @@ def text_of(card: Mapping[str, Any]) -> str:
             )
         )
         laws.append(xml.Element("BartonBandis", {"name": card["name"], **attributes}))
-    for key, words in (found.notes | found.left_out).items():
+    for key, words in (constants.notes | constants.left_out).items():
         laws.append(comment(f"{key}: {words}"))
     return text_of_element(root)

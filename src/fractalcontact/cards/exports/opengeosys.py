@@ -10,7 +10,7 @@ from typing import Any
 from xml.etree import ElementTree as xml
 
 from ...core.text import exact, short
-from ...pages.first_screen import reference_of, row_at
+from ..entries import reference_of, row_at
 from ._xml import comment, headed, text_of_element
 from .constants import Constants, over_pressure
 
@@ -19,15 +19,15 @@ ENDING = "xml"
 
 def constants_of(card: Mapping[str, Any]) -> Constants:
     """Parameters of ``fracture_model`` and ``fracture_properties`` that a card has a number for."""
-    entries, found = card["entries"], Constants()
+    entries, constants = card["entries"], Constants()
     pressure = reference_of(card)
     for key, name, words in (
         ("normal_stiffness", "interface_stiffness", "tangent stiffness"),
         ("initial_aperture", "mean_gap", "mean gap"),
     ):
         row = row_at(entries[name], pressure)
-        found.add(key, entries[name], row, f"{words} at {short(pressure)} MPa")
-    found.left_out.update(
+        constants.add(key, entries[name], row, f"{words} at {short(pressure)} MPa")
+    constants.left_out.update(
         shear_stiffness="no shear stiffness is computed",
         friction_angle=f"one number there; peak strength here: "
         f"{over_pressure(entries['peak_strength'])}",
@@ -35,26 +35,26 @@ def constants_of(card: Mapping[str, Any]) -> Constants:
         cohesion="the joint has no cohesion",
         penalty_aperture_cutoff="a setting of the solution, no property of a joint",
     )
-    return found
+    return constants
 
 
 def text_of(card: Mapping[str, Any]) -> str:
     """Parts of a project file: a fracture model without tension, and the parameters it names."""
-    found = constants_of(card)
+    constants = constants_of(card)
     root = headed("OpenGeoSysProject", card, "OpenGeoSys")
     model = xml.SubElement(root, "fracture_model")
     xml.SubElement(model, "type").text = "LinearElasticIsotropic"
     properties = xml.SubElement(root, "fracture_properties")
     parameters = xml.SubElement(root, "parameters")
-    for key, value in found.values.items():
+    for key, value in constants.values.items():
         name = f"{card['name']}_{key}"
         where = model if key == "normal_stiffness" else properties
         xml.SubElement(where, key).text = name
         parameter = xml.SubElement(parameters, "parameter")
-        parameter.append(comment(found.notes[key]))
+        parameter.append(comment(constants.notes[key]))
         for tag, text in (("name", name), ("type", "Constant"), ("value", exact(value))):
             xml.SubElement(parameter, tag).text = text
     xml.SubElement(model, "tension_cutoff").text = "1"
-    for key, why in found.left_out.items():
+    for key, why in constants.left_out.items():
         model.append(comment(f"{key}: {why}"))
     return text_of_element(root)

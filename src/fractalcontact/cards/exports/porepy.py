@@ -15,19 +15,21 @@ ENDING = "py"
 
 def constants_of(card: Mapping[str, Any]) -> Constants:
     """Keywords of ``porepy.SolidConstants`` that a card has a number for."""
-    entries, found = card["entries"], Constants()
+    entries, constants = card["entries"], Constants()
     k_ni, v_m = entries["k_ni"], entries["v_m"]
-    found.add("fracture_normal_stiffness", k_ni, k_ni, "k_ni of the hyperbola, at zero load")
-    found.add("maximum_elastic_fracture_opening", v_m, v_m, "v_m of the hyperbola, from zero load")
+    constants.add("fracture_normal_stiffness", k_ni, k_ni, "k_ni of the hyperbola, at zero load")
+    constants.add(
+        "maximum_elastic_fracture_opening", v_m, v_m, "v_m of the hyperbola, from zero load"
+    )
     modulus, poisson = entries["modulus"], entries["poisson"]
     if "value" in modulus and "value" in poisson:
         young, nu = modulus["value"] * 1e6, poisson["value"]
         of = f"Pa; intact rock, E = {exact(modulus['value'])} MPa, Poisson's ratio {exact(nu)}"
-        found.values["shear_modulus"] = young / (2 * (1 + nu))
-        found.values["lame_lambda"] = young * nu / ((1 + nu) * (1 - 2 * nu))
-        found.notes.update(dict.fromkeys(("shear_modulus", "lame_lambda"), of))
+        constants.values["shear_modulus"] = young / (2 * (1 + nu))
+        constants.values["lame_lambda"] = young * nu / ((1 + nu) * (1 - 2 * nu))
+        constants.notes.update(dict.fromkeys(("shear_modulus", "lame_lambda"), of))
     angles, strength = entries["peak_dilatancy_angle"], entries["peak_strength"]
-    found.left_out.update(
+    constants.left_out.update(
         dilation_angle=f"one number there, of the pressure here: {over_pressure(angles)}",
         friction_coefficient="peak strength over pressure there, a curve here: "
         + over_pressure(strength),
@@ -37,18 +39,19 @@ def constants_of(card: Mapping[str, Any]) -> Constants:
         residual_aperture="the aperture that stays open to flow; hydraulic aperture: "
         + over_pressure(entries["hydraulic_aperture"]),
     )
-    return found
+    return constants
 
 
 def text_of(card: Mapping[str, Any]) -> str:
     """A Python file that makes the ``SolidConstants`` of a card."""
-    found = constants_of(card)
+    constants = constants_of(card)
     lines = [f"# {line}" for line in head_of(card, "PorePy")]
     lines += ["import porepy as pp", "", "constants = {"]
     lines += [
-        f'    "{key}": {value!r},  # {found.notes[key]}' for key, value in found.values.items()
+        f'    "{key}": {value!r},  # {constants.notes[key]}'
+        for key, value in constants.values.items()
     ]
     lines += ["}", "# Left out, to be given from elsewhere:"]
-    lines += [f"#   {key}: {' '.join(why.split())}" for key, why in found.left_out.items()]
+    lines += [f"#   {key}: {' '.join(why.split())}" for key, why in constants.left_out.items()]
     lines += [f"solid = pp.SolidConstants(name={card['name']!r}, **constants)"]
     return "\n".join(lines) + "\n"

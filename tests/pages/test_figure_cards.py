@@ -12,7 +12,7 @@ from cases import representative
 from PIL import Image
 
 from fractalcontact.figures.draw import draw_figures, draw_study_figures
-from fractalcontact.pages.cards import redrawn
+from fractalcontact.pages.figure_cards import redrawn
 from fractalcontact.study.atlas import read_atlas, read_named_atlas
 from fractalcontact.study.figure_list import figures_of
 

@@ -22,7 +22,7 @@ SECTIONS = {
     "size effect": "Size effect",
     "trust": "How far to trust it",
 }
-#: What a figure reads puts it into a section: the first of these that it needs any stage of.
+#: Section of a figure by the stages that it needs: the first with any of them.
 _BY_STAGE = (
     ("trust", ("choices", "error_budget")),
     ("size effect", ("windows", "window_states", "size_test")),
@@ -32,7 +32,7 @@ _BY_STAGE = (
     ("closure", ("closure", "area")),
     ("joint", ("joints",)),
 )
-#: Files of a figure that a page offers, those that are there, and their names on it.
+#: Endings of the files of a figure that a page offers, and their names on it.
 FILES = {"png": "PNG", "svg": "SVG", "pdf": "PDF", "csv": "CSV"}
 _PNG = b"\x89PNG\r\n\x1a\n"
 
@@ -69,23 +69,13 @@ def cards_of(
     groups: Collection[str],
     specimen: str = "",
 ) -> list[Card]:
-    """Cards of the figures that are there.
+    """Cards of the figures whose files exist in a folder.
 
-    Parameters
-    ----------
-    names : sequence of str
-    folder : pathlib.Path
-        With their files.
-    address : str
-        Of that folder, relative to the page.
-    atlas : str
-        Path of the atlas, as a user would type it.
-    groups : collection of str
-        Names of the groups that it has.
-    specimen : str, optional
-        Of which they are; empty of a whole study.
+    ``address`` is that of the folder, relative to the page; ``atlas`` and ``groups`` are the path
+    of the atlas as a user would type it, and the names of its groups. ``specimen`` is empty of
+    figures of a whole study.
     """
-    found = []
+    cards = []
     for name in names:
         picture, caption = folder / f"{name}.png", folder / f"{name}.txt"
         if not (picture.is_file() and caption.is_file()):
@@ -94,7 +84,7 @@ def cards_of(
         width, height = png_size(picture)
         title = all_figures()[name].title
         start = f"{quote(address)}/{quote(name)}"
-        found.append(
+        cards.append(
             Card(
                 name=name,
                 title=title,
@@ -112,27 +102,19 @@ def cards_of(
                 code=redrawn(name, specimen, atlas, groups),
             )
         )
-    return found
+    return cards
 
 
 def redrawn(name: str, specimen: str, atlas: str, groups: Collection[str]) -> str:
-    """Lines of Python that read what a figure shows with xarray, and draw it again.
+    """Lines of Python that read the stages of a figure with xarray, and draw it again.
 
-    Parameters
-    ----------
-    name : str
-        Of the figure.
-    specimen : str
-        Empty for a figure of a study.
-    atlas : str
-        Path of the atlas.
-    groups : collection of str
-        Names of the groups that it has; what a figure would read of others is not there to read.
+    Stages that are none of the ``groups`` of the atlas are left out. ``specimen`` is empty for a
+    figure of a study.
     """
     stages = all_figures()[name].needs
     subject = repr(specimen)
     if not specimen:
-        # A study of synthetic surfaces, or of measured maps, alone has no specimens to list.
+        # A study of synthetic surfaces alone, or of measured maps alone, has no specimens.
         of_specimens = "specimens" in stages
         subject = "sorted(atlas['specimens'].children)" if of_specimens else "[]"
     of_stages = {stage: _group_of(stage, specimen) for stage in stages}
@@ -154,7 +136,7 @@ def redrawn(name: str, specimen: str, atlas: str, groups: Collection[str]) -> st
 
 
 def _group_of(stage, specimen):
-    """Group of a stage: the specimen's, if there is one; measured maps have their own."""
+    """Group of a stage: that of the specimen, if there is one; measured maps have their own."""
     return f"{stage}/{specimen}" if specimen and stage != "contact_maps" else stage
 
 
@@ -164,7 +146,7 @@ def png_size(path: Path) -> tuple[int, int]:
     Raises
     ------
     ValueError
-        If it is none.
+        If it is no PNG file.
     """
     with open(path, "rb") as file:
         head = file.read(24)
