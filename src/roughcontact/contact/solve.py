@@ -1,10 +1,9 @@
 """Frictionless elastic contact of a composite topography with a rigid plane.
 
 A state of contact has pressures p >= 0 and gaps g = u + (max h - h) - w >= 0 with p g = 0, u = K p;
-where the force is given its sum of p is fixed and w is free. With a hardness H the pressure stops
-at H, and points there may be pressed in. How such a state is found is described in
-`active_set` and docs/solver.md; here loads become dimensionless, starts are chosen, and nothing
-returns unverified.
+if the force is given, the sum of p is fixed and w is free. With a hardness H the pressure is
+limited to H, and nodes there may be pressed in. `active_set` and docs/solver.md describe how such a
+state is found. Here loads become dimensionless, starts are chosen, and results are verified.
 """
 
 import math
@@ -34,7 +33,7 @@ from .nested_iteration import nested_iteration_start
 from .state import Candidates, CandidateState, ContactState, unloaded_state
 from .topography import Topography
 
-# Earlier states are extrapolated by no more than this many of their own steps.
+# Largest extrapolation of earlier states, in steps between them.
 FURTHEST = 2.0
 
 
@@ -49,12 +48,12 @@ def solve_contact(
     rtol: float = 1e-6,
     hardness: float | ArrayLike | None = None,
 ) -> ContactState:
-    """The state of contact of a composite topography with a rigid plane.
+    """State of contact of a composite topography with a rigid plane.
 
     Parameters
     ----------
     composite : (ny, nx) array_like
-        Composite topography h, mm; the largest h touches first.
+        Heights of the composite topography h, mm; the largest h touches first.
     space : HalfSpace
         The elastic operator on the same grid.
     closure : float, optional
@@ -62,13 +61,13 @@ def solve_contact(
     force : float, optional
         F, N.
     start : ContactState, optional
-        A state of the same grid to start from, such as the previous load step.
+        A state on the same grid to start from, such as that of the previous load.
     rtol : float
-        Largest violation allowed of gap and pressure conditions, as a fraction of the closure;
-        or, of a given force, as a fraction of it.
+        Largest violation allowed of the gap and pressure conditions, as a fraction of the closure;
+        under a given force also of the force, as a fraction of it.
     hardness : float or (ny, nx) array_like, optional
         H, MPa, of the surface or of each node: the pressure at which it yields (elastic, then
-        perfectly plastic). Infinite where a node does not.
+        perfectly plastic). Infinite at elastic nodes.
 
     Returns
     -------
@@ -77,10 +76,10 @@ def solve_contact(
     Raises
     ------
     ValueError
-        If the topography has missing or masked cells or another shape, the start is none of this
-        grid, the load makes no sense or double precision ends before its state, or the force is
-        more than the hardness lets the whole window carry. Or if the closure is beyond that of full
-        contact, of an elastic surface that is repeated or reflected.
+        If the topography has missing or masked cells or another shape, the start is not on this
+        grid, the load is invalid or beyond double precision, or the force exceeds what the window
+        carries at its hardness. Also if the closure is beyond full contact of an elastic surface
+        that is repeated or mirrored.
     NotConverged
         If the conditions are not met to ``rtol``.
     """
@@ -101,7 +100,7 @@ def solve_contact(
 
 
 def _solve(case, units, load, start, rtol):
-    """The problem as it was solved, and the solution: the caller checks its residual."""
+    """Problem as it was solved, and its solution; the caller checks the residual."""
     restrict = may_restrict(case.space, rtol) and case.bounds.uniform
     if start is None or not start.in_contact.any():
         if restrict:
@@ -122,12 +121,12 @@ def _solve(case, units, load, start, rtol):
 
 
 def checked_hardness(hardness: float | None, space: HalfSpace, force: float | None) -> float:
-    """The hardness as a number, MPa, infinite if there is none.
+    """Hardness as a number, MPa; infinite without one.
 
     Raises
     ------
     ValueError
-        If it is none, or such that the window could not carry the force, N.
+        If it is invalid, or the window could not carry the force, N.
     """
     if hardness is None:
         return np.inf
@@ -144,7 +143,7 @@ def checked_hardness(hardness: float | None, space: HalfSpace, force: float | No
 
 
 def _hardness_of_nodes(hardness, space, force):
-    """The same of a surface, or of each node, (n,): then infinite where a node does not yield."""
+    """Checked hardness of the surface, or of each node, (n,), infinite at elastic nodes."""
     if np.ndim(hardness) == 0:
         return checked_hardness(hardness, space, force)
     values = field(hardness, "hardness", space.shape)
@@ -164,19 +163,14 @@ def checked_problem(
     start: ContactState | None,
     rtol: float,
 ) -> tuple[float, np.ndarray]:
-    """Load and clearance of a problem as `solve_contact` and the comparison methods are given it.
-
-    Parameters
-    ----------
-    composite, space, closure, force, start, rtol
-        As `solve_contact` takes them.
+    """Load and clearance of a problem, from the arguments of `solve_contact` or another method.
 
     Returns
     -------
     load : float
         The closure or the force.
     clearance : (ny, nx) ndarray
-        Opening at first touch, mm.
+        Clearance at first touch, mm.
 
     Raises
     ------
@@ -188,7 +182,7 @@ def checked_problem(
 
 
 def _checked(composite, space, closure, force, start, rtol):
-    """Load and topography, as `checked_problem`."""
+    """Load and topography of `checked_problem`."""
     if not isinstance(space, HalfSpace):
         raise ValueError(f"space {quoted(space)}: expected a HalfSpace of the topography's shape")
     topography = Topography(composite, space.shape)
@@ -215,7 +209,7 @@ def _checked(composite, space, closure, force, start, rtol):
 
 
 def _check_reach(case, closure):
-    """Refuse a closure that no force brings an elastic surface to, as its mean plane stays."""
+    """`ValueError` for a closure beyond the mean plane of an elastic repeated surface."""
     if case.by_force or case.space.is_free or not case.bounds.elastic:
         return
     most = float(case.topography.clearance().mean())
@@ -227,10 +221,10 @@ def _check_reach(case, closure):
 
 
 def _check_start(start, space):
-    """Refuse a start that is no state of this grid."""
+    """`ValueError` for a start that is no state on this grid."""
     if not isinstance(start, ContactState):
         raise ValueError(f"start {quoted(start)}: expected a ContactState, as solve_contact gives")
-    # A state of candidates was made by this solver, and its displacement need not be computed.
+    # Only this solver makes a state on candidates; checking its displacement would compute it.
     if isinstance(start, CandidateState) and start.space.shape == space.shape:
         return
     for name in ("pressure", "displacement"):
@@ -243,7 +237,7 @@ def _check_start(start, space):
 
 
 def _within_double_precision(space, load, by_force, depth):
-    """True if the state of a load has numbers that keep all their digits."""
+    """True if all numbers of the state of a load keep all their digits."""
     length, pressure = _load_units(space, load, by_force)
     sizes = length, pressure, pressure * space.cell_area
     if not MIN_RESULT <= min(sizes) <= max(sizes) <= MAX_RESULT:
@@ -283,9 +277,9 @@ class _Units:
         return LoadCase(self.space, topography, self.length, self.load, self.by_force, bounds)
 
     def candidates(self, case, start, load):
-        """Candidates at a load, a start pressure and its displacement; None if too many.
+        """Candidates at a load, a start pressure and its displacement; None if there are too many.
 
-        As `extrapolated`; the bound on the closure goes with the force.
+        The start is `extrapolated`, and the bound on the closure grows in proportion to the force.
         """
         bound = MARGIN * self.load
         if self.by_force:
@@ -305,7 +299,7 @@ class _Units:
         return restricted, pressure, restricted.operator(pressure) if known else None
 
     def extrapolated(self, start, load):
-        """Pressure at a load, and its displacement where that is one of this half-space."""
+        """Pressure at a load, and its displacement if the start is on this half-space."""
         pressure = self._extrapolated(lambda state: state.pressure, start, load)
         pressure = np.asarray(pressure, float).ravel() / self.pressure
         if start.space != self.space:
@@ -314,11 +308,11 @@ class _Units:
         return pressure, np.asarray(displacement, float).ravel() / self.length
 
     def _extrapolated(self, field_of, start, load):
-        """A field at a load, along the line through two earlier states.
+        """Field at a load, along the line through two earlier states.
 
-        With one state only, in proportion to the load. So too from another half-space: the line
-        through two states of that one belongs to its stiffness, and may lead far from any state of
-        this one, and to pressures below zero, which a proportion does not.
+        In proportion to the load if there is only one, or if the start is on another half-space:
+        the line through two of its states depends on its stiffness, and may lead far from any state
+        of this one and to negative pressures.
         """
         before = start._before if start.space == self.space else None
         at = self._load_of(start)
@@ -334,21 +328,21 @@ class _Units:
         return min(load / at, FURTHEST) if at > 0 else 1.0
 
     def _load_of(self, state):
-        """Given quantity of the load: the force or the closure of a state."""
+        """Force or closure of a state, whichever is given."""
         return state.force if self.by_force else state.closure
 
     def state(self, solution, topography, problem, start):
-        """The solution in mm, N and MPa."""
+        """Solution in mm, N and MPa."""
         space = self.space
         closure = solution.closure * self.length if self.by_force else self.length
-        # Of the states before, one is enough, and it need not hold on to its own.
+        # Only one earlier state is kept, without its own predecessor.
         before = None if start is None or start.space != space else start.without_before()
         on_nodes = solution.pressure * self.pressure
         force = float(on_nodes.sum()) * space.cell_area
         common: dict[str, Any] = {
             "closure": closure,
             "force": force,
-            # What is no number violates no condition, and must not pass for a state.
+            # NaN violates no condition, and must not pass for a state.
             "residual": solution.residual if math.isfinite(force) else math.nan,
             "iterations": solution.applications,
             "space": space,
