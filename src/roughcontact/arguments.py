@@ -56,13 +56,13 @@ def number(value: Any, name: str, unit: str) -> float:
 
 def whole_number(value: Any, name: str, *, least: int, most: int) -> int:
     """Integer between bounds; 2.0 is refused."""
-    found = None
+    integer = None
     # numpy.bool_ has an __index__ in some versions.
     if hasattr(value, "__index__") and not isinstance(value, bool | np.bool_ | np.ndarray):
-        found = operator.index(value)
-    if found is None or not least <= found <= most:
+        integer = operator.index(value)
+    if integer is None or not least <= integer <= most:
         raise ValueError(f"{name} {quoted(value)}: expected a whole number from {least} to {most}")
-    return found
+    return integer
 
 
 def whole_numbers(values: ArrayLike, name: str, *, least: int, most: int) -> np.ndarray:
@@ -74,13 +74,13 @@ def whole_numbers(values: ArrayLike, name: str, *, least: int, most: int) -> np.
     return array.astype(np.int64)
 
 
-def pair(values: Sequence, name: str, each: Callable[[Any], T]) -> tuple[T, T]:
-    """Pair of values along y and x; ``each`` converts one of them, or refuses it."""
+def pair(values: Sequence, name: str, convert: Callable[[Any], T]) -> tuple[T, T]:
+    """Pair of values along y and x; ``convert`` converts one of them, or refuses it."""
     ordered = np.iterable(values) and not isinstance(values, str | bytes | dict | set)
     both = tuple(values) if ordered else ()
     if len(both) != 2:
         raise ValueError(f"{name} {quoted(values)}: expected two numbers, along y and along x")
-    return each(both[0]), each(both[1])
+    return convert(both[0]), convert(both[1])
 
 
 def domain(values: ArrayLike, name: str) -> np.ndarray:

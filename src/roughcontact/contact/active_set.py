@@ -135,8 +135,8 @@ class ActiveSetMethod:
         # States of this half-space at other loads come with a displacement. A start without one was
         # prolonged from a coarser grid, and its set is nearly right, or belongs to another
         # half-space. On grids that only give a start (``min_iterations``) prediction gains nothing.
-        known = displacement is not None and not min_iterations
-        predictions = SET_PREDICTIONS if known and not operator.inverse.small else 0
+        from_load_step = displacement is not None and not min_iterations
+        predictions = SET_PREDICTIONS if from_load_step and not operator.inverse.small else 0
         iterate = first_iterate(problem, operator, pressure, displacement)
         previous_active, violation = np.empty(0, np.int32), 0.0
         single_step_left = problem.nodes is None

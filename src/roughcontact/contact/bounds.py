@@ -91,6 +91,6 @@ class Bounds:
         if self.uniform:
             return Bounds(2 * self.lower, 2 * self.upper)
         on_nodes = (
-            np.ascontiguousarray(each).reshape(shape) for each in self.on(shape[0] * shape[1])
+            np.ascontiguousarray(bound).reshape(shape) for bound in self.on(shape[0] * shape[1])
         )
-        return Bounds(*(restrict_sum(each).ravel() / 2 for each in on_nodes))
+        return Bounds(*(restrict_sum(bound).ravel() / 2 for bound in on_nodes))

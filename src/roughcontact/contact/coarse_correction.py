@@ -46,8 +46,8 @@ class CoarseCorrection:
         # A load on a coarse cell is 1/step^2 of its pressure, on a cell step times as wide.
         self._factor = np.float32(1 / step)
         near = np.zeros((2, 2))
-        known = self._coarse.near_influence(2)
-        near[: known.shape[0], : known.shape[1]] = known
+        influence = self._coarse.near_influence(2)
+        near[: influence.shape[0], : influence.shape[1]] = influence
         self._near = (near * self._factor).astype(np.float32)
         self._own = np.float32(space.near_influence(1)[0, 0])
         self._counts = _basis_counts(self._coarse, max(space.shape))
@@ -116,8 +116,8 @@ def _basis_functions(coarse, counts):
     """Piecewise bilinear functions, (functions, coarse cells), ``counts`` along y and x."""
     along = []
     for n, k in zip(coarse.shape, counts, strict=True):
-        at = (np.arange(n) + 0.5) / n * (k - 1)
-        along.append(np.maximum(0, 1 - np.abs(at - np.arange(k)[:, None])))
+        positions = (np.arange(n) + 0.5) / n * (k - 1)
+        along.append(np.maximum(0, 1 - np.abs(positions - np.arange(k)[:, None])))
     basis = np.einsum("ay,bx->abyx", *along)
     return np.ascontiguousarray(basis.reshape(-1, coarse.shape[0] * coarse.shape[1]), np.float32)
 

@@ -52,9 +52,9 @@ def verified(
     if problem.by_force:
         closure = problem.closure_at_force(pressure, displacement)
     kkt = kkt_residual(pressure, displacement, problem.clearance, closure, problem.bounds)
-    found = Solution(pressure, displacement, closure, lacking, operator.applications)
-    found.residual = max(kkt.largest / problem.tolerated(found), lacking)
-    return found
+    solution = Solution(pressure, displacement, closure, lacking, operator.applications)
+    solution.residual = max(kkt.largest / problem.tolerated(solution), lacking)
+    return solution
 
 
 def _scaled_to_force(problem, operator, pressure, displacement):

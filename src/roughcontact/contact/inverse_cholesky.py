@@ -104,10 +104,10 @@ class InverseCholesky:
         where = self._shifts, self._neighbourhood, nx
         _mark_affected(changed, representative, blocks, *where, affected, True)
         factor = _empty_factor(nodes.size)
-        before, known = tuple(old), (*blocks, affected)
+        before, window = tuple(old), (*blocks, affected)
         grid = *where, self.anywhere
         threads.in_parts(
-            lambda start, stop: _factorise(start, stop, nodes, slot, known, grid, before, factor),
+            lambda start, stop: _factorise(start, stop, nodes, slot, window, grid, before, factor),
             nodes.size,
             smallest=CHUNK,
         )
@@ -330,19 +330,19 @@ def _fill_below_diagonal(places, nodes, nx, influence, factor, lower):
     if influence[3]:
         for a in range(n + 1):
             for b in range(a):
-                here = a * side + b * WIDTH
+                entry = a * side + b * WIDTH
                 for lane in range(WIDTH):
                     distance = abs(ys[a, lane] - ys[b, lane]), abs(xs[a, lane] - xs[b, lane])
                     both = present[a, lane] * present[b, lane]
-                    lower[here + lane] = both * table[distance]
+                    lower[entry + lane] = both * table[distance]
         return n
     for a in range(n + 1):
         for b in range(a):
-            here = a * side + b * WIDTH
+            entry = a * side + b * WIDTH
             for lane in range(WIDTH):
                 away_y, away_x = abs(ys[a, lane] - ys[b, lane]), abs(xs[a, lane] - xs[b, lane])
                 both = present[a, lane] * present[b, lane]
-                lower[here + lane] = both * influence_between(influence, away_y, away_x)
+                lower[entry + lane] = both * influence_between(influence, away_y, away_x)
     return n
 
 
@@ -370,29 +370,29 @@ def _solve_columns(places, nodes, nx, influence, factor, lower, column):
     n = _fill_below_diagonal(places, nodes, nx, influence, factor, lower)
     for a in range(n + 1):
         for b in range(a):
-            here = a * side + b * WIDTH
-            s = load(lower, here)
+            entry = a * side + b * WIDTH
+            s = load(lower, entry)
             for c in range(0, b * WIDTH, WIDTH):
                 s = s - load(lower, a * side + c) * load(lower, b * side + c)
-            store(lower, here, s * load(lower, b * (side + WIDTH)))
-        here = a * (side + WIDTH)
-        lower[here : here + WIDTH] = influence[0][0, 0]
-        s = load(lower, here)
+            store(lower, entry, s * load(lower, b * (side + WIDTH)))
+        entry = a * (side + WIDTH)
+        lower[entry : entry + WIDTH] = influence[0][0, 0]
+        s = load(lower, entry)
         for c in range(0, a * WIDTH, WIDTH):
             s = s - load(lower, a * side + c) * load(lower, a * side + c)
-        store(lower, here, s)
-        for lane in range(here, here + WIDTH):
+        store(lower, entry, s)
+        for lane in range(entry, entry + WIDTH):
             lower[lane] = np.float32(1) / np.sqrt(
                 max(lower[lane], MIN_CONDITIONAL_VARIANCE * influence[0][0, 0])
             )
     column[: n * WIDTH] = 0
     store(column, n * WIDTH, load(lower, n * (side + WIDTH)))
     for a in range(n, 0, -1):
-        known = load(column, a * WIDTH)
+        solved = load(column, a * WIDTH)
         for c in range(0, a * WIDTH, WIDTH):
-            store(column, c, load(column, c) - load(lower, a * side + c) * known)
-        here = (a - 1) * WIDTH
-        store(column, here, load(column, here) * load(lower, (a - 1) * (side + WIDTH)))
+            store(column, c, load(column, c) - load(lower, a * side + c) * solved)
+        entry = (a - 1) * WIDTH
+        store(column, entry, load(column, entry) * load(lower, (a - 1) * (side + WIDTH)))
     for lane in range(places.size):
         i = places[lane]
         for a in range(count[i]):

@@ -88,8 +88,8 @@ def redistribute(
     ``gap`` belongs to the pressure ``before``; ``change`` is a first guess of its change, with the
     given sums, positive or zero. ``influence`` as in :func:`prolong`.
     """
-    one = before.shape == change.shape == gap.shape
-    if not one or min(gap.shape) < 4 or min(influence.shape) < 4:
+    one_grid = before.shape == change.shape == gap.shape
+    if not one_grid or min(gap.shape) < 4 or min(influence.shape) < 4:
         shapes = ", ".join(str(values.shape) for values in (before, change, gap, influence))
         raise ValueError(f"shapes {shapes}: expected one grid of 4 x 4 nodes or more")
     # A cell and the eight around it have six rows and columns of nodes.
@@ -117,7 +117,7 @@ def _redistribute(before, change, gap, influence):
     ny, nx = gap.shape
     own, around = influence_on(influence)
     maps = redistributions(own)
-    known, opening, pressure = np.zeros(4), np.zeros(4), np.zeros(4)
+    earlier, opening, pressure = np.zeros(4), np.zeros(4), np.zeros(4)
     for top in range(0, ny, 2):
         for side in range(0, nx, 2):
             total, mask = 0.0, 0
@@ -128,9 +128,9 @@ def _redistribute(before, change, gap, influence):
                 continue
             for a in range(4):
                 y, x = top + a // 2, side + a % 2
-                known[a] = opening[a] = 0.0
+                earlier[a] = opening[a] = 0.0
                 if y < ny and x < nx:
-                    known[a], opening[a] = before[y, x], gap[y, x]
+                    earlier[a], opening[a] = before[y, x], gap[y, x]
                     mask |= 1 << a
             for i in range(6):
                 for j in range(6):
@@ -139,11 +139,11 @@ def _redistribute(before, change, gap, influence):
                         opening[a] += around[i, j, a] * value
             for a in range(4):
                 for b in range(4):
-                    opening[a] -= own[a, b] * known[b]
+                    opening[a] -= own[a, b] * earlier[b]
             equalise_gaps(maps, opening, total, mask, pressure)
             for a in range(4):
                 if mask & (1 << a):
-                    change[top + a // 2 + 2, side + a % 2 + 2] = pressure[a] - known[a]
+                    change[top + a // 2 + 2, side + a % 2 + 2] = pressure[a] - earlier[a]
 
 
 @njit(cache=True)

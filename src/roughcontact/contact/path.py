@@ -219,8 +219,8 @@ class _Path:
         self.load, self.largest = load, max(load, self.largest)
         contact = self._contact(load, by_force)
         closure = contact.closure + self.lowered
-        known = closure, self.held, self.yielded, self.hardness
-        self.state = _branch_state(self.branch, contact, *known)
+        history = closure, self.held, self.yielded, self.hardness
+        self.state = _branch_state(self.branch, contact, *history)
         return self.state
 
     def _turn(self):

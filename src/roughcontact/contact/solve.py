@@ -108,9 +108,9 @@ def _solve(case, units, load, start, rtol):
         problem = case.problem()
         return problem, ActiveSetMethod(problem, rtol).solve(nested_iteration_start(problem))
     if restrict:
-        known = units.candidates(case, start, load)
-        if known is not None:
-            return solve_restricted(case, *known, rtol)
+        candidates = units.candidates(case, start, load)
+        if candidates is not None:
+            return solve_restricted(case, *candidates, rtol)
     problem = case.problem()
     pressure, displacement = units.extrapolated(start, load)
     if displacement is not None:
@@ -295,8 +295,8 @@ class _Units:
         pressure /= self.pressure
         if not pressure.any():
             return None
-        known = start.space == self.space
-        return restricted, pressure, restricted.operator(pressure) if known else None
+        same_space = start.space == self.space
+        return restricted, pressure, restricted.operator(pressure) if same_space else None
 
     def extrapolated(self, start, load):
         """Pressure at a load, and its displacement if the start is on this half-space."""
@@ -315,17 +315,17 @@ class _Units:
         of this one and to negative pressures.
         """
         before = start._before if start.space == self.space else None
-        at = self._load_of(start)
-        step = at - self._load_of(before) if before else 0.0
+        start_load = self._load_of(start)
+        step = start_load - self._load_of(before) if before else 0.0
         if not step:
             return self._proportion(start, load) * field_of(start)
-        along = min(max((load - at) / step, -1.0), FURTHEST)
+        along = min(max((load - start_load) / step, -1.0), FURTHEST)
         return (1 + along) * field_of(start) - along * field_of(before)
 
     def _proportion(self, start, load):
         """Ratio of a load to that of a state, at most FURTHEST."""
-        at = self._load_of(start)
-        return min(load / at, FURTHEST) if at > 0 else 1.0
+        start_load = self._load_of(start)
+        return min(load / start_load, FURTHEST) if start_load > 0 else 1.0
 
     def _load_of(self, state):
         """Force or closure of a state, whichever is given."""

@@ -238,10 +238,10 @@ class CandidateState(ContactState):
     @computed_once
     def gap(self) -> np.ndarray:  # type: ignore[override]
         """Gap, mm, (ny, nx); `ValueError` if the topography has been changed since the solve."""
-        known = self._candidates
-        if not np.array_equal(known.topography.clearance_at(known.nodes), known.clearance):
+        topography, nodes = self._candidates.topography, self._candidates.nodes
+        if not np.array_equal(topography.clearance_at(nodes), self._candidates.clearance):
             raise ValueError("the composite topography of this state has been changed since")
-        return self.displacement + known.topography.clearance() - self.closure
+        return self.displacement + topography.clearance() - self.closure
 
     @property
     def composite(self) -> np.ndarray:
@@ -259,9 +259,9 @@ class CandidateState(ContactState):
         return float(np.count_nonzero(self._candidates.pressure)) * self.space.cell_area
 
     def _on_nodes(self):
-        known = self._candidates
-        gap = known.displacement + known.clearance - self.closure
-        return known.pressure, known.displacement, gap
+        candidates = self._candidates
+        gap = candidates.displacement + candidates.clearance - self.closure
+        return candidates.pressure, candidates.displacement, gap
 
     def _operator_on_active(self):
         between = Bounds(0.0, self.hardness).between(self._candidates.pressure)

@@ -60,8 +60,8 @@ class Topography:
     def bearing_clearance(self, count: int, level: int = 0) -> float:
         """Clearance of the bearing area: that of the count-th highest node (from 1), mm."""
         height = self.height(level).ravel()
-        at = height.size - count
-        return self.highest - float(np.partition(height, at)[at])
+        rank = height.size - count
+        return self.highest - float(np.partition(height, rank)[rank])
 
 
 def _is_as_wanted(array, shape):

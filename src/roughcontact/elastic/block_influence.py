@@ -79,13 +79,13 @@ def block_influence(space: HalfSpace, levels: int, dtype: np.dtype) -> list[Bloc
     Cached for all sets and windows: it depends on the kernel, the precision and the aspect ratio of
     a cell alone.
     """
-    found = []
+    influences = []
     for level in range(levels):
         key = space.kernel, space.spacing[0] / space.spacing[1], level, dtype
         if key not in _KEPT:
             _KEPT.setdefault(key, _level_influence(space, level, dtype))
-        found.append(_KEPT[key])
-    return found
+        influences.append(_KEPT[key])
+    return influences
 
 
 def interpolation_nodes(level: int, order: int) -> np.ndarray:
@@ -106,9 +106,9 @@ def transfer(level: int, order: int, dtype: np.dtype) -> np.ndarray:
     ``order``).
     """
     own, parent = interpolation_nodes(level, order), interpolation_nodes(level + 1, order)
-    at = own + np.array([-0.5, 0.5])[:, None] * LEAF * 2**level
+    positions = own + np.array([-0.5, 0.5])[:, None] * LEAF * 2**level
     others = ~np.eye(order, dtype=bool)
-    away = np.where(others, at[:, :, None, None] - parent, 1.0)
+    away = np.where(others, positions[:, :, None, None] - parent, 1.0)
     apart = np.where(others, parent[:, None] - parent, 1.0)
     return (away / apart).prod(axis=-1).astype(dtype)
 

@@ -37,23 +37,23 @@ class MultipoleLevels:
         index = np.zeros(grid, np.int32)
         y, x = np.divmod(nodes, shape[1])
         index[y // LEAF, x // LEAF] = 1
-        at = np.flatnonzero(index).astype(np.int64)
-        index.ravel()[at] = np.arange(1, at.size + 1)
+        occupied = np.flatnonzero(index).astype(np.int64)
+        index.ravel()[occupied] = np.arange(1, occupied.size + 1)
         self.place = (index[y // LEAF, x // LEAF] - 1).astype(np.int64) * LEAF**2
         self.place += y % LEAF * LEAF + x % LEAF
         self.blocks, self.parents, self._grids = [], [], []
         self._pairs: dict[int, list] = {}
         while True:
-            rows, columns = np.divmod(at, grid[1])
-            self.blocks.append(at.size)
+            rows, columns = np.divmod(occupied, grid[1])
+            self.blocks.append(occupied.size)
             self._grids.append((rows, columns, index))
             if max(grid) <= 2 * reach(min(SEPARATION.values())) - 2:
                 return
             grid = tuple(-(-n // 2) for n in grid)
             index = np.zeros(grid, np.int32)
             index[rows // 2, columns // 2] = 1
-            at = np.flatnonzero(index).astype(np.int64)
-            index.ravel()[at] = np.arange(1, at.size + 1)
+            occupied = np.flatnonzero(index).astype(np.int64)
+            index.ravel()[occupied] = np.arange(1, occupied.size + 1)
             quarter = rows % 2 * 2 + columns % 2
             self.parents.append(
                 np.stack([index[rows // 2, columns // 2] - 1, quarter], axis=1).astype(np.int32)

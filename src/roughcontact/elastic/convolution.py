@@ -318,9 +318,9 @@ def _forward_along_y(start, stop, field, spectra, radices, twiddles, place):
             for lane in range(WIDTH):
                 # Lanes beyond the last wave number repeat it.
                 k = min(waves * WIDTH + lane, n // 2)
-                here, there = place[k] * ROW, place[(n - k) % n] * ROW
-                zr, zi = half * load(x, here), half * load(x, here + WIDTH)
-                wr, wi = half * load(x, there), half * load(x, there + WIDTH)
+                row, opposite = place[k] * ROW, place[(n - k) % n] * ROW
+                zr, zi = half * load(x, row), half * load(x, row + WIDTH)
+                wr, wi = half * load(x, opposite), half * load(x, opposite + WIDTH)
                 store(tile, lane * ROW, zr + wr)
                 store(tile, lane * ROW + WIDTH, zi + wi)
                 store(tile, (WIDTH + lane) * ROW, zi - wi)
@@ -329,8 +329,8 @@ def _forward_along_y(start, stop, field, spectra, radices, twiddles, place):
             for part in (0, 1):
                 for side in (0, WIDTH):
                     corner = part * WIDTH * ROW + side
-                    at = (left + side) * ROW + part * WIDTH
-                    transpose(tile, corner, ROW, spectra[waves], at, ROW)
+                    target = (left + side) * ROW + part * WIDTH
+                    transpose(tile, corner, ROW, spectra[waves], target, ROW)
 
 
 @njit(cache=True, nogil=True)
@@ -365,18 +365,18 @@ def _back_along_y(start, stop, spectra, field, radices, twiddles, place):
             for part in (0, 1):
                 for side in (0, WIDTH):
                     corner = part * WIDTH * ROW + side
-                    at = (left + side) * ROW + part * WIDTH
-                    transpose(spectra[waves], at, ROW, tile, corner, ROW)
+                    source = (left + side) * ROW + part * WIDTH
+                    transpose(spectra[waves], source, ROW, tile, corner, ROW)
             for lane in range(min(WIDTH, n // 2 + 1 - waves * WIDTH)):
                 k = waves * WIDTH + lane
-                here, there = place[k] * ROW, place[(n - k) % n] * ROW
+                row, opposite = place[k] * ROW, place[(n - k) % n] * ROW
                 ar, br = load(tile, lane * ROW), load(tile, lane * ROW + WIDTH)
                 ai = load(tile, (WIDTH + lane) * ROW)
                 bi = load(tile, (WIDTH + lane) * ROW + WIDTH)
-                store(x, there, ar + bi)
-                store(x, there + WIDTH, br - ai)
-                store(x, here, ar - bi)
-                store(x, here + WIDTH, ai + br)
+                store(x, opposite, ar + bi)
+                store(x, opposite + WIDTH, br - ai)
+                store(x, row, ar - bi)
+                store(x, row + WIDTH, ai + br)
         _transform(x, radices, twiddles, True)
         if left + ROW <= nx:
             for y in range(ny):

@@ -53,18 +53,18 @@ class DirectOperator:
 def _sum(positions, values, rows, columns, y, x, table, dy, dx, area, image):
     """Add the displacements of all nodes under one loaded node after the other."""
     for k in range(positions.size):
-        at = positions[k]
+        node = positions[k]
         # Nodes of adjacent rows are adjacent in the list.
-        first = np.searchsorted(rows, rows[at] - table.shape[0] + 1)
-        last = np.searchsorted(rows, rows[at] + table.shape[0])
-        _add_far(values[k], y[at], x[at], y[:first], x[:first], dy, dx, area, image[:first])
-        _add_far(values[k], y[at], x[at], y[last:], x[last:], dy, dx, area, image[last:])
+        first = np.searchsorted(rows, rows[node] - table.shape[0] + 1)
+        last = np.searchsorted(rows, rows[node] + table.shape[0])
+        _add_far(values[k], y[node], x[node], y[:first], x[:first], dy, dx, area, image[:first])
+        _add_far(values[k], y[node], x[node], y[last:], x[last:], dy, dx, area, image[last:])
         for i in range(first, last):
-            away = abs(columns[i] - columns[at])
+            away = abs(columns[i] - columns[node])
             if away < table.shape[1]:
-                image[i] += values[k] * table[abs(rows[i] - rows[at]), away]
+                image[i] += values[k] * table[abs(rows[i] - rows[node]), away]
             else:
-                image[i] += values[k] * expansion(y[i] - y[at], x[i] - x[at], dy, dx, area)
+                image[i] += values[k] * expansion(y[i] - y[node], x[i] - x[node], dy, dx, area)
 
 
 @njit(cache=True)

@@ -109,10 +109,10 @@ def multipole_suits(space: HalfSpace) -> bool:
 @njit(cache=True)
 def _scatter(positions, values, place, sources, loaded):
     for i in range(positions.size):
-        at = place[positions[i]]
-        sources[at] = values[i]
+        entry = place[positions[i]]
+        sources[entry] = values[i]
         if values[i] != 0:
-            loaded[at // (LEAF * LEAF)] = True
+            loaded[entry // (LEAF * LEAF)] = True
 
 
 @njit(cache=True)
@@ -166,7 +166,7 @@ def _translate(
     """Add the images of some batches; the pairs of a batch share each matrix entry that is read."""
     held = np.empty(TOGETHER * numbers, sources.dtype)
     moved = np.empty(TOGETHER * length, sources.dtype)
-    each = np.arange(TOGETHER)
+    pairs = np.arange(TOGETHER)
     source, target = np.empty(TOGETHER, np.int64), np.empty(TOGETHER, np.int64)
     for b in range(start, stop):
         offset, anything = batches[b, 0], False
@@ -185,7 +185,7 @@ def _translate(
             for j in range(numbers):
                 held[pair * numbers + j] = sources[source[pair] + places[j]]
         moved[:] = 0
-        _multiply(matrices, first, numbers, length, held, each * numbers, moved, each * length)
+        _multiply(matrices, first, numbers, length, held, pairs * numbers, moved, pairs * length)
         for pair in range(TOGETHER):
             for j in range(numbers):
                 images[target[pair] + places[j]] += moved[pair * length + j]

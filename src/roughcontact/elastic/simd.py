@@ -135,8 +135,8 @@ def transpose(
 
         rows = []
         for k in range(WIDTH):
-            at = row(first, from_step, k)
-            pointer = _pointer(context, builder, source, from_array, at, vector)
+            position = row(first, from_step, k)
+            pointer = _pointer(context, builder, source, from_array, position, vector)
             rows.append(builder.load(pointer, align=align))
         # Each round interleaves rows half a square apart; log2(WIDTH) rounds transpose it.
         picked = [place for k in range(WIDTH) for place in (k, k + WIDTH)]
@@ -148,8 +148,8 @@ def transpose(
             pairs = zip(rows[: WIDTH // 2], rows[WIDTH // 2 :], strict=True)
             rows = [builder.shuffle_vector(a, b, half) for a, b in pairs for half in halves]
         for k in range(WIDTH):
-            at = row(start, to_step, k)
-            pointer = _pointer(context, builder, target, to_array, at, vector)
+            position = row(start, to_step, k)
+            pointer = _pointer(context, builder, target, to_array, position, vector)
             builder.store(rows[k], pointer, align=align)
         return context.get_dummy_value()
 

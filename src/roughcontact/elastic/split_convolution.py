@@ -113,12 +113,12 @@ def _even_spectrum(half):
 def _interpolation():
     """Lagrange weights of the coarse nodes around each position, (STEP, ORDER)."""
     places = np.arange(ORDER) - (ORDER // 2 - 1)
-    at = np.arange(STEP)[:, None] / STEP
+    offsets = np.arange(STEP)[:, None] / STEP
     weights = np.ones((STEP, ORDER))
     for j in range(ORDER):
         for i in range(ORDER):
             if i != j:
-                weights[:, j] *= ((at - places[i]) / (places[j] - places[i]))[:, 0]
+                weights[:, j] *= ((offsets - places[i]) / (places[j] - places[i]))[:, 0]
     return weights
 
 
