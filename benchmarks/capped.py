@@ -17,9 +17,9 @@ from collections import defaultdict
 
 import numpy as np
 
-from contactlab.accuracy.violation import violation
 from fractalcontact import HalfSpace, NotConverged, self_affine, solve_contact
 from roughcontact.contact.state import ContactState
+from roughcontact.contact.violation import violation
 
 MODULUS, SPACING, RTOL = 2e4, 0.05, 1e-6
 #: Shares of the window that yield, below which a row of the table counts.

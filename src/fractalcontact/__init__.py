@@ -9,21 +9,21 @@ import sys
 from importlib import import_module
 from typing import Any
 
-__version__ = "1.0.0"
+from roughcontact import __version__ as __version__
 
 #: Module of each name.
 _HOMES = {
     "BoxDimension": ".domain.box_dimension",
     "ContactState": "roughcontact.contact.state",
     "HalfSpace": "roughcontact.elastic.halfspace",
-    "Hyperbola": ".X.closure_laws",
+    "Hyperbola": ".laws.closure_laws",
     "InputError": ".core.errors",
     "NotConverged": "roughcontact.errors",
-    "bulk_settlement": ".X.closure",
+    "bulk_settlement": ".laws.closure",
     "best_dimension": ".roughness.recommended",
     "box_dimension": ".domain.box_dimension",
-    "fit_hyperbola": ".X.closure_laws",
-    "interface_closure": ".X.closure",
+    "fit_hyperbola": ".laws.closure_laws",
+    "interface_closure": ".laws.closure",
     "load_path": "roughcontact.contact.path",
     "open_atlas": ".study.atlas_parts",
     "read_atlas": ".study.atlas",

@@ -12,6 +12,9 @@ their first use, as numba takes half a second.
 from importlib import import_module
 from typing import Any
 
+#: Version of the solver and of fractalcontact, which contains it.
+__version__ = "1.0.0"
+
 #: Module of each name.
 _HOMES = {
     "BranchState": ".contact.path",

@@ -102,6 +102,11 @@ def load_cached() -> int:
     return loaded
 
 
+def cache_folder() -> Path | None:
+    """Folder to which compiled kernels are written; None if no folder is safe."""
+    return _folders()[0]
+
+
 class KernelCache(FunctionCache):
     """Compiled forms of one kernel: a checksummed file for each signature."""
 
@@ -162,7 +167,8 @@ class KernelCache(FunctionCache):
         if not KernelCache._announced and not any(self._files(f"{self._digest[:16]}-*.nbc")):
             KernelCache._announced = True
             if self._is_first():
-                LOG.warning("compiling kernels for this processor, once; this takes about a minute")
+                text = "compiling kernels for this processor, once; this takes about a minute (%s)"
+                LOG.warning(text, self._cache_path or "not kept")
         LOG.info("compiling %s", self._stem)
 
     def _is_first(self):

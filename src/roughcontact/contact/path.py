@@ -25,6 +25,7 @@ from ..elastic.halfspace import HalfSpace
 from ..threads import computed_once
 from .solve import solve_contact
 from .state import ContactState
+from .topography import heights_of
 
 LOAD, UNLOAD, RELOAD = "load", "unload", "reload"
 #: Branches of a load path.
@@ -183,7 +184,7 @@ def load_path(
     loads = real_array(given, name)
     if loads.ndim != 1 or not (np.isfinite(loads) & (loads >= 0)).all():
         raise ValueError(f"{name}: expected a list of finite numbers >= 0")
-    height = field(composite, "composite topography", space.shape)
+    height = field(heights_of(composite), "composite topography", space.shape)
     limit = np.inf if hardness is None else hardness
     path = _Path(height, space, limit, rtol)
     if loaded is not None:

@@ -44,6 +44,7 @@ def solve_contact(
     *,
     closure: float | None = None,
     force: float | None = None,
+    mean_pressure: float | None = None,
     start: ContactState | None = None,
     rtol: float = 1e-6,
     hardness: float | ArrayLike | None = None,
@@ -52,14 +53,18 @@ def solve_contact(
 
     Parameters
     ----------
-    composite : (ny, nx) array_like
-        Heights of the composite topography h, mm; the largest h touches first.
+    composite : (ny, nx) array_like, or an object with ``heights()``
+        Heights of the composite topography h, mm; the largest h touches first. A topography of
+        SurfaceTopography has its first axis along x: ``HalfSpace(t.nb_grid_pts, t.pixel_size, E)``.
     space : HalfSpace
         The elastic operator on the same grid.
     closure : float, optional
-        w, mm, from first touch: the rigid-body approach. Either this or ``force`` is given.
+        w, mm, from first touch: the rigid-body approach. One of ``closure``, ``force`` and
+        ``mean_pressure`` is given.
     force : float, optional
         F, N.
+    mean_pressure : float, optional
+        F over the area of the window, MPa.
     start : ContactState, optional
         A state on the same grid to start from, such as that of the previous load.
     rtol : float
@@ -82,7 +87,27 @@ def solve_contact(
         that is repeated or mirrored.
     NotConverged
         If the conditions are not met to ``rtol``.
+
+    Examples
+    --------
+    A sphere of radius 1 mm under 50 N. Hertz: w = (3 F / (4 E* sqrt R))^(2/3) = 0.0241 mm, peak
+    pressure 988 MPa.
+
+    >>> import numpy as np
+    >>> from roughcontact import HalfSpace, solve_contact
+    >>> y, x = (np.indices((128, 128)) - 63.5) * 0.01
+    >>> state = solve_contact(-(x**2 + y**2) / 2, HalfSpace((128, 128), 0.01, 10e3), force=50.0)
+    >>> f"{state.closure:.4f} mm, {state.pressure.max():.0f} MPa"
+    '0.0241 mm, 988 MPa'
+
+    The next load starts from it:
+
+    >>> following = solve_contact(state.composite, state.space, force=60.0, start=state)
+    >>> following.closure > state.closure
+    True
     """
+    if mean_pressure is not None:
+        force = _force_of(mean_pressure, space, closure, force)
     load, topography = _checked(composite, space, closure, force, start, rtol)
     if load == 0:
         return unloaded_state(space, topography.clearance())
@@ -97,6 +122,17 @@ def solve_contact(
         reason = f"contact conditions {what} after {state.iterations} applications of the operator"
         raise NotConverged(reason, state, state.residual)
     return state
+
+
+def _force_of(mean_pressure, space, closure, force):
+    """Force of a mean pressure on the window, N."""
+    if closure is not None or force is not None:
+        raise ValueError("give one of closure=, force= and mean_pressure=")
+    _check_space(space)
+    pressure = number(mean_pressure, "mean pressure", "MPa")
+    if not math.isfinite(pressure) or pressure < 0:
+        raise ValueError(f"mean pressure {pressure}: expected a finite number >= 0, in MPa")
+    return pressure * space.area
 
 
 def _solve(case, units, load, start, rtol):
@@ -183,11 +219,10 @@ def checked_problem(
 
 def _checked(composite, space, closure, force, start, rtol):
     """Load and topography of `checked_problem`."""
-    if not isinstance(space, HalfSpace):
-        raise ValueError(f"space {quoted(space)}: expected a HalfSpace of the topography's shape")
+    _check_space(space)
     topography = Topography(composite, space.shape)
     if (closure is None) == (force is None):
-        raise ValueError("give either closure= or force=")
+        raise ValueError("give one of closure=, force= and mean_pressure=")
     name, unit = ("closure", "mm") if force is None else ("force", "N")
     load = number(closure if force is None else force, name, unit)
     if not math.isfinite(load) or load < 0:
@@ -206,6 +241,11 @@ def _checked(composite, space, closure, force, start, rtol):
             f"{MIN_RESULT:g} to {MAX_RESULT:g} mm, MPa and N"
         )
     return load, topography
+
+
+def _check_space(space):
+    if not isinstance(space, HalfSpace):
+        raise ValueError(f"space {quoted(space)}: expected a HalfSpace of the topography's shape")
 
 
 def _check_reach(case, closure):
@@ -250,8 +290,7 @@ def _load_units(space, load, by_force):
     stress_per_length = space.modulus / space.cell
     if not by_force:
         return load, load * stress_per_length
-    ny, nx = space.shape
-    pressure = load / (space.cell_area * ny * nx)
+    pressure = load / space.area
     return pressure / stress_per_length, pressure
 
 

@@ -12,6 +12,7 @@ from ..elastic.halfspace import HalfSpace
 from ..errors import NotConverged
 from ..threads import computed_once
 from .bounds import Bounds
+from .corrected_area import corrected_area
 from .effort import SOLVING
 from .kkt import frank_wolfe_gap
 from .operator import Operator
@@ -84,6 +85,22 @@ class ContactState:
     def area(self) -> float:
         """Real contact area A_r = N s^2 of the N nodes in contact, mm2."""
         return float(np.count_nonzero(self.in_contact)) * self.space.cell_area
+
+    @property
+    def corrected_area(self) -> float:
+        """Real contact area corrected for the staircase of its edge, mm2 (`corrected_area`)."""
+        return float(corrected_area(self.in_contact, self.space.spacing))
+
+    @property
+    def mean_pressure(self) -> float:
+        """Force over the area of the window, MPa."""
+        return self.force / self.space.area
+
+    @property
+    def elastic_energy(self) -> float:
+        """Elastic energy, sum p u s^2 / 2, N mm."""
+        pressure, displacement, _ = self._on_nodes()
+        return float((pressure * displacement).sum()) * self.space.cell_area / 2
 
     @property
     def ambiguous(self) -> int:

@@ -4,6 +4,8 @@ Large topographies are neither copied nor converted as a whole: they may be in s
 a file mapped to memory.
 """
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -11,6 +13,12 @@ from ..arguments import field
 from ..kernel_cache import njit
 
 _KEPT_TYPES = (np.dtype(np.float32), np.dtype(np.float64))
+
+
+def heights_of(composite: Any) -> Any:
+    """Heights of an object with ``heights()``, as of SurfaceTopography; else what was given."""
+    heights = getattr(composite, "heights", None)
+    return heights() if callable(heights) else composite
 
 
 class Topography:
@@ -22,6 +30,7 @@ class Topography:
 
     def __init__(self, composite: ArrayLike, shape: tuple[int, int]):
         name = "composite topography"
+        composite = heights_of(composite)
         if isinstance(composite, np.memmap):
             composite = composite.view(np.ndarray)
         if type(composite) is np.ndarray and _is_as_wanted(composite, shape):

@@ -109,8 +109,10 @@ class HalfSpace:
     --------
     >>> import numpy as np
     >>> from roughcontact import HalfSpace
-    >>> space = HalfSpace((64, 64), 0.1, 20e3)  # 6.4 mm x 6.4 mm, E* = 20 GPa
-    >>> space.displacement(np.full((64, 64), 10.0)).max() < 10.0 / 20e3 * 6.4 * 1.13
+    >>> space = HalfSpace((64, 64), 0.1, 20e3, boundary="periodic")  # mm, MPa
+    >>> wave = 10 * np.cos(2 * np.pi * np.arange(64) / 64) * np.ones((64, 1))
+    >>> wave_number = 2 * np.pi / 6.4
+    >>> bool(np.allclose(space.displacement(wave), 2 / (20e3 * wave_number) * wave))
     True
     """
 
@@ -201,6 +203,11 @@ class HalfSpace:
     def cell_area(self) -> float:
         """Area of one cell, mm2."""
         return self.spacing[0] * self.spacing[1]
+
+    @property
+    def area(self) -> float:
+        """Area of the window, mm2."""
+        return self.cell_area * self.shape[0] * self.shape[1]
 
     def displacement(self, pressure: ArrayLike) -> np.ndarray:
         """Normal displacement of the surface under a pressure.

@@ -3,8 +3,8 @@
 import numpy as np
 from scipy.signal import fftconvolve
 
-from roughcontact.contact.state import ContactState
-from roughcontact.elastic.influence import love_displacement
+from ..elastic.influence import love_displacement
+from .state import ContactState
 
 
 def violation(state: ContactState, height: np.ndarray) -> tuple[float, float]:
@@ -13,15 +13,15 @@ def violation(state: ContactState, height: np.ndarray) -> tuple[float, float]:
     Parameters
     ----------
     state : ContactState
-        Solved with Love's kernel.
+        Of a free window with Love's kernel, elastic or with one hardness.
     height : (ny, nx) ndarray
-        mm.
+        Composite topography, mm.
 
     Returns
     -------
     violation, rounding : float
-        Relative to the closure: how far gaps and pressures are from a state of contact, and how
-        much of it the rounding of the heights themselves explains.
+        Fractions of the closure: the largest violation by gaps and pressures, and the part that
+        rounding of the heights explains.
     """
     (ny, nx), (dy, dx) = state.space.shape, state.space.spacing
     y, x = np.arange(1 - ny, ny)[:, None] * dy, np.arange(1 - nx, nx)[None, :] * dx
