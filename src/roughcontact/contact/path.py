@@ -25,7 +25,7 @@ from ..elastic.halfspace import HalfSpace
 from ..threads import computed_once
 from .solve import solve_contact
 from .state import ContactState
-from .topography import heights_of
+from .topography import HasHeights, heights_of
 
 LOAD, UNLOAD, RELOAD = "load", "unload", "reload"
 #: Branches of a load path.
@@ -126,7 +126,7 @@ def loaded_state(contact: ContactState) -> BranchState:
 
 
 def load_path(
-    composite: ArrayLike,
+    composite: ArrayLike | HasHeights,
     space: HalfSpace,
     *,
     forces: Sequence[float] | None = None,

@@ -31,7 +31,7 @@ from .effort import SOLVING
 from .full_approximation import full_approximation_start
 from .nested_iteration import nested_iteration_start
 from .state import Candidates, CandidateState, ContactState, unloaded_state
-from .topography import Topography
+from .topography import HasHeights, Topography
 
 # Largest extrapolation of earlier states, in steps between them.
 FURTHEST = 2.0
@@ -39,7 +39,7 @@ FURTHEST = 2.0
 
 @interruptible()
 def solve_contact(
-    composite: ArrayLike,
+    composite: ArrayLike | HasHeights,
     space: HalfSpace,
     *,
     closure: float | None = None,

@@ -4,7 +4,7 @@ Large topographies are neither copied nor converted as a whole: they may be in s
 a file mapped to memory.
 """
 
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -15,8 +15,15 @@ from ..kernel_cache import njit
 _KEPT_TYPES = (np.dtype(np.float32), np.dtype(np.float64))
 
 
+class HasHeights(Protocol):
+    """Object with heights, (ny, nx), such as a topography of SurfaceTopography."""
+
+    def heights(self) -> ArrayLike:
+        """Heights, mm."""
+
+
 def heights_of(composite: Any) -> Any:
-    """Heights of an object with ``heights()``, as of SurfaceTopography; else what was given."""
+    """Heights of an object with ``heights()``; anything else unchanged."""
     heights = getattr(composite, "heights", None)
     return heights() if callable(heights) else composite
 
@@ -28,7 +35,7 @@ class Topography:
     and other shapes are refused.
     """
 
-    def __init__(self, composite: ArrayLike, shape: tuple[int, int]):
+    def __init__(self, composite: ArrayLike | HasHeights, shape: tuple[int, int]):
         name = "composite topography"
         composite = heights_of(composite)
         if isinstance(composite, np.memmap):
