@@ -222,7 +222,7 @@ def _checked(composite, space, closure, force, start, rtol):
     _check_space(space)
     topography = Topography(composite, space.shape)
     if (closure is None) == (force is None):
-        raise ValueError("give one of closure=, force= and mean_pressure=")
+        raise ValueError("give either closure= or force= (solve_contact: or mean_pressure=)")
     name, unit = ("closure", "mm") if force is None else ("force", "N")
     load = number(closure if force is None else force, name, unit)
     if not math.isfinite(load) or load < 0:

@@ -37,13 +37,13 @@ class Topography:
 
     def __init__(self, composite: ArrayLike | HasHeights, shape: tuple[int, int]):
         name = "composite topography"
-        composite = heights_of(composite)
-        if isinstance(composite, np.memmap):
-            composite = composite.view(np.ndarray)
-        if type(composite) is np.ndarray and _is_as_wanted(composite, shape):
-            height = composite
+        values = heights_of(composite)
+        if isinstance(values, np.memmap):
+            values = values.view(np.ndarray)
+        if type(values) is np.ndarray and _is_as_wanted(values, shape):
+            height = values
         else:
-            height = field(composite, name, shape)
+            height = field(values, name, shape)
         missing, self.lowest, self.highest = _extent(height.ravel())
         if missing:
             raise ValueError(f"the {name} has {missing} missing or infinite cells")
