@@ -96,6 +96,10 @@ NOT_RUN = {
         "OMP_NUM_THREADS=1 python benchmarks/capped.py",
     ): "takes minutes of a quiet machine",
     ("docs/solver_speed.md", "make bench PEERS=1"): f"{HOURS}, installs other programs",
+    (
+        "docs/solver_speed.md",
+        "OMP_NUM_THREADS=1 python benchmarks/periodic_peers.py",
+    ): "on a small surface in tests/benchmarks/test_periodic_peers.py",
 }
 
 
