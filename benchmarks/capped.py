@@ -5,9 +5,9 @@
 
 Problems are drawn: faces, plateaus and terraces of 24 to 1024 nodes per side, most of 64 to 256;
 hardness of 1e-4 to 1 of the modulus; forces of 1e-4 to 0.99 of what the window carries. Every state
-is judged by a convolution of its own (`accuracy.violation`). Printed are the problems given up and
-the wrong states, and the table of docs/solver_speed.md, "Where nodes yield". Seconds are of the
-processor, of one thread where OMP_NUM_THREADS is 1.
+is judged by a convolution of its own (`roughcontact.contact.violation`). Printed are the problems
+given up and the wrong states, and the table of docs/solver_speed.md, "Where nodes yield". Seconds
+are of the processor, of one thread where OMP_NUM_THREADS is 1.
 """
 
 import argparse
@@ -17,9 +17,9 @@ from collections import defaultdict
 
 import numpy as np
 
-from contactlab.accuracy.violation import violation
 from fractalcontact import HalfSpace, NotConverged, self_affine, solve_contact
 from roughcontact.contact.state import ContactState
+from roughcontact.contact.violation import violation
 
 MODULUS, SPACING, RTOL = 2e4, 0.05, 1e-6
 #: Shares of the window that yield, below which a row of the table counts.

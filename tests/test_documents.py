@@ -15,6 +15,7 @@ from fractalcontact.study.sidecar import sidecar_of_matrix
 #: All but the changelog, which names things as they were called at its time.
 DOCUMENTS = [
     *(ROOT / name for name in ("README.md", "CONTRIBUTING.md", "config/README.md")),
+    ROOT / "packages/roughcontact/README.md",
     *sorted(ROOT.glob("docs/*.md")),
 ]
 KEY = re.compile(r"`([A-Za-z_.0-9]+)`")

@@ -114,10 +114,11 @@ def test_a_type_checker_sees_the_signatures(tmp_path):
 def test_the_version_stands_in_one_place():
     citation = yaml.safe_load((ROOT / "CITATION.cff").read_text())
     assert citation["version"] == fractalcontact.__version__
-    settings = tomllib.loads((ROOT / "pyproject.toml").read_text())
-    assert settings["tool"]["setuptools"]["dynamic"]["version"] == {
-        "attr": "fractalcontact.__version__"
-    }
+    for project in (ROOT, ROOT / "packages/roughcontact"):
+        settings = tomllib.loads((project / "pyproject.toml").read_text())
+        assert settings["tool"]["setuptools"]["dynamic"]["version"] == {
+            "attr": "roughcontact.__version__"
+        }
 
 
 def test_one_spacing_is_that_of_square_cells():

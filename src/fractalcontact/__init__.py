@@ -9,7 +9,7 @@ import sys
 from importlib import import_module
 from typing import Any
 
-__version__ = "1.0.0"
+from roughcontact import __version__ as __version__
 
 #: Module of each name.
 _HOMES = {

@@ -1,16 +1,19 @@
-"""Frictionless contact of rough surfaces on an elastic half-space, solved or refused.
+"""Frictionless contact of rough surfaces on an elastic half-space, verified or refused.
 
     >>> from roughcontact import HalfSpace, solve_contact
     >>> space = HalfSpace(heights.shape, spacing, modulus)
     >>> state = solve_contact(heights, space, force=100.0)
 
-Lengths are in mm, forces in N, pressures in MPa, or in any other units that agree. A state
-satisfies the contact conditions to ``rtol``, or `NotConverged` is raised. Names are imported when
-first asked for: numba takes half a second.
+Lengths are in mm, forces in N, pressures in MPa, or in any other consistent units. A state
+satisfies the contact conditions to ``rtol``, or `NotConverged` is raised. Names are imported at
+their first use, as numba takes half a second.
 """
 
 from importlib import import_module
 from typing import Any
+
+#: Version of the solver and of fractalcontact, which contains it.
+__version__ = "1.0.0"
 
 #: Module of each name.
 _HOMES = {

@@ -8,3 +8,4 @@ from .elastic.halfspace import HalfSpace as HalfSpace
 from .errors import NotConverged as NotConverged
 
 __all__: list[str]
+__version__: str

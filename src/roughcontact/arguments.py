@@ -1,8 +1,8 @@
-"""Arguments of public functions: plain arrays and numbers, or one sentence that refuses them.
+"""Checks of arguments: plain arrays and numbers, or a `ValueError` of one sentence.
 
-numpy turns text into numbers, drops masks and imaginary parts and rounds 2.5 down without a word,
-and compiled code reads past the end of an array that is too short. So all that users hand over
-passes here first.
+Every array and number of a user passes here first. numpy alone turns text into numbers, drops masks
+and imaginary parts and truncates 2.5 to 2, all silently, and compiled code reads past the end of an
+array that is too short. In all functions ``name`` and ``unit`` are words of the error message.
 """
 
 import math
@@ -16,13 +16,13 @@ from numpy.typing import ArrayLike
 
 T = TypeVar("T")
 
-#: Kinds of numpy's types that are real numbers; True and False are none.
+#: Kinds of numpy dtypes that are real numbers; booleans are not among them.
 _REAL = "iuf"
-_LONGEST_INTEGER = 1000  # bits of an integer that is still quoted in full
+_LONGEST_INTEGER = 1000  # bits; longer integers are not quoted in full
 
 
 class _Short(reprlib.Repr):
-    """Any value in few characters: Python refuses to write out integers of thousands of digits."""
+    """Short text of a value; Python refuses to print integers of thousands of digits."""
 
     def repr_int(self, x: int, level: int) -> str:
         if x.bit_length() > _LONGEST_INTEGER:
@@ -30,30 +30,15 @@ class _Short(reprlib.Repr):
         return super().repr_int(x, level)
 
 
-#: A value of any kind and size, short enough for a message.
+#: Text of any value, short enough for a message.
 quoted = _Short().repr
 
 
 def number(value: Any, name: str, unit: str) -> float:
-    """A real number.
+    """Real number: a float, an integer, or an array without dimensions.
 
-    Parameters
-    ----------
-    value : float, int, or an array of no dimension
-    name : str
-        What it is, for the message.
-    unit : str
-        What it counts, for the message.
-
-    Returns
-    -------
-    float
-        Infinite for integers beyond all floats.
-
-    Raises
-    ------
-    ValueError
-        If it is text, complex, masked, True or False, or more than one number.
+    Integers beyond all floats become infinite. Text, complex and masked values and booleans are
+    refused.
     """
     if isinstance(value, float):
         return float(value)
@@ -62,7 +47,7 @@ def number(value: Any, name: str, unit: str) -> float:
             return float(value)
         except OverflowError:
             return math.inf if value > 0 else -math.inf
-    # Anything that numpy can read: its own scalars, and arrays with labels, of no dimension.
+    # Scalars of numpy, and labelled arrays without dimensions.
     array = np.asanyarray(value)
     if array.ndim or array.dtype.kind not in _REAL or np.ma.is_masked(array):
         raise ValueError(f"{name} {quoted(value)}: expected a plain number, in {unit}")
@@ -70,50 +55,18 @@ def number(value: Any, name: str, unit: str) -> float:
 
 
 def whole_number(value: Any, name: str, *, least: int, most: int) -> int:
-    """A whole number.
-
-    Parameters
-    ----------
-    value : int
-    name : str
-        What it is, for the message.
-    least, most : int
-        The smallest and the largest allowed.
-
-    Raises
-    ------
-    ValueError
-        If it is no integer (2.0 is none) or out of these bounds.
-    """
-    found = None
-    # numpy calls its own True an integer in some versions.
+    """Integer between bounds; 2.0 is refused."""
+    integer = None
+    # numpy.bool_ has an __index__ in some versions.
     if hasattr(value, "__index__") and not isinstance(value, bool | np.bool_ | np.ndarray):
-        found = operator.index(value)
-    if found is None or not least <= found <= most:
+        integer = operator.index(value)
+    if integer is None or not least <= integer <= most:
         raise ValueError(f"{name} {quoted(value)}: expected a whole number from {least} to {most}")
-    return found
+    return integer
 
 
 def whole_numbers(values: ArrayLike, name: str, *, least: int, most: int) -> np.ndarray:
-    """Whole numbers, also such as 2.0.
-
-    Parameters
-    ----------
-    values : (k,) array_like
-    name : str
-        What they are, for the message.
-    least, most : int
-        The smallest and the largest allowed.
-
-    Returns
-    -------
-    (k,) int64 ndarray
-
-    Raises
-    ------
-    ValueError
-        If one is not whole or out of these bounds.
-    """
+    """Whole numbers between bounds, (k,) int64; 2.0 is accepted."""
     array = real_array(values, name)
     bounds = f"whole numbers from {least} to {most}"
     if array.ndim != 1 or not ((array >= least) & (array <= most) & (array % 1 == 0)).all():
@@ -121,51 +74,19 @@ def whole_numbers(values: ArrayLike, name: str, *, least: int, most: int) -> np.
     return array.astype(np.int64)
 
 
-def pair(values: Sequence, name: str, each: Callable[[Any], T]) -> tuple[T, T]:
-    """Two things, one along y and one along x.
-
-    Parameters
-    ----------
-    values : sequence
-    name : str
-        What they are, for the message.
-    each : callable
-        Makes one of them, and refuses what it cannot be.
-
-    Returns
-    -------
-    tuple
-
-    Raises
-    ------
-    ValueError
-        If there are not two, or as ``each``.
-    """
+def pair(values: Sequence, name: str, convert: Callable[[Any], T]) -> tuple[T, T]:
+    """Pair of values along y and x; ``convert`` converts one of them, or refuses it."""
     ordered = np.iterable(values) and not isinstance(values, str | bytes | dict | set)
     both = tuple(values) if ordered else ()
     if len(both) != 2:
         raise ValueError(f"{name} {quoted(values)}: expected two numbers, along y and along x")
-    return each(both[0]), each(both[1])
+    return convert(both[0]), convert(both[1])
 
 
 def domain(values: ArrayLike, name: str) -> np.ndarray:
-    """Nodes of a grid that are in contact, or in any other set.
+    """Set of nodes on a grid, (ny, nx) bool, from booleans or numbers; 0 is False.
 
-    Parameters
-    ----------
-    values : (ny, nx) array_like
-        True and False, or numbers of which 0 is False; not masked.
-    name : str
-        What they are, for the message.
-
-    Returns
-    -------
-    (ny, nx) bool ndarray
-
-    Raises
-    ------
-    ValueError
-        If they are anything else, or missing.
+    Masked and missing nodes are refused.
     """
     refuse_masked(values, name)
     array = real_array(values, name, _REAL + "b")
@@ -177,29 +98,13 @@ def domain(values: ArrayLike, name: str) -> np.ndarray:
 
 
 def field(values: ArrayLike, name: str, shape: Sequence[int] | None = None) -> np.ndarray:
-    """Real numbers on a grid.
+    """Real numbers on a grid: (ny, nx) float64, contiguous, NaN and infinities included.
 
-    Parameters
-    ----------
-    values : (ny, nx) array_like
-        A masked array only if nothing is masked.
-    name : str
-        What they are, for the message.
-    shape : (int, int), optional
-        Of the grid; by default any (y, x) grid.
-
-    Returns
-    -------
-    (ny, nx) float64 ndarray
-        Contiguous; the same memory where it was so already. May hold NaN and infinities.
-
-    Raises
-    ------
-    ValueError
-        If they are masked, complex, text, True and False, no array, or on another grid.
+    The array is returned without a copy where it is so already. Without a ``shape`` any (y, x) grid
+    is accepted. Masked cells, complex numbers, text and booleans are refused.
     """
     if type(values) is np.ndarray and values.dtype == np.float64:
-        array = values  # as it mostly is: small grids are solved in less than a millisecond
+        array = values  # the usual case; a solve of a small grid takes less than a millisecond
     else:
         refuse_masked(values, name)
         array = real_array(values, name)
@@ -211,25 +116,7 @@ def field(values: ArrayLike, name: str, shape: Sequence[int] | None = None) -> n
 
 
 def real_array(values: ArrayLike, name: str, kinds: str = _REAL) -> np.ndarray:
-    """An array of real numbers, in their own precision.
-
-    Parameters
-    ----------
-    values : array_like
-    name : str
-        What they are, for the message.
-    kinds : str
-        Letters of numpy's kinds of types that will do.
-
-    Returns
-    -------
-    ndarray
-
-    Raises
-    ------
-    ValueError
-        If they are complex, text, True and False, or no array.
-    """
+    """Array of real numbers in their own precision; ``kinds`` are the allowed kinds of dtypes."""
     try:
         array = np.asarray(values)
     except ValueError as error:  # rows of different lengths
@@ -240,12 +127,7 @@ def real_array(values: ArrayLike, name: str, kinds: str = _REAL) -> np.ndarray:
 
 
 def refuse_masked(values: Any, name: str) -> None:
-    """Refuse masked cells, whose values numpy would take as numbers.
-
-    Raises
-    ------
-    ValueError
-    """
+    """`ValueError` if cells are masked: numpy would take their values as numbers."""
     rows = values if isinstance(values, list | tuple) else [values]
     masked = sum(np.count_nonzero(np.ma.getmask(row)) for row in rows)
     if masked:

@@ -1,4 +1,4 @@
-"""Errors of the solver, in a module that imports nothing to compute with."""
+"""Errors of the solver, in a module without heavy imports."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -6,14 +6,15 @@ from typing import Any
 
 
 class NotConverged(RuntimeError):
-    """No state satisfying the contact conditions was reached.
+    """No state that satisfies the contact conditions was reached.
 
     Attributes
     ----------
     reason : str
     state : ContactState
-        The best state reached; its ``residual`` says how far it is from being one.
+        The best state that was reached.
     residual : float
+        Largest violation of the conditions by that state, as in `ContactState`.
     """
 
     def __init__(self, reason: str, state: Any, residual: float):
@@ -25,10 +26,9 @@ class NotConverged(RuntimeError):
 
 
 def is_interrupt(error: BaseException | None) -> bool:
-    """True of KeyboardInterrupt, and of the SystemError that numba makes of it.
+    """True for KeyboardInterrupt and for the SystemError, or chain of them, that numba makes of it.
 
-    An interrupt that arrives while a compiled kernel is called ends as a SystemError, or a chain of
-    them, caused by it.
+    numba raises it if an interrupt arrives while a compiled kernel is being called.
     """
     while isinstance(error, SystemError):
         error = error.__cause__
@@ -37,7 +37,7 @@ def is_interrupt(error: BaseException | None) -> bool:
 
 @contextmanager
 def interruptible() -> Iterator[None]:
-    """Context, or decorator, in which every interrupt ends as KeyboardInterrupt."""
+    """Context, or decorator, that turns every interrupt into a KeyboardInterrupt."""
     try:
         yield
     except SystemError as error:

@@ -1,16 +1,20 @@
-"""Compiled kernels on disk, under a digest of all that they are compiled from.
+"""Cache on disk of compiled kernels, under a digest of everything they are compiled from.
 
-numba knows a kernel on disk by the file of that kernel alone: where a kernel it calls or a constant
-it uses changes in another module, the old machine code goes on, with wrong numbers or a crash. Here
-a kernel's file is named after its own instructions and those of every kernel it calls, near or far,
-the constants they use, the options they are compiled with, and the versions of what compiles them.
-They are taken from the process, not from files: an edit while it runs spoils nothing, and one that
-no kernel follows from compiles nothing anew.
+numba's own cache knows a kernel by its file alone. If a kernel that it calls, or a constant that it
+uses, changes in another module, numba loads the outdated machine code: wrong numbers, or a crash.
+Here the file of a kernel is named after a digest of its instructions and of those of every kernel
+it calls, directly or indirectly, of the constants they use, the options and the versions of the
+compilers. The digest is computed from the running process, not from source files: an edit while it
+runs has no effect, and an edit that changes no kernel compiles nothing.
 
-Each kernel gets a cache of its own in place of numba's. To point ``numba.config.CACHE_DIR`` at
-a folder would be shorter, but it holds for the kernels of other packages too, and leaves numba to
-unpickle whatever lies there: here a file that is not as it was written counts as missing, and so
-does one that somebody else may have written.
+Each kernel gets its own cache in place of numba's. Setting ``numba.config.CACHE_DIR`` would be
+shorter, but applies to the kernels of other packages too, and numba would unpickle any file in that
+folder. Here damaged files count as missing, and so do those that another user may have written.
+
+Kernels are stored beside the package, in ``__pycache__/kernels``. Where the installation is
+read-only they go to ``$XDG_CACHE_HOME/roughcontact`` (``~/.cache/roughcontact``), and failing that
+to ``roughcontact-UID`` in the temporary folder; NUMBA_CACHE_DIR, if set, comes first.
+`cache_folder` returns the folder in use.
 """
 
 import contextlib
@@ -39,16 +43,16 @@ from numba.core.serialize import dumps
 from .kernel_digest import kernel_digest
 
 PACKAGE = Path(__file__).absolute().parent
-#: Kernels that come with the package; who can write there can write its code.
+#: Kernels stored with the package. Whoever can write there can change its code anyway.
 PACKAGE_FOLDER = PACKAGE / "__pycache__" / "kernels"
 LOG = logging.getLogger("roughcontact")
-#: Files of a kernel that are kept, for versions of it and types it is called with: to change
-#: between branches compiles nothing.
+#: Most files kept of one kernel, over versions and types: switching between branches of the code
+#: then compiles nothing.
 MAX_FILES = 12
-#: Bytes of a file's SHA-256, with which it begins.
+#: Size in bytes of the SHA-256 with which each file begins.
 _CHECKSUM = hashlib.sha256().digest_size
 
-#: Of what compiles them. Kernels compiled to find an error are others, too.
+#: Versions of the compilers, and options of debugging, which also change the machine code.
 _VERSIONS = (
     f"{sys.implementation.cache_tag}{sys.abiflags}",
     *(library.__version__ for library in (numba, llvmlite, np)),
@@ -57,16 +61,16 @@ _VERSIONS = (
 
 
 def njit(function: Callable | None = None, /, *, cache: bool = False, **options: Any) -> Any:
-    """``numba.njit`` for the modules of this package, with a cache that no change outdates.
+    """``numba.njit`` for the modules of this package, with a cache that follows every change.
 
     Parameters
     ----------
     function : callable, optional
-        The kernel. A signature cannot be given: it is compiled for what it is called with.
+        The kernel. It is compiled for the types it is called with; no signature can be given.
     cache : bool, optional
-        Whether it is kept on disk.
+        Whether compiled code is kept on disk.
     **options
-        Of ``numba.njit``.
+        Options of ``numba.njit``.
     """
     if function is None:
         return lambda function: njit(function, cache=cache, **options)
@@ -78,19 +82,14 @@ def njit(function: Callable | None = None, /, *, cache: bool = False, **options:
     return kernel
 
 
-#: Kernels that are kept on disk.
+#: Kernels with a cache on disk.
 _CACHED: list[Any] = []
 
 
 def load_cached() -> int:
-    """Load the compiled kernels of all imported modules from disk.
+    """Load the compiled kernels of all imported modules from disk; returns their number.
 
-    A process that forks does so beforehand: each of its forks would else load them again.
-
-    Returns
-    -------
-    int
-        How many were loaded; nothing is compiled.
+    A process calls this before it forks, since each fork would otherwise load them again.
     """
     loaded = 0
     for kernel in _CACHED:
@@ -103,8 +102,13 @@ def load_cached() -> int:
     return loaded
 
 
+def cache_folder() -> Path | None:
+    """Folder to which compiled kernels are written; None if no folder is safe."""
+    return _folders()[0]
+
+
 class KernelCache(FunctionCache):
-    """Compiled forms of one kernel, a checked file for each set of types it is called with."""
+    """Compiled forms of one kernel: a checksummed file for each signature."""
 
     _warned = False
     _announced = False
@@ -148,26 +152,27 @@ class KernelCache(FunctionCache):
             content = _intact(path / name)
             if content is not None:
                 saved, compiled = pickle.loads(content)
-                # The name is only a digest of how the types are written.
+                # The file's name holds only a digest of the types' names.
                 if saved == key:
                     return self._impl.rebuild(target_context, compiled)
         self._announce()
         return None
 
     def _announce(self):
-        """Report that kernels are compiled, which takes about a minute.
+        """Report that kernels are being compiled, which takes about a minute.
 
-        Once for a processor and versions, whichever process comes to it first. Not of a kernel for
-        other types, or one that was damaged, where the rest is on disk.
+        Reported once per processor and set of versions, by the first process. One kernel that is
+        missing for other types, or damaged, is not reported.
         """
         if not KernelCache._announced and not any(self._files(f"{self._digest[:16]}-*.nbc")):
             KernelCache._announced = True
             if self._is_first():
-                LOG.warning("compiling kernels for this processor, once; this takes about a minute")
+                text = "compiling kernels for this processor, once; this takes about a minute (%s)"
+                LOG.warning(text, self._cache_path or "not kept")
         LOG.info("compiling %s", self._stem)
 
     def _is_first(self):
-        """True if no kernel was kept last for this processor and these versions."""
+        """True if the newest kernel on disk is of another processor or other versions."""
         files = [path for folder in self._paths for path in folder.glob("*.nbc")]
         content = None
         with contextlib.suppress(FileNotFoundError):  # removed by another process meanwhile
@@ -199,7 +204,7 @@ class KernelCache(FunctionCache):
 
     @cached_property
     def _digest(self):
-        """Taken when it is first called: what it uses may be defined below it."""
+        """Digest of the kernel, computed at its first call: it may use names defined below it."""
         return kernel_digest(self._kernel)
 
     def _remove_old(self):
@@ -226,11 +231,11 @@ class KernelCache(FunctionCache):
 
 
 class _Serialised(CompileResultCacheImpl):
-    """numba's own way to take a compiled kernel to pieces, without its choice of a folder."""
+    """numba's serialisation of a compiled kernel, without its choice of a folder."""
 
     def __init__(self, function):
         code = function.__code__
-        # Named where it warns that a kernel is none that can be kept.
+        # numba names the file and line in its warning that a kernel cannot be cached.
         self._lineno = code.co_firstlineno
         self._locator = SimpleNamespace(_py_file=code.co_filename)
 
@@ -246,7 +251,7 @@ def _folders():
             "set NUMBA_CACHE_DIR to another one, or remove this",
             stacklevel=2,
         )
-    # What was compiled with the installation serves those who may only read it.
+    # Users who cannot write to the installation still read its kernels.
     readable = (writable,) if numba.config.CACHE_DIR else (writable, PACKAGE_FOLDER)
     return writable, [folder for folder in dict.fromkeys(readable) if folder is not None]
 
@@ -258,12 +263,12 @@ def _candidate_folders():
     users = Path(os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache"))
     if users.is_absolute():
         yield users / "roughcontact"
-    with contextlib.suppress(FileNotFoundError):  # of a machine without any such folder
+    with contextlib.suppress(FileNotFoundError):  # the machine has no temporary folder
         yield Path(tempfile.gettempdir()) / f"roughcontact-{os.geteuid()}"
 
 
 def _is_safe(folder):
-    """True if kernels can be kept in a folder, and nobody else can put any there."""
+    """True if kernels can be written to a folder and no other user can write there."""
     try:
         os.makedirs(folder, mode=0o777 if folder == PACKAGE_FOLDER else 0o700, exist_ok=True)
     except OSError:
@@ -277,17 +282,17 @@ def _is_safe(folder):
 
 
 def _intact(path):
-    """Content of a file as it was written; None if it is missing or damaged."""
+    """Content of a file whose checksum holds; None if it is missing or damaged."""
     try:
         content = path.read_bytes()
-    except OSError:  # what cannot be read is compiled anew
+    except OSError:  # an unreadable file is compiled again
         return None
     checksum, content = content[:_CHECKSUM], content[_CHECKSUM:]
     return content if hashlib.sha256(content).digest() == checksum else None
 
 
 def _write(path, content):
-    """Write a file that appears whole or not at all."""
+    """Write a file atomically, with its checksum."""
     path.parent.mkdir(parents=True, exist_ok=True)
     temporary = path.with_name(f"{path.name}.{uuid.uuid4().hex}")
     try:

@@ -1,4 +1,4 @@
-"""Digest of a kernel: its instructions and all that they lead to."""
+"""Digest of a kernel: its instructions and everything they refer to."""
 
 import hashlib
 import sys
@@ -16,21 +16,9 @@ _OWN = __name__.partition(".")[0]
 def kernel_digest(kernel: Dispatcher) -> str:
     """Hexadecimal digest of everything that determines the machine code of a kernel.
 
-    Parameters
-    ----------
-    kernel : Dispatcher
-        As ``numba.njit`` makes it.
-
-    Returns
-    -------
-    str
-        The same in every process, wherever the package lies. They are taken from the instructions
-        of Python's own compiler: comments and names of files do not count.
-
-    Raises
-    ------
-    TypeError
-        If the kernel uses an object of which only the address in memory is known.
+    It is computed from Python's byte code and therefore ignores comments and file names; it is the
+    same in every process and wherever the package lies. A TypeError is raised if the kernel uses an
+    object of which only the address in memory is known.
     """
     total = hashlib.sha256()
     for part in _parts(kernel, set()):
@@ -39,13 +27,13 @@ def kernel_digest(kernel: Dispatcher) -> str:
 
 
 def _parts(value: Any, seen: set[int]) -> Iterator[str]:
-    """Everything that a value is made of, in words."""
+    """Text of each part that a value consists of."""
     if isinstance(value, Dispatcher):
         yield "kernel"
         yield from _parts(sorted(value.targetoptions.items()), seen)
         yield from _of_function(value.py_func, seen)
     elif isinstance(value, _Intrinsic):
-        # What it generates may be reached by no name, as the overload of an operator.
+        # Its generated code may use functions without a name, such as overloads of operators.
         yield from _of_functions(sys.modules[value._defn.__module__], seen)
     elif isinstance(value, FunctionType):
         yield from _of_function(value, seen)
@@ -101,7 +89,7 @@ def _of_function(function: FunctionType, seen: set[int]) -> Iterator[str]:
 
 
 def _of_functions(module: ModuleType, seen: set[int]) -> Iterator[str]:
-    """Every function and intrinsic of a module."""
+    """Parts of every function and intrinsic of a module."""
     for name, value in sorted(vars(module).items()):
         definition = value._defn if isinstance(value, _Intrinsic) else value
         if isinstance(definition, FunctionType) and definition.__module__ == module.__name__:
@@ -115,6 +103,6 @@ def _of_code(code: CodeType, seen: set[int]) -> Iterator[str]:
 
 
 def _names(code: CodeType) -> set[str]:
-    """Names that code looks up, that of functions within it too."""
+    """Names that code looks up, those of inner functions included."""
     inner = (_names(const) for const in code.co_consts if isinstance(const, CodeType))
     return set(code.co_names).union(*inner)

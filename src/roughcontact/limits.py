@@ -1,10 +1,10 @@
-"""Fixed limits of the solver's input and results, each once."""
+"""Limits of the solver's input and results, each defined once."""
 
-#: Contact of fewer nodes is not resolved, and not fitted: one node more or less is 10 % of it.
+#: Contact of fewer nodes is not resolved and not fitted: one node more changes it by 10 %.
 RESOLVED_NODES = 10
-#: Lengths, pressures and forces a computation starts from lie between these: products and ratios
-#: of two of them, and sums over a grid, then neither over- nor underflow.
+#: Range of the lengths, pressures and forces of the input: products and ratios of two of them, and
+#: sums over a grid, then neither overflow nor underflow.
 MIN_INPUT, MAX_INPUT = 1e-150, 1e150
-#: And whatever a computation works out of them between these, so that its last digits are digits:
-#: below 2e-308 numbers lose them, beyond 2e308 there are none.
+#: Range of the results. Within it they keep all digits: numbers below 2e-308 lose some, and there
+#: are none beyond 2e308.
 MIN_RESULT, MAX_RESULT = 1e-300, 1e300

@@ -1,7 +1,7 @@
 """Number of threads of the solver, and objects shared between threads.
 
-What is kept for later is kept without a lock, so that neither a thread nor a fork of the process
-ever waits for one: two threads may make the same thing at once, and all go on with the first.
+Cached objects are stored without a lock, so that no thread and no fork of the process ever waits
+for one. Two threads may compute the same object at once; all continue with the first.
 """
 
 import os
@@ -13,18 +13,18 @@ from numba.core.compiler_lock import global_compiler_lock
 
 
 def count() -> int:
-    """Threads to use: OMP_NUM_THREADS where it is set, else every core this process may use."""
+    """Number of threads: OMP_NUM_THREADS if it is set, else the cores this process may use."""
     stated = os.environ.get("OMP_NUM_THREADS", "")
     if stated.isdigit() and int(stated) > 0:
         return int(stated)
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-# By the number of their threads.
+# Pools by their number of threads.
 _POOLS: dict[int, ThreadPoolExecutor] = {}
-# A fork has the pools of its parent, but none of their threads: it would wait for ever.
+# A fork inherits the pools of its parent without their threads, and would wait for ever.
 os.register_at_fork(after_in_child=_POOLS.clear)
-# Kernels are compiled, and read from disk, under one lock: a fork waits until no thread has it.
+# numba compiles and loads kernels under one lock; forking waits until no thread holds it.
 os.register_at_fork(
     before=global_compiler_lock.acquire,
     after_in_parent=global_compiler_lock.release,
@@ -37,18 +37,12 @@ def _pool(workers):
 
 
 def in_parts(function: Callable[[int, int], object], n: int, *, smallest: int) -> None:
-    """Call ``function(start, stop)`` for parts of range(n), side by side.
+    """Call ``function(start, stop)`` for parts of range(n) in parallel, none below ``smallest``.
 
-    Parameters
-    ----------
-    function : callable
-        Must release the interpreter's lock, and write to its own part alone.
-    n : int
-    smallest : int
-        Parts are no smaller than this.
+    The function must release the interpreter's lock, and write to its own part only.
     """
     most = n // smallest
-    # How many threads there are is asked only where it matters: small windows call this a lot.
+    # Small windows call this often: threads are counted only if there is more than one part.
     parts = min(count(), most) if most > 1 else 1
     if parts == 1:
         function(0, n)
@@ -60,13 +54,9 @@ def in_parts(function: Callable[[int, int], object], n: int, *, smallest: int) -
 class computed_once:
     """Property computed at its first use and kept in the object.
 
-    `functools.cached_property` holds a lock meanwhile, one for all objects (up to Python 3.11): a
-    process forked at that moment would wait for it for ever.
-
-    Parameters
-    ----------
-    make : callable
-        Takes the object; the same for equal objects, as several threads may call it at once.
+    `functools.cached_property` of Python 3.11 holds one lock for all objects while it computes: a
+    process forked at that moment would wait for ever. ``make`` may be called by several threads at
+    once, and must return the same for equal objects.
     """
 
     def __init__(self, make: Callable[[Any], Any]):

@@ -17,18 +17,18 @@ from fractalcontact.laws.area import (
     joint_statistics,
 )
 from fractalcontact.laws.closure import closure_curves
-from fractalcontact.states.corrected_area import (
-    EDGE_EXCESS,
-    cell_areas,
-    contact_perimeter,
-    corrected_area,
-)
 from fractalcontact.states.loading import JointLoading
 from fractalcontact.states.states import combine
 from fractalcontact.states.sweep import contact_states
 from fractalcontact.study.configuration import resolve_settings
 from fractalcontact.surface.specimen import make_specimen, window_arguments
 from fractalcontact.surface.synthesis import self_affine
+from roughcontact.contact.corrected_area import (
+    EDGE_EXCESS,
+    cell_areas,
+    contact_perimeter,
+    corrected_area,
+)
 
 E_STAR = 1e4  # MPa
 SPACING = 0.1  # mm

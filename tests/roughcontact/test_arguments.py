@@ -6,10 +6,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from refused import BEYOND, GRID, NAN, NO_LOADS, NO_NUMBERS, SHAPE, masked
+from rough_surfaces import self_affine
 
-from fractalcontact import HalfSpace, NotConverged, solve_contact
-from fractalcontact.surface.synthesis import self_affine
-from roughcontact import arguments
+from roughcontact import HalfSpace, NotConverged, arguments, solve_contact
 from roughcontact.contact.bounds import Bounds
 from roughcontact.contact.dense import inverted, times
 from roughcontact.contact.kkt import kkt_residual, mean_closure

@@ -263,6 +263,16 @@ def test_a_package_that_cannot_be_written_to_uses_the_user_s_folder(project):
 NOWHERE = {"HOME": "/proc/nowhere"}
 
 
+def test_a_read_only_package_says_where_its_kernels_are(project):
+    project.no_cache_in_package()
+    folder = project.folder / "home/.cache/roughcontact"
+    code = f"{RUN}; from rocks.kernel_cache import cache_folder; print(cache_folder())"
+    output, errors = project.start(code).communicate()
+    assert output == f"21.0 0\n{folder}\n"
+    assert errors.startswith("compiling kernels for this processor, once")
+    assert str(folder) in errors
+
+
 def test_without_a_home_the_kernels_go_to_a_private_temporary_folder(project):
     project.no_cache_in_package()
     assert project.run(**NOWHERE) == ("21.0 0", "")

@@ -12,9 +12,9 @@ import numpy as np
 import pytest
 from ensembles import ensemble
 from numba.core.compiler_lock import global_compiler_lock
+from rough_surfaces import self_affine
 
-from fractalcontact import HalfSpace, solve_contact
-from fractalcontact.surface.synthesis import self_affine
+from roughcontact import HalfSpace, solve_contact
 from roughcontact.contact import preconditioner as preconditioning
 from roughcontact.contact.effort import SOLVING, Effort
 from roughcontact.contact.preconditioner import forget_preconditioner, preconditioner

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from fractalcontact.states.corrected_area import corrected_area
 from fractalcontact.states.numerical_error import (
     UNCERTAIN,
     closure_error,
@@ -17,6 +16,7 @@ from fractalcontact.states.subgrid import (
     summit,
 )
 from fractalcontact.surface.synthesis import self_affine
+from roughcontact.contact.corrected_area import corrected_area
 from roughcontact.elastic.halfspace import HalfSpace
 
 SPACING, MODULUS = 0.1, 1e4

@@ -16,7 +16,6 @@ from fractalcontact.joint.joint import (
     rigid_dilatancy,
 )
 from fractalcontact.laws.closure import closure_curves, elastic_dilatancy
-from fractalcontact.states.corrected_area import contact_perimeter, corrected_area
 from fractalcontact.states.loading import JointLoading
 from fractalcontact.states.state_scalars import numbers_of, state_errors
 from fractalcontact.states.states import (
@@ -30,6 +29,7 @@ from fractalcontact.states.states import (
 from fractalcontact.states.sweep import contact_states, joint_states, load_steps
 from fractalcontact.surface.specimen import make_specimen
 from fractalcontact.surface.synthesis import self_affine
+from roughcontact.contact.corrected_area import contact_perimeter, corrected_area
 from roughcontact.contact.solve import solve_contact
 from roughcontact.elastic.halfspace import HalfSpace
 

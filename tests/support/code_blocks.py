@@ -8,7 +8,11 @@ from typing import NamedTuple
 from places import ROOT
 
 #: Documents whose blocks are run.
-DOCUMENTS = [ROOT / "README.md", *sorted(ROOT.glob("docs/*.md"))]
+DOCUMENTS = [
+    ROOT / "README.md",
+    ROOT / "packages/roughcontact/README.md",
+    *sorted(ROOT.glob("docs/*.md")),
+]
 
 INSTALLS = "installs the environment and runs the paper study: some minutes and a network"
 BY_CI = "a target of the Makefile: that it exists is tested with the documents"
@@ -22,6 +26,14 @@ NOT_RUN = {
         "README.md",
         "make new",
     ): "run with other scans in tests/commands/test_new_study.py and tests/workflow/test_smoke.py",
+    (
+        "packages/roughcontact/README.md",
+        "pip wheel",
+    ): "built in tests/roughcontact/test_distribution.py",
+    (
+        "packages/roughcontact/README.md",
+        "space = HalfSpace(topography",
+    ): "tests/roughcontact/contact/test_state.py",
     (
         "docs/solver_speed.md",
         ".venv/bin/python benchmarks/beside_peers.py",
@@ -88,6 +100,10 @@ NOT_RUN = {
         "OMP_NUM_THREADS=1 python benchmarks/capped.py",
     ): "takes minutes of a quiet machine",
     ("docs/solver_speed.md", "make bench PEERS=1"): f"{HOURS}, installs other programs",
+    (
+        "docs/solver_speed.md",
+        "OMP_NUM_THREADS=1 python benchmarks/periodic_peers.py",
+    ): "on a small surface in tests/benchmarks/test_periodic_peers.py",
 }
 
 

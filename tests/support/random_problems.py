@@ -4,9 +4,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
+from rough_surfaces import self_affine
 
-from fractalcontact import HalfSpace
-from fractalcontact.surface.synthesis import self_affine
+from roughcontact import HalfSpace
 
 #: What a problem's topography is.
 KINDS = (

@@ -16,12 +16,12 @@ import numpy as np
 from fractalcontact.surface.synthesis import self_affine
 from roughcontact.contact.solve import solve_contact
 from roughcontact.contact.state import ContactState
+from roughcontact.contact.violation import violation
 from roughcontact.elastic.halfspace import HalfSpace
 from roughcontact.errors import NotConverged
 
 from ..methods.registry import METHODS
 from .cheap_models import CheapState
-from .violation import violation
 
 SIDE = 1.0  # mm
 E_STAR = 1.0  # MPa

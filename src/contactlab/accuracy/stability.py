@@ -9,13 +9,13 @@ import xarray as xr
 from fractalcontact.core.datasets import labelled_dataset, titled
 from roughcontact.contact.solve import solve_contact
 from roughcontact.contact.state import ContactState
+from roughcontact.contact.violation import violation
 from roughcontact.errors import NotConverged
 
 from ..methods.common import NotOffered
 from ..methods.registry import METHODS, installed_peers
 from .hard_problems import KINDS, hard_problem
 from .hard_surfaces import HardProblem
-from .violation import violation
 
 RTOL = 1e-6
 #: Largest violation of the contact conditions by a right state, in tolerances: the judge's rounding

@@ -18,9 +18,9 @@ from fractalcontact.core.per_curve import stacked
 from fractalcontact.laws import theory
 from fractalcontact.laws.area import AREA_SLOPE, CORRECTED_AREA_SLOPE
 from fractalcontact.roughness.dimension import slope_statistics
-from fractalcontact.states.corrected_area import corrected_area
 from fractalcontact.states.sweep import load_steps
 from fractalcontact.surface.synthesis import self_affine
+from roughcontact.contact.corrected_area import corrected_area
 from roughcontact.elastic.halfspace import HalfSpace
 
 from .units import E_STAR, RMS_FRACTION, SPACING, SURFACES

@@ -19,12 +19,12 @@ from fractalcontact.domain.box_dimension import dimension_of_domain
 from fractalcontact.domain.correlation import correlation_dimension
 from fractalcontact.domain.null_models import bearing_area_cut
 from fractalcontact.domain.random_nodes import expected_dimension
-from fractalcontact.states.corrected_area import corrected_area
 from fractalcontact.states.settlement import bulk_settlement
 from fractalcontact.states.states import SCALARS
 from fractalcontact.states.sweep import load_steps
 from fractalcontact.surface.embedded import embedded_surface
 from fractalcontact.surface.synthesis import band_limited, band_slope
+from roughcontact.contact.corrected_area import corrected_area
 from roughcontact.contact.state import ContactState
 from roughcontact.elastic.halfspace import HalfSpace
 

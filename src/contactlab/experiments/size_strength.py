@@ -15,9 +15,9 @@ import xarray as xr
 from fractalcontact.core.datasets import labelled_dataset, titled
 from fractalcontact.core.errors import InputError
 from fractalcontact.core.labels import cf_attrs
-from fractalcontact.states.corrected_area import corrected_area
 from fractalcontact.states.states import SCALARS
 from fractalcontact.states.sweep import load_steps
+from roughcontact.contact.corrected_area import corrected_area
 from roughcontact.contact.state import ContactState
 from roughcontact.elastic.halfspace import HalfSpace
 

@@ -4,12 +4,12 @@ import numpy as np
 import scipy.ndimage
 from numpy.typing import ArrayLike
 
+from roughcontact.contact.corrected_area import cell_areas, corrected_area
 from roughcontact.contact.state import ContactState
 
 from ..core.fitting import MIN_POINTS
 from ..core.intervals import t_quantile
 from ..core.limits import MAX_TOUCHING
-from .corrected_area import cell_areas, corrected_area
 
 
 def area_sampling(in_contact: ArrayLike, pressure: ArrayLike) -> float:

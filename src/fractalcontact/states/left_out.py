@@ -5,9 +5,10 @@ import functools
 import numpy as np
 import xarray as xr
 
+from roughcontact.contact.corrected_area import cell_areas
+
 from ..core.datasets import domains_by_resolution
 from ..core.intervals import LEFT_OUT
-from .corrected_area import cell_areas
 
 #: Number of parts; each holds equally many nodes of the finest domain.
 PARTS_LEFT_OUT = 32

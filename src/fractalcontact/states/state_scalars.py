@@ -4,12 +4,12 @@ from typing import Any
 
 import numpy as np
 
+from roughcontact.contact.corrected_area import EDGE_EXCESS, contact_perimeter, corrected_area
 from roughcontact.contact.slope import Slope
 from roughcontact.contact.state import STIFFNESS_ERROR, ContactState
 
 from ..joint.overlap import suspect_load_share
 from .area_sampling import state_area_sampling
-from .corrected_area import EDGE_EXCESS, contact_perimeter, corrected_area
 from .states import SCALARS
 
 

@@ -1,15 +1,14 @@
 """Active-set iteration for the contact problem: pressures between bounds, an unknown closure.
 
-The active contact set of an iterate are the nodes between the bounds and those at a bound that the
-gap pulls off it (`kkt`): the nodes in contact whose bounds are inactive. On it the gap is made to
-vanish: first by the whole step of the sparse inverse-Cholesky preconditioner, clipped at the
-bounds, so that nodes leave the set in the same application of K that moves the others; then by
-conjugate gradients on those that stay. In the first iterations of a load step the set is predicted:
-the nodes that a step would take to a bound are left out, and the step is made anew on the others,
-before K is applied at all. Directions and their images are in single precision; what is returned
-was judged on a displacement in double precision. (Primal-dual active sets, a semismooth Newton
-method: M. Hintermueller, K. Ito and K. Kunisch, SIAM J. Optim. 13 (2002) 865. docs/solver.md has
-the whole solver on one page.)
+The active contact set of an iterate holds the nodes between the bounds and those at a bound that
+the gap pulls off it (`kkt`). On it the gap is made to vanish: first by the whole step of the sparse
+inverse-Cholesky preconditioner, clipped at the bounds, so that nodes leave the set in the same
+application of K that moves the others; then by conjugate gradients on the nodes that stay. In the
+first iterations of a load step the set is predicted: nodes that a step would take to a bound are
+left out, and the step is computed again on the others, before K is applied at all. Directions and
+their images are in single precision; the returned state is verified on a displacement in double
+precision. (Primal-dual active sets, a semismooth Newton method: M. Hintermueller, K. Ito and K.
+Kunisch, SIAM J. Optim. 13 (2002) 865. docs/solver.md has the whole solver on one page.)
 """
 
 from dataclasses import dataclass
@@ -33,30 +32,29 @@ from .safeguards import (
     without_entering,
 )
 
-# Iterations before the solver gives up: trials needed at most some twenty.
+# Iterations before the solver gives up; trials needed at most some twenty.
 MAX_ITERATIONS = 200
-# An inexact linear solve stops at a fraction of the scale of its numbers, as the set will change:
-# this many times the fraction of the set that changed last, within these limits. The scale is the
-# largest of the gaps on the set, of the changes of nodes put at a bound, and of the force that is
-# lacking, per node. A solve against cycling goes on nearly to the end.
+# An inexact linear solve stops at a fraction of the scale of its equations, as the set will change:
+# REDUCTION times the fraction of the set that changed last, within the limits. The scale is the
+# largest of the gaps on the set, the changes of nodes put at a bound, and the missing force per
+# node. A solve against cycling is nearly exact.
 REDUCTION, MIN_REDUCTION, MAX_REDUCTION = 3.0, 0.03, 0.3
 EXACT_REDUCTION = 1e-3
-# Iterations with set prediction (in all of them sets might cycle). Only on the way from another
+# Iterations with set prediction; in all of them sets might cycle. It is used only from another
 # state, in windows that are not small: after nested iteration it saves applications but no time.
-# No more than this fraction of the set is left out: where most nodes yield, the few others would
-# have to carry whatever a given force lacks.
+# At most MAX_LEFT_OUT of the set is left out: if most nodes yield, the few others would have to
+# carry all the missing force.
 SET_PREDICTIONS, MAX_LEFT_OUT = 2, 0.5
-# Once, where the violation is no larger than this many tolerances, the preconditioned step is made
-# alone and verified in double precision at once: it is expected to be the last. Not so between
+# Largest violation, in tolerances, at which the preconditioned step is made alone and verified in
+# double precision at once, since it is expected to be the last. This is done once, and not between
 # candidates, where double precision takes as long as several steps.
 SINGLE_STEP_BELOW = 2.0
-# Where violations are no more than this fraction of the closure, single precision leaves a step
-# little to gain.
+# Violation, as a fraction of the closure, below which a step in single precision gains little.
 SINGLE_PRECISION_FLOOR = 1e-5
-# Clearance, in the closures or lengths that a problem is stated in, beyond which single precision
-# cannot judge even a start: what it rounds off may then be more than the closure.
+# Largest clearance, in the problem's unit of length, for judging a start in single precision:
+# beyond it the rounding may exceed the closure.
 SINGLE_PRECISION_CLEARANCE = 1e6
-# Of a step that is not clipped.
+# Bounds of a step that is not clipped.
 UNBOUNDED = Bounds(-np.inf, np.inf)
 _FLOAT64 = np.dtype(np.float64)
 
@@ -64,34 +62,24 @@ _FLOAT64 = np.dtype(np.float64)
 class LinearSolve(Enum):
     """Accuracy of the linear solve on an active set."""
 
-    #: As far as the set is known: the usual case.
+    #: As accurate as the set is known: the usual case.
     INEXACT = auto()
-    #: The preconditioned step alone, verified at once, where it should be the last one.
+    #: The preconditioned step alone, verified at once, where it should be the last.
     SINGLE_STEP = auto()
-    #: Nearly to the end, and without clipping, after many iterations under a given closure.
+    #: Nearly exact and without clipping, after many iterations under a given closure.
     EXACT = auto()
 
 
 @dataclass(frozen=True)
 class WorkingSet:
-    """New set of each node that moves in one iteration.
-
-    Attributes
-    ----------
-    active : (n,) int32 ndarray
-        Nodes on which the gap is to vanish.
-    fixed : (m,) int32 ndarray
-        Nodes put at a bound.
-    bound : (m,) ndarray
-        At which.
-    """
+    """Active nodes of one iteration, and nodes ``fixed`` at a ``bound``; int32 numbers of nodes."""
 
     active: np.ndarray
     fixed: np.ndarray
     bound: np.ndarray
 
     def without(self, left_out: np.ndarray, bound: np.ndarray) -> "WorkingSet":
-        """The same state with some active nodes, (n,) bool, moved to a bound."""
+        """Same set with some active nodes, (n,) bool, moved to a bound."""
         return WorkingSet(
             self.active[~left_out],
             np.concatenate([self.fixed, self.active[left_out]]),
@@ -108,14 +96,9 @@ class ActiveSetMethod:
     rtol : float
         Largest violation allowed, as a fraction of the closure.
     operator : Operator, optional
-        To count the applications of several solves together.
+        Shared with other solves, so that their applications are counted together.
     dtype : type
-        Precision in which a solution is judged: float32 where it is but a start on a finer grid.
-
-    Raises
-    ------
-    ValueError
-        If the clearance is not one of the grid.
+        Precision of the verification: float32 if the solution is only a start on a finer grid.
     """
 
     def __init__(
@@ -141,35 +124,24 @@ class ActiveSetMethod:
     ) -> Solution:
         """Iterate until a state is verified, or MAX_ITERATIONS; the caller checks the residual.
 
-        Parameters
-        ----------
-        pressure : (n,) ndarray
-            Where to start; may violate the bounds. Overwritten, and so is the displacement.
-        displacement : (n,) ndarray, optional
-            K of it, where known.
-        min_iterations : int
-            Fewest iterations, even of a start within tolerance; fewer only where violations are
-            no larger than SINGLE_PRECISION_FLOOR.
-
-        Raises
-        ------
-        ValueError
-            If the start is not one of the grid.
+        ``pressure``, (n,), is the start and may violate the bounds; ``displacement`` is K of it, if
+        known. Both are overwritten. ``min_iterations`` are made even from a start within tolerance,
+        unless its violations are below SINGLE_PRECISION_FLOOR.
         """
         problem, operator, rtol = self.problem, self.operator, self.rtol
         _check_on_nodes(pressure, "pressure", operator)
         if displacement is not None:
             _check_on_nodes(displacement, "displacement", operator)
-        # A displacement comes with states of this half-space at other loads. A start without one is
-        # prolonged from a coarser grid, and its set nearly right, or from another half-space. On
-        # grids that only a start is made of (``min_iterations``) prediction gains nothing.
-        known = displacement is not None and not min_iterations
-        predictions = SET_PREDICTIONS if known and not operator.inverse.small else 0
+        # States of this half-space at other loads come with a displacement. A start without one was
+        # prolonged from a coarser grid, and its set is nearly right, or belongs to another
+        # half-space. On grids that only give a start (``min_iterations``) prediction gains nothing.
+        from_load_step = displacement is not None and not min_iterations
+        predictions = SET_PREDICTIONS if from_load_step and not operator.inverse.small else 0
         iterate = first_iterate(problem, operator, pressure, displacement)
         previous_active, violation = np.empty(0, np.int32), 0.0
         single_step_left = problem.nodes is None
         for iteration in range(MAX_ITERATIONS):
-            # Safeguards. Force: Newton's method, which solves for closures. Closure: exact solves.
+            # Safeguards: Newton's method under a given force, exact solves under a given closure.
             newton = many_iterations_under_force(iteration, violation, problem.tolerated(iterate))
             exact = many_iterations(iteration)
             if problem.by_force and newton:
@@ -193,7 +165,7 @@ class ActiveSetMethod:
             self._step(iterate, kkt, linear_solve, reduction, predict=iteration < predictions)
             previous_active = kkt.active
             if linear_solve is LinearSolve.SINGLE_STEP:
-                # Once only: where one step gains too little, conjugate gradients must follow.
+                # Only once: if one step gains too little, conjugate gradients must follow.
                 single_step_left = False
                 iterate = solution = verified(problem, operator, iterate, self._dtype)
                 if solution.residual <= rtol:
@@ -209,12 +181,12 @@ class ActiveSetMethod:
         return LinearSolve.INEXACT
 
     def _solve_closure(self, problem, rtol, start):
-        """The solution of the same problem under a given closure."""
+        """Solution of the same problem under a given closure."""
         method = ActiveSetMethod(problem, rtol, self.operator)
         return method.solve(start.pressure, start.displacement)
 
     def _kkt_residual(self, iterate):
-        """KKT residual of an iterate, whose closure becomes that of a step where nodes yield."""
+        """KKT residual of an iterate; where nodes yield, its closure becomes that of a step."""
         problem = self.problem
         iterate.closure = closure_of_step(problem, iterate)
         return kkt_residual(
@@ -234,14 +206,13 @@ class ActiveSetMethod:
         *,
         predict: bool,
     ) -> None:
-        """Make one step on the active set, in place.
+        """One step on the active set, in place.
 
         ``reduction`` is the fraction of the equations' scale at which the linear solve stops. After
-        a single step the displacement is left for a verification. If ``predict``, nodes that the
-        first step takes to a bound are left out of the set.
-
-        Conjugate gradients, and unclipped steps, may take pressures beyond their bounds. Such nodes
-        are ``infeasible`` in the next iteration, which puts them at the bound.
+        a single step the displacement is left to the verification. With ``predict``, nodes that the
+        first step takes to a bound are left out of the set. Conjugate gradients and unclipped steps
+        may take pressures beyond their bounds; the next iteration puts these ``infeasible`` nodes
+        at them.
         """
         clipped = linear_solve is not LinearSolve.EXACT
         bound = self.problem.bounds.at(kkt.infeasible).clip(iterate.pressure[kkt.infeasible])
@@ -268,10 +239,9 @@ class ActiveSetMethod:
         iterate.closure += scale * equations.multiplier
 
     def _preconditioned_step(self, iterate, working, clipped):
-        """Equations on a set after their first step, with changes at bounds and their scale.
+        """Equations on a set after their first step, changes of the fixed nodes, and the scale.
 
-        The changes are those of the pressures of nodes put at a bound; all numbers are divided by
-        the scale.
+        All numbers are divided by the scale.
         """
         problem = self.problem
         gap = iterate.displacement[working.active] + problem.clearance[working.active]
@@ -295,7 +265,7 @@ def _reduction(linear_solve, previous_active, active):
 
 
 def _check_on_nodes(values, name, operator):
-    """Refuse arrays without one number for each node."""
+    """`ValueError` for arrays without one float64 for each node."""
     nodes = (operator.size,)
     if values.shape != nodes or values.dtype != _FLOAT64:
         raise ValueError(f"{name} {values.shape} of {values.dtype}: expected {nodes} of float64")
@@ -305,17 +275,9 @@ def _check_on_nodes(values, name, operator):
 def _scaled(pressure, gap, active, fixed, bound, load):
     """Scale of the equations on a set, and their values divided by it.
 
-    Returns
-    -------
-    scale : float
-    right_side : (n,) float32 ndarray
-        What is to close the gaps.
-    start : (n,) ndarray
-        Pressure of the set.
-    change : (m,) float32 ndarray
-        By how much the pressures of the ``fixed`` nodes change, which go to their ``bound``.
-    carried : float
-        What the set is to carry of the load; NaN where none is given.
+    Returns the scale, the right side (n,) float32 that closes the gaps, the pressure of the set
+    (n,), the change of the ``fixed`` nodes' pressures to their ``bound``, (m,) float32, and the
+    load to be carried by the set; NaN if none is given.
     """
     change = np.empty(fixed.size)
     scale, lacking = np.finfo(np.float64).tiny, load
@@ -341,7 +303,7 @@ def _scaled(pressure, gap, active, fixed, bound, load):
 def _add_step(pressure, active, scale, step, at_lower, at_upper, lower, upper):
     """Add a step to the pressure of the active nodes.
 
-    Those that it takes to a bound are put exactly there, where rounding leaves them next to it.
+    Nodes that it takes to a bound are set exactly to it, where the sum would be rounded.
     """
     for i in range(active.size):
         if at_lower[i]:

@@ -1,4 +1,4 @@
-"""Bounds of the pressure: on all nodes the same, or on each its own."""
+"""Bounds of the pressure, the same on all nodes or one for each node."""
 
 import math
 from dataclasses import dataclass
@@ -11,15 +11,16 @@ from .restriction import restrict_sum
 
 
 def _is_one(bound):
-    # Of a plain number `np.ndim` makes an array first.
+    # `np.ndim` would convert a plain number to an array first.
     return isinstance(bound, float) or np.ndim(bound) == 0
 
 
 @lru_cache(maxsize=64)
 def _everywhere(bound):
-    """A number on all nodes of the largest grid, of which smaller ones take a part.
+    """Read-only view of one number on all nodes of the largest grid, of which grids take a slice.
 
-    It takes no memory. In small windows, to make one of each size would take as long as to read it.
+    It takes no memory. Creating a view for each grid would take as long as reading it, in small
+    ones.
     """
     return np.broadcast_to(bound, (MAX_CELLS,))
 
@@ -28,10 +29,7 @@ def _everywhere(bound):
 class Bounds:
     """Least and largest pressure: 0 and, where the surface yields, its hardness.
 
-    Attributes
-    ----------
-    lower, upper : float or (n,) ndarray
-        On all nodes, or on each of them; the upper one may be infinite.
+    ``lower`` and ``upper`` are floats or (n,) arrays; the upper bound may be infinite.
     """
 
     lower: float | np.ndarray = 0.0
@@ -39,7 +37,7 @@ class Bounds:
 
     @property
     def uniform(self) -> bool:
-        """True if they are the same on all nodes."""
+        """True if the bounds are the same on all nodes."""
         return _is_one(self.lower) and _is_one(self.upper)
 
     @property
@@ -50,7 +48,7 @@ class Bounds:
 
     def clip(self, pressure: np.ndarray) -> np.ndarray:
         """Pressure, (n,), clipped to the bounds."""
-        # As `np.clip`, which takes several times as long on few nodes.
+        # `np.clip` takes several times as long on few nodes.
         return np.minimum(np.maximum(pressure, self.lower), self.upper)
 
     def violation(self, pressure: np.ndarray) -> float:
@@ -58,16 +56,16 @@ class Bounds:
         return float(np.abs(self.clip(pressure) - pressure).max(initial=0.0))
 
     def between(self, pressure: np.ndarray) -> np.ndarray:
-        """Nodes with both bounds inactive, (k,) int32, whose gap stays 0."""
+        """Nodes with both bounds inactive, (k,) int32, where the gap is 0."""
         inside = (pressure > self.lower) & (pressure < self.upper)
         return np.flatnonzero(inside).astype(np.int32)
 
     def reached_by(self, pressure: np.ndarray, rounding: float = 0.0) -> bool:
-        """True if a pressure, (n,), comes to the upper bound anywhere, but for rounding."""
+        """True if a pressure, (n,), reaches the upper bound anywhere, up to rounding."""
         return bool((pressure >= (1 - rounding) * self.upper).any())
 
     def over(self, unit: float) -> "Bounds":
-        """The same in another unit of pressure."""
+        """Bounds in another unit of pressure."""
         return Bounds(self.lower / unit, self.upper / unit)
 
     def at(self, nodes: np.ndarray) -> "Bounds":
@@ -85,14 +83,14 @@ class Bounds:
         return np.broadcast_to(lower, (n,)), np.broadcast_to(upper, (n,))
 
     def coarser(self, shape: tuple[int, int]) -> "Bounds":
-        """Bounds on the grid twice as coarse as one of a shape.
+        """Bounds on the grid twice as coarse as one of a ``shape``.
 
-        In units of the fine grid the same pressure displaces cells twice as wide twice as much:
-        its number is doubled there. A cell carries what its nodes do together.
+        In units of the fine grid a pressure displaces cells twice as wide twice as much: its number
+        is doubled there. A cell carries the sum of its nodes.
         """
         if self.uniform:
             return Bounds(2 * self.lower, 2 * self.upper)
         on_nodes = (
-            np.ascontiguousarray(each).reshape(shape) for each in self.on(shape[0] * shape[1])
+            np.ascontiguousarray(bound).reshape(shape) for bound in self.on(shape[0] * shape[1])
         )
-        return Bounds(*(restrict_sum(each).ravel() / 2 for each in on_nodes))
+        return Bounds(*(restrict_sum(bound).ravel() / 2 for bound in on_nodes))

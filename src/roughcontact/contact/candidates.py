@@ -1,13 +1,13 @@
-"""Candidates for contact: where few nodes can touch, the problem is solved on these alone.
+"""Candidates for contact: if few nodes can touch, the problem is solved on these alone.
 
 Displacements are nowhere negative, as neither the influence nor the pressures are. So a node whose
-clearance at first touch exceeds the closure has a gap, whatever the pressures: it need not be
-looked at, neither in the search nor in the verification. The others are the candidates. Under a
-given force the closure is not known before: candidates are chosen by a bound on it, from the next
-coarser grid, and chosen anew if the solution turns out to be beyond the bound. Where they are few,
-an operator between them takes the place of the convolution, and no array of the window's size is
-made: pair by pair where pairs are few, else a fast multipole method (`operator`, `elastic.direct`,
-`elastic.multipole`). Nested iteration goes on as always, with candidates on each of its grids.
+clearance at first touch exceeds the closure has a gap, whatever the pressures, and is left out of
+the search and of the verification. The others are the candidates. Under a given force the closure
+is not known beforehand: candidates are chosen by a bound on it, from the next coarser grid, and
+chosen again if the solution exceeds the bound. If they are few, an operator between them replaces
+the convolution, and no array of the window's size is made: pair by pair for few pairs, else a fast
+multipole method (`operator`, `elastic.direct`, `elastic.multipole`). Nested iteration proceeds as
+usual, with candidates on each of its grids.
 """
 
 import math
@@ -37,38 +37,38 @@ from .operator import Operator
 from .preconditioner import forget_preconditioner
 from .topography import Topography
 
-#: On windows of fewer nodes along the shorter side a convolution takes no longer; on coarser grids
-#: of larger ones the few candidates of light contact take less than the kernel's spectrum.
+#: Fewest nodes along the shorter side of a window, and of its coarser grids, for candidates. In
+#: smaller windows a convolution takes no longer; on the coarser grids of larger ones the few
+#: candidates of light contact take less time than the kernel's spectrum.
 MIN_WINDOW, MIN_SIDE = 512, 64
-#: Tighter tolerances are left to the convolution: this is some hundred times the error of the
-#: operator between candidates.
+#: Tightest tolerance for candidates, some hundred times the error of the operator between them.
 MIN_RTOL = 1e-8
-#: Candidates are those whose clearance is below a given closure times this: nodes that may or may
-#: not touch within the tolerance are among them.
+#: Candidates have a clearance below the given closure times this, so that all nodes that may touch
+#: within the tolerance are among them.
 MARGIN = 1.01
-#: The bound on the closure under a given force is that of the coarser grid, increased by the margin
-#: and by this many times what it increased by to there (on the coarsest, by a fraction). Or it is
-#: that of another load in proportion to the force, which rises faster than the closure, or of a
-#: solution beyond the bound, times a factor.
+#: Bound on the closure under a given force: the closure of the coarser grid, increased by the
+#: margin and by GROWTH times its last increase (FIRST_GROWTH on the coarsest); or FROM_LOAD times
+#: the closure of another load, in proportion to the force, which rises faster than the closure; or
+#: FURTHER times the closure of a solution beyond the bound.
 GROWTH, FIRST_GROWTH, FROM_LOAD, FURTHER = 1.5, 0.25, 1.02, 1.1
-#: A load step on the whole window has help from coarser grids: it is restricted only if an
-#: application is this many times cheaper.
+#: A load step is restricted only if an application is this many times cheaper, since coarser grids
+#: speed up a load step on the whole window.
 STEP_GAIN = 2.0
-#: Where more of the nodes than this are candidates it is not asked what the operator would take.
+#: Largest fraction of the nodes for which the cost of the operator is estimated at all.
 MAX_CANDIDATES = 0.15
-#: Nor where they are no more than this. Pairs of so few nodes are then summed one by one: in double
-#: precision always, in single precision up to the MAX_PAIRS of `elastic.direct`, which are reached
-#: by 387 nodes that are all loaded. Beyond these the multipole operator has few blocks.
+#: Candidates up to which the cost is not estimated. Pairs of so few nodes are summed one by one: in
+#: double precision always, in single precision up to the MAX_PAIRS of `elastic.direct`, which 387
+#: loaded nodes reach. Beyond these the multipole operator has few blocks.
 FEW = 500
-#: A batch of the operator takes as long as a convolution where nodes times their log2 is this many,
-#: and solves on candidates take some more applications: measured from 512 x 512 to 2048 x 2048, at
-#: 1 to 5 % in contact.
+#: Cost of a batch of the operator, in units of a convolution's n log2(n); it includes the few more
+#: applications of a solve on candidates. Measured from 512 x 512 to 2048 x 2048 at 1 to 5 % in
+#: contact.
 BATCH = 900.0
 
 
 @dataclass(frozen=True)
 class LoadCase:
-    """A topography under a load, on the grid that is asked for and on coarser ones.
+    """Topography under a load, on its own grid or on a coarser one.
 
     Attributes
     ----------
@@ -77,13 +77,12 @@ class LoadCase:
     length : float
         Unit of length, mm.
     load : float
-        The closure, or the sum of the pressures, in units as in `Problem`.
+        The closure, or if ``by_force`` the sum of the pressures, in the units of `Problem`.
     by_force : bool
-        Which of the two.
     bounds : Bounds
-        Of the pressure, the same on all nodes wherever candidates are chosen.
+        Bounds of the pressure, uniform wherever candidates are chosen.
     level : int
-        How many times coarser than that of the topography the grid is, as a power of two.
+        log2 of the cell side, relative to the topography's.
     """
 
     space: HalfSpace
@@ -95,7 +94,7 @@ class LoadCase:
     level: int = 0
 
     def coarser(self) -> "LoadCase":
-        """The same on a grid twice as coarse."""
+        """Same case on the grid twice as coarse."""
         return replace(
             self,
             space=self.space.coarser(2),
@@ -105,7 +104,7 @@ class LoadCase:
         )
 
     def problem(self) -> Problem:
-        """The problem on the whole window."""
+        """Problem on the whole window."""
         clearance = self.topography.clearance(self.level).ravel() / self.length
         return Problem(self.space, clearance, self.load, self.by_force, self.bounds)
 
@@ -113,8 +112,8 @@ class LoadCase:
     def least_closure(self) -> float:
         """Lower bound on the closure of a given force: that of the bearing area that can carry it.
 
-        No node carries more than its bound, and what touches has no more clearance than the
-        closure, as displacements are nowhere negative. 0 without an upper bound.
+        No node carries more than its upper bound, and nodes in contact have no more clearance than
+        the closure, as displacements are nowhere negative. 0 without an upper bound.
         """
         if not self.by_force or self.bounds.elastic:
             return 0.0
@@ -125,15 +124,10 @@ class LoadCase:
     def restricted(
         self, bound: float, cells: np.ndarray | None, gain: float = 1.0
     ) -> "Restricted | None":
-        """The problem on candidates of a bound on the closure, if that takes less time.
+        """Problem on the candidates of a ``bound`` on the closure; None if it saves no time.
 
-        Parameters
-        ----------
-        bound : float
-        cells : (m,) int32 ndarray or None
-            Cells of the next coarser grid that hold all candidates.
-        gain : float
-            How many times less an application has to take.
+        ``cells``, (m,) int32, are cells of the next coarser grid that hold all candidates; an
+        application must be ``gain`` times cheaper than a convolution.
         """
         total = self.space.shape[0] * self.space.shape[1]
         if self.load > MAX_CANDIDATES * total * self.bounds.upper and self.by_force:
@@ -155,16 +149,7 @@ class LoadCase:
 
 @dataclass
 class Restricted:
-    """A problem on candidates.
-
-    Attributes
-    ----------
-    problem : Problem
-        On its nodes alone, the candidates.
-    bound : float
-        All nodes of smaller clearance are candidates.
-    operator : Operator
-    """
+    """Problem on candidates: all nodes whose clearance is below ``bound``."""
 
     problem: Problem
     bound: float
@@ -172,33 +157,28 @@ class Restricted:
 
     @property
     def nodes(self) -> np.ndarray:
-        """The candidates, (n,) int32: numbers of cells, ascending."""
-        assert self.problem.nodes is not None  # it is on these alone
+        """Candidates, (n,) int32: ascending numbers of cells."""
+        assert self.problem.nodes is not None  # a restricted problem has them
         return self.problem.nodes
 
     def holds(self, solution: Solution) -> bool:
-        """True if no node that is not a candidate can touch, within the tolerance either."""
+        """True if no other node can touch, within the tolerance either."""
         return not self.problem.by_force or solution.closure * MARGIN <= self.bound
 
 
 def may_restrict(space: HalfSpace, rtol: float) -> bool:
-    """True if the window is so large, and the tolerance such, that candidates may pay.
+    """True if the window and the tolerance are large enough for candidates.
 
-    Not of windows that go on beyond their edges: their displacements are negative somewhere.
+    Windows that continue beyond their edges are excluded: some displacements are negative.
     """
     large = space.is_free and min(space.shape) >= MIN_WINDOW
     return large and MIN_RTOL <= rtol < MARGIN - 1 and multipole_suits(space)
 
 
 def solve_nested(case: LoadCase, rtol: float) -> tuple[Problem, Solution]:
-    """Cold solve by nested iteration, on candidates wherever that takes less time.
+    """Cold solve by nested iteration, on candidates wherever that saves time.
 
-    Returns
-    -------
-    problem : Problem
-        What was solved: on candidates, or on the whole window.
-    solution : Solution
-        The caller checks its residual.
+    Returns the problem as it was solved, and its solution; the caller checks the residual.
     """
     start = _start(case)
     if start.restricted is None:
@@ -215,20 +195,8 @@ def solve_restricted(
 ) -> tuple[Problem, Solution]:
     """Solve on candidates, and on more of them while the closure exceeds their bound.
 
-    Parameters
-    ----------
-    case : LoadCase
-    restricted : Restricted
-    start : (n,) ndarray
-        On the candidates; may be overwritten.
-    displacement : (n,) ndarray or None
-        K of it, where known.
-    rtol : float
-
-    Returns
-    -------
-    problem : Problem
-    solution : Solution
+    ``start``, (n,), is on the candidates and may be overwritten; ``displacement`` is K of it, if
+    known. Returns as `solve_nested`.
     """
     applications = 0
     while True:
@@ -254,10 +222,7 @@ def solve_restricted(
 
 @dataclass
 class _Start:
-    """The problem of a grid, restricted or not, and where its solve starts.
-
-    And the closure of the next coarser grid, where there is one.
-    """
+    """Problem of a grid, its start, and the closure of the next coarser grid, if there is one."""
 
     problem: Problem
     restricted: Restricted | None
@@ -266,7 +231,7 @@ class _Start:
 
 
 def _start(case):
-    """The start on a grid: from the solution on the next coarser one, restricted likewise."""
+    """Start on a grid from the solution on the next coarser one, which is restricted likewise."""
     if min(case.space.shape) < MIN_SIDE:
         problem = case.problem()
         return _Start(problem, None, nested_iteration_start(problem))
@@ -281,7 +246,7 @@ def _start(case):
     if coarse_case.bounds.reached_by(solution.pressure):
         growth = case.least_closure - coarse_case.least_closure
         bound = max(bound, MARGIN * (solution.closure + growth))
-    # Whatever is a candidate here lies in a cell that is one of the same bound there.
+    # Each candidate lies in a coarse cell that is a candidate of the same bound there.
     if coarse.restricted is not None and bound <= coarse.restricted.bound:
         cells = coarse.restricted.nodes[coarse.problem.clearance < bound]
     else:
@@ -305,7 +270,7 @@ def _start(case):
 
 
 def _bound(case, closure, coarser_closure):
-    """Bound of the closure from those of the two next coarser grids."""
+    """Bound on the closure from the closures of the two next coarser grids."""
     if not case.by_force:
         return MARGIN * case.load
     growth = closure / coarser_closure - 1 if np.isfinite(coarser_closure) else FIRST_GROWTH
@@ -313,9 +278,9 @@ def _bound(case, closure, coarser_closure):
 
 
 def _prolonged(case, cells, pressure, nodes):
-    """Pressure of some nodes from that of coarse cells: as `prolong` does.
+    """Pressure of some nodes, prolonged from coarse cells as `prolong` does.
 
-    Memory is taken for the neighbourhood of these cells alone.
+    Only the neighbourhood of these cells takes memory.
     """
     ny, nx = case.space.shape
     my, mx = (ny + 1) // 2, (nx + 1) // 2

@@ -1,14 +1,13 @@
 """Coarse correction of the preconditioner for smooth pressures (balancing, two-level Schwarz).
 
-What the sparse factor gets wrong is smooth: it displaces too little, that is, is too stiff, under
-widespread pressures. Balancing (J. Mandel, Balancing domain decomposition, Comm. Numer. Methods
-Eng. 9 (1993) 233) solves what a few coarse basis functions on the contact set can resolve with the
-elastic operator between them, and leaves to the factor only what remains. With P the bilinear
-interpolation from a coarse grid to the contact set and Y piecewise bilinear functions (hats) on
-that grid, the basis is Z = P Y, and the operator is taken as P K_c P' + D: K_c on the coarse grid,
-D what is then missing of each node's displacement under its own load. Numbers are small here, and
-loops are compiled: a library of linear algebra would set its own threads spinning beside those of
-the transforms.
+The error of the sparse factor is smooth: it displaces too little under widespread pressures.
+Balancing (J. Mandel, Balancing domain decomposition, Comm. Numer. Methods Eng. 9 (1993) 233) solves
+the part that a few coarse basis functions on the contact set can resolve, with the elastic operator
+between them, and leaves the rest to the factor. With P the bilinear interpolation from a coarse
+grid to the contact set and Y piecewise bilinear functions on that grid, the basis is Z = P Y, and
+the operator is approximated by P K_c P' + D: K_c on the coarse grid, and D the part of each node's
+displacement under its own load that P K_c P' lacks. Matrices are small here and loops compiled: the
+threads of a linear-algebra library would compete with those of the transforms.
 """
 
 from collections.abc import Callable
@@ -20,18 +19,18 @@ from ..kernel_cache import njit
 from .dense import inverted, times
 from .node_sets import check_nodes, check_on_set, symmetric_difference
 
-#: A coarse cell is this many fine ones across, or so much larger by powers of two that the coarse
-#: grid has no more than COARSE cells along a side.
+#: Fine cells along a coarse cell, doubled until the coarse grid has at most COARSE cells along a
+#: side.
 FINEST_STEP, COARSE = 8, 64
-#: Fine cells between coarse basis functions; the factor is right about what varies within them.
+#: Fine cells between coarse basis functions; variations over less are left to the factor.
 BASIS_SPACING = 80
 #: Most basis functions along a side: their number squared is the size of a dense matrix.
 MAX_ALONG_SIDE = 17
-#: Added to the coarse matrix, fractions of each and of its largest diagonal: basis functions that
-#: hold few nodes may nearly coincide.
+#: Ridge of the coarse matrix, as fractions of each diagonal entry and of the largest: basis
+#: functions with few nodes may nearly coincide.
 RIDGE, MIN_RIDGE = 1e-4, 1e-6
-#: The coarse operator is made anew where more than this fraction of the nodes around any one basis
-#: function changed: out of date on a few nodes that stand alone it makes them cycle.
+#: Largest fraction of changed nodes around any basis function before the coarse operator is
+#: rebuilt: an outdated operator makes a few isolated nodes cycle.
 LAG = 0.25
 
 
@@ -44,11 +43,11 @@ class CoarseCorrection:
             step *= 2
         self._coarse = space.coarser(step)
         self._step, self._shape = step, space.shape
-        # A load on a coarse cell is a pressure 1/step^2 of it there, on cells step times as wide.
+        # A load on a coarse cell is 1/step^2 of its pressure, on a cell step times as wide.
         self._factor = np.float32(1 / step)
         near = np.zeros((2, 2))
-        known = self._coarse.near_influence(2)
-        near[: known.shape[0], : known.shape[1]] = known
+        influence = self._coarse.near_influence(2)
+        near[: influence.shape[0], : influence.shape[1]] = influence
         self._near = (near * self._factor).astype(np.float32)
         self._own = np.float32(space.near_influence(1)[0, 0])
         self._counts = _basis_counts(self._coarse, max(space.shape))
@@ -57,19 +56,9 @@ class CoarseCorrection:
         self._made_for = np.empty(0, np.int32)
 
     def update(self, nodes: np.ndarray, fresh: bool) -> None:
-        """Take another contact set; the operator is rebuilt if it differs too much.
+        """Move to another contact set, (n,) int32 ascending numbers of cells.
 
-        Parameters
-        ----------
-        nodes : (n,) int32 ndarray
-            Nodes as numbers of cells, ascending.
-        fresh : bool
-            Whether to make it anew in any case.
-
-        Raises
-        ------
-        ValueError
-            If they are no such numbers.
+        The coarse operator is rebuilt if ``fresh``, or if the set differs too much (`LAG`).
         """
         check_nodes(nodes, self._shape)
         self._cells, self._weights = _interpolation(
@@ -81,7 +70,7 @@ class CoarseCorrection:
             self._make_operator()
 
     def forget(self) -> None:
-        """Make the operator anew at the next update."""
+        """Rebuild the operator at the next update."""
         self._made_for = np.empty(0, np.int32)
 
     def _make_operator(self):
@@ -98,22 +87,9 @@ class CoarseCorrection:
     def balance(
         self, residual: np.ndarray, inverse: Callable[[np.ndarray], np.ndarray]
     ) -> np.ndarray:
-        """An approximate inverse, balanced; symmetric and positive definite if it is.
+        """Balanced approximate inverse applied to a residual, (n,) float32 on the contact set.
 
-        Parameters
-        ----------
-        residual : (n,) float32 ndarray
-        inverse : callable
-            From (n,) float32 to (n,) float32.
-
-        Returns
-        -------
-        (n,) float32 ndarray
-
-        Raises
-        ------
-        ValueError
-            If the residual is not one on the contact set.
+        It is symmetric and positive definite if ``inverse`` is.
         """
         check_on_set(residual, self._missing.size)
         mesh = self._cells, self._weights, self._missing
@@ -130,24 +106,24 @@ class CoarseCorrection:
 
 
 def _basis_counts(coarse, cells):
-    """Basis functions along y and x, spread evenly along ``cells`` of the longer side."""
+    """Number of basis functions along y and x, evenly spaced; ``cells`` along the longer side."""
     sides = [n * d for n, d in zip(coarse.shape, coarse.spacing, strict=True)]
     spacing = max(sides) / (min(round(cells / BASIS_SPACING) + 1, MAX_ALONG_SIDE) - 1)
     return tuple(max(2, round(side / spacing) + 1) for side in sides)
 
 
 def _basis_functions(coarse, counts):
-    """(functions, coarse cells): piecewise bilinear functions, this many along y and x."""
+    """Piecewise bilinear functions, (functions, coarse cells), ``counts`` along y and x."""
     along = []
     for n, k in zip(coarse.shape, counts, strict=True):
-        at = (np.arange(n) + 0.5) / n * (k - 1)
-        along.append(np.maximum(0, 1 - np.abs(at - np.arange(k)[:, None])))
+        positions = (np.arange(n) + 0.5) / n * (k - 1)
+        along.append(np.maximum(0, 1 - np.abs(positions - np.arange(k)[:, None])))
     basis = np.einsum("ay,bx->abyx", *along)
     return np.ascontiguousarray(basis.reshape(-1, coarse.shape[0] * coarse.shape[1]), np.float32)
 
 
 def _extents(basis):
-    """First and one past the last row and column of each function and the cells next to it."""
+    """First and last row and column (exclusive) of each function with its adjacent cells."""
     ends = []
     for along in (basis.any(axis=2), basis.any(axis=1)):
         n = along.shape[1]
@@ -158,7 +134,7 @@ def _extents(basis):
 
 @njit(cache=True)
 def _interpolation(nodes, nx, step, coarse_y, coarse_x):
-    """The four coarse cells between which each node lies, and its weight in each."""
+    """The four coarse cells around each node, and its weight in each."""
     cells = np.empty((nodes.size, 4), np.int32)
     weights = np.empty((nodes.size, 4), np.float32)
     for i in range(nodes.size):
@@ -177,7 +153,7 @@ def _interpolation(nodes, nx, step, coarse_y, coarse_x):
 
 @njit(cache=True)
 def _missing(weights, near, own):
-    """D: displacement of a node under its own load, less that on the coarse grid."""
+    """D: displacement of a node under its own load, minus that on the coarse grid."""
     missing = np.empty(weights.shape[0], np.float32)
     for i in range(missing.size):
         a, b, c, d = weights[i]
@@ -192,8 +168,8 @@ def _missing(weights, near, own):
 
 @njit(cache=True, fastmath=True)
 def _mass_matrices(cells, weights, missing, coarse_y, coarse_x):
-    """P'P and P'DP: for every coarse cell its products with the eight around it and itself."""
-    # First between the corners of each square of coarse cells, named after the first.
+    """P'P and P'DP as nine-point stencils of the coarse cells."""
+    # Products between the corners of each square of coarse cells, indexed by its first cell.
     squares = np.zeros((coarse_y * coarse_x, 2, 4, 4), np.float32)
     for i in range(cells.shape[0]):
         square = squares[cells[i, 0]]
@@ -204,7 +180,7 @@ def _mass_matrices(cells, weights, missing, coarse_y, coarse_x):
                 square[1, a, b] += product * missing[i]
     masses = np.zeros((2, 3, 3, coarse_y * coarse_x), np.float32)
     for first in range(squares.shape[0]):
-        # Corners beyond a grid of one row or column have no weight.
+        # Corners outside a grid of one row or column have no weight.
         if squares[first, 0].any():
             for a in range(4):
                 cell = first + a // 2 * coarse_x + a % 2
@@ -234,13 +210,13 @@ def _nine_point_products(stencil, basis, extents):
 
 @njit(cache=True, fastmath=True)
 def _products(local, fields, extents):
-    """Products of fields that vanish outside their extents with others, (n, n) float64.
+    """Products of functions that vanish outside their extents with other fields, (n, n) float64.
 
-    What is summed is float32.
+    Sums are in float32.
     """
     out = np.empty((local.shape[0], fields.shape[0]))
     for i in range(out.shape[0]):
-        # Whole rows: as one piece of memory they take less time than their parts.
+        # Whole rows, since contiguous memory is faster than the parts within the extent.
         first, last = extents[i, 0], extents[i, 1]
         own = local[i, first:last].reshape(-1)
         for j in range(out.shape[1]):
@@ -254,7 +230,7 @@ def _products(local, fields, extents):
 
 @njit(cache=True, fastmath=True)
 def _ridged_inverse(matrix):
-    """Inverse of the symmetric part with the ridge, float32."""
+    """Inverse of the symmetric part plus the ridge, float32."""
     n = matrix.shape[0]
     inverse = (matrix + matrix.T) / 2
     largest = np.max(np.diag(inverse))
@@ -308,7 +284,7 @@ def _add_prolonged(cells, weights, missing, field, values):
 
 
 def _most_changed(first, second, shape, counts):
-    """Of two sets together, the fraction that differs around the function where it is most."""
+    """Largest fraction of nodes around one basis function by which two sets differ."""
     changed = _around_functions(symmetric_difference(first, second), shape, counts)
     both = _around_functions(first, shape, counts) + _around_functions(second, shape, counts)
     return np.max(2 * changed / np.maximum(both + changed, 1))

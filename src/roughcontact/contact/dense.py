@@ -1,4 +1,4 @@
-"""Small dense matrices, compiled: a library of linear algebra would have threads of its own."""
+"""Small dense matrices in compiled loops; a linear-algebra library would start its own threads."""
 
 import numpy as np
 
@@ -7,7 +7,7 @@ from ..kernel_cache import njit
 
 @njit(cache=True, fastmath=True)
 def inverted(matrix: np.ndarray) -> np.ndarray:
-    """Inverse by elimination; a positive definite matrix needs no pivots."""
+    """Inverse by elimination without pivots, for positive definite matrices."""
     inverse = matrix.copy()
     n = inverse.shape[0]
     if inverse.shape[1] != n:

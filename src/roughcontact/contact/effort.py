@@ -1,4 +1,4 @@
-"""Effort of a process on contact solves, for the log of its job. Nothing else reads it."""
+"""Number and time of a process's contact solves, for the log of its job only."""
 
 import contextlib
 import os
@@ -8,25 +8,19 @@ from collections.abc import Iterator
 
 
 class Effort:
-    """Contact problems solved and the seconds they took, of all threads together.
-
-    Attributes
-    ----------
-    problems : int
-    seconds : float
-    """
+    """Number of contact problems solved and seconds spent, of all threads together."""
 
     def __init__(self):
         self.problems, self.seconds = 0, 0.0
         self.renew_lock()
 
     def renew_lock(self) -> None:
-        """Make a new lock in a fork, where a lock of another thread is never released."""
+        """New lock for a fork, in which a lock held by another thread is never released."""
         self._lock = threading.Lock()
 
     @contextlib.contextmanager
     def counted(self, problems: int) -> Iterator[None]:
-        """Count the problems and seconds of a block."""
+        """Context that counts problems and the seconds of its block."""
         begin = time.perf_counter()
         try:
             yield
@@ -37,6 +31,6 @@ class Effort:
                 self.seconds += seconds
 
 
-#: Of this process.
+#: Effort of this process.
 SOLVING = Effort()
 os.register_at_fork(after_in_child=SOLVING.renew_lock)

@@ -1,4 +1,4 @@
-"""First and last iterates: a start brought near the load, and an iterate within its bounds."""
+"""First and last iterates: a start scaled to the load, and an iterate within its bounds."""
 
 import numpy as np
 
@@ -11,19 +11,11 @@ from .projected_cg import CLIPPING_PASSES
 def first_iterate(
     problem: Problem, operator: Operator, pressure: np.ndarray, displacement: np.ndarray | None
 ) -> Iterate:
-    """A start brought near the load, with its displacement and its closure.
+    """Start scaled to the load, with its displacement and closure.
 
-    It may violate the bounds. Under a given force the sum of its positive pressures is the force;
-    what negative ones take off, the first step makes up.
-
-    Parameters
-    ----------
-    problem : Problem
-    operator : Operator
-    pressure : (n,) ndarray
-        It may become part of the iterate, and so may the displacement.
-    displacement : (n,) ndarray or None
-        K of it, where known.
+    It may violate the bounds. Under a given force its positive pressures sum to the force; the
+    first step corrects for the negative ones. ``pressure``, (n,), and its ``displacement``, if
+    known, may become part of the iterate.
     """
     if problem.by_force:
         pressure, displacement = _scaled_to_force(problem, operator, pressure, displacement)
@@ -39,11 +31,11 @@ def first_iterate(
 def verified(
     problem: Problem, operator: Operator, iterate: Iterate, dtype: type = np.float64
 ) -> Solution:
-    """The iterate projected on its bounds, with a displacement in double precision.
+    """Iterate projected on its bounds, with its displacement in double precision.
 
-    Or of another ``dtype``: float32 is enough for what is but a start on a finer grid. Under a
-    given force it is also scaled to that, as far as the bounds allow. Whoever asks for it reads
-    from the ``residual`` whether it is a state of contact.
+    A ``dtype`` of float32 is enough for a solution that is only a start on a finer grid. Under a
+    given force the pressure is also scaled to it, as far as the bounds allow. The ``residual`` says
+    whether it is a state of contact.
     """
     closure, lacking = iterate.closure, 0.0
     pressure = problem.bounds.clip(iterate.pressure)
@@ -54,25 +46,25 @@ def verified(
         lacking = abs(1 - pressure.sum() / problem.load)
     if dtype is np.float64:
         displacement = operator(pressure)
-    else:  # in units of their largest, as no pressure may be beyond what single precision holds
+    else:  # divided by the largest pressure, which single precision might not represent
         unit = float(pressure.max(initial=0.0)) or 1.0
         displacement = unit * operator((pressure / unit).astype(dtype)).astype(float)
     if problem.by_force:
         closure = problem.closure_at_force(pressure, displacement)
     kkt = kkt_residual(pressure, displacement, problem.clearance, closure, problem.bounds)
-    found = Solution(pressure, displacement, closure, lacking, operator.applications)
-    found.residual = max(kkt.largest / problem.tolerated(found), lacking)
-    return found
+    solution = Solution(pressure, displacement, closure, lacking, operator.applications)
+    solution.residual = max(kkt.largest / problem.tolerated(solution), lacking)
+    return solution
 
 
 def _scaled_to_force(problem, operator, pressure, displacement):
-    """The start, its positive part scaled to the force; no displacement where that is not all."""
+    """Start with its positive part scaled to the force; without displacement if it was clipped."""
     total = np.maximum(pressure, 0.0).sum()
     if not total > 0:
         return problem.first_touch(), None
     factor, bounds = problem.load / total, problem.bounds
     if (pressure * factor > bounds.upper).any():
-        # What the loaded nodes cannot carry, the first step gives to the next ones to touch.
+        # The first step gives the force beyond the loaded nodes' bounds to the next nodes.
         pressure = bounds.clip(pressure)
         _scale_to(problem.load, pressure, *bounds.on(pressure.size))
         return pressure, None
@@ -82,7 +74,7 @@ def _scaled_to_force(problem, operator, pressure, displacement):
 def _energy_factor(problem, pressure, displacement):
     """Energy-minimising scale of a start at given closure.
 
-    On a coarse grid, of which each cell has its highest point, too much is carried.
+    Coarse cells have the height of their highest node, so that a prolonged start carries too much.
     """
     work = pressure @ displacement
     if problem.by_force or not work > 0:
@@ -95,9 +87,9 @@ def _energy_factor(problem, pressure, displacement):
 
 @njit(cache=True)
 def _scale_to(total, pressure, lower, upper):
-    """Scale a pressure, as far as it is above its lower bounds, to a total in place.
+    """Scale a pressure above its lower bounds to a total, in place.
 
-    Less than the total is left only where all that was above them is at the upper ones.
+    The total is missed only if all pressures above their lower bounds reach the upper ones.
     """
     passes, reached = 0, True
     while reached or passes < CLIPPING_PASSES:

@@ -1,10 +1,10 @@
 """Full approximation scheme (FAS): change of a known state under a new load, on coarser grids.
 
 A coarse grid resolves how contact spreads over distances for which iterations on the fine one take
-several applications of K. What it does not resolve is the state itself. So its problem is such that
-the restricted pressure of the known state leaves the restricted gaps of it, and only the change is
-taken from the solution (A. Brandt, Multi-level adaptive solutions to boundary-value problems, Math.
-Comput. 31 (1977) 333). If the known state already were that of the new load, nothing would change.
+several applications of K, but not the state itself. Its problem is therefore constructed so that
+the restricted pressure of the known state leaves the restricted gaps, and only the change is taken
+from its solution (A. Brandt, Multi-level adaptive solutions to boundary-value problems, Math.
+Comput. 31 (1977) 333). If the known state already solves the new load, nothing changes.
 """
 
 import numpy as np
@@ -21,42 +21,34 @@ from .nested_iteration import (
 from .preconditioner import forget_preconditioner
 from .restriction import restrict_minimum, restrict_sum
 
-# Least nodes along the shorter side: on smaller windows the coarse solves cost as much as the
+# Fewest nodes along the shorter side: in smaller windows the coarse solves cost as much as the
 # applications they save.
 MIN_FINE_SIDE = 768
-# No coarser grid has fewer.
+# Fewest nodes along the shorter side of the coarsest grid.
 MIN_COARSE_SIDE = 96
-# Starts that violate the conditions by no more, as a fraction of the closure, are left as they are:
-# coarse solutions are hardly nearer.
+# Largest violation, as a fraction of the closure, of a start that is left unchanged: coarse
+# solutions are hardly closer.
 WORTHWHILE = 1e-2
-# A change is found to this on coarser grids, nearer than a cold start. What is left of it takes
+# Tolerance of the change on coarser grids, tighter than that of a cold start: its error takes
 # applications on the fine grid.
 CHANGE_RTOL = 1e-2
-# Extrapolated from two states, a pressure at its bound in both may miss it by rounding.
+# Rounding by which a pressure that is at its bound in two states may miss it when extrapolated.
 CAP_ROUNDING = 1e-9
 
 
 def full_approximation_start(
     problem: Problem, pressure: np.ndarray, displacement: np.ndarray
 ) -> np.ndarray | None:
-    """Start from a known state: its pressure, changed for the load on coarser grids.
+    """Start from a known state: its pressure, (n,), changed for the load on coarser grids.
 
-    Parameters
-    ----------
-    problem : Problem
-    pressure, displacement : (n,) ndarray
-        Of the known state, perhaps extrapolated; K of the first is the second.
-
-    Returns
-    -------
-    (n,) ndarray or None
-        Within its bounds; None if the grid is too small, or the change, for this to be worth while,
-        and where nodes yield: those of one cell then differ in gap, which restriction cannot keep.
+    ``displacement`` is K of the ``pressure``; both may be extrapolated. None if the grid or the
+    change is too small to be worth while, and if nodes yield: the gaps of a cell's nodes then
+    differ, which restriction cannot keep.
     """
     if min(problem.space.shape) < MIN_FINE_SIDE:
         return None
     if not (problem.by_force or problem.space.is_free):
-        return None  # the coarse grid might not have that closure (`Problem.coarser`)
+        return None  # the coarse grid may not reach that closure (`Problem.coarser`)
     clearance, bounds = problem.clearance, problem.bounds
     mean = mean_closure(pressure, displacement, clearance, bounds)
     if bounds.reached_by(pressure, CAP_ROUNDING) or not np.isfinite(mean):
@@ -69,10 +61,10 @@ def full_approximation_start(
 
 
 def _changed_pressure(problem, pressure, gap, closure):
-    """The same for a state with known ``gap`` at a ``closure``."""
+    """Changed pressure for a state with known ``gap`` at a ``closure``."""
     shape, space = problem.space.shape, problem.space.coarser(2)
     before, gap = problem.bounds.clip(pressure).reshape(shape), gap.reshape(shape)
-    # Twice the mean of four is what a pressure is there: `coarser_load`.
+    # The number of a pressure is twice the mean of its four nodes there: see `Bounds.coarser`.
     coarse_before, coarse_gap = restrict_sum(before) / 2, restrict_minimum(gap)
     displacement = _displacement(space, coarse_before)
     clearance = (coarse_gap + closure).ravel() - displacement
@@ -94,7 +86,7 @@ def _changed_pressure(problem, pressure, gap, closure):
 
 
 def _displacement(space: HalfSpace, pressure: np.ndarray) -> np.ndarray:
-    """K of a pressure, (n,), in single precision: enough for a coarse clearance and for a start."""
+    """K of a pressure, (n,), in single precision: enough for a coarse clearance or a start."""
     pressure = pressure.reshape(space.shape).astype(np.float32)
     return space.convolve(pressure).astype(float).ravel()
 
@@ -103,8 +95,8 @@ def _displacement(space: HalfSpace, pressure: np.ndarray) -> np.ndarray:
 def _in_proportion(before, old, new, padded):
     """Change of a fine pressure in proportion to its cells; uniform where it was zero.
 
-    It is put into an array of zeros with two nodes more on each side. What stays zero is not
-    written: of an array as large as this that takes as long as all the rest.
+    It is written into an array of zeros with two more nodes on each side. Zeros are not written,
+    since writing to all of so large an array takes as long as all the rest.
     """
     ny, nx = before.shape
     for i in range(old.shape[0]):

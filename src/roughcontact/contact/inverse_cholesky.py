@@ -1,15 +1,15 @@
 """Sparse inverse-Cholesky factor of the elastic operator on a contact set.
 
 The influence of a load falls as 1/r, as a covariance may, and its inverse on a set of nodes falls
-much faster: given the displacements around a node, those further away hardly matter for its
-pressure. So the factor U of K^-1 = U U' is nearly sparse. Nodes are ordered from coarse to fine, by
-blocks of 1, 2, 4, ... cells of which each has one representative; a node is conditioned on those
-that precede it within a neighbourhood of a few blocks of its own level. On these the small dense
-problem is solved exactly, which minimises the Kullback-Leibler divergence among all factors of that
-sparsity (F. Schaefer, M. Katzfuss and H. Owhadi, Sparse Cholesky factorization by Kullback-Leibler
-minimization, SIAM J. Sci. Comput. 43 (2021) A2019; in geostatistics, Vecchia's approximation: A. V.
-Vecchia, J. R. Stat. Soc. B 50 (1988) 297). Sixteen nodes are solved side by side, one in each lane
-of the processor's SIMD vectors; `tests/support/plain_twins.py` has the same in plain loops.
+much faster: given the displacements around a node, nodes further away hardly affect its pressure.
+So the factor U of K^-1 = U U' is nearly sparse. Nodes are ordered from coarse to fine, by blocks of
+1, 2, 4, ... cells with one representative each. A node is conditioned on the nodes that precede it
+within a neighbourhood of a few blocks of its own level. On these the small dense problem is solved
+exactly, which minimises the Kullback-Leibler divergence among all factors of that sparsity (F.
+Schaefer, M. Katzfuss and H. Owhadi, Sparse Cholesky factorization by Kullback-Leibler minimization,
+SIAM J. Sci. Comput. 43 (2021) A2019; in geostatistics, Vecchia's approximation: A. V. Vecchia, J.
+R. Stat. Soc. B 50 (1988) 297). Sixteen nodes are solved side by side, one in each lane of the
+processor's SIMD vectors; `tests/support/plain_twins.py` has the same in plain loops.
 """
 
 import numpy as np
@@ -20,45 +20,42 @@ from ..elastic.simd import WIDTH, load, store
 from ..kernel_cache import njit
 from .node_sets import check_on_set, symmetric_difference
 
-#: Neighbourhood sizes: blocks along a row in which preceding nodes condition a node, so far to each
-#: side of its own, in the rows 0, 1, 2 from it. A larger one saves hardly an application and costs
-#: more.
+#: Neighbourhood sizes: reach along x, in blocks to each side, of the preceding nodes that condition
+#: a node, in the rows 0, 1, 2 from its own. A larger neighbourhood saves hardly an application and
+#: costs more.
 WIDE_NEIGHBOURHOOD = np.array([2, 2, 1])
-#: The same in small windows, where applications cost little: up to a third more of them, and still
-#: a fifth less time under loads that double from step to step.
+#: Neighbourhood in small windows, where applications cost little: up to a third more of them, and a
+#: fifth less time under loads that double from step to step.
 NARROW_NEIGHBOURHOOD = np.array([1, 1])
-#: Size of the larger neighbourhood, and so the most nodes that can condition one.
+#: Most neighbours: the size of the larger neighbourhood.
 MAX_NEIGHBOURS = 20
-#: A thread takes no fewer nodes than this.
+#: Fewest nodes per thread.
 CHUNK = 512
-#: Smallest conditional variance, as a fraction of a node's influence on itself: it is 0.8 on square
-#: cells, and falls slowly as they become longer than wide (0.1 where 1e8 times). A guard against a
-#: pivot that rounding in single precision would make zero or negative: its root is divided by.
+#: Smallest conditional variance, as a fraction of a node's influence on itself. It guards against
+#: pivots that rounding in single precision makes zero or negative. The true variance is 0.8 on
+#: square cells and falls slowly with their aspect ratio (0.1 at 1e8).
 MIN_CONDITIONAL_VARIANCE = np.float32(1e-3)
-#: Further away than this many cells a node is displaced as by a point load: no table is needed. On
-#: cells more than `MAX_STRETCHED` times as long as wide that is not far.
+#: Cells along the table of the influence; further away it is that of a point load. On cells with an
+#: aspect ratio above `MAX_STRETCHED` the table covers the window.
 TABLE_SIDE, MAX_STRETCHED = 512, 16
-#: Where the nodes on all levels are more than this fraction of the window's cells, whole arrays are
-#: made anew rather than emptied at the places of these nodes alone; or, the nodes being those that
-#: changed, compared as a whole.
+#: Fractions of the window's cells: if the nodes on all levels are more than MADE_ANEW, arrays are
+#: allocated again rather than cleared at these nodes; if the changed ones are more than COMPARED,
+#: arrays are compared as a whole.
 MADE_ANEW, COMPARED = 0.1, 0.02
 
 
 class InverseCholesky:
     """Sparse factor U of the inverse of K on a contact set: U U' is about K^-1.
 
-    Parameters
-    ----------
-    space : HalfSpace
-    neighbourhood : (m,) int ndarray
-        Reach along x, in blocks, of the rows of blocks 0 ... m - 1 away.
+    ``neighbourhood``, (m,) int, is the reach along x, in blocks, in the rows of blocks 0 ... m - 1
+    away.
 
     Attributes
     ----------
     size : int
         Nodes of the set.
     influence : (my, mx) float32 ndarray
-        That of the half-space, near by.
+        Table of the half-space's influence.
     """
 
     def __init__(self, space: HalfSpace, neighbourhood: np.ndarray):
@@ -68,33 +65,30 @@ class InverseCholesky:
         side = TABLE_SIDE if far_alike else max(space.shape)
         self.influence = space.near_influence(side).astype(np.float32)
         whole = self.influence.shape == self._shape
-        #: For :func:`influence_between`: of any two nodes.
+        #: Argument of :func:`influence_between`, for any two nodes.
         self.anywhere = self.influence, np.float32(dy), np.float32(dx), whole
         self._shifts = block_shifts(space)
         self._neighbourhood = neighbourhood
         self._offsets, self._widths = _block_grid(*space.shape, self._shifts)
-        # All that belongs to one set, in one place: it changes as a whole, or not at all.
+        # Everything that belongs to one set is replaced in one assignment, or not at all.
         representative, slot, *_ = self._empty_window()
         self._known = representative, np.empty(0, np.int32), slot, _empty_factor(0)
         self._spare: tuple[np.ndarray, ...] | None = None
 
     @property
     def size(self) -> int:
-        """Nodes of the set."""
+        """Number of nodes of the set."""
         return self._known[1].size
 
     def update(self, nodes: np.ndarray) -> None:
         """Factorise on another contact set, as far as it differs from the last one.
 
-        Parameters
-        ----------
-        nodes : (n,) int32 ndarray
-            Its nodes as numbers of cells, ascending; nothing checks them.
+        ``nodes``, (n,) int32, are ascending numbers of cells; they are not checked.
         """
         nx = self._shape[1]
         representative, *old = self._known
-        # Arrays of the window's size are empty again after use: a few nodes in a large window are
-        # not to wait for them. If an update is interrupted they are made anew.
+        # Arrays of the window's size are cleared after use and kept, so that a few nodes in a large
+        # window need no new ones. If an update is interrupted they are allocated again.
         new, slot, level, affected = self._spare or self._empty_window()
         self._spare = None
         slot[nodes] = np.arange(1, nodes.size + 1, dtype=np.int32)
@@ -110,10 +104,10 @@ class InverseCholesky:
         where = self._shifts, self._neighbourhood, nx
         _mark_affected(changed, representative, blocks, *where, affected, True)
         factor = _empty_factor(nodes.size)
-        before, known = tuple(old), (*blocks, affected)
+        before, window = tuple(old), (*blocks, affected)
         grid = *where, self.anywhere
         threads.in_parts(
-            lambda start, stop: _factorise(start, stop, nodes, slot, known, grid, before, factor),
+            lambda start, stop: _factorise(start, stop, nodes, slot, window, grid, before, factor),
             nodes.size,
             smallest=CHUNK,
         )
@@ -126,14 +120,14 @@ class InverseCholesky:
         self._spare = representative, old[1], level, affected
 
     def _dense(self, nodes, fraction):
-        """True if the nodes are, on all levels, more than a fraction of the window's cells."""
+        """True if the nodes on all levels are more than a fraction of the window's cells."""
         return nodes * len(self._shifts) > fraction * self._shape[0] * self._shape[1]
 
     def _empty_window(self):
-        """Representatives, slots, levels and affected blocks, of no node.
+        """Empty arrays of representatives, slots, levels and affected blocks.
 
-        Numbers are kept plus one: of the pages of an array of zeros only those that are written to
-        take memory.
+        Numbers are stored plus one, so that empty is zero: pages of an array of zeros take memory
+        only when written to.
         """
         cells, blocks = self._shape[0] * self._shape[1], self._offsets[-1]
         return (
@@ -144,19 +138,13 @@ class InverseCholesky:
         )
 
     def __call__(self, residual: np.ndarray) -> np.ndarray:
-        """U U' residual, both (n,) float32 on the contact set.
-
-        Raises
-        ------
-        ValueError
-            If the residual is not one on the set of the last update.
-        """
+        """U U' residual, both (n,) float32 on the contact set."""
         check_on_set(residual, self.size)
         return _apply(*self._known[3], residual)
 
 
 def _empty_factor(n):
-    """Count of the nodes that condition each node, which, their weights, and its own weight."""
+    """Number of neighbours of each node, the neighbours, their weights, and its own weight."""
     return (
         np.empty(n, np.int8),
         np.empty((n, MAX_NEIGHBOURS), np.int32),
@@ -166,7 +154,7 @@ def _empty_factor(n):
 
 
 def block_shifts(space: HalfSpace) -> np.ndarray:
-    """log2 of the block sides (y, x) at every level, (levels, 2); blocks grow towards squares."""
+    """log2 of the block sides (y, x) on every level, (levels, 2); blocks grow towards squares."""
     shifts = [(0, 0)]
     sides = list(space.spacing)
     while (space.shape[0] - 1) >> shifts[-1][0] or (space.shape[1] - 1) >> shifts[-1][1]:
@@ -185,7 +173,7 @@ def _block_grid(ny, nx, shifts):
 
 @njit(cache=True)
 def _represent(nodes, nx, shifts, offsets, widths, representative, level):
-    """For every level, the node (cell number plus one) that stands for each block, else 0."""
+    """Representative node of each block (its cell number plus one, or 0) on every level."""
     candidates = nodes.copy()
     for node in nodes:
         representative[node] = node + 1
@@ -204,7 +192,7 @@ def _represent(nodes, nx, shifts, offsets, widths, representative, level):
 
 @njit(cache=True)
 def _clear(nodes, nx, shifts, offsets, widths, representative, slot):
-    """Undo what `_represent` did, and the slots."""
+    """Undo `_represent`, and clear the slots."""
     for node in nodes:
         slot[node] = 0
         for k in range(shifts.shape[0]):
@@ -214,7 +202,7 @@ def _clear(nodes, nx, shifts, offsets, widths, representative, slot):
 
 @njit(cache=True)
 def _changed(different, before, blocks, shifts, nx):
-    """Blocks of all levels, ascending, with another representative: they hold a different node."""
+    """Blocks of all levels, ascending, whose representative changed: each holds a changed node."""
     representative, offsets, widths, _ = blocks
     changed = np.empty(different.size * shifts.shape[0], np.int64)
     n = 0
@@ -238,7 +226,7 @@ def _changed(different, before, blocks, shifts, nx):
 
 @njit(cache=True)
 def _mark_affected(changed, before, blocks, shifts, neighbourhood, nx, affected, value):
-    """For every level, the blocks whose nodes may be conditioned otherwise than ``before``."""
+    """Mark the blocks, on every level, whose nodes may have other neighbours than ``before``."""
     representative, offsets, widths, _ = blocks
     reach = neighbourhood.size - 1
     k = 0
@@ -247,7 +235,7 @@ def _mark_affected(changed, before, blocks, shifts, neighbourhood, nx, affected,
             k += 1
         y, x = divmod(block - offsets[k], widths[k, 1])
         _mark(affected, offsets[k], widths[k], y, x, reach, value)
-        # Both have come to, or lost, precedence on the level below.
+        # Both nodes gained or lost precedence on the level below.
         for node in (before[block] - 1, representative[block] - 1):
             if k > 0 and node >= 0:
                 y, x = (node // nx) >> shifts[k - 1, 0], (node % nx) >> shifts[k - 1, 1]
@@ -263,13 +251,13 @@ def _mark(affected, offset, width, y, x, reach, value):
 
 @njit(cache=True, nogil=True)
 def _factorise(start, stop, nodes, slot, blocks, grid, old, new):
-    """Columns start ... stop of the factor: taken over where nothing changed, else solved."""
+    """Columns start ... stop of the factor: copied where nothing changed, else solved."""
     representative, offsets, widths, level, affected = blocks
     shifts, neighbourhood, nx, influence = grid
     old_nodes, old_slot, (old_count, old_neighbours, old_weight, old_diagonal) = old
     count, neighbours, weight, diagonal = new
     members, far = np.empty(MAX_NEIGHBOURS + 1, np.int64), neighbourhood.size - 1
-    # Those solved side by side have equally many nodes, as far as present are enough such.
+    # Nodes with equally many neighbours wait to be solved side by side.
     waiting = np.empty((MAX_NEIGHBOURS + 1, WIDTH), np.int64)
     filled = np.zeros(MAX_NEIGHBOURS + 1, np.int64)
     lower = np.empty((MAX_NEIGHBOURS + 1) * (MAX_NEIGHBOURS + 1) * WIDTH, np.float32)
@@ -293,7 +281,7 @@ def _factorise(start, stop, nodes, slot, blocks, grid, old, new):
             for bx in range(max(block_x - reach, 0), min(block_x + reach + 1, widths[k, 1])):
                 other = representative[row + bx] - 1
                 above = level[max(other, 0)]
-                # Put in its place before it is known to stay there: that takes less than a branch.
+                # Written first and counted only if it precedes: faster than a branch.
                 members[n] = other
                 n += (other >= 0) & ((above > k) | ((above == k) & (other < node)))
         count[i] = n
@@ -311,7 +299,7 @@ def _factorise(start, stop, nodes, slot, blocks, grid, old, new):
 
 @njit(cache=True)
 def _joined(lists, lengths):
-    """The beginnings of some lists, one after the other."""
+    """Concatenation of the first ``lengths`` entries of each list."""
     joined = np.empty(lengths.sum(), lists.dtype)
     n = 0
     for k in range(lengths.size):
@@ -322,7 +310,7 @@ def _joined(lists, lengths):
 
 @njit(cache=True)
 def _fill_below_diagonal(places, nodes, nx, influence, factor, lower):
-    """Influence of the nodes of each lane on each other; returns the largest neighbourhood."""
+    """Influence between the nodes of each lane; returns the largest number of neighbours."""
     count, neighbours, _, _ = factor
     n = 0
     for i in places:
@@ -338,36 +326,31 @@ def _fill_below_diagonal(places, nodes, nx, influence, factor, lower):
             ys[a, lane], xs[a, lane], present[a, lane] = node // nx, node % nx, 1
         ys[n, lane], xs[n, lane], present[n, lane] = nodes[i] // nx, nodes[i] % nx, 1
     table = influence[0]
-    # In most windows no two nodes are further apart than the table reaches.
+    # In most windows the table covers all distances.
     if influence[3]:
         for a in range(n + 1):
             for b in range(a):
-                here = a * side + b * WIDTH
+                entry = a * side + b * WIDTH
                 for lane in range(WIDTH):
                     distance = abs(ys[a, lane] - ys[b, lane]), abs(xs[a, lane] - xs[b, lane])
                     both = present[a, lane] * present[b, lane]
-                    lower[here + lane] = both * table[distance]
+                    lower[entry + lane] = both * table[distance]
         return n
     for a in range(n + 1):
         for b in range(a):
-            here = a * side + b * WIDTH
+            entry = a * side + b * WIDTH
             for lane in range(WIDTH):
                 away_y, away_x = abs(ys[a, lane] - ys[b, lane]), abs(xs[a, lane] - xs[b, lane])
                 both = present[a, lane] * present[b, lane]
-                lower[here + lane] = both * influence_between(influence, away_y, away_x)
+                lower[entry + lane] = both * influence_between(influence, away_y, away_x)
     return n
 
 
 @njit(cache=True)
 def influence_between(influence: tuple, y: int, x: int) -> float:
-    """Influence at a distance in cells: from the table, or of a point load.
+    """Influence at a distance (y, x >= 0) in cells: from the table, or that of a point load.
 
-    Parameters
-    ----------
-    influence : tuple
-        :attr:`InverseCholesky.anywhere`.
-    y, x : int
-        Not negative.
+    ``influence`` is :attr:`InverseCholesky.anywhere`.
     """
     table, dy, dx, _ = influence
     if y < table.shape[0] and x < table.shape[1]:
@@ -380,36 +363,36 @@ def _solve_columns(places, nodes, nx, influence, factor, lower, column):
     """Last column of the inverse of the transposed Cholesky factor, for a node in each lane.
 
     Lanes with fewer nodes than others have empty rows before their last, which change nothing, to
-    the bit. The diagonal of ``lower`` is kept inverted.
+    the bit. The diagonal of ``lower`` is stored inverted.
     """
     count, _, weight, diagonal = factor
     side = (MAX_NEIGHBOURS + 1) * WIDTH
     n = _fill_below_diagonal(places, nodes, nx, influence, factor, lower)
     for a in range(n + 1):
         for b in range(a):
-            here = a * side + b * WIDTH
-            s = load(lower, here)
+            entry = a * side + b * WIDTH
+            s = load(lower, entry)
             for c in range(0, b * WIDTH, WIDTH):
                 s = s - load(lower, a * side + c) * load(lower, b * side + c)
-            store(lower, here, s * load(lower, b * (side + WIDTH)))
-        here = a * (side + WIDTH)
-        lower[here : here + WIDTH] = influence[0][0, 0]
-        s = load(lower, here)
+            store(lower, entry, s * load(lower, b * (side + WIDTH)))
+        entry = a * (side + WIDTH)
+        lower[entry : entry + WIDTH] = influence[0][0, 0]
+        s = load(lower, entry)
         for c in range(0, a * WIDTH, WIDTH):
             s = s - load(lower, a * side + c) * load(lower, a * side + c)
-        store(lower, here, s)
-        for lane in range(here, here + WIDTH):
+        store(lower, entry, s)
+        for lane in range(entry, entry + WIDTH):
             lower[lane] = np.float32(1) / np.sqrt(
                 max(lower[lane], MIN_CONDITIONAL_VARIANCE * influence[0][0, 0])
             )
     column[: n * WIDTH] = 0
     store(column, n * WIDTH, load(lower, n * (side + WIDTH)))
     for a in range(n, 0, -1):
-        known = load(column, a * WIDTH)
+        solved = load(column, a * WIDTH)
         for c in range(0, a * WIDTH, WIDTH):
-            store(column, c, load(column, c) - load(lower, a * side + c) * known)
-        here = (a - 1) * WIDTH
-        store(column, here, load(column, here) * load(lower, (a - 1) * (side + WIDTH)))
+            store(column, c, load(column, c) - load(lower, a * side + c) * solved)
+        entry = (a - 1) * WIDTH
+        store(column, entry, load(column, entry) * load(lower, (a - 1) * (side + WIDTH)))
     for lane in range(places.size):
         i = places[lane]
         for a in range(count[i]):
@@ -419,7 +402,7 @@ def _solve_columns(places, nodes, nx, influence, factor, lower, column):
 
 @njit(cache=True, fastmath=True)
 def _apply(count, neighbours, weight, diagonal, residual):
-    """U U' residual, a column of U at a time."""
+    """U U' residual, one column of U at a time."""
     out = np.zeros(residual.size, np.float32)
     for i in range(residual.size):
         total = diagonal[i] * residual[i]

@@ -3,8 +3,8 @@
 With the gap g = K p + c - w at the nodes (c the clearance at first touch, w the closure, H a bound
 on the pressure) a state of contact has 0 <= p <= H, and g = 0 where p lies between, g >= 0 where
 it is 0, g <= 0 where it is H. These are the Karush-Kuhn-Tucker conditions of a strictly convex
-quadratic programme between bounds: minimise p.K p / 2 + p.(c - w) over 0 <= p <= H. Where the force
-is given, w is the Lagrange multiplier of the sum of p.
+quadratic programme between bounds: minimise p.K p / 2 + p.(c - w) over 0 <= p <= H. If the force is
+given, w is the Lagrange multiplier of the sum of p.
 """
 
 from dataclasses import dataclass
@@ -15,15 +15,15 @@ from ..elastic.halfspace import HalfSpace
 from ..kernel_cache import njit
 from .bounds import Bounds
 
-# A total this close to F is F.
+# Relative rounding of the force.
 FORCE_ROUNDING = 1e-12
-# No pressure is below 0, none too high.
+# Bounds of an elastic surface.
 ELASTIC = Bounds()
 
 
 @dataclass
 class Problem:
-    """A contact problem in units in which the closure, or under a force the mean pressure, is one.
+    """Contact problem; the unit is the closure, or the mean pressure under a given force.
 
     Attributes
     ----------
@@ -31,14 +31,13 @@ class Problem:
     clearance : (n,) ndarray
         c at every node, flattened.
     load : float
-        The closure, or the sum of the pressures.
+        The closure, or if ``by_force`` the sum of the pressures.
     by_force : bool
-        Which of the two.
     bounds : Bounds
-        Of the pressure.
+        Bounds of the pressure.
     nodes : (n,) int32 ndarray or None
-        Numbers of the cells that may touch, ascending, where the problem is restricted to these:
-        whatever is on nodes is then on them alone. None where it is on the whole window.
+        Ascending numbers of the cells that may touch, if the problem is restricted to them: all
+        arrays are then on these nodes alone. None on the whole window.
     """
 
     space: HalfSpace
@@ -50,9 +49,9 @@ class Problem:
 
     @property
     def largest_closure(self) -> float:
-        """Closure of an elastic window that goes on beyond its edges in full contact, or infinity.
+        """Closure in full contact of an elastic window without free edges; else infinity.
 
-        Its mean plane then comes no nearer, whatever the force.
+        No force brings its mean plane nearer.
         """
         bounded = self.bounds.elastic and not self.space.is_free
         return float(self.clearance.mean()) if bounded else np.inf
@@ -60,42 +59,37 @@ class Problem:
     def tolerated(self, iterate: "Iterate") -> float:
         """Unit of violations: the closure.
 
-        In full contact of a window that goes on beyond its edges the closure may be none, as that
-        of two planes is, under any pressure. What its mean pressure does to a cell alone is added.
+        In full contact of a window that continues beyond its edges the closure may be 0 under any
+        pressure, as between two planes. The displacement of one cell under the mean pressure is
+        added.
         """
         closure = abs(iterate.closure)
         return closure if self.space.is_free else closure + abs(float(iterate.pressure.mean()))
 
     def coarser(self, clearance: np.ndarray) -> "Problem":
-        """A problem on the grid twice as coarse, on the whole window.
-
-        Parameters
-        ----------
-        clearance : (m,) ndarray
-            c at every node of that grid.
-        """
+        """Problem on the whole grid twice as coarse, with its ``clearance`` (m,)."""
         load = coarser_load(self.load, self.by_force)
         if not (self.by_force or self.space.is_free) and self.clearance.any():
-            # Of the highest of each four nodes the mean plane is nearer, and may not come so far.
+            # The mean plane of the highest of each four nodes is nearer: it may not close so far.
             load *= float(clearance.mean() / self.clearance.mean())
         bounds = self.bounds.coarser(self.space.shape)
         return Problem(self.space.coarser(2), clearance, load, self.by_force, bounds)
 
     def first_touch(self) -> np.ndarray:
-        """The given force on the nodes that touch first, as far as bounds let them carry it.
+        """Given force on the nodes that touch first, as far as their bounds allow.
 
-        Where nothing better is known: forces so small that the depths of all other nodes drown
-        theirs leave no other start.
+        It is the start if nothing better is known, for forces so small that rounding of the other
+        nodes' clearances hides them.
         """
         touching = self.clearance == 0
         return self.bounds.clip(touching * (self.load / np.count_nonzero(touching)))
 
     def closure_at_force(self, pressure: np.ndarray, displacement: np.ndarray) -> float:
-        """The closure at which a given force acts: it makes the mean gap in contact vanish.
+        """Closure at which a given force acts: the mean gap between the bounds vanishes.
 
-        Where all that touches is at its upper bound, the conditions hold for any closure that
-        overlaps all of it and nothing else. It is the least of these; where there is none, the mean
-        still leads on.
+        If all nodes in contact are at their upper bound, the conditions hold for any closure that
+        overlaps all of them and no other node; the least of these is returned. If there is none,
+        the mean is a guess for the next iteration.
         """
         mean = mean_closure(pressure, displacement, self.clearance, self.bounds)
         if np.isfinite(mean):
@@ -108,29 +102,17 @@ class Problem:
 
 
 def coarser_load(load: float, by_force: bool) -> float:
-    """Load of a problem, on the grid twice as coarse.
+    """Load of a problem on the grid twice as coarse.
 
-    The number of a pressure is doubled there (`Bounds.coarser`), and the sum is over a fourth of
-    the cells: it is halved.
-
-    Parameters
-    ----------
-    load, by_force
-        As of `Problem`.
+    The number of a pressure is doubled there (`Bounds.coarser`) and a fourth of the cells are
+    summed: a force is halved, a closure stays.
     """
     return load / 2 if by_force else load
 
 
 @dataclass
 class Iterate:
-    """A pressure, its displacement and a closure.
-
-    Attributes
-    ----------
-    pressure, displacement : (n,) ndarray
-        p and K p.
-    closure : float
-    """
+    """Pressure p, displacement K p, both (n,), and closure."""
 
     pressure: np.ndarray
     displacement: np.ndarray
@@ -139,15 +121,16 @@ class Iterate:
 
 @dataclass
 class Solution(Iterate):
-    """An iterate within its bounds, whose displacement was computed for itself.
+    """Iterate within its bounds, with a displacement computed from its final pressure.
 
-    In double precision, but for solutions on coarser grids that only a start is made of.
+    The displacement is in double precision, except for solutions that are only a start on a finer
+    grid.
 
     Attributes
     ----------
     residual : float
-        Largest violation of the contact conditions, as a fraction of the closure; or, of a given
-        force, as a fraction of it.
+        Largest violation of the contact conditions, as a fraction of the closure; under a given
+        force also the violation of the force, as a fraction of it.
     applications : int
         Applications of K, in either precision.
     """
@@ -158,18 +141,18 @@ class Solution(Iterate):
 
 @dataclass(frozen=True)
 class KKTResidual:
-    """By how much, and where, the contact conditions are violated.
+    """Violation of the contact conditions.
 
     Attributes
     ----------
     active : (n,) int32 ndarray
-        The active contact set: nodes on which the gap is to vanish. Those between the bounds, and
-        those at a bound that the gap pulls off it.
+        Active contact set, on which the gap is to vanish: nodes between the bounds, and nodes at a
+        bound that the gap pulls off it.
     infeasible : (m,) int32 ndarray
         Nodes whose pressure is beyond a bound.
     largest : float
-        Largest violation: of a gap condition, or of a bound (as a node's pressure displaces it by
-        about itself in these units). Not yet a fraction of the closure.
+        Largest violation of a gap condition or of a bound, not yet divided by the closure. (A
+        node's pressure displaces it by about itself in these units.)
     """
 
     active: np.ndarray
@@ -177,7 +160,7 @@ class KKTResidual:
     largest: float
 
     def holds_to(self, tolerance: float, unit: float) -> bool:
-        """True if no violation exceeds a fraction of their unit (`Problem.tolerated`)."""
+        """True if no violation exceeds ``tolerance`` times their unit (`Problem.tolerated`)."""
         return self.largest <= tolerance * unit
 
 
@@ -188,20 +171,7 @@ def kkt_residual(
     closure: float,
     bounds: Bounds,
 ) -> KKTResidual:
-    """Residual of the contact conditions.
-
-    Parameters
-    ----------
-    pressure, displacement, clearance : (n,) ndarray
-        p, K p and c at every node.
-    closure : float
-    bounds : Bounds
-
-    Raises
-    ------
-    ValueError
-        If these are not of one size.
-    """
+    """KKT residual of p, K p and c at every node, all (n,), at a closure."""
     if not pressure.shape == displacement.shape == clearance.shape:
         raise ValueError("expected pressure, displacement and clearance of one size")
     on_nodes = bounds.on(pressure.size)
@@ -209,20 +179,20 @@ def kkt_residual(
 
 
 def frank_wolfe_gap(pressure: np.ndarray, gap: np.ndarray, upper: float | np.ndarray) -> float:
-    """Bound on how far the energy of a pressure is above the least of the same force.
+    """Bound on the energy of a pressure above the least energy of the same force.
 
     Parameters
     ----------
     pressure, gap : (n,) ndarray
-        Between the bounds; and K p + c, less any constant. Nodes that are further apart than all
-        that carry pressure may be left out.
+        Pressure within the bounds, and K p + c up to a constant. Nodes with a larger gap than all
+        loaded nodes may be left out.
     upper : float or (n,) ndarray
         Largest pressure, or infinity; the least is 0.
 
     Returns
     -------
     float
-        In the unit of their product.
+        In the unit of pressure times gap.
 
     Notes
     -----
@@ -230,9 +200,9 @@ def frank_wolfe_gap(pressure: np.ndarray, gap: np.ndarray, upper: float | np.nda
     energy among those of the same sum F and the same bounds, E(p) - E(p*) <= v.(p - p*) <= G,
     the largest v.(p - q) over all such q: the Frank-Wolfe gap (M. Frank and P. Wolfe, Naval
     Res. Logist. Quart. 3 (1956) 95; M. Jaggi, Proc. 30th Int. Conf. Mach. Learn. (2013) 427).
-    The best q loads the nodes in the order of v, each as far as its bound H lets it: without one,
-    that of least v alone, and G = sum p_i (v_i - min v). A constant in v, such as the closure,
-    changes nothing.
+    The best q loads the nodes in the order of v, each up to its bound H; without one, the node of
+    least v alone, and G = sum p_i (v_i - min v). A constant in v, such as the closure, changes
+    nothing.
     """
     loaded = pressure > 0
     if not loaded.any():
@@ -256,7 +226,7 @@ def mean_closure(
 
 @njit(cache=True)
 def _mean_closure(pressure, displacement, clearance, lower, upper):
-    """The same, of bounds on each node."""
+    """`mean_closure` with bounds on each node."""
     total, n = 0.0, 0
     for i in range(pressure.size):
         if lower[i] < pressure[i] < upper[i]:
@@ -267,7 +237,7 @@ def _mean_closure(pressure, displacement, clearance, lower, upper):
 
 @njit(cache=True)
 def _kkt_residual(pressure, displacement, clearance, closure, lower, upper):
-    """The parts of :class:`KKTResidual`."""
+    """Fields of :class:`KKTResidual`."""
     active = np.empty(pressure.size, np.int32)
     infeasible = np.empty(pressure.size, np.int32)
     n, m, largest = 0, 0, 0.0

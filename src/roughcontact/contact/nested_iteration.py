@@ -3,9 +3,9 @@
 (Full multigrid: A. Brandt, Multi-level adaptive solutions to boundary-value problems, Math. Comput.
 31 (1977) 333; for contact, A. A. Lubrecht and E. Ioannides, ASME J. Tribol. 113 (1991) 128.)
 Restriction gives a coarse cell the height of the highest of its four nodes, which need not all
-touch. Prolongation keeps the sum of its pressure, and local redistribution shares it among the four
-so that those which touch have even gaps. The nodes of the eight cells around act on them as they
-are, from further away the four are displaced alike.
+touch. Prolongation keeps the sum of its pressure, and local redistribution divides it among the
+four nodes so that those in contact have equal gaps. The nodes of the eight cells around act on the
+four individually; loads further away displace all four alike.
 """
 
 import numpy as np
@@ -17,31 +17,28 @@ from .kkt import Problem
 from .preconditioner import forget_preconditioner
 from .restriction import restrict_minimum
 
-# A grid of fewer nodes along its shorter side starts from a uniform pressure, all others from the
-# next coarser grid.
+# Fewest nodes along the shorter side of a grid that starts from a coarser one; smaller grids start
+# from a uniform pressure.
 COARSEST_SIDE = 24
-# The preconditioner on coarse grids of more cells is not kept: it takes memory, and there is
-# little to gain. Of small ones, as parts of a window have them, many are solved on one grid.
+# Most cells of a coarse grid whose preconditioner is kept. Larger ones take memory and gain little;
+# on small ones, as in sub-windows, many problems are solved.
 KEPT_CELLS = 10_000
-# The coarse solution is only a start. But on grids so fine that the next coarser one's already
-# meets this, an iteration is made all the same: else errors add up from grid to grid.
+# Tolerance of coarse solutions, which are only a start. COARSE_ITERATIONS are made even if the
+# start on a coarse grid meets it: otherwise errors add up from grid to grid.
 COARSE_RTOL, COARSE_ITERATIONS = 2e-2, 1
 
 
 def nested_iteration_start(problem: Problem) -> np.ndarray:
-    """Pressure to start from: the solution on the grid twice as coarse, prolonged.
+    """Start pressure, (n,), within its bounds: the solution on the grid twice as coarse, prolonged.
 
-    Returns
-    -------
-    (n,) ndarray
-        Within its bounds; on grids too small for a coarser one it is uniform.
+    Grids too small for a coarser one start from a uniform pressure.
     """
     space = problem.space
     ny, nx = space.shape
     if min(ny, nx) < COARSEST_SIDE:
         return _without_coarser_grid(problem)
     coarse = problem.coarser(restrict_minimum(problem.clearance.reshape(ny, nx)).ravel())
-    if not coarse.load > 0:  # its highest nodes are all alike (`Problem.coarser`)
+    if not coarse.load > 0:  # all coarse nodes are equally high (`Problem.coarser`)
         return _without_coarser_grid(problem)
     method = ActiveSetMethod(coarse, COARSE_RTOL, dtype=np.float32)
     solution = method.solve(nested_iteration_start(coarse), min_iterations=COARSE_ITERATIONS)
@@ -53,7 +50,7 @@ def nested_iteration_start(problem: Problem) -> np.ndarray:
 
 
 def _without_coarser_grid(problem):
-    """A start that knows no other: uniform, or where that displaces nothing, what overlaps."""
+    """Uniform pressure; or the overlap, where a uniform pressure displaces nothing."""
     if problem.by_force or problem.space.is_free:
         return problem.bounds.clip(np.ones(problem.clearance.size))
     return problem.bounds.clip(problem.load - problem.clearance)
@@ -61,7 +58,7 @@ def _without_coarser_grid(problem):
 
 @njit(cache=True)
 def prolong_constant(cells: np.ndarray, shape: tuple[int, int]) -> np.ndarray:
-    """Values (my, mx) of coarse cells, on each of their nodes, (ny, nx)."""
+    """Values (my, mx) of coarse cells on each of their nodes, (ny, nx)."""
     ny, nx = shape
     if cells.shape[0] != (ny + 1) // 2 or cells.shape[1] != (nx + 1) // 2:
         raise ValueError("expected a cell for each 2 x 2 nodes")
@@ -73,27 +70,11 @@ def prolong_constant(cells: np.ndarray, shape: tuple[int, int]) -> np.ndarray:
 
 
 def prolong(pressure: np.ndarray, clearance: np.ndarray, influence: np.ndarray) -> np.ndarray:
-    """Pressure of fine nodes, of which each coarse cell holds two by two.
+    """Pressure on the fine grid, (ny, nx), from that on the coarse one, m = (n + 1) // 2.
 
-    Parameters
-    ----------
-    pressure : (my, mx) ndarray
-        On the coarse grid, no less than zero; m = (n + 1) // 2.
-    clearance : (ny, nx) ndarray
-        Opening at first touch on the fine grid.
-    influence : (4, 4) or larger ndarray
-        Displacement of nodes so far from one of unit pressure, in the unit of the clearance.
-
-    Returns
-    -------
-    (ny, nx) ndarray
-        Never negative. Of each cell it has the mean of the coarse one, or on an odd edge, where the
-        cell reaches beyond the grid, that on the nodes there are.
-
-    Raises
-    ------
-    ValueError
-        If these are not on two such grids of at least four nodes each way.
+    It is nowhere negative, and the mean of each cell's nodes is the coarse pressure; at an odd
+    edge, the mean of the nodes inside the grid. ``clearance`` is that of the fine grid,
+    ``influence``, (4, 4) or larger, the displacement per unit pressure in its unit.
     """
     change = prolong_constant(pressure, clearance.shape)
     return redistribute(np.zeros(clearance.shape), change, clearance, influence)
@@ -102,27 +83,16 @@ def prolong(pressure: np.ndarray, clearance: np.ndarray, influence: np.ndarray) 
 def redistribute(
     before: np.ndarray, change: np.ndarray, gap: np.ndarray, influence: np.ndarray
 ) -> np.ndarray:
-    """Pressure, (ny, nx), of which each 2 x 2 nodes have a given sum, and even gaps where it is.
+    """Pressure, (ny, nx), with given sums over 2 x 2 nodes, and equal gaps where positive.
 
-    Parameters
-    ----------
-    before, change : (ny, nx) ndarray
-        A pressure, and a first guess of its change, which gives the sums: positive or zero.
-    gap : (ny, nx) ndarray
-        What the pressure before leaves open.
-    influence : (ny, nx) ndarray
-        As for :func:`prolong`.
-
-    Raises
-    ------
-    ValueError
-        If these are not on one grid of at least four nodes each way.
+    ``gap`` belongs to the pressure ``before``; ``change`` is a first guess of its change, with the
+    given sums, positive or zero. ``influence`` as in :func:`prolong`.
     """
-    one = before.shape == change.shape == gap.shape
-    if not one or min(gap.shape) < 4 or min(influence.shape) < 4:
+    one_grid = before.shape == change.shape == gap.shape
+    if not one_grid or min(gap.shape) < 4 or min(influence.shape) < 4:
         shapes = ", ".join(str(values.shape) for values in (before, change, gap, influence))
         raise ValueError(f"shapes {shapes}: expected one grid of 4 x 4 nodes or more")
-    # A cell's nodes and those of the eight around it lie in six rows and columns.
+    # A cell and the eight around it have six rows and columns of nodes.
     my, mx = ((n + 1) // 2 for n in gap.shape)
     padded = np.zeros((2 * my + 4, 2 * mx + 4))
     inside = padded[2 : gap.shape[0] + 2, 2 : gap.shape[1] + 2]
@@ -134,28 +104,20 @@ def redistribute(
 def redistribute_padded(
     before: np.ndarray, change: np.ndarray, gap: np.ndarray, influence: np.ndarray
 ) -> None:
-    """The same in place, of a change that has zeros around: two nodes more on each side.
-
-    Parameters
-    ----------
-    before, gap, influence
-        As of :func:`redistribute`.
-    change : (2 my + 4, 2 mx + 4) ndarray
-        Of (my, mx) cells.
-    """
+    """`redistribute` in place; the change of (my, mx) cells is padded by two rows and columns."""
     _redistribute(before, change, gap, influence[:4, :4].astype(float))
 
 
 @njit(cache=True)
 def _redistribute(before, change, gap, influence):
-    """Redistribute a change, with two nodes more on each side, within the cells, one by one.
+    """Redistribute a padded change within the cells, one by one.
 
-    A cell sees what others have become.
+    Each cell uses the new pressures of the cells before it.
     """
     ny, nx = gap.shape
     own, around = influence_on(influence)
     maps = redistributions(own)
-    known, opening, pressure = np.zeros(4), np.zeros(4), np.zeros(4)
+    earlier, opening, pressure = np.zeros(4), np.zeros(4), np.zeros(4)
     for top in range(0, ny, 2):
         for side in range(0, nx, 2):
             total, mask = 0.0, 0
@@ -166,9 +128,9 @@ def _redistribute(before, change, gap, influence):
                 continue
             for a in range(4):
                 y, x = top + a // 2, side + a % 2
-                known[a] = opening[a] = 0.0
+                earlier[a] = opening[a] = 0.0
                 if y < ny and x < nx:
-                    known[a], opening[a] = before[y, x], gap[y, x]
+                    earlier[a], opening[a] = before[y, x], gap[y, x]
                     mask |= 1 << a
             for i in range(6):
                 for j in range(6):
@@ -177,18 +139,18 @@ def _redistribute(before, change, gap, influence):
                         opening[a] += around[i, j, a] * value
             for a in range(4):
                 for b in range(4):
-                    opening[a] -= own[a, b] * known[b]
+                    opening[a] -= own[a, b] * earlier[b]
             equalise_gaps(maps, opening, total, mask, pressure)
             for a in range(4):
                 if mask & (1 << a):
-                    change[top + a // 2 + 2, side + a % 2 + 2] = pressure[a] - known[a]
+                    change[top + a // 2 + 2, side + a % 2 + 2] = pressure[a] - earlier[a]
 
 
 @njit(cache=True)
 def influence_on(influence: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Of the four nodes of a cell on each other, and on each of those six by six about it.
+    """Influence of a cell's four nodes on each other, and of the 6 x 6 nodes around on each.
 
-    The second leaves out what they have on each other.
+    The second omits the influence of the four on each other.
     """
     own, around = np.empty((4, 4)), np.empty((6, 6, 4))
     for a in range(4):
@@ -204,10 +166,10 @@ def influence_on(influence: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 @njit(cache=True)
 def redistributions(own: np.ndarray) -> np.ndarray:
-    """For each set of a cell's nodes, given by its bits, how a sum is distributed: (16, 4, 5).
+    """Linear maps that distribute a sum over each subset of a cell's nodes, (16, 4, 5).
 
-    Of gaps g and a sum S pressures p = -M g + c S leave even gaps: own p + g is the same for all,
-    which gives M = W - W 1 1' W / (1' W 1) and c = W 1 / (1' W 1), with W the inverse of own.
+    The subset is given by its bits. For gaps g and a sum S the pressures p = -M g + c S make
+    own p + g equal, with M = W - W 1 1' W / (1' W 1), c = W 1 / (1' W 1), and W the inverse of own.
     """
     maps = np.zeros((16, 4, 5))
     for mask in range(1, 16):
@@ -225,10 +187,10 @@ def redistributions(own: np.ndarray) -> np.ndarray:
 def equalise_gaps(
     maps: np.ndarray, gap: np.ndarray, total: float, mask: int, pressure: np.ndarray
 ) -> None:
-    """Pressures of a given sum on the nodes of a ``mask`` that leave even gaps where positive.
+    """Pressures of a given sum on the nodes of a ``mask`` that leave equal gaps where positive.
 
-    Those in tension are dropped, the strongest first, until there is none. Only by how much gaps
-    differ counts: what they share may be huge, and would leave the sum to rounding.
+    Nodes in tension are dropped, the strongest first. The least gap is subtracted: only differences
+    count, and a large common gap would lose the sum to rounding.
     """
     while True:
         nearest = np.inf

@@ -1,27 +1,15 @@
-"""Sets of nodes as ascending numbers of cells: checked, and compared."""
+"""Sets of nodes as ascending numbers of cells: checks and comparison."""
 
 import numpy as np
 
 from ..kernel_cache import njit
 
-# Types to compare with: of what else stands for them numpy has to find the type first.
+# dtypes to compare with; comparing with np.int32 itself is slower.
 _INT32, _FLOAT32 = np.dtype(np.int32), np.dtype(np.float32)
 
 
 def check_nodes(nodes: np.ndarray, shape: tuple[int, int]) -> None:
-    """Refuse an invalid set of nodes, since compiled code does not check indices.
-
-    Parameters
-    ----------
-    nodes : (n,) int32 ndarray
-        Numbers of cells, ascending.
-    shape : (int, int)
-        Of the grid.
-
-    Raises
-    ------
-    ValueError
-    """
+    """`ValueError` for an invalid set of nodes, since compiled code does not check indices."""
     if nodes.ndim != 1 or nodes.dtype != _INT32 or not _ascending(nodes, shape[0] * shape[1]):
         raise ValueError(
             f"nodes {nodes.shape} of {nodes.dtype}: expected numbers of cells (n,) of int32, "
@@ -30,19 +18,14 @@ def check_nodes(nodes: np.ndarray, shape: tuple[int, int]) -> None:
 
 
 def check_on_set(values: np.ndarray, n: int) -> None:
-    """Refuse anything but float32 values of the n nodes of a contact set.
-
-    Raises
-    ------
-    ValueError
-    """
+    """`ValueError` for anything but float32 values of the n nodes of a contact set."""
     if values.shape != (n,) or values.dtype != _FLOAT32:
         raise ValueError(f"{values.shape} numbers of {values.dtype}: expected {(n,)} of float32")
 
 
 @njit(cache=True)
 def _ascending(nodes, cells):
-    """True if these are numbers from 0 to cells - 1, each larger than the one before."""
+    """True if these are ascending numbers from 0 to cells - 1."""
     before = -1
     for node in nodes:
         if node <= before or node >= cells:
@@ -53,7 +36,7 @@ def _ascending(nodes, cells):
 
 @njit(cache=True)
 def symmetric_difference(first: np.ndarray, second: np.ndarray) -> np.ndarray:
-    """Nodes that are in one only of two sets, (n,) int32, ascending."""
+    """Nodes in exactly one of two sets, (n,) int32, ascending."""
     different = np.empty(first.size + second.size, np.int32)
     a, b, n = 0, 0, 0
     while a < first.size or b < second.size:

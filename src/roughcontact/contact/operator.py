@@ -1,7 +1,7 @@
-"""The elastic operator as the solver applies it: on the whole window, or between some of its nodes.
+"""Elastic operator as the solver applies it: on the whole window, or between some of its nodes.
 
-Between few nodes it is summed pair by pair, between more by a fast multipole method, and on all of
-the window it is a convolution.
+Between few nodes it is summed pair by pair, between more by a fast multipole method; on the whole
+window it is a convolution.
 """
 
 import numpy as np
@@ -15,24 +15,16 @@ from .preconditioner import preconditioner
 
 
 class Operator:
-    """K of one window with its preconditioner, and how often K was applied.
-
-    Like that, it belongs to one thread.
+    """K of one window with its preconditioner and the number of applications, for one thread.
 
     Parameters
     ----------
     space : HalfSpace
     nodes : (n,) int32 ndarray, optional
-        Numbers of the cells between which it is wanted, ascending; by default all of the window.
+        Ascending numbers of the cells to which it is restricted; by default the whole window.
         Pressures, displacements and sets of nodes are then on these alone.
     levels : MultipoleLevels, optional
-        Of these nodes, where they are known.
-
-    Attributes
-    ----------
-    size : int
-        Nodes.
-    applications : int
+        Levels of these nodes, if known.
     """
 
     def __init__(
@@ -52,7 +44,7 @@ class Operator:
             self._between: dict[np.dtype, MultipoleOperator] = {}
 
     def precondition(self, active: np.ndarray, *, fresh: bool) -> None:
-        """Make `inverse` that on a contact set, as `Preconditioner.update`."""
+        """Update the preconditioner `inverse` to a contact set."""
         if self.nodes is None:
             self.inverse.update(active, fresh=fresh)
         else:
@@ -67,10 +59,7 @@ class Operator:
         return self.space.convolve(pressure.reshape(self.space.shape)).ravel()
 
     def _on_nodes(self, loaded, values):
-        """Displacement of all nodes under some: by the faster operator for their number.
-
-        What it needs is made when it is first asked for.
-        """
+        """Displacement of all nodes, by the faster operator, which is created at its first use."""
         if loaded.size * self.size <= MAX_PAIRS[values.dtype]:
             self._direct = self._direct or DirectOperator(self.space, self.nodes)
             return self._direct(loaded, values)
@@ -81,13 +70,7 @@ class Operator:
         return self._between[values.dtype](loaded, values)
 
     def apply_sparse(self, *pairs: tuple[np.ndarray, np.ndarray]) -> np.ndarray:
-        """The same in single precision under (nodes, values) pairs alone.
-
-        Raises
-        ------
-        ValueError
-            If a pair does not go together, or lies outside the grid.
-        """
+        """Displacement of all nodes in single precision, under (nodes, values) pairs."""
         if self.nodes is not None:
             self.applications += 1
             loaded = np.concatenate([pair[0] for pair in pairs])

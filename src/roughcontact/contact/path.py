@@ -1,17 +1,17 @@
 """Loading, unloading and reloading of contacts that crush: the permanent set of a load path.
 
-While the load exceeds all earlier ones the pressure stops at the hardness H, and nodes at H are
-pressed in: loading, on heights h. Where the load turns back, what was pressed in stays,
+While the load exceeds all earlier ones the pressure is limited by the hardness H, and nodes at H
+are pressed in: loading, on heights h. At a turn of the load the permanent set is kept,
 
     h <- h + min(g, 0)    where p = H,
 
 and until the load exceeds its maximum again the contact is elastic on these heights: unloading, and
-reloading on the same curve. There the state of the maximum is the elastic one, as no gap of it is
-negative any more; a bound at H, which its nodes touch without being pressed in, would leave them
-doubly degenerate. Loading does not depend on its steps: the set is updated at turning points alone.
+reloading on the same curve. At the maximum the elastic state is the same, as none of its gaps is
+negative any more; with a bound at H, nodes at H without overlap would be doubly degenerate. Loading
+does not depend on its steps: the set is updated at turning points alone.
 
-Perfect plasticity: a second cycle to the same load changes nothing, and what is pressed in is gone
-(rock is crushed, its volume is not conserved).
+Perfect plasticity: a second cycle to the same load changes nothing, and the volume pressed in is
+lost (rock is crushed, its volume is not conserved).
 """
 
 from collections.abc import Sequence
@@ -25,6 +25,7 @@ from ..elastic.halfspace import HalfSpace
 from ..threads import computed_once
 from .solve import solve_contact
 from .state import ContactState
+from .topography import HasHeights, heights_of
 
 LOAD, UNLOAD, RELOAD = "load", "unload", "reload"
 #: Branches of a load path.
@@ -33,22 +34,22 @@ BRANCHES = (LOAD, UNLOAD, RELOAD)
 
 @dataclass(frozen=True)
 class BranchState:
-    """A state on a load path.
+    """State on a load path.
 
     Attributes
     ----------
     branch : str
-        ``load`` under a load above all earlier ones; below, ``unload`` where it has fallen and
-        ``reload`` where it has risen since.
+        ``load`` above all earlier loads; below, ``unload`` where the load has fallen and ``reload``
+        where it has risen since.
     closure : float
         w from first touch of the heights that the path began with, mm.
     permanent_set : (ny, nx) ndarray
-        How far each node has been pressed in for good, mm.
+        Permanent indentation of each node, mm.
     yielded : (ny, nx) bool ndarray
         Nodes that have carried the hardness.
     contact : ContactState
-        On the heights as they were pressed in before the last branch began; its own closure is from
-        first touch of these.
+        On the heights at the beginning of the branch, permanent set included; its own closure is
+        from first touch of these.
     hardness : float or (ny, nx) ndarray
         MPa.
     """
@@ -84,28 +85,28 @@ class BranchState:
 
     @property
     def set_volume(self) -> float:
-        """Volume pressed in for good, mm3."""
+        """Volume of the permanent set, mm3."""
         return float(self.permanent_set.sum()) * self.contact.space.cell_area
 
     @property
     def plastic_load_fraction(self) -> float:
-        """Fraction of the force that nodes at the hardness carry; 0 without a force."""
+        """Fraction of the force on nodes at the hardness; 0 without a force."""
         at_limit = self.contact.pressure >= self.contact.hardness
         total = float(self.pressure.sum())
         return float(self.pressure[at_limit].sum()) / total if total > 0 else 0.0
 
     @computed_once
     def elastic_energy(self) -> float:
-        """Energy that unloading gives back, sum p u s^2 / 2, N mm."""
+        """Energy recovered by unloading, sum p u s^2 / 2, N mm."""
         work = float((self.pressure * self.contact.displacement).sum())
         return work * self.contact.space.cell_area / 2
 
     @computed_once
     def dissipated_energy(self) -> float:
-        """Dissipated energy since the path began, sum of H s^2 times the permanent set, N mm.
+        """Energy dissipated since the path began, sum of H s^2 times the permanent set, N mm.
 
-        A node is pressed in under the pressure H alone. With the elastic energy this is the work
-        of the force, the integral of F dw: over a cycle, the area between its branches.
+        A node is pressed in under the pressure H alone. With the elastic energy this is the work of
+        the force, the integral of F dw: over a cycle, the area between its branches.
         """
         sunk = self.permanent_set > 0
         spent = np.broadcast_to(self.hardness, sunk.shape)[sunk] * self.permanent_set[sunk]
@@ -118,14 +119,14 @@ def loaded_state(contact: ContactState) -> BranchState:
     Parameters
     ----------
     contact : ContactState
-        On heights that nothing has pressed in before, under its largest load so far.
+        On the original heights, under its largest load so far.
     """
     held, yielded = np.zeros(contact.space.shape), np.zeros(contact.space.shape, bool)
     return _branch_state(LOAD, contact, contact.closure, held, yielded, contact.hardness)
 
 
 def load_path(
-    composite: ArrayLike,
+    composite: ArrayLike | HasHeights,
     space: HalfSpace,
     *,
     forces: Sequence[float] | None = None,
@@ -134,33 +135,48 @@ def load_path(
     rtol: float = 1e-6,
     loaded: ContactState | None = None,
 ) -> list[BranchState]:
-    """States of contact under loads that follow one another: up, down and up again.
+    """States of contact under successive loads: up, down and up again.
 
     Parameters
     ----------
     composite : (ny, nx) array_like
-        Composite topography h before any load, mm; the largest h touches first.
+        Composite topography h before any load, mm, as for `solve_contact`.
     space : HalfSpace
     forces : (k,) sequence of float, optional
         F, N. Either these or ``closures`` are given.
     closures : (k,) sequence of float, optional
-        w, mm, all from first touch of ``composite``. Where contact is lost the force is 0.
+        w, mm, all from first touch of ``composite``. The force is 0 where contact is lost.
     hardness : float or (ny, nx) array_like
-        H, MPa, as of `solve_contact`; None for an elastic surface.
+        H, MPa, as for `solve_contact`; None for an elastic surface.
     rtol : float
-        As of `solve_contact`.
+        As for `solve_contact`.
     loaded : ContactState, optional
-        State of the same topography and hardness under its first load, from which the path goes on.
+        State of the same topography and hardness under its first load, from which the path
+        continues.
 
     Returns
     -------
     list of BranchState
-        One for each load, in their order.
+        One state for each load, in their order.
 
     Raises
     ------
     ValueError, NotConverged
         As `solve_contact`.
+
+    Examples
+    --------
+    A sphere of radius 1 mm, pressed in and released:
+
+    >>> import numpy as np
+    >>> from roughcontact import HalfSpace, load_path
+    >>> y, x = (np.indices((64, 64)) - 31.5) * 0.01
+    >>> space = HalfSpace((64, 64), 0.01, 1e4)
+    >>> path = load_path(-(x**2 + y**2) / 2, space, forces=[50, 0], hardness=800)
+    >>> [state.branch for state in path]
+    ['load', 'unload']
+    >>> bool(path[-1].permanent_set.max() > 0)
+    True
     """
     given, name = (forces, "forces") if closures is None else (closures, "closures")
     if given is None or (given is closures and forces is not None):
@@ -168,7 +184,7 @@ def load_path(
     loads = real_array(given, name)
     if loads.ndim != 1 or not (np.isfinite(loads) & (loads >= 0)).all():
         raise ValueError(f"{name}: expected a list of finite numbers >= 0")
-    height = field(composite, "composite topography", space.shape)
+    height = field(heights_of(composite), "composite topography", space.shape)
     limit = np.inf if hardness is None else hardness
     path = _Path(height, space, limit, rtol)
     if loaded is not None:
@@ -179,7 +195,7 @@ def load_path(
 
 
 class _Path:
-    """Heights as they have sunk until the last turn, and the last state."""
+    """Heights with the permanent set of the last turn, and the last state."""
 
     def __init__(self, height, space, hardness, rtol):
         self.first, self.space, self.hardness, self.rtol = height, space, hardness, rtol
@@ -193,7 +209,7 @@ class _Path:
         self.state, self.load, self.largest = loaded_state(contact), load, load
 
     def next(self, load, *, by_force):
-        """The state of the next load."""
+        """State of the next load."""
         beyond = load > self.largest
         if not beyond and self.branch == LOAD and load < self.load:
             self._turn()
@@ -204,18 +220,18 @@ class _Path:
         self.load, self.largest = load, max(load, self.largest)
         contact = self._contact(load, by_force)
         closure = contact.closure + self.lowered
-        known = closure, self.held, self.yielded, self.hardness
-        self.state = _branch_state(self.branch, contact, *known)
+        history = closure, self.held, self.yielded, self.hardness
+        self.state = _branch_state(self.branch, contact, *history)
         return self.state
 
     def _turn(self):
-        """Keep the permanent set of the last state in the heights of the following ones."""
+        """Subtract the permanent set of the last state from the heights of the following ones."""
         self.held, self.yielded = self.state.permanent_set, self.state.yielded
         self.height = self.first - self.held
         self.lowered = float(self.first.max() - self.height.max())
 
     def _contact(self, load, by_force):
-        """The state of a load on the heights as they are, bounded on loading alone."""
+        """State of a load on the present heights, bounded by the hardness on loading only."""
         start = None if self.state is None else self.state.contact.without_before()
         bound = self.hardness if self.branch == LOAD else None
         case = (self.height, self.space)
@@ -228,7 +244,7 @@ class _Path:
 
 
 def _branch_state(branch, contact, closure, held, yielded, hardness):
-    """State with the permanent set before it and its own."""
+    """State with the earlier permanent set and its own."""
     at_limit = contact.pressure >= contact.hardness
     return BranchState(
         branch=branch,

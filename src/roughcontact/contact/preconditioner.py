@@ -1,8 +1,8 @@
 """Preconditioner: approximate inverse of the elastic operator on a contact set.
 
-Sets of a few nodes are inverted exactly. Else it is the sparse inverse-Cholesky factor
-(`inverse_cholesky`), and in larger windows the coarse correction (`coarse_correction`) of what that
-gets wrong, which is smooth.
+Sets of a few nodes are inverted exactly. Otherwise it is the sparse inverse-Cholesky factor
+(`inverse_cholesky`) and, in larger windows, the coarse correction (`coarse_correction`) of the
+factor's error, which is smooth.
 """
 
 import threading
@@ -22,28 +22,22 @@ from .inverse_cholesky import (
 )
 from .node_sets import check_nodes, check_on_set
 
-#: Sets of at most this many nodes are inverted exactly.
+#: Most nodes of a set that is inverted exactly.
 DIRECT = 96
-#: Windows of at most this many cells along the longer side do without the coarse correction too.
+#: Most cells along the longer side of a window without coarse correction.
 SMALL = 160
-#: Sets of at most this many nodes among few candidates do without it too: they are scattered, and
-#: what their nodes add up to is no smooth pressure. It would cost more applications than it saves.
+#: Most nodes of a set among few candidates without coarse correction: they are scattered, and their
+#: pressure is not smooth. The correction would cost more applications than it saves.
 SCATTERED = 10_000
 
 
 class Preconditioner:
     """Symmetric positive definite approximation to the inverse of K on a contact set.
 
-    Attributes
-    ----------
-    small : bool
-        Whether the window is one of those in which applications cost little beside the rest.
-
-    Notes
-    -----
-    ``update`` keeps of the factor what a new set leaves unchanged, bit for bit as a fresh start
-    would have it. The coarse operator lags behind the set, by up to `coarse_correction.LAG`,
-    unless it is made ``fresh``. An update changes the object, so that no two threads may use one:
+    ``small`` is True for windows in which applications cost little beside the rest. ``update``
+    keeps the part of the factor that a new set leaves unchanged, identical to the bit to a fresh
+    start. The coarse operator may lag behind the set, by up to `coarse_correction.LAG`, unless it
+    is ``fresh``. An update changes the object, so that no two threads may share one:
     `preconditioner` gives each its own.
     """
 
@@ -52,36 +46,25 @@ class Preconditioner:
         self._shape, self._has_null_space = space.shape, not space.is_free
         neighbourhood = NARROW_NEIGHBOURHOOD if self.small else WIDE_NEIGHBOURHOOD
         self._factor = InverseCholesky(space, neighbourhood)
-        # Not held: what is kept for a half-space would keep it.
+        # A weak reference: the cache of a half-space must not keep it alive.
         self._space = weakref.ref(space)
         self._coarse: CoarseCorrection | None = None
         self._exact: np.ndarray | None = None
         self._local = self.small
 
     def update(self, nodes: np.ndarray, *, fresh: bool, scattered: bool = False) -> None:
-        """Make this the inverse on another contact set.
+        """Move to another contact set, (n,) int32 ascending numbers of cells.
 
-        Parameters
-        ----------
-        nodes : (n,) int32 ndarray
-            Its nodes as numbers of cells, ascending.
-        fresh : bool
-            Whether to make the coarse operator anew, which else may lag a little behind the set.
-        scattered : bool
-            Whether the set is among few candidates in a large window: see `SCATTERED`.
-
-        Raises
-        ------
-        ValueError
-            If they are no such numbers.
+        ``fresh``: rebuild the coarse operator, which may otherwise lag a little behind the set.
+        ``scattered``: the set is among few candidates in a large window, see `SCATTERED`.
         """
         check_nodes(nodes, self._shape)
         self._exact = None
         if fresh and self._coarse is not None:
-            # Also where so few nodes come first that none is needed yet.
+            # Also before a set of few nodes, which does not need it yet.
             self._coarse.forget()
         if nodes.size <= DIRECT:
-            # Few nodes of a large window may lie further apart than the table reaches.
+            # The few nodes of a large window may be further apart than the table reaches.
             singular = self._has_null_space and nodes.size == self._shape[0] * self._shape[1]
             self._exact = _exact_inverse(nodes, self._shape[1], self._factor.anywhere, singular)
             return
@@ -99,13 +82,7 @@ class Preconditioner:
         return CoarseCorrection(space)
 
     def __call__(self, residual: np.ndarray) -> np.ndarray:
-        """The approximate solution x of K x = residual, both (n,) float32 on the contact set.
-
-        Raises
-        ------
-        ValueError
-            If the residual is not one on the set of the last update.
-        """
+        """Approximate solution x of K x = residual, both (n,) float32 on the contact set."""
         if self._exact is not None:
             check_on_set(residual, len(self._exact))
             return times(self._exact, residual)
@@ -116,11 +93,11 @@ class Preconditioner:
 
 
 class _Preconditioners(dict):
-    """By the id of a half-space: a weak reference to it, and its preconditioner."""
+    """Weak reference to a half-space and its preconditioner, by the half-space's id."""
 
 
 class _ThreadStore(threading.local):
-    """The preconditioners that this thread keeps; they end with the thread."""
+    """Preconditioners cached by this thread; they end with it."""
 
     def __init__(self):
         self.kept = _Preconditioners()
@@ -130,20 +107,15 @@ _THREAD = _ThreadStore()
 
 
 def preconditioner(space: HalfSpace) -> Preconditioner:
-    """The preconditioner that this thread keeps for a half-space.
+    """Preconditioner that this thread caches for a half-space (this object, not an equal one).
 
-    It is kept as the next contact set is much the same, and as long as the half-space itself and
-    the thread. After ``update(fresh=True)`` it does not depend on the sets it was of before.
-
-    Parameters
-    ----------
-    space : HalfSpace
-        This very object, not one equal to it.
+    It is kept because the next contact set is similar, and lives as long as the half-space and the
+    thread. After ``update(fresh=True)`` it does not depend on earlier sets.
     """
     kept, key = _THREAD.kept, id(space)
     of, inverse = kept.get(key, (None, None))
     if of is None or of() is not space:
-        # The dictionary is not held by what it holds: neither would ever end.
+        # A weak reference: dictionary and half-space would otherwise keep each other alive.
         mine, inverse = weakref.ref(kept), Preconditioner(space)
         kept[key] = weakref.ref(space, lambda _: _drop(mine(), key)), inverse
     return inverse
@@ -161,7 +133,7 @@ def _drop(kept, key):
 
 @njit(cache=True)
 def _exact_inverse(nodes, nx, influence, singular):
-    """Inverse of K on a few nodes, exactly; where it has none, for pressures of the mean zero."""
+    """Exact inverse of K on a few nodes; for pressures of mean 0 where K is singular."""
     n = nodes.size
     everywhere = float(influence[0][0, 0]) if singular else 0.0
     inverse = np.empty((n, n))

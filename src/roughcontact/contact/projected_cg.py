@@ -1,11 +1,11 @@
 """Linear equations K x = b on a contact set: a preconditioned step, then conjugate gradients.
 
-Where the sum of x is given, the gradients are projected so that they keep it (projected method of
-N. I. M. Gould, M. E. Hribar and J. Nocedal, On the solution of equality constrained quadratic
-programming problems arising in optimization, SIAM J. Sci. Comput. 23 (2001) 1376). The step before
-them is clipped at the bounds (D. P. Bertsekas, Projected Newton methods for optimization problems
-with simple constraints, SIAM J. Control Optim. 20 (1982) 221). Directions and their images are in
-single precision.
+If the sum of x is given, the gradients are projected so that they keep it (projected conjugate
+gradients: N. I. M. Gould, M. E. Hribar and J. Nocedal, On the solution of equality constrained
+quadratic programming problems arising in optimization, SIAM J. Sci. Comput. 23 (2001) 1376). The
+step before them is clipped at the bounds (D. P. Bertsekas, Projected Newton methods for
+optimization problems with simple constraints, SIAM J. Control Optim. 20 (1982) 221). Directions and
+their images are in single precision.
 """
 
 import numpy as np
@@ -14,52 +14,40 @@ from ..kernel_cache import njit
 from .bounds import Bounds
 from .operator import Operator
 
-# Applications in one solve: on an exact set about ten reach 1e-6.
+# Most applications in one solve; on the exact set about ten reach 1e-6.
 MAX_INNER = 60
-# Passes in search of the closure that gives a clipped step its total.
+# Most passes in search of the closure that gives a clipped step its total.
 CLIPPING_PASSES = 20
-# To what fraction it has that; in a window that goes on beyond its edges, where clearances are a
-# larger part of the closure.
+# Tolerance of the total, in free windows and in repeated ones, where clearances are a larger part
+# of the closure.
 TOTAL, REPEATED_TOTAL = 1e-7, 1e-12
-# In it, least effect of closure on a node's pressure, as a fraction of the mean.
+# Least effect of the closure on a node's pressure in that search, as a fraction of the mean.
 MIN_RESPONSE = 1e-2
-# Stiffness: its error is of second order in this residual.
+# Residual of the stiffness equations; the stiffness errs by its second order.
 TANGENT_RESIDUAL = 1e-4
-# Compliance: passes in which double precision corrects what single precision leaves.
+# Most passes of the compliance, each of which corrects in double precision the error of the last.
 COMPLIANCE_PASSES = 4
 
 
 class ProjectedCG:
     """Conjugate gradients for K x = right side + multiplier on a contact set.
 
-    The multiplier, of the constraint on the sum of x, is the change of closure that a given force
-    leaves open; it is 0 where the closure is given.
-
-    Parameters
-    ----------
-    operator : Operator
-        Its preconditioner is that on the set.
-    active : (n,) int ndarray
-        Nodes of the set.
-    right_side : (n,) ndarray
+    The Lagrange multiplier of the sum of x is the change of the closure under a given force; it is
+    0 if the closure is given. The operator's preconditioner must be that of the ``active`` set,
+    (n,).
 
     Attributes
     ----------
     solution, residual : (n,) float32 ndarray
-        x, and what is left of the right side.
+        x, and the residual of the equations.
     image : float32 ndarray
         K x on all nodes of the operator.
     multiplier : float
         Lagrange multiplier of the sum.
     unclipped : (n,) float32 ndarray
-        0 at nodes that keep the x they have, whatever their equation says; else 1.
+        0 at nodes whose x stays fixed, whatever their equation; else 1.
     at_lower, at_upper : (n,) bool ndarray
-        Those that a clipped step took to a bound.
-
-    Raises
-    ------
-    ValueError
-        If the right side is not one on the set.
+        Nodes that a clipped step took to a bound.
     """
 
     def __init__(self, operator: Operator, active: np.ndarray, right_side: np.ndarray):
@@ -75,14 +63,9 @@ class ProjectedCG:
         self._response: np.ndarray | None = None
 
     def clipped_step(self, start: np.ndarray, bounds: Bounds, total: float | None) -> None:
-        """The preconditioner's whole step, clipped so that start + x keeps within bounds.
+        """The whole preconditioned step, clipped so that start + x stays within the bounds.
 
-        With a ``total``, start + x has that sum. What the step does is left to `apply_step`.
-
-        Raises
-        ------
-        ValueError
-            If the start is not one on the set.
+        With a ``total``, start + x has that sum. `apply_step` applies K to the step.
         """
         if start.shape != self.active.shape:
             raise ValueError(f"start {start.shape}: expected {self.active.shape}")
@@ -97,13 +80,13 @@ class ProjectedCG:
         self.at_lower, self.at_upper = clipped
 
     def apply_step(self, fixed: np.ndarray, change: np.ndarray) -> None:
-        """Apply K to the step, and to the ``change`` of ``fixed`` nodes that goes with it."""
+        """Apply K to the step and to the ``change`` of the ``fixed`` nodes."""
         self.image = self.operator.apply_sparse((self.active, self.solution), (fixed, change))
         self.residual *= self.unclipped
         _subtract(self.residual, np.float32(1), self.image, self.active, self.unclipped)
 
     def iterate(self, goal: float, *, by_force: bool) -> None:
-        """Iterate conjugate gradients until no residual exceeds ``goal``."""
+        """Conjugate gradients until no residual exceeds ``goal``."""
         response, total = self.unclipped, 0.0
         if by_force:
             response = self._response_of_unclipped()
@@ -127,7 +110,7 @@ class ProjectedCG:
             previous = slope
             image = self.operator.apply_sparse((self.active, direction))
             curvature = _curvature(direction, image, self.active, self.unclipped)
-            if not curvature > 0:  # of a constant, in a window that goes on beyond its edges
+            if not curvature > 0:  # a constant, in a window that continues beyond its edges
                 break
             length = np.float32(slope / curvature)
             add(self.solution, length, direction)
@@ -137,18 +120,18 @@ class ProjectedCG:
     def _response_of_unclipped(self):
         """Preconditioned vector of ones on the unclipped nodes.
 
-        No other response will do, however few nodes were clipped: with that of the whole set the
-        gradients are not conjugate, and were seen to diverge.
+        With the response of the whole set the gradients are not conjugate, however few nodes were
+        clipped, and were seen to diverge.
         """
         if self._response is not None and self.unclipped.all():
             return self._response
         return self.inverse(self.unclipped) * self.unclipped
 
     def _end_at_goal(self, goal, by_force):
-        """Move the multiplier, if open, by the mean residual where none then exceeds the goal.
+        """Move the multiplier, if free, by the mean residual, if no residual then exceeds the goal.
 
-        Returns whether it is so; else nothing changes. This is known without the preconditioner,
-        unlike the multiplier that its search asks for.
+        Returns whether it did. This test needs no preconditioner, unlike the multiplier of the
+        search.
         """
         mean, worst = _mean_and_worst(self.residual, self.unclipped, by_force)
         if worst > goal:
@@ -159,24 +142,11 @@ class ProjectedCG:
 
 
 def stiffness(operator: Operator, active: np.ndarray) -> tuple[float, float]:
-    """Sum of q with K q = 1 on some nodes: dF/dw of a state in which these lie between the bounds.
+    """Stiffness dF/dw of nodes between the bounds: sum of q with K q = 1 on them.
 
-    Infinite on all nodes of a window that goes on beyond its edges.
-
-    Parameters
-    ----------
-    operator : Operator
-    active : (n,) int32 ndarray
-
-    Returns
-    -------
-    stiffness, error : float
-        0 without nodes. ``error`` estimates the relative error, of second order in the
-        residual of the equations.
-
-    Notes
-    -----
-    For an approximate q with residual r = 1 - K q, sum(q) + r.q errs by r.K^-1 r only.
+    Returns the stiffness and its relative error, of second order in the residual of the equations;
+    0 without nodes, and infinity on all nodes of a window that continues beyond its edges. For an
+    approximate q with residual r = 1 - K q, sum(q) + r.q errs by r.K^-1 r only.
     """
     if active.size == 0:
         return 0.0, 0.0
@@ -194,11 +164,11 @@ def stiffness(operator: Operator, active: np.ndarray) -> tuple[float, float]:
 
 
 def _compliance(operator, active):
-    """The least q.K q of all q of sum 1 on some nodes, which is dw/dF, and its relative error.
+    """Compliance dw/dF: the least q.K q of all q of sum 1 on some nodes, and its relative error.
 
-    For windows that go on beyond their edges, where K has no inverse on all of the nodes, and
-    nearly none on most. The least is the multiplier of the sum; an approximate q is above it by
-    r.K^-1 r, of what is left of K q less its mean.
+    For windows that continue beyond their edges, where K has no inverse on all of the nodes and
+    nearly none on most. The least value is the multiplier of the sum; an approximate q exceeds it
+    by r.K^-1 r, with r = K q less its mean.
     """
     operator.precondition(active, fresh=True)
     response = operator.inverse(np.ones(active.size, np.float32))
@@ -225,35 +195,24 @@ def _compliance(operator, active):
 
 @njit(cache=True)
 def add(values: np.ndarray, scale: float, change: np.ndarray) -> None:
-    """values += scale * change, without arrays in between."""
+    """In place, values += scale * change, without temporary arrays."""
     if values.size != change.size:
         raise ValueError("expected as many changes as values")
     for i in range(values.size):
         values[i] += scale * change[i]
 
 
-# Sums are made in double precision, and without the threads of a library of linear algebra.
+# Sums are in double precision, and without the threads of a linear-algebra library.
 
 
 @njit(cache=True)
 def _project(search, residual, unclipped, response, total):
-    """Make a search vanish on clipped nodes and, where the response has a total, sum to zero.
+    """Make a search vanish on clipped nodes and, if the response has a ``total``, sum to zero.
 
-    Parameters
-    ----------
-    search, residual, unclipped : (n,) float32 ndarray
-    response : (n,) float32 ndarray
-        What the preconditioner makes of 1 on the unclipped nodes.
-    total : float
-        Its sum; 0 where the sum of the search is free.
-
-    Returns
-    -------
-    offset : float
-        What is added to the multiplier and to every residual; and the response times it to the
-        search.
-    slope, worst : float
-        Search times residual, and the largest residual.
+    ``response`` is the preconditioned vector of ones on the unclipped nodes and ``total`` its sum;
+    0 if the sum of the search is free. Returns the offset, which was added to the multiplier and to
+    every residual (and times the response to the search), search times residual, and the largest
+    residual.
     """
     missing, slope, worst = 0.0, 0.0, np.float32(0)
     for i in range(search.size):
@@ -270,7 +229,7 @@ def _project(search, residual, unclipped, response, total):
 
 @njit(cache=True)
 def _mean_and_worst(residual, unclipped, by_force):
-    """Mean residual of the unclipped nodes, or 0 where it is not free; largest difference of it."""
+    """Mean residual of the unclipped nodes (0 if ``by_force`` is False), and largest deviation."""
     total, n = 0.0, 0
     for i in range(residual.size):
         if unclipped[i] > 0:
@@ -286,7 +245,7 @@ def _mean_and_worst(residual, unclipped, by_force):
 
 @njit(cache=True)
 def _curvature(direction, image, active, unclipped):
-    """Direction times its image, on the unclipped nodes."""
+    """Product of a direction and its image, on the unclipped nodes."""
     total = 0.0
     for i in range(active.size):
         total += direction[i] * image[active[i]] * unclipped[i]
@@ -302,12 +261,12 @@ def _subtract(residual, scale, image, active, unclipped):
 
 @njit(cache=True)
 def _multiplier_of_total(aim, response, low, high, total, nearly):
-    """Multiplier at which aim + multiplier * response, clipped, has a total; the aim moves there.
+    """Multiplier at which aim + multiplier * response, clipped, has a total; moves the aim there.
 
-    Found by Newton's method, safeguarded by bisection.
+    Newton's method, safeguarded by bisection.
     """
     n = aim.size
-    # Where the approximation is not positive, as K^-1 1 is, more closure still means more.
+    # Made positive, as K^-1 1 is, so that the total rises with the closure.
     response = np.maximum(response.astype(np.float64), MIN_RESPONSE * response.mean())
     multiplier, least, most = 0.0, -np.inf, np.inf
     passes, bounded = 0, True
@@ -325,7 +284,7 @@ def _multiplier_of_total(aim, response, low, high, total, nearly):
         least, most = (multiplier, most) if missing > 0 else (least, multiplier)
         if slope > 0:
             multiplier += missing / slope
-        # Between two bounds Newton's step may go to where every node is at one of them.
+        # Newton's step may lead to where every node is at one of its bounds.
         if not least < multiplier < most:
             if bounded:
                 least = max(least, np.min((low - aim) / response))
@@ -343,7 +302,7 @@ def _multiplier_of_total(aim, response, low, high, total, nearly):
 
 @njit(cache=True)
 def _clip(aim, start, low, high, step, unclipped):
-    """The step to an aim between bounds; nodes that it takes to the lower and to the upper one."""
+    """Step to an aim within bounds; returns the nodes that it takes to either bound."""
     at_low, at_high = np.empty(aim.size, np.bool_), np.empty(aim.size, np.bool_)
     for i in range(aim.size):
         end = min(max(aim[i], low[i]), high[i])

@@ -1,15 +1,15 @@
-"""Restriction to the grid twice as coarse, of which each cell holds two by two nodes."""
+"""Restriction to the grid twice as coarse, each of whose cells holds 2 x 2 nodes."""
 
 import numpy as np
 
 from ..kernel_cache import njit
 
-# Compiled: numpy takes twenty times as long for axes of two.
+# Compiled, since numpy takes twenty times as long for axes of length two.
 
 
 @njit(cache=True)
 def restrict_minimum(values: np.ndarray) -> np.ndarray:
-    """The smallest of each 2 x 2 nodes, an odd last row or column standing alone."""
+    """Minimum of each 2 x 2 nodes; an odd last row or column stands alone."""
     ny, nx = values.shape
     coarse_values = np.full(((ny + 1) // 2, (nx + 1) // 2), np.inf)
     for y in range(ny):
@@ -20,7 +20,7 @@ def restrict_minimum(values: np.ndarray) -> np.ndarray:
 
 @njit(cache=True)
 def restrict_sum(values: np.ndarray) -> np.ndarray:
-    """The sum of each 2 x 2 nodes, an odd last row or column standing alone."""
+    """Sum of each 2 x 2 nodes; an odd last row or column stands alone."""
     ny, nx = values.shape
     coarse_values = np.zeros(((ny + 1) // 2, (nx + 1) // 2))
     for y in range(ny):

@@ -1,12 +1,12 @@
-"""Safeguards against cycling, after many iterations of the active-set method.
+"""Anti-cycling safeguards, after many iterations of the active-set method.
 
-It has no proof of convergence with inexact, clipped steps, and on combs, checkerboards and single
-spikes its sets do cycle. No cycle is detected, iterations are counted. Under a given closure, once
-more than :data:`PATIENCE` were made, linear equations are solved nearly to the end and without
-clipping, and while nodes leave the set none enters it. Under a given force, whose closure all nodes
-share, Newton's method on F(w) then takes over, the force as a function of the closure (the rigid
-approach), safeguarded by bisection: F rises, and its slope is the contact stiffness. It solves for
-one given closure after the other.
+With inexact, clipped steps the method has no proof of convergence, and on combs, checkerboards and
+single spikes its sets do cycle. Cycles are not detected; iterations are counted. Under a given
+closure, after more than :data:`PATIENCE` iterations, linear equations are solved nearly exactly and
+without clipping, and while nodes leave the set none enters it. Under a given force, whose closure
+all nodes share, Newton's method on F(w) then takes over, the force as a function of the closure
+(the rigid-body approach), safeguarded by bisection: F rises, and its slope is the contact
+stiffness. It solves for one given closure after the other.
 """
 
 from collections.abc import Callable
@@ -20,43 +20,36 @@ from .kkt import KKTResidual, Problem, Solution
 from .operator import Operator
 from .projected_cg import stiffness
 
-# After more iterations than this the set may be cycling: seen on combs and checkerboards under a
-# given force, once in 2,000 random problems under a given closure.
+# Iterations after which the set may be cycling: seen on combs and checkerboards under a given
+# force, and once in 2,000 random problems under a given closure.
 PATIENCE = 30
-# Under a given force it cycles for sure where a violation is still of the order of the closure
-# after more than these: a spike carries what its neighbours, all or none of them, would.
+# Under a given force it certainly cycles if a violation is still of the order of the closure after
+# STALL iterations: a spike and its neighbours take the load from each other.
 STALL, STALLED_VIOLATION = 15, 0.5
-# Closures tried in search of one force; Newton's method needs about five.
+# Most closures tried for one force; Newton's method needs about five.
 MAX_CLOSURES = 50
-# Aim this far below the tolerance, so that one iteration too many is rarer than one too few.
+# Fraction of the tolerance that solves aim at: stopping just above it would cost an iteration.
 SAFETY = 0.3
-# No closure is known better than this, as a fraction of it.
+# Relative rounding of the closure.
 CLOSURE_ROUNDING = 1e-12
 
 
 def many_iterations(iterations: int) -> bool:
-    """True if more iterations were made than go without exact solves, under a given closure."""
+    """True if exact solves are due, under a given closure."""
     return iterations > PATIENCE
 
 
 def many_iterations_under_force(iterations: int, violation: float, unit: float) -> bool:
-    """True if more iterations were made than go without Newton's method, under a given force.
+    """True if Newton's method is due, under a given force.
 
-    Parameters
-    ----------
-    iterations : int
-        Made so far.
-    violation : float
-        The largest before the last of them.
-    unit : float
-        What that is counted in (`Problem.tolerated`).
+    ``violation`` is the largest before the last iteration, ``unit`` that of `Problem.tolerated`.
     """
     stalled = violation > STALLED_VIOLATION * unit
     return iterations > (STALL if stalled else PATIENCE)
 
 
 def without_entering(kkt: KKTResidual, pressure: np.ndarray, bounds: Bounds) -> KKTResidual:
-    """The same residual with an active set that no node enters while others leave."""
+    """Same residual with an active set that no node enters while others leave."""
     if not kkt.infeasible.size:
         return kkt
     inside = bounds.at(kkt.active).between(pressure[kkt.active])
@@ -70,23 +63,10 @@ def newton_on_closure(
     start: Solution,
     solve: Callable[[Problem, float, Solution], Solution],
 ) -> Solution:
-    """The state of a given force as that of a closure, by Newton's method on F(w).
+    """State of a given force, by Newton's method on F(w); the caller checks the residual.
 
-    Parameters
-    ----------
-    problem : Problem
-        Under a given force.
-    rtol : float
-        Tolerance of its state.
-    operator : Operator
-    start : Solution
-    solve : callable
-        From a problem under a given closure, a tolerance and a start to a solution.
-
-    Returns
-    -------
-    Solution
-        The caller checks its residual.
+    ``solve`` takes a problem under a given closure, a tolerance and a start, and returns a
+    solution.
     """
     low, high, solution = 0.0, problem.largest_closure, start
     closure = start.closure if start.closure < high else high / 2
@@ -95,14 +75,15 @@ def newton_on_closure(
         solution = solve(replace(problem, load=closure, by_force=False), tolerance, solution)
         total = solution.pressure.sum()
         if abs(total / problem.load - 1) <= SAFETY * rtol:
-            # What is missing goes to the nodes between the bounds, which may be few.
+            # The missing force goes to the nodes between the bounds, which may be few.
             state = verified(problem, operator, solution)
             if state.residual <= rtol:
                 return state
         low, high = (closure, high) if total < problem.load else (low, closure)
         slope, _ = stiffness(operator, problem.bounds.between(solution.pressure))
         if slope > 0:
-            # Steep F(w): a closure within its tolerance must still give the force within its.
+            # Where F(w) is steep, the closure needs a tighter tolerance for the force to meet its
+            # own.
             steepness = max(1.0, slope * abs(closure) / problem.load)
             tolerance = max(SAFETY * rtol / steepness, CLOSURE_ROUNDING)
             closure += (problem.load - total) / slope

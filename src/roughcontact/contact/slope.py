@@ -1,4 +1,4 @@
-"""Slope of the force over the closure: the normal stiffness of a contact, yielding or not."""
+"""Slope of the force over the closure: normal stiffness of a contact, yielding or not."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -8,8 +8,8 @@ import numpy as np
 
 from ..limits import RESOLVED_NODES
 
-#: Half the span of a secant: a fraction of the closure, or as many times that over which one node
-#: comes from first touch to its hardness, where that is more; no more than a part of the closure.
+#: Half the span of a secant: HALF_SPAN of the closure, or HALF_SPAN_OF_NODES times the closure from
+#: first touch of a node to its hardness, if that is more; at most MAX_HALF_SPAN of the closure.
 HALF_SPAN, HALF_SPAN_OF_NODES, MAX_HALF_SPAN = 0.02, 4.0, 0.25
 #: Tolerance of the two states at its ends.
 SECANT_RTOL = 1e-5
@@ -17,18 +17,18 @@ SECANT_RTOL = 1e-5
 
 @dataclass(frozen=True)
 class Slope:
-    """dF/dw of a branch of the closure curve.
+    """Slope dF/dw of a branch of the closure curve.
 
     Attributes
     ----------
     value, error : float
-        N/mm; NaN where it is not determined. The error is that of solving, and of a yielding
-        contact the ``scatter`` added.
+        N/mm; NaN where it is not determined. The error is that of solving; for a yielding contact
+        the ``scatter`` is added.
     cells : float
-        Number of equal cells that would carry the change of the force with as much scatter: one
-        where a single cell carries it. Infinite on an elastic branch, whose slope is exact.
+        Number of equal, independent cells whose sum would scatter as much as the change of the
+        force; infinite on an elastic branch, whose slope is exact.
     reason : str
-        Why there is no value; empty where there is one.
+        Why there is no value; empty if there is one.
     """
 
     value: float
@@ -38,31 +38,18 @@ class Slope:
 
     @property
     def scatter(self) -> float:
-        """Scatter of the value as a sum over so many cells, N/mm; 0 of an elastic branch."""
+        """Scatter of the value as a sum over ``cells``, N/mm; 0 for an elastic branch."""
         return self.value / float(np.sqrt(self.cells)) if self.cells else np.nan
 
 
 def secant_slope(state: Any, solve_contact: Callable[..., Any] | None) -> Slope:
-    """Slope of the loading branch at a state in which nodes yield.
+    """Slope of the loading branch at a state in which nodes yield; no value without a solver.
 
-    Parameters
-    ----------
-    state : ContactState
-    solve_contact : callable or None
-        The solver that it is of; no value without.
-
-    Raises
-    ------
-    NotConverged
-        As `solve_contact`.
-
-    Notes
-    -----
-    At one closure the force changes on the few nodes alone that are between first touch and the
-    hardness, while over a span of closures it rises by all those that come to yield: the first is
-    a number of the grid, the second one of the joint. It is the secant between two closures about
-    that of the state. The scatter is that of a sum over independent cells, relative to it
-    sqrt(sum dp^2) / sum dp.
+    At one closure the force changes only on the few nodes between first touch and the hardness,
+    while over a span of closures it rises by all nodes that come to yield: the first slope depends
+    on the grid, the second on the joint. It is therefore the secant between two closures around the
+    state's. The scatter is that of a sum over independent cells, relatively sqrt(sum dp^2) / sum
+    dp.
     """
     if solve_contact is None:
         return Slope(np.nan, np.nan, 0.0, "solved by another method, of which there is no secant")
@@ -78,9 +65,10 @@ def secant_slope(state: Any, solve_contact: Callable[..., Any] | None) -> Slope:
         )
 
     high = at(state.closure + half, state)
-    # On the line through both, nodes at the hardness stay there; towards a far lower load, of which
-    # the state may have come, all that have yielded since would leave it, and three times as many
-    # iterations put them back.
+    # Extrapolated along the line through both states, nodes at the hardness stay there. The state
+    # may have come from a far lower load; extrapolated towards that, all nodes that have yielded
+    # since would leave the hardness, and it would take three times as many iterations to put them
+    # back.
     low = at(state.closure - half, state.with_before(high))
     change = (high.pressure - low.pressure) * space.cell_area
     total, scatter = float(change.sum()), float(np.sqrt((change**2).sum()))

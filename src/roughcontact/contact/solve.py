@@ -1,10 +1,9 @@
 """Frictionless elastic contact of a composite topography with a rigid plane.
 
 A state of contact has pressures p >= 0 and gaps g = u + (max h - h) - w >= 0 with p g = 0, u = K p;
-where the force is given its sum of p is fixed and w is free. With a hardness H the pressure stops
-at H, and points there may be pressed in. How such a state is found is described in
-`active_set` and docs/solver.md; here loads become dimensionless, starts are chosen, and nothing
-returns unverified.
+if the force is given, the sum of p is fixed and w is free. With a hardness H the pressure is
+limited to H, and nodes there may be pressed in. `active_set` and docs/solver.md describe how such a
+state is found. Here loads become dimensionless, starts are chosen, and results are verified.
 """
 
 import math
@@ -32,43 +31,48 @@ from .effort import SOLVING
 from .full_approximation import full_approximation_start
 from .nested_iteration import nested_iteration_start
 from .state import Candidates, CandidateState, ContactState, unloaded_state
-from .topography import Topography
+from .topography import HasHeights, Topography
 
-# Earlier states are extrapolated by no more than this many of their own steps.
+# Largest extrapolation of earlier states, in steps between them.
 FURTHEST = 2.0
 
 
 @interruptible()
 def solve_contact(
-    composite: ArrayLike,
+    composite: ArrayLike | HasHeights,
     space: HalfSpace,
     *,
     closure: float | None = None,
     force: float | None = None,
+    mean_pressure: float | None = None,
     start: ContactState | None = None,
     rtol: float = 1e-6,
     hardness: float | ArrayLike | None = None,
 ) -> ContactState:
-    """The state of contact of a composite topography with a rigid plane.
+    """State of contact of a composite topography with a rigid plane.
 
     Parameters
     ----------
-    composite : (ny, nx) array_like
-        Composite topography h, mm; the largest h touches first.
+    composite : (ny, nx) array_like, or an object with ``heights()``
+        Heights of the composite topography h, mm; the largest h touches first. A topography of
+        SurfaceTopography has its first axis along x: ``HalfSpace(t.nb_grid_pts, t.pixel_size, E)``.
     space : HalfSpace
         The elastic operator on the same grid.
     closure : float, optional
-        w, mm, from first touch: the rigid-body approach. Either this or ``force`` is given.
+        w, mm, from first touch: the rigid-body approach. One of ``closure``, ``force`` and
+        ``mean_pressure`` is given.
     force : float, optional
         F, N.
+    mean_pressure : float, optional
+        F over the area of the window, MPa.
     start : ContactState, optional
-        A state of the same grid to start from, such as the previous load step.
+        A state on the same grid to start from, such as that of the previous load.
     rtol : float
-        Largest violation allowed of gap and pressure conditions, as a fraction of the closure;
-        or, of a given force, as a fraction of it.
+        Largest violation allowed of the gap and pressure conditions, as a fraction of the closure;
+        under a given force also of the force, as a fraction of it.
     hardness : float or (ny, nx) array_like, optional
         H, MPa, of the surface or of each node: the pressure at which it yields (elastic, then
-        perfectly plastic). Infinite where a node does not.
+        perfectly plastic). Infinite at elastic nodes.
 
     Returns
     -------
@@ -77,13 +81,33 @@ def solve_contact(
     Raises
     ------
     ValueError
-        If the topography has missing or masked cells or another shape, the start is none of this
-        grid, the load makes no sense or double precision ends before its state, or the force is
-        more than the hardness lets the whole window carry. Or if the closure is beyond that of full
-        contact, of an elastic surface that is repeated or reflected.
+        If the topography has missing or masked cells or another shape, the start is not on this
+        grid, the load is invalid or beyond double precision, or the force exceeds what the window
+        carries at its hardness. Also if the closure is beyond full contact of an elastic surface
+        that is repeated or mirrored.
     NotConverged
         If the conditions are not met to ``rtol``.
+
+    Examples
+    --------
+    A sphere of radius 1 mm under 50 N. Hertz: w = (3 F / (4 E* sqrt R))^(2/3) = 0.0241 mm, peak
+    pressure 988 MPa.
+
+    >>> import numpy as np
+    >>> from roughcontact import HalfSpace, solve_contact
+    >>> y, x = (np.indices((128, 128)) - 63.5) * 0.01
+    >>> state = solve_contact(-(x**2 + y**2) / 2, HalfSpace((128, 128), 0.01, 10e3), force=50.0)
+    >>> f"{state.closure:.4f} mm, {state.pressure.max():.0f} MPa"
+    '0.0241 mm, 988 MPa'
+
+    The next load starts from it:
+
+    >>> following = solve_contact(state.composite, state.space, force=60.0, start=state)
+    >>> following.closure > state.closure
+    True
     """
+    if mean_pressure is not None:
+        force = _force_of(mean_pressure, space, closure, force)
     load, topography = _checked(composite, space, closure, force, start, rtol)
     if load == 0:
         return unloaded_state(space, topography.clearance())
@@ -100,8 +124,19 @@ def solve_contact(
     return state
 
 
+def _force_of(mean_pressure, space, closure, force):
+    """Force of a mean pressure on the window, N."""
+    if closure is not None or force is not None:
+        raise ValueError("give one of closure=, force= and mean_pressure=")
+    _check_space(space)
+    pressure = number(mean_pressure, "mean pressure", "MPa")
+    if not math.isfinite(pressure) or pressure < 0:
+        raise ValueError(f"mean pressure {pressure}: expected a finite number >= 0, in MPa")
+    return pressure * space.area
+
+
 def _solve(case, units, load, start, rtol):
-    """The problem as it was solved, and the solution: the caller checks its residual."""
+    """Problem as it was solved, and its solution; the caller checks the residual."""
     restrict = may_restrict(case.space, rtol) and case.bounds.uniform
     if start is None or not start.in_contact.any():
         if restrict:
@@ -109,9 +144,9 @@ def _solve(case, units, load, start, rtol):
         problem = case.problem()
         return problem, ActiveSetMethod(problem, rtol).solve(nested_iteration_start(problem))
     if restrict:
-        known = units.candidates(case, start, load)
-        if known is not None:
-            return solve_restricted(case, *known, rtol)
+        candidates = units.candidates(case, start, load)
+        if candidates is not None:
+            return solve_restricted(case, *candidates, rtol)
     problem = case.problem()
     pressure, displacement = units.extrapolated(start, load)
     if displacement is not None:
@@ -122,12 +157,12 @@ def _solve(case, units, load, start, rtol):
 
 
 def checked_hardness(hardness: float | None, space: HalfSpace, force: float | None) -> float:
-    """The hardness as a number, MPa, infinite if there is none.
+    """Hardness as a number, MPa; infinite without one.
 
     Raises
     ------
     ValueError
-        If it is none, or such that the window could not carry the force, N.
+        If it is invalid, or the window could not carry the force, N.
     """
     if hardness is None:
         return np.inf
@@ -144,7 +179,7 @@ def checked_hardness(hardness: float | None, space: HalfSpace, force: float | No
 
 
 def _hardness_of_nodes(hardness, space, force):
-    """The same of a surface, or of each node, (n,): then infinite where a node does not yield."""
+    """Checked hardness of the surface, or of each node, (n,), infinite at elastic nodes."""
     if np.ndim(hardness) == 0:
         return checked_hardness(hardness, space, force)
     values = field(hardness, "hardness", space.shape)
@@ -164,19 +199,14 @@ def checked_problem(
     start: ContactState | None,
     rtol: float,
 ) -> tuple[float, np.ndarray]:
-    """Load and clearance of a problem as `solve_contact` and the comparison methods are given it.
-
-    Parameters
-    ----------
-    composite, space, closure, force, start, rtol
-        As `solve_contact` takes them.
+    """Load and clearance of a problem, from the arguments of `solve_contact` or another method.
 
     Returns
     -------
     load : float
         The closure or the force.
     clearance : (ny, nx) ndarray
-        Opening at first touch, mm.
+        Clearance at first touch, mm.
 
     Raises
     ------
@@ -188,12 +218,11 @@ def checked_problem(
 
 
 def _checked(composite, space, closure, force, start, rtol):
-    """Load and topography, as `checked_problem`."""
-    if not isinstance(space, HalfSpace):
-        raise ValueError(f"space {quoted(space)}: expected a HalfSpace of the topography's shape")
+    """Load and topography of `checked_problem`."""
+    _check_space(space)
     topography = Topography(composite, space.shape)
     if (closure is None) == (force is None):
-        raise ValueError("give either closure= or force=")
+        raise ValueError("give either closure= or force= (solve_contact: or mean_pressure=)")
     name, unit = ("closure", "mm") if force is None else ("force", "N")
     load = number(closure if force is None else force, name, unit)
     if not math.isfinite(load) or load < 0:
@@ -214,8 +243,13 @@ def _checked(composite, space, closure, force, start, rtol):
     return load, topography
 
 
+def _check_space(space):
+    if not isinstance(space, HalfSpace):
+        raise ValueError(f"space {quoted(space)}: expected a HalfSpace of the topography's shape")
+
+
 def _check_reach(case, closure):
-    """Refuse a closure that no force brings an elastic surface to, as its mean plane stays."""
+    """`ValueError` for a closure beyond the mean plane of an elastic repeated surface."""
     if case.by_force or case.space.is_free or not case.bounds.elastic:
         return
     most = float(case.topography.clearance().mean())
@@ -227,10 +261,10 @@ def _check_reach(case, closure):
 
 
 def _check_start(start, space):
-    """Refuse a start that is no state of this grid."""
+    """`ValueError` for a start that is no state on this grid."""
     if not isinstance(start, ContactState):
         raise ValueError(f"start {quoted(start)}: expected a ContactState, as solve_contact gives")
-    # A state of candidates was made by this solver, and its displacement need not be computed.
+    # Only this solver makes a state on candidates; checking its displacement would compute it.
     if isinstance(start, CandidateState) and start.space.shape == space.shape:
         return
     for name in ("pressure", "displacement"):
@@ -243,7 +277,7 @@ def _check_start(start, space):
 
 
 def _within_double_precision(space, load, by_force, depth):
-    """True if the state of a load has numbers that keep all their digits."""
+    """True if all numbers of the state of a load keep all their digits."""
     length, pressure = _load_units(space, load, by_force)
     sizes = length, pressure, pressure * space.cell_area
     if not MIN_RESULT <= min(sizes) <= max(sizes) <= MAX_RESULT:
@@ -256,8 +290,7 @@ def _load_units(space, load, by_force):
     stress_per_length = space.modulus / space.cell
     if not by_force:
         return load, load * stress_per_length
-    ny, nx = space.shape
-    pressure = load / (space.cell_area * ny * nx)
+    pressure = load / space.area
     return pressure / stress_per_length, pressure
 
 
@@ -283,9 +316,9 @@ class _Units:
         return LoadCase(self.space, topography, self.length, self.load, self.by_force, bounds)
 
     def candidates(self, case, start, load):
-        """Candidates at a load, a start pressure and its displacement; None if too many.
+        """Candidates at a load, a start pressure and its displacement; None if there are too many.
 
-        As `extrapolated`; the bound on the closure goes with the force.
+        The start is `extrapolated`, and the bound on the closure grows in proportion to the force.
         """
         bound = MARGIN * self.load
         if self.by_force:
@@ -301,11 +334,11 @@ class _Units:
         pressure /= self.pressure
         if not pressure.any():
             return None
-        known = start.space == self.space
-        return restricted, pressure, restricted.operator(pressure) if known else None
+        same_space = start.space == self.space
+        return restricted, pressure, restricted.operator(pressure) if same_space else None
 
     def extrapolated(self, start, load):
-        """Pressure at a load, and its displacement where that is one of this half-space."""
+        """Pressure at a load, and its displacement if the start is on this half-space."""
         pressure = self._extrapolated(lambda state: state.pressure, start, load)
         pressure = np.asarray(pressure, float).ravel() / self.pressure
         if start.space != self.space:
@@ -314,41 +347,41 @@ class _Units:
         return pressure, np.asarray(displacement, float).ravel() / self.length
 
     def _extrapolated(self, field_of, start, load):
-        """A field at a load, along the line through two earlier states.
+        """Field at a load, along the line through two earlier states.
 
-        With one state only, in proportion to the load. So too from another half-space: the line
-        through two states of that one belongs to its stiffness, and may lead far from any state of
-        this one, and to pressures below zero, which a proportion does not.
+        In proportion to the load if there is only one, or if the start is on another half-space:
+        the line through two of its states depends on its stiffness, and may lead far from any state
+        of this one and to negative pressures.
         """
         before = start._before if start.space == self.space else None
-        at = self._load_of(start)
-        step = at - self._load_of(before) if before else 0.0
+        start_load = self._load_of(start)
+        step = start_load - self._load_of(before) if before else 0.0
         if not step:
             return self._proportion(start, load) * field_of(start)
-        along = min(max((load - at) / step, -1.0), FURTHEST)
+        along = min(max((load - start_load) / step, -1.0), FURTHEST)
         return (1 + along) * field_of(start) - along * field_of(before)
 
     def _proportion(self, start, load):
         """Ratio of a load to that of a state, at most FURTHEST."""
-        at = self._load_of(start)
-        return min(load / at, FURTHEST) if at > 0 else 1.0
+        start_load = self._load_of(start)
+        return min(load / start_load, FURTHEST) if start_load > 0 else 1.0
 
     def _load_of(self, state):
-        """Given quantity of the load: the force or the closure of a state."""
+        """Force or closure of a state, whichever is given."""
         return state.force if self.by_force else state.closure
 
     def state(self, solution, topography, problem, start):
-        """The solution in mm, N and MPa."""
+        """Solution in mm, N and MPa."""
         space = self.space
         closure = solution.closure * self.length if self.by_force else self.length
-        # Of the states before, one is enough, and it need not hold on to its own.
+        # Only one earlier state is kept, without its own predecessor.
         before = None if start is None or start.space != space else start.without_before()
         on_nodes = solution.pressure * self.pressure
         force = float(on_nodes.sum()) * space.cell_area
         common: dict[str, Any] = {
             "closure": closure,
             "force": force,
-            # What is no number violates no condition, and must not pass for a state.
+            # NaN violates no condition, and must not pass for a state.
             "residual": solution.residual if math.isfinite(force) else math.nan,
             "iterations": solution.applications,
             "space": space,

@@ -12,6 +12,7 @@ from ..elastic.halfspace import HalfSpace
 from ..errors import NotConverged
 from ..threads import computed_once
 from .bounds import Bounds
+from .corrected_area import corrected_area
 from .effort import SOLVING
 from .kkt import frank_wolfe_gap
 from .operator import Operator
@@ -19,13 +20,13 @@ from .projected_cg import stiffness
 from .slope import Slope, secant_slope
 from .topography import Topography
 
-# Largest relative error of the stiffness.
+# Largest relative error allowed of the stiffness.
 STIFFNESS_ERROR = 1e-6
 
 
 @dataclass(frozen=True)
 class ContactState:
-    """A state of contact that satisfies the conditions to ``residual``.
+    """State of contact that satisfies the contact conditions to ``residual``.
 
     Attributes
     ----------
@@ -34,23 +35,23 @@ class ContactState:
     displacement : (ny, nx) ndarray
         Elastic displacement u = K p of the composite surface, mm.
     gap : (ny, nx) ndarray
-        Remaining opening, mm; within ``residual`` times the closure of zero in contact, where
-        the pressure is not at the hardness.
+        Gap, mm; in contact zero to within ``residual`` times the closure, and negative where the
+        pressure is at the hardness.
     closure : float
-        w from first touch, mm: the rigid-body approach (indentation) of contact mechanics. Of a
-        window that goes on beyond its edges that of the surface's mean plane.
+        w from first touch, mm: the rigid-body approach (indentation) of contact mechanics. For a
+        periodic or mirrored window it is the approach of the surface's mean plane.
     force : float
         F, N.
     residual : float
-        Largest violation of the contact conditions, as a fraction of the closure; or, of a given
-        force, as a fraction of it.
+        Largest violation of the contact conditions, as a fraction of the closure; under a given
+        force also of the force, as a fraction of it.
     iterations : int
-        Applications of the elastic operator, whatever their precision. Those on coarser
-        grids, for a start, are not counted.
+        Applications of the elastic operator, in either precision; those on coarser grids, for a
+        start, are not counted.
     space : HalfSpace
         The operator it was solved with.
     hardness : float or (ny, nx) ndarray
-        Largest pressure, MPa, of all nodes or of each; infinity for an elastic surface.
+        Largest pressure, MPa, of all nodes or of each; infinite for an elastic surface.
     """
 
     pressure: np.ndarray
@@ -77,20 +78,37 @@ class ContactState:
 
     @property
     def in_contact(self) -> np.ndarray:
-        """Contact domain, (ny, nx) bool: the nodes that carry pressure."""
+        """Contact map, (ny, nx) bool: the nodes that carry pressure."""
         return self.pressure > 0
 
     @property
     def area(self) -> float:
-        """A_r = N s^2, mm2."""
+        """Real contact area A_r = N s^2 of the N nodes in contact, mm2."""
         return float(np.count_nonzero(self.in_contact)) * self.space.cell_area
 
     @property
-    def ambiguous(self) -> int:
-        """Number of nodes that may or may not touch, as the conditions hold to ``residual`` only.
+    def corrected_area(self) -> float:
+        """Real contact area corrected for the staircase of its edge, mm2 (`corrected_area`)."""
+        return float(corrected_area(self.in_contact, self.space.spacing))
 
-        Their gap is within the gap tolerance, ``residual`` times the closure, or their pressure is
-        no larger than that which closes such a gap on one cell.
+    @property
+    def mean_pressure(self) -> float:
+        """Force over the area of the window, MPa."""
+        return self.force / self.space.area
+
+    @property
+    def elastic_energy(self) -> float:
+        """Elastic energy, sum p u s^2 / 2, N mm."""
+        pressure, displacement, _ = self._on_nodes()
+        return float((pressure * displacement).sum()) * self.space.cell_area / 2
+
+    @property
+    def ambiguous(self) -> int:
+        """Number of ambiguous contact nodes, which may or may not touch at this ``residual``.
+
+        Nodes out of contact count if their gap is within the gap tolerance, ``residual`` times the
+        closure, and nodes in contact if their pressure is at most what closes such a gap on one
+        cell.
         """
         tolerance = self.residual * self.closure
         if not self.space.is_free:
@@ -108,11 +126,11 @@ class ContactState:
 
         The energy E = sum (u / 2 + c) p s^2, elastic and of closing the clearance c, is least for
         the exact state among all pressures of its force within the bounds, whether the force or the
-        closure was given. The bound is the Frank-Wolfe gap (`kkt.frank_wolfe_gap`); the elastic
-        energy of the error of the pressure is no more than that either. 0 without a force.
+        closure was given. The bound is the Frank-Wolfe gap (`kkt.frank_wolfe_gap`); it also bounds
+        the elastic energy of the pressure's error. 0 without a force.
         """
         pressure, displacement, gap = (values.ravel() for values in self._on_nodes())
-        # What it would be to undo the displacement and close the gap from there: c = g - u + w.
+        # The energy is sum p (c + u / 2), with the clearance c = g - u + w.
         energy = float(pressure @ (gap - displacement / 2)) + self.closure * float(pressure.sum())
         bound = frank_wolfe_gap(pressure, gap, np.ravel(self.hardness))
         return bound / energy if energy > 0 else 0.0
@@ -120,7 +138,7 @@ class ContactState:
     def _on_nodes(self):
         """Pressure, displacement and gap of all nodes that may carry pressure.
 
-        Any others are further from contact than the tolerance.
+        All others are further from contact than the tolerance.
         """
         return self.pressure, self.displacement, self.gap
 
@@ -136,18 +154,16 @@ class ContactState:
 
     @computed_once
     def slope(self) -> Slope:
-        """Slope dF/dw of the branch, with its error and, where it has no value, the reason.
+        """Slope dF/dw of the branch, with its error and, if it has no value, the reason.
 
         Raises
         ------
         NotConverged
-            If it is not known to :data:`STIFFNESS_ERROR`, or as `solve_contact`.
+            If it is not determined to :data:`STIFFNESS_ERROR`, or as `solve_contact`.
 
-        Notes
-        -----
-        Of an elastic state the exact one, from K q = 1 on the contact domain; infinite in full
-        contact of a window that goes on beyond its edges. Where nodes yield the
-        secant of the loading branch (`slope.secant_slope`), from two more solves.
+        Notes ----- For an elastic state it is exact, from K q = 1 on the contact domain; infinite
+        in full contact of a periodic or mirrored window. Where nodes yield it is the secant of the
+        loading branch (`slope.secant_slope`), from two more solves.
         """
         if self._yields():
             return secant_slope(self, self._solver)
@@ -165,33 +181,27 @@ class ContactState:
         return bool((self.pressure >= self.hardness).any())
 
     def _operator_on_active(self):
-        """An operator, and the nodes strictly between the bounds."""
+        """Operator, and the nodes strictly between the bounds."""
         between = Bounds(0.0, np.ravel(self.hardness)).between(self.pressure.ravel())
         return Operator(self.space), between
 
     def without_before(self) -> "ContactState":
-        """The same state without the other one of its extrapolation."""
+        """Same state without the earlier state for its extrapolation."""
         return self.with_before(None)
 
     def with_before(self, other: "ContactState | None") -> "ContactState":
-        """The same state, extrapolated as a start along the line through another one."""
-        state = object.__new__(type(self))  # `copy.copy` takes as long as a compiled kernel
+        """Same state, extrapolated as a start along the line through another one."""
+        state = object.__new__(type(self))  # `copy.copy` takes as long as a compiled kernel does
         vars(state).update(vars(self), _before=other and other.without_before())
         return state
 
 
 @dataclass(frozen=True)
 class Candidates:
-    """Candidates of a state; all other nodes have a gap, whatever the pressures.
+    """Candidates of a state on a ``topography``; all others have a gap, whatever the pressures.
 
-    Attributes
-    ----------
-    nodes : (n,) int32 ndarray
-        Numbers of their cells, ascending.
-    pressure, displacement, clearance : (n,) ndarray
-        MPa and mm; the clearance is that of first touch.
-    topography : Topography
-        That it is a state of.
+    ``nodes``, (n,) int32, are ascending numbers of cells; pressure (MPa), displacement and
+    clearance at first touch (mm) are on these, (n,).
     """
 
     nodes: np.ndarray
@@ -202,21 +212,10 @@ class Candidates:
 
 
 class CandidateState(ContactState):
-    """A state that was solved and verified on candidates for contact alone (`candidates`).
+    """State solved and verified on `Candidates` alone; arguments as of `ContactState`.
 
-    Displacement and gap of the whole window are computed when they are asked for.
-
-    Parameters
-    ----------
-    pressure : (ny, nx) ndarray
-        MPa.
-    closure, force, residual, iterations, space, hardness
-        As `ContactState` has them.
-    before : ContactState or None
-        The state it was solved from.
-    candidates : Candidates
-    solver : callable, optional
-        That of the state, for its slope.
+    Displacement and gap of the whole window are computed at their first use. ``before`` is the
+    state it was solved from, ``solver`` the function for its slope.
     """
 
     _candidates: Candidates
@@ -255,17 +254,11 @@ class CandidateState(ContactState):
 
     @computed_once
     def gap(self) -> np.ndarray:  # type: ignore[override]
-        """Remaining opening, mm, (ny, nx).
-
-        Raises
-        ------
-        ValueError
-            If the topography that was solved has been changed since.
-        """
-        known = self._candidates
-        if not np.array_equal(known.topography.clearance_at(known.nodes), known.clearance):
+        """Gap, mm, (ny, nx); `ValueError` if the topography has been changed since the solve."""
+        topography, nodes = self._candidates.topography, self._candidates.nodes
+        if not np.array_equal(topography.clearance_at(nodes), self._candidates.clearance):
             raise ValueError("the composite topography of this state has been changed since")
-        return self.displacement + known.topography.clearance() - self.closure
+        return self.displacement + topography.clearance() - self.closure
 
     @property
     def composite(self) -> np.ndarray:
@@ -279,13 +272,13 @@ class CandidateState(ContactState):
 
     @property
     def area(self) -> float:
-        """A_r = N s^2, mm2."""
+        """Real contact area A_r = N s^2, mm2."""
         return float(np.count_nonzero(self._candidates.pressure)) * self.space.cell_area
 
     def _on_nodes(self):
-        known = self._candidates
-        gap = known.displacement + known.clearance - self.closure
-        return known.pressure, known.displacement, gap
+        candidates = self._candidates
+        gap = candidates.displacement + candidates.clearance - self.closure
+        return candidates.pressure, candidates.displacement, gap
 
     def _operator_on_active(self):
         between = Bounds(0.0, self.hardness).between(self._candidates.pressure)
@@ -294,13 +287,6 @@ class CandidateState(ContactState):
 
 
 def unloaded_state(space: HalfSpace, clearance: np.ndarray) -> ContactState:
-    """The state of first touch: no pressure, no closure.
-
-    Parameters
-    ----------
-    space : HalfSpace
-    clearance : (ny, nx) ndarray
-        Opening at first touch, mm.
-    """
+    """State of first touch, with a ``clearance`` (ny, nx), mm: no pressure, no closure."""
     zero = np.zeros(space.shape)
     return ContactState(zero, zero.copy(), clearance, 0.0, 0.0, 0.0, 0, space)

@@ -1,8 +1,10 @@
-"""A composite topography as the solver reads it: in its own precision, and on coarser grids.
+"""Composite topography as the solver reads it: in its own precision, and on coarser grids.
 
-Large ones are neither copied nor converted as a whole: they may be in single precision, or a file
-mapped to memory.
+Large topographies are neither copied nor converted as a whole: they may be in single precision, or
+a file mapped to memory.
 """
+
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -13,72 +15,58 @@ from ..kernel_cache import njit
 _KEPT_TYPES = (np.dtype(np.float32), np.dtype(np.float64))
 
 
+class HasHeights(Protocol):
+    """Object with heights, (ny, nx), such as a topography of SurfaceTopography."""
+
+    def heights(self) -> ArrayLike:
+        """Heights, mm."""
+
+
+def heights_of(composite: Any) -> Any:
+    """Heights of an object with ``heights()``; anything else unchanged."""
+    heights = getattr(composite, "heights", None)
+    return heights() if callable(heights) else composite
+
+
 class Topography:
     """Heights of the nodes, mm, and of the highest node of ever larger cells.
 
-    Parameters
-    ----------
-    composite : (ny, nx) array_like
-    shape : (int, int)
-        Expected.
-
-    Attributes
-    ----------
-    highest, lowest : float
-        Of all heights.
-
-    Raises
-    ------
-    ValueError
-        If it has another shape, or missing, masked or infinite cells.
+    ``highest`` and ``lowest`` are the extremes of all heights. Missing, masked and infinite cells
+    and other shapes are refused.
     """
 
-    def __init__(self, composite: ArrayLike, shape: tuple[int, int]):
+    def __init__(self, composite: ArrayLike | HasHeights, shape: tuple[int, int]):
         name = "composite topography"
-        if isinstance(composite, np.memmap):
-            composite = composite.view(np.ndarray)
-        if type(composite) is np.ndarray and _is_as_wanted(composite, shape):
-            height = composite
+        values = heights_of(composite)
+        if isinstance(values, np.memmap):
+            values = values.view(np.ndarray)
+        if type(values) is np.ndarray and _is_as_wanted(values, shape):
+            height = values
         else:
-            height = field(composite, name, shape)
+            height = field(values, name, shape)
         missing, self.lowest, self.highest = _extent(height.ravel())
         if missing:
             raise ValueError(f"the {name} has {missing} missing or infinite cells")
         self._levels = [height]
 
     def height(self, level: int = 0) -> np.ndarray:
-        """Heights of the highest of each 2^level x 2^level nodes, mm, in their own precision.
-
-        Returns
-        -------
-        (my, mx) ndarray
-        """
+        """Highest of each 2^level x 2^level nodes, mm, (my, mx), in their precision."""
         while len(self._levels) <= level:
             self._levels.append(_restrict_maximum(self._levels[-1]))
         return self._levels[level]
 
     def clearance(self, level: int = 0) -> np.ndarray:
-        """Opening at first touch, mm, (my, mx) float64."""
+        """Clearance at first touch, mm, (my, mx) float64."""
         return self.highest - self.height(level).astype(float, copy=False)
 
     def clearance_at(self, nodes: np.ndarray, level: int = 0) -> np.ndarray:
-        """The same on some nodes alone, given by their numbers, (n,)."""
+        """Clearance of some nodes alone, given by their numbers, (n,)."""
         return self.highest - self.height(level).ravel()[nodes].astype(float)
 
     def below(self, clearance: float, level: int, cells: np.ndarray | None) -> np.ndarray:
-        """Nodes whose opening at first touch is less than a clearance, mm.
+        """Nodes whose clearance is less than the one given, mm: (n,) int32, ascending.
 
-        Parameters
-        ----------
-        clearance : float
-        level : int
-        cells : (m,) int32 ndarray or None
-            Cells of the next coarser level to look in, ascending; all if None.
-
-        Returns
-        -------
-        (n,) int32 ndarray
-            Their numbers, ascending.
+        Only ``cells`` of the next coarser level are searched, (m,) int32 ascending; all if None.
         """
         height = self.height(level)
         if cells is None:
@@ -86,27 +74,20 @@ class Topography:
         return _children_below(cells, height, self.highest, clearance)
 
     def bearing_clearance(self, count: int, level: int = 0) -> float:
-        """Clearance of the bearing area: opening at first touch of the count-th highest node, mm.
-
-        Parameters
-        ----------
-        count : int
-            From one to all.
-        level : int
-        """
+        """Clearance of the bearing area: that of the count-th highest node (from 1), mm."""
         height = self.height(level).ravel()
-        at = height.size - count
-        return self.highest - float(np.partition(height, at)[at])
+        rank = height.size - count
+        return self.highest - float(np.partition(height, rank)[rank])
 
 
 def _is_as_wanted(array, shape):
-    """True if compiled code can read it as it is."""
+    """True if compiled code can read the array as it is."""
     return array.dtype in _KEPT_TYPES and array.shape == shape and array.flags.c_contiguous
 
 
 @njit(cache=True)
 def _extent(height):
-    """Number of heights that are not finite, and least and largest of the others."""
+    """Number of heights that are not finite, and extremes of the others."""
     missing, lowest, highest = 0, np.inf, -np.inf
     for value in height:
         if np.isfinite(value):
@@ -118,7 +99,7 @@ def _extent(height):
 
 @njit(cache=True)
 def _restrict_maximum(height):
-    """The highest of each 2 x 2 nodes, an odd last row or column standing alone."""
+    """Maximum of each 2 x 2 nodes; an odd last row or column stands alone."""
     ny, nx = height.shape
     coarse = np.empty(((ny + 1) // 2, (nx + 1) // 2), height.dtype)
     for y in range(coarse.shape[0]):
@@ -133,7 +114,7 @@ def _restrict_maximum(height):
 
 @njit(cache=True)
 def _all_below(height, highest, clearance):
-    """All nodes that lie less than a clearance below the highest."""
+    """All nodes less than a clearance below the highest."""
     n = 0
     for value in height:
         n += highest - float(value) < clearance
@@ -154,7 +135,7 @@ def _children_below(cells, height, highest, clearance):
     nodes = np.empty(4 * cells.size, np.int32)
     n, first = 0, 0
     while first < cells.size:
-        # All cells of one row of cells, for each of its two rows of nodes.
+        # The cells of one row are read twice, for its two rows of nodes.
         row = cells[first] // width
         last = first
         while last < cells.size and cells[last] // width == row:

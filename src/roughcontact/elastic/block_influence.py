@@ -1,11 +1,11 @@
-"""Influence between blocks of cells that lie apart: one matrix for each relative position.
+"""Influence between separated blocks of cells: one matrix for each relative position.
 
-A block of the smallest holds the pressures of its cells, one further up stands for those below by
-numbers on Chebyshev nodes (`multipole`). The influence depends on the distance alone: mirrored
-positions, and on square cells those with x and y exchanged, have the same matrix but for the order
-of its rows and columns. In double precision, where matrices are large and used once or twice,
-one of them is made and what it is applied to is reordered; in single precision all are made, as
-reordering would take as long as the product.
+A smallest block holds the pressures of its cells; a block of a higher level represents those below
+by values on Chebyshev nodes (`multipole`). The influence depends on the distance alone: mirrored
+positions, and on square cells those with x and y exchanged, share a matrix up to the order of its
+rows and columns. In double precision matrices are large and used once or twice, so that one of them
+is computed and the vectors are reordered. In single precision all are computed, since reordering
+would take as long as the product.
 """
 
 from dataclasses import dataclass
@@ -21,30 +21,30 @@ from .simd import WIDTH
 #: Cells along a smallest block.
 LEAF = 8
 _SINGLE, _DOUBLE = np.dtype(np.float32), np.dtype(np.float64)
-#: By precision: blocks no further apart than this are neighbours, which are not interpolated
-#: between; Chebyshev nodes along a block; and the error to which they interpolate the influence of
-#: one cell on another, as a fraction, between two blocks as near as any. Of the displacement under
-#: many cells it is a hundredth of that, in single precision less than what rounding leaves.
+#: By precision: largest distance of neighbouring blocks, between which nothing is interpolated;
+#: Chebyshev nodes along a block; and the relative error of the interpolated influence of one cell
+#: on another between the nearest two blocks. The relative error of a displacement under many cells
+#: is a hundredth of that; in single precision, below rounding.
 SEPARATION = {_SINGLE: 1, _DOUBLE: 2}
 ORDER = {_SINGLE: 8, _DOUBLE: 12}
 ERROR = {_SINGLE: 2e-5, _DOUBLE: 2e-11}
-#: Numbers of a target that are worked on together: as many as the processor holds of four pairs.
+#: Values of a target processed together: those of four pairs fill the processor's registers.
 FILLED = {_SINGLE: 2 * WIDTH, _DOUBLE: WIDTH}
 
 
 @dataclass(frozen=True)
 class BlockInfluence:
-    """Matrices of the influence of a block's numbers on another's, on one level.
+    """Matrices of the influence of one block's values on another's, on one level.
 
     Attributes
     ----------
     matrices : (m, side^2, padded) ndarray
-        (source, target); targets filled up with zeros.
+        (source, target); targets are padded with zeros.
     matrix, order : (n,) int32 ndarray
-        Of each relative position: which matrix, and in which order numbers of both blocks go with
-        it. Positions are counted row by row from the one furthest up and left.
+        Matrix of each relative position, and the order of both blocks' values for it. Positions are
+        counted row by row from the upper left.
     orders, inverses : (8, side^2) int32 ndarray
-        Number 0 leaves numbers as they are. And where each number then stands.
+        Permutations of a block's values, of which number 0 is the identity, and their inverses.
     """
 
     matrices: np.ndarray
@@ -55,78 +55,43 @@ class BlockInfluence:
 
 
 def reach(separation: int) -> int:
-    """Largest distance of blocks of one level whose parents are neighbours.
-
-    Parameters
-    ----------
-    separation : int
-        How far apart neighbours can be; all in blocks of their level.
-    """
+    """Largest distance, in blocks, of two blocks of one level whose parents are neighbours."""
     return 2 * separation + 1
 
 
 def padded(numbers: int, dtype: np.dtype) -> int:
-    """Numbers of a block, filled up with zeros to whole vectors.
-
-    Parameters
-    ----------
-    numbers : int
-    dtype : dtype
-        float32 or float64.
-    """
+    """Number of values of a block, padded to whole vectors."""
     return -(-numbers // FILLED[dtype]) * FILLED[dtype]
 
 
-# By what they follow from.
+# Matrices by kernel, aspect ratio, level and precision.
 _KEPT: dict[tuple, BlockInfluence] = {}
 
 
 def forget_matrices() -> None:
-    """Clear the cache of all levels, for benchmarks of the set-up."""
+    """Clear the cached matrices of all levels, for benchmarks of the set-up."""
     _KEPT.clear()
 
 
 def block_influence(space: HalfSpace, levels: int, dtype: np.dtype) -> list[BlockInfluence]:
-    """The influence between blocks of every level.
+    """Influence between blocks on each of ``levels`` levels, from the smallest blocks up.
 
-    Kept between sets and windows: it depends on the kernel and the ratio of a cell's sides alone.
-
-    Parameters
-    ----------
-    space : HalfSpace
-    levels : int
-        How many, from that of the smallest blocks.
-    dtype : dtype
-        float32 or float64.
-
-    Returns
-    -------
-    list of BlockInfluence
-        One a level, that of the smallest blocks first.
+    Cached for all sets and windows: it depends on the kernel, the precision and the aspect ratio of
+    a cell alone.
     """
-    found = []
+    influences = []
     for level in range(levels):
         key = space.kernel, space.spacing[0] / space.spacing[1], level, dtype
         if key not in _KEPT:
             _KEPT.setdefault(key, _level_influence(space, level, dtype))
-        found.append(_KEPT[key])
-    return found
+        influences.append(_KEPT[key])
+    return influences
 
 
 def interpolation_nodes(level: int, order: int) -> np.ndarray:
-    """Positions of the Chebyshev nodes of a block along one side.
+    """Positions of a block's values along one side, in cells from its centre.
 
-    Parameters
-    ----------
-    level : int
-        0 of the smallest blocks, which hold their cells themselves.
-    order : int
-        Chebyshev nodes along a block of any other level.
-
-    Returns
-    -------
-    (LEAF,) or (order,) ndarray
-        In cells from its centre: centres of the cells on level 0, else Chebyshev nodes.
+    On level 0 they are the centres of its LEAF cells, above that ``order`` Chebyshev nodes.
     """
     half = (LEAF * 2**level - 1) / 2
     if level == 0:
@@ -135,27 +100,15 @@ def interpolation_nodes(level: int, order: int) -> np.ndarray:
 
 
 def transfer(level: int, order: int, dtype: np.dtype) -> np.ndarray:
-    """Weights that interpolate from the nodes of a block to those of its children, along one axis.
+    """Interpolation weights from a block to its two children along one axis, (2, m, order).
 
-    Parameters
-    ----------
-    level : int
-        Of the children.
-    order : int
-        Chebyshev nodes along a block.
-    dtype : dtype
-        float32 or float64.
-
-    Returns
-    -------
-    (2, m, order) ndarray
-        Of the child on either side: of each of its m nodes (LEAF on level 0, else ``order``), by
-        each node of the parent.
+    ``level`` is that of the children, m the number of their nodes (LEAF on level 0, else
+    ``order``).
     """
     own, parent = interpolation_nodes(level, order), interpolation_nodes(level + 1, order)
-    at = own + np.array([-0.5, 0.5])[:, None] * LEAF * 2**level
+    positions = own + np.array([-0.5, 0.5])[:, None] * LEAF * 2**level
     others = ~np.eye(order, dtype=bool)
-    away = np.where(others, at[:, :, None, None] - parent, 1.0)
+    away = np.where(others, positions[:, :, None, None] - parent, 1.0)
     apart = np.where(others, parent[:, None] - parent, 1.0)
     return (away / apart).prod(axis=-1).astype(dtype)
 
@@ -178,16 +131,16 @@ def _level_influence(space, level, dtype):
 
 @cache
 def _pairs_of_places(side):
-    """Numbers (i, j) of the distances between places of one block and of another on it.
+    """Distances between the positions (i, j) of two blocks, and all orders of a block's values.
 
-    Of each distance the first pair, and the orders of all numbers of a block. Places are symmetric,
-    so the distances of i to j and of the mirrored j to the mirrored i are the same: the influence
-    is evaluated at a quarter of all pairs.
+    Returns the number of each pair's distance and the first pair of each distance. Positions are
+    symmetric, so that i to j is as far as mirrored j to mirrored i: the influence is evaluated for
+    a quarter of all pairs.
     """
     i, j = np.indices((side, side))
     mirrored = (side - 1 - j) * side + side - 1 - i
     first, number = np.unique(np.minimum(i * side + j, mirrored), return_inverse=True)
-    # Mirrored along y (2), along x (1), and y and x exchanged after that (4).
+    # Bits of an order: mirrored along x (1), along y (2), then y and x exchanged (4).
     numbers = np.arange(side**2, dtype=np.int32).reshape(side, side)
     orders = [numbers[::sy, ::sx] for sy in (1, -1) for sx in (1, -1)]
     orders += [n.T for n in orders]
@@ -198,7 +151,7 @@ def _pairs_of_places(side):
 
 @cache
 def _positions(furthest, square, single):
-    """Relative positions with a matrix of their own; of all, that of which, in which order."""
+    """Relative positions with a matrix of their own; matrix and order of every position."""
     y, x = np.indices((2 * furthest + 1,) * 2, np.int32).reshape(2, -1) - np.int32(furthest)
     if single:
         return np.stack([y, x], axis=1), np.arange(y.size, dtype=np.int32), np.zeros_like(y)
@@ -211,12 +164,12 @@ def _positions(furthest, square, single):
     return positions.astype(np.int32), matrix.ravel().astype(np.int32), order.astype(np.int32)
 
 
-# Divided by is what vanishes only where nothing is read.
+# The divisor vanishes only at distances that are not read; "numpy" leaves out its check.
 @njit(cache=True, error_model="numpy")
 def _fill(positions, least, grid, table, spread, matrices):
-    """Matrices of some relative positions; of nearer ones than ``least`` they stay zero.
+    """Fill the matrices of relative positions; those nearer than ``least`` stay zero.
 
-    Distances between whole cells are looked up in a table, if there is one.
+    Distances of whole cells are read from a table, if there is one.
     """
     length, apart, number, sides = grid
     side = number.shape[0]

@@ -1,8 +1,8 @@
-"""Blocks of cells that the nodes of a set occupy on every level, and which act on each other there.
+"""Blocks of cells occupied by a set of nodes on every level, and the pairs that interact there.
 
-Only blocks with a node of the set exist. Two of them act on each other at the lowest level on which
-their parents are neighbours (`multipole`). Pairs of the same relative position have the same matrix
-and are gone through together.
+Only blocks with a node of the set exist. Two blocks interact on the lowest level on which their
+parents are neighbours (`multipole`). Pairs of the same relative position share a matrix and are
+processed together.
 """
 
 import numpy as np
@@ -10,30 +10,26 @@ import numpy as np
 from ..kernel_cache import njit
 from .block_influence import LEAF, SEPARATION, reach
 
-#: Pairs of blocks with the same relative position that are worked on together.
+#: Pairs of blocks of one relative position that are processed together.
 TOGETHER = 4
-#: Target blocks of a chunk: for each the matrices are read again.
+#: Target blocks per chunk; each chunk reads the matrices again.
 CHUNK = 128
 
 
 class MultipoleLevels:
-    """Blocks, and pairs of blocks, that the nodes of a set occupy on every level.
+    """Occupied blocks and interacting pairs of blocks on every level.
 
-    Parameters
-    ----------
-    shape : (int, int)
-        Cells of the window, (ny, nx).
-    nodes : (n,) int32 ndarray
-        Nodes as numbers of cells, ascending; nothing checks them.
+    ``nodes``, (n,) int32, are ascending numbers of cells of a window of ``shape``; they are not
+    checked.
 
     Attributes
     ----------
     place : (n,) ndarray
-        Where each node stands in the vectors of the smallest blocks.
+        Index of each node in the vectors of the smallest blocks.
     blocks : list of int
-        On every level.
+        Number of blocks on every level.
     parents : list of (n, 2) int32 ndarray
-        On every level but the last, of each block: its parent, and which of its four quarters.
+        Parent of each block and its quarter of the parent, on every level but the last.
     """
 
     def __init__(self, shape: tuple[int, int], nodes: np.ndarray):
@@ -41,36 +37,33 @@ class MultipoleLevels:
         index = np.zeros(grid, np.int32)
         y, x = np.divmod(nodes, shape[1])
         index[y // LEAF, x // LEAF] = 1
-        at = np.flatnonzero(index).astype(np.int64)
-        index.ravel()[at] = np.arange(1, at.size + 1)
+        occupied = np.flatnonzero(index).astype(np.int64)
+        index.ravel()[occupied] = np.arange(1, occupied.size + 1)
         self.place = (index[y // LEAF, x // LEAF] - 1).astype(np.int64) * LEAF**2
         self.place += y % LEAF * LEAF + x % LEAF
         self.blocks, self.parents, self._grids = [], [], []
         self._pairs: dict[int, list] = {}
         while True:
-            rows, columns = np.divmod(at, grid[1])
-            self.blocks.append(at.size)
+            rows, columns = np.divmod(occupied, grid[1])
+            self.blocks.append(occupied.size)
             self._grids.append((rows, columns, index))
             if max(grid) <= 2 * reach(min(SEPARATION.values())) - 2:
                 return
             grid = tuple(-(-n // 2) for n in grid)
             index = np.zeros(grid, np.int32)
             index[rows // 2, columns // 2] = 1
-            at = np.flatnonzero(index).astype(np.int64)
-            index.ravel()[at] = np.arange(1, at.size + 1)
+            occupied = np.flatnonzero(index).astype(np.int64)
+            index.ravel()[occupied] = np.arange(1, occupied.size + 1)
             quarter = rows % 2 * 2 + columns % 2
             self.parents.append(
                 np.stack([index[rows // 2, columns // 2] - 1, quarter], axis=1).astype(np.int32)
             )
 
     def pairs(self, separation: int) -> list[tuple[np.ndarray, np.ndarray]]:
-        """Pairs of blocks that act on each other, for every level.
+        """Interacting pairs of blocks as (batches, chunks), for every level.
 
-        Returns
-        -------
-        list of (batches, chunks)
-            Batches (m, 1 + 2 TOGETHER): relative position, targets and sources; and where in them
-            the chunks of targets begin.
+        A row of the batches, (m, 1 + 2 TOGETHER), holds a relative position, targets and sources;
+        chunks are the first rows of the chunks of targets.
         """
         if separation not in self._pairs:
             self._pairs[separation] = [
@@ -80,12 +73,12 @@ class MultipoleLevels:
 
     @property
     def work(self) -> int:
-        """Batches of all levels, which take nearly all the time of a search's application."""
+        """Number of batches in single precision: nearly all the time of an application."""
         return sum(len(batches) for batches, _ in self.pairs(SEPARATION[np.dtype(np.float32)]))
 
 
 def _pairs(rows, columns, index, lowest, separation):
-    """Batches of pairs of blocks, (m, 1 + 2 TOGETHER), and where their chunks begin."""
+    """Batches of pairs of blocks, (m, 1 + 2 TOGETHER), and the first row of each chunk."""
     blocks, apart = (rows, columns, index), (separation, reach(separation))
     none = np.empty((0, 1 + 2 * TOGETHER), np.int32)
     chunks = _fill_pairs(*blocks, lowest, *apart, none)
@@ -95,11 +88,11 @@ def _pairs(rows, columns, index, lowest, separation):
 
 @njit(cache=True)
 def _fill_pairs(rows, columns, index, lowest, separation, furthest, batches):
-    """Fill the batches if there is room; in any case, return where the chunks begin.
+    """Fill the batches, if there is room, and return the first row of each chunk.
 
-    Sources are blocks no further than the ``furthest`` whose parents are neighbours; but neighbours
-    themselves only on the lowest level. Places that remain in a batch are given to a block that is
-    not there.
+    Sources are blocks within the ``furthest`` distance whose parents are neighbours; neighbours
+    themselves only on the lowest level. The rest of a batch is filled with a block that does not
+    exist.
     """
     total, span = rows.size, 2 * furthest + 1
     chunks = np.zeros((total + CHUNK - 1) // CHUNK + 1, np.int64)

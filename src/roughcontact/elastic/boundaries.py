@@ -1,12 +1,12 @@
-"""The operator of a window that goes on beyond its edges: repeated, or reflected at them.
+"""Operators of windows that continue beyond their edges: periodic, or mirrored at them.
 
-A periodic window is a cell of an endless surface that repeats itself. A mirrored one is the section
-of a column between frictionless walls: its surface is reflected at the edges, half a cell beyond
-the outermost nodes, and so repeats itself after twice its length and width. Sinusoidal pressures of
-wave number q displace such a surface by 2 p / (E* q) (H. M. Westergaard, ASME J. Appl. Mech. 6
-(1939) A49; K. L. Johnson, Contact Mechanics (1985), section 13.2): Fourier modes of a periodic
-window, cosines of a mirrored one. Its mean pressure, of q = 0, displaces no plane of it relative to
-the mean plane: displacements have the mean zero.
+A periodic window is one cell of an endless surface that repeats itself. A mirrored one is the
+section of a column between frictionless walls: the surface is reflected at the edges, half a cell
+beyond the outermost nodes, and so repeats itself after twice its length and width. A sinusoidal
+pressure of wave number q displaces such a surface by 2 p / (E* q) (H. M. Westergaard, ASME J. Appl.
+Mech. 6 (1939) A49; K. L. Johnson, Contact Mechanics (1985), section 13.2). The modes are Fourier
+modes of a periodic window and cosines of a mirrored one. The mean pressure, q = 0, displaces
+nothing relative to the mean plane: the mean displacement is 0.
 """
 
 import numpy as np
@@ -18,16 +18,10 @@ FREE, PERIODIC, MIRRORED = "free", "periodic", "mirrored"
 
 
 class PeriodicConvolution:
-    """The operator of a periodic window in one precision.
+    """Operator of a periodic window in one precision (``dtype``: float32 or float64).
 
-    Parameters
-    ----------
-    shape : (int, int)
-        Of the fields, (ny, nx). Without prime factors over 5 these take the least time.
-    sides : (float, float)
-        Of a cell. What presses on it does so with its pressure on an area of 1.
-    dtype : type
-        float32 or float64.
+    ``sides`` are those of a cell (y, x); a load is its pressure on an area of 1. Shapes without
+    prime factors above 5 are the fastest.
     """
 
     def __init__(self, shape: tuple[int, int], sides: tuple[float, float], dtype: type):
@@ -41,13 +35,7 @@ class PeriodicConvolution:
         self._shape, self._symbol = shape, symbol[waves].astype(dtype)
 
     def __call__(self, values: np.ndarray) -> np.ndarray:
-        """The dimensionless displacement, (ny, nx), of a field of this precision.
-
-        Raises
-        ------
-        ValueError
-            If it has another shape or type.
-        """
+        """Dimensionless displacement of a field of this shape and precision."""
         if self._fast is not None:
             return self._fast(values)
         _check(values, self._shape, self._symbol.dtype)
@@ -55,25 +43,13 @@ class PeriodicConvolution:
 
 
 class MirroredConvolution:
-    """The same of a window that is reflected at its edges.
-
-    Parameters
-    ----------
-    shape, sides, dtype
-        As of :class:`PeriodicConvolution`.
-    """
+    """Operator of a window mirrored at its edges; arguments of `PeriodicConvolution`."""
 
     def __init__(self, shape: tuple[int, int], sides: tuple[float, float], dtype: type):
         self._symbol = _symbol(shape, period(shape, MIRRORED), sides).astype(dtype)
 
     def __call__(self, values: np.ndarray) -> np.ndarray:
-        """The dimensionless displacement, (ny, nx), of a field of this precision.
-
-        Raises
-        ------
-        ValueError
-            If it has another shape or type.
-        """
+        """Dimensionless displacement of a field of this shape and precision."""
         _check(values, self._symbol.shape, self._symbol.dtype)
         modes = values.copy()
         for axis in (0, 1):
@@ -84,42 +60,22 @@ class MirroredConvolution:
         return modes
 
 
-#: By boundary.
+#: Operators by name of the boundary.
 CONVOLUTIONS = {PERIODIC: PeriodicConvolution, MIRRORED: MirroredConvolution}
 
 
 def period(shape: tuple[int, int], boundary: str) -> tuple[int, int]:
-    """Cells after which a surface repeats itself, (y, x).
-
-    Parameters
-    ----------
-    shape : (int, int)
-        Of the window.
-    boundary : str
-        PERIODIC or MIRRORED.
-    """
+    """Number of cells (y, x) after which a periodic or mirrored surface repeats itself."""
     return shape if boundary == PERIODIC else (2 * shape[0], 2 * shape[1])
 
 
 def repeated_influence(
     shape: tuple[int, int], cells: tuple[int, int], sides: tuple[float, float]
 ) -> np.ndarray:
-    """Dimensionless influence of a node with all its repetitions, at every cell distance.
+    """Dimensionless influence of a node with all its repetitions, at the distances of ``shape``.
 
-    Its mean over a period is zero.
-
-    Parameters
-    ----------
-    shape : (int, int)
-        Distances wanted, from zero on.
-    cells : (int, int)
-        Of a period.
-    sides : (float, float)
-        Of a cell. What presses on it does so with its pressure on an area of 1.
-
-    Returns
-    -------
-    (my, mx) ndarray
+    ``cells`` is the period (y, x) and ``sides`` those of a cell; a load is its pressure on an area
+    of 1. The mean over a period is 0.
     """
     half = even_spectrum(_symbol((cells[0] // 2 + 1, cells[1] // 2 + 1), cells, sides), cells)
     half /= cells[0] * cells[1]
@@ -128,19 +84,10 @@ def repeated_influence(
 
 
 def even_spectrum(half: np.ndarray, lengths: tuple[int, int]) -> np.ndarray:
-    """Transform of data that are even both ways on a circle: real and even.
+    """Transform of data that are even along both axes of a circle: real, even, of the same shape.
 
-    Parameters
-    ----------
-    half : (length y // 2 + 1, length x // 2 + 1) ndarray
-        Their first half; may be overwritten.
-    lengths : (int, int)
-        Of the circle.
-
-    Returns
-    -------
-    ndarray
-        Of the same shape.
+    ``half`` is the first half of the data, (length y // 2 + 1, length x // 2 + 1); it may be
+    overwritten.
     """
     for axis in (1, 0):
         if lengths[axis] % 2 == 0:
@@ -153,7 +100,7 @@ def even_spectrum(half: np.ndarray, lengths: tuple[int, int]) -> np.ndarray:
 
 
 def _symbol(waves, cells, sides):
-    """2 / q of some waves along y and x around a period of cells, over an area; 0 of the mean."""
+    """Symbol 2 / q of the operator per area, for the first waves along y and x; 0 at q = 0."""
     along = [np.arange(n) / (c * d) for n, c, d in zip(waves, cells, sides, strict=True)]
     number = 2 * np.pi * np.hypot(along[0][:, None], along[1])
     number[0, 0] = np.inf
@@ -161,6 +108,6 @@ def _symbol(waves, cells, sides):
 
 
 def _check(values, shape, dtype):
-    """Refuse fields of another grid or type."""
+    """`ValueError` for fields of another grid or dtype."""
     if values.shape != tuple(shape) or values.dtype != dtype:
         raise ValueError(f"field {values.shape} of {values.dtype}: expected {shape} of {dtype}")

@@ -1,14 +1,14 @@
 """Zero-padded convolution of a real field with an even kernel, by Fourier transforms of its own.
 
-Sixteen transforms go on side by side, one in each lane of the processor's SIMD vectors (`simd`),
-which libraries built for every processor do not use in full. What is known is left out: columns
-beyond the window are not transformed along y, and as the kernel's spectrum is put in the order in
-which the forward transform leaves its result and the inverse takes it, nothing is sorted.
+Sixteen transforms run side by side, one in each lane of the processor's SIMD vectors (`simd`),
+which libraries compiled for every processor do not use in full. Columns beyond the window are not
+transformed along y. The kernel's spectrum is stored in the order in which the forward transform
+leaves its result and the inverse takes it, so that nothing is sorted.
 `tests/support/plain_twins.py` has the same with scipy.fft.
 
-The transform along y comes first, of two real columns as one complex. Their spectra, for half the
-wave numbers, stand in blocks of sixteen wave numbers and are transformed along x, multiplied, and
-transformed back. (Forward by decimation in frequency: Gentleman and Sande, AFIPS Proc. 29
+The transform along y comes first, of two real columns as one complex one. Their spectra, for half
+the wave numbers, stand in blocks of sixteen wave numbers and are transformed along x, multiplied,
+and transformed back. (Forward by decimation in frequency: Gentleman and Sande, AFIPS Proc. 29
 (1966) 563; back by decimation in time: Cooley and Tukey, Math. Comp. 19 (1965) 297.)
 """
 
@@ -19,38 +19,22 @@ from .. import threads
 from ..kernel_cache import njit
 from .simd import WIDTH, load, store, transpose
 
-#: Numbers in a row of a buffer: real, then imaginary parts of one index of all the transforms.
+#: Length of a buffer's row: real, then imaginary parts of one index of all transforms.
 ROW = 2 * WIDTH
-#: On fewer cells than this a second thread costs more than it brings.
+#: Fewest cells for which a second thread saves time.
 THREADED_CELLS = 150_000
-#: Lines of a block that `cosine_transform` transforms at once: all would take their memory twice.
+#: Lines that `cosine_transform` transforms at once; all at once would double the memory.
 LINES = 64
 
 
 def cosine_transform(
     half: np.ndarray, axis: int, kind: int = 1, *, back: bool = False
 ) -> np.ndarray:
-    """Transform of even data along an axis, from its first half, in place.
+    """Cosine transform along an axis, in place, of even data given by their first half, (ny, nx).
 
-    By threads of our own: scipy's are shut down while the process forks, and whoever transforms
-    then gets an error.
-
-    Parameters
-    ----------
-    half : (ny, nx) float32 or float64 ndarray
-        Overwritten.
-    axis : int
-        0 or 1.
-    kind : int
-        1: the data are even about their first and last number (DCT-I). 2: about places half a step
-        before and beyond them (DCT-II).
-    back : bool
-        The inverse.
-
-    Returns
-    -------
-    (ny, nx) ndarray
-        The same array.
+    Kind 1 (DCT-I): even about the first and the last value. Kind 2 (DCT-II): even about places half
+    a step outside them. ``back``: the inverse. The threads are the solver's own, since scipy's are
+    shut down while the process forks, and a transform at that moment fails.
     """
     lines = half if axis == 1 else half.T
     of_lines = fft.idct if back else fft.dct
@@ -65,7 +49,7 @@ def cosine_transform(
 
 
 def fast_length(least: int) -> int:
-    """The shortest length >= ``least`` and >= 2 without prime factors over 5."""
+    """Shortest length >= ``least`` and >= 2 without prime factors above 5."""
     length = max(least, 2)
     while _radices(length) is None:
         length += 1
@@ -88,21 +72,16 @@ class Convolution:
     Parameters
     ----------
     spectrum : (padded y // 2 + 1, padded x // 2 + 1) ndarray
-        Transform of the kernel in its circulant: real, as the kernel is even both ways.
+        Transform of the kernel on its circle: real, as the kernel is even along both axes.
     shape : (int, int)
-        Of the fields, (ny, nx).
+        Shape of the fields, (ny, nx).
     padded : (int, int)
         Lengths of the transforms, each a :func:`fast_length`.
     dtype : type
         float32 or float64.
     wrapped : bool
-        Whether the lengths may be less than twice those of the fields: the kernel is then that of
-        the circle, and it is the caller's to see that it ends before it comes round.
-
-    Raises
-    ------
-    ValueError
-        If these do not go together.
+        Whether the lengths may be less than twice those of the fields. The kernel is then that of
+        the circle, and the caller must make sure that it ends before it wraps round.
     """
 
     def __init__(
@@ -139,15 +118,9 @@ class Convolution:
         self._along_x = np.ascontiguousarray(blocks), mirrored, radices_x, twiddles_x
 
     def __call__(self, field: np.ndarray) -> np.ndarray:
-        """The convolution of a field, (ny, nx), of this precision.
-
-        Raises
-        ------
-        ValueError
-            If it has another shape or type.
-        """
+        """Convolution of a field of this shape and precision."""
         field = np.ascontiguousarray(field)
-        # Compiled code writes to memory whatever it is given.
+        # Compiled code checks no bounds.
         if field.shape != self._shape or field.dtype != self._dtype:
             raise ValueError(
                 f"field {field.shape} of {field.dtype}: expected {self._shape} of {self._dtype}"
@@ -155,7 +128,7 @@ class Convolution:
         result = np.empty_like(field)
         spectra = np.empty((self._waves, self._blocks * ROW * ROW), self._dtype)
         nx = self._shape[1]
-        if field.size < THREADED_CELLS:  # of small windows the calls take as long as the rest
+        if field.size < THREADED_CELLS:  # in small windows the calls take as long as the work
             _convolve(field, spectra, result, self._along_y, self._along_x)
             return result
         threads.in_parts(
@@ -177,7 +150,7 @@ class Convolution:
 
 
 def _plan(n, dtype):
-    """Radices, twiddle factors (cos, -sin), frequencies in the order the transform leaves them."""
+    """Radices, twiddle factors (cos, -sin), and frequencies in the transform's output order."""
     radices = np.array(_radices(n), np.int64)
     frequency = np.zeros(1, np.int64)
     for radix in radices[::-1]:
@@ -188,7 +161,7 @@ def _plan(n, dtype):
 
 @njit(cache=True)
 def _twiddled(re, im, twiddles, k):
-    """(re + i im) times twiddle factor k."""
+    """Product of re + i im with twiddle factor k."""
     if k == 0:
         return re, im
     c, s = twiddles[k, 0], twiddles[k, 1]
@@ -208,8 +181,8 @@ def _put(x, row, real, imag, value):
 
 
 # Butterflies of one radix on radix * m rows from ``first`` on. Twiddle factors are multiples of
-# ``before`` or ``after`` times the place of a row (one of the two is 0); all rows are read before
-# any is put.
+# ``before`` or ``after`` times a row's place (one of the two is 0). All rows are read before any
+# is written.
 
 
 @njit(cache=True)
@@ -290,9 +263,10 @@ def _pass5(x, first, m, before, after, twiddles, real, imag):
 
 @njit(cache=True)
 def _transform(x, radices, twiddles, back):
-    """Transform the rows of x in place, leaving frequencies in the order of the plan; or ``back``.
+    """Transform the rows of x in place, in the frequency order of the plan; or ``back``.
 
-    Back, times n, is forward with real and imaginary parts exchanged, and the passes in reverse.
+    The inverse times n is the forward transform with real and imaginary parts exchanged and the
+    passes in reverse order.
     """
     n = twiddles.shape[0]
     real, imag = (WIDTH, 0) if back else (0, WIDTH)
@@ -318,9 +292,9 @@ def _transform(x, radices, twiddles, back):
 def _forward_along_y(start, stop, field, spectra, radices, twiddles, place):
     """Spectra along y of some blocks of columns.
 
-    The left half of a block are the real, the right half the imaginary parts of what is
-    transformed: the spectra a, b of the halves are the Hermitian and (over i) the anti-Hermitian
-    part of the result.
+    The left half of a block is the real and the right half the imaginary part of the transformed
+    data: the spectra a, b of the halves are the Hermitian and (over i) the anti-Hermitian part of
+    the result.
     """
     ny, nx = field.shape
     n = twiddles.shape[0]
@@ -342,11 +316,11 @@ def _forward_along_y(start, stop, field, spectra, radices, twiddles, place):
         _transform(x, radices, twiddles, False)
         for waves in range(spectra.shape[0]):
             for lane in range(WIDTH):
-                # Lanes past the last wave number hold it again.
+                # Lanes beyond the last wave number repeat it.
                 k = min(waves * WIDTH + lane, n // 2)
-                here, there = place[k] * ROW, place[(n - k) % n] * ROW
-                zr, zi = half * load(x, here), half * load(x, here + WIDTH)
-                wr, wi = half * load(x, there), half * load(x, there + WIDTH)
+                row, opposite = place[k] * ROW, place[(n - k) % n] * ROW
+                zr, zi = half * load(x, row), half * load(x, row + WIDTH)
+                wr, wi = half * load(x, opposite), half * load(x, opposite + WIDTH)
                 store(tile, lane * ROW, zr + wr)
                 store(tile, lane * ROW + WIDTH, zi + wi)
                 store(tile, (WIDTH + lane) * ROW, zi - wi)
@@ -355,13 +329,13 @@ def _forward_along_y(start, stop, field, spectra, radices, twiddles, place):
             for part in (0, 1):
                 for side in (0, WIDTH):
                     corner = part * WIDTH * ROW + side
-                    at = (left + side) * ROW + part * WIDTH
-                    transpose(tile, corner, ROW, spectra[waves], at, ROW)
+                    target = (left + side) * ROW + part * WIDTH
+                    transpose(tile, corner, ROW, spectra[waves], target, ROW)
 
 
 @njit(cache=True, nogil=True)
 def _multiply_along_x(start, stop, nx, spectra, kernel, mirrored, radices, twiddles):
-    """Convolve along x, for some blocks of wave numbers along y, in place."""
+    """Convolution along x of some blocks of wave numbers along y, in place."""
     n = twiddles.shape[0]
     x = np.empty(n * ROW, spectra.dtype)
     for waves in range(start, stop):
@@ -379,7 +353,7 @@ def _multiply_along_x(start, stop, nx, spectra, kernel, mirrored, radices, twidd
 
 @njit(cache=True, nogil=True)
 def _back_along_y(start, stop, spectra, field, radices, twiddles, place):
-    """From spectra along y to some blocks of columns."""
+    """Inverse transform along y of some blocks of columns."""
     ny, nx = field.shape
     n = twiddles.shape[0]
     numbers = field.reshape(-1)
@@ -391,18 +365,18 @@ def _back_along_y(start, stop, spectra, field, radices, twiddles, place):
             for part in (0, 1):
                 for side in (0, WIDTH):
                     corner = part * WIDTH * ROW + side
-                    at = (left + side) * ROW + part * WIDTH
-                    transpose(spectra[waves], at, ROW, tile, corner, ROW)
+                    source = (left + side) * ROW + part * WIDTH
+                    transpose(spectra[waves], source, ROW, tile, corner, ROW)
             for lane in range(min(WIDTH, n // 2 + 1 - waves * WIDTH)):
                 k = waves * WIDTH + lane
-                here, there = place[k] * ROW, place[(n - k) % n] * ROW
+                row, opposite = place[k] * ROW, place[(n - k) % n] * ROW
                 ar, br = load(tile, lane * ROW), load(tile, lane * ROW + WIDTH)
                 ai = load(tile, (WIDTH + lane) * ROW)
                 bi = load(tile, (WIDTH + lane) * ROW + WIDTH)
-                store(x, there, ar + bi)
-                store(x, there + WIDTH, br - ai)
-                store(x, here, ar - bi)
-                store(x, here + WIDTH, ai + br)
+                store(x, opposite, ar + bi)
+                store(x, opposite + WIDTH, br - ai)
+                store(x, row, ar - bi)
+                store(x, row + WIDTH, ai + br)
         _transform(x, radices, twiddles, True)
         if left + ROW <= nx:
             for y in range(ny):
@@ -416,7 +390,7 @@ def _back_along_y(start, stop, spectra, field, radices, twiddles, place):
 
 @njit(cache=True, nogil=True)
 def _convolve(field, spectra, result, along_y, along_x):
-    """All three passes at once."""
+    """All three passes on one thread."""
     blocks = spectra.shape[1] // (ROW * ROW)
     _forward_along_y(0, blocks, field, spectra, *along_y)
     _multiply_along_x(0, spectra.shape[0], field.shape[1], spectra, *along_x)

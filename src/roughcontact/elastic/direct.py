@@ -1,8 +1,8 @@
-"""The elastic operator between few nodes, pair by pair: next to nothing is set up.
+"""Elastic operator between few nodes, summed pair by pair: nearly without set-up.
 
-Where pairs of a loaded and a displaced node are few, to sum them takes less time than to make the
-matrices of the multipole operator. Near by Love's influence is looked up; further away it is
-evaluated anew for each pair, which takes no longer than to read it from a large table would.
+If the pairs of a loaded and a displaced node are few, their sum takes less time than the matrices
+of the multipole operator. Love's influence is read from a table near the load; further away it is
+evaluated for each pair, as fast as reading it from a large table.
 """
 
 import numpy as np
@@ -11,19 +11,15 @@ from ..kernel_cache import njit
 from .halfspace import HalfSpace
 from .influence import FAR, expansion
 
-#: By precision that is asked for: pairs up to which this takes less time than the multipole
-#: operator, with the set-up of that.
+#: Most pairs, by requested precision, for which this takes less time than the multipole operator
+#: and its set-up.
 MAX_PAIRS = {np.dtype(np.float32): 150_000, np.dtype(np.float64): 1_000_000}
 
 
 class DirectOperator:
     """K between the nodes of a set, always computed in double precision.
 
-    Parameters
-    ----------
-    space : HalfSpace
-    nodes : (n,) int32 ndarray
-        Nodes as numbers of cells, ascending; nothing checks them.
+    ``nodes``, (n,) int32, are ascending numbers of cells; they are not checked.
     """
 
     def __init__(self, space: HalfSpace, nodes: np.ndarray):
@@ -35,18 +31,9 @@ class DirectOperator:
         self._spread = space.spread
 
     def __call__(self, positions: np.ndarray, values: np.ndarray) -> np.ndarray:
-        """Displacement of all nodes of the set under pressures on some of them.
+        """Displacement of all nodes, (n,), under ``values`` (m,) at some ``positions`` in the set.
 
-        Parameters
-        ----------
-        positions : (m,) int ndarray
-            Which ones, as positions in the set.
-        values : (m,) ndarray
-
-        Returns
-        -------
-        (n,) ndarray
-            Of the precision of the values.
+        The result has the precision of the values.
         """
         image = np.zeros(self._rows.size)
         cells = self._rows, self._columns
@@ -64,20 +51,20 @@ class DirectOperator:
 
 @njit(cache=True)
 def _sum(positions, values, rows, columns, y, x, table, dy, dx, area, image):
-    """Add the displacements of all nodes by one loaded node after the other."""
+    """Add the displacements of all nodes under one loaded node after the other."""
     for k in range(positions.size):
-        at = positions[k]
-        # Nodes in near rows follow each other.
-        first = np.searchsorted(rows, rows[at] - table.shape[0] + 1)
-        last = np.searchsorted(rows, rows[at] + table.shape[0])
-        _add_far(values[k], y[at], x[at], y[:first], x[:first], dy, dx, area, image[:first])
-        _add_far(values[k], y[at], x[at], y[last:], x[last:], dy, dx, area, image[last:])
+        node = positions[k]
+        # Nodes of adjacent rows are adjacent in the list.
+        first = np.searchsorted(rows, rows[node] - table.shape[0] + 1)
+        last = np.searchsorted(rows, rows[node] + table.shape[0])
+        _add_far(values[k], y[node], x[node], y[:first], x[:first], dy, dx, area, image[:first])
+        _add_far(values[k], y[node], x[node], y[last:], x[last:], dy, dx, area, image[last:])
         for i in range(first, last):
-            away = abs(columns[i] - columns[at])
+            away = abs(columns[i] - columns[node])
             if away < table.shape[1]:
-                image[i] += values[k] * table[abs(rows[i] - rows[at]), away]
+                image[i] += values[k] * table[abs(rows[i] - rows[node]), away]
             else:
-                image[i] += values[k] * expansion(y[i] - y[at], x[i] - x[at], dy, dx, area)
+                image[i] += values[k] * expansion(y[i] - y[node], x[i] - x[node], dy, dx, area)
 
 
 @njit(cache=True)

@@ -1,7 +1,7 @@
-"""The elastic half-space: normal displacement of a surface under a pressure, by FFT.
+"""Elastic half-space: normal displacement of a surface under a pressure, by FFT.
 
-In free space the window stands alone on an infinite half-space: the convolution is zero padded, and
-there are no periodic images. Or the window goes on beyond its edges (`boundaries`).
+A free window stands alone on an infinite half-space: the convolution is zero padded, without
+periodic images. Periodic and mirrored windows continue beyond their edges (`boundaries`).
 """
 
 import warnings
@@ -27,18 +27,19 @@ from .convolution import Convolution, fast_length
 from .influence import influence_table, spread
 from .split_convolution import MIN_SPLIT_SIDE, SplitConvolution
 
-#: Self-displacement of one node, E* s u / f, under the force f of a small contact patch, for the
-#: paper's "rigid plate" (its eq. 3 leaves the patch open). Square cells only.
+#: Self-displacement E* s u / f of a node under the force f of a small contact patch: three readings
+#: of the "rigid plate" of Borri-Brunetto et al. (1999), whose eq. 3 leaves the patch open. Square
+#: cells only.
 RIGID_PLATE_SELF_TERMS = {
     "rigid square": 1 / 1.1523,
     "equal-area disc": np.sqrt(np.pi) / 2,
     "inscribed disc": 1.0,
 }
-#: Compiled code counts cells in four bytes.
+#: Most cells of a grid: compiled code numbers them in four bytes.
 MAX_CELLS = 2**31 - 1
-#: Cells more stretched than this are convolved as a whole in single precision, too: the coarse grid
-#: of the split convolution has too few nodes along their longer side. Under random pressures
-#: it errs by 1.5e-6 of the largest displacement on square cells, by 3e-6 at 1.5, by 1e-5 at 2.5.
+#: Largest aspect ratio of cells for the split convolution; along the longer side of more stretched
+#: cells its coarse grid has too few nodes. Under random pressures it errs by 1.5e-6 of the largest
+#: displacement on square cells, by 3e-6 at a ratio of 1.5, by 1e-5 at 2.5.
 MAX_STRETCHED = 1.5
 
 
@@ -62,7 +63,7 @@ _E_STAR = "e_star of a HalfSpace is its modulus: write modulus, as e_star will g
 
 
 def _one_modulus(modulus, e_star):
-    """The modulus of a call that may name it by either word."""
+    """Modulus of a call under either of its two names."""
     if (modulus is None) == (e_star is None):
         raise TypeError("HalfSpace: expected one modulus=E*, in MPa (10 GPa are 10e3)")
     if e_star is None:
@@ -72,37 +73,47 @@ def _one_modulus(modulus, e_star):
 
 
 class HalfSpace:
-    """The elastic operator on a grid of rectangular cells.
+    """Elastic half-space on a grid of rectangular cells: operator from pressure to displacement.
 
-    It cannot be changed, and several threads may use one.
+    It is immutable, and several threads may share one.
 
     Parameters
     ----------
     shape : (int, int)
-        Cells (ny, nx).
+        Number of cells (ny, nx).
     spacing : (float, float) or float
-        Cell sides (dy, dx), mm; one number of square cells.
+        Cell sides (dy, dx), mm; one number for square cells.
     modulus : float
-        E*, MPa: 1/E* = sum over both bodies of (1 - nu^2)/E.
+        Contact modulus E*, MPa: 1/E* = sum over both bodies of (1 - nu^2)/E.
     kernel : str
         ``"love"`` (default): uniform pressure on each cell, displacement at its centre. Or one of
         the readings of the paper's rigid plate, ``"rigid square"``, ``"equal-area disc"``,
-        ``"inscribed disc"``: that self-term, and a point load on every other cell. Of a free window
-        alone; others have the displacement 2 p / (E* q) of each wave number q.
+        ``"inscribed disc"``: that self-term, and a point load on every other cell (free windows
+        only).
     boundary : str
-        ``"free"`` (default): the window stands alone on the half-space. ``"periodic"``: it is
-        repeated beyond its edges. ``"mirrored"``: it is reflected there, half a cell beyond its
-        outermost nodes. Of the latter two the displacement has the mean zero, and the closure is
-        the approach of the mean plane.
+        ``"free"`` (default): the window stands alone on the half-space. ``"periodic"``: it repeats
+        beyond its edges. ``"mirrored"``: it is reflected there, half a cell beyond its outermost
+        nodes. The latter two have the displacement 2 p / (E* q) at each wave number q and the mean
+        displacement 0, so that the closure is the approach of the mean plane.
     e_star : float, optional
-        Another word for ``modulus``, deprecated.
+        Deprecated name of ``modulus``.
 
     Raises
     ------
     ValueError
-        If the shape, spacing, modulus, kernel or boundary makes no sense.
+        If the shape, spacing, modulus, kernel or boundary is invalid.
     TypeError
-        If there is not one modulus.
+        If there is not exactly one modulus.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from roughcontact import HalfSpace
+    >>> space = HalfSpace((64, 64), 0.1, 20e3, boundary="periodic")  # mm, MPa
+    >>> wave = 10 * np.cos(2 * np.pi * np.arange(64) / 64) * np.ones((64, 1))
+    >>> wave_number = 2 * np.pi / 6.4
+    >>> bool(np.allclose(space.displacement(wave), 2 / (20e3 * wave_number) * wave))
+    True
     """
 
     _FIXED = ("shape", "spacing", "modulus", "kernel", "boundary", "cell", "_padded")
@@ -142,14 +153,14 @@ class HalfSpace:
             raise ValueError(f"boundary {quoted(boundary)}: expected one of {named}")
         if boundary != FREE and kernel != "love":
             raise ValueError(f"the rigid-plate kernels are those of a free window, not {boundary}")
-        # Side of the square as large as a cell: the solver's unit of length in the plane.
+        # Side of the square of a cell's area: the solver's unit of length in the plane.
         cell = float(np.sqrt(dy * dx))
         padded = fast_length(2 * ny - 1), fast_length(2 * nx - 1)
         vars(self).update(shape=(ny, nx), spacing=(dy, dx), modulus=modulus, kernel=kernel)
         vars(self).update(boundary=boundary, cell=cell, _padded=padded)
 
     def __setattr__(self, name, value):
-        # What is kept of the old grid would be used, out of bounds, on the new one.
+        # Cached arrays of the old grid would be used, out of bounds, on the new one.
         if name in self._FIXED:
             raise AttributeError(f"{name} of a HalfSpace cannot be changed; make another HalfSpace")
         super().__setattr__(name, value)
@@ -179,12 +190,12 @@ class HalfSpace:
 
     @property
     def is_free(self) -> bool:
-        """True if the window stands alone; else K has no inverse, as constants displace nothing."""
+        """True if the window stands alone; else K is singular, as constants displace nothing."""
         return self.boundary == FREE
 
     @property
     def e_star(self) -> float:
-        """E*, MPa: another word for ``modulus``, deprecated."""
+        """E*, MPa: deprecated name of ``modulus``."""
         warnings.warn(_E_STAR, DeprecationWarning, stacklevel=2)
         return self.modulus
 
@@ -192,6 +203,11 @@ class HalfSpace:
     def cell_area(self) -> float:
         """Area of one cell, mm2."""
         return self.spacing[0] * self.spacing[1]
+
+    @property
+    def area(self) -> float:
+        """Area of the window, mm2."""
+        return self.cell_area * self.shape[0] * self.shape[1]
 
     def displacement(self, pressure: ArrayLike) -> np.ndarray:
         """Normal displacement of the surface under a pressure.
@@ -212,7 +228,7 @@ class HalfSpace:
             If the pressure is on another grid, or is not finite and real.
         """
         values = field(pressure, "pressure", self.shape)
-        # Not so of a NaN either, which would be everywhere at once.
+        # Written so that it also refuses NaN, which the convolution would spread to every node.
         if not np.abs(values).max() <= MAX_RESULT:
             raise ValueError(f"pressure: expected finite numbers, none over {MAX_RESULT:g} MPa")
         return self.convolve(values) * (self.cell / self.modulus)
@@ -220,7 +236,7 @@ class HalfSpace:
     def influence(self) -> np.ndarray:
         """Dimensionless influence E* u / (p cell) at every cell distance, (ny, nx), read only.
 
-        Of a periodic or mirrored window with all its repetitions, but without the reflections.
+        For a periodic or mirrored window it sums all repetitions, but not the reflections.
         """
         return self._influence
 
@@ -231,14 +247,7 @@ class HalfSpace:
         return influence
 
     def near_influence(self, side: int) -> np.ndarray:
-        """The same up to a distance of ``side`` cells each way, or as far as the window reaches.
-
-        Made once and kept; read only.
-
-        Returns
-        -------
-        (my, mx) ndarray
-        """
+        """Influence at distances below ``side`` cells, or the window's; cached and read only."""
         if side not in self._near:
             near = self.influence_within((min(side, self.shape[0]), min(side, self.shape[1])))
             near.flags.writeable = False
@@ -250,50 +259,30 @@ class HalfSpace:
         return {}
 
     def influence_within(self, shape: tuple[int, int]) -> np.ndarray:
-        """The same at given cell distances, also outside the window, recomputed at each call.
-
-        Parameters
-        ----------
-        shape : (int, int)
-            Distances wanted along y and x, from zero on.
-
-        Returns
-        -------
-        (my, mx) ndarray
-        """
+        """Influence at the distances of a ``shape``, also beyond the window; not cached."""
         if not self.is_free:
             return repeated_influence(shape, period(self.shape, self.boundary), self._sides)
         return influence_table(shape, self._sides, self._self_term)
 
     @property
     def spread(self) -> tuple[float, float, float]:
-        """Sides of the loaded area, in units of `cell`, and its area, for `expansion`."""
+        """Sides of the loaded area in units of `cell`, and its area: arguments of `expansion`."""
         return spread(self._sides, self._self_term)
 
     @property
     def _self_term(self):
-        """None for Love's kernel."""
+        """Self-term of the rigid-plate kernels; None for Love's kernel."""
         return RIGID_PLATE_SELF_TERMS.get(self.kernel)
 
     @computed_once
     def _sides(self):
-        """Sides of a cell (y, x), in units of `cell`."""
+        """Cell sides (y, x) in units of `cell`."""
         return tuple(d / self.cell for d in self.spacing)
 
     def coarser(self, factor: int) -> "HalfSpace":
-        """The same half-space on cells ``factor`` times as long and as wide, covering the window.
+        """Half-space on cells ``factor`` times as long and wide, covering the window; cached.
 
-        Distances counted in cells are the same, and so is the influence. Made once and kept.
-
-        Parameters
-        ----------
-        factor : int
-            From 1.
-
-        Raises
-        ------
-        ValueError
-            If the factor is no such number.
+        Distances are counted in cells, so that the influence is the same.
         """
         factor = whole_number(factor, "factor", least=1, most=MAX_CELLS)
         if factor in self._coarser:
@@ -302,7 +291,8 @@ class HalfSpace:
         sides = factor * self.spacing[0], factor * self.spacing[1]
         kernel, boundary = self.kernel, self.boundary
         coarse = HalfSpace(shape, sides, self.modulus, kernel=kernel, boundary=boundary)
-        # To the last bit the same influence. What repeats itself must do so after as long.
+        # Cell sides in units of `cell` are copied, so that the influence is the same to the bit. A
+        # repeated window must keep its period, which its coarse cells may not divide.
         inside = (n / (factor * m) for n, m in zip(self.shape, shape, strict=True))
         repeated = tuple(d * part for d, part in zip(self._sides, inside, strict=True))
         within = self._sides if self.is_free else repeated
@@ -314,22 +304,9 @@ class HalfSpace:
         return {}
 
     def convolve(self, values: np.ndarray) -> np.ndarray:
-        """The dimensionless operator K.
+        """Dimensionless operator K on one or several fields, (..., ny, nx) float32 or float64.
 
-        Parameters
-        ----------
-        values : (..., ny, nx) float32 or float64 ndarray
-            One field or several; NaN and infinities spread.
-
-        Returns
-        -------
-        ndarray
-            Of the same shape and precision.
-
-        Raises
-        ------
-        ValueError
-            If the fields are on another grid or of another type.
+        The result has the same shape and precision. NaN and infinities spread to all nodes.
         """
         if type(values) is not np.ndarray:
             refuse_masked(values, "values")
@@ -358,13 +335,13 @@ class HalfSpace:
 
     @computed_once
     def _convolutions(self):
-        """In double and in single precision, from one spectrum, which is not kept."""
+        """Convolutions in double and in single precision, from one spectrum, which is not kept."""
         spectrum = self._spectrum() if self.is_free else None
         return tuple(self._convolution(dtype, spectrum) for dtype in (np.float64, np.float32))
 
     @computed_once
     def _single_alone(self):
-        """Operator on coarser grids, where double precision is rarely needed."""
+        """Convolution of coarser grids, where double precision is rarely needed."""
         return self._convolution(np.float32)
 
     @computed_once
@@ -373,21 +350,21 @@ class HalfSpace:
 
     @computed_once
     def _split(self):
-        """The convolution in single precision on large windows of nearly square cells, or None."""
+        """Split convolution in single precision, for large windows of nearly square cells."""
         stretched = max(self._sides) > MAX_STRETCHED * min(self._sides)
         if not self.is_free or min(self.shape) < MIN_SPLIT_SIDE or stretched:
             return None
         return SplitConvolution(self.shape, self._sides, self._self_term)
 
     def _convolution(self, dtype, spectrum=None):
-        """The operator in one precision."""
+        """Convolution in one precision."""
         if not self.is_free:
             return CONVOLUTIONS[self.boundary](self.shape, self._sides, dtype)
         spectrum = self._spectrum() if spectrum is None else spectrum
         return Convolution(spectrum, self.shape, self._padded, dtype)
 
     def _spectrum(self):
-        """Transform of the influence in its zero-padded circulant."""
+        """Transform of the influence on its zero-padded circle."""
         spectrum = self.influence_within(self.shape)
         for axis in (0, 1):
             n, half = self.shape[axis], self._padded[axis] // 2 + 1
@@ -397,7 +374,7 @@ class HalfSpace:
 
 
 def _size(value, name, unit):
-    """A size that is neither zero nor such that the product or ratio of two would be."""
+    """Positive size within the limits of the input."""
     size = number(value, name, unit)
     if not MIN_INPUT <= size <= MAX_INPUT:
         raise ValueError(

@@ -1,7 +1,7 @@
-"""Influence of a loaded cell at a distance, for whole tables and far away at any distance.
+"""Influence of a loaded cell at a distance: tables near the cell, an expansion far from it.
 
 Near the cell it is Love's closed form, `love_displacement`. Far from it that form loses digits, as
-the four corners cancel, and takes eight inverse hyperbolic sines; there the mean of 1/(pi r) over
+its four corners cancel, and takes eight inverse hyperbolic sines; there the mean of 1/(pi r) over
 the cell is expanded in its sides, up to the fourth power.
 """
 
@@ -10,29 +10,19 @@ import numpy as np
 from .. import threads
 from ..kernel_cache import njit
 
-#: From this many of the longer side of a cell on the expansion holds: its first missing term is
-#: below 1e-12 of the influence there.
+#: Least distance, in longer sides of a cell, at which the expansion is used: its first missing term
+#: is below 1e-12 of the influence there.
 FAR = 32
-#: Rows that a thread takes at least.
+#: Fewest rows per thread.
 ROWS = 64
 
 
 def love_displacement(
     x: float | np.ndarray, y: float | np.ndarray, dx: float, dy: float
 ) -> np.ndarray:
-    """Displacement at (x, y) under uniform pressure on a rectangle centred at the origin.
+    """Displacement E* u / p at (x, y) under uniform pressure on a rectangle centred at the origin.
 
-    Parameters
-    ----------
-    x, y : float or ndarray
-        Where the displacement is wanted, mm.
-    dx, dy : float
-        Sides of the loaded rectangle, mm.
-
-    Returns
-    -------
-    ndarray
-        E* u / p in mm.
+    All lengths, those of the sides ``dx`` and ``dy`` and the result, are in one unit.
 
     Notes
     -----
@@ -59,21 +49,11 @@ def _love_corner(x, y):
 def influence_table(
     shape: tuple[int, int], sides: tuple[float, float], self_term: float | None
 ) -> np.ndarray:
-    """Dimensionless influence E* u / (p cell) at every cell distance.
+    """Dimensionless influence E* u / (p cell) at every cell distance of ``shape``, from zero on.
 
-    Parameters
-    ----------
-    shape : (int, int)
-        Distances wanted, from zero on.
-    sides : (float, float)
-        Of a cell along y and x; their product is 1.
-    self_term : float or None
-        Of point loads on every cell but the loaded one, whose influence on itself this is; None for
-        uniform pressure on the cell, of Love.
-
-    Returns
-    -------
-    (ny, nx) ndarray
+    ``sides`` are those of a cell (y, x), with the product 1. ``self_term`` is None for Love's
+    uniform pressure on the cell; else it is the influence of a cell on itself, and all others are
+    point loads.
     """
     dy, dx = sides
     table = np.empty(shape)
@@ -95,19 +75,13 @@ def influence_table(
 
 
 def spread(sides: tuple[float, float], self_term: float | None) -> tuple[float, float, float]:
-    """Sides that a load is spread over, (0, 0) for a point load, and its area: see `expansion`.
-
-    Parameters
-    ----------
-    sides, self_term
-        As for `influence_table`.
-    """
+    """Sides and area of a load for `expansion`; the sides are 0 for a point load."""
     return (*sides, sides[0] * sides[1]) if self_term is None else (0.0, 0.0, 1.0)
 
 
 @njit(cache=True)
 def _fill_near(near_y, near_x, dy, dx, table):
-    """Love's displacement, with terms at corners shared by four cells."""
+    """Love's displacement, with each corner's term computed once for the four cells around it."""
     above, below = np.empty(near_x + 1), np.empty(near_x + 1)
     for i in range(near_y + 1):
         y = (i - 0.5) * dy
@@ -121,10 +95,10 @@ def _fill_near(near_y, near_x, dy, dx, table):
         above, below = below, above
 
 
-# Divided by is what never vanishes, and a check of it would keep loops from being vectorised.
+# The divisor never vanishes; "numpy" leaves out its check, which would prevent vectorisation.
 @njit(cache=True, nogil=True, error_model="numpy")
 def _fill_far(start, stop, near_y, near_x, y, x, dy, dx, area, table):
-    """Rows of a table at some distances, but for the first ``near`` ones of either."""
+    """Rows of a table from the expansion, except within the ``near`` distances."""
     for i in range(start, stop):
         first = near_x if i < near_y else 0
         row, places = table[i, first:], x[first:]
@@ -136,14 +110,14 @@ def _fill_far(start, stop, near_y, near_x, y, x, dy, dx, area, table):
 def expansion(y: float, x: float, dy: float, dx: float, area: float) -> float:
     """Influence far away: an area times the mean of f = 1/(pi r) over a cell of sides dy, dx.
 
-    Its error is some 1e-12 (FAR / r)^6 of it at a distance r, counted in longer sides. The mean is
-    f + (dx^2 f_xx + dy^2 f_yy) / 24 + dx^4 f_xxxx / 1920 + dx^2 dy^2 f_xxyy / 576 +
-    dy^4 f_yyyy / 1920.
+    Its relative error is some 1e-12 (FAR / r)^6 at a distance r, counted in longer sides. The mean
+    is f + (dx^2 f_xx + dy^2 f_yy) / 24 + dx^4 f_xxxx / 1920 + dx^2 dy^2 f_xxyy / 576 + dy^4 f_yyyy
+    / 1920.
     """
     squared_y, squared_x, b, a = y * y, x * x, dx * dx, dy * dy
     inverse = 1 / (squared_y + squared_x)
     v, u = squared_y * inverse, squared_x * inverse
-    # Multiplied by constants: a vector of divisions takes as long as all the rest.
+    # Products with constants, since a vector of divisions takes as long as all the rest.
     second = (a * (1 / 24)) * (2 * v - u) + (b * (1 / 24)) * (2 * u - v)
     fourth = (a * a * (1 / 1920)) * (9 - 90 * v + 105 * v * v)
     fourth += (b * b * (1 / 1920)) * (9 - 90 * u + 105 * u * u)

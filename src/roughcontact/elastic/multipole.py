@@ -1,13 +1,13 @@
-"""The elastic operator between the nodes of a set, by a fast multipole method.
+"""Elastic operator between the nodes of a set, by a fast multipole method.
 
-What is far away is smooth: pressures and displacements of two blocks of cells that lie apart are
-interpolated from Chebyshev nodes on each, and the influence is evaluated between those (the
-black-box method of W. Fong and E. Darve, J. Comput. Phys. 228 (2009) 8712, on the levels of
-L. Greengard and V. Rokhlin, J. Comput. Phys. 73 (1987) 325). Blocks of 8 x 8 cells are the smallest
-and hold the pressures themselves; on each level above, blocks are twice as long and wide. Only
-blocks with a node of the set exist: work and memory grow with their number, not with the window.
-Blocks act on each other at the lowest level on which their parents are neighbours, and there, as
-the influence depends on the distance alone, by one small matrix for each relative position.
+The far influence is smooth: pressures and displacements of two separated blocks of cells are
+interpolated from Chebyshev nodes on each, and the influence is evaluated between those (black-box
+method of W. Fong and E. Darve, J. Comput. Phys. 228 (2009) 8712, on the levels of L. Greengard and
+V. Rokhlin, J. Comput. Phys. 73 (1987) 325). The smallest blocks have 8 x 8 cells and hold the
+pressures themselves; blocks of each level above are twice as long and wide. Only blocks with a node
+of the set exist: work and memory grow with their number, not with the window. Blocks interact on
+the lowest level on which their parents are neighbours, by one small matrix for each relative
+position, as the influence depends on the distance alone.
 """
 
 import numpy as np
@@ -26,24 +26,14 @@ from .block_pairs import TOGETHER, MultipoleLevels
 from .halfspace import HalfSpace
 from .simd import WIDTH, load, store
 
-#: Cells are at most this many times as long as wide: blocks are neighbours by number, not distance.
+#: Largest aspect ratio of cells: neighbouring blocks are counted in blocks, not in lengths.
 MAX_STRETCHED = 1.25
-#: Where loaded smallest blocks hold no more loaded cells than this in the mean, these are gone
-#: through one by one.
+#: Largest mean number of loaded cells per loaded block for which cells are processed one by one.
 FEW = 32
 
 
 class MultipoleOperator:
-    """K between the nodes of a set, in one precision.
-
-    Parameters
-    ----------
-    space : HalfSpace
-    levels : MultipoleLevels
-        Of these nodes.
-    dtype : type
-        float32 or float64.
-    """
+    """K between the nodes of a set, whose `MultipoleLevels` are given, in one precision."""
 
     def __init__(self, space: HalfSpace, levels: MultipoleLevels, dtype: type):
         self._levels, self._dtype = levels, np.dtype(dtype)
@@ -53,20 +43,7 @@ class MultipoleOperator:
         self._transfers = [transfer(level, self._order, self._dtype) for level in range(count - 1)]
 
     def __call__(self, positions: np.ndarray, values: np.ndarray) -> np.ndarray:
-        """Displacement of all nodes of the set under pressures on some of them.
-
-        Parameters
-        ----------
-        positions : (m,) int ndarray
-            Which ones, as positions in the set.
-        values : (m,) ndarray
-            Of this precision.
-
-        Returns
-        -------
-        (n,) ndarray
-            Of this precision.
-        """
+        """Displacement of all nodes, (n,), under ``values`` (m,) at ``positions`` in the set."""
         levels, sides = self._levels, self._sides()
         sources = [
             np.zeros((n + 1) * side**2, self._dtype)
@@ -94,11 +71,11 @@ class MultipoleOperator:
         return images[0][levels.place]
 
     def _sides(self):
-        """Numbers along a block of every level."""
+        """Number of values along a block of every level."""
         return [LEAF] + [self._order] * (len(self._levels.blocks) - 1)
 
     def _translate(self, k, side, sources, loaded, images):
-        """Images of the blocks of a level under the others that act on them there."""
+        """Add the influence of the sources of one level to the images of its blocks."""
         batches, chunks = self._levels.pairs(SEPARATION[self._dtype])[k]
         influence = self._influence[k]
         matrices = influence.matrices.ravel()
@@ -125,17 +102,17 @@ class MultipoleOperator:
 
 
 def multipole_suits(space: HalfSpace) -> bool:
-    """True if cells are so nearly square that the errors stated hold."""
+    """True if cells are nearly square, as the stated errors require."""
     return max(space.spacing) <= MAX_STRETCHED * min(space.spacing)
 
 
 @njit(cache=True)
 def _scatter(positions, values, place, sources, loaded):
     for i in range(positions.size):
-        at = place[positions[i]]
-        sources[at] = values[i]
+        entry = place[positions[i]]
+        sources[entry] = values[i]
         if values[i] != 0:
-            loaded[at // (LEAF * LEAF)] = True
+            loaded[entry // (LEAF * LEAF)] = True
 
 
 @njit(cache=True)
@@ -163,7 +140,7 @@ def _to_parents(parents, weights, side, parent_side, values, loaded, above, load
 
 @njit(cache=True)
 def _to_children(parents, weights, side, parent_side, length, length_above, values, above):
-    """Add to each block the displacement of its parent, interpolated."""
+    """Add to each block the interpolated displacement of its parent."""
     part = np.empty((side, parent_side), values.dtype)
     for block in range(parents.shape[0]):
         parent, quarter = parents[block, 0], parents[block, 1]
@@ -186,10 +163,10 @@ def _to_children(parents, weights, side, parent_side, length, length_above, valu
 def _translate(
     start, stop, batches, matrices, matrix, order, orders, numbers, length, sources, loaded, images
 ):
-    """Add the images of some batches; pairs of one batch share each number of the matrix read."""
+    """Add the images of some batches; the pairs of a batch share each matrix entry that is read."""
     held = np.empty(TOGETHER * numbers, sources.dtype)
     moved = np.empty(TOGETHER * length, sources.dtype)
-    each = np.arange(TOGETHER)
+    pairs = np.arange(TOGETHER)
     source, target = np.empty(TOGETHER, np.int64), np.empty(TOGETHER, np.int64)
     for b in range(start, stop):
         offset, anything = batches[b, 0], False
@@ -208,7 +185,7 @@ def _translate(
             for j in range(numbers):
                 held[pair * numbers + j] = sources[source[pair] + places[j]]
         moved[:] = 0
-        _multiply(matrices, first, numbers, length, held, each * numbers, moved, each * length)
+        _multiply(matrices, first, numbers, length, held, pairs * numbers, moved, pairs * length)
         for pair in range(TOGETHER):
             for j in range(numbers):
                 images[target[pair] + places[j]] += moved[pair * length + j]
@@ -216,7 +193,7 @@ def _translate(
 
 @njit(cache=True)
 def _multiply(matrices, first, numbers, length, sources, source, images, target):
-    """Add a matrix times the numbers of four sources to their targets, each from some place on."""
+    """Add the product of a matrix and four sources' values to their targets."""
     if matrices.itemsize == 4:
         for v in range(0, length, 2 * WIDTH):
             _multiply_two(
@@ -231,7 +208,7 @@ def _multiply(matrices, first, numbers, length, sources, source, images, target)
 
 @njit(cache=True)
 def _multiply_two(matrices, row, numbers, length, sources, source, images, target, v):
-    """The same for two vectors of targets."""
+    """`_multiply` for two vectors of targets, in single precision."""
     s0, s1, s2, s3 = source[0], source[1], source[2], source[3]
     t0, t1, t2, t3 = target[0] + v, target[1] + v, target[2] + v, target[3] + v
     a0, a1 = load(images, t0), load(images, t0 + WIDTH)
@@ -257,7 +234,7 @@ def _multiply_two(matrices, row, numbers, length, sources, source, images, targe
 
 @njit(cache=True)
 def _multiply_one(matrices, row, numbers, length, sources, source, images, target, v):
-    """The same for one, which in double precision takes as much of the processor."""
+    """`_multiply` for one vector of targets, which in double precision fills the registers."""
     s0, s1, s2, s3 = source[0], source[1], source[2], source[3]
     t0, t1, t2, t3 = target[0] + v, target[1] + v, target[2] + v, target[3] + v
     a, b, c, d = load(images, t0), load(images, t1), load(images, t2), load(images, t3)
@@ -294,7 +271,7 @@ def _listed(sources, loaded):
 def _translate_few(
     start, stop, batches, matrices, matrix, order, orders, inverses, counts, cells, sources, images
 ):
-    """The same between smallest blocks, pair by pair, a row of the matrix for each loaded cell."""
+    """`_translate` between smallest blocks, one row of the matrix for each loaded cell."""
     numbers = LEAF * LEAF
     moved = np.empty(numbers, images.dtype)
     for b in range(start, stop):

@@ -1,7 +1,7 @@
-"""SIMD vectors for numba: sixteen numbers at once, as values in compiled functions.
+"""SIMD vectors for numba: sixteen numbers as one value in compiled functions.
 
-The compiler does not find these by itself in a Fourier transform, where it would have to prove that
-none of many rows of numbers overlap. Supported are ``load``, ``store``, +, - and scaling.
+The compiler does not vectorise a Fourier transform by itself, as it would have to prove that many
+rows of numbers do not overlap. Supported are ``load``, ``store``, +, - and scaling.
 """
 
 import operator
@@ -11,14 +11,14 @@ from llvmlite import ir
 from numba import types
 from numba.extending import intrinsic, models, overload, register_model
 
-#: Lanes of a vector, a number in each; a whole line of the processor's cache in single precision.
+#: Lanes of a vector; in single precision a vector fills a line of the processor's cache.
 WIDTH = 16
-#: A product may be added without being rounded first.
+#: Flags of floating-point operations: a product may be added without rounding (fused).
 FUSED = ("contract",)
 
 
 class Vector(types.Type):
-    """Type of :data:`WIDTH` numbers of a ``dtype``."""
+    """numba type of :data:`WIDTH` numbers of a ``dtype``."""
 
     def __init__(self, dtype: types.Type):
         super().__init__(name=f"Vector({dtype})")
@@ -40,7 +40,7 @@ def _pointer(context, builder, array_type, array, start, vector):
 
 @intrinsic
 def load(typing_context: Any, array: Any, start: Any) -> Any:
-    """The numbers of a flat contiguous array from ``start`` on; nothing checks its end."""
+    """SIMD vector of a flat contiguous array from ``start`` on; the array's end is not checked."""
     vector = Vector(array.dtype)
 
     def generate(context, builder, signature, args):
@@ -52,7 +52,7 @@ def load(typing_context: Any, array: Any, start: Any) -> Any:
 
 @intrinsic
 def store(typing_context: Any, array: Any, start: Any, values: Any) -> Any:
-    """Store SIMD vectors."""
+    """Store a SIMD vector at ``start``; the array's end is not checked."""
     if not isinstance(values, Vector):
         return None
 
@@ -80,7 +80,7 @@ _add, _subtract, _multiply = map(_elementwise, ("fadd", "fsub", "fmul"))
 
 @intrinsic
 def _broadcast(typing_context, number, like):
-    """One number in every lane."""
+    """SIMD vector with one number in every lane."""
 
     def generate(context, builder, signature, args):
         vector = context.get_value_type(like)
@@ -123,7 +123,7 @@ def transpose(
     start: Any,
     target_step: Any,
 ) -> Any:
-    """Turn a square of :data:`WIDTH` x WIDTH numbers, rows of it being ``step`` numbers apart."""
+    """Transpose a square of :data:`WIDTH` x WIDTH numbers; ``step`` is the distance of rows."""
     vector = Vector(source.dtype)
 
     def generate(context, builder, signature, args):
@@ -135,10 +135,10 @@ def transpose(
 
         rows = []
         for k in range(WIDTH):
-            at = row(first, from_step, k)
-            pointer = _pointer(context, builder, source, from_array, at, vector)
+            position = row(first, from_step, k)
+            pointer = _pointer(context, builder, source, from_array, position, vector)
             rows.append(builder.load(pointer, align=align))
-        # Each round interleaves rows half the square apart; as many as halve it away turn it.
+        # Each round interleaves rows half a square apart; log2(WIDTH) rounds transpose it.
         picked = [place for k in range(WIDTH) for place in (k, k + WIDTH)]
         halves = [
             ir.Constant(ir.VectorType(ir.IntType(32), WIDTH), half)
@@ -148,8 +148,8 @@ def transpose(
             pairs = zip(rows[: WIDTH // 2], rows[WIDTH // 2 :], strict=True)
             rows = [builder.shuffle_vector(a, b, half) for a, b in pairs for half in halves]
         for k in range(WIDTH):
-            at = row(start, to_step, k)
-            pointer = _pointer(context, builder, target, to_array, at, vector)
+            position = row(start, to_step, k)
+            pointer = _pointer(context, builder, target, to_array, position, vector)
             builder.store(rows[k], pointer, align=align)
         return context.get_dummy_value()
 

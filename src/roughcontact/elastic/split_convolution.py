@@ -1,11 +1,11 @@
 """Convolution with the influence in single precision, split into a near and a smooth part.
 
 A zero-padded convolution transforms a window twice as long and wide as the field, as the influence
-reaches from edge to edge. But what of it reaches far is smooth. With the splitting of P. P. Ewald
-(Ann. Phys. 369 (1921) 253) the influence is a near part that ends within some hundred cells, for
-which so much padding is enough, and erf(r / s) / (pi r), which is smooth and evaluated between the
-nodes of a coarse grid that stand for the field (U. Essmann et al., J. Chem. Phys. 103 (1995) 8577).
-This takes half the time of the padded convolution, and a third of its memory.
+reaches from edge to edge. But its far part is smooth. With the splitting of P. P. Ewald (Ann. Phys.
+369 (1921) 253) the influence is a near part that ends within some hundred cells, for which so much
+padding is enough, and erf(r / s) / (pi r), which is smooth and evaluated between the nodes of a
+coarse grid (U. Essmann et al., J. Chem. Phys. 103 (1995) 8577). This takes half the time of the
+padded convolution and a third of its memory.
 """
 
 import numpy as np
@@ -16,34 +16,27 @@ from ..kernel_cache import njit
 from .convolution import Convolution, cosine_transform, fast_length
 from .influence import influence_table
 
-#: Cells between the nodes of the coarse grid; nodes of it that stand for one of the field's, along
-#: each side; length s of the smooth part, and that beyond which the near part counts as zero, in
-#: roots of a cell's area. With these the displacement errs by some 1e-6 of the largest. The loops
-#: over STEP and ORDER are written out below: change both places.
+#: Cells between coarse nodes; coarse nodes along each axis that interpolate a value; length s of
+#: the smooth part, and cut-off of the near part, both in roots of a cell's area. The displacement
+#: then errs by some 1e-6 of the largest. The loops over STEP and ORDER are written out below:
+#: change both places.
 STEP, ORDER, SMOOTH, NEAR = 8, 6, 42, 126
-#: On windows of fewer nodes along the shorter side it takes no less time.
+#: Fewest nodes along the shorter side for which it saves time.
 MIN_SPLIT_SIDE = 768
-#: Time that a pass of each radix takes, relative to that of 4: lengths are chosen by it.
+#: Time of a pass of each radix, relative to that of 4, for the choice of lengths.
 _PASSES = {4: 1.0, 2: 0.7, 3: 0.9, 5: 1.5}
-#: Lengths longer than needed by no more than this are compared.
+#: Largest length to be compared, relative to the one needed.
 _LONGER = 1.1
 
 
 class SplitConvolution:
-    """Convolution of float32 fields on a window with the influence.
+    """Convolution of float32 fields of one shape with the influence.
 
-    Parameters
-    ----------
-    shape : (int, int)
-        Of the fields, (ny, nx).
-    sides : (float, float)
-        Of a cell, such that its area is 1.
-    self_term : float or None
-        As `influence.influence_table` takes it.
+    ``sides`` are those of a cell of area 1, ``self_term`` as in `influence_table`.
     """
 
     def __init__(self, shape: tuple[int, int], sides: tuple[float, float], self_term: float | None):
-        # Along the shorter side of a cell more of them reach as far.
+        # The cut-off takes more cells along their shorter side.
         near_y, near_x = (int(np.ceil(NEAR / side)) for side in sides)
         padded = _length(shape[0] + near_y), _length(shape[1] + near_x)
         half = padded[0] // 2 + 1, padded[1] // 2 + 1
@@ -58,13 +51,7 @@ class SplitConvolution:
         self._coarse, self._weights = (ny, nx), _interpolation().astype(np.float32)
 
     def __call__(self, values: np.ndarray) -> np.ndarray:
-        """The convolution of a field, (ny, nx) float32.
-
-        Raises
-        ------
-        ValueError
-            If it has another shape or type.
-        """
+        """Convolution of a field, (ny, nx) float32."""
         values = np.ascontiguousarray(values)
         result = self._near(values)
         rows = np.zeros((self._coarse[0], values.shape[1]), np.float32)
@@ -86,7 +73,7 @@ class SplitConvolution:
 
 
 def _length(least):
-    """The even fast length from ``least`` on that takes the least time."""
+    """Fastest even transform length from ``least`` on."""
     lengths: list[int] = []
     length = fast_length(least)
     while length <= _LONGER * least or not lengths:
@@ -97,7 +84,7 @@ def _length(least):
 
 
 def _time(length):
-    """Of a transform, relatively."""
+    """Relative time of a transform of a length."""
     total, rest = 0.0, length
     for radix, time in _PASSES.items():
         while rest % radix == 0:
@@ -107,7 +94,7 @@ def _time(length):
 
 
 def _smooth(y, x, sides):
-    """erf(r / s) / (pi r) at distances in cells along y and x, (ny, nx)."""
+    """Smooth part erf(r / s) / (pi r) at distances in cells along y and x, (ny, nx)."""
     distance = np.hypot(sides[0] * y[:, None], sides[1] * x)
     at_zero = distance == 0
     distance[at_zero] = 1.0
@@ -117,27 +104,27 @@ def _smooth(y, x, sides):
 
 
 def _even_spectrum(half):
-    """Transform of a kernel that is even both ways, from its first half, in its place."""
+    """Transform of a kernel that is even along both axes, from its first half, in place."""
     for axis in (1, 0):
         half = cosine_transform(half, axis)
     return half
 
 
 def _interpolation():
-    """Weights of the coarse nodes around a place, (STEP, ORDER): Lagrange's polynomials."""
+    """Lagrange weights of the coarse nodes around each position, (STEP, ORDER)."""
     places = np.arange(ORDER) - (ORDER // 2 - 1)
-    at = np.arange(STEP)[:, None] / STEP
+    offsets = np.arange(STEP)[:, None] / STEP
     weights = np.ones((STEP, ORDER))
     for j in range(ORDER):
         for i in range(ORDER):
             if i != j:
-                weights[:, j] *= ((at - places[i]) / (places[j] - places[i]))[:, 0]
+                weights[:, j] *= ((offsets - places[i]) / (places[j] - places[i]))[:, 0]
     return weights
 
 
 @njit(cache=True, nogil=True, fastmath=True)
 def _columns_to_coarse(start, stop, values, weights, coarse):
-    """Restriction of each column to coarse nodes, from ``start`` to ``stop``."""
+    """Restriction of each column to the coarse nodes from ``start`` to ``stop``."""
     ny, nx = values.shape
     for cell in range(max(start - ORDER + 1, 0), min(stop, (ny + STEP - 1) // STEP)):
         first = cell * STEP
@@ -165,7 +152,7 @@ def _columns_to_coarse(start, stop, values, weights, coarse):
 
 @njit(cache=True, fastmath=True)
 def _rows_to_coarse(values, weights, coarse):
-    """The same along the rows."""
+    """Restriction of each row to the coarse nodes."""
     for y in range(values.shape[0]):
         for x in range(values.shape[1]):
             for j in range(ORDER):
@@ -174,7 +161,7 @@ def _rows_to_coarse(values, weights, coarse):
 
 @njit(cache=True, nogil=True, fastmath=True)
 def _add_from_coarse(start, stop, coarse, weights, transposed, values):
-    """Add the interpolated displacement of the coarse nodes to some rows."""
+    """Add the displacement interpolated from the coarse nodes to some rows."""
     nx = values.shape[1]
     row = np.empty(coarse.shape[1], np.float32)
     for y in range(start, stop):

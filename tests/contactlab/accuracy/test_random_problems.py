@@ -10,9 +10,9 @@ import pytest
 from ensembles import ensemble
 from random_problems import KINDS, LOADINGS, random_problem
 
-from contactlab.accuracy.violation import violation
 from fractalcontact import HalfSpace, NotConverged, solve_contact
 from roughcontact.contact import active_set
+from roughcontact.contact.violation import violation
 
 #: Every kind is met under every loading.
 SEEDS = range(ensemble("random problems"))

@@ -33,7 +33,7 @@ from contactlab.experiments.units import E_STAR, SPACING
 from fractalcontact import HalfSpace, solve_contact
 from fractalcontact.core.errors import InputError
 from fractalcontact.laws.strength import dilatancy_angle, from_flush, shear_strength
-from fractalcontact.states.corrected_area import corrected_area
+from roughcontact.contact.corrected_area import corrected_area
 
 RECIPE = {
     "hurst": [0.8],

@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 from ensembles import ensemble
 from random_problems import random_problem
+from rough_surfaces import self_affine
 
-from contactlab.accuracy.violation import violation
-from fractalcontact import HalfSpace, solve_contact
-from fractalcontact.surface.synthesis import self_affine
+from roughcontact import HalfSpace, solve_contact
 from roughcontact.contact import candidates, operator
 from roughcontact.contact.state import CandidateState
+from roughcontact.contact.violation import violation
 
 SEEDS = range(ensemble("candidate problems"))
 RTOL = 1e-8

@@ -5,15 +5,15 @@ import pytest
 from dense_programmes import dense_operator, dense_pressure
 from ensembles import ensemble
 from random_problems import random_problem
+from rough_surfaces import self_affine
 
-from contactlab.accuracy.violation import violation
-from fractalcontact import HalfSpace, solve_contact
-from fractalcontact.surface.synthesis import self_affine
+from roughcontact import HalfSpace, solve_contact
 from roughcontact.contact.active_set import ActiveSetMethod
 from roughcontact.contact.bounds import Bounds
 from roughcontact.contact.candidates import MIN_WINDOW, LoadCase
 from roughcontact.contact.kkt import Problem
 from roughcontact.contact.topography import Topography
+from roughcontact.contact.violation import violation
 
 E_STAR = 1e4
 

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from ensembles import ensemble
 from random_problems import random_problem
+from rough_surfaces import self_affine
 
-from contactlab.accuracy.violation import violation
-from fractalcontact import HalfSpace, solve_contact
-from fractalcontact.surface.synthesis import self_affine
+from roughcontact import HalfSpace, solve_contact
+from roughcontact.contact.violation import violation
 
 #: alpha of a flat square punch of N x N cells, F = E* L w / alpha: shape factors of MIRCO, a public
 #: code. That for 3 is 0.96138923791... here, from two dense solves of the nine equations; the

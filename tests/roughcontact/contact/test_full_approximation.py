@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
+from rough_surfaces import self_affine
 
-from fractalcontact import HalfSpace, solve_contact
-from fractalcontact.surface.synthesis import self_affine
+from roughcontact import HalfSpace, solve_contact
 from roughcontact.contact import candidates, full_approximation
 from roughcontact.contact.kkt import Problem
 from roughcontact.contact.nested_iteration import prolong_constant, redistribute

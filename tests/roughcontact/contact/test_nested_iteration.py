@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from fractalcontact import HalfSpace, solve_contact
+from roughcontact import HalfSpace, solve_contact
 from roughcontact.contact.bounds import Bounds
 from roughcontact.contact.kkt import Problem
 from roughcontact.contact.nested_iteration import prolong

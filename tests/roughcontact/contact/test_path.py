@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from dense_programmes import dense_operator, dense_pressure
 from ensembles import ensemble
+from rough_surfaces import self_affine
 
-from fractalcontact.surface.synthesis import self_affine
 from roughcontact.contact.path import BRANCHES, load_path
 from roughcontact.contact.solve import solve_contact
 from roughcontact.elastic.halfspace import HalfSpace

@@ -4,9 +4,9 @@ import numpy as np
 import plain_twins
 import pytest
 from ensembles import ensemble
+from rough_surfaces import self_affine
 
-from fractalcontact import HalfSpace
-from fractalcontact.surface.synthesis import self_affine
+from roughcontact import HalfSpace
 from roughcontact.contact.coarse_correction import MIN_RIDGE, RIDGE, CoarseCorrection
 from roughcontact.contact.inverse_cholesky import (
     NARROW_NEIGHBOURHOOD,

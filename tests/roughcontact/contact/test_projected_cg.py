@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from fractalcontact import HalfSpace
+from roughcontact import HalfSpace
 from roughcontact.contact.bounds import Bounds
 from roughcontact.contact.operator import Operator
 from roughcontact.contact.projected_cg import ProjectedCG

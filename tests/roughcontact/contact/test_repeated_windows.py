@@ -5,8 +5,8 @@ import pytest
 from dense_programmes import dense_pressure
 from random_problems import random_problem
 from repeated_windows import dense_operator, displacement, reflected, violation
+from rough_surfaces import self_affine
 
-from fractalcontact.surface.synthesis import self_affine
 from roughcontact import HalfSpace, NotConverged, load_path, solve_contact
 
 BOUNDARIES = ["periodic", "mirrored"]

@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
+from rough_surfaces import self_affine
 
-from fractalcontact.surface.synthesis import self_affine
 from roughcontact.contact.path import load_path
 from roughcontact.contact.slope import SECANT_RTOL, secant_slope
 from roughcontact.contact.solve import solve_contact

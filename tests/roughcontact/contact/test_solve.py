@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 from ensembles import ensemble
 from plain_twins import operator_on
+from rough_surfaces import self_affine
 
-from fractalcontact import HalfSpace, NotConverged, solve_contact
-from fractalcontact.surface.synthesis import self_affine
+from roughcontact import HalfSpace, NotConverged, solve_contact
 from roughcontact.contact import active_set, projected_cg
 
 SPACING = 0.1

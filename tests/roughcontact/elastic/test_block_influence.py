@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from fractalcontact import HalfSpace
+from roughcontact import HalfSpace
 from roughcontact.elastic.block_influence import (
     LEAF,
     ORDER,

@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from fractalcontact import HalfSpace
-from roughcontact import threads
+from roughcontact import HalfSpace, threads
 from roughcontact.elastic import halfspace
 from roughcontact.elastic.influence import influence_table
 from roughcontact.elastic.split_convolution import MIN_SPLIT_SIDE, SplitConvolution

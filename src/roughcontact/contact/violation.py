@@ -3,8 +3,8 @@
 import numpy as np
 from scipy.signal import fftconvolve
 
-from roughcontact.contact.state import ContactState
-from roughcontact.elastic.influence import love_displacement
+from ..elastic.influence import love_displacement
+from .state import ContactState
 
 
 def violation(state: ContactState, height: np.ndarray) -> tuple[float, float]:
@@ -13,9 +13,9 @@ def violation(state: ContactState, height: np.ndarray) -> tuple[float, float]:
     Parameters
     ----------
     state : ContactState
-        Solved with Love's kernel.
+        Of a free window with Love's kernel, elastic or with one hardness.
     height : (ny, nx) ndarray
-        mm.
+        Composite topography, mm.
 
     Returns
     -------

@@ -1,7 +1,4 @@
-"""Real contact area of a domain of cells, corrected for the grid.
-
-Apart from the laws of the area, so that a new law solves no state again.
-"""
+"""Real contact area of a domain of cells, corrected for the staircase of its edge."""
 
 import numpy as np
 from numpy.typing import ArrayLike
