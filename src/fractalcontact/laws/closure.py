@@ -16,10 +16,7 @@ from .seated_laws import add_seated_laws
 
 #: Reasons why a solved state has no stiffness of the interface.
 FLUSH_FACES = "the faces lie flush: there is no interface"
-SINGLE_CELLS = (
-    f"fewer than {RESOLVED_NODES} cells carry the change of the force: a stiffness would be that "
-    "of single cells"
-)
+SINGLE_CELLS = f"too few contacts (under {RESOLVED_NODES}) carry the change of the force"
 FULL_CONTACT = "contact is so full that joint and blocks together are no softer than the blocks"
 
 

@@ -18,6 +18,7 @@ from .lights import lights_of, trust_of
 #: Intervals as the register names them, in words.
 _ALONE = {"solver": " solver error alone", "all errors of this surface": " this surface"}
 #: Space that keeps an interval on one line.
+_ALL_CRUSH = "all contacts crush: pressure over hardness, whatever the scan"
 _NBSP = "\u00a0"
 #: Rules for the peak shear strength, by their rows, in words.
 STRENGTH_RULES = {
@@ -107,7 +108,9 @@ def facts_of(subject: Subject, synthetic: bool = False) -> list[Fact]:
             f"contact {at}",
             "contact_fraction",
             "%",
-            "all contacts crush: sigma_0/H" if abs(crushed / pressure - 1) < _SAME else "",
+            "all contacts crush: pressure over hardness, whatever the scan"
+            if abs(crushed / pressure - 1) < _SAME
+            else "",
         ),
     ]
     if subject.direction != "none":
@@ -200,16 +203,15 @@ class _Block:
         half = short(size * number.population, 2)
         if number.population <= abs(number.value):
             return f"± {half} for the whole joint"
-        remedy = "" if self.synthetic else "; 'twins' in the study would narrow it"
-        return f"unknown for the whole joint (± {half}{remedy})"
+        remedy = "" if self.synthetic else "; 'twins: 20' narrows this"
+        return f"other windows of this joint may differ by any amount (± {half}){remedy}"
 
     def _harder(self, number: Number, size: float) -> str:
-        """A number for both ends of the hardness of single contacts; empty where it is elastic."""
+        """A number for the largest hardness of single contacts; empty where contact is elastic."""
         if not math.isfinite(number.hardest):
             return ""
-        values = dict.fromkeys(short(size * one) for one in (number.value, number.hardest))
-        times = short(self.hardest / self.hardness)
-        return f"{' to '.join(values)} for hardness H to {times}{_NBSP}H"
+        value, times = short(size * number.hardest), short(self.hardest / self.hardness)
+        return f"{value} if contacts are {times} times as hard"
 
 
 def _value(number: Number) -> float:

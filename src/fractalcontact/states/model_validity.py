@@ -40,7 +40,7 @@ FULL = 0.87
 _ROUNDING = 1e-6
 
 #: Limitation of a hardness.
-DELETED = "what is crushed is taken away, so that its volume is lost"
+DELETED = "crushed rock vanishes instead of filling the gap"
 
 #: Verdicts from the best to the worst.
 _GRADES = (GOOD, IN_PART, POOR)
@@ -116,7 +116,8 @@ def elastic_model_validity(
         judgements = [(_graded(share, MAX_TOUCHING, FULL), LOAD, words)]
     if np.isfinite(rms_slope):
         by_slope = _graded(rms_slope, SMALL_SLOPE, MODERATE_SLOPE)
-        size = "small" if by_slope == GOOD else "steeper than assumed"
+        degrees = round(np.degrees(np.arctan(rms_slope)))
+        size = "small" if by_slope == GOOD else f"too steep for the theory ({degrees:.0f} degrees)"
         judgements.append((by_slope, SLOPE, f"rms slope {rms_slope:.3g}, {size}"))
     judgements.sort(key=lambda judgement: -_GRADES.index(judgement[0]))  # the worst first
     verdict, by, _ = judgements[0]

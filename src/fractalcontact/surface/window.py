@@ -78,9 +78,9 @@ def place_window(specimen: xr.Dataset, request: WindowRequest) -> dict:
     corner, place_note = _find_place(specimen, shape, wanted, request.window_centre is not None)
     notes = [place_note] if place_note else []
     if automatic and slides(specimen.attrs["opposite"]):
-        notes.append("half of the largest square without holes, so that it can slide")
+        notes.append(f"{_share(specimen, shape)} of the face, so that it can slide")
     elif automatic:
-        notes.append("the largest square without holes")
+        notes.append(f"the largest square without holes, {_share(specimen, shape)} of the face")
     if shape != wanted.cells:
         notes.append(
             f"cut from {wanted.cells[1]} x {wanted.cells[0]} to {shape[1]} x {shape[0]} cells, so "
@@ -106,6 +106,11 @@ def _half_of_largest_square(specimen) -> _Wanted:
     cells = tuple(n // part for n in square)
     sides = tuple(n * s for n, s in zip(cells, spacing, strict=True))
     return _Wanted(cells, sides, middle, 0.0)  # the half square has its quarter all around
+
+
+def _share(specimen: xr.Dataset, shape: tuple[int, ...]) -> str:
+    """Fraction of the measured cells of the face that a window takes, in words."""
+    return percent(shape[0] * shape[1] / int(specimen["valid"].sum()))
 
 
 def _stated(specimen, request) -> _Wanted:

@@ -30,9 +30,10 @@ def constants_of(card: Mapping[str, Any]) -> Constants:
         constants.notes.update(dict.fromkeys(("shear_modulus", "lame_lambda"), of))
     angles, strength = entries["peak_dilatancy_angle"], entries["peak_strength"]
     constants.left_out.update(
-        dilation_angle=f"one number there, of the pressure here: {over_pressure(angles)}",
-        friction_coefficient="peak strength over pressure there, a curve here: "
-        + over_pressure(strength),
+        dilation_angle="PorePy takes one number; here it depends on pressure: "
+        + over_pressure(angles),
+        friction_coefficient="PorePy takes one number; here peak strength over pressure falls with "
+        "the pressure: " + over_pressure(strength),
         fracture_tangential_stiffness="no shear stiffness is computed",
         fracture_gap="zero where displacement counts from the joint under no load, whose "
         "opening v_m the class adds itself",
