@@ -332,7 +332,7 @@ class Settings(SpecimenSettings, StateSettings, WindowSettings, MeasuredSettings
     """of a scan: number of twins (0, or 3 or more), random surfaces with the measured spectrum,
     solved in the reported direction and offset alone. Their spread says how far the scan's
     numbers may differ from those of the whole joint ([Twins of a
-    scan](../docs/conventions.md#twins-of-a-scan)). In `defaults` it concerns scans alone; an
+    scan](../docs/twins.md)). In `defaults` it concerns scans alone; an
     embedded specimen has `realisations`"""
 
 
