@@ -127,15 +127,6 @@ def test_points_in_a_cell_are_counted_where_it_is_measured():
     assert density.points_per_cell(cloud, heights, lattice) == 1.0  # 2, 0, 1
 
 
-def test_repeats_of_equal_and_of_other_heights_are_counted_apart():
-    cloud = np.array(
-        [[1, 1, 5.0], [0, 0, 1.0], [0, 0, 1.0], [0, 0, 4.0], [1, 1, np.nan], [np.nan, 1, 1]]
-    )
-    merged, repeats = points.merge_points(cloud)
-    assert repeats == points.Repeats(duplicated=1, stacked=1)
-    np.testing.assert_array_equal(merged, [[0, 0, 2.5], [1, 1, 5.0]])
-
-
 # --- an independent method: the whole triangulation by scipy -----------------------------------
 
 
@@ -510,11 +501,12 @@ def test_a_bad_line_in_a_later_block_is_named(tmp_path, monkeypatch, line, messa
         )
 
 
-def test_places_that_repeat_without_any_height_stay_missing():
-    # Two unmeasured, two measured and once not, one measured twice alike and once otherwise.
+def test_heights_at_one_place_are_averaged_and_counted():
+    # Two unmeasured, two measured and once not, one measured twice alike and once otherwise,
+    # and one without a place.
     stacked = [[0, 0, np.nan], [0, 0, np.nan], [1, 0, 2], [1, 0, np.nan], [1, 0, 4]]
-    stacked += [[2, 0, 5], [2, 0, 8], [2, 0, 5], [0, 1, np.nan]]
-    for order in (range(9), range(8, -1, -1)):
+    stacked += [[2, 0, 5], [2, 0, 8], [2, 0, 5], [0, 1, np.nan], [np.nan, 1, 1]]
+    for order in (range(10), range(9, -1, -1)):
         merged, repeats = points.merge_points(np.array(stacked, float)[list(order)])
         expected = [[0, 0, np.nan], [1, 0, 3], [2, 0, 6.5], [0, 1, np.nan]]
         np.testing.assert_array_equal(merged, expected)

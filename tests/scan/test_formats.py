@@ -527,6 +527,7 @@ def test_a_gwyddion_file_says_what_is_masked_and_which_channel(tmp_path):
         ({"spacing": "1e-9 mm"}, r"less than an atom.*'spacing: 0\.5 um'"),
         ({"spacing": ["0.1 mm", "11 mm"]}, r"more than 100 times.*'spacing: \[0\.1 mm, 0\.2 mm\]'"),
         ({"spacing": "1 um"}, r"relief of 0\.3846 mm above .* is not plausible"),
+        ({"unit": "m", "spacing": "0.1 mm"}, "more than the field is wide, is not plausible"),
         ({"spacing": "0 mm"}, "above zero"),
     ],
 )

@@ -52,7 +52,7 @@ class Cloud:
 
     @property
     def area_per_point(self) -> float:
-        """In mm2."""
+        """Area per point where points are, mm2."""
         if self.density is not None:
             return self.density.area
         assert self.lattice is not None  # without a lattice there is a density

@@ -1,4 +1,4 @@
-"""From measured numbers in mm to labelled heights; two faces onto one grid."""
+"""Labelled heights from measured numbers in mm; two faces on one grid."""
 
 from collections.abc import Sequence
 from dataclasses import replace

@@ -88,9 +88,9 @@ def _shortest_turn(a: np.ndarray, b: np.ndarray) -> np.ndarray:
 
 
 class Surface:
-    """Heights that can be asked between their cells.
+    """Spline of the heights of a face, for places between its cells.
 
-    A cubic spline through the present cells, missing wherever one of the four cells around is. It
+    It is cubic, through the present cells, and missing where one of the four cells around is. It
     keeps more of the finest roughness than bilinear interpolation: half-way between cells of a
     self-affine surface with H = 0.7 the mean square difference of neighbours falls by 10 % instead
     of 28 %.

@@ -203,7 +203,7 @@ def _address_space() -> int:
 
 
 def _close_standard_streams(*numbers: int) -> None:
-    """Put nothing in the place of standard input, output or error."""
+    """Replace standard input, output or error by the null device."""
     nothing = os.open(os.devnull, os.O_RDWR)
     for number in numbers:
         os.dup2(nothing, number)

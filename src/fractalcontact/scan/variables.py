@@ -134,7 +134,7 @@ def _attributes(stored) -> dict:
 
 
 def _plain(value: Any) -> Any:
-    """One value out of an array of one, text as str."""
+    """Plain value of an attribute: the number of an array of one, text of bytes."""
     if isinstance(value, np.ndarray) and value.size == 1:
         value = value.ravel()[0]
     return value.decode(errors="replace") if isinstance(value, bytes) else value

@@ -36,9 +36,9 @@ class Suspects(NamedTuple):
     overlap: np.ndarray
     """Upper face below the lower one; nowhere where its height is not known."""
     deep: np.ndarray
-    """... where the gap stands off its neighbours, too."""
+    """Overlap where the gap stands off its neighbours, too."""
     standing: list[np.ndarray]
-    """How far each face stands off towards the other, in multiples of what is typical."""
+    """Deviation of each face towards the other, over the typical deviation."""
 
 
 def find_suspects(scans: list[xr.DataArray]) -> Suspects:

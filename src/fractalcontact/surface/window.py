@@ -129,7 +129,7 @@ def _stated(specimen, request) -> _Wanted:
 
 
 def _middle(shape) -> tuple[float, ...]:
-    """Window of a grid, in cells."""
+    """Middle of a grid, in cells."""
     return tuple((n - 1) / 2 for n in shape)
 
 
@@ -238,7 +238,7 @@ def _free_places(valid: np.ndarray, shape) -> np.ndarray:
 
 
 def _nearest(places: np.ndarray, shape, middle, spacing) -> tuple[int, int]:
-    """The place whose rectangle has its centre nearest to ``middle``: both in cells, near in mm."""
+    """The place whose rectangle has its centre nearest to ``middle``, in mm; both are in cells."""
     y, x = np.nonzero(places)
     away = (
         (first + (n - 1) / 2 - m) * s

@@ -39,10 +39,7 @@ def read_tiff(path: Path, options: ScanOptions) -> RawScan:
         stated = _imagej(file, page) or _geotiff(page)
         needs = Needs(arrays=names)
         require_stated(path, options, needs, lambda: _hints(names, stated, page))
-        name = choose_array(names, options.variable, path)
-        page = file.pages[names.index(name)]
-        refuse_larger(math.prod(page.shape) * 8, path)
-        refuse_unknown_coding(page, path)
+        name = choose_array(names, options.variable, path)  # that of `page`, else refused
         values = page.asarray().astype(np.float64)
         if values.shape != page.shape:
             raise ValueError(f"pixels of shape {values.shape}, its header promises {page.shape}")
