@@ -7,12 +7,15 @@ from html.parser import HTMLParser
 import jsonschema
 import numpy as np
 import pytest
+import xarray as xr
 from code_blocks import run_code
 from made_tests import PART
 from page_study import HOSTILE
 
-from fractalcontact.cards.card import geometry_of, is_synthetic
-from fractalcontact.cards.entries import entries, entry_of
+from fractalcontact.cards import page
+from fractalcontact.cards.card import _by_source, geometry_of, is_synthetic
+from fractalcontact.cards.entries import entries, entry_of, row_at
+from fractalcontact.cards.methods import _laws
 from fractalcontact.cards.page import page_of
 from fractalcontact.cards.write import SCHEMA, read_card, write_card
 from fractalcontact.core.errors import InputError
@@ -232,6 +235,72 @@ def test_what_a_study_makes_itself_is_synthetic_and_a_scan_of_a_like_name_is_not
     assert not is_synthetic("granite_b", study)
     assert not is_synthetic("granite", {})
     assert not cards["pair"]["synthetic"]
+
+
+def curve(section="strength", unit="MPa", **values):
+    """Entry of a card over pressures, MPa: numbers, or the reasons why they are missing."""
+    rows = [
+        {"at": {"pressure": float(at[1:])}, **({"missing": one} if isinstance(one, str) else one)}
+        for at, one in values.items()
+    ]
+    return {"title": f"title of {section}", "section": section, "unit": unit, "values": rows}
+
+
+def of(value, low=None, high=None):
+    return {"value": value, "low": low, "high": high}
+
+
+def test_a_row_of_an_entry_is_that_of_the_pressure_itself():
+    entry = curve(p1=of(2.0), p5=of(3.0))
+    assert row_at(entry, 5.0)["value"] == 3
+    assert row_at(entry, 2.0) == {"missing": "not solved there"}
+    assert row_at({"missing": "it does not slide"}, 2.0) == {"missing": "it does not slide"}
+
+
+def test_two_rules_for_the_strength_have_a_range_in_the_first_column():
+    rules = {"peak_strength": curve(p1=of(3.0)), "barton_strength": curve(p1=of(2.0), p5="none")}
+    ((title, heads, rows),) = page._tables(rules)
+    assert title == "Shear strength"
+    assert heads[0] == ("peak τ, range of all rules", "MPa")
+    assert page.in_words(rows[0][1][0]) == "2 to 3"
+    assert page.in_words(rows[1][1][0]) == "–"
+    alone = {"peak_strength": curve(p1=of(3.0))}
+    ((_, heads, _),) = page._tables(alone)
+    assert len(heads) == 1
+
+
+def test_what_is_missing_at_some_pressures_is_listed_in_part():
+    entries = {"a": curve(p1=of(3.0), p5="too few nodes"), "b": curve("aperture", p1="no flow")}
+    assert page.missing_of(entries) == {
+        "too few nodes": ["title of strength (in part)"],
+        "no flow": ["title of aperture"],
+    }
+
+
+def test_a_fraction_has_the_digits_of_its_interval():
+    assert page.in_words(of(0.12345) | {"unit": "1"}) == "12"
+    assert page.in_words(of(0.12345, 0.12, 0.13) | {"unit": "1"}) == "12.3"
+
+
+def test_errors_that_are_rounding_are_zero_and_unknown_ones_are_left_out():
+    errors = xr.DataArray(
+        [[1e-12, 0.5, np.nan]],
+        coords={"quantity": ["gap"], "source": ["solver", "numerical", "window"]},
+        dims=("quantity", "source"),
+    )
+    found = _by_source(xr.Dataset({"error": errors}), "gap", 2.0)
+    assert found == {"solver": 0.0, "numerical": 0.5}
+    assert _by_source(xr.Dataset({"error": errors}), "other", 2.0) == {}
+
+
+def test_methods_name_the_laws_that_were_fitted():
+    range_of = {"range": {"low": 0.25, "high": 10.0}}
+    entries = {"k_ni": {"missing": "too few states"}, "chi": {"value": 1.0} | range_of}
+    assert _laws({"entries": entries}).startswith("A logarithm (Bandis et al. 1983) was fitted")
+    entries["k_ni"] = {"value": 2.0} | range_of
+    assert _laws({"entries": entries}).startswith("A hyperbola and a logarithm")
+    entries = {name: {"missing": "too few states"} for name in ("k_ni", "chi")}
+    assert _laws({"entries": entries}) == "No closure law was fitted: too few states."
 
 
 def test_a_card_is_written_whole(tmp_path, cards):

@@ -14,6 +14,7 @@ from stage_names import STAGES
 from unchecked_settings import resolve_unchecked
 
 from fractalcontact.joint.overlap import overlapping_nodes, suspect_nodes
+from fractalcontact.pages import packed_states as packing
 from fractalcontact.pages.explorer import write_explorer
 from fractalcontact.pages.packed_states import GAP_STEPS, ORDER, packed, packed_states
 from fractalcontact.study.atlas import read_atlas, write_atlas
@@ -178,6 +179,40 @@ def test_fields_are_the_atlas_s_where_it_has_them(atlas):
         steps = np.cumsum(changes, axis=1, dtype="<u2")
         error = steps * fields["gap"]["step"] - gap[load]
         assert np.abs(error).max() <= np.nanmax(gap) / GAP_STEPS
+
+
+def small_fields(gaps):
+    """Fields of states under two loads, the heavier one the reference load."""
+    dims = ("normal_force", "y", "x")
+    values = np.asarray(gaps, float)
+    places = {"map_direction": "W", "map_offset": 0.1, "map_resolution": 1, "map_load": 20.0}
+    contact = xr.Dataset(
+        {
+            "map_pressure": (dims, np.ones_like(values), {"units": "MPa"}),
+            "map_gap": (dims, values, {"units": "mm"}),
+        },
+        coords={"normal_force": [10.0, 20.0]},
+        attrs=places,
+    )
+    flux = xr.Dataset({"flux_map_along": (("flow_y", "flow_x"), np.ones(values.shape[1:]))})
+    return packing._fields(contact, flux)
+
+
+def test_of_a_large_window_the_gap_is_kept_under_the_reference_load_alone(monkeypatch):
+    gaps = np.ones((2, 3, 4))
+    assert small_fields(gaps)["gap"]["loads"] == [0, 1]
+    monkeypatch.setattr(packing, "MAX_GAPS", 23)
+    fields = small_fields(gaps)
+    assert fields["gap"]["loads"] == [1]
+    assert fields["pressure"]["loads"] == [0, 1]
+
+
+def test_a_negative_gap_is_zero_and_a_missing_one_has_a_code_of_its_own():
+    gaps = np.array([[[1.0, -0.5, np.nan, 0.25]]] * 2)
+    gap = small_fields(gaps)["gap"]
+    changes = unpacked(gap["data"][0], "<u2")
+    steps = np.cumsum(changes, dtype="<u2")
+    assert steps.tolist() == [GAP_STEPS, 0, gap["missing"], GAP_STEPS // 4]
 
 
 def test_marks_are_where_the_faces_overlap_or_are_suspicious(atlas):

@@ -9,6 +9,7 @@ from cases import representative
 from page_study import write_pages
 
 from fractalcontact.core.labels import printable
+from fractalcontact.core.limits import STEEP_TILT
 from fractalcontact.pages.history import history
 from fractalcontact.study.atlas import read_atlas
 
@@ -64,6 +65,12 @@ def test_what_was_done_to_the_files_stands_in_words(specimen):
         "Levelled: least-squares plane of the mean of both faces",
     ):
         assert words in text
+
+
+@pytest.mark.parametrize(("beyond", "steep"), [(1.0, True), (-1.0, False)])
+def test_heights_of_a_steep_face_are_not_normal_to_its_plane(specimen, beyond, steep):
+    specimen.attrs["tilt_degrees"] = STEEP_TILT + beyond
+    assert ("heights are not normal to the plane" in history(specimen, FACES)[-1]) == steep
 
 
 @pytest.mark.parametrize(

@@ -1,20 +1,16 @@
-"""A stiffness that single cells would decide is missing in atlas, pages, explorer and figures."""
+"""A stiffness that single cells would decide is missing in atlas and figures."""
 
-import json
 import re
 
 import numpy as np
-import pandas as pd
 import pytest
 from chain import atlas_of_scan
 from extremes import Extreme, rough, write_extreme
 from materials import ROCK
-from page_study import write_pages
 
 from fractalcontact.figures.draw import drawer_of
 from fractalcontact.figures.kit.drawing import print_style
 from fractalcontact.laws.closure import SINGLE_CELLS
-from fractalcontact.pages.packed_states import packed_states
 from fractalcontact.study.atlas import read_atlas
 
 LOADS = ["0.2 MPa", "1 MPa", "5 MPa", "20 MPa", "60 MPa", "120 MPa"]
@@ -88,30 +84,6 @@ def test_errors_of_the_closure_stay_known_beside_a_missing_stiffness(atlas, curv
     assert np.isfinite(budget["total"].sel(quantity="closure")).all()
     left_out = atlas["dilatancy/specimen"].to_dataset()["left_out_error"]
     assert np.isfinite(left_out.isel(normal_force=slice(1, -1))).all()
-
-
-def test_the_explorer_has_the_reason(atlas, curves):
-    data = packed_states(atlas, "specimen")
-    for row in ("closure/stiffness", "closure/interface_stiffness"):
-        reasons = data["reasons"][row]
-        words = np.array(reasons["words"])[reasons["places"]]
-        order = data["arrays"][row]["dims"]
-        expected = curves["interface_stiffness_reason"].transpose(*order).values.ravel()
-        assert words.tolist() == expected.astype(str).tolist()
-    json.dumps(data["reasons"])
-
-
-def test_page_and_summary_have_the_reason(atlas_file):
-    folder = atlas_file.parent
-    write_pages(folder)
-    summary = pd.read_csv(folder / "summary.csv")
-    missing = summary["stiffness_MPa_per_mm"].isna()
-    assert missing.any()
-    assert (summary["stiffness_reason"][missing] == SINGLE_CELLS).all()
-    assert summary["stiffness_reason"][~missing].isna().all()
-    for page in (folder / "index.html", folder / "pages/specimen.html"):
-        text = re.sub(r"\s+", " ", page.read_text(encoding="utf-8"))
-        assert SINGLE_CELLS in text, page.name
 
 
 @pytest.mark.parametrize("figure", ["compliance", "conductance", "fig04_05_closure"])

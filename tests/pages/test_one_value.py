@@ -145,14 +145,19 @@ def of_explorer(folder, subject):
     }
     place["direction"] = states["direction"].index(reported.direction)
 
+    def index_of(key, load):
+        entry = states["arrays"][key]
+        index = [(place | {"normal_force": load})[dim] for dim in entry["dims"]]
+        return np.ravel_multi_index(index, entry["shape"])
+
     def at(key, load):
         """Number at the reported state under a load; NaN of an array that the page lacks."""
         entry = states["arrays"].get(key)
         if entry is None:
             return np.nan
-        index = [(place | {"normal_force": load})[dim] for dim in entry["dims"]]
-        return values[entry["start"] :][np.ravel_multi_index(index, entry["shape"])]
+        return values[entry["start"] + index_of(key, load)]
 
+    solved = subject.states("closure")["solved"].values
     for row in shown_in("explorer"):
         for load, number in enumerate(read(row, subject)):
             shown = {"value": at(row.source, load)}
@@ -163,8 +168,9 @@ def of_explorer(folder, subject):
             elif row.by_scan:
                 assert row.source in states["of_joint"]
                 shown["determined"] = not at("undetermined/by_scan", load)
-            if row.source in states["reasons"] and row.stage != "flow":
-                assert np.isfinite(number.value) or any(states["reasons"][row.source]["words"])
+            if row.reason and not math.isfinite(number.value) and solved[load]:
+                reasons = states["reasons"][row.source]
+                shown["missing"] = reasons["words"][reasons["places"][index_of(row.source, load)]]
             yield row, number, shown, TABLE
 
 

@@ -7,9 +7,9 @@ from typing import Any
 
 from ..core.labels import OPPOSITE, printable
 from ..core.subject import Subject
-from ..core.window import spacing_of, window_sides
 from ..pages.first_screen import is_synthetic, model_of
 from ..pages.lights import lights_of, trust_of
+from ..pages.summary import lengths_of
 from ..report.published import read_at, row_of, shown_in, stages_of
 from .entries import entries, entry_of, number, rounded
 from .methods import methods_of, references_of
@@ -64,16 +64,9 @@ def made_of(attributes: Mapping[Any, Any]) -> dict[str, Any]:
 
 def geometry_of(subject: Subject) -> dict[str, Any]:
     """Spacing, window, offset, seat and reference pressure: chosen, so without intervals."""
-    side_y, side_x = window_sides(subject["specimens"])
-    lengths = {
-        "spacing": max(spacing_of(subject["specimens"])),
-        "window_x": side_x,
-        "window_y": side_y,
-        "offset": subject.offset,
-    }
-    geometry = {name: {"value": rounded(length), "unit": "mm"} for name, length in lengths.items()}
-    row = row_of("seating_pressure")
-    return geometry | {
+    lengths, row = lengths_of(subject), row_of("seating_pressure")
+    names = ("spacing", "window_x", "window_y", "offset")
+    return {name: {"value": rounded(lengths[name]), "unit": "mm"} for name in names} | {
         "seat": number(row, subject, read_at(row, subject)) | {"unit": row.unit},
         "reference_pressure": {"value": reference_pressure_of(subject), "unit": "MPa"},
     }

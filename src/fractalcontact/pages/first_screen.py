@@ -10,10 +10,10 @@ from ..core.labels import OPPOSITE, printable
 from ..core.limits import JRC_SAMPLING
 from ..core.subject import Subject
 from ..core.text import measured, percent, short, with_unit
-from ..core.window import spacing_of, window_sides
 from ..report.published import Number, read, read_at, row_of
 from .files import CARD
 from .lights import lights_of, trust_of
+from .summary import lengths_of
 
 #: Intervals as the register names them, in words.
 _ALONE = {"solver": " solver error alone", "all errors of this surface": " this surface"}
@@ -77,11 +77,10 @@ def model_of(subject: Subject) -> str:
 
 def window_words(subject: Subject) -> str:
     """Sides and spacing of the window of a joint, and how they were chosen."""
-    specimen = subject["specimens"]
-    side_y, side_x = window_sides(specimen)
-    note = f": {specimen.attrs['window_note']}" if specimen.attrs["window_note"] else ""
-    spacing = with_unit(max(spacing_of(specimen)), "mm")
-    return f"window {short(side_x)} × {short(side_y)} mm, spacing {spacing}{note}"
+    lengths, note = lengths_of(subject), subject["specimens"].attrs["window_note"]
+    sides = f"{short(lengths['window_x'])} × {short(lengths['window_y'])} mm"
+    chosen = f": {note}" if note else ""
+    return f"window {sides}, spacing {with_unit(lengths['spacing'], 'mm')}{chosen}"
 
 
 def offset_words(subject: Subject) -> str:

@@ -42,12 +42,18 @@ class Sheet:
         return under_load(self.numbers[name], number, len(self.forces))
 
 
+def lengths_of(subject: Subject) -> dict[str, float]:
+    """Offset, sides of the window and spacing of a specimen, mm."""
+    side_y, side_x = window_sides(subject["specimens"])
+    spacing = max(spacing_of(subject["specimens"]))
+    return {"offset": subject.offset, "window_x": side_x, "window_y": side_y, "spacing": spacing}
+
+
 def sheet_of(subject: Subject, common: Sequence[CommonLoad] = ()) -> Sheet:
     """Published numbers of a specimen; loads at which it is compared with others are quoted too."""
     compared = {load.numbers[subject.name] for load in common if subject.name in load.numbers}
     loads = sorted(compared.union(subject.reported.quoted))
     specimen, states = subject["specimens"], subject.states("closure")
-    side_y, side_x = window_sides(specimen)
     return Sheet(
         words={
             "specimen": subject.name,
@@ -59,12 +65,7 @@ def sheet_of(subject: Subject, common: Sequence[CommonLoad] = ()) -> Sheet:
             "closure_law": _words(states["closure_law"]),
             **_dilatancy(subject),
         },
-        lengths={
-            "offset": subject.offset,
-            "window_x": side_x,
-            "window_y": side_y,
-            "spacing": max(spacing_of(specimen)),
-        },
+        lengths=lengths_of(subject),
         numbers={row.name: read(row, subject) for row in shown_in("summary", "page", "index")},
         loads=loads,
         reference=subject.reported.reference,

@@ -59,29 +59,29 @@ def curves_overlap(joint: Joint, evidence: Evidence) -> Finding:
     beyond = joint.between(v) | joint.unrelated(v)
 
     def spread(force):
-        found = []
+        findings = []
         for part in _stretches(v, beyond):
             change, n = evidence.spread_over("compliance", part, force)
             if n >= MIN_POINTS and change.known:
-                found.append(level(change, _COMPLIANCE, v[part], margin))
+                findings.append(level(change, _COMPLIANCE, v[part], margin))
         wanted = (
             f"no three offsets from v to {compact(MIN_SPREAD, 6)} v beyond the correlation length"
         )
         order = (HOLDS, UNDETERMINED, FAILS)
         nothing = Finding(UNDETERMINED, wanted)
-        return min(found, key=lambda one: order.index(one.verdict), default=nothing)
+        return min(findings, key=lambda finding: order.index(finding.verdict), default=nothing)
 
     return under_every_load(joint, spread, evidence.judged_forces)
 
 
 def _stretches(v: np.ndarray, chosen: np.ndarray) -> list[np.ndarray]:
     """Masks of the offsets from each chosen one up to the first that is a factor beyond it."""
-    found = []
+    stretches = []
     for first in v[chosen]:
         far = np.flatnonzero(chosen & (v >= MIN_SPREAD * first * (1 - ROUNDING)))
         if far.size:
-            found.append(chosen & (v >= first) & (v <= v[far[0]]))
-    return found
+            stretches.append(chosen & (v >= first) & (v <= v[far[0]]))
+    return stretches
 
 
 @of_a_kind
@@ -140,10 +140,10 @@ def composite_dimension_rises(joint: Joint, evidence: Evidence) -> Finding:
     dimension = evidence.lag_dimension()
     first, last = dimension[0], dimension[-1]
     rise = [difference_of(last[i], first[i]) for i in range(len(LAG_RANGES))]
-    if not all(one.known for one in rise):
+    if not all(change.known for change in rise):
         return Finding(UNDETERMINED, "the composite topography is flat at the first or last offset")
     margin = all_claims()[name].margin
-    each = [beyond_margin(one, margin, rising=True) for one in rise]
+    verdicts = [beyond_margin(change, margin, rising=True) for change in rise]
     low, high = (joint["joints"][f"lag_{end}"].values for end in ("min", "max"))
     also = ", ".join(
         f"{number(first.value[i])} to {number(last.value[i])} over {compact(low[i], 2)} "
@@ -151,7 +151,7 @@ def composite_dimension_rises(joint: Joint, evidence: Evidence) -> Finding:
         for i in range(1, len(LAG_RANGES))
     )
     return Finding(
-        share(sum(verdict in (HOLDS, PARTLY) for verdict in each), len(each)),
+        share(sum(verdict in (HOLDS, PARTLY) for verdict in verdicts), len(verdicts)),
         f"over lags of {compact(low[0], 2)} to {compact(high[0], 2)} mm it goes from "
         f"{number(first.value[0])} at "
         f"v = {compact(v[0])} mm to {number(last.value[0])} at {compact(v[-1])} mm",
@@ -219,20 +219,22 @@ def larger_samples_close_more(joint: Joint, evidence: Evidence) -> Finding:
     """
     name = "larger_samples_close_more"
     margin = all_claims()[name].margin
-    found = {
+    exponents = {
         "closure from first touch": evidence.size_exponent("closure_exponent"),
         "compliance": evidence.size_exponent("compliance_exponent"),
     }
-    found = {words: exponent for words, exponent in found.items() if exponent.known}
-    if not found:
+    exponents = {words: exponent for words, exponent in exponents.items() if exponent.known}
+    if not exponents:
         return Finding(UNDETERMINED, "too few nodes in contact in sub-windows of two sizes")
-    each = [beyond_margin(exponent, margin, rising=True) for exponent in found.values()]
-    decided = [verdict for verdict in each if verdict != UNDETERMINED]
+    verdicts = [beyond_margin(exponent, margin, rising=True) for exponent in exponents.values()]
+    decided = [verdict for verdict in verdicts if verdict != UNDETERMINED]
     grows = sum(verdict in (HOLDS, PARTLY) for verdict in decided)
     verdict = PARTLY if grows else FAILS if decided else UNDETERMINED
     return Finding(
-        HOLDS if each == [HOLDS, HOLDS] else verdict,
-        " and ".join(f"{words} ~ b^x, x = {number(exponent)}" for words, exponent in found.items()),
+        HOLDS if verdicts == [HOLDS, HOLDS] else verdict,
+        " and ".join(
+            f"{words} ~ b^x, x = {number(exponent)}" for words, exponent in exponents.items()
+        ),
         f"{evidence.reference}; {margin_words(name)}",
     )
 

@@ -54,7 +54,7 @@ def specimen_row(stages: Mapping[str, xr.Dataset], settings: Mapping) -> xr.Data
     closure, surface = stages["closure"], stages["surface_dimension"]
     reported = Reported.read(closure)
     pressures = closure["normal_force"].values / nominal_area(stages["specimens"])
-    found = {
+    values = {
         **Estimate.read(surface, "recommended_dimension").columns("delta_g"),
         **_stiffness(reported.states(closure), stages["error_budget"]),
         **Estimate.read(reported.states(stages["domains"]), "delta_sigma").columns("delta_sigma"),
@@ -62,7 +62,7 @@ def specimen_row(stages: Mapping[str, xr.Dataset], settings: Mapping) -> xr.Data
         **_size_exponent(stages["size_test"], pressures),
     }
     table = _table() | {"nominal_pressure": ("load", "MPa", "nominal pressure sigma_0 = F/A_0")}
-    row = labelled_dataset(table, found | {"nominal_pressure": pressures})
+    row = labelled_dataset(table, values | {"nominal_pressure": pressures})
     return row.assign_attrs(
         group=settings.get("group") or UNGROUPED,
         label=str(settings["label"]),
@@ -229,7 +229,7 @@ def _group_statistics(rows: xr.Dataset) -> xr.Dataset:
         statistics = [_statistics(*estimate[chosen].ends) for chosen in member.T]
         for i, (ending, before) in enumerate(_STATISTICS.items()):
             table[f"{name}{ending}"] = (dims, "1" if ending == "_n" else unit, before + words)
-            values[f"{name}{ending}"] = np.array([found[i] for found in statistics])
+            values[f"{name}{ending}"] = np.array([row[i] for row in statistics])
     coords = {
         "group_name": groups,
         "pressure": (
@@ -244,8 +244,8 @@ def _group_statistics(rows: xr.Dataset) -> xr.Dataset:
 def _at(pressures, of_specimens, values):
     """Values over (specimen, load) brought to (specimen, pressure), NaN where it is no load."""
     same = np.isclose(of_specimens[:, :, None], pressures, rtol=1e-9)
-    found = np.where(same & np.isfinite(values)[:, :, None], values[:, :, None], 0.0).sum(axis=1)
-    return np.where((same & np.isfinite(values)[:, :, None]).any(axis=1), found, np.nan)
+    sums = np.where(same & np.isfinite(values)[:, :, None], values[:, :, None], 0.0).sum(axis=1)
+    return np.where((same & np.isfinite(values)[:, :, None]).any(axis=1), sums, np.nan)
 
 
 def _statistics(value, low, high) -> Sequence[np.ndarray]:

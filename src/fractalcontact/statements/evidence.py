@@ -118,7 +118,7 @@ class Evidence:
         forces, known = states["normal_force"].values, np.isfinite(delta.width)
         trend = pressure_trend(forces, np.where(known, delta.value, np.nan), cut)
         of_values = slope_error(np.log10(forces[known]), delta.width[known] / 2)
-        line, departure = (_widened(one.slope, of_values) for one in (trend.line, trend.departure))
+        line, departure = (_widened(fit.slope, of_values) for fit in (trend.line, trend.departure))
         return Trend(line, departure, self._pressures[known])
 
     def slopes(self) -> xr.Dataset:
@@ -191,10 +191,10 @@ class Evidence:
         value = self.joint.at_load("closure", variable, force)
         if error:
             half = self.joint.at_load("closure", error, force)
-            found = Estimate(value, value - half, value + half)
+            estimate = Estimate(value, value - half, value + half)
         else:
-            found = self.joint.estimate_at_load("closure", variable, force)
-        return found[self.joint.offsets > 0]
+            estimate = self.joint.estimate_at_load("closure", variable, force)
+        return estimate[self.joint.offsets > 0]
 
     @property
     def _pressures(self) -> np.ndarray:
@@ -218,8 +218,8 @@ class OfRealisations(Evidence):
         # A finding without a note has no number, but the reason why there is none.
         of = "mean of" if finding.note else "in"
         judged_on = f"{self.realisations} realisations"
-        told = "" if "realisations" in finding.numbers else f"; {of} {judged_on}"
-        return finding._replace(numbers=finding.numbers + told, judged_on=judged_on)
+        evidence = "" if "realisations" in finding.numbers else f"; {of} {judged_on}"
+        return finding._replace(numbers=finding.numbers + evidence, judged_on=judged_on)
 
     def size_exponent(self, name: str) -> Estimate:
         """Exponent against the side b of sub-windows under the reference load."""
@@ -338,10 +338,10 @@ class OfRealisations(Evidence):
     def _departures(self, less: Mapping[str, Estimate], load: int) -> dict[str, Any]:
         """Departures of the mean local slopes from those of the null models under one load."""
         freedom, middles = self.realisations - 1, self.stage["local_slope_side"].values
-        found = {null: largest_departure(less[null][load], freedom) for null in _NULLS}
-        row: dict[str, Any] = {"null_verdict": departure_of(**found, surface=True)}
-        row["null_reason"] = "" if np.isfinite(found["random"].p) else TOO_SMALL
-        for null, departure in found.items():
+        departures = {null: largest_departure(less[null][load], freedom) for null in _NULLS}
+        row: dict[str, Any] = {"null_verdict": departure_of(**departures, surface=True)}
+        row["null_reason"] = "" if np.isfinite(departures["random"].p) else TOO_SMALL
+        for null, departure in departures.items():
             row |= departure.columns(null, middles)
         return row
 

@@ -156,14 +156,16 @@ def under_every_load(joint: Joint, rule: Callable[[float], Finding], forces: np.
 
     ``rule`` leads from a load, N, to a finding. With a fixed limit it may differ from load to load.
     """
-    found = {force: rule(force) for force in forces}
-    decided = {force: one for force, one in found.items() if one.verdict != UNDETERMINED}
+    findings = {force: rule(force) for force in forces}
+    decided = {
+        force: finding for force, finding in findings.items() if finding.verdict != UNDETERMINED
+    }
     if not decided:
         return rule(joint.force)
-    force = min(decided, key=lambda one: abs(np.log(one / joint.force)))
-    verdicts = [one.verdict for one in decided.values()]
+    force = min(decided, key=lambda finding: abs(np.log(finding / joint.force)))
+    verdicts = [finding.verdict for finding in decided.values()]
     pressure = force / joint.area
-    if len(found) == 1:
+    if len(findings) == 1:
         return decided[force]._replace(
             numbers=f"{decided[force].numbers} at {compact(pressure)} MPa"
         )
@@ -176,21 +178,21 @@ def under_every_load(joint: Joint, rule: Callable[[float], Finding], forces: np.
     )
 
 
-def by_sign(found: Estimate, *, rising: bool) -> str:
+def by_sign(estimate: Estimate, *, rising: bool) -> str:
     """Verdict on a claim of a sign, from the interval of the quantity."""
-    above, below = found.low > 0, found.high < 0
+    above, below = estimate.low > 0, estimate.high < 0
     above, below = (above, below) if rising else (below, above)
     return HOLDS if above else FAILS if below else UNDETERMINED
 
 
-def beyond_margin(found: Estimate, margin: float, *, rising: bool) -> str:
+def beyond_margin(estimate: Estimate, margin: float, *, rising: bool) -> str:
     """Verdict on a claim of a sign, with an equivalence margin.
 
     It holds where the whole interval lies beyond the margin, in part where all of it has the sign
     and some lies beyond, and fails where none does: a change smaller than the margin counts as
     none.
     """
-    gain = found if rising else found.mapped(np.negative, falling=True)
+    gain = estimate if rising else estimate.mapped(np.negative, falling=True)
     if gain.high <= margin:
         return FAILS
     if gain.low > 0:

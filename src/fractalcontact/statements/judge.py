@@ -87,24 +87,24 @@ def table_of(
     asked : str, optional
         The subject in words.
     """
-    found = [rule(subject) for rule in rules.values()]
+    findings = [rule(subject) for rule in rules.values()]
     claims = [all_claims()[name] for name in rules]
     columns = {
         "figure": ([claim.figure for claim in claims], "figures of the paper"),
         "claim": ([claim.claim for claim in claims], "statement of the paper"),
         "short": ([claim.short for claim in claims], "how captions call it"),
         "rule": ([inspect.getdoc(rule) or "" for rule in rules.values()], "the rule that judges"),
-        "verdict": ([finding.verdict for finding in found], "whether it holds here"),
-        "numbers": ([finding.numbers for finding in found], "the numbers that decide it"),
+        "verdict": ([finding.verdict for finding in findings], "whether it holds here"),
+        "numbers": ([finding.numbers for finding in findings], "the numbers that decide it"),
         "note": (
-            [_note(finding, claim) for finding, claim in zip(found, claims, strict=True)],
+            [_note(finding, claim) for finding, claim in zip(findings, claims, strict=True)],
             "remark on these numbers, and what would decide the statement if they do not",
         ),
         "explanation": (
-            [finding.explanation for finding in found],
+            [finding.explanation for finding in findings],
             "what a null model does in the same data",
         ),
-        "judged_on": ([finding.judged_on or asked for finding in found], "evidence judged"),
+        "judged_on": ([finding.judged_on or asked for finding in findings], "evidence judged"),
         "circular": (
             np.array([name in circular for name in rules], bool),
             "whether the specimen was chosen for it",

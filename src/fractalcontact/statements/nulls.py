@@ -75,9 +75,9 @@ def domains_are_fractal(joint: Joint, evidence: Evidence) -> Finding:
     null = str(state["null_verdict"].item())
     if null == departure.UNDETERMINED:
         return Finding(UNDETERMINED, str(state["null_reason"].item()))
-    found, slopes, *_ = one_slope(state)
+    verdict, slopes, *_ = one_slope(state)
     return Finding(
-        UNDETERMINED if null == LIKE_RANDOM and found != FAILS else found,
+        UNDETERMINED if null == LIKE_RANDOM and verdict != FAILS else verdict,
         slopes,
         evidence.reference,
         explanation=f"{null}; "

@@ -64,8 +64,8 @@ def boxes_follow_one_law(joint: Joint, evidence: Evidence) -> Finding:
 
     A power law has one slope at all box sides; a narrow interval of the mean slope is no proof.
     """
-    found = one_slope(at_reference(joint, evidence))
-    return found if found.verdict == UNDETERMINED else found._replace(note=evidence.reference)
+    finding = one_slope(at_reference(joint, evidence))
+    return finding if finding.verdict == UNDETERMINED else finding._replace(note=evidence.reference)
 
 
 @of_the_area
@@ -76,13 +76,13 @@ def estimates_agree(joint: Joint, evidence: Evidence) -> Finding:
     difference, pressures = evidence.difference()
     if not pressures.size:
         return Finding(UNDETERMINED, "no load has both estimates with their intervals")
-    each = _each_within(difference, name)
-    decided = [verdict for verdict in each if verdict != UNDETERMINED]
+    verdicts = _each_within(difference, name)
+    decided = [verdict for verdict in verdicts if verdict != UNDETERMINED]
     ends = " to ".join(dict.fromkeys(f"{number(d, 2, '+')}" for d in difference.value[[0, -1]]))
     return Finding(
         share(decided.count(HOLDS), len(decided)) if decided else UNDETERMINED,
         f"Delta_sigma by A_r(s) minus that by boxes is {ends}; they differ at "
-        f"{loads_of(each.count(FAILS), len(each))}",
+        f"{loads_of(verdicts.count(FAILS), len(verdicts))}",
         f"{_between(pressures)}; {margin_words(name)}",
     )
 
@@ -102,10 +102,10 @@ def dimension_rises_by_boxes(joint: Joint, evidence: Evidence) -> Finding:
     changes no verdict: more nodes fill more boxes wherever they lie.
     """
     name, trend = "dimension_rises_by_boxes", evidence.trend("box")
-    found = _rise(trend, name)
-    if found.verdict not in (HOLDS, PARTLY):
-        return found
-    return found._replace(explanation=_beside_cut(trend.departure, all_claims()[name].margin))
+    finding = _rise(trend, name)
+    if finding.verdict not in (HOLDS, PARTLY):
+        return finding
+    return finding._replace(explanation=_beside_cut(trend.departure, all_claims()[name].margin))
 
 
 def _beside_cut(less: Estimate, margin: float) -> str:
@@ -282,9 +282,9 @@ def strength_falls_with_size(joint: Joint) -> Finding:
     if not cases:
         return Finding(UNDETERMINED, "no v/b has three sizes of window in three steps of sliding")
     margin = all_claims()[name].margin
-    each = [beyond_margin(strength[i], margin, rising=False) for i in range(cases)]
-    clear, no_fall = each.count(HOLDS), each.count(FAILS)
-    falls = clear + each.count(PARTLY)
+    verdicts = [beyond_margin(strength[i], margin, rising=False) for i in range(cases)]
+    clear, no_fall = verdicts.count(HOLDS), verdicts.count(FAILS)
+    falls = clear + verdicts.count(PARTLY)
     # Undetermined cases do not count.
     verdict = PARTLY if falls else FAILS if no_fall else UNDETERMINED
     bounded = int(np.isneginf(strength.low).sum())

@@ -119,13 +119,13 @@ def _of_plateaus(
         f"{number(100 * own.change.max(), 0, '+')} % change over the second "
         f"half of v; level: up to {compact(100 * LEVEL_CHANGE, 6)} %"
     )
-    members = [Plateaus.of(one) for one in evidence.rigid_slides()]
+    members = [Plateaus.of(member) for member in evidence.rigid_slides()]
     if not members:
         return Finding(UNDETERMINED if own.undecided else judged(own), own.words(), note)
-    decided = [one for one in members if not one.undecided]
+    decided = [member for member in members if not member.undecided]
     if not decided:
         return Finding(UNDETERMINED, members[0].undecided, note)
-    count = sum(met(one) for one in decided)
+    count = sum(met(member) for member in decided)
     return Finding(
         share(count, len(decided)),
         f"level in {asked} in {count or 'none'} of {len(decided)} realisations; this specimen: "
@@ -154,8 +154,8 @@ def dilatancy_is_anisotropic(joint: Joint, evidence: Evidence) -> Finding:
     members = evidence.rigid_slides()
     if not members:
         return Finding(_differs(np.ptp(own.change)), numbers, _odd_parts(joint["joints"]))
-    ranges = [float(np.ptp(Plateaus.of(one).change)) for one in members]
-    marked = sum(_differs(one) == HOLDS for one in ranges)
+    ranges = [float(np.ptp(Plateaus.of(member).change)) for member in members]
+    marked = sum(_differs(member) == HOLDS for member in ranges)
     return Finding(
         share(marked, len(ranges)),
         f"the directions differ by more than {compact(100 * LOOSELY, 6)} % in "
@@ -181,10 +181,10 @@ def _odd_parts(joints: xr.Dataset) -> str:
 
 def _scatter(members: Sequence[xr.Dataset]) -> str:
     """Standard deviation over realisations of the odd parts, by axis, in words."""
-    odd = np.array([one["odd_slope"].values for one in members])
+    odd = np.array([member["odd_slope"].values for member in members])
     axes = members[0]["axis"].values
-    each = odd.std(axis=0, ddof=1)
-    parts = (f"{number(each[i], 3)} v {axis}" for i, axis in enumerate(axes))
+    scatter = odd.std(axis=0, ddof=1)
+    parts = (f"{number(scatter[i], 3)} v {axis}" for i, axis in enumerate(axes))
     return f"the scatter of the odd part over realisations, {' and '.join(parts)},"
 
 

@@ -103,22 +103,22 @@ def _area_exponent(joint):
 
 def _by_material(joints, exponent_of):
     """Exponent of the first joint of each material that has one, and whether it is synthetic."""
-    found: dict[str, tuple[Estimate, bool]] = {}
+    exponents: dict[str, tuple[Estimate, bool]] = {}
     for joint in joints.values():
         material = material_of(joint.settings)
-        if not slides(joint.settings["opposite"]) or material in found or not material:
+        if not slides(joint.settings["opposite"]) or material in exponents or not material:
             continue
         exponent = exponent_of(joint)
         if exponent.known:
-            found[material] = exponent, joint.realised
-    return found
+            exponents[material] = exponent, joint.realised
+    return exponents
 
 
-def _compared(found, name, law, *, rising):
+def _compared(exponents, name, law, *, rising):
     """Verdict on concrete's exponent less rock's, whose errors are independent."""
-    if found.keys() != {"rock", "concrete"}:
+    if exponents.keys() != {"rock", "concrete"}:
         return Finding(UNDETERMINED, "a joint of each material needed")
-    (rock, of_recipe), (concrete, also) = found["rock"], found["concrete"]
+    (rock, of_recipe), (concrete, also) = exponents["rock"], exponents["concrete"]
     less = difference_of(concrete, rock)
     verdict = beyond_margin(less, all_claims()[name].margin, rising=rising)
     one_recipe = "; both are synthetic surfaces of one recipe" if of_recipe and also else ""
