@@ -114,6 +114,12 @@ def test_what_a_curve_lacks_is_missing():
     assert result["counts"].dims == ("curve", "scale")
 
 
+def test_arrays_without_a_value_leave_a_dimension_of_no_length():
+    rows = [{"n": 1, "counts": [], "of": Estimate([], [], [])} for _ in range(2)]
+    names = {"n": ("1", "n"), "counts": ("1", "counts", "scale"), "of": ("1", "of", "scale")}
+    assert xr.Dataset(stacked(rows, names, ["curve"])).sizes == {"curve": 2, "scale": 0}
+
+
 @pytest.mark.parametrize("names", [{"n": ("1", "n")}, {**NAMES, "n": ("1", "n")}])
 def test_a_name_without_a_result_or_words_is_refused(names):
     rows = [{"n": 1, "largest": 2.0}]

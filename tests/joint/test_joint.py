@@ -15,6 +15,7 @@ from fractalcontact.joint.joint import (
     face_correlation,
     prefractal,
     rigid_dilatancy,
+    with_spreads,
 )
 from fractalcontact.joint.rigid_slide import slide
 from fractalcontact.surface.specimen import largest_offset, make_specimen
@@ -141,6 +142,26 @@ def test_the_limit_is_what_chance_gives():
     found = [np.corrcoef(a.ravel(), b.ravel())[0, 1] for a in surfaces[:20] for b in surfaces[20:]]
     # Spectra without long waves leave a negative lobe, and less chance than an exponential.
     assert 1 < limit / np.quantile(np.abs(found), 0.95) < 2
+
+
+def test_the_spread_expected_follows_from_both_faces_and_their_correlation(rough):
+    """Faces of one spread s: none where they are alike, sqrt(2) s without correlation."""
+    made = specimen(rough)
+    over = ("direction", "rigid_offset")
+    joint = xr.Dataset(
+        {
+            "face_correlation": (over, [[1.0, 0.5, 0.0, -1.0]]),
+            "rigid_dilatancy": (over, [[0.0, 0.1, 0.2, 0.3]]),
+            "composite_rms": (over, [[0.0, 0.1, 0.1, 0.1]]),
+            "uncorrelated_offset": ("direction", [np.nan]),
+        }
+    )
+    found = with_spreads(joint, made)
+    spread = np.std(without_mean_plane(faces(made)[0][window_slices(made)]))
+    expected = spread * np.array([[0, 1, np.sqrt(2), 2]])
+    np.testing.assert_allclose(found["composite_rms_expected"], expected, atol=1e-9)
+    np.testing.assert_allclose(found["dilatancy_over_rms"], [[np.nan, 1, 2, 3]])
+    assert np.isnan(found["mean_uncorrelated_offset"])
 
 
 def test_faces_that_stay_alike_have_no_such_range():

@@ -18,6 +18,16 @@ def test_persson_area_starts_along_its_line_and_saturates():
     assert theory.persson_area(1e6, 1e4, 0.5) == pytest.approx(1)
 
 
+def test_the_line_of_persson_begins_at_his_kappa_and_falls():
+    line = theory.persson_line(1e-4, 1.0)
+    pressure, kappa = line["line_pressure"].values, line["persson_line"].values
+    assert (pressure[0], pressure[-1]) == pytest.approx((1e-4, 1))
+    assert kappa[0] == pytest.approx(theory.PERSSON_KAPPA, rel=1e-6)
+    assert (np.diff(kappa) < 0).all()
+    np.testing.assert_allclose(kappa * pressure, theory.persson_area(pressure, 1.0, 1.0))
+    assert np.isnan(theory.persson_line(np.nan, np.nan)["persson_line"]).all()
+
+
 def test_persson_area_is_the_diffusion_of_pressure():
     # P(p = 0) by its own definition: pressures diffuse with variance (E* h'/2)^2, absorbed at zero.
     pressure, modulus, slope = 3.0, 10.0, 0.6

@@ -17,6 +17,14 @@ def test_values_counted_from_a_point_have_the_errors_of_both_ends():
     np.testing.assert_allclose(counted.error, np.hypot([0.3, 0.3, 0.4], 0.3))
 
 
+def test_a_value_between_points_has_the_larger_error_of_both():
+    curve = Curve.of([1.0, 2.0, 4.0], [0.0, 1.0, 2.0], [0.2, 0.3, 0.4])
+    found = curve.at(np.array([0.5, 2**0.5, 2**1.5, 5.0]))
+    np.testing.assert_allclose(found.value, [np.nan, 0.5, 1.5, np.nan])
+    np.testing.assert_allclose(found.value - found.low, [np.nan, 0.3, 0.4, np.nan])
+    np.testing.assert_allclose(found.high - found.value, [np.nan, 0.3, 0.4, np.nan])
+
+
 def test_a_ratio_is_lowest_where_its_divisor_is_highest():
     found = ratio(Estimate(1.0, 0.8, 1.3), Estimate(2.0, 1.0, 3.0))
     assert found.value == 0.5

@@ -61,7 +61,7 @@ def stacked(
     results: Iterable[Mapping[str, Any]],
     names: Mapping[str, Sequence[str]],
     dims: Sequence[Any],
-    shape: Sequence[int] = (-1,),
+    shape: Sequence[int] | None = None,
 ) -> Variables:
     """Results of one curve each as variables over all curves.
 
@@ -75,7 +75,7 @@ def stacked(
         Dimensions are those of an array, beside ``dims``.
     dims : sequence of str
     shape : sequence of int, optional
-        Sizes of ``dims``.
+        Sizes of ``dims``; by default the number of results, along one dimension.
 
     Raises
     ------
@@ -83,6 +83,7 @@ def stacked(
         If a name is in no result, or not among ``names``.
     """
     rows = list(results)
+    shape = (len(rows),) if shape is None else shape
     if odd := set().union(*rows) ^ names.keys():
         raise KeyError(f"not both named and among the results: {', '.join(sorted(odd))}")
     variables: Variables = {}
