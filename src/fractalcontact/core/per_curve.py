@@ -90,8 +90,8 @@ def stacked(
         values, over = [row.get(name) for row in rows], (*dims, *own)
         if any(isinstance(value, Estimate) for value in values):
             ends = zip(*(value.ends if value else [None] * 3 for value in values), strict=True)
-            estimate = Estimate(*(_filled(end, shape) for end in ends))
-            variables |= estimate.variables(name, over, units, long_name)
+            value, low, high = (_filled(end, shape) for end in ends)
+            variables |= Estimate(value, low, high).variables(name, over, units, long_name)
         else:
             variables[name] = over, _filled(values, shape), cf_attrs(units, long_name)
     return variables
@@ -108,5 +108,6 @@ def _filled(values: Sequence[Any], shape: Sequence[int]) -> np.ndarray:
     table = np.full((len(values), *largest), fill, np.result_type(kind, type(fill)))
     for row, value in enumerate(values):
         if value is not None:
-            table[(row, *map(slice, np.shape(value)))] = value
+            place: tuple[Any, ...] = (row, *map(slice, np.shape(value)))
+            table[place] = value
     return table.reshape(*shape, *largest)
