@@ -3,8 +3,6 @@ import pytest
 from scipy import stats
 
 from fractalcontact.core.fitting import fit_line
-from fractalcontact.core.intervals import mean_interval
-from fractalcontact.core.mean_plane import without_mean_plane
 
 
 def test_points_on_a_line_give_it_back_without_error():
@@ -48,40 +46,3 @@ def test_no_line_without_three_points_at_two_places(x, y, n):
     line = fit_line(x, y)
     assert line.n == n
     assert np.isnan([*line.slope.ends, *line.intercept.ends, *line.slope.over, line.r2]).all()
-
-
-def test_mean_plane_is_taken_off_whatever_is_missing():
-    rng = np.random.default_rng(1)
-    y, x = np.indices((20, 30))
-    rough = rng.standard_normal((20, 30))
-    rough[rng.random(rough.shape) < 0.3] = np.nan
-    levelled = without_mean_plane(rough)
-    tilted = without_mean_plane(rough + 5 + 0.3 * y - 2 * x)
-    np.testing.assert_allclose(tilted, levelled, atol=1e-12)
-    for column in (np.ones_like(x), y, x):
-        assert np.nansum(levelled * column) == pytest.approx(0, abs=1e-9)
-
-
-def test_no_plane_through_a_line_of_cells():
-    heights = np.full((5, 5), np.nan)
-    heights[2] = 1.0
-    assert np.isnan(without_mean_plane(heights)).all()
-    assert np.isnan(without_mean_plane(np.full((5, 5), np.nan))).all()
-
-
-def test_mean_interval_is_students():
-    rng = np.random.default_rng(2)
-    values = rng.normal(3, 1, (7, 2))
-    found = mean_interval(values)
-    mean, low, high, n = *found.ends, found.n
-    known = stats.t.interval(0.95, 6, values.mean(axis=0), stats.sem(values, axis=0))
-    np.testing.assert_allclose((low, high), known)
-    np.testing.assert_allclose(mean, values.mean(axis=0))
-    assert n.tolist() == [7, 7]
-
-
-def test_mean_of_one_value_has_no_interval_and_of_none_no_value():
-    mean = mean_interval([[1.0, np.nan], [np.nan, np.nan]])
-    np.testing.assert_array_equal(mean.value, [1, np.nan])
-    assert np.isnan([mean.low, mean.high]).all()
-    assert mean.n.tolist() == [1, 0]

@@ -42,3 +42,4 @@ def test_cells_that_span_no_plane_have_none():
     assert np.isnan(without_mean_plane(heights)).all()
     heights[5, 0] = 1
     assert np.isfinite(without_mean_plane(heights)).sum() == X.shape[1] + 1
+    assert np.isnan(without_mean_plane(np.where(Y == X, ROUGH, np.nan))).all()  # on a slanted line

@@ -111,10 +111,3 @@ def test_the_fewest_are_no_more_than_the_mean(domain, r):
     assert box_count(domain, [r])[0] <= mean + 1e-9
     for turned in (domain.T, domain[::-1], np.pad(domain, 3)):
         assert mean_count(turned, [r]).sum() == pytest.approx(mean)
-
-
-def test_bad_arguments_are_refused():
-    with pytest.raises(ValueError, match="at least one cell"):
-        mean_count(np.ones((4, 4), dtype=bool), [0])
-    with pytest.raises(ValueError, match="grid"):
-        mean_count(np.ones(4, dtype=bool), [1])

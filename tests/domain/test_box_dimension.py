@@ -3,9 +3,8 @@ import numpy as np
 import pytest
 from ensembles import ensemble
 from hypothesis import given, settings
-from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
-from known_sets import cantor_dust, percolation_cluster, sierpinski_carpet
+from known_sets import cantor_dust, embedded, percolation_cluster, sierpinski_carpet
 
 from fractalcontact.core.limits import MIN_NODES
 from fractalcontact.domain.box_counts import box_count, box_sizes
@@ -105,12 +104,6 @@ def random_cascade(exact, seed, levels=9):
             domain &= rng.random(domain.shape) < 2 ** (exact - 2)
         if domain.sum() > 100:
             return domain
-
-
-def embedded(shape, rows, columns):
-    domain = np.zeros(shape, dtype=bool)
-    domain[rows, columns] = True
-    return domain
 
 
 def check(result, exact, within):
@@ -312,26 +305,6 @@ def test_interval_covers_random_cascades(exact, seeds):
     assert np.mean([f.low <= exact <= f.high for f in found]) >= 0.9
 
 
-# -- independent -----------------------------------------------------------------------------------
-
-
-def counted_by_hand(domain, size):
-    """N(r) for whole sizes by putting every node in its box, at every origin."""
-    y, x = np.nonzero(domain)
-    return min(
-        len(set(zip((y + sy) // size, (x + sx) // size, strict=True)))
-        for sy in range(size)
-        for sx in range(size)
-    )
-
-
-@given(arrays(bool, st.tuples(st.integers(1, 14), st.integers(1, 14))), st.integers(1, 9))
-@settings(max_examples=60, deadline=None)
-def test_counts_agree_with_counting_by_hand(domain, size):
-    expected = counted_by_hand(domain, size)
-    assert box_count(domain, [size]).tolist() == [expected]
-
-
 # -- properties ------------------------------------------------------------------------------------
 
 
@@ -479,13 +452,6 @@ def test_bend_of_the_counts_is_no_error_of_the_slope():
     domain = heights > np.quantile(heights, 0.97)
     slopes = SlopeCurve(domain).values
     assert slopes[-1] < dimension_of_domain(domain, 0.1).dimension < slopes[0]
-
-
-def test_bad_arguments_are_refused():
-    with pytest.raises(ValueError, match="at least one cell"):
-        box_count(np.ones((4, 4), dtype=bool), [0])
-    with pytest.raises(ValueError, match="grid"):
-        box_count(np.ones(4, dtype=bool), [1])
 
 
 @pytest.mark.parametrize("side", [24, 48])

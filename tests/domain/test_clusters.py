@@ -6,6 +6,7 @@ from ensembles import ensemble
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
+from known_sets import embedded
 
 from fractalcontact.core.determined import follows_law
 from fractalcontact.domain.clusters import (
@@ -18,12 +19,6 @@ from fractalcontact.domain.clusters import (
     size_exponent,
 )
 from fractalcontact.surface.synthesis import self_affine
-
-
-def block(shape, rows, columns):
-    domain = np.zeros(shape, bool)
-    domain[rows, columns] = True
-    return domain
 
 
 def random_domain(shape, nodes, seed):
@@ -51,7 +46,7 @@ def test_full_contact():
 
 
 def test_all_contact_in_one_quadrat():
-    found = cluster_statistics(block((64, 64), slice(8, 14), slice(0, 6)), 1.0)
+    found = cluster_statistics(embedded((64, 64), slice(8, 14), slice(0, 6)), 1.0)
     assert found["morisita"] == pytest.approx(4095 / 63)
     assert found["morisita"] > 1 + 10 * found["morisita_scatter"]
 

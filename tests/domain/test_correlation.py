@@ -1,22 +1,9 @@
 import numpy as np
 import pytest
 from ensembles import ensemble
+from known_sets import percolation_cluster, sierpinski_carpet
 
 from fractalcontact.domain.correlation import correlation_dimension, pair_counts
-
-
-def percolation_cluster(n, seed):
-    from scipy import ndimage
-
-    label, _ = ndimage.label(np.random.default_rng(seed).random((n, n)) < 0.592746)
-    return label == 1 + np.argmax(np.bincount(label.ravel())[1:])
-
-
-def carpet(levels):
-    domain = np.ones((1, 1), dtype=bool)
-    for _ in range(levels):
-        domain = np.kron(domain, np.array([[1, 1, 1], [1, 0, 1], [1, 1, 1]], dtype=bool))
-    return domain
 
 
 def test_filled_window_is_plane():
@@ -25,7 +12,7 @@ def test_filled_window_is_plane():
 
 def test_carpet():
     exact = np.log(8) / np.log(3)
-    found = correlation_dimension(carpet(6), 0.1)
+    found = correlation_dimension(sierpinski_carpet(729), 0.1)
     assert found.value == pytest.approx(exact, abs=0.02)
     assert found.low <= exact <= found.high
 

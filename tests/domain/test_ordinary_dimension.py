@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 import xarray as xr
+from known_sets import embedded
 
 from fractalcontact.domain.analysis import analyse_domains
 from fractalcontact.domain.box_counts import box_count, mean_count, window_sizes
@@ -13,12 +14,6 @@ from fractalcontact.domain.ordinary_dimension import dyadic_sizes
 from fractalcontact.surface.synthesis import self_affine
 
 HEIGHTS = self_affine((128, 128), 0.1, 0.8, rms=1.0, seed=2)
-
-
-def embedded(shape, rows, columns):
-    domain = np.zeros(shape, bool)
-    domain[rows, columns] = True
-    return domain
 
 
 EXACT = {

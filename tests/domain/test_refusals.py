@@ -19,6 +19,8 @@ SIZES = np.arange(4.0, 20.0)
 @pytest.mark.parametrize(
     "call",
     [
+        lambda: box_count(DOMAIN, [0]),
+        lambda: box_count(DOMAIN[0], [1]),
         lambda: box_count(DOMAIN, [np.nan]),
         lambda: box_count(DOMAIN, [np.inf]),
         lambda: box_count(DOMAIN, [[1.0, 2.0]]),
@@ -27,6 +29,7 @@ SIZES = np.arange(4.0, 20.0)
         lambda: box_count(DOMAIN.astype(str), [2.0]),
         lambda: box_count(masked(), [2.0]),
         lambda: box_count(NAN, [2.0]),
+        lambda: mean_count(DOMAIN, [0]),
         lambda: mean_count(DOMAIN, [2], blocks=0),
         lambda: mean_count(DOMAIN, [2], blocks=-3),
         lambda: mean_count(DOMAIN, [2.5]),

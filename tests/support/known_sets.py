@@ -49,6 +49,13 @@ def fractal_percolation(levels, kept, seed):
     return cells
 
 
+def embedded(shape, rows, columns):
+    """Window of a shape whose cells at rows and columns are set."""
+    domain = np.zeros(shape, bool)
+    domain[rows, columns] = True
+    return domain
+
+
 def thinned(domain, nodes, seed):
     """Some nodes of a domain, drawn at random."""
     part = np.zeros(domain.size, bool)

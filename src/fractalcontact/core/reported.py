@@ -31,20 +31,10 @@ _DIRECTIONS = ("direction", "contact_direction")
 class Reported:
     """States of a specimen that are published.
 
-    Attributes
-    ----------
-    direction : str
-        "E", "N", "W", "S", or "none" without sliding.
-    offset : float
-        mm.
-    resolution : int
-        Multiple of the scan's spacing.
-    forces : (n,) ndarray
-        Loads of the study, N, ascending.
-    loads : tuple of int
-        Numbers of those whose dilatancy and strength are reported, ascending.
-    reference : int
-        Number of the load of the map states.
+    The direction is "none" without sliding, the offset in mm, the resolution a multiple of the
+    scan's spacing. ``forces`` (n,) are the loads of the study, N, ascending; ``loads`` the numbers
+    of those whose dilatancy and strength are reported, ``reference`` that of the load of the map
+    states.
     """
 
     direction: str

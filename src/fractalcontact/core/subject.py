@@ -16,16 +16,7 @@ from .window import nominal_area
 
 @dataclass(frozen=True, eq=False)
 class Subject:
-    """Specimen: its stages, its settings, and the states that are reported.
-
-    Attributes
-    ----------
-    stages : mapping of str to xr.Dataset
-        Existing stages by name.
-    settings : mapping
-        Settings of the study, numbers in mm, N and MPa.
-    name : str
-    """
+    """Specimen of an atlas: its stages by name, settings (mm, N and MPa) and reported states."""
 
     stages: Mapping[str, xr.Dataset]
     settings: Mapping[str, Any]

@@ -13,14 +13,9 @@ SLOPE, LOAD = "slope", "load"
 class Limits(NamedTuple):
     """Pressure limits of the elastic model of a material, and their source.
 
-    Attributes
-    ----------
-    criterion : str
-        :data:`HARDNESS`, :data:`STRENGTH` or, where neither is stated, :data:`USUAL`.
-    strength_low, strength_high : float
-        Ends of that strength, MPa; one value where it is stated.
-    good_to, poor_from : float
-        Real mean pressures up to which the model is good, and from which it is poor, MPa.
+    The criterion is :data:`HARDNESS`, :data:`STRENGTH` or, where neither is stated, :data:`USUAL`,
+    with the ends of that strength, MPa (one value where it is stated). The model is good up to a
+    real mean pressure ``good_to`` and poor from ``poor_from`` on, MPa.
     """
 
     criterion: str
@@ -41,17 +36,10 @@ class Limits(NamedTuple):
 class Validity(NamedTuple):
     """Verdict on the contact model, elastic or crushing, and its reason.
 
-    Attributes
-    ----------
-    verdict : str
-        :data:`GOOD`, :data:`IN_PART`, :data:`POOR` or :data:`NOT_JUDGED`.
-    pressure : float
-        Real mean pressure that is judged, MPa; NaN if missing.
-    reason : str
-        One line on pressure and slope, the deciding one first.
-    decided_by : str
-        :data:`SLOPE`, :data:`LOAD` or "pressure" of a verdict that is not good.
-    limits : Limits
+    The verdict is :data:`GOOD`, :data:`IN_PART`, :data:`POOR` or :data:`NOT_JUDGED`; ``pressure``
+    is the real mean pressure judged, MPa, NaN if missing. The reason is one line on pressure and
+    slope, the deciding one first: ``decided_by`` is :data:`SLOPE`, :data:`LOAD` or "pressure" of a
+    verdict that is not good.
     """
 
     verdict: str

@@ -81,17 +81,10 @@ class FractalRange(NamedTuple):
 
 
 def find_fractal_range(curve: Curve, spacing: float) -> FractalRange:
-    """Fractal range of a spectrum: noise, filter and roll-off that are seen in it.
+    """Fractal range of a spectrum of :func:`roughness.spectra.profile_spectra`, mm and mm3.
 
-    Parameters
-    ----------
-    curve : Curve
-        Of :func:`roughness.spectra.profile_spectra`, mm and mm3.
-    spacing : float
-        Distance of neighbouring nodes of the profiles, mm.
+    The noise, filter and roll-off that are seen in it; ``spacing`` is that of the nodes, mm.
 
-    Notes
-    -----
     Strips of profiles that stand out from the others (`SPIKY`) are left out first. Least squares of
     the logarithms, each bin weighted by its jackknife error over the strips and `BIN_ERROR`. The
     form is the one with the lowest chi-square + (parameters) ln(bins) + `EVIDENCE` (features), the

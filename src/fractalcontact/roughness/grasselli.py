@@ -28,19 +28,11 @@ class Grasselli(NamedTuple):
 
 
 def grasselli(heights: np.ndarray, spacing: tuple[float, float], direction: str) -> Grasselli:
-    """Grasselli's parameters of a face along a direction of sliding.
+    """Grasselli's parameters of a face (ny, nx), mm, for sliding of the upper block in a direction.
 
-    Parameters
-    ----------
-    heights : (ny, nx) ndarray
-        mm, without the mean plane; NaN where missing.
-    spacing : (float, float)
-        Of y and x, mm.
-    direction : {"E", "N", "W", "S"}
-        Sliding of the upper block: slopes that rise that way face it.
+    The face is without its mean plane, NaN where missing, the spacing that of y and x, mm. Slopes
+    that rise in the direction "E", "N", "W" or "S" face the sliding.
 
-    Notes
-    -----
     Two triangles a cell, of both diagonals half a weight each, so that no diagonal is preferred.
     Areas are those of the triangles themselves. C is fitted by least squares to the cumulative area
     over bins of 2 degrees, as the authors' program does.

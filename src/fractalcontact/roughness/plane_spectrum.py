@@ -31,14 +31,10 @@ _EVIDENCE = 3.0
 class PlaneSpectrum:
     """Two-sided power spectral density of a surface over wave number and direction.
 
-    Attributes
-    ----------
-    number : (k,) ndarray
-        Wave numbers of the rings, 1/mm, ascending: inverse wavelengths.
-    density : (k, SECTORS) ndarray
-        mm4, from direction x over y to -x: independent heights of variance v have v dx dy.
-    slope : float
-        Exponent of the density of waves longer than those of the first ring.
+    ``number`` (k,) are the wave numbers of the rings, 1/mm, ascending: inverse wavelengths.
+    ``density`` (k, SECTORS) is in mm4, from direction x over y to -x: independent heights of
+    variance v have v dx dy. ``slope`` is the exponent of the density of waves longer than those of
+    the first ring.
     """
 
     number: np.ndarray

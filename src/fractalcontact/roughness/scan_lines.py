@@ -30,8 +30,6 @@ def line_alternation(heights: np.ndarray) -> tuple[float, float]:
     The noise is the standard deviation of independent heights with the power of the waves next to
     it.
 
-    Notes
-    -----
     Stretches are tapered (Hann). Their power at order n/2, less that at the neighbouring orders, is
     the square of the amplitude; the spectrum of a rough surface falls there, so that it is not
     overestimated. Columns that are shifted at random are alike in all rows, so that only stretches

@@ -51,16 +51,10 @@ class TwinSurface:
 def twin_surface(
     heights: np.ndarray, spacing: tuple[float, float], shape: tuple[int, int]
 ) -> TwinSurface:
-    """Random surface with the spectrum and distribution of a measured one.
+    """Random surface of ``shape`` nodes with the spectrum and distribution of a measured one.
 
-    Parameters
-    ----------
-    heights : (ny, nx) ndarray
-        mm, without holes; ValueError as of :func:`roughness.plane_spectrum.plane_spectrum`.
-    spacing : (float, float)
-        (dy, dx), mm.
-    shape : (ny, nx)
-        Nodes of the twins.
+    Heights (ny, nx) have no holes; they and the spacing (dy, dx) are in mm. ValueError as of
+    :func:`roughness.plane_spectrum.plane_spectrum`.
     """
     spectrum, side = plane_spectrum(heights, spacing), grid_side(shape)
     along = scipy.fft.fftfreq(side, spacing[0]), scipy.fft.rfftfreq(side, spacing[1])
