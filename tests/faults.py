@@ -57,6 +57,9 @@ DAMAGES = {
     "text": lambda content, chance: b"<html>404 not found</html>\n",
 }
 STUDY = "config/test.yaml"
+#: Seconds after which a process of the library counts as hung. Compiling all kernels again takes
+#: minutes, on a busy machine many.
+PATIENCE = 3600
 #: All stages and the figures of the study; those of specimens take longest, and are no other kind.
 TARGETS = ("results/test/atlas.nc", "results/test/figures/area_slope.png")
 #: A solve, often: on one space in threads, after forks, after interrupts.
@@ -328,13 +331,13 @@ class Trials:
 
     # -- faults of the library: a process each -----------------------------------------------------
 
-    def library(self, code, *, seconds=300, **environment):
+    def library(self, code, **environment):
         """`same` if the code says so."""
         environment = os.environ | {"PYTHONPATH": str(ROOT / "src")} | environment
         command = [sys.executable, "-c", SOLVER + code]
         try:
             done = subprocess.run(
-                command, capture_output=True, text=True, timeout=seconds, env=environment
+                command, capture_output=True, text=True, timeout=PATIENCE, env=environment
             )
         except subprocess.TimeoutExpired:
             return "WRONG"
@@ -360,8 +363,7 @@ class Trials:
                 "with multiprocessing.get_context('fork').Pool(3) as pool:\n"
                 "    found = pool.starmap(solve, cases)\n"
                 "busy.join()\n"
-                "print('same' if found == alone else 'other')\n",
-                seconds=120,
+                "print('same' if found == alone else 'other')\n"
             )
 
     def interrupts(self, times):
@@ -383,8 +385,7 @@ class Trials:
             "    finally:\n"
             "        signal.setitimer(signal.ITIMER_REAL, 0)\n"
             "    wrong += solve(*cases[k]) != alone[k]\n"
-            "print('other' if wrong else 'same')\n",
-            seconds=1200,
+            "print('other' if wrong else 'same')\n"
         )
         yield from [outcome] * times
 

@@ -9,9 +9,10 @@ from places import ROOT
 
 from fractalcontact.commands.write_keys import schemas, tables, written
 from fractalcontact.core.errors import InputError
+from fractalcontact.core.keys import Section, schema_of, texts_of
 from fractalcontact.study.checks import check_study, read_sidecar
 from fractalcontact.study.documents import read_study
-from fractalcontact.study.keys import SidecarKeys
+from fractalcontact.study.keys import SettingsKeys, SidecarKeys
 
 #: What is wrong ("set" in config/paper.yaml, or the whole text), and the words for it; "before"
 #: those of version 1.0.0, where they differ.
@@ -28,6 +29,31 @@ def test_schemas_are_those_of_the_classes(path):
 def test_tables_of_keys_are_those_of_the_classes(path):
     document = (ROOT / path).read_text(encoding="utf-8")
     assert document == written(document, tables()[path]), "make schema"
+
+
+class Lower(Section):
+    """A section of two keys."""
+
+    a: int = 0
+    """text of a,
+    in two lines"""
+    b: int = 0
+    """text of b"""
+    c: int = 0
+
+
+class Upper(Lower):
+    b: int = 1
+    """another text of b"""
+
+
+def test_the_text_below_a_key_is_its_own_or_that_of_a_base():
+    assert texts_of(Lower) == {"a": "text of a, in two lines", "b": "text of b"}
+    assert texts_of(Upper) == {"a": "text of a, in two lines", "b": "another text of b"}
+    assert {"window", "material"} <= texts_of(SettingsKeys).keys()  # made from another class
+    schema = schema_of(Upper, with_texts=True)["properties"]
+    assert schema["b"]["markdownDescription"] == "another text of b"
+    assert "markdownDescription" not in schema_of(Upper)["properties"]["b"]
 
 
 def changed(document, keys, value):

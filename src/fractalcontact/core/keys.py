@@ -271,7 +271,7 @@ def texts_of(section: type) -> dict[str, str]:
     for base in section.__mro__:
         if "texts_of" in vars(base):  # made from another class, without a source of its own
             texts = texts_of(base.texts_of) | texts  # type: ignore[attr-defined]
-        elif base.__module__.startswith(f"{__package__.partition('.')[0]}."):
+        elif base.__module__.partition(".")[0] not in ("builtins", "pydantic"):
             texts = _own_texts(base) | texts
     return texts
 

@@ -5,6 +5,7 @@ follow from them. Lengths are in mm, forces in N, pressures in MPa, angles in de
 stands for "auto".
 """
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, fields, is_dataclass
 from typing import Annotated, Any, Literal, TypeVar, get_args, get_origin, get_type_hints
@@ -264,16 +265,16 @@ class MeasuredTest:
     kind: str
     file: str
     columns: dict[str, str]
-    branch: str
-    cycle: int
-    way: str
-    direction: str
-    seat: float
-    pressure: float
-    largest_pressure: float
-    compliance: float
-    error: float
-    calibrate: str
+    branch: str = ""
+    cycle: int = 1
+    way: str = ""
+    direction: str = ""
+    seat: float = math.nan
+    pressure: float = math.nan
+    largest_pressure: float = math.nan
+    compliance: float = 0.0
+    error: float = math.nan
+    calibrate: str = ""
 
     @property
     def label(self) -> str:

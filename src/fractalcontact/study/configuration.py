@@ -206,7 +206,7 @@ def resolve_embedded(recipe: Mapping, where: str) -> dict:
     """
     source, _, above = where.rpartition(": ")
     parsed = validate(EmbeddedKeys, recipe, source, above)
-    numbers = {key: getattr(parsed, key) for key in recipe if key not in BESIDE_SURFACE}
+    numbers = {key: value for key, value in parsed if key not in BESIDE_SURFACE}
     nodes = numbers["size"] / numbers["spacing"]
     if not MIN_NODES_PER_SIDE <= round(nodes) <= MAX_NODES_PER_SIDE:
         raise InputError(
@@ -214,9 +214,7 @@ def resolve_embedded(recipe: Mapping, where: str) -> dict:
             f"{nodes:.4g} nodes per side; expected from {MIN_NODES_PER_SIDE} to "
             f"{MAX_NODES_PER_SIDE}, so change size or spacing"
         )
-    numbers.setdefault("outline", "square")
-    numbers.setdefault("roll_off", None)
-    construction = numbers.setdefault("construction", "spectrum")
+    construction = numbers["construction"]
     if construction != "spectrum" and numbers["roll_off"] is not None:
         raise InputError(
             f"{where}.roll_off: a surface by {construction} has none; write null, or the "

@@ -14,14 +14,6 @@ from ..core.settings import TEST_COLUMNS, MeasuredTest
 from .measured_keys import Tests
 from .scan_files import refuse_outside_link
 
-_NAN = float("nan")
-#: Values of keys that the kind of a test does not have.
-_UNSAID: dict[str, Any] = {
-    **dict.fromkeys(("branch", "way", "direction", "calibrate"), ""),
-    **dict.fromkeys(("seat", "pressure", "largest_pressure", "error"), _NAN),
-    "cycle": 1,
-}
-
 
 def tests_of(stated: Mapping[str, Any]) -> list[tuple[str, Mapping[str, Any]]]:
     """Kind and keys of each test that a specimen's ``measured`` states."""
@@ -72,13 +64,7 @@ def require_files(tests: Iterable[MeasuredTest]) -> None:
 
 
 def _resolved(kind: str, test: Section, where: str, folder: Path) -> MeasuredTest:
-    values = {**_UNSAID, **dict(test)}
-    branch, cycle = values["branch"], values["cycle"]
-    if (branch, cycle > 1) in (("load", True), ("reload", False)):
-        raise InputError(
-            f"{where}: 'branch: {branch}' in cycle {cycle}; the first loading is 'branch: load' of "
-            "cycle 1, any later one 'branch: reload' of cycle 2 or more"
-        )
+    values = dict(test)
     wanted, columns = TEST_COLUMNS[kind], values["columns"]
     if kind == "flow" and "hydraulic_aperture" in columns:
         wanted = (wanted[0], "hydraulic_aperture")
@@ -88,5 +74,11 @@ def _resolved(kind: str, test: Section, where: str, folder: Path) -> MeasuredTes
         )
     values["columns"] = {name: columns.get(name, name) for name in wanted}
     values["file"] = str(folder / values["file"])
-    compliance = values.pop("gauge", 0.0)
-    return MeasuredTest(kind=kind, compliance=compliance, **values)
+    resolved = MeasuredTest(kind, compliance=values.pop("gauge", 0.0), **values)
+    branch, cycle = resolved.branch, resolved.cycle
+    if (branch, cycle > 1) in (("load", True), ("reload", False)):
+        raise InputError(
+            f"{where}: 'branch: {branch}' in cycle {cycle}; the first loading is 'branch: load' of "
+            "cycle 1, any later one 'branch: reload' of cycle 2 or more"
+        )
+    return resolved
