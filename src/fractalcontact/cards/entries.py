@@ -65,8 +65,8 @@ def number(row: Row, subject: Subject, found: Number) -> dict[str, Any]:
     )
     if row.range:
         written["determined"] = found.determined
-        if found.estimate.reason:
-            written["note"] = found.estimate.reason
+    if found.estimate.reason:
+        written["note"] = str(found.estimate.reason)
     for key, value in (("of_its_population", found.population), ("hardest", found.hardest)):
         if math.isfinite(value):
             written[key] = rounded(value)

@@ -14,6 +14,7 @@ from ..pages.first_screen import (
     row_at,
     window_of,
 )
+from ..report.caveats import aperture_caveat
 from ..report.published import row_of
 
 #: Tables of curves over pressure, by title: the sections that share one.
@@ -50,6 +51,7 @@ def page_of(card: Mapping[str, Any]) -> dict[str, Any]:
         # An elastic joint has no hardness to state.
         "missing": missing_of({key: one for key, one in printed.items() if key != "hardness"}),
         "hardest": hardnesses_of(card)[1],
+        "caveat": aperture_caveat(entries.get("shifted_ratio", {}).get("value", math.nan)),
         # What harder contacts change stands in a column of its own.
         "errors": errors_of(card, without=("model",)),
         "number": lambda value, digits=2: MISSING if value is None else short(value, digits),

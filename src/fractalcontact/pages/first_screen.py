@@ -82,12 +82,7 @@ def facts_of(card: Mapping[str, Any]) -> list[Fact]:
             row_at(card["entries"]["interface_closure"], pressure),
             "counted from first touch",
         )
-    flowing = ""
-    if "value" in hydraulic:
-        flowing = f"hydraulic aperture {short(hydraulic['value'])} mm {_ends(hydraulic)}".rstrip()
-        slope = row_at(card["entries"]["gap_slope"], pressure).get("value", 0.0)
-        if slope > _STEEP_GAP:
-            flowing += f"; cubic law not valid (gap slope {short(slope)})"
+    flowing = _flowing(card, hydraulic, pressure)
     crushed = hardnesses_of(card)[0] * contact.get("value", math.nan)
     by_load = "all contacts crush: sigma_0/H" if abs(crushed / pressure - 1) < _SAME else ""
     facts = [
@@ -100,6 +95,18 @@ def facts_of(card: Mapping[str, Any]) -> list[Fact]:
         facts.append(_fact(card, "JRC", *_jrc(card)))
         facts.append(_strength(card, f"shear strength {at}", pressure))
     return facts
+
+
+def _flowing(card, hydraulic, pressure):
+    """Hydraulic aperture beside the mean gap, with what to know of it."""
+    if "value" not in hydraulic:
+        return f"no hydraulic aperture: {hydraulic['missing']}"
+    words = f"hydraulic aperture {short(hydraulic['value'])} mm {_ends(hydraulic)}".rstrip()
+    slope = row_at(card["entries"]["gap_slope"], pressure).get("value", 0.0)
+    steep = f"cubic law not valid (gap slope {short(slope)})" if slope > _STEEP_GAP else ""
+    untested = "absolute aperture not compared with tests"
+    notes = _harder(card, hydraulic, 1.0), hydraulic.get("note", ""), untested, steep
+    return "; ".join(filter(None, (words, *notes)))
 
 
 def hardnesses_of(card: Mapping[str, Any]) -> tuple[float, float]:

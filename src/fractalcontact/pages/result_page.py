@@ -34,6 +34,7 @@ from ..core.text import (
     undetermined,
     with_unit,
 )
+from ..report.caveats import aperture_caveat
 from ..report.published import Number, Row, row_of, shown_in
 from ..study.atlas_parts import Trees
 from ..study.figure_list import JOINT, SPECIMEN, STUDY, all_figures
@@ -215,6 +216,7 @@ def _head(place, atlas):
         "error_words": error_words,
         "estimate": estimate_words,
         "undetermined": undetermined,
+        "aperture_caveat": aperture_caveat,
         "decided_by_scan": decided_by_scan,
         "uncertain": lambda one: interval(*one.estimate.ends),
         "sort_value": sort_value,

@@ -18,6 +18,7 @@ def columns_of(row: Row, one: Number) -> dict[str, Any]:
         found |= {"low": one.estimate.low, "high": one.estimate.high}
     if row.budget:
         found |= {"error_surface": one.error, "error_population": one.population}
+    if row.budget or row.hardest:
         found["hardest"] = one.hardest
     columns: dict[str, Any] = {column_of(name, row.unit, of): each for of, each in found.items()}
     if row.range or row.dimension:
