@@ -131,6 +131,18 @@ def test_no_transmissivity_is_stated_where_crushed_rock_may_fill_the_gap(crushed
     assert ("crushed rock" in found["flow_reason"]) != states_one
 
 
+def test_a_flow_that_the_grid_does_not_resolve_is_missing_with_the_reason():
+    # Waves of eight cells of nearly their own height along the flow.
+    gap = np.tile(1 + 0.95 * np.sin(np.pi / 4 * (np.arange(32) + 0.5)), (8, 1))
+    found = _numbers(gap, (0.1, 0.1), "x", 0.0, 0.0)
+    assert np.isnan(found["transmissivity"].value)
+    assert "does not resolve" in found["flow_reason"]
+    assert not found["flow_resolved"]
+    across = _numbers(gap, (0.1, 0.1), "y", 0.0, 0.0)
+    assert across["flow_resolved"]
+    assert across["transmissivity"].value > 0
+
+
 def test_no_path_is_zero_however_much_is_crushed():
     found = _numbers(np.zeros((8, 8)), (0.1, 0.1), "x", np.inf, 0.0)
     assert found["transmissivity"].value == 0

@@ -6,6 +6,8 @@ The others are solved by CHOLMOD, which comes with `cvxopt`: that is under the G
 optional dependency (the extra ``flow``). Without it SuperLU of scipy solves the same equations.
 """
 
+from typing import Any
+
 import numpy as np
 from scipy import sparse
 from scipy.sparse.linalg import splu
@@ -188,7 +190,7 @@ def _separator(is_red, box):
 
 
 @njit(cache=True)
-def face_conductivity(a, b, linear):
+def face_conductivity(a: Any, b: Any, linear: bool) -> Any:
     """Conductivity of the face between two cells of apertures a and b > 0, or of many faces.
 
     The harmonic mean of the cubes, 2 a^3 b^3 / (a^3 + b^3), is that of two half-cells in series.

@@ -157,24 +157,14 @@ def _of_all_states(subject: Subject) -> xr.Dataset:
     """Numbers of the flow over all states, with reasons; missing but at the reported offset."""
     reported, closure, flow = subject.reported, subject["closure"], subject["flow"]
     shown = [one for one in shown_in("explorer") if one.stage == "flow"]
-    numbers = {
-        one.variable: flow[one.variable].where(flow[_variable(one.flag)] if one.flag else True)
-        for one in shown
-    }
-    reasons = {_variable(one.reason) for one in shown if one.reason}
-    flow = xr.Dataset(numbers).assign({name: flow[name] for name in reasons})
-    flow = flow.expand_dims(
+    reasons = {one.reason.partition("/")[2] for one in shown if one.reason}
+    flow = flow[[*(one.variable for one in shown), *sorted(reasons)]].expand_dims(
         direction=[reported.direction],
         offset=[reported.offset],
         resolution=[reported.resolution],
     )
     states = {name: closure[name] for name in ("direction", "offset", "resolution")}
     return flow.reindex(states, fill_value=dict.fromkeys(reasons, NO_FLOW))
-
-
-def _variable(source):
-    """Variable of "STAGE/VARIABLE"."""
-    return source.partition("/")[2]
 
 
 def _add_with_bounds(numbers, dataset, stage, variable):

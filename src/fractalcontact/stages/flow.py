@@ -198,10 +198,11 @@ def flow_stages(
 
 
 def _both_ways(axes, spacing, gap):
-    """Mean gap and transmissivities of a gap."""
+    """Mean gap of a gap, and transmissivities that the grid resolves; NaN else."""
+    flows = {way: flow_of(gap, spacing, axis) for way, axis in axes.items()}
     return {"mean_gap": float(gap.mean())} | {
-        f"transmissivity_{way}": flow_of(gap, spacing, axis).transmissivity
-        for way, axis in axes.items()
+        f"transmissivity_{way}": flow.transmissivity if flow.resolved else np.nan
+        for way, flow in flows.items()
     }
 
 
@@ -287,12 +288,13 @@ def _numbers(gap, spacing, axis, crushed, gap_error):
         if whole.known and np.isfinite(whole.low) and not known:
             reason = reason or _QUARTERS_ALONE
         off_grid = grid_error(gap, spacing, axis, flow)
-    if filled := crushed_reason(crushed) if flow.transmissivity > 0 else "":
-        whole, reason, off_grid = NO_ESTIMATE, filled, np.nan
+    unknown = crushed_reason(crushed) or ("" if flow.resolved else flow.reason)
+    if unknown and flow.transmissivity > 0:
+        whole, reason, off_grid = NO_ESTIMATE, unknown, np.nan
     return {
         "transmissivity": whole,
         "transmissivity_grid_error": off_grid,
-        "transmissivity_face_difference": np.nan if filled else flow.face_difference,
+        "transmissivity_face_difference": flow.face_difference,
         "critical_gap": flow.critical_gap,
         "channel_fraction": flow.channel_fraction,
         "flux_map": flow.flux,

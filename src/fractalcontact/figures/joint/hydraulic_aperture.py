@@ -134,7 +134,6 @@ def _words(subject: Subject, states: xr.Dataset) -> dict[str, Any]:
         "flows": flow > 0,
         "filled": np.isnan(window.value),
         "reason": str(at["flow_reason_along"].values),
-        "resolved": bool(at["flow_resolved_along"]),
         "wider": float(states["shifted_ratio"]),
         "window": [window.low, window.high],
         "reload": float(at["branch_transmissivity_along"].sel(branch="reload") / flow),
