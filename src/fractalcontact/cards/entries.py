@@ -63,10 +63,10 @@ def number(row: Row, subject: Subject, found: Number) -> dict[str, Any]:
     written: dict[str, Any] = dict(
         zip(("value", "low", "high"), map(rounded, found.estimate.ends), strict=True)
     )
-    if row.range:
+    if row.range or not found.determined:
         written["determined"] = found.determined
-    if found.estimate.reason:
-        written["note"] = str(found.estimate.reason)
+    if found.estimate.reason or (row.by_scan and not found.determined):
+        written["note"] = str(found.estimate.reason) or found.remark
     for key, value in (("of_its_population", found.population), ("hardest", found.hardest)):
         if math.isfinite(value):
             written[key] = rounded(value)

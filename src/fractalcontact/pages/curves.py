@@ -28,8 +28,9 @@ def curves_table(study: str, subjects: list[Subject]) -> pd.DataFrame:
     """Curves of specimens, one row a point; points that were not solved are left out.
 
     Closure, tangent stiffness and corrected area with the total error of this surface, both
-    Delta_sigma with their intervals. A point is ``resolved`` where ten nodes touch and, of a
-    dimension, where its interval determines it; figures draw the others hollow.
+    Delta_sigma with their intervals. A point is ``resolved`` where ten nodes touch, most of the
+    force acts on sound cells of the scan and, of a dimension, its interval determines it; figures
+    draw the others hollow.
     """
     rows: list[dict[str, Any]] = []
     for subject in subjects:
@@ -40,7 +41,7 @@ def curves_table(study: str, subjects: list[Subject]) -> pd.DataFrame:
                 # At the seat closure is 0 by definition.
                 if one.estimate.known and not (row.zero and one.value == 0):
                     ends = (float(end) for end in one.estimate.ends)
-                    says = bool(resolved) and (one.determined or not row.dimension)
+                    says = bool(resolved) and one.determined
                     values = (row.curves, row.unit, float(one.at["pressure"]), *ends, says)
                     rows.append(dict(zip(COLUMNS, (*start, *values), strict=True)))
     return pd.DataFrame(rows, columns=list(COLUMNS))

@@ -184,6 +184,8 @@ def _fact(card, title, row, unit, beside=""):
     # One unit for a number and its interval, the same in all blocks.
     size, shown = (100.0, " %") if unit == "%" else (1.0, f" {unit}".removesuffix(" 1"))
     words = f"{short(size * row['value'])}{shown}"
+    if not row.get("determined", True):
+        return Fact(title, "undetermined", [f"{words}: {row['note']}", *filter(None, (beside,))])
     notes = _ends(row, size), _of_joint(card, row, size), _harder(card, row, size), beside
     return Fact(title, words, list(filter(None, notes)))
 
