@@ -377,6 +377,22 @@ def test_registration_enters_the_population_of_two_scanned_faces():
     np.testing.assert_array_equal(budget["total"], unknown["total"])
 
 
+def test_other_readings_of_the_scans_are_an_error_of_this_surface():
+    _, _, unknown, _ = budget_of("two")
+    assert "scan" not in unknown["source"]
+    spread = {"closure": np.full(5, 0.5), "stiffness": 3.0}
+    _, _, budget, _ = budget_of("two", scan_spread=spread)
+    for quantity, half in (("closure", 0.5), ("stiffness", 3.0)):
+        expected = np.hypot(unknown["total"].sel(quantity=quantity), half)
+        np.testing.assert_allclose(budget["total"].sel(quantity=quantity), expected)
+    # Of other quantities no other reading is known, which takes nothing from their total.
+    others = ["separation", "area_corrected", "delta_sigma"]
+    np.testing.assert_array_equal(
+        budget["total"].sel(quantity=others), unknown["total"].sel(quantity=others)
+    )
+    assert (budget["largest_source"].sel(quantity="closure") == "scan").all()
+
+
 def test_counting_falls_as_contacts_grow_more(one):
     _, _, budget, _ = one
     counting = budget["relative_error"].sel(source="counting", quantity="area_corrected").values

@@ -37,7 +37,7 @@ OF_POPULATION = ("counting", "window", TWINS, REALISATIONS, "registration")
 #: Only the larger of these is in a total, as a spread over windows holds that of counting; where
 #: an ensemble was solved, neither is.
 _OF_WINDOW = ("counting", "window")
-SOURCES = (*OF_SURFACE, *OF_POPULATION, "resolution", "model", "estimator")
+SOURCES = (*OF_SURFACE, "scan", *OF_POPULATION, "resolution", "model", "estimator")
 
 #: Numerical errors of states that are not refined, in errors interpolated between those that are:
 #: chance differs from state to state. Then 95 to 100 % of 100 other joints were covered, else
@@ -118,6 +118,7 @@ def error_budget(
     domains: xr.Dataset,
     *,
     registration_spread: Mapping[str, ArrayLike] | None = None,
+    scan_spread: Mapping[str, ArrayLike] | None = None,
     ensemble: xr.Dataset | None = None,
 ) -> xr.Dataset:
     """Errors of closure, separation, area, stiffness and Delta_sigma at the map offset, by source.
@@ -131,6 +132,8 @@ def error_budget(
     registration_spread : mapping of str to (normal_force,) array_like, optional
         By quantity, half-widths of the spread over registrations of two scanned faces that are
         statistically as good, in the quantity's unit.
+    scan_spread : mapping of str to (normal_force,) array_like, optional
+        Likewise over other fair readings of two scanned faces: a source "scan" of this surface.
     ensemble : xr.Dataset, optional
         Stage of this name, twins of a scan or realisations of an embedded specimen: a source of
         its own, in place of counting and windows in the total of the population.
@@ -169,6 +172,8 @@ def error_budget(
         "secant": _secant(curve),
         "estimator": _estimator(curve),
     }
+    if scan_spread is not None:
+        errors["scan"] = curve.over_quantities(**scan_spread)
     if ensemble is not None:
         spread = ensemble_spread(curve, ensemble)
         errors[ensemble.attrs["members"]] = over_loads(curve.forces, spread, _scale(curve))
@@ -187,6 +192,10 @@ def _budget(curve, values, errors, found, reasons, windows) -> xr.Dataset:
     """The dataset from its parts."""
     each = np.stack(list(errors.values()), axis=1)
     total = np.sqrt(sum(errors[source] ** 2 for source in OF_SURFACE))
+    of_surface = OF_SURFACE
+    if "scan" in errors:
+        # Of Delta_sigma no other reading is known.
+        total, of_surface = np.hypot(total, np.nan_to_num(errors["scan"])), (*OF_SURFACE, "scan")
     sampling = np.fmax(errors["counting"], errors["window"])
     largest = _largest(errors, _OF_WINDOW)
     for members in (TWINS, REALISATIONS):
@@ -208,7 +217,7 @@ def _budget(curve, values, errors, found, reasons, windows) -> xr.Dataset:
         "relative_total": total / size,
         "total_of_population": of_population,
         "relative_total_of_population": of_population / size,
-        "largest_source": _largest(errors, OF_SURFACE),
+        "largest_source": _largest(errors, of_surface),
         "largest_source_of_population": largest,
         "limit": found.limit,
         "observed_order": found.order,
@@ -366,6 +375,7 @@ def _reasons(curve, errors, found: Refinement, effective, registered: bool) -> n
         if found.finest.max() == 1
         else "not resolved at any load refined",
         "secant": "no slope at any load",
+        "scan": "not known of this quantity",
         "estimator": "no other estimate at any load",
         "counting": f"fewer than {MIN_NODES} nodes, or no stiffness, at any load",
         "window": TOO_SMALL

@@ -11,6 +11,7 @@ from ..laws.branches import joint_branches
 from ..states.loading import JointLoading
 from ..states.plan import solve_plan
 from ..states.registration_spread import registration_spread
+from ..states.scan_spread import scan_spread
 from ..states.states import with_pressure
 
 
@@ -46,8 +47,14 @@ def error_stages(
     direction = settings.contact_directions[0]
     joint = JointLoading.of_joint(specimens, joints, direction, settings, solver)
     loading = joint.at_map_offset()
-    spread = registration_spread(loading)
-    budget = error_budget(loading, closure, domains, registration_spread=spread, ensemble=ensemble)
+    budget = error_budget(
+        loading,
+        closure,
+        domains,
+        registration_spread=registration_spread(loading),
+        scan_spread=scan_spread(loading),
+        ensemble=ensemble,
+    )
     plan = solve_plan(closure, dilatancy, solver, budget)
     return {
         "branches": joint_branches(loading, closure, mapped),

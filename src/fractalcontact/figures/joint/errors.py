@@ -37,6 +37,7 @@ SOURCES = {
     "solver": "solver",
     "numerical": "numerical (same surface, finer grid)",
     "secant": "scatter of a secant, where nodes yield",
+    "scan": "other readings of the scans",
     "counting": "counting of contacts",
     "window": "other windows of the scan",
     "registration": "registration of the faces",
@@ -47,7 +48,7 @@ SOURCES = {
     REALISATIONS: "realisations, in place of counting, windows",
 }
 TOTALS = {
-    "total": "total for this very surface\n(solver, numerical, secant)",
+    "total": "total for this very surface\n(solver, numerical, secant, scan)",
     "total_of_population": (
         "total for any surface of its kind\n(also counting or windows, registration)"
     ),
