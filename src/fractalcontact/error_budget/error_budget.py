@@ -192,7 +192,7 @@ def _budget(curve, values, errors, found, reasons, windows) -> xr.Dataset:
     """The dataset from its parts."""
     each = np.stack(list(errors.values()), axis=1)
     total = np.sqrt(sum(errors[source] ** 2 for source in OF_SURFACE))
-    of_surface = OF_SURFACE
+    of_surface: tuple[str, ...] = OF_SURFACE
     if "scan" in errors:
         # Of Delta_sigma no other reading is known.
         total, of_surface = np.hypot(total, np.nan_to_num(errors["scan"])), (*OF_SURFACE, "scan")

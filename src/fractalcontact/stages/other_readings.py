@@ -48,7 +48,7 @@ def with_other_readings(
         Scan keys of the sidecar.
     settings : SpecimenSettings
     """
-    on_grid = {}
+    on_grid: dict[str, np.ndarray] = {}
     # One at a time: of large scans each takes much memory.
     for words, other in _readings(faces, files, options, settings):
         heights = _on_grid(specimen, other)
@@ -67,10 +67,10 @@ def _readings(faces, files, options, settings) -> Iterator[tuple[str, xr.Dataset
     """Other readings by name, each as a specimen."""
     stated = options.get("registration") or _REGISTERED
     otherwise = _REGISTERED if stated == _UNREGISTERED else _UNREGISTERED
-    pairs = {stated: faces}
+    (lower, upper), pairs = files, {stated: faces}
     # As they were given, faces may share no area, or lie in the wrong order.
     with suppress(InputError):
-        pairs[otherwise] = read_faces(*files, {**options, "registration": otherwise})
+        pairs[otherwise] = read_faces(lower, upper, {**options, "registration": otherwise})
     if stated != _UNREGISTERED and not _in_one_frame(faces):
         pairs.pop(otherwise, None)
     for registration, pair in pairs.items():
@@ -103,8 +103,8 @@ def _on_grid(specimen, other) -> np.ndarray | None:
     }
     heights = np.full((2, specimen.sizes["y"], specimen.sizes["x"]), np.nan)
     rows, columns = (np.flatnonzero(places[axis] >= 0) for axis in "yx")
-    for face, name in enumerate(("lower", "upper")):
-        values = other[name].values[np.ix_(places["y"][rows], places["x"][columns])]
-        heights[np.ix_([face], rows, columns)] = values
+    for face, name in zip(heights, ("lower", "upper"), strict=True):
+        there = np.ix_(places["y"][rows], places["x"][columns])
+        face[np.ix_(rows, columns)] = other[name].values[there]
     y, x, ny, nx = (specimen.attrs[f"window_{of}"] for of in ("y0", "x0", "ny", "nx"))
     return heights if np.isfinite(heights[:, y : y + ny, x : x + nx]).all() else None

@@ -37,7 +37,6 @@ SOURCES = {
     "solver": "solver",
     "numerical": "numerical (same surface, finer grid)",
     "secant": "scatter of a secant, where nodes yield",
-    "scan": "other readings of the scans",
     "counting": "counting of contacts",
     "window": "other windows of the scan",
     "registration": "registration of the faces",
@@ -46,6 +45,7 @@ SOURCES = {
     "estimator": "ordinary slope: another estimator, in no total",
     TWINS: "twins of the scan, in place of counting, windows",
     REALISATIONS: "realisations, in place of counting, windows",
+    "scan": "other readings of the scans",
 }
 TOTALS = {
     "total": "total for this very surface\n(solver, numerical, secant, scan)",
