@@ -54,3 +54,15 @@ def test_states_of_a_window_have_the_quantities_that_are_calibrated(monkeypatch)
     assert (counted[names.index("mean gap")] > 0).all()
     half = sampling.twin_half_widths(joint, face, range(1, 4))
     assert (half[names.index("mean gap")] > 0).all()
+
+
+def test_transmissivities_of_a_window_have_what_their_interval_is_made_of(monkeypatch):
+    monkeypatch.syspath_prepend(BENCHMARKS)
+    flows = importlib.import_module("calibration_flow")
+    joint = flows.TWINS["sandstone"]._replace(face=96, window=48)
+    log_t, quarters, gap, counted = flows.states_of(joint, 1)
+    assert log_t.shape == (len(flows.PRESSURES),)
+    assert (np.diff(log_t) < 0).all()
+    assert (np.diff(gap) < 0).all()
+    assert (quarters[np.isfinite(log_t)] > 0).all()
+    assert (counted > 0).all()

@@ -17,10 +17,12 @@ from fractalcontact.error_budget.other_windows import (
     window_places,
     window_spread,
 )
+from fractalcontact.flow.cubic_law import plane_flow
 from fractalcontact.joint.joint import composite_topography, describe_joint
 from fractalcontact.laws.closure import closure_curves, elastic_dilatancy
 from fractalcontact.states.loading import JointLoading
 from fractalcontact.states.plan import solve_plan
+from fractalcontact.states.state_scalars import aperture
 from fractalcontact.states.states import combine, contact_domains
 from fractalcontact.states.subgrid import state_quantities, subgrid
 from fractalcontact.states.sweep import joint_states
@@ -284,6 +286,11 @@ def test_the_model_is_what_three_times_the_hardness_changes(one):
         gap = budget["mean_gap_hardest"][place]
         assert gap == pytest.approx(np.maximum(both[1].gap, 0).mean(), rel=1e-3)
         at_seat.append(closed)
+        for way, axis in (("along", "x"), ("across", "y")):
+            flow = plane_flow(aperture(both[1]), (SPACING, SPACING), axis)
+            found = float(budget[f"transmissivity_{way}_hardest"][place])
+            assert np.isnan(found) or found == pytest.approx(flow.transmissivity, rel=1e-2)
+    assert np.isfinite(budget["transmissivity_along_hardest"][seat])
     # Since the seat the faces come together by the difference of the closures.
     harder, own = (at_seat[1][i] - at_seat[0][i] for i in (1, 0))
     seated = budget["seated_closure_hardest"] - curves["seated_closure"].sel(
@@ -297,6 +304,7 @@ def test_the_model_is_what_three_times_the_hardness_changes(one):
     _, _, elastic, _ = one
     assert np.isnan(elastic["error"].sel(source="model")).all()
     assert np.isnan(elastic["hardest"]).all()
+    assert np.isnan(elastic["transmissivity_along_hardest"]).all()
     assert "elastic contact" in reason_of(elastic, "model")
 
 
@@ -367,6 +375,22 @@ def test_registration_enters_the_population_of_two_scanned_faces():
         budget["error"].sel(source="registration", quantity="stiffness"), np.full(5, 3.0)
     )
     np.testing.assert_array_equal(budget["total"], unknown["total"])
+
+
+def test_other_readings_of_the_scans_are_an_error_of_this_surface():
+    _, _, unknown, _ = budget_of("two")
+    assert "scan" not in unknown["source"]
+    spread = {"closure": np.full(5, 0.5), "stiffness": 3.0}
+    _, _, budget, _ = budget_of("two", scan_spread=spread)
+    for quantity, half in (("closure", 0.5), ("stiffness", 3.0)):
+        expected = np.hypot(unknown["total"].sel(quantity=quantity), half)
+        np.testing.assert_allclose(budget["total"].sel(quantity=quantity), expected)
+    # Of other quantities no other reading is known, which takes nothing from their total.
+    others = ["separation", "area_corrected", "delta_sigma"]
+    np.testing.assert_array_equal(
+        budget["total"].sel(quantity=others), unknown["total"].sel(quantity=others)
+    )
+    assert (budget["largest_source"].sel(quantity="closure") == "scan").all()
 
 
 def test_counting_falls_as_contacts_grow_more(one):

@@ -48,3 +48,11 @@ def test_the_interval_is_student_s_of_four_quarters():
     found = window_interval(gap, (0.1, 0.1), "x", 1.0)
     assert found.high == pytest.approx(np.exp(3.182446 * spread / 2), rel=1e-5)
     assert found.low == pytest.approx(1 / found.high)
+
+
+def test_the_error_of_the_mean_gap_enters_three_times_in_quadrature():
+    gap = np.kron(np.array([[0.1, 0.2], [0.4, 0.1]]), np.ones((6, 8)))
+    alone, both = (window_interval(gap, (0.1, 0.1), "x", 1.0, error) for error in (0.0, 0.2))
+    expected = np.hypot(np.log(alone.high), 3 * 0.2)
+    assert np.log(both.high) == pytest.approx(expected, rel=1e-12)
+    assert both.low == pytest.approx(1 / both.high)

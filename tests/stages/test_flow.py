@@ -1,5 +1,7 @@
 """The flow of a joint that crushes, whose coarsest grid need not be that of its scan."""
 
+import functools
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -9,23 +11,31 @@ from materials import ROCK
 from scipy import ndimage
 from unchecked_settings import resolve_unchecked
 
-from fractalcontact.flow.cubic_law import plane_flow
+from fractalcontact.flow.aperture import MAX_CRUSHED
+from fractalcontact.flow.cubic_law import plane_flow, window_interval
+from fractalcontact.stages.flow import SHIFT, _numbers
 from fractalcontact.surface.synthesis import self_affine
 
 
-@pytest.mark.parametrize("resolutions", [[1, 2], [2, 4]])
-def test_what_has_crushed_unloads_on_the_reported_grid(resolutions):
+@functools.cache
+def crushing(resolutions):
+    """Stages of a joint whose contacts crush."""
     own = {
         "material": ROCK | {"hardness": "80 MPa"},
         "loads": ["1 MPa", "5 MPa", "10 MPa"],
-        "resolutions": resolutions,
+        "resolutions": list(resolutions),
         "offsets": ["0.4 mm"],
     }
     settings = resolve_unchecked(SMALL_STUDY, None, own, "made")
     face = scan(self_affine((96, 96), 0.1, 0.8, rms=0.05, seed=1), 0.1)
-    stages = stages_of(
+    return stages_of(
         "capped", (face, None), settings, SOLVER, later=("window_states", "closure", "flow")
     )
+
+
+@pytest.mark.parametrize("resolutions", [(1, 2), (2, 4)])
+def test_what_has_crushed_unloads_on_the_reported_grid(resolutions):
+    stages = crushing(resolutions)
     flow = stages["flow"]
     assert (stages["branches"]["permanent_set"] > 0).any()
     assert flow.sizes["flow_x"] == stages["joints"].sizes["window_x"] // resolutions[0]
@@ -77,11 +87,13 @@ def test_numbers_of_each_way_are_those_of_the_gap_along_its_axis(sheared, way, a
     spacing = (0.15, 0.1)
     assert flow.attrs[f"flow_axis_{way}"] == axis
     whole = plane_flow(gap, spacing, axis)
-    coarse = plane_flow(gap[::2, ::2], (0.3, 0.2), axis)
+    at_twice = plane_flow(gap[::2, ::2], (0.3, 0.2), axis)
+    change = abs(at_twice.transmissivity - whole.transmissivity)
     expected = {
         "transmissivity": whole.transmissivity,
         "critical_gap": whole.critical_gap,
-        "transmissivity_grid_error": abs(coarse.transmissivity - whole.transmissivity),
+        "transmissivity_face_difference": whole.face_difference,
+        "transmissivity_grid_error": max(whole.face_difference / 2, change),
     }
     for name, value in expected.items():
         found = float(flow[f"{name}_{way}"][load])
@@ -94,3 +106,80 @@ def test_the_error_of_the_separation_moves_the_transmissivity_along_its_curve(sh
     slope = (found[0] - found[1]) / (gap[0] - gap[1])
     first = float(flow["transmissivity_separation_error_along"][0])
     assert first == pytest.approx(abs(slope) * float(error[0]), rel=1e-6)
+
+
+def test_the_crushed_volume_is_that_pressed_in_over_the_gap_left():
+    stages = crushing((1, 2))
+    flow, branches = stages["flow"], stages["branches"]
+    gap = stages["closure"]["mean_gap"].values.ravel()
+    area = float(branches["normal_force"][0] / branches["nominal_pressure"][0])
+    pressed = branches["set_volume"].sel(branch="load").values
+    expected = pressed / (gap[: pressed.size] * area)
+    assert (expected > 0).any()
+    np.testing.assert_allclose(flow["crushed_fraction"][: pressed.size], expected, rtol=1e-3)
+
+
+def test_an_elastic_joint_crushes_nothing(sheared):
+    assert (sheared["flow"]["crushed_fraction"] == 0).all()
+
+
+@pytest.mark.parametrize(("crushed", "states_one"), [(0.99, True), (1.01, False)])
+def test_no_transmissivity_is_stated_where_crushed_rock_may_fill_the_gap(crushed, states_one):
+    gap = np.full((8, 8), 0.1)
+    found = _numbers(gap, (0.1, 0.1), "x", crushed * MAX_CRUSHED, 0.0)
+    assert np.isfinite(float(found["transmissivity"].value)) == states_one
+    assert ("crushed rock" in found["flow_reason"]) != states_one
+
+
+def test_a_flow_that_the_grid_does_not_resolve_is_missing_with_the_reason():
+    # Waves of eight cells of nearly their own height along the flow.
+    gap = np.tile(1 + 0.95 * np.sin(np.pi / 4 * (np.arange(32) + 0.5)), (8, 1))
+    found = _numbers(gap, (0.1, 0.1), "x", 0.0, 0.0)
+    assert np.isnan(found["transmissivity"].value)
+    assert "does not resolve" in found["flow_reason"]
+    assert not found["flow_resolved"]
+    across = _numbers(gap, (0.1, 0.1), "y", 0.0, 0.0)
+    assert across["flow_resolved"]
+    assert across["transmissivity"].value > 0
+
+
+def test_no_path_is_zero_however_much_is_crushed():
+    found = _numbers(np.zeros((8, 8)), (0.1, 0.1), "x", np.inf, 0.0)
+    assert found["transmissivity"].value == 0
+
+
+def test_the_interval_holds_the_error_of_the_mean_gap_or_says_that_it_does_not(sheared):
+    flow, budget = sheared["flow"], sheared["error_budget"]
+    gap, load = gap_under_the_reference_load(sheared)
+    mean = float(sheared["closure"]["mean_gap"].values.ravel()[load])
+    error = float(budget["mean_gap_total_of_population"][load]) / mean
+    whole = float(flow["transmissivity_along"][load])
+    known = window_interval(gap, (0.15, 0.1), "y", whole, np.nan_to_num(error))
+    assert float(flow["transmissivity_along_high"][load]) == pytest.approx(known.high, rel=1e-3)
+    for unknown in (np.nan, 1.5):
+        without = _numbers(gap, (0.15, 0.1), "y", 0.0, unknown)
+        assert "leaves out the error of the mean gap" in without["flow_reason"]
+        quarters = window_interval(gap, (0.15, 0.1), "y", whole)
+        assert without["transmissivity"].high == pytest.approx(quarters.high, rel=1e-3)
+    assert _numbers(gap, (0.15, 0.1), "y", 0.0, 0.1)["flow_reason"] == ""
+
+
+def test_faces_moved_apart_let_more_pass(sheared):
+    gap, _ = gap_under_the_reference_load(sheared)
+    both = [plane_flow(gap + apart, (0.15, 0.1), "y").transmissivity for apart in (0, SHIFT)]
+    found = float(sheared["flow"]["shifted_ratio"])
+    assert found == pytest.approx(both[1] / both[0], rel=1e-3)
+    assert found > 1
+
+
+def test_harder_contacts_let_more_pass_than_those_that_crush(sheared):
+    budget, flow = crushing((1, 2))["error_budget"], crushing((1, 2))["flow"]
+    for way in ("along", "across"):
+        harder = budget[f"transmissivity_{way}_hardest"].values
+        quoted = np.isfinite(harder)
+        assert quoted.any()
+        assert (harder[quoted] > flow[f"transmissivity_{way}"].values[quoted]).all()
+        aperture_of = budget[f"hydraulic_aperture_{way}_hardest"].values[quoted]
+        np.testing.assert_allclose(aperture_of**3 / 12, harder[quoted], rtol=1e-12)
+    elastic = sheared["error_budget"]["transmissivity_along_hardest"]
+    assert np.isnan(elastic).all()

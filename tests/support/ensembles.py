@@ -49,6 +49,7 @@ ENSEMBLES: dict[str, tuple] = {
     # flow
     "fields solved densely": (100, 400),
     "windows of one field": (60, 300),
+    "finer grid of sampled fields": (240, 510),
     # domain
     "maps at random": (4, 100),
     "carpet sizes": ((81, 243, 500), (81, 200, 300, 400, 243, 256, 500, 512, 729, 1000)),

@@ -65,10 +65,10 @@ def number(row: Row, subject: Subject, published: Number) -> dict[str, Any]:
     written: dict[str, Any] = dict(
         zip(("value", "low", "high"), map(rounded, published.estimate.ends), strict=True)
     )
-    if row.range:
+    if row.range or not published.determined:
         written["determined"] = published.determined
-        if published.estimate.reason:
-            written["note"] = published.estimate.reason
+    if published.estimate.reason or (row.by_scan and not published.determined):
+        written["note"] = str(published.estimate.reason) or published.remark
     for key, value in (("of_its_population", published.population), ("hardest", published.hardest)):
         if math.isfinite(value):
             written[key] = rounded(value)

@@ -6,6 +6,7 @@ from typing import Any
 
 from ..core.text import MISSING, measured, percent, short
 from ..pages.first_screen import STRENGTH_RULES
+from ..report.caveats import aperture_caveat
 from ..report.published import row_of
 from .entries import row_at
 
@@ -35,6 +36,7 @@ def page_of(card: Mapping[str, Any], block: Mapping[str, Any] | None = None) -> 
         # An elastic joint has no hardness to state.
         "missing": missing_of({key: entry for key, entry in printed.items() if key != "hardness"}),
         "hardest": entries.get("hardest_hardness", {}).get("value", math.nan),
+        "caveat": aperture_caveat(entries.get("shifted_ratio", {}).get("value", math.nan)),
         # The change with the hardness has a column of its own.
         "errors": errors_of(card, without=("model",)),
         "number": lambda value, digits=2: MISSING if value is None else short(value, digits),

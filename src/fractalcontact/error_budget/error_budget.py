@@ -38,7 +38,7 @@ OF_POPULATION = ("counting", "window", TWINS, REALISATIONS, "registration")
 #: Sources of which only the larger enters a total, as a spread over windows holds that of counting;
 #: where an ensemble was solved, neither enters.
 _OF_WINDOW = ("counting", "window")
-SOURCES = (*OF_SURFACE, *OF_POPULATION, "resolution", "model", "estimator")
+SOURCES = (*OF_SURFACE, "scan", *OF_POPULATION, "resolution", "model", "estimator")
 
 #: Factor on numerical errors that are interpolated between refined states, as chance differs from
 #: state to state. With it 95 to 100 % of 100 other joints were covered, without it 68 to 92 %.
@@ -113,6 +113,7 @@ def error_budget(
     domains: xr.Dataset,
     *,
     registration_spread: Mapping[str, ArrayLike] | None = None,
+    scan_spread: Mapping[str, ArrayLike] | None = None,
     ensemble: xr.Dataset | None = None,
 ) -> xr.Dataset:
     """Errors of closure, separation, area, stiffness and Delta_sigma at the map offset, by source.
@@ -120,9 +121,10 @@ def error_budget(
     ``loading`` is in the first direction of contact, at the offset of the contact maps alone;
     ``curves`` and ``domains`` are the stages ``closure`` and ``domains``. ``registration_spread``
     has by quantity half-widths (normal_force,) of the spread over registrations of two scanned
-    faces that are statistically as good, in the quantity's unit. The stage ``ensemble``, twins of a
-    scan or realisations of an embedded specimen, is a source of its own, in place of counting and
-    windows in the total of the population.
+    faces that are statistically as good, in the quantity's unit; ``scan_spread`` likewise over
+    other fair readings of two scanned faces, a source "scan" of this surface. The stage
+    ``ensemble``, twins of a scan or realisations of an embedded specimen, is a source of its own,
+    in place of counting and windows in the total of the population.
 
     The variables of :data:`_TABLE` over (quantity, source, normal_force), and those of
     :func:`derived.with_derived`; with twins ``within_twins`` (quantity, normal_force). Raises
@@ -149,6 +151,8 @@ def error_budget(
         "secant": _secant(curve),
         "estimator": _estimator(curve),
     }
+    if scan_spread is not None:
+        errors["scan"] = curve.over_quantities(**scan_spread)
     if ensemble is not None:
         spread = ensemble_spread(curve, ensemble)
         errors[ensemble.attrs["members"]] = over_loads(curve.forces, spread, _scale(curve))
@@ -167,6 +171,10 @@ def _budget(curve, values, errors, refinement, reasons, windows) -> xr.Dataset:
     """The dataset from its parts."""
     by_source = np.stack(list(errors.values()), axis=1)
     total = np.sqrt(sum(errors[source] ** 2 for source in OF_SURFACE))
+    of_surface: tuple[str, ...] = OF_SURFACE
+    if "scan" in errors:
+        # Of Delta_sigma no other reading is known.
+        total, of_surface = np.hypot(total, np.nan_to_num(errors["scan"])), (*OF_SURFACE, "scan")
     sampling = np.fmax(errors["counting"], errors["window"])
     largest = _largest(errors, _OF_WINDOW)
     for members in (TWINS, REALISATIONS):
@@ -188,7 +196,7 @@ def _budget(curve, values, errors, refinement, reasons, windows) -> xr.Dataset:
         "relative_total": total / size,
         "total_of_population": of_population,
         "relative_total_of_population": of_population / size,
-        "largest_source": _largest(errors, OF_SURFACE),
+        "largest_source": _largest(errors, of_surface),
         "largest_source_of_population": largest,
         "limit": refinement.limit,
         "observed_order": refinement.order,
@@ -338,6 +346,7 @@ def _reasons(curve, errors, refinement: Refinement, effective, registered: bool)
         if refinement.finest.max() == 1
         else "not resolved at any load refined",
         "secant": "no slope at any load",
+        "scan": "not known of this quantity",
         "estimator": "no other estimate at any load",
         "counting": f"fewer than {MIN_NODES} nodes, or no stiffness, at any load",
         "window": TOO_SMALL

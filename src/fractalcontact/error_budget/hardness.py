@@ -4,13 +4,22 @@ The joint wall strength at which contacts crush is that of the rock in bulk; wha
 bear lies between it and Tabor's three times of it.
 """
 
+from collections.abc import Mapping
+
 import numpy as np
 
+from roughcontact.contact.path import loaded_state
+from roughcontact.contact.state import ContactState
+
 from ..core.datasets import labelled
+from ..flow.aperture import crushed_reason
+from ..flow.cubic_law import WAYS, flow_of
+from ..flow.network import hydraulic_aperture
+from ..joint.joint import sliding_axis
 from ..laws.seated_laws import at_reference_pressures
 from ..states.state_scalars import aperture
 from ..states.sweep import load_steps
-from .refinement import BUDGET_QUANTITIES, LoadCurve, budget_values
+from .refinement import BUDGET_QUANTITIES, LoadCurve, budget_values, chosen_loads
 
 #: Largest ratio of the hardness of rough contacts to the joint wall strength (Tabor's 3).
 HARDEST = 3.0
@@ -28,6 +37,14 @@ _TABLE = {
         "MPa/mm",
         f"tangent stiffness of the interface at a pressure {_IF}",
     ),
+    **{
+        f"{name}_{way}_hardest": (_LOADS, unit, f"{words}, {way} the sliding, {_IF}")
+        for way in WAYS
+        for name, unit, words in (
+            ("transmissivity", "mm3", "transmissivity T = h_h^3/12 per unit viscosity"),
+            ("hydraulic_aperture", "mm", "hydraulic aperture h_h"),
+        )
+    },
 }
 
 
@@ -37,7 +54,7 @@ def of_the_hardest(curve: LoadCurve) -> dict[str, tuple]:
     NaN where contacts are elastic. Raises `NotConverged`.
     """
     hardness = HARDEST * curve.loading.solving["hardness"]
-    hardest, gap = _solved(curve, hardness)
+    hardest, gap, flows = _solved(curve, hardness)
     by_quantity = dict(zip(BUDGET_QUANTITIES, hardest, strict=True))
     pressure = curve.curve["nominal_pressure"].values
     values = {
@@ -47,24 +64,49 @@ def of_the_hardest(curve: LoadCurve) -> dict[str, tuple]:
         "contact_fraction_hardest": by_quantity["area_corrected"] / curve.loading.area,
         "seated_closure_hardest": _seated(curve, by_quantity["separation"]),
         "reference_stiffness_hardest": at_reference_pressures(pressure, by_quantity["stiffness"]),
+        **{f"transmissivity_{way}_hardest": flow for way, flow in flows.items()},
+        **{
+            f"hydraulic_aperture_{way}_hardest": hydraulic_aperture(flow)
+            for way, flow in flows.items()
+        },
     }
     return labelled(_TABLE, values)
 
 
-def _solved(curve: LoadCurve, hardness: float) -> tuple[np.ndarray, np.ndarray]:
-    """Values (quantity, normal_force) at a hardness, and mean gaps; NaN if it is infinite."""
+def _solved(
+    curve: LoadCurve, hardness: float
+) -> tuple[np.ndarray, np.ndarray, dict[str, np.ndarray]]:
+    """Values (quantity, normal_force) at a hardness, mean gaps, and T by way; NaN if infinite."""
     values = curve.over_quantities()
     gaps = np.full(len(curve.forces), np.nan)
+    flows = {way: gaps.copy() for way in WAYS}
     if not np.isfinite(hardness):
-        return values, gaps
-    solving = {**curve.loading.solving, "hardness": hardness}
+        return values, gaps, flows
+    loading = curve.loading
+    drawn = chosen_loads(curve, loading.settings.drawn_loads)
+    along = "yx"[sliding_axis(loading.direction)] if loading.slides else "x"
+    axes = dict(zip(WAYS, (along, "xy"["yx".index(along)]), strict=True))
+    solving = {**loading.solving, "hardness": hardness}
     where, highest = f"{curve.where}, hardness x {HARDEST:g}", float(curve.composite.max())
     states = load_steps(curve.composite, curve.space, curve.forces, solving, where)
     for place, state in enumerate(states):
-        limits = curve.loading.settings.box_range
+        limits = loading.settings.box_range
         values[:, place] = budget_values(state, highest, curve.reference, limits)
         gaps[place] = aperture(state).mean()
-    return values, gaps
+        if place in drawn:
+            for way, flow in _flows(state, axes).items():
+                flows[way][place] = flow
+    return values, gaps, flows
+
+
+def _flows(state: ContactState, axes: Mapping[str, str]) -> dict[str, float]:
+    """T of a state by way, mm3; NaN where it is not resolved, or crushed rock may fill the gap."""
+    gap = aperture(state)
+    crushed = loaded_state(state).permanent_set.mean()
+    if gap.any() and crushed_reason(crushed / gap.mean()):
+        return dict.fromkeys(axes, np.nan)
+    flows = {way: flow_of(gap, state.space.spacing, axis) for way, axis in axes.items()}
+    return {way: flow.transmissivity if flow.resolved else np.nan for way, flow in flows.items()}
 
 
 def _seated(curve: LoadCurve, separation: np.ndarray) -> np.ndarray:

@@ -18,6 +18,18 @@ def rms_slope(gap: np.ndarray, spacing: tuple[float, float]) -> float:
     return float(np.sqrt(2 * sums / faces)) if faces else np.nan
 
 
+#: Largest volume of crushed rock, as a fraction of the gap that is left, at which T is stated: the
+#: model lets it vanish, where gouge would fill the gap.
+MAX_CRUSHED = 0.3
+
+
+def crushed_reason(fraction: float) -> str:
+    """Reason why crushed rock leaves T unknown; empty up to :data:`MAX_CRUSHED` of the gap."""
+    if not fraction > MAX_CRUSHED:
+        return ""
+    return f"crushed rock, {fraction:.0%} of the volume of the gap, may fill it as gouge"
+
+
 def zimmerman_bodvarsson_aperture(
     mean: ArrayLike, deviation: ArrayLike, contact: ArrayLike
 ) -> np.ndarray:

@@ -6,6 +6,8 @@ The others are solved by CHOLMOD, which comes with `cvxopt`: that is under the G
 optional dependency (the extra ``flow``). Without it SuperLU of scipy solves the same equations.
 """
 
+from typing import Any
+
 import numpy as np
 from scipy import sparse
 from scipy.sparse.linalg import splu
@@ -32,14 +34,17 @@ class RedBlackCells:
 
     Parameters
     ----------
-    conductivity : (ny, nx) ndarray
-        Of the cells. Faces between two cells have the harmonic mean.
+    gap : (ny, nx) ndarray
+        g of the cells, whose conductivity is g^3.
     ends : (2, ny, nx) ndarray
         Conductance to the inlet and to the outlet over the conductivity of the cell.
     cells : (ny, nx) bool ndarray
         Cells with an equation: of positive conductivity, each joined to an end.
     spacing : (float, float)
         Sides (dy, dx) of a cell, mm.
+    linear : bool
+        Whether faces have the conductance :func:`face_conductivity` of an aperture that is linear
+        between the cells, in place of the harmonic mean of their conductivities.
 
     Attributes
     ----------
@@ -60,16 +65,18 @@ class RedBlackCells:
 
     def __init__(
         self,
-        conductivity: np.ndarray,
+        gap: np.ndarray,
         ends: np.ndarray,
         cells: np.ndarray,
         spacing: tuple[float, float],
+        *,
+        linear: bool = False,
     ):
         self.numbers, n_red = _numbered(cells)
         dy, dx = spacing
         ratios = np.array([dx / dy, dy / dx, dy / dx, dx / dy])
         self.faces, self.neighbours, self.ends = _assembled(
-            conductivity, ends, self.numbers, n_red, cells.sum(), ratios
+            gap, ends, self.numbers, n_red, cells.sum(), ratios, linear
         )
         both = self.ends.sum(axis=0)
         self._over = 1 / (self.faces.sum(axis=1) + both[n_red:])
@@ -183,21 +190,34 @@ def _separator(is_red, box):
 
 
 @njit(cache=True)
-def _assembled(conductivity, ends, numbers, n_red, n, ratios):
+def face_conductivity(a: Any, b: Any, linear: bool) -> Any:
+    """Conductivity of the face between two cells of apertures a and b > 0, or of many faces.
+
+    The harmonic mean of the cubes, 2 a^3 b^3 / (a^3 + b^3), is that of two half-cells in series.
+    An aperture linear from a to b has 1 / mean(g^-3) = 2 a^2 b^2 / (a + b), which is never less.
+    """
+    # The product of both would underflow where gaps are small: divide first.
+    ratio = a / b
+    if linear:
+        return 2 * a * a * b / (1 + ratio)
+    return 2 * a * a * a / (1 + ratio * ratio * ratio)
+
+
+@njit(cache=True)
+def _assembled(gap, ends, numbers, n_red, n, ratios, linear):
     """Faces and neighbours of the black cells, and the ends of all."""
     faces, neighbours = np.zeros((n - n_red, 4)), np.zeros((n - n_red, 4), np.int32)
     of_ends = np.empty((2, n))
     ny, nx = numbers.shape
     for (row, column), number in np.ndenumerate(numbers):
-        here = conductivity[row, column]
+        here = gap[row, column]
         if number >= 0:
-            of_ends[:, number] = ends[:, row, column] * here
+            of_ends[:, number] = ends[:, row, column] * (here * here * here)
         if number >= n_red:
             for way in range(4):
                 i, j = row + NEIGHBOURS[way][0], column + NEIGHBOURS[way][1]
                 if 0 <= i < ny and 0 <= j < nx and numbers[i, j] >= 0:
-                    # The product of both would underflow where gaps are small: divide first.
-                    face = 2 * here / (1 + here / conductivity[i, j])
+                    face = face_conductivity(here, gap[i, j], linear)
                     faces[number - n_red, way] = ratios[way] * face
                     neighbours[number - n_red, way] = numbers[i, j]
     return faces, neighbours, of_ends

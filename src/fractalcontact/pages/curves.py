@@ -27,8 +27,9 @@ COLUMNS = (
 def curves_table(study: str, subjects: list[Subject]) -> pd.DataFrame:
     """Curves of specimens, one row a point, with the total error of this surface or their interval.
 
-    A point is ``resolved`` where ten nodes touch and, of a dimension, where its interval determines
-    it; figures draw the others hollow. Points that were not solved are left out.
+    A point is ``resolved`` where ten nodes touch, most of the force acts on sound cells of the scan
+    and, of a dimension, its interval determines it; figures draw the others hollow. Points that
+    were not solved are left out.
     """
     rows: list[dict[str, Any]] = []
     for subject in subjects:
@@ -39,7 +40,7 @@ def curves_table(study: str, subjects: list[Subject]) -> pd.DataFrame:
                 # Closure is 0 at the seat by definition.
                 if number.estimate.known and not (row.zero and number.value == 0):
                     ends = (float(end) for end in number.estimate.ends)
-                    says = bool(resolved) and (number.determined or not row.dimension)
+                    says = bool(resolved) and number.determined
                     values = (row.curves, row.unit, float(number.at["pressure"]), *ends, says)
                     rows.append(dict(zip(COLUMNS, (*start, *values), strict=True)))
     return pd.DataFrame(rows, columns=list(COLUMNS))

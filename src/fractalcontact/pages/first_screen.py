@@ -107,9 +107,7 @@ def facts_of(subject: Subject, synthetic: bool = False) -> list[Fact]:
             f"contact {at}",
             "contact_fraction",
             "%",
-            "all contacts crush: pressure over hardness, whatever the scan"
-            if abs(crushed / pressure - 1) < _SAME
-            else "",
+            _ALL_CRUSH if abs(crushed / pressure - 1) < _SAME else "",
         ),
     ]
     if subject.direction != "none":
@@ -141,9 +139,12 @@ class _Block:
             return Fact(title, "–", list(filter(None, (number.missing, beside))))
         # A number and its interval have one unit, the same in all blocks.
         size, shown = (100.0, " %") if unit == "%" else (1.0, f" {unit}".removesuffix(" 1"))
+        words = f"{short(size * number.value)}{shown}"
+        if not number.determined:
+            reason = str(number.estimate.reason) or number.remark
+            return Fact(title, "undetermined", list(filter(None, (f"{words}: {reason}", beside))))
         ends = _ends(number, size, _ALONE.get(interval, ""))
         notes = ends, self._of_joint(number, size), self._harder(number, size), beside
-        words = f"{short(size * number.value)}{shown}"
         return Fact(title, words, list(filter(None, notes)))
 
     def closure(self, title: str) -> Fact:
@@ -154,13 +155,19 @@ class _Block:
         return self.fact(title, "interface_closure", "mm", "counted from first touch")
 
     def flow(self) -> str:
-        """Hydraulic aperture in words, and whether the gap is too steep for the cubic law."""
+        """Hydraulic aperture in words, and what limits it."""
         aperture, slope = (self.number(name) for name in ("hydraulic_aperture", "gap_slope"))
         if aperture.missing:
-            return ""
+            return f"no hydraulic aperture: {aperture.missing}"
         words = f"hydraulic aperture {short(aperture.value)} mm {_ends(aperture)}".rstrip()
-        steep = _value(slope) > _STEEP_GAP
-        return words + f"; cubic law not valid (gap slope {short(slope.value)})" * steep
+        steep = f"cubic law not valid (gap slope {short(slope.value)})"
+        limits = (
+            self._harder(aperture, 1.0),
+            str(aperture.estimate.reason),
+            "absolute aperture not compared with tests",
+            steep if _value(slope) > _STEEP_GAP else "",
+        )
+        return "; ".join(filter(None, (words, *limits)))
 
     def at_twice(self) -> str:
         """Change of the stiffness at twice the spacing, which no interval contains."""

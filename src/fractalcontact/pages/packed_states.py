@@ -142,15 +142,17 @@ def packed_states(atlas: xr.DataTree, name: str) -> dict[str, Any]:
 
 
 def _of_all_states(subject: Subject) -> xr.Dataset:
-    """Flow over all states; it is missing but at the reported offset."""
-    reported, closure = subject.reported, subject["closure"]
-    shown = [row.variable for row in shown_in("explorer") if row.stage == "flow"]
-    flow = subject["flow"][shown].expand_dims(
+    """Flow over all states, with reasons; it is missing but at the reported offset."""
+    reported, closure, flow = subject.reported, subject["closure"], subject["flow"]
+    rows = [row for row in shown_in("explorer") if row.stage == "flow"]
+    reasons = {row.reason.partition("/")[2] for row in rows if row.reason}
+    flow = flow[[*(row.variable for row in rows), *sorted(reasons)]].expand_dims(
         direction=[reported.direction],
         offset=[reported.offset],
         resolution=[reported.resolution],
     )
-    return flow.reindex({name: closure[name] for name in ("direction", "offset", "resolution")})
+    states = {name: closure[name] for name in ("direction", "offset", "resolution")}
+    return flow.reindex(states, fill_value=dict.fromkeys(reasons, NO_FLOW))
 
 
 def _add_with_bounds(numbers, dataset, stage, variable):

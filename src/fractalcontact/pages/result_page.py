@@ -25,6 +25,7 @@ from ..core.measured_maps import measured_maps
 from ..core.subject import Subject, configuration_of
 from ..core.tables import write_table
 from ..core.text import duration, interval, number, undetermined
+from ..report.caveats import aperture_caveat
 from ..report.published import Number, Row, row_of, shown_in, stages_of
 from ..study.atlas_parts import Trees
 from ..study.figure_list import JOINT, SPECIMEN, STUDY, all_figures
@@ -165,6 +166,7 @@ def _head(place, atlas):
         "error_words": error_words,
         "estimate": estimate_words,
         "undetermined": undetermined,
+        "aperture_caveat": aperture_caveat,
         "decided_by_scan": decided_by_scan,
         "uncertain": lambda one: interval(*one.estimate.ends),
         "sort_value": sort_value,

@@ -18,6 +18,7 @@ def columns_of(row: Row, number: Number) -> dict[str, Any]:
         fields |= {"low": number.estimate.low, "high": number.estimate.high}
     if row.budget:
         fields |= {"error_surface": number.error, "error_population": number.population}
+    if row.budget or row.hardest:
         fields["hardest"] = number.hardest
     columns: dict[str, Any] = {column_of(name, row.unit, of): value for of, value in fields.items()}
     if row.range or row.dimension:

@@ -91,6 +91,7 @@ class Row:
     of: Mapping[str, str] = field(default_factory=dict)
     all: bool = False
     budget: str = ""
+    hardest: str = ""
     error: str = ""
     within: tuple[float, float] = (0.0, math.inf)
     dimension: bool = False
@@ -279,6 +280,8 @@ def _numbers(row: Row, subject: Subject, array: xr.DataArray) -> Iterator[Number
     )
     if row.error:
         error = named(row.error)
+    if row.hardest:
+        hardest = named(row.hardest)
     ends = _ends(row, subject, array, error)
     solved = named("closure/solved" if array.dims == ("normal_force",) else "", True)
     by_scan = decided_by_scan(named("closure/suspect_load_share" if row.by_scan else ""))

@@ -16,23 +16,30 @@ from ..core.window import nominal_area
 from ..flow.aperture import (
     QUANTILES,
     barton_aperture,
+    crushed_reason,
     reynolds_gradient,
     rms_slope,
     zimmerman_bodvarsson_aperture,
 )
-from ..flow.cubic_law import WAYS, flow_of, window_interval
+from ..flow.cubic_law import WAYS, flow_of, grid_error, window_interval
 from ..flow.network import hydraulic_aperture
 from ..joint.joint import prefractal, sliding_axis
 from ..joint.jrc import profile_roughness
 from ..states.loading import JointLoading
 from ..states.state_scalars import aperture
-from ..states.states import MAP_GAP, OFFSET_GAP, with_pressure
+from ..states.states import MAP_GAP, MAP_PRESSURE, OFFSET_GAP, with_pressure
 from ..states.sweep import load_steps
 
 _LOADS = "normal_force"
 _STATES, _QUANTILES = ("branch", _LOADS), ("gap_probability", _LOADS)
 _MAP = ("flow_y", "flow_x")
 
+#: Distance by which faces are moved apart to see what their fit changes, mm.
+SHIFT = 0.1
+#: Largest error of the mean gap over windows, as a fraction of it, that counts as known.
+_MAX_GAP_ERROR = 1.0
+#: Remark on an interval without it.
+_QUARTERS_ALONE = "the interval leaves out the error of the mean gap over windows, not known here"
 #: Numbers of each way with an interval, that of the window.
 _WITH_INTERVAL = ("transmissivity", "hydraulic_aperture")
 #: Numbers of each way by dimension: unit, long name.
@@ -43,11 +50,17 @@ _OF_WAY: dict[Dims, dict[str, tuple[str, str]]] = {
         "critical_gap": ("mm", "narrowest gap of the widest passage"),
         "channel_fraction": ("1", "fraction of the window that carries 90 % of the flow"),
         "flow_imbalance": ("1", "bound on the relative error of T by mass balance and closed gaps"),
-        "flow_reason": ("1", "why T is zero or missing"),
+        "flow_reason": ("1", "why T is zero, missing or not resolved, or what its interval lacks"),
+        "flow_resolved": ("1", "whether both face values agree on T to 30 %"),
         "hydraulic_ratio": ("1", "hydraulic aperture over the mean gap"),
         "transmissivity_grid_error": (
             "mm3",
-            "change of T where every second cell is left out, no interval",
+            "half the difference of T by both face values, or the change of T where every second "
+            "cell is left out if that is larger, no interval",
+        ),
+        "transmissivity_face_difference": (
+            "mm3",
+            "T by linear apertures between cells less T by harmonic means",
         ),
         "transmissivity_separation_error": (
             "mm3",
@@ -77,6 +90,12 @@ _TABLE: dict[str, tuple[Dims, str, str]] = {
         if row == f"{name}_{way}" or name in _WITH_INTERVAL
     },
     "gap_slope": (_LOADS, "1", "rms slope of the open gap"),
+    "crushed_fraction": (_LOADS, "1", "volume of crushed rock over that of the gap left"),
+    "shifted_ratio": (
+        (),
+        "1",
+        f"T along the sliding of faces {SHIFT:g} mm farther apart over T, under the reference load",
+    ),
     "gap_quantile": (_QUANTILES, "mm", "quantile of the gap over the window"),
     "zimmerman_aperture": (_LOADS, "mm", "hydraulic aperture by Zimmerman and Bodvarsson's law"),
     "barton_aperture": (_LOADS, "mm", "hydraulic aperture by Barton's law"),
@@ -117,20 +136,28 @@ def flow_stages(
     spacing = reported.resolution * dy, reported.resolution * dx
     both = partial(_both_ways, axes, spacing)
     states = reported.states(closure)
-    error = error_budget["total"].sel(quantity="separation").values
-    gaps = next(part for part in parts if MAP_GAP in part)[MAP_GAP].values.astype(float)
+    composite = loading.composite(int(loading.at_map_offset().cells[0]))
+    composite = prefractal(composite, reported.resolution)
+    space = loading.half_space(composite.shape, reported.resolution)
+    mapped = next(part for part in parts if MAP_GAP in part)
+    gaps = mapped[MAP_GAP].values.astype(float)
+    crushed = _crushed_fractions(composite, space, states, mapped, loading.solving["hardness"])
+    errors = {
+        "separation": error_budget["total"].sel(quantity="separation").values,
+        "mean_gap": error_budget["mean_gap_total_of_population"].values / states["mean_gap"].values,
+    }
     values: dict[str, Any] = {
+        "crushed_fraction": crushed,
         "gap_slope": [rms_slope(gap, spacing) for gap in gaps],
         "gap_quantile": np.quantile(gaps, QUANTILES, axis=(1, 2)),
         **_laws(states, specimens, loading),
     }
     for way, axis in axes.items():
-        values |= _over_loads(way, axis, gaps, spacing, states, error, reported)
+        values |= _over_loads(way, axis, gaps, spacing, states, errors, crushed, reported)
+    reference = gaps[reported.reference]
+    values["shifted_ratio"] = _shifted_ratio(reference, spacing, axes[WAYS[0]])
     loaded = {"mean_gap": states["mean_gap"].values}
     loaded |= {of: values[of] for of in (f"transmissivity_{way}" for way in WAYS)}
-    composite = loading.composite(int(loading.at_map_offset().cells[0]))
-    composite = prefractal(composite, reported.resolution)
-    space = loading.half_space(composite.shape, reported.resolution)
     for prefix, numbers in {
         "branch": _of_branches(composite, space, loading, branches, both, loaded),
         "offset": _over_offsets(parts, closure["offset"].values, both, reported, loaded),
@@ -157,19 +184,47 @@ def flow_stages(
 
 
 def _both_ways(axes, spacing, gap):
-    """Mean gap and transmissivities of a gap."""
+    """Mean gap of a gap, and transmissivities that the grid resolves; NaN else."""
+    flows = {way: flow_of(gap, spacing, axis) for way, axis in axes.items()}
     return {"mean_gap": float(gap.mean())} | {
-        f"transmissivity_{way}": flow_of(gap, spacing, axis).transmissivity
-        for way, axis in axes.items()
+        f"transmissivity_{way}": flow.transmissivity if flow.resolved else np.nan
+        for way, flow in flows.items()
     }
 
 
-def _over_loads(way, axis, gaps, spacing, states, error, reported):
+def _crushed_fractions(composite, space, states, mapped, hardness):
+    """Volume pressed in for good over that of the gap left, over the loads."""
+    if not np.isfinite(hardness):
+        return np.zeros(states.sizes["normal_force"])
+    clearance, fractions = composite.max() - composite, []
+    pressures, gaps = mapped[MAP_PRESSURE].values, mapped[MAP_GAP].values
+    for pressure, gap, closure in zip(pressures, gaps, states["closure"].values, strict=True):
+        # The stored gap is 0 where a node yields: what is pressed in lies below.
+        overlap = closure - clearance - space.displacement(pressure.astype(float))
+        pressed = np.maximum(overlap, 0).sum(where=pressure >= np.float32(hardness))
+        left = float(gap.sum(dtype=float))
+        fractions.append(pressed / left if left else np.inf if pressed else 0.0)
+    return np.array(fractions)
+
+
+def _shifted_ratio(gap, spacing, axis):
+    """T of faces :data:`SHIFT` farther apart over that of the gap; NaN where nothing flows."""
+    flow, apart = (flow_of(one, spacing, axis).transmissivity for one in (gap, gap + SHIFT))
+    return apart / flow if flow > 0 else np.nan
+
+
+def _over_loads(way, axis, gaps, spacing, states, errors, crushed, reported):
     """Numbers of the flow one way on loading, and the flux map under the reference load."""
     # A joint that does not slide has no way across: its second way is solved at quoted loads.
     every = way == WAYS[0] or reported.direction != "none"
     rows = {
-        load: _numbers(gap, spacing, axis, errors=load in reported.quoted)
+        load: _numbers(
+            gap,
+            spacing,
+            axis,
+            crushed[load],
+            errors["mean_gap"][load] if load in reported.quoted else None,
+        )
         for load, gap in enumerate(gaps)
         if every or load in reported.quoted
     }
@@ -177,6 +232,7 @@ def _over_loads(way, axis, gaps, spacing, states, error, reported):
     nothing = dict.fromkeys(rows[reported.reference], np.nan) | {
         "transmissivity": NO_ESTIMATE,
         "flow_reason": "solved under the reported loads alone",
+        "flow_resolved": True,
     }
     of_loads = [rows.get(load, nothing) for load in range(len(gaps))]
     values = {name: np.array([one[name] for one in of_loads]) for name in nothing}
@@ -186,7 +242,9 @@ def _over_loads(way, axis, gaps, spacing, states, error, reported):
     opened, closed = _percolation_pressures(states["nominal_pressure"].values, flow.value)
     values |= {
         "hydraulic_ratio": hydraulic.value / mean,
-        "transmissivity_separation_error": _separation_error(mean, flow.value, error),
+        "transmissivity_separation_error": _separation_error(
+            mean, flow.value, errors["separation"]
+        ),
         "reynolds_gradient": reynolds_gradient(flow.value),
         "flux_map": flux,
         "last_open_pressure": opened,
@@ -199,19 +257,36 @@ def _over_loads(way, axis, gaps, spacing, states, error, reported):
     }
 
 
-def _numbers(gap, spacing, axis, *, errors):
-    """Numbers of the flow through a gap; the errors of T take five more solves, of parts of it."""
+def _numbers(gap, spacing, axis, crushed, gap_error):
+    """Numbers of the flow through a gap.
+
+    The errors of T take five more flows, of parts of it; ``gap_error``, of the mean gap over
+    windows as a fraction of it, is None where they are not wanted. One larger than the gap says
+    nothing of it: then the interval is that of the quarters, and the remark says so.
+    """
     flow = flow_of(gap, spacing, axis)
-    whole, (dy, dx) = flow.transmissivity, spacing
-    coarse = flow_of(gap[::2, ::2], (2 * dy, 2 * dx), axis).transmissivity if errors else np.nan
+    whole, reason, off_grid = Estimate(flow.transmissivity), flow.reason, np.nan
+    if gap_error is not None:
+        known = gap_error <= _MAX_GAP_ERROR
+        whole = window_interval(
+            gap, spacing, axis, flow.transmissivity, gap_error if known else 0.0
+        )
+        if whole.known and np.isfinite(whole.low) and not known:
+            reason = reason or _QUARTERS_ALONE
+        off_grid = grid_error(gap, spacing, axis, flow)
+    unknown = crushed_reason(crushed) or ("" if flow.resolved else flow.reason)
+    if unknown and flow.transmissivity > 0:
+        whole, reason, off_grid = NO_ESTIMATE, unknown, np.nan
     return {
-        "transmissivity": window_interval(gap, spacing, axis, whole) if errors else Estimate(whole),
-        "transmissivity_grid_error": abs(coarse - whole),
+        "transmissivity": whole,
+        "transmissivity_grid_error": off_grid,
+        "transmissivity_face_difference": flow.face_difference,
         "critical_gap": flow.critical_gap,
         "channel_fraction": flow.channel_fraction,
         "flux_map": flow.flux,
         "flow_imbalance": flow.imbalance,
-        "flow_reason": flow.reason,
+        "flow_reason": reason,
+        "flow_resolved": flow.resolved,
     }
 
 
@@ -263,7 +338,10 @@ def _of_branches(composite, space, loading, branches, both, loaded):
         where = f"specimen {loading.specimen.attrs['name']}, unloading"
         states = load_steps(composite - held, space, forces[descending], elastic, where)
         for load, state in zip(descending, states, strict=True):
-            for name, value in both(aperture(state)).items():
+            numbers = both(aperture(state))
+            if crushed_reason(held.mean() / numbers["mean_gap"]):
+                numbers |= {name: np.nan for name in numbers if name != "mean_gap"}
+            for name, value in numbers.items():
                 values[name][1:, load] = value
     return values
 

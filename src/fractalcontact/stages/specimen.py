@@ -14,6 +14,7 @@ from ..roughness.dimension import surface_dimension
 from ..roughness.quality import scan_quality
 from ..scan.read import read_faces
 from ..surface.specimen import make_specimen, window_arguments
+from .other_readings import with_other_readings
 
 
 def stages_of_scan(
@@ -39,7 +40,8 @@ def prepare_specimen(
 ) -> xr.Dataset:
     """Specimen of :func:`surface.specimen.make_specimen`: faces read and levelled, window placed.
 
-    Of two registered faces it also holds further motions that are statistically as good.
+    Of two registered faces it also holds further motions that are statistically as good, and the
+    heights by other fair readings of the scans.
 
     Parameters
     ----------
@@ -58,8 +60,11 @@ def prepare_specimen(
     faces = read_faces(lower, upper, options)
     specimen = make_specimen(*faces, name=name, **window_arguments(settings))
     z_l, z_u = faces
-    motions = [] if z_u is None else scattered_motions(z_l, z_u)
-    return specimen.assign(motion_variables(motions)) if motions else specimen
+    if z_u is None or upper is None:
+        return specimen
+    if motions := scattered_motions(z_l, z_u):
+        specimen = specimen.assign(motion_variables(motions))
+    return with_other_readings(specimen, (z_l, z_u), (lower, upper), options, settings)
 
 
 @titled(

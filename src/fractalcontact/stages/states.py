@@ -27,6 +27,7 @@ from ..states.left_out import left_of_fields
 from ..states.loading import JointLoading
 from ..states.plan import solve_plan
 from ..states.registration_spread import registration_spread
+from ..states.scan_spread import scan_spread
 from ..states.separation import prefractal_openings
 from ..states.states import (
     DIP,
@@ -124,6 +125,7 @@ def state_stages(
         stages["closure"],
         stages["domains"],
         registration_spread=registration_spread(loading),
+        scan_spread=scan_spread(loading),
         ensemble=ensemble,
     )
     plan = solve_plan(stages["closure"], stages["dilatancy"], solver, budget)

@@ -45,9 +45,10 @@ SOURCES = {
     "estimator": "ordinary slope: another estimator, in no total",
     TWINS: "twins of the scan, in place of counting, windows",
     REALISATIONS: "realisations, in place of counting, windows",
+    "scan": "other readings of the scans",
 }
 TOTALS = {
-    "total": "total for this very surface\n(solver, numerical, secant)",
+    "total": "total for this very surface\n(solver, numerical, secant, scan)",
     "total_of_population": (
         "total for any surface of its kind\n(also counting or windows, registration)"
     ),

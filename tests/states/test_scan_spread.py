@@ -1,0 +1,88 @@
+"""Scan error: nothing where readings agree, and their largest distance where they differ."""
+
+import numpy as np
+import pytest
+from samples import scan_of
+
+from fractalcontact.states.loading import JointLoading
+from fractalcontact.states.scan_spread import (
+    OTHER_FACES,
+    READING,
+    other_readings,
+    reading_values,
+    scan_spread,
+)
+from fractalcontact.states.subgrid import QUANTITIES
+from fractalcontact.study.configuration import resolve_settings, solver_settings
+from fractalcontact.surface.specimen import make_specimen, window_arguments
+from fractalcontact.surface.synthesis import self_affine
+
+STUDY = {
+    "study": "tiny",
+    "materials": {"rock": {"modulus": "20 GPa", "poisson": 0.2}},
+    "defaults": {
+        "material": "rock",
+        "contact_directions": ["E"],
+        "loads": ["1 MPa", "25 MPa"],
+        "resolutions": [1],
+        "window": "16 mm",
+    },
+}
+SETTINGS = resolve_settings(STUDY, "rock", {}, "tiny")
+
+
+def loading(*changes):
+    """A pair with further readings, each the upper face plus a change (ny, nx)."""
+    z = self_affine((48, 48), 0.5, 0.8, rms=0.5, seed=1)
+    upper = z + 0.1 * self_affine((48, 48), 0.5, 0.8, rms=0.5, seed=2)
+    faces = scan_of(z), scan_of(upper + 0.5)
+    specimen = make_specimen(*faces, name="rock", **window_arguments(SETTINGS))
+    if changes:
+        own = np.stack([specimen["lower"].values, specimen["upper"].values])
+        heights = [own + np.stack([np.zeros_like(change), change]) for change in changes]
+        names = [f"reading {i}" for i in range(len(changes))]
+        specimen = specimen.assign_coords({READING: names, "face": ["lower", "upper"]})
+        specimen = specimen.assign({OTHER_FACES: ((READING, "face", "y", "x"), np.stack(heights))})
+    return JointLoading(specimen, "E", 0, SETTINGS, solver_settings({}, "tiny")).at(0)
+
+
+def test_a_single_reading_has_no_spread():
+    assert scan_spread(loading()) is None
+    assert other_readings(loading().specimen) == {}
+
+
+def test_readings_that_differ_by_their_height_alone_have_no_spread():
+    spread = scan_spread(loading(np.full((48, 48), 0.3)))
+    assert spread.keys() == set(QUANTITIES)
+    for name, of in spread.items():
+        np.testing.assert_allclose(of, 0, atol=1e-6, err_msg=name)
+
+
+def test_the_spread_is_the_largest_distance_of_a_reading_from_this_one():
+    rough = 0.05 * self_affine((48, 48), 0.5, 0.6, rms=1.0, seed=3)
+    joint = loading(rough, 3 * rough)
+    values, spread = reading_values(joint), scan_spread(joint)
+    for name, of in values.items():
+        assert of.shape == (3, 2)
+        np.testing.assert_allclose(spread[name], np.abs(of[1:] - of[0]).max(axis=0))
+    # Rougher faces close more under the heavy load, and a further reading narrows nothing.
+    assert values["closure"][2, 1] > values["closure"][0, 1]
+    alone = scan_spread(loading(rough))
+    assert all((spread[name] >= alone[name] * (1 - 1e-6)).all() for name in spread)
+
+
+def test_a_reading_with_a_hole_in_the_window_is_left_out():
+    hole = np.zeros((48, 48))
+    hole[24, 24] = np.nan
+    assert scan_spread(loading(hole)) is None
+    rough = 0.05 * self_affine((48, 48), 0.5, 0.6, rms=1.0, seed=3)
+    assert reading_values(loading(hole, rough))["closure"].shape == (2, 2)
+
+
+def test_each_reading_has_its_own_faces():
+    joint = loading(np.full((48, 48), 0.2), np.full((48, 48), 0.4))
+    readings = other_readings(joint.specimen)
+    for (name, specimen), rise in zip(readings.items(), (0.2, 0.4), strict=True):
+        change = specimen["upper"].values - joint.specimen["upper"].values
+        assert change == pytest.approx(rise), name
+        np.testing.assert_array_equal(specimen["lower"], joint.specimen["lower"])
