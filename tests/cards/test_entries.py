@@ -6,7 +6,6 @@ import pytest
 
 from fractalcontact.cards.entries import number
 from fractalcontact.core.estimate import Estimate
-from fractalcontact.pages.first_screen import _fact
 from fractalcontact.report.published import BY_SCAN, Number, row_of
 
 SUBJECT = SimpleNamespace(stages={})
@@ -23,15 +22,6 @@ def test_a_number_that_suspicious_cells_decide_is_undetermined(name):
     assert decided["determined"] is False
     assert decided["note"] == BY_SCAN
     assert decided["value"] == sound["value"]
-
-
-def test_the_first_screen_calls_it_undetermined_and_says_why():
-    row = number(
-        row_of("mean_gap"), SUBJECT, Number({}, Estimate(0.1, 0.09, 0.11), determined=False)
-    )
-    fact = _fact({}, "mean gap", row, "mm", "counted")
-    assert fact.words == "undetermined"
-    assert fact.notes == [f"0.1 mm: {BY_SCAN}", "counted"]
 
 
 def test_an_interval_says_what_it_leaves_out():

@@ -37,7 +37,7 @@ from fractalcontact.pages.matrix import (
     of_study,
 )
 from fractalcontact.pages.summary import sheet_of
-from fractalcontact.report.published import Number, read_at
+from fractalcontact.report.published import BY_SCAN, Number, read_at
 from fractalcontact.roughness.quality_words import overlap_words
 from fractalcontact.statements.comparison import compared_pressures
 from fractalcontact.statements.judge import rule_of
@@ -466,6 +466,12 @@ def facts_with(atlas, monkeypatch):
 
 def of(value, low=np.nan, high=np.nan, **fields):
     return Number({"pressure": 125.0}, Estimate(value, low, high), **fields)
+
+
+def test_a_number_that_suspicious_cells_decide_is_undetermined_and_says_why(facts_with):
+    fact = facts_with(mean_gap=of(0.1, 0.09, 0.11, determined=False))[2]
+    assert fact.words == "undetermined"
+    assert fact.notes[0] == f"0.1 mm: {BY_SCAN}"
 
 
 def test_the_strength_is_the_range_of_its_rules(facts_with):
