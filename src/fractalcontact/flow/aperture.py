@@ -3,6 +3,8 @@
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ..core.text import percent
+
 #: Quantiles of the aperture that are kept.
 QUANTILES = (0.05, 0.25, 0.5, 0.75, 0.95)
 
@@ -27,7 +29,7 @@ def crushed_reason(fraction: float) -> str:
     """Reason why crushed rock leaves T unknown; empty up to :data:`MAX_CRUSHED` of the gap."""
     if not fraction > MAX_CRUSHED:
         return ""
-    return f"crushed rock, {fraction:.0%} of the volume of the gap, may fill it as gouge"
+    return f"crushed rock, {percent(fraction)} of the volume of the gap, may fill it as gouge"
 
 
 def zimmerman_bodvarsson_aperture(

@@ -10,6 +10,7 @@ from scipy import ndimage
 
 from roughcontact.kernel_cache import njit
 
+from ..core.text import percent
 from .red_black import NEIGHBOURS, RedBlackCells, face_conductivity
 
 #: Face values between cells, by name: whether each of the flows that are solved takes an aperture
@@ -187,7 +188,8 @@ def _mean_flow(flows: Sequence[Flow]) -> Flow:
     flow = Flow(mean, error, low.critical_gap, flux, face_difference=difference)
     if flow.resolved:
         return flow
-    reason = f"the grid does not resolve the flow: face values change T by {difference / mean:.0%}"
+    change = percent(difference / mean)
+    reason = f"the grid does not resolve the flow: face values change T by {change}"
     return replace(flow, reason=reason)
 
 
