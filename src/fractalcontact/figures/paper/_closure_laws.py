@@ -10,11 +10,7 @@ from matplotlib.axes import Axes
 from ...core.estimate import EXPONENT, Estimate
 from ...core.subject import Subject
 from ...core.text import compact, percent
-from ..kit.axes import force_axis
-from ..kit.drawing import MARKERS, colour_of
-from ..kit.empty import TOO_FULL, say_empty
-from ..kit.points import draw_points
-from ..kit.words import NOMINAL_PRESSURE
+from .. import kit
 
 #: One line for each law, whatever its curve and panel: style, words, what it is drawn from.
 LINES: dict[str, tuple[Any, str, str]] = {
@@ -30,7 +26,7 @@ OPEN = {"mfc": "none", "ms": 3, "mew": 0.6}
 def each_curve(drawn: xr.Dataset) -> Iterator[tuple[xr.Dataset, dict[str, Any]]]:
     """Every curve that is drawn, with its colour and marker."""
     for n in range(drawn.sizes["offset"]):
-        yield drawn.isel(offset=n), {"color": colour_of(n), "marker": MARKERS[n]}
+        yield drawn.isel(offset=n), {"color": kit.colour_of(n), "marker": kit.MARKERS[n]}
 
 
 def is_known(data: xr.Dataset, name: str) -> bool:
@@ -40,11 +36,11 @@ def is_known(data: xr.Dataset, name: str) -> bool:
 
 def draw_closure(axes: Axes, drawn: xr.Dataset, subject: Subject) -> None:
     """Closure curves with both laws over the loads that they were fitted to."""
-    size = force_axis(axes.yaxis, drawn["normal_force"])
+    size = kit.force_axis(axes.yaxis, drawn["normal_force"])
     for curve, style in each_curve(drawn):
         label = f"{offset_words(subject, float(curve['offset']))}: {_law_words(curve)}"
         points = curve["interface_closure"], curve["normal_force"] / size, curve["resolved"]
-        draw_points(axes, *points, OPEN, label=label, **style)
+        kit.draw_points(axes, *points, OPEN, label=label, **style)
         _draw_laws(
             axes, curve, ("hyperbola", "semi_logarithmic"), subject.area, subject.area / size
         )
@@ -55,17 +51,19 @@ def draw_closure(axes: Axes, drawn: xr.Dataset, subject: Subject) -> None:
         if 0 < limit < 1e-3:  # long numbers would stand one over the other
             axes.ticklabel_format(axis="x", scilimits=(0, 0))
     else:
-        say_empty(axes, TOO_FULL)
+        kit.say_empty(axes, kit.TOO_FULL)
     axes.set_ylim(0, 1.05 * float(drawn["normal_force"][-1]) / size)
     axes.set_xlabel(r"closure $w_\mathrm{int}$ from first touch (mm)")
-    second_axis(axes, size / subject.area, f"{NOMINAL_PRESSURE} (MPa)")
+    second_axis(axes, size / subject.area, f"{kit.NOMINAL_PRESSURE} (MPa)")
 
 
 def draw_light_loads(axes: Axes, drawn: xr.Dataset, subject: Subject) -> None:
     """The closure curves on logarithmic axes with their hyperbolas, down to k_ni at light load."""
     pressure = drawn["nominal_pressure"].values
     for curve, style in each_curve(drawn):
-        draw_points(axes, curve["interface_closure"], pressure, curve["resolved"], OPEN, **style)
+        kit.draw_points(
+            axes, curve["interface_closure"], pressure, curve["resolved"], OPEN, **style
+        )
         _draw_laws(axes, curve, ("hyperbola", "beyond"), subject.area)
     axes.set(xscale="log", yscale="log")
     drawable = drawn["interface_closure"].where(drawn["interface_closure"] > 0)
@@ -73,9 +71,9 @@ def draw_light_loads(axes: Axes, drawn: xr.Dataset, subject: Subject) -> None:
         axes.set_xlim(float(drawable.min()) / 1.5, float(drawable.max()) * 1.5)
         axes.set_ylim(pressure[0] / 1.5, pressure[-1] * 1.5)
     else:
-        say_empty(axes, TOO_FULL)
+        kit.say_empty(axes, kit.TOO_FULL)
     axes.set_xlabel(r"closure $w_\mathrm{int}$ from first touch (mm)")
-    axes.set_ylabel(f"{NOMINAL_PRESSURE} (MPa)")
+    axes.set_ylabel(f"{kit.NOMINAL_PRESSURE} (MPa)")
 
 
 def _draw_laws(axes, curve, lines, area, unit=1.0):

@@ -10,15 +10,7 @@ from ...core.estimate import DIMENSION, Estimate
 from ...core.subject import Subject
 from ...core.text import compact, length_unit
 from ...core.window import face_words, spacing_of
-from ..kit.caption import caption
-from ..kit.drawing import COLOURS, WIDTH, Drawing
-from ..kit.empty import say_empty
-from ..kit.legends import heading
-from ..kit.maps import missing_patch, scan_extent
-from ..kit.panel import rows
-from ..kit.points import reach
-from ..kit.relief import draw_faces
-from ..kit.titles import headline, letter
+from .. import kit
 
 TITLE = "Fig. 2: shaded relief of the levelled faces, and the surface dimension"
 SUBJECT = "specimen"
@@ -29,7 +21,7 @@ ORDER = 20
 _COLUMNS = ("dimension", "hurst_x", "hurst_y", "fit_min", "fit_max", "n", "recommended")
 
 
-def draw(atlas: DataTree, name: str) -> Drawing:
+def draw(atlas: DataTree, name: str) -> kit.Drawing:
     """Relief of each face under light from the North-West, and Delta_g by every estimator.
 
     Its data are the estimates of Delta_g, of the lower face.
@@ -37,28 +29,28 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     subject = Subject.of(atlas, name)
     specimen, dimension = subject["specimens"], subject["surface_dimension"]
     faces = [face for face in ("lower", "upper") if face in specimen]
-    sides = scan_extent(specimen)
+    sides = kit.scan_extent(specimen)
     alone = len(faces) == 1
 
-    width = WIDTH * (0.55 if alone else 0.35)
+    width = kit.WIDTH * (0.55 if alone else 0.35)
     height = min(max(width * sides[0] / sides[1], 1.6), 1.3 * width) + 1.2
-    figure = Figure(figsize=(WIDTH, height))
+    figure = Figure(figsize=(kit.WIDTH, height))
     ratios = [1.6 if alone else 1.2] * len(faces) + [1]
     *maps, axes = figure.subplots(1, len(ratios), width_ratios=ratios)
-    handles: list[Artist] = [draw_faces(figure, maps, specimen, faces, sides)]
+    handles: list[Artist] = [kit.draw_faces(figure, maps, specimen, faces, sides)]
     if any(not np.isfinite(specimen[face]).all() for face in faces):
-        handles.append(missing_patch())
+        handles.append(kit.missing_patch())
     handles += _draw_dimensions(axes, dimension)
-    handles += map(heading, _range_words(dimension))
+    handles += map(kit.heading, _range_words(dimension))
     titles = [*(face_words(specimen, face) for face in faces)]
     titles.append(rf"$\Delta_g$ of the {titles[0]}")
     for panel, which, title in zip((*maps, axes), "abc", titles, strict=False):
-        letter(panel, which, title)
+        kit.letter(panel, which, title)
     figure.legend(handles=handles, loc="outside lower left", ncols=3, columnspacing=1)
-    headline(figure, subject.label, below=_size_words(specimen, sides))
+    kit.headline(figure, subject.label, below=_size_words(specimen, sides))
     best = dimension["estimator"] == dimension["recommended"]
-    table = rows(dimension.assign(recommended=best), *_COLUMNS, "known_dimension", face="lower")
-    return Drawing(figure, table, _caption(specimen, faces, dimension))
+    table = kit.rows(dimension.assign(recommended=best), *_COLUMNS, "known_dimension", face="lower")
+    return kit.Drawing(figure, table, _caption(specimen, faces, dimension))
 
 
 def _draw_dimensions(axes, dimension):
@@ -73,7 +65,7 @@ def _draw_dimensions(axes, dimension):
     axes.set_xlabel(r"surface dimension $\Delta_g$ (1)")
     axes.xaxis.set_major_locator(MaxNLocator(4, steps=[1, 2, 5, 10]))
     if not found.known.any():
-        say_empty(axes, "no fit: the scan has\ntoo few scales")
+        kit.say_empty(axes, "no fit: the scan has\ntoo few scales")
         axes.set_xticks([])
         return []
     recommended = rf"recommended $\Delta_g$ {_recommended(dimension).text()}"
@@ -83,17 +75,17 @@ def _draw_dimensions(axes, dimension):
     handles = []
     for those, label, style in (
         (~best, "other estimators, 95 %", {"color": "0.45", "mfc": "white"}),
-        (best, recommended, {"color": COLOURS[1]}),
+        (best, recommended, {"color": kit.COLOURS[1]}),
     ):
         of = found.known & those
         if of.any():
-            value, bars = found.value[of], reach(*found[of].ends)
+            value, bars = found.value[of], kit.reach(*found[of].ends)
             style |= {"fmt": "o", "capsize": 2, "label": label}
             handles.append(axes.errorbar(value, places[of], xerr=bars, **style))
     known = float(dimension["known_dimension"])
     if np.isfinite(known):
         label = rf"known $\Delta_g$ {compact(known)}"
-        handles.append(axes.axvline(known, color=COLOURS[2], ls="--", lw=0.8, label=label))
+        handles.append(axes.axvline(known, color=kit.COLOURS[2], ls="--", lw=0.8, label=label))
     axes.grid(axis="x", color="0.9", lw=0.5)
     return handles
 
@@ -126,7 +118,7 @@ def _size_words(specimen, sides):
 
 
 def _caption(specimen, faces, dimension):
-    return caption(
+    return kit.caption(
         __name__,
         faces=faces,
         absent=1 - float(specimen["valid"].mean()),

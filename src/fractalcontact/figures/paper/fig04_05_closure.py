@@ -11,15 +11,7 @@ from ...core.estimate import EXPONENT, Estimate
 from ...core.limits import CORRECTED_NODES, GOOD_FIT, RESOLVED_NODES
 from ...core.subject import Subject
 from ...core.text import number, percent
-from ..kit.axes import force_axis
-from ..kit.caption import caption
-from ..kit.drawing import WIDTH, Drawing, spread
-from ..kit.legends import entries, heading, legends_below, mark
-from ..kit.panel import Panel, rows, table_of
-from ..kit.points import draw_points
-from ..kit.titles import headline, letter
-from ..kit.verdicts import claim
-from ..kit.words import place
+from .. import kit
 from ._closure_laws import (
     LINES,
     OPEN,
@@ -60,45 +52,45 @@ _COLUMNS = (
 )
 
 
-def draw(atlas: DataTree, name: str) -> Drawing:
+def draw(atlas: DataTree, name: str) -> kit.Drawing:
     """Closure and contact area at about five offsets, and stiffness over the spacing at one."""
     subject = Subject.of(atlas, name)
     laws = subject.curves("area")
     laws = laws[[one for one in laws.data_vars if str(one).startswith("corrected_")]]
     curves = subject.curves().assign(laws.data_vars)
     count = curves.sizes["offset"]
-    drawn = curves.isel(offset=spread(count, CURVES))
+    drawn = curves.isel(offset=kit.spread(count, CURVES))
     stiffness = over_spacing(subject)
 
-    figure = Figure(figsize=(WIDTH, 7.6))
+    figure = Figure(figsize=(kit.WIDTH, 7.6))
     panels = figure.subplot_mosaic("ab;cd", height_ratios=[1.1, 1])
     where = offset_words(subject, subject.offset)
-    d = Panel(panels["d"], "d", f"stiffness over the spacing, {where}")
+    d = kit.Panel(panels["d"], "d", f"stiffness over the spacing, {where}")
     draw_closure(panels["a"], drawn, subject)
     draw_light_loads(panels["b"], drawn, subject)
     _draw_area(panels["c"], drawn, subject)
     missing = draw_stiffness(d, stiffness)
     some = f", {drawn.sizes['offset']} of the {count} offsets drawn" if count > CURVES else ""
-    letter(panels["a"], "a", f"closure{some}")
-    letter(panels["b"], "b", f"light loads{_softer(curves)}")
-    letter(panels["c"], "c", "contact area")
+    kit.letter(panels["a"], "a", f"closure{some}")
+    kit.letter(panels["b"], "b", f"light loads{_softer(curves)}")
+    kit.letter(panels["c"], "c", "contact area")
     of_laws = _keyed(_LEGEND, panels["a"], "semi_logarithmic", "hyperbola", "beyond")
     of_areas = _keyed(_LEGEND_AREA, panels["c"], "area")
-    of_areas += [heading(_LEGEND_STIFFNESS), *entries(d.axes)] if d.axes.has_data() else []
-    of_areas += [mark(color="0.3", ls="none", marker="o", label=_HOLLOW, **OPEN)]
-    of_areas += [heading(line) for line in missing]
-    legends_below(figure, of_laws, of_areas)
-    headline(figure, subject.label, place(subject.direction))
-    table = [rows(drawn, *_COLUMNS, panel="a, b, c"), table_of(d)]
+    of_areas += [kit.heading(_LEGEND_STIFFNESS), *kit.entries(d.axes)] if d.axes.has_data() else []
+    of_areas += [kit.mark(color="0.3", ls="none", marker="o", label=_HOLLOW, **OPEN)]
+    of_areas += [kit.heading(line) for line in missing]
+    kit.legends_below(figure, of_laws, of_areas)
+    kit.headline(figure, subject.label, kit.place(subject.direction))
+    table = [kit.rows(drawn, *_COLUMNS, panel="a, b, c"), kit.table_of(d)]
     words = {
         "laws": Counter(filter(None, curves["closure_law"].values.tolist())),
         "no_law": no_law(curves.isel(offset=-1)),
         "limit": percent(GOOD_FIT),
         "state": subject.state("closure"),
-        "hyperbola": claim(atlas, name, "closure_is_hyperbolic", numbers=False),
-        "linear": claim(atlas, name, "area_is_linear"),
+        "hyperbola": kit.claim(atlas, name, "closure_is_hyperbolic", numbers=False),
+        "linear": kit.claim(atlas, name, "area_is_linear"),
     }
-    return Drawing(figure, pd.concat(table, ignore_index=True), caption(__name__, **words))
+    return kit.Drawing(figure, pd.concat(table, ignore_index=True), kit.caption(__name__, **words))
 
 
 def _softer(curves):
@@ -110,7 +102,7 @@ def _softer(curves):
 
 def _draw_area(axes, drawn, subject):
     """Real contact area with its power law; raw, and hollow, where it is not corrected."""
-    size = force_axis(axes.xaxis, drawn["normal_force"])
+    size = kit.force_axis(axes.xaxis, drawn["normal_force"])
     force = drawn["normal_force"].values / size
     for curve, style in each_curve(drawn):
         enough = curve["area_corrected_resolved"].values
@@ -122,7 +114,7 @@ def _draw_area(axes, drawn, subject):
         )
         share = 100 * np.where(enough, curve["area_corrected_share"], curve["area_share"])
         label = f"{offset_words(subject, float(curve['offset']))}: {words}"
-        draw_points(axes, force, share, enough, OPEN, label=label, **style)
+        kit.draw_points(axes, force, share, enough, OPEN, label=label, **style)
         if exponent.known:
             ends = np.array([float(curve[f"corrected_force_{end}"]) for end in ("low", "high")])
             line = 100 * float(curve["corrected_unit_area"]) * ends**exponent.value / subject.area
@@ -134,5 +126,5 @@ def _draw_area(axes, drawn, subject):
 def _keyed(head, axes, *lines):
     """Legend entries of axes under a heading, and the meaning of lines."""
     style = {"color": "0.3", "lw": 0.9}
-    named = [mark(ls=LINES[line][0], label=LINES[line][1], **style) for line in lines]
-    return [heading(head), *entries(axes), *named]
+    named = [kit.mark(ls=LINES[line][0], label=LINES[line][1], **style) for line in lines]
+    return [kit.heading(head), *kit.entries(axes), *named]
