@@ -18,7 +18,7 @@ NEEDS = ("study_comparison",)
 KEY = "comparison"
 ORDER = 6
 
-#: Title and axis of every quantity: the first has one value a specimen, the others one a load.
+#: Title and axis of each quantity. The first has one value per specimen, the others one per load.
 _QUANTITIES = {
     "delta_g": ("surface", r"surface dimension $\Delta_g$ (1)"),
     "stiffness": ("stiffness", r"$\mathrm{d}\sigma_0/\mathrm{d}w_\mathrm{int}$ (MPa/mm)"),
@@ -26,19 +26,16 @@ _QUANTITIES = {
     "dilatancy": ("dilatancy", r"elastic dilatancy $\delta$ (mm)"),
     "size_exponent": ("size effect", r"exponent of $A_r/A_0$ against $b$ (1)"),
 }
-#: What stands for a group in a study that states none.
+#: Name of the group in a study that states none.
 _UNGROUPED = "no group"
-#: Specimens or groups at most that are drawn: colours there are. The table has all of them.
+#: Maximum number of specimens or groups drawn, one per colour. The table has all of them.
 _MOST = 7
-#: Letters of a line of a label in the legend.
+#: Length of a line of the legend, letters.
 _LETTERS = 28
 
 
 def draw(atlas: DataTree, names: Sequence[str]) -> kit.Drawing:
-    """Quantities with their intervals; of groups the means and the spread of specimens.
-
-    Its data are the specimens under every load and, where it draws groups, their means.
-    """
+    """Quantities of specimens, or means of groups with their spread, with intervals."""
     compared = atlas["study_comparison/study"].to_dataset()
     few = compared.sizes["specimen"] <= _MOST
     single = few and set(compared["group"].values) == {_UNGROUPED}

@@ -8,7 +8,7 @@ from ...core.estimate import EXPONENT, Estimate
 from ...core.text import compact
 from .. import kit
 
-#: Colours and markers of these; the loads have the others.
+#: Colours and markers of the offsets; the loads have the others.
 _OFFSET_COLOURS = (kit.COLOURS[3], kit.COLOURS[4], kit.COLOURS[5])
 _OFFSET_MARKERS = ("D", "v", "P")
 _SIZES = ("cluster_area", "clusters_at_least", "cluster_law_count", "cluster_law_followed")

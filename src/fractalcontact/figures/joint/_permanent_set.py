@@ -9,7 +9,7 @@ from matplotlib.figure import FigureBase
 from ...core.text import length_unit, pressure_label
 from .. import kit
 
-#: Fractions of the loading branch: label, marker.
+#: Label and marker of the fractions of the loading branch.
 _FRACTIONS = {
     "yielded_fraction": ("fraction of the window", "o"),
     "plastic_load_fraction": ("fraction of the force on nodes at $H$", "s"),
@@ -21,13 +21,7 @@ def draw_permanent_set(
 ) -> list[kit.Panel]:
     """Panels (c) to (e): yielded nodes and set against pressure, and the set of each node.
 
-    Parameters
-    ----------
-    figure : matplotlib.figure.FigureBase
-    data : xr.Dataset
-        The stage ``branches``.
-    sides : (float, float)
-        Of the window (y, x), mm.
+    `data` is the stage ``branches``, `sides` (y, x) those of the window, mm.
     """
     axes = figure.subplots(1, 3, width_ratios=[1, 1, 1.15])
     top = pressure_label(float(data["nominal_pressure"][-1]))

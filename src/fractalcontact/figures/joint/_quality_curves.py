@@ -21,7 +21,7 @@ AXIS_STYLES = {"x": (kit.COLOURS[6], "o"), "y": (kit.COLOURS[5], "s")}
 RANGE = kit.COLOURS[3]
 _GAUSSIAN: dict[str, Any] = {"color": "0.6", "lw": 0.8}
 _POINTS: dict[str, Any] = {"ms": 2.5, "mfc": "none", "mew": 0.7}
-#: Offsets up to which each has a line of its own.
+#: Maximum number of offsets drawn.
 _OFFSETS = 5
 
 

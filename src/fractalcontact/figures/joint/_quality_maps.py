@@ -15,9 +15,9 @@ from ...core.text import length_unit
 from ...core.window import window_slices
 from .. import kit
 
-#: Up to this many outliers or overlaps are ringed, so that single cells can be seen.
+#: Maximum number of outliers or overlaps with rings, which make single cells visible.
 FEW = 400
-#: Colours of cells by the variable of the stage ``specimens`` that marks them, with their words.
+#: Colours and words of cells, by the variable of the stage ``specimens`` that marks them.
 CELLS = {
     "filled": (kit.COLOURS[1], "filled"),
     "spike": (kit.COLOURS[0], "lone spike"),
@@ -77,7 +77,7 @@ def draw_gap(
 def _ring(
     axes: Axes, cells: np.ndarray, sides: Sequence[float], label: str | None = None
 ) -> list[Artist]:
-    """Rings around cells if these are few."""
+    """Rings around cells, if there are few."""
     if not 0 < cells.sum() <= FEW:
         return []
     y, x = kit.node_position(np.nonzero(cells), cells.shape, sides)

@@ -19,7 +19,7 @@ SUBJECT = "specimen"
 NEEDS = ("closure", "area", "statements")
 ORDER = 60
 
-#: Theories of panel (a): variable, name, colour, line; the full line first, lest it hide others.
+#: Theories of panel (a): variable, name, colour, line. The full line comes first and hides none.
 THEORIES = (
     ("greenwood_williamson_share", "Greenwood and Williamson", kit.COLOURS[3], "-"),
     ("bush_gibson_thomas_share", "Bush, Gibson and Thomas", kit.COLOURS[1], "--"),
@@ -28,7 +28,7 @@ THEORIES = (
 )
 #: Colour of a theory's kappa: that of its area.
 _OF_KAPPA = {"bush": kit.COLOURS[1], "persson": kit.COLOURS[2]}
-#: Of kappa, corrected and raw: prefix of its name, words, face, place of its mean at the edge.
+#: Corrected and raw kappa: prefix of the name, words, face, place of the mean at the edge.
 _KAPPAS = (("corrected_", "corrected", kit.COLOURS[0], 0.05), ("", "raw", "white", 0.02))
 _COLUMNS = (
     *("reduced_pressure", "area_share", "area_corrected_share", "kappa", "corrected_kappa"),

@@ -15,14 +15,14 @@ SUBJECT = "joint"
 NEEDS = ("specimens", "closure", "domains", "statements")
 ORDER = 120
 
-#: Offsets whose size distribution is drawn: the first, the middle and the last.
+#: Number of offsets whose size distribution is drawn: the first, the middle and the last.
 DISTRIBUTIONS = 3
 #: Opacity of the bands of random nodes.
 _FAINT = 0.15
-#: Null models that are drawn where they are known, at the reported offset: marker, words.
+#: Marker and words of the null models, which are known at the reported offset.
 _NULLS = {"random": ("+", "as many random nodes"), "cut": ("x", "as many nodes: bearing-area cut")}
 
-#: What panels (a) to (c) draw, and what else their rows keep.
+#: Variables of panels (a) to (c), each with the other variables of its rows.
 _DRAWN = {
     "clusters": ("nodes", "cluster_area_mean", "clusters_random", "clusters_cut"),
     "largest_share": (),
@@ -72,8 +72,8 @@ def draw(atlas: DataTree, name: str) -> kit.Drawing:
 
 
 def _draw_states(panel, states, quantity):
-    """A quantity of the domains over the offsets, a curve a load, beside its null models."""
-    # No contact is no number, and an index of 0 has no place on a logarithmic axis.
+    """Quantity of the domains over the offsets, one curve per load, with its null models."""
+    # Zeros are left out: without contact there is no number, and a logarithmic axis has no 0.
     positive = states[quantity].where(states[quantity] > 0)
     exponents = Estimate.read(states, "morisita_exponent", scale=EXPONENT)
     labels = [

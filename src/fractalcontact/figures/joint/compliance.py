@@ -19,13 +19,13 @@ SUBJECT = "joint"
 NEEDS = ("specimens", "joints", "closure", "statements")
 ORDER = 70
 
-#: The paper's stages of sliding, and what each is said to do.
+#: Stages of sliding that the paper describes, by statement.
 STAGES = {
     "compliance_rises_at_first": "compliance rises as v^x",
     "curves_overlap": "compliance stays the same",
     "compliance_rises_again": "compliance rises again",
 }
-#: Lines of the offsets between the stages.
+#: Line styles of the offsets between the stages.
 _ENDS = {"correlation 1/e": "--", "correlation lost": ":"}
 
 
@@ -52,7 +52,7 @@ def draw(atlas: DataTree, name: str) -> kit.Drawing:
             for panel in (a, b, c):
                 label = f"{words}: $v$ = {compact(at)} mm" if panel is a else None
                 panel.axes.axvline(at, color="0.4", lw=0.8, ls=style, label=label)
-    # The scale suits the offsets solved; the correlation is known at more.
+    # The scale suits the offsets solved; the correlation is known at further offsets.
     kit.offset_axis(c.axes, curves["offset"].values)
     if c.axes.get_xscale() == "log":
         kit.plain_decades(c.axes.xaxis)
@@ -73,7 +73,7 @@ def draw(atlas: DataTree, name: str) -> kit.Drawing:
 
 
 def _draw_correlation(panel: kit.Panel, joint: xr.Dataset, solved: str) -> None:
-    """The direction solved in black, all others in grey."""
+    """Correlation of the faces: the direction solved in black, all others in grey."""
     kept = ("correlation_length", "uncorrelated_offset")
     for direction in sorted(joint["direction"].values, key=lambda one: one == solved):
         words = "the direction of (b), (c)" if direction == solved else "other directions"
@@ -94,7 +94,7 @@ def _draw_correlation(panel: kit.Panel, joint: xr.Dataset, solved: str) -> None:
 def _draw_closures(panel: kit.Panel, curves: xr.Dataset, name: str) -> None:
     """Closure from the common seat of all offsets, or else from first touch."""
     kept = ("interface_closure", "closure_from_common_seat", "common_seating_pressure", "nodes")
-    # Loads that seat the joint, or less, close it by nothing more.
+    # Loads up to the seating load do not close the joint any further.
     loaded = curves[name].where((curves[name] > 0).any("offset")).assign_attrs(curves[name].attrs)
     style: dict[str, Any] = {"hue": "normal_force", "first": 1, "filled": "resolved", "ls": "-"}
     panel.curves(curves.assign({name: loaded}), "offset", name, keep=kept, **style)

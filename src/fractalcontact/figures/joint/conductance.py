@@ -15,7 +15,7 @@ SUBJECT = "specimen"
 NEEDS = ("closure",)
 ORDER = 80
 
-#: Offsets that have a curve of their own.
+#: Number of offsets drawn.
 CURVES = 5
 
 

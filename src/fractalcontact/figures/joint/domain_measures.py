@@ -18,10 +18,10 @@ SUBJECT = "specimen"
 NEEDS = ("specimens", "closure", "domains", "domain_measures")
 ORDER = 150
 
-#: Loads drawn, the reference load among them.
+#: Number of loads drawn, the reference load among them.
 MAX_LOADS = 3
 
-#: What curves are compared with, in greys that no load has.
+#: Lines with which curves are compared, in grey, which no load has.
 _GREY: dict[str, Any] = {"color": "0.6", "lw": 1.2, "zorder": 0}
 _LINE, _PLANE, _EVEN = (_GREY | {"ls": ls} for ls in ((0, (1, 1)), "-", (0, (6, 2))))
 _TITLES = (
@@ -68,7 +68,7 @@ def _finish(slopes: Axes, lacunarity: Axes, spectrum: Axes, shown: xr.Dataset) -
     lacunarity.set(xscale="log", yscale="log", xlabel="side of the gliding box $r$ (mm)")
     lacunarity.set_ylabel(r"lacunarity $\langle M^2\rangle/\langle M\rangle^2$ (1)")
     if shown.sizes["normal_force"]:
-        # Bars may be open upwards where one part of the window holds nearly all contact.
+        # Bars are open upwards where one part of the window holds nearly all contact.
         lacunarity.set_ylim(0.8, 3 * max(float(shown["lacunarity"].max()), 1.5))
     spectrum.axhline(2, **_PLANE)
     spectrum.set(xlabel="order $q$ (1)", ylabel="dimension $D_q$ of the pressure (1)")

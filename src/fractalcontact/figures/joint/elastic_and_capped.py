@@ -24,9 +24,9 @@ ORDER = 8
 
 _LETTERS = "abcdefghi"
 _SPACING = "closure from the seat; $s$: spacing of the scan"
-#: Letters of a label in the caption.
+#: Maximum length of a label in the caption, letters.
 _LONGEST = 40
-#: Pairs drawn: more have no room on a page.
+#: Maximum number of pairs, for which a page has room.
 _MAX_PAIRS = 3
 
 
@@ -74,7 +74,7 @@ def _scan(subject: Subject) -> str:
 
 
 def _model(subject: Subject) -> str:
-    """A specimen by its largest pressure."""
+    """Material model of a specimen in words, by its largest pressure."""
     hardness = subject.settings["material"]["hardness"]
     return "elastic" if not np.isfinite(hardness) else f"capped at {compact(hardness, 6)} MPa"
 
@@ -91,7 +91,7 @@ def _draw_closures(panel: kit.Panel, subject: Subject) -> None:
 
 
 def _draw_dimensions(panel: kit.Panel, pair: tuple[Subject, Subject]) -> None:
-    """Delta_sigma of both over the load."""
+    """Delta_sigma of both specimens over the load."""
     for n, subject in enumerate(pair):
         style: dict[str, Any] = {"color": kit.colour_of(5 * n), "marker": kit.MARKERS[n], "ms": 3.5}
         label = "capped at the wall strength" if n else "elastic"

@@ -17,7 +17,7 @@ SUBJECT = "specimen"
 NEEDS = ("error_budget", "closure")
 ORDER = 225
 
-#: Quantities: title of the panel, and its word in the caption.
+#: Title of the panel of each quantity, and its word in the caption.
 QUANTITIES = {
     "closure": ("interface closure", "closure"),
     "separation": ("separation", "separation"),
@@ -44,7 +44,7 @@ TOTALS = {
         "total for any surface of its kind\n(also counting or windows, registration)"
     ),
 }
-#: Smallest error in the frame: as a fraction of the value, or of the largest error drawn.
+#: Smallest error in the frame, as a fraction of the value, or of the largest error drawn.
 LEAST = 1e-4
 _KEPT = ("error", "relative_error", "unit", "numerical_from")
 
@@ -75,7 +75,7 @@ def draw(atlas: DataTree, name: str) -> kit.Drawing:
 
 
 def _with_totals(budget: xr.Dataset) -> xr.Dataset:
-    """Errors by source, the totals among the sources; whether each was found at its load."""
+    """Errors by source, the totals among the sources, with `at_load`: True if not interpolated."""
     errors = budget[["error", "relative_error", "unit", "absolute", "numerical_from"]]
     totals = [
         budget[[name, f"relative_{name}"]]

@@ -18,7 +18,7 @@ NEEDS = ("specimens", "closure", "contact", "flow")
 ORDER = 48
 SECTION = "flow"
 
-#: Smallest and largest flow per width that has a colour, over its mean.
+#: Ends of the colours of the flow per width, over its mean.
 _LEAST, _MOST = 0.01, 10.0
 
 

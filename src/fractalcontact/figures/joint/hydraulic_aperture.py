@@ -19,7 +19,7 @@ NEEDS = ("specimens", "closure", "flow", "measured")
 ORDER = 46
 SECTION = "flow"
 
-#: Ways of the flow with their style; both have the same abscissae, so that ends of bars differ.
+#: Styles of the flow along and across; caps of bars differ because both have the same abscissae.
 _WAYS: dict[str, dict[str, Any]] = {
     "along": {"color": kit.colour_of(0), "marker": "o", "caps": 6.0},
     "across": {"color": kit.colour_of(1), "marker": "s", "mfc": "none", "caps": 3.0},
@@ -57,7 +57,7 @@ def draw(atlas: DataTree, name: str) -> kit.Drawing:
 def _draw_ways(
     panel: kit.Panel, data: xr.Dataset, x: str, name: str, label: str, ls: str, kept: Sequence[str]
 ) -> None:
-    """A variable against x along and across the sliding, without zeros: logarithms have none."""
+    """Variable against x along and across the sliding; zeros are left out on logarithmic axes."""
     flows = False
     for way, style in _WAYS.items():
         variable = data[f"{name}_{way}"]
@@ -81,7 +81,7 @@ def _draw_apertures(panel: kit.Panel, states: xr.Dataset) -> None:
     _draw_ways(panel, states, "mean_gap", "hydraulic_aperture", "cubic law", "none", kept)
     if states[names_of("hydraulic_aperture_along")[1]].notnull().any():
         panel.axes.plot([], [], "|", color="0.4", ms=10, label="95 % interval, mean over windows")
-    # Laws go on where no path is left: they are drawn beside what was computed.
+    # Empirical laws have values where no path is open; they are drawn only beside computed ones.
     flows = sum(states[f"transmissivity_{way}"].fillna(0) for way in _WAYS)
     beside = states.isel(normal_force=np.flatnonzero(flows > 0))
     for law, (words, style) in _LAWS.items():
@@ -100,7 +100,7 @@ def _draw_apertures(panel: kit.Panel, states: xr.Dataset) -> None:
 def _draw_branches(panel: kit.Panel, flow: xr.Dataset) -> None:
     x, name = "nominal_pressure", "branch_transmissivity"
     load, reload = (flow[f"{name}_along"].sel(branch=branch) for branch in ("load", "reload"))
-    # Where nothing yields, there is one curve.
+    # Loading and reloading are one curve where nothing yields.
     crushed = bool(((reload > 0) & (reload != load)).any())
     for branch, words, line in _BRANCHES[: 1 + crushed]:
         _draw_ways(panel, flow.sel(branch=branch), x, name, words, line, ["branch"])
@@ -113,7 +113,7 @@ def _words(subject: Subject, states: xr.Dataset) -> dict[str, Any]:
     """Values of the caption."""
     at = states.isel(normal_force=subject.reported.reference)
     window = Estimate.read(at, "transmissivity_along")
-    # Where nothing flows, neither does a part of it.
+    # Ratios to the flow are missing where nothing flows.
     flow = float(window.value) if window.value > 0 else np.nan
     offsets = subject["flow"]["offset_transmissivity_along"]
     first, last = offsets.where(offsets > 0).values[[0, -1]]

@@ -1,7 +1,4 @@
-"""Quality sheet of a scan: relief, mask, histogram, profiles, spectra and findings.
-
-Of two faces also their gap, where they overlap, and how much of the load rests on such cells.
-"""
+"""Quality sheet of a scan: relief, mask, histogram, profiles, spectra, findings, and gap."""
 
 import textwrap
 
@@ -28,15 +25,12 @@ SUBJECT = "specimen"
 NEEDS = ("specimens", "quality", "closure")
 ORDER = 30
 
-#: Letters in a line of the text, and inches a line is high.
+#: Length of a line of the text, letters, and its height, inches.
 LETTERS, LINE = 126, 0.138
 
 
 def draw(atlas: DataTree, name: str) -> kit.Drawing:
-    """The quality sheet of a specimen.
-
-    Its data are spectra, histograms and profiles drawn, by panel and face.
-    """
+    """Quality sheet of a specimen; its data are the spectra, histograms and profiles drawn."""
     subject = Subject.of(atlas, name)
     specimen, quality = subject["specimens"], subject["quality"]
     faces = [str(face) for face in quality["face"].values]

@@ -53,7 +53,7 @@ def _draw_ratios(panel: kit.Panel, test: xr.Dataset, quantity: str) -> None:
     shown = test.assign(ratios).isel(normal_force=known)
     kept = (f"predicted_{quantity}", f"direct_{quantity}", "beyond_study")
     for n, (predictor, words) in enumerate(PREDICTORS.items()):
-        # Side by side: all have the same loads.
+        # The predictors stand side by side, because all have the same loads.
         style: dict[str, Any] = {"unit": (1.04 ** (2 - n), 1.0), "ls": "-", "lw": 0.8, "ms": 3}
         style |= {"color": kit.colour_of(n), "marker": kit.MARKERS[n], "label": words, "keep": kept}
         panel.curve(shown.sel(predictor=predictor), "nominal_pressure", "ratio", **style)
@@ -71,7 +71,7 @@ def _draw_ratios(panel: kit.Panel, test: xr.Dataset, quantity: str) -> None:
 
 
 def _words(test: xr.Dataset) -> dict[str, Any]:
-    """Values of the caption: ranges over the predictors under the load that it speaks of."""
+    """Values of the caption: ranges over the predictors under the load quoted."""
     quoted = np.flatnonzero(test["quoted_load"].values)
     if not quoted.size:
         return {"found": {}}

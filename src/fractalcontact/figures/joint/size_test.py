@@ -18,9 +18,9 @@ SUBJECT = "specimen"
 NEEDS = ("size_test", "windows", "statements")
 ORDER = 170
 
-#: Loads shown over the side b.
+#: Number of loads shown over the side b.
 MAX_LOADS = 3
-#: How each estimate of Delta_sigma is drawn where eq. 6 takes it; measured points alone are black.
+#: Words and style of eq. 6 by each estimate of Delta_sigma; black is left to measured points.
 ESTIMATORS: dict[str, tuple[str, dict[str, Any]]] = {
     "area": ("$A_r(s)$", {"color": kit.COLOURS[1], "ls": "-"}),
     "box": ("box counting", {"color": kit.COLOURS[2], "ls": "--"}),
@@ -36,10 +36,7 @@ _JUDGED = ("area_verdict", "area_reason", "slope_verdict", "slope_reason", "verd
 
 
 def draw(atlas: DataTree, name: str) -> kit.Drawing:
-    """A_r/A_0 over b at some sigma_0; its exponent, and that of sigma_0 at equal sigma*, over load.
-
-    Its data also have the exponents of the compliance and of the mean gap.
-    """
+    """A_r/A_0 over b at some sigma_0, and exponents over load; those of the gap in the data."""
     subject = Subject.of(atlas, name)
     test = subject["size_test"].transpose("normal_force", ...)
     figure = Figure(figsize=(kit.WIDTH, 3.7))

@@ -20,7 +20,7 @@ ORDER = 110
 
 _TITLES = ("dilatancy and friction angle", "shear strength", "peak and residual shear strength")
 _LIMIT = f"{compact(LARGEST_FRICTION_ANGLE, 6)}°"
-#: What (c) shows: variable, words and style; which points are results and no bounds.
+#: Words and style of the variables of (c), and variables that state which points are results.
 _SUMMARY: dict[str, tuple[str, dict[str, Any]]] = {
     "peak_strength": ("peak over the offsets", {"marker": "o", "ms": 6, "color": "k"}),
     "peak_contact_strength": (
@@ -41,7 +41,7 @@ _SUMMARY: dict[str, tuple[str, dict[str, Any]]] = {
     ),
 }
 _VALID = {"peak_strength": "peak_strength_valid", "peak_contact_strength": "peak_contact_valid"}
-#: Of curves over the offset: hollow points stand above the lines of the other pressures.
+#: Style of curves over the offset: hollow points lie above the lines of the other pressures.
 _CURVES: dict[str, Any] = {
     "hue": "normal_force",
     "first": 1,

@@ -17,7 +17,7 @@ SUBJECT = "specimen"
 NEEDS = ("closure", "windows", "statements")
 ORDER = 90
 
-#: Of the contact of sub-windows: variable, exponent, axis and head of the legend.
+#: Variable, exponent, axis and head of the legend of the panels on contact in sub-windows.
 _CONTACT = {
     "b": (
         *("interface_closure", "closure_exponent", r"interface closure $w_\mathrm{int}$ (mm)"),

@@ -1,7 +1,4 @@
-"""Tools shared by figures: the drawing and its files, ticks, words, maps, tables.
-
-A figure imports this package alone: ``from .. import kit``.
-"""
+"""Tools shared by figures, which import this package alone: ``from .. import kit``."""
 
 # ruff: noqa: F401  # names for the figures
 

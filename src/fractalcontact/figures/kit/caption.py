@@ -1,4 +1,4 @@
-"""Captions: sentences of ``captions.yaml``, filled in with the numbers that a figure hands over.
+"""Captions: Jinja templates of ``captions.yaml``, filled with the numbers of a figure.
 
 An entry of ``PACKAGE/figures/GROUP/captions.yaml`` has the name of a figure and up to three parts:
 
@@ -9,8 +9,6 @@ An entry of ``PACKAGE/figures/GROUP/captions.yaml`` has the name of a figure and
 ``heading``
     What the figure finds, without numbers in brackets, for the card of the result page; without it
     the card has the figure's title.
-
-They are Jinja templates: names stand for values, and filters put numbers into words.
 """
 
 from functools import cache
@@ -26,16 +24,9 @@ from .words import PAPER
 
 
 class Caption(str):
-    """A caption in one line, and its parts, each whole sentences.
+    """A caption in one line, with its parts: heading, what is shown, what is found.
 
-    Attributes
-    ----------
-    heading : str
-        What the card of the page has above it; empty where that is the figure's title.
-    shows : str
-        What is drawn.
-    finds : tuple of str
-        What is found.
+    Each part is whole sentences. The heading is empty where the card has the figure's title.
     """
 
     heading: str
@@ -55,19 +46,12 @@ class Caption(str):
 
 
 def caption(module: str, **values: Any) -> Caption:
-    """Caption of a figure.
-
-    Parameters
-    ----------
-    module : str
-        ``__name__`` of the figure's module.
-    **values
-        By the names that its templates use.
+    """Caption of a figure, by ``__name__`` of its module and the values that its templates name.
 
     Raises
     ------
     jinja2.UndefinedError
-        If a template uses a name that is not handed over.
+        If a template names a value that is not given.
     """
     file = SOURCES / f"{module.replace('.', '/')}.py"
     entry = _templates(file.with_name("captions.yaml"))[file.stem]

@@ -13,12 +13,12 @@ from .drawing import MARKERS, colour_of
 from .points import draw_points, reach
 from .titles import letter
 
-#: A bar without an upper end is this many times as high as its value.
+#: Length of a bar without an upper end, as a multiple of its value.
 _FAR = 1e4
 
 
 def column_of(data: xr.Dataset, name: Hashable) -> str:
-    """A variable as a column of a table, named with its unit: "closure_mm"."""
+    """Name of a variable as a column of a table, with its unit: "closure_mm"."""
     unit = data[name].attrs.get("units", "1")
     unit = unit.replace("mm-1", "per_mm").replace("/", "_per_").replace(" ", "_")
     return f"{name}" if unit == "1" else f"{name}_{unit}"
@@ -27,18 +27,8 @@ def column_of(data: xr.Dataset, name: Hashable) -> str:
 def rows(data: xr.Dataset, *names: str, **constants: Any) -> pd.DataFrame:
     """Variables of a dataset as the rows of a table, one for each place of their dimensions.
 
-    Parameters
-    ----------
-    data : xr.Dataset
-    *names : str
-        Of variables; the ends of its interval go with each that has one.
-    **constants
-        Columns that are the same in all rows, such as ``panel="a"``.
-
-    Returns
-    -------
-    pd.DataFrame
-        The constants, the coordinates, the variables; units end the names of the columns.
+    Columns are the constants (such as ``panel="a"``), the coordinates, and the variables with the
+    ends of their intervals; units end the names.
     """
     wanted = [end for name in names for end in names_of(name) if end in data or end == name]
     chosen = data[wanted]
@@ -53,15 +43,7 @@ def rows(data: xr.Dataset, *names: str, **constants: Any) -> pd.DataFrame:
 
 
 class Panel:
-    """Axes of one panel, and the rows of its table.
-
-    Parameters
-    ----------
-    axes : matplotlib.axes.Axes
-    which : str
-        Letter of the panel; empty where a figure has one alone.
-    title : str
-    """
+    """Axes of one panel with its letter, if any, and title, and the rows of its table."""
 
     def __init__(self, axes: Axes, which: str = "", title: str = ""):
         self.axes = axes
@@ -96,17 +78,17 @@ class Panel:
         data : xr.Dataset
             Over one dimension.
         x, y : str
-            Of its variables or coordinates.
+            Variables or coordinates.
         filled : str, optional
-            Variable that says which points are trusted; all, without it.
+            Variable that states which points are trusted; all, without it.
         unit : (float, float), optional
-            Values are drawn divided by these; rows keep the dataset's units.
+            Units drawn, in units of the dataset; rows keep the dataset's units.
         keep : sequence of str, optional
-            Other variables that the rows have.
+            Other variables for the rows.
         caps : float, optional
-            Half-width of the ends of bars, points: of its own where curves share their abscissae.
+            Half-width of the ends of bars, points; different where curves share their abscissae.
         hollow, **style
-            As of :func:`kit.points.draw_points`.
+            As in :func:`kit.points.draw_points`.
         """
         across, along = data[x].values / unit[0], Estimate(data[y].values / unit[1])
         trusted = data[filled].values if filled else np.ones(np.shape(along.value), bool)
@@ -138,20 +120,9 @@ class Panel:
         first: int = 0,
         **of_curve: Any,
     ) -> None:
-        """A curve for each place along a dimension, each with its colour and marker.
+        """A curve for each place along the dimension `hue`, with its colour, marker and label.
 
-        Parameters
-        ----------
-        data : xr.Dataset
-            Over ``hue`` and one other dimension.
-        x, y : str
-        hue : str
-        labels : sequence of str, optional
-            Of the curves, for a legend.
-        first : int, optional
-            Number of the first colour.
-        **of_curve
-            As of :meth:`curve`.
+        `first` is the number of the first colour; `of_curve` goes to :meth:`curve`.
         """
         for n in range(data.sizes[hue]):
             style = {"color": colour_of(n + first), "marker": MARKERS[n % len(MARKERS)]}
@@ -160,7 +131,7 @@ class Panel:
             self.curve(data.isel({hue: n}), x, y, **{**style, **of_curve})
 
     def keep(self, data: xr.Dataset, *names: str, **constants: Any) -> None:
-        """Add rows from :func:`rows` of what is drawn by other means."""
+        """Add rows, as of :func:`rows`, of what is drawn by other means."""
         which = {"panel": self.which} if self.which else {}
         self.records.append(rows(data, *names, **which, **constants))
 

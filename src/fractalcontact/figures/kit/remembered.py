@@ -1,8 +1,8 @@
 """Cache of matplotlib's ticks and text sizes while a figure does not change.
 
-A figure is measured for its layout, and drawn into two files. Each time matplotlib asks every axis
-for its ticks from three sides, and lays every text out anew: the answers are the same, and so are
-the files without this, to the byte.
+A figure is measured for its layout and drawn into two files. Each time matplotlib asks every axis
+for its ticks from three sides and lays every text out anew. The answers are the same, and the files
+equal those without this cache byte for byte.
 """
 
 import contextlib
@@ -19,7 +19,7 @@ from .ticks import axes_of
 def remember_ticks(figure: Figure) -> None:
     """Find the ticks of each axis once for every size and view that it is given.
 
-    To be called once everything is drawn: a locator, or labels, that change later go unnoticed.
+    To be called when everything is drawn: later changes of a locator or of labels go unnoticed.
     """
     for _, axis in axes_of(figure):
         vars(axis)["_update_ticks"] = _ticks_remembered(axis)
@@ -31,8 +31,8 @@ def _ticks_remembered(axis):
     def ticks():
         nonlocal known, found
         dpi, bounds = axis.get_figure(root=True).dpi, axis.axes.bbox.bounds
-        # In inches without the last digits, so that the SVG has the ticks of the PNG. Only the last
-        # answer: the ticks themselves are moved, and none may be behind.
+        # Sizes are in inches without the last digits, so that the SVG has the ticks of the PNG.
+        # Only the last answer is kept, because matplotlib moves the ticks themselves.
         state = (*axis.get_view_interval(), *(round(side / dpi, 6) for side in bounds))
         if state != known:
             known, found = state, find()
@@ -43,7 +43,7 @@ def _ticks_remembered(axis):
 
 @contextlib.contextmanager
 def layouts_remembered() -> Iterator[None]:
-    """Every text laid out once on each canvas, for as long as the block."""
+    """Every text laid out once on each canvas, within the block."""
     known: WeakKeyDictionary[Any, dict] = WeakKeyDictionary()
     lay_out = Text._get_layout  # type: ignore[attr-defined]
 

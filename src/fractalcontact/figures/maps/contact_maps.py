@@ -16,9 +16,9 @@ NEEDS = ("contact_maps",)
 KEY = "contact_maps"
 ORDER = 300
 
-#: Maps side by side: of a few, and of many; and maps at most, that each can be read.
+#: Number of maps side by side, of a few and of many, and maximum number, so that each can be read.
 _COLUMNS, _NARROW, _MOST = 4, 5, 60
-#: Letters of a map's title.
+#: Maximum length of a map's title, letters.
 _LONGEST = 22
 
 

@@ -14,7 +14,7 @@ NEEDS = ("contact_maps",)
 KEY = "contact_maps"
 ORDER = 310
 
-#: Series whose trends a caption has room for.
+#: Maximum number of series whose trends the caption states.
 _IN_WORDS = 2
 
 

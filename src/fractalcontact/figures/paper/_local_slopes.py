@@ -9,7 +9,7 @@ from matplotlib.colors import to_rgba
 from ...core.estimate import Estimate
 from .. import kit
 
-#: Grey of random nodes; the cut; lines over markers, which would hide them.
+#: Grey of random nodes, and style of the bearing-area cut.
 RANDOM = "0.7"
 CUT: dict[str, Any] = {"ls": "-.", "color": kit.COLOURS[4]}
 #: Colours of the count law and of the ordinary slope.

@@ -11,11 +11,11 @@ from ...core.limits import LEVEL_CHANGE
 from ...core.text import compact, number, percent
 from .. import kit
 
-#: The fitted lines.
+#: Style of the fitted lines.
 _FITTED: dict[str, Any] = {"lw": 2.2, "alpha": 0.7}
 
 
-#: Lines of the parts over opposite directions.
+#: Line styles of the even parts over opposite directions.
 _DOTS = (":", (0, (1, 3)))
 
 

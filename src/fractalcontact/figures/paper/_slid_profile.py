@@ -12,7 +12,7 @@ from ...core.text import compact, length_unit
 from ...core.window import faces, window_slices
 from .. import kit
 
-#: The node that touches first.
+#: Marker of the node that touches first.
 TOUCH: dict[str, Any] = {
     "marker": "o",
     "ms": 7,
@@ -29,9 +29,9 @@ def way_of(slid: xr.Dataset) -> tuple[str, int]:
 
 
 def slid_profile(specimen: xr.Dataset, slid: xr.Dataset) -> xr.Dataset:
-    """Heights of both faces along the line of sliding through the first touch.
+    """Heights of both faces along the line of sliding through the first touch, mm.
 
-    They go over the windows before and after, and a little beyond.
+    They go a little beyond the windows before and after.
     """
     axis, sign = way_of(slid)
     along = "yx".index(axis)
@@ -40,7 +40,7 @@ def slid_profile(specimen: xr.Dataset, slid: xr.Dataset) -> xr.Dataset:
     lower, upper = (np.take(face, line, axis=1 - along) for face in faces(specimen))
     window, cells = window_slices(specimen)[along], sign * int(slid["offset_cells"])
     after = slice(window.start + cells, window.stop + cells)
-    # Lifted so far, the upper face touches the lower one in one node.
+    # At this lift the upper face touches the lower one in one node.
     lift = np.max(lower[after] - upper[window])
     lifted = np.full((2, lower.size), np.nan)
     lifted[0, window] = upper[window] + lift - float(slid["rigid_dilatancy"])
@@ -54,7 +54,7 @@ def slid_profile(specimen: xr.Dataset, slid: xr.Dataset) -> xr.Dataset:
 
 
 def draw_profile(axes: Axes, profile: xr.Dataset, slid: xr.Dataset, *, before: bool) -> None:
-    """Both faces, offset and dilatancy; ``before`` also the upper face before it slid."""
+    """Both faces, offset and dilatancy; ``before`` adds the upper face before sliding."""
     axis, sign = way_of(slid)
     offset, opening = float(slid["offset"]), float(slid["rigid_dilatancy"])
     x, lower = profile[axis].values, profile["lower"]

@@ -11,7 +11,7 @@ from ...core.verdicts import UNDETERMINED
 from ...core.window import cell_side
 from .. import kit
 
-#: Greys and markers of the loads: colours and the other markers stand for offsets in this figure.
+#: Greys and markers of the loads; the offsets have the colours and the other markers.
 _GREYS, _MARKERS = ("0.65", "0.45", "0.25", "0"), kit.MARKERS[5:]
 
 
@@ -24,18 +24,9 @@ def over_spacing(subject: Subject) -> xr.Dataset:
 
 
 def draw_stiffness(panel: kit.Panel, curves: xr.Dataset) -> list[str]:
-    """Tangent stiffness and k_ni over the spacing.
+    """Tangent stiffness and k_ni over the spacing, of the curves of :func:`over_spacing`.
 
-    Parameters
-    ----------
-    panel : Panel
-    curves : xr.Dataset
-        From :func:`over_spacing`.
-
-    Returns
-    -------
-    list of str
-        Lines of the legend on stiffnesses that are missing beside others.
+    Returns the lines of the legend on stiffnesses that are missing beside others.
     """
     axes, finest = panel.axes, curves.isel(resolution=0)
     tangent, initial = curves["interface_stiffness"], curves["hyperbola_k_ni"]
@@ -66,7 +57,7 @@ def draw_stiffness(panel: kit.Panel, curves: xr.Dataset) -> list[str]:
 
 
 def _numbers(state, name):
-    """A stiffness, and the change that twice the spacing makes of it, for a legend."""
+    """Stiffness, and its change at twice the spacing, for a legend."""
     value, change = float(state[name]), float(state[f"{name}_change"])
     if not np.isfinite(value):
         return "not known"

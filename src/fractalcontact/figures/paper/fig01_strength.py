@@ -15,7 +15,7 @@ SUBJECT = "joint"
 NEEDS = ("windows", "statements")
 ORDER = 10
 
-#: What the table has of every v/b.
+#: Variables of the table, at every v/b.
 _COLUMNS = (
     *("strength_at_equal_v_over_b", "strength_of_whole_at_equal_v", "slope_at_equal_v_over_b"),
     *("slope_of_whole_at_equal_v", "truncated_fraction_at_equal_v_over_b"),
@@ -24,10 +24,7 @@ _COLUMNS = (
 
 
 def draw(atlas: DataTree, name: str) -> kit.Drawing:
-    """Strength and slope of the dilatancy curve against the side b, at one v/b.
-
-    Its data are the means over sub-windows at every v/b, and the whole window at the same v.
-    """
+    """Strength and slope of the dilatancy curve against b at one v/b; the data have every v/b."""
     subject = Subject.of(atlas, name)
     laws = subject["windows"]
     drawn = laws.sel(share=float(laws["strength_share"]))

@@ -17,15 +17,12 @@ SUBJECT = "specimen"
 NEEDS = ("specimens", "surface_dimension")
 ORDER = 20
 
-#: What the table has of every estimator.
+#: Variables of the table, by estimator.
 _COLUMNS = ("dimension", "hurst_x", "hurst_y", "fit_min", "fit_max", "n", "recommended")
 
 
 def draw(atlas: DataTree, name: str) -> kit.Drawing:
-    """Relief of each face under light from the North-West, and Delta_g by every estimator.
-
-    Its data are the estimates of Delta_g, of the lower face.
-    """
+    """Relief of each face lit from the North-West, and Delta_g; the data are of the lower face."""
     subject = Subject.of(atlas, name)
     specimen, dimension = subject["specimens"], subject["surface_dimension"]
     faces = [face for face in ("lower", "upper") if face in specimen]
@@ -95,7 +92,7 @@ def _recommended(dimension):
 
 
 def _range_words(dimension):
-    """Entries of a legend: lengths that give the recommended Delta_g, and both axes."""
+    """Entries of a legend: lengths of the recommended fit, and how x and y differ."""
     words = []
     if _recommended(dimension).known:
         best = dimension.sel(estimator=dimension["recommended"].item())

@@ -15,15 +15,12 @@ SUBJECT = "joint"
 NEEDS = ("specimens", "joints", "statements")
 ORDER = 40
 
-#: Why a correlation may decide nothing.
+#: Reason why a correlation may be inconclusive.
 _TOO_SMALL = "in so small a window chance may give as much"
 
 
 def draw(atlas: DataTree, name: str) -> kit.Drawing:
-    """Plan, profile and composite topography at the largest offset.
-
-    Its data are the profiles.
-    """
+    """Plan, profile and composite topography at the largest offset; the data are the profiles."""
     subject = Subject.of(atlas, name)
     specimen, joint = subject["specimens"], subject["joints"]
     slid = joint.isel(contact_direction=0, offset=int(joint["offset"].values.argmax()))
@@ -58,7 +55,7 @@ def draw(atlas: DataTree, name: str) -> kit.Drawing:
 
 
 def _draw_heights(figure, axes, heights, sides, label, cmap):
-    """Map of heights with its colours; returns the unit of its axes in mm."""
+    """Map of heights with a colour bar; returns the unit of its axes in mm."""
     unit, size = length_unit(np.nanmax(heights) - np.nanmin(heights))
     image = kit.draw_map(axes, heights / size, sides, cmap=cmap)
     figure.colorbar(image, ax=axes, shrink=0.8, label=f"{label} ({unit})")
@@ -66,7 +63,7 @@ def _draw_heights(figure, axes, heights, sides, label, cmap):
 
 
 def _draw_plan(figure, axes, specimen, slid):
-    """The scan and the window twice; entries of a legend."""
+    """Scan with the window before and after; entries of a legend."""
     heights = specimen["lower"].values
     size = _draw_heights(figure, axes, heights, kit.scan_extent(specimen), "height", "Greys_r")
     axis, sign = way_of(slid)

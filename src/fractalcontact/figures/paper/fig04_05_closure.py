@@ -31,7 +31,7 @@ ORDER = 50
 
 CURVES = 5
 
-#: What the numbers of every curve are.
+#: Heads of the legend, which explain the numbers of each curve.
 _LEGEND = (
     "(a), (b), from first touch: rms misfit of logarithmic law, of hyperbola; "
     "$k_{ni}$ (MPa/mm) [95 %]"
@@ -41,7 +41,7 @@ _LEGEND_AREA = r"(c): exponent $m$ of $A_r \sim F^m$ [95 %]"
 _LEGEND_STIFFNESS = "(d): MPa/mm at the finest $s$ (change at $2s$)"
 _HOLLOW = f"hollow: under {RESOLVED_NODES} nodes, in (c) {CORRECTED_NODES} (area raw)"
 
-#: What the table has of the curves, besides the law of the area.
+#: Variables of the curves in the table.
 _COLUMNS = (
     *("nodes", "resolved", "interface_closure", "seated_closure", "separation"),
     *("interface_stiffness", "interface_stiffness_reason", "seating_pressure"),
@@ -94,7 +94,7 @@ def draw(atlas: DataTree, name: str) -> kit.Drawing:
 
 
 def _softer(curves):
-    """At how many offsets the curve itself is less stiff than its k_ni."""
+    """Number of offsets, in words, at which the curve is less stiff than its k_ni."""
     fitted = int(np.isfinite(curves["hyperbola_k_ni"]).sum())
     softer = int(curves["softer_than_k_ni"].sum())
     return f": softer than $k_{{ni}}$ at {softer} of {fitted} offsets" if softer else ""
@@ -124,7 +124,7 @@ def _draw_area(axes, drawn, subject):
 
 
 def _keyed(head, axes, *lines):
-    """Legend entries of axes under a heading, and the meaning of lines."""
+    """Legend entries of axes under a heading, with those of the laws' lines."""
     style = {"color": "0.3", "lw": 0.9}
     named = [kit.mark(ls=LINES[line][0], label=LINES[line][1], **style) for line in lines]
     return [kit.heading(head), *kit.entries(axes), *named]

@@ -26,22 +26,19 @@ ORDER = 100
 
 #: Height of the curves and their legend, inches.
 _TOP = 3.7
-#: Letters of the contact domains, and how many stand side by side.
+#: Letters of the contact domains, and their number side by side.
 LETTERS, COLUMNS = "ABCDEF", 3
-#: What the table has of the states besides.
+#: Further variables of the states in the table.
 _OF_STATES = (
     *("separation", "bulk_settlement", "nodes"),
     *("area_share", "area_corrected_share", "area_corrected_resolved"),
 )
-#: What the paper says of rock and of concrete, and the statements that judge it.
+#: Statements on the dilatancy of rock and of concrete.
 _PLATEAUS = ("dilatancy_flattens", "dilatancy_flattens_in_two")
 
 
 def draw(atlas: DataTree, name: str) -> kit.Drawing:
-    """Dilatancy curves and contact domains at six offsets.
-
-    Its data are the points of both kinds of curves, with the contact areas of the latter.
-    """
+    """Dilatancy curves, which are its data with the contact areas, and domains at six offsets."""
     subject = Subject.of(atlas, name)
     plateaus, elastic = subject["joints"], subject.curves("dilatancy")["elastic_dilatancy"]
     curves = subject.curves().assign(elastic_dilatancy=elastic.drop_vars("contact_direction"))

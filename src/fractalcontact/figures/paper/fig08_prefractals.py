@@ -14,7 +14,7 @@ SUBJECT = "specimen"
 NEEDS = ("specimens", "contact", "closure", "scaling", "area", "elastic_model", "statements")
 ORDER = 130
 
-#: Maps side by side, and the most times as wide as they are that all draw their nodes.
+#: Number of maps side by side, and largest enlargement of their nodes.
 _COLUMNS, _WIDEST = 4, 3
 _LETTERS = "abcdefghijklmnop"
 

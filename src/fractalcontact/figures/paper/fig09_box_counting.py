@@ -19,14 +19,14 @@ SUBJECT = "specimen"
 NEEDS = ("specimens", "contact", "closure", "domains", "statements", "ensemble")
 ORDER = 140
 
-#: What each panel keeps, by the dimension of its sides.
+#: Variables of the rows of (b), by the dimension of their sides.
 _COUNTS = {
     "scale": ("box_side", "box_count", "box_used", "ordinary_used", "ordinary_count"),
     "mean_scale": ("mean_side", "mean_count", "law_count"),
     "null_scale": ("null_side", "null_count_random", "null_count_cut"),
     "null_mean_scale": ("null_mean_side", "null_mean_count"),
 }
-#: The law of the counts in words.
+#: Law of the counts in words.
 _LAW = (
     "Count law in (b): the area $N r^2$ of the boxes,\nless that of a node's width and outline,\n"
 )
@@ -35,7 +35,7 @@ _SEEN: dict[str, Any] = {"zorder": 4, "linewidth": 1.4}
 
 
 def draw(atlas: DataTree, name: str) -> kit.Drawing:
-    """A contact domain, its box counts N(r) with count law and ordinary slope, local slopes."""
+    """A contact domain, its box counts N(r) with both laws, and local slopes."""
     subject = Subject.of(atlas, name)
     reported, counts = subject.reported, subject.state("domains")
     law = Estimate.read(counts, "delta_sigma", scale=DIMENSION)
@@ -90,7 +90,7 @@ def _draw_counts(panel, counts, law, ordinary):
         style = _SEEN | ({} if bool(counts["ordinary_determined"]) else kit.WEAK)
         label = f"ordinary slope: {ordinary}"
         axes.loglog(r, counts["ordinary_count"], "--", color=ORDINARY, label=label, **style)
-    # Markers that hide no line.
+    # Small, thin crosses hide no line.
     crosses = {"ms": 3.5, "mew": 0.7, "alpha": 0.7, "label": "boxes, mean of origins"}
     axes.loglog(counts["mean_side"], counts["mean_count"], "x", color=LAW, **crosses)
     slopes = {"fmt": "D", "ms": 4, "lw": 0.8, "label": "(c) mean of origins, 95 %"}

@@ -15,9 +15,9 @@ NEEDS = ("specimens", "closure", "scaling", "statements")
 ORDER = 160
 SECTION = "size effect"
 
-#: Loads in panel (a).
+#: Number of loads in panel (a).
 _MAX_LOADS = 5
-#: Colours of loads: none of those of the two estimates.
+#: Colours of the loads, which differ from those of the two estimates.
 _LOAD_COLOURS = ("0.65", kit.COLOURS[4], "0.4", kit.COLOURS[3], kit.COLOURS[0])
 
 
@@ -51,7 +51,7 @@ def _draw_areas(panel, states, by_area, reference):
     for n, i in enumerate(kit.spread_loads(len(forces), _MAX_LOADS, reference)):
         state = states.isel(normal_force=i)
         used = state.isel(resolution=state["area_used"].values)
-        # Low loads may share their few nodes: the later marker lets the earlier one show.
+        # Later markers are smaller, because low loads may share their few nodes.
         style = {"color": _LOAD_COLOURS[n], "marker": kit.MARKERS[n], "linestyle": "none"}
         raw = {"mfc": "none", "mew": 0.6, "markersize": 4}
         hollow = axes.plot(state["spacing"], state["area"], **(style | raw))
@@ -85,7 +85,7 @@ def _draw_pressures(panel, state, estimates, load, side):
     specimen = float(state["nominal_pressure"])
     axes.plot(side, specimen, "*k", ms=9, label=r"specimen: $\sigma_0 = F/A_0$")
     kit.size_axes(axes)
-    # The bands come last and do not widen the axes: some intervals span many decades.
+    # The bands are drawn last and do not widen the axes: some intervals span many decades.
     axes.set_ylim(axes.get_ylim())
     for one in estimates:
         band = state.sel(estimator=one.key)
@@ -94,10 +94,10 @@ def _draw_pressures(panel, state, estimates, load, side):
             continue
         colour, ls = one.style["color"], one.style["linestyle"]
         face, edge = to_rgba(colour, 0.2 if one.determined[load] else 0.1), to_rgba(colour, 0.5)
-        # The edges show whose band it is where both lie on each other.
+        # The edges distinguish two bands that overlap.
         axes.fill_between([], [], label=f"95 %, {one.symbol}", fc=face, ec=edge, lw=0.5, ls=ls)
-        # Lines are cut to the axes before they are dashed, edges of areas after: the dashes of one
-        # that ends a thousand decades below would never be done.
+        # Edges are drawn as lines, which matplotlib clips before it dashes them. The edges of
+        # areas are dashed first, which never ends on one that reaches a thousand decades down.
         axes.fill_between(band["eq6_side"], *ends, fc=face, lw=0)
         for end in ends:
             axes.plot(band["eq6_side"], end, color=edge, lw=0.5, ls=ls)

@@ -22,17 +22,14 @@ _COLUMNS = (
 
 
 def draw(atlas: DataTree, name: str) -> kit.Drawing:
-    """Limit slope angle of parts of the window against their side b.
-
-    Its data are the angles at every v/b.
-    """
+    """Limit slope angle of parts of the window against their side b; the data have every v/b."""
     subject = Subject.of(atlas, name)
     laws = subject["windows"]
     direction = str(laws["direction"].values)
     strength = subject["strength"].sel(contact_direction=direction)
     shown = laws.sel(share=float(laws["strength_share"]))
     drawn = bool(shown["strength_at_equal_v_over_b"].notnull().all("normal_force").any())
-    # Barton's law was to be drawn, and cannot be: his scale of roughness ends at 20.
+    # Barton's law is stated but has no value: his scale of roughness ends at 20.
     stated = bool(np.isfinite(strength["joint_wall_strength"]))
     beyond = stated and bool(np.isnan(laws["barton_roughness"]).all())
     figure = Figure(figsize=(kit.WIDTH, 3.4))

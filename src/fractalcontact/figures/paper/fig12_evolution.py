@@ -25,16 +25,16 @@ NEEDS = (
 )
 ORDER = 190
 
-#: Contact domains drawn.
+#: Number of contact domains drawn.
 _MAX_MAPS = 6
 _LETTERS = "abcdefg"
 _ABOVE_MAPS = (
     "force $F$ and real contact area $A_r/A_0$ of each domain (contact black,\n"
     "small nodes enlarged, single ones in rings; raw: not corrected for the perimeter)"
 )
-#: The two estimates stand this factor of F apart, so that neither hides the other.
+#: Factors of F at which the two estimates stand, so that neither hides the other.
 _APART = {"area": 1 / 1.04, "box": 1.04}
-#: Estimates in the stage ``ensemble``.
+#: Names of the estimates in the stage ``ensemble``.
 _OF_ENSEMBLE = {"area": "delta_sigma_area", "box": "delta_sigma"}
 
 

@@ -16,9 +16,9 @@ NEEDS = ("specimens", "closure", "scaling", "statements")
 ORDER = 200
 SECTION = "size effect"
 
-#: Loads drawn.
+#: Number of loads drawn.
 _MAX_LOADS = 6
-#: Bars of the n-th load stand the n-th power of this factor of b beyond the ends of its line.
+#: The bars of the n-th load stand beyond the ends of its line by the n-th power of this factor.
 _BESIDE = 1.04
 
 
@@ -38,7 +38,7 @@ def draw(atlas: DataTree, name: str) -> kit.Drawing:
         panels.append(panel)
     kit.plain_decades(axes[0].xaxis)
     axes[1].set_ylabel("")
-    # Of both panels.
+    # These remarks hold for both panels.
     columns[0].append(kit.heading("markers: the specimen, on which eq. 6 is fixed; lines: eq. 6"))
     columns[0].append(kit.heading("bars at the ends: 95 % interval; thin, no bar: undetermined"))
     kit.legends_below(figure, *columns, columnspacing=2)
@@ -62,7 +62,7 @@ def _draw_lines(panel, states, one, shown, side):
         axes.plot(line["eq6_side"], line["eq6_pressure"], **style | faint)
         if one.determined[i]:
             ends = line.isel(eq6_side=[0, -1])
-            # Beside each other, lest one hides another.
+            # The bars stand beside each other so that none hides another.
             b = ends["eq6_side"] * np.array([1 / _BESIDE**n, _BESIDE**n])
             axes.vlines(b, ends["eq6_pressure_low"], ends["eq6_pressure_high"], lw=1, **style)
         point = style | {"marker": kit.MARKERS[n], "ms": 6, "mec": "white", "mew": 0.5}
