@@ -112,12 +112,12 @@ def _caption(compared, of, labels):
         specimens=compared.sizes["specimen"],
         groups=len(labels) if of else 0,
         pressure=pressure,
-        ends={name: _ends(found, labels) for name, found in values.items()},
+        ends={name: _ends(limits, labels) for name, limits in values.items()},
     )
 
 
 def _ends(values, labels):
     """Least and largest of the known values with their labels; one, or none, where that is all."""
-    known = np.flatnonzero(np.isfinite(values))
-    ends = known[[values[known].argmin(), values[known].argmax()]] if known.size else ()
+    finite = np.flatnonzero(np.isfinite(values))
+    ends = finite[[values[finite].argmin(), values[finite].argmax()]] if finite.size else ()
     return {printable(labels[i], 2 * _LETTERS): float(values[i]) for i in ends}

@@ -73,9 +73,9 @@ def draw_profile(panel: kit.Panel, specimen: xr.Dataset, faces: Sequence[str], a
 
 def draw_spectrum(panel: kit.Panel, quality: xr.Dataset, face: str) -> None:
     """Spectra of profiles of one face with their models, floor and end."""
-    axes, found = panel.axes, quality.sel(face=face)
+    axes, spectra = panel.axes, quality.sel(face=face)
     for axis, (colour, marker) in AXIS_STYLES.items():
-        one = found.sel(axis=axis)
+        one = spectra.sel(axis=axis)
         style: dict[str, Any] = {"color": colour, "lw": 0.9}
         points: dict[str, Any] = {"color": colour, "marker": marker, **_POINTS}
         panel.curve(one, "wavelength", "spectrum", keep=("spectrum_model",), **points)
@@ -84,8 +84,8 @@ def draw_spectrum(panel: kit.Panel, quality: xr.Dataset, face: str) -> None:
             axes.plot(one["wavelength"], one["self_affine_line"], **style | {"ls": ":"})
             if np.isfinite(one["noise_floor"]):
                 axes.axhline(one["noise_floor"].item(), **style | {"ls": "--"})
-    _finish(axes, quality, found["spectrum"])
-    measured = found["spectrum"].where(found["spectrum"] > 0)
+    _finish(axes, quality, spectra["spectrum"])
+    measured = spectra["spectrum"].where(spectra["spectrum"] > 0)
     if measured.notnull().any():
         axes.set_ylim(float(measured.min()) / 4, float(measured.max()) * 4)
     axes.set_ylabel("spectrum of profiles (mm³)")
@@ -94,12 +94,12 @@ def draw_spectrum(panel: kit.Panel, quality: xr.Dataset, face: str) -> None:
 def draw_radial(panel: kit.Panel, quality: xr.Dataset, faces: Sequence[str]) -> None:
     """Radially averaged spectra, with the floor that the profiles have."""
     for face in faces:
-        found = quality.sel(face=face)
+        spectra = quality.sel(face=face)
         style: dict[str, Any] = {"color": FACE_COLOURS[face], "lw": 0.8}
         line = style | _POINTS | {"marker": "o", "ls": "-"}
-        panel.curve(found, "radial_wavelength", "radial_spectrum", **line)
-        if np.isfinite(found["radial_noise_floor"]):
-            panel.axes.axhline(found["radial_noise_floor"].item(), ls="--", **style)
+        panel.curve(spectra, "radial_wavelength", "radial_spectrum", **line)
+        if np.isfinite(spectra["radial_noise_floor"]):
+            panel.axes.axhline(spectra["radial_noise_floor"].item(), ls="--", **style)
     _finish(panel.axes, quality, quality["radial_spectrum"])
     panel.axes.set_ylabel("radial spectrum (mm⁴)")
 
@@ -110,9 +110,9 @@ def _finish(axes: Axes, quality: xr.Dataset, spectrum: xr.DataArray) -> None:
     axes.axvspan(*_range(quality), color=RANGE, alpha=0.13, lw=0, zorder=0)
     below = quality["below_range"].values
     for side, hollow in zip(quality["resolution"].values, below, strict=True):
-        at: dict[str, Any] = {"transform": axes.get_xaxis_transform(), "clip_on": False}
+        place: dict[str, Any] = {"transform": axes.get_xaxis_transform(), "clip_on": False}
         face = "white" if hollow else RANGE
-        axes.plot(2 * side, 0.985, "v", color=RANGE, mfc=face, ms=5, zorder=5, **at)
+        axes.plot(2 * side, 0.985, "v", color=RANGE, mfc=face, ms=5, zorder=5, **place)
     if not spectrum.notnull().any():
         kit.say_empty(axes, "too small for a spectrum")
 

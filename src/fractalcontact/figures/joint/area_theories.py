@@ -50,8 +50,8 @@ def draw(atlas: DataTree, name: str) -> kit.Drawing:
     kit.letter(left, "a", "real contact area")
     kit.letter(right, "b", r"area slope $\kappa$")
     kit.legends_below(figure, kit.entries(left), kit.entries(right))
-    at = float(law["offset"]) if subject.direction != "none" else None
-    kit.headline(figure, subject.label, kit.place(subject.direction, at))
+    offset = float(law["offset"]) if subject.direction != "none" else None
+    kit.headline(figure, subject.label, kit.place(subject.direction, offset))
     words = kit.caption(__name__, **_words(atlas, name, laws, law))
     return kit.Drawing(figure, kit.rows(law, *_COLUMNS), words)
 
@@ -76,10 +76,10 @@ def _draw_area(axes: Axes, law: xr.Dataset) -> None:
 def _draw_kappa(axes: Axes, laws: xr.Dataset, law: xr.Dataset) -> None:
     """Loads of enough nodes: raw and corrected here, corrected at the other offsets."""
     others = laws.sel(offset=laws["offset"] != law["offset"])
-    known = others["corrected_kappa"].where(others["corrected_fitted"])
+    fitted_kappa = others["corrected_kappa"].where(others["corrected_fitted"])
     lines = axes.plot(
         others["reduced_pressure"].transpose(..., "offset"),
-        known.transpose(..., "offset"),
+        fitted_kappa.transpose(..., "offset"),
         color="0.75",
         lw=0.6,
         zorder=1,

@@ -77,9 +77,9 @@ def _draw_correlation(panel: kit.Panel, joint: xr.Dataset, solved: str) -> None:
     kept = ("correlation_length", "uncorrelated_offset")
     for direction in sorted(joint["direction"].values, key=lambda one: one == solved):
         words = "the direction of (b), (c)" if direction == solved else "other directions"
-        known = {entry.get_label() for entry in kit.entries(panel.axes)}
+        labels = {entry.get_label() for entry in kit.entries(panel.axes)}
         style: dict[str, Any] = {"color": "k" if direction == solved else "0.7", "ls": "-"}
-        style["label"] = None if words in known else words
+        style["label"] = None if words in labels else words
         one = joint.sel(direction=direction)
         panel.curve(one, "rigid_offset", "face_correlation", keep=kept, **style)
     limit = float(joint["correlation_limit"])

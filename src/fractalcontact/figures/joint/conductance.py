@@ -61,10 +61,10 @@ def draw(atlas: DataTree, name: str) -> kit.Drawing:
     kit.legends_below(figure, kit.entries(axes)[: len(labels)], remarks)
     kit.headline(figure, subject.label, kit.place(subject.direction))
     exponents = Estimate.read(curves, "conductance_exponent", scale=EXPONENT)
-    beside = curves["conductance_beside_theory"].values
-    known = [exponents[i] for i in np.flatnonzero(beside != "")]
-    words = {"exponents": known, "powers": [float(one.value) for one in known]}
-    words |= {"beside": beside.tolist(), "theory": CONDUCTANCE_EXPONENTS}
+    verdicts = curves["conductance_beside_theory"].values
+    judged = [exponents[i] for i in np.flatnonzero(verdicts != "")]
+    words = {"exponents": judged, "powers": [float(one.value) for one in judged]}
+    words |= {"beside": verdicts.tolist(), "theory": CONDUCTANCE_EXPONENTS}
     return kit.Drawing(figure, kit.table_of(panel), kit.caption(__name__, **words))
 
 

@@ -36,8 +36,8 @@ def draw(atlas: DataTree, name: str) -> kit.Drawing:
     subject = Subject.of(atlas, name)
     measures, reference = subject["domain_measures"], subject.reported.reference
     some = np.flatnonzero(measures["lacunarity"].notnull().any("gliding_side").values)
-    at = np.flatnonzero(some == reference)
-    chosen = some[kit.spread_loads(some.size, MAX_LOADS, int(at[0]) if at.size else None)]
+    index = np.flatnonzero(some == reference)
+    chosen = some[kit.spread_loads(some.size, MAX_LOADS, int(index[0]) if index.size else None)]
     shown = measures.isel(normal_force=chosen)
     figure = Figure(figsize=(kit.WIDTH, 3.4))
     a, b, c = (kit.Panel(*one) for one in zip(figure.subplots(1, 3), "abc", _TITLES, strict=True))

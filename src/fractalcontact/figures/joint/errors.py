@@ -52,7 +52,7 @@ _KEPT = ("error", "relative_error", "unit", "numerical_from")
 def draw(atlas: DataTree, name: str) -> kit.Drawing:
     """Errors over the load at the map offset, one panel a quantity, one line a source."""
     subject = Subject.of(atlas, name)
-    here = subject.state("error_budget")
+    budget = subject.state("error_budget")
     errors = _with_totals(subject["error_budget"])
     figure = Figure(figsize=(kit.WIDTH, 6.6))
     *places, legend = figure.subplots(3, 2).ravel()
@@ -60,18 +60,18 @@ def draw(atlas: DataTree, name: str) -> kit.Drawing:
     panels = [kit.Panel(*one) for one in zip(places, "abcde", titles, strict=True)]
     for panel, quantity in zip(panels, QUANTITIES, strict=True):
         axes, size = panel.axes, kit.force_axis(panel.axes.xaxis, subject.forces)
-        load = float(here["normal_force"]) / size
+        load = float(budget["normal_force"]) / size
         axes.axvline(load, label="reference load", color="0.8", lw=3, zorder=0)
         _draw_errors(panel, errors.sel(quantity=quantity), size)
         kit.plain_decades(axes.yaxis)
     kit.hollow_entry(places[-1], "hollow: interpolated between loads", marker=kit.MARKERS[2])
-    found = {entry.get_label(): entry for axes in places for entry in kit.entries(axes)}
+    handles = {entry.get_label(): entry for axes in places for entry in kit.entries(axes)}
     legend.set_axis_off()
     below = "errors below a frame are negligible"
     style: dict[str, Any] = {"handlelength": 3.5, "title_fontsize": 7}
-    legend.legend(handles=list(found.values()), loc="center", title=below, **style)
+    legend.legend(handles=list(handles.values()), loc="center", title=below, **style)
     kit.headline(figure, subject.label, kit.place(subject.direction, subject.offset))
-    return kit.Drawing(figure, kit.table_of(*panels), kit.caption(__name__, **_words(here)))
+    return kit.Drawing(figure, kit.table_of(*panels), kit.caption(__name__, **_words(budget)))
 
 
 def _with_totals(budget: xr.Dataset) -> xr.Dataset:
@@ -121,11 +121,11 @@ def _draw_errors(panel: kit.Panel, errors: xr.Dataset, size: float) -> None:
     panel.axes.set_ylim(LEAST * largest / scale, 3 * most)
 
 
-def _words(here: xr.Dataset) -> dict[str, Any]:
+def _words(budget: xr.Dataset) -> dict[str, Any]:
     """Values of the caption: totals for this surface, each with its largest source."""
     totals = []
     for quantity, (_, words) in QUANTITIES.items():
-        errors = here.sel(quantity=quantity)
+        errors = budget.sel(quantity=quantity)
         total, relative = float(errors["total"]), float(errors["relative_total"])
         if np.isfinite(relative):
             said = percent(relative)
@@ -136,4 +136,4 @@ def _words(here: xr.Dataset) -> dict[str, Any]:
             said = compact(total, 2)
         if np.isfinite(total):
             totals.append((words, said, str(errors["largest_source"].values)))
-    return {"totals": totals, "force": float(here["normal_force"])}
+    return {"totals": totals, "force": float(budget["normal_force"])}

@@ -52,17 +52,19 @@ def draw(atlas: DataTree, name: str) -> kit.Drawing:
         panel.axes.set_ylabel("")
     if not flows:
         kit.say_empty(c.axes, str(flow["flow_reason_along"].values[reference]), ticks=False)
-    at = flow.isel(normal_force=reference)
-    c.keep(at, "channel_fraction_along", "critical_gap_along", "transmissivity_along", "gap_slope")
-    pressure = pressure_label(float(at["nominal_pressure"]))
+    state = flow.isel(normal_force=reference)
+    c.keep(
+        state, "channel_fraction_along", "critical_gap_along", "transmissivity_along", "gap_slope"
+    )
+    pressure = pressure_label(float(state["nominal_pressure"]))
     kit.headline(figure, subject.label, kit.place(subject.direction, subject.offset), pressure)
     words = {
         "axis": axis,
         "flows": flows,
-        "channels": float(at["channel_fraction_along"]),
-        "narrowest": float(at["critical_gap_along"]),
-        "slope": float(at["gap_slope"]),
-        "gradient": 1e6 * float(at["reynolds_gradient_along"]),
-        "reason": str(at["flow_reason_along"].values),
+        "channels": float(state["channel_fraction_along"]),
+        "narrowest": float(state["critical_gap_along"]),
+        "slope": float(state["gap_slope"]),
+        "gradient": 1e6 * float(state["reynolds_gradient_along"]),
+        "reason": str(state["flow_reason_along"].values),
     }
     return kit.Drawing(figure, kit.table_of(c), kit.caption(__name__, **words))

@@ -83,11 +83,11 @@ def _draw_apertures(panel: kit.Panel, states: xr.Dataset) -> None:
         panel.axes.plot([], [], "|", color="0.4", ms=10, label="95 % interval, mean over windows")
     # Empirical laws have values where no path is open; they are drawn only beside computed ones.
     flows = sum(states[f"transmissivity_{way}"].fillna(0) for way in _WAYS)
-    beside = states.isel(normal_force=np.flatnonzero(flows > 0))
+    open_states = states.isel(normal_force=np.flatnonzero(flows > 0))
     for law, (words, style) in _LAWS.items():
-        if beside[law].notnull().any():
-            panel.curve(beside, "mean_gap", law, label=words, marker=".", **style)
-    gaps = beside["mean_gap"].values
+        if open_states[law].notnull().any():
+            panel.curve(open_states, "mean_gap", law, label=words, marker=".", **style)
+    gaps = open_states["mean_gap"].values
     if gaps.size:
         ends = [gaps.min(), gaps.max()]
         panel.axes.plot(ends, ends, color="0.6", lw=0.8, label="parallel plates")
@@ -111,28 +111,28 @@ def _draw_branches(panel: kit.Panel, flow: xr.Dataset) -> None:
 
 def _words(subject: Subject, states: xr.Dataset) -> dict[str, Any]:
     """Values of the caption."""
-    at = states.isel(normal_force=subject.reported.reference)
-    window = Estimate.read(at, "transmissivity_along")
+    state = states.isel(normal_force=subject.reported.reference)
+    window = Estimate.read(state, "transmissivity_along")
     # Ratios to the flow are missing where nothing flows.
     flow = float(window.value) if window.value > 0 else np.nan
     offsets = subject["flow"]["offset_transmissivity_along"]
     first, last = offsets.where(offsets > 0).values[[0, -1]]
     return {
-        "pressure": float(at["nominal_pressure"]),
+        "pressure": float(state["nominal_pressure"]),
         "transmissivity": flow,
-        "aperture": float(at["hydraulic_aperture_along"]),
-        "ratio": float(at["hydraulic_ratio_along"]),
+        "aperture": float(state["hydraulic_aperture_along"]),
+        "ratio": float(state["hydraulic_ratio_along"]),
         "flows": flow > 0,
         "window": [window.low, window.high],
-        "reload": float(at["branch_transmissivity_along"].sel(branch="reload") / flow),
+        "reload": float(state["branch_transmissivity_along"].sel(branch="reload") / flow),
         "closed": float(states["first_closed_pressure_along"]),
         "opened": float(states["last_open_pressure_along"]),
-        "grid": float(at["transmissivity_grid_error_along"]) / flow,
-        "closing": float(at["transmissivity_separation_error_along"]) / flow,
+        "grid": float(state["transmissivity_grid_error_along"]) / flow,
+        "closing": float(state["transmissivity_separation_error_along"]) / flow,
         "walls": int((offsets == 0).sum()),
         "offsets": offsets.size,
         "way": "the sliding" if slides(subject.settings["opposite"]) else "x",
-        "slope": float(at["gap_slope"]),
+        "slope": float(state["gap_slope"]),
         "first_offset": float(offsets["offset"][0]),
         "last_offset": float(offsets["offset"][-1]),
         "widening": float(last / first),

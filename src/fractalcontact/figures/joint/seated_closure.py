@@ -55,12 +55,12 @@ def draw(atlas: DataTree, name: str) -> kit.Drawing:
         "marker": "o",
     }
     a.curve(curve, "seated_closure", "nominal_pressure", keep=_KEPT, label="states", **style)
-    again = branches.sel(branch=["reload"])
-    a.curves(again, "seated_closure", "nominal_pressure", hue="branch", **_AGAIN)
+    reloading = branches.sel(branch=["reload"])
+    a.curves(reloading, "seated_closure", "nominal_pressure", hue="branch", **_AGAIN)
     _draw_laws(a.axes, curve)
     kit.draw_tests(a, subject, "closure", turned=True)
     _draw_stiffness(b, curve, style)
-    b.curves(again, "nominal_pressure", "interface_stiffness", hue="branch", **_AGAIN)
+    b.curves(reloading, "nominal_pressure", "interface_stiffness", hue="branch", **_AGAIN)
     if not np.isfinite(curve["seated_closure"]).any():
         kit.say_empty(a.axes, f"no load from the seat on has {RESOLVED_NODES} nodes in contact")
     a.axes.set_xlabel("closure $d$ from the seat (mm)")
@@ -73,7 +73,7 @@ def draw(atlas: DataTree, name: str) -> kit.Drawing:
     below = draw_permanent_set(parts[1], branches, sides) if crushed else []
     table = kit.table_of(a, b, *below)
     total = subject["error_budget"]["reference_stiffness_total"]
-    words = {"tests": kit.test_words(subject, "closure"), **_words(curve, seat, again, total)}
+    words = {"tests": kit.test_words(subject, "closure"), **_words(curve, seat, reloading, total)}
     return kit.Drawing(figure, table, kit.caption(__name__, **words))
 
 
@@ -119,18 +119,18 @@ def _draw_stiffness(panel: kit.Panel, curve: xr.Dataset, style: dict[str, Any]) 
 
 
 def _words(
-    curve: xr.Dataset, seat: float, again: xr.Dataset, total: xr.DataArray
+    curve: xr.Dataset, seat: float, reloading: xr.Dataset, total: xr.DataArray
 ) -> dict[str, Any]:
     """Values of the caption."""
     stiffness = curve["reference_stiffness"]
     errors = total.where(np.isfinite(stiffness), drop=True)
-    known = stiffness[np.isfinite(stiffness)]
-    on_reload = again["reference_stiffness"].sel(branch="reload")
+    determined = stiffness[np.isfinite(stiffness)]
+    on_reload = reloading["reference_stiffness"].sel(branch="reload")
     middle = on_reload["reference_pressure"].values[len(on_reload) // 2]
     return {
-        "residual": float(again["residual_closure"]),
-        "yielded": float(again["yielded_fraction"][0, -1]),
-        "top": float(again["nominal_pressure"][-1]),
+        "residual": float(reloading["residual_closure"]),
+        "yielded": float(reloading["yielded_fraction"][0, -1]),
+        "top": float(reloading["nominal_pressure"][-1]),
         "reload": float(on_reload.sel(reference_pressure=middle)),
         "middle": float(middle),
         "seat": seat,
@@ -143,7 +143,7 @@ def _words(
         "stated": [
             (compact(float(pressure)), compact(float(value), 3), compact(float(error), 2))
             for pressure, value, error in zip(
-                known["reference_pressure"], known, errors, strict=True
+                determined["reference_pressure"], determined, errors, strict=True
             )
         ],
     }

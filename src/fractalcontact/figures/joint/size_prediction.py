@@ -49,8 +49,8 @@ def _draw_ratios(panel: kit.Panel, test: xr.Dataset, quantity: str) -> None:
     axes, ends = panel.axes, ("", "_low", "_high")
     solved = test[f"direct_{quantity}"]
     ratios = {f"ratio{end}": test[f"predicted_{quantity}{end}"] / solved for end in ends}
-    known = ratios["ratio"].notnull().any("predictor").values
-    shown = test.assign(ratios).isel(normal_force=known)
+    loads = ratios["ratio"].notnull().any("predictor").values
+    shown = test.assign(ratios).isel(normal_force=loads)
     kept = (f"predicted_{quantity}", f"direct_{quantity}", "beyond_study")
     for n, (predictor, words) in enumerate(PREDICTORS.items()):
         # The predictors stand side by side, because all have the same loads.
@@ -60,7 +60,7 @@ def _draw_ratios(panel: kit.Panel, test: xr.Dataset, quantity: str) -> None:
     axes.axhline(1, color="0.5", lw=0.6)
     axes.set_xlabel(r"nominal pressure $\sigma_0$ of the whole window (MPa)")
     axes.set_ylabel(f"{_QUANTITIES[quantity]}: predicted / solved (1)")
-    if not known.any():
+    if not loads.any():
         kit.say_empty(axes, "nothing to predict from", ticks=False)
         return
     grey_beyond(axes, shown)
@@ -75,11 +75,11 @@ def _words(test: xr.Dataset) -> dict[str, Any]:
     quoted = np.flatnonzero(test["quoted_load"].values)
     if not quoted.size:
         return {"found": {}}
-    here = test.isel(normal_force=quoted[0])
+    quoted_state = test.isel(normal_force=quoted[0])
     names = {"closure": "closure", "contact area": "area"}
-    ratios = {words: 1 + here[f"{name}_error"] for words, name in names.items()}
+    ratios = {words: 1 + quoted_state[f"{name}_error"] for words, name in names.items()}
     return {
-        "pressure": float(here["nominal_pressure"]),
-        "beyond": bool(here["beyond_study"]),
+        "pressure": float(quoted_state["nominal_pressure"]),
+        "beyond": bool(quoted_state["beyond_study"]),
         "found": {words: [float(one.min()), float(one.max())] for words, one in ratios.items()},
     }

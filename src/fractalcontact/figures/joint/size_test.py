@@ -69,12 +69,12 @@ def _draw_area(panel: kit.Panel, test: xr.Dataset) -> list[Artist]:
     panel.keep(test, *_MEANS, "beyond_study")
     axes.set_ylabel(r"real contact area $A_r/A_0$ (1)")
     kit.size_axis(axes, b, "parts")
-    known = np.isfinite(test["area_exponent_low"].values)
-    of_study = known & ~test["beyond_study"].values.astype(bool)
-    loads = np.flatnonzero(of_study if of_study.any() else known)
+    fitted = np.isfinite(test["area_exponent_low"].values)
+    of_study = fitted & ~test["beyond_study"].values.astype(bool)
+    loads = np.flatnonzero(of_study if of_study.any() else fitted)
     if not loads.size:
         kit.say_empty(axes, "no load at which two sizes\nhold enough nodes", ticks=False)
-    found: list[Artist] = [kit.heading("(a) exponent of $b$ [95 % interval]")]
+    handles: list[Artist] = [kit.heading("(a) exponent of $b$ [95 % interval]")]
     for n, i in enumerate(loads[kit.spread(loads.size, MAX_LOADS)]):
         one = test.isel(normal_force=i)
         means = Estimate.read(one, "area_fraction")
@@ -87,10 +87,10 @@ def _draw_area(panel: kit.Panel, test: xr.Dataset) -> list[Artist]:
             axes.plot(sides, means.value[0] * (sides / sides[0]) ** slope, lw=0.8, **line)
         exponent = Estimate.read(one, "area_exponent", scale=DIMENSION).text()
         pressure = pressure_label(float(one["nominal_pressure"]))
-        found.append(kit.mark(label=f"{pressure}: {exponent}", **style))
+        handles.append(kit.mark(label=f"{pressure}: {exponent}", **style))
         axes.set_yscale("log")
         kit.plain_decades(axes.yaxis)
-    return found
+    return handles
 
 
 def _draw_exponents(panel: kit.Panel, test: xr.Dataset, name: str, sure: xr.DataArray) -> None:

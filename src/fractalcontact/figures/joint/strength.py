@@ -127,11 +127,11 @@ def _draw_summary(panel: kit.Panel, strength: xr.Dataset) -> None:
     axes.set_xlabel(f"{kit.NOMINAL_PRESSURE} (MPa)")
     axes.set_ylabel(r"shear strength $\tau$ (MPa)")
     panel.keep(strength, "peak_offset", *_VALID.values(), *_SUMMARY, "peak_over_barton")
-    known = {name: strength[name].values for name in _SUMMARY if strength[name].notnull().any()}
-    if not known:
+    strengths = {name: strength[name].values for name in _SUMMARY if strength[name].notnull().any()}
+    if not strengths:
         kit.say_empty(axes, kit.NO_STRENGTH, ticks=False)
         return
-    for name, values in known.items():
+    for name, values in strengths.items():
         words, style = _SUMMARY[name]
         valid = strength[_VALID[name]].values if name in _VALID else np.ones(sigma.shape)
         kit.draw_points(axes, sigma, values, valid, label=words, **style)
@@ -140,7 +140,7 @@ def _draw_summary(panel: kit.Panel, strength: xr.Dataset) -> None:
     bars = Estimate.read(strength, "residual_strength").ends
     kit.draw_bars(axes, sigma, *bars, _SUMMARY["residual_strength"][1]["color"])
     axes.set(xscale="log")
-    kit.logarithmic(axes, np.array(list(known.values())))
+    kit.logarithmic(axes, np.array(list(strengths.values())))
 
 
 def _words(subject: Subject, strength: xr.Dataset, shown: xr.Dataset) -> dict[str, Any]:

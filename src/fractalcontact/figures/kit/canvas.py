@@ -93,7 +93,9 @@ class _Renderer(RendererAgg):
         cos, sin = np.cos(np.radians(angle)), np.sin(np.radians(angle))
         for face, size, index, _, _, along, up in glyphs:
             place = along * cos - up * sin, along * sin + up * cos
-            (column, right), (row, above) = (divmod(round(_PHASES * at), _PHASES) for at in place)
+            (column, right), (row, above) = (
+                divmod(round(_PHASES * coordinate), _PHASES) for coordinate in place
+            )
             picture, left, top = _letter(face, size, self.dpi, index, angle, right, above)
             self._renderer.draw_text_image(
                 picture, x + column + left, y - row - top + len(picture), 0, gc

@@ -35,9 +35,9 @@ class Caption(str):
 
     def __new__(cls, heading: str, shows: str, finds: tuple[str, ...]) -> "Caption":
         """Caption of these parts."""
-        made = super().__new__(cls, " ".join((shows, *finds)))
-        made.heading, made.shows, made.finds = heading, shows, finds
-        return made
+        whole = super().__new__(cls, " ".join((shows, *finds)))
+        whole.heading, whole.shows, whole.finds = heading, shows, finds
+        return whole
 
     @property
     def text(self) -> str:
@@ -71,9 +71,9 @@ def _templates(path: Path) -> dict[str, dict[str, Any]]:
 
 @cache
 def _environment() -> Environment:
-    made = Environment(undefined=StrictUndefined, autoescape=False)  # plain text
-    made.globals["paper"] = PAPER
-    made.filters |= {
+    environment = Environment(undefined=StrictUndefined, autoescape=False)  # plain text
+    environment.globals["paper"] = PAPER
+    environment.filters |= {
         "short": compact,
         "number": number,
         "percent": percent,
@@ -81,4 +81,4 @@ def _environment() -> Environment:
         "pressure": pressure_label,
         "text": lambda estimate, unit="": estimate.text(unit),
     }
-    return made
+    return environment

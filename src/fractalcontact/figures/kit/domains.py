@@ -115,12 +115,12 @@ def departures(counts: xr.Dataset) -> dict[str, str]:
 
     `counts` is the stage ``domains`` over loads, of which some are compared with null models.
     """
-    verdicts, found = counts["null_verdict"].values, {}
+    verdicts, words = counts["null_verdict"].values, {}
     for null, differ in _DIFFERENT.items():
         compared = np.isfinite(counts[f"local_slope_{null}_p"].values)
         some = loads_of(int(np.isin(verdicts[compared], differ).sum()), int(compared.sum()))
-        found[null] = some if compared.any() else ""
-    return found
+        words[null] = some if compared.any() else ""
+    return words
 
 
 def rise_words(atlas: DataTree, name: str) -> str:

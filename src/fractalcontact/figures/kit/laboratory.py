@@ -45,11 +45,11 @@ def labels_of(subject: Subject, kind: str) -> list[str]:
 
 def test_words(subject: Subject, kind: str) -> list[str]:
     """Sentences of a caption that compare the computed curve with tests of a kind."""
-    found = []
+    sentences = []
     for label in labels_of(subject, kind):
         test = subject["measured"].sel({f"{kind}_test": label})
         last = Estimate.read(test, f"{kind}_ratio_at_last")
         if np.isfinite(last.value):
             ends = f"{compact(last.value)} [{compact(last.low)}, {compact(last.high)}]"
-            found.append(f"{label}: {ends}")
-    return found
+            sentences.append(f"{label}: {ends}")
+    return sentences

@@ -64,12 +64,12 @@ def _break_panel_titles(figure) -> Iterator[bool]:
     ]
     boxes = {title: title.get_window_extent(_renderer(figure)) for title in titles}
     for title, box in boxes.items():
-        beside = [
+        edges = [
             other.x0 - _pixels(figure, _GAP)
             for other in boxes.values()
             if other.x0 > box.x0 and _side_by_side(other, box)
         ]
-        right = min([figure.bbox.x1 - _pixels(figure, _EDGE), *beside])
+        right = min([figure.bbox.x1 - _pixels(figure, _EDGE), *edges])
         room = max(right - box.x0, _pixels(figure, _MIN_ROOM))
         yield title.get_horizontalalignment() == "left" and _fill(title, room)
 

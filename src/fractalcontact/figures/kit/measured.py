@@ -81,10 +81,10 @@ def draw_series(
 
     NaN in x leaves a map out; `nulls` adds the dimension of random cells.
     """
-    known = np.isfinite(x)
-    x = x[known]
+    finite = np.isfinite(x)
+    x = x[finite]
     value, low, high, least, most = (
-        series.values(name)[known]
+        series.values(name)[finite]
         for name in (*names_of("delta_sigma"), "delta_sigma_least", "delta_sigma_most")
     )
     colour = series.style["color"]
@@ -96,7 +96,7 @@ def draw_series(
         else:
             axes.vlines(x, least, most, color=colour, alpha=0.25, lw=5)
     if nulls:
-        mean, low, high = (series.values(of)[known] for of in names_of("delta_sigma_random"))
+        mean, low, high = (series.values(of)[finite] for of in names_of("delta_sigma_random"))
         style = {"color": colour, "lw": 0.8, "ls": ":", "marker": "none"}
         if len(x) > 1:
             axes.plot(x, mean, **style)
@@ -154,7 +154,7 @@ def draw_over_force(axes: Axes, series: Sequence[Series], nominal: float) -> Non
 def measured_range(series: Sequence[Series]) -> dict[str, Any]:
     """Number of measured maps, their thresholds and the range of their Delta_sigma."""
     values = np.array([value for each in series for value in each.values("delta_sigma")], float)
-    known = values[np.isfinite(values)]
-    ends = [number(end) for end in (known.min(), known.max())] if known.size else []
+    finite = values[np.isfinite(values)]
+    ends = [number(end) for end in (finite.min(), finite.max())] if finite.size else []
     words = threshold_words(series) if series else ""
     return {"maps": values.size, "measured": list(dict.fromkeys(ends)), "thresholds": words}

@@ -66,9 +66,9 @@ def shaded(
 
     `heights`, the spacing (dy, dx) and the ends `low` and `high` of the colours are in mm.
     """
-    known = np.isfinite(heights)
+    measured = np.isfinite(heights)
     # Holes are filled so that the light sees no cliff; they are painted grey below.
-    nearest = distance_transform_edt(~known, return_distances=False, return_indices=True)
+    nearest = distance_transform_edt(~measured, return_distances=False, return_indices=True)
     whole = heights[tuple(nearest)]
     steepness = np.sqrt(np.mean(np.square(np.gradient(whole, *spacing))))
     stretch = LIT_SLOPE / steepness if steepness > 0 else 1.0
@@ -83,5 +83,5 @@ def shaded(
         dy=-spacing[0],
         blend_mode="soft",
     )[..., :3]
-    colours[~known] = to_rgb(MISSING)
+    colours[~measured] = to_rgb(MISSING)
     return colours

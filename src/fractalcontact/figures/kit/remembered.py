@@ -26,17 +26,17 @@ def remember_ticks(figure: Figure) -> None:
 
 
 def _ticks_remembered(axis):
-    find, known, found = axis._update_ticks, None, []
+    find, state_of_ticks, ticks_found = axis._update_ticks, None, []
 
     def ticks():
-        nonlocal known, found
+        nonlocal state_of_ticks, ticks_found
         dpi, bounds = axis.get_figure(root=True).dpi, axis.axes.bbox.bounds
         # Sizes are in inches without the last digits, so that the SVG has the ticks of the PNG.
         # Only the last answer is kept, because matplotlib moves the ticks themselves.
         state = (*axis.get_view_interval(), *(round(side / dpi, 6) for side in bounds))
-        if state != known:
-            known, found = state, find()
-        return found
+        if state != state_of_ticks:
+            state_of_ticks, ticks_found = state, find()
+        return ticks_found
 
     return ticks
 
@@ -44,18 +44,18 @@ def _ticks_remembered(axis):
 @contextlib.contextmanager
 def layouts_remembered() -> Iterator[None]:
     """Every text laid out once on each canvas, within the block."""
-    known: WeakKeyDictionary[Any, dict] = WeakKeyDictionary()
+    layouts: WeakKeyDictionary[Any, dict] = WeakKeyDictionary()
     lay_out = Text._get_layout  # type: ignore[attr-defined]
 
     def layout(text, renderer):
-        of_canvas = known.setdefault(renderer, {})
+        of_canvas = layouts.setdefault(renderer, {})
         state = _state_of(text)
         if state is None:
             return lay_out(text, renderer)
-        found = of_canvas.get(state)
-        if found is None:
-            found = of_canvas[state] = lay_out(text, renderer)
-        return found
+        text_layout = of_canvas.get(state)
+        if text_layout is None:
+            text_layout = of_canvas[state] = lay_out(text, renderer)
+        return text_layout
 
     setattr(Text, "_get_layout", layout)  # noqa: B010  # a method that types do not know
     try:

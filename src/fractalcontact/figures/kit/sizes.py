@@ -82,11 +82,11 @@ def draw_over_size(
     b, loads = laws["side"].values, laws.sizes["normal_force"]
     for j in range(loads):
         one = laws.isel(normal_force=j)
-        beside = b * (1 + apart * (j - (loads - 1) / 2))
+        places = b * (1 + apart * (j - (loads - 1) / 2))
         means = Estimate.read(one, name)
         trusted = np.ones(b.shape, bool) if filled is None else filled.isel(normal_force=j)
-        draw_points(axes, beside, means.value, trusted, **series(j))
-        draw_bars(axes, beside, *means.ends, colour_of(j + 1))
+        draw_points(axes, places, means.value, trusted, **series(j))
+        draw_bars(axes, places, *means.ends, colour_of(j + 1))
 
 
 def series(j: int) -> dict[str, Any]:
@@ -117,9 +117,9 @@ def draw_bars(
 
     An interval that includes zero ends below the frame.
     """
-    known = np.isfinite(low) & (mean > 0)
-    bottom = np.maximum(low[known], _OUT_OF_FRAME * mean[known])
-    axes.vlines(b[known], bottom, high[known], color=colour, lw=0.8)
+    finite = np.isfinite(low) & (mean > 0)
+    bottom = np.maximum(low[finite], _OUT_OF_FRAME * mean[finite])
+    axes.vlines(b[finite], bottom, high[finite], color=colour, lw=0.8)
 
 
 def logarithmic(axes: Axes, values: np.ndarray) -> None:

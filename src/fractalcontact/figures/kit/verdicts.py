@@ -73,14 +73,14 @@ def labels_by_verdict(
     atlas: DataTree, names: Sequence[str], statements: Sequence[str], letters: int
 ) -> dict[str, list[str]]:
     """Labels, of up to `letters` letters, of specimens that statements apply to, by verdict."""
-    found: dict[str, list[str]] = {}
+    labels: dict[str, list[str]] = {}
     for name in names:
         for row in (row_of(atlas, "statements", name, statement) for statement in statements):
             if row is not None:
                 circular = f" ({CIRCULAR_SHORT})" if row["circular"] else ""
                 label = printable(Subject.of(atlas, name).label, letters)
-                found.setdefault(row["verdict"].item(), []).append(f"{label}{circular}")
-    return found
+                labels.setdefault(row["verdict"].item(), []).append(f"{label}{circular}")
+    return labels
 
 
 def row_of(atlas: DataTree, stage: str, name: str, statement: str) -> xr.Dataset | None:

@@ -23,16 +23,16 @@ def draw(atlas: DataTree, specimens: list[str]) -> kit.Drawing:
     series = kit.measured_series(atlas)
     figure = Figure(figsize=(kit.WIDTH, 3.9))
     panels = figure.subplots(1, 2, sharey=True)
-    for each in series:
-        kit.draw_series(panels[0], each, each.pressure, each.legend, nulls=True)
-        kit.draw_series(panels[1], each, each.values("area_share"), each.legend, nulls=True)
+    for sample in series:
+        kit.draw_series(panels[0], sample, sample.pressure, sample.legend, nulls=True)
+        kit.draw_series(panels[1], sample, sample.values("area_share"), sample.legend, nulls=True)
     for axes, which, words in (
         (panels[0], "a", r"nominal pressure $\sigma_0$ (MPa)"),
         (panels[1], "b", "contact fraction $A_r/A_0$ (1)"),
     ):
         axes.set_xlabel(words)
         kit.letter(axes, which, words.split(" $")[0])
-    if any(np.isfinite(each.pressure).any() for each in series):
+    if any(np.isfinite(sample.pressure).any() for sample in series):
         panels[0].set_xscale("log")
     else:
         panels[0].set_xticks([])

@@ -111,10 +111,10 @@ def _law_words(curve):
     misfits = [float(curve[f"{law}_misfit"]) for law in ("semi_logarithmic", "hyperbola")]
     if not np.isfinite(misfits).any():
         return f"no fit: {no_law(curve)}"
-    known = (percent(misfit) if np.isfinite(misfit) else "no fit" for misfit in misfits)
+    words = (percent(misfit) if np.isfinite(misfit) else "no fit" for misfit in misfits)
     k_ni = Estimate.read(curve, "hyperbola_k_ni", scale=EXPONENT)
     determined = bool(curve["hyperbola_k_ni_determined"]) or not k_ni.known
-    return f"{', '.join(known)}; {k_ni.text() if determined else k_ni.undetermined()}"
+    return f"{', '.join(words)}; {k_ni.text() if determined else k_ni.undetermined()}"
 
 
 def no_law(curve: xr.Dataset) -> str:

@@ -61,5 +61,5 @@ def _numbers(state, name):
     value, change = float(state[name]), float(state[f"{name}_change"])
     if not np.isfinite(value):
         return "not known"
-    known = f" ({percent(change, sign='+')})" if np.isfinite(change) else ""
-    return f"{compact(value)}{known}"
+    change_words = f" ({percent(change, sign='+')})" if np.isfinite(change) else ""
+    return f"{compact(value)}{change_words}"

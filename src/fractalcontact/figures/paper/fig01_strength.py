@@ -41,12 +41,12 @@ def draw(atlas: DataTree, name: str) -> kit.Drawing:
     slopes = [*kit.entries(slope), whole, kit.heading(kit.BARS), kit.heading(kit.SHIFTED)]
     kit.legends_below(figure, kit.entries(strength), slopes)
     kit.headline(figure, subject.label, kit.place(str(laws["direction"].values)))
-    known = drawn["slope_at_equal_v_over_b_exponent"].notnull()
+    fitted = drawn["slope_at_equal_v_over_b_exponent"].notnull()
     at_one_v = drawn["slope_at_equal_v_exponent"].values
     words = kit.caption(
         __name__,
         share=float(drawn["share"]),
-        trends=drawn["slope_at_equal_v_over_b_trend"].values[known].tolist(),
+        trends=drawn["slope_at_equal_v_over_b_trend"].values[fitted].tolist(),
         at_one_v=sorted(at_one_v[np.isfinite(at_one_v)]),
         lost=int((drawn["slope_at_equal_v_over_b"] <= 0).sum()),
         claim=kit.claim(atlas, name, "strength_falls_with_size"),

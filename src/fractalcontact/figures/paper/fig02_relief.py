@@ -53,15 +53,15 @@ def draw(atlas: DataTree, name: str) -> kit.Drawing:
 def _draw_dimensions(axes, dimension):
     """Estimates of Delta_g with their intervals, one below the other; the lines of a legend."""
     names = dimension["estimator"].values
-    found = Estimate.read(dimension, "dimension", scale=DIMENSION)
+    estimates = Estimate.read(dimension, "dimension", scale=DIMENSION)
     places = np.arange(len(names))
-    words = (found[n].text() if found.known[n] else "no fit" for n in places)
+    words = (estimates[n].text() if estimates.known[n] else "no fit" for n in places)
     labels = [f"{name.replace('_', ' ')}\n{text}" for name, text in zip(names, words, strict=True)]
     axes.set_yticks(places, labels, fontsize=7)
     axes.set_ylim(len(places) - 0.4, -0.6)
     axes.set_xlabel(r"surface dimension $\Delta_g$ (1)")
     axes.xaxis.set_major_locator(MaxNLocator(4, steps=[1, 2, 5, 10]))
-    if not found.known.any():
+    if not estimates.known.any():
         kit.say_empty(axes, "no fit: the scan has\ntoo few scales")
         axes.set_xticks([])
         return []
@@ -74,15 +74,15 @@ def _draw_dimensions(axes, dimension):
         (~best, "other estimators, 95 %", {"color": "0.45", "mfc": "white"}),
         (best, recommended, {"color": kit.COLOURS[1]}),
     ):
-        of = found.known & those
+        of = estimates.known & those
         if of.any():
-            value, bars = found.value[of], kit.reach(*found[of].ends)
+            value, bars = estimates.value[of], kit.reach(*estimates[of].ends)
             style |= {"fmt": "o", "capsize": 2, "label": label}
             handles.append(axes.errorbar(value, places[of], xerr=bars, **style))
-    known = float(dimension["known_dimension"])
-    if np.isfinite(known):
-        label = rf"known $\Delta_g$ {compact(known)}"
-        handles.append(axes.axvline(known, color=kit.COLOURS[2], ls="--", lw=0.8, label=label))
+    stated = float(dimension["known_dimension"])
+    if np.isfinite(stated):
+        label = rf"known $\Delta_g$ {compact(stated)}"
+        handles.append(axes.axvline(stated, color=kit.COLOURS[2], ls="--", lw=0.8, label=label))
     axes.grid(axis="x", color="0.9", lw=0.5)
     return handles
 

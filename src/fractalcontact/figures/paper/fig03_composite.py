@@ -37,9 +37,9 @@ def draw(atlas: DataTree, name: str) -> kit.Drawing:
     _draw_composite(top, composite, specimen, slid)
     draw_profile(axes, profile, slid, before=specimen.attrs["opposite"] == "scanned")
     bottom.legend(handles=handles + kit.entries(axes), loc="outside lower center", ncols=3)
-    known = bool(np.isfinite(slid["correlation_limit"]))
+    limited = bool(np.isfinite(slid["correlation_limit"]))
     chance = (
-        f", by chance up to {number(slid['correlation_limit'])}" if known else f"\n{_TOO_SMALL}"
+        f", by chance up to {number(slid['correlation_limit'])}" if limited else f"\n{_TOO_SMALL}"
     )
     correlation = f"correlation of the faces {number(slid['face_correlation'], 2, '+')}{chance}"
     kit.letter(plan, "a", "lower face and window")
@@ -47,7 +47,7 @@ def draw(atlas: DataTree, name: str) -> kit.Drawing:
     kit.letter(axes, "c", "profile through the point of first touch")
     offset = float(slid["offset"])
     kit.headline(figure, subject.label, kit.place(slid["direction"].item(), offset))
-    left = kit.claim(atlas, name, "no_correlation_is_left", why="" if known else _TOO_SMALL)
+    left = kit.claim(atlas, name, "no_correlation_is_left", why="" if limited else _TOO_SMALL)
     words = {"offset": offset, "opening": float(slid["rigid_dilatancy"]), "left": left}
     return kit.Drawing(
         figure, kit.rows(profile, *profile.data_vars), kit.caption(__name__, **words)
@@ -83,7 +83,7 @@ def _draw_composite(figure, axes, specimen, slid):
     size = _draw_heights(figure, axes, heights, window_sides(specimen), "$h$", "cividis")
     corner = {"x": slid["window_x"][0], "y": slid["window_y"][0]}  # centre of its cell
     x, y = (
-        float(slid[f"first_touch_{axis}"] - at + specimen.attrs[f"spacing_{axis}"] / 2) / size
-        for axis, at in corner.items()
+        float(slid[f"first_touch_{axis}"] - origin + specimen.attrs[f"spacing_{axis}"] / 2) / size
+        for axis, origin in corner.items()
     )
     axes.plot(x, y, path_effects=kit.HALO, **TOUCH)

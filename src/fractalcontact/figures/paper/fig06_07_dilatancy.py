@@ -69,7 +69,7 @@ def draw(atlas: DataTree, name: str) -> kit.Drawing:
         "fitted": sum(map(bool, trends.values())),
         "level": list(trends.values()).count(LEVEL),
         "others": {
-            trend: [kit.TOWARDS[one] for one, found in trends.items() if found == trend]
+            trend: [kit.TOWARDS[one] for one, trend_found in trends.items() if trend_found == trend]
             for trend in (RISING, FALLING)
         },
         "within": percent(LEVEL_CHANGE),

@@ -41,8 +41,8 @@ def draw(atlas: DataTree, name: str) -> kit.Drawing:
     for axes in maps[n:]:
         axes.remove()
     by_area, by_boxes = kit.estimates_of(subject.states("scaling"))
-    found = rf"$A_r \sim s^{{2-\Delta_\sigma}}$: {by_area.entry(load)}"
-    title = rf"$\sigma_n = F/A_r$; {found}; rms slope of the surface {compact(states['rms_slope'])}"
+    law = rf"$A_r \sim s^{{2-\Delta_\sigma}}$: {by_area.entry(load)}"
+    title = rf"$\sigma_n = F/A_r$; {law}; rms slope of the surface {compact(states['rms_slope'])}"
     panel = kit.Panel(bottom.subplots(), _LETTERS[n], title)
     _draw_pressures(panel, states, model)
     wide = "black: real contact area $A_r$; small nodes enlarged alike in all maps"
@@ -70,8 +70,8 @@ def _states(subject):
 
 def _area_words(state):
     """Area and pressure of a panel: corrected, or raw where too few nodes touch."""
-    known = bool(state["area_corrected_resolved"])
-    area, pressure = ("area_corrected", "sigma_n") if known else ("area", "sigma_n_raw")
+    corrected = bool(state["area_corrected_resolved"])
+    area, pressure = ("area_corrected", "sigma_n") if corrected else ("area", "sigma_n_raw")
     return (
         f"$s$ = {compact(state['spacing'])} mm\n$A_r$ = {compact(state[area])} mm$^2$\n"
         f"$A_r/A_0$ = {kit.area_label(state)}\n$\\sigma_n$ = {compact(state[pressure])} MPa"
@@ -80,10 +80,10 @@ def _area_words(state):
 
 def _draw_pressures(panel, states, model):
     axes, style = panel.axes, {"color": kit.COLOURS[0], "marker": "o"}
-    known = states.isel(resolution=states["area_corrected_resolved"].values)
-    if known.sizes["resolution"]:
+    corrected = states.isel(resolution=states["area_corrected_resolved"].values)
+    if corrected.sizes["resolution"]:
         label = r"$A_r$ corrected for its edge"
-        axes.plot(known["spacing"], known["sigma_n"], **style, label=label)
+        axes.plot(corrected["spacing"], corrected["sigma_n"], **style, label=label)
     raw = {"mfc": "none", "ls": ":", "lw": 0.8, "label": "$A_r$ raw"}
     kept = [name for name in states if name not in ("spacing", "sigma_n_raw")]
     panel.curve(states, "spacing", "sigma_n_raw", keep=kept, **style, **raw)

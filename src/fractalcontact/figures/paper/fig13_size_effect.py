@@ -30,10 +30,10 @@ def draw(atlas: DataTree, name: str) -> kit.Drawing:
     figure = Figure(figsize=(kit.WIDTH, 4.6))
     axes = figure.subplots(1, 2, sharex=True, sharey=True)
     panels, columns = [], []
-    for one, which, here in zip(kit.estimates_of(states), "ab", axes, strict=True):
+    for one, which, place in zip(kit.estimates_of(states), "ab", axes, strict=True):
         rise = kit.verdict_words(atlas, name, kit.RISES[one.key], numbers=False)
         words = rf"$\Delta_\sigma$ by {one.symbol}; the paper's rise with $F$:"
-        panel = kit.Panel(here, which, f"{words}\n{rise}")
+        panel = kit.Panel(place, which, f"{words}\n{rise}")
         columns.append(_draw_lines(panel, states, one, shown, np.sqrt(subject.area)))
         panels.append(panel)
     kit.plain_decades(axes[0].xaxis)
