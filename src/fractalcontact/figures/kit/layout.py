@@ -9,6 +9,9 @@ from .line_breaks import break_lines
 from .remembered import remember_ticks
 from .ticks import plain_ticks
 
+#: Digits that places of panels keep, as fractions of the figure.
+_DIGITS = 9
+
 
 def lay_out(figure: Figure) -> Canvas:
     """Find the layout of a finished figure, and keep it.
@@ -48,5 +51,7 @@ def _place(figure):
     figure.set_layout_engine("none")
     # Places are rounded so that files are the same in every run: the layout's solver takes its
     # constraints in the order of their addresses, which changes the last bits.
+    for part in figure.subfigs:
+        part.bbox_relative.set_points(np.round(part.bbox_relative.get_points(), _DIGITS))
     for axes in figure.axes:
-        axes.set_position(np.round(axes.get_position(original=True).bounds, 9))
+        axes.set_position(np.round(axes.get_position(original=True).bounds, _DIGITS))
