@@ -136,14 +136,14 @@ def _places(dim, data, atlas, subject, wanted):
     if dim in ("direction", "contact_direction") and wanted is None:
         return np.flatnonzero(data[dim] == of.direction)
     if dim == "resolution" and wanted is None:
-        return [int(data[dim].argmin())]
+        return [int(np.argmin(data[dim].values))]
     if dim == "offset" and wanted is not None:
         offset = of.offset if wanted == "reported" else float(np.squeeze(of["area"]["area_offset"]))
-        return [int(abs(data[dim] - offset).argmin())]
+        return [int(np.argmin(abs(data[dim].values - offset)))]
     if dim == "normal_force" and wanted is not None:
         loads = {"reported": "loads", "quoted": "quoted", "reference": "reference"}[wanted]
         forces = of.forces[np.atleast_1d(getattr(of.reported, loads))]
-        return [int(abs(data[dim] - force).argmin()) for force in forces]
+        return [int(np.argmin(abs(data[dim].values - force))) for force in forces]
     return np.arange(n)
 
 

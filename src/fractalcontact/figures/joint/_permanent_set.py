@@ -26,7 +26,7 @@ def draw_permanent_set(
     axes = figure.subplots(1, 3, width_ratios=[1, 1, 1.15])
     top = pressure_label(float(data["nominal_pressure"][-1]))
     titles = ("nodes that yield", "set on loading", f"set of each node, {top}")
-    panels = [kit.Panel(*one) for one in zip(axes, "cde", titles, strict=True)]
+    panels = kit.panels_of(axes, titles, "cde")
     fractions, volume, where = panels
     load = data.sel(branch="load")
     for n, (name, (label, marker)) in enumerate(_FRACTIONS.items()):

@@ -45,9 +45,7 @@ def draw(atlas: DataTree, name: str) -> kit.Drawing:
     figure = Figure(figsize=(kit.WIDTH, 6.5))
     titles = ("number of clusters", "largest cluster", "localisation (1: as random nodes)")
     axes = figure.subplots(2, 2).ravel()
-    panels = [
-        kit.Panel(*one) for one in zip(axes, "abcd", (*titles, "sizes of clusters"), strict=True)
-    ]
+    panels = kit.panels_of(axes, (*titles, "sizes of clusters"))
     for panel, quantity in zip(panels, _DRAWN, strict=False):
         _draw_states(panel, states, quantity)
     _finish(axes[:3], states)

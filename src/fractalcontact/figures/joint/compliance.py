@@ -43,7 +43,7 @@ def draw(atlas: DataTree, name: str) -> kit.Drawing:
     axes = figure.subplots(3, 1, sharex=True, height_ratios=[1.1, 1, 1.2])
     titles = ["correlation of the faces", f"closure of the interface from {seat} on"]
     titles.append("compliance of the interface (bars: error of the solver)")
-    a, b, c = (kit.Panel(*one) for one in zip(axes, "abc", titles, strict=True))
+    a, b, c = kit.panels_of(axes, titles)
     _draw_correlation(a, joint, subject.direction)
     _draw_closures(b, curves, "closure_from_common_seat" if seated else "interface_closure")
     _draw_compliances(c, curves)
@@ -60,7 +60,7 @@ def draw(atlas: DataTree, name: str) -> kit.Drawing:
     if judged:
         _number_stages(c.axes, ends)
     why = kit.missing_lines(curves["interface_stiffness_reason"], "c")
-    kit.legends_below(figure, kit.entries(a.axes), [*kit.entries(c.axes), *map(kit.heading, why)])
+    kit.legends_below(figure, a.entries, [*c.entries, *map(kit.heading, why)])
     kit.headline(figure, subject.label, kit.place(subject.direction))
     values = {
         "rises": kit.verdict_words(atlas, name, "compliance_rises_at_first", numbers=False),
@@ -77,7 +77,7 @@ def _draw_correlation(panel: kit.Panel, joint: xr.Dataset, solved: str) -> None:
     kept = ("correlation_length", "uncorrelated_offset")
     for direction in sorted(joint["direction"].values, key=lambda one: one == solved):
         words = "the direction of (b), (c)" if direction == solved else "other directions"
-        labels = {entry.get_label() for entry in kit.entries(panel.axes)}
+        labels = {entry.get_label() for entry in panel.entries}
         style: dict[str, Any] = {"color": "k" if direction == solved else "0.7", "ls": "-"}
         style["label"] = None if words in labels else words
         one = joint.sel(direction=direction)

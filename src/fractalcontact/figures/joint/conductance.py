@@ -43,11 +43,8 @@ def draw(atlas: DataTree, name: str) -> kit.Drawing:
     _draw_theory(axes, curves)
     axes.set_xlabel(f"{kit.NOMINAL_PRESSURE} (MPa)")
     axes.set_ylabel("conductance over conductivity $h_c/k$ (mm$^{-1}$)")
-    e_star = subject.settings["material"]["e_star"]
-    functions = (lambda y: y * e_star, lambda y: y / e_star)
-    axes.secondary_yaxis("right", functions=functions).set_ylabel(
-        r"interface stiffness $\mathrm{d}\sigma_0/\mathrm{d}w_\mathrm{int}$ (MPa/mm)"
-    )
+    label = r"interface stiffness $\mathrm{d}\sigma_0/\mathrm{d}w_\mathrm{int}$ (MPa/mm)"
+    kit.second_axis(axes, subject.settings["material"]["e_star"], label)
     remarks = [
         *kit.entries(axes)[len(labels) :],
         kit.heading("lines: fits, exponents with 95 % intervals"),

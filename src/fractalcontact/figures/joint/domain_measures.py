@@ -40,7 +40,7 @@ def draw(atlas: DataTree, name: str) -> kit.Drawing:
     chosen = some[kit.spread_loads(some.size, MAX_LOADS, int(index[0]) if index.size else None)]
     shown = measures.isel(normal_force=chosen)
     figure = Figure(figsize=(kit.WIDTH, 3.4))
-    a, b, c = (kit.Panel(*one) for one in zip(figure.subplots(1, 3), "abc", _TITLES, strict=True))
+    a, b, c = kit.panels_of(figure.subplots(1, 3), _TITLES)
     labels = [f"$F$ = {force_label(force)}" for force in shown["normal_force"].values]
     of_loads: dict[str, Any] = {"hue": "normal_force", "labels": labels, "ls": "-"}
     of_loads |= {"ms": 3, "lw": 0.8}
@@ -49,8 +49,8 @@ def draw(atlas: DataTree, name: str) -> kit.Drawing:
     b.curves(shown, "gliding_side", "lacunarity", **of_loads)
     c.curves(shown, "order", "generalised_dimension", **of_loads)
     _finish(a.axes, b.axes, c.axes, shown)
-    greys = [one for panel in (a, b) for one in kit.entries(panel.axes)[len(labels) :]]
-    loads = kit.entries(a.axes)[: len(labels)]
+    greys = [one for panel in (a, b) for one in panel.entries[len(labels) :]]
+    loads = a.entries[: len(labels)]
     kit.legends_below(figure, loads, [*greys, kit.heading("bars: 95 % intervals")])
     kit.headline(figure, subject.label, kit.place(subject.direction, subject.offset))
     words = _values(measures.isel(normal_force=reference), subject.state("domains"))

@@ -49,12 +49,12 @@ def draw(atlas: DataTree, names: Sequence[str]) -> kit.Drawing:
         panels.append(kit.Panel(row[2], letters[2], r"$\Delta_\sigma$ by box counting"))
         _draw_dimensions(panels[-1], pair)
         kit.headline(part, pair[0].label, kit.place(pair[0].direction, pair[0].offset))
-    of_grid = [kit.heading(_SPACING), *kit.entries(panels[0].axes)]
+    of_grid = [kit.heading(_SPACING), *panels[0].entries]
     few = f"hollow: fewer than {RESOLVED_NODES} nodes touch"
     kit.legends_below(
         figure,
         of_grid,
-        [kit.heading("dimension, 95 %"), *kit.entries(panels[2].axes), kit.heading(few)],
+        [kit.heading("dimension, 95 %"), *panels[2].entries, kit.heading(few)],
     )
     return kit.Drawing(
         figure, kit.table_of(*panels), kit.caption(__name__, pairs=[_words(*p) for p in pairs])

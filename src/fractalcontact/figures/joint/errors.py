@@ -57,7 +57,7 @@ def draw(atlas: DataTree, name: str) -> kit.Drawing:
     figure = Figure(figsize=(kit.WIDTH, 6.6))
     *places, legend = figure.subplots(3, 2).ravel()
     titles = [title for title, _ in QUANTITIES.values()]
-    panels = [kit.Panel(*one) for one in zip(places, "abcde", titles, strict=True)]
+    panels = kit.panels_of(places, titles)
     for panel, quantity in zip(panels, QUANTITIES, strict=True):
         axes, size = panel.axes, kit.force_axis(panel.axes.xaxis, subject.forces)
         load = float(budget["normal_force"]) / size

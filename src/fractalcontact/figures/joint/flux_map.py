@@ -33,7 +33,7 @@ def draw(atlas: DataTree, name: str) -> kit.Drawing:
     bars[0].remove()
     axis = subject["flow"].attrs["flow_axis_along"]
     titles = ("contact", "gap", f"flow along {axis}")
-    a, b, c = (kit.Panel(*one) for one in zip(axes, "abc", titles, strict=True))
+    a, b, c = kit.panels_of(axes, titles)
     kit.draw_domain(
         a.axes, kit.contact_domain(subject, subject.reported.resolution, reference), sides, ticks=3
     )

@@ -39,7 +39,7 @@ def draw(atlas: DataTree, name: str) -> kit.Drawing:
     states = flow.assign(mean_gap=closure["mean_gap"])
     figure = Figure(figsize=(kit.WIDTH, 4.0))
     axes = figure.subplots(1, 3 if subject.direction != "none" else 2)
-    a, b, *offsets = panels = [kit.Panel(*one) for one in zip(axes, "abc", _TITLES, strict=False)]
+    a, b, *offsets = panels = kit.panels_of(axes, _TITLES)
     _draw_apertures(a, states)
     _draw_branches(b, flow)
     kit.draw_tests(b, subject, "flow")
@@ -48,7 +48,7 @@ def draw(atlas: DataTree, name: str) -> kit.Drawing:
         _draw_ways(c, flow, "offset", "offset_transmissivity", "", "-", ["offset_mean_gap"])
         c.axes.set_yscale("log")
         kit.offset_axis(c.axes, flow["offset"].values)
-    kit.legends_below(figure, kit.entries(a.axes), kit.entries(b.axes))
+    kit.legends_below(figure, a.entries, b.entries)
     kit.headline(figure, subject.label, kit.place(subject.direction, subject.offset))
     words = {"tests": kit.test_words(subject, "flow"), **_words(subject, states)}
     return kit.Drawing(figure, kit.table_of(*panels), kit.caption(__name__, **words))

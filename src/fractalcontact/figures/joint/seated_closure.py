@@ -47,7 +47,7 @@ def draw(atlas: DataTree, name: str) -> kit.Drawing:
     seat = float(curve["seating_pressure"])
     since = f"from {pressure_label(seat)} on" if np.isfinite(seat) else "from no seat"
     titles = (f"closure {since}, {offset_words(subject, subject.offset)}", "tangent stiffness")
-    a, b = (kit.Panel(*one) for one in zip(top.subplots(1, 2), "ab", titles, strict=True))
+    a, b = kit.panels_of(top.subplots(1, 2), titles)
     style: dict[str, Any] = {
         "filled": "resolved",
         "ls": "none",
@@ -67,7 +67,7 @@ def draw(atlas: DataTree, name: str) -> kit.Drawing:
     a.axes.set_ylabel(f"{kit.NOMINAL_PRESSURE} (MPa)")
     why = str(curve["seated_k_ni_reason"].item())
     remarks: list[Any] = [kit.heading(f"$k_{{ni}}$ undetermined: {why}")] if why else []
-    kit.legends_below(top, [*kit.entries(a.axes), *remarks], kit.entries(b.axes))
+    kit.legends_below(top, [*a.entries, *remarks], b.entries)
     kit.headline(figure, subject.label, kit.place(subject.direction))
     sides = window_sides(subject["specimens"])
     below = draw_permanent_set(parts[1], branches, sides) if crushed else []

@@ -33,10 +33,10 @@ def draw(atlas: DataTree, name: str) -> kit.Drawing:
     test = subject["size_test"].sel(predictor=list(PREDICTORS))
     figure = Figure(figsize=(kit.WIDTH, 3.6))
     titles = [f"{words} (1: as solved)" for words in _QUANTITIES.values()]
-    panels = [kit.Panel(*one) for one in zip(figure.subplots(1, 2), "ab", titles, strict=True)]
+    panels = kit.panels_of(figure.subplots(1, 2), titles)
     for panel, quantity in zip(panels, _QUANTITIES, strict=True):
         _draw_ratios(panel, test, quantity)
-    handles = kit.entries(panels[0].axes)
+    handles = panels[0].entries
     kit.legends_below(figure, handles[:3], handles[3:], columnspacing=3)
     kit.headline(
         figure, subject.label, kit.place(str(test["direction"].values), float(test["offset"]))

@@ -41,7 +41,7 @@ def draw(atlas: DataTree, name: str) -> kit.Drawing:
     test = subject["size_test"].transpose("normal_force", ...)
     figure = Figure(figsize=(kit.WIDTH, 3.7))
     axes = figure.subplots(1, 3)
-    a, b, c = (kit.Panel(*one) for one in zip(axes, "abc", _TITLES, strict=True))
+    a, b, c = kit.panels_of(axes, _TITLES)
     loads = _draw_area(a, test)
     _draw_exponents(b, test, "area_exponent", test["normal_force"] == test["normal_force"])
     _draw_exponents(c, test, "slope", test["well_conditioned"].astype(bool))
@@ -50,7 +50,7 @@ def draw(atlas: DataTree, name: str) -> kit.Drawing:
     hollow = kit.mark(
         color="k", marker="o", ls="none", mfc="white", label="hollow: not judged, too uncertain"
     )
-    kit.legends_below(figure, loads, [*kit.entries(b.axes), hollow], columnspacing=3)
+    kit.legends_below(figure, loads, [*b.entries, hollow], columnspacing=3)
     kit.headline(
         figure, subject.label, kit.place(str(test["direction"].values), float(test["offset"]))
     )

@@ -58,15 +58,15 @@ def draw(atlas: DataTree, name: str) -> kit.Drawing:
     shown = strength.isel(normal_force=list(subject.reported.loads))
     figure = Figure(figsize=(kit.WIDTH, 7.2))
     *places, legend = figure.subplots(2, 2).flat
-    a, b, c = (kit.Panel(*one) for one in zip(places, "abc", _TITLES, strict=True))
+    a, b, c = kit.panels_of(places, _TITLES)
     _draw_angles(a, shown)
     _draw_strength(b, shown)
     kit.draw_tests(b, subject, "shear")
     _draw_summary(c, strength)
     kit.draw_tests(c, subject, "strength")
     legend.axis("off")
-    of_offsets = [kit.heading("(a), (b)"), *kit.entries(a.axes), *kit.entries(b.axes)]
-    of_pressures = [kit.heading(""), kit.heading("(c)"), *kit.entries(c.axes)]
+    of_offsets = [kit.heading("(a), (b)"), *a.entries, *b.entries]
+    of_pressures = [kit.heading(""), kit.heading("(c)"), *c.entries]
     legend.legend(handles=[*of_offsets, *of_pressures], loc="center left", labelspacing=0.35)
     kit.headline(figure, subject.label, kit.place(subject.direction))
     return kit.Drawing(

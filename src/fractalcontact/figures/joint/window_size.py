@@ -41,12 +41,12 @@ def draw(atlas: DataTree, name: str) -> kit.Drawing:
     figure = Figure(figsize=(kit.WIDTH, 5.8))
     *places, legend = figure.subplots(2, 2).flat
     titles = ("roughness", f"closure, {where}", f"compliance, {where}")
-    a, b, c = (kit.Panel(*one) for one in zip(places, "abc", titles, strict=True))
+    a, b, c = kit.panels_of(places, titles)
     _draw_roughness(a, shown, slides=subject.direction != "none")
-    handles = [kit.heading("(a) exponents with 95 % intervals"), *kit.entries(a.axes)]
+    handles = [kit.heading("(a) exponents with 95 % intervals"), *a.entries]
     for panel in (b, c):
         _draw_contact(panel, shown)
-        handles += [kit.heading(_CONTACT[panel.which][-1]), *kit.entries(panel.axes)]
+        handles += [kit.heading(_CONTACT[panel.which][-1]), *panel.entries]
     label = "hollow: not fitted (out of range, few nodes)"
     handles.append(kit.mark(ls="none", marker="o", color="0.4", mfc="white", label=label))
     handles.append(kit.mark(label="line: fit (thin: undetermined)", color="0.4", lw=0.8))

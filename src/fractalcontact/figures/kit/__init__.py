@@ -2,7 +2,7 @@
 
 # ruff: noqa: F401  # names for the figures
 
-from .axes import force_axis, offset_axis, spacing_axis
+from .axes import force_axis, offset_axis, second_axis, spacing_axis
 from .caption import caption
 from .domains import (
     RISES,
@@ -33,7 +33,7 @@ from .maps import (
 )
 from .measured import draw_over_force, draw_series, measured_range, measured_series, threshold_words
 from .measured import table_of as table_of_maps
-from .panel import Panel, rows, table_of
+from .panel import Panel, panels_of, rows, table_of
 from .points import draw_points, hollow_entry, reach
 from .relief import draw_faces
 from .sizes import (

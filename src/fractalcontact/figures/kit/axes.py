@@ -60,6 +60,12 @@ def spacing_axis(axes: Axes, spacings: ArrayLike) -> None:
     axes.set_xlabel("spacing $s$ (mm)")
 
 
+def second_axis(axes: Axes, factor: float, label: str) -> None:
+    """Second axis at the right, of the left one times a factor."""
+    ways = (lambda y: np.asarray(y) * factor, lambda y: np.asarray(y) / factor)
+    axes.secondary_yaxis("right", functions=ways).set_ylabel(label)
+
+
 def label_short_span(axis: Axis) -> None:
     """Number a logarithmic axis shorter than two decades at 1, 2 and 5, in plain digits.
 

@@ -1,15 +1,17 @@
 """Panel that draws curves from a dataset and records them as rows of the figure's table."""
 
-from collections.abc import Hashable, Sequence
+from collections.abc import Hashable, Iterable, Sequence
 from typing import Any
 
 import numpy as np
 import pandas as pd
 import xarray as xr
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 
 from ...core.estimate import Estimate, names_of
 from .drawing import MARKERS, colour_of
+from .legends import entries
 from .points import draw_points, reach
 from .titles import letter
 
@@ -55,6 +57,11 @@ class Panel:
         self.which = which
         self.records: list[pd.DataFrame] = []
         self.title(title)
+
+    @property
+    def entries(self) -> list[Artist]:
+        """Entries of a legend of the panel."""
+        return entries(self.axes)
 
     def title(self, words: str) -> None:
         """Letter and title of the panel."""
@@ -143,6 +150,13 @@ class Panel:
         """Add rows, as of :func:`rows`, of what is drawn by other means."""
         which = {"panel": self.which} if self.which else {}
         self.records.append(rows(data, *names, **which, **constants))
+
+
+def panels_of(
+    axes: Iterable[Axes], titles: Iterable[str], letters: str = "abcdefghijkl"
+) -> list[Panel]:
+    """Panels with letters in the order of their titles, as many as there are axes and titles."""
+    return [Panel(*one) for one in zip(axes, letters, titles, strict=False)]
 
 
 def table_of(*panels: Panel) -> pd.DataFrame:

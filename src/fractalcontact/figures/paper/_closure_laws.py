@@ -54,7 +54,7 @@ def draw_closure(axes: Axes, drawn: xr.Dataset, subject: Subject) -> None:
         kit.say_empty(axes, kit.TOO_FULL)
     axes.set_ylim(0, 1.05 * float(drawn["normal_force"][-1]) / size)
     axes.set_xlabel(r"closure $w_\mathrm{int}$ from first touch (mm)")
-    second_axis(axes, size / subject.area, f"{kit.NOMINAL_PRESSURE} (MPa)")
+    kit.second_axis(axes, size / subject.area, f"{kit.NOMINAL_PRESSURE} (MPa)")
 
 
 def draw_light_loads(axes: Axes, drawn: xr.Dataset, subject: Subject) -> None:
@@ -125,9 +125,3 @@ def no_law(curve: xr.Dataset) -> str:
 def offset_words(subject: Subject, offset: float) -> str:
     """State of a curve in a legend."""
     return "without sliding" if subject.direction == "none" else f"$v$ = {compact(offset)} mm"
-
-
-def second_axis(axes: Axes, factor: float, label: str) -> None:
-    """Second axis at the right, of the left one times a factor."""
-    ways = (lambda y: np.asarray(y) * factor, lambda y: np.asarray(y) / factor)
-    axes.secondary_yaxis("right", functions=ways).set_ylabel(label)

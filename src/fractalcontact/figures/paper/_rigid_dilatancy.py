@@ -38,7 +38,7 @@ def draw_rigid(panel: kit.Panel, dilatancy: xr.Dataset, plateaus: xr.Dataset) ->
     change = rf"change of fitted $\delta_r$ [95 %] in % of its mean, $v \geq$ {half} mm"
     level = f"fitted lines; level: change within {percent(LEVEL_CHANGE)}"
     fitted = kit.mark(color="0.4", label=level, **_FITTED)
-    return [kit.heading(change), *kit.entries(panel.axes), fitted, *parts]
+    return [kit.heading(change), *panel.entries, fitted, *parts]
 
 
 def _draw_parts(panel: kit.Panel, plateaus: xr.Dataset) -> list[Artist]:

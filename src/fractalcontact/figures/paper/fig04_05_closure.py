@@ -20,7 +20,6 @@ from ._closure_laws import (
     each_curve,
     no_law,
     offset_words,
-    second_axis,
 )
 from ._stiffness import draw_stiffness, over_spacing
 
@@ -76,7 +75,7 @@ def draw(atlas: DataTree, name: str) -> kit.Drawing:
     kit.letter(panels["c"], "c", "contact area")
     of_laws = _keyed(_LEGEND, panels["a"], "semi_logarithmic", "hyperbola", "beyond")
     of_areas = _keyed(_LEGEND_AREA, panels["c"], "area")
-    of_areas += [kit.heading(_LEGEND_STIFFNESS), *kit.entries(d.axes)] if d.axes.has_data() else []
+    of_areas += [kit.heading(_LEGEND_STIFFNESS), *d.entries] if d.axes.has_data() else []
     of_areas += [kit.mark(color="0.3", ls="none", marker="o", label=_HOLLOW, **OPEN)]
     of_areas += [kit.heading(line) for line in missing]
     kit.legends_below(figure, of_laws, of_areas)
@@ -120,7 +119,7 @@ def _draw_area(axes, drawn, subject):
             line = 100 * float(curve["corrected_unit_area"]) * ends**exponent.value / subject.area
             axes.plot(ends / size, line, color=style["color"], lw=0.8, ls=LINES["area"][0])
     axes.set(xscale="log", yscale="log", ylabel="real contact area $A_r/A_0$ (%)")
-    second_axis(axes, subject.area / 100, "$A_r$ (mm$^2$)")
+    kit.second_axis(axes, subject.area / 100, "$A_r$ (mm$^2$)")
 
 
 def _keyed(head, axes, *lines):

@@ -53,7 +53,7 @@ def draw(atlas: DataTree, name: str) -> kit.Drawing:
     key = draw_rigid(a, subject["dilatancy"], plateaus)
     _draw_elastic(b, subject, curves, points)
     kit.draw_tests(b, subject, "dilatancy")
-    kit.legends_below(top, key, kit.entries(b.axes))
+    kit.legends_below(top, key, b.entries)
     _draw_domains(bottom, subject, curves, points)
     title = f"(c) contact domains at $F$ = {force_label(subject.reported.force)}"
     bottom.suptitle(f"{title}, small nodes enlarged", x=0.01, ha="left", fontsize=8)

@@ -33,7 +33,7 @@ def draw(atlas: DataTree, name: str) -> kit.Drawing:
     force = subject.reported.force
     b = kit.Panel(axes[1], "b", f"eq. 6 extrapolated, $F$ = {force_label(force)}")
     _draw_pressures(b, states.isel(normal_force=load), estimates, load, np.sqrt(subject.area))
-    kit.legends_below(figure, kit.entries(a.axes), kit.entries(b.axes))
+    kit.legends_below(figure, a.entries, b.entries)
     kit.headline(figure, subject.label, kit.place(subject.direction, subject.offset))
     state = states.isel(normal_force=load)
     apart = bool(state["disagree"]) if np.isfinite(state["difference_low"]) else None
