@@ -1,18 +1,17 @@
 """Figures of the real contact area beside the theories."""
 
-import re
-
 import numpy as np
 import pandas as pd
 import pytest
 import xarray as xr
 from cases import representative
+from drawings import changed
 
 from contactlab.experiments.area_slope import area_slope
 from contactlab.figures.experiments import area_slope as slope_figure
 from fractalcontact.core.subject import Subject
 from fractalcontact.figures.joint import area_theories
-from fractalcontact.figures.kit.drawing import print_style, save
+from fractalcontact.figures.kit.drawing import print_style
 from fractalcontact.laws.area import (
     FULL_CONTACT,
     add_area_offset,
@@ -57,50 +56,7 @@ def slopes_drawn(atlas):
         return slope_figure.draw(atlas, list(SPECIMENS))
 
 
-def changed(atlas, group, change):
-    """The atlas with one group put through a function of its dataset."""
-    other = atlas.copy()
-    other[group] = xr.DataTree(change(other[group].to_dataset()))
-    return other
-
-
-def axes_labels_have_units(figure):
-    for axes in figure.axes:
-        labels = [label for label in (axes.get_xlabel(), axes.get_ylabel()) if label]
-        assert labels
-        assert all(re.search(r"\(.+\)$", label) for label in labels)
-
-
 # -- area beside the theories ----------------------------------------------------------------------
-
-
-@pytest.mark.parametrize("name", representative(SPECIMENS))
-def test_labels_table_and_caption(with_area, name):
-    drawing = drawn(with_area, name)
-    drawing.figure.draw_without_rendering()
-    axes_labels_have_units(drawing.figure)
-    assert Subject.of(with_area, name).settings["label"] in drawing.figure.get_suptitle()
-    assert "Fig. 5" in drawing.caption
-    assert "nan" not in drawing.caption
-    assert 0 < len(drawing.data) <= 20_000
-
-
-@pytest.mark.parametrize("name", representative(SPECIMENS))
-def test_points_are_those_of_the_atlas(with_area, name):
-    table = drawn(with_area, name).data
-    offset = table["offset_mm"].iloc[0]
-    laws = with_area[f"area/{name}"].to_dataset().isel(direction=0).sel(offset=offset)
-    curve = with_area[f"closure/{name}"].to_dataset().isel(direction=0, resolution=0)
-    curve = curve.sel(offset=offset)
-    np.testing.assert_array_equal(table["area_share"], curve["area_share"])
-    for column in ("kappa", "corrected_kappa", "persson_share", "majumdar_bhushan_share"):
-        np.testing.assert_array_equal(table[column], laws[column])
-    nominal = curve["normal_force"] / curve["nominal_pressure"]
-    np.testing.assert_allclose(table["area_corrected_share"], curve["area_corrected"] / nominal)
-
-
-def test_offset_of_the_maps_is_drawn(with_area):
-    assert drawn(with_area, "sliding").data["offset_mm"].unique() == pytest.approx([0.4])
 
 
 def test_only_loads_with_enough_nodes_have_a_kappa(with_area):
@@ -207,7 +163,6 @@ def test_one_load_is_drawn(with_area):
 def test_every_surface_is_in_its_panel(with_area):
     drawing = slopes_drawn(with_area)
     drawing.figure.draw_without_rendering()
-    axes_labels_have_units(drawing.figure)
     slopes = with_area["area_slope/surfaces"].to_dataset()
     for axes, kind in zip(drawing.figure.axes, slopes["surface"].values, strict=True):
         lines = [line for line in axes.lines if line.get_marker() not in (None, "None", "")]
@@ -242,15 +197,3 @@ def test_one_seed_is_enough(with_area):
     )
     drawing = slopes_drawn(one)
     assert "nan" not in drawing.caption
-
-
-@pytest.mark.full
-def test_two_runs_give_the_same_bytes(with_area, tmp_path):
-    written = []
-    for folder in (tmp_path / "first", tmp_path / "second"):
-        with print_style():
-            save(area_theories.draw(with_area, "pair"), folder, "area_theories")
-            save(slope_figure.draw(with_area, list(SPECIMENS)), folder, "area_slope")
-        written.append({path.name: path.read_bytes() for path in folder.iterdir()})
-    assert written[0] == written[1]
-    assert len(written[0]) == 8

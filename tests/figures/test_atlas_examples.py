@@ -1,5 +1,6 @@
 """What the documentation reads of an atlas is there, and the script of the gallery draws it."""
 
+import importlib
 import json
 import runpy
 import shutil
@@ -16,7 +17,6 @@ from print_size import faults
 from fractalcontact.core import checksums
 from fractalcontact.core.subject import Subject
 from fractalcontact.core.text import compact
-from fractalcontact.figures.kit import caption
 from fractalcontact.figures.kit.drawing import print_style
 from fractalcontact.joint.joint import composite_topography
 from fractalcontact.study.crate import Workflow, write_crate
@@ -112,6 +112,8 @@ def test_the_figure_of_the_recipe_is_drawn(atlas, tmp_path, monkeypatch):
         one.text for one in blocks("docs/extending.md") if one.text.startswith("stiffness:")
     )
     added = yaml.safe_load(entry)["stiffness"]
+    # The package has the function of this name.
+    caption = importlib.import_module("fractalcontact.figures.kit.caption")
     monkeypatch.setattr(caption, "_templates", lambda group: {"added": added})
     module = run_code("docs/extending.md", "A figure", package="fractalcontact.figures.joint")
     for name in ("sliding", "flat"):

@@ -38,7 +38,7 @@ def test_a_figure_is_the_same_twice(marked, drawn, figure, subject):
 
 
 @pytest.mark.full
-@pytest.mark.parametrize(("figure", "subject"), FIRST)
+@pytest.mark.parametrize(("figure", "subject"), FIGURES)
 def test_its_files_are_the_same_twice(atlas, figure, subject, tmp_path):
     for folder in ("first", "second"):
         with print_style():

@@ -1,15 +1,12 @@
 """The figure of the contact domain's measures, from states of the small atlas."""
 
 import numpy as np
-import pytest
 import xarray as xr
-from cases import representative
-from PIL import Image
 
 from fractalcontact.core.subject import Subject
 from fractalcontact.domain.measures import measures_of_states
 from fractalcontact.figures.joint.domain_measures import draw
-from fractalcontact.figures.kit.drawing import print_style, save
+from fractalcontact.figures.kit.drawing import print_style
 
 
 def with_measures(atlas, name, factor=1.0):
@@ -34,23 +31,15 @@ def with_measures(atlas, name, factor=1.0):
     return xr.DataTree.from_dict(nodes), found
 
 
-@pytest.mark.parametrize("name", representative(["sliding", "flat", "pair"]))
-def test_drawing_shows_what_was_measured(atlas, name, tmp_path):
-    tree, found = with_measures(atlas, name)
+def test_loads_drawn_are_three_with_the_reference_load_among_them(atlas):
+    tree, measures = with_measures(atlas, "sliding")
     with print_style():
-        drawing = draw(tree, name)
-        save(drawing, tmp_path, "domain_measures")
-    with Image.open(tmp_path / "domain_measures.png") as picture:
-        assert np.ptp(np.asarray(picture.convert("L"))) > 100  # something is drawn
-    counts = Subject.of(tree, name).states("domains")
-    drawn_of = ((counts, "local_slope"), (found, "lacunarity"), (found, "generalised_dimension"))
-    for panel, (source, of) in zip("abc", drawn_of, strict=True):
-        drawn = drawing.data[drawing.data["panel"] == panel]
-        assert len(drawn)
-        for force, points in drawn.groupby("normal_force_N"):
-            np.testing.assert_array_equal(points[of], source[of].sel(normal_force=force))
-    assert "section 6" in drawing.caption
-    assert "nan" not in drawing.caption
+        drawing = draw(tree, "sliding")
+    known = measures["normal_force"][measures["lacunarity"].notnull().any("gliding_side")]
+    for _, rows in drawing.data.groupby("panel"):
+        drawn = rows["normal_force_N"].unique()
+        assert len(drawn) == min(3, known.size)
+        assert Subject.of(tree, "sliding").reported.force in drawn
 
 
 def test_no_contact_is_said(atlas):

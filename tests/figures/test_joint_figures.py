@@ -1,47 +1,28 @@
 """Figures of clusters, conductance, compliance and of the plateau of rigid dilatancy."""
 
 import json
-import re
 
 import numpy as np
 import pytest
 import xarray as xr
 from cases import representative
+from drawings import changed, draw
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 
 from fractalcontact.core.fitting import fit_line
+from fractalcontact.core.subject import Subject
 from fractalcontact.core.verdicts import ABOVE, BELOW, WITHIN
 from fractalcontact.domain.clusters import cluster_sizes, cluster_statistics
-from fractalcontact.figures.draw import drawer_of
 from fractalcontact.figures.joint import compliance
 from fractalcontact.figures.kit.axes import offset_axis
-from fractalcontact.figures.kit.drawing import print_style, save
 from fractalcontact.laws.conductance import add_conductance
 
 SLIDING = ("sliding", "pair")
-DRAWN = [
-    *[(figure, name) for figure in ("clusters", "compliance") for name in SLIDING],
-    *[("conductance", name) for name in (*SLIDING, "flat")],
-    ("plateau", ("sliding", "pair", "flat")),
-    ("plateau", ("sliding",)),
-]
 
 
-def drawn(atlas, figure, what):
-    with print_style():
-        return drawer_of(figure)(atlas, what)
-
-
-def with_changes(atlas, group, **change):
-    """The atlas with some variables of a group made anew from its dataset."""
-    changed = atlas.copy()
-    dataset = changed[group].to_dataset()
-    for name, make in change.items():
-        new = make(dataset) if callable(make) else make
-        dataset[name] = xr.zeros_like(dataset[name], float) + new
-    changed[group] = xr.DataTree(dataset)
-    return changed
+def drawn(atlas, figure, subject):
+    return draw(atlas, figure, subject)
 
 
 # Against the atlas
@@ -83,43 +64,32 @@ def test_sizes_drawn_are_those_of_the_clusters(atlas):
 
 
 @pytest.mark.parametrize("name", [*SLIDING, "flat"])
-def test_conductance_drawn_is_that_of_the_atlas(atlas, name):
+def test_conductance_is_stiffness_over_the_modulus_and_its_law_that_of_the_points_fitted(
+    atlas, name
+):
     table = drawn(atlas, "conductance", name).data
-    curves = atlas[f"closure/{name}"].to_dataset().isel(direction=0, resolution=0)
-    e_star = json.loads(atlas.attrs["configuration"])["settings"][name]["material"]["e_star"]
+    curves = Subject.of(atlas, name).curves()
+    e_star = Subject.of(atlas, name).settings["material"]["e_star"]
+    np.testing.assert_allclose(
+        table["interface_stiffness_MPa_per_mm"], table["conductance_per_mm"] * e_star
+    )
     for offset, points in table.groupby("offset_mm"):
-        curve = curves.sel(offset=offset, method="nearest")
-        np.testing.assert_array_equal(points["conductance_per_mm"], curve["conductance"])
-        np.testing.assert_allclose(
-            points["interface_stiffness_MPa_per_mm"], points["conductance_per_mm"] * e_star
-        )
         fitted = points[points["conductance_fitted"]]
         line = fit_line(
             np.log(fitted["nominal_pressure_MPa"]), np.log(fitted["conductance_per_mm"])
         )
         np.testing.assert_allclose(points["conductance_exponent"].iloc[0], line.slope.value)
-        np.testing.assert_allclose(curve["unit_conductance"], np.exp(line.intercept.value))
+        unit = curves["unit_conductance"].sel(offset=offset, method="nearest")
+        np.testing.assert_allclose(unit, np.exp(line.intercept.value))
 
 
 @pytest.mark.parametrize("name", representative(SLIDING))
-def test_compliance_drawn_is_the_inverse_of_the_stiffness(atlas, name):
-    table = drawn(atlas, "compliance", name).data
-    curves = atlas[f"closure/{name}"].to_dataset().isel(direction=0, resolution=0)
-    joint = atlas[f"joints/{name}"].to_dataset()
-    drawn_at = {which: table[table["panel"] == which] for which in "abc"}
-    for force, points in drawn_at["b"].groupby("normal_force_N"):
-        curve = curves.sel(normal_force=force)
-        np.testing.assert_array_equal(points["interface_closure_mm"], curve["interface_closure"])
-    for force, points in drawn_at["c"].groupby("normal_force_N"):
-        stiffness = curves.sel(normal_force=force)["interface_stiffness"].values
-        np.testing.assert_allclose(
-            points["interface_compliance_mm_per_MPa"] * stiffness,
-            np.where(np.isfinite(stiffness), 1, np.nan),
-        )
-    correlation = drawn_at["a"]
-    for direction, points in correlation.groupby("direction"):
-        stored = joint["face_correlation"].sel(direction=direction)
-        np.testing.assert_array_equal(points["face_correlation"], stored)
+def test_compliance_is_the_inverse_of_the_stiffness(atlas, name):
+    curves = Subject.of(atlas, name).curves()
+    stiffness = curves["interface_stiffness"].values
+    np.testing.assert_allclose(
+        curves["interface_compliance"] * stiffness, np.where(np.isfinite(stiffness), 1, np.nan)
+    )
 
 
 @pytest.mark.parametrize("name", SLIDING)
@@ -136,27 +106,8 @@ def test_closures_drawn_over_the_offset_count_from_the_common_seat_of_the_atlas(
         np.testing.assert_array_equal(points["closure_from_common_seat_mm"], stored)
 
 
-@pytest.mark.parametrize("name", SLIDING)
-def test_columns_of_one_name_hold_one_number_for_one_state(atlas, name):
-    """The tables of a specimen's figures of closure, at the offsets and loads that both have."""
-    tables = [drawn(atlas, figure, name).data for figure in ("compliance", "fig04_05_closure")]
-    state = ["offset_mm", "normal_force_N"]
-    first, second = (
-        table[table["interface_closure_mm"].notna()].round(dict.fromkeys(state, 9)).set_index(state)
-        for table in tables
-    )
-    both = first.index.intersection(second.index)
-    assert len(both) > 3
-    columns = first.select_dtypes("number").columns.intersection(second.columns)
-    assert "interface_closure_mm" in columns
-    for column in columns:
-        np.testing.assert_array_equal(
-            first.loc[both, column].astype(float), second.loc[both, column].astype(float), column
-        )
-
-
 def test_the_slope_of_the_synthetic_joints_is_that_of_the_atlas(atlas):
-    told = with_changes(atlas, "roll_off/surfaces", slope=0.25, slope_low=0.2, slope_high=0.3)
+    told = changed(atlas, "roll_off/surfaces", slope=0.25, slope_low=0.2, slope_high=0.3)
     stage = told["roll_off/surfaces"].to_dataset()
     stage["trend"] = ("surface", ["falling", ""])
     told["roll_off/surfaces"] = xr.DataTree(stage)
@@ -189,48 +140,7 @@ def test_spread_of_the_composite_is_what_the_correlation_makes_it(atlas):
     assert np.isfinite(joint["dilatancy_over_rms"].values[:, 1:]).all()
 
 
-# What every figure must be
-
-
-@pytest.mark.parametrize(("figure", "what"), representative(DRAWN, 1))
-def test_every_axis_has_a_label_with_its_unit(atlas, figure, what):
-    drawing = drawn(atlas, figure, what)
-    drawing.figure.draw_without_rendering()
-    for axes in drawing.figure.axes:
-        assert axes.get_ylabel()
-        for label in (axes.get_xlabel(), axes.get_ylabel()):
-            assert not label or re.search(r"\(.+\)$", label), label
-    assert 0 < len(drawing.data) <= 20_000
-    assert "nan" not in drawing.caption
-    assert "inf" not in re.sub("interface|inform", "", drawing.caption)
-    labels = {"sliding": "synthetic twin of nothing", "pair": "Brèche", "flat": "flat"}
-    shown = drawing.figure.get_suptitle() or drawing.caption
-    if not isinstance(what, str):  # of a study: the legend names its specimens
-        shown = " ".join(text.get_text() for text in drawing.figure.findobj(Text))
-    for name in [what] if isinstance(what, str) else [n for n in what if n != "flat"]:
-        assert labels[name] in " ".join(shown.split())
-
-
-@pytest.mark.full
-@pytest.mark.parametrize(
-    ("figure", "what"),
-    [
-        ("clusters", "pair"),
-        ("compliance", "pair"),
-        ("conductance", "flat"),
-        ("plateau", ("sliding", "pair")),
-    ],
-)
-def test_the_same_drawing_twice_is_the_same_file_twice(atlas, tmp_path, figure, what):
-    for folder in ("first", "second"):
-        with print_style():
-            save(drawn(atlas, figure, what), tmp_path / folder, figure)
-    written = [
-        {path.name: path.read_bytes() for path in (tmp_path / folder).iterdir()}
-        for folder in ("first", "second")
-    ]
-    assert written[0] == written[1]
-    assert len(written[0]) == 4
+# Properties
 
 
 @pytest.mark.parametrize(
@@ -271,20 +181,16 @@ def test_caption_of_the_compliance_says_what_was_judged(atlas):
     ),
 )
 def test_conductance_is_judged_by_its_intervals(atlas, verdict, words):
-    changed = atlas.copy()
-    curves = changed["closure/sliding"].to_dataset()
-    curves["conductance_beside_theory"] = xr.full_like(curves["conductance_beside_theory"], verdict)
-    changed["closure/sliding"] = xr.DataTree(curves)
-    assert words in drawn(changed, "conductance", "sliding").caption
+    told = changed(atlas, "closure/sliding", conductance_beside_theory=verdict)
+    assert words in drawn(told, "conductance", "sliding").caption
 
 
 def test_a_conductance_without_a_fit_is_still_drawn(atlas):
     curves = atlas["closure/flat"].to_dataset()
     curves["resolved"] = xr.zeros_like(curves["resolved"])
     add_conductance(curves, 1.0)
-    changed = atlas.copy()
-    changed["closure/flat"] = xr.DataTree(curves)
-    assert "Too few pressures" in drawn(changed, "conductance", "flat").caption
+    told = changed(atlas, "closure/flat", lambda _: curves)
+    assert "Too few pressures" in drawn(told, "conductance", "flat").caption
 
 
 def test_synthetic_joints_are_drawn_with_every_seed(atlas):

@@ -9,9 +9,10 @@ import xarray as xr
 from cases import representative
 from matplotlib.text import Text
 
+from fractalcontact.core.window import window_slices
 from fractalcontact.figures.draw import draw_figures
 from fractalcontact.figures.joint.quality import draw
-from fractalcontact.figures.kit.drawing import print_style, save
+from fractalcontact.figures.kit.drawing import print_style
 from fractalcontact.roughness.quality import scan_quality
 from fractalcontact.roughness.quality_words import statements
 
@@ -39,33 +40,16 @@ def words_of(drawing):
 
 
 @pytest.mark.parametrize("name", representative(SPECIMENS))
-def test_the_points_drawn_are_those_of_the_atlas(atlas, name):
-    table = drawn(atlas, name).data
-    quality = atlas[f"quality/{name}"]
-    specimen = atlas[f"specimens/{name}"]
-    for face in quality["face"].values:
-        for axis in ("x", "y"):
-            points = table.query("face == @face and axis == @axis and spectrum_mm3.notna()")
-            known = quality["spectrum"].sel(face=face, axis=axis).values
-            known = known[np.isfinite(known)]
-            assert known.size > 5
-            np.testing.assert_allclose(points["spectrum_mm3"], known)
-            profile = table.query("face == @face and axis == @axis and height_mm.notna()")
-            assert 0 < len(profile) <= specimen.sizes[axis]
-            assert profile["height_mm"].max() <= float(specimen[face].max())
-
-
-@pytest.mark.parametrize("name", representative(SPECIMENS))
-def test_it_is_written_with_units_on_every_axis(atlas, name, tmp_path):
-    drawing = drawn(atlas, name)
-    with print_style():
-        save(drawing, tmp_path, "quality")
-    assert {path.suffix for path in tmp_path.iterdir()} == {".png", ".svg", ".csv", ".txt"}
+def test_profiles_run_through_the_middle_of_the_window(atlas, name):
+    drawing, specimen = drawn(atlas, name), atlas[f"specimens/{name}"].to_dataset()
     panels = [axes for axes in drawing.figure.axes if axes.get_title(loc="left")]
     assert len(panels) == 7 + 5 * (name == "pair")
-    for axes in panels:
-        assert "(" in axes.get_xlabel()
-        assert "(" in axes.get_ylabel()
+    for panel, across, cells in zip("de", "yx", window_slices(specimen), strict=True):
+        rows = drawing.data[drawing.data["panel"] == panel]
+        for face, profile in rows.groupby("face"):
+            line = specimen[face].isel({across: (cells.start + cells.stop) // 2})
+            np.testing.assert_array_equal(profile["height_mm"], line)
+            np.testing.assert_allclose(np.diff(profile["place_mm"]), 0.1)
 
 
 def test_a_warning_stands_in_the_sheet_and_in_no_caption(atlas_file, atlas, tmp_path):

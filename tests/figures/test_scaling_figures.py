@@ -9,6 +9,7 @@ import pandas as pd
 import pytest
 import xarray as xr
 from cases import representative
+from drawings import breaches, draw
 from matplotlib.figure import Figure
 
 from fractalcontact.core.fitting import fit_line
@@ -20,8 +21,6 @@ from fractalcontact.core.text import compact
 from fractalcontact.domain.analysis import scaling_over_resolutions
 from fractalcontact.domain.box_dimension import ESTIMATORS
 from fractalcontact.domain.renormalisation import extrapolated_pressure
-from fractalcontact.figures import draw as figures
-from fractalcontact.figures.draw import drawer_of
 from fractalcontact.figures.kit import drawing as common
 from fractalcontact.figures.kit.axes import label_short_span
 from fractalcontact.figures.kit.domains import contact_domain, spread_loads
@@ -36,7 +35,6 @@ NAMES = (
     "fig13_size_effect",
 )
 SPECIMENS = ("sliding", "flat", "pair")
-UNITS = ("(mm)", "(mm$^2$)", "(MPa)", "(N)", "(1)")
 
 
 @pytest.fixture(scope="module")
@@ -59,9 +57,14 @@ def atlas(atlas):
     return changed
 
 
-def draw(atlas, figure, specimen):
-    with common.print_style():
-        return drawer_of(figure)(atlas, specimen)
+@pytest.mark.parametrize("specimen", representative(SPECIMENS, 1))
+@pytest.mark.parametrize("figure", NAMES)
+def test_figures_of_many_nodes_keep_the_contract(atlas, figure, specimen):
+    """Both estimates of Delta_sigma are known there, which few nodes leave undetermined."""
+    drawing = draw(atlas, figure, specimen)
+    assert breaches(drawing, atlas, figure, specimen) == []
+    assert drawing.caption.startswith(f"After Fig. {int(figure[3:5])} of ")
+    assert len(re.findall(r"\.(?= [A-Z(]|$)", drawing.caption)) <= 7  # sentences
 
 
 @pytest.mark.parametrize("figure", ["fig10_scaling", "fig13_size_effect"])
@@ -207,19 +210,6 @@ def test_interval_of_eq_6_brackets_its_line(atlas):
         assert (rows["eq6_pressure_high_MPa"] >= value * (1 - 1e-12)).all()
 
 
-@pytest.mark.parametrize("specimen", representative(SPECIMENS, 1))
-def test_both_estimates_are_drawn_as_stored(atlas, specimen):
-    table = draw(atlas, "fig12_evolution", specimen).data
-    subject = Subject.of(atlas, specimen)
-    by = {"area": subject.states("scaling"), "box": subject.states("domains")}
-    for key, stored in by.items():
-        rows = table.dropna(subset=f"delta_sigma_{key}_reason")
-        np.testing.assert_array_equal(rows[f"delta_sigma_{key}"], stored["delta_sigma"])
-        np.testing.assert_array_equal(rows["normal_force_N"], stored["normal_force"])
-        missing = rows[f"delta_sigma_{key}_reason"] != ""
-        assert (missing == rows[f"delta_sigma_{key}_low"].isna()).all()
-
-
 def test_size_effect_lists_slopes_and_the_specimen(atlas):
     table = draw(atlas, "fig13_size_effect", "flat").data
     known = table[np.isfinite(table["eq6_pressure_MPa"])]
@@ -233,25 +223,6 @@ def test_size_effect_lists_slopes_and_the_specimen(atlas):
 
 
 # Properties
-
-
-@pytest.mark.parametrize("specimen", representative(SPECIMENS))
-@pytest.mark.parametrize("figure", NAMES)
-def test_axes_and_captions_say_what_is_drawn(atlas, figure, specimen):
-    drawing = draw(atlas, figure, specimen)
-    labelled = [axes for axes in drawing.figure.get_axes() if axes.axison]
-    assert labelled
-    for axes in labelled:
-        assert axes.get_xlabel().endswith(UNITS)
-        shares_y = len(axes.get_shared_y_axes().get_siblings(axes)) > 1
-        assert axes.get_ylabel().endswith(UNITS) or shares_y
-    label = Subject.of(atlas, specimen).settings["label"]
-    paper_number = int(figure[3:5])
-    assert drawing.caption.startswith(f"After Fig. {paper_number} of ")
-    assert label in drawing.figure.get_suptitle()
-    assert "nan" not in drawing.caption
-    assert len(re.findall(r"\.(?= [A-Z(]|$)", drawing.caption)) <= 7  # sentences
-    assert 0 < len(drawing.data) < 20_000
 
 
 @pytest.mark.parametrize("specimen", representative(["sliding", "pair"]))
@@ -308,18 +279,6 @@ def test_the_estimates_are_compared_or_it_is_said_that_they_cannot_be(atlas):
 def test_no_fit_is_said_with_its_reason(atlas):
     caption = draw(atlas, "fig10_scaling", "pair").caption
     assert "no fit: enough contact at 1 of the 3 resolutions needed" in caption
-
-
-@pytest.mark.full
-def test_files_are_written_and_the_same_twice(atlas_file, tmp_path):
-    for folder in ("first", "second"):
-        figures.draw_figures(atlas_file, "sliding", tmp_path / folder, NAMES)
-    written = sorted(path.name for path in (tmp_path / "first").iterdir())
-    assert written == sorted(f"{n}.{e}" for n in NAMES for e in figures.ENDINGS)
-    for name in written:
-        first, second = (tmp_path / folder / name for folder in ("first", "second"))
-        assert first.stat().st_size > 100
-        assert first.read_bytes() == second.read_bytes()
 
 
 def test_nodes_of_compared_maps_are_all_drawn_alike(atlas):

@@ -1,19 +1,15 @@
 """Figures of strength and of size (Fig. 1b, sects. 3 and 5 of the paper)."""
 
-import json
-
 import numpy as np
 import pytest
 import xarray as xr
 from cases import representative
+from drawings import changed, draw
 from made_tests import computed_and_read
 from matplotlib.figure import Figure
 
 from fractalcontact.core.estimate import names_of
 from fractalcontact.core.limits import LARGEST_FRICTION_ANGLE
-from fractalcontact.core.subject import Subject
-from fractalcontact.figures.draw import drawer_of
-from fractalcontact.figures.kit.drawing import print_style, save
 from fractalcontact.figures.kit.sizes import draw_over_size, plain_decades, roughness_words
 
 DRAWN = [
@@ -28,23 +24,22 @@ DRAWN = [
 
 
 def drawn(atlas, specimen, figure):
-    with print_style():
-        return drawer_of(figure)(atlas, specimen)
+    return draw(atlas, figure, specimen)
 
 
 def unstated(atlas):
     """The atlas of a study that states neither basic friction angle nor wall strength."""
-    changed = atlas.copy()
+    other = atlas.copy()
     lost = ("strength", "truncated", "barton", "scaled", "friction_angle", "joint_wall")
     for stage in ("strength", "windows"):
-        for specimen in changed[stage].children:
-            dataset = changed[f"{stage}/{specimen}"].to_dataset()
+        for specimen in other[stage].children:
+            dataset = other[f"{stage}/{specimen}"].to_dataset()
             for name in dataset.data_vars:
                 stated = name != "strength_share" and dataset[name].dtype.kind == "f"
                 if any(word in name for word in lost) and stated:
                     dataset[name] = xr.full_like(dataset[name], np.nan)
-            changed[f"{stage}/{specimen}"] = xr.DataTree(dataset)
-    return changed
+            other[f"{stage}/{specimen}"] = xr.DataTree(dataset)
+    return other
 
 
 # Exact
@@ -74,50 +69,6 @@ def test_series_stand_apart_about_the_size_itself():
 # Against the atlas
 
 
-@pytest.mark.parametrize("specimen", ["sliding", "pair"])
-def test_strength_drawn_is_that_of_the_atlas(atlas, specimen):
-    table, _ = computed_and_read(drawn(atlas, specimen, "strength").data)
-    stored = atlas[f"strength/{specimen}"].to_dataset().isel(contact_direction=0)
-    panels = {which: table[table["panel"] == which] for which in "abc"}
-    rigid = panels["a"][panels["a"]["normal_force_N"].isna()]
-    np.testing.assert_array_equal(rigid["midpoint_mm"], stored["midpoint"])
-    np.testing.assert_array_equal(
-        rigid["rigid_dilatancy_angle_degree"], stored["rigid_dilatancy_angle"]
-    )
-    for panel, column, name in (
-        ("a", "midpoint_mm", "midpoint"),
-        ("a", "dilatancy_angle_degree", "dilatancy_angle"),
-        ("b", "shear_strength_MPa", "shear_strength"),
-    ):
-        for force, points in panels[panel].groupby("normal_force_N"):
-            values = stored.sel(normal_force=force)[name]
-            np.testing.assert_array_equal(points[column], values)
-    for name in ("peak_strength", "barton_strength"):
-        np.testing.assert_array_equal(panels["c"][f"{name}_MPa"], stored[name])
-
-
-@pytest.mark.parametrize("specimen", ["sliding", "pair", "flat"])
-def test_sizes_drawn_are_those_of_the_atlas(atlas, specimen):
-    table = drawn(atlas, specimen, "window_size").data
-    laws = atlas[f"windows/{specimen}"].to_dataset()
-    face = table[table["panel"] == "a"].dropna(subset="face_sigma_z_mm")
-    np.testing.assert_array_equal(face["scale_side_mm"], laws["scale_side"])
-    np.testing.assert_array_equal(face["face_sigma_z_mm"], laws["face_sigma_z"])
-    closure = table[table["panel"] == "b"]
-    laws = laws.sel(offset=Subject.of(atlas, specimen).offset, method="nearest")
-    expected = laws["interface_closure"].transpose("normal_force", "part").values.ravel()
-    np.testing.assert_array_equal(closure["interface_closure_mm"], expected)
-
-
-def test_strength_by_size_is_that_of_the_atlas(atlas):
-    table = drawn(atlas, "sliding", "fig01_strength").data
-    laws = atlas["windows/sliding"].to_dataset()
-    for name, unit in (("slope", ""), ("strength", "_MPa")):
-        for of in ("at_equal_v_over_b", "of_whole_at_equal_v"):
-            stored = laws[f"{name}_{of}"].transpose("normal_force", "share", "part").values.ravel()
-            np.testing.assert_array_equal(table[f"{name}_{of}{unit}"], stored)
-
-
 def test_the_right_axis_adds_the_basic_angle(atlas):
     axes = drawn(atlas, "sliding", "strength").figure.axes[0]
     (other,) = axes.child_axes
@@ -131,26 +82,6 @@ def test_the_right_axis_adds_the_basic_angle(atlas):
 # Properties
 
 
-@pytest.mark.parametrize(("specimen", "figure"), representative(DRAWN, 1))
-def test_every_axis_states_its_unit(atlas, specimen, figure):
-    for axes in drawn(atlas, specimen, figure).figure.axes:
-        if axes.axison and axes.lines:
-            for label in (axes.get_xlabel(), axes.get_ylabel()):
-                assert label.endswith(("(mm)", "(MPa)", "(degrees)", "(mm/mm)")), label
-
-
-@pytest.mark.parametrize(("specimen", "figure"), representative(DRAWN, 1))
-def test_caption_names_the_specimen_and_its_claim(atlas, specimen, figure):
-    drawing = drawn(atlas, specimen, figure)
-    caption = drawing.caption
-    label = json.loads(atlas.attrs["configuration"])["settings"][specimen]["label"]
-    assert label in drawing.figure.get_suptitle()
-    assert "nan" not in caption
-    assert "  " not in caption
-    assert ("Fig. 1b" in caption) == (figure == "fig01_strength")
-    assert ("section 5" in caption) == (figure != "fig01_strength")
-
-
 @pytest.mark.parametrize(("specimen", "figure"), representative(DRAWN, 3))
 def test_a_study_that_states_no_friction_angle_is_drawn_and_says_so(atlas, specimen, figure):
     caption = drawn(unstated(atlas), specimen, figure).caption
@@ -160,28 +91,12 @@ def test_a_study_that_states_no_friction_angle_is_drawn_and_says_so(atlas, speci
 
 
 def test_no_fit_is_said_and_no_line_drawn(atlas):
-    changed = atlas.copy()
-    laws = changed["windows/flat"].to_dataset()
-    for name in list(laws.data_vars):
-        if "exponent" in name or "hurst" in name:
-            laws[name] = xr.full_like(laws[name], np.nan, dtype=float)
-    changed["windows/flat"] = xr.DataTree(laws)
-    drawing = drawn(changed, "flat", "window_size")
+    def without_fits(laws):
+        fits = [name for name in laws if "exponent" in name or "hurst" in name]
+        return laws.assign({name: laws[name].astype(float) * np.nan for name in fits})
+
+    drawing = drawn(changed(atlas, "windows/flat", without_fits), "flat", "window_size")
     assert "No fit of eq. 2" in drawing.caption
-
-
-@pytest.mark.full
-@pytest.mark.parametrize(("specimen", "figure"), DRAWN)
-def test_drawn_twice_the_files_are_the_same(atlas, specimen, figure, tmp_path):
-    for folder in ("once", "twice"):
-        with print_style():
-            save(drawn(atlas, specimen, figure), tmp_path / folder, figure)
-    for ending in ("png", "svg", "csv", "txt"):
-        once, twice = (
-            (tmp_path / f / f"{figure}.{ending}").read_bytes() for f in ("once", "twice")
-        )
-        assert once == twice
-        assert once
 
 
 def test_strengths_of_truncated_angles_are_marked_and_compared_with_nothing(atlas):
@@ -200,27 +115,14 @@ def test_strengths_of_truncated_angles_are_marked_and_compared_with_nothing(atla
     assert none == (not valid.any())
 
 
-def test_compliance_over_size_is_drawn_as_the_atlas_has_it(atlas):
-    laws = atlas["windows/sliding"].to_dataset()
-    table = drawn(atlas, "sliding", "window_size").data
-    rows = table[table["panel"] == "c"]
-    laws = laws.sel(offset=Subject.of(atlas, "sliding").offset, method="nearest")
-    stored = laws["interface_compliance"].transpose("normal_force", "part").values
-    np.testing.assert_array_equal(rows["interface_compliance_mm_per_MPa"], stored.ravel())
-
-
 def test_both_figures_of_strength_word_the_roughness_alike(atlas):
-    changed = atlas.copy()
-    strength = changed["strength/sliding"].to_dataset()
-    strength["scaled_roughness"] = strength["scaled_roughness"] * np.nan
-    changed["strength/sliding"] = xr.DataTree(strength)
-    laws = changed["windows/sliding"].to_dataset()
-    laws["barton_roughness"] = laws["barton_roughness"] * np.nan
-    changed["windows/sliding"] = xr.DataTree(laws)
+    other = changed(atlas, "strength/sliding", scaled_roughness=np.nan)
+    other = changed(other, "windows/sliding", barton_roughness=np.nan)
+    strength = other["strength/sliding"].to_dataset()
     words = roughness_words(strength.isel(contact_direction=0))
     assert "scaled to this length it exceeds 20, the largest of his law" in words
     for figure in ("strength", "fig11_slope_angle"):
-        assert words in drawn(changed, "sliding", figure).caption
+        assert words in drawn(other, "sliding", figure).caption
     known = strength.assign(scaled_roughness=strength["jrc_used"])
     assert "beyond" not in roughness_words(known.isel(contact_direction=0))
 
@@ -237,11 +139,11 @@ def test_points_that_no_exponent_goes_through_are_hollow(atlas):
 
 
 def test_a_joint_that_was_not_slid_has_no_strength(atlas):
-    changed = atlas.copy()
-    strength = changed["strength/sliding"].to_dataset().isel(interval=slice(0, 0))
+    other = atlas.copy()
+    strength = other["strength/sliding"].to_dataset().isel(interval=slice(0, 0))
     for name, values in strength.data_vars.items():
         if "interval" not in values.dims and values.dtype.kind == "f" and values.dims:
             strength[name] = values * np.nan
-    changed["strength/sliding"] = xr.DataTree(strength)
-    drawing = drawn(changed, "sliding", "strength")
+    other["strength/sliding"] = xr.DataTree(strength)
+    drawing = drawn(other, "sliding", "strength")
     assert drawing.data["peak_strength_MPa"].isna().all()

@@ -4,12 +4,12 @@ import re
 
 import numpy as np
 import xarray as xr
+from drawn_arrays import column_of, digits, lost, points_of, unkept
 from markup import MARKUP
 from matplotlib.text import Text
 
 from fractalcontact.figures.draw import drawer_of
 from fractalcontact.figures.kit.drawing import print_style
-from fractalcontact.figures.kit.panel import column_of
 from fractalcontact.study.figure_list import all_figures
 
 #: A caption has fewer words than this; signs such as = and % are none.
@@ -80,6 +80,8 @@ def breaches(drawing, atlas, figure, subject):
         *_of_axes(drawing.figure),
         *_of_caption(drawing.caption, DECIDED.get(figure, set())),
         *_of_table(drawing.data, atlas, figure, subject),
+        *lost(drawing.data, atlas, figure, subject),
+        *unkept(points_of(drawing.figure), drawing.data, figure),
     ]
 
 
@@ -147,17 +149,12 @@ def strangers(table, column, variables):
             keys = [key for key in names if key in rows and rows[key].notna().all()]
             values = xr.DataArray(data[variable]).reset_coords(drop=True).expand_dims("whole")
             values = values.to_series().rename("its value").reset_index()
-            stored = [_digits(values[names[key]]) for key in keys]
-            stored = {*zip(*stored, _digits(values["its value"]), strict=True)}
-            places = zip(*(_digits(rows[key]) for key in (*keys, column)), strict=True)
+            stored = [digits(values[names[key]]) for key in keys]
+            stored = {*zip(*stored, digits(values["its value"]), strict=True)}
+            places = zip(*(digits(rows[key]) for key in (*keys, column)), strict=True)
             known |= [one in stored for one in places]
         found += rows[column][~known].tolist()
     return found
-
-
-def _digits(column):
-    """Numbers to eight digits, and words."""
-    return [one if isinstance(one, str) else f"{float(one):.8g}" for one in column]
 
 
 def content_of(drawing):

@@ -1,8 +1,8 @@
 """The figures: one module each, drawn from an atlas and nothing else.
 
-A module states what it is (:mod:`study.figure_list`) and has ``draw(atlas, name)``: the atlas as an
-xarray DataTree in, of which it reads the stages it needs, and a specimen's name, or for a figure of
-a study the names of all its specimens; a :class:`figures.kit.drawing.Drawing` out.
+A module states what it is (:mod:`study.figure_list`) and has ``draw(atlas, subject)``, which gives
+a :class:`figures.kit.drawing.Drawing`; the subject is a specimen's name, or the names of all
+specimens for a figure of a study.
 """
 
 import importlib
@@ -35,41 +35,23 @@ from .kit.layout import lay_out
 from .kit.remembered import layouts_remembered
 from .kit.titles import entitle
 
-#: A full disk, no memory, or an atlas that cannot be read fails every figure.
+#: Errors that fail every figure: a full disk, no memory, an atlas that cannot be read.
 _NOT_OF_THE_FIGURE = (InputError, OutputError, OSError, MemoryError)
 
-#: Files written for each figure: two pictures, the numbers in them, the caption.
+#: Endings of the files of a figure: two pictures, the numbers drawn, the caption.
 ENDINGS = ("png", "svg", "csv", "txt")
 
 
 @dataclass(frozen=True)
 class Drawn:
-    """Outcome of drawing some figures.
-
-    Attributes
-    ----------
-    captions : dict of str to str
-        By figure.
-    failures : dict of str to str
-        Traceback of each that an error of the program kept from being drawn; its picture says so.
-    """
+    """Captions by figure, and tracebacks of the figures that an error of the program prevented."""
 
     captions: dict[str, str] = field(default_factory=dict)
     failures: dict[str, str] = field(default_factory=dict)
 
 
 def drawer_of(name: str) -> Callable[..., Drawing]:
-    """Function that draws a figure under its title, by the figure's name.
-
-    Parameters
-    ----------
-    name : str
-        Of its module.
-
-    Returns
-    -------
-    callable
-        ``draw(atlas, subject)``, which gives a :class:`figures.kit.drawing.Drawing`.
+    """Function ``draw(atlas, subject)`` that draws a figure under its title.
 
     Raises
     ------
@@ -125,7 +107,7 @@ def draw_figure(
 
 
 def _read_stages(atlas, needs, subject):
-    """Read what a figure draws: xarray cannot turn words that still lie in a file."""
+    """Load the stages that a figure draws: xarray cannot transpose words of an open file."""
     for stage in needs:
         for name, node in atlas[stage].children.items() if stage in atlas.children else ():
             if name == subject or not isinstance(subject, str):
@@ -137,16 +119,7 @@ def draw_figures(
 ) -> Drawn:
     """Draw figures of one specimen and write each as PNG, SVG, CSV and caption.
 
-    One that fails does not keep the others from being drawn: whoever calls sees to it that the
-    failure is not overlooked.
-
-    Parameters
-    ----------
-    atlas_path : path-like
-    specimen : str
-    folder : path-like
-    names : sequence of str
-        From :func:`study.figure_list.figures_of`.
+    A figure that fails does not keep the others from being drawn; the caller looks at the failures.
     """
     return _draw(read_atlas(atlas_path), specimen, folder, names)
 
@@ -154,17 +127,8 @@ def draw_figures(
 def draw_study_figures(
     atlas_path: Path | str, specimens: Sequence[str], folder: Path | str, names: Sequence[str]
 ) -> Drawn:
-    """Draw figures of a whole study, as :func:`draw_figures` does those of one specimen.
-
-    Parameters
-    ----------
-    atlas_path : path-like
-    specimens : sequence of str
-    folder : path-like
-    names : sequence of str
-        From :func:`study.figure_list.study_figures_of`.
-    """
-    # To read the stages that none of them draws takes long.
+    """Draw figures of a whole study, as :func:`draw_figures` does those of one specimen."""
+    # Other stages are not read, which would take long.
     needs = {stage for name in names for stage in all_figures()[name].needs}
     atlas = read_atlas(atlas_path, only=needs)
     return _draw(atlas, list(specimens), folder, names)
@@ -190,7 +154,7 @@ def _draw(atlas, subject, folder, names):
 
 
 def _undrawn(title: str, subject: str | list[str], error: BaseException) -> Drawing:
-    """Drawing of the reason in place of a figure that an error of the program kept from it."""
+    """Drawing that states the error of the program in place of a figure."""
     reason = printable(f"{type(error).__name__}: {error}", 300)
     of = "" if isinstance(subject, list) else f" of {subject}"
     words = f"Not drawn: {title}{of}, because of an error of the program ({reason})."

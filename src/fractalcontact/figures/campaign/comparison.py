@@ -10,14 +10,7 @@ from xarray import DataTree
 
 from ...core.estimate import Estimate
 from ...core.labels import printable
-from ..kit.caption import caption
-from ..kit.drawing import LINES, MARKERS, WIDTH, Drawing, colour_of
-from ..kit.empty import say_empty
-from ..kit.legends import entries
-from ..kit.panel import rows
-from ..kit.points import reach
-from ..kit.titles import letter
-from ..kit.words import NOMINAL_PRESSURE
+from .. import kit
 
 TITLE = "Specimens or groups compared: surface, stiffness, contact, dilatancy and size effect"
 SUBJECT = "study"
@@ -25,7 +18,7 @@ NEEDS = ("study_comparison",)
 KEY = "comparison"
 ORDER = 6
 
-#: Title and axis of every quantity: the first has one value a specimen, the others one a load.
+#: Title and axis of each quantity. The first has one value per specimen, the others one per load.
 _QUANTITIES = {
     "delta_g": ("surface", r"surface dimension $\Delta_g$ (1)"),
     "stiffness": ("stiffness", r"$\mathrm{d}\sigma_0/\mathrm{d}w_\mathrm{int}$ (MPa/mm)"),
@@ -33,38 +26,35 @@ _QUANTITIES = {
     "dilatancy": ("dilatancy", r"elastic dilatancy $\delta$ (mm)"),
     "size_exponent": ("size effect", r"exponent of $A_r/A_0$ against $b$ (1)"),
 }
-#: What stands for a group in a study that states none.
+#: Name of the group in a study that states none.
 _UNGROUPED = "no group"
-#: Specimens or groups at most that are drawn: colours there are. The table has all of them.
+#: Maximum number of specimens or groups drawn, one per colour. The table has all of them.
 _MOST = 7
-#: Letters of a line of a label in the legend.
+#: Length of a line of the legend, letters.
 _LETTERS = 28
 
 
-def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
-    """Quantities with their intervals; of groups the means and the spread of specimens.
-
-    Its data are the specimens under every load and, where it draws groups, their means.
-    """
+def draw(atlas: DataTree, names: Sequence[str]) -> kit.Drawing:
+    """Quantities of specimens, or means of groups with their spread, with intervals."""
     compared = atlas["study_comparison/study"].to_dataset()
     few = compared.sizes["specimen"] <= _MOST
     single = few and set(compared["group"].values) == {_UNGROUPED}
     of, along = ("", "specimen") if single else ("_mean", "group_name")
     labels = [str(label) for label in compared["group_name" if of else "label"].values]
-    figure = Figure(figsize=(WIDTH, 4.6))
+    figure = Figure(figsize=(kit.WIDTH, 4.6))
     *panels, key = figure.subplots(2, 3).ravel()
     for axes, which, (name, (title, words)) in zip(
         panels, "abcde", _QUANTITIES.items(), strict=True
     ):
-        letter(axes, which, title)
+        kit.letter(axes, which, title)
         for n, label in enumerate(labels[:_MOST]):
             _draw_one(axes, compared.isel({along: n}), f"{name}{of}", label, n)
         if name != "delta_g":
             axes.set_xscale("log")
-            axes.set_xlabel(f"{NOMINAL_PRESSURE} (MPa)")
+            axes.set_xlabel(f"{kit.NOMINAL_PRESSURE} (MPa)")
         axes.set_ylabel(words)
         if not np.isfinite(compared[f"{name}{of}"]).any():
-            say_empty(axes, "no specimen\nhas a value", ticks=False)
+            kit.say_empty(axes, "no specimen\nhas a value", ticks=False)
     surface, stiffness, contact, _, _ = panels
     surface.set_xticks([])
     stiffness.set_yscale("log", nonpositive="mask")
@@ -75,21 +65,25 @@ def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
         if single
         else "bars: 95 % interval of the mean\nband: one standard deviation"
     )
-    key.legend(handles=entries(surface), loc="center", title=bars, title_fontsize=7)
-    return Drawing(figure, _table(compared, of), _caption(compared, of, labels))
+    key.legend(handles=kit.entries(surface), loc="center", title=bars, title_fontsize=7)
+    return kit.Drawing(figure, _table(compared, of), _caption(compared, of, labels))
 
 
 def _draw_one(axes, one, name, label, n):
     """A specimen; or the mean of a group in a band of one standard deviation."""
     value, low, high = Estimate.read(one, name).ends
-    style = {"color": colour_of(n), "marker": MARKERS[n], "ls": LINES[n % len(LINES)]}
+    style = {
+        "color": kit.colour_of(n),
+        "marker": kit.MARKERS[n],
+        "ls": kit.LINES[n % len(kit.LINES)],
+    }
     group = name.endswith("_mean")
     x = n
     if one[name].dims:
         x = one["pressure" if group else "nominal_pressure"].values
         style |= {"ms": 3, "lw": 0.9, "elinewidth": 0.5}
     words = fill(printable(label, 2 * _LETTERS), _LETTERS).replace("$", r"\$")
-    axes.errorbar(x, value, reach(value, low, high), label=words, **style)
+    axes.errorbar(x, value, kit.reach(value, low, high), label=words, **style)
     if group:
         spread = one[name.replace("_mean", "_deviation")].values
         ends = np.atleast_1d(value - spread), np.atleast_1d(value + spread)
@@ -99,10 +93,10 @@ def _draw_one(axes, one, name, label, n):
 
 def _table(compared, of):
     """Specimens under every load, and means of the groups if these are drawn."""
-    tables = [rows(compared, "group", "nominal_pressure", *_QUANTITIES)]
+    tables = [kit.rows(compared, "group", "nominal_pressure", *_QUANTITIES)]
     if of:
         means = (f"{name}_{one}" for name in _QUANTITIES for one in ("mean", "deviation", "n"))
-        tables.append(rows(compared, *means))
+        tables.append(kit.rows(compared, *means))
     return pd.concat(tables, ignore_index=True)
 
 
@@ -113,17 +107,17 @@ def _caption(compared, of, labels):
     if of:
         stiffness = compared["stiffness_mean"].sel(pressure=pressure)
     values = {"surface": compared[f"delta_g{of}"].values, "stiffness": stiffness.values}
-    return caption(
+    return kit.caption(
         __name__,
         specimens=compared.sizes["specimen"],
         groups=len(labels) if of else 0,
         pressure=pressure,
-        ends={name: _ends(found, labels) for name, found in values.items()},
+        ends={name: _ends(limits, labels) for name, limits in values.items()},
     )
 
 
 def _ends(values, labels):
     """Least and largest of the known values with their labels; one, or none, where that is all."""
-    known = np.flatnonzero(np.isfinite(values))
-    ends = known[[values[known].argmin(), values[known].argmax()]] if known.size else ()
+    finite = np.flatnonzero(np.isfinite(values))
+    ends = finite[[values[finite].argmin(), values[finite].argmax()]] if finite.size else ()
     return {printable(labels[i], 2 * _LETTERS): float(values[i]) for i in ends}

@@ -6,17 +6,16 @@ import xarray as xr
 
 from ...core.estimate import EXPONENT, Estimate
 from ...core.text import compact
-from ..kit.drawing import COLOURS
-from ..kit.panel import Panel
+from .. import kit
 
-#: Colours and markers of these; the loads have the others.
-_OFFSET_COLOURS = (COLOURS[3], COLOURS[4], COLOURS[5])
+#: Colours and markers of the offsets; the loads have the others.
+_OFFSET_COLOURS = (kit.COLOURS[3], kit.COLOURS[4], kit.COLOURS[5])
 _OFFSET_MARKERS = ("D", "v", "P")
 _SIZES = ("cluster_area", "clusters_at_least", "cluster_law_count", "cluster_law_followed")
 _FIT = ("cluster_exponent", *(f"cluster_fit_{key}" for key in ("min", "max", "n", "distance")))
 
 
-def draw_sizes(panel: Panel, sizes: xr.Dataset) -> None:
+def draw_sizes(panel: kit.Panel, sizes: xr.Dataset) -> None:
     """Clusters of some area or more, with the laws fitted to them."""
     axes = panel.axes
     for n, offset in enumerate(sizes["offset"].values):

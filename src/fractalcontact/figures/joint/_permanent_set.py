@@ -7,13 +7,9 @@ import xarray as xr
 from matplotlib.figure import FigureBase
 
 from ...core.text import length_unit, pressure_label
-from ..kit.drawing import colour_of
-from ..kit.legends import entries, heading, legends_below
-from ..kit.maps import draw_map
-from ..kit.panel import Panel
-from ..kit.words import NOMINAL_PRESSURE
+from .. import kit
 
-#: Fractions of the loading branch: label, marker.
+#: Label and marker of the fractions of the loading branch.
 _FRACTIONS = {
     "yielded_fraction": ("fraction of the window", "o"),
     "plastic_load_fraction": ("fraction of the force on nodes at $H$", "s"),
@@ -22,40 +18,34 @@ _FRACTIONS = {
 
 def draw_permanent_set(
     figure: FigureBase, data: xr.Dataset, sides: tuple[float, float]
-) -> list[Panel]:
+) -> list[kit.Panel]:
     """Panels (c) to (e): yielded nodes and set against pressure, and the set of each node.
 
-    Parameters
-    ----------
-    figure : matplotlib.figure.FigureBase
-    data : xr.Dataset
-        The stage ``branches``.
-    sides : (float, float)
-        Of the window (y, x), mm.
+    `data` is the stage ``branches``, `sides` (y, x) those of the window, mm.
     """
     axes = figure.subplots(1, 3, width_ratios=[1, 1, 1.15])
     top = pressure_label(float(data["nominal_pressure"][-1]))
     titles = ("nodes that yield", "set on loading", f"set of each node, {top}")
-    panels = [Panel(*one) for one in zip(axes, "cde", titles, strict=True)]
+    panels = kit.panels_of(axes, titles, "cde")
     fractions, volume, where = panels
     load = data.sel(branch="load")
     for n, (name, (label, marker)) in enumerate(_FRACTIONS.items()):
-        style: dict[str, Any] = {"color": colour_of(n), "marker": marker, "ls": "-", "ms": 4}
+        style: dict[str, Any] = {"color": kit.colour_of(n), "marker": marker, "ls": "-", "ms": 4}
         shown = load.assign({name: load[name].where(load[name] > 0)})
         fractions.curve(shown, "nominal_pressure", name, label=label, **style)
     fractions.axes.set(xscale="log", yscale="log", ylabel="fraction (1)")
     shown = load.assign(set_volume=load["set_volume"].where(load["set_volume"] > 0))
-    line: dict[str, Any] = {"color": colour_of(2), "marker": "^", "ls": "-", "ms": 4}
+    line: dict[str, Any] = {"color": kit.colour_of(2), "marker": "^", "ls": "-", "ms": 4}
     volume.curve(shown, "nominal_pressure", "set_volume", **line)
     volume.axes.set(xscale="log", yscale="log", ylabel="volume pressed in (mm$^3$)")
     for panel in (fractions, volume):
-        panel.axes.set_xlabel(f"{NOMINAL_PRESSURE} (MPa)")
+        panel.axes.set_xlabel(f"{kit.NOMINAL_PRESSURE} (MPa)")
     depth = data["permanent_set"].values
     unit, size = length_unit(float(depth.max()))
     image = np.where(depth > 0, depth / size, np.nan)
-    drawn = draw_map(where.axes, image, sides, ticks=3, cmap="viridis_r")
+    drawn = kit.draw_map(where.axes, image, sides, ticks=3, cmap="viridis_r")
     where.axes.set_facecolor("white")
     figure.colorbar(drawn, ax=where.axes, label=f"permanent set ({unit})")
-    legends_below(figure, [heading("(c)")], *([one] for one in entries(fractions.axes)))
+    kit.legends_below(figure, [kit.heading("(c)")], *([one] for one in kit.entries(fractions.axes)))
     where.keep(data, "branch_maximum", "residual_closure", "dissipated_energy", "recovered_energy")
     return panels

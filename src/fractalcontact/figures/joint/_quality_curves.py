@@ -12,25 +12,20 @@ from matplotlib.patches import Patch
 from ...core.limits import DECISIVE
 from ...core.text import compact, length_unit, length_words, number
 from ...core.window import window_slices
-from ..kit.drawing import COLOURS, spread
-from ..kit.empty import say_empty
-from ..kit.legends import mark
-from ..kit.maps import scan_extent
-from ..kit.panel import Panel
-from ..kit.words import NOMINAL_PRESSURE
+from .. import kit
 from ._quality_maps import OVERLAP, middle
 
-FACE_COLOURS = {"lower": COLOURS[0], "upper": COLOURS[4]}
-AXIS_STYLES = {"x": (COLOURS[6], "o"), "y": (COLOURS[5], "s")}
+FACE_COLOURS = {"lower": kit.COLOURS[0], "upper": kit.COLOURS[4]}
+AXIS_STYLES = {"x": (kit.COLOURS[6], "o"), "y": (kit.COLOURS[5], "s")}
 #: Colour of the fractal range.
-RANGE = COLOURS[3]
+RANGE = kit.COLOURS[3]
 _GAUSSIAN: dict[str, Any] = {"color": "0.6", "lw": 0.8}
 _POINTS: dict[str, Any] = {"ms": 2.5, "mfc": "none", "mew": 0.7}
-#: Offsets up to which each has a line of its own.
+#: Maximum number of offsets drawn.
 _OFFSETS = 5
 
 
-def draw_histogram(panel: Panel, quality: xr.Dataset, faces: Sequence[str]) -> None:
+def draw_histogram(panel: kit.Panel, quality: xr.Dataset, faces: Sequence[str]) -> None:
     """Distribution of the heights of each face, beside the Gaussian of the same rms."""
     axes, edges = panel.axes, quality["edge"].values
     unit, size = length_unit(float(np.ptp(edges)))
@@ -54,7 +49,7 @@ def draw_histogram(panel: Panel, quality: xr.Dataset, faces: Sequence[str]) -> N
     axes.set_ylim(0, (1.2 + 0.3 * len(faces)) * axes.get_ylim()[1])  # room for the words
 
 
-def draw_profile(panel: Panel, specimen: xr.Dataset, faces: Sequence[str], axis: str) -> None:
+def draw_profile(panel: kit.Panel, specimen: xr.Dataset, faces: Sequence[str], axis: str) -> None:
     """Profiles of the faces along one axis through the middle of the window, which is shaded."""
     which, spacing = "yx".index(axis), specimen.attrs[f"spacing_{axis}"]
     across = "x" if axis == "y" else "y"
@@ -62,7 +57,7 @@ def draw_profile(panel: Panel, specimen: xr.Dataset, faces: Sequence[str], axis:
     values = lines.to_array()
     mm = {"units": "mm"}
     place = (np.arange(lines.sizes[axis]) + 0.5) * spacing
-    place_unit, place_size = length_unit(max(scan_extent(specimen)))
+    place_unit, place_size = length_unit(max(kit.scan_extent(specimen)))
     unit, size = length_unit(float(values.max() - values.min()) if values.notnull().any() else 1.0)
     for face in faces:
         one = {"place": ("node", place, mm), "height": ("node", lines[face].values, mm)}
@@ -76,11 +71,11 @@ def draw_profile(panel: Panel, specimen: xr.Dataset, faces: Sequence[str], axis:
     panel.axes.margins(x=0)
 
 
-def draw_spectrum(panel: Panel, quality: xr.Dataset, face: str) -> None:
+def draw_spectrum(panel: kit.Panel, quality: xr.Dataset, face: str) -> None:
     """Spectra of profiles of one face with their models, floor and end."""
-    axes, found = panel.axes, quality.sel(face=face)
+    axes, spectra = panel.axes, quality.sel(face=face)
     for axis, (colour, marker) in AXIS_STYLES.items():
-        one = found.sel(axis=axis)
+        one = spectra.sel(axis=axis)
         style: dict[str, Any] = {"color": colour, "lw": 0.9}
         points: dict[str, Any] = {"color": colour, "marker": marker, **_POINTS}
         panel.curve(one, "wavelength", "spectrum", keep=("spectrum_model",), **points)
@@ -89,22 +84,22 @@ def draw_spectrum(panel: Panel, quality: xr.Dataset, face: str) -> None:
             axes.plot(one["wavelength"], one["self_affine_line"], **style | {"ls": ":"})
             if np.isfinite(one["noise_floor"]):
                 axes.axhline(one["noise_floor"].item(), **style | {"ls": "--"})
-    _finish(axes, quality, found["spectrum"])
-    measured = found["spectrum"].where(found["spectrum"] > 0)
+    _finish(axes, quality, spectra["spectrum"])
+    measured = spectra["spectrum"].where(spectra["spectrum"] > 0)
     if measured.notnull().any():
         axes.set_ylim(float(measured.min()) / 4, float(measured.max()) * 4)
     axes.set_ylabel("spectrum of profiles (mm³)")
 
 
-def draw_radial(panel: Panel, quality: xr.Dataset, faces: Sequence[str]) -> None:
+def draw_radial(panel: kit.Panel, quality: xr.Dataset, faces: Sequence[str]) -> None:
     """Radially averaged spectra, with the floor that the profiles have."""
     for face in faces:
-        found = quality.sel(face=face)
+        spectra = quality.sel(face=face)
         style: dict[str, Any] = {"color": FACE_COLOURS[face], "lw": 0.8}
         line = style | _POINTS | {"marker": "o", "ls": "-"}
-        panel.curve(found, "radial_wavelength", "radial_spectrum", **line)
-        if np.isfinite(found["radial_noise_floor"]):
-            panel.axes.axhline(found["radial_noise_floor"].item(), ls="--", **style)
+        panel.curve(spectra, "radial_wavelength", "radial_spectrum", **line)
+        if np.isfinite(spectra["radial_noise_floor"]):
+            panel.axes.axhline(spectra["radial_noise_floor"].item(), ls="--", **style)
     _finish(panel.axes, quality, quality["radial_spectrum"])
     panel.axes.set_ylabel("radial spectrum (mm⁴)")
 
@@ -115,11 +110,11 @@ def _finish(axes: Axes, quality: xr.Dataset, spectrum: xr.DataArray) -> None:
     axes.axvspan(*_range(quality), color=RANGE, alpha=0.13, lw=0, zorder=0)
     below = quality["below_range"].values
     for side, hollow in zip(quality["resolution"].values, below, strict=True):
-        at: dict[str, Any] = {"transform": axes.get_xaxis_transform(), "clip_on": False}
+        place: dict[str, Any] = {"transform": axes.get_xaxis_transform(), "clip_on": False}
         face = "white" if hollow else RANGE
-        axes.plot(2 * side, 0.985, "v", color=RANGE, mfc=face, ms=5, zorder=5, **at)
+        axes.plot(2 * side, 0.985, "v", color=RANGE, mfc=face, ms=5, zorder=5, **place)
     if not spectrum.notnull().any():
-        say_empty(axes, "too small for a spectrum")
+        kit.say_empty(axes, "too small for a spectrum")
 
 
 def _range(quality: xr.Dataset) -> tuple[float, float]:
@@ -131,11 +126,11 @@ def _range(quality: xr.Dataset) -> tuple[float, float]:
     return end if np.isfinite(end) else low, off if np.isfinite(off) else high
 
 
-def draw_gap_heights(panel: Panel, quality: xr.Dataset) -> None:
+def draw_gap_heights(panel: kit.Panel, quality: xr.Dataset) -> None:
     """Distribution of the gap; negative gaps are overlaps."""
     counts, edges = quality["gap_cells"].values, quality["gap_edge"].values
     unit, size = length_unit(np.ptp(edges))
-    panel.axes.stairs(counts, edges / size, color=COLOURS[0], lw=1)
+    panel.axes.stairs(counts, edges / size, color=kit.COLOURS[0], lw=1)
     below = edges <= 0
     if below.sum() > 1:
         overlaps = counts[: below.sum() - 1]
@@ -145,14 +140,14 @@ def draw_gap_heights(panel: Panel, quality: xr.Dataset) -> None:
     panel.keep(quality, "gap", "gap_cells")
 
 
-def draw_load_share(panel: Panel, curves: xr.Dataset) -> None:
+def draw_load_share(panel: kit.Panel, curves: xr.Dataset) -> None:
     """Fraction of the load on suspicious cells against the nominal pressure, by offset."""
-    shown = curves.isel(offset=spread(curves.sizes["offset"], _OFFSETS))
+    shown = curves.isel(offset=kit.spread(curves.sizes["offset"], _OFFSETS))
     labels = [compact(offset) for offset in shown["offset"].values]
     style: dict[str, Any] = {"marker": "o", "ls": "-", "ms": 3, "lw": 0.9, "labels": labels}
     panel.curves(shown, "nominal_pressure", "suspect_load_share", hue="offset", **style)
     panel.axes.axhline(DECISIVE, color="0.4", lw=0.7, ls="-.")
-    panel.axes.set(xlabel=f"{NOMINAL_PRESSURE} (MPa)", xscale="log", ylim=(-0.04, 1.04))
+    panel.axes.set(xlabel=f"{kit.NOMINAL_PRESSURE} (MPa)", xscale="log", ylim=(-0.04, 1.04))
     panel.axes.set_ylabel("load on suspicious cells (fraction)")
     panel.axes.legend(title="$v$ (mm)", fontsize=6, title_fontsize=6, loc="best")
 
@@ -160,7 +155,7 @@ def draw_load_share(panel: Panel, curves: xr.Dataset) -> None:
 def curve_entries(faces: Mapping[str, str], *, pair: bool) -> list[Artist]:
     """Entries of the legend for all these panels."""
     axes: list[Artist] = [
-        mark(
+        kit.mark(
             color=colour, marker=marker, lw=0.9, label=f"profiles along ${axis}$, model", **_POINTS
         )
         for axis, (colour, marker) in AXIS_STYLES.items()
@@ -168,13 +163,13 @@ def curve_entries(faces: Mapping[str, str], *, pair: bool) -> list[Artist]:
     down: dict[str, Any] = {"ls": "none", "marker": "v", "color": RANGE}
     return [
         Patch(facecolor="0.9", label="profiles: the window"),
-        *(mark(color=FACE_COLOURS[face], lw=1, label=words) for face, words in faces.items()),
+        *(kit.mark(color=FACE_COLOURS[face], lw=1, label=words) for face, words in faces.items()),
         *axes,
-        mark(color="0.3", ls=":", lw=0.8, label="self-affine line"),
-        mark(color="0.3", ls="--", lw=0.8, label="noise floor, if seen"),
-        mark(label="Gaussian of the same rms", **_GAUSSIAN),
+        kit.mark(color="0.3", ls=":", lw=0.8, label="self-affine line"),
+        kit.mark(color="0.3", ls="--", lw=0.8, label="noise floor, if seen"),
+        kit.mark(label="Gaussian of the same rms", **_GAUSSIAN),
         Patch(color=RANGE, alpha=0.13, lw=0, label="fractal range"),
-        mark(label="2 $s$ of a resolution", **down),
-        mark(label="hollow: below the range", mfc="white", **down),
-        *([mark(color="0.4", ls="-.", lw=0.7, label="half of the load")] if pair else []),
+        kit.mark(label="2 $s$ of a resolution", **down),
+        kit.mark(label="hollow: below the range", mfc="white", **down),
+        *([kit.mark(color="0.4", ls="-.", lw=0.7, label="half of the load")] if pair else []),
     ]

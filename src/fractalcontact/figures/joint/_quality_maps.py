@@ -13,19 +13,17 @@ from matplotlib.patches import Patch
 
 from ...core.text import length_unit
 from ...core.window import window_slices
-from ..kit.drawing import COLOURS
-from ..kit.legends import mark
-from ..kit.maps import MISSING, draw_map, node_position, window_outline
+from .. import kit
 
-#: Up to this many outliers or overlaps are ringed, so that single cells can be seen.
+#: Maximum number of outliers or overlaps with rings, which make single cells visible.
 FEW = 400
-#: Colours of cells by the variable of the stage ``specimens`` that marks them, with their words.
+#: Colours and words of cells, by the variable of the stage ``specimens`` that marks them.
 CELLS = {
-    "filled": (COLOURS[1], "filled"),
-    "spike": (COLOURS[0], "lone spike"),
-    "outlier": (COLOURS[2], "outlier"),
+    "filled": (kit.COLOURS[1], "filled"),
+    "spike": (kit.COLOURS[0], "lone spike"),
+    "outlier": (kit.COLOURS[2], "outlier"),
 }
-OVERLAP, _PRESENT = COLOURS[2], "0.96"
+OVERLAP, _PRESENT = kit.COLOURS[2], "0.96"
 #: Fraction of the cells left beyond the ends of the gap's colours.
 _CLIPPED = 0.001
 
@@ -36,23 +34,23 @@ def draw_mask(
     """Mask of missing, filled and outlying cells, with the entries of its legend."""
     missing = np.isnan([specimen[face].values for face in faces]).any(axis=0)
     image = np.full((*missing.shape, 3), to_rgb(_PRESENT))
-    image[missing] = to_rgb(MISSING)
+    image[missing] = to_rgb(kit.MISSING)
     marks: list[Artist] = [Patch(facecolor=_PRESENT, edgecolor="0.6", lw=0.5, label="measured")]
-    marks += [Patch(facecolor=MISSING, label="not measured")] if missing.any() else []
+    marks += [Patch(facecolor=kit.MISSING, label="not measured")] if missing.any() else []
     for name, (colour, words) in CELLS.items():
         if name in specimen and specimen[name].any():
             image[specimen[name].values] = to_rgb(colour)
             marks.append(Patch(facecolor=colour, label=words))
-    draw_map(axes, image, sides)
+    kit.draw_map(axes, image, sides)
     if "outlier" in specimen:
         _ring(axes, specimen["outlier"].values, sides)
     _, size = length_unit(max(sides))
-    axes.add_patch(window_outline(specimen, size, lw=1))
+    axes.add_patch(kit.window_outline(specimen, size, lw=1))
     line: dict[str, Any] = {"color": "0.4", "lw": 0.7, "ls": (0, (6, 2, 1, 2))}
-    y, x = node_position(middle(specimen), missing.shape, sides)
+    y, x = kit.node_position(middle(specimen), missing.shape, sides)
     axes.axhline(y, **line)
     axes.axvline(x, **line)
-    return [*marks, mark(label="where profiles run", **line)]
+    return [*marks, kit.mark(label="where profiles run", **line)]
 
 
 def middle(specimen: xr.Dataset) -> tuple[int, ...]:
@@ -68,21 +66,21 @@ def draw_gap(
     widest = np.nanquantile(abs(gap), 1 - _CLIPPED) or 1.0
     unit, size = length_unit(2 * widest)
     norm = Normalize(-widest / size, widest / size)  # white where the faces touch
-    image = draw_map(axes, gap / size, sides, cmap="RdBu", norm=norm)
+    image = kit.draw_map(axes, gap / size, sides, cmap="RdBu", norm=norm)
     label = f"gap, negative where the faces overlap ({unit})"
     figure.colorbar(image, ax=axes, location="bottom", fraction=0.06, extend="both", label=label)
     _, mm = length_unit(max(sides))
-    axes.add_patch(window_outline(specimen, mm, lw=1))
+    axes.add_patch(kit.window_outline(specimen, mm, lw=1))
     return _ring(axes, specimen["overlap"].values, sides, label="faces overlap")
 
 
 def _ring(
     axes: Axes, cells: np.ndarray, sides: Sequence[float], label: str | None = None
 ) -> list[Artist]:
-    """Rings around cells if these are few."""
+    """Rings around cells, if there are few."""
     if not 0 < cells.sum() <= FEW:
         return []
-    y, x = node_position(np.nonzero(cells), cells.shape, sides)
+    y, x = kit.node_position(np.nonzero(cells), cells.shape, sides)
     ring: dict[str, Any] = {
         "ls": "none",
         "marker": "o",

@@ -8,30 +8,24 @@ from ...core.estimate import EXPONENT, Estimate
 from ...core.limits import CONDUCTANCE_EXPONENTS, RESOLVED_NODES
 from ...core.subject import Subject
 from ...core.text import compact
-from ..kit.caption import caption
-from ..kit.drawing import WIDTH, Drawing, colour_of, spread
-from ..kit.empty import TOO_FULL, different_reasons, missing_lines, say_empty
-from ..kit.legends import entries, heading, legends_below
-from ..kit.panel import Panel, table_of
-from ..kit.titles import headline
-from ..kit.words import NOMINAL_PRESSURE, place
+from .. import kit
 
 TITLE = "Thermal or electrical conductance of the interface against pressure"
 SUBJECT = "specimen"
 NEEDS = ("closure",)
 ORDER = 80
 
-#: Offsets that have a curve of their own.
+#: Number of offsets drawn.
 CURVES = 5
 
 
-def draw(atlas: DataTree, name: str) -> Drawing:
+def draw(atlas: DataTree, name: str) -> kit.Drawing:
     """Conductance at about five offsets, at the finest resolution."""
     subject = Subject.of(atlas, name)
     every = subject.curves()
-    curves = every.isel(offset=spread(every.sizes["offset"], CURVES))
-    figure = Figure(figsize=(WIDTH, 4.4))
-    panel = Panel(figure.subplots())
+    curves = every.isel(offset=kit.spread(every.sizes["offset"], CURVES))
+    figure = Figure(figsize=(kit.WIDTH, 4.4))
+    panel = kit.Panel(figure.subplots())
     axes = panel.axes
     labels = [_label(curves.isel(offset=n)) for n in range(curves.sizes["offset"])]
     kept = ("interface_stiffness", "interface_stiffness_reason", "conductance_exponent")
@@ -47,26 +41,28 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     axes.set(xscale="log", yscale="log")
     _draw_laws(axes, curves)
     _draw_theory(axes, curves)
-    axes.set_xlabel(f"{NOMINAL_PRESSURE} (MPa)")
+    axes.set_xlabel(f"{kit.NOMINAL_PRESSURE} (MPa)")
     axes.set_ylabel("conductance over conductivity $h_c/k$ (mm$^{-1}$)")
-    e_star = subject.settings["material"]["e_star"]
-    functions = (lambda y: y * e_star, lambda y: y / e_star)
-    axes.secondary_yaxis("right", functions=functions).set_ylabel(
-        r"interface stiffness $\mathrm{d}\sigma_0/\mathrm{d}w_\mathrm{int}$ (MPa/mm)"
-    )
-    remarks = [*entries(axes)[len(labels) :], heading("lines: fits, exponents with 95 % intervals")]
+    label = r"interface stiffness $\mathrm{d}\sigma_0/\mathrm{d}w_\mathrm{int}$ (MPa/mm)"
+    kit.second_axis(axes, subject.settings["material"]["e_star"], label)
+    remarks = [
+        *kit.entries(axes)[len(labels) :],
+        kit.heading("lines: fits, exponents with 95 % intervals"),
+    ]
     if not curves["conductance_fitted"].all():
-        remarks.append(heading(f"hollow: not fitted (fewer than {RESOLVED_NODES} nodes)"))
+        remarks.append(kit.heading(f"hollow: not fitted (fewer than {RESOLVED_NODES} nodes)"))
     if np.isfinite(curves["conductance"]).any():
-        remarks += [heading(line) for line in missing_lines(curves["interface_stiffness_reason"])]
-    legends_below(figure, entries(axes)[: len(labels)], remarks)
-    headline(figure, subject.label, place(subject.direction))
+        remarks += [
+            kit.heading(line) for line in kit.missing_lines(curves["interface_stiffness_reason"])
+        ]
+    kit.legends_below(figure, kit.entries(axes)[: len(labels)], remarks)
+    kit.headline(figure, subject.label, kit.place(subject.direction))
     exponents = Estimate.read(curves, "conductance_exponent", scale=EXPONENT)
-    beside = curves["conductance_beside_theory"].values
-    known = [exponents[i] for i in np.flatnonzero(beside != "")]
-    words = {"exponents": known, "powers": [float(one.value) for one in known]}
-    words |= {"beside": beside.tolist(), "theory": CONDUCTANCE_EXPONENTS}
-    return Drawing(figure, table_of(panel), caption(__name__, **words))
+    verdicts = curves["conductance_beside_theory"].values
+    judged = [exponents[i] for i in np.flatnonzero(verdicts != "")]
+    words = {"exponents": judged, "powers": [float(one.value) for one in judged]}
+    words |= {"beside": verdicts.tolist(), "theory": CONDUCTANCE_EXPONENTS}
+    return kit.Drawing(figure, kit.table_of(panel), kit.caption(__name__, **words))
 
 
 def _label(curve):
@@ -85,14 +81,14 @@ def _draw_laws(axes, curves):
         law = curves.isel(offset=n)
         ends = np.array([law[f"conductance_pressure_{end}"].item() for end in ("low", "high")])
         line = law["unit_conductance"].item() * ends ** law["conductance_exponent"].item()
-        axes.plot(ends, line, color=colour_of(n), lw=0.8)
+        axes.plot(ends, line, color=kit.colour_of(n), lw=0.8)
 
 
 def _draw_theory(axes, curves):
     """The slopes of the theories, through the middle of the points fitted and behind them."""
     if not np.isfinite(curves["conductance"]).any():
-        why = different_reasons(curves["interface_stiffness_reason"])
-        say_empty(axes, "\n".join(why) or TOO_FULL)
+        why = kit.different_reasons(curves["interface_stiffness_reason"])
+        kit.say_empty(axes, "\n".join(why) or kit.TOO_FULL)
         return
     fitted = curves["conductance_fitted"]
     height = np.log(curves["conductance"].where(fitted | ~fitted.any()))

@@ -11,23 +11,17 @@ from xarray import DataTree
 from ...core.estimate import DIMENSION, Estimate
 from ...core.subject import Subject
 from ...core.text import force_label
-from ..kit.caption import caption
-from ..kit.domains import spread_loads
-from ..kit.drawing import WIDTH, Drawing
-from ..kit.legends import entries, heading, legends_below
-from ..kit.panel import Panel, table_of
-from ..kit.titles import headline
-from ..kit.words import place
+from .. import kit
 
 TITLE = "Is the contact domain fractal: local slopes, lacunarity, dimensions of the pressure"
 SUBJECT = "specimen"
 NEEDS = ("specimens", "closure", "domains", "domain_measures")
 ORDER = 150
 
-#: Loads drawn, the reference load among them.
+#: Number of loads drawn, the reference load among them.
 MAX_LOADS = 3
 
-#: What curves are compared with, in greys that no load has.
+#: Lines with which curves are compared, in grey, which no load has.
 _GREY: dict[str, Any] = {"color": "0.6", "lw": 1.2, "zorder": 0}
 _LINE, _PLANE, _EVEN = (_GREY | {"ls": ls} for ls in ((0, (1, 1)), "-", (0, (6, 2))))
 _TITLES = (
@@ -37,16 +31,16 @@ _TITLES = (
 )
 
 
-def draw(atlas: DataTree, name: str) -> Drawing:
+def draw(atlas: DataTree, name: str) -> kit.Drawing:
     """Local slopes of the box counts, lacunarity and the spectrum D_q of the pressure."""
     subject = Subject.of(atlas, name)
     measures, reference = subject["domain_measures"], subject.reported.reference
     some = np.flatnonzero(measures["lacunarity"].notnull().any("gliding_side").values)
-    at = np.flatnonzero(some == reference)
-    chosen = some[spread_loads(some.size, MAX_LOADS, int(at[0]) if at.size else None)]
+    index = np.flatnonzero(some == reference)
+    chosen = some[kit.spread_loads(some.size, MAX_LOADS, int(index[0]) if index.size else None)]
     shown = measures.isel(normal_force=chosen)
-    figure = Figure(figsize=(WIDTH, 3.4))
-    a, b, c = (Panel(*one) for one in zip(figure.subplots(1, 3), "abc", _TITLES, strict=True))
+    figure = Figure(figsize=(kit.WIDTH, 3.4))
+    a, b, c = kit.panels_of(figure.subplots(1, 3), _TITLES)
     labels = [f"$F$ = {force_label(force)}" for force in shown["normal_force"].values]
     of_loads: dict[str, Any] = {"hue": "normal_force", "labels": labels, "ls": "-"}
     of_loads |= {"ms": 3, "lw": 0.8}
@@ -55,13 +49,13 @@ def draw(atlas: DataTree, name: str) -> Drawing:
     b.curves(shown, "gliding_side", "lacunarity", **of_loads)
     c.curves(shown, "order", "generalised_dimension", **of_loads)
     _finish(a.axes, b.axes, c.axes, shown)
-    greys = [one for panel in (a, b) for one in entries(panel.axes)[len(labels) :]]
-    loads = entries(a.axes)[: len(labels)]
-    legends_below(figure, loads, [*greys, heading("bars: 95 % intervals")])
-    headline(figure, subject.label, place(subject.direction, subject.offset))
+    greys = [one for panel in (a, b) for one in panel.entries[len(labels) :]]
+    loads = a.entries[: len(labels)]
+    kit.legends_below(figure, loads, [*greys, kit.heading("bars: 95 % intervals")])
+    kit.headline(figure, subject.label, kit.place(subject.direction, subject.offset))
     words = _values(measures.isel(normal_force=reference), subject.state("domains"))
     words["force"] = subject.reported.force
-    return Drawing(figure, table_of(a, b, c), caption(__name__, **words))
+    return kit.Drawing(figure, kit.table_of(a, b, c), kit.caption(__name__, **words))
 
 
 def _finish(slopes: Axes, lacunarity: Axes, spectrum: Axes, shown: xr.Dataset) -> None:
@@ -74,7 +68,7 @@ def _finish(slopes: Axes, lacunarity: Axes, spectrum: Axes, shown: xr.Dataset) -
     lacunarity.set(xscale="log", yscale="log", xlabel="side of the gliding box $r$ (mm)")
     lacunarity.set_ylabel(r"lacunarity $\langle M^2\rangle/\langle M\rangle^2$ (1)")
     if shown.sizes["normal_force"]:
-        # Bars may be open upwards where one part of the window holds nearly all contact.
+        # Bars are open upwards where one part of the window holds nearly all contact.
         lacunarity.set_ylim(0.8, 3 * max(float(shown["lacunarity"].max()), 1.5))
     spectrum.axhline(2, **_PLANE)
     spectrum.set(xlabel="order $q$ (1)", ylabel="dimension $D_q$ of the pressure (1)")

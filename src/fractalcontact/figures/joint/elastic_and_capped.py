@@ -14,14 +14,7 @@ from ...core.labels import printable
 from ...core.limits import RESOLVED_NODES
 from ...core.subject import Subject
 from ...core.text import compact
-from ..kit.caption import caption
-from ..kit.domains import prefractals
-from ..kit.drawing import MARKERS, WIDTH, Drawing, colour_of
-from ..kit.empty import say_empty
-from ..kit.legends import entries, heading, legends_below
-from ..kit.panel import Panel, table_of
-from ..kit.titles import headline
-from ..kit.words import NOMINAL_PRESSURE, place
+from .. import kit
 
 TITLE = "Fig. 12 and grid convergence: elastic contact beside contact that crushes"
 SUBJECT = "study"
@@ -31,37 +24,41 @@ ORDER = 8
 
 _LETTERS = "abcdefghi"
 _SPACING = "closure from the seat; $s$: spacing of the scan"
-#: Letters of a label in the caption.
+#: Maximum length of a label in the caption, letters.
 _LONGEST = 40
-#: Pairs drawn: more have no room on a page.
+#: Maximum number of pairs, for which a page has room.
 _MAX_PAIRS = 3
 
 
-def draw(atlas: DataTree, names: Sequence[str]) -> Drawing:
+def draw(atlas: DataTree, names: Sequence[str]) -> kit.Drawing:
     """Closure from the seat at every resolution, elastic and capped, and Delta_sigma of both."""
     pairs = _pairs([Subject.of(atlas, name) for name in names])[:_MAX_PAIRS]
-    figure = Figure(figsize=(WIDTH, 2.6 * max(len(pairs), 1) + 0.8))
+    figure = Figure(figsize=(kit.WIDTH, 2.6 * max(len(pairs), 1) + 0.8))
     if not pairs:
-        say_empty(figure.subplots(), "no surface of the study is both elastic and capped")
-        return Drawing(figure, table_of(), caption(__name__, pairs=[]))
-    panels: list[Panel] = []
+        kit.say_empty(figure.subplots(), "no surface of the study is both elastic and capped")
+        return kit.Drawing(figure, kit.table_of(), kit.caption(__name__, pairs=[]))
+    panels: list[kit.Panel] = []
     for part, pair in zip(
         figure.subfigures(len(pairs), 1, squeeze=False)[:, 0], pairs, strict=True
     ):
         row, letters = part.subplots(1, 3, sharex=True), _LETTERS[len(panels) :]
         row[1].sharey(row[0])
         for axes, which, one in zip(row, letters, pair, strict=False):
-            panels.append(Panel(axes, which, _model(one)))
+            panels.append(kit.Panel(axes, which, _model(one)))
             _draw_closures(panels[-1], one)
-        panels.append(Panel(row[2], letters[2], r"$\Delta_\sigma$ by box counting"))
+        panels.append(kit.Panel(row[2], letters[2], r"$\Delta_\sigma$ by box counting"))
         _draw_dimensions(panels[-1], pair)
-        headline(part, pair[0].label, place(pair[0].direction, pair[0].offset))
-    of_grid = [heading(_SPACING), *entries(panels[0].axes)]
+        kit.headline(part, pair[0].label, kit.place(pair[0].direction, pair[0].offset))
+    of_grid = [kit.heading(_SPACING), *panels[0].entries]
     few = f"hollow: fewer than {RESOLVED_NODES} nodes touch"
-    legends_below(
-        figure, of_grid, [heading("dimension, 95 %"), *entries(panels[2].axes), heading(few)]
+    kit.legends_below(
+        figure,
+        of_grid,
+        [kit.heading("dimension, 95 %"), *panels[2].entries, kit.heading(few)],
     )
-    return Drawing(figure, table_of(*panels), caption(__name__, pairs=[_words(*p) for p in pairs]))
+    return kit.Drawing(
+        figure, kit.table_of(*panels), kit.caption(__name__, pairs=[_words(*p) for p in pairs])
+    )
 
 
 def _pairs(subjects: Sequence[Subject]) -> list[tuple[Subject, Subject]]:
@@ -77,14 +74,14 @@ def _scan(subject: Subject) -> str:
 
 
 def _model(subject: Subject) -> str:
-    """A specimen by its largest pressure."""
+    """Material model of a specimen in words, by its largest pressure."""
     hardness = subject.settings["material"]["hardness"]
     return "elastic" if not np.isfinite(hardness) else f"capped at {compact(hardness, 6)} MPa"
 
 
-def _draw_closures(panel: Panel, subject: Subject) -> None:
+def _draw_closures(panel: kit.Panel, subject: Subject) -> None:
     """Closure from the seat over the load at each resolution."""
-    curves = prefractals(subject, "closure")
+    curves = kit.prefractals(subject, "closure")
     labels = ["$s$" if k == 1 else f"{k} $s$" for k in curves["resolution"].values]
     style: dict[str, Any] = {"ls": "-", "lw": 0.9, "ms": 3.5, "labels": labels}
     style |= {"hue": "resolution", "filled": "resolved"}
@@ -93,10 +90,10 @@ def _draw_closures(panel: Panel, subject: Subject) -> None:
     panel.axes.set_ylabel("closure from the seat (mm)")
 
 
-def _draw_dimensions(panel: Panel, pair: tuple[Subject, Subject]) -> None:
-    """Delta_sigma of both over the load."""
+def _draw_dimensions(panel: kit.Panel, pair: tuple[Subject, Subject]) -> None:
+    """Delta_sigma of both specimens over the load."""
     for n, subject in enumerate(pair):
-        style: dict[str, Any] = {"color": colour_of(5 * n), "marker": MARKERS[n], "ms": 3.5}
+        style: dict[str, Any] = {"color": kit.colour_of(5 * n), "marker": kit.MARKERS[n], "ms": 3.5}
         label = "capped at the wall strength" if n else "elastic"
         states = subject.states("domains")
         panel.curve(states, "nominal_pressure", "delta_sigma", label=label, **style)
@@ -106,7 +103,7 @@ def _draw_dimensions(panel: Panel, pair: tuple[Subject, Subject]) -> None:
 
 def _pressure_axis(axes: Axes) -> None:
     axes.set_xscale("log")
-    axes.set_xlabel(f"{NOMINAL_PRESSURE} (MPa)")
+    axes.set_xlabel(f"{kit.NOMINAL_PRESSURE} (MPa)")
 
 
 def _words(elastic: Subject, capped: Subject) -> dict[str, Any]:

@@ -10,22 +10,14 @@ from xarray import DataTree
 from ...core.labels import REALISATIONS, TWINS
 from ...core.subject import Subject
 from ...core.text import compact, length_unit, percent
-from ..kit.axes import force_axis
-from ..kit.caption import caption
-from ..kit.drawing import LINES, MARKERS, WIDTH, Drawing, colour_of
-from ..kit.legends import entries
-from ..kit.panel import Panel, table_of
-from ..kit.points import hollow_entry
-from ..kit.sizes import plain_decades
-from ..kit.titles import headline
-from ..kit.words import place
+from .. import kit
 
 TITLE = "Error of each quantity by source"
 SUBJECT = "specimen"
 NEEDS = ("error_budget", "closure")
 ORDER = 225
 
-#: Quantities: title of the panel, and its word in the caption.
+#: Title of the panel of each quantity, and its word in the caption.
 QUANTITIES = {
     "closure": ("interface closure", "closure"),
     "separation": ("separation", "separation"),
@@ -53,38 +45,38 @@ TOTALS = {
         "total for any surface of its kind\n(also counting or windows, registration)"
     ),
 }
-#: Smallest error in the frame: as a fraction of the value, or of the largest error drawn.
+#: Smallest error in the frame, as a fraction of the value, or of the largest error drawn.
 LEAST = 1e-4
 _KEPT = ("error", "relative_error", "unit", "numerical_from")
 
 
-def draw(atlas: DataTree, name: str) -> Drawing:
+def draw(atlas: DataTree, name: str) -> kit.Drawing:
     """Errors over the load at the map offset, one panel a quantity, one line a source."""
     subject = Subject.of(atlas, name)
-    here = subject.state("error_budget")
+    budget = subject.state("error_budget")
     errors = _with_totals(subject["error_budget"])
-    figure = Figure(figsize=(WIDTH, 6.6))
+    figure = Figure(figsize=(kit.WIDTH, 6.6))
     *places, legend = figure.subplots(3, 2).ravel()
     titles = [title for title, _ in QUANTITIES.values()]
-    panels = [Panel(*one) for one in zip(places, "abcde", titles, strict=True)]
+    panels = kit.panels_of(places, titles)
     for panel, quantity in zip(panels, QUANTITIES, strict=True):
-        axes, size = panel.axes, force_axis(panel.axes.xaxis, subject.forces)
-        load = float(here["normal_force"]) / size
+        axes, size = panel.axes, kit.force_axis(panel.axes.xaxis, subject.forces)
+        load = float(budget["normal_force"]) / size
         axes.axvline(load, label="reference load", color="0.8", lw=3, zorder=0)
         _draw_errors(panel, errors.sel(quantity=quantity), size)
-        plain_decades(axes.yaxis)
-    hollow_entry(places[-1], "hollow: interpolated between loads", marker=MARKERS[2])
-    found = {entry.get_label(): entry for axes in places for entry in entries(axes)}
+        kit.plain_decades(axes.yaxis)
+    kit.hollow_entry(places[-1], "hollow: interpolated between loads", marker=kit.MARKERS[2])
+    handles = {entry.get_label(): entry for axes in places for entry in kit.entries(axes)}
     legend.set_axis_off()
     below = "errors below a frame are negligible"
     style: dict[str, Any] = {"handlelength": 3.5, "title_fontsize": 7}
-    legend.legend(handles=list(found.values()), loc="center", title=below, **style)
-    headline(figure, subject.label, place(subject.direction, subject.offset))
-    return Drawing(figure, table_of(*panels), caption(__name__, **_words(here)))
+    legend.legend(handles=list(handles.values()), loc="center", title=below, **style)
+    kit.headline(figure, subject.label, kit.place(subject.direction, subject.offset))
+    return kit.Drawing(figure, kit.table_of(*panels), kit.caption(__name__, **_words(budget)))
 
 
 def _with_totals(budget: xr.Dataset) -> xr.Dataset:
-    """Errors by source, the totals among the sources; whether each was found at its load."""
+    """Errors by source, the totals among the sources, with `at_load`: True if not interpolated."""
     errors = budget[["error", "relative_error", "unit", "absolute", "numerical_from"]]
     totals = [
         budget[[name, f"relative_{name}"]]
@@ -99,7 +91,7 @@ def _with_totals(budget: xr.Dataset) -> xr.Dataset:
     return named.assign(error=error, at_load=solved)
 
 
-def _draw_errors(panel: Panel, errors: xr.Dataset, size: float) -> None:
+def _draw_errors(panel: kit.Panel, errors: xr.Dataset, size: float) -> None:
     """Errors of a quantity, in per cent of the value or else in the unit of the quantity."""
     name, unit, scale, largest = "relative_error", "% of the value", 0.01, 1.0
     if errors["absolute"]:
@@ -109,13 +101,13 @@ def _draw_errors(panel: Panel, errors: xr.Dataset, size: float) -> None:
         if source in errors["source"] and (errors["error"].sel(source=source) > 0).any():
             in_no_total = source in ("resolution", "model", "estimator")
             style: dict[str, Any] = {
-                "color": "0.55" if in_no_total else colour_of(i + 1),
-                "marker": MARKERS[(i + 1) % len(MARKERS)],
-                "ls": ":" if in_no_total else LINES[i % 3],
+                "color": "0.55" if in_no_total else kit.colour_of(i + 1),
+                "marker": kit.MARKERS[(i + 1) % len(kit.MARKERS)],
+                "ls": ":" if in_no_total else kit.LINES[i % 3],
             }
             style |= {"ms": 3.5, "lw": 0.9, "hollow": {"zorder": 3}}
             if source in TOTALS:
-                line = LINES[list(TOTALS).index(source)]
+                line = kit.LINES[list(TOTALS).index(source)]
                 style = {"color": "black", "lw": 2.2, "ls": line, "zorder": 1}
             of: dict[str, Any] = {
                 "filled": "at_load",
@@ -130,11 +122,11 @@ def _draw_errors(panel: Panel, errors: xr.Dataset, size: float) -> None:
     panel.axes.set_ylim(LEAST * largest / scale, 3 * most)
 
 
-def _words(here: xr.Dataset) -> dict[str, Any]:
+def _words(budget: xr.Dataset) -> dict[str, Any]:
     """Values of the caption: totals for this surface, each with its largest source."""
     totals = []
     for quantity, (_, words) in QUANTITIES.items():
-        errors = here.sel(quantity=quantity)
+        errors = budget.sel(quantity=quantity)
         total, relative = float(errors["total"]), float(errors["relative_total"])
         if np.isfinite(relative):
             said = percent(relative)
@@ -145,4 +137,4 @@ def _words(here: xr.Dataset) -> dict[str, Any]:
             said = compact(total, 2)
         if np.isfinite(total):
             totals.append((words, said, str(errors["largest_source"].values)))
-    return {"totals": totals, "force": float(here["normal_force"])}
+    return {"totals": totals, "force": float(budget["normal_force"])}

@@ -11,16 +11,7 @@ from xarray import DataTree
 from ...core.directions import slides
 from ...core.estimate import Estimate, names_of
 from ...core.subject import Subject
-from ..kit.axes import offset_axis
-from ..kit.caption import caption
-from ..kit.drawing import WIDTH, Drawing, colour_of
-from ..kit.empty import say_empty
-from ..kit.laboratory import draw_tests, test_words
-from ..kit.legends import entries, legends_below
-from ..kit.panel import Panel, table_of
-from ..kit.sizes import plain_decades
-from ..kit.titles import headline
-from ..kit.words import NOMINAL_PRESSURE, place
+from .. import kit
 
 TITLE = "Hydraulic aperture and transmissivity"
 SUBJECT = "specimen"
@@ -28,45 +19,45 @@ NEEDS = ("specimens", "closure", "flow", "measured")
 ORDER = 46
 SECTION = "flow"
 
-#: Ways of the flow with their style; both have the same abscissae, so that ends of bars differ.
+#: Styles of the flow along and across; caps of bars differ because both have the same abscissae.
 _WAYS: dict[str, dict[str, Any]] = {
-    "along": {"color": colour_of(0), "marker": "o", "caps": 6.0},
-    "across": {"color": colour_of(1), "marker": "s", "mfc": "none", "caps": 3.0},
+    "along": {"color": kit.colour_of(0), "marker": "o", "caps": 6.0},
+    "across": {"color": kit.colour_of(1), "marker": "s", "mfc": "none", "caps": 3.0},
 }
 _LAWS: dict[str, tuple[str, dict[str, Any]]] = {
-    "zimmerman_aperture": ("Zimmerman and Bodvarsson", {"color": colour_of(2), "ls": "--"}),
-    "barton_aperture": ("Barton", {"color": colour_of(3), "ls": "-."}),
+    "zimmerman_aperture": ("Zimmerman and Bodvarsson", {"color": kit.colour_of(2), "ls": "--"}),
+    "barton_aperture": ("Barton", {"color": kit.colour_of(3), "ls": "-."}),
 }
 _BRANCHES = (("load", "loading", "-"), ("reload", "unloading and reloading", ":"))
 _TITLES = ("hydraulic aperture", "transmissivity", "$T$ (mm³), reference load")
 
 
-def draw(atlas: DataTree, name: str) -> Drawing:
+def draw(atlas: DataTree, name: str) -> kit.Drawing:
     """Apertures and transmissivities at the reported offset, and transmissivity at all offsets."""
     subject = Subject.of(atlas, name)
     flow, closure = subject.states("flow"), subject.states("closure")
     states = flow.assign(mean_gap=closure["mean_gap"])
-    figure = Figure(figsize=(WIDTH, 4.0))
+    figure = Figure(figsize=(kit.WIDTH, 4.0))
     axes = figure.subplots(1, 3 if subject.direction != "none" else 2)
-    a, b, *offsets = panels = [Panel(*one) for one in zip(axes, "abc", _TITLES, strict=False)]
+    a, b, *offsets = panels = kit.panels_of(axes, _TITLES)
     _draw_apertures(a, states)
     _draw_branches(b, flow)
-    draw_tests(b, subject, "flow")
+    kit.draw_tests(b, subject, "flow")
     for c in offsets:
         flow = subject["flow"]
         _draw_ways(c, flow, "offset", "offset_transmissivity", "", "-", ["offset_mean_gap"])
         c.axes.set_yscale("log")
-        offset_axis(c.axes, flow["offset"].values)
-    legends_below(figure, entries(a.axes), entries(b.axes))
-    headline(figure, subject.label, place(subject.direction, subject.offset))
-    words = {"tests": test_words(subject, "flow"), **_words(subject, states)}
-    return Drawing(figure, table_of(*panels), caption(__name__, **words))
+        kit.offset_axis(c.axes, flow["offset"].values)
+    kit.legends_below(figure, a.entries, b.entries)
+    kit.headline(figure, subject.label, kit.place(subject.direction, subject.offset))
+    words = {"tests": kit.test_words(subject, "flow"), **_words(subject, states)}
+    return kit.Drawing(figure, kit.table_of(*panels), kit.caption(__name__, **words))
 
 
 def _draw_ways(
-    panel: Panel, data: xr.Dataset, x: str, name: str, label: str, ls: str, kept: Sequence[str]
+    panel: kit.Panel, data: xr.Dataset, x: str, name: str, label: str, ls: str, kept: Sequence[str]
 ) -> None:
-    """A variable against x along and across the sliding, without zeros: logarithms have none."""
+    """Variable against x along and across the sliding; zeros are left out on logarithmic axes."""
     flows = False
     for way, style in _WAYS.items():
         variable = data[f"{name}_{way}"]
@@ -82,69 +73,69 @@ def _draw_ways(
         )
         flows |= bool(shown.notnull().any())
     if not flows:
-        say_empty(panel.axes, "no path of open gap\njoins both sides")
+        kit.say_empty(panel.axes, "no path of open gap\njoins both sides")
 
 
-def _draw_apertures(panel: Panel, states: xr.Dataset) -> None:
+def _draw_apertures(panel: kit.Panel, states: xr.Dataset) -> None:
     kept = ("nominal_pressure", "critical_gap_along", "channel_fraction_along")
     _draw_ways(panel, states, "mean_gap", "hydraulic_aperture", "cubic law", "none", kept)
     if states[names_of("hydraulic_aperture_along")[1]].notnull().any():
         panel.axes.plot([], [], "|", color="0.4", ms=10, label="95 % interval, mean over windows")
-    # Laws go on where no path is left: they are drawn beside what was computed.
+    # Empirical laws have values where no path is open; they are drawn only beside computed ones.
     flows = sum(states[f"transmissivity_{way}"].fillna(0) for way in _WAYS)
-    beside = states.isel(normal_force=np.flatnonzero(flows > 0))
+    open_states = states.isel(normal_force=np.flatnonzero(flows > 0))
     for law, (words, style) in _LAWS.items():
-        if beside[law].notnull().any():
-            panel.curve(beside, "mean_gap", law, label=words, marker=".", **style)
-    gaps = beside["mean_gap"].values
+        if open_states[law].notnull().any():
+            panel.curve(open_states, "mean_gap", law, label=words, marker=".", **style)
+    gaps = open_states["mean_gap"].values
     if gaps.size:
         ends = [gaps.min(), gaps.max()]
         panel.axes.plot(ends, ends, color="0.6", lw=0.8, label="parallel plates")
     panel.axes.set(xscale="log", yscale="log", xlabel=r"mean gap $\langle g\rangle$ (mm)")
     panel.axes.set_ylabel("hydraulic aperture $h_h$ (mm)")
     for axis in (panel.axes.xaxis, panel.axes.yaxis):
-        plain_decades(axis)
+        kit.plain_decades(axis)
 
 
-def _draw_branches(panel: Panel, flow: xr.Dataset) -> None:
+def _draw_branches(panel: kit.Panel, flow: xr.Dataset) -> None:
     x, name = "nominal_pressure", "branch_transmissivity"
     load, reload = (flow[f"{name}_along"].sel(branch=branch) for branch in ("load", "reload"))
-    # Where nothing yields, there is one curve.
+    # Loading and reloading are one curve where nothing yields.
     crushed = bool(((reload > 0) & (reload != load)).any())
     for branch, words, line in _BRANCHES[: 1 + crushed]:
         _draw_ways(panel, flow.sel(branch=branch), x, name, words, line, ["branch"])
-    panel.axes.set(xscale="log", yscale="log", xlabel=f"{NOMINAL_PRESSURE} (MPa)")
-    plain_decades(panel.axes.xaxis)
+    panel.axes.set(xscale="log", yscale="log", xlabel=f"{kit.NOMINAL_PRESSURE} (MPa)")
+    kit.plain_decades(panel.axes.xaxis)
     panel.axes.set_ylabel("transmissivity $T = h_h^3/12$ (mm³)")
 
 
 def _words(subject: Subject, states: xr.Dataset) -> dict[str, Any]:
     """Values of the caption."""
-    at = states.isel(normal_force=subject.reported.reference)
-    window = Estimate.read(at, "transmissivity_along")
-    # Where nothing flows, neither does a part of it.
+    state = states.isel(normal_force=subject.reported.reference)
+    window = Estimate.read(state, "transmissivity_along")
+    # Ratios to the flow are missing where nothing flows.
     flow = float(window.value) if window.value > 0 else np.nan
     offsets = subject["flow"]["offset_transmissivity_along"]
     first, last = offsets.where(offsets > 0).values[[0, -1]]
     return {
-        "pressure": float(at["nominal_pressure"]),
+        "pressure": float(state["nominal_pressure"]),
         "transmissivity": flow,
-        "aperture": float(at["hydraulic_aperture_along"]),
-        "ratio": float(at["hydraulic_ratio_along"]),
+        "aperture": float(state["hydraulic_aperture_along"]),
+        "ratio": float(state["hydraulic_ratio_along"]),
         "flows": flow > 0,
         "filled": np.isnan(window.value),
         "reason": str(at["flow_reason_along"].values),
         "wider": float(states["shifted_ratio"]),
         "window": [window.low, window.high],
-        "reload": float(at["branch_transmissivity_along"].sel(branch="reload") / flow),
+        "reload": float(state["branch_transmissivity_along"].sel(branch="reload") / flow),
         "closed": float(states["first_closed_pressure_along"]),
         "opened": float(states["last_open_pressure_along"]),
-        "grid": float(at["transmissivity_grid_error_along"]) / flow,
-        "closing": float(at["transmissivity_separation_error_along"]) / flow,
+        "grid": float(state["transmissivity_grid_error_along"]) / flow,
+        "closing": float(state["transmissivity_separation_error_along"]) / flow,
         "walls": int((offsets == 0).sum()),
         "offsets": offsets.size,
         "way": "the sliding" if slides(subject.settings["opposite"]) else "x",
-        "slope": float(at["gap_slope"]),
+        "slope": float(state["gap_slope"]),
         "first_offset": float(offsets["offset"][0]),
         "last_offset": float(offsets["offset"][-1]),
         "widening": float(last / first),

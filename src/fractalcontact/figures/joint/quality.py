@@ -1,7 +1,4 @@
-"""Quality sheet of a scan: relief, mask, histogram, profiles, spectra and findings.
-
-Of two faces also their gap, where they overlap, and how much of the load rests on such cells.
-"""
+"""Quality sheet of a scan: relief, mask, histogram, profiles, spectra, findings, and gap."""
 
 import textwrap
 
@@ -11,12 +8,7 @@ from xarray import DataTree
 from ...core.subject import Subject
 from ...core.text import compact
 from ...core.window import face_words
-from ..kit.caption import caption
-from ..kit.drawing import WIDTH, Drawing
-from ..kit.maps import scan_extent
-from ..kit.panel import Panel, table_of
-from ..kit.relief import draw_faces
-from ..kit.titles import headline
+from .. import kit
 from ._quality_curves import (
     curve_entries,
     draw_gap_heights,
@@ -33,29 +25,26 @@ SUBJECT = "specimen"
 NEEDS = ("specimens", "quality", "closure")
 ORDER = 30
 
-#: Letters in a line of the text, and inches a line is high.
+#: Length of a line of the text, letters, and its height, inches.
 LETTERS, LINE = 126, 0.138
 
 
-def draw(atlas: DataTree, name: str) -> Drawing:
-    """The quality sheet of a specimen.
-
-    Its data are spectra, histograms and profiles drawn, by panel and face.
-    """
+def draw(atlas: DataTree, name: str) -> kit.Drawing:
+    """Quality sheet of a specimen; its data are the spectra, histograms and profiles drawn."""
     subject = Subject.of(atlas, name)
     specimen, quality = subject["specimens"], subject["quality"]
     faces = [str(face) for face in quality["face"].values]
-    sides = scan_extent(specimen)
+    sides = kit.scan_extent(specimen)
     warnings = [quality.attrs["warning"], subject["closure"].attrs.get("warning", "")]
     warnings = [warning for warning in warnings if warning]
     lines = _text_lines(specimen, quality, faces, warnings)
 
     pair, columns = len(faces) == 2, len(faces) + 1
-    maps = min(max(WIDTH / columns * 0.85 * sides[0] / sides[1], 1.3), 3.6) + 0.5
+    maps = min(max(kit.WIDTH / columns * 0.85 * sides[0] / sides[1], 1.3), 3.6) + 0.5
     heights = [maps, 1.9, 2.5] + [maps] * pair
     text = LINE * (len(lines) + 1)
     high = sum(heights) + 0.7
-    figure = Figure(figsize=(WIDTH, high + text))
+    figure = Figure(figsize=(kit.WIDTH, high + text))
     sheet, below = figure.subfigures(2, 1, height_ratios=[high, text])  # type: ignore[misc]  # an array
     grid = sheet.add_gridspec(len(heights), 6, height_ratios=heights)
     named = {face: face_words(specimen, face) for face in faces}
@@ -69,7 +58,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
         for i in range(0, 6, wide)
     ]
     panels = [
-        Panel(sheet.add_subplot(cell), which, title)
+        kit.Panel(sheet.add_subplot(cell), which, title)
         for cell, which, title in zip(cells, "abcdefghijkl", titles, strict=False)
     ]
     reliefs, (mask, heights_of, along_x, along_y), rest = (
@@ -77,7 +66,7 @@ def draw(atlas: DataTree, name: str) -> Drawing:
         panels[len(faces) : columns + 3],
         panels[columns + 3 :],
     )
-    outline = draw_faces(sheet, [panel.axes for panel in reliefs], specimen, faces, sides)
+    outline = kit.draw_faces(sheet, [panel.axes for panel in reliefs], specimen, faces, sides)
     marks = draw_mask(mask.axes, specimen, faces, sides)
     draw_histogram(heights_of, quality, faces)
     draw_profile(along_x, specimen, faces, "x")
@@ -92,12 +81,12 @@ def draw(atlas: DataTree, name: str) -> Drawing:
         draw_load_share(shares, subject.curves())
     entries = [outline, *marks, *curve_entries(named, pair=pair)]
     sheet.legend(handles=entries, loc="outside lower center", ncols=4)
-    headline(sheet, subject.label)
+    kit.headline(sheet, subject.label)
     style = {"va": "top", "fontsize": 7, "linespacing": 1.2, "parse_math": False}
     below.text(0.01, 1, "\n".join(lines), **style)
     words = {key: quality.attrs[key] for key in ("cells", "overlap")}
     words |= {"warnings": len(warnings), "pair": pair}
-    return Drawing(figure, table_of(*panels), caption(__name__, **words))
+    return kit.Drawing(figure, kit.table_of(*panels), kit.caption(__name__, **words))
 
 
 def _text_lines(specimen, quality, faces, warnings):

@@ -13,14 +13,7 @@ from ...core.limits import RESOLVED_NODES
 from ...core.subject import Subject
 from ...core.text import compact, pressure_label
 from ...core.window import window_sides
-from ..kit.caption import caption
-from ..kit.drawing import WIDTH, Drawing, colour_of
-from ..kit.empty import TOO_FULL, say_empty
-from ..kit.laboratory import draw_tests, test_words
-from ..kit.legends import entries, heading, legends_below
-from ..kit.panel import Panel, table_of
-from ..kit.titles import headline
-from ..kit.words import NOMINAL_PRESSURE, place
+from .. import kit
 from ..paper._closure_laws import hyperbola, offset_words
 from ._permanent_set import draw_permanent_set
 
@@ -31,7 +24,7 @@ ORDER = 45
 
 _AGAIN: dict[str, Any] = {
     "labels": ["unloading and reloading"],
-    "color": colour_of(4),
+    "color": kit.colour_of(4),
     "marker": "s",
     "ls": ":",
     "ms": 3,
@@ -42,46 +35,46 @@ _KEPT = (
 )
 
 
-def draw(atlas: DataTree, name: str) -> Drawing:
+def draw(atlas: DataTree, name: str) -> kit.Drawing:
     """Closure under the loads from the seat on, and stiffness, at the reported offset."""
     subject = Subject.of(atlas, name)
     curve = subject.states("closure")
     branches = subject["branches"]
     crushed = bool(branches["yielded"].any())
-    figure = Figure(figsize=(WIDTH, 7.0 if crushed else 4.2))
+    figure = Figure(figsize=(kit.WIDTH, 7.0 if crushed else 4.2))
     parts: Any = figure.subfigures(2, 1, height_ratios=[3.4, 2.4]) if crushed else [figure]
     top = parts[0]
     seat = float(curve["seating_pressure"])
     since = f"from {pressure_label(seat)} on" if np.isfinite(seat) else "from no seat"
     titles = (f"closure {since}, {offset_words(subject, subject.offset)}", "tangent stiffness")
-    a, b = (Panel(*one) for one in zip(top.subplots(1, 2), "ab", titles, strict=True))
+    a, b = kit.panels_of(top.subplots(1, 2), titles)
     style: dict[str, Any] = {
         "filled": "resolved",
         "ls": "none",
-        "color": colour_of(0),
+        "color": kit.colour_of(0),
         "marker": "o",
     }
     a.curve(curve, "seated_closure", "nominal_pressure", keep=_KEPT, label="states", **style)
-    again = branches.sel(branch=["reload"])
-    a.curves(again, "seated_closure", "nominal_pressure", hue="branch", **_AGAIN)
+    reloading = branches.sel(branch=["reload"])
+    a.curves(reloading, "seated_closure", "nominal_pressure", hue="branch", **_AGAIN)
     _draw_laws(a.axes, curve)
-    draw_tests(a, subject, "closure", turned=True)
+    kit.draw_tests(a, subject, "closure", turned=True)
     _draw_stiffness(b, curve, style)
-    b.curves(again, "nominal_pressure", "interface_stiffness", hue="branch", **_AGAIN)
+    b.curves(reloading, "nominal_pressure", "interface_stiffness", hue="branch", **_AGAIN)
     if not np.isfinite(curve["seated_closure"]).any():
-        say_empty(a.axes, f"no load from the seat on has {RESOLVED_NODES} nodes in contact")
+        kit.say_empty(a.axes, f"no load from the seat on has {RESOLVED_NODES} nodes in contact")
     a.axes.set_xlabel("closure $d$ from the seat (mm)")
-    a.axes.set_ylabel(f"{NOMINAL_PRESSURE} (MPa)")
+    a.axes.set_ylabel(f"{kit.NOMINAL_PRESSURE} (MPa)")
     why = str(curve["seated_k_ni_reason"].item())
-    remarks: list[Any] = [heading(f"$k_{{ni}}$ undetermined: {why}")] if why else []
-    legends_below(top, [*entries(a.axes), *remarks], entries(b.axes))
-    headline(figure, subject.label, place(subject.direction))
+    remarks: list[Any] = [kit.heading(f"$k_{{ni}}$ undetermined: {why}")] if why else []
+    kit.legends_below(top, [*a.entries, *remarks], b.entries)
+    kit.headline(figure, subject.label, kit.place(subject.direction))
     sides = window_sides(subject["specimens"])
     below = draw_permanent_set(parts[1], branches, sides) if crushed else []
-    table = table_of(a, b, *below)
+    table = kit.table_of(a, b, *below)
     total = subject["error_budget"]["reference_stiffness_total"]
-    words = {"tests": test_words(subject, "closure"), **_words(curve, seat, again, total)}
-    return Drawing(figure, table, caption(__name__, **words))
+    words = {"tests": kit.test_words(subject, "closure"), **_words(curve, seat, reloading, total)}
+    return kit.Drawing(figure, table, kit.caption(__name__, **words))
 
 
 def _draw_laws(axes: Axes, curve: xr.Dataset) -> None:
@@ -98,10 +91,10 @@ def _draw_laws(axes: Axes, curve: xr.Dataset) -> None:
         (d_0 + chi * np.log(pressure), r"logarithm $d = d_0 + \chi\ln\sigma_0$", "-", 2),
     ):
         if np.isfinite(closure).any():
-            axes.plot(closure, pressure, ls=line, lw=1.0, color=colour_of(colour), label=words)
+            axes.plot(closure, pressure, ls=line, lw=1.0, color=kit.colour_of(colour), label=words)
 
 
-def _draw_stiffness(panel: Panel, curve: xr.Dataset, style: dict[str, Any]) -> None:
+def _draw_stiffness(panel: kit.Panel, curve: xr.Dataset, style: dict[str, Any]) -> None:
     """Stiffness of the states, and at the pressures at which it is stated."""
     kept = ("interface_stiffness_reason",)
     panel.curve(
@@ -110,7 +103,7 @@ def _draw_stiffness(panel: Panel, curve: xr.Dataset, style: dict[str, Any]) -> N
     stated: dict[str, Any] = {
         "ls": "none",
         "marker": "D",
-        "color": colour_of(3),
+        "color": kit.colour_of(3),
         "ms": 6,
         "mfc": "none",
     }
@@ -120,24 +113,24 @@ def _draw_stiffness(panel: Panel, curve: xr.Dataset, style: dict[str, Any]) -> N
     axes = panel.axes
     axes.set(xscale="log", yscale="log")
     if not np.isfinite(curve["interface_stiffness"]).any():
-        say_empty(axes, TOO_FULL)
-    axes.set_xlabel(f"{NOMINAL_PRESSURE} (MPa)")
+        kit.say_empty(axes, kit.TOO_FULL)
+    axes.set_xlabel(f"{kit.NOMINAL_PRESSURE} (MPa)")
     axes.set_ylabel(r"$\mathrm{d}\sigma_0/\mathrm{d}w_\mathrm{int}$ (MPa/mm)")
 
 
 def _words(
-    curve: xr.Dataset, seat: float, again: xr.Dataset, total: xr.DataArray
+    curve: xr.Dataset, seat: float, reloading: xr.Dataset, total: xr.DataArray
 ) -> dict[str, Any]:
     """Values of the caption."""
     stiffness = curve["reference_stiffness"]
     errors = total.where(np.isfinite(stiffness), drop=True)
-    known = stiffness[np.isfinite(stiffness)]
-    on_reload = again["reference_stiffness"].sel(branch="reload")
+    determined = stiffness[np.isfinite(stiffness)]
+    on_reload = reloading["reference_stiffness"].sel(branch="reload")
     middle = on_reload["reference_pressure"].values[len(on_reload) // 2]
     return {
-        "residual": float(again["residual_closure"]),
-        "yielded": float(again["yielded_fraction"][0, -1]),
-        "top": float(again["nominal_pressure"][-1]),
+        "residual": float(reloading["residual_closure"]),
+        "yielded": float(reloading["yielded_fraction"][0, -1]),
+        "top": float(reloading["nominal_pressure"][-1]),
         "reload": float(on_reload.sel(reference_pressure=middle)),
         "middle": float(middle),
         "seat": seat,
@@ -150,7 +143,7 @@ def _words(
         "stated": [
             (compact(float(pressure)), compact(float(value), 3), compact(float(error), 2))
             for pressure, value, error in zip(
-                known["reference_pressure"], known, errors, strict=True
+                determined["reference_pressure"], determined, errors, strict=True
             )
         ],
     }

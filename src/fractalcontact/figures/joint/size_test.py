@@ -11,27 +11,19 @@ from xarray import DataTree
 from ...core.estimate import DIMENSION, EXPONENT, Estimate
 from ...core.subject import Subject
 from ...core.text import pressure_label
-from ..kit.caption import caption
-from ..kit.drawing import COLOURS, MARKERS, WIDTH, Drawing, spread
-from ..kit.empty import say_empty
-from ..kit.legends import entries, heading, legends_below, mark
-from ..kit.panel import Panel, table_of
-from ..kit.sizes import draw_bars, plain_decades, size_axis
-from ..kit.titles import headline
-from ..kit.verdicts import claim
-from ..kit.words import place
+from .. import kit
 
 TITLE = "Size test: parts of the window at equal pressure and at equal sigma*, beside eq. 6"
 SUBJECT = "specimen"
 NEEDS = ("size_test", "windows", "statements")
 ORDER = 170
 
-#: Loads shown over the side b.
+#: Number of loads shown over the side b.
 MAX_LOADS = 3
-#: How each estimate of Delta_sigma is drawn where eq. 6 takes it; measured points alone are black.
+#: Words and style of eq. 6 by each estimate of Delta_sigma; black is left to measured points.
 ESTIMATORS: dict[str, tuple[str, dict[str, Any]]] = {
-    "area": ("$A_r(s)$", {"color": COLOURS[1], "ls": "-"}),
-    "box": ("box counting", {"color": COLOURS[2], "ls": "--"}),
+    "area": ("$A_r(s)$", {"color": kit.COLOURS[1], "ls": "-"}),
+    "box": ("box counting", {"color": kit.COLOURS[2], "ls": "--"}),
 }
 _TITLES = (
     r"contact area at equal $\sigma_0$",
@@ -43,66 +35,65 @@ _OTHERS = ("compliance_exponent", "gap_exponent", "beyond_study")
 _JUDGED = ("area_verdict", "area_reason", "slope_verdict", "slope_reason", "verdict", "reason")
 
 
-def draw(atlas: DataTree, name: str) -> Drawing:
-    """A_r/A_0 over b at some sigma_0; its exponent, and that of sigma_0 at equal sigma*, over load.
-
-    Its data also have the exponents of the compliance and of the mean gap.
-    """
+def draw(atlas: DataTree, name: str) -> kit.Drawing:
+    """A_r/A_0 over b at some sigma_0, and exponents over load; those of the gap in the data."""
     subject = Subject.of(atlas, name)
     test = subject["size_test"].transpose("normal_force", ...)
-    figure = Figure(figsize=(WIDTH, 3.7))
+    figure = Figure(figsize=(kit.WIDTH, 3.7))
     axes = figure.subplots(1, 3)
-    a, b, c = (Panel(*one) for one in zip(axes, "abc", _TITLES, strict=True))
+    a, b, c = kit.panels_of(axes, _TITLES)
     loads = _draw_area(a, test)
     _draw_exponents(b, test, "area_exponent", test["normal_force"] == test["normal_force"])
     _draw_exponents(c, test, "slope", test["well_conditioned"].astype(bool))
     b.keep(test, "predicted_slope", *_JUDGED, "beyond_study")
     b.axes.set_ylabel("exponent over $b$ (1)")
-    hollow = mark(
+    hollow = kit.mark(
         color="k", marker="o", ls="none", mfc="white", label="hollow: not judged, too uncertain"
     )
-    legends_below(figure, loads, [*entries(b.axes), hollow], columnspacing=3)
-    headline(figure, subject.label, place(str(test["direction"].values), float(test["offset"])))
-    words = caption(
+    kit.legends_below(figure, loads, [*b.entries, hollow], columnspacing=3)
+    kit.headline(
+        figure, subject.label, kit.place(str(test["direction"].values), float(test["offset"]))
+    )
+    words = kit.caption(
         __name__,
-        claim=claim(atlas, name, "size_effect_follows", why=test.attrs["verdict_reason"]),
+        claim=kit.claim(atlas, name, "size_effect_follows", why=test.attrs["verdict_reason"]),
         measured=bool(np.isfinite(test["area_exponent_low"]).any()),
         effect=bool(test["size_effect"].any()),
     )
-    return Drawing(figure, table_of(a, b, c), words)
+    return kit.Drawing(figure, kit.table_of(a, b, c), words)
 
 
-def _draw_area(panel: Panel, test: xr.Dataset) -> list[Artist]:
+def _draw_area(panel: kit.Panel, test: xr.Dataset) -> list[Artist]:
     """A_r/A_0 over b under some loads with the lines of eq. 6; entries of a legend, one a load."""
     axes, b = panel.axes, test["side"].values
     panel.keep(test, *_MEANS, "beyond_study")
     axes.set_ylabel(r"real contact area $A_r/A_0$ (1)")
-    size_axis(axes, b, "parts")
-    known = np.isfinite(test["area_exponent_low"].values)
-    of_study = known & ~test["beyond_study"].values.astype(bool)
-    loads = np.flatnonzero(of_study if of_study.any() else known)
+    kit.size_axis(axes, b, "parts")
+    fitted = np.isfinite(test["area_exponent_low"].values)
+    of_study = fitted & ~test["beyond_study"].values.astype(bool)
+    loads = np.flatnonzero(of_study if of_study.any() else fitted)
     if not loads.size:
-        say_empty(axes, "no load at which two sizes\nhold enough nodes", ticks=False)
-    found: list[Artist] = [heading("(a) exponent of $b$ [95 % interval]")]
-    for n, i in enumerate(loads[spread(loads.size, MAX_LOADS)]):
+        kit.say_empty(axes, "no load at which two sizes\nhold enough nodes", ticks=False)
+    handles: list[Artist] = [kit.heading("(a) exponent of $b$ [95 % interval]")]
+    for n, i in enumerate(loads[kit.spread(loads.size, MAX_LOADS)]):
         one = test.isel(normal_force=i)
         means = Estimate.read(one, "area_fraction")
-        style: dict[str, Any] = {"color": "k", "marker": MARKERS[n], "ls": "none"}
+        style: dict[str, Any] = {"color": "k", "marker": kit.MARKERS[n], "ls": "none"}
         axes.plot(b, means.value, **style)
-        draw_bars(axes, b, *means.ends, "k")
+        kit.draw_bars(axes, b, *means.ends, "k")
         sides = b[means.known]
         for estimator, (_, line) in ESTIMATORS.items():
             slope = float(one["predicted_slope"].sel(estimator=estimator))
             axes.plot(sides, means.value[0] * (sides / sides[0]) ** slope, lw=0.8, **line)
         exponent = Estimate.read(one, "area_exponent", scale=DIMENSION).text()
         pressure = pressure_label(float(one["nominal_pressure"]))
-        found.append(mark(label=f"{pressure}: {exponent}", **style))
+        handles.append(kit.mark(label=f"{pressure}: {exponent}", **style))
         axes.set_yscale("log")
-        plain_decades(axes.yaxis)
-    return found
+        kit.plain_decades(axes.yaxis)
+    return handles
 
 
-def _draw_exponents(panel: Panel, test: xr.Dataset, name: str, sure: xr.DataArray) -> None:
+def _draw_exponents(panel: kit.Panel, test: xr.Dataset, name: str, sure: xr.DataArray) -> None:
     """A measured exponent over the load, beside -(2 - Delta_sigma) of eq. 6 by each estimator."""
     axes, pressure = panel.axes, test["nominal_pressure"].values
     measured = Estimate.read(test, name, scale=EXPONENT)

@@ -11,17 +11,7 @@ from ...core.estimate import Estimate
 from ...core.limits import LARGEST_FRICTION_ANGLE
 from ...core.subject import Subject
 from ...core.text import compact
-from ..kit.axes import offset_axis
-from ..kit.caption import caption
-from ..kit.drawing import COLOURS, WIDTH, Drawing
-from ..kit.empty import say_empty
-from ..kit.laboratory import draw_tests, test_words
-from ..kit.legends import entries, heading
-from ..kit.panel import Panel, table_of
-from ..kit.points import draw_points, hollow_entry
-from ..kit.sizes import NO_STRENGTH, draw_bars, logarithmic, plain_decades, roughness_words
-from ..kit.titles import headline
-from ..kit.words import NOMINAL_PRESSURE, place
+from .. import kit
 
 TITLE = "Dilatancy angle, friction angle and shear strength, with Barton's criterion"
 SUBJECT = "joint"
@@ -30,16 +20,16 @@ ORDER = 110
 
 _TITLES = ("dilatancy and friction angle", "shear strength", "peak and residual shear strength")
 _LIMIT = f"{compact(LARGEST_FRICTION_ANGLE, 6)}°"
-#: What (c) shows: variable, words and style; which points are results and no bounds.
+#: Words and style of the variables of (c), and variables that state which points are results.
 _SUMMARY: dict[str, tuple[str, dict[str, Any]]] = {
     "peak_strength": ("peak over the offsets", {"marker": "o", "ms": 6, "color": "k"}),
     "peak_contact_strength": (
         "peak from the contact itself",
-        {"marker": "^", "ms": 4, "color": COLOURS[1]},
+        {"marker": "^", "ms": 4, "color": kit.COLOURS[1]},
     ),
     "residual_strength": (
         "residual; bar: 95 % interval, if known",
-        {"marker": "D", "ms": 3.5, "color": COLOURS[4]},
+        {"marker": "D", "ms": 3.5, "color": kit.COLOURS[4]},
     ),
     "barton_strength": (
         f"peak by Barton, at most {_LIMIT}, JRC of the scan",
@@ -51,7 +41,7 @@ _SUMMARY: dict[str, tuple[str, dict[str, Any]]] = {
     ),
 }
 _VALID = {"peak_strength": "peak_strength_valid", "peak_contact_strength": "peak_contact_valid"}
-#: Of curves over the offset: hollow points stand above the lines of the other pressures.
+#: Style of curves over the offset: hollow points lie above the lines of the other pressures.
 _CURVES: dict[str, Any] = {
     "hue": "normal_force",
     "first": 1,
@@ -61,28 +51,30 @@ _CURVES: dict[str, Any] = {
 }
 
 
-def draw(atlas: DataTree, name: str) -> Drawing:
+def draw(atlas: DataTree, name: str) -> kit.Drawing:
     """Angles and strength against v, peak and residual strength against pressure."""
     subject = Subject.of(atlas, name)
     strength = subject.along("strength").transpose("interval", "normal_force", ...)
     shown = strength.isel(normal_force=list(subject.reported.loads))
-    figure = Figure(figsize=(WIDTH, 7.2))
+    figure = Figure(figsize=(kit.WIDTH, 7.2))
     *places, legend = figure.subplots(2, 2).flat
-    a, b, c = (Panel(*one) for one in zip(places, "abc", _TITLES, strict=True))
+    a, b, c = kit.panels_of(places, _TITLES)
     _draw_angles(a, shown)
     _draw_strength(b, shown)
-    draw_tests(b, subject, "shear")
+    kit.draw_tests(b, subject, "shear")
     _draw_summary(c, strength)
-    draw_tests(c, subject, "strength")
+    kit.draw_tests(c, subject, "strength")
     legend.axis("off")
-    of_offsets = [heading("(a), (b)"), *entries(a.axes), *entries(b.axes)]
-    of_pressures = [heading(""), heading("(c)"), *entries(c.axes)]
+    of_offsets = [kit.heading("(a), (b)"), *a.entries, *b.entries]
+    of_pressures = [kit.heading(""), kit.heading("(c)"), *c.entries]
     legend.legend(handles=[*of_offsets, *of_pressures], loc="center left", labelspacing=0.35)
-    headline(figure, subject.label, place(subject.direction))
-    return Drawing(figure, table_of(a, b, c), caption(__name__, **_words(subject, strength, shown)))
+    kit.headline(figure, subject.label, kit.place(subject.direction))
+    return kit.Drawing(
+        figure, kit.table_of(a, b, c), kit.caption(__name__, **_words(subject, strength, shown))
+    )
 
 
-def _draw_angles(panel: Panel, strength: xr.Dataset) -> None:
+def _draw_angles(panel: kit.Panel, strength: xr.Dataset) -> None:
     axes = panel.axes
     rigid: dict[str, Any] = {"color": "0.6", "lw": 1, "marker": ".", "ls": "-"}
     panel.curve(
@@ -107,60 +99,62 @@ def _draw_angles(panel: Panel, strength: xr.Dataset) -> None:
     axes.set_ylabel("dilatancy angle $i$ (degrees)")
 
 
-def _draw_strength(panel: Panel, strength: xr.Dataset) -> None:
+def _draw_strength(panel: kit.Panel, strength: xr.Dataset) -> None:
     panel.curves(strength, "midpoint", "shear_strength", **_CURVES)
     panel.axes.set_ylabel(r"shear strength $\tau$ (MPa)")
     _offset_axis(panel, strength)
     if not strength["shear_strength"].notnull().any():
-        say_empty(panel.axes, NO_STRENGTH, ticks=False)
+        kit.say_empty(panel.axes, kit.NO_STRENGTH, ticks=False)
         return
     if not strength["shear_strength_valid"].all():
-        hollow_entry(panel.axes, f"excluded: truncated at {_LIMIT},\nor half of the window touches")
-    logarithmic(panel.axes, strength["shear_strength"].values)
+        kit.hollow_entry(
+            panel.axes, f"excluded: truncated at {_LIMIT},\nor half of the window touches"
+        )
+    kit.logarithmic(panel.axes, strength["shear_strength"].values)
 
 
-def _offset_axis(panel: Panel, strength: xr.Dataset) -> None:
+def _offset_axis(panel: kit.Panel, strength: xr.Dataset) -> None:
     """Axis of offsets, drawn last because its ticks follow the range drawn."""
-    offset_axis(panel.axes, strength["midpoint"].values)
+    kit.offset_axis(panel.axes, strength["midpoint"].values)
     if panel.axes.get_xscale() == "log":
-        plain_decades(panel.axes.xaxis)
+        kit.plain_decades(panel.axes.xaxis)
     panel.axes.set_xlabel("offset $v$, middle of the interval (mm)")
 
 
-def _draw_summary(panel: Panel, strength: xr.Dataset) -> None:
+def _draw_summary(panel: kit.Panel, strength: xr.Dataset) -> None:
     """Strengths by every law over sigma_0; hollow where it is no result."""
     axes, sigma = panel.axes, strength["nominal_pressure"].values
-    axes.set_xlabel(f"{NOMINAL_PRESSURE} (MPa)")
+    axes.set_xlabel(f"{kit.NOMINAL_PRESSURE} (MPa)")
     axes.set_ylabel(r"shear strength $\tau$ (MPa)")
     panel.keep(strength, "peak_offset", *_VALID.values(), *_SUMMARY, "peak_over_barton")
-    known = {name: strength[name].values for name in _SUMMARY if strength[name].notnull().any()}
-    if not known:
-        say_empty(axes, NO_STRENGTH, ticks=False)
+    strengths = {name: strength[name].values for name in _SUMMARY if strength[name].notnull().any()}
+    if not strengths:
+        kit.say_empty(axes, kit.NO_STRENGTH, ticks=False)
         return
-    for name, values in known.items():
+    for name, values in strengths.items():
         words, style = _SUMMARY[name]
         valid = strength[_VALID[name]].values if name in _VALID else np.ones(sigma.shape)
-        draw_points(axes, sigma, values, valid, label=words, **style)
+        kit.draw_points(axes, sigma, values, valid, label=words, **style)
     if not all(strength[valid].all() for valid in _VALID.values()):
-        hollow_entry(axes, "hollow: truncated, no result but a bound")
+        kit.hollow_entry(axes, "hollow: truncated, no result but a bound")
     bars = Estimate.read(strength, "residual_strength").ends
-    draw_bars(axes, sigma, *bars, _SUMMARY["residual_strength"][1]["color"])
+    kit.draw_bars(axes, sigma, *bars, _SUMMARY["residual_strength"][1]["color"])
     axes.set(xscale="log")
-    logarithmic(axes, np.array(list(known.values())))
+    kit.logarithmic(axes, np.array(list(strengths.values())))
 
 
 def _words(subject: Subject, strength: xr.Dataset, shown: xr.Dataset) -> dict[str, Any]:
     """Values of the caption: angles and strengths."""
     valid = strength["peak_strength_valid"] & (strength["peak_strength"] > 0)
     return {
-        "tests": [*test_words(subject, "shear"), *test_words(subject, "strength")],
+        "tests": [*kit.test_words(subject, "shear"), *kit.test_words(subject, "strength")],
         "intervals": strength.sizes["interval"],
         "stated": bool(np.isfinite(strength["basic_friction_angle"])),
         "peaks": shown["peak_dilatancy_angle"].values.tolist(),
         "rigid": max(strength["rigid_dilatancy_angle"].values, default=np.nan),
         "truncated": shown["truncated_high"].values.tolist(),
         "limit": LARGEST_FRICTION_ANGLE,
-        "roughness": roughness_words(strength),
+        "roughness": kit.roughness_words(strength),
         "law": bool(np.isfinite(strength["peak_over_barton"]).any()),
         "ratios": strength["peak_over_barton"].values[valid].tolist(),
     }

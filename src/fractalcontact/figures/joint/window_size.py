@@ -10,22 +10,14 @@ from xarray import DataTree
 from ...core.estimate import EXPONENT, Estimate
 from ...core.subject import Subject
 from ...core.text import pressure_label
-from ..kit.caption import caption
-from ..kit.drawing import WEAK, WIDTH, Drawing
-from ..kit.empty import say_empty
-from ..kit.legends import entries, heading, mark
-from ..kit.panel import Panel, table_of
-from ..kit.sizes import BARS, logarithmic, series, size_axis
-from ..kit.titles import headline
-from ..kit.verdicts import claim
-from ..kit.words import place
+from .. import kit
 
 TITLE = "Roughness (eq. 2), closure and compliance (section 5) against the size of the window"
 SUBJECT = "specimen"
 NEEDS = ("closure", "windows", "statements")
 ORDER = 90
 
-#: Of the contact of sub-windows: variable, exponent, axis and head of the legend.
+#: Variable, exponent, axis and head of the legend of the panels on contact in sub-windows.
 _CONTACT = {
     "b": (
         *("interface_closure", "closure_exponent", r"interface closure $w_\mathrm{int}$ (mm)"),
@@ -40,31 +32,33 @@ _CONTACT = {
 _CLAIM = "larger_samples_close_more"
 
 
-def draw(atlas: DataTree, name: str) -> Drawing:
+def draw(atlas: DataTree, name: str) -> kit.Drawing:
     """sigma_z, closure and compliance of the interface against the side b of sub-windows."""
     subject = Subject.of(atlas, name)
     laws = subject["windows"]
     shown = subject.reported.at_offset(laws)
-    where = place(subject.direction, float(shown["offset"]))
-    figure = Figure(figsize=(WIDTH, 5.8))
+    where = kit.place(subject.direction, float(shown["offset"]))
+    figure = Figure(figsize=(kit.WIDTH, 5.8))
     *places, legend = figure.subplots(2, 2).flat
     titles = ("roughness", f"closure, {where}", f"compliance, {where}")
-    a, b, c = (Panel(*one) for one in zip(places, "abc", titles, strict=True))
+    a, b, c = kit.panels_of(places, titles)
     _draw_roughness(a, shown, slides=subject.direction != "none")
-    handles = [heading("(a) exponents with 95 % intervals"), *entries(a.axes)]
+    handles = [kit.heading("(a) exponents with 95 % intervals"), *a.entries]
     for panel in (b, c):
         _draw_contact(panel, shown)
-        handles += [heading(_CONTACT[panel.which][-1]), *entries(panel.axes)]
+        handles += [kit.heading(_CONTACT[panel.which][-1]), *panel.entries]
     label = "hollow: not fitted (out of range, few nodes)"
-    handles.append(mark(ls="none", marker="o", color="0.4", mfc="white", label=label))
-    handles.append(mark(label="line: fit (thin: undetermined)", color="0.4", lw=0.8))
+    handles.append(kit.mark(ls="none", marker="o", color="0.4", mfc="white", label=label))
+    handles.append(kit.mark(label="line: fit (thin: undetermined)", color="0.4", lw=0.8))
     legend.axis("off")
-    legend.legend(handles=[*handles, heading(BARS)], loc="center left", labelspacing=0.4)
-    headline(figure, subject.label)
-    return Drawing(figure, table_of(a, b, c), caption(__name__, **_words(atlas, name, laws)))
+    legend.legend(handles=[*handles, kit.heading(kit.BARS)], loc="center left", labelspacing=0.4)
+    kit.headline(figure, subject.label)
+    return kit.Drawing(
+        figure, kit.table_of(a, b, c), kit.caption(__name__, **_words(atlas, name, laws))
+    )
 
 
-def _draw_roughness(panel: Panel, laws: xr.Dataset, *, slides: bool) -> None:
+def _draw_roughness(panel: kit.Panel, laws: xr.Dataset, *, slides: bool) -> None:
     """sigma_z of the face and, of a joint that slides, of the gap; eq. 2 through the face's."""
     axes, b = panel.axes, laws["scale_side"].values
     fitted = laws["face_sigma_z_fitted"].values
@@ -81,13 +75,13 @@ def _draw_roughness(panel: Panel, laws: xr.Dataset, *, slides: bool) -> None:
     if expected.known and fitted.any():
         label = rf"eq. 2: $H = 3-\Delta_g$ = {expected.text()}"
         axes.plot(b[fitted], laws["face_sigma_z_expected"][fitted], "k--", label=label)
-    size_axis(axes, b, "sub-windows")
+    kit.size_axis(axes, b, "sub-windows")
     if (laws["face_sigma_z"] > 0).any():
-        logarithmic(axes, np.concatenate([laws[name].values for name in drawn]))
+        kit.logarithmic(axes, np.concatenate([laws[name].values for name in drawn]))
     axes.set_ylabel(r"roughness $\sigma_z$ about the own plane (mm)")
 
 
-def _draw_contact(panel: Panel, laws: xr.Dataset) -> None:
+def _draw_contact(panel: kit.Panel, laws: xr.Dataset) -> None:
     """Closure or compliance over b under every pressure, with the power law of each."""
     axes, b = panel.axes, laws["side"].values
     name, law, label, _ = _CONTACT[panel.which]
@@ -99,13 +93,13 @@ def _draw_contact(panel: Panel, laws: xr.Dataset) -> None:
     panel.curves(laws, "side", name, filled=f"{name}_fitted", keep=kept, **of_curves)
     for j in np.flatnonzero(exponents.known).tolist():
         one = laws[f"{name}_law"].where(laws[f"{name}_fitted"]).isel(normal_force=j)
-        line = {"color": series(j)["color"], "linewidth": 0.8}
-        axes.plot(b, one, **line | ({} if exponents[j].determined else WEAK))
-    size_axis(axes, b, "sub-windows")
+        line = {"color": kit.series(j)["color"], "linewidth": 0.8}
+        axes.plot(b, one, **line | ({} if exponents[j].determined else kit.WEAK))
+    kit.size_axis(axes, b, "sub-windows")
     if (laws[name] > 0).any():
-        logarithmic(axes, laws[name].values)
+        kit.logarithmic(axes, laws[name].values)
     else:
-        say_empty(axes, "no size holds ten nodes in contact", ticks=False)
+        kit.say_empty(axes, "no size holds ten nodes in contact", ticks=False)
     axes.set_ylabel(label)
 
 
@@ -117,7 +111,7 @@ def _words(atlas: DataTree, name: str, laws: xr.Dataset) -> dict[str, Any]:
     return {
         "hurst": Estimate.read(laws, "face_hurst", scale=EXPONENT),
         "expected": Estimate.read(laws, "expected_hurst", scale=EXPONENT),
-        "claim": claim(
+        "claim": kit.claim(
             atlas, name, _CLAIM, why=f"at {pressure_label(float(judged))}" if fitted else ""
         ),
     }

@@ -18,18 +18,9 @@ from ...core.text import compact, force_unit
 
 
 def force_axis(axis: Axis, forces: ArrayLike) -> float:
-    """Label an axis of normal forces, in the unit that suits the loads of the study.
+    """Label an axis of normal forces in the unit that suits all loads of the study (N).
 
-    Parameters
-    ----------
-    axis : matplotlib.axis.Axis
-    forces : (n,) array_like
-        All loads of the study, N, so that every figure of a specimen has the same unit.
-
-    Returns
-    -------
-    float
-        How many N the unit is: forces are drawn divided by it.
+    Returns how many N the unit is: forces are drawn divided by it.
     """
     unit, size = force_unit(float(np.max(forces)))
     axis.set_label_text(f"normal force $F$ ({unit})")
@@ -37,18 +28,14 @@ def force_axis(axis: Axis, forces: ArrayLike) -> float:
 
 
 def offset_axis(axes: Axes, offsets: np.ndarray) -> None:
-    """Offsets v along x: in decades where they span one, with v = 0 at their left if it is there.
+    """Label offsets v (n,), mm, along x.
 
-    Parameters
-    ----------
-    axes : matplotlib.axes.Axes
-    offsets : (n,) ndarray
-        mm, those drawn.
+    The axis is logarithmic where offsets span a decade, with v = 0 at its left if it is drawn.
     """
     slid = offsets[offsets > 0]
     if slid.size > 1 and slid.max() > 10 * slid.min():
         decades = np.arange(np.floor(np.log10(slid.min())), np.log10(slid.max()) + 1)
-        # Powers of ten would be one or two on an axis shorter than two decades.
+        # An axis shorter than two decades would have one or two powers of ten.
         parts = (1, 2, 5) if slid.max() < 100 * slid.min() else (1,)
         places = np.outer(10**decades, parts).ravel()
         within = (places >= slid.min() * (1 - 1e-9)) & (places <= slid.max() * (1 + 1e-9))
@@ -66,19 +53,24 @@ def offset_axis(axes: Axes, offsets: np.ndarray) -> None:
 
 
 def spacing_axis(axes: Axes, spacings: ArrayLike) -> None:
-    """Logarithmic axis of the spacing s, mm, numbered at each."""
+    """Logarithmic axis of the spacing s, mm, with a number at each."""
     axes.set_xscale("log")
     axes.set_xticks(spacings, [compact(spacing) for spacing in np.asarray(spacings)])
     axes.xaxis.set_minor_locator(NullLocator())
     axes.set_xlabel("spacing $s$ (mm)")
 
 
-def label_short_span(axis: Axis) -> None:
-    """Plain labels at 1, 2 and 5 on a logarithmic axis shorter than two decades.
+def second_axis(axes: Axes, factor: float, label: str) -> None:
+    """Second axis at the right, of the left one times a factor."""
+    ways = (lambda y: np.asarray(y) * factor, lambda y: np.asarray(y) / factor)
+    axes.secondary_yaxis("right", functions=ways).set_ylabel(label)
 
-    Powers of ten would be one there, or none. Labels between those lie over each other on any axis
-    and are left out; on a short one so do these over more than a decade.
-    To be called once everything is drawn.
+
+def label_short_span(axis: Axis) -> None:
+    """Number a logarithmic axis shorter than two decades at 1, 2 and 5, in plain digits.
+
+    Powers of ten would be one or none there, and labels of minor ticks would overlap. To be called
+    when everything is drawn.
     """
     low, high = axis.get_view_interval()
     axis.set_minor_formatter(NullFormatter())
@@ -88,9 +80,9 @@ def label_short_span(axis: Axis) -> None:
 
 
 class _FewPlaces(LogLocator):
-    """Places at 1, 2 and 5; where fewer than two of them lie on the axis, a few even ones.
+    """Places at 1, 2 and 5; where fewer than two of them lie on the axis, up to four even ones.
 
-    Matplotlib takes up to nine even ones there, whose labels run into each other.
+    Matplotlib takes up to nine even ones there, whose labels overlap.
     """
 
     def tick_values(self, vmin: float, vmax: float) -> Sequence[float]:

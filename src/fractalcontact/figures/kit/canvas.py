@@ -1,7 +1,7 @@
 """Canvas that prints a line of words as one picture, and writes the figure without transparency.
 
-Matplotlib renders the letters of a text one by one, each from its outline, and lays the line out
-once for its size, once for the picture and once for the vectors: a fourth of the time of a figure.
+Matplotlib renders the letters of a text one by one and lays the line out three times (for its size,
+for the picture, for the vectors), which takes a fourth of the time of a figure.
 """
 
 from functools import lru_cache
@@ -17,21 +17,21 @@ from matplotlib.ft2font import RenderMode
 
 from ...core.png import png
 
-#: Compression of the PNG: less takes no less time, more takes twice as long.
+#: Compression level of the PNG: lower levels save no time, higher ones take twice as long.
 COMPRESSION = 3
-#: Places within a pixel, along either side, at which a letter of a formula may begin.
+#: Number of places within a pixel, along either side, at which a letter of a formula may begin.
 _PHASES = 4
-#: Points of an inch, in which vectors are drawn.
+#: Points per inch, the unit of the vectors.
 _POINTS = 72
 
 
 class Canvas(FigureCanvasAgg):
-    """Canvas of a figure, whose renderer stays the same while its size does."""
+    """Canvas of a figure, which keeps its renderer while the size stays the same."""
 
     _size: tuple[float, ...] = ()
 
     def get_renderer(self) -> RendererAgg:
-        """Renderer on which the figure is measured and drawn."""
+        """Renderer that measures and draws the figure."""
         size = (*self.get_width_height(physical=True), self.figure.dpi)
         if size != self._size:
             self._size, self.renderer = size, _Renderer(*size)
@@ -44,7 +44,7 @@ class Canvas(FigureCanvasAgg):
         Path(path).write_bytes(png(picture, COMPRESSION, self.figure.dpi))
 
     def write_svg(self, path: Path | str) -> None:
-        """Draw the figure as vectors, which holds no date: the same figure is the same file."""
+        """Draw the figure as vectors. The file has no date: the same figure is the same file."""
         resolution = self.figure.dpi
         width, height = self.figure.get_size_inches()
         size = (_POINTS * width, _POINTS * height)
@@ -52,7 +52,7 @@ class Canvas(FigureCanvasAgg):
         try:
             with open(path, "w", encoding="utf-8") as file:
                 vectors = _Vectors(*size, file, image_dpi=resolution, metadata={"Date": None})
-                # Some maps and many points are pixels even there.
+                # Maps and panels of many points are pixels in the SVG too.
                 mixed: Any = MixedModeRenderer(self.figure, width, height, resolution, vectors)
                 self.figure.draw(mixed)
                 mixed.finalize()
@@ -61,7 +61,7 @@ class Canvas(FigureCanvasAgg):
 
 
 class _Vectors(RendererSVG):
-    """Vectors whose words have the sizes that they have in the PNG, known by then."""
+    """Vectors whose words have the sizes that they have in the PNG, which is drawn before."""
 
     def get_text_width_height_descent(self, s, prop, ismath):
         if ismath:
@@ -83,7 +83,7 @@ class _Renderer(RendererAgg):
             super().draw_text(gc, x, y, s, prop, angle, ismath, mtext)
             return
         picture, (right, down), (_, _, descent) = _printed(s, prop.copy(), self.dpi)
-        # On whole pixels, as the hints in the font have the letters' stems.
+        # The picture lies on whole pixels, because the font's hints put the stems of letters there.
         place = round(x + right), round(y + down + descent) + 1
         self._renderer.draw_text_image(picture, *place, 0, gc)
 
@@ -93,7 +93,9 @@ class _Renderer(RendererAgg):
         cos, sin = np.cos(np.radians(angle)), np.sin(np.radians(angle))
         for face, size, index, _, _, along, up in glyphs:
             place = along * cos - up * sin, along * sin + up * cos
-            (column, right), (row, above) = (divmod(round(_PHASES * at), _PHASES) for at in place)
+            (column, right), (row, above) = (
+                divmod(round(_PHASES * coordinate), _PHASES) for coordinate in place
+            )
             picture, left, top = _letter(face, size, self.dpi, index, angle, right, above)
             self._renderer.draw_text_image(
                 picture, x + column + left, y - row - top + len(picture), 0, gc
@@ -103,7 +105,7 @@ class _Renderer(RendererAgg):
 
 @lru_cache(8192)
 def _letter(face, size: float, dpi: float, index: int, angle: float, right: int, above: int):
-    """Picture of a letter begun some phases right of and above a pixel, and its left and top."""
+    """Picture of a letter at a phase right of and above a pixel, with its left and top."""
     face.set_size(size, dpi)
     cos, sin = np.cos(np.radians(angle)), np.sin(np.radians(angle))
     turn = (2**16 * np.array([[cos, -sin], [sin, cos]])).round().astype(int)

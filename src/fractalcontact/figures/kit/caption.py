@@ -1,4 +1,4 @@
-"""Captions: sentences of ``captions.yaml``, filled in with the numbers that a figure hands over.
+"""Captions: Jinja templates of ``captions.yaml``, filled with the numbers of a figure.
 
 An entry of ``PACKAGE/figures/GROUP/captions.yaml`` has the name of a figure and up to three parts:
 
@@ -9,8 +9,6 @@ An entry of ``PACKAGE/figures/GROUP/captions.yaml`` has the name of a figure and
 ``heading``
     What the figure finds, without numbers in brackets, for the card of the result page; without it
     the card has the figure's title.
-
-They are Jinja templates: names stand for values, and filters put numbers into words.
 """
 
 from functools import cache
@@ -26,16 +24,9 @@ from .words import PAPER
 
 
 class Caption(str):
-    """A caption in one line, and its parts, each whole sentences.
+    """A caption in one line, with its parts: heading, what is shown, what is found.
 
-    Attributes
-    ----------
-    heading : str
-        What the card of the page has above it; empty where that is the figure's title.
-    shows : str
-        What is drawn.
-    finds : tuple of str
-        What is found.
+    Each part is whole sentences. The heading is empty where the card has the figure's title.
     """
 
     heading: str
@@ -44,9 +35,9 @@ class Caption(str):
 
     def __new__(cls, heading: str, shows: str, finds: tuple[str, ...]) -> "Caption":
         """Caption of these parts."""
-        made = super().__new__(cls, " ".join((shows, *finds)))
-        made.heading, made.shows, made.finds = heading, shows, finds
-        return made
+        whole = super().__new__(cls, " ".join((shows, *finds)))
+        whole.heading, whole.shows, whole.finds = heading, shows, finds
+        return whole
 
     @property
     def text(self) -> str:
@@ -55,19 +46,12 @@ class Caption(str):
 
 
 def caption(module: str, **values: Any) -> Caption:
-    """Caption of a figure.
-
-    Parameters
-    ----------
-    module : str
-        ``__name__`` of the figure's module.
-    **values
-        By the names that its templates use.
+    """Caption of a figure, by ``__name__`` of its module and the values that its templates name.
 
     Raises
     ------
     jinja2.UndefinedError
-        If a template uses a name that is not handed over.
+        If a template names a value that is not given.
     """
     file = SOURCES / f"{module.replace('.', '/')}.py"
     entry = _templates(file.with_name("captions.yaml"))[file.stem]
@@ -87,9 +71,9 @@ def _templates(path: Path) -> dict[str, dict[str, Any]]:
 
 @cache
 def _environment() -> Environment:
-    made = Environment(undefined=StrictUndefined, autoescape=False)  # plain text
-    made.globals["paper"] = PAPER
-    made.filters |= {
+    environment = Environment(undefined=StrictUndefined, autoescape=False)  # plain text
+    environment.globals["paper"] = PAPER
+    environment.filters |= {
         "short": compact,
         "number": number,
         "percent": percent,
@@ -97,4 +81,4 @@ def _environment() -> Environment:
         "pressure": pressure_label,
         "text": lambda estimate, unit="": estimate.text(unit),
     }
-    return made
+    return environment

@@ -19,7 +19,7 @@ RISES = {"area": "dimension_rises_by_area", "box": "dimension_rises_by_boxes"}
 #: Estimates of Delta_sigma by name in the atlas: their words and symbols.
 _ESTIMATORS = {"area": ("A_r(s)", "$A_r(s)$"), "box": ("box counting", "box counting")}
 
-#: Verdicts that say that a domain differs from a null model.
+#: Verdicts by which a domain differs from a null model.
 _DIFFERENT = {"random": (BEYOND_BOTH, BEYOND_RANDOM, LIKE_CUT), "cut": (BEYOND_BOTH,)}
 
 
@@ -27,12 +27,7 @@ _DIFFERENT = {"random": (BEYOND_BOTH, BEYOND_RANDOM, LIKE_CUT), "cut": (BEYOND_B
 class DeltaSigma(Estimate):
     """One estimator's Delta_sigma under every load, (n_load,).
 
-    Attributes
-    ----------
-    key : str
-        "area" or "box".
-    symbol : str
-        What it is estimated from, for legends.
+    Its key is "area" or "box", its symbol what Delta_sigma is estimated from, for legends.
     """
 
     key: str
@@ -83,13 +78,7 @@ class DeltaSigma(Estimate):
 
 
 def estimates_of(states: xr.Dataset) -> tuple[DeltaSigma, ...]:
-    """Both estimates of Delta_sigma, that of the box counts at the finest resolution.
-
-    Parameters
-    ----------
-    states : xr.Dataset
-        The stage ``scaling`` over loads.
-    """
+    """Both estimates of Delta_sigma, from the stage ``scaling`` over loads."""
     return tuple(
         DeltaSigma(
             *Estimate.read(states, f"delta_sigma_{key}").ends,
@@ -124,29 +113,18 @@ def spread_loads(n: int, most: int, including: int | None = None) -> np.ndarray:
 def departures(counts: xr.Dataset) -> dict[str, str]:
     """Loads at which domains differ from each null model, in words; empty without a comparison.
 
-    Parameters
-    ----------
-    counts : xr.Dataset
-        The stage ``domains`` over loads, of domains that are looked at closely.
+    `counts` is the stage ``domains`` over loads, of which some are compared with null models.
     """
-    verdicts, found = counts["null_verdict"].values, {}
+    verdicts, words = counts["null_verdict"].values, {}
     for null, differ in _DIFFERENT.items():
         compared = np.isfinite(counts[f"local_slope_{null}_p"].values)
         some = loads_of(int(np.isin(verdicts[compared], differ).sum()), int(compared.sum()))
-        found[null] = some if compared.any() else ""
-    return found
+        words[null] = some if compared.any() else ""
+    return words
 
 
 def rise_words(atlas: DataTree, name: str) -> str:
-    """Verdicts on the rise of Delta_sigma with the load, by both estimates.
-
-    Parameters
-    ----------
-    atlas : DataTree
-        With the stage ``statements``.
-    name : str
-        The specimen.
-    """
+    """Verdicts on the rise of Delta_sigma with the load, by both estimates."""
     return ", ".join(
         f"{predicate(verdict_words(atlas, name, RISES[key], numbers=False))} by {label}"
         for key, (label, _) in _ESTIMATORS.items()

@@ -26,7 +26,7 @@ from .ticks import keep_labels
 
 #: Okabe and Ito's colours, distinguished by colour-blind readers; black first.
 COLOURS = ("#000000", "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#F0E442")
-#: Markers go with the colours, so that a print in grey can be read too.
+#: Each colour has a marker, so that a print in grey can be read.
 MARKERS = ("o", "s", "^", "D", "v", "P", "X", "*")
 LINES = ("-", "--", "-.", ":")
 
@@ -35,7 +35,7 @@ WEAK: dict[str, Any] = {"linewidth": 0.6, "alpha": 0.5}
 
 #: Width of a figure across two columns of a journal, inches.
 WIDTH = 7.2
-#: Pixels of an inch, in the PNG and of the maps inside the SVG.
+#: Pixels per inch of the PNG and of the maps inside the SVG.
 DPI = 200
 
 _STYLE: dict[str, Any] = {
@@ -49,10 +49,10 @@ _STYLE: dict[str, Any] = {
     "axes.prop_cycle": cycler(color=COLOURS),
     "image.origin": "lower",
     "figure.constrained_layout.use": True,
-    # Titles stand on their axes. To find out what may be in their way, every tick would be measured
-    # each time; `lay_out` knows the one thing that can be.
+    # Titles stand directly on their axes. Matplotlib would measure every tick each time to find
+    # what lies in their way; only the offset text can, and `lay_out` moves the title above it.
     "axes.titley": 1.0,
-    # The same figure twice is the same file twice.
+    # The salt makes the identifiers, and so the file, the same in every run.
     "svg.hashsalt": "fractalcontact",
     "svg.fonttype": "none",
 }
@@ -60,16 +60,7 @@ _STYLE: dict[str, Any] = {
 
 @dataclass(frozen=True)
 class Drawing:
-    """A figure, the numbers drawn in it, and its caption.
-
-    Attributes
-    ----------
-    figure : matplotlib.figure.Figure
-    data : pd.DataFrame
-        One row a point drawn; column names carry the units.
-    caption : str
-        With the paper's figure number, and plain words where a claim of the paper does not hold.
-    """
+    """A figure, the table of the points drawn (columns end in their units), and its caption."""
 
     figure: Figure
     data: pd.DataFrame
@@ -78,13 +69,13 @@ class Drawing:
 
 @contextlib.contextmanager
 def print_style(own: Mapping[str, Any] | None = None) -> Iterator[None]:
-    """Style of every figure, independent of matplotlib's settings except those given here."""
+    """Style of every figure, independent of matplotlib's settings except those given."""
     with matplotlib.style.context(["default", _STYLE, dict(own or {})]), formulas_read_once():
         yield
 
 
 def keep_style(figure: Figure, own: Mapping[str, Any] | None = None) -> None:
-    """Draw a figure in the style of print wherever that is done: some settings count only then."""
+    """Draw a figure in the style of print whenever it is drawn: some settings count only then."""
     draw = figure.draw
 
     def in_style(renderer: RendererBase) -> None:
@@ -98,9 +89,8 @@ def keep_style(figure: Figure, own: Mapping[str, Any] | None = None) -> None:
 def garbage_collection_paused() -> Iterator[None]:
     """Garbage collection paused meanwhile.
 
-    A figure is some 100 000 objects that live as long as it does: to go through them while it is
-    drawn finds nothing and takes a tenth of the time. What it leaves, 6 MB of objects that hold
-    each other, waits until the block ends.
+    A figure is some 100 000 objects that live as long as it does. Collections while it is drawn
+    find nothing and take a tenth of the time; the 6 MB of cycles that it leaves wait for the end.
     """
     collecting = gc.isenabled()
     gc.disable()
@@ -115,8 +105,8 @@ def save(drawing: Drawing, folder: Path | str, name: str) -> None:
     """Write a drawing as NAME.png, .svg, .csv and its caption as .txt, each whole or not at all."""
     folder = Path(folder)
     figure = drawing.figure
-    # The layout is found once and each file drawn once. `savefig` draws everything once more for
-    # either file, to find the layout; and what the layout has measured, this canvas remembers.
+    # The layout is found once and each file is drawn once. `savefig` would draw everything once
+    # more per file to find the layout; this canvas keeps what the layout has measured.
     with layouts_remembered():
         canvas = lay_out(figure)
         with atomic_write(folder / f"{name}.png") as path:
@@ -131,7 +121,7 @@ def save(drawing: Drawing, folder: Path | str, name: str) -> None:
 
 
 def let_go(figure: Figure) -> None:
-    """Let go the picture and the maps of a figure that is saved, which are most of its bytes."""
+    """Drop the picture and the maps of a saved figure, which are most of its memory."""
     figure.set_canvas(FigureCanvasBase(figure))
     for axes in figure.axes:
         for image in axes.images:

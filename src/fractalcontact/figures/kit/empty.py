@@ -1,6 +1,6 @@
 """Panels without anything to draw: words in place of curves, and axes that can be drawn.
 
-A specimen in full contact has no stiffness of an interface, a plane no spectrum: such a panel says
+A specimen in full contact has no stiffness of the interface, a plane no spectrum: such a panel says
 why, and no figure fails for it.
 """
 
@@ -13,41 +13,30 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator
 from numpy.typing import ArrayLike
 
-#: Why there is nothing of the interface to draw.
+#: Words of a panel without closure of the interface.
 TOO_FULL = (
     "contact so full, or faces so flush, that the closure of the interface cannot be separated "
     "from that of the blocks"
 )
-#: Of the words in an empty panel.
+#: Identifier of the words in an empty panel.
 MARK = "nothing-to-draw"
-#: Letters of a line of the words.
+#: Length of a line of the words, letters.
 _LINE = 48
-#: Ends of a logarithmic axis that nothing is drawn on.
+#: Ends of a logarithmic axis without values.
 _ENDS = (0.1, 1.0)
-#: What a panel says whose figure gives no reason of its own.
+#: Words of a panel whose figure gives no reason.
 _NOTHING = "nothing above zero to draw on a logarithmic axis"
 
 
 def different_reasons(reasons: ArrayLike) -> list[str]:
-    """Reasons for missing numbers, as the atlas states them: sorted, each once.
-
-    Parameters
-    ----------
-    reasons : array_like of str
-        Empty where nothing is missing.
-    """
+    """Reasons for missing numbers as the atlas states them, sorted, each once."""
     return [reason for reason in np.unique(np.asarray(reasons).astype(str)).tolist() if reason]
 
 
 def missing_lines(reasons: ArrayLike, panel: str = "") -> list[str]:
     """Lines of a legend that say why points are missing; empty if none is.
 
-    Parameters
-    ----------
-    reasons : array_like of str
-        As of `different_reasons`.
-    panel : str, optional
-        Letter of the panel that lacks them.
+    `panel` is the letter of the panel that lacks them.
     """
     start = f"({panel}): missing" if panel else "missing"
     lines: list[str] = []
@@ -57,15 +46,9 @@ def missing_lines(reasons: ArrayLike, panel: str = "") -> list[str]:
 
 
 def say_empty(axes: Axes, reason: str, *, ticks: bool = True) -> None:
-    """Write into the middle of a panel why it is empty.
+    """Write into the middle of a panel why it is empty, long lines broken.
 
-    Parameters
-    ----------
-    axes : matplotlib.axes.Axes
-    reason : str
-        Its own lines are kept, and broken where they are too long.
-    ticks : bool, optional
-        Whether the ticks are kept, of axes that number something even so.
+    Ticks are kept where the axes number something even so.
     """
     if not ticks:
         axes.set(xticks=[], yticks=[])
@@ -83,9 +66,9 @@ def say_empty(axes: Axes, reason: str, *, ticks: bool = True) -> None:
 
 
 def settle_empty_axes(figure: Figure) -> None:
-    """Give logarithmic axes that hold no positive value ends, and their panels words.
+    """Give logarithmic axes without a positive value ends, and their panels words.
 
-    To be called once everything is drawn: matplotlib has no ticks for such an axis, and raises.
+    To be called when everything is drawn: matplotlib has no ticks for such an axis, and raises.
     """
     for axes in (axes for axes in figure.axes if axes.axison):
         empty = [axis for axis in (axes.xaxis, axes.yaxis) if _without_values(axis)]
@@ -100,7 +83,7 @@ def settle_empty_axes(figure: Figure) -> None:
 
 
 def _without_ticks(axes, name):
-    """No numbers on an axis that has none, nor on its second one."""
+    """Remove the numbers of an axis without values, and of its secondary axis."""
     for panel in (axes, *axes.child_axes):
         axis: Axis = getattr(panel, f"{name}axis")
         axis.set_major_locator(NullLocator())

@@ -9,7 +9,7 @@ _ENDS = ("low", "high")
 
 
 def members_of(subject: Subject) -> str:
-    """Number and kind of the members of its ensemble, "20 twins of the scan"; empty without one."""
+    """Number and kind of the members of an ensemble, "20 twins of the scan"; empty without one."""
     if not subject.members:
         return ""
     return f"{subject['ensemble'].sizes['realisation']} {subject.members}"
@@ -24,7 +24,7 @@ def draw_band(
     x: str = "normal_force",
     **at: float,
 ) -> None:
-    """Band in which 95 % of the members of its ensemble lie, and their mean.
+    """Band in which 95 % of the members of the ensemble lie, and their mean.
 
     Nothing is drawn of a specimen without an ensemble, nor where some member has no value: the band
     would be that of the others alone.
@@ -34,14 +34,14 @@ def draw_band(
     panel : Panel
     subject : Subject
     name : str
-        Of the quantity in the stage ``ensemble``.
+        Quantity of the stage ``ensemble``.
     colour : str
     words : str
-        What the quantity is from, for the legend.
+        Estimator or panel, for the legend.
     x : str, optional
-        What the panel has along x.
+        Variable along x.
     **at
-        Where the quantity has more dimensions than one.
+        Selection along further dimensions of the quantity.
     """
     if not (members := members_of(subject)):
         return

@@ -9,8 +9,8 @@ from matplotlib import font_manager
 from matplotlib.font_manager import FontProperties
 from matplotlib.mathtext import MathTextParser, VectorParse
 
-#: Letters in which formulas are read, points: so large that rounding to pixels does not count; and
-#: pixels per inch.
+#: Size of the letters in which formulas are read, points, and pixels per inch. Rounding to pixels
+#: is negligible at this size.
 _SIZE, _DPI = 1000.0, 72.0
 _READER, _read = MathTextParser("path"), MathTextParser.parse
 _NAMES = "ttfFontProperty"
@@ -19,12 +19,12 @@ _font_names = lru_cache(100)(getattr(font_manager, _NAMES))
 
 @contextlib.contextmanager
 def formulas_read_once() -> Iterator[None]:
-    """Every formula read once, for as long as the block, not once for each of its sizes.
+    """Every formula read once within the block, not once for each of its sizes.
 
-    Matplotlib takes some milliseconds for each, and reads it for the PNG, for its size in the SVG,
+    Matplotlib takes some milliseconds for each, and reads it for the PNG, for its size in the SVG
     and for the SVG itself.
     """
-    # Of its letters' fonts the SVG asks the names for each letter anew.
+    # The SVG asks for the name of the font of every letter, so that names are cached too.
     places = ((MathTextParser, "parse", _read_or_remember), (font_manager, _NAMES, _font_names))
     before = [(place, name, getattr(place, name)) for place, name, _ in places]
     for place, name, function in places:

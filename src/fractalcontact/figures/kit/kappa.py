@@ -10,17 +10,11 @@ from ...core.text import compact, number
 
 
 def kappa_lines(axes: Axes, stage: xr.Dataset, colours: Mapping[str, str] | None = None) -> None:
-    """Persson's and Bush, Gibson and Thomas' kappa, and the literature's values as a band.
+    """Persson's and Bush, Gibson and Thomas' kappa over p / (E* h'_rms), and the literature's band.
 
-    Parameters
-    ----------
-    axes : matplotlib.axes.Axes
-        Its x is p / (E* h'_rms), on a logarithmic axis, its y kappa.
-    stage : xr.Dataset
-        With ``line_pressure`` and ``persson_line``; attributes ``persson_kappa``,
-        ``bush_gibson_thomas_kappa`` and ``computed_kappa``.
-    colours : mapping of str to str, optional
-        Of ``bush`` and of ``persson``.
+    `stage` has ``line_pressure`` and ``persson_line`` with attributes ``persson_kappa``,
+    ``bush_gibson_thomas_kappa`` and ``computed_kappa``; `colours` are those of ``bush`` and
+    ``persson``.
     """
     colours = colours or {"bush": "0.2", "persson": "0.2"}
     pressure = stage["line_pressure"].values

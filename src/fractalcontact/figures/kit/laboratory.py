@@ -13,20 +13,13 @@ from .panel import Panel
 
 
 def draw_tests(panel: Panel, subject: Subject, kind: str, *, turned: bool = False) -> None:
-    """Readings of the tests of a kind, those of sliding in the reported direction alone.
+    """Readings of the tests of a kind; of sliding tests those in the reported direction alone.
 
-    Parameters
-    ----------
-    panel : Panel
-    subject : Subject
-        Nothing is drawn of one without such tests.
-    kind : str
-    turned : bool, optional
-        Whether the quantity goes along x.
+    Nothing is drawn of a specimen without such tests. `turned` puts the quantity along x.
     """
     for number, label in enumerate(labels_of(subject, kind)):
         test = subject["measured"].sel({f"{kind}_test": label})
-        # Without its ends: bars of hundreds of readings would hide them.
+        # The ends of the intervals are left out: bars of hundreds of readings would hide them.
         axes = (f"{kind}_{TEST_COLUMNS[kind][0]}", f"{kind}_read")
         data = test[list(axes)].dropna(f"{kind}_reading")
         style: dict[str, Any] = {
@@ -51,12 +44,12 @@ def labels_of(subject: Subject, kind: str) -> list[str]:
 
 
 def test_words(subject: Subject, kind: str) -> list[str]:
-    """Sentences of a caption on the tests of a kind beside the computed curve."""
-    found = []
+    """Sentences of a caption that compare the computed curve with tests of a kind."""
+    sentences = []
     for label in labels_of(subject, kind):
         test = subject["measured"].sel({f"{kind}_test": label})
         last = Estimate.read(test, f"{kind}_ratio_at_last")
         if np.isfinite(last.value):
             ends = f"{compact(last.value)} [{compact(last.low)}, {compact(last.high)}]"
-            found.append(f"{label}: {ends}")
-    return found
+            sentences.append(f"{label}: {ends}")
+    return sentences

@@ -9,16 +9,15 @@ from .line_breaks import break_lines
 from .remembered import remember_ticks
 from .ticks import plain_ticks
 
+#: Digits that places of panels keep, as fractions of the figure.
+_DIGITS = 9
+
 
 def lay_out(figure: Figure) -> Canvas:
-    """Find the layout of a figure on which everything is drawn, and keep it.
+    """Find the layout of a finished figure, and keep it.
 
-    A figure that is laid out already stays as it is.
-
-    Returns
-    -------
-    figures.kit.canvas.Canvas
-        On which it was measured: what is drawn there needs no measuring again.
+    Returns the canvas on which the figure was measured: drawing there needs no measuring again. A
+    figure that is laid out already stays as it is.
     """
     if isinstance(figure.canvas, Canvas):
         return figure.canvas
@@ -31,14 +30,14 @@ def lay_out(figure: Figure) -> Canvas:
 
 
 def _place(figure):
-    """Give panels their places, and words lines that fit them."""
+    """Place the panels, and break words into lines that fit them."""
     layout = figure.get_layout_engine()
     if layout is None:
         return
-    # Margins of a subfigure are fractions of its size, which the first layout changes.
+    # Subfigures need two passes: their margins are fractions of a size that the first one changes.
     for _ in range(2 if figure.subfigs else 1):
         layout.execute(figure)
-    # A common factor of the numbers along y stands where a title does, which then moves up.
+    # The common factor of the numbers along y takes the place of the title, which moves up.
     crowded = [axes for axes in figure.axes if axes.yaxis.get_offset_text().get_text()]
     for axes in crowded:
         top = axes.yaxis.get_offset_text().get_window_extent().ymax
@@ -50,7 +49,9 @@ def _place(figure):
     while break_lines(figure):
         layout.execute(figure)
     figure.set_layout_engine("none")
-    # The layout's solver takes its constraints in the order of their addresses: the last bits of
-    # what it finds differ from run to run, and with them the files.
+    # Places are rounded so that files are the same in every run: the layout's solver takes its
+    # constraints in the order of their addresses, which changes the last bits.
+    for part in figure.subfigs:
+        part.bbox_relative.set_points(np.round(part.bbox_relative.get_points(), _DIGITS))
     for axes in figure.axes:
-        axes.set_position(np.round(axes.get_position(original=True).bounds, 9))
+        axes.set_position(np.round(axes.get_position(original=True).bounds, _DIGITS))

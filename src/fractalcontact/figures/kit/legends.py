@@ -14,18 +14,12 @@ def entries(axes: Axes) -> list[Artist]:
 
 
 def legends_below(figure: FigureBase, *columns: list[Artist], columnspacing: float = 6) -> None:
-    """Legends side by side under a figure, where they hide nothing.
+    """Legends side by side under a figure, one for each list of entries.
 
-    Parameters
-    ----------
-    figure : matplotlib.figure.FigureBase
-    *columns : list of matplotlib.artist.Artist
-        Entries of each legend.
-    columnspacing : float, optional
-        Between the columns, in letters.
+    `columnspacing` is the space between the columns, in letters.
     """
     rows = max(len(column) for column in columns)
-    # One legend fills its columns one by one: the shorter ones need filling up.
+    # Matplotlib fills the columns one by one, so that shorter ones are padded.
     handles = [
         handle for column in columns for handle in column + [heading(" ")] * (rows - len(column))
     ]
@@ -44,5 +38,5 @@ def heading(text: str) -> Line2D:
 
 
 def mark(**style: Any) -> Line2D:
-    """Entry of a legend that stands for lines or points of a style, its ``label`` among it."""
+    """Entry of a legend that stands for lines or points of a style; ``label`` has its words."""
     return Line2D([], [], **style)

@@ -1,7 +1,7 @@
 """Line breaks where words have no room: titles of figures and panels, entries of legends.
 
-How long a title or an entry is depends on its numbers: "undetermined (0.25 [-0.52, 1.02])" takes
-the place of "0.25". What counts is the width of the letters as they are drawn.
+The length of a title or an entry depends on its numbers: "undetermined (0.25 [-0.52, 1.02])" takes
+the place of "0.25". Widths are measured on the letters as they are drawn.
 """
 
 import itertools
@@ -16,28 +16,18 @@ from matplotlib.transforms import BboxBase
 
 from .canvas import Canvas
 
-#: Points between words and the edge of the figure, and between two titles side by side.
+#: Smallest distance of words from the figure's edge, and of two titles from each other, points.
 _EDGE, _GAP = 1, 4
-#: Points between the columns of a legend that has no room for more, and that a title has at least.
+#: Smallest distance of the columns of a legend, and smallest room of a title, points.
 _MIN_SPACING, _MIN_ROOM = 6, 36
-#: A blank where a line may end: not within "95 %" or "[0.20, 2.00]".
+#: Blank at which a line may end, but not within "95 %" or "[0.20, 2.00]".
 _BLANK = re.compile(r" (?!%)(?![^\[\]]*\])")
-#: A dollar sign that begins or ends a formula.
+#: Dollar sign that begins or ends a formula.
 _DOLLAR = re.compile(r"(?<!\\)\$")
 
 
 def in_lines(words: str, size: float, width: float) -> str:
-    """Words broken into lines.
-
-    Parameters
-    ----------
-    words : str
-        Formulas stand in dollar signs.
-    size : float
-        Of the letters, points.
-    width : float
-        Of the longest line, inches.
-    """
+    """Words in lines of at most `width` inches, `size` points high; formulas stand in $."""
     figure = Figure(figsize=(1, 1))
     Canvas(figure)
     text = figure.text(0, 0, words, fontsize=size)
@@ -48,15 +38,7 @@ def in_lines(words: str, size: float, width: float) -> str:
 def break_lines(figure: Figure) -> bool:
     """Break titles of panels, and entries of legends, that leave the figure or meet another title.
 
-    Parameters
-    ----------
-    figure : matplotlib.figure.Figure
-        Whose panels have their places.
-
-    Returns
-    -------
-    bool
-        Whether any was broken: the panels then want other places.
+    Returns True if any was broken: the panels, which have their places, then want other places.
     """
     broken = [*_break_panel_titles(figure)]
     broken += [_narrow(legend, figure) for legend in _legends(figure)]
@@ -64,7 +46,7 @@ def break_lines(figure: Figure) -> bool:
 
 
 def _legends(parent: FigureBase | Axes) -> Iterator[Legend]:
-    """Legends in a figure; `findobj` would go through all ticks, and make those there are not."""
+    """Legends in a figure; `findobj` would walk through all ticks, and create missing ones."""
     for child in parent.get_children():
         if isinstance(child, Legend):
             yield child
@@ -73,7 +55,7 @@ def _legends(parent: FigureBase | Axes) -> Iterator[Legend]:
 
 
 def _break_panel_titles(figure) -> Iterator[bool]:
-    """Break titles of panels: each has room up to the next one beside it, or the figure's edge."""
+    """Break titles of panels, which have room up to the next title or to the figure's edge."""
     titles = [
         title
         for axes in figure.axes
@@ -82,12 +64,12 @@ def _break_panel_titles(figure) -> Iterator[bool]:
     ]
     boxes = {title: title.get_window_extent(_renderer(figure)) for title in titles}
     for title, box in boxes.items():
-        beside = [
+        edges = [
             other.x0 - _pixels(figure, _GAP)
             for other in boxes.values()
             if other.x0 > box.x0 and _side_by_side(other, box)
         ]
-        right = min([figure.bbox.x1 - _pixels(figure, _EDGE), *beside])
+        right = min([figure.bbox.x1 - _pixels(figure, _EDGE), *edges])
         room = max(right - box.x0, _pixels(figure, _MIN_ROOM))
         yield title.get_horizontalalignment() == "left" and _fill(title, room)
 
@@ -110,7 +92,7 @@ def _narrow(legend: Legend, figure: Figure) -> bool:
     while (excess := _excess(legend, figure)) > 0:
         longest = max(entries, key=lambda text: _width(text, text.get_text()))
         width = _width(longest, longest.get_text())
-        # No entry gets narrower than half of what it is, lest one pays for all.
+        # An entry keeps half of its width, so that no single one is broken into many lines.
         if not _fill(longest, width - min(excess, width / 2)):
             break
         narrowed = True
@@ -125,7 +107,7 @@ def _excess(legend: Legend, figure: Figure) -> float:
 
 
 def _fill(text: Text, room: float) -> bool:
-    """Break the lines of a text that are wider than ``room`` pixels; whether any was."""
+    """Break the lines of a text that are wider than ``room`` pixels; True if any was."""
     words = text.get_text()
     lines = itertools.chain.from_iterable(_lines(text, line, room) for line in words.split("\n"))
     filled = "\n".join(lines)
@@ -134,7 +116,7 @@ def _fill(text: Text, room: float) -> bool:
 
 
 def _lines(text: Text, line: str, room: float) -> Iterator[str]:
-    """A line in lines no wider than ``room``, broken at blanks outside formulas."""
+    """A line in lines no wider than ``room`` pixels, broken at blanks outside formulas."""
     if _width(text, line) <= room:
         yield line
         return
@@ -164,7 +146,7 @@ def _words(line: str) -> Iterator[str]:
 
 
 def _parts(text: Text, word: str, room: float) -> list[str]:
-    """A word that has no room in a line of its own, cut; a formula stays whole."""
+    """A word too long for a line of its own, cut; a formula stays whole."""
     if len(word) < 2 or "$" in word or _width(text, word) <= room:
         return [word]
     letters = len(word) - 1
@@ -174,7 +156,7 @@ def _parts(text: Text, word: str, room: float) -> list[str]:
 
 
 def _width(text: Text, words: str) -> float:
-    """Width in pixels that a text would have with other words."""
+    """Width in pixels of a text with other words."""
     text.set_text(words)
     return text.get_window_extent(_renderer(text.get_figure(root=True))).width
 

@@ -20,19 +20,19 @@ from .drawing import COLOURS
 #: Grey of cells that were not measured.
 MISSING = "0.7"
 
-#: Lets a line or a word be seen on light and on dark ground.
+#: White outline that makes a line or a word visible on light and on dark ground.
 HALO = [withStroke(linewidth=2.5, foreground="white")]
 
-#: Domains of fewer nodes than this get rings where the nodes are too small to be seen in print:
-#: more than this many along a side of the map.
+#: A domain of fewer nodes gets rings if the map has more nodes along a side than the second number:
+#: its nodes are too small to be seen in print.
 FEW_NODES = 100
 FINE_NODES = 100
 
 _RING: dict[str, Any] = {"marker": "o", "ls": "none", "ms": 4, "mfc": "none", "mew": 0.7}
 _RING["mec"] = COLOURS[3]
 
-#: Points that a node in contact is wide at least, so that print shows it, as long as no more than
-#: this fraction of the map becomes black.
+#: Minimum width of a node in contact, points, so that print shows it; and the largest fraction of
+#: the map that may become black by it.
 MIN_DOT, MAX_BLACK = 0.8, 0.3
 
 
@@ -44,17 +44,9 @@ def scan_extent(specimen: xr.Dataset) -> tuple[float, ...]:
 def window_outline(
     specimen: xr.Dataset, unit_mm: float, slid: tuple[float, float] = (0.0, 0.0), **style: Any
 ) -> Rectangle:
-    """The window as a rectangle, in units from the corner of the scan.
+    """The window as a rectangle, in units of `unit_mm` mm from the corner of the scan.
 
-    Parameters
-    ----------
-    specimen : xr.Dataset
-    unit_mm : float
-        mm in a unit of the axes.
-    slid : (float, float)
-        How far (y, x) the window has slid, mm.
-    **style
-        Of the rectangle.
+    `slid` is the distance (y, x) that the window has slid, mm.
     """
     corner: list[float] = []
     sides: list[float] = []
@@ -86,9 +78,9 @@ def draw_map(
     sides : (float, float)
         (y, x) in mm.
     ticks : int
-        About this many along each side.
+        Approximate number along each side.
     interpolation : str
-        By default none, so that no missing cell is filled.
+        None by default, so that no missing cell is filled.
     **options
         Of ``imshow``.
     """
@@ -97,7 +89,7 @@ def draw_map(
     axes.set_facecolor(MISSING)
     drawn = axes.imshow(image, extent=extent, interpolation=interpolation, **options)
     for axis, letter, side in ((axes.xaxis, "x", sides[1]), (axes.yaxis, "y", sides[0])):
-        # On the short side of a strip, labels would lie over each other.
+        # The short side of a strip gets fewer numbers, which would overlap.
         most = max(1, round(ticks * min(1.0, 1.5 * side / max(sides))))
         axis.set_major_locator(MaxNLocator(most, steps=[1, 2, 5, 10], min_n_ticks=min(most, 2)))
         axis.set_label_text(f"${letter}$ ({name})")
@@ -112,21 +104,13 @@ def draw_domain(
     ticks: int = 5,
     times: int | None = None,
 ) -> None:
-    """Contact domain in black, with nodes enlarged for print and rings around the few.
+    """Contact domain (ny, nx) in black, with nodes enlarged for print and rings around the few.
 
-    Parameters
-    ----------
-    axes : matplotlib.axes.Axes
-    domain : (ny, nx) bool ndarray
-    sides : (float, float)
-        Of the window (y, x), mm.
-    ticks : int
-        About this many along each side.
-    times : int, optional
-        How many times as wide nodes are drawn, the same in maps that are compared with each other;
-        by default what one map asks for.
+    `sides` (y, x) of the window are in mm. `times` is the width of a drawn node in nodes, the same
+    in maps that are compared with each other; by default it follows from the one map.
     """
-    # No cell is missing in a window, and a node smaller than a pixel must not vanish.
+    # A window has no missing cells, so that smoothing hides none; a node smaller than a pixel must
+    # not vanish.
     grey: dict[str, Any] = {"cmap": "Greys", "vmin": 0, "vmax": 1, "interpolation": "auto"}
     if times is None:
         times = enlargement([domain], _node_points(axes, domain.shape, sides))
@@ -138,17 +122,10 @@ def draw_domain(
 
 
 def enlargement(domains: Sequence[np.ndarray], points: float, most: float = np.inf) -> int:
-    """Enlargement of the nodes of domains in print; 1 where they fill a map.
+    """Enlargement of nodes in print, one for all domains of a window; 1 where they fill a map.
 
-    One number for all: with one for each, finer domains would look fuller than coarser ones.
-
-    Parameters
-    ----------
-    domains : sequence of (ny, nx) bool ndarray
-        Of one window at one resolution or several.
-    points : float
-        How wide the smallest node is in print, points.
-    most : float, optional
+    With a number for each, finer domains would look fuller than coarser ones. `points` is the width
+    of the smallest node in print, points; `most` is the largest enlargement.
     """
     wanted = int(min(np.ceil(MIN_DOT / points), most))
     for times in range(wanted, 1, -1):
@@ -158,7 +135,7 @@ def enlargement(domains: Sequence[np.ndarray], points: float, most: float = np.i
 
 
 def enlarged(domain: np.ndarray, times: int) -> np.ndarray:
-    """Contact domain (ny, nx) whose nodes are squares of several nodes per side."""
+    """Contact domain (ny, nx) with each node drawn as a square of ``times`` nodes per side."""
     return domain if times < 2 else maximum_filter(domain, times, mode="constant", cval=0)
 
 
@@ -170,16 +147,9 @@ def _node_points(axes, shape, sides):
 
 
 def node_position(node: ArrayLike, shape: Sequence[int], sides: Sequence[float]) -> list:
-    """Centres (y, x) of nodes of a window on its map, in the map's unit.
+    """Centres (y, x) of nodes (row, column) on the map of a window, in the map's unit.
 
-    Parameters
-    ----------
-    node : (2, ...) array_like
-        Row and column.
-    shape : (int, int)
-        Nodes (y, x) of the window.
-    sides : (float, float)
-        Of the window (y, x), mm.
+    `shape` is the number of nodes (y, x) and `sides` the length (y, x) of the window, mm.
     """
     _, size = length_unit(max(sides))
     return [

@@ -16,9 +16,9 @@ from ...core.text import compact, number
 from .drawing import COLOURS, MARKERS
 from .points import reach
 
-#: Letters of a label that a legend takes.
+#: Maximum length of a label in a legend, letters.
 _LONGEST = 34
-#: Points between a panel's title and its upper edge, where an axis of pressure stands.
+#: Distance of a panel's title from its upper edge, points, above the axis of pressure.
 _ABOVE = 30
 
 
@@ -26,16 +26,8 @@ _ABOVE = 30
 class Series:
     """Measured maps that belong together, or a single one.
 
-    Attributes
-    ----------
-    label : str
-        Of the series, or of its only map.
-    names : tuple of str
-        Of its maps, in the order of their pressure; those of unknown pressure last.
-    maps : tuple of xr.Dataset
-        As the atlas has them.
-    number : int
-        Its place among all series, which says its colour and marker.
+    Names and maps are in the order of their pressure, those of unknown pressure last. The number is
+    the place among all series, from which colour and marker follow.
     """
 
     label: str
@@ -44,7 +36,7 @@ class Series:
     number: int
 
     def values(self, name: str) -> np.ndarray:
-        """A number of every map."""
+        """One number of every map."""
         return np.array([one[name].item() for one in self.maps])
 
     @property
@@ -85,23 +77,14 @@ def _label(maps: Mapping[str, xr.Dataset]) -> str:
 def draw_series(
     axes: Axes, series: Series, x: np.ndarray, label: str | None = None, *, nulls: bool = False
 ) -> None:
-    """Delta_sigma of the maps of a series over x, with intervals, and the band of thresholds.
+    """Delta_sigma of the maps of a series over x (n,), with intervals and the band of thresholds.
 
-    Parameters
-    ----------
-    axes : matplotlib.axes.Axes
-    series : Series
-    x : (n,) ndarray
-        NaN leaves a map out.
-    label : str, optional
-        For the legend.
-    nulls : bool
-        Whether to draw the dimension of random cells, too.
+    NaN in x leaves a map out; `nulls` adds the dimension of random cells.
     """
-    known = np.isfinite(x)
-    x = x[known]
+    finite = np.isfinite(x)
+    x = x[finite]
     value, low, high, least, most = (
-        series.values(name)[known]
+        series.values(name)[finite]
         for name in (*names_of("delta_sigma"), "delta_sigma_least", "delta_sigma_most")
     )
     colour = series.style["color"]
@@ -113,7 +96,7 @@ def draw_series(
         else:
             axes.vlines(x, least, most, color=colour, alpha=0.25, lw=5)
     if nulls:
-        mean, low, high = (series.values(of)[known] for of in names_of("delta_sigma_random"))
+        mean, low, high = (series.values(of)[finite] for of in names_of("delta_sigma_random"))
         style = {"color": colour, "lw": 0.8, "ls": ":", "marker": "none"}
         if len(x) > 1:
             axes.plot(x, mean, **style)
@@ -125,7 +108,7 @@ def draw_series(
 
 
 def threshold_words(series: Sequence[Series]) -> str:
-    """Thresholds of maps in words, the least and the largest of all that are not binary."""
+    """Smallest and largest threshold of the maps that are not binary, in words."""
     stated = [
         one["threshold"].values for each in series for one in each.maps if not one.attrs["binary"]
     ]
@@ -144,16 +127,10 @@ def table_of(series: Sequence[Series]) -> pd.DataFrame:
 
 
 def draw_over_force(axes: Axes, series: Sequence[Series], nominal: float) -> None:
-    """Measured domains at their nominal pressure: F is of this window, their area is another.
+    """Measured domains over F (N), at their nominal pressure times A_0 of this window (mm2).
 
-    Parameters
-    ----------
-    axes : matplotlib.axes.Axes
-        Of Delta_sigma over F, N, along x.
-    series : sequence of Series
-        Their pressures in MPa; a map without one is a line across.
-    nominal : float
-        A_0 of this window, mm2.
+    The area of a measured map is another one, so that its own force has no place on this axis. A
+    map without a pressure is a line across.
     """
     for each in series:
         pressure = each.pressure
@@ -167,7 +144,7 @@ def draw_over_force(axes: Axes, series: Sequence[Series], nominal: float) -> Non
             axes.axhline(value, color=each.style["color"], ls="-.", lw=0.9, label=name)
     if series:
         axes.autoscale(axis="x")
-    # Above the force stands the pressure of measured maps, whose area is another.
+    # The second axis has the pressure, by which maps of another area are placed.
     functions = (lambda force: force / nominal, lambda pressure: pressure * nominal)
     pressures = axes.secondary_xaxis("top", functions=functions)
     pressures.set_xlabel(r"nominal pressure $\sigma_0 = F/A_0$ (MPa)")
@@ -177,7 +154,7 @@ def draw_over_force(axes: Axes, series: Sequence[Series], nominal: float) -> Non
 def measured_range(series: Sequence[Series]) -> dict[str, Any]:
     """Number of measured maps, their thresholds and the range of their Delta_sigma."""
     values = np.array([value for each in series for value in each.values("delta_sigma")], float)
-    known = values[np.isfinite(values)]
-    ends = [number(end) for end in (known.min(), known.max())] if known.size else []
+    finite = values[np.isfinite(values)]
+    ends = [number(end) for end in (finite.min(), finite.max())] if finite.size else []
     words = threshold_words(series) if series else ""
     return {"maps": values.size, "measured": list(dict.fromkeys(ends)), "thresholds": words}

@@ -1,25 +1,28 @@
 """Panel that draws curves from a dataset and records them as rows of the figure's table."""
 
-from collections.abc import Hashable, Sequence
+from collections.abc import Hashable, Iterable, Sequence
 from typing import Any
 
 import numpy as np
 import pandas as pd
 import xarray as xr
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 
 from ...core.estimate import Estimate, names_of
 from .drawing import MARKERS, colour_of
+from .legends import entries
 from .points import draw_points, reach
 from .titles import letter
 
-#: A bar without an upper end is this many times as high as its value.
+#: Length of a bar without an upper end, as a multiple of its value.
 _FAR = 1e4
 
 
 def column_of(data: xr.Dataset, name: Hashable) -> str:
-    """A variable as a column of a table, named with its unit: "closure_mm"."""
-    unit = data[name].attrs.get("units", "1")
+    """Name of a variable as a column of a table, with its unit: "closure_mm"."""
+    attrs = data.variables[name].attrs if name in data.variables else {}
+    unit = attrs.get("units", "1")
     unit = unit.replace("mm-1", "per_mm").replace("/", "_per_").replace(" ", "_")
     return f"{name}" if unit == "1" else f"{name}_{unit}"
 
@@ -27,47 +30,38 @@ def column_of(data: xr.Dataset, name: Hashable) -> str:
 def rows(data: xr.Dataset, *names: str, **constants: Any) -> pd.DataFrame:
     """Variables of a dataset as the rows of a table, one for each place of their dimensions.
 
-    Parameters
-    ----------
-    data : xr.Dataset
-    *names : str
-        Of variables; the ends of its interval go with each that has one.
-    **constants
-        Columns that are the same in all rows, such as ``panel="a"``.
-
-    Returns
-    -------
-    pd.DataFrame
-        The constants, the coordinates, the variables; units end the names of the columns.
+    Columns are the constants (such as ``panel="a"``), the coordinates, and the variables with the
+    ends of their intervals; units end the names.
     """
     wanted = [end for name in names for end in names_of(name) if end in data or end == name]
     chosen = data[wanted]
-    if not chosen.dims:
-        chosen = chosen.expand_dims("row")
-    table = chosen.to_dataframe().reset_index().drop(columns="row", errors="ignore")
-    places = [name for name in table.columns if name not in wanted]
-    table = table[places + wanted].rename(columns=lambda name: column_of(data, name))
-    for place, (name, value) in enumerate(constants.items()):
-        table.insert(place, name, value)
-    return table
+    dims = chosen.sizes
+    # Columns are made one by one: `to_dataframe` makes an index first and takes six times as long.
+    columns: dict[Hashable, Any] = {}
+    for axis, dim in enumerate(dims):
+        index = chosen.indexes.get(dim, pd.RangeIndex(dims[dim])).to_numpy()
+        along = index.reshape([-1 if n == axis else 1 for n in range(len(dims))])
+        columns[dim] = np.broadcast_to(along, tuple(dims.values())).ravel()
+    others = [name for name in chosen.variables if name not in dims and name not in wanted]
+    for name in (*others, *(name for name in wanted if name not in dims)):
+        columns[name] = chosen.variables[name].set_dims(dims).values.reshape(-1)
+    named = {column_of(data, name): values for name, values in columns.items()}
+    return pd.DataFrame({**constants, **named})
 
 
 class Panel:
-    """Axes of one panel, and the rows of its table.
-
-    Parameters
-    ----------
-    axes : matplotlib.axes.Axes
-    which : str
-        Letter of the panel; empty where a figure has one alone.
-    title : str
-    """
+    """Axes of one panel with its letter, if any, and title, and the rows of its table."""
 
     def __init__(self, axes: Axes, which: str = "", title: str = ""):
         self.axes = axes
         self.which = which
         self.records: list[pd.DataFrame] = []
         self.title(title)
+
+    @property
+    def entries(self) -> list[Artist]:
+        """Entries of a legend of the panel."""
+        return entries(self.axes)
 
     def title(self, words: str) -> None:
         """Letter and title of the panel."""
@@ -96,17 +90,17 @@ class Panel:
         data : xr.Dataset
             Over one dimension.
         x, y : str
-            Of its variables or coordinates.
+            Variables or coordinates.
         filled : str, optional
-            Variable that says which points are trusted; all, without it.
+            Variable that states which points are trusted; all, without it.
         unit : (float, float), optional
-            Values are drawn divided by these; rows keep the dataset's units.
+            Units drawn, in units of the dataset; rows keep the dataset's units.
         keep : sequence of str, optional
-            Other variables that the rows have.
+            Other variables for the rows.
         caps : float, optional
-            Half-width of the ends of bars, points: of its own where curves share their abscissae.
+            Half-width of the ends of bars, points; different where curves share their abscissae.
         hollow, **style
-            As of :func:`kit.points.draw_points`.
+            As in :func:`kit.points.draw_points`.
         """
         across, along = data[x].values / unit[0], Estimate(data[y].values / unit[1])
         trusted = data[filled].values if filled else np.ones(np.shape(along.value), bool)
@@ -138,21 +132,14 @@ class Panel:
         first: int = 0,
         **of_curve: Any,
     ) -> None:
-        """A curve for each place along a dimension, each with its colour and marker.
+        """A curve for each place along the dimension `hue`, with its colour, marker and label.
 
-        Parameters
-        ----------
-        data : xr.Dataset
-            Over ``hue`` and one other dimension.
-        x, y : str
-        hue : str
-        labels : sequence of str, optional
-            Of the curves, for a legend.
-        first : int, optional
-            Number of the first colour.
-        **of_curve
-            As of :meth:`curve`.
+        `first` is the number of the first colour; `of_curve` goes to :meth:`curve`.
         """
+        # A stage has hundreds of variables, each of which a selection goes through.
+        names = (x, y, of_curve.get("filled", ""), *of_curve.get("keep", ()))
+        ends = (end for name in names for end in names_of(name) if end in data.variables)
+        data = data[[*dict.fromkeys(ends)]]
         for n in range(data.sizes[hue]):
             style = {"color": colour_of(n + first), "marker": MARKERS[n % len(MARKERS)]}
             if len(labels):
@@ -160,9 +147,16 @@ class Panel:
             self.curve(data.isel({hue: n}), x, y, **{**style, **of_curve})
 
     def keep(self, data: xr.Dataset, *names: str, **constants: Any) -> None:
-        """Add rows from :func:`rows` of what is drawn by other means."""
+        """Add rows, as of :func:`rows`, of what is drawn by other means."""
         which = {"panel": self.which} if self.which else {}
         self.records.append(rows(data, *names, **which, **constants))
+
+
+def panels_of(
+    axes: Iterable[Axes], titles: Iterable[str], letters: str = "abcdefghijkl"
+) -> list[Panel]:
+    """Panels with letters in the order of their titles, as many as there are axes and titles."""
+    return [Panel(*one) for one in zip(axes, letters, titles, strict=False)]
 
 
 def table_of(*panels: Panel) -> pd.DataFrame:

@@ -7,23 +7,15 @@ import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import ArrayLike
 
-#: A symbol that stands for those of every colour, in a legend.
+#: Style of a legend's entry that stands for points of every colour.
 _ANY = {"color": "0.4", "marker": "o"}
 
 
 def reach(value: ArrayLike, low: ArrayLike, high: ArrayLike) -> np.ndarray:
-    """Lengths of error bars below and above values, as matplotlib's ``xerr`` and ``yerr``.
+    """Lengths (2, n) of error bars below and above values, as matplotlib's ``xerr`` and ``yerr``.
 
-    Parameters
-    ----------
-    value, low, high : float or (n,) array_like
-        Values and the ends of their intervals; NaN where there is none, which draws no bar.
-
-    Returns
-    -------
-    (2, n) ndarray
-        At least 0, or NaN. Rounding may leave the interval of an exact fit a hair's breadth beside
-        its value, and matplotlib raises on a negative reach.
+    Ends of an interval that are NaN draw no bar. Lengths are at least 0: rounding may put the
+    interval of an exact fit beside its value, and matplotlib raises on a negative length.
     """
     value, low, high = (np.atleast_1d(np.asarray(one, float)) for one in (value, low, high))
     return np.maximum([value - low, high - value], 0)
@@ -39,21 +31,13 @@ def draw_points(
 ) -> None:
     """Points, filled where they are trusted and hollow elsewhere.
 
-    Parameters
-    ----------
-    axes : matplotlib.axes.Axes
-    x, y : (n,) array_like
-    filled : (n,) array_like of bool
-    hollow : mapping, optional
-        What the style of hollow points has besides, or in place of a white face.
-    **style
-        Of `Axes.plot`. With a line (``ls``) it runs through all points; the label is that of the
-        filled ones.
+    A line style ``ls`` joins all points; the label is that of the filled ones. `hollow` is the
+    style that hollow points have besides, or in place of a white face.
     """
     x, y, filled = np.asarray(x), np.asarray(y), np.asarray(filled, bool)
     style = {"ls": "none"} | style
     joined = style["ls"] != "none"
-    # A line is drawn in one piece, with all its markers; the hollow ones hide those below them.
+    # A line is drawn in one piece with all its markers, which hollow ones then cover.
     first = filled | joined
     axes.plot(x[first], y[first], **style)
     unlabelled = {key: value for key, value in style.items() if key != "label"}
@@ -62,13 +46,5 @@ def draw_points(
 
 
 def hollow_entry(axes: Axes, label: str, **style: Any) -> None:
-    """Legend entry of hollow points.
-
-    Parameters
-    ----------
-    axes : matplotlib.axes.Axes
-    label : str
-    **style
-        Of the points that it stands for; by default grey, for those of every colour.
-    """
+    """Legend entry of hollow points; grey unless a style is given, for those of every colour."""
     axes.plot([], [], label=label, **{**_ANY, **style, "ls": "none", "mfc": "white"})

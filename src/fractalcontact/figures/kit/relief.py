@@ -20,7 +20,7 @@ from .maps import MISSING, draw_map, window_outline
 COLOUR_MAP = "cividis"
 #: Fraction of the heights beyond each end of the colours, so that a spike does not take them all.
 CLIPPED = 0.002
-#: Heights are stretched for the light so that their rms slope becomes this; not in the colours.
+#: Rms slope to which heights are stretched for the light; the colours show them as they are.
 LIT_SLOPE = 0.7
 
 
@@ -31,23 +31,9 @@ def draw_faces(
     faces: Sequence[str],
     sides: Sequence[float],
 ) -> Rectangle:
-    """Reliefs side by side with one scale of heights; the outline of the window.
+    """Reliefs of the faces side by side with one scale of heights; the outline of the window.
 
-    Parameters
-    ----------
-    figure, panels
-        Where they stand, a panel a face.
-    specimen : xr.Dataset
-        Of the stage ``specimens``.
-    faces : sequence of str
-        Names of its variables of heights (y, x), mm.
-    sides : (2,) sequence of float
-        Of the scan along y and x, mm.
-
-    Returns
-    -------
-    Rectangle
-        For a legend.
+    `specimen` is the stage ``specimens`` and `sides` (y, x) are those of the scan, mm.
     """
     heights = np.concatenate([specimen[face].values.ravel() for face in faces])
     low, high = np.nanquantile(heights, [CLIPPED, 1 - CLIPPED])
@@ -76,20 +62,13 @@ def draw_faces(
 def shaded(
     heights: np.ndarray, spacing: tuple[float, float], low: float, high: float
 ) -> np.ndarray:
-    """Colours (ny, nx, 3) of a lit relief; cells not measured are grey.
+    """Colours (ny, nx, 3) of a lit relief; cells not measured (NaN) are grey.
 
-    Parameters
-    ----------
-    heights : (ny, nx) ndarray
-        mm, NaN where not measured.
-    spacing : (float, float)
-        (dy, dx), mm.
-    low, high : float
-        Ends of the colours, mm.
+    `heights`, the spacing (dy, dx) and the ends `low` and `high` of the colours are in mm.
     """
-    known = np.isfinite(heights)
-    # The light must not see a cliff at a hole; what is filled in here is painted over below.
-    nearest = distance_transform_edt(~known, return_distances=False, return_indices=True)
+    measured = np.isfinite(heights)
+    # Holes are filled so that the light sees no cliff; they are painted grey below.
+    nearest = distance_transform_edt(~measured, return_distances=False, return_indices=True)
     whole = heights[tuple(nearest)]
     steepness = np.sqrt(np.mean(np.square(np.gradient(whole, *spacing))))
     stretch = LIT_SLOPE / steepness if steepness > 0 else 1.0
@@ -104,5 +83,5 @@ def shaded(
         dy=-spacing[0],
         blend_mode="soft",
     )[..., :3]
-    colours[~known] = to_rgb(MISSING)
+    colours[~measured] = to_rgb(MISSING)
     return colours

@@ -1,8 +1,8 @@
 """Cache of matplotlib's ticks and text sizes while a figure does not change.
 
-A figure is measured for its layout, and drawn into two files. Each time matplotlib asks every axis
-for its ticks from three sides, and lays every text out anew: the answers are the same, and so are
-the files without this, to the byte.
+A figure is measured for its layout and drawn into two files. Each time matplotlib asks every axis
+for its ticks from three sides and lays every text out anew. The answers are the same, and the files
+equal those without this cache byte for byte.
 """
 
 import contextlib
@@ -19,43 +19,43 @@ from .ticks import axes_of
 def remember_ticks(figure: Figure) -> None:
     """Find the ticks of each axis once for every size and view that it is given.
 
-    To be called once everything is drawn: a locator, or labels, that change later go unnoticed.
+    To be called when everything is drawn: later changes of a locator or of labels go unnoticed.
     """
     for _, axis in axes_of(figure):
         vars(axis)["_update_ticks"] = _ticks_remembered(axis)
 
 
 def _ticks_remembered(axis):
-    find, known, found = axis._update_ticks, None, []
+    find, state_of_ticks, ticks_found = axis._update_ticks, None, []
 
     def ticks():
-        nonlocal known, found
+        nonlocal state_of_ticks, ticks_found
         dpi, bounds = axis.get_figure(root=True).dpi, axis.axes.bbox.bounds
-        # In inches without the last digits, so that the SVG has the ticks of the PNG. Only the last
-        # answer: the ticks themselves are moved, and none may be behind.
+        # Sizes are in inches without the last digits, so that the SVG has the ticks of the PNG.
+        # Only the last answer is kept, because matplotlib moves the ticks themselves.
         state = (*axis.get_view_interval(), *(round(side / dpi, 6) for side in bounds))
-        if state != known:
-            known, found = state, find()
-        return found
+        if state != state_of_ticks:
+            state_of_ticks, ticks_found = state, find()
+        return ticks_found
 
     return ticks
 
 
 @contextlib.contextmanager
 def layouts_remembered() -> Iterator[None]:
-    """Every text laid out once on each canvas, for as long as the block."""
-    known: WeakKeyDictionary[Any, dict] = WeakKeyDictionary()
+    """Every text laid out once on each canvas, within the block."""
+    layouts: WeakKeyDictionary[Any, dict] = WeakKeyDictionary()
     lay_out = Text._get_layout  # type: ignore[attr-defined]
 
     def layout(text, renderer):
-        of_canvas = known.setdefault(renderer, {})
+        of_canvas = layouts.setdefault(renderer, {})
         state = _state_of(text)
         if state is None:
             return lay_out(text, renderer)
-        found = of_canvas.get(state)
-        if found is None:
-            found = of_canvas[state] = lay_out(text, renderer)
-        return found
+        text_layout = of_canvas.get(state)
+        if text_layout is None:
+            text_layout = of_canvas[state] = lay_out(text, renderer)
+        return text_layout
 
     setattr(Text, "_get_layout", layout)  # noqa: B010  # a method that types do not know
     try:

@@ -16,14 +16,14 @@ from .points import draw_points
 
 #: Legend of means whose friction angle is truncated in most sub-windows.
 TRUNCATED = f"hollow: a lower bound, most angles truncated at {compact(LARGEST_FRICTION_ANGLE, 6)}°"
-#: What the legends of :func:`draw_over_size` declare.
+#: Words on bars and places for the legends of :func:`draw_over_size`.
 BARS = "bars: 95 % intervals; the whole window has none"
 SHIFTED = "pressures at one $b$ are drawn side by side"
-#: Why no strength is drawn.
+#: Words of a panel without strength.
 NO_STRENGTH = "no strength: the study states no basic\nfriction angle, or no offset fits"
-#: Numbers of a decade that stand at an axis whose ends are up to this factor apart.
+#: Largest ratio of the ends of an axis, and the digits at which a decade is numbered up to it.
 _TICKS = ((3.0, (1, 1.5, 2, 2.5, 3, 4, 5, 6, 7, 8, 9)), (10.0, (1, 2, 3, 5, 7)), (300.0, (1, 2, 5)))
-#: The frame ends at this part of the smallest mean; a bar as much shorter leaves it for certain.
+#: The frame ends at the smallest mean over the first; the second, a fraction, lies below it.
 _MARGIN, _OUT_OF_FRAME = 3.0, 1e-3
 
 
@@ -49,12 +49,9 @@ def size_axis(axes: Axes, b: np.ndarray, of: str) -> None:
 
 
 def roughness_words(strength: xr.Dataset) -> str:
-    """JRC of the scan, and whether the law of scale keeps it within Barton's.
+    """JRC of the scan in words, and whether Barton's law of scale keeps it within its range.
 
-    Parameters
-    ----------
-    strength : xr.Dataset
-        Stage ``strength`` of one direction.
+    `strength` is the stage of one direction.
     """
     jrc = float(strength["jrc"].sel(sampling=JRC_SAMPLING))
     used = float(strength["jrc_used"])
@@ -77,27 +74,19 @@ def draw_over_size(
     filled: xr.DataArray | None = None,
     apart: float = 0.03,
 ) -> None:
-    """Means over sub-windows against b, side by side for the pressures, and their intervals.
+    """Means over sub-windows against b with their intervals, side by side for the pressures.
 
-    Parameters
-    ----------
-    axes : matplotlib.axes.Axes
-    laws : xr.Dataset
-        Over ``part`` and ``normal_force``.
-    name : str
-    filled : xr.DataArray (part, normal_force), optional
-        Means that are results; all, without it.
-    apart : float, optional
-        Part of b by which neighbouring pressures stand apart.
+    `laws` goes over ``part`` and ``normal_force``, as does `filled`, which is True for results (all
+    without it). Neighbouring pressures stand the fraction `apart` of b from each other.
     """
     b, loads = laws["side"].values, laws.sizes["normal_force"]
     for j in range(loads):
         one = laws.isel(normal_force=j)
-        beside = b * (1 + apart * (j - (loads - 1) / 2))
+        places = b * (1 + apart * (j - (loads - 1) / 2))
         means = Estimate.read(one, name)
         trusted = np.ones(b.shape, bool) if filled is None else filled.isel(normal_force=j)
-        draw_points(axes, beside, means.value, trusted, **series(j))
-        draw_bars(axes, beside, *means.ends, colour_of(j + 1))
+        draw_points(axes, places, means.value, trusted, **series(j))
+        draw_bars(axes, places, *means.ends, colour_of(j + 1))
 
 
 def series(j: int) -> dict[str, Any]:
@@ -106,13 +95,13 @@ def series(j: int) -> dict[str, Any]:
 
 
 def name_exponents(axes: Axes, laws: xr.Dataset, name: str, of: str) -> None:
-    """Legend entries: the power of b of a quantity ``of`` under each pressure."""
+    """Legend entries with the power of b of a quantity ``of`` under each pressure."""
     truncated = (laws["truncated_fraction_at_equal_v_over_b"] > 0).any("part").values & (
         "strength" in name
     )
     exponents = Estimate.read(laws, name)
     for j, pressure in enumerate(laws["nominal_pressure"].values):
-        # A wide interval too shows the sign that the caption states.
+        # An undetermined exponent is given too: its interval shows the sign in the caption.
         missing = "no fit (truncated)" if truncated[j] else "no fit"
         words = f" = {number(exponents[j])}" if exponents[j].known else f": {missing}"
         if np.isneginf(exponents[j].low):
@@ -124,19 +113,13 @@ def name_exponents(axes: Axes, laws: xr.Dataset, name: str, of: str) -> None:
 def draw_bars(
     axes: Axes, b: np.ndarray, mean: np.ndarray, low: np.ndarray, high: np.ndarray, colour: str
 ) -> None:
-    """Intervals of means on a logarithmic axis; one that includes zero ends below the frame.
+    """Intervals of means over b (n,), mm, on a logarithmic axis; NaN has none.
 
-    Parameters
-    ----------
-    axes : matplotlib.axes.Axes
-        Of the side b, mm, along x.
-    b, mean, low, high : (n,) ndarray
-        NaN where there is no interval.
-    colour : str
+    An interval that includes zero ends below the frame.
     """
-    known = np.isfinite(low) & (mean > 0)
-    bottom = np.maximum(low[known], _OUT_OF_FRAME * mean[known])
-    axes.vlines(b[known], bottom, high[known], color=colour, lw=0.8)
+    finite = np.isfinite(low) & (mean > 0)
+    bottom = np.maximum(low[finite], _OUT_OF_FRAME * mean[finite])
+    axes.vlines(b[finite], bottom, high[finite], color=colour, lw=0.8)
 
 
 def logarithmic(axes: Axes, values: np.ndarray) -> None:
@@ -145,7 +128,7 @@ def logarithmic(axes: Axes, values: np.ndarray) -> None:
     smallest = np.min(values, where=values > 0, initial=np.inf)
     bottom = max(axes.get_ylim()[0], smallest / _MARGIN)
     if np.isfinite(smallest):
-        # With a number at or below the smallest mean.
+        # The axis needs a number at or below the smallest mean.
         places = np.outer(10.0 ** np.floor(np.log10(smallest)), (1, 2, 5))
         bottom = min(bottom, 0.95 * places[places <= smallest].max())
     axes.set_ylim(bottom=bottom)

@@ -1,7 +1,7 @@
 """Ticks of matplotlib without its repeated measuring and drawing.
 
-Half of the time of a figure goes into its ticks: each is made, measured twice for the layout, and
-measured and drawn once more for either file.
+Ticks take half of the time of a figure: each is made, measured twice for the layout, and measured
+and drawn once more for either file.
 """
 
 import re
@@ -23,9 +23,8 @@ _UNLABELLED = {f"label{side}": False for side in ("bottom", "top", "left", "righ
 def plain_ticks(figure: FigureBase) -> None:
     """Number logarithmic axes of a finished figure, and remove invisible parts of its ticks.
 
-    Numbers of short axes are those of :func:`label_short_span`. Powers of ten become plain text,
-    ticks between them are made within the axes alone and drawn as one, and nothing is measured for
-    labels that are empty.
+    Short axes are numbered by :func:`label_short_span`. Powers of ten become plain text, minor
+    ticks are made within the axes alone and drawn as one, and empty labels are not measured.
     """
     for panel, axis in axes_of(figure):
         _spare(panel, axis)
@@ -47,13 +46,7 @@ def keep_labels(figure: FigureBase) -> None:
 
 
 def axes_of(figure: FigureBase) -> Iterator[tuple[Axes, Axis]]:
-    """Every axis of a figure, after the panel it belongs to.
-
-    Yields
-    ------
-    panel : matplotlib.axes.Axes
-    axis : matplotlib.axis.Axis
-    """
+    """Every axis of a figure, secondary ones too, after the panel that it belongs to."""
     drawn: Any = figure  # types do not know the panels of its axes
     for axes in drawn.axes:
         for panel in (axes, *axes.child_axes):
@@ -80,7 +73,7 @@ def _spare(panel, axis):
 
 
 def _minor_ticks_as_one(axis):
-    """Way to the ticks of an axis, of which a single one stands for all that have no label."""
+    """Function that finds the ticks of an axis, with one tick for all that have no label."""
     find, none = axis._update_ticks, NullLocator()
 
     def ticks():
@@ -114,14 +107,14 @@ class _Decades(LogFormatterSciNotation):
 
 
 class _Within(Locator):
-    """Ticks of another locator, but none beyond the ends of the axis."""
+    """Ticks of another locator, without those beyond the ends of the axis."""
 
     def __init__(self, locator):
         self.locator = locator
 
     def __call__(self):
         low, high = sorted(self.axis.get_view_interval())
-        # A tick at the very end, but for rounding, is drawn.
+        # A tick at the end of the axis is drawn, whatever rounding does to it.
         ticks, slack = np.asarray(self.locator()), 1e-7 * (high - low)
         return ticks[(ticks >= low - min(slack, 1e-7 * abs(low))) & (ticks <= high + slack)]
 

@@ -8,11 +8,11 @@ from ...core.labels import printable
 from .line_breaks import in_lines
 from .words import formulas
 
-#: Points of the letters of a figure's title, and inches that a line of it is high.
+#: Size of the letters of a figure's title, points, and height of a line, inches.
 TITLE_SIZE, LINE = 9, 0.15
-#: Inches between the edge of a figure and its title.
+#: Distance between the edge of a figure and its title, inches.
 _EDGE = 0.05
-#: Letters of a specimen's label that are shown.
+#: Maximum length of a specimen's label, letters.
 MAX_LABEL = 300
 
 
@@ -22,21 +22,13 @@ def letter(axes: Axes, which: str, title: str) -> None:
 
 
 def headline(figure: Figure | SubFigure, label: str, *where: str, below: str = "") -> None:
-    """Title of a figure, in lines that fit its width.
+    """Headline of a figure: label of the specimen and further words, in lines that fit.
 
-    Parameters
-    ----------
-    figure : matplotlib.figure.FigureBase
-    label : str
-        Of the specimen, as its user wrote it.
-    *where : str
-        What follows, after commas; formulas stand in dollar signs.
-    below : str
-        What stands in a line of its own.
+    Formulas in `where` stand in dollar signs; the label has none. `below` is a line of its own.
     """
     text = label_in_lines(label, *where, width=figure.bbox.width / figure.dpi)
     if isinstance(figure, Figure):
-        # What is below loses no height to a long label.
+        # The figure grows with the label, so that the panels below keep their height.
         figure.set_figheight(figure.get_figheight() + LINE * text.count("\n"))
     figure.suptitle("\n".join(filter(None, (text, below))), fontsize=TITLE_SIZE)
 
@@ -44,11 +36,7 @@ def headline(figure: Figure | SubFigure, label: str, *where: str, below: str = "
 def entitle(figure: Figure, title: str) -> None:
     """Write the title above the headline of a figure and make the figure higher for it.
 
-    Parameters
-    ----------
-    figure : matplotlib.figure.Figure
-    title : str
-        Symbols as captions have them.
+    Symbols of the title are written as captions have them.
     """
     words = in_lines(formulas(title), TITLE_SIZE, figure.get_figwidth() - 2 * _EDGE)
     lines = words.split("\n")
@@ -56,7 +44,7 @@ def entitle(figure: Figure, title: str) -> None:
     figure.set_figheight(before + LINE * len(lines))
     laid_out = isinstance(figure.get_layout_engine(), ConstrainedLayoutEngine)
     if not laid_out:
-        # Nothing moves the panels out of the title's way.
+        # Without a layout engine the panels are moved here, out of the title's way.
         for axes in figure.axes:
             x, y, width, height = axes.get_position().bounds
             part = before / figure.get_figheight()
@@ -69,6 +57,6 @@ def entitle(figure: Figure, title: str) -> None:
 
 def label_in_lines(label: str, *where: str, width: float) -> str:
     """Label and further words of :func:`headline`, in lines of ``width`` inches."""
-    # Dollar signs of a label make no formula.
+    # Dollar signs of a label are escaped: they begin no formula.
     label = printable(label, MAX_LABEL).replace("$", r"\$")
     return in_lines(", ".join((label, *where)), TITLE_SIZE, width - 2 * _EDGE)

@@ -10,7 +10,7 @@ from ...core.labels import printable
 from ...core.subject import Subject
 from ...core.verdicts import ILL_POSED, UNDETERMINED
 
-#: Added to a verdict where the specimen was chosen for it: in a sentence, in a table.
+#: Words added to a verdict where the specimen was chosen for it: in a sentence, in a table.
 CIRCULAR, CIRCULAR_SHORT = "circular: the specimen was chosen to show it", "circular"
 
 
@@ -18,6 +18,8 @@ def verdict_words(
     atlas: DataTree, name: str, statement: str, *, numbers: bool = True, why: str = ""
 ) -> str:
     """Verdict on a statement with the numbers that decide it, as the table of statements has them.
+
+    "holds (A_r ~ F^m, m = 0.95 to 1.02)"; empty where the statement does not apply.
 
     Parameters
     ----------
@@ -30,13 +32,7 @@ def verdict_words(
     numbers : bool, optional
         Whether the numbers follow.
     why : str, optional
-        What the eye cannot see: the reason, which follows the numbers. Why a question is ill-posed
-        its statement says alone.
-
-    Returns
-    -------
-    str
-        "holds (A_r ~ F^m, m = 0.95 to 1.02)"; empty where it is not asked of the specimen.
+        Reason that the eye cannot see, after the numbers; an ill-posed question states its own.
     """
     row = row_of(atlas, "statements", name, statement)
     if row is None:
@@ -62,10 +58,7 @@ def claim(
 ) -> str:
     """Sentence with a statement of the paper and its verdict; empty where it does not apply.
 
-    Parameters
-    ----------
-    atlas, name, statement, numbers, why
-        As for :func:`verdict_words`.
+    Parameters are those of :func:`verdict_words`.
     """
     words = predicate(verdict_words(atlas, name, statement, numbers=numbers, why=why))
     return f"The paper's claim that {all_claims()[statement].short} {words}." if words else ""
@@ -79,25 +72,15 @@ def predicate(verdict: str) -> str:
 def labels_by_verdict(
     atlas: DataTree, names: Sequence[str], statements: Sequence[str], letters: int
 ) -> dict[str, list[str]]:
-    """Labels of the specimens that are asked some statements, by verdict.
-
-    Parameters
-    ----------
-    atlas : DataTree
-    names : sequence of str
-        Of the specimens.
-    statements : sequence of str
-    letters : int
-        Of a label at most.
-    """
-    found: dict[str, list[str]] = {}
+    """Labels, of up to `letters` letters, of specimens that statements apply to, by verdict."""
+    labels: dict[str, list[str]] = {}
     for name in names:
         for row in (row_of(atlas, "statements", name, statement) for statement in statements):
             if row is not None:
                 circular = f" ({CIRCULAR_SHORT})" if row["circular"] else ""
                 label = printable(Subject.of(atlas, name).label, letters)
-                found.setdefault(row["verdict"].item(), []).append(f"{label}{circular}")
-    return found
+                labels.setdefault(row["verdict"].item(), []).append(f"{label}{circular}")
+    return labels
 
 
 def row_of(atlas: DataTree, stage: str, name: str, statement: str) -> xr.Dataset | None:
@@ -106,7 +89,7 @@ def row_of(atlas: DataTree, stage: str, name: str, statement: str) -> xr.Dataset
     Raises
     ------
     KeyError
-        If there is no such statement, or the specimen has no table: a verdict is never left out in
+        If there is no such statement, or the specimen has no table: no verdict is left out in
         silence.
     """
     if statement not in all_claims():

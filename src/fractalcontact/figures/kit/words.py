@@ -47,7 +47,7 @@ def place(direction: str, offset: float | None = None) -> str:
 
 
 def area_label(state: xr.Dataset) -> str:
-    """A_r/A_0 of one state in per cent: corrected where enough nodes touch, else said to be raw."""
+    """A_r/A_0 of one state in per cent: corrected where enough nodes touch, else marked as raw."""
     if bool(state["area_corrected_resolved"]):
         return percent(float(state["area_corrected_share"]))
     return f"{percent(float(state['area_share']))} (raw)"

@@ -8,11 +8,7 @@ from xarray import DataTree
 from ...core.estimate import DIMENSION, Estimate
 from ...core.text import compact, percent
 from ...core.verdicts import BEYOND_RANDOM
-from ..kit.caption import caption
-from ..kit.drawing import WIDTH, Drawing, spread
-from ..kit.maps import draw_map, missing_patch
-from ..kit.measured import measured_series, table_of, threshold_words
-from ..kit.titles import headline
+from .. import kit
 
 TITLE = "Measured contact maps"
 SUBJECT = "study"
@@ -20,28 +16,28 @@ NEEDS = ("contact_maps",)
 KEY = "contact_maps"
 ORDER = 300
 
-#: Maps side by side: of a few, and of many; and maps at most, that each can be read.
+#: Number of maps side by side, of a few and of many, and maximum number, so that each can be read.
 _COLUMNS, _NARROW, _MOST = 4, 5, 60
-#: Letters of a map's title.
+#: Maximum length of a map's title, letters.
 _LONGEST = 22
 
 
-def draw(atlas: DataTree, specimens: list[str]) -> Drawing:
+def draw(atlas: DataTree, specimens: list[str]) -> kit.Drawing:
     """Cells in contact of every map, its load, contact fraction and dimension."""
-    series = measured_series(atlas)
+    series = kit.measured_series(atlas)
     maps = [(name, one) for each in series for name, one in zip(each.names, each.maps, strict=True)]
-    chosen = [maps[i] for i in spread(len(maps), _MOST)]
+    chosen = [maps[i] for i in kit.spread(len(maps), _MOST)]
     columns = min(_COLUMNS if len(chosen) <= 2 * _COLUMNS else _NARROW, len(chosen))
     rows = -(-len(chosen) // columns)
-    side = WIDTH / columns
+    side = kit.WIDTH / columns
     tallest = max(_sides(one)[0] / _sides(one)[1] for _, one in chosen)
-    figure = Figure(figsize=(WIDTH, rows * (0.8 * side * min(tallest, 2) + 0.75) + 0.6))
+    figure = Figure(figsize=(kit.WIDTH, rows * (0.8 * side * min(tallest, 2) + 0.75) + 0.6))
     panels = figure.subplots(rows, columns, squeeze=False).ravel()
     for axes in panels[len(chosen) :]:
         axes.remove()
     for n, (axes, (name, one)) in enumerate(zip(panels, chosen, strict=False)):
         image = np.where(one["measured"], one["in_contact"], np.nan)
-        draw_map(axes, image, _sides(one), ticks=3, cmap="Greys", vmin=0, vmax=1)
+        kit.draw_map(axes, image, _sides(one), ticks=3, cmap="Greys", vmin=0, vmax=1)
         axes.set_title(_title(name, one), loc="left", fontsize=6)
         axes.tick_params(labelsize=6)
         if n % columns:
@@ -50,17 +46,17 @@ def draw(atlas: DataTree, specimens: list[str]) -> Drawing:
             axes.set_xlabel("")
     figure.legend(handles=_key(one for _, one in chosen), loc="outside lower center", ncols=3)
     shown = f"{len(chosen)} of {len(maps)} maps" if len(chosen) < len(maps) else f"{len(maps)} maps"
-    headline(figure, f"{shown}, each with its nominal pressure; in brackets 95 % intervals")
+    kit.headline(figure, f"{shown}, each with its nominal pressure; in brackets 95 % intervals")
     shares = [float(one["area_share"]) for _, one in maps]
     words = {
         "maps": len(maps),
-        "thresholds": threshold_words(series),
+        "thresholds": kit.threshold_words(series),
         "least": min(shares),
         "most": max(shares),
         "different": sum(one["null_verdict"].item() == BEYOND_RANDOM for _, one in maps),
         "warned": sum(bool(one.attrs["warning"]) for _, one in maps),
     }
-    return Drawing(figure, table_of(series), caption(__name__, **words))
+    return kit.Drawing(figure, kit.table_of_maps(series), kit.caption(__name__, **words))
 
 
 def _key(maps):
@@ -70,7 +66,9 @@ def _key(maps):
         Patch(facecolor="black", label="in contact", **outline),
         Patch(facecolor="white", label="not in contact", **outline),
     ]
-    return handles + ([missing_patch()] if any(not one["measured"].all() for one in maps) else [])
+    return handles + (
+        [kit.missing_patch()] if any(not one["measured"].all() for one in maps) else []
+    )
 
 
 def _sides(one):

@@ -6,12 +6,7 @@ from matplotlib.patches import Patch
 from xarray import DataTree
 
 from ...core.estimate import DIMENSION, Estimate
-from ..kit.caption import caption
-from ..kit.drawing import WIDTH, Drawing
-from ..kit.empty import say_empty
-from ..kit.legends import entries, legends_below, mark
-from ..kit.measured import draw_series, measured_series, table_of, threshold_words
-from ..kit.titles import headline, letter
+from .. import kit
 
 TITLE = "Dimension of measured contact maps against pressure"
 SUBJECT = "study"
@@ -19,41 +14,41 @@ NEEDS = ("contact_maps",)
 KEY = "contact_maps"
 ORDER = 310
 
-#: Series whose trends a caption has room for.
+#: Maximum number of series whose trends the caption states.
 _IN_WORDS = 2
 
 
-def draw(atlas: DataTree, specimens: list[str]) -> Drawing:
+def draw(atlas: DataTree, specimens: list[str]) -> kit.Drawing:
     """Delta_sigma over sigma_0 and over A_r/A_0, one line a series, beside random cells."""
-    series = measured_series(atlas)
-    figure = Figure(figsize=(WIDTH, 3.9))
+    series = kit.measured_series(atlas)
+    figure = Figure(figsize=(kit.WIDTH, 3.9))
     panels = figure.subplots(1, 2, sharey=True)
-    for each in series:
-        draw_series(panels[0], each, each.pressure, each.legend, nulls=True)
-        draw_series(panels[1], each, each.values("area_share"), each.legend, nulls=True)
+    for sample in series:
+        kit.draw_series(panels[0], sample, sample.pressure, sample.legend, nulls=True)
+        kit.draw_series(panels[1], sample, sample.values("area_share"), sample.legend, nulls=True)
     for axes, which, words in (
         (panels[0], "a", r"nominal pressure $\sigma_0$ (MPa)"),
         (panels[1], "b", "contact fraction $A_r/A_0$ (1)"),
     ):
         axes.set_xlabel(words)
-        letter(axes, which, words.split(" $")[0])
-    if any(np.isfinite(each.pressure).any() for each in series):
+        kit.letter(axes, which, words.split(" $")[0])
+    if any(np.isfinite(sample.pressure).any() for sample in series):
         panels[0].set_xscale("log")
     else:
         panels[0].set_xticks([])
-        say_empty(panels[0], "no map states its load")
+        kit.say_empty(panels[0], "no map states its load")
     panels[1].set_xscale("log")
     panels[0].set_ylabel(r"dimension $\Delta_\sigma$ by box counting (1)")
     panels[0].set_ylim(-0.05, 2.05)
-    legends_below(figure, entries(panels[1]), _marks(series))
-    headline(figure, "bars: 95 % intervals; after each name the number of its maps")
-    said = caption(__name__, thresholds=threshold_words(series), trends=_trends(series))
-    return Drawing(figure, table_of(series), said)
+    kit.legends_below(figure, kit.entries(panels[1]), _marks(series))
+    kit.headline(figure, "bars: 95 % intervals; after each name the number of its maps")
+    said = kit.caption(__name__, thresholds=kit.threshold_words(series), trends=_trends(series))
+    return kit.Drawing(figure, kit.table_of_maps(series), said)
 
 
 def _marks(series):
     marks = [
-        mark(color="0.3", ls=":", lw=0.8, label="as many random cells"),
+        kit.mark(color="0.3", ls=":", lw=0.8, label="as many random cells"),
         Patch(facecolor="none", edgecolor="0.3", hatch="....", lw=0, label="95 % of their draws"),
     ]
     if any(np.isfinite(each.values("delta_sigma_least")).any() for each in series):

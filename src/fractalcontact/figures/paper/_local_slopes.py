@@ -7,20 +7,18 @@ import xarray as xr
 from matplotlib.colors import to_rgba
 
 from ...core.estimate import Estimate
-from ..kit.drawing import COLOURS, WEAK
-from ..kit.panel import Panel
-from ..kit.points import reach
+from .. import kit
 
-#: Grey of random nodes; the cut; lines over markers, which would hide them.
+#: Grey of random nodes, and style of the bearing-area cut.
 RANDOM = "0.7"
-CUT: dict[str, Any] = {"ls": "-.", "color": COLOURS[4]}
+CUT: dict[str, Any] = {"ls": "-.", "color": kit.COLOURS[4]}
 #: Colours of the count law and of the ordinary slope.
-LAW, ORDINARY = COLOURS[2], COLOURS[0]
+LAW, ORDINARY = kit.COLOURS[2], kit.COLOURS[0]
 _SIDES = ("local_slope_side", "local_slope_side_min", "local_slope_side_max")
 _SLOPES = ("local_slope", "local_slope_random", "local_slope_cut")
 
 
-def draw_slopes(panel: Panel, counts: xr.Dataset) -> None:
+def draw_slopes(panel: kit.Panel, counts: xr.Dataset) -> None:
     """Local slopes with intervals over the box side, beside those of the null models."""
     axes = panel.axes
     panel.keep(counts, *_SIDES, *_SLOPES)
@@ -30,7 +28,7 @@ def draw_slopes(panel: Panel, counts: xr.Dataset) -> None:
     axes.fill_between(middle, low, high, color=RANDOM, lw=1.5, zorder=0)
     axes.plot(middle, random, color=RANDOM, lw=1)
     axes.plot(middle, slopes["local_slope_cut"], **CUT, lw=1)
-    bars: dict[str, Any] = {"yerr": reach(*slope.ends), "fmt": "D", "ms": 4, "lw": 0.8}
+    bars: dict[str, Any] = {"yerr": kit.reach(*slope.ends), "fmt": "D", "ms": 4, "lw": 0.8}
     axes.errorbar(middle, slope.value, color=LAW, **bars)
     axes.set_xscale("log")
     for name, fit, sure, colour, ls in (
@@ -39,7 +37,7 @@ def draw_slopes(panel: Panel, counts: xr.Dataset) -> None:
     ):
         ends, level = [float(counts[f"{fit}_{end}"]) for end in ("min", "max")], counts[name]
         if np.isfinite(level):
-            weak = {} if bool(counts[sure]) else WEAK
+            weak = {} if bool(counts[sure]) else kit.WEAK
             axes.plot(ends, [float(level)] * 2, color=colour, ls=ls, **weak)
             axes.fill_between(ends, *Estimate.read(counts, name).ends[1:], **band_of(colour))
     axes.set_ylim(-0.1, 2.3)

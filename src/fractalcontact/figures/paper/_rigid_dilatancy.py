@@ -9,24 +9,21 @@ from matplotlib.artist import Artist
 from ...core.estimate import Estimate
 from ...core.limits import LEVEL_CHANGE
 from ...core.text import compact, number, percent
-from ..kit.drawing import LINES, colour_of
-from ..kit.legends import entries, heading, mark
-from ..kit.panel import Panel
-from ..kit.words import TOWARDS
+from .. import kit
 
-#: The fitted lines.
+#: Style of the fitted lines.
 _FITTED: dict[str, Any] = {"lw": 2.2, "alpha": 0.7}
 
 
-#: Lines of the parts over opposite directions.
+#: Line styles of the even parts over opposite directions.
 _DOTS = (":", (0, (1, 3)))
 
 
-def draw_rigid(panel: Panel, dilatancy: xr.Dataset, plateaus: xr.Dataset) -> list[Artist]:
+def draw_rigid(panel: kit.Panel, dilatancy: xr.Dataset, plateaus: xr.Dataset) -> list[Artist]:
     """Rigid dilatancy of every direction with the line fitted to its end; the legend."""
     for n, direction in enumerate(dilatancy["direction"].values):
         plateau, style = plateaus.sel(direction=direction), direction_style(n)
-        label = f"{TOWARDS[direction]}: {_change_words(plateau)}"
+        label = f"{kit.TOWARDS[direction]}: {_change_words(plateau)}"
         one = dilatancy[["rigid_dilatancy"]].sel(direction=direction)
         panel.curve(one, "rigid_offset", "rigid_dilatancy", label=label, **style)
         ends = np.array([float(plateau[f"plateau_offset_{end}"]) for end in ("min", "max")])
@@ -40,11 +37,11 @@ def draw_rigid(panel: Panel, dilatancy: xr.Dataset, plateaus: xr.Dataset) -> lis
     half = compact(float(dilatancy["rigid_offset"][-1]) / 2)
     change = rf"change of fitted $\delta_r$ [95 %] in % of its mean, $v \geq$ {half} mm"
     level = f"fitted lines; level: change within {percent(LEVEL_CHANGE)}"
-    fitted = mark(color="0.4", label=level, **_FITTED)
-    return [heading(change), *entries(panel.axes), fitted, *parts]
+    fitted = kit.mark(color="0.4", label=level, **_FITTED)
+    return [kit.heading(change), *panel.entries, fitted, *parts]
 
 
-def _draw_parts(panel: Panel, plateaus: xr.Dataset) -> list[Artist]:
+def _draw_parts(panel: kit.Panel, plateaus: xr.Dataset) -> list[Artist]:
     """Even part over opposite directions, of each axis; entries that state the odd one."""
     drawn: list[Artist] = []
     for axis, dots in zip(plateaus["axis"].values, _DOTS, strict=False):
@@ -58,13 +55,13 @@ def _draw_parts(panel: Panel, plateaus: xr.Dataset) -> list[Artist]:
             f"mean of {axis}: {number(100 * change, 0, '+')} %; half the difference "
             f"{number(tilt, 3, '+')} $v$"
         )
-        drawn.append(mark(**style, label=label))
+        drawn.append(kit.mark(**style, label=label))
     return drawn
 
 
 def direction_style(n: int) -> dict[str, Any]:
     """Line of the n-th direction, in both panels."""
-    return {"color": colour_of(n), "ls": LINES[n % 4], "lw": 0.9}
+    return {"color": kit.colour_of(n), "ls": kit.LINES[n % 4], "lw": 0.9}
 
 
 def _change_words(plateau):

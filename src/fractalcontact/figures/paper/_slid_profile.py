@@ -10,14 +10,14 @@ from ...core.datasets import labelled_dataset
 from ...core.directions import axis_and_sign
 from ...core.text import compact, length_unit
 from ...core.window import faces, window_slices
-from ..kit.drawing import COLOURS
+from .. import kit
 
-#: The node that touches first.
+#: Marker of the node that touches first.
 TOUCH: dict[str, Any] = {
     "marker": "o",
     "ms": 7,
     "mfc": "none",
-    "mec": COLOURS[2],
+    "mec": kit.COLOURS[2],
     "mew": 1.5,
     "ls": "none",
 }
@@ -29,9 +29,9 @@ def way_of(slid: xr.Dataset) -> tuple[str, int]:
 
 
 def slid_profile(specimen: xr.Dataset, slid: xr.Dataset) -> xr.Dataset:
-    """Heights of both faces along the line of sliding through the first touch.
+    """Heights of both faces along the line of sliding through the first touch, mm.
 
-    They go over the windows before and after, and a little beyond.
+    They go a little beyond the windows before and after.
     """
     axis, sign = way_of(slid)
     along = "yx".index(axis)
@@ -40,7 +40,7 @@ def slid_profile(specimen: xr.Dataset, slid: xr.Dataset) -> xr.Dataset:
     lower, upper = (np.take(face, line, axis=1 - along) for face in faces(specimen))
     window, cells = window_slices(specimen)[along], sign * int(slid["offset_cells"])
     after = slice(window.start + cells, window.stop + cells)
-    # Lifted so far, the upper face touches the lower one in one node.
+    # At this lift the upper face touches the lower one in one node.
     lift = np.max(lower[after] - upper[window])
     lifted = np.full((2, lower.size), np.nan)
     lifted[0, window] = upper[window] + lift - float(slid["rigid_dilatancy"])
@@ -54,32 +54,32 @@ def slid_profile(specimen: xr.Dataset, slid: xr.Dataset) -> xr.Dataset:
 
 
 def draw_profile(axes: Axes, profile: xr.Dataset, slid: xr.Dataset, *, before: bool) -> None:
-    """Both faces, offset and dilatancy; ``before`` also the upper face before it slid."""
+    """Both faces, offset and dilatancy; ``before`` adds the upper face before sliding."""
     axis, sign = way_of(slid)
     offset, opening = float(slid["offset"]), float(slid["rigid_dilatancy"])
     x, lower = profile[axis].values, profile["lower"]
     unit, size = length_unit(x[-1])
     highest = max(float(face.max()) for face in profile.values())
     height_unit, height = length_unit(highest - float(lower.min()))
-    axes.plot(x / size, lower / height, color=COLOURS[0], lw=0.9, label="lower face")
+    axes.plot(x / size, lower / height, color=kit.COLOURS[0], lw=0.9, label="lower face")
     if before:
-        style: dict[str, Any] = {"color": COLOURS[1], "lw": 0.7, "ls": "--"}
+        style: dict[str, Any] = {"color": kit.COLOURS[1], "lw": 0.7, "ls": "--"}
         label = "upper face at first touch, $v$ = 0"
         axes.plot(x / size, profile["upper_before"] / height, label=label, **style)
     label = r"upper face, slid by $v$ and lifted by $\delta_r$"
-    axes.plot(x / size, profile["upper_after"] / height, color=COLOURS[4], lw=0.9, label=label)
+    axes.plot(x / size, profile["upper_after"] / height, color=kit.COLOURS[4], lw=0.9, label=label)
 
     start = float(slid[f"first_touch_{axis}"])
     end = start + sign * offset
     top = float(profile["upper_after"].sel({axis: end}, method="nearest")) / height
     bottom = top - opening / height
-    arrow = {"arrowstyle": "<->", "color": COLOURS[3], "lw": 1.2, "shrinkA": 0, "shrinkB": 0}
+    arrow = {"arrowstyle": "<->", "color": kit.COLOURS[3], "lw": 1.2, "shrinkA": 0, "shrinkB": 0}
     corner = end / size, bottom
     for tip, tail in ((corner, (start / size, bottom)), ((end / size, top), corner)):
         axes.annotate("", tip, tail, arrowprops=arrow)
     # The numbers stand in the legend: on the profile they would hide it.
     label = rf"offset $v$ = {compact(offset)} mm, dilatancy $\delta_r$ = {compact(opening)} mm"
-    axes.plot([], [], color=COLOURS[3], lw=1.2, label=label)
+    axes.plot([], [], color=kit.COLOURS[3], lw=1.2, label=label)
     axes.plot(end / size, top, label="first touch", **TOUCH)
     axes.set_xlabel(f"${axis}$ ({unit})")
     axes.set_ylabel(f"height ({height_unit})")

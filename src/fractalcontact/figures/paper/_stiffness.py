@@ -9,13 +9,10 @@ from ...core.subject import Subject
 from ...core.text import compact, force_label, percent
 from ...core.verdicts import UNDETERMINED
 from ...core.window import cell_side
-from ..kit.axes import spacing_axis
-from ..kit.drawing import MARKERS
-from ..kit.empty import TOO_FULL, different_reasons, missing_lines, say_empty
-from ..kit.panel import Panel
+from .. import kit
 
-#: Greys and markers of the loads: colours and the other markers stand for offsets in this figure.
-_GREYS, _MARKERS = ("0.65", "0.45", "0.25", "0"), MARKERS[5:]
+#: Greys and markers of the loads; the offsets have the colours and the other markers.
+_GREYS, _MARKERS = ("0.65", "0.45", "0.25", "0"), kit.MARKERS[5:]
 
 
 def over_spacing(subject: Subject) -> xr.Dataset:
@@ -26,19 +23,10 @@ def over_spacing(subject: Subject) -> xr.Dataset:
     return curves.assign_coords(spacing=("resolution", spacing, {"units": "mm"}))
 
 
-def draw_stiffness(panel: Panel, curves: xr.Dataset) -> list[str]:
-    """Tangent stiffness and k_ni over the spacing.
+def draw_stiffness(panel: kit.Panel, curves: xr.Dataset) -> list[str]:
+    """Tangent stiffness and k_ni over the spacing, of the curves of :func:`over_spacing`.
 
-    Parameters
-    ----------
-    panel : Panel
-    curves : xr.Dataset
-        From :func:`over_spacing`.
-
-    Returns
-    -------
-    list of str
-        Lines of the legend on stiffnesses that are missing beside others.
+    Returns the lines of the legend on stiffnesses that are missing beside others.
     """
     axes, finest = panel.axes, curves.isel(resolution=0)
     tangent, initial = curves["interface_stiffness"], curves["hyperbola_k_ni"]
@@ -58,20 +46,20 @@ def draw_stiffness(panel: Panel, curves: xr.Dataset) -> list[str]:
         words = f"\n{UNDETERMINED}, {numbers}" if doubted else f" {numbers}"
         style["label"] = f"$k_{{ni}}$ from first touch, bars 95 %:{words}"
     panel.curve(curves, "spacing", "hyperbola_k_ni", **style)
-    spacing_axis(axes, curves["spacing"])
+    kit.spacing_axis(axes, curves["spacing"])
     axes.set_ylabel(r"stiffness $\mathrm{d}\sigma_0/\mathrm{d}w_\mathrm{int}$ (MPa/mm)")
     reasons = curves["interface_stiffness_reason"]
     if not (tangent.notnull().any() or initial.notnull().any()):
-        say_empty(axes, "\n".join(different_reasons(reasons)) or TOO_FULL)
+        kit.say_empty(axes, "\n".join(kit.different_reasons(reasons)) or kit.TOO_FULL)
         return []
     axes.set_yscale("log")
-    return missing_lines(reasons, "d")
+    return kit.missing_lines(reasons, "d")
 
 
 def _numbers(state, name):
-    """A stiffness, and the change that twice the spacing makes of it, for a legend."""
+    """Stiffness, and its change at twice the spacing, for a legend."""
     value, change = float(state[name]), float(state[f"{name}_change"])
     if not np.isfinite(value):
         return "not known"
-    known = f" ({percent(change, sign='+')})" if np.isfinite(change) else ""
-    return f"{compact(value)}{known}"
+    change_words = f" ({percent(change, sign='+')})" if np.isfinite(change) else ""
+    return f"{compact(value)}{change_words}"

@@ -10,70 +10,59 @@ from ...core.estimate import DIMENSION, Estimate
 from ...core.subject import Subject
 from ...core.text import compact, length_unit
 from ...core.window import face_words, spacing_of
-from ..kit.caption import caption
-from ..kit.drawing import COLOURS, WIDTH, Drawing
-from ..kit.empty import say_empty
-from ..kit.legends import heading
-from ..kit.maps import missing_patch, scan_extent
-from ..kit.panel import rows
-from ..kit.points import reach
-from ..kit.relief import draw_faces
-from ..kit.titles import headline, letter
+from .. import kit
 
 TITLE = "Fig. 2: shaded relief of the levelled faces, and the surface dimension"
 SUBJECT = "specimen"
 NEEDS = ("specimens", "surface_dimension")
 ORDER = 20
 
-#: What the table has of every estimator.
+#: Variables of the table, by estimator.
 _COLUMNS = ("dimension", "hurst_x", "hurst_y", "fit_min", "fit_max", "n", "recommended")
 
 
-def draw(atlas: DataTree, name: str) -> Drawing:
-    """Relief of each face under light from the North-West, and Delta_g by every estimator.
-
-    Its data are the estimates of Delta_g, of the lower face.
-    """
+def draw(atlas: DataTree, name: str) -> kit.Drawing:
+    """Relief of each face lit from the North-West, and Delta_g; the data are of the lower face."""
     subject = Subject.of(atlas, name)
     specimen, dimension = subject["specimens"], subject["surface_dimension"]
     faces = [face for face in ("lower", "upper") if face in specimen]
-    sides = scan_extent(specimen)
+    sides = kit.scan_extent(specimen)
     alone = len(faces) == 1
 
-    width = WIDTH * (0.55 if alone else 0.35)
+    width = kit.WIDTH * (0.55 if alone else 0.35)
     height = min(max(width * sides[0] / sides[1], 1.6), 1.3 * width) + 1.2
-    figure = Figure(figsize=(WIDTH, height))
+    figure = Figure(figsize=(kit.WIDTH, height))
     ratios = [1.6 if alone else 1.2] * len(faces) + [1]
     *maps, axes = figure.subplots(1, len(ratios), width_ratios=ratios)
-    handles: list[Artist] = [draw_faces(figure, maps, specimen, faces, sides)]
+    handles: list[Artist] = [kit.draw_faces(figure, maps, specimen, faces, sides)]
     if any(not np.isfinite(specimen[face]).all() for face in faces):
-        handles.append(missing_patch())
+        handles.append(kit.missing_patch())
     handles += _draw_dimensions(axes, dimension)
-    handles += map(heading, _range_words(dimension))
+    handles += map(kit.heading, _range_words(dimension))
     titles = [*(face_words(specimen, face) for face in faces)]
     titles.append(rf"$\Delta_g$ of the {titles[0]}")
     for panel, which, title in zip((*maps, axes), "abc", titles, strict=False):
-        letter(panel, which, title)
+        kit.letter(panel, which, title)
     figure.legend(handles=handles, loc="outside lower left", ncols=3, columnspacing=1)
-    headline(figure, subject.label, below=_size_words(specimen, sides))
+    kit.headline(figure, subject.label, below=_size_words(specimen, sides))
     best = dimension["estimator"] == dimension["recommended"]
-    table = rows(dimension.assign(recommended=best), *_COLUMNS, "known_dimension", face="lower")
-    return Drawing(figure, table, _caption(specimen, faces, dimension))
+    table = kit.rows(dimension.assign(recommended=best), *_COLUMNS, "known_dimension", face="lower")
+    return kit.Drawing(figure, table, _caption(specimen, faces, dimension))
 
 
 def _draw_dimensions(axes, dimension):
     """Estimates of Delta_g with their intervals, one below the other; the lines of a legend."""
     names = dimension["estimator"].values
-    found = Estimate.read(dimension, "dimension", scale=DIMENSION)
+    estimates = Estimate.read(dimension, "dimension", scale=DIMENSION)
     places = np.arange(len(names))
-    words = (found[n].text() if found.known[n] else "no fit" for n in places)
+    words = (estimates[n].text() if estimates.known[n] else "no fit" for n in places)
     labels = [f"{name.replace('_', ' ')}\n{text}" for name, text in zip(names, words, strict=True)]
     axes.set_yticks(places, labels, fontsize=7)
     axes.set_ylim(len(places) - 0.4, -0.6)
     axes.set_xlabel(r"surface dimension $\Delta_g$ (1)")
     axes.xaxis.set_major_locator(MaxNLocator(4, steps=[1, 2, 5, 10]))
-    if not found.known.any():
-        say_empty(axes, "no fit: the scan has\ntoo few scales")
+    if not estimates.known.any():
+        kit.say_empty(axes, "no fit: the scan has\ntoo few scales")
         axes.set_xticks([])
         return []
     recommended = rf"recommended $\Delta_g$ {_recommended(dimension).text()}"
@@ -83,17 +72,17 @@ def _draw_dimensions(axes, dimension):
     handles = []
     for those, label, style in (
         (~best, "other estimators, 95 %", {"color": "0.45", "mfc": "white"}),
-        (best, recommended, {"color": COLOURS[1]}),
+        (best, recommended, {"color": kit.COLOURS[1]}),
     ):
-        of = found.known & those
+        of = estimates.known & those
         if of.any():
-            value, bars = found.value[of], reach(*found[of].ends)
+            value, bars = estimates.value[of], kit.reach(*estimates[of].ends)
             style |= {"fmt": "o", "capsize": 2, "label": label}
             handles.append(axes.errorbar(value, places[of], xerr=bars, **style))
-    known = float(dimension["known_dimension"])
-    if np.isfinite(known):
-        label = rf"known $\Delta_g$ {compact(known)}"
-        handles.append(axes.axvline(known, color=COLOURS[2], ls="--", lw=0.8, label=label))
+    stated = float(dimension["known_dimension"])
+    if np.isfinite(stated):
+        label = rf"known $\Delta_g$ {compact(stated)}"
+        handles.append(axes.axvline(stated, color=kit.COLOURS[2], ls="--", lw=0.8, label=label))
     axes.grid(axis="x", color="0.9", lw=0.5)
     return handles
 
@@ -103,7 +92,7 @@ def _recommended(dimension):
 
 
 def _range_words(dimension):
-    """Entries of a legend: lengths that give the recommended Delta_g, and both axes."""
+    """Entries of a legend: lengths of the recommended fit, and how x and y differ."""
     words = []
     if _recommended(dimension).known:
         best = dimension.sel(estimator=dimension["recommended"].item())
@@ -126,7 +115,7 @@ def _size_words(specimen, sides):
 
 
 def _caption(specimen, faces, dimension):
-    return caption(
+    return kit.caption(
         __name__,
         faces=faces,
         absent=1 - float(specimen["valid"].mean()),

@@ -11,15 +11,7 @@ from ...core.estimate import EXPONENT, Estimate
 from ...core.limits import CORRECTED_NODES, GOOD_FIT, RESOLVED_NODES
 from ...core.subject import Subject
 from ...core.text import number, percent
-from ..kit.axes import force_axis
-from ..kit.caption import caption
-from ..kit.drawing import WIDTH, Drawing, spread
-from ..kit.legends import entries, heading, legends_below, mark
-from ..kit.panel import Panel, rows, table_of
-from ..kit.points import draw_points
-from ..kit.titles import headline, letter
-from ..kit.verdicts import claim
-from ..kit.words import place
+from .. import kit
 from ._closure_laws import (
     LINES,
     OPEN,
@@ -28,7 +20,6 @@ from ._closure_laws import (
     each_curve,
     no_law,
     offset_words,
-    second_axis,
 )
 from ._stiffness import draw_stiffness, over_spacing
 
@@ -39,7 +30,7 @@ ORDER = 50
 
 CURVES = 5
 
-#: What the numbers of every curve are.
+#: Heads of the legend, which explain the numbers of each curve.
 _LEGEND = (
     "(a), (b), from first touch: rms misfit of logarithmic law, of hyperbola; "
     "$k_{ni}$ (MPa/mm) [95 %]"
@@ -49,7 +40,7 @@ _LEGEND_AREA = r"(c): exponent $m$ of $A_r \sim F^m$ [95 %]"
 _LEGEND_STIFFNESS = "(d): MPa/mm at the finest $s$ (change at $2s$)"
 _HOLLOW = f"hollow: under {RESOLVED_NODES} nodes, in (c) {CORRECTED_NODES} (area raw)"
 
-#: What the table has of the curves, besides the law of the area.
+#: Variables of the curves in the table.
 _COLUMNS = (
     *("nodes", "resolved", "interface_closure", "seated_closure", "separation"),
     *("interface_stiffness", "interface_stiffness_reason", "seating_pressure"),
@@ -60,49 +51,49 @@ _COLUMNS = (
 )
 
 
-def draw(atlas: DataTree, name: str) -> Drawing:
+def draw(atlas: DataTree, name: str) -> kit.Drawing:
     """Closure and contact area at about five offsets, and stiffness over the spacing at one."""
     subject = Subject.of(atlas, name)
     laws = subject.curves("area")
     laws = laws[[one for one in laws.data_vars if str(one).startswith("corrected_")]]
     curves = subject.curves().assign(laws.data_vars)
     count = curves.sizes["offset"]
-    drawn = curves.isel(offset=spread(count, CURVES))
+    drawn = curves.isel(offset=kit.spread(count, CURVES))
     stiffness = over_spacing(subject)
 
-    figure = Figure(figsize=(WIDTH, 7.6))
+    figure = Figure(figsize=(kit.WIDTH, 7.6))
     panels = figure.subplot_mosaic("ab;cd", height_ratios=[1.1, 1])
     where = offset_words(subject, subject.offset)
-    d = Panel(panels["d"], "d", f"stiffness over the spacing, {where}")
+    d = kit.Panel(panels["d"], "d", f"stiffness over the spacing, {where}")
     draw_closure(panels["a"], drawn, subject)
     draw_light_loads(panels["b"], drawn, subject)
     _draw_area(panels["c"], drawn, subject)
     missing = draw_stiffness(d, stiffness)
     some = f", {drawn.sizes['offset']} of the {count} offsets drawn" if count > CURVES else ""
-    letter(panels["a"], "a", f"closure{some}")
-    letter(panels["b"], "b", f"light loads{_softer(curves)}")
-    letter(panels["c"], "c", "contact area")
+    kit.letter(panels["a"], "a", f"closure{some}")
+    kit.letter(panels["b"], "b", f"light loads{_softer(curves)}")
+    kit.letter(panels["c"], "c", "contact area")
     of_laws = _keyed(_LEGEND, panels["a"], "semi_logarithmic", "hyperbola", "beyond")
     of_areas = _keyed(_LEGEND_AREA, panels["c"], "area")
-    of_areas += [heading(_LEGEND_STIFFNESS), *entries(d.axes)] if d.axes.has_data() else []
-    of_areas += [mark(color="0.3", ls="none", marker="o", label=_HOLLOW, **OPEN)]
-    of_areas += [heading(line) for line in missing]
-    legends_below(figure, of_laws, of_areas)
-    headline(figure, subject.label, place(subject.direction))
-    table = [rows(drawn, *_COLUMNS, panel="a, b, c"), table_of(d)]
+    of_areas += [kit.heading(_LEGEND_STIFFNESS), *d.entries] if d.axes.has_data() else []
+    of_areas += [kit.mark(color="0.3", ls="none", marker="o", label=_HOLLOW, **OPEN)]
+    of_areas += [kit.heading(line) for line in missing]
+    kit.legends_below(figure, of_laws, of_areas)
+    kit.headline(figure, subject.label, kit.place(subject.direction))
+    table = [kit.rows(drawn, *_COLUMNS, panel="a, b, c"), kit.table_of(d)]
     words = {
         "laws": Counter(filter(None, curves["closure_law"].values.tolist())),
         "no_law": no_law(curves.isel(offset=-1)),
         "limit": percent(GOOD_FIT),
         "state": subject.state("closure"),
-        "hyperbola": claim(atlas, name, "closure_is_hyperbolic", numbers=False),
-        "linear": claim(atlas, name, "area_is_linear"),
+        "hyperbola": kit.claim(atlas, name, "closure_is_hyperbolic", numbers=False),
+        "linear": kit.claim(atlas, name, "area_is_linear"),
     }
-    return Drawing(figure, pd.concat(table, ignore_index=True), caption(__name__, **words))
+    return kit.Drawing(figure, pd.concat(table, ignore_index=True), kit.caption(__name__, **words))
 
 
 def _softer(curves):
-    """At how many offsets the curve itself is less stiff than its k_ni."""
+    """Number of offsets, in words, at which the curve is less stiff than its k_ni."""
     fitted = int(np.isfinite(curves["hyperbola_k_ni"]).sum())
     softer = int(curves["softer_than_k_ni"].sum())
     return f": softer than $k_{{ni}}$ at {softer} of {fitted} offsets" if softer else ""
@@ -110,7 +101,7 @@ def _softer(curves):
 
 def _draw_area(axes, drawn, subject):
     """Real contact area with its power law; raw, and hollow, where it is not corrected."""
-    size = force_axis(axes.xaxis, drawn["normal_force"])
+    size = kit.force_axis(axes.xaxis, drawn["normal_force"])
     force = drawn["normal_force"].values / size
     for curve, style in each_curve(drawn):
         enough = curve["area_corrected_resolved"].values
@@ -122,17 +113,17 @@ def _draw_area(axes, drawn, subject):
         )
         share = 100 * np.where(enough, curve["area_corrected_share"], curve["area_share"])
         label = f"{offset_words(subject, float(curve['offset']))}: {words}"
-        draw_points(axes, force, share, enough, OPEN, label=label, **style)
+        kit.draw_points(axes, force, share, enough, OPEN, label=label, **style)
         if exponent.known:
             ends = np.array([float(curve[f"corrected_force_{end}"]) for end in ("low", "high")])
             line = 100 * float(curve["corrected_unit_area"]) * ends**exponent.value / subject.area
             axes.plot(ends / size, line, color=style["color"], lw=0.8, ls=LINES["area"][0])
     axes.set(xscale="log", yscale="log", ylabel="real contact area $A_r/A_0$ (%)")
-    second_axis(axes, subject.area / 100, "$A_r$ (mm$^2$)")
+    kit.second_axis(axes, subject.area / 100, "$A_r$ (mm$^2$)")
 
 
 def _keyed(head, axes, *lines):
-    """Legend entries of axes under a heading, and the meaning of lines."""
+    """Legend entries of axes under a heading, with those of the laws' lines."""
     style = {"color": "0.3", "lw": 0.9}
-    named = [mark(ls=LINES[line][0], label=LINES[line][1], **style) for line in lines]
-    return [heading(head), *entries(axes), *named]
+    named = [kit.mark(ls=LINES[line][0], label=LINES[line][1], **style) for line in lines]
+    return [kit.heading(head), *kit.entries(axes), *named]

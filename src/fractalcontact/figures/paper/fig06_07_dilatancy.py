@@ -8,17 +8,7 @@ from ...core.subject import Subject
 from ...core.text import compact, force_label, percent
 from ...core.verdicts import FALLING, LEVEL, RISING
 from ...core.window import window_sides
-from ..kit.axes import offset_axis
-from ..kit.caption import caption
-from ..kit.drawing import WIDTH, Drawing, spread
-from ..kit.laboratory import draw_tests, test_words
-from ..kit.legends import entries, legends_below
-from ..kit.maps import HALO, draw_domain
-from ..kit.panel import Panel, table_of
-from ..kit.points import hollow_entry
-from ..kit.titles import headline
-from ..kit.verdicts import claim
-from ..kit.words import TOWARDS, area_label, place
+from .. import kit
 from ._rigid_dilatancy import direction_style, draw_rigid
 
 TITLE = "Figs. 6 and 7: rigid and elastic dilatancy, and contact domains along the curve"
@@ -36,60 +26,57 @@ ORDER = 100
 
 #: Height of the curves and their legend, inches.
 _TOP = 3.7
-#: Letters of the contact domains, and how many stand side by side.
+#: Letters of the contact domains, and their number side by side.
 LETTERS, COLUMNS = "ABCDEF", 3
-#: What the table has of the states besides.
+#: Further variables of the states in the table.
 _OF_STATES = (
     *("separation", "bulk_settlement", "nodes"),
     *("area_share", "area_corrected_share", "area_corrected_resolved"),
 )
-#: What the paper says of rock and of concrete, and the statements that judge it.
+#: Statements on the dilatancy of rock and of concrete.
 _PLATEAUS = ("dilatancy_flattens", "dilatancy_flattens_in_two")
 
 
-def draw(atlas: DataTree, name: str) -> Drawing:
-    """Dilatancy curves and contact domains at six offsets.
-
-    Its data are the points of both kinds of curves, with the contact areas of the latter.
-    """
+def draw(atlas: DataTree, name: str) -> kit.Drawing:
+    """Dilatancy curves, which are its data with the contact areas, and domains at six offsets."""
     subject = Subject.of(atlas, name)
     plateaus, elastic = subject["joints"], subject.curves("dilatancy")["elastic_dilatancy"]
     curves = subject.curves().assign(elastic_dilatancy=elastic.drop_vars("contact_direction"))
-    points = spread(curves.sizes["offset"], len(LETTERS))
+    points = kit.spread(curves.sizes["offset"], len(LETTERS))
 
     height = 2.5 * -(-len(points) // COLUMNS)
-    figure = Figure(figsize=(WIDTH, _TOP + height))
+    figure = Figure(figsize=(kit.WIDTH, _TOP + height))
     top, bottom = figure.subfigures(2, 1, height_ratios=[_TOP, height])  # type: ignore[misc]  # an array
     left, right = top.subplots(1, 2)
-    a = Panel(left, "a", "rigid dilatancy")
-    b = Panel(right, "b", f"elastic dilatancy, {place(subject.direction)}")
+    a = kit.Panel(left, "a", "rigid dilatancy")
+    b = kit.Panel(right, "b", f"elastic dilatancy, {kit.place(subject.direction)}")
     key = draw_rigid(a, subject["dilatancy"], plateaus)
     _draw_elastic(b, subject, curves, points)
-    draw_tests(b, subject, "dilatancy")
-    legends_below(top, key, entries(b.axes))
+    kit.draw_tests(b, subject, "dilatancy")
+    kit.legends_below(top, key, b.entries)
     _draw_domains(bottom, subject, curves, points)
     title = f"(c) contact domains at $F$ = {force_label(subject.reported.force)}"
     bottom.suptitle(f"{title}, small nodes enlarged", x=0.01, ha="left", fontsize=8)
-    headline(figure, subject.label)
+    kit.headline(figure, subject.label)
     trends = dict(zip(plateaus["direction"].values, plateaus["plateau_trend"].values, strict=True))
     end = float(plateaus["rigid_offset"][-1])
     undecided = next(filter(None, plateaus["plateau_undecided"].values.tolist()), "")
     words = {
         "end": end,
         "undecided": undecided,
-        "tests": test_words(subject, "dilatancy"),
+        "tests": kit.test_words(subject, "dilatancy"),
         "force": subject.reported.force,
         "fitted": sum(map(bool, trends.values())),
         "level": list(trends.values()).count(LEVEL),
         "others": {
-            trend: [TOWARDS[one] for one, found in trends.items() if found == trend]
+            trend: [kit.TOWARDS[one] for one, trend_found in trends.items() if trend_found == trend]
             for trend in (RISING, FALLING)
         },
         "within": percent(LEVEL_CHANGE),
-        "plateaus": list(filter(None, (claim(atlas, name, said) for said in _PLATEAUS))),
-        "fall": claim(atlas, name, "area_falls"),
+        "plateaus": list(filter(None, (kit.claim(atlas, name, said) for said in _PLATEAUS))),
+        "fall": kit.claim(atlas, name, "area_falls"),
     }
-    return Drawing(figure, table_of(a, b), caption(__name__, **words))
+    return kit.Drawing(figure, kit.table_of(a, b), kit.caption(__name__, **words))
 
 
 def _draw_elastic(panel, subject, curves, points):
@@ -103,12 +90,12 @@ def _draw_elastic(panel, subject, curves, points):
     style = {"hue": "normal_force", "labels": labels, "first": 4, "filled": "resolved", "ls": "-"}
     panel.curves(shown, "offset", "elastic_dilatancy", keep=_OF_STATES, **style)
     if not shown["resolved"].all():
-        hollow_entry(axes, f"hollow: under {RESOLVED_NODES} nodes")
+        kit.hollow_entry(axes, f"hollow: under {RESOLVED_NODES} nodes")
     opened = curves["elastic_dilatancy"].isel(normal_force=subject.reported.reference)
     for letter, (v, delta) in zip(LETTERS, opened[points].to_series().items(), strict=False):
-        below = {"textcoords": "offset points", "ha": "center", "path_effects": HALO}
+        below = {"textcoords": "offset points", "ha": "center", "path_effects": kit.HALO}
         axes.annotate(letter, (v, delta), (0, -11), **below)
-    offset_axis(axes, curves["offset"].values)
+    kit.offset_axis(axes, curves["offset"].values)
     if axes.get_xscale() == "log":
         ends = curves["offset"].values[[0, -1]]
         axes.set_xlim(ends[0] / 1.3, ends[1] * 1.3)
@@ -123,9 +110,9 @@ def _draw_domains(figure, subject, curves, points):
     panels = figure.subplots(-(-len(points) // COLUMNS), COLUMNS, squeeze=False).ravel()
     for letter, axes, i in zip(LETTERS, panels, points, strict=False):
         domain = fields.isel({**load, "offset": i}).values
-        draw_domain(axes, domain, window_sides(subject["specimens"]))
+        kit.draw_domain(axes, domain, window_sides(subject["specimens"]))
         state = curves.isel({**load, "offset": i})
-        area = area_label(state)
+        area = kit.area_label(state)
         axes.set_title(f"{letter}: $v$ = {compact(state['offset'])} mm, $A_r/A_0$ = {area}")
     for axes in panels[len(points) :]:
         axes.remove()

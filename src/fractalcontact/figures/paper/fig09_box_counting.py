@@ -11,16 +11,7 @@ from ...core.estimate import DIMENSION, Estimate
 from ...core.subject import Subject
 from ...core.text import force_label
 from ...core.window import window_sides
-from ..kit.caption import caption
-from ..kit.domains import contact_domain
-from ..kit.drawing import COLOURS, WEAK, WIDTH, Drawing
-from ..kit.ensembles import draw_band
-from ..kit.legends import entries, heading
-from ..kit.maps import draw_domain
-from ..kit.panel import Panel, table_of
-from ..kit.titles import headline, letter
-from ..kit.verdicts import claim, verdict_words
-from ..kit.words import place
+from .. import kit
 from ._local_slopes import CUT, LAW, ORDINARY, RANDOM, band_of, draw_slopes
 
 TITLE = "Fig. 9: box counting of a contact domain"
@@ -28,14 +19,14 @@ SUBJECT = "specimen"
 NEEDS = ("specimens", "contact", "closure", "domains", "statements", "ensemble")
 ORDER = 140
 
-#: What each panel keeps, by the dimension of its sides.
+#: Variables of the rows of (b), by the dimension of their sides.
 _COUNTS = {
     "scale": ("box_side", "box_count", "box_used", "ordinary_used", "ordinary_count"),
     "mean_scale": ("mean_side", "mean_count", "law_count"),
     "null_scale": ("null_side", "null_count_random", "null_count_cut"),
     "null_mean_scale": ("null_mean_side", "null_mean_count"),
 }
-#: The law of the counts in words.
+#: Law of the counts in words.
 _LAW = (
     "Count law in (b): the area $N r^2$ of the boxes,\nless that of a node's width and outline,\n"
 )
@@ -43,42 +34,42 @@ _LAW += r"grows as $r^{2-\Delta_\sigma}$"
 _SEEN: dict[str, Any] = {"zorder": 4, "linewidth": 1.4}
 
 
-def draw(atlas: DataTree, name: str) -> Drawing:
-    """A contact domain, its box counts N(r) with count law and ordinary slope, local slopes."""
+def draw(atlas: DataTree, name: str) -> kit.Drawing:
+    """A contact domain, its box counts N(r) with both laws, and local slopes."""
     subject = Subject.of(atlas, name)
     reported, counts = subject.reported, subject.state("domains")
     law = Estimate.read(counts, "delta_sigma", scale=DIMENSION)
     slope = Estimate.read(counts, "delta_sigma_ordinary", scale=DIMENSION)
     ordinary = slope.text() if bool(counts["ordinary_determined"]) else slope.undetermined()
-    figure = Figure(figsize=(WIDTH, 3.7))
+    figure = Figure(figsize=(kit.WIDTH, 3.7))
     axes = figure.subplots(1, 3)
-    domain = contact_domain(subject, reported.resolution, reported.reference)
-    draw_domain(axes[0], domain, window_sides(subject["specimens"]))
-    letter(axes[0], "a", "contact, small nodes enlarged")
-    b, c = Panel(axes[1], "b", "box counts"), Panel(axes[2], "c", "local slopes")
+    domain = kit.contact_domain(subject, reported.resolution, reported.reference)
+    kit.draw_domain(axes[0], domain, window_sides(subject["specimens"]))
+    kit.letter(axes[0], "a", "contact, small nodes enlarged")
+    b, c = kit.Panel(axes[1], "b", "box counts"), kit.Panel(axes[2], "c", "local slopes")
     _draw_counts(b, counts, rf"count law: $\Delta_\sigma$ {law.text()}", ordinary)
     draw_slopes(c, counts)
     force = {"normal_force": reported.force}
-    draw_band(c, subject, "local_slope", COLOURS[1], "(c)", "local_slope_side", **force)
-    handles = [*entries(axes[1]), heading(_LAW)]
+    kit.draw_band(c, subject, "local_slope", kit.COLOURS[1], "(c)", "local_slope_side", **force)
+    handles = [*kit.entries(axes[1]), kit.heading(_LAW)]
     handles.append(Patch(**band_of(LAW), label="(c) 95 % of the count law"))
     handles.append(Patch(**band_of(ORDINARY), label="(c) 95 % of the ordinary slope"))
-    handles += entries(axes[2])
+    handles += kit.entries(axes[2])
     narrow = {"columnspacing": 1.2, "handlelength": 1.8}
     figure.legend(handles=handles, loc="outside lower center", ncols=3, **narrow)
-    where = place(subject.direction, subject.offset)
-    headline(figure, subject.label, where, f"$F$ = {force_label(reported.force)}")
-    text = caption(
+    where = kit.place(subject.direction, subject.offset)
+    kit.headline(figure, subject.label, where, f"$F$ = {force_label(reported.force)}")
+    text = kit.caption(
         __name__,
         reason=str(counts["reason"].item()),
         law=law,
         sides=[float(counts[f"fit_{end}"]) for end in ("min", "max")],
-        one_power=verdict_words(atlas, name, "boxes_follow_one_law", numbers=False),
+        one_power=kit.verdict_words(atlas, name, "boxes_follow_one_law", numbers=False),
         ordinary=ordinary,
-        one_law=claim(atlas, name, "boxes_follow_one_law"),
-        fractal=claim(atlas, name, "domains_are_fractal", numbers=False),
+        one_law=kit.claim(atlas, name, "boxes_follow_one_law"),
+        fractal=kit.claim(atlas, name, "domains_are_fractal", numbers=False),
     )
-    return Drawing(figure, table_of(b, c), text)
+    return kit.Drawing(figure, kit.table_of(b, c), text)
 
 
 def _draw_counts(panel, counts, law, ordinary):
@@ -96,16 +87,16 @@ def _draw_counts(panel, counts, law, ordinary):
         style = {"ms": 4, "mfc": face, "mec": ORDINARY, "label": f"boxes, fewest, {words}"}
         axes.loglog(r[some], counts["box_count"].values[some], "o", **style)
     if np.isfinite(counts["ordinary_count"]).any():
-        style = _SEEN | ({} if bool(counts["ordinary_determined"]) else WEAK)
+        style = _SEEN | ({} if bool(counts["ordinary_determined"]) else kit.WEAK)
         label = f"ordinary slope: {ordinary}"
         axes.loglog(r, counts["ordinary_count"], "--", color=ORDINARY, label=label, **style)
-    # Markers that hide no line.
+    # Small, thin crosses hide no line.
     crosses = {"ms": 3.5, "mew": 0.7, "alpha": 0.7, "label": "boxes, mean of origins"}
     axes.loglog(counts["mean_side"], counts["mean_count"], "x", color=LAW, **crosses)
     slopes = {"fmt": "D", "ms": 4, "lw": 0.8, "label": "(c) mean of origins, 95 %"}
     axes.errorbar([], [], yerr=[], color=LAW, **slopes)
     if np.isfinite(counts["law_count"]).any():
-        style = _SEEN | ({} if bool(counts["determined"]) else WEAK)
+        style = _SEEN | ({} if bool(counts["determined"]) else kit.WEAK)
         axes.loglog(counts["mean_side"], counts["law_count"], color=LAW, label=law, **style)
     axes.set_ylim(0.7, float(counts["box_count"].max()) ** 1.1 * 2)
     axes.set(xlabel="box side $r$ (mm)", ylabel="occupied boxes $N(r)$ (1)")

@@ -6,26 +6,7 @@ from xarray import DataTree
 
 from ...core.subject import Subject
 from ...core.text import compact, percent
-from ..kit.caption import caption
-from ..kit.drawing import WIDTH, Drawing
-from ..kit.empty import say_empty
-from ..kit.legends import entries, heading
-from ..kit.panel import rows
-from ..kit.points import hollow_entry
-from ..kit.sizes import (
-    BARS,
-    NO_STRENGTH,
-    SHIFTED,
-    TRUNCATED,
-    draw_over_size,
-    name_exponents,
-    roughness_words,
-    series,
-    size_axis,
-)
-from ..kit.titles import headline
-from ..kit.verdicts import claim
-from ..kit.words import place
+from .. import kit
 
 TITLE = "Fig. 11: limit slope angle against the size of the joint, computed"
 SUBJECT = "joint"
@@ -40,59 +21,56 @@ _COLUMNS = (
 )
 
 
-def draw(atlas: DataTree, name: str) -> Drawing:
-    """Limit slope angle of parts of the window against their side b.
-
-    Its data are the angles at every v/b.
-    """
+def draw(atlas: DataTree, name: str) -> kit.Drawing:
+    """Limit slope angle of parts of the window against their side b; the data have every v/b."""
     subject = Subject.of(atlas, name)
     laws = subject["windows"]
     direction = str(laws["direction"].values)
     strength = subject["strength"].sel(contact_direction=direction)
     shown = laws.sel(share=float(laws["strength_share"]))
     drawn = bool(shown["strength_at_equal_v_over_b"].notnull().all("normal_force").any())
-    # Barton's law was to be drawn, and cannot be: his scale of roughness ends at 20.
+    # Barton's law is stated but has no value: his scale of roughness ends at 20.
     stated = bool(np.isfinite(strength["joint_wall_strength"]))
     beyond = stated and bool(np.isnan(laws["barton_roughness"]).all())
-    figure = Figure(figsize=(WIDTH, 3.4))
+    figure = Figure(figsize=(kit.WIDTH, 3.4))
     axes = figure.subplots()
     _draw_angle(axes, shown)
     axes.set_title(f"at $v$ = {percent(float(shown['share']))} of $b$", loc="left")
     if drawn:
-        handles = [*entries(axes), heading(BARS), heading(SHIFTED)]
+        handles = [*kit.entries(axes), kit.heading(kit.BARS), kit.heading(kit.SHIFTED)]
         axes.legend(handles=handles, loc="center left", bbox_to_anchor=(1.01, 0.5), borderaxespad=0)
     else:
-        say_empty(axes, NO_STRENGTH, ticks=False)
-    headline(figure, subject.label, place(direction))
-    words = caption(
+        kit.say_empty(axes, kit.NO_STRENGTH, ticks=False)
+    kit.headline(figure, subject.label, kit.place(direction))
+    words = kit.caption(
         __name__,
         share=float(shown["share"]),
         drawn=drawn,
         beyond=beyond,
-        roughness=roughness_words(strength),
-        claim=claim(atlas, name, "strength_falls_with_size"),
+        roughness=kit.roughness_words(strength),
+        claim=kit.claim(atlas, name, "strength_falls_with_size"),
     )
-    table = rows(laws.transpose("share", "normal_force", "part", ...), *_COLUMNS)
-    return Drawing(figure, table, words)
+    table = kit.rows(laws.transpose("share", "normal_force", "part", ...), *_COLUMNS)
+    return kit.Drawing(figure, table, words)
 
 
 def _draw_angle(axes, laws):
     """Angles, Barton and Bandis' law, and the power of b that was quoted for shear tests."""
     b, valid = laws["side"].values, laws["strength_at_equal_v_over_b_valid"]
-    draw_over_size(axes, laws, "limit_slope_angle", filled=valid)
+    kit.draw_over_size(axes, laws, "limit_slope_angle", filled=valid)
     for j in range(laws.sizes["normal_force"]):
-        one, style = laws.isel(normal_force=j), {"color": series(j)["color"], "lw": 0.8}
+        one, style = laws.isel(normal_force=j), {"color": kit.series(j)["color"], "lw": 0.8}
         axes.plot(b, one["barton_slope_angle"], **style, ls="--")
         whole = np.tan(np.radians(float(one["limit_slope_angle"][0])))
         quoted = whole * (b / b[0]) ** (QUOTED_DELTA - 2)
         axes.plot(b, np.degrees(np.arctan(quoted)), **style, ls=":")
-    name_exponents(axes, laws, "strength_at_equal_v_over_b_exponent", r"\tau")
+    kit.name_exponents(axes, laws, "strength_at_equal_v_over_b_exponent", r"\tau")
     if not valid.all():
-        hollow_entry(axes, TRUNCATED)
+        kit.hollow_entry(axes, kit.TRUNCATED)
     if np.isfinite(laws["barton_slope_angle"]).any():
         axes.plot([], [], color="0.4", ls="--", lw=0.8, label="Barton and Bandis' scale law")
     label = f"$x$ = {compact(QUOTED_DELTA, 6)} - 2, by later work of the same school"
     axes.plot([], [], color="0.4", ls=":", lw=0.8, label=label)
-    size_axis(axes, b, "joint")
+    kit.size_axis(axes, b, "joint")
     axes.set_ylim(0, 90)
     axes.set_ylabel(r"limit slope angle $\arctan(\tau/\sigma_0)$ (degrees)")

@@ -9,25 +9,7 @@ from ...core.limits import MIN_NODES
 from ...core.subject import Subject
 from ...core.text import force_label
 from ...core.window import window_sides
-from ..kit.caption import caption
-from ..kit.domains import (
-    RISES,
-    contact_domain,
-    departures,
-    estimates_of,
-    rise_words,
-    spread_loads,
-)
-from ..kit.drawing import COLOURS, WIDTH, Drawing
-from ..kit.empty import say_empty
-from ..kit.ensembles import draw_band, members_of
-from ..kit.maps import draw_domain
-from ..kit.measured import draw_over_force, measured_range, measured_series
-from ..kit.measured import table_of as table_of_maps
-from ..kit.panel import Panel, table_of
-from ..kit.points import hollow_entry, reach
-from ..kit.titles import headline, letter
-from ..kit.words import area_label, place, wrapped
+from .. import kit
 
 TITLE = "Fig. 12: contact domains and their dimension under growing load"
 SUBJECT = "specimen"
@@ -43,61 +25,61 @@ NEEDS = (
 )
 ORDER = 190
 
-#: Contact domains drawn.
+#: Number of contact domains drawn.
 _MAX_MAPS = 6
 _LETTERS = "abcdefg"
 _ABOVE_MAPS = (
     "force $F$ and real contact area $A_r/A_0$ of each domain (contact black,\n"
     "small nodes enlarged, single ones in rings; raw: not corrected for the perimeter)"
 )
-#: The two estimates stand this factor of F apart, so that neither hides the other.
+#: Factors of F at which the two estimates stand, so that neither hides the other.
 _APART = {"area": 1 / 1.04, "box": 1.04}
-#: Estimates in the stage ``ensemble``.
+#: Names of the estimates in the stage ``ensemble``.
 _OF_ENSEMBLE = {"area": "delta_sigma_area", "box": "delta_sigma"}
 
 
-def draw(atlas: DataTree, name: str) -> Drawing:
+def draw(atlas: DataTree, name: str) -> kit.Drawing:
     """Contact domains under growing load, and Delta_sigma against F by both estimators."""
-    subject, series = Subject.of(atlas, name), measured_series(atlas)
+    subject, series = Subject.of(atlas, name), kit.measured_series(atlas)
     counts, sides = subject.states("domains"), window_sides(subject["specimens"])
-    shown = spread_loads(len(subject.forces), _MAX_MAPS)
-    height = WIDTH / _MAX_MAPS * sides[0] / sides[1] + 0.95
-    figure = Figure(figsize=(WIDTH, height + 3))
+    shown = kit.spread_loads(len(subject.forces), _MAX_MAPS)
+    height = kit.WIDTH / _MAX_MAPS * sides[0] / sides[1] + 0.95
+    figure = Figure(figsize=(kit.WIDTH, height + 3))
     top, bottom = figure.subfigures(2, 1, height_ratios=[height, 3])  # type: ignore[misc]  # an array
     maps = top.subplots(1, len(shown), squeeze=False, sharey=True)[0]
     _draw_maps(maps, subject, shown, sides)
     top.suptitle(_ABOVE_MAPS, fontsize=8)
     words = r"dimension $\Delta_\sigma$ of the contact domain"
-    panel = Panel(bottom.subplots(), _LETTERS[len(shown)], words)
+    panel = kit.Panel(bottom.subplots(), _LETTERS[len(shown)], words)
     _draw_nulls(panel, counts)
     _draw_dimensions(panel, subject)
-    draw_over_force(panel.axes, series, subject.area)
+    kit.draw_over_force(panel.axes, series, subject.area)
     panel.axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1), borderaxespad=0)
-    headline(figure, subject.label, place(subject.direction, subject.offset))
-    table = table_of(panel)
+    kit.headline(figure, subject.label, kit.place(subject.direction, subject.offset))
+    table = kit.table_of(panel)
     if series:
-        of_maps = table_of_maps(series).rename(columns={"load_N": "normal_force_N"})
+        of_maps = kit.table_of_maps(series).rename(columns={"load_N": "normal_force_N"})
         table = pd.concat([table, of_maps.assign(panel=panel.which)], ignore_index=True)
-    text = caption(
+    text = kit.caption(
         __name__,
-        rises=subject["statements"].sel(statement=[*RISES.values()])["numbers"].values.tolist(),
-        verdicts=rise_words(atlas, name),
+        rises=subject["statements"].sel(statement=[*kit.RISES.values()])["numbers"].values.tolist(),
+        verdicts=kit.rise_words(atlas, name),
         least=MIN_NODES,
-        members=members_of(subject),
-        **departures(counts),
-        **measured_range(series),
+        members=kit.members_of(subject),
+        **kit.departures(counts),
+        **kit.measured_range(series),
     )
-    return Drawing(figure, table, text)
+    return kit.Drawing(figure, table, text)
 
 
 def _draw_maps(maps, subject, shown, sides):
     """Domains at the finest resolution."""
     states = subject.states("closure")
     for axes, which, i in zip(maps, _LETTERS, shown, strict=False):
-        domain = contact_domain(subject, subject.reported.resolution, i)
-        draw_domain(axes, domain, sides, ticks=3)
-        share = area_label(states.isel(normal_force=i))
-        letter(axes, which, f"{force_label(subject.forces[i])}\n{share}")
+        domain = kit.contact_domain(subject, subject.reported.resolution, i)
+        kit.draw_domain(axes, domain, sides, ticks=3)
+        share = kit.area_label(states.isel(normal_force=i))
+        kit.letter(axes, which, f"{force_label(subject.forces[i])}\n{share}")
         axes.label_outer()
 
 
@@ -109,29 +91,29 @@ def _draw_nulls(panel, counts):
     axes.fill_between(forces, low, high, color="0.8", lw=0, zorder=0)
     label = "as many random nodes (95 % band)"
     axes.plot(forces, random, color="0.5", lw=1, label=label)
-    cut = {"color": COLOURS[4], "lw": 1, "label": "as many nodes: bearing-area cut"}
+    cut = {"color": kit.COLOURS[4], "lw": 1, "label": "as many nodes: bearing-area cut"}
     axes.plot(forces, counts["delta_sigma_cut"], "-.", **cut)
 
 
 def _draw_dimensions(panel, subject):
     """Delta_sigma by both estimators against F, faint where it is undetermined."""
     axes, forces, states = panel.axes, subject.forces, subject.states("scaling")
-    estimates = estimates_of(states)
+    estimates = kit.estimates_of(states)
     kept = [name for one in estimates for name in (one.name, f"{one.name}_reason")]
     enough = subject.states("closure")["area_corrected_resolved"]
     corrected = states["area_corrected"].where(enough)
     panel.keep(states.assign(area_corrected=corrected), "area", "area_corrected", *kept)
     for one in estimates:
-        draw_band(panel, subject, _OF_ENSEMBLE[one.key], one.style["color"], one.symbol)
+        kit.draw_band(panel, subject, _OF_ENSEMBLE[one.key], one.style["color"], one.symbol)
         places, bars = forces * _APART[one.key], {"capsize": 2, "elinewidth": 0.8, "alpha": 0.35}
-        axes.errorbar(places, one.value, yerr=reach(*one.ends), **one.style, **bars)
+        axes.errorbar(places, one.value, yerr=kit.reach(*one.ends), **one.style, **bars)
         sure, style = one.determined, one.style | {"linestyle": "none"}
         label = rf"$\Delta_\sigma$ by {one.symbol}"
         axes.plot(places[sure], one.value[sure], **style, label=label)
     axes.errorbar([], [], [], ls="none", color="0.4", capsize=2, label="bars: 95 % interval")
-    hollow_entry(axes, "faint: undetermined", marker="s", alpha=0.35)
+    kit.hollow_entry(axes, "faint: undetermined", marker="s", alpha=0.35)
     if not any(one.known.any() for one in estimates):
-        say_empty(axes, "\n".join(wrapped(one.reason[0]) for one in estimates))
+        kit.say_empty(axes, "\n".join(kit.wrapped(one.reason[0]) for one in estimates))
     axes.set_xscale("log")
     axes.set_xlim(forces.min() / 1.5, forces.max() * 1.5)
     axes.set_ylim(-0.05, 2.05)
