@@ -30,7 +30,7 @@ from fractalcontact.pages import first_screen, result_page
 from fractalcontact.pages.common_loads import CommonLoad, common_loads, main_load
 from fractalcontact.pages.files import FILES
 from fractalcontact.pages.first_screen import block_of, quoted_methods
-from fractalcontact.pages.lights import Light, lights_of, trust_of, validity_at
+from fractalcontact.pages.lights import Light, _finer, lights_of, trust_of, validity_at
 from fractalcontact.pages.matrix import (
     counted,
     matrix_of,
@@ -232,6 +232,12 @@ def test_a_light_that_is_not_good_says_what_would_help(atlas):
     (nodes,) = [one for one in lights_of(subject) if one.key == "nodes"]
     force = with_unit(2 * float(subject.reported.force), "N")
     assert nodes.help == f"a finer scan, or heavier loads (about {force})"
+
+
+def test_the_grid_asks_for_the_spacing_that_its_order_of_convergence_gives():
+    subject = {"specimens": xr.Dataset(attrs={"spacing_x": 0.4})}
+    assert _finer(subject, 4.0, 2.0) == f"a spacing of {with_unit(0.2, 'mm')} or finer"
+    assert _finer(subject, 4.0, np.nan) == "a finer scan"
 
 
 def test_lights_follow_what_the_stages_say(atlas):
